@@ -1,0 +1,36 @@
+# One library a folder: tessera_library(NAME SOURCES ... LINK ...), alias tessera::NAME.
+# Each target sees only the folders it links to: headers are staged per folder as include/<folder>, so that an include
+# which the links do not allow fails to compile.
+
+add_library(tessera_warnings INTERFACE)
+target_compile_options(tessera_warnings INTERFACE -Wall -Wextra -Werror)
+if(TESSERA_SANITIZE)
+  target_compile_options(tessera_warnings INTERFACE -fsanitize=${TESSERA_SANITIZE} -fno-sanitize-recover=all
+                                                    -fno-omit-frame-pointer)
+  target_link_options(tessera_warnings INTERFACE -fsanitize=${TESSERA_SANITIZE})
+endif()
+
+function(tessera_stage_headers target folder)
+  set(stage ${CMAKE_BINARY_DIR}/include/${folder})
+  file(MAKE_DIRECTORY ${stage})
+  file(CREATE_LINK ${CMAKE_SOURCE_DIR}/${folder} ${stage}/${folder} SYMBOLIC)
+  target_include_directories(${target} PUBLIC ${stage})
+endfunction()
+
+function(tessera_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
+  add_library(tessera_${name} STATIC ${ARG_SOURCES})
+  add_library(tessera::${name} ALIAS tessera_${name})
+  tessera_stage_headers(tessera_${name} ${name})
+  target_link_libraries(tessera_${name} PUBLIC ${ARG_LINK} PRIVATE tessera_warnings ${ARG_PRIVATE_LINK})
+endfunction()
+
+# tessera_test(NAME SOURCES ... LINK ...): a GoogleTest program, registered test by test.
+function(tessera_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE tessera_warnings ${ARG_LINK} GTest::gtest GTest::gtest_main)
+  target_include_directories(${name} PRIVATE ${CMAKE_SOURCE_DIR}/tests)
+  target_compile_definitions(${name} PRIVATE TESSERA_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600)
+endfunction()

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "scene/camera.hpp"
+#include "scene/image.hpp"
+#include "scene/optical_model.hpp"
+#include "scene/tet_mesh.hpp"
+#include "scene/trace.hpp"
+#include "scene/transfer_function.hpp"
+
+namespace tessera::frame {
+
+/// What a frame is made with. None of it but the integrator, emission and accuracy changes a bit of the picture.
+struct RenderSettings {
+  scene::Integrator integrator;
+  scene::Emission emission = scene::Emission::absorption;
+  int threads = 0;                          ///< 0: all cores
+  int tile_size = 32;                       ///< pixels a side, 1..1024
+  std::uint64_t memory_bytes = 4ull << 30;  ///< budget for frame buffers of all threads beside the mesh
+  scene::Trace* trace = nullptr;            ///< null: no timing
+};
+
+/// What happened in one frame.
+struct FrameStatistics {
+  std::uint64_t tets_total = 0;          ///< in the mesh
+  std::uint64_t tets_invisible = 0;      ///< transfer function is zero over all of their scalars: never projected
+  std::uint64_t tets_outside_view = 0;   ///< of the rest: outside the window or the clipping range
+  std::uint64_t tets_projected = 0;      ///< what is left
+  std::uint64_t segments = 0;            ///< ray segments composited or left out behind opaque ones
+  std::uint64_t max_segments_alive = 0;  ///< most segments one thread held at once
+  std::uint64_t peak_buffer_bytes = 0;   ///< most bytes of frame buffers held at once (estimate from capacities)
+  std::uint64_t exact_sign_tests = 0;    ///< edge signs decided by exact arithmetic
+  std::uint64_t tiles_split = 0;         ///< tiles worked through in parts to stay within the memory budget
+  std::string instruction_set;           ///< of the kernels that ran
+  std::string integrator;                ///< what `automatic` chose
+};
+
+/// Renders one tetrahedral mesh many times in one process. Preparation that does not depend on view or transfer
+/// function happens in the constructor; the mesh must outlive the renderer and not change.
+class Renderer {
+ public:
+  Renderer(const scene::TetMesh& mesh, const RenderSettings& settings);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// The composited image in memory. The same bits for any thread count, tile size and memory budget on one instruction
+  /// set. Throws Error(bad_input) for an invalid camera or size, Error(system_failure) if one pixel's segments exceed
+  /// the budget.
+  scene::Image render(const scene::Camera& camera, scene::ImageSize size,
+                      const scene::TransferFunction& transfer_function, FrameStatistics* statistics = nullptr);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace tessera::frame

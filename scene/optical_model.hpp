@@ -1,0 +1,24 @@
+#pragma once
+
+namespace tessera::scene {
+
+/// The source term of the volume rendering integral (Max, "Optical Models for Direct Volume Rendering", TVCG 1995).
+enum class Emission {
+  absorption,   ///< I = int kappa c T dt: light in proportion to extinction, the usual model
+  independent,  ///< I = int c T dt: emission c per world unit, whatever kappa is (Juliachs et al. 2007, 4.3)
+};
+
+/// How a ray segment becomes colour and opacity (DESIGN: Integrals).
+enum class IntegratorKind {
+  exact,     ///< split at the transfer function's knots, error near rounding
+  sampled,   ///< `samples` midpoint samples a segment, at step length / samples
+  automatic  ///< the cheapest that meets `accuracy`
+};
+
+struct Integrator {
+  IntegratorKind kind = IntegratorKind::automatic;
+  int samples = 0;         ///< sampled only, >= 1
+  double accuracy = 1e-4;  ///< automatic only: largest error in linear RGBA
+};
+
+}  // namespace tessera::scene

@@ -1,0 +1,66 @@
+#include "scene/tet_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+
+#include "scene/error.hpp"
+
+namespace tessera::scene {
+
+Box bounds(const TetMesh& mesh) {
+  Box box;
+  for (const Tet& tet : mesh.tets)
+    for (const std::uint32_t v : tet) {
+      box.low = glm::min(box.low, mesh.positions[v]);
+      box.high = glm::max(box.high, mesh.positions[v]);
+    }
+  return box;
+}
+
+std::array<double, 2> scalar_range(const TetMesh& mesh) {
+  if (mesh.tets.empty()) return {0, 0};
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  const auto include = [&](double s) {
+    low = std::min(low, s);
+    high = std::max(high, s);
+  };
+  if (mesh.association == Association::cell) {
+    for (const double s : mesh.scalars) include(s);
+  } else {
+    for (const Tet& tet : mesh.tets)
+      for (const std::uint32_t v : tet) include(mesh.scalars[v]);
+  }
+  return {low, high};
+}
+
+void validate(const TetMesh& mesh, const std::string& source) {
+  const bool point = mesh.association == Association::point;
+  const std::size_t expected = point ? mesh.positions.size() : mesh.tets.size();
+  if (mesh.scalars.size() != expected)
+    throw bad_input(fmt::format("{}: {} scalars for {} {}; give one each", source, mesh.scalars.size(), expected,
+                                point ? "points" : "cells"));
+  if (!mesh.original_cell.empty() && mesh.original_cell.size() != mesh.tets.size())
+    throw bad_input(
+        fmt::format("{}: {} original cell numbers for {} tets", source, mesh.original_cell.size(), mesh.tets.size()));
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    if (!point && !std::isfinite(mesh.scalars[t]))
+      throw bad_input(fmt::format("{}: cell {} has a scalar that is not finite; blank it", source, mesh.cell_of(t)));
+    for (const std::uint32_t v : mesh.tets[t]) {
+      if (v >= mesh.positions.size())
+        throw bad_input(fmt::format("{}: cell {} uses vertex {}, the mesh has {}; write cells and points from one mesh",
+                                    source, mesh.cell_of(t), v, mesh.positions.size()));
+      const glm::dvec3& p = mesh.positions[v];
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+        throw bad_input(
+            fmt::format("{}: vertex {} of cell {} is not finite; blank the cell", source, v, mesh.cell_of(t)));
+      if (point && !std::isfinite(mesh.scalars[v]))
+        throw bad_input(fmt::format("{}: vertex {} of cell {} has a scalar that is not finite; blank the cell", source,
+                                    v, mesh.cell_of(t)));
+    }
+  }
+}
+
+}  // namespace tessera::scene

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "scene/camera.hpp"
+
+namespace tessera::scene {
+
+/// Which mesh element carries the scalar.
+enum class Association { point, cell };
+
+/// Four vertex indices of a tetrahedron, either orientation.
+using Tet = std::array<std::uint32_t, 4>;
+
+/// A tetrahedral mesh with one scalar field: what every reader makes and every renderer takes.
+///
+/// Shape   positions[v] and, for point data, scalars[v] for each vertex v; tets[t] and, for cell data, scalars[t] for
+/// each tet t. Order   tets of one original cell are adjacent and cells stand in the file's order, so the index t is
+/// the rank of the pair
+///         (original cell, sub-tet): the last part of the depth order's key.
+/// Units   world units of the file in double precision, so metre-size cells at coordinates of 7e6 keep their shape.
+/// Holds   all indices < positions.size(); positions finite; scalars of used vertices (or of tets) finite: cells with
+/// NaN are
+///         blanked by the reader. Flat, inverted and duplicate tets are allowed. Vertices may be unused, or coincide.
+struct TetMesh {
+  std::vector<glm::dvec3> positions;
+  std::vector<Tet> tets;
+  std::vector<double> scalars;
+  Association association = Association::point;
+  /// Original (file) cell of each tet; empty if that is the tet's own index.
+  std::vector<std::uint64_t> original_cell;
+  std::string field_name;  ///< as chosen, with component: "Velocity:mag"
+
+  [[nodiscard]] std::uint64_t cell_of(std::size_t tet) const {
+    return original_cell.empty() ? tet : original_cell[tet];
+  }
+};
+
+/// Box of the vertices that tets use. Empty if there are no tets.
+Box bounds(const TetMesh& mesh);
+
+/// Smallest and largest scalar that tets use; {0, 0} if there are no tets.
+std::array<double, 2> scalar_range(const TetMesh& mesh);
+
+/// Throws Error(bad_input, "SOURCE: ...") if an index, size or number breaks the invariants above.
+void validate(const TetMesh& mesh, const std::string& source);
+
+}  // namespace tessera::scene
