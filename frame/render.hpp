@@ -25,17 +25,18 @@ struct RenderSettings {
 
 /// What happened in one frame.
 struct FrameStatistics {
-  std::uint64_t tets_total = 0;          ///< in the mesh
-  std::uint64_t tets_invisible = 0;      ///< transfer function is zero over all of their scalars: never projected
-  std::uint64_t tets_outside_view = 0;   ///< of the rest: outside the window or the clipping range
-  std::uint64_t tets_projected = 0;      ///< what is left
-  std::uint64_t segments = 0;            ///< ray segments composited or left out behind opaque ones
-  std::uint64_t max_segments_alive = 0;  ///< most segments one thread held at once
-  std::uint64_t peak_buffer_bytes = 0;   ///< most bytes of frame buffers held at once (estimate from capacities)
-  std::uint64_t exact_sign_tests = 0;    ///< edge signs decided by exact arithmetic
-  std::uint64_t tiles_split = 0;         ///< tiles worked through in parts to stay within the memory budget
-  std::string instruction_set;           ///< of the kernels that ran
-  std::string integrator;                ///< what `automatic` chose
+  std::uint64_t tets_total = 0;           ///< in the mesh
+  std::uint64_t tets_invisible = 0;       ///< transfer function is zero over all of their scalars: never projected
+  std::uint64_t tets_outside_view = 0;    ///< of the rest: outside the window or the clipping range
+  std::uint64_t tets_between_pixels = 0;  ///< of the rest: too small to cover the centre of any pixel
+  std::uint64_t tets_projected = 0;       ///< what is left
+  std::uint64_t segments = 0;             ///< ray segments composited or left out behind opaque ones
+  std::uint64_t max_segments_alive = 0;   ///< most segments one thread held at once
+  std::uint64_t peak_buffer_bytes = 0;    ///< most bytes of frame buffers held at once (estimate from capacities)
+  std::uint64_t exact_sign_tests = 0;     ///< edge signs decided by exact arithmetic
+  std::uint64_t tiles_split = 0;          ///< tiles worked through in parts to stay within the memory budget
+  std::string instruction_set;            ///< of the kernels that ran
+  std::string integrator;                 ///< what `automatic` chose
 };
 
 /// Renders one tetrahedral mesh many times in one process. Preparation that does not depend on view or transfer

@@ -1,0 +1,160 @@
+#include <cmath>
+
+#include "compositor/segment_integrator.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "compositor/integrate_exact.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "compositor/piecewise_table-inl.h"
+#include "hwy/contrib/math/math-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::compositor {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Gauss-Legendre nodes and weights on [0, 1].
+constexpr double nodes3[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
+constexpr double weights3[3] = {0.2777777777777778, 0.4444444444444444, 0.2777777777777778};
+constexpr double nodes6[6] = {0.03376524289842399, 0.16939530676686774, 0.38069040695840155,
+                              0.61930959304159845, 0.83060469323313226, 0.96623475710157601};
+constexpr double weights6[6] = {0.08566224618958517, 0.18038078652406930, 0.23395696728634552,
+                                0.23395696728634552, 0.18038078652406930, 0.08566224618958517};
+
+/// int_0^1 exp(-q) du and int_0^1 u exp(-q) du for q(u) = u (linear + quadratic u).
+struct Moments {
+  V zeroth, first;
+};
+
+template <int count>
+HWY_INLINE Moments moments(V linear, V quadratic, const double (&nodes)[count], const double (&weights)[count]) {
+  const D d;
+  Moments m{hn::Zero(d), hn::Zero(d)};
+  for (int i = 0; i < count; ++i) {
+    const V u = hn::Set(d, nodes[i]);
+    const V q = hn::Mul(u, hn::MulAdd(quadratic, u, linear));
+    const V light = hn::Mul(hn::Set(d, weights[i]), hn::Exp(d, hn::Neg(q)));
+    m.zeroth = hn::Add(m.zeroth, light);
+    m.first = hn::MulAdd(light, u, m.first);
+  }
+  return m;
+}
+
+void exact(const PiecewiseTable& table, scene::Emission emission, SegmentBatch& batch) {
+  const D d;
+  const DI di;
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0), half = hn::Set(d, 0.5);
+  const auto lanes = static_cast<std::size_t>(hn::Lanes(d));
+  const auto step_up = hn::Set(di, 1), step_down = hn::Set(di, -1);
+  const bool emits_by_extinction = emission == scene::Emission::absorption;
+
+  for (std::size_t i = 0; i < batch.size; i += lanes) {
+    const auto in_batch = hn::Lt(hn::Iota(d, 0), hn::Set(d, static_cast<double>(batch.size - i)));
+    const V length = hn::IfThenElseZero(in_batch, hn::LoadU(d, &batch.length[i]));
+    const V front = hn::IfThenElseZero(in_batch, hn::LoadU(d, &batch.scalar_front[i]));
+    const V back = hn::IfThenElseZero(in_batch, hn::LoadU(d, &batch.scalar_back[i]));
+    const auto constant = hn::Eq(front, back);
+    const auto up = hn::Ge(back, front);
+    const V length_per_scalar = hn::Div(length, hn::IfThenElse(constant, one, hn::Sub(back, front)));
+
+    VI interval = locate(table, front, up);
+    V scalar = front, left = length;
+    V color[3] = {zero, zero, zero}, transmittance = one, optical_depth = zero;
+    auto active = hn::Gt(length, zero);
+    while (!hn::AllFalse(d, active)) {
+      const V knot = hn::IfThenElse(up, hn::GatherIndex(d, table.above.data(), interval),
+                                    hn::GatherIndex(d, table.below.data(), interval));
+      V target = hn::IfThenElse(up, hn::Min(knot, back), hn::Max(knot, back));
+      target = hn::IfThenElse(constant, back, target);
+      auto last = hn::Eq(target, back);
+      V piece = hn::IfThenElse(last, left, hn::Min(left, hn::Mul(hn::Sub(target, scalar), length_per_scalar)));
+
+      const V base = hn::GatherIndex(d, table.base.data(), interval);
+      const V from = hn::Sub(scalar, base);
+      V to = hn::Sub(target, base);
+      const auto channel = [&](int c, V& at_from, V& at_to) HWY_ATTR {
+        const V start = hn::GatherIndex(d, table.channels[c].start.data(), interval);
+        const V slope = hn::GatherIndex(d, table.channels[c].slope.data(), interval);
+        at_from = hn::MulAdd(slope, from, start);
+        at_to = hn::MulAdd(slope, to, start);
+      };
+      V kappa0, kappa1;
+      channel(0, kappa0, kappa1);
+      V depth = hn::Mul(piece, hn::Mul(half, hn::Add(kappa0, kappa1)));
+      const auto thick = hn::Gt(depth, one);
+      if (!hn::AllFalse(d, thick)) {
+        // Shorten to the first optical depth: the root u of q(u) = 1, in the form without cancellation.
+        const V linear = hn::Mul(kappa0, piece);
+        const V root = hn::Sqrt(hn::Max(
+            zero, hn::MulAdd(linear, linear, hn::Mul(hn::Set(d, 2.0), hn::Mul(hn::Sub(kappa1, kappa0), piece)))));
+        const V u = hn::IfThenElse(thick, hn::Min(one, hn::Div(hn::Set(d, 2.0), hn::Add(linear, root))), one);
+        piece = hn::Mul(piece, u);
+        kappa1 = hn::IfThenElse(thick, hn::MulAdd(hn::Sub(kappa1, kappa0), u, kappa0), kappa1);
+        target = hn::IfThenElse(thick, hn::MulAdd(hn::Sub(target, scalar), u, scalar), target);
+        to = hn::Sub(target, base);
+        depth = hn::Mul(piece, hn::Mul(half, hn::Add(kappa0, kappa1)));
+        last = hn::AndNot(thick, last);
+      }
+      const V through = hn::Exp(d, hn::Neg(depth));
+
+      V color0[3], color1[3];
+      auto varies = hn::Lt(zero, zero);
+      for (int c = 0; c < 3; ++c) {
+        channel(c + 1, color0[c], color1[c]);
+        varies = hn::Or(varies, hn::Ne(color0[c], color1[c]));
+      }
+      Moments m{zero, zero};
+      if (!emits_by_extinction || !hn::AllFalse(d, hn::And(varies, active))) {
+        const V linear = hn::Mul(kappa0, piece), quadratic = hn::Mul(half, hn::Mul(hn::Sub(kappa1, kappa0), piece));
+        // Lane by lane, so that a segment's bits do not depend on its neighbours in the batch.
+        const auto thin = hn::Lt(depth, hn::Set(d, 0.05));
+        const auto needs6 = hn::AndNot(thin, active);
+        if (!hn::AllTrue(d, needs6)) m = moments(linear, quadratic, nodes3, weights3);
+        if (!hn::AllFalse(d, needs6)) {
+          const Moments fine = moments(linear, quadratic, nodes6, weights6);
+          m = {hn::IfThenElse(thin, m.zeroth, fine.zeroth), hn::IfThenElse(thin, m.first, fine.first)};
+        }
+      }
+      for (int c = 0; c < 3; ++c) {
+        const V change = hn::Sub(color1[c], color0[c]);
+        V light;
+        if (emits_by_extinction) {
+          // c0 (1 - M) + c1 (M - T) = c0 (1 - T) + (c1 - c0) (M - T), the second term left out where the colour is
+          // constant.
+          light = hn::Mul(color0[c], hn::Sub(one, through));
+          light = hn::IfThenElse(varies, hn::MulAdd(change, hn::Sub(m.zeroth, through), light), light);
+        } else {
+          light = hn::Mul(piece, hn::MulAdd(change, m.first, hn::Mul(color0[c], m.zeroth)));
+        }
+        color[c] = hn::IfThenElse(active, hn::MulAdd(transmittance, light, color[c]), color[c]);
+      }
+      optical_depth = hn::IfThenElse(active, hn::Add(optical_depth, depth), optical_depth);
+      transmittance = hn::IfThenElse(active, hn::Mul(transmittance, through), transmittance);
+      left = hn::Sub(left, piece);
+      scalar = target;
+      active = hn::AndNot(hn::Or(last, hn::Lt(transmittance, hn::Set(d, 1e-10))), active);
+      const auto on = hn::RebindMask(di, hn::AndNot(thick, active));
+      interval = hn::Add(interval, hn::IfThenElseZero(on, hn::IfThenElse(hn::RebindMask(di, up), step_up, step_down)));
+    }
+    hn::StoreU(color[0], d, &batch.red[i]);
+    hn::StoreU(color[1], d, &batch.green[i]);
+    hn::StoreU(color[2], d, &batch.blue[i]);
+    hn::StoreU(optical_depth, d, &batch.optical_depth[i]);
+    hn::StoreU(transmittance, d, &batch.transmittance[i]);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::compositor
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tessera::compositor {
+HWY_EXPORT(exact);
+void integrate_exact(const PiecewiseTable& table, scene::Emission emission, SegmentBatch& batch) {
+  HWY_DYNAMIC_DISPATCH(exact)(table, emission, batch);
+}
+}  // namespace tessera::compositor
+#endif  // HWY_ONCE

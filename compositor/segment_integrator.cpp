@@ -1,0 +1,59 @@
+#include "compositor/segment_integrator.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene/error.hpp"
+
+namespace tessera::compositor {
+
+SegmentIntegrator::SegmentIntegrator(const scene::TransferFunction& function, const scene::Integrator& integrator,
+                                     scene::Emission emission)
+    : table_(function), emission_(emission), termination_error_(1e-7) {
+  switch (integrator.kind) {
+    case scene::IntegratorKind::exact:
+      break;
+    case scene::IntegratorKind::sampled:
+      if (integrator.samples < 1)
+        throw scene::bad_input(
+            fmt::format("--integrator sampled:{}: the number of samples must be at least 1", integrator.samples));
+      samples_ = integrator.samples;
+      break;
+    case scene::IntegratorKind::automatic:
+      if (!(integrator.accuracy > 0))
+        throw scene::bad_input(fmt::format("--accuracy {}: it must be positive", integrator.accuracy));
+      // The exact form meets every accuracy; only what lies behind opaque matter depends on it so far.
+      termination_error_ = std::min(0.25 * integrator.accuracy, 1e-2);
+      break;
+  }
+}
+
+void SegmentIntegrator::integrate(SegmentBatch& batch) const {
+  if (samples_ > 0)
+    integrate_sampled(table_, emission_, samples_, batch);
+  else
+    integrate_exact(table_, emission_, batch);
+}
+
+std::optional<double> SegmentIntegrator::first_visible(double front, double back) const {
+  const auto begin = table_.values.begin(), end = begin + static_cast<std::ptrdiff_t>(table_.knot_count);
+  const bool up = back >= front;
+  auto interval = static_cast<std::size_t>(
+      (up ? std::upper_bound(begin, end, front) : std::lower_bound(begin, end, front)) - begin);
+  const auto extinction = [&](double s) {
+    return table_.channels[0].start[interval] + table_.channels[0].slope[interval] * (s - table_.base[interval]);
+  };
+  if (front == back) return extinction(front) > 0 ? std::optional(0.0) : std::nullopt;
+  for (double s = front;;) {
+    const double target = up ? std::min(table_.above[interval], back) : std::max(table_.below[interval], back);
+    if (target != s && (extinction(s) > 0 || extinction(target) > 0)) return (s - front) / (back - front);
+    if (target == back) return std::nullopt;
+    s = target;
+    interval += up ? 1 : std::size_t(-1);
+  }
+}
+
+std::string SegmentIntegrator::name() const { return samples_ > 0 ? fmt::format("sampled:{}", samples_) : "exact"; }
+
+}  // namespace tessera::compositor

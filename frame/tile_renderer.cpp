@@ -1,0 +1,103 @@
+#include "frame/tile_renderer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+
+#include "scene/error.hpp"
+
+namespace tessera::frame {
+namespace {
+
+/// A buffer of this many segments and its companions stay in a core's second-level cache.
+constexpr std::size_t comfortable_segments = 8192;
+
+}  // namespace
+
+TileRenderer::TileRenderer(const TileContext& context)
+    : context_(context),
+      pixels_(*context.space, *context.integrator, context.max_color, context.longest_ray, context.emission) {}
+
+void TileRenderer::render(const projection::PixelRect& rect, std::span<projection::TileEntry> entries,
+                          scene::Image& image) {
+  std::sort(entries.begin(), entries.end(), [](const projection::TileEntry& a, const projection::TileEntry& b) {
+    return std::tie(a.near_depth, a.tet) < std::tie(b.near_depth, b.tet);
+  });
+  render_sorted(rect, entries, image);
+}
+
+void TileRenderer::render_sorted(const projection::PixelRect& rect, std::span<const projection::TileEntry> entries,
+                                 scene::Image& image) {
+  if (rect.empty()) return;
+  const TileCounts before = counts_;
+  if (try_render(rect, entries)) {
+    pixels_.store(image);
+    return;
+  }
+  if (rect.area() == 1)
+    throw scene::Error(
+        scene::ExitCode::system_failure,
+        fmt::format(
+            "pixel {},{}: more than {} of its ray segments overlap in depth, beyond the memory budget; raise --memory",
+            rect.x0, rect.y0, segments_.capacity()));
+  counts_.segments = before.segments;
+  ++counts_.tiles_split;
+  const int x = (rect.x0 + rect.x1 + 1) / 2, y = (rect.y0 + rect.y1 + 1) / 2;
+  for (const projection::PixelRect& quarter :
+       {projection::PixelRect{rect.x0, rect.y0, x, y}, projection::PixelRect{x, rect.y0, rect.x1, y},
+        projection::PixelRect{rect.x0, y, x, rect.y1}, projection::PixelRect{x, y, rect.x1, rect.y1}})
+    render_sorted(quarter, entries, image);
+}
+
+bool TileRenderer::reserve(std::size_t segments) {
+  if (segments <= segments_.capacity()) return true;
+  if (segments * bytes_a_segment > context_.budget_bytes || segments > std::numeric_limits<std::uint32_t>::max())
+    return false;
+  segments_.reserve(segments);
+  counts_.peak_bytes = std::max<std::uint64_t>(counts_.peak_bytes, segments * bytes_a_segment);
+  return true;
+}
+
+bool TileRenderer::try_render(const projection::PixelRect& rect, std::span<const projection::TileEntry> entries) {
+  const auto area = static_cast<std::size_t>(rect.area());
+  segments_.size = 0;
+  // Room for at least two segments a pixel: the rasterizer wants space for one more on every pixel before it takes a
+  // cell.
+  if (!reserve(
+          std::max<std::size_t>(2 * area, std::min(comfortable_segments, context_.budget_bytes / bytes_a_segment))))
+    return false;
+  pixels_.start(rect);
+  for (std::size_t next = 0; next < entries.size();) {
+    {
+      const scene::TraceScope timing(context_.trace, "project");
+      next += projection::rasterize_planes(*context_.projected, entries.subspan(next), rect, segments_, counts_.raster);
+    }
+    const double final_depth =
+        next < entries.size() ? entries[next].near_depth : std::numeric_limits<double>::infinity();
+    flush(area, final_depth);
+    if (pixels_.open_count() == 0) break;
+    if (next < entries.size() && segments_.size + area > segments_.capacity() / 2 &&
+        !reserve(std::max(2 * segments_.capacity(), 2 * (segments_.size + area))))
+      if (segments_.size + area > segments_.capacity()) return false;
+  }
+  return true;
+}
+
+void TileRenderer::flush(std::size_t pixel_count, double final_depth) {
+  counts_.max_segments_alive = std::max<std::uint64_t>(counts_.max_segments_alive, segments_.size);
+  {
+    const scene::TraceScope timing(context_.trace, "sort");
+    lists_.sort(segments_, pixel_count);
+  }
+  const scene::TraceScope timing(context_.trace, "composite");
+  pixels_.composite(segments_, lists_, final_depth);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < segments_.size; ++i)
+    if (!(segments_.front[i] < final_depth) && pixels_.open(segments_.pixel(i))) segments_.move(i, kept++);
+  counts_.segments += segments_.size - kept;
+  segments_.size = kept;
+}
+
+}  // namespace tessera::frame

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "compositor/segment_integrator.hpp"
+#include "compositor/tile_pixels.hpp"
+#include "projection/planes_rasterizer.hpp"
+#include "projection/ray_segments.hpp"
+#include "scene/image.hpp"
+#include "scene/trace.hpp"
+#include "sorting/pixel_lists.hpp"
+
+namespace tessera::frame {
+
+/// What a tile renderer needs to know of its frame.
+struct TileContext {
+  const projection::ProjectedMesh* projected;
+  const projection::PixelSpace* space;
+  const compositor::SegmentIntegrator* integrator;
+  double max_color, longest_ray;
+  scene::Emission emission;
+  std::uint64_t budget_bytes;  ///< for this renderer's buffers
+  scene::Trace* trace;
+};
+
+/// Sums over the tiles that one renderer made.
+struct TileCounts {
+  std::uint64_t segments = 0, max_segments_alive = 0, peak_bytes = 0, tiles_split = 0;
+  projection::RasterCounts raster;
+};
+
+/// Renders tiles one after the other: rasterize, sort, integrate, composite; one renderer a thread.
+///
+/// A tile's cells come by their nearest depth. When the segment buffer is full, all segments nearer than the next
+/// cell's nearest depth are final: they are sorted, composited and forgotten, the rest stays. So the depth complexity
+/// costs no memory, only the number of segments that overlap in depth does; where that outgrows the buffer, the buffer
+/// grows up to the budget, and then the tile is rendered in quarters, which hold a quarter of the segments each.
+/// Nothing is ever dropped.
+class TileRenderer {
+ public:
+  explicit TileRenderer(const TileContext& context);
+
+  /// Renders the pixels of `rect` from `entries`, which it sorts. Throws Error(system_failure) if one pixel alone has
+  /// more segments that overlap in depth than the budget holds.
+  void render(const projection::PixelRect& rect, std::span<projection::TileEntry> entries, scene::Image& image);
+
+  [[nodiscard]] const TileCounts& counts() const { return counts_; }
+
+  /// Bytes that one segment takes in all buffers of a renderer.
+  static constexpr std::size_t bytes_a_segment =
+      projection::RaySegments::bytes_each + sorting::PixelLists::bytes_each + compositor::SegmentBatch::bytes_each;
+
+ private:
+  void render_sorted(const projection::PixelRect& rect, std::span<const projection::TileEntry> entries,
+                     scene::Image& image);
+  bool try_render(const projection::PixelRect& rect, std::span<const projection::TileEntry> entries);
+  void flush(std::size_t pixel_count, double final_depth);
+  bool reserve(std::size_t segments);
+
+  TileContext context_;
+  projection::RaySegments segments_;
+  sorting::PixelLists lists_;
+  compositor::TilePixels pixels_;
+  TileCounts counts_;
+};
+
+}  // namespace tessera::frame

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "projection/pixel_space.hpp"
+
+namespace tessera::projection {
+
+/// On which side of the edge a -> b does the ray through pixel position (px, py) pass? Exactly.
+///
+/// The sign, -1, 0 or +1, of the determinant E = | (px, py, 1) ; a ; b | of homogeneous pixel coordinates, in exact
+/// arithmetic on the given doubles (floating-point expansions: Shewchuk, "Adaptive Precision Floating-Point Arithmetic
+/// and Fast Robust Geometric Predicates", 1997). On the edge itself the ray is shifted by (e, e^2) with e infinitely
+/// small and positive: the sign is then that of dE/dx, or, where that is zero too, of dE/dy (DESIGN section 3, the tie
+/// rule). 0 is left only where a and b lie on one ray: such an edge has no sides, and no face with it is hit.
+/// edge_sign(a, b) = -edge_sign(b, a).
+int edge_sign(const PixelVertex& a, const PixelVertex& b, double px, double py);
+
+}  // namespace tessera::projection

@@ -1,0 +1,50 @@
+#include "projection/pixel_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+
+namespace tessera::projection {
+namespace {
+
+double on_grid(double pixel) {
+  constexpr double cells = 4294967296.0;  // 2^32; beyond 2^20 pixels the rounding changes nothing
+  const double scaled = pixel * cells;
+  return std::isfinite(scaled) ? std::nearbyint(scaled) / cells : pixel;
+}
+
+}  // namespace
+
+PixelSpace::PixelSpace(const scene::Camera& camera, scene::ImageSize size) : size_(size) {
+  scene::validate(camera);
+  scene::validate(size);
+  basis_ = scene::view_basis(camera);
+  position_ = camera.position;
+  perspective_ = camera.projection == scene::ProjectionKind::perspective;
+  const double half_height = 0.5 * size.height;
+  pixels_per_unit_ =
+      half_height / (perspective_ ? std::tan(camera.view_angle * (std::numbers::pi / 360)) : camera.parallel_scale);
+  near_ = camera.clipping_range ? std::max(0.0, camera.clipping_range->near_distance) : 0;
+  far_ = camera.clipping_range ? camera.clipping_range->far_distance : std::numeric_limits<double>::infinity();
+}
+
+PixelVertex PixelSpace::project(const glm::dvec3& p_world) const {
+  const glm::dvec3 p = p_world - position_;
+  const double across = glm::dot(basis_.right, p), upward = glm::dot(basis_.up, p), depth = glm::dot(basis_.forward, p);
+  const double half_width = 0.5 * size_.width, half_height = 0.5 * size_.height;
+  if (!perspective_)
+    return {on_grid(half_width + across * pixels_per_unit_), on_grid(half_height - upward * pixels_per_unit_), 1,
+            depth};
+  return {half_width * depth + across * pixels_per_unit_, half_height * depth - upward * pixels_per_unit_, depth,
+          depth};
+}
+
+double PixelSpace::length_per_depth(double x, double y) const {
+  if (!perspective_) return 1;
+  const double tx = (x - 0.5 * size_.width) / pixels_per_unit_, ty = (y - 0.5 * size_.height) / pixels_per_unit_;
+  return std::sqrt(1 + tx * tx + ty * ty);
+}
+
+}  // namespace tessera::projection

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "projection/footprint.hpp"
+#include "projection/pixel_space.hpp"
+#include "projection/prepared_mesh.hpp"
+#include "projection/ray_segments.hpp"
+
+namespace tessera::projection {
+
+/// One cell in a tile's list: lists are ordered by (near_depth, tet).
+struct TileEntry {
+  float near_depth;  ///< not above the smallest depth of the cell that can be seen
+  std::uint32_t tet;
+};
+
+/// What the rasterizer reads of a frame. `vertices[v]` stands for the mesh's vertex v.
+struct ProjectedMesh {
+  const PreparedMesh* mesh;
+  std::span<const PixelVertex> vertices;
+  double near_depth, far_depth;  ///< the clipping range in planar depth
+};
+
+/// How often the slow path ran.
+struct RasterCounts {
+  std::uint64_t exact_sign_tests = 0;
+};
+
+/// The `planes` rasterizer: cells to ray segments, for the pixels of one rectangle.
+///
+/// A ray enters a cell through one face and leaves it through another. Which ones, the signs of the six edge functions
+/// E_ab = | (px, py, 1) ; a ; b | tell: a face (a, b, c) is pierced if E_ab, E_bc and E_ca agree in sign, and depth and
+/// scalar there are means of the corners' with weights |E_bc|, |E_ca|, |E_ab|. So nothing is divided at set-up, values
+/// never leave the face's range, an edge-on face is just never pierced, and cells that cross the eye plane are not
+/// special (the weights are 3D barycentric coordinates in homogeneous space).
+///
+/// Watertight: vertices come in canonical order (PreparedMesh), so cells that share an edge or a face compute the same
+/// bits. Signs are those of exact arithmetic with the tie rule (edge_sign.hpp): a double evaluation decides unless it
+/// lies within its error bound. Along any ray the segments of a mesh tile the ray's way through it.
+///
+/// Lanes hold candidate pixels of the cell's box, packed row after row, so that small boxes fill the lanes.
+///
+/// Processes cells from the front of `entries` while `out` has room for a whole rectangle more, appends to `out`, and
+/// returns how many it took (all, if there is room; at least one if out.capacity() - out.size >= rect.area()). Bits do
+/// not depend on the rectangle. Departs from DESIGN section 3's max/min over planes in that signs, not depths, choose
+/// the faces: a maximum over depths needs a tie rule at every edge anyway.
+std::size_t rasterize_planes(const ProjectedMesh& projected, std::span<const TileEntry> entries, const PixelRect& rect,
+                             RaySegments& out, RasterCounts& counts);
+
+/// Name of the instruction set that rasterize_planes runs on: "AVX3", "AVX2", "SSE4", ...
+std::string instruction_set();
+
+}  // namespace tessera::projection

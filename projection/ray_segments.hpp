@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tessera::projection {
+
+/// Ray segments of one tile: the stretches of its view rays that lie inside a tetrahedron.
+///
+/// Shape   structure of arrays of equal capacity; the first `size` elements are segments. Capacity includes `padding`
+///         elements behind the last, which a SIMD store may overwrite.
+/// Order   none: one pixel's segments lie anywhere. sorting/ orders them by (front, back, tet).
+/// Units   front, back: planar depth of entry and exit along the view direction, world units, double, so that the
+/// length of
+///         a thin cell far away is right to 1e-16 of its depth; scalars in the field's own unit at entry and exit.
+/// Holds   front <= back, both inside the clipping range, all finite. Cells that are thinner than the rounding of a
+/// depth have
+///         length zero; they are kept, so that the set of cells a ray passes is exact.
+struct RaySegments {
+  static constexpr std::size_t padding = 16;
+
+  std::size_t size = 0;
+  std::vector<std::uint64_t> pixel_and_tet;  ///< low half: row-major pixel in the tile; high half: tet index
+  std::vector<double> front, back, scalar_front, scalar_back;
+
+  static constexpr std::size_t bytes_each = sizeof(std::uint64_t) + 4 * sizeof(double);
+
+  void reserve(std::size_t capacity) {
+    for (std::vector<double>* array : {&front, &back, &scalar_front, &scalar_back}) array->resize(capacity + padding);
+    pixel_and_tet.resize(capacity + padding);
+  }
+  [[nodiscard]] std::size_t capacity() const { return front.size() < padding ? 0 : front.size() - padding; }
+  [[nodiscard]] std::uint32_t pixel(std::size_t i) const { return static_cast<std::uint32_t>(pixel_and_tet[i]); }
+  [[nodiscard]] std::uint32_t tet(std::size_t i) const { return static_cast<std::uint32_t>(pixel_and_tet[i] >> 32); }
+
+  /// Moves segment `from` to `to` (an index not above it).
+  void move(std::size_t from, std::size_t to) {
+    pixel_and_tet[to] = pixel_and_tet[from];
+    front[to] = front[from];
+    back[to] = back[from];
+    scalar_front[to] = scalar_front[from];
+    scalar_back[to] = scalar_back[from];
+  }
+};
+
+}  // namespace tessera::projection

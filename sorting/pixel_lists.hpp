@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "projection/ray_segments.hpp"
+
+namespace tessera::sorting {
+
+/// The ray segments of a tile, listed pixel by pixel in visibility order.
+///
+/// Order is total: front, then back, then tet index, so it does not depend on how the segments arrived. Any list
+/// length.
+class PixelLists {
+ public:
+  /// Lists segments [0, segments.size) of a tile of `pixel_count` pixels. Segments that arrive nearly in order (by
+  /// their cells' nearest depth) cost one comparison each.
+  void sort(const projection::RaySegments& segments, std::size_t pixel_count);
+
+  /// Indices into the segments given last, first to last along the pixel's ray.
+  [[nodiscard]] std::span<const std::uint32_t> pixel(std::size_t pixel) const {
+    return std::span(order_).subspan(begin_[pixel], begin_[pixel + 1] - begin_[pixel]);
+  }
+
+  static constexpr std::size_t bytes_each = sizeof(std::uint32_t);  ///< per segment
+
+ private:
+  std::vector<std::uint32_t> begin_, order_;
+};
+
+}  // namespace tessera::sorting
