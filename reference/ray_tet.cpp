@@ -1,0 +1,128 @@
+#include "reference/ray_tet.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "reference/exact_determinant.hpp"
+
+namespace tessera::reference {
+namespace {
+
+/// E of an edge: the sign after the tie rule, and the value before it.
+struct EdgeValue {
+  int sign;
+  long double value;
+};
+
+/// Values that rounding could have changed by more than one part in this are computed exactly instead.
+constexpr long double wanted_precision = 1e12L;
+
+EdgeValue edge_value(double x, double y, const glm::dvec3& a, const glm::dvec3& b) {
+  // E = (Xa - x wa)(Yb - y wb) - (Ya - y wa)(Xb - x wb), which equals det[(x,y,1), a, b].
+  const long double xa_part = static_cast<long double>(x) * a.z, ya_part = static_cast<long double>(y) * a.z;
+  const long double xb_part = static_cast<long double>(x) * b.z, yb_part = static_cast<long double>(y) * b.z;
+  const long double xa = a.x - xa_part, ya = a.y - ya_part, xb = b.x - xb_part, yb = b.y - yb_part;
+  const long double value = xa * yb - ya * xb;
+
+  // Each difference errs by at most epsilon times the sizes that enter it; so do the products and the last difference.
+  const long double xa_size = std::abs(a.x) + std::abs(xa_part), ya_size = std::abs(a.y) + std::abs(ya_part);
+  const long double xb_size = std::abs(b.x) + std::abs(xb_part), yb_size = std::abs(b.y) + std::abs(yb_part);
+  const long double error =
+      4 * std::numeric_limits<long double>::epsilon() *
+      (xa_size * std::abs(yb) + std::abs(xa) * yb_size + ya_size * std::abs(xb) + std::abs(ya) * xb_size);
+  if (std::abs(value) > error * wanted_precision) return {value > 0 ? 1 : -1, value};
+
+  const Determinant exact = exact_determinant({x, y, 1}, a, b);
+  if (exact.sign != 0) return {exact.sign, exact.value};
+  // On the edge: the derivative of E by x decides, then that by y.
+  const int by_x = exact_determinant({1, 0, 0}, a, b).sign;
+  return {by_x != 0 ? by_x : exact_determinant({0, 1, 0}, a, b).sign, 0};
+}
+
+/// Whether three vertices and the eye lie in one plane.
+bool edge_on(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  long double value = 0, size = 0;
+  const auto add = [&](double p, double q, double r) {
+    const long double term = static_cast<long double>(p) * q * r;
+    value += term;
+    size += std::abs(term);
+  };
+  add(a.x, b.y, c.z), add(-a.x, b.z, c.y);
+  add(a.y, b.z, c.x), add(-a.y, b.x, c.z);
+  add(a.z, b.x, c.y), add(-a.z, b.y, c.x);
+  if (std::abs(value) > 16 * std::numeric_limits<long double>::epsilon() * size) return false;
+  return exact_determinant(a, b, c).sign == 0;
+}
+
+struct Hit {
+  double depth, scalar;
+};
+
+/// Weights need not be normalised, only not negative; the results lie between the corners' by construction.
+Hit weighted(const std::array<const Corner*, 3>& corners, const std::array<long double, 3>& weights) {
+  const long double sum = weights[0] + weights[1] + weights[2];
+  long double depth = 0, scalar = 0;
+  for (int i = 0; i < 3; ++i) {
+    const long double share = sum > 0 ? weights[i] / sum : 1.0L / 3;
+    depth += share * corners[i]->vertex.depth;
+    scalar += share * corners[i]->scalar;
+  }
+  const auto [d0, d1] = std::minmax({corners[0]->vertex.depth, corners[1]->vertex.depth, corners[2]->vertex.depth});
+  const auto [s0, s1] = std::minmax({corners[0]->scalar, corners[1]->scalar, corners[2]->scalar});
+  return {std::clamp(static_cast<double>(depth), d0, d1), std::clamp(static_cast<double>(scalar), s0, s1)};
+}
+
+/// The scalar at an eye that lies on the cell's surface: the volumes that the eye spans with the four faces are its
+/// barycentric coordinates.
+double scalar_at_eye(const std::array<Corner, 4>& c) {
+  const auto volume = [&](int i, int j, int k) {
+    return exact_determinant(c[i].vertex.homogeneous, c[j].vertex.homogeneous, c[k].vertex.homogeneous).value;
+  };
+  const std::array<double, 4> volumes{volume(1, 2, 3), -volume(0, 2, 3), volume(0, 1, 3), -volume(0, 1, 2)};
+  const double sum = volumes[0] + volumes[1] + volumes[2] + volumes[3];
+  double scalar = 0;
+  for (int i = 0; i < 4; ++i) scalar += volumes[i] / sum * c[i].scalar;
+  const auto [low, high] = std::minmax({c[0].scalar, c[1].scalar, c[2].scalar, c[3].scalar});
+  return std::clamp(scalar, low, high);
+}
+
+}  // namespace
+
+std::optional<Stretch> intersect(const std::array<Corner, 4>& corners, double x, double y) {
+  EdgeValue e[4][4];
+  for (int i = 0; i < 4; ++i)
+    for (int j = i + 1; j < 4; ++j)
+      e[i][j] = edge_value(x, y, corners[i].vertex.homogeneous, corners[j].vertex.homogeneous);
+
+  constexpr int faces[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
+  std::array<Hit, 2> hits{};
+  int count = 0;
+  for (const auto& [a, b, c] : faces) {
+    // E_ca is -E_ac.
+    const int sign = e[a][b].sign;
+    if (sign == 0 || e[b][c].sign != sign || -e[a][c].sign != sign) continue;
+    if (edge_on(corners[a].vertex.homogeneous, corners[b].vertex.homogeneous, corners[c].vertex.homogeneous)) continue;
+    if (count == 2) return std::nullopt;  // cannot be: a line enters and leaves a tetrahedron once
+    hits[count++] = weighted({&corners[a], &corners[b], &corners[c]},
+                             {std::abs(e[b][c].value), std::abs(e[a][c].value), std::abs(e[a][b].value)});
+  }
+  if (count == 0) return std::nullopt;
+  if (count == 1) hits[1] = {0, scalar_at_eye(corners)};
+  if (hits[0].depth > hits[1].depth) std::swap(hits[0], hits[1]);
+  return Stretch{hits[0].depth, hits[1].depth, hits[0].scalar, hits[1].scalar};
+}
+
+std::optional<Stretch> clipped(const Stretch& stretch, double nearest, double farthest) {
+  if (!(nearest < farthest) || !(stretch.back > nearest) || !(stretch.front < farthest)) return std::nullopt;
+  const auto scalar_at = [&](double depth) {
+    const double share = (depth - stretch.front) / (stretch.back - stretch.front);
+    return stretch.scalar_front + share * (stretch.scalar_back - stretch.scalar_front);
+  };
+  Stretch kept = stretch;
+  if (stretch.front < nearest) kept.front = nearest, kept.scalar_front = scalar_at(nearest);
+  if (stretch.back > farthest) kept.back = farthest, kept.scalar_back = scalar_at(farthest);
+  return kept;
+}
+
+}  // namespace tessera::reference

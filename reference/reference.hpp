@@ -1,0 +1,98 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "reference/ray_tet.hpp"
+#include "reference/view.hpp"
+#include "scene/camera.hpp"
+#include "scene/optical_model.hpp"
+#include "scene/tet_mesh.hpp"
+#include "scene/transfer_function.hpp"
+
+namespace tessera::reference {
+
+/// The stretch of one view ray inside one tetrahedron, after clipping.
+struct RaySegment {
+  double front, back;  ///< planar depth: world units along the view direction from the camera's position
+  double length;       ///< world length along the ray; zero in a flat cell
+  double scalar_front, scalar_back;
+  std::size_t tet;
+};
+
+/// What a ray sees.
+struct Pixel {
+  double r = 0, g = 0, b = 0, a = 0;  ///< linear RGB premultiplied by a; a = 1 - transmittance
+  double z = 0;                       ///< planar depth where a begins to grow; infinite if a is 0
+  double length = 0;                  ///< world length of the ray inside the mesh (overlapping cells count each)
+  std::size_t segments = 0;
+};
+
+/// A pixel of the image; (0, 0) is the top left.
+struct PixelIndex {
+  int x, y;
+  bool operator==(const PixelIndex&) const = default;
+};
+
+/// The slow, exact renderer that the fast one is judged against. Brute force in double precision: every ray against
+/// every tetrahedron whose projected box holds it; no acceleration structure, no shortcut for invisible cells, no code
+/// shared with the fast way but the plain values of scene/.
+///
+/// Hits     decided exactly, with the tie rule of ray_tet.hpp: along any ray the segments of a mesh tile its way.
+/// Order    (front, back, tet index).
+/// Error    about 1e-13 in linear RGBA. Cell data is constant in a tet, point data linear between the two hits.
+/// Threads  const functions may be called from several threads; `pixels` and `image` use all cores themselves.
+/// Cost     256x256 pixels over 0.5 M tets: seconds to a minute. One point query is a pass over all tets' boxes.
+class Reference {
+ public:
+  /// The mesh must outlive the reference. Throws scene::Error(bad_input) for an invalid camera or size, an empty
+  /// transfer function, or a mesh that breaks its invariants.
+  Reference(const scene::TetMesh& mesh, const scene::Camera& camera, scene::ImageSize size,
+            const scene::TransferFunction& transfer_function, scene::Emission emission = scene::Emission::absorption);
+
+  /// The ray through pixel coordinates (x, y), front to back. Pixel (i, j) has its centre at (i + 0.5, j + 0.5).
+  [[nodiscard]] std::vector<RaySegment> segments(double x, double y) const;
+
+  /// The same ray's colour. Any position, not only pixel centres.
+  [[nodiscard]] Pixel pixel(double x, double y) const;
+
+  /// The rays through the centres of `wanted`, in that order. `threads` 0: all cores.
+  [[nodiscard]] std::vector<Pixel> pixels(std::span<const PixelIndex> wanted, int threads = 0) const;
+
+  /// Every pixel, row-major, row 0 at the top.
+  [[nodiscard]] std::vector<Pixel> image(int threads = 0) const;
+
+  [[nodiscard]] scene::ImageSize size() const { return size_; }
+
+ private:
+  /// Pixel coordinates outside of which no ray meets the tet.
+  struct Box {
+    double x_low, y_low, x_high, y_high;
+  };
+  [[nodiscard]] std::array<Corner, 4> corners(std::size_t tet) const;
+  [[nodiscard]] Box box(std::size_t tet) const;
+  void trace(std::size_t tet, const std::array<Corner, 4>& corners, double x, double y,
+             std::vector<RaySegment>& segments) const;
+  /// Of segments in order.
+  [[nodiscard]] Pixel shaded(std::span<const RaySegment> segments) const;
+
+  const scene::TetMesh* mesh_;
+  scene::ImageSize size_;
+  std::vector<scene::Knot> knots_;
+  scene::Emission emission_;
+  View view_;
+  std::vector<ProjectedVertex> vertices_;
+  std::vector<Box> boxes_;
+};
+
+/// All pixels of an image, row-major.
+std::vector<PixelIndex> all_pixels(scene::ImageSize size);
+
+/// `count` different pixels, each set equally likely, row-major; all of them if there are no more. The same seed gives
+/// the same pixels everywhere.
+std::vector<PixelIndex> random_pixels(scene::ImageSize size, std::size_t count, std::uint64_t seed);
+
+}  // namespace tessera::reference
