@@ -23,8 +23,10 @@ using V = hn::Vec<D>;
 constexpr int edge_from[6] = {0, 0, 0, 1, 1, 2}, edge_to[6] = {1, 2, 3, 2, 3, 3};
 struct Face {
   int a, b, c, bc, ac, ab;
+  bool outward;  ///< (a, b, c) turns the way that (0, 1, 2) does, seen from outside the cell
 };
-constexpr Face faces[4] = {{0, 1, 2, 3, 1, 0}, {0, 1, 3, 4, 2, 0}, {0, 2, 3, 5, 2, 1}, {1, 2, 3, 5, 4, 3}};
+constexpr Face faces[4] = {
+    {0, 1, 2, 3, 1, 0, true}, {0, 1, 3, 4, 2, 0, false}, {0, 2, 3, 5, 2, 1, true}, {1, 2, 3, 5, 4, 3, false}};
 
 /// A cell ready for its pixels.
 struct Cell {
@@ -177,8 +179,9 @@ void rasterize_cell(const ProjectedMesh& projected, const Cell& cell, std::uint3
     for (int f = 0; f < 4; ++f) {
       if (!cell.pierceable[f]) continue;
       const Face face = faces[f];
-      const auto is_plus = hn::And(hn::And(positive[face.bc], negative[face.ac]), positive[face.ab]);
-      const auto is_minus = hn::And(hn::And(negative[face.bc], positive[face.ac]), negative[face.ab]);
+      const auto clockwise = hn::And(hn::And(positive[face.bc], negative[face.ac]), positive[face.ab]);
+      const auto counter = hn::And(hn::And(negative[face.bc], positive[face.ac]), negative[face.ab]);
+      const auto is_plus = face.outward ? clockwise : counter, is_minus = face.outward ? counter : clockwise;
       // Relative to corner c, so that a face of one scalar or depth keeps it to the bit: a transfer function may step
       // there.
       const V depth_c = hn::Set(d, cell.corner[face.c].depth), scalar_c = hn::Set(d, cell.scalar[face.c]);
