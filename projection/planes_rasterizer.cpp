@@ -215,15 +215,14 @@ void rasterize_cell(const ProjectedMesh& projected, const Cell& cell, std::uint3
       back = b1;
     }
 
-    const std::size_t n = hn::CountTrue(d, hit);
     const V in_tile = hn::MulAdd(hn::Sub(py, tile_top), tile_width, hn::Sub(px, tile_left));
     const auto packed = hn::Or(hn::BitCast(du, hn::ConvertTo(di, in_tile)), tet_bits);
-    hn::StoreU(hn::Compress(packed, hn::RebindMask(du, hit)), du, out.pixel_and_tet.data() + out.size);
-    hn::StoreU(hn::Compress(front, hit), d, out.front.data() + out.size);
-    hn::StoreU(hn::Compress(back, hit), d, out.back.data() + out.size);
-    hn::StoreU(hn::Compress(scalar_front, hit), d, out.scalar_front.data() + out.size);
-    hn::StoreU(hn::Compress(scalar_back, hit), d, out.scalar_back.data() + out.size);
-    out.size += n;
+    hn::CompressStore(packed, hn::RebindMask(du, hit), du, out.pixel_and_tet.data() + out.size);
+    hn::CompressStore(front, hit, d, out.front.data() + out.size);
+    hn::CompressStore(back, hit, d, out.back.data() + out.size);
+    hn::CompressStore(scalar_front, hit, d, out.scalar_front.data() + out.size);
+    hn::CompressStore(scalar_back, hit, d, out.scalar_back.data() + out.size);
+    out.size += hn::CountTrue(d, hit);
   }
 }
 
