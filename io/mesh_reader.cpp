@@ -3,45 +3,97 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
+#include <array>
+#include <memory>
+#include <new>
 
+#include "io/input_file.hpp"
+#include "io/mesh_assembly.hpp"
 #include "io/tets_file.hpp"
+#include "io/vtk_files.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
 namespace {
 
-std::vector<std::byte> read_bytes(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary | std::ios::ate);
-  if (!in) throw scene::bad_input(fmt::format("{}: cannot be opened; check name and permission", file.string()));
-  std::vector<std::byte> bytes(static_cast<std::size_t>(in.tellg()));
-  in.seekg(0);
-  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (!in) throw scene::bad_input(fmt::format("{}: cannot be read; check the disk", file.string()));
-  return bytes;
+/// Families of files that are read alike.
+enum class Family { none, vtk_xml, vtk_legacy, exodus, tets };
+
+struct Extension {
+  const char* text;
+  Family family;
+};
+constexpr std::array extensions = {
+    Extension{".vtu", Family::vtk_xml},    Extension{".pvtu", Family::vtk_xml}, Extension{".vts", Family::vtk_xml},
+    Extension{".pvts", Family::vtk_xml},   Extension{".vtr", Family::vtk_xml},  Extension{".pvtr", Family::vtk_xml},
+    Extension{".vtk", Family::vtk_legacy}, Extension{".ex2", Family::exodus},   Extension{".exo", Family::exodus},
+    Extension{".exii", Family::exodus},    Extension{".e", Family::exodus},     Extension{".g", Family::exodus},
+    Extension{".tets", Family::tets},
+};
+
+Family family_of(const std::filesystem::path& file) {
+  const std::string extension = lower_extension(file);
+  const auto e = std::find_if(extensions.begin(), extensions.end(),
+                              [&](const Extension& known) { return extension == known.text; });
+  return e == extensions.end() ? Family::none : e->family;
 }
 
-std::string extension_of(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension;
+std::string known_extensions() {
+  std::string text;
+  for (const Extension& e : extensions) text += fmt::format("{}{}", text.empty() ? "" : " ", e.text);
+  return text;
+}
+
+MeshBlocks read_tets(const std::filesystem::path& file) {
+  scene::TetMesh mesh = parse_tets(read_all(file), file.string());
+  CellBlock block;
+  block.positions = std::move(mesh.positions);
+  block.connectivity.reserve(4 * mesh.tets.size());
+  for (const scene::Tet& tet : mesh.tets) block.connectivity.insert(block.connectivity.end(), tet.begin(), tet.end());
+  block.fields.push_back(field_of_values("scalar", "float", scene::Association::point, 1, std::move(mesh.scalars)));
+  MeshBlocks result;
+  result.format = "raw tetrahedra (.tets)";
+  result.blocks.push_back(std::move(block));
+  return result;
+}
+
+MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& options) {
+  switch (family_of(file)) {
+    case Family::vtk_xml:
+      return read_vtk_xml(file);
+    case Family::vtk_legacy:
+      return read_vtk_legacy(file);
+    case Family::exodus:
+      return read_exodus(file, options.time_step);
+    case Family::tets:
+      return read_tets(file);
+    case Family::none:
+      break;
+  }
+  throw scene::bad_input(fmt::format("{}: no mesh format has the extension '{}'; known are {}", file.string(),
+                                     file.extension().string(), known_extensions()));
 }
 
 }  // namespace
 
-bool is_mesh_file(const std::filesystem::path& file) { return extension_of(file) == ".tets"; }
+bool is_mesh_file(const std::filesystem::path& file) { return family_of(file) != Family::none; }
 
-MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions&) {
-  if (extension_of(file) != ".tets")
-    throw scene::bad_input(fmt::format("{}: only .tets is read so far; convert it", file.string()));
-  MeshFile result;
-  result.format = ".tets";
-  result.mesh = parse_tets(read_bytes(file), file.string());
-  result.counts.cells_read = result.counts.tets_made = result.mesh.tets.size();
-  result.counts.points_read = result.mesh.positions.size();
-  scene::validate(result.mesh, file.string());
-  return result;
+MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options) {
+  const std::string source = file.string();
+  require_file(file);
+  try {
+    MeshBlocks read = read_blocks(file, options);
+    if (options.time_step.value_or(0) > 0 && family_of(file) != Family::exodus)
+      throw scene::bad_input(
+          fmt::format("{}: there is no time step {}, the file has none; leave it out", source, *options.time_step));
+    MeshFile result = assemble_mesh(std::move(read.blocks), options, source);
+    result.format = std::move(read.format);
+    result.notes.insert(result.notes.begin(), read.notes.begin(), read.notes.end());
+    return result;
+  } catch (const std::bad_alloc&) {
+    throw scene::Error(scene::ExitCode::system_failure,
+                       fmt::format("{}: memory ran out; use a larger machine or a part of the mesh", source));
+  }
 }
 
 }  // namespace tessera::io

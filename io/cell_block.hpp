@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/tet_mesh.hpp"
+
+namespace tessera::io {
+
+/// Asks a field for the length of its tuples instead of one component.
+inline constexpr int magnitude = -1;
+
+/// One array of a block, read on demand so that only the chosen field is ever converted.
+struct BlockField {
+  std::string name;
+  scene::Association association = scene::Association::point;
+  int components = 1;
+  std::string type;  ///< "float", "int64", ...
+  std::size_t tuples = 0;
+  bool active = false;  ///< the file marks it as its scalars or vectors
+  /// Writes tuples [first, first + out.size()) of one component, or their magnitude, as doubles.
+  std::function<void(int component, std::size_t first, std::span<double> out)> read;
+};
+
+/// A field that owns its values, `components` a tuple.
+BlockField field_of_values(std::string name, std::string type, scene::Association association, int components,
+                           std::vector<double> values);
+
+/// Part of a mesh as a file gives it, before splitting: one block of an Exodus or PLOT3D file, or all of the others.
+///
+/// Shape   cell c has type types[c] (VTK's cell type number) and points connectivity[offsets[c]] up to
+///         connectivity[offsets[c + 1]]. If `types` is empty, all cells are tetrahedra and `offsets` is empty too.
+///         Ghost arrays hold vtkGhostType bits for each point or cell, or are empty.
+/// Holds   the reader has checked that offsets do not decrease and end at connectivity.size(), and that every index is
+///         < positions.size(). Positions and fields may hold NaN.
+struct CellBlock {
+  std::string name;  ///< for messages; empty if it is the only one
+  std::vector<glm::dvec3> positions;
+  std::vector<std::uint8_t> types;
+  std::vector<std::uint64_t> offsets;
+  std::vector<std::uint32_t> connectivity;
+  std::vector<std::uint8_t> point_ghost, cell_ghost;
+  std::vector<BlockField> fields;
+
+  [[nodiscard]] std::size_t cell_count() const { return types.empty() ? connectivity.size() / 4 : types.size(); }
+};
+
+}  // namespace tessera::io

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/tet_mesh.hpp"
+
+namespace tessera::io {
+
+enum class CellKind : std::uint8_t {
+  tet,
+  voxel,
+  hexahedron,
+  wedge,
+  pyramid,
+  pentagonal_prism,
+  hexagonal_prism,
+  not_volumetric,
+  unsupported
+};
+
+/// What is known of one of VTK's cell types.
+struct CellShape {
+  CellKind kind = CellKind::unsupported;
+  int corners = 0;            ///< nodes used; they come first in the cell's list
+  int nodes = 0;              ///< nodes the cell must have; 0: at least `corners` (Lagrange and Bezier cells)
+  bool higher_order = false;  ///< more nodes than corners
+};
+
+CellShape cell_shape(std::uint8_t vtk_type);
+
+/// VTK's name of a type, for messages: "polyhedron"; "type 99" if it has none.
+std::string cell_type_name(std::uint8_t vtk_type);
+
+/// Splits one cell into tets and appends them to `tets`, in `corner` indices as given (corners in VTK's order).
+///
+/// Neighbours agree on every shared face by position: each face is cut from its lexicographically smallest corner
+/// (Dompierre, Labbe, Vallet, Camarero, "How to Subdivide Pyramids, Prisms, and Hexahedra into Tetrahedra", 8th
+/// International Meshing Roundtable 1999, with position order in place of index order), and the cell is the cone over
+/// those triangles from its own smallest corner. A warped face is simply its two triangles. Corners that coincide give
+/// flat triangles only, so whichever of them counts as smallest, the triangles that have an area are the same from both
+/// sides. A hexahedron gives 5 tets where no face's cut meets the corner opposite to the smallest, else 6; a wedge
+/// 3, a pyramid 2, a pentagonal prism 9, a hexagonal prism 12. All tets of a convex cell have one orientation.
+void split_cell(CellKind kind, std::span<const std::uint32_t> corner, std::span<const glm::dvec3> positions,
+                std::vector<scene::Tet>& tets);
+
+}  // namespace tessera::io

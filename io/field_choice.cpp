@@ -1,0 +1,213 @@
+#include "io/field_choice.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+using scene::Association;
+
+const char* word(Association a) { return a == Association::point ? "point" : "cell"; }
+
+void include_range(const BlockField& field, FieldSummary& summary, bool& any) {
+  std::array<double, 4096> chunk;
+  const int component = field.components == 1 ? 0 : magnitude;
+  for (std::size_t first = 0; first < field.tuples; first += chunk.size()) {
+    const std::size_t n = std::min(chunk.size(), field.tuples - first);
+    field.read(component, first, std::span(chunk.data(), n));
+    for (std::size_t k = 0; k < n; ++k) {
+      if (!std::isfinite(chunk[k])) {
+        ++summary.nan_count;
+        continue;
+      }
+      summary.low = any ? std::min(summary.low, chunk[k]) : chunk[k];
+      summary.high = any ? std::max(summary.high, chunk[k]) : chunk[k];
+      any = true;
+    }
+  }
+}
+
+bool varies(const FieldSummary& f) {
+  // A constant that went through float arithmetic still is one.
+  return f.high - f.low > 1e-6 * std::max(std::abs(f.low), std::abs(f.high));
+}
+
+std::string label(const FieldSummary& field, int component) {
+  if (component == magnitude) return field.name + ":mag";
+  if (field.components == 1) return field.name;
+  if (field.components <= 3) return fmt::format("{}:{}", field.name, "xyz"[component]);
+  return fmt::format("{}:{}", field.name, component);
+}
+
+FieldChoice choice_of(const FieldSummary& field, std::optional<int> component) {
+  const int c = component ? *component : field.components == 1 ? 0 : magnitude;
+  return {field.name, field.association, c, label(field, c), {}};
+}
+
+std::string list(std::span<const FieldSummary> fields) {
+  std::vector<std::string> names;
+  for (const FieldSummary& f : fields)
+    names.push_back(f.components == 1
+                        ? fmt::format("{}:'{}'", word(f.association), f.name)
+                        : fmt::format("{}:'{}' ({} components)", word(f.association), f.name, f.components));
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+const FieldSummary* find(std::span<const FieldSummary> fields, const std::string& name,
+                         std::optional<Association> association) {
+  for (const Association wanted : {Association::point, Association::cell}) {
+    if (association && *association != wanted) continue;
+    for (const FieldSummary& f : fields)
+      if (f.association == wanted && f.name == name) return &f;
+  }
+  return nullptr;
+}
+
+/// Component of a word after the colon, in any array; -2 if it is none.
+int parse_component(const std::string& text) {
+  if (text == "mag" || text == "magnitude") return magnitude;
+  if (text == "x" || text == "y" || text == "z") return text[0] - 'x';
+  int n = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), n);
+  return error == std::errc() && end == text.data() + text.size() && n >= 0 ? n : -2;
+}
+
+/// "NAME" or "NAME:component" among arrays of one association, or of both.
+std::optional<FieldChoice> resolve(const std::string& wish, std::optional<Association> association,
+                                   std::span<const FieldSummary> fields, const std::string& source) {
+  if (const FieldSummary* field = find(fields, wish, association)) return choice_of(*field, std::nullopt);
+  const std::size_t colon = wish.rfind(':');
+  if (colon == std::string::npos) return std::nullopt;
+  const FieldSummary* field = find(fields, wish.substr(0, colon), association);
+  if (!field) return std::nullopt;
+  const std::string word_after = wish.substr(colon + 1);
+  const int component = parse_component(word_after);
+  if (component == -2 || component >= field->components)
+    throw scene::bad_input(fmt::format(
+        "{}: field '{}' has {} component{}, no '{}'; use {}", source, field->name, field->components,
+        field->components == 1 ? "" : "s", word_after,
+        field->components == 1 ? "the name alone" : fmt::format(":mag or :0 to :{}", field->components - 1)));
+  return choice_of(*field, component);
+}
+
+std::optional<FieldChoice> default_choice(std::span<const FieldSummary> fields, std::span<const CellBlock> blocks) {
+  const auto is_active = [&](const FieldSummary& f) {
+    return std::any_of(blocks.begin(), blocks.end(), [&](const CellBlock& b) {
+      const BlockField* field = find_field(b, f.name, f.association);
+      return field && field->active;
+    });
+  };
+  const auto first = [&](auto&& wanted) -> const FieldSummary* {
+    const auto f = std::find_if(fields.begin(), fields.end(), wanted);
+    return f == fields.end() ? nullptr : &*f;
+  };
+  const auto quantity = [&](const FieldSummary& f) { return varies(f) && !is_label_name(f.name); };
+  for (const Association a : {Association::point, Association::cell})
+    if (const auto* f = first([&](const FieldSummary& s) {
+          return s.association == a && s.components == 1 && quantity(s) && is_active(s);
+        }))
+      return choice_of(*f, std::nullopt);
+  for (const Association a : {Association::point, Association::cell})
+    for (const bool scalar : {true, false})
+      if (const auto* f = first([&](const FieldSummary& s) {
+            return s.association == a && (s.components == 1) == scalar && quantity(s);
+          }))
+        return choice_of(*f, std::nullopt);
+  if (const auto* f = first([](const FieldSummary& s) { return s.high > s.low && !is_label_name(s.name); }))
+    return choice_of(*f, std::nullopt);
+  if (const auto* f = first([](const FieldSummary& s) { return !is_label_name(s.name); }))
+    return choice_of(*f, std::nullopt);
+  if (const auto* f = first(varies)) return choice_of(*f, std::nullopt);
+  return std::nullopt;
+}
+
+}  // namespace
+
+const BlockField* find_field(const CellBlock& block, const std::string& name, Association association) {
+  for (const BlockField& f : block.fields)
+    if (f.association == association && f.name == name) return &f;
+  return nullptr;
+}
+
+std::vector<FieldSummary> summarize_fields(std::span<const CellBlock> blocks) {
+  std::vector<FieldSummary> summaries;
+  std::vector<bool> any;
+  for (const CellBlock& block : blocks)
+    for (const BlockField& field : block.fields) {
+      const auto same = [&](const FieldSummary& s) {
+        return s.name == field.name && s.association == field.association;
+      };
+      auto s = std::find_if(summaries.begin(), summaries.end(), same);
+      if (s == summaries.end()) {
+        summaries.push_back({field.name, field.association, field.components, field.type, 0, 0, 0});
+        any.push_back(false);
+        s = summaries.end() - 1;
+      }
+      if (s->components != field.components) continue;  // counts as missing in this block
+      bool seen = any[static_cast<std::size_t>(s - summaries.begin())];
+      include_range(field, *s, seen);
+      any[static_cast<std::size_t>(s - summaries.begin())] = seen;
+    }
+  return summaries;
+}
+
+bool is_label_name(const std::string& name) {
+  std::string lower = name;
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  static constexpr std::array exact = {"id",   "ids",     "iblank", "rank",     "partition",  "processid",  "procid",
+                                       "part", "blockid", "region", "material", "material #", "materialid", "block"};
+  if (std::find(exact.begin(), exact.end(), lower) != exact.end() || lower.starts_with("vtk")) return true;
+  for (const char* end : {"_id", "_ids", " id", " ids", "-id", "-ids"})
+    if (lower.ends_with(end)) return true;
+  // "GlobalNodeId" but not "Fluid" or "Solid".
+  for (const char* end : {"Id", "Ids", "ID", "IDs", "IDS"})
+    if (name.ends_with(end)) {
+      const std::size_t before = name.size() - std::string_view(end).size();
+      if (before > 0 && std::islower(static_cast<unsigned char>(name[before - 1]))) return true;
+    }
+  return false;
+}
+
+FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> fields,
+                         std::span<const CellBlock> blocks, const std::string& source) {
+  if (wish.empty()) {
+    std::optional<FieldChoice> choice = default_choice(fields, blocks);
+    if (!choice) {
+      FieldChoice none{"", Association::point, 0, "none", {}};
+      none.notes.emplace_back("the file has no field: every point has the value 1");
+      return none;
+    }
+    if (fields.size() > 1)
+      choice->notes.push_back(
+          fmt::format("field {}:'{}' chosen of {}", word(choice->association), choice->label, list(fields)));
+    return *choice;
+  }
+  std::optional<FieldChoice> choice;
+  if (find(fields, wish, std::nullopt)) choice = resolve(wish, std::nullopt, fields, source);
+  for (const Association a : {Association::point, Association::cell})
+    if (const std::string prefix = fmt::format("{}:", word(a)); !choice && wish.starts_with(prefix))
+      choice = resolve(wish.substr(prefix.size()), a, fields, source);
+  if (!choice) choice = resolve(wish, std::nullopt, fields, source);
+  if (!choice)
+    throw scene::bad_input(fields.empty()
+                               ? fmt::format("{}: no field '{}', the file has none; leave --field out", source, wish)
+                               : fmt::format("{}: no field '{}'; it has {}", source, wish, list(fields)));
+  if (choice->association == Association::point && find(fields, choice->name, Association::cell) &&
+      !wish.starts_with("point:"))
+    choice->notes.push_back(fmt::format(
+        "'{0}' is both a point and a cell field: the point one is taken, cell:{0} asks for the other", choice->name));
+  return *choice;
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/cell_block.hpp"
+#include "io/mesh_reader.hpp"
+
+namespace tessera::io {
+
+/// The scalar that will be rendered.
+struct FieldChoice {
+  std::string name;  ///< of the array; empty: the file has none, all is 1
+  scene::Association association = scene::Association::point;
+  int component = 0;               ///< or `magnitude`
+  std::string label;               ///< with component: "Velocity:mag"
+  std::vector<std::string> notes;  ///< why it was chosen, where that may surprise
+};
+
+/// All arrays of all blocks in the file's order, one entry a name and association, with their ranges.
+std::vector<FieldSummary> summarize_fields(std::span<const CellBlock> blocks);
+
+/// Whether a name is that of a label rather than a quantity ("GlobalNodeId", "vtkGhostType", "IBlank"): never the
+/// default.
+bool is_label_name(const std::string& name);
+
+/// Resolves MeshOptions::field. Names win over syntax: "a:b" is the array of that name if there is one; a name of both
+/// a point and a cell array means the point one. Without a wish: the file's active scalars if they vary, else the first
+/// that varies of point scalars, point vectors, cell scalars, cell vectors (labels only if nothing else varies), else
+/// any. Throws Error(bad_input) listing all names.
+FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> fields,
+                         std::span<const CellBlock> blocks, const std::string& source);
+
+/// Whether this block has the chosen array, with the summary's number of components.
+const BlockField* find_field(const CellBlock& block, const std::string& name, scene::Association association);
+
+}  // namespace tessera::io

@@ -1,0 +1,64 @@
+#include "io/input_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <new>
+#include <system_error>
+
+#include "scene/error.hpp"
+
+namespace tessera::io {
+
+std::uint64_t require_file(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status))
+    throw scene::bad_input(fmt::format("{}: there is no such file; check the name", file.string()));
+  if (std::filesystem::is_directory(status))
+    throw scene::bad_input(fmt::format("{}: it is a directory; name a file in it", file.string()));
+  if (!std::ifstream(file, std::ios::binary))
+    throw scene::bad_input(fmt::format("{}: it cannot be opened; check its permissions", file.string()));
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (error)
+    throw scene::bad_input(fmt::format("{}: it is no regular file; give one that can be read twice", file.string()));
+  if (size == 0) throw scene::bad_input(fmt::format("{}: it is empty; write it anew", file.string()));
+  return size;
+}
+
+std::string read_beginning(const std::filesystem::path& file, std::size_t limit) {
+  const std::uint64_t size = require_file(file);
+  std::string text(static_cast<std::size_t>(std::min<std::uint64_t>(size, limit)), '\0');
+  std::ifstream in(file, std::ios::binary);
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return text;
+}
+
+std::vector<std::byte> read_all(const std::filesystem::path& file) {
+  const std::uint64_t size = require_file(file);
+  try {
+    std::vector<std::byte> bytes(size);
+    std::ifstream in(file, std::ios::binary);
+    in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+    if (static_cast<std::uint64_t>(in.gcount()) != size)
+      throw scene::Error(
+          scene::ExitCode::system_failure,
+          fmt::format("{}: only {} of {} bytes can be read; check the disk", file.string(), in.gcount(), size));
+    return bytes;
+  } catch (const std::bad_alloc&) {
+    throw scene::Error(scene::ExitCode::system_failure,
+                       fmt::format("{}: {} bytes do not fit in memory; use a larger machine", file.string(), size));
+  }
+}
+
+std::string lower_extension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+namespace tessera::io {
+
+/// Length of a tuple of any numbers that neither over- nor underflows; NaN or infinite if a component is.
+template <class T>
+double tuple_length(const T* tuple, int components) {
+  double sum = 0;
+  for (int k = 0; k < components; ++k) sum += static_cast<double>(tuple[k]) * static_cast<double>(tuple[k]);
+  if (sum > 1e-290 && sum < 1e290) return std::sqrt(sum);
+  double largest = 0;
+  for (int k = 0; k < components; ++k) {
+    const double a = std::abs(static_cast<double>(tuple[k]));
+    if (!(a <= std::numeric_limits<double>::max())) return a;
+    largest = a > largest ? a : largest;
+  }
+  if (largest == 0) return 0;
+  sum = 0;
+  for (int k = 0; k < components; ++k) {
+    const double scaled = static_cast<double>(tuple[k]) / largest;
+    sum += scaled * scaled;
+  }
+  return largest * std::sqrt(sum);
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,165 @@
+#include "io/vtk_files.hpp"
+
+#include <fmt/format.h>
+#include <vtkCellData.h>
+#include <vtkDataObject.h>
+#include <vtkDataSetReader.h>
+#include <vtkExodusIIReader.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkSmartPointer.h>
+#include <vtkXMLPRectilinearGridReader.h>
+#include <vtkXMLPStructuredGridReader.h>
+#include <vtkXMLPUnstructuredGridReader.h>
+#include <vtkXMLRectilinearGridReader.h>
+#include <vtkXMLStructuredGridReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include <algorithm>
+#include <array>
+
+#include "io/input_file.hpp"
+#include "io/vtk_blocks.hpp"
+#include "io/vtk_session.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+struct XmlKind {
+  const char *extension, *type, *words;
+};
+constexpr std::array xml_kinds = {
+    XmlKind{".vtu", "UnstructuredGrid", "VTK XML unstructured grid"},
+    XmlKind{".pvtu", "PUnstructuredGrid", "VTK XML parallel unstructured grid"},
+    XmlKind{".vts", "StructuredGrid", "VTK XML structured grid"},
+    XmlKind{".pvts", "PStructuredGrid", "VTK XML parallel structured grid"},
+    XmlKind{".vtr", "RectilinearGrid", "VTK XML rectilinear grid"},
+    XmlKind{".pvtr", "PRectilinearGrid", "VTK XML parallel rectilinear grid"},
+};
+
+/// The value of `type` in <VTKFile type="...">; empty if the file does not begin like VTK XML.
+std::string xml_type(const std::filesystem::path& file) {
+  const std::string text = read_beginning(file, 4096);
+  const std::size_t element = text.find("<VTKFile");
+  if (element == std::string::npos) return "";
+  const std::size_t end = text.find('>', element), key = text.find("type", element);
+  if (key == std::string::npos || key > end) return "";
+  const std::size_t open = text.find_first_of("\"'", key);
+  if (open == std::string::npos) return "";
+  const std::size_t close = text.find(text[open], open + 1);
+  return close == std::string::npos ? "" : text.substr(open + 1, close - open - 1);
+}
+
+vtkSmartPointer<vtkXMLReader> make_xml_reader(const std::string& type) {
+  vtkXMLReader* reader = nullptr;
+  if (type == "UnstructuredGrid") reader = vtkXMLUnstructuredGridReader::New();
+  if (type == "PUnstructuredGrid") reader = vtkXMLPUnstructuredGridReader::New();
+  if (type == "StructuredGrid") reader = vtkXMLStructuredGridReader::New();
+  if (type == "PStructuredGrid") reader = vtkXMLPStructuredGridReader::New();
+  if (type == "RectilinearGrid") reader = vtkXMLRectilinearGridReader::New();
+  if (type == "PRectilinearGrid") reader = vtkXMLPRectilinearGridReader::New();
+  return vtkSmartPointer<vtkXMLReader>::Take(reader);
+}
+
+void add_warning(const std::string& warning, std::vector<std::string>& notes) {
+  if (!warning.empty()) notes.push_back("VTK warns: " + warning);
+}
+
+}  // namespace
+
+MeshBlocks read_vtk_xml(const std::filesystem::path& file) {
+  const std::string source = file.string(), extension = lower_extension(file), type = xml_type(file);
+  const XmlKind* kind = nullptr;
+  for (const XmlKind& k : xml_kinds)
+    if (type == k.type) kind = &k;
+  if (type.empty())
+    throw scene::bad_input(fmt::format("{}: it does not begin as a VTK XML file does; check that it is a {}", source,
+                                       extension.substr(1)));
+  if (type == "ImageData" || type == "PImageData")
+    throw scene::bad_input(
+        fmt::format("{}: it is a regular grid (image data); these are not rendered yet, give a mesh", source));
+  if (!kind) throw scene::bad_input(fmt::format("{}: its type is '{}'; give a mesh", source, type));
+
+  MeshBlocks result;
+  result.format = kind->words;
+  if (extension != kind->extension)
+    result.notes.push_back(fmt::format("the file is a {}, read as {}", extension.substr(1), kind->words));
+  vtkSmartPointer<vtkDataObject> data;
+  const std::string warning = with_quiet_vtk(source, "the file is truncated or damaged, write it anew", [&] {
+    const auto reader = make_xml_reader(type);
+    reader->SetFileName(source.c_str());
+    reader->Update();
+    data = reader->GetOutputDataObject(0);
+  });
+  if (!data) throw scene::bad_input(fmt::format("{}: nothing can be read; write it anew", source));
+  add_warning(warning, result.notes);
+  result.blocks = blocks_from_vtk(*data, source, result.notes);
+  return result;
+}
+
+MeshBlocks read_vtk_legacy(const std::filesystem::path& file) {
+  const std::string source = file.string();
+  if (!read_beginning(file, 64).starts_with("# vtk DataFile Version"))
+    throw scene::bad_input(
+        fmt::format("{}: it does not begin with '# vtk DataFile Version'; check that it is a legacy VTK file", source));
+  MeshBlocks result;
+  vtkSmartPointer<vtkDataObject> data;
+  const std::string warning = with_quiet_vtk(source, "the file is truncated or damaged, write it anew", [&] {
+    vtkNew<vtkDataSetReader> reader;
+    reader->SetFileName(source.c_str());
+    reader->ReadAllScalarsOn();
+    reader->ReadAllVectorsOn();
+    reader->ReadAllNormalsOn();
+    reader->ReadAllTensorsOn();
+    reader->ReadAllColorScalarsOn();
+    reader->ReadAllTCoordsOn();
+    reader->ReadAllFieldsOn();
+    reader->Update();
+    data = reader->GetOutputDataObject(0);
+  });
+  if (!data) throw scene::bad_input(fmt::format("{}: it holds no VTK data set; give a mesh", source));
+  add_warning(warning, result.notes);
+  result.format = fmt::format("legacy VTK ({})", data->GetClassName());
+  result.blocks = blocks_from_vtk(*data, source, result.notes);
+  return result;
+}
+
+MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t> time_step) {
+  const std::string source = file.string(), remedy = "the file is truncated or damaged, write it anew";
+  const std::string magic = read_beginning(file, 8);
+  if (!magic.starts_with("CDF") && !magic.starts_with("\x89HDF\r\n\x1a\n"))
+    throw scene::bad_input(fmt::format("{}: it is neither NetCDF nor HDF5; check that it is an Exodus file", source));
+  MeshBlocks result;
+  result.format = "Exodus II";
+  vtkSmartPointer<vtkDataObject> data;
+  int steps = 0;
+  const std::string warning = with_quiet_vtk(source, remedy, [&] {
+    vtkNew<vtkExodusIIReader> reader;
+    if (!reader->CanReadFile(source.c_str()))
+      throw scene::bad_input(fmt::format("{}: it is no Exodus file, or is damaged; write it anew", source));
+    reader->SetFileName(source.c_str());
+    reader->UpdateInformation();
+    steps = reader->GetNumberOfTimeSteps();
+    if (time_step && *time_step >= static_cast<std::size_t>(std::max(steps, 1)))
+      throw scene::bad_input(
+          fmt::format("{}: there is no time step {}, the file has {}; count from 0", source, *time_step, steps));
+    reader->SetTimeStep(time_step ? static_cast<int>(*time_step) : std::max(steps - 1, 0));
+    for (const auto type : {vtkExodusIIReader::NODAL, vtkExodusIIReader::ELEM_BLOCK})
+      for (int k = 0; k < reader->GetNumberOfObjectArrays(type); ++k) reader->SetObjectArrayStatus(type, k, 1);
+    for (int k = 0; k < reader->GetNumberOfObjects(vtkExodusIIReader::ELEM_BLOCK); ++k)
+      reader->SetObjectStatus(vtkExodusIIReader::ELEM_BLOCK, k, 1);
+    reader->Update();
+    data = reader->GetOutputDataObject(0);
+  });
+  if (!data) throw scene::bad_input(fmt::format("{}: nothing can be read; write it anew", source));
+  add_warning(warning, result.notes);
+  if (steps > 1)
+    result.notes.push_back(fmt::format("time step {} of 0 to {}{}", time_step ? *time_step : steps - 1, steps - 1,
+                                       time_step ? "" : " (the last is the default)"));
+  result.blocks = blocks_from_vtk(*data, source, result.notes);
+  return result;
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/cell_block.hpp"
+
+namespace tessera::io {
+
+/// What a file holds before its cells are split.
+struct MeshBlocks {
+  std::vector<CellBlock> blocks;
+  std::vector<std::string> notes;
+  std::string format;
+};
+
+/// VTK's XML files: .vtu .pvtu .vts .pvts .vtr .pvtr. Pieces of a parallel file are appended, their points not merged.
+MeshBlocks read_vtk_xml(const std::filesystem::path& file);
+
+/// Legacy .vtk: unstructured, structured and rectilinear grids, ASCII or binary, all their arrays.
+MeshBlocks read_vtk_legacy(const std::filesystem::path& file);
+
+/// Exodus II element blocks with all nodal and element variables at one time step (default the last). Nodes are moved
+/// by the file's displacements, if it has some, as ParaView does.
+MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t> time_step);
+
+}  // namespace tessera::io

@@ -1,0 +1,95 @@
+#include "io/vtk_session.hpp"
+
+#include <fmt/format.h>
+#include <vtkLogger.h>
+#include <vtkObjectFactory.h>
+#include <vtkOutputWindow.h>
+#include <vtkSmartPointer.h>
+
+#include <cctype>
+#include <mutex>
+#include <new>
+#include <stdexcept>
+
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+/// The first error and the first warning that VTK had to say, each on one line.
+class MessageTrap : public vtkOutputWindow {
+ public:
+  static MessageTrap* New();
+  vtkTypeMacro(MessageTrap, vtkOutputWindow);
+
+  void DisplayText(const char*) override {}
+  void DisplayErrorText(const char* text) override { keep(error, text); }
+  void DisplayWarningText(const char* text) override { keep(warning, text); }
+  void DisplayGenericWarningText(const char* text) override { keep(warning, text); }
+  void DisplayDebugText(const char*) override {}
+
+  std::string error, warning;
+
+ private:
+  /// VTK writes "ERROR: In /path/x.cxx, line 12\nvtkX (0x55..): message\n\n"; only the message is for users.
+  static void keep(std::string& first, const char* text) {
+    if (!first.empty() || !text) return;
+    std::string message = text;
+    if (const std::size_t at = message.find("): "); at != std::string::npos) message.erase(0, at + 3);
+    for (const unsigned char c : message) {
+      const char plain = std::isprint(c) ? static_cast<char>(c) : ' ';
+      if (plain != ' ' || (!first.empty() && first.back() != ' ')) first += plain;
+    }
+    while (!first.empty() && (first.back() == ' ' || first.back() == '.')) first.pop_back();
+    if (first.size() > 200) first = first.substr(0, 200) + "...";
+    if (first.empty()) first = "VTK reports an error";
+  }
+};
+vtkStandardNewMacro(MessageTrap);
+
+/// Installs the trap for as long as it lives.
+class Quiet {
+ public:
+  Quiet()
+      : lock_(mutex()), before_(vtkOutputWindow::GetInstance()), verbosity_(vtkLogger::GetCurrentVerbosityCutoff()) {
+    vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+    vtkOutputWindow::SetInstance(trap);
+  }
+  ~Quiet() {
+    vtkOutputWindow::SetInstance(before_);
+    vtkLogger::SetStderrVerbosity(verbosity_);
+  }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+
+  vtkSmartPointer<MessageTrap> trap = vtkSmartPointer<MessageTrap>::New();
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex one_at_a_time;
+    return one_at_a_time;
+  }
+  std::lock_guard<std::mutex> lock_;
+  vtkSmartPointer<vtkOutputWindow> before_;
+  vtkLogger::Verbosity verbosity_;
+};
+
+}  // namespace
+
+std::string with_quiet_vtk(const std::string& source, const std::string& remedy, const std::function<void()>& work) {
+  const Quiet quiet;
+  try {
+    work();
+  } catch (const std::bad_alloc&) {
+    throw scene::bad_input(
+        fmt::format("{}: it asks for more memory than there is; its counts are damaged, or read it "
+                    "on a larger machine",
+                    source));
+  } catch (const std::length_error&) {
+    throw scene::bad_input(fmt::format("{}: it gives impossible sizes; {}", source, remedy));
+  }
+  if (!quiet.trap->error.empty()) throw scene::bad_input(fmt::format("{}: {}; {}", source, quiet.trap->error, remedy));
+  return quiet.trap->warning;
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace tessera::io {
+
+/// Runs one read or write by VTK with VTK's messages caught instead of printed, and returns what it warned of.
+///
+/// VTK's output window and log level are process-wide, so sessions run one at a time and put back what they found.
+/// An error that VTK reports (it does not throw) becomes Error(bad_input, "SOURCE: <VTK's words>; REMEDY"), as does
+/// running out of memory, which with small files means damaged counts.
+std::string with_quiet_vtk(const std::string& source, const std::string& remedy, const std::function<void()>& work);
+
+}  // namespace tessera::io
