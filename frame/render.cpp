@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -61,6 +62,7 @@ struct Renderer::State {
                       FrameStatistics& statistics);
 
   RenderSettings settings;
+  tbb::global_control parallelism;  ///< more threads than cores, where asked for, without oneTBB's warning
   tbb::task_arena arena;
   projection::PreparedMesh prepared;
   double diagonal = 0;

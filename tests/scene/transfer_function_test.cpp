@@ -46,7 +46,7 @@ TEST(TransferFunction, AStepsLowerSideAtTheEndOfARangeIsSeen) {
 }
 
 TEST(TransferFunction, RefusesNegativeUnsortedAndNotFiniteKnots) {
-  EXPECT_THROW(TransferFunction({}), Error);
+  EXPECT_THROW(TransferFunction(std::vector<Knot>{}), Error);
   EXPECT_THROW(TransferFunction({{0, {0, 0, 0}, -1}}), Error);
   EXPECT_THROW(TransferFunction({{0, {0, -1, 0}, 1}}), Error);
   EXPECT_THROW(TransferFunction({{1, {0, 0, 0}, 1}, {0, {0, 0, 0}, 1}}), Error);

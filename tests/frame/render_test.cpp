@@ -1,0 +1,191 @@
+#include "frame/render.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "reference/judge.hpp"
+#include "scene/error.hpp"
+#include "support/meshes.hpp"
+
+namespace tessera::frame {
+namespace {
+
+using scene::Camera;
+using scene::Image;
+using scene::ImageSize;
+using scene::TransferFunction;
+
+Camera oblique() {
+  Camera camera;
+  camera.position = {3.1, 2.3, 4.2};
+  camera.parallel_scale = 1.8;
+  return camera;
+}
+
+TransferFunction six_knots() {
+  return TransferFunction({{0, {0, 0, 0.3}, 0},
+                           {0.3, {0.1, 0.3, 0.9}, 0.4},
+                           {0.5, {0.2, 0.9, 0.3}, 0},
+                           {0.7, {0.9, 0.8, 0.1}, 3},
+                           {0.8, {1, 0.3, 0}, 0.2},
+                           {1, {1, 1, 1}, 8}});
+}
+
+RenderSettings exact() {
+  RenderSettings settings;
+  settings.integrator.kind = scene::IntegratorKind::exact;
+  return settings;
+}
+
+bool same_bits(const Image& a, const Image& b) { return a.rgba == b.rgba && a.depth == b.depth; }
+
+TEST(Render, GivesTheSameBitsForAnyThreadsTilesAndMemory) {
+  const scene::TetMesh mesh = tests::split_box(12, {-1, -1, -1}, {1, 1, 1}, 0.2);
+  for (const bool eye_inside : {false, true}) {
+    Camera camera = oblique();
+    if (eye_inside) {
+      camera.position = {0.1, 0.2, 0.15};
+      camera.projection = scene::ProjectionKind::perspective;
+      camera.view_angle = 80;
+    }
+    const ImageSize size{97, 61};
+    const Image expected = Renderer(mesh, exact()).render(camera, size, six_knots());
+    for (const int threads : {1, 2, 5})
+      for (const int tile : {1, 7, 32, 1024})
+        for (const std::uint64_t memory : {64ull << 20, 8ull << 20}) {
+          RenderSettings settings = exact();
+          settings.threads = threads;
+          settings.tile_size = tile;
+          settings.memory_bytes = memory;
+          EXPECT_TRUE(same_bits(Renderer(mesh, settings).render(camera, size, six_knots()), expected))
+              << threads << " threads, tile " << tile << ", memory " << memory;
+        }
+  }
+}
+
+TEST(Render, CullingInvisibleCellsChangesNoBit) {
+  const scene::TetMesh mesh = tests::split_box(10, {-1, -1, -1}, {1, 1, 1}, 0.2);
+  const TransferFunction peak({{0, {1, 0, 0}, 0}, {0.7, {1, 0, 0}, 0}, {0.8, {1, 1, 0}, 9}, {0.9, {0, 1, 0}, 0}});
+  FrameStatistics statistics;
+  const Image image = Renderer(mesh, exact()).render(oblique(), {64, 64}, peak, &statistics);
+  EXPECT_GT(statistics.tets_invisible, mesh.tets.size() / 3);
+  // The reference projects all cells.
+  const reference::Reference reference(mesh, oblique(), {64, 64}, peak);
+  EXPECT_LT(reference::judge(image, reference, 1e-6).max_error, 1e-6);  // float output rounds by 6e-8
+}
+
+/// Under a small square, `layers` slabs of 12 tets, each so oblique that all overlap in depth; beside them a coarse
+/// box.
+scene::TetMesh leaning_stack(int layers) {
+  scene::TetMesh mesh = tests::split_box(2, {-1, -1, -1}, {1, 1, 1}, 0);
+  const double side = 0.02, lean = 2.0;
+  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+  for (int layer = 0; layer <= layers; ++layer) {
+    const double z = 1.5 + 1.0 * layer / layers;
+    for (const double x : {0.0, side})
+      for (const double y : {0.0, side}) {
+        mesh.positions.push_back({x, y, z + lean * x / side});
+        mesh.scalars.push_back(0.5 + 0.5 * std::sin(0.01 * layer));
+      }
+  }
+  constexpr int axes[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+  for (int layer = 0; layer < layers; ++layer)
+    for (const auto& order : axes) {
+      std::uint32_t at[3] = {0, 0, 0};
+      const auto vertex = [&] { return base + 4 * (static_cast<std::uint32_t>(layer) + at[2]) + 2 * at[0] + at[1]; };
+      scene::Tet tet{vertex(), 0, 0, 0};
+      for (int step = 0; step < 3; ++step) {
+        ++at[order[step]];
+        tet[step + 1] = vertex();
+      }
+      mesh.tets.push_back(tet);
+    }
+  return mesh;
+}
+
+TEST(Render, AStackOfTwentyThousandThinCellsIsRightInBoundedMemory) {
+  const scene::TetMesh mesh = leaning_stack(20000);
+  Camera camera;
+  camera.position = {0.0031, 0.0047, 9};
+  camera.focal_point = {0.0031, 0.0047, 0};
+  camera.parallel_scale = 0.06;
+  const ImageSize size{24, 24};
+  const TransferFunction function({{0, {0, 0.2, 1}, 0.1}, {1, {1, 0.3, 0}, 1.5}});
+  const reference::Reference reference(mesh, camera, size, function);
+  const Image roomy = Renderer(mesh, exact()).render(camera, size, function);
+  EXPECT_GT(reference.segments(12.5, 12.5).size(), 20000u);
+  EXPECT_LT(reference::judge(roomy, reference, 2e-5).max_error, 2e-5);
+
+  RenderSettings settings = exact();
+  settings.threads = 2;
+  settings.memory_bytes = 24ull << 20;  // 80 pixels of 20,000 segments at 100 bytes would take 160 MB
+  FrameStatistics statistics;
+  const Image tight = Renderer(mesh, settings).render(camera, size, function, &statistics);
+  EXPECT_GT(statistics.tiles_split, 0u);
+  EXPECT_LE(statistics.peak_buffer_bytes, settings.memory_bytes);
+  EXPECT_TRUE(same_bits(tight, roomy));
+}
+
+TEST(Render, AMeshWithoutCellsIsABlankPicture) {
+  const Image image = Renderer(scene::TetMesh{}, exact()).render(oblique(), {8, 8}, six_knots());
+  for (const float v : image.rgba) EXPECT_EQ(v, 0);
+  for (const float z : image.depth) EXPECT_TRUE(std::isinf(z));
+}
+
+TEST(Render, DepthIsWhereTheFirstVisibleSampleLies) {
+  // The scalar is the height z; matter begins at z = 0.25, seen from above at z = 5.
+  scene::TetMesh mesh = tests::split_box(3, {-1, -1, -1}, {1, 1, 1}, 0.2);
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) mesh.scalars[v] = mesh.positions[v].z;
+  const TransferFunction function({{-1, {1, 1, 1}, 3}, {0, {1, 1, 1}, 3}, {0.25, {1, 1, 1}, 0}, {1, {1, 1, 1}, 0}});
+  Camera camera;
+  camera.position = {0.01, 0.02, 5};
+  camera.focal_point = {0.01, 0.02, 0};
+  camera.parallel_scale = 0.9;
+  const Image image = Renderer(mesh, exact()).render(camera, {16, 16}, function);
+  for (const float z : image.depth) EXPECT_NEAR(z, 4.75, 1e-6);  // float output
+}
+
+TEST(Render, ScalesAndOffsetsOfTheSceneDoNotShow) {
+  const ImageSize size{40, 40};
+  const scene::TetMesh mesh = tests::split_box(4, {-1, -1, -1}, {1, 1, 1}, 0.2);
+  const Image expected = Renderer(mesh, exact()).render(oblique(), size, six_knots());
+  const auto distance = [&](double scale, const glm::dvec3& offset) {
+    scene::TetMesh moved = mesh;
+    for (glm::dvec3& p : moved.positions) p = p * scale + offset;
+    Camera camera = oblique();
+    camera.position = camera.position * scale + offset;
+    camera.focal_point = camera.focal_point * scale + offset;
+    camera.parallel_scale *= scale;
+    const TransferFunction original = six_knots();
+    std::vector<scene::Knot> knots(original.knots().begin(), original.knots().end());
+    for (scene::Knot& k : knots) k.extinction /= scale;
+    const Image image = Renderer(moved, exact()).render(camera, size, TransferFunction(knots));
+    double most = 0;
+    for (std::size_t i = 0; i < image.rgba.size(); ++i)
+      most = std::max(most, static_cast<double>(std::abs(image.rgba[i] - expected.rgba[i])));
+    return most;
+  };
+  // Positions keep 53 bits: an offset of 7e6 cells leaves 1e-9 of a cell.
+  EXPECT_LT(distance(1e20, {0, 0, 0}), 1e-6);
+  EXPECT_LT(distance(1e-20, {0, 0, 0}), 1e-6);
+  EXPECT_LT(distance(1, {7e6, -3e6, 2e6}), 1e-6);
+}
+
+TEST(Render, RefusesWhatCannotBe) {
+  const scene::TetMesh mesh = tests::split_box(4, {-1, -1, -1}, {1, 1, 1}, 0);
+  RenderSettings settings = exact();
+  settings.tile_size = 0;
+  EXPECT_THROW(Renderer(mesh, settings), scene::Error);
+  settings = exact();
+  settings.memory_bytes = 1000;
+  EXPECT_THROW(Renderer(mesh, settings).render(oblique(), {8, 8}, six_knots()), scene::Error);
+  Camera camera = oblique();
+  camera.focal_point = camera.position;
+  EXPECT_THROW(Renderer(mesh, exact()).render(camera, {8, 8}, six_knots()), scene::Error);
+  EXPECT_THROW(Renderer(mesh, exact()).render(oblique(), {0, 8}, six_knots()), scene::Error);
+}
+
+}  // namespace
+}  // namespace tessera::frame

@@ -1,0 +1,66 @@
+#include "sorting/pixel_lists.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <tuple>
+#include <vector>
+
+namespace tessera::sorting {
+namespace {
+
+using Key = std::tuple<double, double, std::uint32_t>;
+
+projection::RaySegments segments_of(const std::vector<std::pair<std::uint32_t, Key>>& given) {
+  projection::RaySegments s;
+  s.reserve(given.size());
+  for (const auto& [pixel, key] : given) {
+    s.front[s.size] = std::get<0>(key);
+    s.back[s.size] = std::get<1>(key);
+    s.pixel_and_tet[s.size] = static_cast<std::uint64_t>(std::get<2>(key)) << 32 | pixel;
+    ++s.size;
+  }
+  return s;
+}
+
+TEST(PixelLists, OrdersByFrontThenBackThenTetInListsOfAnyLength) {
+  std::mt19937 random(3);
+  // Pixel 0 is empty, the others get lists from one element to 20,000; depths from a few values, so that ties abound.
+  const std::vector<std::size_t> lengths{0, 1, 2, 47, 48, 49, 1000, 20000};
+  std::vector<std::pair<std::uint32_t, Key>> given;
+  std::vector<std::vector<Key>> expected(lengths.size());
+  for (std::uint32_t p = 0; p < lengths.size(); ++p)
+    for (std::uint32_t i = 0; i < lengths[p]; ++i) {
+      const double front = random() % 50;
+      const Key key{front, front + random() % 3, i};
+      given.push_back({p, key});
+      expected[p].push_back(key);
+    }
+  for (int shuffle = 0; shuffle < 3; ++shuffle) {
+    std::shuffle(given.begin(), given.end(), random);
+    const projection::RaySegments s = segments_of(given);
+    PixelLists lists;
+    lists.sort(s, lengths.size());
+    for (std::uint32_t p = 0; p < lengths.size(); ++p) {
+      std::sort(expected[p].begin(), expected[p].end());
+      std::vector<Key> sorted;
+      for (const std::uint32_t i : lists.pixel(p)) {
+        EXPECT_EQ(s.pixel(i), p);
+        sorted.push_back({s.front[i], s.back[i], s.tet(i)});
+      }
+      EXPECT_EQ(sorted, expected[p]);
+    }
+  }
+}
+
+TEST(PixelLists, AZeroLengthSegmentComesBeforeTheOneThatBeginsThere) {
+  const projection::RaySegments s = segments_of({{0, {2, 3, 1}}, {0, {2, 2, 9}}, {0, {1, 2, 5}}});
+  PixelLists lists;
+  lists.sort(s, 1);
+  const auto order = lists.pixel(0);
+  EXPECT_EQ(std::vector<std::uint32_t>(order.begin(), order.end()), (std::vector<std::uint32_t>{2, 1, 0}));
+}
+
+}  // namespace
+}  // namespace tessera::sorting
