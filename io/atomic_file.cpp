@@ -1,0 +1,156 @@
+#include "io/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path folder_of(const fs::path& target) { return target.has_parent_path() ? target.parent_path() : fs::path("."); }
+
+/// A name in the target's folder that does not depend on the target's, which may be as long as names can be.
+fs::path part_name(const fs::path& target, unsigned number) {
+  return folder_of(target) / fmt::format(".tessera-{}-{}.part", ::getpid(), number);
+}
+
+bool user_can_mend(int error_number) {
+  switch (error_number) {
+    case EACCES:
+    case EPERM:
+    case ENOENT:
+    case ENOTDIR:
+    case EISDIR:
+    case EROFS:
+    case ENAMETOOLONG:
+    case ELOOP:
+    case EINVAL:
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
+  if (target_.filename().empty()) fail(EISDIR, "cannot be written");
+  struct stat present {};
+  if (::stat(target_.c_str(), &present) == 0) {
+    if (S_ISDIR(present.st_mode)) fail(EISDIR, "cannot be written");
+    if (!S_ISREG(present.st_mode))
+      throw scene::bad_input(
+          fmt::format("{}: is not a regular file; outputs are replaced as a whole, name a file", target_.string()));
+  } else if (errno != ENOENT) {
+    fail(errno, "cannot be written");
+  }
+  descriptor_ = ::open(folder_of(target_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  // EISDIR and EOPNOTSUPP are how kernels and file systems without O_TMPFILE say so; any other failure will show again.
+  if (descriptor_ < 0) open_named();
+}
+
+void AtomicFile::open_named() {
+  for (unsigned number = 0;; ++number) {
+    const fs::path candidate = part_name(target_, number);
+    const int opened = ::open(candidate.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+    if (opened >= 0) {
+      if (descriptor_ >= 0) ::close(descriptor_);
+      descriptor_ = opened;
+      part_ = candidate;
+      return;
+    }
+    if (errno != EEXIST) fail(errno, "cannot be written");
+  }
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!part_.empty()) ::unlink(part_.c_str());
+}
+
+void AtomicFile::write(const void* bytes, std::size_t count) {
+  const char* next = static_cast<const char*>(bytes);
+  while (count > 0) {
+    const ssize_t written = ::write(descriptor_, next, std::min(count, std::size_t{1} << 30));
+    if (written < 0) {
+      if (errno == EINTR) continue;
+      fail(errno, "cannot be written");
+    }
+    next += written;
+    position_ += static_cast<std::uint64_t>(written);
+    count -= static_cast<std::size_t>(written);
+  }
+}
+
+void AtomicFile::seek(std::uint64_t position) {
+  if (::lseek(descriptor_, static_cast<off_t>(position), SEEK_SET) < 0) fail(errno, "cannot be written");
+  position_ = position;
+}
+
+fs::path AtomicFile::named_part() {
+  if (part_.empty()) open_named();
+  return part_;
+}
+
+void AtomicFile::commit() {
+  // Without fsync a machine that goes down after the rename may keep the name and lose the bytes. EINVAL: a file system
+  // that has no such thing.
+  if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(errno, "cannot be written");
+  if (part_.empty()) {
+    const std::string self = fmt::format("/proc/self/fd/{}", descriptor_);
+    fs::path candidate;
+    for (unsigned number = 0;; ++number) {
+      candidate = part_name(target_, number);
+      if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, candidate.c_str(), AT_SYMLINK_FOLLOW) == 0) break;
+      if (errno != EEXIST) fail(errno, "cannot be given its name");
+    }
+    part_ = candidate;
+  }
+  const int closed = ::close(descriptor_);
+  descriptor_ = -1;
+  if (closed != 0) fail(errno, "cannot be written");  // network file systems report a full disk only here
+  if (::rename(part_.c_str(), target_.c_str()) != 0) fail(errno, "cannot be renamed to");
+  part_.clear();
+}
+
+void AtomicFile::fail(int error_number, const char* doing) const {
+  const char* remedy = "see the disk and the file system";
+  switch (error_number) {
+    case ENOENT:
+    case ENOTDIR:
+      remedy = "make the folder first, or name another";
+      break;
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      remedy = "name a folder you may write in";
+      break;
+    case EISDIR:
+      remedy = "name a file, not a folder";
+      break;
+    case ENAMETOOLONG:
+      remedy = "give a shorter name";
+      break;
+    case ENOSPC:
+    case EDQUOT:
+    case EFBIG:
+      remedy = "free some space or name another disk";
+      break;
+    default:
+      break;
+  }
+  throw scene::Error(
+      user_can_mend(error_number) ? scene::ExitCode::bad_input : scene::ExitCode::system_failure,
+      fmt::format("{}: {}: {}; {}", target_.string(), doing, std::generic_category().message(error_number), remedy));
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+
+namespace tessera::io {
+
+/// An output file that appears whole, by rename, or not at all.
+///
+/// Writing goes to a nameless file in the target's folder (O_TMPFILE), so that even a killed process leaves nothing;
+/// where the file system has no such thing, to `.tessera-PID-N.part` beside the target, removed by the destructor.
+/// Only commit() makes the target appear, or replaces it, after fsync. Throws Error(bad_input) where the user can mend
+/// it (no such folder, no permission, the target is a folder or device), Error(system_failure) for a full or failing
+/// disk; the messages name the target.
+class AtomicFile {
+ public:
+  explicit AtomicFile(std::filesystem::path target);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  void write(const void* bytes, std::size_t count);
+  void write(std::string_view text) { write(text.data(), text.size()); }
+  /// Position of the next byte, counted from the beginning; going back overwrites (OpenEXR's line table).
+  void seek(std::uint64_t position);
+  [[nodiscard]] std::uint64_t position() const { return position_; }
+
+  void commit();
+
+  /// For libraries that open their output by name: where they may write until commit(). Costs the nameless file its
+  /// advantage: a killed process leaves the `.part` behind.
+  std::filesystem::path named_part();
+
+ private:
+  void open_named();
+  [[noreturn]] void fail(int error_number, const char* doing) const;
+
+  std::filesystem::path target_, part_;  ///< part_ empty while nameless
+  int descriptor_ = -1;
+  std::uint64_t position_ = 0;
+};
+
+}  // namespace tessera::io

@@ -1,0 +1,165 @@
+#include <ImathBox.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <fmt/format.h>
+#include <half.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <type_traits>
+#include <vector>
+
+#include "io/atomic_file.hpp"
+#include "io/image_formats.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+constexpr std::array<const char*, 4> channel_names{"R", "G", "B", "A"};
+
+/// Lets OpenEXR write into an AtomicFile.
+class Stream : public Imf::OStream {
+ public:
+  Stream(AtomicFile& file, const std::string& name) : Imf::OStream(name.c_str()), file_(file) {}
+  void write(const char bytes[], int count) override {
+    keep([&] { file_.write(bytes, static_cast<std::size_t>(count)); });
+  }
+  std::uint64_t tellp() override { return file_.position(); }
+  void seekp(std::uint64_t position) override {
+    keep([&] { file_.seek(position); });
+  }
+  /// Throws again what a write threw: OpenEXR writes its table of lines in a destructor, which swallows.
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  template <class Action>
+  void keep(const Action& action) {
+    try {
+      action();
+    } catch (...) {
+      if (!failure_) failure_ = std::current_exception();
+      throw;
+    }
+  }
+  AtomicFile& file_;
+  std::exception_ptr failure_;
+};
+
+template <class Number>
+void write_rows(Imf::OutputFile& output, const scene::Image& image, const std::filesystem::path& file,
+                const ImageFileOptions& options) {
+  constexpr bool is_half = std::is_same_v<Number, half>;
+  const auto width = static_cast<std::size_t>(image.size.width);
+  constexpr int rows_at_once = 16;  // what ZIP compresses together
+  std::vector<float> row(4 * width);
+  std::vector<Number> rows(4 * width * rows_at_once);
+  for (int begin = 0; begin < image.size.height; begin += rows_at_once) {
+    const int end = std::min(begin + rows_at_once, image.size.height);
+    for (int y = begin; y < end; ++y) {
+      composited_row(image, y, options, file, row.data());
+      Number* out = rows.data() + 4 * width * static_cast<std::size_t>(y - begin);
+      for (std::size_t i = 0; i < row.size(); ++i) {
+        if constexpr (is_half)
+          if (std::abs(row[i]) > 65504.0f)
+            throw scene::bad_input(fmt::format("{}: pixel ({}, {}) is {}, beyond half's 65504; write float",
+                                               file.string(), i / 4, y, row[i]));
+        out[i] = Number(row[i]);
+      }
+    }
+    // A slice's base is where pixel (0, 0) would be, before the buffer: computed as an integer, since a pointer may not
+    // point there, and never used.
+    const auto base = [&](const void* first, std::size_t row_bytes) {
+      return reinterpret_cast<char*>(reinterpret_cast<std::uintptr_t>(first) -
+                                     row_bytes * static_cast<std::uintptr_t>(begin));
+    };
+    Imf::FrameBuffer frame;
+    for (std::size_t k = 0; k < 4; ++k)
+      frame.insert(channel_names[k],
+                   Imf::Slice(is_half ? Imf::HALF : Imf::FLOAT, base(rows.data() + k, 4 * width * sizeof(Number)),
+                              4 * sizeof(Number), 4 * width * sizeof(Number)));
+    frame.insert("Z", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(const_cast<float*>(image.depth.data())),
+                                 sizeof(float), width * sizeof(float)));
+    output.setFrameBuffer(frame);
+    output.writePixels(end - begin);
+  }
+}
+
+}  // namespace
+
+void write_exr(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
+  AtomicFile target(file);
+  try {
+    Imf::Header header(image.size.width, image.size.height);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    for (const char* name : channel_names)
+      header.channels().insert(name, Imf::Channel(options.half ? Imf::HALF : Imf::FLOAT));
+    header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+    Stream stream(target, file.string());
+    {
+      Imf::OutputFile output(stream, header, 0);
+      if (options.half)
+        write_rows<half>(output, image, file, options);
+      else
+        write_rows<float>(output, image, file, options);
+    }
+    stream.rethrow();
+  } catch (const scene::Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw scene::Error(scene::ExitCode::system_failure,
+                       fmt::format("{}: cannot be written: {}; see the disk", file.string(), error.what()));
+  }
+  target.commit();
+}
+
+scene::Image read_exr(const std::filesystem::path& file) {
+  try {
+    Imf::InputFile input(file.c_str(), 0);
+    const Imath::Box2i window = input.header().dataWindow();
+    const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1,
+                       height = std::int64_t{window.max.y} - window.min.y + 1;
+    if (width < 1 || height < 1 || width > scene::max_image_side || height > scene::max_image_side)
+      throw scene::bad_input(fmt::format("{}: is {} by {} pixels; each side must be 1 to {}", file.string(), width,
+                                         height, scene::max_image_side));
+    for (const char* name : {"R", "G", "B"})
+      if (input.header().channels().findChannel(name) == nullptr)
+        throw scene::bad_input(fmt::format("{}: has no channel {}; give an RGB image", file.string(), name));
+    scene::Image image({static_cast<int>(width), static_cast<int>(height)});
+    const auto row_floats = static_cast<std::size_t>(width);
+    const auto base = [&](const float* first, std::size_t floats_per_pixel) {
+      const auto offset = (static_cast<std::int64_t>(window.min.y) * width + window.min.x) *
+                          static_cast<std::int64_t>(floats_per_pixel * sizeof(float));
+      return reinterpret_cast<char*>(reinterpret_cast<std::uintptr_t>(first) - static_cast<std::uintptr_t>(offset));
+    };
+    Imf::FrameBuffer frame;
+    for (std::size_t k = 0; k < 4; ++k)
+      frame.insert(channel_names[k], Imf::Slice(Imf::FLOAT, base(image.rgba.data() + k, 4), 4 * sizeof(float),
+                                                4 * row_floats * sizeof(float), 1, 1, k == 3 ? 1.0 : 0.0));
+    frame.insert("Z", Imf::Slice(Imf::FLOAT, base(image.depth.data(), 1), sizeof(float), row_floats * sizeof(float), 1,
+                                 1, std::numeric_limits<double>::infinity()));
+    input.setFrameBuffer(frame);
+    input.readPixels(window.min.y, window.max.y);
+    return image;
+  } catch (const scene::Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    std::string reason = error.what();
+    std::ranges::replace(reason, '\n', ' ');
+    throw scene::bad_input(
+        fmt::format("{}: is no OpenEXR image that can be read ({}); write it again", file.string(), reason));
+  }
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/transfer_curves.hpp"
+#include "io/transfer_function_file.hpp"
+
+namespace tessera::io {
+
+/// Named presets, `COLOURS` or `COLOURS:OPACITY`, over the field's range. Colours: preset_names(). Opacities, as
+/// fractions of the range and opacity per unit distance (a constant field gets the colour of the middle and 0.1):
+///   ramp     0.03 at the low end to 0.2 at the high end: everything shows, high values most (the default)
+///   inverse  the same from high to low
+///   ends     0.2 at both ends, 0.005 in the middle: for signed fields and their extremes
+///   peaks    five thin shells on a clear ground, like nested level sets
+///   surface  clear below 45 % of the range, 0.9 above 55 %: nearly a surface at the middle value
+///   flat     0.1 everywhere
+/// Whether `name` is one; its variant counts too, so that `viridis:peak` is refused by preset() with the list.
+bool is_preset(std::string_view name);
+
+/// Throws Error(bad_input) for an unknown variant.
+LoadedTransferFunction preset(std::string_view name, const TransferFunctionOptions& options);
+
+/// The opacities of `ramp`, over [0, 1]: also what a colour map without opacities gets.
+std::vector<OpacityPoint> opacity_ramp();
+
+}  // namespace tessera::io
