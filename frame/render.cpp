@@ -41,7 +41,11 @@ std::uint64_t segment_budget(const RenderSettings& settings, std::uint64_t held,
 
 struct Renderer::State {
   State(const scene::TetMesh& mesh, const RenderSettings& s)
-      : settings((check(s), s)), arena(thread_count(s.threads)), prepared(arena.execute([&] {
+      : settings((check(s), s)),
+        parallelism(tbb::global_control::max_allowed_parallelism,
+                    static_cast<std::size_t>(std::max(thread_count(s.threads), tbb::info::default_concurrency()))),
+        arena(thread_count(s.threads)),
+        prepared(arena.execute([&] {
           const scene::TraceScope timing(s.trace, "prepare");
           return projection::PreparedMesh(mesh);
         })) {
