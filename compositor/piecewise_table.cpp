@@ -1,5 +1,6 @@
 #include "compositor/piecewise_table.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -31,6 +32,10 @@ PiecewiseTable::PiecewiseTable(const scene::TransferFunction& function) : knot_c
       channels[c].slope.push_back(width > 0 && std::isfinite(slope) ? slope : 0);
     }
   }
+  // Lanes load whole vectors of a short table.
+  const std::size_t padded = std::max<std::size_t>(knot_count + 1, 8);
+  for (auto* column : {&below, &above, &base}) column->resize(padded, 0);
+  for (Channel& channel : channels) channel.start.resize(padded, 0), channel.slope.resize(padded, 0);
 }
 
 }  // namespace tessera::compositor

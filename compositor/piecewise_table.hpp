@@ -22,7 +22,7 @@ struct PiecewiseTable {
   explicit PiecewiseTable(const scene::TransferFunction& function);
 
   std::size_t knot_count;
-  std::vector<double> below, above, base;  ///< K + 1 each; below[0] = -inf, above[K] = +inf
+  std::vector<double> below, above, base;  ///< K + 1 each, and zeros up to 8; below[0] = -inf, above[K] = +inf
   std::vector<double> values;              ///< the K knots' values, then +inf up to a power of two less one
   std::array<Channel, 4> channels;         ///< extinction, red, green, blue
 };
