@@ -95,8 +95,9 @@ scene::Image Renderer::State::render(const scene::Camera& camera, scene::ImageSi
       std::max<std::uint64_t>(segment_budget(settings, held, 1) / 4 / sizeof(projection::TileEntry), 1);
   const std::uint64_t budget = segment_budget(settings, held, threads) / 4 * 3;
 
-  const TileContext context{&projected,        &space, &integrator,   function.max_color(), diagonal,
-                            settings.emission, budget, settings.trace};
+  const TileContext context{&projected,           &space,   &integrator,       lists->depth_origin(),
+                            function.max_color(), diagonal, settings.emission, budget,
+                            settings.trace};
   tbb::enumerable_thread_specific<TileRenderer> renderers([&] { return TileRenderer(context); });
   std::uint64_t most_list_bytes = 0;
   for (std::size_t first = 0; first < grid.count();) {

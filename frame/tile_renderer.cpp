@@ -74,8 +74,8 @@ bool TileRenderer::try_render(const projection::PixelRect& rect, std::span<const
       const scene::TraceScope timing(context_.trace, "project");
       next += projection::rasterize_planes(*context_.projected, entries.subspan(next), rect, segments_, counts_.raster);
     }
-    const double final_depth =
-        next < entries.size() ? entries[next].near_depth : std::numeric_limits<double>::infinity();
+    const double final_depth = next < entries.size() ? context_.depth_origin + entries[next].near_depth
+                                                     : std::numeric_limits<double>::infinity();
     flush(area, final_depth);
     if (pixels_.open_count() == 0) break;
     if (next < entries.size() && segments_.size + area > segments_.capacity() / 2 &&

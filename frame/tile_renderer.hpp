@@ -18,6 +18,7 @@ struct TileContext {
   const projection::ProjectedMesh* projected;
   const projection::PixelSpace* space;
   const compositor::SegmentIntegrator* integrator;
+  double depth_origin;  ///< of the entries' near_depth
   double max_color, longest_ray;
   scene::Emission emission;
   std::uint64_t budget_bytes;  ///< for this renderer's buffers

@@ -14,7 +14,7 @@ namespace tessera::projection {
 
 /// One cell in a tile's list: lists are ordered by (near_depth, tet).
 struct TileEntry {
-  float near_depth;  ///< not above the smallest depth of the cell that can be seen
+  float near_depth;  ///< behind TileLists::depth_origin(); not above the smallest depth of the cell that can be seen
   std::uint32_t tet;
 };
 

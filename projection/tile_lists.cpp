@@ -2,6 +2,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -11,11 +12,24 @@
 namespace tessera::projection {
 namespace {
 
-/// The largest float that is not above `depth`.
-float rounded_down(double depth) {
-  const auto nearest = static_cast<float>(depth);
-  return static_cast<double>(nearest) <= depth ? nearest
+/// `depth - origin` as a float that is not above it, rounding of the sum `origin + result` in double included.
+float depth_behind(double origin, double depth) {
+  const double exact = (depth - origin) - 4e-16 * (std::abs(depth) + std::abs(origin));
+  const auto nearest = static_cast<float>(std::clamp(exact, -3e38, 3e38));
+  return static_cast<double>(nearest) <= exact ? nearest
                                                : std::nextafter(nearest, -std::numeric_limits<float>::infinity());
+}
+
+double nearest_depth(const ProjectedMesh& projected) {
+  const auto vertices = projected.vertices;
+  const double nearest = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, vertices.size(), 4096), std::numeric_limits<double>::max(),
+      [&](const auto& range, double least) {
+        for (std::size_t v = range.begin(); v != range.end(); ++v) least = std::min(least, vertices[v].depth);
+        return least;
+      },
+      [](double a, double b) { return std::min(a, b); });
+  return std::max(projected.near_depth, nearest);
 }
 
 std::array<PixelVertex, 4> corners_of(const ProjectedMesh& projected, std::size_t tet) {
@@ -66,7 +80,11 @@ void TileLists::for_each_tile(std::size_t tet, Visit visit) const {
 
 TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
                      const scene::TransferFunction& transfer_function, bool emits_without_extinction)
-    : projected_(&projected), grid_(grid), extents_(projected.mesh->tet_count()), tile_counts_(grid.count(), 0) {
+    : projected_(&projected),
+      grid_(grid),
+      depth_origin_(nearest_depth(projected)),
+      extents_(projected.mesh->tet_count()),
+      tile_counts_(grid.count(), 0) {
   const std::size_t tets = extents_.size();
   const PixelRect window{0, 0, grid.image.width, grid.image.height};
   std::array<CullCounts, block_count> culled;
@@ -101,7 +119,7 @@ TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
       ++local.projected;
       const auto tile = [&](int pixel) { return static_cast<std::uint16_t>(pixel / grid.tile_size); };
       extent = {tile(box.x0), tile(box.y0), tile(box.x1 - 1), tile(box.y1 - 1),
-                rounded_down(std::max(nearest, projected.near_depth))};
+                depth_behind(depth_origin_, std::max(nearest, projected.near_depth))};
       for_each_tile(t, [&](std::size_t i, float) { ++tiles[i]; });
     }
     culled[block] = local;

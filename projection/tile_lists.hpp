@@ -42,6 +42,10 @@ class TileLists {
 
   [[nodiscard]] const CullCounts& counts() const { return counts_; }
 
+  /// Depth from which TileEntry::near_depth counts: the mesh's nearest, so that a float tells cells apart far from the
+  /// eye too.
+  [[nodiscard]] double depth_origin() const { return depth_origin_; }
+
   /// Entries of tile `tile`.
   [[nodiscard]] std::size_t entry_count(std::size_t tile) const { return tile_counts_[tile]; }
 
@@ -64,6 +68,7 @@ class TileLists {
 
   const ProjectedMesh* projected_;
   TileGrid grid_;
+  double depth_origin_;
   CullCounts counts_;
   std::vector<Extent> extents_;             ///< one a tet
   std::vector<std::uint64_t> tile_counts_;  ///< one a tile

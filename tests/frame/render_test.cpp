@@ -173,6 +173,21 @@ TEST(Render, ScalesAndOffsetsOfTheSceneDoNotShow) {
   EXPECT_LT(distance(1, {7e6, -3e6, 2e6}), 1e-6);
 }
 
+TEST(Render, AnEyeFarAwayHoldsNoMoreSegmentsAlive) {
+  const scene::TetMesh mesh = tests::split_box(24, {-1, -1, -1}, {1, 1, 1}, 0.2);
+  const auto alive = [&](double distance) {
+    Camera camera;
+    camera.position = glm::dvec3(0.3, 0.2, 1) * distance;
+    camera.parallel_scale = 1.8;
+    RenderSettings settings = exact();
+    settings.tile_size = 64;
+    FrameStatistics statistics;
+    Renderer(mesh, settings).render(camera, {64, 64}, six_knots(), &statistics);
+    return statistics.max_segments_alive;
+  };
+  EXPECT_LE(alive(1e9), 2 * alive(5));
+}
+
 TEST(Render, RefusesWhatCannotBe) {
   const scene::TetMesh mesh = tests::split_box(4, {-1, -1, -1}, {1, 1, 1}, 0);
   RenderSettings settings = exact();

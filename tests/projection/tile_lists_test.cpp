@@ -53,7 +53,7 @@ TEST(TileLists, EveryCellIsInEveryTileWhereItHasASegment) {
       ASSERT_EQ(rasterize_planes(all.projected, every, all.grid.rect(tile), segments, counts), every.size());
       for (std::size_t i = 0; i < segments.size; ++i) {
         ASSERT_TRUE(listed.count(segments.tet(i))) << "tile " << tile << " tet " << segments.tet(i);
-        EXPECT_LE(near_depth[segments.tet(i)], segments.front[i]);
+        EXPECT_LE(all.lists->depth_origin() + near_depth[segments.tet(i)], segments.front[i]);
       }
     }
   }
