@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+
+#include "scene/tet_mesh.hpp"
+
+/// Meshes whose cells are split hexahedra in a box. All tets are positively oriented, faces match, one original cell a
+/// tet, point data unless said otherwise; the same arguments give the same bits. A count out of range throws
+/// Error(bad_input).
+namespace tessera::datasets {
+
+/// [-1, 1]^3 as n^3 voxels of six tets with smooth_field. Inner vertices are moved by up to `jitter` voxels along each
+/// axis (0 to 0.25: more may turn tets inside out). Positions and scalars are float numbers, so files that hold floats
+/// (.tets) describe the same mesh. n in [1, 1000].
+scene::TetMesh cube(int n, double jitter = 0.2, std::uint64_t seed = 7);
+
+/// nx x ny x nz voxels of six tets at origin + (i, j, k) * spacing with smooth_field of the box mapped to [-1, 1]^3.
+/// With dyadic origin and spacing all coordinates are exact, so a view along an axis can put vertices exactly on pixel
+/// centres and rays exactly in faces.
+scene::TetMesh regular_split(int nx, int ny, int nz, const glm::dvec3& spacing = glm::dvec3(0.25),
+                             const glm::dvec3& origin = glm::dvec3(0));
+
+/// [-1, 1]^3 as n^3 voxels of six tets that shrink towards the origin in geometric progression, so that the largest
+/// cell has about `volume_ratio` times the volume of the smallest (1 to 1e15). n even, >= 4.
+scene::TetMesh graded(int n, double volume_ratio = 1e6);
+
+/// n x n x n voxels in [-1, 1]^3 where the layers between voxels along z hold one sliver a voxel: four vertices that
+/// are corners of nearly a square, `aspect` times wider than high (>= n * n, so that layers do not cross).
+/// 6 n^3 + (n - 1) n^2 tets. The classic failure of Delaunay meshes, without flat faces or short edges.
+scene::TetMesh slivers(int n, double aspect = 1e4);
+
+/// A pile of `layers` thin voxels (six tets each) of square footprint `width`, `thickness` high in all, centred on the
+/// z axis, in the middle of a plate of 8 x 8 shallow voxels over [-1, 1]^2 with a hole for it (a gap of a tenth of the
+/// footprint keeps the two apart). Seen along z, a few pixels hold all the depth complexity. The scalar swings
+/// from layer to layer, so that any wrong order shows. Tets: 6 (layers + 60).
+scene::TetMesh thin_stack(int layers = 20000, double width = 0.02, double thickness = 1);
+
+}  // namespace tessera::datasets

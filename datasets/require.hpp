@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "scene/error.hpp"
+
+namespace tessera::datasets {
+
+/// Throws Error(bad_input, "GENERATOR: RULE") unless the generator's argument keeps the rule.
+inline void require(bool holds, const char* generator, const char* rule) {
+  if (!holds) throw scene::bad_input(std::string(generator) + ": " + rule);
+}
+
+}  // namespace tessera::datasets
