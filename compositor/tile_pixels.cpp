@@ -31,13 +31,14 @@ void TilePixels::start(const projection::PixelRect& rect) {
 
 void TilePixels::composite(const projection::RaySegments& segments, const sorting::PixelLists& lists,
                            double final_depth) {
-  const auto is_final = [&](std::uint32_t i) { return segments.front[i] < final_depth; };
+  const auto is_final = [&](const sorting::PixelLists::Entry& entry) { return entry.front < final_depth; };
   batch_.reserve(segments.size);
   batch_.size = 0;
   for (std::size_t p = 0; p < open_.size(); ++p) {
     if (!open_[p]) continue;
-    for (const std::uint32_t i : lists.pixel(p)) {
-      if (!is_final(i)) break;
+    for (const auto& entry : lists.pixel(p)) {
+      if (!is_final(entry)) break;
+      const std::uint32_t i = entry.segment;
       batch_.length[batch_.size] = (segments.back[i] - segments.front[i]) * length_per_depth_[p];
       batch_.scalar_front[batch_.size] = segments.scalar_front[i];
       batch_.scalar_back[batch_.size] = segments.scalar_back[i];
@@ -52,11 +53,12 @@ void TilePixels::composite(const projection::RaySegments& segments, const sortin
     double red = red_[p], green = green_[p], blue = blue_[p], transmittance = transmittance_[p],
            depth = optical_depth_[p];
     bool open = true;
-    for (const std::uint32_t i : lists.pixel(p)) {
-      if (!is_final(i)) break;
+    for (const auto& entry : lists.pixel(p)) {
+      if (!is_final(entry)) break;
       const std::size_t k = next++;
       if (!open) continue;
       if (depth == 0 && batch_.optical_depth[k] > 0 && std::isinf(first_depth_[p])) {
+        const std::uint32_t i = entry.segment;
         const double at = integrator_->first_visible(segments.scalar_front[i], segments.scalar_back[i]).value_or(0);
         first_depth_[p] = segments.front[i] + (segments.back[i] - segments.front[i]) * at;
       }

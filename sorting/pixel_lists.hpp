@@ -18,15 +18,22 @@ class PixelLists {
   /// their cells' nearest depth) cost one comparison each.
   void sort(const projection::RaySegments& segments, std::size_t pixel_count);
 
-  /// Indices into the segments given last, first to last along the pixel's ray.
-  [[nodiscard]] std::span<const std::uint32_t> pixel(std::size_t pixel) const {
-    return std::span(order_).subspan(begin_[pixel], begin_[pixel + 1] - begin_[pixel]);
+  /// A segment in a list. The front stands beside the index: comparing neighbours then touches no other memory.
+  struct Entry {
+    double front;
+    std::uint32_t segment;  ///< index into the segments given last
+  };
+
+  /// The pixel's segments, first to last along its ray.
+  [[nodiscard]] std::span<const Entry> pixel(std::size_t pixel) const {
+    return std::span(entries_).subspan(begin_[pixel], begin_[pixel + 1] - begin_[pixel]);
   }
 
-  static constexpr std::size_t bytes_each = sizeof(std::uint32_t);  ///< per segment
+  static constexpr std::size_t bytes_each = sizeof(Entry);  ///< per segment
 
  private:
-  std::vector<std::uint32_t> begin_, order_;
+  std::vector<std::uint32_t> begin_;
+  std::vector<Entry> entries_;
 };
 
 }  // namespace tessera::sorting

@@ -45,7 +45,8 @@ TEST(PixelLists, OrdersByFrontThenBackThenTetInListsOfAnyLength) {
     for (std::uint32_t p = 0; p < lengths.size(); ++p) {
       std::sort(expected[p].begin(), expected[p].end());
       std::vector<Key> sorted;
-      for (const std::uint32_t i : lists.pixel(p)) {
+      for (const auto& [front, i] : lists.pixel(p)) {
+        EXPECT_EQ(front, s.front[i]);
         EXPECT_EQ(s.pixel(i), p);
         sorted.push_back({s.front[i], s.back[i], s.tet(i)});
       }
@@ -58,8 +59,9 @@ TEST(PixelLists, AZeroLengthSegmentComesBeforeTheOneThatBeginsThere) {
   const projection::RaySegments s = segments_of({{0, {2, 3, 1}}, {0, {2, 2, 9}}, {0, {1, 2, 5}}});
   PixelLists lists;
   lists.sort(s, 1);
-  const auto order = lists.pixel(0);
-  EXPECT_EQ(std::vector<std::uint32_t>(order.begin(), order.end()), (std::vector<std::uint32_t>{2, 1, 0}));
+  std::vector<std::uint32_t> order;
+  for (const auto& entry : lists.pixel(0)) order.push_back(entry.segment);
+  EXPECT_EQ(order, (std::vector<std::uint32_t>{2, 1, 0}));
 }
 
 }  // namespace
