@@ -13,7 +13,7 @@ namespace tessera::io {
 /// A view as a file gives it, with the picture's size if the file names one.
 struct CameraFile {
   scene::Camera camera;
-  std::optional<scene::ImageSize> size;
+  std::optional<scene::ImageSize> size{};
   bool operator==(const CameraFile&) const = default;
 };
 

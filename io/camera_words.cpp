@@ -23,7 +23,7 @@ void CameraWords::set(std::string_view word, std::span<const double> numbers, co
   const auto expect = [&](std::size_t count, bool present) {
     if (present) throw scene::bad_input(fmt::format("{}: {} is given twice; keep one", at, word));
     if (numbers.size() != count)
-      throw scene::bad_input(fmt::format("{}: {} has {} number{}, it takes {}", at, word, numbers.size(),
+      throw scene::bad_input(fmt::format("{}: {} has {} number{}; it takes {}", at, word, numbers.size(),
                                          numbers.size() == 1 ? "" : "s", count));
   };
   const auto set_vector = [&](std::optional<glm::dvec3>& target) {

@@ -15,7 +15,7 @@ struct ImageFileOptions {
   bool encode_srgb = true;  ///< .png: false with --blend display, where colours are display values already
   /// Composited behind the picture, which is opaque then (A = 1; .png without an alpha channel). In the picture's own
   /// space: linear RGB, or display values where encode_srgb is false.
-  std::optional<glm::dvec3> background;
+  std::optional<glm::dvec3> background{};
 };
 
 /// Writes a picture by its name's extension. It appears by rename, whole or not at all.

@@ -15,9 +15,9 @@
 namespace tessera::io {
 namespace {
 
-/// Presets are approximate as they are (color_map_tables.cpp); a tenth of a display step of 1/255 at mid grey is not
-/// seen and halves the knots.
-constexpr double preset_color_tolerance = 5e-4;
+/// Presets are ours to define, and their colours approximate (color_map_tables.cpp): differences of this size are not
+/// seen, and knots are few.
+constexpr double preset_color_tolerance = 5e-4, preset_extinction_tolerance = 5e-3;
 
 constexpr double flat_opacity = 0.1;
 
@@ -106,7 +106,8 @@ LoadedTransferFunction preset(std::string_view name, const TransferFunctionOptio
   return {make_transfer_function(refined_knots(curves, {.unit_distance = distance,
                                                         .opacity_scale = options.opacity_scale,
                                                         .display_colors = options.display_colors,
-                                                        .color_tolerance = preset_color_tolerance}),
+                                                        .color_tolerance = preset_color_tolerance,
+                                                        .extinction_tolerance = preset_extinction_tolerance}),
                                  std::string(name)),
           std::string(name), distance, options.unit_distance ? "--unit-distance" : "default"};
 }

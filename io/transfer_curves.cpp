@@ -15,8 +15,12 @@ constexpr std::size_t most_knots = 200000;
 
 double clamped_midpoint(const OpacityPoint& p) { return std::clamp(p.midpoint, 1e-5, 1 - 1e-5); }
 
-/// Where x stands between low and high; halves, since high - low may overflow.
-double fraction(double x, double low, double high) { return (x * 0.5 - low * 0.5) / (high * 0.5 - low * 0.5); }
+/// Where x stands between low and high.
+double fraction(double x, double low, double high) {
+  // high - low may overflow; halves of the smallest doubles are zero.
+  const double scale = std::max(std::abs(low), std::abs(high)) > 1e300 ? 0.5 : 1;
+  return (x * scale - low * scale) / (high * scale - low * scale);
+}
 
 /// Colour and kappa * unit distance at one place.
 struct Sample {

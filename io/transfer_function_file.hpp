@@ -15,7 +15,7 @@ struct TransferFunctionOptions {
   /// The field's smallest and largest value: presets and normalised maps span it. low == high is a constant field.
   std::array<double, 2> field_range{0, 1};
   /// `--unit-distance`: the length, in world units, over which a file's opacity holds. Wins over the file's own.
-  std::optional<double> unit_distance;
+  std::optional<double> unit_distance{};
   /// Used where neither the file nor the user names one; the caller derives it from the mesh and prints it.
   /// Meant to be the mesh's diagonal / 20: the ramps below then make a ray through half the mesh 0.26 to 0.93 opaque.
   double default_unit_distance = 1;
@@ -27,7 +27,7 @@ struct TransferFunctionOptions {
 struct LoadedTransferFunction {
   scene::TransferFunction function;
   std::string name;                     ///< the preset's or the file's, with what was assumed in brackets
-  std::optional<double> unit_distance;  ///< that was used; none where the file gives extinctions
+  std::optional<double> unit_distance{};  ///< that was used; none where the file gives extinctions
   /// "file", "--unit-distance", "default", or "" where extinctions are absolute.
   std::string unit_distance_source;
 };

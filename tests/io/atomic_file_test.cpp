@@ -1,0 +1,161 @@
+#include "io/atomic_file.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/mount.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "io/image_file.hpp"
+#include "temporary_folder.hpp"
+
+namespace tessera::io {
+namespace {
+
+using test::contents;
+using test::expect_bad_input;
+using test::fault_of;
+using test::TemporaryFolder;
+
+TEST(AtomicFile, AppearsOnlyWhenCommitted) {
+  const TemporaryFolder folder;
+  AtomicFile file(folder / "out");
+  file.write("hello");
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+  file.commit();
+  EXPECT_EQ(contents(folder / "out"), "hello");
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"out"});
+}
+
+TEST(AtomicFile, ReplacesAnOldFileAsAWholeOrLeavesIt) {
+  const TemporaryFolder folder;
+  folder.write("out", "old");
+  {
+    AtomicFile abandoned(folder / "out");
+    abandoned.write("half-writt");
+  }
+  EXPECT_EQ(contents(folder / "out"), "old");
+  AtomicFile file(folder / "out");
+  file.write("new");
+  EXPECT_EQ(contents(folder / "out"), "old");
+  file.commit();
+  EXPECT_EQ(contents(folder / "out"), "new");
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"out"});
+}
+
+TEST(AtomicFile, ANamedPartIsRemovedUnlessCommitted) {
+  const TemporaryFolder folder;
+  {
+    AtomicFile file(folder / "out");
+    EXPECT_TRUE(std::filesystem::exists(file.named_part()));
+    EXPECT_EQ(file.named_part().parent_path(), folder.path());
+  }
+  EXPECT_TRUE(folder.names().empty());
+  AtomicFile one(folder / "one"), two(folder / "two");  // at once, in one folder
+  EXPECT_NE(one.named_part(), two.named_part());
+  std::ofstream(one.named_part()) << "1";
+  std::ofstream(two.named_part()) << "2";
+  one.commit();
+  two.commit();
+  EXPECT_EQ(contents(folder / "one") + contents(folder / "two"), "12");
+  EXPECT_EQ(folder.names().size(), 2u);
+}
+
+TEST(AtomicFile, SeekOverwrites) {
+  const TemporaryFolder folder;
+  AtomicFile file(folder / "out");
+  file.write("hello");
+  file.seek(1);
+  file.write("u");
+  EXPECT_EQ(file.position(), 2u);
+  file.commit();
+  EXPECT_EQ(contents(folder / "out"), "hullo");
+}
+
+TEST(AtomicFile, HasTheRightsOfAnyNewFile) {
+  const TemporaryFolder folder;
+  const mode_t mask = ::umask(0022);
+  AtomicFile file(folder / "out");
+  file.commit();
+  ::umask(mask);
+  EXPECT_EQ(static_cast<unsigned>(std::filesystem::status(folder / "out").permissions()), 0644u);
+}
+
+TEST(AtomicFile, AKilledProcessLeavesNothing) {
+  const TemporaryFolder folder;
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    AtomicFile file(folder / "out");
+    file.write("half");
+    ::kill(::getpid(), SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  if (!folder.names().empty() && folder.names()[0].starts_with(".tessera-"))
+    GTEST_SKIP() << "the file system of " << folder.path() << " has no nameless files";
+  EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(AtomicFile, RefusesWhereNothingCanBeWritten) {
+  const TemporaryFolder folder;
+  folder.write("file", "");
+  expect_bad_input([&] { AtomicFile(folder / "none/out"); }, {"none/out: ", "make the folder first"});
+  expect_bad_input([&] { AtomicFile(folder / "file/out"); }, {"file/out: ", "folder"});
+  expect_bad_input([&] { AtomicFile(folder.path()); }, {"name a file, not a folder"});
+  expect_bad_input([&] { AtomicFile(folder.path().string() + "/"); }, {"name a file, not a folder"});
+  expect_bad_input([&] { AtomicFile("/dev/null"); }, {"/dev/null: is not a regular file"});
+  expect_bad_input([&] { AtomicFile(""); }, {"name a file"});
+  expect_bad_input([&] { AtomicFile(folder / std::string(300, 'x')); }, {"shorter name"});
+  expect_bad_input([&] { AtomicFile("/proc/out.png"); }, {"/proc/out.png: "});
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"file"});
+}
+
+TEST(AtomicFile, RefusesAFolderWithoutTheRightToWrite) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  const TemporaryFolder folder;
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  expect_bad_input([&] { AtomicFile(folder / "out"); }, {"name a folder you may write in"});
+  std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
+}
+
+/// A file system of 64 KiB, for as long as the scope lasts.
+class TinyDisk {
+ public:
+  explicit TinyDisk(const std::filesystem::path& at) : at_(at) {
+    mounted_ = ::mount("tmpfs", at_.c_str(), "tmpfs", 0, "size=64k") == 0;
+  }
+  ~TinyDisk() {
+    if (mounted_) ::umount(at_.c_str());
+  }
+  [[nodiscard]] bool mounted() const { return mounted_; }
+
+ private:
+  std::filesystem::path at_;
+  bool mounted_;
+};
+
+TEST(AtomicFile, AFullDiskIsASystemFailureThatLeavesTheOldFile) {
+  const TemporaryFolder folder;
+  const TinyDisk disk(folder.path());
+  if (!disk.mounted()) GTEST_SKIP() << "mounting a small tmpfs needs root";
+  scene::Image image({128, 128});  // 256 KiB of colours that do not compress
+  std::uint32_t noise = 1;
+  for (float& value : image.rgba) value = static_cast<float>((noise = noise * 1664525 + 1013904223) >> 8) * 0x1p-24f;
+  for (const char* name : {"a.exr", "a.png", "a.pfm"}) {
+    folder.write(name, "old");
+    const auto fault = fault_of([&] { write_image(image, folder / name, {.png_bits = 16}); });
+    EXPECT_EQ(fault.code, scene::ExitCode::system_failure) << name;
+    EXPECT_NE(fault.message.find(name), std::string::npos) << fault.message;
+    EXPECT_NE(fault.message.find("free some space"), std::string::npos) << fault.message;
+    EXPECT_EQ(contents(folder / name), "old");
+    std::filesystem::remove(folder / name);
+    fault_of([&] { write_image(image, folder / name, {.png_bits = 16}); });
+    EXPECT_TRUE(folder.names().empty()) << name;
+  }
+}
+
+}  // namespace
+}  // namespace tessera::io
