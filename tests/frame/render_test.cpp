@@ -5,9 +5,10 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "datasets/boxes.hpp"
+#include "datasets/kuhn.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
-#include "support/meshes.hpp"
 
 namespace tessera::frame {
 namespace {
@@ -42,7 +43,7 @@ RenderSettings exact() {
 bool same_bits(const Image& a, const Image& b) { return a.rgba == b.rgba && a.depth == b.depth; }
 
 TEST(Render, GivesTheSameBitsForAnyThreadsTilesAndMemory) {
-  const scene::TetMesh mesh = tests::split_box(12, {-1, -1, -1}, {1, 1, 1}, 0.2);
+  const scene::TetMesh mesh = datasets::cube(12, 0.2);
   for (const bool eye_inside : {false, true}) {
     Camera camera = oblique();
     if (eye_inside) {
@@ -66,7 +67,7 @@ TEST(Render, GivesTheSameBitsForAnyThreadsTilesAndMemory) {
 }
 
 TEST(Render, CullingInvisibleCellsChangesNoBit) {
-  const scene::TetMesh mesh = tests::split_box(10, {-1, -1, -1}, {1, 1, 1}, 0.2);
+  const scene::TetMesh mesh = datasets::cube(10, 0.2);
   const TransferFunction peak({{0, {1, 0, 0}, 0}, {0.7, {1, 0, 0}, 0}, {0.8, {1, 1, 0}, 9}, {0.9, {0, 1, 0}, 0}});
   FrameStatistics statistics;
   const Image image = Renderer(mesh, exact()).render(oblique(), {64, 64}, peak, &statistics);
@@ -79,7 +80,7 @@ TEST(Render, CullingInvisibleCellsChangesNoBit) {
 /// Under a small square, `layers` slabs of 12 tets, each so oblique that all overlap in depth; beside them a coarse
 /// box.
 scene::TetMesh leaning_stack(int layers) {
-  scene::TetMesh mesh = tests::split_box(2, {-1, -1, -1}, {1, 1, 1}, 0);
+  scene::TetMesh mesh = datasets::cube(2, 0);
   const double side = 0.02, lean = 2.0;
   const auto base = static_cast<std::uint32_t>(mesh.positions.size());
   for (int layer = 0; layer <= layers; ++layer) {
@@ -90,18 +91,12 @@ scene::TetMesh leaning_stack(int layers) {
         mesh.scalars.push_back(0.5 + 0.5 * std::sin(0.01 * layer));
       }
   }
-  constexpr int axes[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
-  for (int layer = 0; layer < layers; ++layer)
-    for (const auto& order : axes) {
-      std::uint32_t at[3] = {0, 0, 0};
-      const auto vertex = [&] { return base + 4 * (static_cast<std::uint32_t>(layer) + at[2]) + 2 * at[0] + at[1]; };
-      scene::Tet tet{vertex(), 0, 0, 0};
-      for (int step = 0; step < 3; ++step) {
-        ++at[order[step]];
-        tet[step + 1] = vertex();
-      }
-      mesh.tets.push_back(tet);
-    }
+  for (int layer = 0; layer < layers; ++layer) {
+    std::array<std::uint32_t, 8> corners;
+    for (std::uint32_t b = 0; b < 8; ++b)
+      corners[b] = base + 4 * (static_cast<std::uint32_t>(layer) + (b >> 2)) + 2 * (b & 1) + (b >> 1 & 1);
+    datasets::append_kuhn(corners, mesh.tets);
+  }
   return mesh;
 }
 
@@ -136,7 +131,7 @@ TEST(Render, AMeshWithoutCellsIsABlankPicture) {
 
 TEST(Render, DepthIsWhereTheFirstVisibleSampleLies) {
   // The scalar is the height z; matter begins at z = 0.25, seen from above at z = 5.
-  scene::TetMesh mesh = tests::split_box(3, {-1, -1, -1}, {1, 1, 1}, 0.2);
+  scene::TetMesh mesh = datasets::cube(3, 0.2);
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) mesh.scalars[v] = mesh.positions[v].z;
   const TransferFunction function({{-1, {1, 1, 1}, 3}, {0, {1, 1, 1}, 3}, {0.25, {1, 1, 1}, 0}, {1, {1, 1, 1}, 0}});
   Camera camera;
@@ -149,7 +144,7 @@ TEST(Render, DepthIsWhereTheFirstVisibleSampleLies) {
 
 TEST(Render, ScalesAndOffsetsOfTheSceneDoNotShow) {
   const ImageSize size{40, 40};
-  const scene::TetMesh mesh = tests::split_box(4, {-1, -1, -1}, {1, 1, 1}, 0.2);
+  const scene::TetMesh mesh = datasets::cube(4, 0.2);
   const Image expected = Renderer(mesh, exact()).render(oblique(), size, six_knots());
   const auto distance = [&](double scale, const glm::dvec3& offset) {
     scene::TetMesh moved = mesh;
@@ -174,7 +169,7 @@ TEST(Render, ScalesAndOffsetsOfTheSceneDoNotShow) {
 }
 
 TEST(Render, AnEyeFarAwayHoldsNoMoreSegmentsAlive) {
-  const scene::TetMesh mesh = tests::split_box(24, {-1, -1, -1}, {1, 1, 1}, 0.2);
+  const scene::TetMesh mesh = datasets::cube(24, 0.2);
   const auto alive = [&](double distance) {
     Camera camera;
     camera.position = glm::dvec3(0.3, 0.2, 1) * distance;
@@ -189,7 +184,7 @@ TEST(Render, AnEyeFarAwayHoldsNoMoreSegmentsAlive) {
 }
 
 TEST(Render, RefusesWhatCannotBe) {
-  const scene::TetMesh mesh = tests::split_box(4, {-1, -1, -1}, {1, 1, 1}, 0);
+  const scene::TetMesh mesh = datasets::cube(4, 0);
   RenderSettings settings = exact();
   settings.tile_size = 0;
   EXPECT_THROW(Renderer(mesh, settings), scene::Error);

@@ -5,12 +5,13 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <random>
 #include <set>
 #include <tuple>
 
+#include "datasets/boxes.hpp"
 #include "reference/reference.hpp"
 #include "support/instruction_sets.hpp"
-#include "support/meshes.hpp"
 
 namespace tessera::projection {
 namespace {
@@ -113,7 +114,7 @@ void expect_like_reference(const scene::TetMesh& mesh, const scene::Camera& came
 }
 
 TEST(PlanesRasterizer, HitsTheReferencesCellsInEveryKindOfView) {
-  const scene::TetMesh mesh = tests::split_box(5, {-1, -1, -1}, {1, 1, 1}, 0.25);
+  const scene::TetMesh mesh = datasets::cube(5, 0.25);
   const scene::ImageSize size{40, 33};
   tests::for_each_instruction_set([&](const char* name) {
     SCOPED_TRACE(name);
@@ -132,7 +133,7 @@ TEST(PlanesRasterizer, HitsTheReferencesCellsInEveryKindOfView) {
 
 TEST(PlanesRasterizer, KeepsTheTieRuleWhereVerticesLieOnPixelCentres) {
   const int n = 8;
-  const scene::TetMesh mesh = tests::split_box(n, {-1, -1, -1}, {1, 1, 1}, 0);
+  const scene::TetMesh mesh = datasets::cube(n, 0);
   const scene::ImageSize size{24, 24};
   tests::for_each_instruction_set([&](const char* name) {
     SCOPED_TRACE(name);
@@ -155,7 +156,7 @@ TEST(PlanesRasterizer, KeepsTheTieRuleWhereVerticesLieOnPixelCentres) {
 }
 
 TEST(PlanesRasterizer, NeighboursShareTheBitsOfTheirFace) {
-  const scene::TetMesh mesh = tests::split_box(7, {-1, -1, -1}, {1, 1, 1}, 0.3);
+  const scene::TetMesh mesh = datasets::cube(7, 0.25);
   tests::for_each_instruction_set([&](const char* name) {
     SCOPED_TRACE(name);
     for (const scene::Camera& camera :
@@ -173,7 +174,7 @@ TEST(PlanesRasterizer, NeighboursShareTheBitsOfTheirFace) {
 
 TEST(PlanesRasterizer, NeighboursAgreeWhateverIndicesAndOrientationTheyUse) {
   // Every tet gets vertices of its own, in a shuffled order.
-  const scene::TetMesh whole = tests::split_box(4, {-1, -1, -1}, {1, 1, 1}, 0.3);
+  const scene::TetMesh whole = datasets::cube(4, 0.25);
   scene::TetMesh torn;
   std::mt19937 random(5);
   for (scene::Tet tet : whole.tets) {
@@ -190,7 +191,7 @@ TEST(PlanesRasterizer, NeighboursAgreeWhateverIndicesAndOrientationTheyUse) {
 }
 
 TEST(PlanesRasterizer, BitsDoNotDependOnTheRectangle) {
-  const scene::TetMesh mesh = tests::split_box(5, {-1, -1, -1}, {1, 1, 1}, 0.25);
+  const scene::TetMesh mesh = datasets::cube(5, 0.25);
   for (const scene::Camera& camera : {oblique(), perspective({0.1, 0.2, 0.1}, 90), aligned(5, 37)}) {
     const Rays whole = rasterized(mesh, camera, {41, 37}, 64);
     for (const int tile : {1, 3, 8, 16}) EXPECT_EQ(rasterized(mesh, camera, {41, 37}, tile), whole) << tile;
@@ -200,7 +201,8 @@ TEST(PlanesRasterizer, BitsDoNotDependOnTheRectangle) {
 TEST(PlanesRasterizer, FlatInvertedAndNeedleCellsTileTheRayToo) {
   // A box squeezed to a thickness of 1e-9 along the ray, and one stretched along it, and one of zero thickness.
   for (const double thickness : {1e-9, 1e6, 0.0}) {
-    scene::TetMesh mesh = tests::split_box(3, {-1, -1, -0.5 * thickness}, {1, 1, 0.5 * thickness}, 0);
+    scene::TetMesh mesh =
+        datasets::regular_split(3, 3, 3, {2.0 / 3, 2.0 / 3, thickness / 3}, {-1, -1, -0.5 * thickness});
     for (std::size_t t = 0; t < mesh.tets.size(); t += 2) std::swap(mesh.tets[t][0], mesh.tets[t][3]);
     scene::Camera camera;
     camera.position = {0.013, 0.027, 1e6};

@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "support/meshes.hpp"
+#include "datasets/boxes.hpp"
 
 namespace tessera::projection {
 namespace {
@@ -29,7 +29,7 @@ struct Lists {
 scene::TransferFunction opaque() { return scene::TransferFunction({{0, {1, 1, 1}, 1}}); }
 
 TEST(TileLists, EveryCellIsInEveryTileWhereItHasASegment) {
-  const scene::TetMesh mesh = tests::split_box(4, {-1, -1, -1}, {1, 1, 1}, 0.2);
+  const scene::TetMesh mesh = datasets::cube(4, 0.2);
   for (const bool eye_inside : {false, true}) {
     scene::Camera camera;
     camera.position = eye_inside ? glm::dvec3(0.1, 0.2, 0.3) : glm::dvec3(3, 2, 4);
@@ -60,7 +60,7 @@ TEST(TileLists, EveryCellIsInEveryTileWhereItHasASegment) {
 }
 
 TEST(TileLists, FilledBandByBandTheListsAreTheSame) {
-  const scene::TetMesh mesh = tests::split_box(4, {-1, -1, -1}, {1, 1, 1}, 0.2);
+  const scene::TetMesh mesh = datasets::cube(4, 0.2);
   scene::Camera camera;
   camera.position = {3, 2, 4};
   camera.parallel_scale = 1.7;
@@ -78,7 +78,7 @@ TEST(TileLists, FilledBandByBandTheListsAreTheSame) {
 }
 
 TEST(TileLists, CountsWhyCellsAreLeftOut) {
-  const scene::TetMesh mesh = tests::split_box(6, {-1, -1, -1}, {1, 1, 1}, 0.2);
+  const scene::TetMesh mesh = datasets::cube(6, 0.2);
   scene::Camera camera;
   camera.position = {0, 0, 5};
   camera.parallel_scale = 0.4;  // the window is smaller than the box
