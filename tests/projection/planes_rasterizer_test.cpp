@@ -201,8 +201,8 @@ TEST(PlanesRasterizer, BitsDoNotDependOnTheRectangle) {
 TEST(PlanesRasterizer, FlatInvertedAndNeedleCellsTileTheRayToo) {
   // A box squeezed to a thickness of 1e-9 along the ray, and one stretched along it, and one of zero thickness.
   for (const double thickness : {1e-9, 1e6, 0.0}) {
-    scene::TetMesh mesh =
-        datasets::regular_split(3, 3, 3, {2.0 / 3, 2.0 / 3, thickness / 3}, {-1, -1, -0.5 * thickness});
+    scene::TetMesh mesh = datasets::regular_split(3, 3, 3, glm::dvec3(2.0 / 3), {-1, -1, -1});
+    for (glm::dvec3& p : mesh.positions) p.z *= 0.5 * thickness;
     for (std::size_t t = 0; t < mesh.tets.size(); t += 2) std::swap(mesh.tets[t][0], mesh.tets[t][3]);
     scene::Camera camera;
     camera.position = {0.013, 0.027, 1e6};
