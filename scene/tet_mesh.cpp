@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include "scene/error.hpp"
 
@@ -18,6 +19,23 @@ Box bounds(const TetMesh& mesh) {
       box.high = glm::max(box.high, mesh.positions[v]);
     }
   return box;
+}
+
+double mean_thickness(const TetMesh& mesh) {
+  const Box box = bounds(mesh);
+  if (box.empty()) return 0;
+  const glm::dvec3 side = box.high - box.low;
+  const double longest = std::max({side.x, side.y, side.z});
+  if (!(longest > 0)) return 0;
+  // In units of the longest side, so that scenes of 1e-150 or 1e150 neither underflow nor overflow.
+  double volume = 0;
+  for (const Tet& tet : mesh.tets) {
+    const glm::dvec3 &a = mesh.positions[tet[0]], &b = mesh.positions[tet[1]], &c = mesh.positions[tet[2]],
+                     &d = mesh.positions[tet[3]];
+    volume += std::abs(glm::dot((b - a) / longest, glm::cross((c - a) / longest, (d - a) / longest))) / 6;
+  }
+  const glm::dvec3 s = side / longest;
+  return volume / std::max({s.x * s.y, s.y * s.z, s.z * s.x, 1e-300}) * longest;
 }
 
 std::array<double, 2> scalar_range(const TetMesh& mesh) {

@@ -43,6 +43,11 @@ struct TetMesh {
 /// Box of the vertices that tets use. Empty if there are no tets.
 Box bounds(const TetMesh& mesh);
 
+/// Volume of the tets over the largest face of their box: how much matter a ray meets on average that crosses the box
+/// the short way. World units; the length that default extinctions refer to, as it sees plates, shells and scattered
+/// parts that the box's diagonal does not. Zero for an empty or flat mesh.
+double mean_thickness(const TetMesh& mesh);
+
 /// Smallest and largest scalar that tets use; {0, 0} if there are no tets.
 std::array<double, 2> scalar_range(const TetMesh& mesh);
 
