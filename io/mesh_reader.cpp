@@ -17,7 +17,7 @@ namespace tessera::io {
 namespace {
 
 /// Families of files that are read alike.
-enum class Family { none, vtk_xml, vtk_legacy, exodus, tets };
+enum class Family { none, vtk_xml, vtk_legacy, exodus, plot3d, tets };
 
 struct Extension {
   const char* text;
@@ -28,7 +28,8 @@ constexpr std::array extensions = {
     Extension{".pvts", Family::vtk_xml},   Extension{".vtr", Family::vtk_xml},  Extension{".pvtr", Family::vtk_xml},
     Extension{".vtk", Family::vtk_legacy}, Extension{".ex2", Family::exodus},   Extension{".exo", Family::exodus},
     Extension{".exii", Family::exodus},    Extension{".e", Family::exodus},     Extension{".g", Family::exodus},
-    Extension{".tets", Family::tets},
+    Extension{".xyz", Family::plot3d},     Extension{".p3d", Family::plot3d},   Extension{".x", Family::plot3d},
+    Extension{".bin", Family::plot3d},     Extension{".tets", Family::tets},
 };
 
 Family family_of(const std::filesystem::path& file) {
@@ -65,11 +66,17 @@ MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& opt
       return read_vtk_legacy(file);
     case Family::exodus:
       return read_exodus(file, options.time_step);
+    case Family::plot3d:
+      return read_plot3d(file, options.plot3d_q);
     case Family::tets:
       return read_tets(file);
     case Family::none:
       break;
   }
+  const std::string extension = lower_extension(file);
+  for (const char* volume : {".vti", ".pvti", ".mhd", ".mha", ".nrrd", ".nhdr", ".nii", ".gz", ".raw"})
+    if (extension == volume)
+      throw scene::bad_input(fmt::format("{}: regular grids are not rendered yet; give a mesh", file.string()));
   throw scene::bad_input(fmt::format("{}: no mesh format has the extension '{}'; known are {}", file.string(),
                                      file.extension().string(), known_extensions()));
 }

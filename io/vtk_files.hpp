@@ -27,4 +27,8 @@ MeshBlocks read_vtk_legacy(const std::filesystem::path& file);
 /// by the file's displacements, if it has some, as ParaView does.
 MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t> time_step);
 
+/// PLOT3D grid and solution; the binary layout is found from the file's size. `q_file` may be empty: then it is looked
+/// for beside the grid by its name, and if there is none the mesh has no field. IBLANK 0 hides a point's cells.
+MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem::path& q_file);
+
 }  // namespace tessera::io
