@@ -17,7 +17,7 @@ namespace tessera::io {
 namespace {
 
 /// Families of files that are read alike.
-enum class Family { none, vtk_xml, vtk_legacy, exodus, plot3d, tets };
+enum class Family { none, vtk_xml, vtk_legacy, exodus, plot3d, tetgen, surface, tets };
 
 struct Extension {
   const char* text;
@@ -29,7 +29,9 @@ constexpr std::array extensions = {
     Extension{".vtk", Family::vtk_legacy}, Extension{".ex2", Family::exodus},   Extension{".exo", Family::exodus},
     Extension{".exii", Family::exodus},    Extension{".e", Family::exodus},     Extension{".g", Family::exodus},
     Extension{".xyz", Family::plot3d},     Extension{".p3d", Family::plot3d},   Extension{".x", Family::plot3d},
-    Extension{".bin", Family::plot3d},     Extension{".tets", Family::tets},
+    Extension{".bin", Family::plot3d},     Extension{".node", Family::tetgen},  Extension{".ele", Family::tetgen},
+    Extension{".stl", Family::surface},    Extension{".ply", Family::surface},  Extension{".poly", Family::surface},
+    Extension{".smesh", Family::surface},  Extension{".tets", Family::tets},
 };
 
 Family family_of(const std::filesystem::path& file) {
@@ -68,6 +70,10 @@ MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& opt
       return read_exodus(file, options.time_step);
     case Family::plot3d:
       return read_plot3d(file, options.plot3d_q);
+    case Family::tetgen:
+      return read_node_ele(file);
+    case Family::surface:
+      return read_surface(file, options.max_volume);
     case Family::tets:
       return read_tets(file);
     case Family::none:

@@ -31,4 +31,11 @@ MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::siz
 /// for beside the grid by its name, and if there is none the mesh has no field. IBLANK 0 hides a point's cells.
 MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem::path& q_file);
 
+/// A surface (.stl .ply .poly .smesh) filled by TetGen with tets of at most `max_volume`, or of a 30,000th of what it
+/// encloses. Point fields: "depth", the distance to the surface in world units, after the file's own attributes.
+MeshBlocks read_surface(const std::filesystem::path& file, std::optional<double> max_volume);
+
+/// TetGen's mesh; either file's name finds the other.
+MeshBlocks read_node_ele(const std::filesystem::path& file);
+
 }  // namespace tessera::io

@@ -1,0 +1,181 @@
+#include <fmt/format.h>
+#include <vtkCellArray.h>
+#include <vtkCellLocator.h>
+#include <vtkDoubleArray.h>
+#include <vtkGenericCell.h>
+#include <vtkNew.h>
+#include <vtkPLYReader.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSTLReader.h>
+#include <vtkSmartPointer.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "io/input_file.hpp"
+#include "io/surface.hpp"
+#include "io/tetgen_files.hpp"
+#include "io/vtk_blocks.hpp"
+#include "io/vtk_files.hpp"
+#include "io/vtk_session.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+/// Tets that a surface is filled with when no largest volume is asked for: some 40 across, a second of TetGen's time.
+constexpr double default_tets = 30000;
+
+Surface surface_from_vtk(vtkPolyData& data, const std::string& source) {
+  Surface surface;
+  surface.points.resize(static_cast<std::size_t>(data.GetNumberOfPoints()));
+  for (std::size_t v = 0; v < surface.points.size(); ++v)
+    data.GetPoint(static_cast<vtkIdType>(v), &surface.points[v].x);
+  vtkCellArray* polygons = data.GetPolys();
+  for (vtkIdType c = 0; polygons && c < polygons->GetNumberOfCells(); ++c) {
+    vtkIdType corners = 0;
+    const vtkIdType* corner = nullptr;
+    polygons->GetCellAtId(c, corners, corner);
+    Polygon polygon;
+    for (vtkIdType k = 0; k < corners; ++k) {
+      if (corner[k] < 0 || corner[k] >= data.GetNumberOfPoints())
+        throw scene::bad_input(fmt::format("{}: face {} uses point {}, the file holds {}; write it anew", source, c,
+                                           corner[k], data.GetNumberOfPoints()));
+      polygon.push_back(static_cast<std::uint32_t>(corner[k]));
+    }
+    surface.facets.push_back({{std::move(polygon)}, {}});
+  }
+  return surface;
+}
+
+Surface read_triangles(const std::filesystem::path& file, const std::string& source) {
+  vtkSmartPointer<vtkPolyData> data;
+  with_quiet_vtk(source, "the file is truncated, damaged or of another kind, write it anew", [&] {
+    if (lower_extension(file) == ".stl") {
+      vtkNew<vtkSTLReader> reader;
+      reader->MergingOff();  // done here for all formats alike
+      reader->SetFileName(source.c_str());
+      reader->Update();
+      data = reader->GetOutput();
+    } else {
+      vtkNew<vtkPLYReader> reader;
+      reader->SetFileName(source.c_str());
+      reader->Update();
+      data = reader->GetOutput();
+    }
+  });
+  Surface surface = surface_from_vtk(*data, source);
+  merge_coincident_points(surface);
+  return surface;
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  const std::vector<std::byte> bytes = read_all(file);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+Surface read_poly(const std::filesystem::path& file, const std::string& source) {
+  std::filesystem::path node_file = file;
+  node_file.replace_extension(".node");
+  std::error_code error;
+  const std::string node = std::filesystem::is_regular_file(node_file, error) ? text_of(node_file) : std::string();
+  return parse_tetgen_surface(text_of(file), lower_extension(file) == ".smesh", node, source, node_file.string());
+}
+
+/// Distance of every point to the nearest boundary triangle, exactly 0 on the boundary.
+std::vector<double> depth_below_surface(const FilledSurface& filled) {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (const glm::dvec3& p : filled.points) points->InsertNextPoint(p.x, p.y, p.z);
+  vtkNew<vtkCellArray> triangles;
+  std::vector<bool> on_boundary(filled.points.size());
+  for (std::size_t k = 0; k < filled.triangles.size(); k += 3) {
+    const vtkIdType corner[3] = {filled.triangles[k], filled.triangles[k + 1], filled.triangles[k + 2]};
+    triangles->InsertNextCell(3, corner);
+    for (const vtkIdType v : corner) on_boundary[static_cast<std::size_t>(v)] = true;
+  }
+  vtkNew<vtkPolyData> boundary;
+  boundary->SetPoints(points);
+  boundary->SetPolys(triangles);
+  vtkNew<vtkCellLocator> locator;
+  locator->SetDataSet(boundary);
+  locator->BuildLocator();
+  vtkNew<vtkGenericCell> cell;
+  std::vector<double> depth(filled.points.size(), 0.0);
+  for (std::size_t v = 0; v < depth.size(); ++v) {
+    if (on_boundary[v]) continue;
+    double closest[3], squared = 0;
+    vtkIdType id;
+    int part;
+    locator->FindClosestPoint(&filled.points[v].x, closest, cell, id, part, squared);
+    depth[v] = std::sqrt(std::max(squared, 0.0));
+  }
+  return depth;
+}
+
+void require_sound(const Surface& surface, const std::string& source) {
+  if (surface.facets.empty())
+    throw scene::bad_input(fmt::format("{}: the surface has no faces; write it anew", source));
+  for (std::size_t v = 0; v < surface.points.size(); ++v)
+    for (int k = 0; k < 3; ++k)
+      if (!std::isfinite(surface.points[v][k]))
+        throw scene::bad_input(fmt::format("{}: point {} of the surface is not finite; mend it", source, v));
+  require_closed(surface, source);
+}
+
+double box_volume(const Surface& surface) {
+  glm::dvec3 low(1e300), high(-1e300);
+  for (const glm::dvec3& p : surface.points)
+    for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
+  return (high.x - low.x) * (high.y - low.y) * (high.z - low.z);
+}
+
+}  // namespace
+
+MeshBlocks read_surface(const std::filesystem::path& file, std::optional<double> max_volume) {
+  const std::string source = file.string(), extension = lower_extension(file);
+  if (max_volume && !(*max_volume > 0))
+    throw scene::bad_input(fmt::format("{}: the largest tet volume is {}; give a positive one", source, *max_volume));
+  const bool tetgen_text = extension == ".poly" || extension == ".smesh";
+  const Surface surface = tetgen_text ? read_poly(file, source) : read_triangles(file, source);
+  require_sound(surface, source);
+
+  MeshBlocks result;
+  result.format = fmt::format("surface ({}) filled by TetGen", extension.substr(1));
+  double volume = enclosed_volume(surface);
+  // Facets that turn both ways cancel; the box is then the only measure.
+  if (!(volume > 1e-3 * box_volume(surface))) volume = box_volume(surface);
+  if (!(volume > 0))
+    throw scene::bad_input(fmt::format("{}: the surface is flat, it encloses nothing; give a closed one", source));
+  const double largest = max_volume.value_or(volume / default_tets);
+  FilledSurface filled = fill_surface(surface, largest, source);
+  result.notes.push_back(fmt::format("surface of {} points and {} facets filled with {} tets of at most {:.4g}{}",
+                                     surface.points.size(), surface.facets.size(), filled.tets.size() / 4, largest,
+                                     max_volume ? "" : " (--max-volume sets it)"));
+  CellBlock block;
+  for (std::size_t a = 0; a < filled.attributes.size(); ++a)
+    block.fields.push_back(field_of_values(fmt::format("attribute{}", a), "double", scene::Association::point, 1,
+                                           std::move(filled.attributes[a])));
+  block.fields.push_back(field_of_values("depth", "double", scene::Association::point, 1, depth_below_surface(filled)));
+  result.notes.emplace_back("field 'depth' is the distance to the surface, world units");
+  block.positions = std::move(filled.points);
+  block.connectivity = std::move(filled.tets);
+  result.blocks.push_back(std::move(block));
+  return result;
+}
+
+MeshBlocks read_node_ele(const std::filesystem::path& file) {
+  std::filesystem::path node_file = file, ele_file = file;
+  // The partner's extension in the same case: A.NODE goes with A.ELE.
+  const bool upper = file.extension().string() != lower_extension(file);
+  node_file.replace_extension(lower_extension(file) == ".node" ? file.extension() : upper ? ".NODE" : ".node");
+  ele_file.replace_extension(lower_extension(file) == ".ele" ? file.extension() : upper ? ".ELE" : ".ele");
+  MeshBlocks result;
+  result.format = "TetGen .node/.ele";
+  result.blocks.push_back(parse_node_ele(text_of(node_file), text_of(ele_file), node_file.string(), ele_file.string()));
+  return result;
+}
+
+}  // namespace tessera::io
