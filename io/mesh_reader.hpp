@@ -73,7 +73,7 @@ bool is_mesh_file(const std::filesystem::path& file);
 void write_tets(const scene::TetMesh& mesh, const std::filesystem::path& file);
 
 /// Writes a VTK XML unstructured grid, appended raw data with zlib, double coordinates and scalars; a cell array
-/// "OriginalCell" if tets were split from other cells. Appears by rename. Throws Error(system_failure).
+/// "OriginalCellId" if tets were split from other cells. Appears by rename. Throws Error(system_failure).
 void write_vtu(const scene::TetMesh& mesh, const std::filesystem::path& file);
 
 }  // namespace tessera::io
