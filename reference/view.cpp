@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace tessera::reference {
 namespace {
@@ -38,9 +39,8 @@ View::View(const scene::Camera& camera, scene::ImageSize size)
   forward_ = unit(camera.focal_point - camera.position);
   right_ = unit(cross(forward_, unit(camera.view_up)));
   up_ = cross(right_, forward_);
-  const double degree = std::acos(-1.0) / 180;
-  pixels_per_unit_ =
-      perspective_ ? half_height_ / std::tan(camera.view_angle / 2 * degree) : half_height_ / camera.parallel_scale;
+  pixels_per_unit_ = perspective_ ? half_height_ / std::tan(camera.view_angle * (std::numbers::pi / 360))
+                                  : half_height_ / camera.parallel_scale;
   if (camera.clipping_range) {
     nearest_ = std::max(0.0, camera.clipping_range->near_distance);
     farthest_ = camera.clipping_range->far_distance;
