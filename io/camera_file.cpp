@@ -19,18 +19,20 @@ CameraFile view_from_json(const json& object, const std::string& place) {
   if (!object.is_object())
     throw scene::bad_input(place + ": is not an object; a view is {\"position\": [x, y, z], \"focal_point\": ...}");
   CameraWords words(place);
-  for (const auto& [key, value] : object.items()) {
+  for (const auto& item : object.items()) {
+    const std::string& key = item.key();  // no structured binding: a lambda may not capture one
+    const json& value = item.value();
     std::vector<double> numbers;
-    const auto take = [&](const json& item) {
-      if (!item.is_number() || !std::isfinite(item.get<double>()))
+    const auto take = [&](const json& number) {
+      if (!number.is_number() || !std::isfinite(number.get<double>()))
         throw scene::bad_input(
             fmt::format("{}: {} holds something that is not a finite number; give numbers only", place, quote(key)));
-      numbers.push_back(item.get<double>());
+      numbers.push_back(number.get<double>());
     };
     if (value.is_array()) {
       // More than any word takes: a long list need not be copied to be refused.
-      for (const json& item : value) {
-        take(item);
+      for (const json& number : value) {
+        take(number);
         if (numbers.size() > 8) break;
       }
     } else {

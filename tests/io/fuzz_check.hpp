@@ -1,0 +1,28 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "scene/error.hpp"
+
+namespace tessera::test {
+
+/// Runs a parser on foreign bytes. It may refuse them by Error(bad_input) in one printable line; anything else it
+/// throws, or a message that is none, ends the process, which libFuzzer reports.
+template <class Parse>
+void parse_or_refuse(const Parse& parse) {
+  try {
+    parse();
+  } catch (const scene::Error& error) {
+    const std::string message = error.what();
+    const bool one_line = std::all_of(message.begin(), message.end(), [](char c) { return c >= 0x20 && c < 0x7f; });
+    if (error.code() != scene::ExitCode::bad_input || !one_line || message.size() > 400) std::abort();
+  }
+}
+
+/// What must hold of a value that was parsed.
+inline void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+}  // namespace tessera::test

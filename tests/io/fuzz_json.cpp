@@ -1,0 +1,23 @@
+// Any text is a ParaView colour map, a JSON camera, or refused in one line.
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "fuzz_check.hpp"
+#include "io/camera_file.hpp"
+#include "io/paraview_color_map.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace tessera;
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  test::parse_or_refuse([&] { io::parse_json_cameras(text, "f"); });
+  test::parse_or_refuse([&] {
+    io::TransferFunctionOptions options;
+    options.field_range = {-3, 1e6};
+    const auto loaded = io::parse_paraview_color_map(text, "f", options);
+    test::require(loaded.function.max_color() <= 1 + 1e-9);
+    test::require(std::isfinite(loaded.function.max_extinction()));
+  });
+  return 0;
+}

@@ -1,0 +1,21 @@
+// Any text is a transfer function or is refused in one line.
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "fuzz_check.hpp"
+#include "io/transfer_function_file.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace tessera;
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  test::parse_or_refuse([&] {
+    const auto loaded = io::parse_text_transfer_function(text, "f", {});
+    for (const scene::Knot& knot : loaded.function.knots())
+      test::require(std::isfinite(knot.value) && knot.extinction >= 0 && std::isfinite(knot.extinction));
+    const auto knots = loaded.function.knots();
+    test::require(!knots.empty() && !std::isnan(loaded.function.evaluate(knots.front().value).extinction));
+  });
+  return 0;
+}
