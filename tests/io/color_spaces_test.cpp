@@ -32,6 +32,37 @@ TEST(ColorSpaces, AMixBeginsAndEndsExactlyAtItsColours) {
   }
 }
 
+TEST(ColorSpaces, MixesAreVtksToTheRoundingOfItsMatrices) {
+  // Truths by VTK 9.1's vtkColorTransferFunction::GetColor in the spaces Lab, Diverging and HSV with SetHSVWrap(1),
+  // between the colours below. VTK's XYZ matrices are rounded to four digits, forth and back: 1.3e-4 of green in its
+  // own end colour.
+  const glm::dvec3 a{0.231373, 0.298039, 0.752941}, b{0.705882, 0.0156863, 0.14902}, c{0.9, 0.9, 0.2};
+  const struct {
+    ColorSpace space;
+    glm::dvec3 from, to;
+    double t;
+    glm::dvec3 truth;
+  } cases[] = {
+      {ColorSpace::lab, a, b, 0.1, {0.355754988, 0.280486032, 0.689155756}},
+      {ColorSpace::lab, a, b, 0.5, {0.580662530, 0.202498456, 0.443042772}},
+      {ColorSpace::lab, a, b, 0.9, {0.686924808, 0.082290577, 0.208762267}},
+      {ColorSpace::lab, b, c, 0.3, {0.784719293, 0.380435274, 0.172776605}},
+      {ColorSpace::diverging, a, b, 0.1, {0.351735418, 0.468505687, 0.890375511}},
+      {ColorSpace::diverging, a, b, 0.25, {0.553318141, 0.688634521, 0.995187915}},
+      {ColorSpace::diverging, a, b, 0.5, {0.865395197, 0.865410210, 0.865395561}},
+      {ColorSpace::diverging, a, b, 0.9, {0.842251404, 0.326619276, 0.266613231}},
+      {ColorSpace::diverging, b, c, 0.3, {1, 0.805209337, 0.552883485}},
+      {ColorSpace::diverging, {0, 0, 0}, {0.1, 0.2, 0.9}, 0.5, {0.441004130, 0.388233425, 0.601447378}},
+      {ColorSpace::diverging, {0.1, 0.2, 0.9}, {1, 1, 1}, 0.2, {0.492896803, 0.411545089, 1}},
+      {ColorSpace::hsv, b, c, 0.3, {0.764117400, 0.178380600, 0.062827456}},
+  };
+  for (const auto& one : cases) {
+    const glm::dvec3 mixed = mix_colors(one.from, one.to, one.t, one.space, true);
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(mixed[k], one.truth[k], one.space == ColorSpace::hsv ? 1e-8 : 2e-4) << one.t << " channel " << k;
+  }
+}
+
 TEST(ColorSpaces, GreysStayGrey) {
   for (const ColorSpace space : {ColorSpace::rgb, ColorSpace::hsv, ColorSpace::lab, ColorSpace::diverging})
     for (const double t : {0.1, 0.5, 0.9}) {
