@@ -31,7 +31,7 @@ struct Vortex {
 /// At span position z: the street's centre lines wave along the span, more so downstream.
 Vortex vortex(int i, double z) {
   const double side = i % 2 == 0 ? 1 : -1, age = i;
-  const double wave = (0.06 + 0.05 * age) * std::sin(2 * pi * z / 1.5 + 1.3 * age);
+  const double wave = (0.05 + 0.05 * age) * std::sin(2 * pi * z / 3 + 0.9 * age);
   return {{1.55 + 1.75 * age + wave, side * (0.38 + 0.05 * age)}, 0.34 + 0.045 * age, 1 / (1 + 0.12 * age), -side};
 }
 
@@ -69,7 +69,7 @@ double vorticity(const glm::dvec3& p_world) {
   sum += 0.9 * std::exp(-(r - radius) / 0.07) * ramp(from_front, 0.2, 1.0) * (1 - ramp(from_front, 1.7, 2.3));
   for (const double side : {1.0, -1.0}) {
     const double centre =
-        side * (0.5 + 0.1 * p.x - 0.05 * p.x * p.x) + 0.05 * std::sin(2 * pi * z / 1.5) * ramp(p.x, 0.2, 1);
+        side * (0.5 + 0.1 * p.x - 0.05 * p.x * p.x) + 0.05 * std::sin(2 * pi * z / 3) * ramp(p.x, 0.2, 1);
     sum += 0.85 * bell(p.y - centre, 0.08 + 0.03 * p.x) * ramp(p.x, -0.05, 0.2) * (1 - ramp(p.x, 1.0, 2.2));
   }
   return std::min(sum, 1.0) * (1 - ramp(p.x, 9.6, 10.5));
@@ -81,8 +81,8 @@ scene::TetMesh demo(double resolution) {
   if (!(resolution >= 0.2 && resolution <= 4)) throw scene::bad_input("demo: resolution must be in 0.2 .. 4");
   const auto scaled = [&](int n) { return static_cast<std::uint32_t>(std::lround(n * resolution)); };
   // Hexahedra along the four walls; the outflow has most, since rays from the body to it cross the wake.
-  const std::uint32_t right = scaled(40), top = scaled(32), left = scaled(16);
-  const Lattice lattice{right + top + left + top, scaled(60), scaled(10), true};
+  const std::uint32_t right = scaled(44), top = scaled(28), left = scaled(12);
+  const Lattice lattice{right + top + left + top, scaled(64), scaled(12), true};
 
   // Round the box from the lower right corner, counter-clockwise.
   const auto wall = [&](std::uint32_t i) {

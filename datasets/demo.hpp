@@ -10,7 +10,7 @@ namespace tessera::datasets {
 ///
 /// Box [-2.5, 10.5] x [-3, 3] x [-1.5, 1.5] in cylinder diameters, the cylinder of radius 0.5 along z cut out: not
 /// convex, genus 1. Scalar in [0, 1], near 0 in the free stream, point data, "vorticity". `resolution` 1 has about
-/// 0.42 M tets, their number grows with its cube; in [0.2, 4].
+/// 0.52 M tets, their number grows with its cube; in [0.2, 4].
 scene::TetMesh demo(double resolution = 1);
 
 }  // namespace tessera::datasets
