@@ -1,0 +1,151 @@
+#!/usr/bin/env python3
+"""Times `tessera render` beside VTK's unstructured-grid ray caster: same mesh, view, transfer function, machine, run.
+
+    bench/tets.py [--tessera build/release/apps/tessera] [--cubes 32,64] [--repeat 7] [--vtk-repeat 2]
+                  [--verify 200] [--json bench/tets.json] [--results bench/RESULTS.md]
+
+Makes `tessera generate cube` meshes, renders each with the integrators `exact` and `auto` and with VTK's full and
+partial pre-integration (bench/peers/vtk_raycast.py under xvfb-run), and writes a table of times, ratios and errors.
+Errors: Tessera's against the double-precision reference at `--verify` random pixels; VTK's against Tessera's `exact`
+picture, all pixels, linear RGB. `--no-vtk` leaves VTK out. The results file gets a section of its own, replaced by the
+next run; what stands outside its marks is kept.
+"""
+import argparse
+import datetime
+import json
+import os
+import pathlib
+import re
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent
+BEGIN, END = "<!-- tets.py begin -->", "<!-- tets.py end -->"
+
+
+def run(command, **options):
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True, **options)
+    if done.returncode != 0:
+        sys.exit(f"tets.py: {' '.join(str(c) for c in command)}\n{done.stderr.strip()}")
+    return done.stdout
+
+
+def machine(tessera):
+    """What a figure means nothing without."""
+    cpu = next((l.split(":", 1)[1].strip() for l in open("/proc/cpuinfo") if l.startswith("model name")), "unknown CPU")
+    facts = {"cpu": cpu, "cores": os.cpu_count(), "date": datetime.date.today().isoformat()}
+    for folder in tessera.resolve().parents:
+        cache = folder / "CMakeCache.txt"
+        if not cache.exists():
+            continue
+        entries = dict(re.findall(r"^(\w+):\w+=(.*)$", cache.read_text(), re.M))
+        build = entries.get("CMAKE_BUILD_TYPE", "")
+        compiler = run([entries["CMAKE_CXX_COMPILER"], "--version"]).splitlines()[0]
+        flags = f"{entries.get('CMAKE_CXX_FLAGS', '')} {entries.get('CMAKE_CXX_FLAGS_' + build.upper(), '')}".split()
+        facts |= {"compiler": compiler, "build": build, "flags": " ".join(flags)}
+        break
+    commit = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], capture_output=True, text=True)
+    facts["commit"] = commit.stdout.strip() or "unknown"
+    return facts
+
+
+def time_tessera(args, mesh, integrator, folder):
+    picture, report = folder / f"{mesh.stem}-{integrator}.pfm", folder / f"{mesh.stem}-{integrator}.json"
+    run([args.tessera, "render", mesh, "-o", picture, "--camera", HERE / "camera.txt", "--transfer-function",
+         HERE / "transfer_function.txt", "--integrator", integrator, "--repeat", args.repeat, "--verify", args.verify,
+         "--report", report, "--quiet"])
+    frame = json.loads(report.read_text())["frames"][0]
+    verify = frame["verify"]
+    return {"renderer": f"Tessera `{integrator}`", "frame_ms": frame["frame_ms"], "max_error": verify["max_error"],
+            "rms_error": verify["rms_error"], "segments": frame["counters"]["segments"],
+            "tets": frame["counters"]["tets_total"], "instruction_set": frame["instruction_set"],
+            "picture": str(picture)}
+
+
+def time_vtk(args, mesh, integrator, folder):
+    picture, figures = folder / f"{mesh.stem}-vtk-{integrator}.pfm", folder / f"{mesh.stem}-vtk-{integrator}.json"
+    run(["xvfb-run", "-a", args.vtk_python, HERE / "peers" / "vtk_raycast.py", mesh, "--camera", HERE / "camera.txt",
+         "--transfer-function", HERE / "transfer_function.txt", "--integrator", integrator, "--repeat", args.vtk_repeat,
+         "--threads", os.cpu_count(), "--output", picture, "--json", figures])
+    return json.loads(figures.read_text()) | {"picture": str(picture)}
+
+
+def vtk_errors(args, vtk, exact):
+    """Maximum and RMS of the difference of two pictures; numpy lives in VTK's Python."""
+    script = ("import sys; sys.path.insert(0, sys.argv[1]); from vtk_raycast import *; "
+              "d = np.abs(read_pfm(sys.argv[2]) - read_pfm(sys.argv[3])); print(d.max(), np.sqrt((d.astype(float) ** 2).mean()))")
+    words = run([args.vtk_python, "-c", script, HERE / "peers", vtk["picture"], exact["picture"]]).split()
+    vtk["max_error"], vtk["rms_error"] = float(words[0]), float(words[1])
+
+
+def table(runs):
+    lines = ["| mesh | renderer | frame median (min) [ms] | VTK full / this | max error | RMS error |",
+             "|---|---|---|---|---|---|"]
+    for mesh in runs:
+        base = next((r for r in mesh["renderers"] if "full" in r["renderer"]), None)
+        for r in mesh["renderers"]:
+            median, least = statistics.median(r["frame_ms"]), min(r["frame_ms"])
+            ratio = f"{statistics.median(base['frame_ms']) / median:.1f}" if base else "-"
+            lines.append(f"| {mesh['mesh']}, {mesh['tets']:,} tets | {r['renderer']} | {median:.0f} ({least:.0f}) | {ratio} "
+                         f"| {r['max_error']:.1e} | {r['rms_error']:.1e} |")
+    return lines
+
+
+def write_results(path, results):
+    m = results["machine"]
+    text = [BEGIN, "", f"{m['date']}, commit {m['commit']}: {m['cpu']}, {m['cores']} cores, load average before the run "
+            f"{results['load_before']:.1f} and after {results['load_after']:.1f}. {m.get('compiler', '')}, "
+            f"{m.get('build', '')} ({m.get('flags', '')}), kernels {results['instruction_set']}, all cores.", "",
+            f"`{results['command']}`", ""] + table(results["runs"]) + ["", END]
+    old = path.read_text() if path.exists() else f"# Speed figures\n\n{BEGIN}\n{END}\n"
+    before, rest = old.split(BEGIN, 1) if BEGIN in old else (old + "\n", END + "\n")
+    path.write_text(before + "\n".join(text) + rest.split(END, 1)[1])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--tessera", type=pathlib.Path, default=ROOT / "build" / "release" / "apps" / "tessera")
+    parser.add_argument("--cubes", default="32,64")
+    parser.add_argument("--repeat", type=int, default=7)
+    parser.add_argument("--vtk-repeat", type=int, default=2)
+    parser.add_argument("--verify", type=int, default=200)
+    parser.add_argument("--vtk-python", default="/usr/bin/python3")
+    parser.add_argument("--no-vtk", action="store_true")
+    parser.add_argument("--json", type=pathlib.Path)
+    parser.add_argument("--results", type=pathlib.Path)
+    args = parser.parse_args()
+    if not args.tessera.exists():
+        sys.exit(f"tets.py: {args.tessera}: no such program; build it or name it with --tessera")
+    if not args.no_vtk and not shutil.which("xvfb-run"):
+        sys.exit("tets.py: xvfb-run is missing; install xvfb and python3-vtk9, or give --no-vtk")
+
+    results = {"command": " ".join(["bench/tets.py"] + sys.argv[1:]), "machine": machine(args.tessera),
+               "load_before": os.getloadavg()[0], "runs": []}
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        for n in args.cubes.split(","):
+            mesh = folder / f"cube{n}.tets"
+            run([args.tessera, "generate", "cube", mesh, f"n={n}", "--quiet"])
+            ours = [time_tessera(args, mesh, i, folder) for i in ("exact", "auto")]
+            peers = [] if args.no_vtk else [time_vtk(args, mesh, i, folder) for i in ("full", "partial")]
+            for peer in peers:
+                vtk_errors(args, peer, ours[0])
+            results["instruction_set"] = ours[0]["instruction_set"]
+            results["runs"].append({"mesh": f"cube {n}", "tets": ours[0]["tets"], "segments": ours[0]["segments"],
+                                    "renderers": ours + peers})
+            print("\n".join(table(results["runs"][-1:])), flush=True)
+    results["load_after"] = os.getloadavg()[0]
+    for r in (r for one in results["runs"] for r in one["renderers"]):
+        del r["picture"]
+    if args.json:
+        args.json.write_text(json.dumps(results, indent=1) + "\n")
+    if args.results:
+        write_results(args.results, results)
+
+
+if __name__ == "__main__":
+    main()
