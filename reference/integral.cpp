@@ -19,6 +19,8 @@ constexpr std::array<Node, 4> nodes{{{0.1834346424956498, 0.3626837833783620},
                                      {0.7966664774136267, 0.2223810344533745},
                                      {0.9602898564975363, 0.1012285362903763}}};
 
+bool value_less(double value, const scene::Knot& knot) { return value < knot.value; }
+
 double mixed(double a, double b, double u) { return a + (b - a) * u; }
 
 }  // namespace
@@ -28,8 +30,8 @@ double Integral::opacity() const { return -std::expm1(-optical_depth_); }
 Integral::Optics Integral::optics(double s, double within) const {
   const auto of = [](const scene::Knot& k) { return Optics{k.extinction, {k.color.x, k.color.y, k.color.z}}; };
   // The last knot at or below `within`: the upper one of a step.
-  std::size_t above = 0;
-  while (above < knots_.size() && knots_[above].value <= within) ++above;
+  const auto above =
+      static_cast<std::size_t>(std::upper_bound(knots_.begin(), knots_.end(), within, value_less) - knots_.begin());
   if (above == 0) return of(knots_.front());
   if (above == knots_.size()) return of(knots_.back());
   const Optics low = of(knots_[above - 1]), high = of(knots_[above]);
@@ -46,9 +48,9 @@ void Integral::add(double length, double scalar_front, double scalar_back, doubl
   // Places on the segment, 0 to 1, where the scalar passes a knot.
   std::vector<double> cuts{0, 1};
   const auto [low, high] = std::minmax(scalar_front, scalar_back);
-  for (const scene::Knot& knot : knots_)
-    if (low < knot.value && knot.value < high)
-      cuts.push_back((knot.value - scalar_front) / (scalar_back - scalar_front));
+  for (auto knot = std::upper_bound(knots_.begin(), knots_.end(), low, value_less);
+       knot != knots_.end() && knot->value < high; ++knot)
+    cuts.push_back((knot->value - scalar_front) / (scalar_back - scalar_front));
   std::sort(cuts.begin(), cuts.end());
 
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {

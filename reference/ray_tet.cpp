@@ -9,6 +9,20 @@
 namespace tessera::reference {
 namespace {
 
+/// Whether all corners lie clearly on one side of the plane through the eye that shows as the column (axis 0) or row
+/// (axis 1) `at`: then no line in that plane meets them. Saves most of the work for cells that cross the eye's plane,
+/// which have no box. The margin is far wider than rounding.
+bool on_one_side(const std::array<Corner, 4>& corners, int axis, double at) {
+  int left = 0, right = 0;
+  for (const Corner& c : corners) {
+    const glm::dvec3& h = c.vertex.homogeneous;
+    const double moved = at * h.z, margin = 1e-9 * (std::abs(h[axis]) + std::abs(moved));
+    left += h[axis] - moved < -margin;
+    right += h[axis] - moved > margin;
+  }
+  return left == 4 || right == 4;
+}
+
 /// E of an edge: the sign after the tie rule, and the value before it.
 struct EdgeValue {
   int sign;
@@ -90,6 +104,7 @@ double scalar_at_eye(const std::array<Corner, 4>& c) {
 }  // namespace
 
 std::optional<Stretch> intersect(const std::array<Corner, 4>& corners, double x, double y) {
+  if (on_one_side(corners, 0, x) || on_one_side(corners, 1, y)) return std::nullopt;
   EdgeValue e[4][4];
   for (int i = 0; i < 4; ++i)
     for (int j = i + 1; j < 4; ++j)
