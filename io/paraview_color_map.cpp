@@ -103,8 +103,6 @@ std::array<double, 2> range_of(const std::vector<Point>& points) {
   return {points.front().value, points.back().value};
 }
 
-bool is_normalised(const std::array<double, 2>& range) { return range[1] == 1 && (range[0] == 0 || range[0] == -1); }
-
 /// Moves points that span `from` so that they span `to`. One value takes the colour or opacity of the middle, since it
 /// cannot hold the whole map.
 template <class Point>
@@ -115,6 +113,7 @@ void stretch(std::vector<Point>& points, const std::array<double, 2>& from, cons
     points.front().value = to[0];
     return;
   }
+  if (from[0] == from[1]) return;  // one value: a constant map
   for (Point& point : points) point.value = std::lerp(to[0], to[1], (point.value - from[0]) / (from[1] - from[0]));
 }
 
@@ -188,26 +187,25 @@ LoadedTransferFunction parse_paraview_color_map(std::string_view text, const std
 
   sort_points(curves.colors);
   const std::array<double, 2> color_range = range_of(curves.colors);
-  const bool colors_normalised = is_normalised(color_range);
-  const std::array<double, 2> spanned = colors_normalised ? options.field_range : color_range;
-  if (colors_normalised) {
-    remarks.push_back(fmt::format("normalised map over {:.6g} to {:.6g}", spanned[0], spanned[1]));
+  const std::array<double, 2> spanned = options.rescale ? options.field_range : color_range;
+  if (options.rescale) {
+    remarks.push_back(fmt::format("rescaled to {:.6g} to {:.6g}", spanned[0], spanned[1]));
     stretch(curves.colors, color_range, spanned, [&] {
       const auto [a, b, t] = round_middle(curves.colors);
       return ColorPoint{0, mix_colors(a.color, b.color, t, curves.space, curves.hue_wraps)};
     });
+  } else if (options.field_range[1] < color_range[0] || options.field_range[0] > color_range[1]) {
+    remarks.push_back(
+        fmt::format("the field's {:.6g} to {:.6g} lies outside its {:.6g} to {:.6g}: --rescale stretches it",
+                    options.field_range[0], options.field_range[1], color_range[0], color_range[1]));
   }
   if (!has_opacities) curves.opacities = opacity_ramp();
   sort_points(curves.opacities);
-  const std::array<double, 2> opacity_range = range_of(curves.opacities);
-  if (is_normalised(opacity_range)) {
-    if (has_opacities && !colors_normalised)
-      remarks.push_back(fmt::format("normalised opacities over {:.6g} to {:.6g}", spanned[0], spanned[1]));
-    stretch(curves.opacities, opacity_range, spanned, [&] {
+  if (options.rescale || !has_opacities)
+    stretch(curves.opacities, range_of(curves.opacities), spanned, [&] {
       const auto [a, b, t] = round_middle(curves.opacities);
       return OpacityPoint{0, mix_opacities(a, b, t)};
     });
-  }
 
   LoadedTransferFunction loaded;
   loaded.unit_distance_source = "default";

@@ -14,10 +14,9 @@ namespace tessera::io {
 /// per unit distance, with vtkPiecewiseFunction's reading of midpoint and sharpness; without it the default ramp is
 /// taken, which the name says. `ScalarOpacityUnitDistance`, if there, is the unit distance. `HSVWrap` 1 lets hue go
 /// through 0.
-/// Points that span exactly [0, 1] or [-1, 1] are normalised: stretched over the field's range (opacities over the
-/// colours' range, where that is absolute), which the name says. Two points at one x are a step. NaN's colour,
-/// annotations and other keys are passed over.
-/// Maps of `IndexedColors` alone (categories) are refused. Throws Error(bad_input) in one line.
+/// Values are the field's own; with `rescale`, colours and opacities are each stretched over the field's range, which
+/// the name says. Two points at one x are a step. NaN's colour, annotations and other keys are passed over. Maps of
+/// `IndexedColors` alone (categories) are refused. Throws Error(bad_input) in one line.
 LoadedTransferFunction parse_paraview_color_map(std::string_view text, const std::string& source,
                                                 const TransferFunctionOptions& options);
 

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "io/text_file.hpp"
 #include "io/transfer_function_checks.hpp"
@@ -9,13 +11,27 @@
 
 namespace tessera::io {
 
+namespace {
+
+/// Stretches sorted knots over the field's range; a constant field takes the knot nearest to the middle. Returns a
+/// remark.
+std::string rescale(std::vector<scene::Knot>& knots, const std::array<double, 2>& to) {
+  const double low = knots.front().value, high = knots.back().value;
+  if (to[0] == to[1]) {
+    const double middle = 0.5 * low + 0.5 * high;
+    knots = {*std::ranges::min_element(knots, {}, [&](const scene::Knot& k) { return std::abs(k.value - middle); })};
+    knots.front().value = to[0];
+  } else if (low < high) {
+    for (scene::Knot& k : knots) k.value = std::lerp(to[0], to[1], (k.value - low) / (high - low));
+  }
+  return fmt::format(" (rescaled to {:.6g} to {:.6g})", to[0], to[1]);
+}
+
+}  // namespace
+
 LoadedTransferFunction parse_text_transfer_function(std::string_view text, const std::string& source,
                                                     const TransferFunctionOptions& options) {
   check(options);
-  if (options.unit_distance)
-    throw scene::bad_input(source +
-                           ": gives extinctions, which need no unit distance; drop --unit-distance (to thicken or thin "
-                           "the picture, scale the opacity)");
   constexpr std::array<const char*, 5> column{"value", "red", "green", "blue", "extinction"};
   std::vector<scene::Knot> knots;
   TextLines lines(text);
@@ -46,7 +62,10 @@ LoadedTransferFunction parse_text_transfer_function(std::string_view text, const
   }
   if (knots.empty())
     throw scene::bad_input(source + ": holds no knot; give at least one line `value r g b extinction`");
-  return {make_transfer_function(std::move(knots), source), source, std::nullopt, ""};
+  std::string name = source;
+  if (options.unit_distance) name += " (extinctions as they stand; --unit-distance does not apply)";
+  if (options.rescale) name += rescale(knots, options.field_range);
+  return {make_transfer_function(std::move(knots), source), name, std::nullopt, ""};
 }
 
 }  // namespace tessera::io

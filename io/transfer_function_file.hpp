@@ -12,7 +12,8 @@ namespace tessera::io {
 
 /// How a file's or a preset's numbers become extinction [1 / world unit] and linear colour.
 struct TransferFunctionOptions {
-  /// The field's smallest and largest value: presets and normalised maps span it. low == high is a constant field.
+  /// The field's smallest and largest value: presets span it, and files with `rescale`. low == high is a constant
+  /// field.
   std::array<double, 2> field_range{0, 1};
   /// `--unit-distance`: the length, in world units, over which a file's opacity holds. Wins over the file's own.
   std::optional<double> unit_distance{};
@@ -22,11 +23,14 @@ struct TransferFunctionOptions {
   /// `--blend display`: colours stay as the file shows them, undecoded from sRGB, as VTK composites them.
   bool display_colors = false;
   double opacity_scale = 1;  ///< multiplies extinction, >= 0
+  /// `--rescale`: stretch a file's values over the field's range, as ParaView's "rescale to data range" does. Without
+  /// it they are the field's own values, whatever they span.
+  bool rescale = false;
 };
 
 struct LoadedTransferFunction {
   scene::TransferFunction function;
-  std::string name;                     ///< the preset's or the file's, with what was assumed in brackets
+  std::string name;                       ///< the preset's or the file's, with what was assumed in brackets
   std::optional<double> unit_distance{};  ///< that was used; none where the file gives extinctions
   /// "file", "--unit-distance", "default", or "" where extinctions are absolute.
   std::string unit_distance_source;

@@ -221,26 +221,26 @@ TEST(ParaViewColorMap, UnitDistanceIsTheUsersThenTheFilesThenTheDefault) {
   EXPECT_NEAR(asked.function.max_extinction(), std::log(2.0) / 2, 1e-15);
 }
 
-TEST(ParaViewColorMap, NormalisedPointsSpanTheFieldAndOthersStand) {
+TEST(ParaViewColorMap, ValuesStandUnlessRescaled) {
   TransferFunctionOptions options;
   options.field_range = {100, 300};
-  const auto expect_range = [&](const std::string& text, double low, double high) {
-    const auto loaded = parse(text, options);
-    EXPECT_EQ(loaded.function.knots().front().value, low) << text;
-    EXPECT_EQ(loaded.function.knots().back().value, high) << text;
-    return loaded;
-  };
-  const auto normalised = expect_range(R"({"RGBPoints": [0,0,0,0, 1,1,1,1]})", 100, 300);
-  EXPECT_NE(normalised.name.find("normalised map over 100 to 300"), std::string::npos) << normalised.name;
-  EXPECT_NEAR(encode_srgb(normalised.function.evaluate(200).color.x), 0.5, 1e-3);
-  expect_range(R"({"RGBPoints": [-1,0,0,0, 1,1,1,1]})", 100, 300);
-  expect_range(R"({"RGBPoints": [0,0,0,0, 2,1,1,1]})", 0, 2);
-  // Opacities that are normalised beside colours that are not go over the colours' range.
-  const auto mixed = expect_range(R"({"RGBPoints": [0,0,0,0, 50,1,1,1], "Points": [0,0,0.5,0, 1,0.5,0.5,0]})", 0, 50);
-  EXPECT_NEAR(mixed.function.evaluate(25).extinction, -std::log(0.75), 1e-4);
+  const std::string text = R"({"RGBPoints": [0,0,0,0, 1,1,1,1], "Points": [0,0,0.5,0, 4,0.5,0.5,0]})";
+  const auto as_is = parse(text, options);
+  EXPECT_EQ(as_is.function.knots().front().value, 0);
+  EXPECT_EQ(as_is.function.knots().back().value, 4);
+  EXPECT_NE(as_is.name.find("lies outside"), std::string::npos) << as_is.name;
+
+  options.rescale = true;
+  const auto rescaled = parse(text, options);
+  EXPECT_EQ(rescaled.function.knots().front().value, 100);
+  EXPECT_EQ(rescaled.function.knots().back().value, 300);
+  EXPECT_NE(rescaled.name.find("rescaled to 100 to 300"), std::string::npos) << rescaled.name;
+  EXPECT_NEAR(encode_srgb(rescaled.function.evaluate(200).color.x), 0.5, 1e-3);
+  EXPECT_NEAR(rescaled.function.evaluate(200).extinction, -std::log(0.75), 1e-4);
+
   // A constant field takes the map's middle.
   options.field_range = {7, 7};
-  const auto constant = parse(R"({"RGBPoints": [0,0,0,0, 1,1,1,1], "Points": [0,0,0.5,0, 1,0.5,0.5,0]})", options);
+  const auto constant = parse(text, options);
   EXPECT_NEAR(constant.function.evaluate(7).extinction, -std::log(0.75), 1e-12);
   EXPECT_NEAR(encode_srgb(constant.function.evaluate(7).color.x), 0.5, 1e-12);
 }

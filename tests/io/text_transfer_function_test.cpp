@@ -77,10 +77,26 @@ TEST(TextTransferFunction, RefusesAFileWithoutKnots) {
   expect_bad_input([] { parse("# nothing\n\n"); }, {"tf.txt: ", "no knot"});
 }
 
-TEST(TextTransferFunction, RefusesAUnitDistanceThatWouldDoNothing) {
+TEST(TextTransferFunction, SaysThatAUnitDistanceDoesNotApply) {
   TransferFunctionOptions options;
   options.unit_distance = 2;
-  expect_bad_input([&] { parse("0 0 0 0 1\n", options); }, {"--unit-distance"});
+  const auto loaded = parse_text_transfer_function("0 1 1 1 3\n", "tf.txt", options);
+  EXPECT_EQ(loaded.function.max_extinction(), 3);
+  EXPECT_NE(loaded.name.find("--unit-distance does not apply"), std::string::npos) << loaded.name;
+}
+
+TEST(TextTransferFunction, RescalesOnRequest) {
+  TransferFunctionOptions options;
+  options.field_range = {10, 30};
+  options.rescale = true;
+  const auto loaded = parse_text_transfer_function("0 1 1 1 0\n0.25 1 1 1 1\n1 1 1 1 2\n", "tf.txt", options);
+  EXPECT_EQ(loaded.function.knots()[1].value, 15);
+  EXPECT_EQ(loaded.function.knots()[2].value, 30);
+  options.field_range = {5, 5};
+  EXPECT_EQ(parse_text_transfer_function("0 1 1 1 0\n0.4 1 1 1 1\n1 1 1 1 2\n", "tf.txt", options)
+                .function.evaluate(5)
+                .extinction,
+            1);
 }
 
 TEST(TransferFunctionFile, IsToldApartByItsFirstCharacter) {
