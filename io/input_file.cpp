@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
-#include <new>
 #include <system_error>
 
 #include "scene/error.hpp"
@@ -35,23 +34,6 @@ std::string read_beginning(const std::filesystem::path& file, std::size_t limit)
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(in.gcount()));
   return text;
-}
-
-std::vector<std::byte> read_all(const std::filesystem::path& file) {
-  const std::uint64_t size = require_file(file);
-  try {
-    std::vector<std::byte> bytes(size);
-    std::ifstream in(file, std::ios::binary);
-    in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-    if (static_cast<std::uint64_t>(in.gcount()) != size)
-      throw scene::Error(
-          scene::ExitCode::system_failure,
-          fmt::format("{}: only {} of {} bytes can be read; check the disk", file.string(), in.gcount(), size));
-    return bytes;
-  } catch (const std::bad_alloc&) {
-    throw scene::Error(scene::ExitCode::system_failure,
-                       fmt::format("{}: {} bytes do not fit in memory; use a larger machine", file.string(), size));
-  }
 }
 
 std::string lower_extension(const std::filesystem::path& file) {

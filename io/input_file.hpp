@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 namespace tessera::io {
 
@@ -13,9 +12,6 @@ std::uint64_t require_file(const std::filesystem::path& file);
 
 /// The first bytes of a file, at most `limit`. Throws as require_file.
 std::string read_beginning(const std::filesystem::path& file, std::size_t limit);
-
-/// All of a file. Throws as require_file, and Error(system_failure) if the memory does not hold it.
-std::vector<std::byte> read_all(const std::filesystem::path& file);
 
 /// Extension in lower case, with the dot.
 std::string lower_extension(const std::filesystem::path& file);

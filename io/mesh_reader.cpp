@@ -8,6 +8,7 @@
 #include <new>
 
 #include "io/input_file.hpp"
+#include "io/mapped_file.hpp"
 #include "io/mesh_assembly.hpp"
 #include "io/tets_file.hpp"
 #include "io/vtk_files.hpp"
@@ -48,7 +49,7 @@ std::string known_extensions() {
 }
 
 MeshBlocks read_tets(const std::filesystem::path& file) {
-  scene::TetMesh mesh = parse_tets(read_all(file), file.string());
+  scene::TetMesh mesh = parse_tets(MappedFile(file).bytes(), file.string());
   CellBlock block;
   block.positions = std::move(mesh.positions);
   block.connectivity.reserve(4 * mesh.tets.size());

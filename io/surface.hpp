@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,16 +31,16 @@ struct FilledSurface {
   std::vector<glm::dvec3> points;
   std::vector<std::uint32_t> tets;       ///< four a tet
   std::vector<std::uint32_t> triangles;  ///< three a boundary or facet triangle
-  std::vector<std::vector<double>> attributes;
 };
 
 /// Whether this build links TetGen (CMake option TESSERA_TETGEN).
 bool can_fill_surfaces();
 
 /// Fills a closed surface by TetGen (Si, "TetGen, a Delaunay-Based Quality Tetrahedral Mesh Generator", ACM TOMS 2015)
-/// with tets of at most `max_volume`, radius-edge ratio 2. Throws Error(bad_input, "SOURCE: ...") if the surface is not
+/// with tets of at most `max_volume` and radius-edge ratio 2, or with none but the surface's own points where that can
+/// be. Throws Error(bad_input, "SOURCE: ...") if the surface is not
 /// closed, cuts itself or TetGen gives up, and always without TESSERA_TETGEN.
-FilledSurface fill_surface(const Surface& surface, double max_volume, const std::string& source);
+FilledSurface fill_surface(const Surface& surface, std::optional<double> max_volume, const std::string& source);
 
 /// Makes points at one place one point, drops polygons that this collapses. What STL has no other way to say.
 void merge_coincident_points(Surface& surface);

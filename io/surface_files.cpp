@@ -1,11 +1,7 @@
 #include <fmt/format.h>
 #include <vtkCellArray.h>
-#include <vtkCellLocator.h>
-#include <vtkDoubleArray.h>
-#include <vtkGenericCell.h>
 #include <vtkNew.h>
 #include <vtkPLYReader.h>
-#include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSTLReader.h>
 #include <vtkSmartPointer.h>
@@ -15,7 +11,9 @@
 #include <utility>
 
 #include "io/input_file.hpp"
+#include "io/mapped_file.hpp"
 #include "io/surface.hpp"
+#include "io/surface_fields.hpp"
 #include "io/tetgen_files.hpp"
 #include "io/vtk_blocks.hpp"
 #include "io/vtk_files.hpp"
@@ -71,10 +69,7 @@ Surface read_triangles(const std::filesystem::path& file, const std::string& sou
   return surface;
 }
 
-std::string text_of(const std::filesystem::path& file) {
-  const std::vector<std::byte> bytes = read_all(file);
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
+std::string text_of(const std::filesystem::path& file) { return std::string(MappedFile(file).text()); }
 
 Surface read_poly(const std::filesystem::path& file, const std::string& source) {
   std::filesystem::path node_file = file;
@@ -82,37 +77,6 @@ Surface read_poly(const std::filesystem::path& file, const std::string& source) 
   std::error_code error;
   const std::string node = std::filesystem::is_regular_file(node_file, error) ? text_of(node_file) : std::string();
   return parse_tetgen_surface(text_of(file), lower_extension(file) == ".smesh", node, source, node_file.string());
-}
-
-/// Distance of every point to the nearest boundary triangle, exactly 0 on the boundary.
-std::vector<double> depth_below_surface(const FilledSurface& filled) {
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  for (const glm::dvec3& p : filled.points) points->InsertNextPoint(p.x, p.y, p.z);
-  vtkNew<vtkCellArray> triangles;
-  std::vector<bool> on_boundary(filled.points.size());
-  for (std::size_t k = 0; k < filled.triangles.size(); k += 3) {
-    const vtkIdType corner[3] = {filled.triangles[k], filled.triangles[k + 1], filled.triangles[k + 2]};
-    triangles->InsertNextCell(3, corner);
-    for (const vtkIdType v : corner) on_boundary[static_cast<std::size_t>(v)] = true;
-  }
-  vtkNew<vtkPolyData> boundary;
-  boundary->SetPoints(points);
-  boundary->SetPolys(triangles);
-  vtkNew<vtkCellLocator> locator;
-  locator->SetDataSet(boundary);
-  locator->BuildLocator();
-  vtkNew<vtkGenericCell> cell;
-  std::vector<double> depth(filled.points.size(), 0.0);
-  for (std::size_t v = 0; v < depth.size(); ++v) {
-    if (on_boundary[v]) continue;
-    double closest[3], squared = 0;
-    vtkIdType id;
-    int part;
-    locator->FindClosestPoint(&filled.points[v].x, closest, cell, id, part, squared);
-    depth[v] = std::sqrt(std::max(squared, 0.0));
-  }
-  return depth;
 }
 
 void require_sound(const Surface& surface, const std::string& source) {
@@ -155,9 +119,13 @@ MeshBlocks read_surface(const std::filesystem::path& file, std::optional<double>
                                      surface.points.size(), surface.facets.size(), filled.tets.size() / 4, largest,
                                      max_volume ? "" : " (--max-volume sets it)"));
   CellBlock block;
-  for (std::size_t a = 0; a < filled.attributes.size(); ++a)
-    block.fields.push_back(field_of_values(fmt::format("attribute{}", a), "double", scene::Association::point, 1,
-                                           std::move(filled.attributes[a])));
+  if (!surface.attributes.empty()) {
+    std::vector<std::vector<double>> attributes =
+        spread_attributes(surface, fill_surface(surface, std::nullopt, source), filled);
+    for (std::size_t a = 0; a < attributes.size(); ++a)
+      block.fields.push_back(field_of_values(fmt::format("attribute{}", a), "double", scene::Association::point, 1,
+                                             std::move(attributes[a])));
+  }
   block.fields.push_back(field_of_values("depth", "double", scene::Association::point, 1, depth_below_surface(filled)));
   result.notes.emplace_back("field 'depth' is the distance to the surface, world units");
   block.positions = std::move(filled.points);

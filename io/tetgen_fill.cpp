@@ -77,13 +77,6 @@ void copy_in(const Surface& surface, const Frame& frame, tetgenio& in) {
   in.numberofpoints = static_cast<int>(surface.points.size());
   in.pointlist = new REAL[3 * surface.points.size()];
   for (std::size_t v = 0; v < surface.points.size(); ++v) put(in.pointlist, v, surface.points[v]);
-  const std::size_t attributes = surface.attributes.size();
-  in.numberofpointattributes = static_cast<int>(attributes);
-  if (attributes > 0) {
-    in.pointattributelist = new REAL[attributes * surface.points.size()];
-    for (std::size_t v = 0; v < surface.points.size(); ++v)
-      for (std::size_t a = 0; a < attributes; ++a) in.pointattributelist[attributes * v + a] = surface.attributes[a][v];
-  }
   in.facetlist = new tetgenio::facet[surface.facets.size()];
   for (std::size_t f = 0; f < surface.facets.size(); ++f) {
     const Facet& from = surface.facets[f];
@@ -113,7 +106,7 @@ void copy_in(const Surface& surface, const Frame& frame, tetgenio& in) {
 /// What the child tells its parent, before the arrays.
 struct Outcome {
   std::int32_t failure = 0;  ///< the number TetGen threw, 0 for success
-  std::int32_t points = 0, tets = 0, triangles = 0, attributes = 0;
+  std::int32_t points = 0, tets = 0, triangles = 0;
 };
 
 bool write_all(int pipe, const void* bytes, std::size_t count) {
@@ -141,7 +134,8 @@ bool read_all(int pipe, void* bytes, std::size_t count) {
 }
 
 /// The child's work: mesh, write the result into the pipe, end.
-[[noreturn]] void fill_in_child(const Surface& surface, const Frame& frame, double max_volume, int pipe) {
+[[noreturn]] void fill_in_child(const Surface& surface, const Frame& frame, std::optional<double> max_volume,
+                                int pipe) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
@@ -150,16 +144,19 @@ bool read_all(int pipe, void* bytes, std::size_t count) {
   ::dup2(nowhere, STDERR_FILENO);
   Outcome outcome;
   tetgenbehavior wishes;
-  char switches[] = "pq2.0zQ";  // p: fill a closed complex, q: quality, z: count from 0, Q: quiet
-  wishes.parse_commandline(switches);
-  wishes.fixedvolume = 1;  // -a
-  wishes.maxvolume = max_volume * frame.scale * frame.scale * frame.scale;
+  // p: fill a closed complex, q: quality, z: count from 0, Q: quiet
+  std::string switches = max_volume ? "pq2.0zQ" : "pzQ";
+  wishes.parse_commandline(switches.data());
+  if (max_volume) {
+    wishes.fixedvolume = 1;  // -a
+    wishes.maxvolume = *max_volume * frame.scale * frame.scale * frame.scale;
+  }
   auto* in = new tetgenio;  // never freed: the process ends first
   auto* out = new tetgenio;
   copy_in(surface, frame, *in);
   try {
     tetrahedralize(&wishes, in, out);
-    outcome = {0, out->numberofpoints, out->numberoftetrahedra, out->numberoftrifaces, out->numberofpointattributes};
+    outcome = {0, out->numberofpoints, out->numberoftetrahedra, out->numberoftrifaces};
   } catch (int thrown) {
     outcome.failure = thrown;
   } catch (const std::exception&) {
@@ -168,11 +165,9 @@ bool read_all(int pipe, void* bytes, std::size_t count) {
   const auto points = static_cast<std::size_t>(outcome.points);
   bool written = write_all(pipe, &outcome, sizeof outcome);
   if (written && outcome.failure == 0) {
-    written =
-        write_all(pipe, out->pointlist, 3 * points * sizeof(REAL)) &&
-        write_all(pipe, out->tetrahedronlist, 4 * static_cast<std::size_t>(outcome.tets) * sizeof(int)) &&
-        write_all(pipe, out->trifacelist, 3 * static_cast<std::size_t>(outcome.triangles) * sizeof(int)) &&
-        write_all(pipe, out->pointattributelist, points * static_cast<std::size_t>(outcome.attributes) * sizeof(REAL));
+    written = write_all(pipe, out->pointlist, 3 * points * sizeof(REAL)) &&
+              write_all(pipe, out->tetrahedronlist, 4 * static_cast<std::size_t>(outcome.tets) * sizeof(int)) &&
+              write_all(pipe, out->trifacelist, 3 * static_cast<std::size_t>(outcome.triangles) * sizeof(int));
   }
   ::_exit(written ? 0 : 1);
 }
@@ -185,19 +180,13 @@ bool receive(int pipe, const Surface& surface, const Frame& frame, Outcome& outc
   filled.points.resize(points);
   filled.tets.resize(4 * static_cast<std::size_t>(outcome.tets));
   filled.triangles.resize(3 * static_cast<std::size_t>(outcome.triangles));
-  std::vector<double> attributes(points * static_cast<std::size_t>(outcome.attributes));
   static_assert(sizeof(glm::dvec3) == 3 * sizeof(REAL) && sizeof(int) == sizeof(std::uint32_t));
   if (!read_all(pipe, filled.points.data(), points * sizeof(glm::dvec3)) ||
       !read_all(pipe, filled.tets.data(), filled.tets.size() * sizeof(int)) ||
-      !read_all(pipe, filled.triangles.data(), filled.triangles.size() * sizeof(int)) ||
-      !read_all(pipe, attributes.data(), attributes.size() * sizeof(REAL)))
+      !read_all(pipe, filled.triangles.data(), filled.triangles.size() * sizeof(int)))
     return false;
   for (std::size_t v = 0; v < points; ++v)  // TetGen keeps the surface's points first
     filled.points[v] = v < surface.points.size() ? surface.points[v] : frame.out(filled.points[v]);
-  filled.attributes.resize(static_cast<std::size_t>(outcome.attributes));
-  for (std::size_t a = 0; a < filled.attributes.size(); ++a)
-    for (std::size_t v = 0; v < points; ++v)
-      filled.attributes[a].push_back(attributes[filled.attributes.size() * v + a]);
   return true;
 }
 
@@ -216,7 +205,7 @@ struct Child {
 
 bool can_fill_surfaces() { return true; }
 
-FilledSurface fill_surface(const Surface& surface, double max_volume, const std::string& source) {
+FilledSurface fill_surface(const Surface& surface, std::optional<double> max_volume, const std::string& source) {
   if (surface.points.size() > static_cast<std::size_t>(INT32_MAX) / 8)
     throw scene::bad_input(
         fmt::format("{}: {} points are too many for TetGen; coarsen the surface", source, surface.points.size()));

@@ -20,7 +20,9 @@
 #include <array>
 
 #include "io/input_file.hpp"
+#include "io/mapped_file.hpp"
 #include "io/vtk_blocks.hpp"
+#include "io/vtk_checks.hpp"
 #include "io/vtk_session.hpp"
 #include "scene/error.hpp"
 
@@ -82,6 +84,7 @@ MeshBlocks read_vtk_xml(const std::filesystem::path& file) {
         fmt::format("{}: it is a regular grid (image data); these are not rendered yet, give a mesh", source));
   if (!kind) throw scene::bad_input(fmt::format("{}: its type is '{}'; give a mesh", source, type));
 
+  check_vtk_xml(file);
   MeshBlocks result;
   result.format = kind->words;
   if (extension != kind->extension)
@@ -104,6 +107,7 @@ MeshBlocks read_vtk_legacy(const std::filesystem::path& file) {
   if (!read_beginning(file, 64).starts_with("# vtk DataFile Version"))
     throw scene::bad_input(
         fmt::format("{}: it does not begin with '# vtk DataFile Version'; check that it is a legacy VTK file", source));
+  check_vtk_legacy(MappedFile(file).text(), source);
   MeshBlocks result;
   vtkSmartPointer<vtkDataObject> data;
   const std::string warning = with_quiet_vtk(source, "the file is truncated or damaged, write it anew", [&] {

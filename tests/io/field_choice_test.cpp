@@ -1,0 +1,124 @@
+#include "io/field_choice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "io/mesh_checks.hpp"
+
+namespace tessera::io {
+namespace {
+
+using scene::Association;
+using testing::message_of;
+
+BlockField field(const std::string& name, Association association, std::vector<double> values, int components = 1) {
+  return field_of_values(name, "double", association, components, std::move(values));
+}
+
+CellBlock block_with(std::vector<BlockField> fields) {
+  CellBlock block;
+  block.fields = std::move(fields);
+  return block;
+}
+
+FieldChoice choose(const std::string& wish, const CellBlock& block) {
+  const std::vector<CellBlock> blocks = {block};
+  return choose_field(wish, summarize_fields(blocks), blocks, "mesh.vtu");
+}
+
+const CellBlock flow = block_with(
+    {field("Density", Association::point, {1, 1}), field("Momentum", Association::point, {1, 0, 0, 0, 3, 4}, 3),
+     field("StagnationEnergy", Association::point, {-1, 4}), field("ObjectId", Association::cell, {0, 1}),
+     field("stress: max", Association::cell, {5, 6})});
+
+TEST(FieldChoice, DefaultSkipsConstantsAndLabels) {
+  EXPECT_EQ(choose("", flow).label, "StagnationEnergy");
+  const CellBlock labels_first =
+      block_with({field("GlobalNodeId", Association::point, {0, 1}), field("speed", Association::cell, {0, 1})});
+  EXPECT_EQ(choose("", labels_first).label, "speed");
+}
+
+TEST(FieldChoice, DefaultPrefersTheActiveScalarsIfTheyVary) {
+  CellBlock block = block_with({field("a", Association::point, {0, 1}), field("b", Association::point, {0, 2})});
+  block.fields[1].active = true;
+  EXPECT_EQ(choose("", block).label, "b");
+  block.fields[1] = field("b", Association::point, {2, 2});
+  block.fields[1].active = true;
+  EXPECT_EQ(choose("", block).label, "a");
+}
+
+TEST(FieldChoice, DefaultTakesPointsBeforeCellsAndScalarsBeforeVectors) {
+  const BlockField vector = field("v", Association::point, {0, 0, 0, 1, 1, 1}, 3);
+  const BlockField cell = field("c", Association::cell, {0, 1});
+  EXPECT_EQ(choose("", block_with({cell, vector})).label, "v:mag");
+  EXPECT_EQ(choose("", block_with({cell, vector, field("p", Association::point, {0, 1})})).label, "p");
+}
+
+TEST(FieldChoice, AFileWithoutFieldsSaysSo) {
+  const FieldChoice choice = choose("", CellBlock{});
+  EXPECT_TRUE(choice.name.empty());
+  ASSERT_EQ(choice.notes.size(), 1u);
+  EXPECT_NE(message_of([] { choose("x", CellBlock{}); }).find("the file has none"), std::string::npos);
+}
+
+TEST(FieldChoice, ReadsComponents) {
+  EXPECT_EQ(choose("Momentum", flow).component, magnitude);
+  EXPECT_EQ(choose("Momentum:mag", flow).label, "Momentum:mag");
+  EXPECT_EQ(choose("Momentum:y", flow).component, 1);
+  EXPECT_EQ(choose("Momentum:2", flow).label, "Momentum:z");
+  EXPECT_EQ(choose("point:Momentum:x", flow).component, 0);
+  EXPECT_NE(message_of([] { choose("Momentum:3", flow); }).find("use :mag or :0 to :2"), std::string::npos);
+  EXPECT_NE(message_of([] { choose("Momentum:w", flow); }).find("has 3 components, no 'w'"), std::string::npos);
+  EXPECT_NE(message_of([] { choose("Density:y", flow); }).find("use the name alone"), std::string::npos);
+}
+
+TEST(FieldChoice, NamesMayHoldColonsAndSpaces) {
+  EXPECT_EQ(choose("stress: max", flow).name, "stress: max");
+  EXPECT_EQ(choose("cell:stress: max", flow).association, Association::cell);
+  const CellBlock odd =
+      block_with({field("a", Association::point, {0, 0, 0, 1, 1, 1}, 3), field("a:x", Association::point, {7, 8})});
+  EXPECT_EQ(choose("a:x", odd).name, "a:x");
+  EXPECT_EQ(choose("a:y", odd).name, "a");
+}
+
+TEST(FieldChoice, APrefixChoosesBetweenPointAndCell) {
+  const CellBlock both = block_with({field("s", Association::cell, {0, 1}), field("s", Association::point, {0, 1})});
+  EXPECT_EQ(choose("s", both).association, Association::point);
+  EXPECT_EQ(choose("s", both).notes.size(), 1u);
+  EXPECT_EQ(choose("cell:s", both).association, Association::cell);
+  EXPECT_TRUE(choose("point:s", both).notes.empty());
+  EXPECT_NE(message_of([] { choose("cell:Density", flow); }), "");
+}
+
+TEST(FieldChoice, AWrongNameListsAllNames) {
+  const std::string message = message_of([] { choose("Temperature", flow); });
+  EXPECT_EQ(message,
+            "mesh.vtu: no field 'Temperature'; it has point:'Density', point:'Momentum' (3 components), "
+            "point:'StagnationEnergy', cell:'ObjectId', cell:'stress: max'");
+}
+
+TEST(FieldChoice, LabelsAreToldFromWords) {
+  for (const char* name :
+       {"GlobalNodeId", "ObjectId", "vtkOriginalCellIds", "vtkGhostType", "IBlank", "node_id", "Material #", "PartIDs"})
+    EXPECT_TRUE(is_label_name(name)) << name;
+  for (const char* name : {"Fluid", "Solid", "Void", "Temp", "acid", "Grid velocity", "MID"})
+    EXPECT_FALSE(is_label_name(name)) << name;
+}
+
+TEST(FieldSummary, CountsNaNAndInfiniteAndLeavesThemOutOfTheRange) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  const std::vector<CellBlock> blocks = {block_with({field("s", Association::point, {nan, -2, inf, 5, -inf}),
+                                                     field("v", Association::point, {3, 4, 0, nan, 0, 0}, 3),
+                                                     field("large", Association::point, {3e200, 4e200, 0}, 3)})};
+  const std::vector<FieldSummary> fields = summarize_fields(blocks);
+  EXPECT_EQ(fields[0].nan_count, 3u);
+  EXPECT_EQ(fields[0].low, -2);
+  EXPECT_EQ(fields[0].high, 5);
+  EXPECT_EQ(fields[1].nan_count, 1u);
+  EXPECT_EQ(fields[1].high, 5);
+  EXPECT_DOUBLE_EQ(fields[2].high, 5e200);
+}
+
+}  // namespace
+}  // namespace tessera::io

@@ -1,0 +1,223 @@
+#include "io/mesh_assembly.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "io/mesh_checks.hpp"
+
+namespace tessera::io {
+namespace {
+
+using scene::Association;
+using testing::message_of;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+
+/// A row of n tets that share no point; cell c has the points 4 c to 4 c + 3, the value c at its points and its cell.
+CellBlock row_of_tets(std::size_t n) {
+  CellBlock block;
+  std::vector<double> point, cell;
+  for (std::size_t c = 0; c < n; ++c) {
+    const glm::dvec3 o(2.0 * static_cast<double>(c), 0, 0);
+    for (const glm::dvec3& p : {o, o + glm::dvec3(1, 0, 0), o + glm::dvec3(0, 1, 0), o + glm::dvec3(0, 0, 1)}) {
+      block.connectivity.push_back(static_cast<std::uint32_t>(block.positions.size()));
+      block.positions.push_back(p);
+      point.push_back(static_cast<double>(c));
+    }
+    cell.push_back(static_cast<double>(c));
+  }
+  block.fields.push_back(field_of_values("p", "double", Association::point, 1, std::move(point)));
+  block.fields.push_back(field_of_values("c", "double", Association::cell, 1, std::move(cell)));
+  return block;
+}
+
+MeshFile assemble(const CellBlock& block, const std::string& field = "p") {
+  MeshOptions options;
+  options.field = field;
+  MeshFile file = assemble_mesh({block}, options, "mesh");
+  scene::validate(file.mesh, "mesh");
+  return file;
+}
+
+/// The tets as cells of type 10 with offsets, so that others can be added.
+CellBlock with_types(CellBlock block) {
+  block.types.assign(block.connectivity.size() / 4, 10);
+  for (std::size_t c = 0; c <= block.types.size(); ++c) block.offsets.push_back(4 * c);
+  return block;
+}
+
+TEST(MeshAssembly, TetsThatAllStayNeedNoCellNumbers) {
+  const MeshFile file = assemble(row_of_tets(3));
+  EXPECT_EQ(file.mesh.tets.size(), 3u);
+  EXPECT_TRUE(file.mesh.original_cell.empty());
+  EXPECT_EQ(file.counts.tets_made, 3u);
+  EXPECT_EQ(file.counts.points_unused, 0u);
+}
+
+TEST(MeshAssembly, GhostAndHiddenCellsAreDroppedAndCounted) {
+  CellBlock block = row_of_tets(6);
+  block.cell_ghost = {0, 1, 32, 33, 8, 0};
+  for (const char* field : {"p", "c"}) {
+    const MeshFile file = assemble(block, field);
+    EXPECT_EQ(file.counts.cells_ghost, 2u);
+    EXPECT_EQ(file.counts.cells_hidden, 2u);
+    EXPECT_EQ(file.mesh.original_cell, (std::vector<std::uint64_t>{0, 5}));
+    EXPECT_EQ(file.counts.points_unused, 16u);
+    EXPECT_EQ(scene::scalar_range(file.mesh), (std::array<double, 2>{0, 5}));
+  }
+}
+
+TEST(MeshAssembly, AHiddenPointHidesItsCellsAndADuplicateOneDoesNot) {
+  CellBlock block = row_of_tets(3);
+  block.point_ghost.assign(12, 0);
+  block.point_ghost[5] = 2;
+  block.point_ghost[9] = 1;
+  const MeshFile file = assemble(block);
+  EXPECT_EQ(file.counts.cells_hidden, 1u);
+  EXPECT_EQ(file.mesh.original_cell, (std::vector<std::uint64_t>{0, 2}));
+}
+
+TEST(MeshAssembly, NaNAndInfiniteNumbersBlankTheirCells) {
+  CellBlock block = row_of_tets(5);
+  std::vector<double> p(20, 1.0), c(5, 1.0);
+  p[2] = nan;
+  p[6] = -inf;
+  c[4] = inf;
+  block.positions[14].y = nan;
+  block.fields = {field_of_values("p", "double", Association::point, 1, p),
+                  field_of_values("c", "double", Association::cell, 1, c)};
+  EXPECT_EQ(assemble(block).counts.cells_nan, 3u);
+  EXPECT_EQ(assemble(block).mesh.tets.size(), 2u);
+  EXPECT_EQ(assemble(block, "c").counts.cells_nan, 2u);
+}
+
+TEST(MeshAssembly, AMeshOfNaNIsAnErrorWithItsCounts) {
+  CellBlock block = row_of_tets(2);
+  block.fields = {field_of_values("p", "double", Association::point, 1, std::vector<double>(8, nan))};
+  const std::string message = message_of([&] { assemble(block); });
+  EXPECT_NE(message.find("mesh: nothing is left to render: of 2 cells"), std::string::npos) << message;
+  EXPECT_NE(message.find("2 hold NaN"), std::string::npos) << message;
+  EXPECT_NE(message_of([] { assemble_mesh({}, {}, "mesh"); }).find("holds no cells"), std::string::npos);
+}
+
+TEST(MeshAssembly, FlatCellsAreKeptAndCounted) {
+  CellBlock block = row_of_tets(3);
+  block.positions[7] = {3.25, 0.25, 0};  // in the plane of the other three
+  const MeshFile file = assemble(block);
+  EXPECT_EQ(file.counts.cells_zero_volume, 1u);
+  EXPECT_EQ(file.mesh.tets.size(), 3u);
+}
+
+TEST(MeshAssembly, TetsWithTwoCornersAtOnePlaceAreNotMade) {
+  CellBlock block = row_of_tets(3);
+  block.connectivity[5] = block.connectivity[4];  // a repeated index
+  block.positions[8] = block.positions[9] + 0.0;  // another point at the same place
+  const MeshFile file = assemble(block);
+  EXPECT_EQ(file.counts.tets_collapsed, 2u);
+  EXPECT_EQ(file.counts.cells_zero_volume, 2u);
+  EXPECT_EQ(file.mesh.tets.size(), 1u);
+}
+
+TEST(MeshAssembly, EitherHandednessIsKept) {
+  CellBlock block = row_of_tets(2);
+  std::swap(block.connectivity[0], block.connectivity[1]);
+  const MeshFile file = assemble(block);
+  EXPECT_EQ(file.mesh.tets.size(), 2u);
+  EXPECT_EQ(file.counts.cells_zero_volume + file.counts.cells_tangled, 0u);
+}
+
+TEST(MeshAssembly, FacesAndLinesAreSkippedAndCounted) {
+  CellBlock block = with_types(row_of_tets(1));
+  block.types.insert(block.types.end(), {5, 3, 1});
+  block.connectivity.insert(block.connectivity.end(), {0, 1, 2, 0, 1, 0});
+  block.offsets.insert(block.offsets.end(), {7, 9, 10});
+  block.fields.pop_back();
+  const MeshFile file = assemble(block);
+  EXPECT_EQ(file.counts.cells_read, 4u);
+  EXPECT_EQ(file.counts.cells_not_volumetric, 3u);
+  EXPECT_EQ(file.mesh.tets.size(), 1u);
+}
+
+TEST(MeshAssembly, QuadraticCellsUseTheirCorners) {
+  CellBlock block = row_of_tets(3);  // twelve points: enough for a ten-node tet
+  block.types = {24};
+  block.connectivity = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+  block.offsets = {0, 10};
+  block.fields.pop_back();
+  const MeshFile file = assemble(block);
+  EXPECT_EQ(file.mesh.tets.front(), (scene::Tet{0, 1, 2, 3}));
+  EXPECT_EQ(file.counts.cells_quadratic, 1u);
+  EXPECT_NE(file.notes.back().find("corner nodes"), std::string::npos);
+}
+
+TEST(MeshAssembly, PolyhedraAndWrongNodeCountsAreRefusedByCell) {
+  CellBlock block = with_types(row_of_tets(3));
+  block.types[2] = 42;
+  EXPECT_NE(message_of([&] { assemble(block); }).find("cell 2 is a polyhedron"), std::string::npos);
+  block.types[2] = 12;
+  EXPECT_NE(message_of([&] { assemble(block); }).find("cell 2 is a hexahedron with 4 nodes, it has to have 8"),
+            std::string::npos);
+}
+
+TEST(MeshAssembly, BlocksFollowEachOtherAndALackingFieldBlanksItsBlock) {
+  CellBlock second = row_of_tets(2), third = row_of_tets(2);
+  second.name = "shell";
+  second.fields.clear();
+  MeshOptions options;
+  options.field = "p";
+  const MeshFile file = assemble_mesh({row_of_tets(2), second, third}, options, "mesh");
+  scene::validate(file.mesh, "mesh");
+  EXPECT_EQ(file.counts.cells_read, 6u);
+  EXPECT_EQ(file.counts.cells_nan, 2u);
+  EXPECT_EQ(file.mesh.original_cell, (std::vector<std::uint64_t>{0, 1, 4, 5}));
+  EXPECT_EQ(file.mesh.tets[2], (scene::Tet{16, 17, 18, 19}));
+  EXPECT_NE(file.notes.back().find("block 'shell' lacks the field 'p'"), std::string::npos);
+}
+
+TEST(MeshAssembly, MinusZeroAndZeroAreOnePlace) {
+  CellBlock block = row_of_tets(1);
+  block.positions[0] = {-0.0, -0.0, -0.0};
+  EXPECT_FALSE(std::signbit(assemble(block).mesh.positions[0].x));
+}
+
+/// Two tets over one face, of 1 and 3 times the same volume, with values 4 and 8.
+CellBlock two_tets(bool own_points) {
+  CellBlock block;
+  const glm::dvec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0), up(0, 0, 1), down(0, 0, -3);
+  if (own_points) {
+    block.positions = {a, b, c, up, b, a, c, down};
+    block.connectivity = {0, 1, 2, 3, 4, 5, 6, 7};
+  } else {
+    block.positions = {a, b, c, up, down};
+    block.connectivity = {0, 1, 2, 3, 1, 0, 2, 4};
+  }
+  block.fields.push_back(field_of_values("c", "double", Association::cell, 1, {4, 8}));
+  return block;
+}
+
+TEST(Smooth, WeightsByVolumeAndJoinsPointsByPosition) {
+  MeshOptions options;
+  options.smooth = true;
+  for (const bool own : {false, true}) {
+    const MeshFile file = assemble_mesh({two_tets(own)}, options, "mesh");
+    scene::validate(file.mesh, "mesh");
+    EXPECT_EQ(file.mesh.association, Association::point);
+    for (std::size_t t = 0; t < 2; ++t)
+      for (const std::uint32_t v : file.mesh.tets[t]) {
+        const double z = file.mesh.positions[v].z;
+        EXPECT_DOUBLE_EQ(file.mesh.scalars[v], z == 0 ? (1 * 4 + 3 * 8) / 4.0 : z > 0 ? 4 : 8);
+      }
+  }
+}
+
+TEST(Smooth, ASingleValueStaysThatValue) {
+  CellBlock block = two_tets(true);
+  block.fields = {field_of_values("c", "double", Association::cell, 1, {2.5, 2.5})};
+  block.positions[3] = {0.25, 0.25, 0};  // a flat cell must not divide by its volume
+  MeshOptions options;
+  options.smooth = true;
+  for (const double s : assemble_mesh({block}, options, "mesh").mesh.scalars) EXPECT_EQ(s, 2.5);
+}
+
+}  // namespace
+}  // namespace tessera::io

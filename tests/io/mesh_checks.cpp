@@ -1,0 +1,169 @@
+#include "io/mesh_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <numeric>
+#include <random>
+
+namespace tessera::io::testing {
+namespace {
+
+std::vector<double> values_of(const BlockField& field) {
+  std::vector<double> one(field.tuples), all(field.tuples * static_cast<std::size_t>(field.components));
+  for (int c = 0; c < field.components; ++c) {
+    field.read(c, 0, one);
+    for (std::size_t k = 0; k < one.size(); ++k) all[k * static_cast<std::size_t>(field.components) + c] = one[k];
+  }
+  return all;
+}
+
+template <class Values>
+std::string data_array(const std::string& name, const std::string& type, int components, const Values& values) {
+  std::string text = fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"ascii\">\n",
+                                 type, name, components);
+  for (const auto& value : values) text += fmt::format("{} ", value);
+  return text + "\n</DataArray>\n";
+}
+
+std::string fields_text(const CellBlock& block, scene::Association association,
+                        const std::vector<std::uint8_t>& ghost) {
+  std::string text;
+  for (const BlockField& field : block.fields)
+    if (field.association == association) text += data_array(field.name, "Float64", field.components, values_of(field));
+  if (!ghost.empty()) text += data_array("vtkGhostType", "UInt8", 1, ghost);
+  return text;
+}
+
+/// The corner lists of one cube of the lattice, before renumbering.
+struct Cell {
+  std::uint8_t type;
+  std::vector<std::uint32_t> corner;
+};
+
+using Corners = std::array<std::uint32_t, 8>;  // VTK's order of a hexahedron
+
+/// Another numbering of the same hexahedron: turned about its axis, tipped over, mirrored.
+Corners renumbered(Corners c, std::mt19937& random) {
+  for (unsigned turns = random() % 4; turns > 0; --turns) c = {c[1], c[2], c[3], c[0], c[5], c[6], c[7], c[4]};
+  for (unsigned tips = random() % 4; tips > 0; --tips) c = {c[3], c[2], c[6], c[7], c[0], c[1], c[5], c[4]};
+  if (random() % 2) c = {c[4], c[5], c[6], c[7], c[0], c[1], c[2], c[3]};
+  return c;
+}
+
+}  // namespace
+
+std::string vtu_text(const CellBlock& block) {
+  std::vector<double> xyz;
+  for (const glm::dvec3& p : block.positions) xyz.insert(xyz.end(), {p.x, p.y, p.z});
+  std::vector<std::uint8_t> types = block.types;
+  std::vector<std::uint64_t> ends(block.offsets.begin() + (block.offsets.empty() ? 0 : 1), block.offsets.end());
+  if (types.empty()) {
+    types.assign(block.cell_count(), 10);
+    for (std::size_t c = 1; c <= block.cell_count(); ++c) ends.push_back(4 * c);
+  }
+  return fmt::format(
+             "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
+             "<UnstructuredGrid><Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
+             block.positions.size(), block.cell_count()) +
+         fields_text(block, scene::Association::point, block.point_ghost) + "</PointData><CellData>\n" +
+         fields_text(block, scene::Association::cell, block.cell_ghost) + "</CellData>\n<Points>\n" +
+         data_array("Points", "Float64", 3, xyz) + "</Points>\n<Cells>\n" +
+         data_array("connectivity", "Int64", 1, block.connectivity) + data_array("offsets", "Int64", 1, ends) +
+         data_array("types", "UInt8", 1, types) + "</Cells></Piece></UnstructuredGrid></VTKFile>\n";
+}
+
+std::string pvtu_text(const CellBlock& block, const std::vector<std::string>& pieces) {
+  std::string point, cell, sources;
+  for (const BlockField& field : block.fields)
+    (field.association == scene::Association::point ? point : cell) += fmt::format(
+        "<PDataArray type=\"Float64\" Name=\"{}\" NumberOfComponents=\"{}\"/>\n", field.name, field.components);
+  if (!block.cell_ghost.empty()) cell += "<PDataArray type=\"UInt8\" Name=\"vtkGhostType\"/>\n";
+  for (const std::string& piece : pieces) sources += fmt::format("<Piece Source=\"{}\"/>\n", piece);
+  return "<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
+         "<PUnstructuredGrid GhostLevel=\"0\">\n<PPointData>\n" +
+         point + "</PPointData>\n<PCellData>\n" + cell +
+         "</PCellData>\n<PPoints><PDataArray type=\"Float64\" NumberOfComponents=\"3\"/></PPoints>\n" + sources +
+         "</PUnstructuredGrid></VTKFile>\n";
+}
+
+CellBlock mixed_mesh(int n, unsigned seed, bool own_points) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> jitter(-0.15, 0.15);
+  const auto side = static_cast<std::uint32_t>(n + 1);
+  std::vector<glm::dvec3> points;
+  for (std::uint32_t k = 0; k < side; ++k)
+    for (std::uint32_t j = 0; j < side; ++j)
+      for (std::uint32_t i = 0; i < side; ++i) {
+        glm::dvec3 p(i, j, k);
+        for (int a = 0; a < 3; ++a)  // the box stays a box
+          if (p[a] > 0 && p[a] < n) p[a] += jitter(random);
+        points.push_back(p / static_cast<double>(n));
+      }
+  std::vector<Cell> cells;
+  for (std::uint32_t j = 0; j + 1 < side; ++j)
+    for (std::uint32_t i = 0; i + 1 < side; ++i) {
+      const unsigned column = random() % 3;
+      for (std::uint32_t k = 0; k + 1 < side; ++k) {
+        const std::uint32_t v = i + side * (j + side * k), up = side * side;
+        const Corners straight = {v,      v + 1,      v + 1 + side,      v + side,
+                                  v + up, v + 1 + up, v + 1 + side + up, v + side + up};
+        if (column == 0) {  // wedges, all cut alike so that their triangles match up the column
+          std::array<std::array<int, 3>, 2> base = {{{0, 1, 2}, {0, 2, 3}}};
+          for (auto b : base) {
+            std::rotate(b.begin(), b.begin() + random() % 3, b.end());
+            Cell wedge{13, {}};
+            const int low = random() % 2 ? 0 : 4;
+            for (const int layer : {low, 4 - low})
+              for (const int corner : b) wedge.corner.push_back(straight[static_cast<std::size_t>(corner + layer)]);
+            cells.push_back(std::move(wedge));
+          }
+          continue;
+        }
+        const Corners c = renumbered(straight, random);
+        switch (random() % 3) {
+          case 0:
+            cells.push_back({12, {c.begin(), c.end()}});
+            break;
+          case 1:
+            cells.push_back({11, {c[0], c[1], c[3], c[2], c[4], c[5], c[7], c[6]}});
+            break;
+          default: {
+            glm::dvec3 centre(0);
+            for (const std::uint32_t corner : c) centre += points[corner] / 8.0;
+            const auto apex = static_cast<std::uint32_t>(points.size());
+            points.push_back(centre);
+            for (const std::array<int, 4>& f : std::array<std::array<int, 4>, 6>{
+                     {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}})
+              cells.push_back({14,
+                               {c[static_cast<std::size_t>(f[0])], c[static_cast<std::size_t>(f[1])],
+                                c[static_cast<std::size_t>(f[2])], c[static_cast<std::size_t>(f[3])], apex}});
+          }
+        }
+      }
+    }
+  std::shuffle(cells.begin(), cells.end(), random);
+  std::vector<std::uint32_t> place(points.size());
+  std::iota(place.begin(), place.end(), 0u);
+  std::shuffle(place.begin(), place.end(), random);
+
+  CellBlock block;
+  if (!own_points) {
+    block.positions.resize(points.size());
+    for (std::size_t v = 0; v < points.size(); ++v) block.positions[place[v]] = points[v];
+  }
+  block.offsets.push_back(0);
+  for (const Cell& cell : cells) {
+    block.types.push_back(cell.type);
+    for (const std::uint32_t corner : cell.corner) {
+      if (own_points) block.positions.push_back(points[corner]);
+      block.connectivity.push_back(own_points ? static_cast<std::uint32_t>(block.positions.size() - 1) : place[corner]);
+    }
+    block.offsets.push_back(block.connectivity.size());
+  }
+  std::vector<double> f;
+  for (const glm::dvec3& p : block.positions) f.push_back(p.x + 2 * p.y + 3 * p.z);
+  block.fields.push_back(field_of_values("f", "double", scene::Association::point, 1, std::move(f)));
+  return block;
+}
+
+}  // namespace tessera::io::testing
