@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Every check of the project: installs what is missing, checks the format, builds and runs all tests, once as released
+# and once under ASan and UBSan, lints, and, with CI=true, fuzzes. Goes on after a failed stage; the end says which.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+scripts/install_packages.sh build test
+
+failed=()
+stage() {  # stage NAME COMMAND...: runs it, remembers a failure
+  local name=$1 start=$SECONDS
+  shift
+  echo "== $name"
+  "$@" || failed+=("$name")
+  echo "== $name: $((SECONDS - start)) s"
+}
+
+build_and_test() {  # build_and_test PRESET
+  cmake --preset "$1" &&
+    cmake --build --preset "$1" -j"$(nproc)" &&
+    ctest --preset "$1" -j"$(nproc)" --no-tests=error 2>&1 | tee "build/$1/ctest.log"
+}
+
+stage format scripts/lint.sh format
+stage release build_and_test release
+stage sanitize build_and_test sanitize
+stage tidy scripts/lint.sh tidy
+if [ "${CI:-}" = true ]; then stage fuzz scripts/fuzz.sh; fi
+
+# ctest's own closing lines once more, last, where they are found.
+for preset in sanitize release; do
+  echo "$preset:"
+  grep -h 'tests passed' "build/$preset/ctest.log" || echo "no tests ran"
+done
+if [ ${#failed[@]} -gt 0 ]; then
+  echo "test.sh: failed: ${failed[*]}" >&2
+  exit 1
+fi
