@@ -68,8 +68,9 @@ ViewBasis view_basis(const Camera& camera) {
   return {right, glm::cross(right, forward), forward};
 }
 
-Camera frame_box(const Box& box, ImageSize size) {
+Camera frame_box(const Box& box, ImageSize size, ProjectionKind projection) {
   Camera camera;
+  camera.projection = projection;
   if (box.empty()) return camera;
   const glm::dvec3 center = box.low + (box.high - box.low) * 0.5;
   const glm::dvec3 half = (box.high - box.low) * 0.5;
@@ -88,7 +89,6 @@ Camera frame_box(const Box& box, ImageSize size) {
   camera.focal_point = center;
   camera.position = center + to_eye * (3 * radius);
   camera.view_up = upward;
-  camera.projection = ProjectionKind::orthographic;
 
   const ViewBasis basis = view_basis(camera);
   const auto extent = [&](const glm::dvec3& axis) {
@@ -97,6 +97,19 @@ Camera frame_box(const Box& box, ImageSize size) {
   const double aspect = static_cast<double>(size.width) / size.height;
   const double fit = std::max(extent(basis.up), extent(basis.right) / aspect);
   camera.parallel_scale = 1.05 * (fit > 0 ? fit : radius);
+  if (projection == ProjectionKind::perspective) {
+    // Every corner at (x, y) and at distance d + z must lie within the window, whose half height there is (d + z) tan.
+    const double slope = std::tan(camera.view_angle / 2 * std::acos(-1.0) / 180) / 1.05;
+    double distance = 1.05 * radius;
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::dvec3 offset(corner & 1 ? half.x : -half.x, corner & 2 ? half.y : -half.y,
+                              corner & 4 ? half.z : -half.z);
+      const double needed =
+          std::max(std::abs(glm::dot(offset, basis.up)), std::abs(glm::dot(offset, basis.right)) / aspect) / slope;
+      distance = std::max(distance, needed - glm::dot(offset, basis.forward));
+    }
+    camera.position = center + to_eye * distance;
+  }
   return camera;
 }
 

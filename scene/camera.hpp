@@ -55,9 +55,10 @@ struct Box {
   [[nodiscard]] bool empty() const { return low.x > high.x; }
 };
 
-/// A view of the whole box from a fixed oblique direction, orthographic, with a small margin; the longest side of the
-/// box lies across the picture. A flat, thin or one-point box still gives a valid camera.
-Camera frame_box(const Box& box, ImageSize size);
+/// A view of the whole box from a fixed oblique direction, with a small margin; the longest side of the box lies across
+/// the picture. A flat, thin or one-point box still gives a valid camera. Perspective: 30 degrees, the eye as near as
+/// the box allows, always outside of it.
+Camera frame_box(const Box& box, ImageSize size, ProjectionKind projection = ProjectionKind::orthographic);
 
 /// The same view turned by `turn` (0..1 is one full turn) round the axis `view_up` through the focal point: an orbit's
 /// frame.

@@ -73,6 +73,30 @@ TEST(Camera, FramedBoxFillsTheWindowAndStaysInIt) {
   }
 }
 
+TEST(Camera, FramedBoxInPerspectiveFillsTheWindowAndStaysInIt) {
+  for (const glm::dvec3 high : {glm::dvec3(1, 1, 1), glm::dvec3(40, 10, 1), glm::dvec3(1e-20, 3e-20, 2e-20),
+                                glm::dvec3(7e6, 7e6, 100), glm::dvec3(0, 0, 0), glm::dvec3(1, 0, 0)}) {
+    const ImageSize size{200, 320};
+    const Camera camera = frame_box({glm::dvec3(0), high}, size, ProjectionKind::perspective);
+    ASSERT_NO_THROW(validate(camera));
+    const ViewBasis basis = view_basis(camera);
+    const double slope = std::tan(std::acos(-1.0) / 12);
+    double widest = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::dvec3 p((corner & 1) ? high.x : 0, (corner & 2) ? high.y : 0, (corner & 4) ? high.z : 0);
+      const glm::dvec3 d = p - camera.position;
+      const double depth = glm::dot(d, basis.forward);
+      EXPECT_GT(depth, 0);
+      widest = std::max({widest, std::abs(glm::dot(d, basis.right)) / (depth * slope * 0.625),
+                         std::abs(glm::dot(d, basis.up)) / (depth * slope)});
+    }
+    EXPECT_LT(widest, 1);
+    if (glm::length(high) > 0) {
+      EXPECT_GT(widest, 0.8);
+    }
+  }
+}
+
 TEST(Camera, AFullOrbitComesBack) {
   Camera camera;
   camera.position = {3, 2, 1};
