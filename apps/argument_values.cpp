@@ -1,0 +1,136 @@
+#include "apps/argument_values.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "scene/error.hpp"
+
+namespace tessera::apps {
+namespace {
+
+/// The whole of `text` as a number, or nothing. from_chars knows no locale: "1,5" is never one and a half.
+template <class T>
+std::optional<T> number(std::string_view text) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+scene::Error wrong(const std::string& option, const std::string& text, const std::string& allowed) {
+  return scene::bad_input(fmt::format("{}: '{}' is not {}", option, text, allowed));
+}
+
+}  // namespace
+
+scene::ImageSize parse_size(const std::string& option, const std::string& text) {
+  const auto cross = text.find('x');
+  const auto allowed = fmt::format("a size; write WxH, each side 1 to {} pixels, like 1024x768", scene::max_image_side);
+  if (cross == std::string::npos) throw wrong(option, text, allowed);
+  const auto width = number<int>(std::string_view(text).substr(0, cross));
+  const auto height = number<int>(std::string_view(text).substr(cross + 1));
+  for (const auto& side : {width, height})
+    if (!side || *side < 1 || *side > scene::max_image_side) throw wrong(option, text, allowed);
+  return {*width, *height};
+}
+
+std::uint64_t parse_bytes(const std::string& option, const std::string& text) {
+  constexpr auto allowed = "a size in memory; write 1M or more, like 512M or 2G";
+  std::string_view rest = text;
+  for (const std::string_view ending : {"iB", "B"})
+    if (rest.ends_with(ending)) {
+      rest.remove_suffix(ending.size());
+      break;
+    }
+  double factor = 1;
+  constexpr std::string_view suffixes = "KMGT";
+  if (!rest.empty())
+    if (const auto power = suffixes.find(rest.back()); power != std::string_view::npos) {
+      factor = std::exp2(10.0 * static_cast<double>(power + 1));
+      rest.remove_suffix(1);
+    }
+  const auto count = number<double>(rest);
+  if (!count) throw wrong(option, text, allowed);
+  const double bytes = *count * factor;
+  if (!(bytes >= std::exp2(20)) || !(bytes < std::exp2(62))) throw wrong(option, text, allowed);
+  return static_cast<std::uint64_t>(bytes);
+}
+
+scene::Integrator parse_integrator(const std::string& option, const std::string& text, double accuracy) {
+  constexpr std::string_view prefix = "sampled:";
+  scene::Integrator integrator;
+  integrator.accuracy = accuracy;
+  if (text == "exact") {
+    integrator.kind = scene::IntegratorKind::exact;
+  } else if (text == "auto") {
+    integrator.kind = scene::IntegratorKind::automatic;
+  } else if (std::string_view(text).starts_with(prefix)) {
+    const auto samples = number<int>(std::string_view(text).substr(prefix.size()));
+    if (!samples || *samples < 1 || *samples > 4096)
+      throw wrong(option, text, "sampled:N with N from 1 to 4096, like sampled:8");
+    integrator.kind = scene::IntegratorKind::sampled;
+    integrator.samples = *samples;
+  } else if (text == "preintegrated" || text == "partial") {
+    throw scene::bad_input(fmt::format("{}: '{}' is not available yet; use exact, sampled:N or auto", option, text));
+  } else {
+    throw wrong(option, text, "an integrator; use exact, sampled:N or auto");
+  }
+  return integrator;
+}
+
+std::array<float, 3> parse_color(const std::string& option, const std::string& text) {
+  constexpr auto allowed =
+      "a colour; write R,G,B (linear light, 0 or more) or one of black, white, gray, red, green, blue";
+  constexpr float middle_gray = 0.2158f;  // sRGB 0.5
+  constexpr std::pair<std::string_view, std::array<float, 3>> names[] = {
+      {"black", {0, 0, 0}},
+      {"white", {1, 1, 1}},
+      {"gray", {middle_gray, middle_gray, middle_gray}},
+      {"grey", {middle_gray, middle_gray, middle_gray}},
+      {"red", {1, 0, 0}},
+      {"green", {0, 1, 0}},
+      {"blue", {0, 0, 1}}};
+  for (const auto& [name, color] : names)
+    if (text == name) return color;
+
+  std::array<float, 3> color{};
+  std::string_view rest = text;
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    const auto comma = channel < 2 ? rest.find(',') : rest.size();
+    if (comma == std::string_view::npos) throw wrong(option, text, allowed);
+    const auto value = number<float>(rest.substr(0, comma));
+    if (!value || !std::isfinite(*value) || *value < 0) throw wrong(option, text, allowed);
+    color[channel] = *value;
+    rest.remove_prefix(std::min(comma + 1, rest.size()));
+  }
+  return color;
+}
+
+double parse_number(const std::string& option, const std::string& text) {
+  const auto value = number<double>(text);
+  if (!value || !std::isfinite(*value)) throw wrong(option, text, "a number");
+  return *value;
+}
+
+double parse_positive(const std::string& option, const std::string& text) {
+  const auto value = number<double>(text);
+  if (!value || !std::isfinite(*value) || !(*value > 0)) throw wrong(option, text, "a number above 0");
+  return *value;
+}
+
+int parse_count(const std::string& option, const std::string& text, int low, int high) {
+  const auto value = number<int>(text);
+  if (!value || *value < low || *value > high)
+    throw wrong(option, text,
+                high == std::numeric_limits<int>::max() ? fmt::format("a whole number from {} up", low)
+                                                        : fmt::format("a whole number from {} to {}", low, high));
+  return *value;
+}
+
+}  // namespace tessera::apps

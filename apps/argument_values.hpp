@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "scene/camera.hpp"
+#include "scene/optical_model.hpp"
+
+/// Words of the command line to values. Every function throws scene::Error(bad_input, "--OPTION: ...") that says what
+/// was given and what is allowed; `option` is only for that message.
+namespace tessera::apps {
+
+/// `WxH` in pixels, each 1 to scene::max_image_side.
+scene::ImageSize parse_size(const std::string& option, const std::string& text);
+
+/// A byte count: a number with an optional suffix K, M, G or T (powers of 1024; `MB` and `MiB` mean `M`).
+/// At least 1M.
+std::uint64_t parse_bytes(const std::string& option, const std::string& text);
+
+/// `exact`, `sampled:N` with N from 1 to 4096, or `auto`; `accuracy` goes into the result.
+scene::Integrator parse_integrator(const std::string& option, const std::string& text, double accuracy);
+
+/// `R,G,B` as linear light, each >= 0, or a name: black, white, gray (linear 0.2158, what sRGB shows half way), red,
+/// green, blue.
+std::array<float, 3> parse_color(const std::string& option, const std::string& text);
+
+/// A finite number.
+double parse_number(const std::string& option, const std::string& text);
+
+/// A number that is finite and above zero.
+double parse_positive(const std::string& option, const std::string& text);
+
+/// A whole number from `low` to `high`.
+int parse_count(const std::string& option, const std::string& text, int low, int high);
+
+}  // namespace tessera::apps

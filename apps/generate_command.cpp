@@ -1,0 +1,50 @@
+#include "apps/generate_command.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "apps/argument_values.hpp"
+#include "apps/convert_command.hpp"
+#include "datasets/generate.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::apps {
+namespace {
+
+std::string parameter_help(const std::vector<datasets::GeneratorParameter>& parameters) {
+  std::string text;
+  for (const auto& parameter : parameters)
+    text += fmt::format("      {}={:g}  {}\n", parameter.name, parameter.default_value, parameter.help);
+  return text;
+}
+
+}  // namespace
+
+std::string generator_help() {
+  std::string text = "Kinds, with their parameters and defaults:\n";
+  for (const auto& generator : datasets::generators())
+    text += fmt::format("  {}: {}\n{}", generator.name, generator.help, parameter_help(generator.parameters));
+  return text + "Parameters of every kind:\n" + parameter_help(datasets::common_parameters());
+}
+
+void generate(const std::string& kind, const std::filesystem::path& output, const std::vector<std::string>& parameters,
+              bool quiet) {
+  std::map<std::string, double> values;
+  for (const auto& parameter : parameters) {
+    const auto equals = parameter.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw scene::bad_input(fmt::format("generate: '{}' is no parameter; write NAME=VALUE", parameter));
+    const auto name = parameter.substr(0, equals);
+    if (!values.emplace(name, parse_number(name, parameter.substr(equals + 1))).second)
+      throw scene::bad_input(fmt::format("generate: {} is given twice; give it once", name));
+  }
+  check_mesh_output(output, {});
+  const auto mesh = datasets::generate(kind, values);
+  write_mesh(mesh, output);
+  if (!quiet)
+    fmt::print(stderr, "{}: {} with {} tets, {} points, field {}\n", output.string(), kind, mesh.tets.size(),
+               mesh.positions.size(), mesh.field_name);
+}
+
+}  // namespace tessera::apps

@@ -1,0 +1,109 @@
+// The `tessera` program: subcommands over the libraries. Everything that goes wrong ends here, in one line on stderr
+// and an exit status (scene::ExitCode).
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string_view>
+
+#include "apps/convert_command.hpp"
+#include "apps/generate_command.hpp"
+#include "apps/info_command.hpp"
+#include "apps/render_command.hpp"
+#include "apps/render_options.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::apps {
+namespace {
+
+using scene::ExitCode;
+
+/// One line whatever the message holds: file names may contain line breaks, and libraries' messages do.
+int fail(ExitCode code, std::string_view message) {
+  std::string line = "tessera: ";
+  for (const char c : message) line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
+  while (line.ends_with(' ')) line.pop_back();
+  fmt::print(stderr, "{}\n", line);
+  return static_cast<int>(code);
+}
+
+ExitCode run(int argc, char** argv) {
+  CLI::App app("Tessera renders scientific volumes: unstructured meshes, exactly, on the CPU.", "tessera");
+  app.set_version_flag("--version", std::string("tessera ") + TESSERA_VERSION);
+  app.require_subcommand(1);
+
+  RenderWords words;
+  auto* render_command = app.add_subcommand("render", "Render a mesh to pictures");
+  add_render_options(*render_command, words);
+
+  bool as_json = false;
+  auto* info_command = app.add_subcommand("info", "Say what a mesh file holds and how it would be rendered");
+  add_mesh_options(*info_command, words);
+  info_command->add_flag("--json", as_json, "for machines");
+
+  auto* convert_command = app.add_subcommand("convert", "Write a mesh as tetrahedra with one scalar");
+  add_mesh_options(*convert_command, words);
+  std::string mesh_output;
+  convert_command->add_option("OUT", mesh_output, ".vtu or .tets")->required();
+  convert_command->add_flag("--quiet", words.quiet, "nothing on stderr but errors");
+
+  auto* generate_command = app.add_subcommand("generate", "Make a mesh");
+  std::string kind;
+  std::vector<std::string> parameters;
+  generate_command->add_option("KIND", kind, "what to make, see below")->required();
+  generate_command->add_option("OUT", mesh_output, ".vtu or .tets")->required();
+  generate_command->add_option("PARAMETERS", parameters, "NAME=VALUE ...");
+  generate_command->add_flag("--quiet", words.quiet, "nothing on stderr but errors");
+  generate_command->footer(generator_help);
+
+  // CLI11 would only say that a subcommand is missing.
+  if (argc > 1 && argv[1][0] != '-' &&
+      app.get_subcommands([&](const CLI::App* command) { return command->get_name() == argv[1]; }).empty())
+    throw scene::bad_input(
+        fmt::format("arguments: '{}' is no command; use render, info, convert or generate", argv[1]));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    app.exit(asked);
+    return ExitCode::complete;
+  } catch (const CLI::ParseError& error) {
+    std::string help = "tessera --help";
+    for (const CLI::App* command : app.get_subcommands({}))
+      if (argc > 1 && command->get_name() == argv[1]) help = fmt::format("tessera {} --help", argv[1]);
+    throw scene::bad_input(fmt::format("arguments: {}; see {}", error.what(), help));
+  }
+
+  if (*render_command) return render(render_options(words));
+  if (*info_command) info(words.input, mesh_options(words), as_json);
+  if (*convert_command) convert(words.input, mesh_output, mesh_options(words), words.quiet);
+  if (*generate_command) generate(kind, mesh_output, parameters, words.quiet);
+  return ExitCode::complete;
+}
+
+}  // namespace
+}  // namespace tessera::apps
+
+int main(int argc, char** argv) {
+  using tessera::scene::ExitCode;
+  try {
+    const ExitCode code = tessera::apps::run(argc, argv);
+    // A result that did not reach its reader (a full disk behind `>`) is not a success.
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+      return tessera::apps::fail(ExitCode::system_failure,
+                                 "standard output: cannot be written; make room or close the pipe later");
+    return static_cast<int>(code);
+  } catch (const tessera::scene::Error& error) {
+    return tessera::apps::fail(error.code(), error.what());
+  } catch (const std::bad_alloc&) {
+    return tessera::apps::fail(
+        ExitCode::system_failure,
+        "memory: this run needs more than there is; make --size smaller or use a machine with more");
+  } catch (const std::exception& error) {
+    return tessera::apps::fail(ExitCode::system_failure, fmt::format("unexpected: {}; please report", error.what()));
+  } catch (...) {
+    return tessera::apps::fail(ExitCode::system_failure, "unexpected: unknown exception; please report");
+  }
+}

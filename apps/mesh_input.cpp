@@ -1,0 +1,44 @@
+#include "apps/mesh_input.hpp"
+
+#include <fmt/format.h>
+
+#include <glm/geometric.hpp>
+
+#include "io/volume_file.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::apps {
+
+io::MeshFile read_input(const std::filesystem::path& input, const io::MeshOptions& options) {
+  if (io::is_volume_file(input))
+    throw scene::bad_input(
+        fmt::format("{}: is a regular grid by its name; these are not rendered yet, give a mesh", input.string()));
+  return io::read_mesh(input, options);
+}
+
+double diagonal(const scene::TetMesh& mesh) {
+  const scene::Box box = scene::bounds(mesh);
+  if (box.empty()) return 0;
+  const glm::dvec3 extent = box.high - box.low;
+  const double longest = std::max({extent.x, extent.y, extent.z});
+  return longest > 0 ? glm::length(extent / longest) * longest : 0;  // 1e-200 must not underflow when squared
+}
+
+double default_unit_distance(const scene::TetMesh& mesh) {
+  if (const double thickness = scene::mean_thickness(mesh); thickness > 0) return thickness / 10;
+  const double extent = diagonal(mesh);
+  return extent > 0 ? extent / 20 : 1;
+}
+
+io::LoadedTransferFunction transfer_function_of(const scene::TetMesh& mesh, const RenderOptions& options) {
+  io::TransferFunctionOptions loading;
+  loading.field_range = scene::scalar_range(mesh);
+  loading.unit_distance = options.unit_distance;
+  loading.default_unit_distance = default_unit_distance(mesh);
+  loading.display_colors = options.display_blend;
+  loading.opacity_scale = options.opacity_scale;
+  return options.transfer_function.empty() ? io::default_transfer_function(loading)
+                                           : io::load_transfer_function(options.transfer_function, loading);
+}
+
+}  // namespace tessera::apps

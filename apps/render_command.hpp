@@ -1,0 +1,13 @@
+#pragma once
+
+#include "apps/render_options.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::apps {
+
+/// `tessera render`: plan the frames, check all outputs, read, render, write, verify, report.
+/// complete, or accuracy_not_met where --verify found more error than promised (the pictures are written then too).
+/// Throws scene::Error.
+scene::ExitCode render(const RenderOptions& options);
+
+}  // namespace tessera::apps

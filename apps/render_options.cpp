@@ -1,0 +1,179 @@
+#include "apps/render_options.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <limits>
+#include <string_view>
+
+#include "apps/argument_values.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::apps {
+namespace {
+
+constexpr int no_limit = std::numeric_limits<int>::max();
+
+/// Throws unless `text` is one of `known`; says so separately if it is one of `later`.
+void check_word(const char* option, const std::string& text, std::initializer_list<std::string_view> known,
+                std::initializer_list<std::string_view> later = {}) {
+  for (const auto word : known)
+    if (text == word) return;
+  const auto use = fmt::format("use {}", fmt::join(known, " or "));
+  for (const auto word : later)
+    if (text == word) throw scene::bad_input(fmt::format("{}: '{}' is not available yet; {}", option, text, use));
+  throw scene::bad_input(fmt::format("{}: '{}' is unknown; {}", option, text, use));
+}
+
+scene::Integrator chosen_integrator(const RenderWords& words) {
+  const double accuracy = words.accuracy.empty() ? 1e-4 : parse_positive("--accuracy", words.accuracy);
+  const auto integrator = parse_integrator("--integrator", words.integrator, accuracy);
+  if (!words.accuracy.empty() && integrator.kind != scene::IntegratorKind::automatic)
+    throw scene::bad_input(
+        fmt::format("--accuracy: has no effect with --integrator {}; leave one of the two out", words.integrator));
+  return integrator;
+}
+
+frame::RenderSettings render_settings(const RenderWords& words) {
+  check_word("--emission", words.emission, {"absorption", "independent"});
+  check_word("--rasterizer", words.rasterizer, {"planes"}, {"scanline"});
+  check_word("--backend", words.backend, {"auto", "cpu"}, {"osmesa", "egl"});
+  frame::RenderSettings settings;
+  settings.integrator = chosen_integrator(words);
+  if (words.emission == "independent") settings.emission = scene::Emission::independent;
+  if (!words.threads.empty()) settings.threads = parse_count("--threads", words.threads, 1, 1024);
+  if (!words.tile_size.empty()) settings.tile_size = parse_count("--tile-size", words.tile_size, 1, 1024);
+  if (!words.memory.empty()) settings.memory_bytes = parse_bytes("--memory", words.memory);
+  return settings;
+}
+
+io::ImageFileOptions image_options(const RenderWords& words) {
+  check_word("--png-bits", words.png_bits, {"8", "16"});
+  io::ImageFileOptions image;
+  image.half = words.half;
+  image.png_bits = words.png_bits == "16" ? 16 : 8;
+  image.encode_srgb = words.blend != "display";
+  if (!words.background.empty()) {
+    const auto color = parse_color("--background", words.background);
+    image.background = glm::dvec3(color[0], color[1], color[2]);
+  }
+  return image;
+}
+
+}  // namespace
+
+void add_mesh_options(CLI::App& command, RenderWords& words) {
+  command.add_option("INPUT", words.input, "mesh file: .vtu .pvtu .vtk .ex2 .xyz .ele .tets .stl ...")->required();
+  command
+      .add_option("--field", words.field, "scalar: NAME, NAME:mag, NAME:x; with point: or cell: before it if needed")
+      ->type_name("NAME");
+  command.add_flag("--smooth", words.smooth, "average cell data to the points");
+  command.add_option("--q", words.q, "PLOT3D solution file, if it is not beside the grid")->type_name("FILE");
+  command.add_option("--max-volume", words.max_volume, "surfaces: largest tetrahedron TetGen fills them with")
+      ->type_name("VOLUME");
+  command.add_option("--time-step", words.time_step, "Exodus: step counted from 0 (default: the last)")
+      ->type_name("STEP");
+}
+
+io::MeshOptions mesh_options(const RenderWords& words) {
+  io::MeshOptions mesh;
+  mesh.field = words.field;
+  mesh.smooth = words.smooth;
+  mesh.plot3d_q = words.q;
+  if (!words.max_volume.empty()) mesh.max_volume = parse_positive("--max-volume", words.max_volume);
+  if (!words.time_step.empty())
+    mesh.time_step = static_cast<std::size_t>(parse_count("--time-step", words.time_step, 0, no_limit));
+  return mesh;
+}
+
+void add_render_options(CLI::App& command, RenderWords& words) {
+  add_mesh_options(command, words);
+  command
+      .add_option("-o,--output", words.outputs,
+                  "picture: .exr .png .pfm; frame_%04d.exr numbers several frames; may be repeated")
+      ->type_name("FILE")
+      ->required()
+      ->allow_extra_args(false);  // else `-o out.png mesh.vtu` would take the mesh for a second picture
+
+  command.add_option("--transfer-function", words.transfer_function, "file or preset (see the guide)")
+      ->type_name("FILE|PRESET");
+  command
+      .add_option("--unit-distance", words.unit_distance,
+                  "world length over which a file's opacity holds (default: the file's, else mean thickness / 10)")
+      ->type_name("LENGTH");
+  command.add_option("--opacity-scale", words.opacity_scale, "multiplies the extinction")->type_name("FACTOR");
+  command.add_option("--blend", words.blend, "linear light (default), or sRGB values as VTK does")
+      ->type_name("linear|display");
+
+  command.add_option("--camera", words.camera, "view or list of views: .json .pvcc text (default: frames the mesh)")
+      ->type_name("FILE");
+  command.add_option("--orbit", words.orbit, "N frames once round the view's up axis")->type_name("N");
+  command.add_option("--size", words.size, "pixels (default: the camera file's, else 1024x1024)")->type_name("WxH");
+  command.add_option("--projection", words.projection, "of the default view (default: orthographic)")
+      ->type_name("orthographic|perspective");
+
+  command.add_option("--integrator", words.integrator, "how a segment becomes colour (default: auto)")
+      ->type_name("exact|sampled:N|auto");
+  command.add_option("--accuracy", words.accuracy, "auto: largest error in linear RGBA (default 1e-4)")
+      ->type_name("EPS");
+  command.add_option("--emission", words.emission, "source term (default: absorption)")
+      ->type_name("absorption|independent");
+  command.add_option("--rasterizer", words.rasterizer, "how cells become ray segments")->type_name("planes");
+  command.add_option("--backend", words.backend, "default: auto")->type_name("auto|cpu");
+  command.add_option("--threads", words.threads, "threads (default: all cores)")->type_name("T");
+  command.add_option("--tile-size", words.tile_size, "pixels a side of a thread's tile (default 32)")
+      ->type_name("PIXELS");
+  command.add_option("--memory", words.memory, "budget of the frame buffers, like 512M (default 4G)")
+      ->type_name("SIZE");
+
+  command.add_option("--background", words.background, "linear light; without it the picture has alpha")
+      ->type_name("R,G,B|NAME");
+  command.add_flag("--half", words.half, ".exr with 16-bit floats");
+  command.add_option("--png-bits", words.png_bits, "default: 8")->type_name("8|16");
+
+  command.add_flag("--resume", words.resume, "skip frames whose pictures exist");
+  command.add_option("--repeat", words.repeat, "render each frame K times and print frame_ms median and min")
+      ->type_name("K");
+  command.add_option("--verify", words.verify, "check K random pixels a frame against the exact reference")
+      ->type_name("K");
+  command.add_option("--report", words.report, "JSON file: everything chosen, all counters")->type_name("FILE");
+  command.add_option("--timing", words.timing, "Chrome trace-event JSON file of stages and threads")->type_name("FILE");
+  command.add_flag("--progress", words.progress, "a progress line (default: if stderr is a terminal)");
+  command.add_flag("--quiet", words.quiet, "nothing on stderr but errors");
+}
+
+RenderOptions render_options(const RenderWords& words) {
+  RenderOptions options;
+  options.input = words.input;
+  options.outputs.assign(words.outputs.begin(), words.outputs.end());
+  options.mesh = mesh_options(words);
+
+  options.transfer_function = words.transfer_function;
+  if (!words.unit_distance.empty()) options.unit_distance = parse_positive("--unit-distance", words.unit_distance);
+  options.opacity_scale = parse_positive("--opacity-scale", words.opacity_scale);
+  check_word("--blend", words.blend, {"linear", "display"});
+  options.display_blend = words.blend == "display";
+
+  options.camera_file = words.camera;
+  if (!words.orbit.empty()) options.orbit = parse_count("--orbit", words.orbit, 1, 1'000'000);
+  if (!words.size.empty()) options.size = parse_size("--size", words.size);
+  if (!words.projection.empty()) {
+    check_word("--projection", words.projection, {"orthographic", "perspective"});
+    if (!words.camera.empty())
+      throw scene::bad_input("--projection: has no effect with --camera, whose file says it; leave one of the two out");
+    if (words.projection == "perspective") options.projection = scene::ProjectionKind::perspective;
+  }
+
+  options.settings = render_settings(words);
+  options.image = image_options(words);
+  options.resume = words.resume;
+  if (!words.repeat.empty()) options.repeat = parse_count("--repeat", words.repeat, 1, no_limit);
+  if (!words.verify.empty()) options.verify = parse_count("--verify", words.verify, 1, no_limit);
+  options.report = words.report;
+  options.timing = words.timing;
+  options.quiet = words.quiet;
+  options.progress = !words.quiet && (words.progress || isatty(STDERR_FILENO) == 1);
+  return options;
+}
+
+}  // namespace tessera::apps

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "frame/render.hpp"
+#include "io/image_file.hpp"
+#include "io/mesh_reader.hpp"
+#include "scene/camera.hpp"
+
+namespace tessera::apps {
+
+/// How `tessera render` was called, checked and in values. Files are not looked at yet.
+struct RenderOptions {
+  std::filesystem::path input;
+  std::vector<std::filesystem::path> outputs;  ///< at least one; several are the same frame in several formats
+  io::MeshOptions mesh;
+
+  std::string transfer_function;  ///< file or preset; empty: the default one
+  std::optional<double> unit_distance;
+  double opacity_scale = 1;
+  bool display_blend = false;
+
+  std::filesystem::path camera_file;                                       ///< empty: the view that frames the mesh
+  int orbit = 0;                                                           ///< frames of one turn; 0: no orbit
+  std::optional<scene::ImageSize> size;                                    ///< wins over the camera file's
+  scene::ProjectionKind projection = scene::ProjectionKind::orthographic;  ///< of the view that frames the mesh
+
+  frame::RenderSettings settings;
+  io::ImageFileOptions image;
+
+  bool resume = false;
+  int repeat = 0;  ///< 0: render once and print no times
+  int verify = 0;  ///< pixels a frame to check against the reference; 0: none
+  std::filesystem::path report, timing;
+  bool progress = false;
+  bool quiet = false;
+};
+
+/// The words as they stand on the command line. CLI11 keeps references to them until it has parsed.
+struct RenderWords {
+  std::string input, field, q, max_volume, time_step;
+  std::vector<std::string> outputs;
+  std::string transfer_function, unit_distance, opacity_scale = "1", blend = "linear";
+  std::string camera, orbit, size, projection;
+  std::string integrator = "auto", accuracy, emission = "absorption", rasterizer = "planes", backend = "auto";
+  std::string threads, tile_size, memory, background, png_bits = "8", repeat, verify, report, timing;
+  bool smooth = false, half = false, resume = false, progress = false, quiet = false;
+};
+
+/// Declares the options of `tessera render` on its subcommand.
+void add_render_options(CLI::App& command, RenderWords& words);
+
+/// The options that say how a mesh is read; `info` and `convert` have them too.
+void add_mesh_options(CLI::App& command, RenderWords& words);
+io::MeshOptions mesh_options(const RenderWords& words);
+
+/// Words to values. Throws scene::Error(bad_input) naming the option: what it was given, what it takes; also for words
+/// that the design knows but this version cannot do yet, and for options that would have no effect together.
+RenderOptions render_options(const RenderWords& words);
+
+}  // namespace tessera::apps

@@ -1,0 +1,181 @@
+#include "apps/report.hpp"
+
+#include <fmt/format.h>
+
+#include <string_view>
+#include <utility>
+
+#include "io/camera_file.hpp"
+#include "scene/tet_mesh.hpp"
+
+namespace tessera::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* word(scene::Association association) { return association == scene::Association::point ? "point" : "cell"; }
+
+std::string method_line(const scene::Integrator& integrator) {
+  switch (integrator.kind) {
+    case scene::IntegratorKind::exact:
+      return "exact";
+    case scene::IntegratorKind::sampled:
+      return fmt::format("sampled:{}", integrator.samples);
+    case scene::IntegratorKind::automatic:
+      break;
+  }
+  return fmt::format("auto to {:g}", integrator.accuracy);
+}
+
+Json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+}  // namespace
+
+Json mesh_json(const std::filesystem::path& input, const io::MeshFile& file) {
+  const auto& counts = file.counts;
+  const auto& mesh = file.mesh;
+  const auto range = scene::scalar_range(mesh);
+  const auto box = scene::bounds(mesh);
+  Json fields = Json::array();
+  for (const auto& field : file.fields)
+    fields.push_back({{"name", field.name},
+                      {"association", word(field.association)},
+                      {"components", field.components},
+                      {"type", field.type},
+                      {"range", {field.low, field.high}},
+                      {"nan", field.nan_count}});
+  return {{"file", input.string()},
+          {"format", file.format},
+          {"cells",
+           {{"read", counts.cells_read},
+            {"ghost", counts.cells_ghost},
+            {"hidden", counts.cells_hidden},
+            {"nan", counts.cells_nan},
+            {"not_volumetric", counts.cells_not_volumetric},
+            {"zero_volume", counts.cells_zero_volume},
+            {"tangled", counts.cells_tangled},
+            {"quadratic", counts.cells_quadratic}}},
+          {"tets", counts.tets_made},
+          {"tets_collapsed", counts.tets_collapsed},
+          {"points", {{"read", counts.points_read}, {"unused", counts.points_unused}}},
+          {"bounds", {vector_json(box.low), vector_json(box.high)}},
+          {"field", {{"name", mesh.field_name}, {"association", word(mesh.association)}, {"range", range}}},
+          {"fields", fields},
+          {"notes", file.notes}};
+}
+
+Json transfer_function_json(const io::LoadedTransferFunction& loaded) {
+  Json knots = Json::array();
+  for (const auto& knot : loaded.function.knots())
+    knots.push_back({knot.value, knot.color.x, knot.color.y, knot.color.z, knot.extinction});
+  Json json = {{"name", loaded.name}};
+  if (loaded.unit_distance)
+    json["unit_distance"] = {{"value", *loaded.unit_distance}, {"source", loaded.unit_distance_source}};
+  json["knots"] = knots;
+  return json;
+}
+
+Json view_json(const scene::Camera& camera, scene::ImageSize size) {
+  return Json::parse(io::camera_json({camera, size}));
+}
+
+Json method_json(const RenderOptions& options) {
+  const auto& settings = options.settings;
+  Json json = {{"integrator", method_line(settings.integrator)}};
+  if (settings.integrator.kind == scene::IntegratorKind::automatic) json["accuracy"] = settings.integrator.accuracy;
+  json["emission"] = settings.emission == scene::Emission::absorption ? "absorption" : "independent";
+  json["rasterizer"] = "planes";
+  json["backend"] = "cpu";
+  json["blend"] = options.display_blend ? "display" : "linear";
+  json["threads"] = settings.threads;  // 0: all cores
+  json["tile_size"] = settings.tile_size;
+  json["memory_bytes"] = settings.memory_bytes;
+  return json;
+}
+
+Json frame_json(const Frame& frame, const FrameRecord* record) {
+  Json outputs = Json::array();
+  for (const auto& output : frame.outputs) outputs.push_back(output.string());
+  Json json = {{"number", frame.number}, {"outputs", outputs}, {"skipped", record == nullptr}};
+  if (record == nullptr) return json;
+  const auto& statistics = record->statistics;
+  json["view"] = view_json(record->camera, frame.size);
+  json["frame_ms"] = record->frame_ms;
+  json["counters"] = {{"tets_total", statistics.tets_total},
+                      {"tets_invisible", statistics.tets_invisible},
+                      {"tets_outside_view", statistics.tets_outside_view},
+                      {"tets_projected", statistics.tets_projected},
+                      {"segments", statistics.segments},
+                      {"max_segments_alive", statistics.max_segments_alive},
+                      {"peak_buffer_bytes", statistics.peak_buffer_bytes},
+                      {"exact_sign_tests", statistics.exact_sign_tests},
+                      {"tiles_split", statistics.tiles_split}};
+  json["instruction_set"] = statistics.instruction_set;
+  json["integrator"] = statistics.integrator;
+  if (record->verification) {
+    const auto& judgement = record->verification->judgement;
+    json["verify"] = {{"pixels", judgement.pixels_checked},
+                      {"max_error", judgement.max_error},
+                      {"rms_error", judgement.rms_error},
+                      {"max_error_not_excused", judgement.max_error_not_excused},
+                      {"worst_pixel", {judgement.worst_x, judgement.worst_y}},
+                      {"worst_value", judgement.worst_value},
+                      {"worst_reference", judgement.worst_reference},
+                      {"over_bound", judgement.over_bound},
+                      {"excused", judgement.excused},
+                      {"met", record->verification->met()}};
+    if (record->verification->bound) json["verify"]["bound"] = *record->verification->bound;
+  }
+  return json;
+}
+
+std::string cells_line(const io::MeshCounts& counts) {
+  const std::uint64_t dropped =
+      counts.cells_ghost + counts.cells_hidden + counts.cells_nan + counts.cells_not_volumetric;
+  std::string line =
+      fmt::format("{} of {} cells kept as {} tets", counts.cells_read - dropped, counts.cells_read, counts.tets_made);
+  const std::pair<std::uint64_t, std::string_view> reasons[] = {
+      {counts.cells_ghost, "ghost dropped"},
+      {counts.cells_hidden, "hidden dropped"},
+      {counts.cells_nan, "NaN dropped"},
+      {counts.cells_not_volumetric, "without volume by type skipped"},
+      {counts.cells_zero_volume, "of zero volume kept"},
+      {counts.cells_tangled, "tangled kept"},
+      {counts.cells_quadratic, "quadratic by their corners"}};
+  for (const auto& [count, reason] : reasons)
+    if (count > 0) line += fmt::format(", {} {}", count, reason);
+  return line;
+}
+
+std::string view_line(const scene::Camera& camera) {
+  const auto point = [](const glm::dvec3& p) { return fmt::format("({:.6g} {:.6g} {:.6g})", p.x, p.y, p.z); };
+  const bool perspective = camera.projection == scene::ProjectionKind::perspective;
+  return fmt::format("{} from {} to {}, {} {:.6g}", perspective ? "perspective" : "orthographic",
+                     point(camera.position), point(camera.focal_point), perspective ? "angle" : "scale",
+                     perspective ? camera.view_angle : camera.parallel_scale);
+}
+
+std::string transfer_function_line(const io::LoadedTransferFunction& loaded) {
+  std::string line = fmt::format("transfer function {}", loaded.name);
+  if (loaded.unit_distance)
+    line += fmt::format(", unit distance {:.6g} ({})", *loaded.unit_distance, loaded.unit_distance_source);
+  return line;
+}
+
+std::string run_line(const RenderOptions& options, const io::MeshFile& file, const io::LoadedTransferFunction& loaded,
+                     const std::vector<Frame>& frames, const Frame& first, const FrameRecord& record) {
+  const auto range = scene::scalar_range(file.mesh);
+  const auto& statistics = record.statistics;
+  std::string line =
+      fmt::format("{}: {}; field {} ({}) {:.6g} to {:.6g}; {}; view {}, {}x{}", options.input.string(),
+                  cells_line(file.counts), file.mesh.field_name, word(file.mesh.association), range[0], range[1],
+                  transfer_function_line(loaded), view_line(record.camera), first.size.width, first.size.height);
+  if (frames.size() > 1) line += fmt::format(" (frame {} of {})", first.number + 1, frames.size());
+  line += fmt::format("; {} tets projected, {} invisible, {} outside the view; {}, {}, {:.3g} ms",
+                      statistics.tets_projected, statistics.tets_invisible, statistics.tets_outside_view,
+                      method_line(options.settings.integrator), statistics.instruction_set, record.frame_ms.front());
+  for (const auto& note : file.notes) line += fmt::format("; {}", note);
+  return line;
+}
+
+}  // namespace tessera::apps

@@ -1,0 +1,175 @@
+// What a user does wrong, and what the machine does: one line on stderr, the status of the design, nothing
+// half-written.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "apps/program.hpp"
+
+namespace tessera::apps {
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// Runs quietly and expects one error line of the house's form with all of `words` in it.
+void expect_fault(int status, Names arguments, const Names& words) {
+  const auto run = tessera(arguments);
+  std::string called;
+  for (const auto& argument : arguments) called += argument + " ";
+  EXPECT_EQ(run.status, status) << called << "\n" << run.err;
+  EXPECT_EQ(run.error_lines(), 1u) << called << "\n" << run.err;
+  EXPECT_TRUE(run.err.starts_with("tessera: ")) << called << "\n" << run.err;
+  EXPECT_EQ(run.out, "") << called;
+  for (const auto& word : words) EXPECT_NE(run.err.find(word), std::string::npos) << word << " in " << run.err;
+}
+
+TEST(Faults, HelpAndVersionAreNone) {
+  for (const Names& arguments : {Names{"--help"}, Names{"--version"}, Names{"render", "--help"}, Names{"info", "-h"},
+                                 Names{"convert", "--help"}, Names{"generate", "--help"}}) {
+    const auto run = tessera(arguments);
+    EXPECT_EQ(run.status, 0) << arguments[0];
+    EXPECT_EQ(run.err, "");
+    EXPECT_NE(run.out, "");
+  }
+}
+
+TEST(Faults, ArgumentsThatMakeNoSenseNameTheOption) {
+  const Folder folder;
+  const auto mesh = folder.cube();
+  const Names head = {"render", mesh, "--quiet", "-o", folder / "a.png"};
+  const std::vector<std::pair<Names, std::string>> cases = {
+      {{"--size", "0x10"}, "--size: '0x10'"},
+      {{"--size=1000000000x1000000000"}, "--size"},
+      {{"--size", "wide"}, "WxH"},
+      {{"--size", "10x"}, "WxH"},
+      {{"--orbit", "0"}, "--orbit"},
+      {{"--orbit", "3"}, "_%04d.png"},
+      {{"--threads", "two"}, "--threads: 'two'"},
+      {{"--tile-size", "0"}, "--tile-size"},
+      {{"--memory", "5"}, "--memory: '5'"},
+      {{"--memory", "fast"}, "512M"},
+      {{"--accuracy", "0"}, "--accuracy"},
+      {{"--accuracy", "nan"}, "--accuracy"},
+      {{"--accuracy", "1e-3", "--integrator", "exact"}, "has no effect"},
+      {{"--integrator", "best"}, "exact, sampled:N or auto"},
+      {{"--integrator", "sampled:0"}, "sampled:N"},
+      {{"--integrator", "preintegrated"}, "not available yet"},
+      {{"--integrator", "partial"}, "not available yet"},
+      {{"--rasterizer", "scanline"}, "not available yet"},
+      {{"--backend", "osmesa"}, "not available yet"},
+      {{"--backend", "egl"}, "not available yet"},
+      {{"--emission", "both"}, "absorption or independent"},
+      {{"--blend", "soft"}, "linear or display"},
+      {{"--png-bits", "12"}, "8 or 16"},
+      {{"--background", "1,2"}, "R,G,B"},
+      {{"--background", "-1,0,0"}, "R,G,B"},
+      {{"--unit-distance", "-1"}, "--unit-distance: '-1'"},
+      {{"--repeat", "0"}, "--repeat"},
+      {{"--verify", "all"}, "--verify"},
+      {{"--projection", "fisheye"}, "orthographic or perspective"},
+      {{"--frobnicate"}, "--frobnicate"},
+      {{"--repeat"}, "--repeat"},
+      {{"--field", "nowhere"}, "nowhere"},
+      {{"--transfer-function", "no-such-preset"}, "no-such-preset"},
+      {{"--camera", "nowhere.json"}, "nowhere.json"},
+      {{"-o", folder / "a.png"}, "named twice"},
+      {{"-o", folder / "a.bmp"}, ".exr, .png or .pfm"},
+      {{"-o", folder / "none/a.png"}, "none/a.png"},
+      {{"--report", folder / "none/r.json"}, "none/r.json"},
+      {{"--timing", "/"}, "/"},
+  };
+  for (const auto& [arguments, word] : cases) {
+    Names all = head;
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    expect_fault(2, all, {word});
+  }
+  EXPECT_EQ(folder.names(), (Names{"cube.vtu"}));
+}
+
+TEST(Faults, MissingCommandInputAndOutputAreSaid) {
+  expect_fault(2, {}, {"tessera --help"});
+  expect_fault(2, {"paint"}, {"'paint'", "render"});
+  expect_fault(2, {"render"}, {"INPUT"});
+  expect_fault(2, {"render", "a.vtu"}, {"--output"});
+  expect_fault(2, {"render", "a.vtu", "-o", "a.png", "--quiet"}, {"a.vtu"});
+}
+
+TEST(Faults, AFieldThatIsNotThereListsThoseThatAre) {
+  const Folder folder;
+  expect_fault(2, {"render", folder.cube(), "--quiet", "-o", folder / "a.png", "--field", "heat"}, {"heat", "field"});
+}
+
+TEST(Faults, BrokenInputsLeaveNothingBehind) {
+  const Folder folder;
+  const std::string whole = contents(folder.cube());
+  const auto truncated = folder.file("truncated.vtu", whole.substr(0, whole.size() / 2));
+  const auto text = folder.file("text.vtu", "this is no mesh\n");
+  const auto empty = folder.file("empty.vtu", "");
+  const auto tets = folder.file("short.tets", "12345678");
+  const auto strange = folder.file("mesh.xyzzy", "1 2 3");
+  const auto before = folder.names();
+  for (const auto& mesh : {truncated, text, empty, tets, strange})
+    expect_fault(2, {"render", mesh, "--quiet", "-o", folder / "a.png"}, {std::filesystem::path(mesh).filename()});
+  expect_fault(2, {"render", folder / "", "--quiet", "-o", folder / "a.png"}, {});
+  EXPECT_EQ(folder.names(), before);
+}
+
+TEST(Faults, CamerasWithoutAViewAreRefused) {
+  const Folder folder;
+  const auto mesh = folder.cube();
+  const auto still = folder.file("still.txt", "position 1 1 1\nfocal_point 1 1 1\nparallel_scale 1\n");
+  const auto list = folder.file("list.json", "[]");
+  const auto wrong = folder.file("wrong.txt", "position 1 1 1\nfocal_point 0 0 0\nparallel_scale 1\nzoom 3\n");
+  for (const auto& camera : {still, list, wrong})
+    expect_fault(2, {"render", mesh, "--quiet", "-o", folder / "a.png", "--camera", camera},
+                 {std::filesystem::path(camera).filename()});
+}
+
+TEST(Faults, AnInputIsNeverOverwritten) {
+  const Folder folder;
+  const auto mesh = folder.cube();
+  const auto before = contents(mesh);
+  expect_fault(2, {"convert", mesh, mesh, "--quiet"}, {"overwritten"});
+  expect_fault(2, {"render", mesh, "--quiet", "-o", folder / "a.png", "--report", mesh}, {"overwritten"});
+  EXPECT_EQ(contents(mesh), before);
+}
+
+TEST(Faults, AFileNameWithALineBreakStillGivesOneLine) {
+  expect_fault(2, {"render", "two\nlines.vtu", "--quiet", "-o", "a.png"}, {"two lines.vtu"});
+}
+
+TEST(Faults, AFolderThatIsClosedToUsIsSaidBeforeReading) {
+  if (geteuid() == 0) GTEST_SKIP() << "root writes everywhere";
+  const Folder folder;
+  std::filesystem::permissions(folder / "", std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  expect_fault(2, {"render", "nowhere.vtu", "--quiet", "-o", folder / "a.png"}, {"a.png"});
+  std::filesystem::permissions(folder / "", std::filesystem::perms::owner_all);
+}
+
+TEST(Faults, OutputsAreCheckedBeforeTheMeshIsRead) {
+  expect_fault(2, {"render", "nowhere.vtu", "--quiet", "-o", "/nowhere/a.png"}, {"/nowhere/a.png"});
+}
+
+TEST(Faults, AFullDiskBehindStandardOutputIsASystemFailure) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  const Folder folder;
+  const auto run = tessera_to("/dev/full", {"info", folder.cube()});
+  EXPECT_EQ(run.status, 3);
+  EXPECT_EQ(run.error_lines(), 1u) << run.err;
+}
+
+TEST(Faults, APictureLargerThanMemoryIsRefusedInTime) {
+  const Folder folder;
+  const std::string side = "65536";  // 86 GB
+  if (20.0 * 65536 * 65536 < static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE)))
+    GTEST_SKIP() << "this machine could hold it";
+  expect_fault(3, {"render", folder.cube(), "--quiet", "-o", folder / "a.png", "--size", side + "x" + side}, {"GiB"});
+}
+
+TEST(Faults, RegularGridsAreNotRenderedYet) {
+  for (const char* name : {"a.vti", "a.nrrd", "a.nii", "a.nii.gz", "a.mhd", "a.raw"})
+    expect_fault(2, {"render", name, "--quiet", "-o", "a.png"}, {name, "not rendered yet"});
+}
+
+}  // namespace
+}  // namespace tessera::apps

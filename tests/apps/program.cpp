@@ -1,0 +1,91 @@
+#include "apps/program.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <fstream>
+#include <sstream>
+
+namespace tessera::apps {
+namespace {
+
+/// In the child between fork and exec: `path` becomes descriptor `target`.
+void redirect(const char* path, int flags, int target) {
+  const int descriptor = open(path, flags, 0600);
+  if (descriptor < 0 || dup2(descriptor, target) < 0) _exit(126);
+}
+
+}  // namespace
+
+std::size_t Outcome::error_lines() const { return static_cast<std::size_t>(std::count(err.begin(), err.end(), '\n')); }
+
+std::string contents(const std::string& file) {
+  const std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+Outcome tessera_to(const std::filesystem::path& standard_output, const std::vector<std::string>& arguments) {
+  std::vector<char*> words{const_cast<char*>(TESSERA_PROGRAM)};
+  for (const auto& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+  words.push_back(nullptr);
+  const Folder folder;
+  const std::string err = folder / "err";
+  const pid_t child = fork();
+  if (child == 0) {
+    redirect("/dev/null", O_RDONLY, STDIN_FILENO);
+    redirect(standard_output.c_str(), O_WRONLY | O_CREAT, STDOUT_FILENO);
+    redirect(err.c_str(), O_WRONLY | O_CREAT, STDERR_FILENO);
+    execv(TESSERA_PROGRAM, words.data());
+    _exit(127);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  Outcome outcome;
+  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  outcome.err = contents(err);
+  return outcome;
+}
+
+Outcome tessera(const std::vector<std::string>& arguments) {
+  const Folder folder;
+  Outcome outcome = tessera_to(folder / "out", arguments);
+  outcome.out = contents(folder / "out");
+  return outcome;
+}
+
+Folder::Folder() {
+  std::string pattern = (std::filesystem::temp_directory_path() / "tessera-test-XXXXXX").string();
+  if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
+  path_ = pattern;
+}
+
+Folder::~Folder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+std::vector<std::string> Folder::names() const {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(path_)) names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string Folder::file(const std::string& name, const std::string& text) const {
+  std::ofstream(path_ / name, std::ios::binary) << text;
+  return *this / name;
+}
+
+std::string Folder::cube() const {
+  const auto made = tessera({"generate", "cube", *this / "cube.vtu", "n=4", "--quiet"});
+  EXPECT_EQ(made.status, 0) << made.err;
+  return *this / "cube.vtu";
+}
+
+}  // namespace tessera::apps

@@ -1,0 +1,185 @@
+// `tessera render` run as its users run it: pictures, frames, reports.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "apps/program.hpp"
+#include "io/image_file.hpp"
+
+namespace tessera::apps {
+namespace {
+
+using Names = std::vector<std::string>;
+
+TEST(Render, ADefaultPictureFillsTheMiddleAndLeavesTheCornersEmpty) {
+  const Folder folder;
+  const auto run = tessera({"render", folder.cube(), "-o", folder / "a.exr", "--size", "64x48"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto image = io::read_image(folder / "a.exr");
+  ASSERT_EQ(image.size, (scene::ImageSize{64, 48}));
+  const auto alpha = [&](int x, int y) { return image.rgba[4 * image.index(x, y) + 3]; };
+  EXPECT_GT(alpha(32, 24), 0.1);
+  EXPECT_LT(alpha(32, 24), 0.99);
+  for (const int x : {0, 63})
+    for (const int y : {0, 47}) EXPECT_EQ(alpha(x, y), 0);
+  EXPECT_TRUE(std::isfinite(image.depth[image.index(32, 24)]));
+  EXPECT_TRUE(std::isinf(image.depth[0]));
+}
+
+TEST(Render, SaysWhatItChoseInOneLineOnStderrAndNothingOnStdout) {
+  const Folder folder;
+  const auto run = tessera({"render", folder.cube(), "-o", folder / "a.png", "--size=16x16"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.error_lines(), 1u) << run.err;
+  for (const char* word : {"384 of 384 cells", "field", "transfer function cool-warm", "unit distance", "(default)",
+                           "orthographic", "16x16", "384 tets projected", "0 invisible", "auto to 0.0001"})
+    EXPECT_NE(run.err.find(word), std::string::npos) << word << " in " << run.err;
+  EXPECT_EQ(run.out, "");
+}
+
+TEST(Render, QuietLeavesNothingOnStderr) {
+  const Folder folder;
+  const auto run = tessera({"render", folder.cube(), "-o", folder / "a.png", "--size", "16x16", "--quiet"});
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(run.err, "");
+}
+
+TEST(Render, WritesOneFrameInSeveralFormats) {
+  const Folder folder;
+  const auto mesh = folder.cube();
+  const auto run = tessera({"render", "-o", folder / "a.exr", "-o", folder / "a.png", "--output=" + (folder / "a.pfm"),
+                            mesh, "--size", "8x8"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(folder.names(), (Names{"a.exr", "a.pfm", "a.png", "cube.vtu"}));
+}
+
+TEST(Render, OneAndTwoThreadsAndAnyTileSizeGiveTheSameBytes) {
+  const Folder folder;
+  const auto mesh = folder.cube();
+  const auto picture = [&](const std::string& name, const std::string& threads, const std::string& tile) {
+    const auto run = tessera({"render", mesh, "-o", folder / name, "--size", "70x50", "--threads", threads,
+                              "--tile-size", tile, "--projection", "perspective"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    return contents(folder / name);
+  };
+  const auto one = picture("1.exr", "1", "32");
+  EXPECT_GT(one.size(), 1000u);
+  EXPECT_TRUE(one == picture("2.exr", "2", "32"));
+  EXPECT_TRUE(one == picture("3.exr", "2", "7"));
+}
+
+TEST(Render, VerifyMeetsItsBoundAndReportsPixels) {
+  const Folder folder;
+  for (const char* integrator : {"exact", "auto", "sampled:4"}) {
+    const auto run = tessera({"render", folder.cube(), "-o", folder / "a.pfm", "--size", "40x40", "--integrator",
+                              integrator, "--verify", "200"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_TRUE(std::regex_search(run.out, std::regex("verify frame 0: 200 pixels, max .* rms .* worst at")))
+        << run.out;
+  }
+}
+
+TEST(Render, AnAccuracyThatCannotBeMetGivesStatusFourAndStillThePicture) {
+  const Folder folder;
+  // Float pictures cannot be this right.
+  const auto run = tessera(
+      {"render", folder.cube(), "-o", folder / "a.pfm", "--size", "40x40", "--accuracy", "1e-15", "--verify", "400"});
+  EXPECT_EQ(run.status, 4) << run.err << run.out;
+  EXPECT_NE(run.out.find("NOT met"), std::string::npos) << run.out;
+  EXPECT_EQ(folder.names(), (Names{"a.pfm", "cube.vtu"}));
+}
+
+TEST(Render, RepeatPrintsMedianAndMinimum) {
+  const Folder folder;
+  const auto run = tessera({"render", folder.cube(), "-o", folder / "a.pfm", "--size", "20x20", "--repeat", "3"});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_TRUE(std::regex_match(run.out, std::regex("frame_ms median [0-9.]+ min [0-9.]+\n"))) << run.out;
+}
+
+TEST(Render, OrbitNumbersItsFramesAndTurnsTheView) {
+  const Folder folder;
+  const auto run = tessera({"render", folder.cube(), "-o", folder / "f_%03d.pfm", "--size", "24x24", "--orbit", "4"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(folder.names(), (Names{"cube.vtu", "f_000.pfm", "f_001.pfm", "f_002.pfm", "f_003.pfm"}));
+  EXPECT_NE(contents(folder / "f_000.pfm"), contents(folder / "f_001.pfm"));
+}
+
+TEST(Render, ResumeMakesOnlyWhatIsMissing) {
+  const Folder folder;
+  const auto mesh = folder.cube();
+  const Names arguments = {"render", mesh, "-o", folder / "f_%d.pfm", "--size", "24x24", "--orbit", "3", "--resume"};
+  ASSERT_EQ(tessera(arguments).status, 0);
+  const auto middle = contents(folder / "f_1.pfm");
+  std::filesystem::remove(folder / "f_1.pfm");
+  (void)folder.file("f_0.pfm", "left alone");
+  EXPECT_EQ(tessera(arguments).status, 0);
+  EXPECT_EQ(contents(folder / "f_0.pfm"), "left alone");
+  EXPECT_EQ(contents(folder / "f_1.pfm"), middle);
+  const auto again = tessera(arguments);
+  EXPECT_EQ(again.status, 0);
+  EXPECT_NE(again.err.find("all 3 frames are there already"), std::string::npos) << again.err;
+}
+
+TEST(Render, ACameraFileIsAPathAndSizeWinsOverItsOwn) {
+  const Folder folder;
+  const auto mesh = folder.cube();
+  const auto path = folder.file("path.json", R"([
+    {"position": [0.5, 0.5, 9], "focal_point": [0.5, 0.5, 0.5], "parallel_scale": 1, "size": [12, 10]},
+    {"position": [9, 0.5, 0.5], "focal_point": [0.5, 0.5, 0.5], "view_up": [0, 0, 1], "view_angle": 20}])");
+  ASSERT_EQ(tessera({"render", mesh, "-o", folder / "a%d.pfm", "--camera", path}).status, 0);
+  EXPECT_EQ(io::read_image(folder / "a0.pfm").size, (scene::ImageSize{12, 10}));
+  EXPECT_EQ(io::read_image(folder / "a1.pfm").size, (scene::ImageSize{1024, 1024}));
+  ASSERT_EQ(tessera({"render", mesh, "-o", folder / "b%d.pfm", "--camera", path, "--size", "9x8"}).status, 0);
+  EXPECT_EQ(io::read_image(folder / "b0.pfm").size, (scene::ImageSize{9, 8}));
+}
+
+TEST(Render, ReportAndTimingAreJsonThatSaysWhatHappened) {
+  const Folder folder;
+  const auto run = tessera({"render", folder.cube(), "-o", folder / "a.pfm", "--size", "30x20", "--report",
+                            folder / "report.json", "--timing", folder / "trace.json", "--verify", "50"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto report = nlohmann::json::parse(contents(folder / "report.json"));
+  EXPECT_EQ(report.at("mesh").at("tets"), 384);
+  EXPECT_EQ(report.at("method").at("integrator"), "auto to 0.0001");
+  EXPECT_GT(report.at("transfer_function").at("unit_distance").at("value"), 0);
+  const auto& frame = report.at("frames").at(0);
+  EXPECT_EQ(frame.at("counters").at("tets_total"), 384);
+  EXPECT_GT(frame.at("counters").at("segments"), 384);
+  EXPECT_EQ(frame.at("verify").at("pixels"), 50);
+  EXPECT_EQ(frame.at("view").at("size"), (nlohmann::json{30, 20}));
+
+  const auto trace = nlohmann::json::parse(contents(folder / "trace.json"));
+  std::vector<std::string> stages;
+  for (const auto& event : trace.at("traceEvents")) stages.push_back(event.at("name"));
+  for (const char* stage : {"read", "write", "verify"})
+    EXPECT_NE(std::find(stages.begin(), stages.end(), stage), stages.end()) << stage;
+}
+
+TEST(Render, AReportedViewIsACameraFileThatGivesTheSamePicture) {
+  const Folder folder;
+  const auto mesh = folder.cube();
+  ASSERT_EQ(tessera({"render", mesh, "-o", folder / "a.exr", "--size", "33x21", "--projection=perspective", "--report",
+                     folder / "r.json"})
+                .status,
+            0);
+  const auto report = nlohmann::json::parse(contents(folder / "r.json"));
+  const auto camera = folder.file("camera.json", report.at("frames").at(0).at("view").dump());
+  const auto run = tessera({"render", mesh, "-o", folder / "b.exr", "--camera", camera});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_TRUE(contents(folder / "a.exr") == contents(folder / "b.exr"));
+}
+
+TEST(Render, ProgressIsALineThatGoesAway) {
+  const Folder folder;
+  const auto run =
+      tessera({"render", folder.cube(), "-o", folder / "%d.pfm", "--size", "8x8", "--orbit", "2", "--progress"});
+  EXPECT_EQ(run.status, 0);
+  EXPECT_NE(run.err.find("frame 2 of 2"), std::string::npos);
+  EXPECT_EQ(run.error_lines(), 1u);
+  EXPECT_TRUE(run.err.ends_with("\x1b[K"));
+}
+
+}  // namespace
+}  // namespace tessera::apps
