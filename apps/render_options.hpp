@@ -24,6 +24,7 @@ struct RenderOptions {
   std::optional<double> unit_distance;
   double opacity_scale = 1;
   bool display_blend = false;
+  bool rescale = false;  ///< stretch a file's values over the field's range
 
   std::filesystem::path camera_file;                                       ///< empty: the view that frames the mesh
   int orbit = 0;                                                           ///< frames of one turn; 0: no orbit
@@ -49,7 +50,7 @@ struct RenderWords {
   std::string camera, orbit, size, projection;
   std::string integrator = "auto", accuracy, emission = "absorption", rasterizer = "planes", backend = "auto";
   std::string threads, tile_size, memory, background, png_bits = "8", repeat, verify, report, timing;
-  bool smooth = false, half = false, resume = false, progress = false, quiet = false;
+  bool smooth = false, half = false, rescale = false, resume = false, progress = false, quiet = false;
 };
 
 /// Declares the options of `tessera render` on its subcommand.
