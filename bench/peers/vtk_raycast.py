@@ -117,9 +117,13 @@ def render(grid, camera, knots, integrator="partial", repeat=0, threads=None, ce
         view.SetParallelScale(camera["parallel_scale"][0])
     else:
         view.SetViewAngle(camera["view_angle"][0])
-    # VTK 9.1's unstructured ray caster casts a pixel's ray through its lower left corner (measured: its pictures fit ours
-    # when moved by 0.50 pixel along both axes). Moving the window's centre by half a pixel puts it through the middle.
-    view.SetWindowCenter(1.0 / width, 1.0 / height)
+    # VTK 9.1's unstructured ray caster casts a pixel's ray through its lower left corner, and spreads n pixels' rays over
+    # n - 1 pixels (measured: its pictures fit exact ones when moved by 0.50 pixel and shrunk by 1.0 pixel along both
+    # axes). The opposite transform after the projection puts its rays through the middles.
+    middle = vtk.vtkTransform()
+    middle.Translate(-1.0 / width, -1.0 / height, 0)
+    middle.Scale(1 - 1.0 / width, 1 - 1.0 / height, 1)
+    view.SetUserTransform(middle)
     renderer.ResetCameraClippingRange()
 
     seconds = []
