@@ -246,9 +246,9 @@ def compare(args, name):
     rows = [np.concatenate([encode_srgb(ours), encode_srgb(p), np.clip(8 * np.abs(ours - p), 0, 1)], axis=1)
             for p in pictures if p is not None]
     write_png(out(".png"), np.concatenate(rows))
-    if args.images:
+    if args.images and not view_words:
         args.images.mkdir(parents=True, exist_ok=True)
-        tessera(args, "render", mesh, *extra, *view_words, "--size", "400x300", "-o", args.images / f"{name}.png")
+        tessera(args, "render", mesh, *extra, "--size", "400x300", "-o", args.images / f"{name}.png")
     return {"name": name, "said": said, "field": field, "on_cells": on_cells, "tets": report["mesh"]["tets"],
             "vtk_tets": own.GetNumberOfCells(), "looks": looks(out("-default.png")), "verify": frame["verify"],
             "same_tets": pictures[0] is not None and difference(ours, pictures[0]),
