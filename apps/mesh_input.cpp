@@ -36,6 +36,7 @@ io::LoadedTransferFunction transfer_function_of(const scene::TetMesh& mesh, cons
   loading.unit_distance = options.unit_distance;
   loading.default_unit_distance = default_unit_distance(mesh);
   loading.display_colors = options.display_blend;
+  loading.rescale = options.rescale;
   loading.opacity_scale = options.opacity_scale;
   return options.transfer_function.empty() ? io::default_transfer_function(loading)
                                            : io::load_transfer_function(options.transfer_function, loading);

@@ -97,6 +97,7 @@ void add_render_options(CLI::App& command, RenderWords& words) {
 
   command.add_option("--transfer-function", words.transfer_function, "file or preset (see the guide)")
       ->type_name("FILE|PRESET");
+  command.add_flag("--rescale", words.rescale, "stretch a transfer function file's values over the field's range");
   command
       .add_option("--unit-distance", words.unit_distance,
                   "world length over which a file's opacity holds (default: the file's, else mean thickness / 10)")
@@ -149,9 +150,12 @@ RenderOptions render_options(const RenderWords& words) {
   options.mesh = mesh_options(words);
 
   options.transfer_function = words.transfer_function;
+  if (words.rescale && words.transfer_function.empty())
+    throw scene::bad_input("--rescale: is for a --transfer-function file; name one, or leave it out");
   if (!words.unit_distance.empty()) options.unit_distance = parse_positive("--unit-distance", words.unit_distance);
   options.opacity_scale = parse_positive("--opacity-scale", words.opacity_scale);
   check_word("--blend", words.blend, {"linear", "display"});
+  options.rescale = words.rescale;
   options.display_blend = words.blend == "display";
 
   options.camera_file = words.camera;

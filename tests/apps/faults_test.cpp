@@ -67,6 +67,7 @@ TEST(Faults, ArgumentsThatMakeNoSenseNameTheOption) {
       {{"--repeat", "0"}, "--repeat"},
       {{"--verify", "all"}, "--verify"},
       {{"--projection", "fisheye"}, "orthographic or perspective"},
+      {{"--rescale"}, "--rescale"},
       {{"--frobnicate"}, "--frobnicate"},
       {{"--repeat"}, "--repeat"},
       {{"--field", "nowhere"}, "nowhere"},

@@ -122,6 +122,27 @@ TEST(Render, ResumeMakesOnlyWhatIsMissing) {
   EXPECT_NE(again.err.find("all 3 frames are there already"), std::string::npos) << again.err;
 }
 
+TEST(Render, AFileOfTransferFunctionStandsAsItIsUnlessRescaled) {
+  const Folder folder;
+  const auto mesh = folder.cube();
+  // Visible only far above the field's values.
+  const auto map = folder.file("map.json", R"([{"ColorSpace": "RGB", "RGBPoints": [1000, 1, 0, 0, 2000, 1, 1, 1],
+    "Points": [1000, 0, 0.5, 0, 2000, 0.5, 0.5, 0]}])");
+  const auto largest_alpha = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = {
+        "render", mesh, "-o", folder / "a.exr", "--size", "16x16", "--quiet", "--transfer-function", map};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto run = tessera(arguments);
+    EXPECT_EQ(run.status, 0) << run.err;
+    const auto image = io::read_image(folder / "a.exr");
+    float alpha = 0;
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) alpha = std::max(alpha, image.rgba[i]);
+    return alpha;
+  };
+  EXPECT_EQ(largest_alpha({}), 0);
+  EXPECT_GT(largest_alpha({"--rescale"}), 0.1);
+}
+
 TEST(Render, ACameraFileIsAPathAndSizeWinsOverItsOwn) {
   const Folder folder;
   const auto mesh = folder.cube();
