@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "projection/edge_sign.hpp"
 
@@ -32,8 +33,9 @@ constexpr Face faces[4] = {
 struct Cell {
   PixelVertex corner[4];
   double scalar[4];
-  /// Added to |E| before it is held against the error bound: infinite for an edge whose ends project to one point. Its
-  /// two faces are edge-on (pierceable = false), so its sign is not needed, and it would be uncertain at every pixel.
+  /// Added to |E| before it is held against the error bound: infinite for an edge without sides, whose ends project to
+  /// one point or that holds the eye. Its two faces are edge-on (pierceable = false), so its sign is not needed, and it
+  /// would be uncertain at every pixel.
   double certainty[6];
   bool pierceable[4];
   double error_bound;  ///< of any E at any candidate pixel
@@ -67,7 +69,9 @@ HWY_INLINE Cell set_up(const ProjectedMesh& projected, std::uint32_t tet, const 
   for (bool& p : cell.pierceable) p = true;
   for (int e = 0; e < 6; ++e) {
     const PixelVertex &a = cell.corner[edge_from[e]], &b = cell.corner[edge_to[e]];
-    const bool one_point = a.w == b.w && a.x == b.x && a.y == b.y;
+    // Without sides: both ends on one line of sight, or the eye on the edge (some w <= 0 then).
+    const bool one_point =
+        (a.w == b.w && a.x == b.x && a.y == b.y) || ((a.w <= 0 || b.w <= 0) && edge_sign(a, b, 0.5, 0.5) == 0);
     cell.certainty[e] = one_point ? HUGE_VAL : 0;
     if (one_point)
       for (int f = 0; f < 4; ++f)
@@ -92,6 +96,22 @@ HWY_NOINLINE void settle_signs(const Cell& cell, const double* px, const double*
       value = sign * std::max(magnitude, 1e-290);
     }
   }
+}
+
+/// The scalar at an eye that lies exactly on a vertex or an edge of the cell. Both ends of that edge then lie on one
+/// line through the eye, the origin of homogeneous space, so their coordinates are in one ratio; the largest gives it
+/// best.
+HWY_NOINLINE double scalar_at_eye(const Cell& cell) {
+  for (int e = 0; e < 6; ++e) {
+    const PixelVertex &a = cell.corner[edge_from[e]], &b = cell.corner[edge_to[e]];
+    if (edge_sign(a, b, 0.5, 0.5) != 0) continue;
+    double from = a.w, across = a.w - b.w;
+    for (const auto& [p, q] : {std::pair{a.x, b.x}, std::pair{a.y, b.y}})
+      if (std::abs(p - q) > std::abs(across)) from = p, across = p - q;
+    const double s_a = cell.scalar[edge_from[e]], s_b = cell.scalar[edge_to[e]];
+    return across == 0 ? s_a : s_a + (s_b - s_a) * std::clamp(from / across, 0.0, 1.0);
+  }
+  return cell.scalar[0];
 }
 
 /// One way through the cell's surface: depth and scalar where a lane's ray pierces it.
@@ -194,6 +214,14 @@ void rasterize_cell(const ProjectedMesh& projected, const Cell& cell, std::uint3
       const V total = hn::Add(hn::Add(weight[face.bc], weight[face.ac]), weight[face.ab]);
       gather_face(is_plus, depth_sum, scalar_sum, total, depth_c, scalar_c, plus);
       gather_face(is_minus, depth_sum, scalar_sum, total, depth_c, scalar_c, minus);
+    }
+    // One crossing alone: the eye lies on a vertex or an edge of the cell, whose faces there are edge-on from
+    // everywhere, and the ray begins on them.
+    const auto alone = hn::And(in_box, hn::Xor(plus.any, minus.any));
+    if (HWY_UNLIKELY(!hn::AllFalse(d, alone))) {
+      const V at_eye = hn::Set(d, scalar_at_eye(cell));
+      gather_face(hn::AndNot(plus.any, alone), zero, zero, one, zero, at_eye, plus);
+      gather_face(hn::AndNot(minus.any, alone), zero, zero, one, zero, at_eye, minus);
     }
     auto hit = hn::And(in_box, hn::And(plus.any, minus.any));
     if (hn::AllFalse(d, hit)) continue;

@@ -89,6 +89,15 @@ std::vector<NamedFunction> functions() {
   };
 }
 
+/// The eye exactly on the surface of cells of the regular split.
+std::vector<NamedView> views_from_surfaces() {
+  const auto from = [](const glm::dvec3& eye) { return view(ProjectionKind::perspective, 100, eye, {0.9, -0.3, 0.6}); };
+  return {{"eye on a vertex", from({0, 0.25, -0.5})},
+          {"eye on an edge", from({0.125, 0.125, 0.125})},
+          {"eye in a face", from({0.125, 0.0625, 0})},
+          {"eye on the mesh's corner", view(ProjectionKind::perspective, 80, {-1, -1, -1}, {1, 0.9, 0.8})}};
+}
+
 class Accuracy : public testing::TestWithParam<NamedMesh> {};
 
 INSTANTIATE_TEST_SUITE_P(Meshes, Accuracy, testing::ValuesIn(meshes),
@@ -137,6 +146,26 @@ TEST_P(Accuracy, RaysHitTheMeshWhereTheReferenceDoesAndAreAsLongInIt) {
       if (std::isfinite(truth[i].z)) {
         ASSERT_NEAR(image.depth[i], truth[i].z, 1e-6 * diagonal) << v.name << " pixel " << i;
       }
+    }
+  }
+}
+
+TEST(AccuracyAtSurfaces, AnEyeExactlyOnAVertexEdgeOrFaceSeesAllCells) {
+  RenderSettings settings;
+  settings.integrator.kind = scene::IntegratorKind::exact;
+  const TransferFunction function = datasets::scaled(datasets::benchmark_transfer_function(), 2);
+  for (const bool jittered : {false, true}) {
+    scene::TetMesh mesh = datasets::regular_split(8, 8, 8, glm::dvec3(0.25), glm::dvec3(-1));
+    std::vector<NamedView> all = views_from_surfaces();
+    if (jittered) {
+      mesh = datasets::cube(8, 0.2);
+      all = {{"eye on an oblique vertex", view(ProjectionKind::perspective, 100, mesh.positions[364], {2, 1, 0.3})}};
+    }
+    for (const NamedView& v : all) {
+      const scene::Image image = Renderer(mesh, settings).render(v.camera, size, function);
+      const reference::Reference reference(mesh, v.camera, size, function);
+      const reference::Judgement judgement = reference::judge(image, reference, promised_error);
+      EXPECT_TRUE(judgement.passed) << v.name << ": max " << judgement.max_error << ", over " << judgement.over_bound;
     }
   }
 }
