@@ -18,7 +18,8 @@ struct TransferFunctionOptions {
   /// `--unit-distance`: the length, in world units, over which a file's opacity holds. Wins over the file's own.
   std::optional<double> unit_distance{};
   /// Used where neither the file nor the user names one; the caller derives it from the mesh and prints it.
-  /// Meant to be the mesh's diagonal / 20: the ramps below then make a ray through half the mesh 0.26 to 0.89 opaque.
+  /// Meant to be a tenth of the mesh's mean thickness: the ramps below then make an average ray the short way through
+  /// it 0.26 to 0.89 opaque.
   double default_unit_distance = 1;
   /// `--blend display`: colours stay as the file shows them, undecoded from sRGB, as VTK composites them.
   bool display_colors = false;

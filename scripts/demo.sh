@@ -9,6 +9,7 @@ cmake --preset release -DTESSERA_TESTS=OFF -B build/demo
 cmake --build build/demo -j"$(nproc)" --target tessera
 
 tessera=build/demo/apps/tessera
-"$tessera" generate flow build/demo.vtu
-"$tessera" render build/demo.vtu -o build/demo.png --background white
-echo "The picture is $PWD/build/demo.png"
+"$tessera" generate demo build/demo.vtu
+"$tessera" render build/demo.vtu --camera datasets/small/wake_camera.txt \
+  --transfer-function datasets/small/wake_transfer_function.txt --background black -o build/demo.png
+echo "The picture is $PWD/build/demo.png; the mesh beside it, demo.vtu, opens in ParaView too."
