@@ -85,8 +85,9 @@ std::vector<Frame> list_frames(const RenderOptions& options) {
 }
 
 scene::Camera view_of(const Frame& frame, const scene::Box& box, scene::ProjectionKind default_projection) {
-  const auto camera = frame.camera ? *frame.camera : scene::frame_box(box, frame.size, default_projection);
-  return frame.turn == 0 ? camera : scene::orbit(camera, frame.turn);
+  const auto camera =
+      frame.camera ? *frame.camera : scene::frame_box(box, frame.size, default_projection, frame.turn.has_value());
+  return frame.turn ? scene::orbit(camera, *frame.turn) : camera;
 }
 
 }  // namespace tessera::apps

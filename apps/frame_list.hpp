@@ -14,7 +14,7 @@ namespace tessera::apps {
 struct Frame {
   int number = 0;                       ///< from 0; what %d in a name stands for
   std::optional<scene::Camera> camera;  ///< none: the view that frames the mesh, known once it is read
-  double turn = 0;                      ///< 0..1, of an orbit round the view's up axis
+  std::optional<double> turn;           ///< 0..1: of an orbit round the view's up axis
   scene::ImageSize size;
   std::vector<std::filesystem::path> outputs;
   bool finished = false;  ///< --resume, and all its pictures exist: left alone

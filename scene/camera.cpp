@@ -6,11 +6,15 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
+#include <vector>
 
 #include "scene/error.hpp"
 
 namespace tessera::scene {
 namespace {
+
+using std::numbers::pi;
 
 bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -68,7 +72,7 @@ ViewBasis view_basis(const Camera& camera) {
   return {right, glm::cross(right, forward), forward};
 }
 
-Camera frame_box(const Box& box, ImageSize size, ProjectionKind projection) {
+Camera frame_box(const Box& box, ImageSize size, ProjectionKind projection, bool turning) {
   Camera camera;
   camera.projection = projection;
   if (box.empty()) return camera;
@@ -90,31 +94,36 @@ Camera frame_box(const Box& box, ImageSize size, ProjectionKind projection) {
   camera.position = center + to_eye * (3 * radius);
   camera.view_up = upward;
 
-  const ViewBasis basis = view_basis(camera);
-  const auto extent = [&](const glm::dvec3& axis) {
-    return std::abs(axis.x) * half.x + std::abs(axis.y) * half.y + std::abs(axis.z) * half.z;
-  };
-  const double aspect = static_cast<double>(size.width) / size.height;
-  const double fit = std::max(extent(basis.up), extent(basis.right) / aspect);
-  camera.parallel_scale = 1.05 * (fit > 0 ? fit : radius);
-  if (projection == ProjectionKind::perspective) {
-    // Every corner at (x, y) and at distance d + z must lie within the window, whose half height there is (d + z) tan.
-    const double slope = std::tan(camera.view_angle / 2 * std::acos(-1.0) / 180) / 1.05;
-    double distance = 1.05 * radius;
-    for (int corner = 0; corner < 8; ++corner) {
-      const glm::dvec3 offset(corner & 1 ? half.x : -half.x, corner & 2 ? half.y : -half.y,
-                              corner & 4 ? half.z : -half.z);
-      const double needed =
-          std::max(std::abs(glm::dot(offset, basis.up)), std::abs(glm::dot(offset, basis.right)) / aspect) / slope;
-      distance = std::max(distance, needed - glm::dot(offset, basis.forward));
-    }
-    camera.position = center + to_eye * distance;
+  std::vector<glm::dvec3> outline;  // offsets from the centre that have to be in the picture
+  for (int corner = 0; corner < 8; ++corner)
+    outline.emplace_back((corner & 1) ? half.x : -half.x, (corner & 2) ? half.y : -half.y,
+                         (corner & 4) ? half.z : -half.z);
+  if (turning) {
+    constexpr int steps = 72;  // between two of them a corner moves out by 0.1 %, well within the margin
+    for (int step = 1; step < steps; ++step)
+      for (int corner = 0; corner < 8; ++corner)
+        outline.push_back(rotated(outline[static_cast<std::size_t>(corner)], upward, step * 2 * pi / steps));
   }
+
+  constexpr double margin = 1.05;
+  const ViewBasis basis = view_basis(camera);
+  const double aspect = static_cast<double>(size.width) / size.height;
+  const double slope = std::tan(camera.view_angle / 2 * pi / 180) / margin;
+  double fit = 0, distance = margin * radius;
+  for (const glm::dvec3& offset : outline) {
+    const double needed =
+        std::max(std::abs(glm::dot(offset, basis.up)), std::abs(glm::dot(offset, basis.right)) / aspect);
+    fit = std::max(fit, needed);
+    // Perspective: at distance + z the window's half height is (distance + z) tan.
+    distance = std::max(distance, needed / slope - glm::dot(offset, basis.forward));
+  }
+  camera.parallel_scale = margin * (fit > 0 ? fit : radius);
+  if (projection == ProjectionKind::perspective) camera.position = center + to_eye * distance;
   return camera;
 }
 
 Camera orbit(const Camera& camera, double turn) {
-  const double angle = turn * 2 * std::acos(-1.0);
+  const double angle = turn * 2 * pi;
   const glm::dvec3 axis = unit(camera.view_up);
   Camera turned = camera;
   turned.position = camera.focal_point + rotated(camera.position - camera.focal_point, axis, angle);

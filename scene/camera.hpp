@@ -57,8 +57,9 @@ struct Box {
 
 /// A view of the whole box from a fixed oblique direction, with a small margin; the longest side of the box lies across
 /// the picture. A flat, thin or one-point box still gives a valid camera. Perspective: 30 degrees, the eye as near as
-/// the box allows, always outside of it.
-Camera frame_box(const Box& box, ImageSize size, ProjectionKind projection = ProjectionKind::orthographic);
+/// the box allows, always outside of it. `turning`: wide enough for the box at every turn of orbit().
+Camera frame_box(const Box& box, ImageSize size, ProjectionKind projection = ProjectionKind::orthographic,
+                 bool turning = false);
 
 /// The same view turned by `turn` (0..1 is one full turn) round the axis `view_up` through the focal point: an orbit's
 /// frame.

@@ -97,6 +97,30 @@ TEST(Camera, FramedBoxInPerspectiveFillsTheWindowAndStaysInIt) {
   }
 }
 
+TEST(Camera, ABoxFramedForTurningStaysInTheWindowAtEveryTurn) {
+  const glm::dvec3 high(13, 6, 3);
+  const ImageSize size{640, 360};
+  const double aspect = 640.0 / 360, slope = std::tan(std::acos(-1.0) / 12);
+  for (const auto kind : {ProjectionKind::orthographic, ProjectionKind::perspective}) {
+    const Camera first = frame_box({glm::dvec3(0), high}, size, kind, true);
+    double widest = 0;
+    for (int turn = 0; turn < 100; ++turn) {
+      const Camera camera = orbit(first, turn / 100.0);
+      const ViewBasis basis = view_basis(camera);
+      for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 p((corner & 1) ? high.x : 0, (corner & 2) ? high.y : 0, (corner & 4) ? high.z : 0);
+        const glm::dvec3 d = p - camera.position;
+        const double half_height =
+            kind == ProjectionKind::perspective ? glm::dot(d, basis.forward) * slope : camera.parallel_scale;
+        widest = std::max({widest, std::abs(glm::dot(d, basis.right)) / (half_height * aspect),
+                           std::abs(glm::dot(d, basis.up)) / half_height});
+      }
+    }
+    EXPECT_LT(widest, 1);
+    EXPECT_GT(widest, 0.9);
+  }
+}
+
 TEST(Camera, AFullOrbitComesBack) {
   Camera camera;
   camera.position = {3, 2, 1};
