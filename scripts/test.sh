@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Every check of the project: installs what is missing, checks the format, builds and runs all tests, once as released
-# and once under ASan and UBSan, lints, and, with CI=true, fuzzes. Goes on after a failed stage; the end says which.
+# and once under ASan and UBSan, and, with CI=true, fuzzes (clang-tidy: scripts/lint.sh). Goes on after a failed stage; the end says which.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -24,7 +24,6 @@ build_and_test() {  # build_and_test PRESET
 stage format scripts/lint.sh format
 stage release build_and_test release
 stage sanitize build_and_test sanitize
-stage tidy scripts/lint.sh tidy
 if [ "${CI:-}" = true ]; then stage fuzz scripts/fuzz.sh; fi
 
 # ctest's own closing lines once more, last, where they are found.
