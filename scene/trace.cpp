@@ -36,7 +36,8 @@ std::uint32_t Trace::thread_number() {
   return static_cast<std::uint32_t>(threads_.size() - 1);
 }
 
-TraceScope::TraceScope(Trace* trace, const char* stage) : trace_(trace), stage_(stage) {
+TraceScope::TraceScope(Trace* trace, const char* stage, std::int32_t frame)
+    : trace_(trace), stage_(stage), frame_(frame) {
   if (trace_ == nullptr) return;
   start_us_ = trace_->now_us();
   start_cpu_us_ = thread_cpu_us();
@@ -44,8 +45,8 @@ TraceScope::TraceScope(Trace* trace, const char* stage) : trace_(trace), stage_(
 
 TraceScope::~TraceScope() {
   if (trace_ == nullptr) return;
-  trace_->add(
-      {stage_, trace_->thread_number(), start_us_, trace_->now_us() - start_us_, thread_cpu_us() - start_cpu_us_});
+  trace_->add({stage_, trace_->thread_number(), start_us_, trace_->now_us() - start_us_,
+               thread_cpu_us() - start_cpu_us_, frame_, bytes_, messages_});
 }
 
 }  // namespace tessera::scene
