@@ -7,8 +7,8 @@
 namespace tessera::compositor {
 
 TilePixels::TilePixels(const projection::PixelSpace& space, const SegmentIntegrator& integrator, double max_color,
-                       double longest_ray, scene::Emission emission)
-    : space_(&space), integrator_(&integrator), termination_error_(integrator.termination_error()) {
+                       double longest_ray, scene::Emission emission, scene::Image& image)
+    : space_(&space), integrator_(&integrator), image_(&image), termination_error_(integrator.termination_error()) {
   // Behind transmittance T: at most T of opacity, T max_color of light in the absorption model, T max_color length
   // otherwise.
   left_out_per_transmittance_ =
@@ -29,8 +29,7 @@ void TilePixels::start(const projection::PixelRect& rect) {
     for (int x = rect.x0; x < rect.x1; ++x) length_per_depth_[i++] = space_->length_per_depth(x + 0.5, y + 0.5);
 }
 
-void TilePixels::composite(const projection::RaySegments& segments, const sorting::PixelLists& lists,
-                           double final_depth) {
+void TilePixels::take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) {
   const auto is_final = [&](const sorting::PixelLists::Entry& entry) { return entry.front < final_depth; };
   batch_.reserve(segments.size);
   batch_.size = 0;
@@ -78,7 +77,8 @@ void TilePixels::composite(const projection::RaySegments& segments, const sortin
   }
 }
 
-void TilePixels::store(scene::Image& image) const {
+void TilePixels::finish() {
+  scene::Image& image = *image_;
   std::size_t i = 0;
   for (int y = rect_.y0; y < rect_.y1; ++y)
     for (int x = rect_.x0; x < rect_.x1; ++x, ++i) {

@@ -6,6 +6,7 @@
 
 #include "compositor/segment_batch.hpp"
 #include "compositor/segment_integrator.hpp"
+#include "compositor/tile_sink.hpp"
 #include "projection/footprint.hpp"
 #include "projection/pixel_space.hpp"
 #include "projection/ray_segments.hpp"
@@ -18,30 +19,28 @@ namespace tessera::compositor {
 ///
 /// Carries premultiplied linear RGB, transmittance and optical depth in double. The opacity is -expm1(-optical depth),
 /// so that a hundred thousand segments of opacity 1e-9 add up, and 1 - 1e-8 is not 1.
-class TilePixels {
+///
+/// A pixel behind which everything left cannot change it by the integrator's termination error is closed; it takes
+/// nothing more.
+class TilePixels : public TileSink {
  public:
   /// `longest_ray` bounds the world length of a ray inside the data: with independent emission, what may still come
-  /// behind a pixel.
+  /// behind a pixel. The image must outlive this object; tiles of it are disjoint, so threads may share it.
   TilePixels(const projection::PixelSpace& space, const SegmentIntegrator& integrator, double max_color,
-             double longest_ray, scene::Emission emission);
+             double longest_ray, scene::Emission emission, scene::Image& image);
 
-  /// Forgets all and starts on the pixels of `rect`.
-  void start(const projection::PixelRect& rect);
-
-  /// Composites, in each pixel's order, the segments whose front lies before `final_depth`: no later segment may come
-  /// before them. A pixel behind which everything left cannot change it by the integrator's termination error is
-  /// closed; it takes nothing more.
-  void composite(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth);
-
-  [[nodiscard]] bool open(std::size_t pixel) const { return open_[pixel] != 0; }
-  [[nodiscard]] std::size_t open_count() const { return open_count_; }
-
-  /// Writes the finished pixels into their place.
-  void store(scene::Image& image) const;
+  void start(const projection::PixelRect& rect) override;
+  void take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) override;
+  bool take_unordered(const projection::RaySegments&, const sorting::PixelLists&, double) override { return false; }
+  [[nodiscard]] bool open(std::size_t pixel) const override { return open_[pixel] != 0; }
+  [[nodiscard]] std::size_t open_count() const override { return open_count_; }
+  /// Writes the pixels into their place in the image.
+  void finish() override;
 
  private:
   const projection::PixelSpace* space_;
   const SegmentIntegrator* integrator_;
+  scene::Image* image_;
   double left_out_per_transmittance_, termination_error_;
   projection::PixelRect rect_{0, 0, 0, 0};
   std::vector<double> red_, green_, blue_, transmittance_, optical_depth_, first_depth_, length_per_depth_;

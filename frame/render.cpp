@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
+#include "compositor/segment_integrator.hpp"
+#include "compositor/tile_pixels.hpp"
 #include "frame/tile_renderer.hpp"
 #include "projection/prepared_mesh.hpp"
 #include "projection/tile_lists.hpp"
@@ -95,10 +97,15 @@ scene::Image Renderer::State::render(const scene::Camera& camera, scene::ImageSi
       std::max<std::uint64_t>(segment_budget(settings, held, 1) / 4 / sizeof(projection::TileEntry), 1);
   const std::uint64_t budget = segment_budget(settings, held, threads) / 4 * 3;
 
-  const TileContext context{&projected,           &space,   &integrator,       lists->depth_origin(),
-                            function.max_color(), diagonal, settings.emission, budget,
-                            settings.trace};
-  tbb::enumerable_thread_specific<TileRenderer> renderers([&] { return TileRenderer(context); });
+  const TileContext context{&projected, lists->depth_origin(), budget, settings.trace};
+  struct Worker {
+    TileRenderer renderer;
+    compositor::TilePixels pixels;
+  };
+  tbb::enumerable_thread_specific<Worker> workers([&] {
+    return Worker{TileRenderer(context),
+                  compositor::TilePixels(space, integrator, function.max_color(), diagonal, settings.emission, image)};
+  });
   std::uint64_t most_list_bytes = 0;
   for (std::size_t first = 0; first < grid.count();) {
     std::size_t last = first;
@@ -114,9 +121,9 @@ scene::Image Renderer::State::render(const scene::Camera& camera, scene::ImageSi
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(first, last, 1),
         [&](const auto& range) {
-          TileRenderer& renderer = renderers.local();
+          Worker& worker = workers.local();
           for (std::size_t tile = range.begin(); tile != range.end(); ++tile)
-            if (lists->entry_count(tile) > 0) renderer.render(grid.rect(tile), lists->tile(tile), image);
+            if (lists->entry_count(tile) > 0) worker.renderer.render(grid.rect(tile), lists->tile(tile), worker.pixels);
         },
         tbb::simple_partitioner());
     first = last;
@@ -130,8 +137,8 @@ scene::Image Renderer::State::render(const scene::Camera& camera, scene::ImageSi
   statistics.tets_between_pixels = culled.between_pixels;
   statistics.tets_projected = culled.projected;
   statistics.peak_buffer_bytes = vertices.capacity() * sizeof(projection::PixelVertex) + most_list_bytes;
-  for (const TileRenderer& renderer : renderers) {
-    const TileCounts& counts = renderer.counts();
+  for (const Worker& worker : workers) {
+    const TileCounts& counts = worker.renderer.counts();
     statistics.segments += counts.segments;
     statistics.max_segments_alive = std::max(statistics.max_segments_alive, counts.max_segments_alive);
     statistics.peak_buffer_bytes += counts.peak_bytes;

@@ -16,24 +16,20 @@ constexpr std::size_t comfortable_segments = 8192;
 
 }  // namespace
 
-TileRenderer::TileRenderer(const TileContext& context)
-    : context_(context),
-      pixels_(*context.space, *context.integrator, context.max_color, context.longest_ray, context.emission) {}
-
 void TileRenderer::render(const projection::PixelRect& rect, std::span<projection::TileEntry> entries,
-                          scene::Image& image) {
+                          compositor::TileSink& sink) {
   std::sort(entries.begin(), entries.end(), [](const projection::TileEntry& a, const projection::TileEntry& b) {
     return std::tie(a.near_depth, a.tet) < std::tie(b.near_depth, b.tet);
   });
-  render_sorted(rect, entries, image);
+  render_sorted(rect, entries, sink);
 }
 
 void TileRenderer::render_sorted(const projection::PixelRect& rect, std::span<const projection::TileEntry> entries,
-                                 scene::Image& image) {
+                                 compositor::TileSink& sink) {
   if (rect.empty()) return;
   const TileCounts before = counts_;
-  if (try_render(rect, entries)) {
-    pixels_.store(image);
+  if (try_render(rect, entries, sink)) {
+    sink.finish();
     return;
   }
   if (rect.area() == 1)
@@ -48,7 +44,7 @@ void TileRenderer::render_sorted(const projection::PixelRect& rect, std::span<co
   for (const projection::PixelRect& quarter :
        {projection::PixelRect{rect.x0, rect.y0, x, y}, projection::PixelRect{x, rect.y0, rect.x1, y},
         projection::PixelRect{rect.x0, y, x, rect.y1}, projection::PixelRect{x, y, rect.x1, rect.y1}})
-    render_sorted(quarter, entries, image);
+    render_sorted(quarter, entries, sink);
 }
 
 bool TileRenderer::reserve(std::size_t segments) {
@@ -60,7 +56,8 @@ bool TileRenderer::reserve(std::size_t segments) {
   return true;
 }
 
-bool TileRenderer::try_render(const projection::PixelRect& rect, std::span<const projection::TileEntry> entries) {
+bool TileRenderer::try_render(const projection::PixelRect& rect, std::span<const projection::TileEntry> entries,
+                              compositor::TileSink& sink) {
   const auto area = static_cast<std::size_t>(rect.area());
   segments_.size = 0;
   // Room for at least two segments a pixel: the rasterizer wants space for one more on every pixel before it takes a
@@ -68,7 +65,7 @@ bool TileRenderer::try_render(const projection::PixelRect& rect, std::span<const
   if (!reserve(
           std::max<std::size_t>(2 * area, std::min(comfortable_segments, context_.budget_bytes / bytes_a_segment))))
     return false;
-  pixels_.start(rect);
+  sink.start(rect);
   for (std::size_t next = 0; next < entries.size();) {
     {
       const scene::TraceScope timing(context_.trace, "project");
@@ -76,26 +73,31 @@ bool TileRenderer::try_render(const projection::PixelRect& rect, std::span<const
     }
     const double final_depth = next < entries.size() ? context_.depth_origin + entries[next].near_depth
                                                      : std::numeric_limits<double>::infinity();
-    flush(area, final_depth);
-    if (pixels_.open_count() == 0) break;
-    if (next < entries.size() && segments_.size + area > segments_.capacity() / 2 &&
-        !reserve(std::max(2 * segments_.capacity(), 2 * (segments_.size + area))))
-      if (segments_.size + area > segments_.capacity()) return false;
+    flush(area, final_depth, sink);
+    if (sink.open_count() == 0) break;
+    const bool wants_room = next < entries.size() && segments_.size + area > segments_.capacity() / 2;
+    if (wants_room && !reserve(std::max(2 * segments_.capacity(), 2 * (segments_.size + area))) &&
+        segments_.size + area > segments_.capacity()) {
+      lists_.sort(segments_, area);
+      if (!sink.take_unordered(segments_, lists_, final_depth)) return false;
+      counts_.segments += segments_.size;
+      segments_.size = 0;
+    }
   }
   return true;
 }
 
-void TileRenderer::flush(std::size_t pixel_count, double final_depth) {
+void TileRenderer::flush(std::size_t pixel_count, double final_depth, compositor::TileSink& sink) {
   counts_.max_segments_alive = std::max<std::uint64_t>(counts_.max_segments_alive, segments_.size);
   {
     const scene::TraceScope timing(context_.trace, "sort");
     lists_.sort(segments_, pixel_count);
   }
   const scene::TraceScope timing(context_.trace, "composite");
-  pixels_.composite(segments_, lists_, final_depth);
+  sink.take(segments_, lists_, final_depth);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < segments_.size; ++i)
-    if (!(segments_.front[i] < final_depth) && pixels_.open(segments_.pixel(i))) segments_.move(i, kept++);
+    if (!(segments_.front[i] < final_depth) && sink.open(segments_.pixel(i))) segments_.move(i, kept++);
   counts_.segments += segments_.size - kept;
   segments_.size = kept;
 }

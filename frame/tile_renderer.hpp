@@ -3,11 +3,10 @@
 #include <cstdint>
 #include <span>
 
-#include "compositor/segment_integrator.hpp"
-#include "compositor/tile_pixels.hpp"
+#include "compositor/segment_batch.hpp"
+#include "compositor/tile_sink.hpp"
 #include "projection/planes_rasterizer.hpp"
 #include "projection/ray_segments.hpp"
-#include "scene/image.hpp"
 #include "scene/trace.hpp"
 #include "sorting/pixel_lists.hpp"
 
@@ -16,11 +15,7 @@ namespace tessera::frame {
 /// What a tile renderer needs to know of its frame.
 struct TileContext {
   const projection::ProjectedMesh* projected;
-  const projection::PixelSpace* space;
-  const compositor::SegmentIntegrator* integrator;
-  double depth_origin;  ///< of the entries' near_depth
-  double max_color, longest_ray;
-  scene::Emission emission;
+  double depth_origin;         ///< of the entries' near_depth
   std::uint64_t budget_bytes;  ///< for this renderer's buffers
   scene::Trace* trace;
 };
@@ -31,20 +26,20 @@ struct TileCounts {
   projection::RasterCounts raster;
 };
 
-/// Renders tiles one after the other: rasterize, sort, integrate, composite; one renderer a thread.
+/// Makes tiles one after the other: rasterize, sort, and hand the segments to a sink; one renderer a thread.
 ///
 /// A tile's cells come by their nearest depth. When the segment buffer is full, all segments nearer than the next
-/// cell's nearest depth are final: they are sorted, composited and forgotten, the rest stays. So the depth complexity
+/// cell's nearest depth are final: they are sorted, handed over and forgotten, the rest stays. So the depth complexity
 /// costs no memory, only the number of segments that overlap in depth does; where that outgrows the buffer, the buffer
-/// grows up to the budget, and then the tile is rendered in quarters, which hold a quarter of the segments each.
-/// Nothing is ever dropped.
+/// grows up to the budget; then a sink that takes segments in any order gets them all, and for one that does not the
+/// tile is rendered in quarters, which hold a quarter of the segments each. Nothing is ever dropped.
 class TileRenderer {
  public:
-  explicit TileRenderer(const TileContext& context);
+  explicit TileRenderer(const TileContext& context) : context_(context) {}
 
-  /// Renders the pixels of `rect` from `entries`, which it sorts. Throws Error(system_failure) if one pixel alone has
-  /// more segments that overlap in depth than the budget holds.
-  void render(const projection::PixelRect& rect, std::span<projection::TileEntry> entries, scene::Image& image);
+  /// Gives `sink` the pixels of `rect` from `entries`, which it sorts. Throws Error(system_failure) if one pixel alone
+  /// has more segments that overlap in depth than the budget holds.
+  void render(const projection::PixelRect& rect, std::span<projection::TileEntry> entries, compositor::TileSink& sink);
 
   [[nodiscard]] const TileCounts& counts() const { return counts_; }
 
@@ -54,15 +49,15 @@ class TileRenderer {
 
  private:
   void render_sorted(const projection::PixelRect& rect, std::span<const projection::TileEntry> entries,
-                     scene::Image& image);
-  bool try_render(const projection::PixelRect& rect, std::span<const projection::TileEntry> entries);
-  void flush(std::size_t pixel_count, double final_depth);
+                     compositor::TileSink& sink);
+  bool try_render(const projection::PixelRect& rect, std::span<const projection::TileEntry> entries,
+                  compositor::TileSink& sink);
+  void flush(std::size_t pixel_count, double final_depth, compositor::TileSink& sink);
   bool reserve(std::size_t segments);
 
   TileContext context_;
   projection::RaySegments segments_;
   sorting::PixelLists lists_;
-  compositor::TilePixels pixels_;
   TileCounts counts_;
 };
 
