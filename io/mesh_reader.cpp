@@ -11,7 +11,7 @@
 #include "io/mapped_file.hpp"
 #include "io/mesh_assembly.hpp"
 #include "io/tets_file.hpp"
-#include "io/vtk_files.hpp"
+#include "io/mesh_formats.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {

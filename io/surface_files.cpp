@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <vtkCellArray.h>
 #include <vtkNew.h>
-#include <vtkPLYReader.h>
 #include <vtkPolyData.h>
 #include <vtkSTLReader.h>
 #include <vtkSmartPointer.h>
@@ -12,11 +11,12 @@
 
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
+#include "io/mesh_formats.hpp"
+#include "io/ply_file.hpp"
 #include "io/surface.hpp"
 #include "io/surface_fields.hpp"
 #include "io/tetgen_files.hpp"
 #include "io/vtk_blocks.hpp"
-#include "io/vtk_files.hpp"
 #include "io/vtk_session.hpp"
 #include "scene/error.hpp"
 
@@ -48,25 +48,16 @@ Surface surface_from_vtk(vtkPolyData& data, const std::string& source) {
   return surface;
 }
 
-Surface read_triangles(const std::filesystem::path& file, const std::string& source) {
+Surface read_stl(const std::string& source) {
   vtkSmartPointer<vtkPolyData> data;
   with_quiet_vtk(source, "the file is truncated, damaged or of another kind, write it anew", [&] {
-    if (lower_extension(file) == ".stl") {
-      vtkNew<vtkSTLReader> reader;
-      reader->MergingOff();  // done here for all formats alike
-      reader->SetFileName(source.c_str());
-      reader->Update();
-      data = reader->GetOutput();
-    } else {
-      vtkNew<vtkPLYReader> reader;
-      reader->SetFileName(source.c_str());
-      reader->Update();
-      data = reader->GetOutput();
-    }
+    vtkNew<vtkSTLReader> reader;
+    reader->MergingOff();  // done by merge_coincident_points
+    reader->SetFileName(source.c_str());
+    reader->Update();
+    data = reader->GetOutput();
   });
-  Surface surface = surface_from_vtk(*data, source);
-  merge_coincident_points(surface);
-  return surface;
+  return surface_from_vtk(*data, source);
 }
 
 std::string text_of(const std::filesystem::path& file) { return std::string(MappedFile(file).text()); }
@@ -102,8 +93,20 @@ MeshBlocks read_surface(const std::filesystem::path& file, std::optional<double>
   const std::string source = file.string(), extension = lower_extension(file);
   if (max_volume && !(*max_volume > 0))
     throw scene::bad_input(fmt::format("{}: the largest tet volume is {}; give a positive one", source, *max_volume));
-  const bool tetgen_text = extension == ".poly" || extension == ".smesh";
-  const Surface surface = tetgen_text ? read_poly(file, source) : read_triangles(file, source);
+  std::vector<std::string> attribute_names;
+  Surface surface;
+  if (extension == ".stl") {
+    surface = read_stl(source);
+  } else if (extension == ".ply") {
+    PlySurface ply = parse_ply(MappedFile(file).text(), source);
+    surface = std::move(ply.surface);
+    attribute_names = std::move(ply.attribute_names);
+  } else {
+    surface = read_poly(file, source);
+    for (std::size_t a = 0; a < surface.attributes.size(); ++a)
+      attribute_names.push_back(fmt::format("attribute{}", a));
+  }
+  if (extension == ".stl" || extension == ".ply") merge_coincident_points(surface);
   require_sound(surface, source);
 
   MeshBlocks result;
@@ -123,8 +126,8 @@ MeshBlocks read_surface(const std::filesystem::path& file, std::optional<double>
     std::vector<std::vector<double>> attributes =
         spread_attributes(surface, fill_surface(surface, std::nullopt, source), filled);
     for (std::size_t a = 0; a < attributes.size(); ++a)
-      block.fields.push_back(field_of_values(fmt::format("attribute{}", a), "double", scene::Association::point, 1,
-                                             std::move(attributes[a])));
+      block.fields.push_back(
+          field_of_values(attribute_names[a], "double", scene::Association::point, 1, std::move(attributes[a])));
   }
   block.fields.push_back(field_of_values("depth", "double", scene::Association::point, 1, depth_below_surface(filled)));
   result.notes.emplace_back("field 'depth' is the distance to the surface, world units");

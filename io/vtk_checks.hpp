@@ -16,4 +16,9 @@ void check_vtk_xml(const std::filesystem::path& file);
 /// without a word at a keyword it does not know. Throws Error(bad_input, "SOURCE: ...").
 void check_vtk_legacy(std::string_view text, const std::string& source);
 
+/// A NetCDF classic header (versions 1, 2 and 5): every count in it against the bytes that are left, every variable
+/// against the file's end, so that a truncated file is told as such. NetCDF's own reader allocates what a damaged
+/// header asks for. Source: "NetCDF Classic Format Specification", Unidata. Throws Error(bad_input, "SOURCE: ...").
+void check_netcdf_classic(std::string_view bytes, const std::string& source);
+
 }  // namespace tessera::io

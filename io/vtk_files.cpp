@@ -1,11 +1,7 @@
-#include "io/vtk_files.hpp"
-
 #include <fmt/format.h>
 #include <vtkCellData.h>
 #include <vtkDataObject.h>
 #include <vtkDataSetReader.h>
-#include <vtkExodusIIReader.h>
-#include <vtkMultiBlockDataSet.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkSmartPointer.h>
@@ -21,6 +17,7 @@
 
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
+#include "io/mesh_formats.hpp"
 #include "io/vtk_blocks.hpp"
 #include "io/vtk_checks.hpp"
 #include "io/vtk_session.hpp"
@@ -126,42 +123,6 @@ MeshBlocks read_vtk_legacy(const std::filesystem::path& file) {
   if (!data) throw scene::bad_input(fmt::format("{}: it holds no VTK data set; give a mesh", source));
   add_warning(warning, result.notes);
   result.format = fmt::format("legacy VTK ({})", data->GetClassName());
-  result.blocks = blocks_from_vtk(*data, source, result.notes);
-  return result;
-}
-
-MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t> time_step) {
-  const std::string source = file.string(), remedy = "the file is truncated or damaged, write it anew";
-  const std::string magic = read_beginning(file, 8);
-  if (!magic.starts_with("CDF") && !magic.starts_with("\x89HDF\r\n\x1a\n"))
-    throw scene::bad_input(fmt::format("{}: it is neither NetCDF nor HDF5; check that it is an Exodus file", source));
-  MeshBlocks result;
-  result.format = "Exodus II";
-  vtkSmartPointer<vtkDataObject> data;
-  int steps = 0;
-  const std::string warning = with_quiet_vtk(source, remedy, [&] {
-    vtkNew<vtkExodusIIReader> reader;
-    if (!reader->CanReadFile(source.c_str()))
-      throw scene::bad_input(fmt::format("{}: it is no Exodus file, or is damaged; write it anew", source));
-    reader->SetFileName(source.c_str());
-    reader->UpdateInformation();
-    steps = reader->GetNumberOfTimeSteps();
-    if (time_step && *time_step >= static_cast<std::size_t>(std::max(steps, 1)))
-      throw scene::bad_input(
-          fmt::format("{}: there is no time step {}, the file has {}; count from 0", source, *time_step, steps));
-    reader->SetTimeStep(time_step ? static_cast<int>(*time_step) : std::max(steps - 1, 0));
-    for (const auto type : {vtkExodusIIReader::NODAL, vtkExodusIIReader::ELEM_BLOCK})
-      for (int k = 0; k < reader->GetNumberOfObjectArrays(type); ++k) reader->SetObjectArrayStatus(type, k, 1);
-    for (int k = 0; k < reader->GetNumberOfObjects(vtkExodusIIReader::ELEM_BLOCK); ++k)
-      reader->SetObjectStatus(vtkExodusIIReader::ELEM_BLOCK, k, 1);
-    reader->Update();
-    data = reader->GetOutputDataObject(0);
-  });
-  if (!data) throw scene::bad_input(fmt::format("{}: nothing can be read; write it anew", source));
-  add_warning(warning, result.notes);
-  if (steps > 1)
-    result.notes.push_back(fmt::format("time step {} of 0 to {}{}", time_step ? *time_step : steps - 1, steps - 1,
-                                       time_step ? "" : " (the last is the default)"));
   result.blocks = blocks_from_vtk(*data, source, result.notes);
   return result;
 }

@@ -36,7 +36,13 @@ class LegacyCheck {
   LegacyCheck(std::string_view text, const std::string& source) : text_(text), source_(source) {}
 
   void run() {
-    line();  // "# vtk DataFile Version x.y"
+    // "# vtk DataFile Version x.y": VTK chooses between the two layouts of CELLS by x.
+    const std::string_view first = line(), version = "Version ";
+    const std::size_t at = first.find(version);
+    if (at == std::string_view::npos) fail("its first line names no version");
+    const std::string_view digits = first.substr(at + version.size());
+    if (std::from_chars(digits.data(), digits.data() + digits.size(), major_version_).ec != std::errc())
+      fail(fmt::format("its version is '{}'", printable(digits)));
     line();  // title
     const std::string mode = lower(word());
     if (mode != "ascii" && mode != "binary")
@@ -140,15 +146,14 @@ class LegacyCheck {
   void cells() {
     const std::uint64_t cells = count("the number of cells", text_.size());
     const std::uint64_t entries = count("the size of the cell list", text_.size());
-    const std::size_t before = at_;
-    if (lower(word()) == "offsets") {  // since version 5: n + 1 offsets, then the indices
+    if (major_version_ >= 5) {  // n + 1 offsets, then the indices
+      if (lower(word()) != "offsets") fail("no OFFSETS follow the number of cells");
       if (!payload("OFFSETS", cells, lower(word()))) fail("its cell offsets are of an unknown type");
       if (lower(word()) != "connectivity") fail("no CONNECTIVITY follows the cell offsets");
       if (!payload("CONNECTIVITY", entries, lower(word()))) fail("its cell indices are of an unknown type");
       return;
     }
-    at_ = before;
-    // Before: each cell's number of points, then the points. VTK walks through them unchecked.
+    // Before version 5: each cell's number of points, then the points. VTK walks through them unchecked.
     if (binary_) line();
     require(entries, 4);
     std::uint64_t used = 0;
@@ -243,6 +248,7 @@ class LegacyCheck {
   const std::string& source_;
   std::size_t at_ = 0;
   bool binary_ = false;
+  int major_version_ = 0;
   std::uint64_t tuples_ = 0;
   const char* what_ = "the list of cells";
 };

@@ -6,7 +6,7 @@
 
 #include "io/plot3d_layout.hpp"
 #include "io/vtk_blocks.hpp"
-#include "io/vtk_files.hpp"
+#include "io/mesh_formats.hpp"
 #include "io/vtk_session.hpp"
 #include "scene/error.hpp"
 

@@ -1,4 +1,4 @@
-#include "io/vtk_files.hpp"
+#include "io/mesh_formats.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

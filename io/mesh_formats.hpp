@@ -23,8 +23,9 @@ MeshBlocks read_vtk_xml(const std::filesystem::path& file);
 /// Legacy .vtk: unstructured, structured and rectilinear grids, ASCII or binary, all their arrays.
 MeshBlocks read_vtk_legacy(const std::filesystem::path& file);
 
-/// Exodus II element blocks with all nodal and element variables at one time step (default the last). Nodes are moved
-/// by the file's displacements, if it has some, as ParaView does.
+/// Exodus II: all element blocks, nodal and element variables at one time step (default the last). Nodes are moved by
+/// the file's displacements, if it has some, as ParaView does. Variables NAME_x NAME_y NAME_z become one vector NAME.
+/// Through Exodus's own library: VTK's reader believes what is in a damaged file.
 MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t> time_step);
 
 /// PLOT3D grid and solution; the binary layout is found from the file's size. `q_file` may be empty: then it is looked

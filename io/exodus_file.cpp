@@ -1,0 +1,360 @@
+#include <fmt/format.h>
+#include <vtk_exodusII.h>
+#include <vtk_netcdf.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "io/input_file.hpp"
+#include "io/mapped_file.hpp"
+#include "io/mesh_formats.hpp"
+#include "io/tuple_length.hpp"
+#include "io/vtk_checks.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// An open file. Every call that fails ends in Error.
+class ExodusFile {
+ public:
+  explicit ExodusFile(const std::filesystem::path& file) : source_(file.string()) {
+    // ex_open prints where NetCDF cannot open the file, so NetCDF is asked first.
+    if (nc_open(file.c_str(), NC_NOWRITE, &id_) != NC_NOERR) {
+      id_ = -1;
+      fail("it cannot be opened as a NetCDF file, which Exodus files are");
+    }
+    nc_close(id_);
+    ex_opts(0);  // the library keeps its words to itself
+    int double_size = sizeof(double), file_size = 0;
+    float version = 0;
+    id_ = ex_open(file.c_str(), EX_READ, &double_size, &file_size, &version);
+    if (id_ < 0) fail("it cannot be opened as an Exodus file");
+    ex_set_int64_status(id_, EX_ALL_INT64_API);
+    ex_set_max_name_length(id_, max_name);
+  }
+  ~ExodusFile() {
+    if (id_ >= 0) ex_close(id_);
+  }
+  ExodusFile(const ExodusFile&) = delete;
+  ExodusFile& operator=(const ExodusFile&) = delete;
+
+  [[nodiscard]] int id() const { return id_; }
+
+  void require(int status, const char* what) const {
+    if (status < 0) fail(fmt::format("{} cannot be read", what));
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it anew", source_, what));
+  }
+
+  /// Names of the variables of nodes or elements, without blanks at their end.
+  [[nodiscard]] std::vector<std::string> variable_names(ex_entity_type type) const {
+    int count = 0;
+    if (ex_get_variable_param(id_, type, &count) < 0 || count < 0 || count > 100000) return {};
+    std::vector<std::string> names;
+    for (int k = 1; k <= count; ++k) {
+      std::array<char, max_name + 1> name{};
+      require(ex_get_variable_name(id_, type, k, name.data()), "a variable's name");
+      std::string text(name.data(), ::strnlen(name.data(), max_name));
+      while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
+      for (char& c : text)
+        if (!std::isprint(static_cast<unsigned char>(c))) c = '?';
+      names.push_back(text.empty() ? fmt::format("variable{}", k) : text);
+    }
+    return names;
+  }
+
+ private:
+  static constexpr int max_name = 255;
+  std::string source_;
+  int id_ = -1;
+};
+
+struct ElementBlock {
+  std::int64_t id = 0;
+  std::uint64_t first = 0, count = 0;  ///< cells of the mesh
+};
+
+/// One variable, or three that make a vector.
+struct Variable {
+  std::string name;
+  std::vector<int> indices;  ///< in the file, from 1
+};
+
+/// "V_x" "V_y" "V_z", "VX" "VY" "VZ": three neighbours that differ in their last letter only.
+std::vector<Variable> group_vectors(const std::vector<std::string>& names) {
+  const auto ends_in = [&](std::size_t k, char letter) {
+    return names[k].size() > 1 && std::tolower(static_cast<unsigned char>(names[k].back())) == letter;
+  };
+  const auto stem = [&](std::size_t k) { return names[k].substr(0, names[k].size() - 1); };
+  std::vector<Variable> variables;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (k + 2 < names.size() && ends_in(k, 'x') && ends_in(k + 1, 'y') && ends_in(k + 2, 'z') &&
+        stem(k) == stem(k + 1) && stem(k) == stem(k + 2)) {
+      std::string name = stem(k);
+      if (name.size() > 1 && name.back() == '_') name.pop_back();
+      const int first = static_cast<int>(k) + 1;
+      variables.push_back({name, {first, first + 1, first + 2}});
+      k += 2;
+    } else {
+      variables.push_back({names[k], {static_cast<int>(k) + 1}});
+    }
+  }
+  return variables;
+}
+
+/// VTK's cell type of a block's topology. More nodes than corners make it a higher-order cell, of which only the
+/// corners are used; Exodus numbers corners as VTK does.
+std::uint8_t vtk_type(std::string topology, std::int64_t nodes) {
+  std::transform(topology.begin(), topology.end(), topology.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  const auto is = [&](const char* prefix) { return topology.starts_with(prefix); };
+  if (is("HEX") && nodes >= 8) return nodes == 8 ? 12 : 72;
+  if (is("TET") && nodes >= 4) return nodes == 4 ? 10 : 71;
+  if (is("WED") && nodes >= 6) return nodes == 6 ? 13 : 73;
+  if (is("PYR") && nodes >= 5) return nodes == 5 ? 14 : 74;
+  if (is("NFA")) return 42;
+  for (const char* flat :
+       {"SHE", "QUA", "TRI", "BAR", "BEA", "TRU", "SPH", "CIR", "NSI", "EDG", "LIN", "POI", "RIG", "CON"})
+    if (is(flat)) return 9;
+  return 255;
+}
+
+/// Reads `n` values of one variable from entity `first` on, as doubles.
+void read_values(const ExodusFile& file, int step, ex_entity_type type, int index, std::int64_t block,
+                 std::uint64_t first, std::span<double> out) {
+  if (out.empty()) return;
+  file.require(ex_get_partial_var(file.id(), step, type, index, block, static_cast<std::int64_t>(first) + 1,
+                                  static_cast<std::int64_t>(out.size()), out.data()),
+               "a variable");
+}
+
+/// The element blocks' values at cells [first, first + out.size()); NaN in blocks without the variable.
+void read_cell_values(const ExodusFile& file, int step, int index, std::span<const ElementBlock> blocks,
+                      std::span<const int> has_variable, std::uint64_t first, std::span<double> out) {
+  std::fill(out.begin(), out.end(), nan);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    const std::uint64_t low = std::max(first, blocks[b].first),
+                        high = std::min(first + out.size(), blocks[b].first + blocks[b].count);
+    if (low >= high || !has_variable[b]) continue;
+    read_values(file, step, EX_ELEM_BLOCK, index, blocks[b].id, low - blocks[b].first,
+                out.subspan(low - first, high - low));
+  }
+}
+
+/// Turns a reader of one variable's values into a field's reader of components and magnitude.
+template <class ReadOne>
+BlockField make_field(const Variable& variable, scene::Association association, std::size_t tuples, ReadOne read_one) {
+  BlockField field;
+  field.name = variable.name;
+  field.association = association;
+  field.components = static_cast<int>(variable.indices.size());
+  field.type = "double";
+  field.tuples = tuples;
+  field.read = [indices = variable.indices, read_one](int component, std::size_t first, std::span<double> out) {
+    if (component != magnitude) {
+      read_one(indices[static_cast<std::size_t>(component)], first, out);
+      return;
+    }
+    const std::size_t n = out.size(), components = indices.size();
+    std::vector<double> planes(n * components), tuple(components);
+    for (std::size_t c = 0; c < components; ++c) read_one(indices[c], first, std::span(planes).subspan(c * n, n));
+    for (std::size_t k = 0; k < n; ++k) {
+      for (std::size_t c = 0; c < components; ++c) tuple[c] = planes[c * n + k];
+      out[k] = tuple_length(tuple.data(), static_cast<int>(components));
+    }
+  };
+  return field;
+}
+
+/// Reads one file; a class so that its parts share the open file and the counts.
+class Reading {
+ public:
+  Reading(const std::filesystem::path& path, std::optional<std::size_t> time_step)
+      : source_(path.string()), file_(std::make_shared<ExodusFile>(path)) {
+    // HDF5 compresses: then a value may take less than a byte. NetCDF classic does not.
+    const bool compressed = !read_beginning(path, 3).starts_with("CDF");
+    most_values_ = require_file(path) * (compressed ? 1040 : 1);
+    file_->require(ex_get_init_ext(file_->id(), &init_), "the header");
+    if (init_.num_dim != 3) file_->fail(fmt::format("its points have {} coordinates, not 3", init_.num_dim));
+    check_count("nodes", init_.num_nodes, 3);
+    check_count("elements", init_.num_elem, 1);
+    check_count("element blocks", init_.num_elem_blk, 1);
+    choose_step(time_step);
+    read_elements();
+    read_points();
+    add_fields();
+  }
+
+  MeshBlocks take() { return std::move(result_); }
+
+ private:
+  void check_count(const char* what, std::int64_t n, std::uint64_t values_each) const {
+    if (n < 0 || static_cast<std::uint64_t>(n) > most_values_ / values_each)
+      file_->fail(fmt::format("it promises {} {}", n, what));
+  }
+
+  void choose_step(std::optional<std::size_t> wish) {
+    const std::int64_t steps = std::max<std::int64_t>(ex_inquire_int(file_->id(), EX_INQ_TIME), 0);
+    check_count("time steps", steps, 1);
+    if (wish && *wish >= static_cast<std::size_t>(std::max<std::int64_t>(steps, 1)))
+      throw scene::bad_input(
+          fmt::format("{}: there is no time step {}, the file has {}; count from 0", source_, *wish, steps));
+    if (steps > INT32_MAX) file_->fail(fmt::format("it promises {} time steps", steps));
+    step_ = wish ? static_cast<int>(*wish) + 1 : static_cast<int>(steps);  // from 1; 0 if there are none
+    if (steps > 1)
+      result_.notes.push_back(
+          fmt::format("time step {} of 0 to {}{}", step_ - 1, steps - 1, wish ? "" : " (the last is the default)"));
+  }
+
+  void read_elements() {
+    std::vector<std::int64_t> ids(static_cast<std::size_t>(init_.num_elem_blk));
+    if (!ids.empty()) file_->require(ex_get_ids(file_->id(), EX_ELEM_BLOCK, ids.data()), "the element blocks");
+    block_.offsets.push_back(0);
+    for (const std::int64_t id : ids) {
+      ex_block info{};
+      info.id = id;
+      info.type = EX_ELEM_BLOCK;
+      file_->require(ex_get_block_param(file_->id(), &info), "an element block");
+      if (info.num_entry == 0) {
+        blocks_.push_back({id, block_.types.size(), 0});
+        continue;
+      }
+      const std::string topology(info.topology, ::strnlen(info.topology, sizeof info.topology));
+      const std::uint8_t type = vtk_type(topology, info.num_nodes_per_entry);
+      if (type == 255)
+        throw scene::bad_input(
+            fmt::format("{}: element block {} holds '{}' of {} nodes, which is not known; convert it", source_, id,
+                        topology.substr(0, 20), info.num_nodes_per_entry));
+      check_count("elements", info.num_entry, 1);
+      add_block(id, info, type);
+    }
+  }
+
+  void add_block(std::int64_t id, const ex_block& info, std::uint8_t type) {
+    const auto count = static_cast<std::size_t>(info.num_entry);
+    blocks_.push_back({id, block_.types.size(), count});
+    const bool volumes = type != 9 && type != 42;
+    const auto nodes = static_cast<std::size_t>(std::max<std::int64_t>(volumes ? info.num_nodes_per_entry : 0, 0));
+    if (nodes > 0 && count > most_values_ / nodes)
+      file_->fail(fmt::format("it promises {} elements of {} nodes", count, nodes));
+    block_.types.insert(block_.types.end(), count, type);
+    if (nodes > 0) {
+      std::vector<std::int64_t> corner(count * nodes);
+      file_->require(ex_get_conn(file_->id(), EX_ELEM_BLOCK, id, corner.data(), nullptr, nullptr), "the elements");
+      block_.connectivity.reserve(block_.connectivity.size() + corner.size());
+      for (std::size_t k = 0; k < corner.size(); ++k) {
+        if (corner[k] < 1 || corner[k] > init_.num_nodes)
+          throw scene::bad_input(
+              fmt::format("{}: element {} of block {} uses node {}, the file holds {}; write elements "
+                          "and nodes from one mesh",
+                          source_, k / nodes + 1, id, corner[k], init_.num_nodes));
+        block_.connectivity.push_back(static_cast<std::uint32_t>(corner[k] - 1));
+      }
+    }
+    for (std::size_t c = 0; c < count; ++c) block_.offsets.push_back(block_.offsets.back() + nodes);
+  }
+
+  void read_points() {
+    const auto n = static_cast<std::size_t>(init_.num_nodes);
+    if (n > std::numeric_limits<std::uint32_t>::max()) file_->fail(fmt::format("{} nodes are more than 2^32 - 1", n));
+    block_.positions.resize(n);
+    if (n == 0) return;
+    std::array<std::vector<double>, 3> xyz;
+    for (std::vector<double>& axis : xyz) axis.resize(n);
+    file_->require(ex_get_coord(file_->id(), xyz[0].data(), xyz[1].data(), xyz[2].data()), "the nodes");
+    for (std::size_t v = 0; v < n; ++v) block_.positions[v] = {xyz[0][v], xyz[1][v], xyz[2][v]};
+  }
+
+  void add_fields() {
+    const auto nodes = block_.positions.size();
+    const auto file = file_;
+    const int step = step_;
+    if (step > 0) {
+      for (const Variable& variable : group_vectors(file_->variable_names(EX_NODAL))) {
+        block_.fields.push_back(make_field(variable, scene::Association::point, nodes,
+                                           [file, step](int index, std::size_t first, std::span<double> out) {
+                                             read_values(*file, step, EX_NODAL, index, 1, first, out);
+                                           }));
+        displace(variable.name, block_.fields.back());
+      }
+      add_element_fields();
+    }
+    std::vector<double> ids;
+    for (const ElementBlock& b : blocks_) ids.insert(ids.end(), b.count, static_cast<double>(b.id));
+    block_.fields.push_back(field_of_values("ObjectId", "int64", scene::Association::cell, 1, std::move(ids)));
+    result_.format = "Exodus II";
+    result_.blocks.push_back(std::move(block_));
+  }
+
+  void add_element_fields() {
+    const std::vector<Variable> variables = group_vectors(file_->variable_names(EX_ELEM_BLOCK));
+    std::size_t count = 0;
+    for (const Variable& variable : variables) count += variable.indices.size();
+    std::vector<int> truth(blocks_.size() * count, 0);  // a row a block
+    if (!truth.empty())
+      file_->require(ex_get_truth_table(file_->id(), EX_ELEM_BLOCK, static_cast<int>(blocks_.size()),
+                                        static_cast<int>(count), truth.data()),
+                     "the table of element variables");
+    for (const Variable& variable : variables) {
+      std::vector<int> has;
+      for (std::size_t b = 0; b < blocks_.size(); ++b)
+        has.push_back(truth[b * count + static_cast<std::size_t>(variable.indices.front() - 1)]);
+      if (std::find(has.begin(), has.end(), 0) != has.end())
+        result_.notes.push_back(
+            fmt::format("field '{}' is missing in some element blocks: with it their cells are "
+                        "blanked",
+                        variable.name));
+      block_.fields.push_back(make_field(
+          variable, scene::Association::cell, block_.types.size(),
+          [file = file_, step = step_, blocks = blocks_, has](int index, std::size_t first, std::span<double> out) {
+            read_cell_values(*file, step, index, blocks, has, first, out);
+          }));
+    }
+  }
+
+  /// The vector that moves the nodes is known by its name alone: "DISPL", "disp", ...
+  void displace(const std::string& name, const BlockField& field) {
+    std::string start = name.substr(0, 3);
+    std::transform(start.begin(), start.end(), start.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (start != "dis" || field.components != 3) return;
+    std::vector<double> axis(block_.positions.size());
+    for (int c = 0; c < 3; ++c) {
+      field.read(c, 0, axis);
+      for (std::size_t v = 0; v < axis.size(); ++v) block_.positions[v][c] += axis[v];
+    }
+    result_.notes.push_back(fmt::format("nodes are displaced by '{}'", name));
+  }
+
+  std::string source_;
+  std::shared_ptr<ExodusFile> file_;  // the fields keep it open
+  ex_init_params init_{};
+  std::uint64_t most_values_ = 0;
+  int step_ = 0;
+  std::vector<ElementBlock> blocks_;
+  CellBlock block_;
+  MeshBlocks result_;
+};
+
+}  // namespace
+
+MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t> time_step) {
+  const std::string magic = read_beginning(file, 8);
+  if (!magic.starts_with("CDF") && !magic.starts_with("\x89HDF\r\n\x1a\n"))
+    throw scene::bad_input(
+        fmt::format("{}: it is neither NetCDF nor HDF5; check that it is an Exodus file", file.string()));
+  if (magic.starts_with("CDF")) check_netcdf_classic(MappedFile(file).text(), file.string());
+  return Reading(file, time_step).take();
+}
+
+}  // namespace tessera::io

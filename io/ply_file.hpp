@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "io/surface.hpp"
+
+namespace tessera::io {
+
+/// Parses a PLY surface: ASCII or binary of either byte order, vertex x y z and face vertex_indices (or vertex_index);
+/// other scalar vertex properties but colours, normals and texture coordinates become attributes named in
+/// `attribute_names`. Every count is compared with the bytes
+/// there are. Throws Error(bad_input, "SOURCE: ...").
+struct PlySurface {
+  Surface surface;
+  std::vector<std::string> attribute_names;
+};
+PlySurface parse_ply(std::string_view text, const std::string& source);
+
+}  // namespace tessera::io
