@@ -88,6 +88,13 @@ MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& opt
                                      file.extension().string(), known_extensions()));
 }
 
+/// Messages quote what a file holds, which may be anything.
+std::string one_line(std::string message) {
+  for (char& c : message)
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = ' ';
+  return message;
+}
+
 }  // namespace
 
 bool is_mesh_file(const std::filesystem::path& file) { return family_of(file) != Family::none; }
@@ -104,6 +111,8 @@ MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options
     result.format = std::move(read.format);
     result.notes.insert(result.notes.begin(), read.notes.begin(), read.notes.end());
     return result;
+  } catch (const scene::Error& e) {
+    throw scene::Error(e.code(), one_line(e.what()));
   } catch (const std::bad_alloc&) {
     throw scene::Error(scene::ExitCode::system_failure,
                        fmt::format("{}: memory ran out; use a larger machine or a part of the mesh", source));

@@ -12,8 +12,9 @@ namespace tessera::io {
 /// most; of a parallel file, that every piece exists and passes too. Throws Error(bad_input).
 void check_vtk_xml(const std::filesystem::path& file);
 
-/// Legacy VTK: walks from keyword to keyword, each payload has to fit; in CELLS each cell's length has to. Stops
-/// without a word at a keyword it does not know. Throws Error(bad_input, "SOURCE: ...").
+/// Legacy VTK: walks from keyword to keyword, each payload has to fit; in CELLS each cell's length has to. Unknown
+/// words are errors, since VTK knows words by their beginning only; what follows an array of strings is not checked.
+/// Throws Error(bad_input, "SOURCE: ...").
 void check_vtk_legacy(std::string_view text, const std::string& source);
 
 /// A NetCDF classic header (versions 1, 2 and 5): every count in it against the bytes that are left, every variable

@@ -41,8 +41,15 @@ class LegacyCheck {
     const std::size_t at = first.find(version);
     if (at == std::string_view::npos) fail("its first line names no version");
     const std::string_view digits = first.substr(at + version.size());
-    if (std::from_chars(digits.data(), digits.data() + digits.size(), major_version_).ec != std::errc())
-      fail(fmt::format("its version is '{}'", printable(digits)));
+    int minor = 0;
+    const char* const end = digits.data() + digits.size();
+    auto parsed = std::from_chars(digits.data(), end, major_version_);
+    if (parsed.ec == std::errc() && parsed.ptr != end && *parsed.ptr == '.')
+      parsed = std::from_chars(parsed.ptr + 1, end, minor);
+    else
+      parsed.ec = std::errc::invalid_argument;
+    if (parsed.ec != std::errc() || parsed.ptr != end || !first.starts_with("# vtk DataFile Version "))
+      fail(fmt::format("its first line is '{}', not '# vtk DataFile Version x.y'", printable(first)));
     line();  // title
     const std::string mode = lower(word());
     if (mode != "ascii" && mode != "binary")
@@ -56,7 +63,7 @@ class LegacyCheck {
   }
 
  private:
-  /// One keyword with its payload; false if it is unknown.
+  /// One keyword with its payload; false if what follows cannot be checked (strings).
   bool step(const std::string& key) {
     if (key == "dataset") {
       word();
@@ -138,7 +145,7 @@ class LegacyCheck {
                            : key == "tensors6"                                                   ? 6
                            : key == "global_ids" || key == "pedigree_ids" || key == "edge_flags" ? 1
                                                                                                  : 0;
-    if (components == 0) return false;
+    if (components == 0) fail(fmt::format("'{}' is no keyword of legacy VTK", printable(key)));
     word();
     return payload("an attribute", static_cast<std::uint64_t>(components) * tuples_, lower(word()));
   }
@@ -148,9 +155,9 @@ class LegacyCheck {
     const std::uint64_t entries = count("the size of the cell list", text_.size());
     if (major_version_ >= 5) {  // n + 1 offsets, then the indices
       if (lower(word()) != "offsets") fail("no OFFSETS follow the number of cells");
-      if (!payload("OFFSETS", cells, lower(word()))) fail("its cell offsets are of an unknown type");
+      payload("OFFSETS", cells, lower(word()));
       if (lower(word()) != "connectivity") fail("no CONNECTIVITY follows the cell offsets");
-      if (!payload("CONNECTIVITY", entries, lower(word()))) fail("its cell indices are of an unknown type");
+      payload("CONNECTIVITY", entries, lower(word()));
       return;
     }
     // Before version 5: each cell's number of points, then the points. VTK walks through them unchecked.
@@ -183,10 +190,13 @@ class LegacyCheck {
     return static_cast<std::int32_t>(value);
   }
 
-  /// Passes over `n` values; false if their size is not known.
+  /// Passes over `n` values; false if they are strings.
   bool payload(const char* what, std::uint64_t n, const std::string& type) {
     const std::uint64_t size = size_of_type(type);
-    if (size == 0) return false;
+    if (size == 0) {
+      if (type == "string" || type == "utf8_string" || type == "variant") return false;
+      fail(fmt::format("{} has the unknown type '{}'", what, printable(type)));
+    }
     what_ = what;
     if (binary_) {
       line();
