@@ -162,6 +162,8 @@ class PlyParser {
       }
     }
     if (vertex && (xyz[0] < 0 || xyz[1] < 0 || xyz[2] < 0)) fail("its vertices have no x, y and z");
+    // A second list of vertices would leave the first list's attributes shorter than the points.
+    if (vertex && !result_.surface.points.empty()) fail("it holds two lists of vertices");
     if (face && corners < 0) fail("its faces have no vertex_indices");
     for (std::uint64_t n = 0; n < element.count; ++n) {
       glm::dvec3 p(0);

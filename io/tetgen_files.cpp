@@ -75,7 +75,9 @@ class Numbers {
     return static_cast<std::size_t>(n);
   }
 
-  [[noreturn]] void fail(const std::string& what) const {
+  [[noreturn]] void fail(std::string what) const {
+    for (char& c : what)  // it may quote anything
+      if (c < ' ' || c > '~') c = '?';
     throw scene::bad_input(fmt::format("{}: line {}: {}; write the file anew", source_, line_number_, what));
   }
 

@@ -227,11 +227,12 @@ class LegacyCheck {
     return static_cast<std::uint64_t>(value);
   }
 
-  static std::string printable(std::string_view text) {
-    std::string clean(text.substr(0, 30));
-    for (char& c : clean)
+  static std::string printable(std::string_view text) { return clean(std::string(text.substr(0, 30))); }
+
+  static std::string clean(std::string text) {
+    for (char& c : text)
       if (c < ' ' || c > '~') c = '?';
-    return clean;
+    return text;
   }
 
   std::string_view word() {
@@ -251,7 +252,8 @@ class LegacyCheck {
   }
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it anew", source_, what));
+    throw scene::bad_input(
+        fmt::format("{}: {}; the file is truncated or damaged, write it anew", source_, clean(what)));
   }
 
   std::string_view text_;

@@ -1,33 +1,26 @@
-// libFuzzer target for TetGen's text files: the input, cut at its first NUL, is a .node and a .ele, a .poly or a
-// .smesh.
+// TetGen's text files: the input, cut at its first NUL, is a .node and a .ele, a .poly or a .smesh, or is refused.
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 
+#include "fuzz_check.hpp"
 #include "io/tetgen_files.hpp"
-#include "scene/error.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace tessera::io;
+  using namespace tessera;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  const std::string_view first = text.substr(0, text.find('\0')),
-                         second = first.size() < size ? text.substr(first.size() + 1) : text.substr(size);
-  try {
-    const CellBlock block = parse_node_ele(first, second, "fuzz.node", "fuzz.ele");
-    for (const std::uint32_t v : block.connectivity)
-      if (v >= block.positions.size()) std::abort();
-  } catch (const tessera::scene::Error&) {
-  }
-  for (const bool smesh : {false, true}) {
-    try {
-      const Surface surface = parse_tetgen_surface(first, smesh, second, "fuzz.poly", "fuzz.node");
-      for (const Facet& facet : surface.facets)
-        for (const Polygon& polygon : facet.polygons)
-          for (const std::uint32_t v : polygon)
-            if (v >= surface.points.size()) std::abort();
-    } catch (const tessera::scene::Error&) {
-    }
-  }
+  const std::string_view first = text.substr(0, text.find('\0'));
+  const std::string_view second = text.substr(first.size() < size ? first.size() + 1 : size);
+  test::parse_or_refuse([&] {
+    const io::CellBlock block = io::parse_node_ele(first, second, "f.node", "f.ele");
+    for (const std::uint32_t v : block.connectivity) test::require(v < block.positions.size());
+  });
+  for (const bool smesh : {false, true})
+    test::parse_or_refuse([&] {
+      const io::Surface surface = io::parse_tetgen_surface(first, smesh, second, "f.poly", "f.node");
+      for (const io::Facet& facet : surface.facets)
+        for (const io::Polygon& polygon : facet.polygons)
+          for (const std::uint32_t v : polygon) test::require(v < surface.points.size());
+    });
   return 0;
 }

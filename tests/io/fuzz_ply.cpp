@@ -1,0 +1,19 @@
+// Any bytes are a surface whose indices hold, or are refused in one line.
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "fuzz_check.hpp"
+#include "io/ply_file.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace tessera;
+  test::parse_or_refuse([&] {
+    const io::PlySurface ply = io::parse_ply(std::string_view(reinterpret_cast<const char*>(data), size), "f");
+    for (const io::Facet& facet : ply.surface.facets)
+      for (const std::uint32_t v : facet.polygons.front()) test::require(v < ply.surface.points.size());
+    test::require(ply.attribute_names.size() == ply.surface.attributes.size());
+    for (const auto& values : ply.surface.attributes) test::require(values.size() == ply.surface.points.size());
+  });
+  return 0;
+}
