@@ -10,8 +10,8 @@
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
 #include "io/mesh_assembly.hpp"
-#include "io/tets_file.hpp"
 #include "io/mesh_formats.hpp"
+#include "io/tets_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {

@@ -4,9 +4,9 @@
 #include <vtkNew.h>
 #include <vtkSmartPointer.h>
 
+#include "io/mesh_formats.hpp"
 #include "io/plot3d_layout.hpp"
 #include "io/vtk_blocks.hpp"
-#include "io/mesh_formats.hpp"
 #include "io/vtk_session.hpp"
 #include "scene/error.hpp"
 

@@ -1,9 +1,8 @@
-#include "io/mesh_formats.hpp"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "io/mesh_checks.hpp"
+#include "io/mesh_formats.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 
