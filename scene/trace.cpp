@@ -1,52 +1,116 @@
 #include "scene/trace.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <ctime>
+#include <mutex>
+#include <thread>
+#include <unordered_map>
 
 namespace tessera::scene {
 namespace {
 
-double thread_cpu_us() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) * 1e6 + static_cast<double>(t.tv_nsec) * 1e-3;
-}
+using Clock = std::chrono::steady_clock;
+
+/// For so long after a look at its CPU clock a thread is taken to have run.
+constexpr double adjacent_us = 1;
 
 }  // namespace
 
+struct Trace::ThreadSpans {
+  /// Taken by its thread alone, but for a moment when spans() reads: less than the cost of a look at a clock.
+  std::mutex mutex;
+  std::vector<TraceSpan> spans;
+  std::uint32_t number = 0;
+  double wall_us = -adjacent_us, cpu_us = 0;  ///< when its thread last looked at its CPU clock
+
+  /// The thread's CPU time at `now_us`. That clock is a system call and dear (0.2 to 0.5 us); where one scope begins
+  /// as another ends, or is empty, one look does for both.
+  double cpu_time(double now_us) {
+    if (now_us - wall_us < adjacent_us) return cpu_us + (now_us - wall_us);
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    wall_us = now_us;
+    cpu_us = static_cast<double>(t.tv_sec) * 1e6 + static_cast<double>(t.tv_nsec) * 1e-3;
+    return cpu_us;
+  }
+};
+
+struct Trace::Recording {
+  Clock::time_point origin = Clock::now();
+  std::mutex mutex;
+  std::unordered_map<std::thread::id, ThreadSpans*> of_thread;
+  std::vector<std::unique_ptr<ThreadSpans>> threads;  ///< by number
+};
+
+Trace::Trace(TraceRole role) : recording_(std::make_shared<Recording>()), role_(role) {}
+
+Trace::Trace(const Trace& other, TraceRole role) : recording_(other.recording_), role_(role) {}
+
+Trace::ThreadSpans& Trace::mine() {
+  // The buffer this thread wrote to last. A later recording may lie at an earlier one's address, but not also have
+  // begun at the same instant.
+  struct Last {
+    const Recording* recording = nullptr;
+    Clock::time_point origin;
+    ThreadSpans* spans = nullptr;
+  };
+  thread_local Last last;
+  if (last.recording == recording_.get() && last.origin == recording_->origin) return *last.spans;
+
+  const std::lock_guard lock(recording_->mutex);
+  ThreadSpans*& spans = recording_->of_thread[std::this_thread::get_id()];
+  if (spans == nullptr) {
+    recording_->threads.push_back(std::make_unique<ThreadSpans>());
+    spans = recording_->threads.back().get();
+    spans->number = static_cast<std::uint32_t>(recording_->threads.size() - 1);
+  }
+  last = {recording_.get(), recording_->origin, spans};
+  return *spans;
+}
+
 void Trace::add(const TraceSpan& span) {
-  const std::lock_guard lock(mutex_);
-  spans_.push_back(span);
+  ThreadSpans& spans = mine();
+  const std::lock_guard lock(spans.mutex);
+  spans.spans.push_back(span);
+}
+
+void Trace::add_frame(std::int32_t frame, double start_us) {
+  add({"frame", thread_number(), start_us, now_us() - start_us, 0, frame, 0, 0, role_});
 }
 
 std::vector<TraceSpan> Trace::spans() const {
-  const std::lock_guard lock(mutex_);
-  return spans_;
+  std::vector<TraceSpan> all;
+  const std::lock_guard lock(recording_->mutex);
+  for (const auto& thread : recording_->threads) {
+    const std::lock_guard spans_lock(thread->mutex);
+    all.insert(all.end(), thread->spans.begin(), thread->spans.end());
+  }
+  return all;
 }
 
 double Trace::now_us() const {
-  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - origin_).count();
+  return std::chrono::duration<double, std::micro>(Clock::now() - recording_->origin).count();
 }
 
-std::uint32_t Trace::thread_number() {
-  const std::lock_guard lock(mutex_);
-  const auto self = std::this_thread::get_id();
-  for (std::size_t i = 0; i < threads_.size(); ++i)
-    if (threads_[i] == self) return static_cast<std::uint32_t>(i);
-  threads_.push_back(self);
-  return static_cast<std::uint32_t>(threads_.size() - 1);
-}
+std::uint32_t Trace::thread_number() { return mine().number; }
 
-TraceScope::TraceScope(Trace* trace, const char* stage, std::int32_t frame)
-    : trace_(trace), stage_(stage), frame_(frame) {
-  if (trace_ == nullptr) return;
+void TraceScope::begin(const char* stage, std::int32_t frame) {
+  stage_ = stage;
+  frame_ = frame >= 0 ? frame : trace_->frame();
   start_us_ = trace_->now_us();
-  start_cpu_us_ = thread_cpu_us();
+  start_cpu_us_ = trace_->mine().cpu_time(start_us_);
 }
 
-TraceScope::~TraceScope() {
-  if (trace_ == nullptr) return;
-  trace_->add({stage_, trace_->thread_number(), start_us_, trace_->now_us() - start_us_,
-               thread_cpu_us() - start_cpu_us_, frame_, bytes_, messages_});
+void TraceScope::end() {
+  const double end_us = trace_->now_us();
+  Trace::ThreadSpans& mine = trace_->mine();
+  // A time carried over from an adjacent look may be a little ahead of the clock.
+  const double cpu_us = std::max(0.0, mine.cpu_time(end_us) - start_cpu_us_);
+  const TraceSpan span{stage_, mine.number, start_us_, end_us - start_us_, cpu_us,
+                       frame_, bytes_,      messages_, trace_->role()};
+  const std::lock_guard lock(mine.mutex);
+  mine.spans.push_back(span);
 }
 
 }  // namespace tessera::scene
