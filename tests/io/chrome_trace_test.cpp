@@ -49,7 +49,7 @@ TEST(ChromeTrace, AnEmptyTraceAndAForeignNameAreStillJson) {
 
 TEST(ChromeTrace, RefusesAFolderThatIsNotThere) {
   const test::TemporaryFolder folder;
-  test::expect_bad_input([&] { write_chrome_trace({}, folder / "none/trace.json", 0, "a"); }, {"none/trace.json"});
+  test::expect_bad_input([&] { write_chrome_trace(scene::Trace(), folder / "none/trace.json", 0, "a"); }, {"none/trace.json"});
 }
 
 }  // namespace
