@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <thread>
 
 #include "apps/frame_list.hpp"
 #include "apps/mesh_input.hpp"
@@ -45,9 +46,16 @@ class Run {
   FrameRecord make(const Frame& frame) {
     FrameRecord record;
     record.camera = view_of(frame, box_, options_.projection);
+    if (trace_ != nullptr) trace_->set_frame(frame.number);
+    double frame_begin = 0;
+    const auto end_frame = [&] {
+      if (trace_ != nullptr) trace_->add_frame(frame.number, frame_begin);
+    };
     scene::Image image;
     for (int i = 0; i < std::max(options_.repeat, 1); ++i) {
-      image = {};  // the last one's memory before the next one's
+      image = {};              // the last one's memory before the next one's
+      if (i > 0) end_frame();  // the last repetition's span holds the writing too
+      if (trace_ != nullptr) frame_begin = trace_->now_us();
       const auto start = Clock::now();
       image = renderer_->render(record.camera, frame.size, loaded_.function, &record.statistics);
       record.frame_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
@@ -56,6 +64,7 @@ class Run {
       const scene::TraceScope scope(trace_, "write");
       for (const auto& output : frame.outputs) io::write_image(image, output, options_.image);
     }
+    end_frame();
     if (options_.verify > 0) {
       const scene::TraceScope scope(trace_, "verify");
       record.verification =
@@ -85,6 +94,22 @@ void write_json(const Json& json, const std::filesystem::path& path) {
   file.write(json.dump(2, ' ', false, Json::error_handler_t::replace));
   file.write("\n");
   file.commit();
+}
+
+io::TraceRun trace_run(const RenderOptions& options, const Run& run, const Frame& frame, std::size_t rendered) {
+  const Json method = method_json(options);
+  io::TraceRun traced;
+  traced.version = TESSERA_VERSION;
+  traced.input = options.input.string();
+  traced.tets = run.file().mesh.tets.size();
+  traced.frames = static_cast<int>(rendered) * std::max(options.repeat, 1);
+  traced.width = frame.size.width;
+  traced.height = frame.size.height;
+  traced.threads =
+      options.settings.threads > 0 ? options.settings.threads : static_cast<int>(std::thread::hardware_concurrency());
+  traced.rasterizer = method.value("rasterizer", "planes");
+  traced.integrator = method.at("integrator");
+  return traced;
 }
 
 Json report_head(const RenderOptions& options) {
@@ -137,7 +162,11 @@ scene::ExitCode render(const RenderOptions& options) {
   }
   report["frames"] = frame_reports;
   if (!options.report.empty()) write_json(report, options.report);
-  if (!options.timing.empty()) io::write_chrome_trace(trace, options.timing, 0, "tessera");
+  if (!options.timing.empty()) {
+    const std::vector<std::string> events{io::chrome_trace_events(trace, 0, "rank 0")};
+    io::write_chrome_trace(events, run ? trace_run(options, *run, frames.front(), rendered) : io::TraceRun{},
+                           options.timing);
+  }
   return met ? scene::ExitCode::complete : scene::ExitCode::accuracy_not_met;
 }
 

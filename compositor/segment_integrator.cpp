@@ -9,8 +9,8 @@
 namespace tessera::compositor {
 
 SegmentIntegrator::SegmentIntegrator(const scene::TransferFunction& function, const scene::Integrator& integrator,
-                                     scene::Emission emission)
-    : table_(function), emission_(emission), termination_error_(1e-7) {
+                                     scene::Emission emission, scene::Trace* trace)
+    : table_(function), emission_(emission), trace_(trace), termination_error_(1e-7) {
   switch (integrator.kind) {
     case scene::IntegratorKind::exact:
       break;
@@ -30,6 +30,7 @@ SegmentIntegrator::SegmentIntegrator(const scene::TransferFunction& function, co
 }
 
 void SegmentIntegrator::integrate(SegmentBatch& batch) const {
+  const scene::TraceScope timing(trace_, "integrate");
   if (samples_ > 0)
     integrate_sampled(table_, emission_, samples_, batch);
   else

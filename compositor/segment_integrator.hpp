@@ -6,6 +6,7 @@
 #include "compositor/piecewise_table.hpp"
 #include "compositor/segment_batch.hpp"
 #include "scene/optical_model.hpp"
+#include "scene/trace.hpp"
 #include "scene/transfer_function.hpp"
 
 namespace tessera::compositor {
@@ -14,9 +15,10 @@ namespace tessera::compositor {
 /// Volume Rendering", 1995), for a transfer function that is piecewise linear in the scalar.
 class SegmentIntegrator {
  public:
-  /// Throws Error(bad_input) if the integrator's numbers are out of range.
+  /// Throws Error(bad_input) if the integrator's numbers are out of range. `trace`, if any, gets an `integrate` span
+  /// a batch.
   SegmentIntegrator(const scene::TransferFunction& function, const scene::Integrator& integrator,
-                    scene::Emission emission);
+                    scene::Emission emission, scene::Trace* trace = nullptr);
 
   /// Fills the batch's outputs. Each segment's result depends on that segment alone.
   void integrate(SegmentBatch& batch) const;
@@ -33,6 +35,7 @@ class SegmentIntegrator {
  private:
   PiecewiseTable table_;
   scene::Emission emission_;
+  scene::Trace* trace_;
   int samples_ = 0;  ///< 0: exact
   double termination_error_;
 };

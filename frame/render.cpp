@@ -78,7 +78,7 @@ struct Renderer::State {
 scene::Image Renderer::State::render(const scene::Camera& camera, scene::ImageSize size,
                                      const scene::TransferFunction& function, FrameStatistics& statistics) {
   const projection::PixelSpace space(camera, size);
-  const compositor::SegmentIntegrator integrator(function, settings.integrator, settings.emission);
+  const compositor::SegmentIntegrator integrator(function, settings.integrator, settings.emission, settings.trace);
   const bool independent = settings.emission == scene::Emission::independent;
   scene::Image image(size);
   project_vertices(space);

@@ -1,19 +1,41 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "scene/trace.hpp"
 
+/// Chrome's trace-event JSON, which Perfetto and chrome://tracing open and `tessera timing` reads: one file for all
+/// ranks and threads of a run. docs/FORMATS.md has every field.
 namespace tessera::io {
 
-/// The trace as Chrome's trace-event JSON, which Perfetto opens: `{"traceEvents": [...]}` with one complete event
-/// (`ph` X) a span: `name` the stage, `pid` the rank, `tid` the thread, `ts` and `dur` in microseconds of wall time,
-/// `args.cpu_us` the thread's CPU time; and metadata events (`ph` M) that name process and threads.
-std::string chrome_trace_json(const scene::Trace& trace, int rank, const std::string& process_name);
+/// What was run, for readers of its trace: the file's `otherData`. Words left empty and numbers left 0 are not written.
+struct TraceRun {
+  std::string version;                  ///< of the program
+  std::string input;                    ///< mesh file as it was named
+  std::uint64_t tets = 0;               ///< of the whole mesh, rendered a frame
+  int frames = 0;                       ///< rendered, repetitions counted
+  int width = 0, height = 0;            ///< pixels
+  int ranks = 1;                        ///< processes
+  int projectors = 0, compositors = 0;  ///< ranks that have the role; 0 and 0: one process does both
+  int threads = 0;                      ///< a rank
+  std::string exchange;                 ///< segments, runs
+  std::string rasterizer, integrator;   ///< as the command line names them
+  bool operator==(const TraceRun&) const = default;
+};
 
-/// Writes it to a file, which appears by rename. Throws as AtomicFile does.
-void write_chrome_trace(const scene::Trace& trace, const std::filesystem::path& file, int rank,
-                        const std::string& process_name);
+/// One rank's events as the text of a JSON array, so that ranks can send theirs to the one that writes.
+///
+/// `process_name` says the role: `rank 3 projector`, `rank 0 projector + compositor`; the host's name is added as a
+/// label. `offset_us` is added to this rank's times: rank 0's clock less this one's. Takes all faces of the recording.
+std::string chrome_trace_events(const scene::Trace& trace, int rank, const std::string& process_name,
+                                double offset_us = 0);
+
+/// Writes the trace of a run from its ranks' events; an empty text stands for a rank that sent none. The file appears
+/// by rename. Throws as AtomicFile does.
+void write_chrome_trace(std::span<const std::string> events_of_ranks, const TraceRun& run,
+                        const std::filesystem::path& file);
 
 }  // namespace tessera::io

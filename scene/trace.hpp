@@ -100,11 +100,11 @@ class TraceScope {
   void end();
 
   Trace* trace_;
-  const char* stage_;
-  std::int32_t frame_;
+  const char* stage_ = nullptr;
+  std::int32_t frame_ = -1;
   std::uint32_t messages_ = 0;
   std::uint64_t bytes_ = 0;
-  double start_us_, start_cpu_us_;
+  double start_us_ = 0, start_cpu_us_ = 0;
 };
 
 }  // namespace tessera::scene
