@@ -1,0 +1,328 @@
+#include "compositor/mpi_transport.hpp"
+
+#include <fmt/format.h>
+#include <mpi.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <list>
+#include <mutex>
+#include <thread>
+
+#include "compositor/mailboxes.hpp"
+
+namespace tessera::compositor {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::microseconds;
+
+// Tags below channel_count are channels; these are the transport's own.
+constexpr int fault_tag = 100;    // a rank to rank 0: I have failed (code, words)
+constexpr int verdict_tag = 101;  // rank 0 to all: the run's error (code, words)
+constexpr int done_tag = 102;     // a rank to rank 0: nothing more will come from me
+constexpr int clear_tag = 103;    // rank 0 to all: nothing more will come from anyone
+
+constexpr microseconds shortest_nap{20}, longest_nap{500};
+
+Bytes error_bytes(const scene::Error& error) {
+  const std::string words = error.what();
+  Bytes bytes(1 + words.size());
+  bytes[0] = static_cast<std::byte>(error.code());
+  std::memcpy(bytes.data() + 1, words.data(), words.size());
+  return bytes;
+}
+
+scene::Error error_from(const Bytes& bytes) {
+  return {static_cast<scene::ExitCode>(bytes.at(0)),
+          std::string(reinterpret_cast<const char*>(bytes.data()) + 1, bytes.size() - 1)};
+}
+
+}  // namespace
+
+bool launched_by_mpi() {
+  // Open MPI's mpirun, PMIx launchers (srun, prun), and PMI-1/2 ones, in that order.
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"})
+    if (std::getenv(name) != nullptr) return true;
+  return false;
+}
+
+/// The thread that speaks MPI, and what it shares with the others.
+class MpiTransport::Engine {
+ public:
+  Engine(LastResort last_resort, std::chrono::milliseconds patience)
+      : last_resort_(std::move(last_resort)), patience_(patience), thread_([this] { run(); }) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return started_; });
+    if (start_error_) {
+      lock.unlock();
+      thread_.join();
+      throw scene::Error(*start_error_);
+    }
+  }
+  ~Engine() {
+    if (thread_.joinable()) finish();
+  }
+
+  void send(int to, Channel channel, Bytes bytes) {
+    if (mailboxes.failed()) return;
+    if (to == rank) {
+      mailboxes.deliver(channel, {rank, std::move(bytes)});
+      return;
+    }
+    sent.add(channel, bytes.size());
+    enqueue({to, static_cast<int>(channel), std::move(bytes)});
+  }
+
+  void fail(const scene::Error& error) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!own_fault_) own_fault_ = error;
+    }
+    changed_.notify_all();
+  }
+
+  std::optional<scene::Error> finish() {
+    {
+      const std::lock_guard lock(mutex_);
+      finishing_ = true;
+    }
+    changed_.notify_all();
+    if (thread_.joinable()) thread_.join();
+    return mailboxes.error();
+  }
+
+  int rank = 0, size = 1;
+  Mailboxes mailboxes;
+  TrafficCounters sent;
+
+ private:
+  struct Outgoing {
+    int to, tag;
+    Bytes bytes;
+    MPI_Request request = MPI_REQUEST_NULL;
+  };
+
+  void enqueue(Outgoing message) {
+    {
+      const std::lock_guard lock(mutex_);
+      queue_.push_back(std::move(message));
+    }
+    changed_.notify_all();
+  }
+
+  void checked(int code, const char* doing) {
+    if (code == MPI_SUCCESS) return;
+    char words[MPI_MAX_ERROR_STRING];
+    int length = 0;
+    MPI_Error_string(code, words, &length);
+    throw scene::Error(scene::ExitCode::system_failure,
+                       fmt::format("rank {} of {}: MPI cannot {}: {}", rank, size, doing,
+                                   std::string_view(words, static_cast<std::size_t>(length))));
+  }
+
+  void start() {
+    int provided = MPI_THREAD_SINGLE;
+    checked(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "start");
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
+    checked(MPI_Comm_rank(MPI_COMM_WORLD, &rank), "tell the rank");
+    checked(MPI_Comm_size(MPI_COMM_WORLD, &size), "tell the number of ranks");
+    if (provided < MPI_THREAD_FUNNELED)
+      throw scene::Error(scene::ExitCode::system_failure,
+                         "MPI: gives no thread support (MPI_THREAD_FUNNELED); use a build of it that does");
+  }
+
+  void run() {
+    try {
+      start();
+    } catch (const scene::Error& error) {
+      start_error_ = error;
+    }
+    {
+      const std::lock_guard lock(mutex_);
+      started_ = true;
+    }
+    changed_.notify_all();
+    if (start_error_) return;
+
+    microseconds nap = shortest_nap;
+    while (!all_clear_) {
+      bool moved = false;
+      try {
+        moved = post() | complete() | take();
+      } catch (const scene::Error& error) {
+        fail(error);
+        give_up(error);  // MPI itself is broken: no words will reach anyone
+      }
+      settle_faults();
+      settle_end();
+      if (all_clear_) break;
+      nap = moved ? shortest_nap : std::min(2 * nap, longest_nap);
+      std::unique_lock lock(mutex_);
+      if (queue_.empty()) changed_.wait_for(lock, nap);
+    }
+    while (!pending_.empty()) complete();
+    MPI_Finalize();
+  }
+
+  /// Hands queued messages to MPI.
+  bool post() {
+    std::deque<Outgoing> queue;
+    {
+      const std::lock_guard lock(mutex_);
+      queue.swap(queue_);
+    }
+    for (Outgoing& message : queue) {
+      const bool is_ours = message.tag >= fault_tag;
+      if (mailboxes.failed() && !is_ours) continue;
+      pending_.push_back(std::move(message));
+      Outgoing& posted = pending_.back();
+      checked(MPI_Isend(posted.bytes.data(), static_cast<int>(posted.bytes.size()), MPI_BYTE, posted.to, posted.tag,
+                        MPI_COMM_WORLD, &posted.request),
+              "send");
+    }
+    return !queue.empty();
+  }
+
+  /// Frees messages that have left.
+  bool complete() {
+    bool moved = false;
+    for (auto message = pending_.begin(); message != pending_.end();) {
+      int left = 0;
+      checked(MPI_Test(&message->request, &left, MPI_STATUS_IGNORE), "send");
+      if (left == 0) {
+        ++message;
+        continue;
+      }
+      message = pending_.erase(message);
+      moved = true;
+    }
+    return moved;
+  }
+
+  /// Takes what has arrived.
+  bool take() {
+    bool moved = false;
+    for (int found = 1; found != 0;) {
+      MPI_Message handle = MPI_MESSAGE_NULL;
+      MPI_Status status;
+      checked(MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &found, &handle, &status), "look for messages");
+      if (found == 0) break;
+      int length = 0;
+      checked(MPI_Get_count(&status, MPI_BYTE, &length), "receive");
+      Message message{status.MPI_SOURCE, Bytes(static_cast<std::size_t>(length))};
+      checked(MPI_Mrecv(message.bytes.data(), length, MPI_BYTE, &handle, &status), "receive");
+      moved = true;
+      switch (status.MPI_TAG) {
+        case fault_tag:
+          decide(error_from(message.bytes));
+          break;
+        case verdict_tag:
+          conclude(error_from(message.bytes));
+          break;
+        case done_tag:
+          ++ranks_done_;
+          break;
+        case clear_tag:
+          all_clear_ = true;
+          break;
+        default:
+          if (!mailboxes.failed()) mailboxes.deliver(static_cast<Channel>(status.MPI_TAG), std::move(message));
+      }
+    }
+    return moved;
+  }
+
+  /// Rank 0: the first error it hears of is the run's.
+  void decide(const scene::Error& error) {
+    if (mailboxes.failed()) return;
+    for (int other = 1; other < size; ++other) enqueue({other, verdict_tag, error_bytes(error)});
+    conclude(error);
+  }
+
+  void conclude(const scene::Error& error) {
+    mailboxes.fail(error);
+    if (!deadline_) deadline_ = Clock::now() + patience_;
+  }
+
+  void settle_faults() {
+    std::optional<scene::Error> fault;
+    {
+      const std::lock_guard lock(mutex_);
+      if (own_fault_ && !fault_told_) {
+        fault = own_fault_;
+        fault_told_ = true;
+      }
+    }
+    if (fault && rank == 0) decide(*fault);
+    if (fault && rank != 0) {
+      enqueue({0, fault_tag, error_bytes(*fault)});
+      deadline_ = Clock::now() + patience_;
+    }
+    // Rank 0 first: the others only if it cannot.
+    if (deadline_ && Clock::now() > *deadline_ + (rank == 0 ? std::chrono::seconds(0) : std::chrono::seconds(2)))
+      give_up(mailboxes.failed() ? *mailboxes.error() : *own_fault_);
+  }
+
+  [[noreturn]] void give_up(const scene::Error& error) {
+    last_resort_(error);
+    std::_Exit(static_cast<int>(error.code()));
+  }
+
+  /// Done is said once, when all this rank has sent has left; rank 0 gives the all-clear.
+  void settle_end() {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!finishing_ || !queue_.empty() || !pending_.empty() || (own_fault_ && !mailboxes.failed())) return;
+    }
+    if (!done_told_) {
+      done_told_ = true;
+      if (rank == 0)
+        ++ranks_done_;
+      else
+        enqueue({0, done_tag, {}});
+    }
+    if (rank == 0 && ranks_done_ == size) {
+      for (int other = 1; other < size; ++other) enqueue({other, clear_tag, {}});
+      post();
+      all_clear_ = true;
+    }
+  }
+
+  LastResort last_resort_;
+  std::chrono::milliseconds patience_;
+
+  std::mutex mutex_;  // guards what follows
+  std::condition_variable changed_;
+  std::deque<Outgoing> queue_;
+  std::optional<scene::Error> own_fault_, start_error_;
+  bool started_ = false, finishing_ = false, fault_told_ = false;
+
+  // The engine's thread alone.
+  std::list<Outgoing> pending_;
+  std::optional<Clock::time_point> deadline_;
+  int ranks_done_ = 0;
+  bool done_told_ = false, all_clear_ = false;
+
+  std::thread thread_;  // last: it uses all of the above
+};
+
+MpiTransport::MpiTransport(LastResort last_resort, std::chrono::milliseconds patience)
+    : engine_(std::make_unique<Engine>(std::move(last_resort), patience)) {}
+MpiTransport::~MpiTransport() = default;
+
+std::optional<scene::Error> MpiTransport::finish() { return engine_->finish(); }
+int MpiTransport::rank() const { return engine_->rank; }
+int MpiTransport::size() const { return engine_->size; }
+void MpiTransport::send(int to, Channel channel, Bytes bytes) { engine_->send(to, channel, std::move(bytes)); }
+std::optional<Message> MpiTransport::receive(Channel channel, std::chrono::milliseconds timeout) {
+  return engine_->mailboxes.receive(channel, timeout);
+}
+void MpiTransport::fail(const scene::Error& error) { engine_->fail(error); }
+void MpiTransport::check() const { engine_->mailboxes.check(); }
+Transport::Traffic MpiTransport::sent(Channel channel) const { return engine_->sent.of(channel); }
+
+}  // namespace tessera::compositor

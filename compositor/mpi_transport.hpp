@@ -1,0 +1,49 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "compositor/transport.hpp"
+
+namespace tessera::compositor {
+
+/// Whether a launcher (mpirun, srun) started this process as a rank of a job; from the environment, without MPI.
+bool launched_by_mpi();
+
+/// Ranks that are processes, over MPI's world communicator.
+///
+/// One thread of this object makes all MPI calls, so MPI_THREAD_FUNNELED is enough, and it always takes what arrives:
+/// no send waits for the other side to look, and a rank that waits sleeps instead of spinning. It looks for messages
+/// every 20 microseconds while some move and every half millisecond after a while without any.
+///
+/// Faults: a rank that fails tells rank 0, which decides on the first one it hears of and tells all. A rank that cannot
+/// end in an orderly way within `patience` after that (it hangs in a read, or its peers are gone) calls `last_resort`,
+/// which must end the process. The death of a process is the launcher's to notice: it ends the other ranks by SIGTERM.
+class MpiTransport final : public Transport {
+ public:
+  using LastResort = std::function<void(const scene::Error& error)>;
+
+  /// Starts MPI. Throws Error(system_failure) if that fails.
+  explicit MpiTransport(LastResort last_resort, std::chrono::milliseconds patience = std::chrono::seconds(5));
+  ~MpiTransport() override;
+
+  /// The end of every rank's part, after its last send and receive, after an error too: waits until all ranks are here
+  /// and shuts MPI down. Returns the run's error if there is one.
+  std::optional<scene::Error> finish();
+
+  [[nodiscard]] int rank() const override;
+  [[nodiscard]] int size() const override;
+  void send(int to, Channel channel, Bytes bytes) override;
+  using Transport::receive;
+  std::optional<Message> receive(Channel channel, std::chrono::milliseconds timeout) override;
+  void fail(const scene::Error& error) override;
+  void check() const override;
+  [[nodiscard]] Traffic sent(Channel channel) const override;
+
+ private:
+  class Engine;
+  std::unique_ptr<Engine> engine_;
+};
+
+}  // namespace tessera::compositor
