@@ -57,4 +57,8 @@ std::optional<double> SegmentIntegrator::first_visible(double front, double back
 
 std::string SegmentIntegrator::name() const { return samples_ > 0 ? fmt::format("sampled:{}", samples_) : "exact"; }
 
+double opacity_weight(double max_color, double longest_ray, scene::Emission emission) {
+  return std::max(1.0, emission == scene::Emission::absorption ? max_color : max_color * longest_ray);
+}
+
 }  // namespace tessera::compositor

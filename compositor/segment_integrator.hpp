@@ -40,6 +40,10 @@ class SegmentIntegrator {
   double termination_error_;
 };
 
+/// What may still come behind a pixel of transmittance 1, the worst channel of linear RGBA: early termination compares
+/// its product with the transmittance to the error it may make. With independent emission light grows with the length.
+double opacity_weight(double max_color, double longest_ray, scene::Emission emission);
+
 /// `exact`: a segment is cut where its scalar crosses a knot, and pieces of more than one optical depth are cut again.
 /// Over a piece extinction and colour are linear in the position u, so the optical depth is a quadratic q(u) and, by
 /// parts,

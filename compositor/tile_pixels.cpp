@@ -7,12 +7,9 @@
 namespace tessera::compositor {
 
 TilePixels::TilePixels(const projection::PixelSpace& space, const SegmentIntegrator& integrator, double max_color,
-                       double longest_ray, scene::Emission emission, scene::Image& image)
-    : space_(&space), integrator_(&integrator), image_(&image), termination_error_(integrator.termination_error()) {
-  // Behind transmittance T: at most T of opacity, T max_color of light in the absorption model, T max_color length
-  // otherwise.
-  left_out_per_transmittance_ =
-      std::max(1.0, emission == scene::Emission::absorption ? max_color : max_color * longest_ray);
+                       double longest_ray, scene::Emission emission, ImageWindow window)
+    : space_(&space), integrator_(&integrator), window_(window), termination_error_(integrator.termination_error()) {
+  left_out_per_transmittance_ = opacity_weight(max_color, longest_ray, emission);
 }
 
 void TilePixels::start(const projection::PixelRect& rect) {
@@ -78,11 +75,11 @@ void TilePixels::take(const projection::RaySegments& segments, const sorting::Pi
 }
 
 void TilePixels::finish() {
-  scene::Image& image = *image_;
+  scene::Image& image = *window_.image;
   std::size_t i = 0;
   for (int y = rect_.y0; y < rect_.y1; ++y)
     for (int x = rect_.x0; x < rect_.x1; ++x, ++i) {
-      const std::size_t at = image.index(x, y);
+      const std::size_t at = image.index(x - window_.x0, y - window_.y0);
       image.rgba[4 * at + 0] = static_cast<float>(red_[i]);
       image.rgba[4 * at + 1] = static_cast<float>(green_[i]);
       image.rgba[4 * at + 2] = static_cast<float>(blue_[i]);

@@ -15,6 +15,12 @@
 
 namespace tessera::compositor {
 
+/// Where finished pixels go: pixel (x0, y0) of the picture is the image's first.
+struct ImageWindow {
+  scene::Image* image;
+  int x0 = 0, y0 = 0;
+};
+
 /// The pixels of a tile while segments are composited into them, front to back.
 ///
 /// Carries premultiplied linear RGB, transmittance and optical depth in double. The opacity is -expm1(-optical depth),
@@ -25,22 +31,22 @@ namespace tessera::compositor {
 class TilePixels : public TileSink {
  public:
   /// `longest_ray` bounds the world length of a ray inside the data: with independent emission, what may still come
-  /// behind a pixel. The image must outlive this object; tiles of it are disjoint, so threads may share it.
+  /// behind a pixel. The window's image must outlive this object; tiles of it are disjoint, so threads may share it.
   TilePixels(const projection::PixelSpace& space, const SegmentIntegrator& integrator, double max_color,
-             double longest_ray, scene::Emission emission, scene::Image& image);
+             double longest_ray, scene::Emission emission, ImageWindow window);
 
   void start(const projection::PixelRect& rect) override;
   void take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) override;
   bool take_unordered(const projection::RaySegments&, const sorting::PixelLists&, double) override { return false; }
   [[nodiscard]] bool open(std::size_t pixel) const override { return open_[pixel] != 0; }
   [[nodiscard]] std::size_t open_count() const override { return open_count_; }
-  /// Writes the pixels into their place in the image.
+  /// Writes the pixels into their place in the window's image.
   void finish() override;
 
  private:
   const projection::PixelSpace* space_;
   const SegmentIntegrator* integrator_;
-  scene::Image* image_;
+  ImageWindow window_;
   double left_out_per_transmittance_, termination_error_;
   projection::PixelRect rect_{0, 0, 0, 0};
   std::vector<double> red_, green_, blue_, transmittance_, optical_depth_, first_depth_, length_per_depth_;

@@ -8,8 +8,8 @@ namespace tessera::compositor {
 
 /// What becomes of a tile's ray segments: pixels of a picture, or fragments for another process.
 ///
-/// The tile renderer calls start(), then take() window by window, then finish(). Pixels are numbered row by row within
-/// the rectangle given to start(). One sink serves one thread.
+/// The tile renderer calls begin_tile(); start(), then take() window by window, then finish(); end_tile(). Pixels are
+/// numbered row by row within the rectangle given to start(). One sink serves one thread.
 class TileSink {
  public:
   TileSink() = default;
@@ -17,7 +17,11 @@ class TileSink {
   TileSink& operator=(const TileSink&) = delete;
   virtual ~TileSink() = default;
 
-  /// Forgets what an unfinished tile left and begins on the pixels of `rect`.
+  /// Called once a tile around all else; the rectangles given to start() are the tile or parts of it.
+  virtual void begin_tile(std::size_t /*tile*/, const projection::PixelRect& /*rect*/) {}
+  virtual void end_tile() {}
+
+  /// Forgets what an unfinished rectangle left and begins on the pixels of `rect`.
   virtual void start(const projection::PixelRect& rect) = 0;
 
   /// Takes, in each pixel's order, the segments that are final: those whose front lies before `final_depth`, as no

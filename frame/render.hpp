@@ -35,8 +35,11 @@ struct FrameStatistics {
   std::uint64_t peak_buffer_bytes = 0;    ///< most bytes of frame buffers held at once (estimate from capacities)
   std::uint64_t exact_sign_tests = 0;     ///< edge signs decided by exact arithmetic
   std::uint64_t tiles_split = 0;          ///< tiles worked through in parts to stay within the memory budget
-  std::string instruction_set;            ///< of the kernels that ran
-  std::string integrator;                 ///< what `automatic` chose
+  std::uint64_t fragments = 0;            ///< runs or segments sent to compositors; 0 in a single process
+  std::uint64_t exchange_bytes = 0;       ///< of the messages they went in, those to the same rank included
+  std::uint64_t exchange_messages = 0;
+  std::string instruction_set;  ///< of the kernels that ran
+  std::string integrator;       ///< what `automatic` chose
 };
 
 /// Renders one tetrahedral mesh many times in one process. Preparation that does not depend on view or transfer

@@ -1,0 +1,107 @@
+#include "compositor/image_assembly.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace tessera::compositor {
+namespace {
+
+constexpr std::size_t message_bytes = 512 << 10;
+
+scene::Error malformed(int from) {
+  return {scene::ExitCode::system_failure,
+          fmt::format("assembly: rank {} sent malformed tiles; run one version of the program on all machines", from)};
+}
+
+}  // namespace
+
+TileSender::TileSender(Transport& transport, int assembler, std::uint32_t frame)
+    : transport_(transport), assembler_(assembler), frame_(frame) {}
+
+void TileSender::send(std::uint32_t tile, const scene::Image& pixels) {
+  const std::lock_guard lock(mutex_);
+  append(body_, std::uint64_t{tile});
+  for (const auto* floats : {&pixels.rgba, &pixels.depth}) {
+    const auto bytes = std::as_bytes(std::span(*floats));
+    body_.insert(body_.end(), bytes.begin(), bytes.end());
+  }
+  ++tiles_;
+  if (body_.size() >= message_bytes) flush();
+}
+
+void TileSender::flush() {
+  if (tiles_ == 0) return;
+  Bytes message;
+  message.reserve(sizeof(TilesHeader) + body_.size());
+  append(message, TilesHeader{.frame = frame_, .tiles = std::exchange(tiles_, 0)});
+  message.insert(message.end(), body_.begin(), body_.end());
+  body_.clear();
+  transport_.send(assembler_, Channel::tiles, std::move(message));
+}
+
+void TileSender::end(const FrameEnd& sums) {
+  const std::lock_guard lock(mutex_);
+  flush();
+  Bytes message;
+  append(message, TilesHeader{.ends = 1, .frame = frame_});
+  append(message, sums);
+  transport_.send(assembler_, Channel::tiles, std::move(message));
+}
+
+ImageAssembly::ImageAssembly(int compositors, std::function<projection::TileGrid(std::uint32_t)> grid_of)
+    : compositors_(compositors), grid_of_(std::move(grid_of)) {}
+
+std::optional<AssembledFrame> ImageAssembly::accept(const Message& message, int self) {
+  RecordReader reader(message.bytes);
+  const auto header = reader.take<TilesHeader>();
+  if (header.magic != wire_magic || header.version != wire_version)
+    throw scene::Error(scene::ExitCode::system_failure,
+                       fmt::format("assembly: rank {} speaks another wire version than rank {}, {}; run one version of "
+                                   "the program on all machines",
+                                   message.from, self, wire_version));
+  auto [at, is_new] = frames_.try_emplace(header.frame);
+  Frame& frame = at->second;
+  if (is_new) {
+    frame.grid = grid_of_(header.frame);
+    frame.image = scene::Image(frame.grid.image);
+  }
+  for (std::uint32_t i = 0; i < header.tiles; ++i) {
+    const auto tile = reader.take<std::uint64_t>();
+    if (tile >= frame.grid.count()) throw malformed(message.from);
+    const projection::PixelRect rect = frame.grid.rect(tile);
+    const auto width = static_cast<std::size_t>(rect.x1 - rect.x0);
+    const auto area = static_cast<std::size_t>(rect.area());
+    const auto rgba = reader.take_bytes(area * 4 * sizeof(float)), depth = reader.take_bytes(area * sizeof(float));
+    for (int y = rect.y0; y < rect.y1; ++y) {
+      const std::size_t to = frame.image.index(rect.x0, y), from = static_cast<std::size_t>(y - rect.y0) * width;
+      std::memcpy(&frame.image.rgba[4 * to], rgba.data() + from * 4 * sizeof(float), width * 4 * sizeof(float));
+      std::memcpy(&frame.image.depth[to], depth.data() + from * sizeof(float), width * sizeof(float));
+    }
+  }
+  if (header.ends == 0) return std::nullopt;
+  frame.sums = sum(frame.sums, reader.take<FrameEnd>());
+  if (++frame.ended < compositors_) return std::nullopt;
+  AssembledFrame assembled{header.frame, std::move(frame.image), frame.sums};
+  frames_.erase(at);
+  return assembled;
+}
+
+FrameEnd sum(const FrameEnd& a, const FrameEnd& b) {
+  return {a.tets_total + b.tets_total,
+          a.tets_invisible + b.tets_invisible,
+          a.tets_outside_view + b.tets_outside_view,
+          a.tets_between_pixels + b.tets_between_pixels,
+          a.tets_projected + b.tets_projected,
+          a.segments + b.segments,
+          std::max(a.max_segments_alive, b.max_segments_alive),
+          a.peak_buffer_bytes + b.peak_buffer_bytes,
+          a.exact_sign_tests + b.exact_sign_tests,
+          a.tiles_split + b.tiles_split,
+          a.fragments + b.fragments,
+          a.bytes + b.bytes,
+          a.messages + b.messages};
+}
+
+}  // namespace tessera::compositor

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+
+#include "compositor/wire.hpp"
+#include "projection/tile_lists.hpp"
+#include "scene/image.hpp"
+
+/// The last and only sequential step (Juliachs et al. 2007, section 3): compositors send their tiles to the first one,
+/// which puts the picture together.
+///
+/// On channel `tiles`, little endian, version as in wire.hpp:
+///   TilesHeader; `tiles` times: a 32-bit tile number, 32 bits of zero, RGBA floats of its pixels row by row, depth
+///   floats; then, where `ends` is 1, FrameEnd: the sender has no more tiles of the frame.
+namespace tessera::compositor {
+
+struct TilesHeader {
+  std::uint32_t magic = wire_magic;
+  std::uint16_t version = wire_version;
+  std::uint16_t ends = 0;
+  std::uint32_t frame = 0;
+  std::uint32_t tiles = 0;
+};
+static_assert(sizeof(TilesHeader) == 16);
+
+/// A compositor's finished tiles of one frame on their way, in messages of about half a megabyte. Any thread.
+class TileSender {
+ public:
+  TileSender(Transport& transport, int assembler, std::uint32_t frame);
+  void send(std::uint32_t tile, const scene::Image& pixels);
+  void end(const FrameEnd& sums);
+
+ private:
+  void flush();
+
+  Transport& transport_;
+  int assembler_;
+  std::uint32_t frame_;
+  std::mutex mutex_;
+  std::uint32_t tiles_ = 0;
+  Bytes body_;
+};
+
+/// A picture that has all its tiles.
+struct AssembledFrame {
+  std::uint32_t frame;
+  scene::Image image;
+  FrameEnd sums;
+};
+
+/// Puts pictures together on the first compositor. Frames complete in order.
+class ImageAssembly {
+ public:
+  /// `grid_of(frame)`: the frame's tiles.
+  ImageAssembly(int compositors, std::function<projection::TileGrid(std::uint32_t)> grid_of);
+
+  /// Takes a message of channel `tiles`; the frame that it completes, if any.
+  std::optional<AssembledFrame> accept(const Message& message, int self);
+
+ private:
+  struct Frame {
+    scene::Image image;
+    projection::TileGrid grid;
+    FrameEnd sums{};
+    int ended = 0;
+  };
+  int compositors_;
+  std::function<projection::TileGrid(std::uint32_t)> grid_of_;
+  std::map<std::uint32_t, Frame> frames_;
+};
+
+/// Sums of two processes' counts; for `max_segments_alive` the larger one.
+FrameEnd sum(const FrameEnd& a, const FrameEnd& b);
+
+}  // namespace tessera::compositor

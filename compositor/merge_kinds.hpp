@@ -1,0 +1,11 @@
+#pragma once
+
+#include "compositor/tile_merger.hpp"
+
+/// The mergers of each kind of record, for make_tile_merger() alone.
+namespace tessera::compositor {
+
+std::unique_ptr<TileMerger> make_segment_merger(const MergeContext& context, const projection::PixelRect& rect);
+std::unique_ptr<TileMerger> make_run_merger(const MergeContext& context, const projection::PixelRect& rect);
+
+}  // namespace tessera::compositor

@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <vector>
+
+#include "compositor/merge_kinds.hpp"
+
+namespace tessera::compositor {
+namespace {
+
+/// Runs: few a pixel, composited front to back.
+class RunMerger final : public TileMerger {
+ public:
+  RunMerger(const MergeContext& context, const projection::PixelRect& rect)
+      : budget_(context.budget_bytes),
+        rect_(rect),
+        weight_(opacity_weight(context.max_color, context.longest_ray, context.emission)),
+        termination_error_(context.integrator->termination_error()),
+        pixels_(static_cast<std::size_t>(rect.area())) {}
+
+  void add(const TilePart& part) override {
+    if ((runs_.size() + part.fragments) * sizeof(RunRecord) > budget_)
+      throw scene::Error(scene::ExitCode::system_failure,
+                         fmt::format("the tile at pixel {},{} holds {} runs at once, beyond the memory budget; raise "
+                                     "--memory or make --tile-size smaller",
+                                     rect_.x0, rect_.y0, runs_.size() + part.fragments));
+    RecordReader reader(part.records);
+    while (!reader.empty()) {
+      const auto run = reader.take<RunRecord>();
+      if (run.pixel >= pixels_.size())
+        throw scene::Error(
+            scene::ExitCode::system_failure,
+            fmt::format("exchange: the runs of tile {} are malformed; all ranks must run the same program", part.tile));
+      runs_.push_back(run);
+    }
+  }
+
+  void advance(double final_depth) override {
+    // By all a run holds: equal runs are interchangeable, so the order of arrival shows nowhere.
+    const auto key = [](const RunRecord& run) {
+      return std::tie(run.pixel, run.front, run.thickness, run.optical_depth, run.red, run.green, run.blue);
+    };
+    std::sort(runs_.begin(), runs_.end(), [&](const RunRecord& a, const RunRecord& b) { return key(a) < key(b); });
+    for (const RunRecord& run : runs_)
+      if (run.front < final_depth) composite(run, pixels_[run.pixel]);
+    std::erase_if(runs_, [&](const RunRecord& run) { return run.front < final_depth; });
+  }
+
+  scene::Image finish() override {
+    scene::Image image({rect_.x1 - rect_.x0, rect_.y1 - rect_.y0});
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+      const Pixel& pixel = pixels_[i];
+      image.rgba[4 * i + 0] = static_cast<float>(pixel.red);
+      image.rgba[4 * i + 1] = static_cast<float>(pixel.green);
+      image.rgba[4 * i + 2] = static_cast<float>(pixel.blue);
+      image.rgba[4 * i + 3] = static_cast<float>(-std::expm1(-pixel.optical_depth));
+      image.depth[i] = static_cast<float>(pixel.first_depth);
+    }
+    return image;
+  }
+
+ private:
+  struct Pixel {
+    double red = 0, green = 0, blue = 0, transmittance = 1, optical_depth = 0;
+    double first_depth = std::numeric_limits<double>::infinity();
+    bool open = true;
+  };
+
+  void composite(const RunRecord& run, Pixel& pixel) const {
+    if (!pixel.open) return;
+    if (pixel.optical_depth == 0 && run.optical_depth > 0) pixel.first_depth = run.front;
+    pixel.red += pixel.transmittance * double{run.red};
+    pixel.green += pixel.transmittance * double{run.green};
+    pixel.blue += pixel.transmittance * double{run.blue};
+    pixel.optical_depth += double{run.optical_depth};
+    pixel.transmittance *= std::exp(-double{run.optical_depth});
+    pixel.open = pixel.transmittance * weight_ >= termination_error_;
+  }
+
+  std::uint64_t budget_;
+  projection::PixelRect rect_;
+  double weight_, termination_error_;
+  std::vector<Pixel> pixels_;
+  std::vector<RunRecord> runs_;
+};
+
+}  // namespace
+
+std::unique_ptr<TileMerger> make_run_merger(const MergeContext& context, const projection::PixelRect& rect) {
+  return std::make_unique<RunMerger>(context, rect);
+}
+
+}  // namespace tessera::compositor

@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "compositor/merge_kinds.hpp"
+#include "compositor/tile_pixels.hpp"
+#include "projection/ray_segments.hpp"
+#include "sorting/pixel_lists.hpp"
+
+namespace tessera::compositor {
+namespace {
+
+/// Raw segments: sorted and integrated here, by the code that does it for a single process.
+class SegmentMerger final : public TileMerger {
+ public:
+  SegmentMerger(const MergeContext& context, const projection::PixelRect& rect)
+      : budget_(context.budget_bytes),
+        rect_(rect),
+        image_({rect.x1 - rect.x0, rect.y1 - rect.y0}),
+        pixels_(*context.space, *context.integrator, context.max_color, context.longest_ray, context.emission,
+                {&image_, rect.x0, rect.y0}) {
+    pixels_.start(rect);
+  }
+
+  void add(const TilePart& part) override {
+    const bool cell_data = part.kind == RecordKind::chains_of_cells;
+    reserve(segments_.size + part.fragments);
+    RecordReader reader(part.records);
+    while (!reader.empty()) {
+      const auto chain = reader.take<ChainHeader>();
+      if (chain.pixel >= static_cast<std::uint32_t>(rect_.area()) ||
+          chain.links > segments_.capacity() - segments_.size)
+        throw malformed(part.tile);
+      double front = chain.front, scalar = chain.scalar_front;
+      for (std::uint32_t i = 0; i < chain.links; ++i) {
+        const auto link = reader.take<ChainLink>();
+        const std::size_t at = segments_.size++;
+        segments_.pixel_and_tet[at] = link.tet << 32 | chain.pixel;
+        segments_.front[at] = front;
+        segments_.back[at] = link.back;
+        segments_.scalar_front[at] = cell_data ? link.scalar : scalar;
+        segments_.scalar_back[at] = link.scalar;
+        front = link.back;
+        scalar = link.scalar;
+      }
+    }
+  }
+
+  void advance(double final_depth) override {
+    lists_.sort(segments_, static_cast<std::size_t>(rect_.area()));
+    pixels_.take(segments_, lists_, final_depth);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < segments_.size; ++i)
+      if (!(segments_.front[i] < final_depth) && pixels_.open(segments_.pixel(i))) segments_.move(i, kept++);
+    segments_.size = kept;
+  }
+
+  scene::Image finish() override {
+    pixels_.finish();
+    return std::move(image_);
+  }
+
+ private:
+  static scene::Error malformed(std::uint32_t tile) {
+    return {scene::ExitCode::system_failure,
+            fmt::format("exchange: the segments of tile {} are malformed; all ranks must run the same program", tile)};
+  }
+
+  void reserve(std::size_t segments) {
+    if (segments <= segments_.capacity()) return;
+    constexpr std::size_t each =
+        projection::RaySegments::bytes_each + sorting::PixelLists::bytes_each + SegmentBatch::bytes_each;
+    if (segments * each > budget_ || segments > std::numeric_limits<std::uint32_t>::max())
+      throw scene::Error(scene::ExitCode::system_failure,
+                         fmt::format("the tile at pixel {},{} holds {} ray segments at once, beyond the memory budget; "
+                                     "raise --memory or make --tile-size smaller",
+                                     rect_.x0, rect_.y0, segments));
+    segments_.reserve(std::min<std::size_t>(std::max(segments, 2 * segments_.capacity()), budget_ / each));
+  }
+
+  std::uint64_t budget_;
+  projection::PixelRect rect_;
+  scene::Image image_;
+  TilePixels pixels_;
+  projection::RaySegments segments_;
+  sorting::PixelLists lists_;
+};
+
+}  // namespace
+
+std::unique_ptr<TileMerger> make_segment_merger(const MergeContext& context, const projection::PixelRect& rect) {
+  return std::make_unique<SegmentMerger>(context, rect);
+}
+
+}  // namespace tessera::compositor

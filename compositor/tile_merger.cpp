@@ -1,0 +1,43 @@
+#include "compositor/tile_merger.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "compositor/merge_kinds.hpp"
+
+namespace tessera::compositor {
+
+void merge(TileMerger& merger, const std::vector<TilePart>& parts, double final_depth, std::uint64_t budget_bytes) {
+  const std::uint64_t bytes_a_step = std::min<std::uint64_t>(budget_bytes / 20, 1 << 20);
+  std::uint64_t added = 0;
+  for (const TilePart& part : parts) {
+    // Beyond final_depth projectors that are not among these parts may still send something.
+    if (added >= bytes_a_step && std::isfinite(part.start_depth)) {
+      merger.advance(std::min(part.start_depth, final_depth));
+      added = 0;
+    }
+    merger.add(part);
+    added += part.records.size();
+  }
+  merger.advance(final_depth);
+}
+
+std::unique_ptr<TileMerger> make_tile_merger(RecordKind kind, const MergeContext& context,
+                                             const projection::PixelRect& rect) {
+  switch (kind) {
+    case RecordKind::runs:
+      return make_run_merger(context, rect);
+    case RecordKind::chains:
+    case RecordKind::chains_of_cells:
+      return make_segment_merger(context, rect);
+    case RecordKind::tuples:
+      break;
+  }
+  throw scene::Error(
+      scene::ExitCode::system_failure,
+      fmt::format("exchange: records of unknown kind {}; all ranks must run the same program", static_cast<int>(kind)));
+}
+
+}  // namespace tessera::compositor

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+
+#include "compositor/segment_integrator.hpp"
+#include "compositor/wire.hpp"
+#include "projection/footprint.hpp"
+#include "projection/pixel_space.hpp"
+#include "scene/image.hpp"
+
+namespace tessera::compositor {
+
+/// What a compositor knows of its frame. All must outlive the mergers.
+struct MergeContext {
+  const projection::PixelSpace* space;
+  const SegmentIntegrator* integrator;
+  double max_color, longest_ray;
+  scene::Emission emission;
+  std::uint64_t budget_bytes;  ///< for one tile's fragments that cannot be composited yet
+};
+
+/// One tile of the picture from the fragments of all projectors.
+///
+/// Parts may come in any order; the picture does not depend on it, as fragments have a total order: segments by
+/// (front, back, tet), runs by all they hold. One merger is used by one thread at a time.
+class TileMerger {
+ public:
+  virtual ~TileMerger() = default;
+
+  /// Takes a part's records. Throws Error(system_failure) for a malformed part, or if the tile holds more than the
+  /// budget.
+  virtual void add(const TilePart& part) = 0;
+
+  /// Composites all fragments before this planar depth: no fragment may still come before it.
+  virtual void advance(double final_depth) = 0;
+
+  /// The finished tile, its first pixel at (0, 0); after advance(infinity).
+  virtual scene::Image finish() = 0;
+};
+
+/// Adds parts that are ordered by start_depth and advances to `final_depth`, in steps that stay well within a merger's
+/// budget (a segment takes five times its bytes on the wire).
+void merge(TileMerger& merger, const std::vector<TilePart>& parts, double final_depth, std::uint64_t budget_bytes);
+
+/// A merger for parts of this kind.
+std::unique_ptr<TileMerger> make_tile_merger(RecordKind kind, const MergeContext& context,
+                                             const projection::PixelRect& rect);
+
+}  // namespace tessera::compositor

@@ -1,0 +1,147 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+#include "compositor/transport.hpp"
+
+/// What travels from projectors to compositors, byte by byte. Little endian, no padding, version 1.
+///
+///   message    MessageHeader, then by its kind
+///     begin    FrameBegin, then one bit a tile of the receiver in its order, lowest bit first: 1 where parts will come
+///     parts    any number of: PartHeader, then `bytes` bytes of records of its kind
+///     end      FrameEnd
+///
+/// A projector sends each compositor, frame after frame: one begin; the parts of its tiles in tile order, tile by tile;
+/// one end. So a compositor knows from the begins what a tile still lacks.
+///
+/// Records of a part:
+///   runs       RunRecord each
+///   chains     ChainHeader and `links` ChainLinks each: segments of one pixel that touch end to end. Where one ends
+///   the
+///              next begins, at the same depth and scalar, so 24 bytes a segment carry all of it in double precision:
+///              the compositor's picture has the bits of a single process's. Scalars of cell data are the same at both
+///              ends of a link and are not shared with the next.
+///   tuples     TupleRecord each, in the order of arrival: Juliachs et al. 2007, 4.1
+namespace tessera::compositor {
+
+static_assert(std::endian::native == std::endian::little, "the wire is little endian");
+
+inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
+inline constexpr std::uint16_t wire_version = 1;
+
+enum class MessageKind : std::uint16_t { begin = 1, parts = 2, end = 3 };
+enum class RecordKind : std::uint8_t { runs = 1, chains = 2, chains_of_cells = 3, tuples = 4 };
+
+struct MessageHeader {
+  std::uint32_t magic = wire_magic;
+  std::uint16_t version = wire_version;
+  MessageKind kind;
+  std::uint32_t frame;
+  std::uint32_t reserved = 0;
+};
+static_assert(sizeof(MessageHeader) == 16);
+
+struct FrameBegin {
+  double longest_ray;   ///< bounds the world length of a ray inside the whole mesh
+  std::uint64_t tiles;  ///< number of bits that follow
+};
+static_assert(sizeof(FrameBegin) == 16);
+
+struct PartHeader {
+  std::uint32_t tile;
+  RecordKind kind;
+  std::uint8_t last;  ///< 1: this projector's last part of the tile
+  std::uint16_t reserved = 0;
+  std::uint64_t bytes;
+  double final_depth;       ///< planar; all of this projector's fragments of the tile before it have been sent
+  std::uint64_t fragments;  ///< runs, links or tuples in the part
+};
+static_assert(sizeof(PartHeader) == 32);
+
+/// Segments of a pixel that touch end to end, composited. Nothing of another process can lie inside.
+struct RunRecord {
+  double front;            ///< planar depth where extinction first becomes positive (or light, if there is none)
+  float thickness;         ///< back - front
+  float red, green, blue;  ///< linear light that leaves the front, not attenuated by what lies before it
+  float optical_depth;     ///< not transmittance: 1 - 1e-8 would be 1
+  std::uint32_t pixel;     ///< row by row in the tile
+};
+static_assert(sizeof(RunRecord) == 32);
+
+struct ChainHeader {
+  std::uint32_t pixel, links;
+  double front, scalar_front;  ///< of the first link; scalar_front unused for cell data
+};
+static_assert(sizeof(ChainHeader) == 24);
+
+struct ChainLink {
+  double back, scalar;  ///< exit's planar depth and scalar; cell data: the cell's scalar
+  std::uint64_t tet;    ///< index in the whole mesh: the last key of the depth order
+};
+static_assert(sizeof(ChainLink) == 24);
+
+/// The paper's 4-tuple and its pixel.
+struct TupleRecord {
+  std::uint32_t pixel;
+  float depth_back, length;  ///< length over the data set's longest edge
+  float scalar_front, scalar_back;
+};
+static_assert(sizeof(TupleRecord) == 20);
+
+/// What a frame took, summed over projectors and compositors by the assembling rank.
+struct FrameEnd {
+  std::uint64_t tets_total, tets_invisible, tets_outside_view, tets_between_pixels, tets_projected;
+  std::uint64_t segments, max_segments_alive, peak_buffer_bytes, exact_sign_tests, tiles_split;
+  std::uint64_t fragments, bytes, messages;  ///< sent to compositors, itself included
+};
+static_assert(sizeof(FrameEnd) == 13 * 8);
+
+/// Appends a record's bytes.
+template <class Record>
+void append(Bytes& bytes, const Record& record) {
+  const auto* first = reinterpret_cast<const std::byte*>(&record);
+  bytes.insert(bytes.end(), first, first + sizeof record);
+}
+
+/// Takes records off the front of a message; throws Error(system_failure) where it is too short.
+class RecordReader {
+ public:
+  explicit RecordReader(std::span<const std::byte> bytes) : left_(bytes) {}
+  template <class Record>
+  Record take() {
+    Record record;
+    std::memcpy(&record, take_bytes(sizeof record).data(), sizeof record);
+    return record;
+  }
+  std::span<const std::byte> take_bytes(std::size_t count) {
+    if (count > left_.size())
+      throw scene::Error(scene::ExitCode::system_failure,
+                         "exchange: a message is shorter than it says; all ranks must run the same program");
+    const auto taken = left_.first(count);
+    left_ = left_.subspan(count);
+    return taken;
+  }
+  [[nodiscard]] bool empty() const { return left_.empty(); }
+
+ private:
+  std::span<const std::byte> left_;
+};
+
+/// A message's header, checked. Throws Error(system_failure) naming ranks and versions.
+MessageHeader take_header(RecordReader& reader, int from, int self);
+
+/// One projector's fragments of a tile, or some of them.
+struct TilePart {
+  std::uint32_t tile = 0;
+  RecordKind kind = RecordKind::runs;
+  bool last = false;
+  double final_depth = 0;
+  std::uint64_t fragments = 0;
+  Bytes records;
+  double start_depth = 0;  ///< at the compositor: the projector's part before this one was complete to here
+};
+
+}  // namespace tessera::compositor

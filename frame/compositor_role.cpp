@@ -1,0 +1,257 @@
+#include <fmt/format.h>
+#include <tbb/info.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "compositor/frame_collector.hpp"
+#include "compositor/image_assembly.hpp"
+#include "compositor/tile_merger.hpp"
+#include "frame/distributed_roles.hpp"
+#include "frame/worker_threads.hpp"
+#include "projection/planes_rasterizer.hpp"
+
+namespace tessera::frame {
+namespace {
+
+using compositor::Channel;
+
+int thread_count(int asked) { return asked > 0 ? asked : tbb::info::default_concurrency(); }
+
+/// A frame at its compositor.
+struct Frame {
+  Frame(const DistributedRun& run, std::uint32_t number, int compositor)
+      : number(number),
+        grid{run.jobs[number].size, run.settings.render.tile_size},
+        map(grid.count(), static_cast<int>(run.settings.roles.compositors.size()), run.settings.tile_seed),
+        collector(static_cast<int>(run.settings.roles.projectors.size()), map, compositor),
+        space(run.jobs[number].camera, run.jobs[number].size),
+        integrator(run.function, run.settings.render.integrator, run.settings.render.emission,
+                   run.settings.compositing),
+        sender(run.transport, run.settings.roles.assembler(), number) {}
+
+  std::uint32_t number;
+  projection::TileGrid grid;
+  compositor::TileMap map;
+  compositor::FrameCollector collector;
+  projection::PixelSpace space;
+  compositor::SegmentIntegrator integrator;
+  compositor::TileSender sender;
+  double start_us = 0;
+
+  struct Merge {
+    std::unique_ptr<compositor::TileMerger> merger;
+    bool running = false;
+  };
+  std::map<std::uint32_t, Merge> merges;  ///< tiles with fragments that are not finished
+};
+
+/// Receives on the calling thread, merges on its own ones.
+class CompositorLoop {
+ public:
+  explicit CompositorLoop(const DistributedRun& run)
+      : run_(run),
+        budget_(exchange_budget(run.settings)),
+        trace_(run.settings.compositing),
+        workers_(thread_count(run.settings.render.threads), [&](const std::exception& error) { fail(error); }) {
+    const auto& ranks = run.settings.roles.compositors;
+    self_ = static_cast<int>(std::find(ranks.begin(), ranks.end(), run.transport.rank()) - ranks.begin());
+  }
+
+  void loop() {
+    while (frames_finished_ < run_.jobs.size()) {
+      compositor::Message message = [&] {
+        const scene::TraceScope timing(trace_, "wait");
+        return next();
+      }();
+      if (message.bytes.empty()) continue;
+      const std::lock_guard lock(mutex_);
+      accept(message);
+    }
+  }
+
+ private:
+  /// The next message; an empty one now and then, as the last frame may finish without one.
+  compositor::Message next() {
+    auto message = run_.transport.receive(Channel::fragments, std::chrono::milliseconds(5));
+    return message ? std::move(*message) : compositor::Message{-1, {}};
+  }
+
+  void fail(const std::exception& error) {
+    const auto* known = dynamic_cast<const scene::Error*>(&error);
+    run_.transport.fail(known != nullptr
+                            ? *known
+                            : scene::Error(scene::ExitCode::system_failure,
+                                           fmt::format("rank {} of {}: unexpected: {}; please report",
+                                                       run_.transport.rank(), run_.transport.size(), error.what())));
+  }
+
+  Frame& frame(std::uint32_t number) {
+    auto& at = frames_[number];
+    if (at == nullptr) {
+      if (number >= run_.jobs.size())
+        throw scene::Error(scene::ExitCode::system_failure,
+                           fmt::format("exchange: frame {} of {}; all ranks must be given the same arguments", number,
+                                       run_.jobs.size()));
+      at = std::make_unique<Frame>(run_, number, self_);
+      if (trace_ != nullptr) at->start_us = trace_->now_us();
+    }
+    return *at;
+  }
+
+  void accept(const compositor::Message& message) {
+    compositor::RecordReader reader(message.bytes);
+    const auto header = compositor::take_header(reader, message.from, run_.transport.rank());
+    const auto& projectors = run_.settings.roles.projectors;
+    const auto projector =
+        static_cast<int>(std::find(projectors.begin(), projectors.end(), message.from) - projectors.begin());
+    Frame& to = frame(header.frame);
+    std::uint64_t credit = message.bytes.size();
+    switch (header.kind) {
+      case compositor::MessageKind::begin: {
+        const auto begin = reader.take<compositor::FrameBegin>();
+        to.collector.begin(projector, begin, reader.take_bytes((begin.tiles + 7) / 8));
+        if (to.collector.has_all_begins())
+          for (auto& [tile, merge] : to.merges) schedule(to, tile);
+        break;
+      }
+      case compositor::MessageKind::parts:
+        while (!reader.empty()) {
+          const auto part = reader.take<compositor::PartHeader>();
+          const auto records = reader.take_bytes(part.bytes);
+          const double start =
+              to.collector.add(projector, {part.tile, part.kind, part.last != 0, part.final_depth, part.fragments,
+                                           compositor::Bytes(records.begin(), records.end())});
+          to.collector.owe(projector, part.tile, start, part.bytes);
+          credit -= part.bytes;
+          to.merges.try_emplace(part.tile);
+          schedule(to, part.tile);
+        }
+        break;
+      case compositor::MessageKind::end:
+        to.collector.end(reader.take<compositor::FrameEnd>());
+        break;
+    }
+    give_back(projector, credit);
+    settle();
+  }
+
+  void give_back(int projector, std::uint64_t bytes) {
+    if (bytes == 0) return;
+    compositor::Bytes message;
+    compositor::append(message, bytes);
+    run_.transport.send(run_.settings.roles.projectors[static_cast<std::size_t>(projector)], Channel::credit,
+                        std::move(message));
+  }
+
+  /// Ends finished frames and pays what is due of the first unfinished one.
+  void settle() {
+    while (!frames_.empty()) {
+      Frame& first = *frames_.begin()->second;
+      for (std::size_t p = 0; p < run_.settings.roles.projectors.size(); ++p)
+        give_back(static_cast<int>(p), first.collector.pay(static_cast<int>(p)));
+      if (first.number != frames_finished_ || !first.collector.finished()) return;
+      first.sender.end(first.collector.sums());
+      if (trace_ != nullptr) trace_->add_frame(static_cast<std::int32_t>(first.number), first.start_us);
+      frames_.erase(frames_.begin());
+      ++frames_finished_;
+    }
+  }
+
+  void schedule(Frame& of, std::uint32_t tile) {
+    auto& merge = of.merges.at(tile);
+    if (merge.running || !of.collector.has_work(tile)) return;
+    merge.running = true;
+    workers_.run([this, &of, tile] { merge_tile(of, tile); });
+  }
+
+  /// On a worker. `of` lives until all its tiles are finished.
+  void merge_tile(Frame& of, std::uint32_t tile) {
+    std::unique_lock lock(mutex_);
+    for (bool all = false; !all;) {
+      Frame::Merge& merge = of.merges.at(tile);
+      if (!of.collector.has_work(tile)) {
+        merge.running = false;
+        return;
+      }
+      compositor::FrameCollector::Waiting waiting = of.collector.take(tile);
+      const double longest_ray = of.collector.longest_ray();
+      all = waiting.all;
+      lock.unlock();
+      {
+        const scene::TraceScope timing(trace_, "composite", static_cast<std::int32_t>(of.number));
+        if (merge.merger == nullptr && !waiting.parts.empty())
+          merge.merger = make_tile_merger(waiting.parts.front().kind,
+                                          {&of.space, &of.integrator, run_.function.max_color(), longest_ray,
+                                           run_.settings.render.emission, budget_.tile},
+                                          of.grid.rect(tile));
+        if (merge.merger != nullptr) compositor::merge(*merge.merger, waiting.parts, waiting.final_depth, budget_.tile);
+        // A tile that got nothing stays as empty as the assembled picture is.
+        if (all && merge.merger != nullptr) of.sender.send(tile, merge.merger->finish());
+      }
+      lock.lock();
+    }
+    of.merges.erase(tile);
+    of.collector.finish(tile);
+    settle();
+  }
+
+  const DistributedRun& run_;
+  ExchangeBudget budget_;
+  scene::Trace* trace_;
+  int self_;
+  std::mutex mutex_;  // guards the frames, their collectors and merges
+  std::map<std::uint32_t, std::unique_ptr<Frame>> frames_;
+  std::atomic<std::size_t> frames_finished_ = 0;
+  WorkerThreads workers_;  // last: its threads use all of the above
+};
+
+}  // namespace
+
+void run_compositor(const DistributedRun& run) { CompositorLoop(run).loop(); }
+
+void run_assembler(const DistributedRun& run, const std::function<void(FinishedFrame)>& done) {
+  const DistributedSettings& settings = run.settings;
+  const compositor::SegmentIntegrator integrator(run.function, settings.render.integrator, settings.render.emission);
+  compositor::ImageAssembly assembly(static_cast<int>(settings.roles.compositors.size()), [&](std::uint32_t frame) {
+    return projection::TileGrid{run.jobs[frame].size, settings.render.tile_size};
+  });
+  for (std::size_t left = 0; left < run.jobs.size();) {
+    compositor::Message message = [&] {
+      const scene::TraceScope timing(settings.compositing, "wait");
+      return run.transport.receive(Channel::tiles);
+    }();
+    std::optional<compositor::AssembledFrame> assembled;
+    {
+      const scene::TraceScope timing(settings.compositing, "assemble");
+      assembled = assembly.accept(message, run.transport.rank());
+    }
+    if (!assembled) continue;
+    for (const int projector : settings.roles.projectors) run.transport.send(projector, Channel::frames, {});
+    FinishedFrame finished{assembled->frame, std::move(assembled->image), {}};
+    const compositor::FrameEnd& sums = assembled->sums;
+    FrameStatistics& statistics = finished.statistics;
+    statistics.tets_total = sums.tets_total;
+    statistics.tets_invisible = sums.tets_invisible;
+    statistics.tets_outside_view = sums.tets_outside_view;
+    statistics.tets_between_pixels = sums.tets_between_pixels;
+    statistics.tets_projected = sums.tets_projected;
+    statistics.segments = sums.segments;
+    statistics.max_segments_alive = sums.max_segments_alive;
+    statistics.peak_buffer_bytes = sums.peak_buffer_bytes;
+    statistics.exact_sign_tests = sums.exact_sign_tests;
+    statistics.tiles_split = sums.tiles_split;
+    statistics.fragments = sums.fragments;
+    statistics.exchange_bytes = sums.bytes;
+    statistics.exchange_messages = sums.messages;
+    statistics.instruction_set = projection::instruction_set();
+    statistics.integrator = integrator.name();
+    ++left;
+    done(std::move(finished));
+  }
+}
+
+}  // namespace tessera::frame

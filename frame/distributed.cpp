@@ -1,0 +1,61 @@
+#include "frame/distributed.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <thread>
+#include <vector>
+
+#include "frame/distributed_roles.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::frame {
+
+ExchangeBudget exchange_budget(const DistributedSettings& settings) {
+  const std::uint64_t memory = settings.render.memory_bytes;
+  const auto projectors = static_cast<std::uint64_t>(settings.roles.projectors.size());
+  constexpr std::uint64_t most_ahead = 8 << 20, least_ahead = 256 << 10;
+  constexpr std::uint64_t most_between_cuts = 4 << 20, least_between_cuts = 64 << 10;
+  // Half for the projector, the rest for a compositor's windows and the tiles that its threads merge.
+  return {memory / 2, std::min<std::uint64_t>(memory / 16, 64 << 20),
+          std::clamp(memory / 8 / projectors, least_ahead, most_ahead), memory / 4,
+          std::clamp(memory / 16 / projectors, least_between_cuts, most_between_cuts)};
+}
+
+void render_distributed(compositor::Transport& transport, const DistributedSettings& settings,
+                        std::span<const FrameJob> jobs, const scene::TransferFunction& function,
+                        const std::function<ProjectorMesh(std::size_t)>& mesh_of,
+                        const std::function<void(FinishedFrame)>& done) {
+  if (settings.frames_in_flight < 1)
+    throw scene::bad_input(fmt::format("--frames-in-flight {}: it must be at least 1", settings.frames_in_flight));
+  const DistributedRun run{transport, settings, jobs, function};
+  const int self = transport.rank();
+  std::vector<std::function<void()>> parts;
+  if (settings.roles.projects(self)) parts.emplace_back([&] { run_projector(run, mesh_of); });
+  if (settings.roles.composites(self)) parts.emplace_back([&] { run_compositor(run); });
+  if (settings.roles.assembler() == self) parts.emplace_back([&] { run_assembler(run, done); });
+
+  // An error of any part is the run's: the others wake up with it.
+  const auto guarded = [&](const std::function<void()>& part) {
+    try {
+      part();
+    } catch (const scene::Error& error) {
+      transport.fail(error);
+    } catch (const std::bad_alloc&) {
+      transport.fail({scene::ExitCode::system_failure,
+                      fmt::format("rank {} of {}: needs more memory than there is; use more ranks, or lower --memory",
+                                  self, transport.size())});
+    } catch (const std::exception& error) {
+      transport.fail({scene::ExitCode::system_failure, fmt::format("rank {} of {}: unexpected: {}; please report", self,
+                                                                   transport.size(), error.what())});
+    }
+  };
+  std::vector<std::thread> threads;
+  for (std::size_t i = 1; i < parts.size(); ++i) threads.emplace_back([&, i] { guarded(parts[i]); });
+  if (!parts.empty()) guarded(parts.front());
+  for (auto& thread : threads) thread.join();
+  transport.check();
+}
+
+}  // namespace tessera::frame

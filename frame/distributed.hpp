@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "compositor/transport.hpp"
+#include "frame/render.hpp"
+#include "frame/roles.hpp"
+
+namespace tessera::frame {
+
+/// What projectors send (compositor/wire.hpp).
+enum class Exchange {
+  runs,      ///< segments that touch end to end, composited: a few fragments a pixel. At most 2e-6 from `segments`
+  segments,  ///< raw ray segments, as Juliachs et al. 2007: the bits of a single process whatever the job's shape
+};
+
+struct DistributedSettings {
+  RenderSettings render;  ///< `memory_bytes` and `threads` are each rank's; `trace` is not used
+  Roles roles;
+  Exchange exchange = Exchange::runs;
+  int frames_in_flight = 2;             ///< frames a projector may be ahead of the assembled picture, at least 1
+  std::uint64_t tile_seed = 1;          ///< of the tile map
+  scene::Trace* projecting = nullptr;   ///< face of this rank's trace for its projector; null: no timing
+  scene::Trace* compositing = nullptr;  ///< for its compositor
+};
+
+/// One picture to make.
+struct FrameJob {
+  scene::Camera camera;
+  scene::ImageSize size;
+  std::size_t mesh = 0;  ///< which mesh of a series; ascending
+};
+
+/// This projector's part of a mesh.
+struct ProjectorMesh {
+  std::shared_ptr<const scene::TetMesh> part;  ///< may have no tets
+  std::vector<std::uint64_t> global_tet;       ///< index in the whole mesh of each tet, ascending; empty: its own
+  double diagonal = 0;                         ///< of the whole mesh's box, world units
+};
+
+/// A finished picture, on the assembling rank.
+struct FinishedFrame {
+  std::size_t frame;
+  scene::Image image;
+  FrameStatistics statistics;  ///< of all ranks
+};
+
+/// Renders a list of pictures with all ranks of `transport`; each calls this with the same arguments but for the
+/// functions, which run where their work is:
+///   mesh_of(m)     on projectors, once a mesh, in order: loads this rank's part of mesh m
+///   done(frame)    on the assembling rank, in order, from a thread of its own
+/// Projectors stream tile by tile while they project; frame i projects while frame i - 1 composites. Nothing but the
+/// order of frames synchronises ranks.
+///
+/// The transfer function is one for all frames, so that a film does not flicker. Throws the run's error, on every rank.
+void render_distributed(compositor::Transport& transport, const DistributedSettings& settings,
+                        std::span<const FrameJob> jobs, const scene::TransferFunction& function,
+                        const std::function<ProjectorMesh(std::size_t)>& mesh_of,
+                        const std::function<void(FinishedFrame)>& done);
+
+}  // namespace tessera::frame

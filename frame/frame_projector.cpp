@@ -1,0 +1,146 @@
+#include "frame/frame_projector.hpp"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <glm/geometric.hpp>
+#include <optional>
+
+#include "frame/tile_renderer.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::frame {
+namespace {
+
+int thread_count(int asked) { return asked > 0 ? asked : tbb::info::default_concurrency(); }
+
+const RenderSettings& checked(const RenderSettings& settings) {
+  if (settings.threads < 0 || settings.threads > 4096)
+    throw scene::bad_input(fmt::format("--threads {}: it must be 0 (all cores) to 4096", settings.threads));
+  if (settings.tile_size < 1 || settings.tile_size > 1024)
+    throw scene::bad_input(fmt::format("--tile-size {}: it must be 1 to 1024 pixels", settings.tile_size));
+  return settings;
+}
+
+/// What is left of the budget for segments, shared by the threads.
+std::uint64_t segment_budget(const RenderSettings& settings, std::uint64_t held, int threads) {
+  const std::uint64_t least = held + static_cast<std::uint64_t>(threads) * (1u << 20);
+  if (settings.memory_bytes < least)
+    throw scene::bad_input(fmt::format("--memory {} MiB: this mesh and image need at least {} MiB for frame buffers",
+                                       settings.memory_bytes >> 20, (least >> 20) + 1));
+  return (settings.memory_bytes - held) / static_cast<std::uint64_t>(threads);
+}
+
+}  // namespace
+
+FrameProjector::FrameProjector(const scene::TetMesh& mesh, const RenderSettings& settings)
+    : settings_(checked(settings)),
+      parallelism_(
+          tbb::global_control::max_allowed_parallelism,
+          static_cast<std::size_t>(std::max(thread_count(settings.threads), tbb::info::default_concurrency()))),
+      arena_(thread_count(settings.threads)),
+      prepared_(arena_.execute([&] {
+        const scene::TraceScope timing(settings.trace, "prepare");
+        return projection::PreparedMesh(mesh);
+      })) {
+  const scene::Box box = scene::bounds(mesh);
+  diagonal_ = box.empty() ? 0 : glm::length(box.high - box.low);
+}
+
+void FrameProjector::project_vertices(const projection::PixelSpace& space, std::int32_t frame) {
+  const scene::TraceScope timing(settings_.trace, "transform", frame);
+  const std::vector<glm::dvec3>& positions = prepared_.mesh().positions;
+  vertices_.resize(positions.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size(), 4096), [&](const auto& range) {
+    for (std::size_t v = range.begin(); v != range.end(); ++v) vertices_[v] = space.project(positions[v]);
+  });
+}
+
+FrameStatistics FrameProjector::project(const Task& task) {
+  return arena_.execute([&] { return project_in_arena(task); });
+}
+
+FrameStatistics FrameProjector::project_in_arena(const Task& task) {
+  const projection::PixelSpace& space = *task.space;
+  const bool independent = settings_.emission == scene::Emission::independent;
+  project_vertices(space, task.frame);
+  const projection::ProjectedMesh projected{&prepared_, vertices_, space.near_depth(), space.far_depth()};
+  const projection::TileGrid& grid = task.grid;
+
+  std::optional<projection::TileLists> lists;
+  {
+    const scene::TraceScope timing(settings_.trace, "cull", task.frame);
+    lists.emplace(projected, grid, *task.function, independent);
+  }
+  if (task.announce) {
+    std::vector<bool> has_cells(grid.count());
+    for (std::size_t tile = 0; tile < has_cells.size(); ++tile) has_cells[tile] = lists->entry_count(tile) > 0;
+    task.announce(has_cells);
+  }
+  const int threads = arena_.max_concurrency();
+  const std::uint64_t held = vertices_.capacity() * sizeof(projection::PixelVertex) + lists->bytes();
+  // A quarter of what is left for the lists of a band of tiles; the rest for segments.
+  const std::uint64_t list_budget =
+      std::max<std::uint64_t>(segment_budget(settings_, held, 1) / 4 / sizeof(projection::TileEntry), 1);
+  const std::uint64_t budget = segment_budget(settings_, held, threads) / 4 * 3;
+
+  const TileContext context{&projected, lists->depth_origin(), budget, settings_.trace};
+  struct Worker {
+    TileRenderer renderer;
+    std::unique_ptr<compositor::TileSink> sink;
+  };
+  tbb::enumerable_thread_specific<Worker> workers([&] { return Worker{TileRenderer(context), task.make_sink()}; });
+  std::uint64_t most_list_bytes = 0;
+  for (std::size_t first = 0; first < grid.count();) {
+    std::size_t last = first;
+    for (std::uint64_t entries = 0; last < grid.count(); ++last) {
+      entries += lists->entry_count(last);
+      if (last > first && entries > list_budget) break;
+    }
+    {
+      const scene::TraceScope timing(settings_.trace, "bin", task.frame);
+      lists->fill(first, last);
+    }
+    most_list_bytes = std::max<std::uint64_t>(most_list_bytes, lists->bytes());
+    // Threads draw tiles in order: fragments then leave in the order in which all processes send them.
+    std::atomic<std::size_t> next = first;
+    tbb::parallel_for(
+        0, threads,
+        [&](int) {
+          Worker& worker = workers.local();
+          for (std::size_t tile = next++; tile < last; tile = next++) {
+            if (lists->entry_count(tile) == 0) continue;
+            worker.sink->begin_tile(tile, grid.rect(tile));
+            worker.renderer.render(grid.rect(tile), lists->tile(tile), *worker.sink);
+            worker.sink->end_tile();
+          }
+        },
+        tbb::simple_partitioner());
+    first = last;
+  }
+
+  FrameStatistics statistics;
+  statistics.tets_total = prepared_.tet_count();
+  const projection::CullCounts& culled = lists->counts();
+  statistics.tets_invisible = culled.invisible;
+  statistics.tets_outside_view = culled.outside_view;
+  statistics.tets_between_pixels = culled.between_pixels;
+  statistics.tets_projected = culled.projected;
+  statistics.peak_buffer_bytes = vertices_.capacity() * sizeof(projection::PixelVertex) + most_list_bytes;
+  for (const Worker& worker : workers) {
+    const TileCounts& counts = worker.renderer.counts();
+    statistics.segments += counts.segments;
+    statistics.max_segments_alive = std::max(statistics.max_segments_alive, counts.max_segments_alive);
+    statistics.peak_buffer_bytes += counts.peak_bytes;
+    statistics.exact_sign_tests += counts.raster.exact_sign_tests;
+    statistics.tiles_split += counts.tiles_split;
+  }
+  return statistics;
+}
+
+}  // namespace tessera::frame

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "compositor/tile_sink.hpp"
+#include "frame/render.hpp"
+#include "projection/prepared_mesh.hpp"
+#include "projection/tile_lists.hpp"
+
+namespace tessera::frame {
+
+/// Projects a process's tets into the ray segments of every tile, on all its threads: the half of a frame that knows
+/// the mesh. What becomes of the segments is the sinks' business.
+class FrameProjector {
+ public:
+  /// The mesh must outlive this object. Throws Error(bad_input) for settings out of range.
+  FrameProjector(const scene::TetMesh& mesh, const RenderSettings& settings);
+
+  struct Task {
+    const projection::PixelSpace* space;
+    projection::TileGrid grid;
+    const scene::TransferFunction* function;
+    std::int32_t frame = -1;  ///< for the trace
+    /// A sink for one thread; tiles go to it one after the other, and each thread takes tiles in ascending order.
+    std::function<std::unique_ptr<compositor::TileSink>()> make_sink;
+    /// Called once before the first tile: which tiles have cells, so will be given to a sink. May be empty.
+    std::function<void(const std::vector<bool>& has_cells)> announce;
+  };
+
+  /// Fills all of the statistics but the names.
+  FrameStatistics project(const Task& task);
+
+  /// Length of the diagonal of the mesh's box, world units: no ray inside is longer.
+  [[nodiscard]] double diagonal() const { return diagonal_; }
+
+ private:
+  FrameStatistics project_in_arena(const Task& task);
+  void project_vertices(const projection::PixelSpace& space, std::int32_t frame);
+
+  RenderSettings settings_;
+  tbb::global_control parallelism_;  ///< more threads than cores, where asked for, without oneTBB's warning
+  tbb::task_arena arena_;
+  projection::PreparedMesh prepared_;
+  double diagonal_ = 0;
+  std::vector<projection::PixelVertex> vertices_;
+};
+
+}  // namespace tessera::frame

@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "compositor/outbox.hpp"
+#include "compositor/run_sink.hpp"
+#include "compositor/segment_sink.hpp"
+#include "frame/distributed_roles.hpp"
+#include "frame/frame_projector.hpp"
+
+namespace tessera::frame {
+namespace {
+
+using compositor::Channel;
+
+/// Waits until no more than `in_flight - 1` frames before this one are on their way.
+void wait_for_turn(const DistributedRun& run, std::size_t frame, std::size_t& left) {
+  const auto in_flight = static_cast<std::size_t>(run.settings.frames_in_flight);
+  if (frame < left + in_flight) return;
+  const scene::TraceScope timing(run.settings.projecting, "wait", static_cast<std::int32_t>(frame));
+  for (; frame >= left + in_flight; ++left) run.transport.receive(Channel::frames);
+}
+
+compositor::FrameEnd counts_of(const FrameStatistics& s) {
+  return {.tets_total = s.tets_total,
+          .tets_invisible = s.tets_invisible,
+          .tets_outside_view = s.tets_outside_view,
+          .tets_between_pixels = s.tets_between_pixels,
+          .tets_projected = s.tets_projected,
+          .segments = s.segments,
+          .max_segments_alive = s.max_segments_alive,
+          .peak_buffer_bytes = s.peak_buffer_bytes,
+          .exact_sign_tests = s.exact_sign_tests,
+          .tiles_split = s.tiles_split,
+          .fragments = 0,
+          .bytes = 0,
+          .messages = 0};
+}
+
+}  // namespace
+
+void run_projector(const DistributedRun& run, const std::function<ProjectorMesh(std::size_t)>& mesh_of) {
+  const DistributedSettings& settings = run.settings;
+  const ExchangeBudget budget = exchange_budget(settings);
+  RenderSettings render = settings.render;
+  render.memory_bytes = budget.projection;
+  render.trace = settings.projecting;
+
+  compositor::Outbox outbox(run.transport,
+                            {settings.roles.compositors, budget.window, budget.backlog, settings.projecting});
+  std::optional<std::size_t> loaded;
+  ProjectorMesh mesh;
+  std::optional<FrameProjector> projector;
+  std::size_t left = 0;  // frames that have left the assembling rank
+  for (std::size_t frame = 0; frame < run.jobs.size(); ++frame) {
+    const FrameJob& job = run.jobs[frame];
+    if (loaded != job.mesh) {
+      projector.reset();
+      mesh = {};
+      mesh = mesh_of(job.mesh);
+      projector.emplace(*mesh.part, render);
+      loaded = job.mesh;
+    }
+    const auto number = static_cast<std::int32_t>(frame);
+    if (render.trace != nullptr) render.trace->set_frame(number);
+    wait_for_turn(run, frame, left);
+    const double start_us = render.trace != nullptr ? render.trace->now_us() : 0;
+
+    const projection::PixelSpace space(job.camera, job.size);
+    const compositor::SegmentIntegrator integrator(run.function, render.integrator, render.emission, render.trace);
+    FrameProjector::Task task;
+    task.space = &space;
+    task.grid = {job.size, render.tile_size};
+    task.function = &run.function;
+    task.frame = number;
+    const compositor::TileMap map(task.grid.count(), static_cast<int>(settings.roles.compositors.size()),
+                                  settings.tile_seed);
+    const auto deliver = [&](compositor::TilePart part) { outbox.put(std::move(part)); };
+    task.make_sink = [&]() -> std::unique_ptr<compositor::TileSink> {
+      if (settings.exchange == Exchange::segments)
+        return std::make_unique<compositor::SegmentSink>(mesh.part->association == scene::Association::cell,
+                                                         mesh.global_tet, deliver);
+      return std::make_unique<compositor::RunSink>(space, integrator, run.function.max_color(), mesh.diagonal,
+                                                   render.emission, budget.cut, deliver);
+    };
+    task.announce = [&](const std::vector<bool>& has_cells) {
+      outbox.begin_frame(static_cast<std::uint32_t>(frame), map, has_cells, mesh.diagonal);
+    };
+    const FrameStatistics statistics = projector->project(task);
+    outbox.end_frame(counts_of(statistics));
+    if (render.trace != nullptr) render.trace->add_frame(number, start_us);
+  }
+}
+
+}  // namespace tessera::frame

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace tessera::frame {
+
+/// A few threads that run tasks in the order given. Their own, not oneTBB's: projection on the same rank may hold all
+/// of oneTBB's workers while it waits for what these threads do.
+class WorkerThreads {
+ public:
+  /// `on_error` is called from the failing thread with a task's exception; later tasks still run.
+  WorkerThreads(int count, std::function<void(const std::exception&)> on_error);
+  /// Drops tasks that have not begun and waits for those that have.
+  ~WorkerThreads();
+  WorkerThreads(const WorkerThreads&) = delete;
+  WorkerThreads& operator=(const WorkerThreads&) = delete;
+
+  void run(std::function<void()> task);
+
+ private:
+  void work();
+
+  std::function<void(const std::exception&)> on_error_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::function<void()>> tasks_;
+  bool ending_ = false;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace tessera::frame

@@ -1,0 +1,320 @@
+#include "frame/distributed.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "compositor/loopback_transport.hpp"
+#include "datasets/boxes.hpp"
+#include "datasets/modify.hpp"
+#include "datasets/shapes.hpp"
+#include "reference/judge.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::frame {
+namespace {
+
+using scene::Camera;
+using scene::Image;
+using scene::ImageSize;
+using scene::TransferFunction;
+
+Camera oblique() {
+  Camera camera;
+  camera.position = {3.1, 2.3, 4.2};
+  camera.parallel_scale = 1.8;
+  return camera;
+}
+
+Camera inside() {
+  Camera camera;
+  camera.position = {0.1, 0.2, 0.15};
+  camera.projection = scene::ProjectionKind::perspective;
+  camera.view_angle = 80;
+  return camera;
+}
+
+TransferFunction six_knots() {
+  return TransferFunction({{0, {0, 0, 0.3}, 0},
+                           {0.3, {0.1, 0.3, 0.9}, 0.4},
+                           {0.5, {0.2, 0.9, 0.3}, 0},
+                           {0.7, {0.9, 0.8, 0.1}, 3},
+                           {0.8, {1, 0.3, 0}, 0.2},
+                           {1, {1, 1, 1}, 8}});
+}
+
+RenderSettings exact() {
+  RenderSettings settings;
+  settings.integrator.kind = scene::IntegratorKind::exact;
+  settings.threads = 1;
+  settings.memory_bytes = 256ull << 20;
+  return settings;
+}
+
+using Parts = std::vector<scene::TetMesh>;
+
+/// File order by count. Parts name each tet's index in the whole as original_cell, as datasets::parts does.
+Parts slices(const scene::TetMesh& mesh, std::size_t count) {
+  Parts parts(count, mesh);
+  for (std::size_t part = 0; part < count; ++part) {
+    const std::size_t first = part * mesh.tets.size() / count, last = (part + 1) * mesh.tets.size() / count;
+    const auto cut = [&](auto& list) {
+      list = {list.begin() + static_cast<std::ptrdiff_t>(first), list.begin() + static_cast<std::ptrdiff_t>(last)};
+    };
+    cut(parts[part].tets);
+    if (mesh.association == scene::Association::cell) cut(parts[part].scalars);
+    parts[part].original_cell.resize(last - first);
+    std::iota(parts[part].original_cell.begin(), parts[part].original_cell.end(), first);
+  }
+  return parts;
+}
+
+struct Shape {
+  int ranks, projectors, compositors;
+};
+
+void PrintTo(const Shape& shape, std::ostream* out) {
+  *out << shape.projectors << "x" << shape.compositors << " on " << shape.ranks;
+}
+
+std::vector<FinishedFrame> render(const Parts& parts, const Shape& shape, DistributedSettings settings,
+                                  const std::vector<FrameJob>& jobs, const TransferFunction& function,
+                                  double diagonal = 4) {
+  std::vector<FinishedFrame> frames;
+  compositor::run_ranks(shape.ranks, [&](compositor::Transport& transport) {
+    DistributedSettings mine = settings;
+    mine.roles = assign_roles(shape.ranks, shape.projectors, shape.compositors);
+    render_distributed(
+        transport, mine, jobs, function,
+        [&](std::size_t) {
+          ProjectorMesh mesh;
+          mesh.part = std::make_shared<scene::TetMesh>(parts[static_cast<std::size_t>(transport.rank())]);
+          mesh.global_tet = mesh.part->original_cell;
+          mesh.diagonal = diagonal;
+          return mesh;
+        },
+        [&](FinishedFrame frame) { frames.push_back(std::move(frame)); });
+  });
+  return frames;
+}
+
+bool same_bits(const Image& a, const Image& b) { return a.rgba == b.rgba && a.depth == b.depth; }
+
+double difference(const Image& a, const Image& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i) most = std::max(most, std::fabs(double{a.rgba[i]} - b.rgba[i]));
+  return most;
+}
+
+constexpr Shape shapes[] = {{2, 1, 1}, {4, 1, 3}, {4, 3, 1}, {6, 4, 2}, {3, 3, 3}, {8, 8, 8}, {5, 5, 2}, {1, 1, 1}};
+
+class AnyShape : public ::testing::TestWithParam<Shape> {};
+INSTANTIATE_TEST_SUITE_P(Distributed, AnyShape, ::testing::ValuesIn(shapes));
+
+TEST_P(AnyShape, SegmentsGiveTheBitsOfASingleProcessAndRunsAlmost) {
+  const Shape shape = GetParam();
+  const auto n = static_cast<std::size_t>(shape.projectors);
+  const ImageSize size{97, 61};
+  for (const bool cells : {false, true}) {
+    scene::TetMesh mesh = datasets::cube(8, 0.2);
+    if (cells) mesh = datasets::with_cell_data(std::move(mesh), 6);
+    for (const Camera& camera : {oblique(), inside()}) {
+      const Image expected = Renderer(mesh, exact()).render(camera, size, six_knots());
+      for (const Parts& parts :
+           {slices(mesh, n), datasets::parts(mesh, shape.projectors, datasets::Partition::random_blobs, 3),
+            datasets::parts(mesh, shape.projectors, datasets::Partition::interleaved, 5)})
+        for (const int threads : {1, 2}) {
+          Parts numbered = parts;
+          if (cells) numbered = slices(mesh, n);  // with_cell_data has original cells: parts() names those
+          DistributedSettings settings;
+          settings.render = exact();
+          settings.render.threads = threads;
+          settings.render.tile_size = 16;
+          settings.exchange = Exchange::segments;
+          const auto segments = render(numbered, shape, settings, {{camera, size}}, six_knots());
+          ASSERT_EQ(segments.size(), 1u);
+          EXPECT_TRUE(same_bits(segments.front().image, expected)) << threads << " threads";
+          settings.exchange = Exchange::runs;
+          const auto runs = render(numbered, shape, settings, {{camera, size}}, six_knots());
+          // Each run is rounded to float: 6e-8 of its light; a pixel has at most a few dozen that matter.
+          EXPECT_LT(difference(runs.front().image, expected), 2e-6);
+          EXPECT_LE(runs.front().statistics.fragments, segments.front().statistics.fragments);
+        }
+    }
+  }
+}
+
+TEST(Distributed, IsWithinTheReferencesBound) {
+  const scene::TetMesh mesh = datasets::cube(10, 0.2);
+  const reference::Reference reference(mesh, oblique(), {80, 60}, six_knots());
+  for (const Exchange exchange : {Exchange::segments, Exchange::runs}) {
+    DistributedSettings settings;
+    settings.render = exact();
+    settings.exchange = exchange;
+    const auto frames = render(datasets::parts(mesh, 4, datasets::Partition::random_blobs, 1), {6, 4, 2}, settings,
+                               {{oblique(), {80, 60}}}, six_knots());
+    EXPECT_LT(reference::judge(frames.front().image, reference, 2e-5).max_error, 2e-5);
+  }
+}
+
+TEST(Distributed, TakesRanksWithoutCellsARankWithOneAndMoreCompositorsThanTiles) {
+  const scene::TetMesh mesh = datasets::cube(4, 0.2);
+  const ImageSize size{40, 40};
+  const Image expected = Renderer(mesh, exact()).render(oblique(), size, six_knots());
+  Parts parts = slices(mesh, 1);
+  parts.resize(6);
+  // One tet to rank 2, all others to rank 4.
+  parts[4] = parts[0];
+  parts[4].tets.erase(parts[4].tets.begin() + 7);
+  parts[4].original_cell.erase(parts[4].original_cell.begin() + 7);
+  parts[2] = parts[0];
+  parts[2].tets = {mesh.tets[7]};
+  parts[2].original_cell = {7};
+  for (const int rank : {0, 1, 3, 5}) parts[static_cast<std::size_t>(rank)] = {};
+  DistributedSettings settings;
+  settings.render = exact();
+  settings.render.tile_size = 32;  // 4 tiles
+  settings.exchange = Exchange::segments;
+  for (const Shape& shape : {Shape{6, 6, 6}, Shape{15, 6, 9}}) {
+    const auto frames = render(parts, shape, settings, {{oblique(), size}}, six_knots());
+    EXPECT_TRUE(same_bits(frames.front().image, expected));
+    EXPECT_EQ(frames.front().statistics.tets_total, mesh.tets.size());
+  }
+}
+
+TEST(Distributed, NothingInViewGivesAnEmptyPicture) {
+  Camera away = oblique();
+  away.focal_point = {1000, 0, 0};
+  DistributedSettings settings;
+  settings.render = exact();
+  const auto frames = render(slices(datasets::cube(4), 3), {3, 3, 3}, settings, {{away, {33, 20}}}, six_knots());
+  EXPECT_TRUE(same_bits(frames.front().image, Image({33, 20})));
+}
+
+TEST(Distributed, FramesComeInOrderEachWithItsOwnViewAndSize) {
+  const scene::TetMesh mesh = datasets::cube(6, 0.2);
+  std::vector<FrameJob> jobs;
+  for (int i = 0; i < 7; ++i) {
+    Camera camera = oblique();
+    camera.position.x = 3 - i;
+    jobs.push_back({camera, {50 + 3 * i, 40 - i}});
+  }
+  for (const int in_flight : {1, 2, 5}) {
+    DistributedSettings settings;
+    settings.render = exact();
+    settings.exchange = Exchange::segments;
+    settings.frames_in_flight = in_flight;
+    const auto frames = render(slices(mesh, 3), {5, 3, 2}, settings, jobs, six_knots());
+    ASSERT_EQ(frames.size(), jobs.size());
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+      EXPECT_EQ(frames[i].frame, i);
+      EXPECT_TRUE(
+          same_bits(frames[i].image, Renderer(mesh, exact()).render(jobs[i].camera, jobs[i].size, six_knots())));
+    }
+  }
+}
+
+/// Deep tiles in little memory: many windows, parts sent before the tile is complete, credit that runs out.
+TEST(Distributed, DeepTilesStreamThroughALittleMemoryWithoutDeadlock) {
+  const scene::TetMesh mesh = datasets::thin_stack(3000);
+  Camera camera;
+  camera.position = {0, 0, 5};
+  camera.parallel_scale = 0.05;
+  const ImageSize size{48, 48};
+  const TransferFunction function({{-1, {1, 0, 0}, 0.1}, {1, {0, 1, 0}, 0.3}});
+  const Image expected = Renderer(mesh, exact()).render(camera, size, function);
+  for (const Exchange exchange : {Exchange::segments, Exchange::runs})
+    for (const Shape& shape : {Shape{4, 3, 1}, Shape{3, 3, 3}}) {
+      DistributedSettings settings;
+      settings.render = exact();
+      settings.render.memory_bytes = 24ull << 20;
+      settings.render.threads = 3;
+      settings.render.tile_size = 16;
+      settings.exchange = exchange;
+      const auto frames = render(datasets::parts(mesh, 3, datasets::Partition::interleaved, 2), shape, settings,
+                                 {{camera, size}, {camera, size}}, function);
+      ASSERT_EQ(frames.size(), 2u);
+      for (const auto& frame : frames)
+        // Interleaved, a ray has thousands of runs, each rounded to float by 6e-8 of what it adds.
+        EXPECT_LE(difference(frame.image, expected), exchange == Exchange::segments ? 0 : 2e-6);
+    }
+}
+
+TEST(Distributed, AnErrorOfOneRankIsTheErrorOfAll) {
+  const scene::TetMesh mesh = datasets::cube(6, 0.2);
+  DistributedSettings settings;
+  settings.render = exact();
+  for (int broken = 0; broken < 4; ++broken) {
+    std::atomic<int> told = 0;
+    try {
+      compositor::run_ranks(4, [&](compositor::Transport& transport) {
+        DistributedSettings mine = settings;
+        mine.roles = assign_roles(4, 4, 4);
+        const auto parts = slices(mesh, 4);
+        const std::vector<FrameJob> jobs(5, FrameJob{oblique(), {64, 64}});
+        try {
+          render_distributed(
+              transport, mine, jobs, six_knots(),
+              [&](std::size_t) -> ProjectorMesh {
+                if (transport.rank() == broken) throw scene::bad_input("piece_2.vtu: is cut short; copy it again");
+                return {std::make_shared<scene::TetMesh>(parts[static_cast<std::size_t>(transport.rank())]), {}, 4};
+              },
+              [&](FinishedFrame) {});
+        } catch (const scene::Error& error) {
+          EXPECT_STREQ(error.what(), "piece_2.vtu: is cut short; copy it again");
+          ++told;
+          throw;
+        }
+      });
+      FAIL() << "no error came out";
+    } catch (const scene::Error& error) {
+      EXPECT_EQ(error.code(), scene::ExitCode::bad_input);
+    }
+    EXPECT_EQ(told, 4);
+  }
+}
+
+TEST(Distributed, AFullDiskWhileWritingEndsAllAfterTheFramesBeforeIt) {
+  const scene::TetMesh mesh = datasets::cube(6, 0.2);
+  const auto parts = slices(mesh, 3);
+  std::atomic<int> written = 0;
+  EXPECT_THROW(
+      compositor::run_ranks(
+          3,
+          [&](compositor::Transport& transport) {
+            DistributedSettings settings;
+            settings.render = exact();
+            settings.roles = assign_roles(3, 3, 3);
+            const std::vector<FrameJob> jobs(9, FrameJob{oblique(), {64, 64}});
+            render_distributed(
+                transport, settings, jobs, six_knots(),
+                [&](std::size_t) {
+                  return ProjectorMesh{
+                      std::make_shared<scene::TetMesh>(parts[static_cast<std::size_t>(transport.rank())]), {}, 4};
+                },
+                [&](const FinishedFrame& frame) {
+                  if (frame.frame == 3) throw scene::Error(scene::ExitCode::system_failure, "full");
+                  ++written;
+                });
+          }),
+      scene::Error);
+  EXPECT_EQ(written, 3);
+}
+
+TEST(Roles, FillTheJobOrShareItsRanks) {
+  EXPECT_EQ(assign_roles(6, 4, 2).compositors, (std::vector<int>{4, 5}));
+  EXPECT_EQ(assign_roles(4, 4, 4).compositors, (std::vector<int>{0, 1, 2, 3}));
+  EXPECT_EQ(assign_roles(4, 4, 1).assembler(), 0);
+  EXPECT_EQ(assign_roles(4, 3, std::nullopt).compositors, (std::vector<int>{3}));
+  EXPECT_EQ(assign_roles(4, 4, std::nullopt).compositors.size(), 4u);
+  EXPECT_EQ(assign_roles(4, std::nullopt, 1).projectors.size(), 3u);
+  EXPECT_EQ(assign_roles(5, std::nullopt, std::nullopt).projectors.size(), 5u);
+  EXPECT_THROW(assign_roles(4, 2, 1), scene::Error);
+  EXPECT_THROW(assign_roles(4, 5, 1), scene::Error);
+  EXPECT_THROW(assign_roles(4, 0, 4), scene::Error);
+}
+
+}  // namespace
+}  // namespace tessera::frame
