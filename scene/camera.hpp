@@ -53,6 +53,7 @@ ViewBasis view_basis(const Camera& camera);
 struct Box {
   glm::dvec3 low{1e300}, high{-1e300};
   [[nodiscard]] bool empty() const { return low.x > high.x; }
+  bool operator==(const Box&) const = default;
 };
 
 /// A view of the whole box from a fixed oblique direction, with a small margin; the longest side of the box lies across

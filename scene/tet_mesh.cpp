@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 
 #include "scene/error.hpp"
+#include "scene/mesh_facts.hpp"
 
 namespace tessera::scene {
 
@@ -18,24 +18,13 @@ Box bounds(const TetMesh& mesh) {
       box.low = glm::min(box.low, mesh.positions[v]);
       box.high = glm::max(box.high, mesh.positions[v]);
     }
-  return box;
+  // -0 becomes 0: which of the two is found depends on the order.
+  return {box.low + 0.0, box.high + 0.0};
 }
 
 double mean_thickness(const TetMesh& mesh) {
   const Box box = bounds(mesh);
-  if (box.empty()) return 0;
-  const glm::dvec3 side = box.high - box.low;
-  const double longest = std::max({side.x, side.y, side.z});
-  if (!(longest > 0)) return 0;
-  // In units of the longest side, so that scenes of 1e-150 or 1e150 neither underflow nor overflow.
-  double volume = 0;
-  for (const Tet& tet : mesh.tets) {
-    const glm::dvec3 &a = mesh.positions[tet[0]], &b = mesh.positions[tet[1]], &c = mesh.positions[tet[2]],
-                     &d = mesh.positions[tet[3]];
-    volume += std::abs(glm::dot((b - a) / longest, glm::cross((c - a) / longest, (d - a) / longest))) / 6;
-  }
-  const glm::dvec3 s = side / longest;
-  return volume / std::max({s.x * s.y, s.y * s.z, s.z * s.x, 1e-300}) * longest;
+  return mean_thickness(box, volume_sum(mesh, box));
 }
 
 std::array<double, 2> scalar_range(const TetMesh& mesh) {
@@ -51,7 +40,7 @@ std::array<double, 2> scalar_range(const TetMesh& mesh) {
     for (const Tet& tet : mesh.tets)
       for (const std::uint32_t v : tet) include(mesh.scalars[v]);
   }
-  return {low, high};
+  return {low + 0.0, high + 0.0};  // -0 becomes 0, as in bounds()
 }
 
 void validate(const TetMesh& mesh, const std::string& source) {

@@ -45,7 +45,8 @@ Box bounds(const TetMesh& mesh);
 
 /// Volume of the tets over the largest face of their box: how much matter a ray meets on average that crosses the box
 /// the short way. World units; the length that default extinctions refer to, as it sees plates, shells and scattered
-/// parts that the box's diagonal does not. Zero for an empty or flat mesh.
+/// parts that the box's diagonal does not. Zero for an empty or flat mesh. The same bits for any order of the tets, and
+/// from mesh_facts.hpp for any division into parts.
 double mean_thickness(const TetMesh& mesh);
 
 /// Smallest and largest scalar that tets use; {0, 0} if there are no tets.

@@ -1,0 +1,157 @@
+#include "frame/mesh_exchange.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <type_traits>
+
+#include "frame/mesh_chunk.hpp"
+#include "frame/reduce.hpp"
+
+namespace tessera::frame {
+namespace {
+
+using compositor::Bytes;
+using compositor::Channel;
+using compositor::Transport;
+using projection::PartitionKind;
+
+template <class T>
+Bytes bytes_of(const T& value) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  const auto* first = reinterpret_cast<const std::byte*>(&value);
+  return Bytes(first, first + sizeof value);
+}
+
+/// One value of every rank.
+template <class T>
+std::vector<T> gather_values(Transport& transport, const T& value) {
+  std::vector<T> values;
+  for (const Bytes& bytes : gather_all(transport, bytes_of(value))) {
+    if (bytes.size() != sizeof(T))
+      throw scene::Error(scene::ExitCode::system_failure, "ranks disagree on what they agree on; run one program");
+    std::memcpy(&values.emplace_back(), bytes.data(), sizeof(T));
+  }
+  return values;
+}
+
+std::vector<std::uint64_t> gather_rows(Transport& transport, const std::vector<std::uint64_t>& row) {
+  const std::size_t size = row.size() * sizeof(std::uint64_t);
+  const auto* first = reinterpret_cast<const std::byte*>(row.data());
+  std::vector<std::uint64_t> table;
+  for (const Bytes& bytes : gather_all(transport, Bytes(first, first + size))) {
+    if (bytes.size() != size)
+      throw scene::Error(scene::ExitCode::system_failure,
+                         "ranks disagree on the number of projectors; run one program");
+    table.resize(table.size() + row.size());
+    std::memcpy(table.data() + table.size() - row.size(), bytes.data(), size);
+  }
+  return table;
+}
+
+std::vector<std::uint32_t> parts_of_tets(Transport& transport, const MeshPart& local, const scene::MeshFacts& facts,
+                                         const projection::Partition& how, int parts) {
+  std::vector<std::uint32_t> part_of(local.mesh.tets.size());
+  const auto fill = [&](const auto& part) {
+    for (std::size_t t = 0; t < part_of.size(); ++t) part_of[t] = static_cast<std::uint32_t>(part(t));
+  };
+  switch (how.kind) {
+    case PartitionKind::file:
+      fill([&](std::size_t t) { return projection::part_in_file_order(local.global_of(t), facts.tets, parts); });
+      break;
+    case PartitionKind::random:
+      fill([&](std::size_t t) { return projection::part_at_random(local.global_of(t), how.seed, parts); });
+      break;
+    case PartitionKind::curve: {
+      const auto keys = projection::curve_keys(local.mesh, local.global_tet, facts.box);
+      projection::CurveCut cut(facts.tets, parts);
+      while (!cut.done()) cut.narrow(reduce_all(transport, cut.count(keys), Reduction::sum));
+      fill([&](std::size_t t) { return projection::part_on_curve(keys[t], cut.splitters()); });
+      break;
+    }
+  }
+  return part_of;
+}
+
+}  // namespace
+
+scene::MeshFacts agree_facts(Transport& transport, const scene::TetMesh& part) {
+  if (transport.size() == 1) return scene::facts_of(part);
+  scene::MeshFacts own{bounds(part), scalar_range(part), 0, part.tets.size(), part.association}, facts;
+  for (const auto& other : gather_values(transport, own)) facts = joined(facts, other);
+  scene::VolumeSum volume = 0;
+  for (const auto other : gather_values(transport, volume_sum(part, facts.box))) volume += other;
+  facts.mean_thickness = mean_thickness(facts.box, volume);
+  return facts;
+}
+
+MeshPart redistribute(Transport& transport, MeshPart local, const scene::MeshFacts& facts,
+                      const projection::Partition& how, std::span<const int> projectors, scene::Trace* trace,
+                      const ExchangeLimits& limits) {
+  if (transport.size() == 1) return local;
+  scene::TraceScope scope(trace, "partition");
+  const int parts = static_cast<int>(projectors.size()), self = transport.rank();
+  std::vector<std::uint32_t> part_of = parts_of_tets(transport, local, facts, how, parts);
+
+  std::vector<std::uint64_t> row(projectors.size(), 0);
+  for (const std::uint32_t p : part_of) ++row[p];
+  const std::vector<std::uint64_t> table = gather_rows(transport, row);  // tets from rank r for part p at r parts + p
+  std::uint64_t coming = 0;
+  bool moves = false;
+  for (std::size_t k = 0; k < table.size(); ++k) {
+    const int from = static_cast<int>(k) / parts, to = projectors[k % projectors.size()];
+    if (to == self) coming += table[k];
+    moves = moves || (from != to && table[k] > 0);
+  }
+  if (!moves) return local;
+
+  ChunkReceiver receiver(facts, coming, transport.size());
+  const auto own = std::find(projectors.begin(), projectors.end(), self);
+  // Each rank begins elsewhere, so that not all send to the same one.
+  const int first_part = own == projectors.end() ? self % parts : static_cast<int>(own - projectors.begin());
+  ChunkSender sender(local, std::move(part_of), parts, first_part, limits.chunk_bytes);
+  for (bool all_sent = false; !all_sent;) {
+    // A round: some messages, then the numbers of all ranks' messages, which nobody gets past before all have taken
+    // the round before.
+    std::vector<std::uint64_t> sent(projectors.size() + 1, 0);  // messages for each part; whether more will follow
+    std::size_t bytes = 0;
+    int part = 0;
+    Bytes message;
+    sent.back() = 1;
+    while (bytes < limits.round_bytes) {
+      if (!sender.next(part, message)) {
+        sent.back() = 0;
+        break;
+      }
+      const int to = projectors[static_cast<std::size_t>(part)];
+      if (to == self) {
+        receiver.add(self, message);
+        continue;
+      }
+      bytes += message.size();
+      scope.moved(message.size(), 1);
+      ++sent[static_cast<std::size_t>(part)];
+      transport.send(to, Channel::mesh, std::move(message));
+    }
+    const std::vector<std::uint64_t> all = gather_rows(transport, sent);
+    std::uint64_t awaited = 0;
+    all_sent = true;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const std::size_t column = k % sent.size();
+      if (column == projectors.size())
+        all_sent = all_sent && all[k] == 0;
+      else if (projectors[column] == self)
+        awaited += all[k];
+    }
+    for (; awaited > 0; --awaited) {
+      const compositor::Message taken = transport.receive(Channel::mesh);
+      receiver.add(taken.from, taken.bytes);
+    }
+  }
+  const std::string field_name = std::move(local.mesh.field_name);
+  local = {};
+  MeshPart result = receiver.finish();
+  result.mesh.field_name = field_name;
+  return result;
+}
+
+}  // namespace tessera::frame

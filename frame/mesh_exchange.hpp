@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "compositor/transport.hpp"
+#include "projection/partition.hpp"
+#include "scene/mesh_facts.hpp"
+#include "scene/tet_mesh.hpp"
+#include "scene/trace.hpp"
+
+/// A mesh in parts, one a rank: what all ranks know of it, and how its tets get to the ranks that project them.
+namespace tessera::frame {
+
+/// The tets of a mesh that one rank holds.
+struct MeshPart {
+  scene::TetMesh mesh;  ///< `original_cell` is not kept over ranks
+  /// Index of each tet in the whole mesh, ascending: file order, the last part of the depth order's key. Empty if the
+  /// mesh is the whole, or has no tets.
+  std::vector<std::uint64_t> global_tet;
+
+  [[nodiscard]] std::uint64_t global_of(std::size_t tet) const { return global_tet.empty() ? tet : global_tet[tet]; }
+};
+
+/// Facts of the whole mesh, to the same bits on every rank, for any distribution, and in one process
+/// (scene::facts_of). Collective.
+scene::MeshFacts agree_facts(compositor::Transport& transport, const scene::TetMesh& part);
+
+/// Memory of an exchange: a message holds about `chunk_bytes`, and a rank is at most two rounds of `round_bytes` ahead
+/// of what the slowest has taken.
+struct ExchangeLimits {
+  std::size_t chunk_bytes = std::size_t{16} << 20, round_bytes = std::size_t{64} << 20;
+};
+
+/// Gives every tet to its owner: part p of `how` to rank projectors[p]. Collective; `local` are the tets this rank has
+/// read, in any distribution (every tet of the mesh on exactly one rank), `facts` the agreed ones. Other ranks than
+/// projectors end with an empty part.
+///
+/// Positions and scalars keep their bits. Vertices are those that the part's tets use, numbered in the order of first
+/// use, each once for every rank it came from. Where no tet has to move, nothing is copied and `local` is the answer.
+/// At its peak a rank holds what it read, what it got and the limits' bytes. Spans `partition`, with bytes sent.
+/// Throws Error(system_failure) for a part of 2^32 vertices or tets, or a malformed message.
+MeshPart redistribute(compositor::Transport& transport, MeshPart local, const scene::MeshFacts& facts,
+                      const projection::Partition& how, std::span<const int> projectors, scene::Trace* trace = nullptr,
+                      const ExchangeLimits& limits = {});
+
+}  // namespace tessera::frame

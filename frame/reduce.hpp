@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "compositor/transport.hpp"
+
+namespace tessera::frame {
+
+enum class Reduction { sum, bit_or };
+
+/// Element by element over all ranks, on every rank. Collective (channel `agreement`); the same length everywhere, at
+/// most 2^27 numbers.
+std::vector<std::uint64_t> reduce_all(compositor::Transport& transport, std::vector<std::uint64_t> values,
+                                      Reduction reduction);
+
+}  // namespace tessera::frame

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "scene/tet_mesh.hpp"
+
+namespace tessera::scene {
+
+/// What views, transfer functions and the projection have to know of the whole mesh, wherever its parts lie.
+struct MeshFacts {
+  Box box;                               ///< bounds()
+  std::array<double, 2> scalar_range{};  ///< scalar_range()
+  double mean_thickness = 0;             ///< mean_thickness()
+  std::uint64_t tets = 0;
+  Association association = Association::point;
+
+  bool operator==(const MeshFacts&) const = default;
+};
+
+/// The facts of a mesh that is whole.
+MeshFacts facts_of(const TetMesh& mesh);
+
+/// Of two parts of one mesh; a part without tets changes nothing. `mean_thickness` is not meant: it needs the box of
+/// the whole first, then volume_sum() of each part, and their sum.
+MeshFacts joined(const MeshFacts& a, const MeshFacts& b);
+
+/// Volume in units of 2^-100 of the cube over a box's longest side. Whole numbers, so that a sum does not depend on its
+/// order; not even 2^28 tets that each fill the box overflow it.
+using VolumeSum = __int128;
+
+/// Sum over the mesh's tets, each rounded down, with the box of the whole mesh. Zero if the box has no extent.
+VolumeSum volume_sum(const TetMesh& mesh, const Box& box);
+
+/// mean_thickness() from the box and the volume of the whole.
+double mean_thickness(const Box& box, VolumeSum volume);
+
+}  // namespace tessera::scene
