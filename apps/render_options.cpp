@@ -36,10 +36,11 @@ scene::Integrator chosen_integrator(const RenderWords& words) {
 
 frame::RenderSettings render_settings(const RenderWords& words) {
   check_word("--emission", words.emission, {"absorption", "independent"});
-  check_word("--rasterizer", words.rasterizer, {"planes"}, {"scanline"});
+  check_word("--rasterizer", words.rasterizer, {"planes", "scanline"});
   check_word("--backend", words.backend, {"auto", "cpu"}, {"osmesa", "egl"});
   frame::RenderSettings settings;
   settings.integrator = chosen_integrator(words);
+  if (words.rasterizer == "scanline") settings.rasterizer = frame::Rasterizer::scanline;
   if (words.emission == "independent") settings.emission = scene::Emission::independent;
   if (!words.threads.empty()) settings.threads = parse_count("--threads", words.threads, 1, 1024);
   if (!words.tile_size.empty()) settings.tile_size = parse_count("--tile-size", words.tile_size, 1, 1024);
@@ -119,7 +120,10 @@ void add_render_options(CLI::App& command, RenderWords& words) {
       ->type_name("EPS");
   command.add_option("--emission", words.emission, "source term (default: absorption)")
       ->type_name("absorption|independent");
-  command.add_option("--rasterizer", words.rasterizer, "how cells become ray segments")->type_name("planes");
+  command
+      .add_option("--rasterizer", words.rasterizer,
+                  "how cells become ray segments (default: planes; the paper's: scanline)")
+      ->type_name("planes|scanline");
   command.add_option("--backend", words.backend, "default: auto")->type_name("auto|cpu");
   command.add_option("--threads", words.threads, "threads (default: all cores)")->type_name("T");
   command.add_option("--tile-size", words.tile_size, "pixels a side of a thread's tile (default 32)")

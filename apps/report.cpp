@@ -15,6 +15,10 @@ using Json = nlohmann::ordered_json;
 
 const char* word(scene::Association association) { return association == scene::Association::point ? "point" : "cell"; }
 
+const char* word(frame::Rasterizer rasterizer) {
+  return rasterizer == frame::Rasterizer::planes ? "planes" : "scanline";
+}
+
 std::string method_line(const scene::Integrator& integrator) {
   switch (integrator.kind) {
     case scene::IntegratorKind::exact:
@@ -84,7 +88,7 @@ Json method_json(const RenderOptions& options) {
   Json json = {{"integrator", method_line(settings.integrator)}};
   if (settings.integrator.kind == scene::IntegratorKind::automatic) json["accuracy"] = settings.integrator.accuracy;
   json["emission"] = settings.emission == scene::Emission::absorption ? "absorption" : "independent";
-  json["rasterizer"] = "planes";
+  json["rasterizer"] = word(settings.rasterizer);
   json["backend"] = "cpu";
   json["blend"] = options.display_blend ? "display" : "linear";
   json["threads"] = settings.threads;  // 0: all cores
@@ -109,6 +113,7 @@ Json frame_json(const Frame& frame, const FrameRecord* record) {
                       {"max_segments_alive", statistics.max_segments_alive},
                       {"peak_buffer_bytes", statistics.peak_buffer_bytes},
                       {"exact_sign_tests", statistics.exact_sign_tests},
+                      {"unpaired", statistics.unpaired},
                       {"tiles_split", statistics.tiles_split}};
   json["instruction_set"] = statistics.instruction_set;
   json["integrator"] = statistics.integrator;
@@ -171,9 +176,10 @@ std::string run_line(const RenderOptions& options, const io::MeshFile& file, con
                   cells_line(file.counts), file.mesh.field_name, word(file.mesh.association), range[0], range[1],
                   transfer_function_line(loaded), view_line(record.camera), first.size.width, first.size.height);
   if (frames.size() > 1) line += fmt::format(" (frame {} of {})", first.number + 1, frames.size());
-  line += fmt::format("; {} tets projected, {} invisible, {} outside the view; {}, {}, {:.3g} ms",
+  line += fmt::format("; {} tets projected, {} invisible, {} outside the view; {}, {}, {}, {:.3g} ms",
                       statistics.tets_projected, statistics.tets_invisible, statistics.tets_outside_view,
-                      method_line(options.settings.integrator), statistics.instruction_set, record.frame_ms.front());
+                      word(options.settings.rasterizer), method_line(options.settings.integrator),
+                      statistics.instruction_set, record.frame_ms.front());
   for (const auto& note : file.notes) line += fmt::format("; {}", note);
   return line;
 }

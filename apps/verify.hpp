@@ -12,9 +12,9 @@
 
 namespace tessera::apps {
 
-/// The largest error an integrator promises, in linear RGBA: 2e-5 for exact, what was asked for automatic, none for
-/// sampled, whose error is only reported.
-std::optional<double> promised_error(const scene::Integrator& integrator);
+/// The largest error that is promised, in linear RGBA: 2e-5 for exact, what was asked for automatic, none for sampled
+/// or with the scanline rasterizer, whose error is only reported.
+std::optional<double> promised_error(const frame::RenderSettings& settings);
 
 struct Verification {
   reference::Judgement judgement;

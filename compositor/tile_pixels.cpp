@@ -27,7 +27,7 @@ void TilePixels::start(const projection::PixelRect& rect) {
 }
 
 void TilePixels::take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) {
-  const auto is_final = [&](const sorting::PixelLists::Entry& entry) { return entry.front < final_depth; };
+  const auto is_final = [&](const sorting::PixelLists::Entry& entry) { return entry.depth < final_depth; };
   batch_.reserve(segments.size);
   batch_.size = 0;
   for (std::size_t p = 0; p < open_.size(); ++p) {

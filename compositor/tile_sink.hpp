@@ -24,8 +24,9 @@ class TileSink {
   /// Forgets what an unfinished rectangle left and begins on the pixels of `rect`.
   virtual void start(const projection::PixelRect& rect) = 0;
 
-  /// Takes, in each pixel's order, the segments that are final: those whose front lies before `final_depth`, as no
-  /// later segment may come before them. The rest will be given again.
+  /// Takes, in each pixel's order, the segments that are final: those whose key (the lists' Entry::depth: the front,
+  /// unless the back is the key) lies before `final_depth`, as no later segment may come before them. The rest will be
+  /// given again.
   virtual void take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) = 0;
 
   /// Takes all segments, final or not, because the renderer has no room for more. False: it cannot, as it needs them

@@ -29,6 +29,9 @@ void render_distributed(compositor::Transport& transport, const DistributedSetti
                         const std::function<void(FinishedFrame)>& done) {
   if (settings.frames_in_flight < 1)
     throw scene::bad_input(fmt::format("--frames-in-flight {}: it must be at least 1", settings.frames_in_flight));
+  // Its segments neither touch to the bit, as runs and chains need, nor come in the order of fronts.
+  if (settings.render.rasterizer == Rasterizer::scanline)
+    throw scene::bad_input("--rasterizer scanline: not with several processes yet; use --rasterizer planes");
   const DistributedRun run{transport, settings, jobs, function};
   const int self = transport.rank();
   std::vector<std::function<void()>> parts;

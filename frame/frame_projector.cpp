@@ -27,6 +27,17 @@ const RenderSettings& checked(const RenderSettings& settings) {
   return settings;
 }
 
+void check_scanline(const projection::ProjectedMesh& projected, const projection::PixelSpace& space,
+                    float longest_edge) {
+  if (space.perspective())
+    throw scene::bad_input(
+        "--rasterizer scanline: it projects orthographically only; use an orthographic view, or --rasterizer planes");
+  if (!projection::fits_scanline(projected, longest_edge))
+    throw scene::bad_input(
+        "--rasterizer scanline: its 32-bit floats do not hold this scene's depths, pixels or scalars; use --rasterizer "
+        "planes");
+}
+
 /// What is left of the budget for segments, shared by the threads.
 std::uint64_t segment_budget(const RenderSettings& settings, std::uint64_t held, int threads) {
   const std::uint64_t least = held + static_cast<std::uint64_t>(threads) * (1u << 20);
@@ -50,6 +61,8 @@ FrameProjector::FrameProjector(const scene::TetMesh& mesh, const RenderSettings&
       })) {
   const scene::Box box = scene::bounds(mesh);
   diagonal_ = box.empty() ? 0 : glm::length(box.high - box.low);
+  if (settings.rasterizer == Rasterizer::scanline)
+    longest_edge_ = arena_.execute([&] { return projection::longest_edge(mesh); });
 }
 
 void FrameProjector::project_vertices(const projection::PixelSpace& space, std::int32_t frame) {
@@ -70,6 +83,8 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   const bool independent = settings_.emission == scene::Emission::independent;
   project_vertices(space, task.frame);
   const projection::ProjectedMesh projected{&prepared_, vertices_, space.near_depth(), space.far_depth()};
+  const float longest_edge = task.longest_edge > 0 ? task.longest_edge : longest_edge_;
+  if (settings_.rasterizer == Rasterizer::scanline) check_scanline(projected, space, longest_edge);
   const projection::TileGrid& grid = task.grid;
 
   std::optional<projection::TileLists> lists;
@@ -89,7 +104,8 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
       std::max<std::uint64_t>(segment_budget(settings_, held, 1) / 4 / sizeof(projection::TileEntry), 1);
   const std::uint64_t budget = segment_budget(settings_, held, threads) / 4 * 3;
 
-  const TileContext context{&projected, lists->depth_origin(), budget, settings_.trace};
+  const TileContext context{&projected,      lists->depth_origin(), budget,
+                            settings_.trace, settings_.rasterizer,  longest_edge};
   struct Worker {
     TileRenderer renderer;
     std::unique_ptr<compositor::TileSink> sink;
@@ -138,6 +154,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
     statistics.max_segments_alive = std::max(statistics.max_segments_alive, counts.max_segments_alive);
     statistics.peak_buffer_bytes += counts.peak_bytes;
     statistics.exact_sign_tests += counts.raster.exact_sign_tests;
+    statistics.unpaired += counts.raster.unpaired;
     statistics.tiles_split += counts.tiles_split;
   }
   return statistics;

@@ -26,13 +26,14 @@ class FrameProjector {
     projection::TileGrid grid;
     const scene::TransferFunction* function;
     std::int32_t frame = -1;  ///< for the trace
+    float longest_edge = 0;   ///< scanline: of the whole data set, world units; 0: of this mesh
     /// A sink for one thread; tiles go to it one after the other, and each thread takes tiles in ascending order.
     std::function<std::unique_ptr<compositor::TileSink>()> make_sink;
     /// Called once before the first tile: which tiles have cells, so will be given to a sink. May be empty.
     std::function<void(const std::vector<bool>& has_cells)> announce;
   };
 
-  /// Fills all of the statistics but the names.
+  /// Fills all of the statistics but the names. Throws Error(bad_input) for a view that the rasterizer cannot do.
   FrameStatistics project(const Task& task);
 
   /// Length of the diagonal of the mesh's box, world units: no ray inside is longer.
@@ -47,6 +48,7 @@ class FrameProjector {
   tbb::task_arena arena_;
   projection::PreparedMesh prepared_;
   double diagonal_ = 0;
+  float longest_edge_ = 0;  ///< scanline only
   std::vector<projection::PixelVertex> vertices_;
 };
 

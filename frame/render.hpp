@@ -13,8 +13,16 @@
 
 namespace tessera::frame {
 
-/// What a frame is made with. None of it but the integrator, emission and accuracy changes a bit of the picture.
+/// How cells become ray segments.
+enum class Rasterizer {
+  planes,   ///< exact hits, double precision: the default
+  scanline  ///< [JCN07] 4.1-4.2 as printed: float32, no tie rule, segments ordered by z_back alone; orthographic only
+};
+
+/// What a frame is made with. None of it but the rasterizer, integrator, emission and accuracy changes a bit of the
+/// picture.
 struct RenderSettings {
+  Rasterizer rasterizer = Rasterizer::planes;
   scene::Integrator integrator;
   scene::Emission emission = scene::Emission::absorption;
   int threads = 0;                          ///< 0: all cores
@@ -34,6 +42,7 @@ struct FrameStatistics {
   std::uint64_t max_segments_alive = 0;   ///< most segments one thread held at once
   std::uint64_t peak_buffer_bytes = 0;    ///< most bytes of frame buffers held at once (estimate from capacities)
   std::uint64_t exact_sign_tests = 0;     ///< edge signs decided by exact arithmetic
+  std::uint64_t unpaired = 0;             ///< scanline: front-face fragments lost for want of a back-face one
   std::uint64_t tiles_split = 0;          ///< tiles worked through in parts to stay within the memory budget
   std::uint64_t fragments = 0;            ///< runs or segments sent to compositors; 0 in a single process
   std::uint64_t exchange_bytes = 0;       ///< of the messages they went in, those to the same rank included
@@ -52,8 +61,8 @@ class Renderer {
   Renderer& operator=(const Renderer&) = delete;
 
   /// The composited image in memory. The same bits for any thread count, tile size and memory budget on one instruction
-  /// set. Throws Error(bad_input) for an invalid camera or size, Error(system_failure) if one pixel's segments exceed
-  /// the budget.
+  /// set. Throws Error(bad_input) for an invalid camera or size, or a view that the rasterizer cannot do;
+  /// Error(system_failure) if one pixel's segments exceed the budget.
   scene::Image render(const scene::Camera& camera, scene::ImageSize size,
                       const scene::TransferFunction& transfer_function, FrameStatistics* statistics = nullptr);
 

@@ -69,16 +69,18 @@ bool TileRenderer::try_render(const projection::PixelRect& rect, std::span<const
   for (std::size_t next = 0; next < entries.size();) {
     {
       const scene::TraceScope timing(context_.trace, "project");
-      next += projection::rasterize_planes(*context_.projected, entries.subspan(next), rect, segments_, counts_.raster);
+      next += rasterize(entries.subspan(next), rect);
     }
-    const double final_depth = next < entries.size() ? context_.depth_origin + entries[next].near_depth
-                                                     : std::numeric_limits<double>::infinity();
+    double final_depth = next < entries.size() ? context_.depth_origin + entries[next].near_depth
+                                               : std::numeric_limits<double>::infinity();
+    // Its depths are floats, rounded the same way and not before their cell's nearest vertex.
+    if (context_.rasterizer == Rasterizer::scanline) final_depth = static_cast<float>(final_depth);
     flush(area, final_depth, sink);
     if (sink.open_count() == 0) break;
     const bool wants_room = next < entries.size() && segments_.size + area > segments_.capacity() / 2;
     if (wants_room && !reserve(std::max(2 * segments_.capacity(), 2 * (segments_.size + area))) &&
         segments_.size + area > segments_.capacity()) {
-      lists_.sort(segments_, area);
+      lists_.sort(segments_, area, key());
       if (!sink.take_unordered(segments_, lists_, final_depth)) return false;
       counts_.segments += segments_.size;
       segments_.size = 0;
@@ -87,17 +89,25 @@ bool TileRenderer::try_render(const projection::PixelRect& rect, std::span<const
   return true;
 }
 
+std::size_t TileRenderer::rasterize(std::span<const projection::TileEntry> entries, const projection::PixelRect& rect) {
+  if (context_.rasterizer == Rasterizer::scanline)
+    return projection::rasterize_scanline(*context_.projected, context_.longest_edge, entries, rect, scanline_,
+                                          segments_, counts_.raster);
+  return projection::rasterize_planes(*context_.projected, entries, rect, segments_, counts_.raster);
+}
+
 void TileRenderer::flush(std::size_t pixel_count, double final_depth, compositor::TileSink& sink) {
   counts_.max_segments_alive = std::max<std::uint64_t>(counts_.max_segments_alive, segments_.size);
   {
     const scene::TraceScope timing(context_.trace, "sort");
-    lists_.sort(segments_, pixel_count);
+    lists_.sort(segments_, pixel_count, key());
   }
   const scene::TraceScope timing(context_.trace, "composite");
   sink.take(segments_, lists_, final_depth);
+  const std::vector<double>& depth = key() == sorting::PixelLists::Key::back ? segments_.back : segments_.front;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < segments_.size; ++i)
-    if (!(segments_.front[i] < final_depth) && sink.open(segments_.pixel(i))) segments_.move(i, kept++);
+    if (!(depth[i] < final_depth) && sink.open(segments_.pixel(i))) segments_.move(i, kept++);
   counts_.segments += segments_.size - kept;
   segments_.size = kept;
 }

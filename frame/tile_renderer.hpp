@@ -5,8 +5,10 @@
 
 #include "compositor/segment_batch.hpp"
 #include "compositor/tile_sink.hpp"
+#include "frame/render.hpp"
 #include "projection/planes_rasterizer.hpp"
 #include "projection/ray_segments.hpp"
+#include "projection/scanline_rasterizer.hpp"
 #include "scene/trace.hpp"
 #include "sorting/pixel_lists.hpp"
 
@@ -18,6 +20,8 @@ struct TileContext {
   double depth_origin;         ///< of the entries' near_depth
   std::uint64_t budget_bytes;  ///< for this renderer's buffers
   scene::Trace* trace;
+  Rasterizer rasterizer = Rasterizer::planes;
+  float longest_edge = 1;  ///< scanline: of the whole data set
 };
 
 /// Sums over the tiles that one renderer made.
@@ -29,7 +33,8 @@ struct TileCounts {
 /// Makes tiles one after the other: rasterize, sort, and hand the segments to a sink; one renderer a thread.
 ///
 /// A tile's cells come by their nearest depth. When the segment buffer is full, all segments nearer than the next
-/// cell's nearest depth are final: they are sorted, handed over and forgotten, the rest stays. So the depth complexity
+/// cell's nearest depth are final (scanline, whose key is the back: all whose back is nearer): they are sorted, handed
+/// over and forgotten, the rest stays. So the depth complexity
 /// costs no memory, only the number of segments that overlap in depth does; where that outgrows the buffer, the buffer
 /// grows up to the budget; then a sink that takes segments in any order gets them all, and for one that does not the
 /// tile is rendered in quarters, which hold a quarter of the segments each. Nothing is ever dropped.
@@ -43,6 +48,12 @@ class TileRenderer {
 
   [[nodiscard]] const TileCounts& counts() const { return counts_; }
 
+  /// What the segments given to a sink are ordered by.
+  [[nodiscard]] sorting::PixelLists::Key key() const {
+    return context_.rasterizer == Rasterizer::scanline ? sorting::PixelLists::Key::back
+                                                       : sorting::PixelLists::Key::front;
+  }
+
   /// Bytes that one segment takes in all buffers of a renderer.
   static constexpr std::size_t bytes_a_segment =
       projection::RaySegments::bytes_each + sorting::PixelLists::bytes_each + compositor::SegmentBatch::bytes_each;
@@ -54,9 +65,11 @@ class TileRenderer {
                   compositor::TileSink& sink);
   void flush(std::size_t pixel_count, double final_depth, compositor::TileSink& sink);
   bool reserve(std::size_t segments);
+  std::size_t rasterize(std::span<const projection::TileEntry> entries, const projection::PixelRect& rect);
 
   TileContext context_;
   projection::RaySegments segments_;
+  projection::ScanlineBuffers scanline_;
   sorting::PixelLists lists_;
   TileCounts counts_;
 };

@@ -35,6 +35,7 @@ class PixelSpace {
   /// Planar depths between which anything is seen: [max(0, near), far], or [0, inf).
   [[nodiscard]] double near_depth() const { return near_; }
   [[nodiscard]] double far_depth() const { return far_; }
+  [[nodiscard]] bool perspective() const { return perspective_; }
   [[nodiscard]] scene::ImageSize size() const { return size_; }
 
  private:

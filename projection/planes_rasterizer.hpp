@@ -25,9 +25,10 @@ struct ProjectedMesh {
   double near_depth, far_depth;  ///< the clipping range in planar depth
 };
 
-/// How often the slow path ran.
+/// What happened on the way.
 struct RasterCounts {
-  std::uint64_t exact_sign_tests = 0;
+  std::uint64_t exact_sign_tests = 0;  ///< planes: edge signs decided by exact arithmetic
+  std::uint64_t unpaired = 0;          ///< scanline: front-face fragments without a back-face one, lost
 };
 
 /// The `planes` rasterizer: cells to ray segments, for the pixels of one rectangle.

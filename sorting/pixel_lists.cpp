@@ -10,19 +10,20 @@ constexpr std::ptrdiff_t insertion_limit = 48;
 
 }  // namespace
 
-void PixelLists::sort(const projection::RaySegments& s, std::size_t pixel_count) {
+void PixelLists::sort(const projection::RaySegments& s, std::size_t pixel_count, Key key) {
+  const std::vector<double>& depth = key == Key::front ? s.front : s.back;
   begin_.assign(pixel_count + 1, 0);
   entries_.resize(s.size);
   for (std::size_t i = 0; i < s.size; ++i) ++begin_[s.pixel(i) + 1];
   for (std::size_t p = 0; p < pixel_count; ++p) begin_[p + 1] += begin_[p];
-  for (std::size_t i = 0; i < s.size; ++i) entries_[begin_[s.pixel(i)]++] = {s.front[i], static_cast<std::uint32_t>(i)};
+  for (std::size_t i = 0; i < s.size; ++i) entries_[begin_[s.pixel(i)]++] = {depth[i], static_cast<std::uint32_t>(i)};
   // begin_[p] now stands where p's list ends: shift back by one.
   for (std::size_t p = pixel_count; p > 0; --p) begin_[p] = begin_[p - 1];
   begin_[0] = 0;
 
   const auto before = [&](const Entry& a, const Entry& b) {
-    if (a.front != b.front) return a.front < b.front;
-    if (s.back[a.segment] != s.back[b.segment]) return s.back[a.segment] < s.back[b.segment];
+    if (a.depth != b.depth) return a.depth < b.depth;
+    if (key == Key::front && s.back[a.segment] != s.back[b.segment]) return s.back[a.segment] < s.back[b.segment];
     return s.tet(a.segment) < s.tet(b.segment);
   };
   for (std::size_t p = 0; p < pixel_count; ++p) {

@@ -10,17 +10,20 @@ namespace tessera::sorting {
 
 /// The ray segments of a tile, listed pixel by pixel in visibility order.
 ///
-/// Order is total: front, then back, then tet index, so it does not depend on how the segments arrived. Any list
-/// length.
+/// Order is total, so it does not depend on how the segments arrived: front, then back, then tet index. Or, in the mode
+/// of the `scanline` rasterizer, the back alone (Juliachs et al. 2007, 4.3: z_back is the key) and equal ones as they
+/// arrived, which in tet order means by tet index. Any list length.
 class PixelLists {
  public:
+  enum class Key { front, back };
+
   /// Lists segments [0, segments.size) of a tile of `pixel_count` pixels. Segments that arrive nearly in order (by
   /// their cells' nearest depth) cost one comparison each.
-  void sort(const projection::RaySegments& segments, std::size_t pixel_count);
+  void sort(const projection::RaySegments& segments, std::size_t pixel_count, Key key = Key::front);
 
-  /// A segment in a list. The front stands beside the index: comparing neighbours then touches no other memory.
+  /// A segment in a list. Its key stands beside the index: comparing neighbours then touches no other memory.
   struct Entry {
-    double front;
+    double depth;           ///< front, or back if that is the key
     std::uint32_t segment;  ///< index into the segments given last
   };
 

@@ -66,6 +66,83 @@ TEST(Render, GivesTheSameBitsForAnyThreadsTilesAndMemory) {
   }
 }
 
+RenderSettings scanline() {
+  RenderSettings settings = exact();
+  settings.rasterizer = Rasterizer::scanline;
+  return settings;
+}
+
+double largest_difference(const Image& a, const Image& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i)
+    most = std::max(most, static_cast<double>(std::abs(a.rgba[i] - b.rgba[i])));
+  return most;
+}
+
+TEST(Render, ScanlineGivesTheSameBitsForAnyThreadsTilesAndMemory) {
+  const scene::TetMesh mesh = datasets::cube(16, 0.2);
+  const scene::TetMesh regular = datasets::regular_split(16, 16, 16, glm::dvec3(0.125), glm::dvec3(-1));
+  Camera along = oblique();  // vertices on pixel centres, and equal depths everywhere
+  along.position = {1 / 64., -1 / 64., 5};
+  along.focal_point = {1 / 64., -1 / 64., 0};
+  along.parallel_scale = 61 / 64.;
+  const ImageSize size{97, 61};
+  for (const auto& [m, camera] : {std::pair{&mesh, oblique()}, std::pair{&regular, along}}) {
+    const Image expected = Renderer(*m, scanline()).render(camera, size, six_knots());
+    for (const int threads : {1, 3})
+      for (const int tile : {1, 7, 32, 1024})
+        for (const std::uint64_t memory : {64ull << 20, 8ull << 20}) {
+          RenderSettings settings = scanline();
+          settings.threads = threads;
+          settings.tile_size = tile;
+          settings.memory_bytes = memory;
+          EXPECT_TRUE(same_bits(Renderer(*m, settings).render(camera, size, six_knots()), expected))
+              << threads << " threads, tile " << tile << ", memory " << memory;
+        }
+  }
+}
+
+TEST(Render, ScanlineIsPlanesToFloatRoundingWithEveryIntegrator) {
+  // No ray of this view passes an edge closer than float rounds (1e-6 pixel); scanline_rasterizer_test measures it.
+  const scene::TetMesh mesh = datasets::cube(3, 0.25);
+  const ImageSize size{31, 27};
+  for (const auto kind :
+       {scene::IntegratorKind::exact, scene::IntegratorKind::sampled, scene::IntegratorKind::automatic})
+    for (const scene::Emission emission : {scene::Emission::absorption, scene::Emission::independent}) {
+      RenderSettings settings = scanline();
+      settings.integrator.kind = kind;
+      settings.integrator.samples = 8;
+      settings.emission = emission;
+      const Image paper = Renderer(mesh, settings).render(oblique(), size, six_knots());
+      settings.rasterizer = Rasterizer::planes;
+      const Image ours = Renderer(mesh, settings).render(oblique(), size, six_knots());
+      // Depths to 5e-7 each, colours and extinctions of up to 8 that change over scalars of 0.1.
+      EXPECT_LT(largest_difference(paper, ours), 1e-5);
+      EXPECT_GT(largest_difference(paper, ours), 0);
+    }
+}
+
+TEST(Render, ScanlineRefusesPerspectiveAndScenesBeyondFloat) {
+  const scene::TetMesh mesh = datasets::cube(2, 0);
+  Camera camera = oblique();
+  camera.projection = scene::ProjectionKind::perspective;
+  camera.view_angle = 40;
+  try {
+    Renderer(mesh, scanline()).render(camera, {8, 8}, six_knots());
+    FAIL() << "perspective was taken";
+  } catch (const scene::Error& error) {
+    EXPECT_EQ(error.code(), scene::ExitCode::bad_input);
+    EXPECT_NE(std::string(error.what()).find("orthographic"), std::string::npos) << error.what();
+  }
+  scene::TetMesh huge = mesh;
+  for (glm::dvec3& p : huge.positions) p *= 1e38;
+  camera = oblique();
+  camera.position *= 1e38;
+  camera.parallel_scale *= 1e38;
+  EXPECT_THROW(Renderer(huge, scanline()).render(camera, {8, 8}, six_knots()), scene::Error);
+  EXPECT_NO_THROW(Renderer(huge, exact()).render(camera, {8, 8}, six_knots()));
+}
+
 TEST(Render, CullingInvisibleCellsChangesNoBit) {
   const scene::TetMesh mesh = datasets::cube(10, 0.2);
   const TransferFunction peak({{0, {1, 0, 0}, 0}, {0.7, {1, 0, 0}, 0}, {0.8, {1, 1, 0}, 9}, {0.9, {0, 1, 0}, 0}});

@@ -64,5 +64,29 @@ TEST(PixelLists, AZeroLengthSegmentComesBeforeTheOneThatBeginsThere) {
   EXPECT_EQ(order, (std::vector<std::uint32_t>{2, 1, 0}));
 }
 
+TEST(PixelLists, ByBackAloneEqualOnesStayInTetOrder) {
+  std::mt19937 random(4);
+  std::vector<std::pair<std::uint32_t, Key>> given;
+  // Fronts are noise that must not count. Tets arrive in order, as the rasterizer is given them.
+  for (std::uint32_t i = 0; i < 3000; ++i)
+    given.push_back({static_cast<std::uint32_t>(random() % 20),
+                     {static_cast<double>(random() % 100), static_cast<double>(random() % 9), i}});
+  const projection::RaySegments s = segments_of(given);
+  PixelLists lists;
+  lists.sort(s, 20, PixelLists::Key::back);
+  std::size_t listed = 0;
+  for (std::uint32_t p = 0; p < 20; ++p) {
+    const auto list = lists.pixel(p);
+    listed += list.size();
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      EXPECT_EQ(list[i].depth, s.back[list[i].segment]);
+      if (i > 0) {
+        EXPECT_LT(std::tuple(list[i - 1].depth, list[i - 1].segment), std::tuple(list[i].depth, list[i].segment));
+      }
+    }
+  }
+  EXPECT_EQ(listed, 3000u);
+}
+
 }  // namespace
 }  // namespace tessera::sorting
