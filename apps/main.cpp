@@ -14,6 +14,7 @@
 #include "apps/info_command.hpp"
 #include "apps/render_command.hpp"
 #include "apps/render_options.hpp"
+#include "apps/timing_command.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::apps {
@@ -59,11 +60,18 @@ ExitCode run(int argc, char** argv) {
   generate_command->add_flag("--quiet", words.quiet, "nothing on stderr but errors");
   generate_command->footer(generator_help);
 
+  auto* timing_command = app.add_subcommand("timing", "Say where the time of traced runs went");
+  std::vector<std::string> traces;
+  std::string csv, figure;
+  timing_command->add_option("TRACE", traces, "what render --timing wrote; several are compared")->required();
+  timing_command->add_option("--csv", csv, "the same figures as a table")->type_name("FILE");
+  timing_command->add_option("--figure", figure, "stacked bars, .svg or .png")->type_name("FILE");
+
   // CLI11 would only say that a subcommand is missing.
   if (argc > 1 && argv[1][0] != '-' &&
       app.get_subcommands([&](const CLI::App* command) { return command->get_name() == argv[1]; }).empty())
     throw scene::bad_input(
-        fmt::format("arguments: '{}' is no command; use render, info, convert or generate", argv[1]));
+        fmt::format("arguments: '{}' is no command; use render, info, convert, generate or timing", argv[1]));
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version
@@ -79,6 +87,7 @@ ExitCode run(int argc, char** argv) {
   if (*render_command) return render(render_options(words));
   if (*info_command) info(words.input, mesh_options(words), as_json);
   if (*convert_command) convert(words.input, mesh_output, mesh_options(words), words.quiet);
+  if (*timing_command) timing({traces.begin(), traces.end()}, csv, figure);
   if (*generate_command) generate(kind, mesh_output, parameters, words.quiet);
   return ExitCode::complete;
 }

@@ -33,6 +33,11 @@ std::string place(std::string_view text, std::size_t byte) {
 
 }  // namespace
 
+scene::Error not_json(std::string_view text, const std::string& source, std::size_t byte, const std::string& message) {
+  return scene::bad_input(fmt::format("{}: {}: not valid JSON ({}); mend it or export it again", source,
+                                      place(text, byte), reason(message)));
+}
+
 nlohmann::json parse_json(std::string_view text, const std::string& source) {
   using nlohmann::json;
   constexpr int deepest = 64;
@@ -55,8 +60,7 @@ nlohmann::json parse_json(std::string_view text, const std::string& source) {
   try {
     return json::parse(text.begin(), text.end(), watch);
   } catch (const json::parse_error& error) {
-    throw scene::bad_input(fmt::format("{}: {}: not valid JSON ({}); mend it or export it again", source,
-                                       place(text, error.byte), reason(error.what())));
+    throw not_json(text, source, error.byte, error.what());
   } catch (const json::exception& error) {
     throw scene::bad_input(
         fmt::format("{}: not valid JSON ({}); mend it or export it again", source, reason(error.what())));

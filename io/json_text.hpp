@@ -4,11 +4,16 @@
 #include <string>
 #include <string_view>
 
+#include "scene/error.hpp"
+
 namespace tessera::io {
 
 /// Parses JSON, or throws Error(bad_input, "SOURCE: line L, column C: not valid JSON ..."). Refuses what would be read
 /// otherwise than meant or could not be held: a key twice in one object, numbers beyond double's range, more than 64
 /// levels of nesting.
 nlohmann::json parse_json(std::string_view text, const std::string& source);
+
+/// That error, for who parses as a stream: `byte` of the text, counted from 1, and the parser's own words.
+scene::Error not_json(std::string_view text, const std::string& source, std::size_t byte, const std::string& message);
 
 }  // namespace tessera::io
