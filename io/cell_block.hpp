@@ -39,7 +39,8 @@ BlockField field_of_values(std::string name, std::string type, scene::Associatio
 /// Holds   the reader has checked that offsets do not decrease and end at connectivity.size(), and that every index is
 ///         < positions.size(). Positions and fields may hold NaN.
 struct CellBlock {
-  std::string name;  ///< for messages; empty if it is the only one
+  std::string name;    ///< for messages; empty if it is the only one
+  std::string source;  ///< for messages: the file it comes from, if that is a piece of the file asked for
   std::vector<glm::dvec3> positions;
   std::vector<std::uint8_t> types;
   std::vector<std::uint64_t> offsets;

@@ -20,7 +20,8 @@ using scene::Association;
 
 const char* word(Association a) { return a == Association::point ? "point" : "cell"; }
 
-void include_range(const BlockField& field, FieldSummary& summary, bool& any) {
+void include_range(const BlockField& field, FieldTally& tally) {
+  FieldSummary& summary = tally.summary;
   std::array<double, 4096> chunk;
   const int component = field.components == 1 ? 0 : magnitude;
   for (std::size_t first = 0; first < field.tuples; first += chunk.size()) {
@@ -31,9 +32,9 @@ void include_range(const BlockField& field, FieldSummary& summary, bool& any) {
         ++summary.nan_count;
         continue;
       }
-      summary.low = any ? std::min(summary.low, chunk[k]) : chunk[k];
-      summary.high = any ? std::max(summary.high, chunk[k]) : chunk[k];
-      any = true;
+      summary.low = tally.any_finite ? std::min(summary.low, chunk[k]) : chunk[k];
+      summary.high = tally.any_finite ? std::max(summary.high, chunk[k]) : chunk[k];
+      tally.any_finite = true;
     }
   }
 }
@@ -101,22 +102,15 @@ std::optional<FieldChoice> resolve(const std::string& wish, std::optional<Associ
   return choice_of(*field, component);
 }
 
-std::optional<FieldChoice> default_choice(std::span<const FieldSummary> fields, std::span<const CellBlock> blocks) {
-  const auto is_active = [&](const FieldSummary& f) {
-    return std::any_of(blocks.begin(), blocks.end(), [&](const CellBlock& b) {
-      const BlockField* field = find_field(b, f.name, f.association);
-      return field && field->active;
-    });
-  };
+std::optional<FieldChoice> default_choice(std::span<const FieldSummary> fields) {
   const auto first = [&](auto&& wanted) -> const FieldSummary* {
     const auto f = std::find_if(fields.begin(), fields.end(), wanted);
     return f == fields.end() ? nullptr : &*f;
   };
   const auto quantity = [&](const FieldSummary& f) { return varies(f) && !is_label_name(f.name); };
   for (const Association a : {Association::point, Association::cell})
-    if (const auto* f = first([&](const FieldSummary& s) {
-          return s.association == a && s.components == 1 && quantity(s) && is_active(s);
-        }))
+    if (const auto* f = first(
+            [&](const FieldSummary& s) { return s.association == a && s.components == 1 && quantity(s) && s.active; }))
       return choice_of(*f, std::nullopt);
   for (const Association a : {Association::point, Association::cell})
     for (const bool scalar : {true, false})
@@ -140,24 +134,45 @@ const BlockField* find_field(const CellBlock& block, const std::string& name, As
   return nullptr;
 }
 
-std::vector<FieldSummary> summarize_fields(std::span<const CellBlock> blocks) {
-  std::vector<FieldSummary> summaries;
-  std::vector<bool> any;
+std::vector<FieldTally> tally_fields(std::span<const CellBlock> blocks) {
+  std::vector<FieldTally> tallies;
   for (const CellBlock& block : blocks)
     for (const BlockField& field : block.fields) {
-      const auto same = [&](const FieldSummary& s) {
-        return s.name == field.name && s.association == field.association;
-      };
-      auto s = std::find_if(summaries.begin(), summaries.end(), same);
-      if (s == summaries.end()) {
-        summaries.push_back({field.name, field.association, field.components, field.type, 0, 0, 0});
-        any.push_back(false);
-        s = summaries.end() - 1;
+      auto t = std::find_if(tallies.begin(), tallies.end(), [&](const FieldTally& known) {
+        return known.summary.name == field.name && known.summary.association == field.association &&
+               known.summary.components == field.components;
+      });
+      if (t == tallies.end()) {
+        tallies.push_back({{field.name, field.association, field.components, field.type}});
+        t = tallies.end() - 1;
       }
-      if (s->components != field.components) continue;  // counts as missing in this block
-      bool seen = any[static_cast<std::size_t>(s - summaries.begin())];
-      include_range(field, *s, seen);
-      any[static_cast<std::size_t>(s - summaries.begin())] = seen;
+      t->summary.active = t->summary.active || field.active;
+      include_range(field, *t);
+    }
+  return tallies;
+}
+
+std::vector<FieldSummary> summarize_fields(std::span<const std::vector<FieldTally>> parts) {
+  std::vector<FieldSummary> summaries;
+  std::vector<bool> any;
+  for (const auto& part : parts)
+    for (const auto& [more, any_finite] : part) {
+      auto s = std::find_if(summaries.begin(), summaries.end(), [&](const FieldSummary& known) {
+        return known.name == more.name && known.association == more.association;
+      });
+      if (s == summaries.end()) {
+        summaries.push_back(more);
+        any.push_back(any_finite);
+        continue;
+      }
+      s->active = s->active || more.active;
+      if (s->components != more.components) continue;  // counts as missing where it is so
+      const auto k = static_cast<std::size_t>(s - summaries.begin());
+      s->nan_count += more.nan_count;
+      if (!any_finite) continue;
+      s->low = any[k] ? std::min(s->low, more.low) : more.low;
+      s->high = any[k] ? std::max(s->high, more.high) : more.high;
+      any[k] = true;
     }
   return summaries;
 }
@@ -179,10 +194,9 @@ bool is_label_name(const std::string& name) {
   return false;
 }
 
-FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> fields,
-                         std::span<const CellBlock> blocks, const std::string& source) {
+FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> fields, const std::string& source) {
   if (wish.empty()) {
-    std::optional<FieldChoice> choice = default_choice(fields, blocks);
+    std::optional<FieldChoice> choice = default_choice(fields);
     if (!choice) {
       FieldChoice none{"", Association::point, 0, "none", {}};
       none.notes.emplace_back("the file has no field: every point has the value 1");

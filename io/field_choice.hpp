@@ -18,8 +18,18 @@ struct FieldChoice {
   std::vector<std::string> notes;  ///< why it was chosen, where that may surprise
 };
 
-/// All arrays of all blocks in the file's order, one entry a name and association, with their ranges.
-std::vector<FieldSummary> summarize_fields(std::span<const CellBlock> blocks);
+/// One array of one part of a file. An array that changes its number of components from block to block has several.
+struct FieldTally {
+  FieldSummary summary;
+  bool any_finite = false;  ///< else the summary's range means nothing
+};
+
+/// All arrays of these blocks in the file's order.
+std::vector<FieldTally> tally_fields(std::span<const CellBlock> blocks);
+
+/// The arrays of a whole from the tallies of its parts in the file's order: one entry a name and association, with the
+/// number of components and the type that come first. The same however the file was divided.
+std::vector<FieldSummary> summarize_fields(std::span<const std::vector<FieldTally>> parts);
 
 /// Whether a name is that of a label rather than a quantity ("GlobalNodeId", "vtkGhostType", "IBlank"): never the
 /// default.
@@ -29,8 +39,7 @@ bool is_label_name(const std::string& name);
 /// a point and a cell array means the point one. Without a wish: the file's active scalars if they vary, else the first
 /// that varies of point scalars, point vectors, cell scalars, cell vectors (labels only if nothing else varies), else
 /// any. Throws Error(bad_input) listing all names.
-FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> fields,
-                         std::span<const CellBlock> blocks, const std::string& source);
+FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> fields, const std::string& source);
 
 /// Whether this block has the chosen array, with the summary's number of components.
 const BlockField* find_field(const CellBlock& block, const std::string& name, scene::Association association);

@@ -27,8 +27,14 @@ bool finite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.
 /// Turns blocks into one mesh, a block at a time.
 class Assembly {
  public:
-  Assembly(MeshFile& file, const FieldChoice& choice, const std::string& source)
-      : file_(file), mesh_(file.mesh), counts_(file.counts), choice_(choice), source_(source) {
+  Assembly(AssembledBlocks& result, std::span<const FieldSummary> fields, const FieldChoice& choice,
+           const std::string& source)
+      : notes_(result.notes),
+        mesh_(result.mesh),
+        counts_(result.counts),
+        fields_(fields),
+        choice_(choice),
+        source_(source) {
     for (int type = 0; type < 256; ++type) shapes_[type] = cell_shape(static_cast<std::uint8_t>(type));
   }
 
@@ -90,10 +96,17 @@ class Assembly {
     const auto same = [&](const FieldSummary& s) {
       return s.name == choice_.name && s.association == choice_.association;
     };
-    const auto summary = std::find_if(file_.fields.begin(), file_.fields.end(), same);
-    if (!field || summary == file_.fields.end() || field->components != summary->components) {
+    const auto summary = std::find_if(fields_.begin(), fields_.end(), same);
+    if (!field || summary == fields_.end() || field->components != summary->components) {
+      if (block.cell_count() > 0 && !block.source.empty())
+        throw scene::bad_input(fmt::format(
+            "{}: it has no {} field '{}' of {} as other pieces have; write all pieces "
+            "with the same fields",
+            block.source, point ? "point" : "cell", choice_.name,
+            summary == fields_.end() || summary->components == 1 ? "one component"
+                                                                 : fmt::format("{} components", summary->components)));
       if (block.cell_count() > 0)
-        file_.notes.push_back(
+        notes_.push_back(
             fmt::format("block '{}' lacks the field '{}': its cells are blanked", block.name, choice_.name));
       return;
     }
@@ -113,11 +126,11 @@ class Assembly {
       throw scene::bad_input(
           fmt::format("{}: {} is a {}, which is not rendered; split such cells into tetrahedra "
                       "first (ParaView: Tetrahedralize)",
-                      source_, place(block, c), cell_type_name(block.types[c])));
+                      source_of(block), place(block, c), cell_type_name(block.types[c])));
     if (shape.nodes ? nodes != static_cast<std::size_t>(shape.nodes) : nodes < static_cast<std::size_t>(shape.corners))
-      throw scene::bad_input(fmt::format("{}: {} is a {} with {} nodes, it has to have {}; mend the cell types",
-                                         source_, place(block, c), cell_type_name(all_tets ? 10 : block.types[c]),
-                                         nodes, shape.nodes ? shape.nodes : shape.corners));
+      throw scene::bad_input(fmt::format(
+          "{}: {} is a {} with {} nodes, it has to have {}; mend the cell types", source_of(block), place(block, c),
+          cell_type_name(all_tets ? 10 : block.types[c]), nodes, shape.nodes ? shape.nodes : shape.corners));
     const std::uint8_t ghost = block.cell_ghost.empty() ? 0 : block.cell_ghost[c];
     if (ghost & duplicate_cell) {
       ++counts_.cells_ghost;
@@ -188,9 +201,14 @@ class Assembly {
     return block.name.empty() ? fmt::format("cell {}", c) : fmt::format("block '{}', cell {}", block.name, c);
   }
 
-  MeshFile& file_;
+  [[nodiscard]] const std::string& source_of(const CellBlock& block) const {
+    return block.source.empty() ? source_ : block.source;
+  }
+
+  std::vector<std::string>& notes_;
   scene::TetMesh& mesh_;
   MeshCounts& counts_;
+  std::span<const FieldSummary> fields_;
   const FieldChoice& choice_;
   const std::string& source_;
   std::array<CellShape, 256> shapes_;
@@ -201,27 +219,12 @@ class Assembly {
   bool numbered_ = false;
 };
 
-void require_something_left(const MeshFile& file, const std::string& source) {
-  const MeshCounts& n = file.counts;
-  if (n.cells_read == 0)
-    throw scene::bad_input(
-        fmt::format("{}: it holds no cells, nothing is left to render; check how it was written", source));
-  if (!file.mesh.tets.empty()) return;
-  throw scene::bad_input(fmt::format(
-      "{}: nothing is left to render: of {} cells {} are no volumes, {} ghosts, {} hidden, {} hold NaN or infinite "
-      "numbers, {} are collapsed to a point or face; give a mesh of volume cells or choose another field",
-      source, n.cells_read, n.cells_not_volumetric, n.cells_ghost, n.cells_hidden, n.cells_nan, n.cells_zero_volume));
-}
-
 }  // namespace
 
-MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options, const std::string& source) {
-  MeshFile file;
-  file.fields = summarize_fields(blocks);
-  const FieldChoice choice = choose_field(options.field, file.fields, blocks, source);
-  file.notes = choice.notes;
-
-  Assembly assembly(file, choice, source);
+AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const FieldSummary> fields,
+                                const FieldChoice& choice, const std::string& source) {
+  AssembledBlocks result;
+  Assembly assembly(result, fields, choice, source);
   std::size_t points = 0, tets = 0;
   for (const CellBlock& block : blocks) {
     points += block.positions.size();
@@ -230,13 +233,42 @@ MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options
   assembly.reserve(blocks.size() > 1 ? points : 0, tets);
   for (CellBlock& block : blocks) assembly.add(block);
   assembly.finish();
-  require_something_left(file, source);
+  return result;
+}
 
-  if (file.counts.cells_quadratic > 0)
-    file.notes.push_back(fmt::format("{} higher-order cells are rendered as linear ones by their corner nodes",
-                                     file.counts.cells_quadratic));
-  if (file.counts.cells_tangled > 0)
-    file.notes.push_back(fmt::format("{} cells are so warped that their tets overlap", file.counts.cells_tangled));
+std::vector<std::string> notes_on_cells(const MeshCounts& n, const std::string& source) {
+  if (n.cells_read == 0)
+    throw scene::bad_input(
+        fmt::format("{}: it holds no cells, nothing is left to render; check how it was written", source));
+  if (n.tets_made == 0)
+    throw scene::bad_input(fmt::format(
+        "{}: nothing is left to render: of {} cells {} are no volumes, {} ghosts, {} hidden, {} hold NaN or infinite "
+        "numbers, {} are collapsed to a point or face; give a mesh of volume cells or choose another field",
+        source, n.cells_read, n.cells_not_volumetric, n.cells_ghost, n.cells_hidden, n.cells_nan, n.cells_zero_volume));
+  std::vector<std::string> notes;
+  if (n.cells_quadratic > 0)
+    notes.push_back(
+        fmt::format("{} higher-order cells are rendered as linear ones by their corner nodes", n.cells_quadratic));
+  if (n.cells_tangled > 0)
+    notes.push_back(fmt::format("{} cells are so warped that their tets overlap", n.cells_tangled));
+  return notes;
+}
+
+MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options, const std::string& source) {
+  MeshFile file;
+  const std::vector<FieldTally> tallies = tally_fields(blocks);
+  file.fields = summarize_fields(std::span(&tallies, 1));
+  const FieldChoice choice = choose_field(options.field, file.fields, source);
+  file.notes = choice.notes;
+
+  AssembledBlocks assembled = assemble_blocks(std::move(blocks), file.fields, choice, source);
+  file.mesh = std::move(assembled.mesh);
+  file.counts = assembled.counts;
+  const auto add = [&](const std::vector<std::string>& notes) {
+    file.notes.insert(file.notes.end(), notes.begin(), notes.end());
+  };
+  add(assembled.notes);
+  add(notes_on_cells(file.counts, source));
   if (options.smooth) {
     if (choice.association == Association::cell)
       smooth_to_points(file.mesh);

@@ -1,16 +1,34 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "io/cell_block.hpp"
+#include "io/field_choice.hpp"
 #include "io/mesh_reader.hpp"
 
 namespace tessera::io {
 
-/// Makes the tet mesh of a file's blocks: chooses the field, drops ghost, hidden and NaN cells, splits the rest.
-/// Blocks are emptied as they are used, so that no more than one copy of anything is held. `format` is left empty.
-/// Throws Error(bad_input) in one line that begins with `source`.
+/// What some blocks of a file become.
+struct AssembledBlocks {
+  scene::TetMesh mesh;
+  MeshCounts counts;
+  std::vector<std::string> notes;
+};
+
+/// Drops ghost, hidden and NaN cells and splits the rest into tets with the chosen one of the file's fields. Blocks are
+/// emptied as they are used, so that no more than one copy of anything is held. A piece of a parallel file has to have
+/// the field; other blocks without it are blanked, and a note says so. Throws Error(bad_input) in one line that begins
+/// with the block's source or `source`.
+AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const FieldSummary> fields,
+                                const FieldChoice& choice, const std::string& source);
+
+/// Notes on what happened to the cells of a whole file. Throws Error(bad_input) if nothing is left to render.
+std::vector<std::string> notes_on_cells(const MeshCounts& counts, const std::string& source);
+
+/// Makes the tet mesh of all of a file's blocks: chooses the field, assembles, smooths if asked. `format` is left
+/// empty. Throws as the functions above and choose_field.
 MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options, const std::string& source);
 
 /// Replaces cell data by point data: each used vertex gets the mean of the cells that touch it, weighted by tet volume

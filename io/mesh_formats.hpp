@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,22 @@ struct MeshBlocks {
   std::string format;
 };
 
-/// VTK's XML files: .vtu .pvtu .vts .pvts .vtr .pvtr. Pieces of a parallel file are appended, their points not merged.
+/// VTK's XML files: .vtu .pvtu .vts .pvts .vtr .pvtr. The pieces of a .pvtu are a block each, their points not merged.
 MeshBlocks read_vtk_xml(const std::filesystem::path& file);
+
+/// Whether a file that begins as VTK XML does is an unstructured grid in pieces, whatever its name.
+bool is_pvtu(const std::filesystem::path& file);
+
+/// The pieces of a .pvtu in its order, their paths as the file gives them, relative ones against its folder. They need
+/// not exist. Throws Error(bad_input).
+std::vector<std::filesystem::path> pvtu_pieces(const std::filesystem::path& file);
+
+/// Some pieces of the .pvtu `file`, a block each, whose `source` is the piece's file. Throws Error(bad_input) that
+/// names the piece at fault.
+MeshBlocks read_pvtu_pieces(const std::filesystem::path& file, std::span<const std::filesystem::path> pieces);
+
+/// The tets of a .tets file, or a range of them, with their field "scalar".
+MeshBlocks blocks_of_tets(scene::TetMesh mesh);
 
 /// Legacy .vtk: unstructured, structured and rectilinear grids, ASCII or binary, all their arrays.
 MeshBlocks read_vtk_legacy(const std::filesystem::path& file);

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <new>
 
+#include "io/clean_errors.hpp"
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
 #include "io/mesh_assembly.hpp"
@@ -48,19 +48,6 @@ std::string known_extensions() {
   return text;
 }
 
-MeshBlocks read_tets(const std::filesystem::path& file) {
-  scene::TetMesh mesh = parse_tets(MappedFile(file).bytes(), file.string());
-  CellBlock block;
-  block.positions = std::move(mesh.positions);
-  block.connectivity.reserve(4 * mesh.tets.size());
-  for (const scene::Tet& tet : mesh.tets) block.connectivity.insert(block.connectivity.end(), tet.begin(), tet.end());
-  block.fields.push_back(field_of_values("scalar", "float", scene::Association::point, 1, std::move(mesh.scalars)));
-  MeshBlocks result;
-  result.format = "raw tetrahedra (.tets)";
-  result.blocks.push_back(std::move(block));
-  return result;
-}
-
 MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& options) {
   switch (family_of(file)) {
     case Family::vtk_xml:
@@ -76,7 +63,7 @@ MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& opt
     case Family::surface:
       return read_surface(file, options.max_volume);
     case Family::tets:
-      return read_tets(file);
+      return blocks_of_tets(parse_tets(MappedFile(file).bytes(), file.string()));
     case Family::none:
       break;
   }
@@ -88,35 +75,50 @@ MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& opt
                                      file.extension().string(), known_extensions()));
 }
 
-/// Messages quote what a file holds, which may be anything.
-std::string one_line(std::string message) {
-  for (char& c : message)
-    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = ' ';
-  return message;
+}  // namespace
+
+MeshBlocks blocks_of_tets(scene::TetMesh mesh) {
+  CellBlock block;
+  block.positions = std::move(mesh.positions);
+  block.connectivity.reserve(4 * mesh.tets.size());
+  for (const scene::Tet& tet : mesh.tets) block.connectivity.insert(block.connectivity.end(), tet.begin(), tet.end());
+  block.fields.push_back(field_of_values("scalar", "float", scene::Association::point, 1, std::move(mesh.scalars)));
+  MeshBlocks result;
+  result.format = "raw tetrahedra (.tets)";
+  result.blocks.push_back(std::move(block));
+  return result;
 }
 
-}  // namespace
+MeshCounts& MeshCounts::operator+=(const MeshCounts& other) {
+  cells_read += other.cells_read;
+  cells_ghost += other.cells_ghost;
+  cells_hidden += other.cells_hidden;
+  cells_nan += other.cells_nan;
+  cells_not_volumetric += other.cells_not_volumetric;
+  cells_zero_volume += other.cells_zero_volume;
+  cells_tangled += other.cells_tangled;
+  cells_quadratic += other.cells_quadratic;
+  points_read += other.points_read;
+  points_unused += other.points_unused;
+  tets_made += other.tets_made;
+  tets_collapsed += other.tets_collapsed;
+  return *this;
+}
+static_assert(sizeof(MeshCounts) == 12 * sizeof(std::uint64_t));  // one line above for each
 
 bool is_mesh_file(const std::filesystem::path& file) { return family_of(file) != Family::none; }
 
 MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options) {
   const std::string source = file.string();
   require_file(file);
-  try {
+  return with_clean_errors(source, [&] {
     MeshBlocks read = read_blocks(file, options);
-    if (options.time_step.value_or(0) > 0 && family_of(file) != Family::exodus)
-      throw scene::bad_input(
-          fmt::format("{}: there is no time step {}, the file has none; leave it out", source, *options.time_step));
+    if (family_of(file) != Family::exodus) require_no_time_step(options, source);
     MeshFile result = assemble_mesh(std::move(read.blocks), options, source);
     result.format = std::move(read.format);
     result.notes.insert(result.notes.begin(), read.notes.begin(), read.notes.end());
     return result;
-  } catch (const scene::Error& e) {
-    throw scene::Error(e.code(), one_line(e.what()));
-  } catch (const std::bad_alloc&) {
-    throw scene::Error(scene::ExitCode::system_failure,
-                       fmt::format("{}: memory ran out; use a larger machine or a part of the mesh", source));
-  }
+  });
 }
 
 }  // namespace tessera::io

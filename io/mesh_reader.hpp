@@ -37,6 +37,9 @@ struct MeshCounts {
   std::uint64_t points_unused = 0;   ///< of no tet; they stay in `positions`
   std::uint64_t tets_made = 0;       ///< in the mesh
   std::uint64_t tets_collapsed = 0;  ///< not made: two of their corners are one point in space
+
+  MeshCounts& operator+=(const MeshCounts& other);  ///< of another part
+  bool operator==(const MeshCounts&) const = default;
 };
 
 /// One array of the file as `info` lists it. Range and count are of all tuples, cells that were dropped included.
@@ -47,6 +50,7 @@ struct FieldSummary {
   std::string type;             ///< "float", "double", "int64", "uint8", ...
   double low = 0, high = 0;     ///< finite values, of the magnitude if there are several components; 0, 0 if none is
   std::uint64_t nan_count = 0;  ///< tuples that are NaN or infinite
+  bool active = false;          ///< the file marks it as its scalars or vectors
 };
 
 struct MeshFile {

@@ -22,9 +22,14 @@ CellBlock block_with(std::vector<BlockField> fields) {
   return block;
 }
 
+std::vector<FieldSummary> summary(std::span<const CellBlock> blocks) {
+  const std::vector<FieldTally> tallies = tally_fields(blocks);
+  return summarize_fields(std::span(&tallies, 1));
+}
+
 FieldChoice choose(const std::string& wish, const CellBlock& block) {
   const std::vector<CellBlock> blocks = {block};
-  return choose_field(wish, summarize_fields(blocks), blocks, "mesh.vtu");
+  return choose_field(wish, summary(blocks), "mesh.vtu");
 }
 
 const CellBlock flow = block_with(
@@ -111,7 +116,7 @@ TEST(FieldSummary, CountsNaNAndInfiniteAndLeavesThemOutOfTheRange) {
   const std::vector<CellBlock> blocks = {block_with({field("s", Association::point, {nan, -2, inf, 5, -inf}),
                                                      field("v", Association::point, {3, 4, 0, nan, 0, 0}, 3),
                                                      field("large", Association::point, {3e200, 4e200, 0}, 3)})};
-  const std::vector<FieldSummary> fields = summarize_fields(blocks);
+  const std::vector<FieldSummary> fields = summary(blocks);
   EXPECT_EQ(fields[0].nan_count, 3u);
   EXPECT_EQ(fields[0].low, -2);
   EXPECT_EQ(fields[0].high, 5);

@@ -1,0 +1,145 @@
+#include "io/mesh_parts.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "io/clean_errors.hpp"
+#include "io/input_file.hpp"
+#include "io/mapped_file.hpp"
+#include "io/mesh_assembly.hpp"
+#include "io/mesh_formats.hpp"
+#include "io/tets_file.hpp"
+
+namespace tessera::io {
+namespace {
+
+/// The beginning of part `part` when n things are divided over the parts.
+std::uint64_t first_of_part(std::uint64_t n, int part, int parts) {
+  const auto p = static_cast<std::uint64_t>(part), count = static_cast<std::uint64_t>(parts);
+  return n / count * p + std::min(p, n % count);
+}
+
+bool is_tets(const std::filesystem::path& file) { return lower_extension(file) == ".tets"; }
+
+}  // namespace
+
+bool readable_in_parts(const std::filesystem::path& file, const MeshOptions& options) {
+  require_file(file);
+  if (options.smooth) return false;
+  return is_tets(file) || (lower_extension(file) == ".pvtu" && is_pvtu(file));
+}
+
+struct MeshPartReading::State {
+  std::filesystem::path file;
+  MeshOptions options;
+  MeshBlocks blocks;
+  std::vector<FieldTally> tallies;
+  // Of a .tets file:
+  std::vector<std::uint32_t> file_vertex;
+  std::uint64_t file_vertices = 0;
+  bool counts_points = true;  ///< the first part, which counts the points of all
+
+  void read_tets(int part, int parts) {
+    const std::string source = file.string();
+    const MappedFile mapped(file);
+    const TetsLayout layout = tets_layout(mapped.bytes(), source);
+    TetsRange range = parse_tets_range(layout, first_of_part(layout.tets, part, parts),
+                                       first_of_part(layout.tets, part + 1, parts), source);
+    file_vertex = std::move(range.file_vertex);
+    file_vertices = layout.vertices;
+    counts_points = part == 0;
+    // The tally is of all vertices, used or not: each part looks at its share.
+    const std::uint64_t first = first_of_part(layout.vertices, part, parts);
+    BlockField share;
+    share.name = "scalar";
+    share.type = "float";
+    share.tuples = first_of_part(layout.vertices, part + 1, parts) - first;
+    share.read = [&](int, std::size_t from, std::span<double> out) {
+      for (std::size_t k = 0; k < out.size(); ++k) out[k] = layout.scalar_of(first + from + k);
+    };
+    CellBlock shares;
+    shares.fields.push_back(std::move(share));
+    tallies = tally_fields(std::span(&shares, 1));
+    blocks = blocks_of_tets(std::move(range.mesh));
+  }
+
+  void read_pieces(int part, int parts) {
+    const std::vector<std::filesystem::path> pieces = pvtu_pieces(file);
+    const std::uint64_t first = first_of_part(pieces.size(), part, parts),
+                        last = first_of_part(pieces.size(), part + 1, parts);
+    blocks = read_pvtu_pieces(file, std::span(pieces).subspan(first, last - first));
+    tallies = tally_fields(blocks.blocks);
+  }
+};
+
+MeshPartReading::MeshPartReading(std::filesystem::path file, const MeshOptions& options, int part, int parts)
+    : state_(std::make_unique<State>()) {
+  state_->file = std::move(file);
+  state_->options = options;
+  const std::string source = state_->file.string();
+  with_clean_errors(source, [&] {
+    require_no_time_step(options, source);
+    is_tets(state_->file) ? state_->read_tets(part, parts) : state_->read_pieces(part, parts);
+  });
+}
+
+MeshPartReading::~MeshPartReading() = default;
+
+const std::vector<FieldTally>& MeshPartReading::tallies() const { return state_->tallies; }
+
+MeshFilePart MeshPartReading::finish(std::span<const std::vector<FieldTally>> tallies_of_all) {
+  const std::string source = state_->file.string();
+  return with_clean_errors(source, [&] {
+    MeshFilePart part;
+    part.format = std::move(state_->blocks.format);
+    part.fields = summarize_fields(tallies_of_all);
+    const FieldChoice choice = choose_field(state_->options.field, part.fields, source);
+    part.choice_notes = choice.notes;
+    AssembledBlocks assembled = assemble_blocks(std::move(state_->blocks.blocks), part.fields, choice, source);
+    part.mesh = std::move(assembled.mesh);
+    part.summary.counts = assembled.counts;
+    part.summary.cell_notes = std::move(assembled.notes);
+    part.summary.reading_notes = std::move(state_->blocks.notes);
+    if (is_tets(state_->file)) {
+      part.summary.counts.points_read = state_->counts_points ? state_->file_vertices : 0;
+      part.summary.counts.points_unused = 0;
+      part.summary.used_points.resize((state_->file_vertices + 63) / 64, 0);
+      for (const scene::Tet& tet : part.mesh.tets)
+        for (const std::uint32_t v : tet) {
+          const std::uint32_t point = state_->file_vertex[v];
+          part.summary.used_points[point / 64] |= std::uint64_t{1} << point % 64;
+        }
+    }
+    return part;
+  });
+}
+
+MeshFile joined(const MeshFilePart& own, std::span<const PartSummary> summaries, const std::filesystem::path& file) {
+  MeshFile whole;
+  whole.format = own.format;
+  whole.fields = own.fields;
+  whole.mesh.field_name = own.mesh.field_name;
+  whole.mesh.association = own.mesh.association;
+  std::vector<std::uint64_t> used;
+  const auto add = [&](const std::vector<std::string>& notes) {
+    // What every part finds in the file that all read, one says.
+    for (const std::string& note : notes)
+      if (std::find(whole.notes.begin(), whole.notes.end(), note) == whole.notes.end()) whole.notes.push_back(note);
+  };
+  for (const PartSummary& part : summaries) {
+    whole.counts += part.counts;
+    add(part.reading_notes);
+    used.resize(std::max(used.size(), part.used_points.size()), 0);
+    for (std::size_t w = 0; w < part.used_points.size(); ++w) used[w] |= part.used_points[w];
+  }
+  add(own.choice_notes);
+  for (const PartSummary& part : summaries) add(part.cell_notes);
+  add(notes_on_cells(whole.counts, file.string()));
+  if (!used.empty()) {
+    whole.counts.points_unused = whole.counts.points_read;
+    for (const std::uint64_t word : used) whole.counts.points_unused -= static_cast<std::uint64_t>(std::popcount(word));
+  }
+  return whole;
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/field_choice.hpp"
+#include "io/mesh_reader.hpp"
+
+/// A mesh file read by several processes, each a part of it. They have to agree twice: before they choose the field, on
+/// what arrays there are, and at the end on the counts. This folder knows no messages: whoever reads carries both
+/// around.
+///
+///     MeshPartReading reading(file, options, part, parts);
+///     tallies = reading.tallies() of all parts, in part order
+///     MeshFilePart own = reading.finish(tallies);
+///     MeshFile whole = joined(own.summary of all parts, in part order, ...)
+///
+/// The tets of all parts, one part after the other, are those that read_mesh gives, in its order; `joined` gives
+/// read_mesh's counts, fields and notes.
+namespace tessera::io {
+
+/// Whether the file can be read in parts: .pvtu, whose pieces are divided over the parts, and .tets, whose tets are.
+/// Not if it is to be smoothed, which needs all cells round a point. Throws Error(bad_input) if there is no such file.
+bool readable_in_parts(const std::filesystem::path& file, const MeshOptions& options);
+
+/// What a part knows beside its mesh. Small, but for `used_points`.
+struct PartSummary {
+  MeshCounts counts;  ///< points of a .tets file are counted in the first part, and its unused ones not at all
+  /// Bit v is set if this part uses point v of a .tets file; empty for other formats. All parts' bits together tell
+  /// how many points are unused.
+  std::vector<std::uint64_t> used_points;
+  std::vector<std::string> reading_notes, cell_notes;
+};
+
+struct MeshFilePart {
+  scene::TetMesh mesh;  ///< of this part; may have no tets. `original_cell` counts the part's cells only
+  PartSummary summary;
+  std::vector<FieldSummary> fields;       ///< of the whole
+  std::vector<std::string> choice_notes;  ///< on the field, the same on all parts
+  std::string format;
+};
+
+class MeshPartReading {
+ public:
+  /// Reads part `part` of `parts`, which may be more than the file has pieces. The file has to be readable in parts.
+  /// Throws as read_mesh; faults name the piece.
+  MeshPartReading(std::filesystem::path file, const MeshOptions& options, int part, int parts);
+  ~MeshPartReading();
+
+  [[nodiscard]] const std::vector<FieldTally>& tallies() const;
+
+  /// Chooses the field, the same on all parts, and makes the tets. Once. Throws as read_mesh, but for a part in which
+  /// nothing is left to render.
+  MeshFilePart finish(std::span<const std::vector<FieldTally>> tallies_of_all);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// What read_mesh would say of the file: all but the mesh. `own` is any part's result, `summaries` are those of all
+/// parts, in order; `points_unused` is taken from their `used_points`, if there are any.
+/// Throws Error(bad_input) if nothing is left to render in any part.
+MeshFile joined(const MeshFilePart& own, std::span<const PartSummary> summaries, const std::filesystem::path& file);
+
+}  // namespace tessera::io

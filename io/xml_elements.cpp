@@ -1,0 +1,68 @@
+#include "io/xml_elements.hpp"
+
+#include <expat.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <limits>
+#include <memory>
+
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+/// The callbacks are called from C: nothing may be thrown through it, so the first fault is kept and the parser
+/// stopped.
+struct Walk {
+  XML_Parser parser;
+  const std::function<void(const XmlElement&)>& visit;
+  std::vector<std::string> parents{};
+  std::exception_ptr fault{};
+};
+
+void XMLCALL on_start(void* user, const XML_Char* name, const XML_Char** attributes) {
+  Walk& walk = *static_cast<Walk*>(user);
+  try {
+    XmlElement element{name, walk.parents, {}};
+    for (; *attributes != nullptr; attributes += 2) element.attributes.emplace(attributes[0], attributes[1]);
+    walk.visit(element);
+    walk.parents.emplace_back(name);
+  } catch (...) {
+    walk.fault = std::current_exception();
+    XML_StopParser(walk.parser, XML_FALSE);
+  }
+}
+
+void XMLCALL on_end(void* user, const XML_Char* /*name*/) { static_cast<Walk*>(user)->parents.pop_back(); }
+
+}  // namespace
+
+const std::string* XmlElement::find(const std::string& attribute) const {
+  const auto found = attributes.find(attribute);
+  return found == attributes.end() ? nullptr : &found->second;
+}
+
+void each_xml_element(std::string_view text, const std::string& source,
+                      const std::function<void(const XmlElement&)>& visit) {
+  const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr), &XML_ParserFree);
+  if (!parser) throw std::bad_alloc();
+  Walk walk{parser.get(), visit};
+  XML_SetUserData(parser.get(), &walk);
+  XML_SetElementHandler(parser.get(), on_start, on_end);
+  constexpr std::size_t chunk = 1 << 20;  // expat counts in int
+  for (std::size_t at = 0;; at += chunk) {
+    const std::string_view part = text.substr(std::min(at, text.size()), chunk);
+    const bool last = at + chunk >= text.size();
+    const XML_Status status = XML_Parse(parser.get(), part.data(), static_cast<int>(part.size()), last);
+    if (walk.fault) std::rethrow_exception(walk.fault);
+    if (status != XML_STATUS_OK)
+      throw scene::bad_input(fmt::format("{}: line {}: {}; the file is truncated or damaged, write it anew", source,
+                                         XML_GetCurrentLineNumber(parser.get()),
+                                         XML_ErrorString(XML_GetErrorCode(parser.get()))));
+    if (last) return;
+  }
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tessera::io {
+
+/// One opening tag: its name, its parents' names from the root on, its attributes with entities resolved.
+struct XmlElement {
+  std::string_view name;
+  const std::vector<std::string>& parents;
+  std::map<std::string, std::string> attributes;
+
+  /// An attribute; null if it is not there.
+  [[nodiscard]] const std::string* find(const std::string& attribute) const;
+};
+
+/// Calls `visit` for each element of a small XML text (a list of files, not a mesh), in its order. Errors that `visit`
+/// throws come out of here. Throws Error(bad_input, "SOURCE: line N: ...") if the text is not well formed.
+void each_xml_element(std::string_view text, const std::string& source,
+                      const std::function<void(const XmlElement&)>& visit);
+
+}  // namespace tessera::io
