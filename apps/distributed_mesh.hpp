@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+
+#include "compositor/transport.hpp"
+#include "frame/mesh_exchange.hpp"
+#include "io/mesh_reader.hpp"
+#include "projection/partition.hpp"
+#include "scene/mesh_facts.hpp"
+#include "scene/trace.hpp"
+
+namespace tessera::apps {
+
+/// What one rank gets of a mesh that several read together.
+struct DistributedMesh {
+  frame::MeshPart part;    ///< this rank's tets; none on ranks that do not project
+  scene::MeshFacts facts;  ///< of the whole
+  /// What io::read_mesh says of the whole, the same on every rank, but for the mesh: that has its field and association
+  /// only.
+  io::MeshFile description;
+};
+
+/// Reads a mesh and gives every projector its part. Collective.
+///
+/// Formats that can be read in parts (io::readable_in_parts) are read by all projectors at once, each its share; others
+/// by the first projector, which hands them on: one read, where every rank reading in turn would be many. The tets'
+/// numbers, and so every picture, do not depend on how it was read. With one rank it is io::read_mesh and nothing more.
+/// Spans `read` and `partition`. An error of one rank is transport.fail()ed and thrown on all.
+DistributedMesh read_distributed(compositor::Transport& transport, const std::filesystem::path& input,
+                                 const io::MeshOptions& options, const projection::Partition& partition,
+                                 std::span<const int> projectors, scene::Trace* trace);
+
+}  // namespace tessera::apps

@@ -1,0 +1,146 @@
+#include "apps/distributed_mesh.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "apps/program.hpp"
+#include "compositor/group_transport.hpp"
+#include "compositor/loopback_transport.hpp"
+#include "datasets/boxes.hpp"
+#include "datasets/modify.hpp"
+#include "io/mesh_parts.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::apps {
+namespace {
+
+using compositor::Transport;
+using projection::PartitionKind;
+
+/// A tet's positions and scalars in the order of its corners.
+std::vector<double> content(const scene::TetMesh& mesh, std::size_t t) {
+  std::vector<double> values;
+  for (const std::uint32_t v : mesh.tets[t]) {
+    for (int k = 0; k < 3; ++k) values.push_back(mesh.positions[v][k]);
+    if (mesh.association == scene::Association::point) values.push_back(mesh.scalars[v]);
+  }
+  if (mesh.association == scene::Association::cell) values.push_back(mesh.scalars[t]);
+  return values;
+}
+
+std::vector<DistributedMesh> read_on(int ranks, const std::filesystem::path& file, const std::vector<int>& projectors,
+                                     PartitionKind kind, const io::MeshOptions& options = {}) {
+  std::vector<DistributedMesh> result(static_cast<std::size_t>(ranks));
+  compositor::run_ranks(ranks, [&](Transport& transport) {
+    result[static_cast<std::size_t>(transport.rank())] =
+        read_distributed(transport, file, options, {kind, 1}, projectors, nullptr);
+  });
+  return result;
+}
+
+void expect_as_read_mesh(const std::filesystem::path& file, const io::MeshOptions& options = {}) {
+  const io::MeshFile whole = io::read_mesh(file, options);
+  const scene::MeshFacts facts = scene::facts_of(whole.mesh);
+  for (const PartitionKind kind : {PartitionKind::file, PartitionKind::curve, PartitionKind::random})
+    for (const auto& [ranks, projectors] :
+         {std::pair<int, std::vector<int>>{1, {0}}, {2, {0}}, {3, {1, 2}}, {4, {0, 1, 2, 3}}, {5, {3, 0, 4}}}) {
+      SCOPED_TRACE(::testing::Message() << file << ", " << projectors.size() << " projectors of " << ranks
+                                        << " ranks, partition " << static_cast<int>(kind));
+      std::vector<int> seen(whole.mesh.tets.size(), 0);
+      for (const DistributedMesh& rank : read_on(ranks, file, projectors, kind, options)) {
+        EXPECT_EQ(rank.facts, facts);
+        EXPECT_EQ(rank.description.counts, whole.counts);
+        EXPECT_EQ(rank.description.notes, whole.notes);
+        EXPECT_EQ(rank.description.format, whole.format);
+        EXPECT_EQ(rank.description.fields.size(), whole.fields.size());
+        EXPECT_EQ(rank.description.mesh.field_name, whole.mesh.field_name);
+        EXPECT_TRUE(rank.description.mesh.tets.empty());
+        EXPECT_EQ(rank.part.mesh.field_name, whole.mesh.field_name);
+        EXPECT_EQ(rank.part.mesh.association, whole.mesh.association);
+        for (std::size_t t = 0; t < rank.part.mesh.tets.size(); ++t) {
+          const std::uint64_t id = rank.part.global_of(t);
+          ASSERT_LT(id, seen.size());
+          ++seen[id];
+          ASSERT_EQ(content(rank.part.mesh, t), content(whole.mesh, id));
+        }
+      }
+      EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<std::ptrdiff_t>(seen.size()));
+    }
+}
+
+std::string write_pieces(const Folder& folder, const std::vector<scene::TetMesh>& pieces) {
+  std::string list = "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid>";
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    io::write_vtu(pieces[p], folder / fmt::format("piece{}.vtu", p));
+    list += fmt::format("<Piece Source=\"piece{}.vtu\"/>", p);
+  }
+  return folder.file("m.pvtu", list + "</PUnstructuredGrid></VTKFile>");
+}
+
+TEST(DistributedMesh, IsWhatOneProcessReads) {
+  const Folder folder;
+  scene::TetMesh mesh = datasets::cube(4);
+  mesh.scalars[20] = std::numeric_limits<double>::quiet_NaN();
+  io::write_tets(mesh, folder / "m.tets");
+  expect_as_read_mesh(folder / "m.tets");
+  io::write_vtu(mesh, folder / "m.vtu");
+  expect_as_read_mesh(folder / "m.vtu");  // a format that is read whole
+
+  std::vector<scene::TetMesh> pieces(5);
+  for (std::size_t p = 0; p < pieces.size(); ++p) {
+    pieces[p] = mesh;
+    pieces[p].tets.clear();
+    for (std::size_t t = p; t < mesh.tets.size(); t += p == 4 ? mesh.tets.size() : 4)
+      if (p < 4) pieces[p].tets.push_back(mesh.tets[t]);
+  }
+  expect_as_read_mesh(write_pieces(folder, pieces));
+}
+
+TEST(DistributedMesh, CellDataAndSmoothingAreAsInOneProcess) {
+  const Folder folder;
+  scene::TetMesh mesh = datasets::cube(3);
+  mesh.association = scene::Association::cell;
+  mesh.scalars.clear();
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) mesh.scalars.push_back(0.1 * static_cast<double>(t % 17));
+  const std::string file = write_pieces(folder, {mesh, datasets::cube(1)});
+  io::MeshOptions options;
+  EXPECT_THROW(io::read_mesh(file, options), scene::Error);  // the second piece has another field
+  const std::string same = write_pieces(folder, {mesh, mesh});
+  expect_as_read_mesh(same);
+  options.smooth = true;
+  expect_as_read_mesh(same, options);
+}
+
+TEST(DistributedMesh, AFaultInOnePieceIsTheErrorOfAll) {
+  const Folder folder;
+  const std::string file = write_pieces(folder, {datasets::cube(2), datasets::cube(2), datasets::cube(2)});
+  std::filesystem::resize_file(folder / "piece2.vtu", 700);
+  try {
+    read_on(3, file, {0, 1, 2}, PartitionKind::curve);
+    FAIL() << "no error";
+  } catch (const scene::Error& error) {
+    EXPECT_EQ(error.code(), scene::ExitCode::bad_input);
+    EXPECT_NE(std::string(error.what()).find("piece2.vtu: "), std::string::npos) << error.what();
+  }
+  for (const char* name : {"none.pvtu", "none.vtu", "none.tets"})
+    EXPECT_THROW(read_on(2, folder / name, {0, 1}, PartitionKind::curve), scene::Error);
+}
+
+TEST(DistributedMesh, AGroupReadsWhileOthersDoNot) {
+  const Folder folder;
+  const std::string file = folder.cube();
+  const io::MeshFile whole = io::read_mesh(file);
+  compositor::run_ranks(4, [&](Transport& transport) {
+    if (transport.rank() == 2) return;  // a compositor, say
+    compositor::GroupTransport group(transport, {3, 0, 1});
+    const std::vector<int> all = {0, 1, 2};
+    const DistributedMesh mesh = read_distributed(group, file, {}, {}, all, nullptr);
+    EXPECT_EQ(mesh.facts, scene::facts_of(whole.mesh));
+    EXPECT_NEAR(static_cast<double>(mesh.part.mesh.tets.size()), whole.mesh.tets.size() / 3.0, 2.0);
+  });
+}
+
+}  // namespace
+}  // namespace tessera::apps
