@@ -10,17 +10,15 @@
 namespace tessera::apps {
 namespace {
 
-void print_text(const std::filesystem::path& input, const io::MeshFile& file,
-                const io::LoadedTransferFunction& loaded) {
-  const auto& mesh = file.mesh;
+void print_text(const std::filesystem::path& input, const MeshSummary& file, const io::LoadedTransferFunction& loaded) {
   const auto& counts = file.counts;
-  const auto box = scene::bounds(mesh);
+  const auto& box = file.facts.box;
   fmt::print("file      {}\n", input.string());
   fmt::print("format    {}\n", file.format);
   fmt::print("cells     {}\n", cells_line(counts));
   fmt::print("points    {}, {} of them in no cell kept\n", counts.points_read, counts.points_unused);
   fmt::print("bounds    ({:.9g} {:.9g} {:.9g}) to ({:.9g} {:.9g} {:.9g}), diagonal {:.6g}\n", box.low.x, box.low.y,
-             box.low.z, box.high.x, box.high.y, box.high.z, diagonal(mesh));
+             box.low.z, box.high.x, box.high.y, box.high.z, diagonal(box));
   std::size_t widest = 0;
   for (const auto& field : file.fields) widest = std::max(widest, field.name.size());
   const char* title = "fields";
@@ -30,9 +28,9 @@ void print_text(const std::filesystem::path& input, const io::MeshFile& file,
                field.low, field.high, field.nan_count > 0 ? fmt::format(", {} NaN", field.nan_count) : "");
     title = "";
   }
-  const auto range = scene::scalar_range(mesh);
+  const auto& range = file.facts.scalar_range;
   const auto view = scene::frame_box(box, scene::ImageSize{});
-  fmt::print("renders   field {}, {:.6g} to {:.6g}; {}; view {}\n", mesh.field_name, range[0], range[1],
+  fmt::print("renders   field {}, {:.6g} to {:.6g}; {}; view {}\n", file.field_name, range[0], range[1],
              transfer_function_line(loaded), view_line(view));
   for (const auto& note : file.notes) fmt::print("note      {}\n", note);
 }
@@ -40,14 +38,14 @@ void print_text(const std::filesystem::path& input, const io::MeshFile& file,
 }  // namespace
 
 void info(const std::filesystem::path& input, const io::MeshOptions& options, bool as_json) {
-  const auto file = read_input(input, options);
-  const auto loaded = transfer_function_of(file.mesh, RenderOptions{});
+  const auto file = summary_of(read_input(input, options));
+  const auto loaded = transfer_function_of(file.facts, RenderOptions{});
   if (!as_json) return print_text(input, file, loaded);
 
   auto json = mesh_json(input, file);
   const scene::ImageSize size;
   json["renders"] = {{"transfer_function", transfer_function_json(loaded)},
-                     {"view", view_json(scene::frame_box(scene::bounds(file.mesh), size), size)}};
+                     {"view", view_json(scene::frame_box(file.facts.box, size), size)}};
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 

@@ -6,15 +6,20 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <iostream>
 #include <new>
+#include <optional>
+#include <sstream>
 #include <string_view>
 
 #include "apps/convert_command.hpp"
 #include "apps/generate_command.hpp"
 #include "apps/info_command.hpp"
+#include "apps/job.hpp"
 #include "apps/render_command.hpp"
 #include "apps/render_options.hpp"
 #include "apps/timing_command.hpp"
+#include "compositor/instruction_sets.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::apps {
@@ -31,7 +36,13 @@ int fail(ExitCode code, std::string_view message) {
   return static_cast<int>(code);
 }
 
-ExitCode run(int argc, char** argv) {
+ExitCode run(int argc, char** argv, Job& job) {
+  compositor::Transport& transport = job.transport();
+  if (transport.size() > 1) {
+    speak_when_ended(transport);
+    compositor::agree_instruction_sets(transport);
+  }
+
   CLI::App app("Tessera renders scientific volumes: unstructured meshes, exactly, on the CPU.", "tessera");
   app.set_version_flag("--version", std::string("tessera ") + TESSERA_VERSION);
   app.require_subcommand(1);
@@ -75,7 +86,8 @@ ExitCode run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version
-    app.exit(asked);
+    std::ostringstream unheard;
+    app.exit(asked, job.is_first() ? std::cout : unheard, job.is_first() ? std::cerr : unheard);
     return ExitCode::complete;
   } catch (const CLI::ParseError& error) {
     std::string help = "tessera --help";
@@ -84,7 +96,8 @@ ExitCode run(int argc, char** argv) {
     throw scene::bad_input(fmt::format("arguments: {}; see {}", error.what(), help));
   }
 
-  if (*render_command) return render(render_options(words));
+  if (*render_command) return render(render_options(words), transport);
+  if (!job.is_first()) return ExitCode::complete;  // the other commands are for one process
   if (*info_command) info(words.input, mesh_options(words), as_json);
   if (*convert_command) convert(words.input, mesh_output, mesh_options(words), words.quiet);
   if (*timing_command) timing({traces.begin(), traces.end()}, csv, figure);
@@ -95,24 +108,51 @@ ExitCode run(int argc, char** argv) {
 }  // namespace
 }  // namespace tessera::apps
 
-int main(int argc, char** argv) {
-  using tessera::scene::ExitCode;
+namespace {
+
+using tessera::scene::Error;
+using tessera::scene::ExitCode;
+
+/// What any exception is to the user.
+Error as_error() {
   try {
-    const ExitCode code = tessera::apps::run(argc, argv);
+    throw;
+  } catch (const Error& error) {
+    return error;
+  } catch (const std::bad_alloc&) {
+    return {ExitCode::system_failure,
+            "memory: this run needs more than there is; make --size smaller or use a machine with more"};
+  } catch (const std::exception& error) {
+    return {ExitCode::system_failure, fmt::format("unexpected: {}; please report", error.what())};
+  } catch (...) {
+    return {ExitCode::system_failure, "unexpected: unknown exception; please report"};
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using tessera::apps::fail;
+  std::optional<tessera::apps::Job> job;
+  try {
+    job.emplace([](const Error& error) { fail(error.code(), error.what()); });
+  } catch (...) {
+    const Error error = as_error();
+    return fail(error.code(), error.what());
+  }
+  ExitCode code = ExitCode::complete;
+  try {
+    code = tessera::apps::run(argc, argv, *job);
     // A result that did not reach its reader (a full disk behind `>`) is not a success.
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-      return tessera::apps::fail(ExitCode::system_failure,
-                                 "standard output: cannot be written; make room or close the pipe later");
-    return static_cast<int>(code);
-  } catch (const tessera::scene::Error& error) {
-    return tessera::apps::fail(error.code(), error.what());
-  } catch (const std::bad_alloc&) {
-    return tessera::apps::fail(
-        ExitCode::system_failure,
-        "memory: this run needs more than there is; make --size smaller or use a machine with more");
-  } catch (const std::exception& error) {
-    return tessera::apps::fail(ExitCode::system_failure, fmt::format("unexpected: {}; please report", error.what()));
+      throw Error(ExitCode::system_failure, "standard output: cannot be written; make room or close the pipe later");
   } catch (...) {
-    return tessera::apps::fail(ExitCode::system_failure, "unexpected: unknown exception; please report");
+    job->transport().fail(as_error());
   }
+  const bool speaks = job->is_first();
+  if (const std::optional<Error> error = job->finish()) {
+    if (speaks) fail(error->code(), error->what());
+    return static_cast<int>(error->code());
+  }
+  return static_cast<int>(code);
 }

@@ -9,6 +9,10 @@
 
 namespace tessera::apps {
 
+MeshSummary summary_of(const io::MeshFile& file) {
+  return {file.counts, file.fields, file.notes, file.format, file.mesh.field_name, scene::facts_of(file.mesh)};
+}
+
 io::MeshFile read_input(const std::filesystem::path& input, const io::MeshOptions& options) {
   if (io::is_volume_file(input))
     throw scene::bad_input(
@@ -16,25 +20,24 @@ io::MeshFile read_input(const std::filesystem::path& input, const io::MeshOption
   return io::read_mesh(input, options);
 }
 
-double diagonal(const scene::TetMesh& mesh) {
-  const scene::Box box = scene::bounds(mesh);
+double diagonal(const scene::Box& box) {
   if (box.empty()) return 0;
   const glm::dvec3 extent = box.high - box.low;
   const double longest = std::max({extent.x, extent.y, extent.z});
   return longest > 0 ? glm::length(extent / longest) * longest : 0;  // 1e-200 must not underflow when squared
 }
 
-double default_unit_distance(const scene::TetMesh& mesh) {
-  if (const double thickness = scene::mean_thickness(mesh); thickness > 0) return thickness / 10;
-  const double extent = diagonal(mesh);
+double default_unit_distance(const scene::MeshFacts& facts) {
+  if (facts.mean_thickness > 0) return facts.mean_thickness / 10;
+  const double extent = diagonal(facts.box);
   return extent > 0 ? extent / 20 : 1;
 }
 
-io::LoadedTransferFunction transfer_function_of(const scene::TetMesh& mesh, const RenderOptions& options) {
+io::LoadedTransferFunction transfer_function_of(const scene::MeshFacts& facts, const RenderOptions& options) {
   io::TransferFunctionOptions loading;
-  loading.field_range = scene::scalar_range(mesh);
+  loading.field_range = facts.scalar_range;
   loading.unit_distance = options.unit_distance;
-  loading.default_unit_distance = default_unit_distance(mesh);
+  loading.default_unit_distance = default_unit_distance(facts);
   loading.display_colors = options.display_blend;
   loading.rescale = options.rescale;
   loading.opacity_scale = options.opacity_scale;

@@ -1,13 +1,15 @@
 #pragma once
 
 #include "apps/render_options.hpp"
+#include "compositor/transport.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::apps {
 
-/// `tessera render`: plan the frames, check all outputs, read, render, write, verify, report.
+/// `tessera render`: plan the frames, check all outputs, read, render, write, verify, report; on all ranks of the
+/// transport, or in this process if it is the only one.
 /// complete, or accuracy_not_met where --verify found more error than promised (the pictures are written then too).
 /// Throws scene::Error.
-scene::ExitCode render(const RenderOptions& options);
+scene::ExitCode render(const RenderOptions& options, compositor::Transport& transport);
 
 }  // namespace tessera::apps

@@ -131,6 +131,19 @@ void add_render_options(CLI::App& command, RenderWords& words) {
   command.add_option("--memory", words.memory, "budget of the frame buffers, like 512M (default 4G)")
       ->type_name("SIZE");
 
+  command.add_option("--projectors", words.projectors, "under mpirun: ranks that project (default: all)")
+      ->type_name("N");
+  command.add_option("--compositors", words.compositors, "under mpirun: ranks that composite (default: all)")
+      ->type_name("P");
+  command.add_option("--exchange", words.exchange, "under mpirun: what projectors send (default: runs)")
+      ->type_name("runs|segments");
+  command.add_option("--partition", words.partition, "under mpirun: which rank gets which cells (default: curve)")
+      ->type_name("curve|file|random");
+  command.add_option("--frames-in-flight", words.frames_in_flight, "under mpirun: frames on their way (default: 2)")
+      ->type_name("F");
+  command.add_option("--seed", words.seed, "under mpirun: of the tile map and of --partition random (default: 1)")
+      ->type_name("NUMBER");
+
   command.add_option("--background", words.background, "linear light; without it the picture has alpha")
       ->type_name("R,G,B|NAME");
   command.add_flag("--half", words.half, ".exr with 16-bit floats");
@@ -174,6 +187,20 @@ RenderOptions render_options(const RenderWords& words) {
 
   options.settings = render_settings(words);
   options.image = image_options(words);
+  if (!words.projectors.empty()) options.projectors = parse_count("--projectors", words.projectors, 1, no_limit);
+  if (!words.compositors.empty()) options.compositors = parse_count("--compositors", words.compositors, 1, no_limit);
+  if (!words.exchange.empty()) check_word("--exchange", words.exchange, {"runs", "segments"});
+  if (words.exchange.empty() && options.settings.rasterizer == frame::Rasterizer::scanline)
+    options.exchange = frame::Exchange::segments;  // its segments do not touch
+  if (words.exchange == "segments") options.exchange = frame::Exchange::segments;
+  check_word("--partition", words.partition, {"curve", "file", "random"});
+  if (words.partition == "file") options.partition.kind = projection::PartitionKind::file;
+  if (words.partition == "random") options.partition.kind = projection::PartitionKind::random;
+  if (!words.frames_in_flight.empty())
+    options.frames_in_flight = parse_count("--frames-in-flight", words.frames_in_flight, 1, 64);
+  if (!words.seed.empty())
+    options.tile_seed = options.partition.seed =
+        static_cast<std::uint64_t>(parse_count("--seed", words.seed, 0, no_limit));
   options.resume = words.resume;
   if (!words.repeat.empty()) options.repeat = parse_count("--repeat", words.repeat, 1, no_limit);
   if (!words.verify.empty()) options.verify = parse_count("--verify", words.verify, 1, no_limit);

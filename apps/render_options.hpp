@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "frame/distributed.hpp"
 #include "frame/render.hpp"
 #include "io/image_file.hpp"
 #include "io/mesh_reader.hpp"
+#include "projection/partition.hpp"
 #include "scene/camera.hpp"
 
 namespace tessera::apps {
@@ -34,6 +36,13 @@ struct RenderOptions {
   frame::RenderSettings settings;
   io::ImageFileOptions image;
 
+  // Jobs of several ranks; a single process has no use for them.
+  std::optional<int> projectors, compositors;
+  frame::Exchange exchange = frame::Exchange::runs;
+  projection::Partition partition;
+  int frames_in_flight = 2;
+  std::uint64_t tile_seed = 1;  ///< of the tile map
+
   bool resume = false;
   int repeat = 0;  ///< 0: render once and print no times
   int verify = 0;  ///< pixels a frame to check against the reference; 0: none
@@ -50,6 +59,7 @@ struct RenderWords {
   std::string camera, orbit, size, projection;
   std::string integrator = "auto", accuracy, emission = "absorption", rasterizer = "planes", backend = "auto";
   std::string threads, tile_size, memory, background, png_bits = "8", repeat, verify, report, timing;
+  std::string projectors, compositors, exchange, partition = "curve", frames_in_flight, seed;
   bool smooth = false, half = false, rescale = false, resume = false, progress = false, quiet = false;
 };
 

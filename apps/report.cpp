@@ -35,37 +35,37 @@ Json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
 
-Json mesh_json(const std::filesystem::path& input, const io::MeshFile& file) {
-  const auto& counts = file.counts;
-  const auto& mesh = file.mesh;
-  const auto range = scene::scalar_range(mesh);
-  const auto box = scene::bounds(mesh);
+Json mesh_json(const std::filesystem::path& input, const MeshSummary& mesh) {
+  const auto& counts = mesh.counts;
+  const auto& box = mesh.facts.box;
   Json fields = Json::array();
-  for (const auto& field : file.fields)
+  for (const auto& field : mesh.fields)
     fields.push_back({{"name", field.name},
                       {"association", word(field.association)},
                       {"components", field.components},
                       {"type", field.type},
                       {"range", {field.low, field.high}},
                       {"nan", field.nan_count}});
-  return {{"file", input.string()},
-          {"format", file.format},
-          {"cells",
-           {{"read", counts.cells_read},
-            {"ghost", counts.cells_ghost},
-            {"hidden", counts.cells_hidden},
-            {"nan", counts.cells_nan},
-            {"not_volumetric", counts.cells_not_volumetric},
-            {"zero_volume", counts.cells_zero_volume},
-            {"tangled", counts.cells_tangled},
-            {"quadratic", counts.cells_quadratic}}},
-          {"tets", counts.tets_made},
-          {"tets_collapsed", counts.tets_collapsed},
-          {"points", {{"read", counts.points_read}, {"unused", counts.points_unused}}},
-          {"bounds", {vector_json(box.low), vector_json(box.high)}},
-          {"field", {{"name", mesh.field_name}, {"association", word(mesh.association)}, {"range", range}}},
-          {"fields", fields},
-          {"notes", file.notes}};
+  return {
+      {"file", input.string()},
+      {"format", mesh.format},
+      {"cells",
+       {{"read", counts.cells_read},
+        {"ghost", counts.cells_ghost},
+        {"hidden", counts.cells_hidden},
+        {"nan", counts.cells_nan},
+        {"not_volumetric", counts.cells_not_volumetric},
+        {"zero_volume", counts.cells_zero_volume},
+        {"tangled", counts.cells_tangled},
+        {"quadratic", counts.cells_quadratic}}},
+      {"tets", counts.tets_made},
+      {"tets_collapsed", counts.tets_collapsed},
+      {"points", {{"read", counts.points_read}, {"unused", counts.points_unused}}},
+      {"bounds", {vector_json(box.low), vector_json(box.high)}},
+      {"field",
+       {{"name", mesh.field_name}, {"association", word(mesh.facts.association)}, {"range", mesh.facts.scalar_range}}},
+      {"fields", fields},
+      {"notes", mesh.notes}};
 }
 
 Json transfer_function_json(const io::LoadedTransferFunction& loaded) {
@@ -115,6 +115,11 @@ Json frame_json(const Frame& frame, const FrameRecord* record) {
                       {"exact_sign_tests", statistics.exact_sign_tests},
                       {"unpaired", statistics.unpaired},
                       {"tiles_split", statistics.tiles_split}};
+  if (statistics.fragments > 0) {
+    json["counters"]["fragments"] = statistics.fragments;
+    json["counters"]["exchange_bytes"] = statistics.exchange_bytes;
+    json["counters"]["exchange_messages"] = statistics.exchange_messages;
+  }
   json["instruction_set"] = statistics.instruction_set;
   json["integrator"] = statistics.integrator;
   if (record->verification) {
@@ -167,20 +172,19 @@ std::string transfer_function_line(const io::LoadedTransferFunction& loaded) {
   return line;
 }
 
-std::string run_line(const RenderOptions& options, const io::MeshFile& file, const io::LoadedTransferFunction& loaded,
+std::string run_line(const RenderOptions& options, const MeshSummary& mesh, const io::LoadedTransferFunction& loaded,
                      const std::vector<Frame>& frames, const Frame& first, const FrameRecord& record) {
-  const auto range = scene::scalar_range(file.mesh);
   const auto& statistics = record.statistics;
-  std::string line =
-      fmt::format("{}: {}; field {} ({}) {:.6g} to {:.6g}; {}; view {}, {}x{}", options.input.string(),
-                  cells_line(file.counts), file.mesh.field_name, word(file.mesh.association), range[0], range[1],
-                  transfer_function_line(loaded), view_line(record.camera), first.size.width, first.size.height);
+  std::string line = fmt::format("{}: {}; field {} ({}) {:.6g} to {:.6g}; {}; view {}, {}x{}", options.input.string(),
+                                 cells_line(mesh.counts), mesh.field_name, word(mesh.facts.association),
+                                 mesh.facts.scalar_range[0], mesh.facts.scalar_range[1], transfer_function_line(loaded),
+                                 view_line(record.camera), first.size.width, first.size.height);
   if (frames.size() > 1) line += fmt::format(" (frame {} of {})", first.number + 1, frames.size());
   line += fmt::format("; {} tets projected, {} invisible, {} outside the view; {}, {}, {}, {:.3g} ms",
                       statistics.tets_projected, statistics.tets_invisible, statistics.tets_outside_view,
                       word(options.settings.rasterizer), method_line(options.settings.integrator),
                       statistics.instruction_set, record.frame_ms.front());
-  for (const auto& note : file.notes) line += fmt::format("; {}", note);
+  for (const auto& note : mesh.notes) line += fmt::format("; {}", note);
   return line;
 }
 

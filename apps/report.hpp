@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/frame_list.hpp"
+#include "apps/mesh_input.hpp"
 #include "apps/render_options.hpp"
 #include "apps/verify.hpp"
 #include "io/transfer_function_file.hpp"
@@ -22,7 +23,7 @@ struct FrameRecord {
 };
 
 /// File, format, cells, points, bounds, chosen field, all fields, notes.
-nlohmann::ordered_json mesh_json(const std::filesystem::path& input, const io::MeshFile& file);
+nlohmann::ordered_json mesh_json(const std::filesystem::path& input, const MeshSummary& mesh);
 
 /// Name, unit distance and its source, knots.
 nlohmann::ordered_json transfer_function_json(const io::LoadedTransferFunction& loaded);
@@ -42,7 +43,7 @@ std::string view_line(const scene::Camera& camera);
 std::string transfer_function_line(const io::LoadedTransferFunction& loaded);
 
 /// The one line of a run, after its first frame: what was read, chosen and culled, and how long the frame took.
-std::string run_line(const RenderOptions& options, const io::MeshFile& file, const io::LoadedTransferFunction& loaded,
+std::string run_line(const RenderOptions& options, const MeshSummary& mesh, const io::LoadedTransferFunction& loaded,
                      const std::vector<Frame>& frames, const Frame& first, const FrameRecord& record);
 
 }  // namespace tessera::apps

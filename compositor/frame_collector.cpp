@@ -51,6 +51,7 @@ void FrameCollector::begin(int projector, const FrameBegin& begin, std::span<con
     if (!contributes) tile.final_depth[static_cast<std::size_t>(projector)] = infinity;
   }
   longest_ray_ = std::max(longest_ray_, begin.longest_ray);
+  longest_edge_ = std::max(longest_edge_, begin.longest_edge);
   ++begins_;
   advance();
 }
@@ -64,6 +65,7 @@ double FrameCollector::add(int projector, TilePart part) {
   Tile& to = tile(part.tile);
   const double start = std::exchange(to.final_depth[static_cast<std::size_t>(projector)], part.final_depth);
   part.start_depth = start;
+  part.projector = projector;
   if (part.last) ++to.ended;
   to.bytes += part.records.size();
   if (!part.records.empty()) to.parts.push_back(std::move(part));

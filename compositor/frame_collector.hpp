@@ -23,6 +23,7 @@ class FrameCollector {
   [[nodiscard]] bool has_all_begins() const { return begins_ == projectors_; }
   [[nodiscard]] bool has_all_ends() const { return ends_ == projectors_; }
   [[nodiscard]] double longest_ray() const { return longest_ray_; }
+  [[nodiscard]] float longest_edge() const { return longest_edge_; }
   [[nodiscard]] const FrameEnd& sums() const { return sums_; }
 
   /// Parts of a tile that wait to be merged.
@@ -65,6 +66,7 @@ class FrameCollector {
   std::size_t first_unfinished_ = 0;
   int begins_ = 0, ends_ = 0;
   double longest_ray_ = 0;
+  float longest_edge_ = 0;
   FrameEnd sums_{};
   struct Debt {
     std::uint32_t tile;

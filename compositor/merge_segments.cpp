@@ -10,12 +10,15 @@
 namespace tessera::compositor {
 namespace {
 
+using Key = sorting::PixelLists::Key;
+
 /// Raw segments: sorted and integrated here, by the code that does it for a single process.
-class SegmentMerger final : public TileMerger {
+class SegmentMerger : public TileMerger {
  public:
-  SegmentMerger(const MergeContext& context, const projection::PixelRect& rect)
+  SegmentMerger(const MergeContext& context, const projection::PixelRect& rect, Key key = Key::front)
       : budget_(context.budget_bytes),
         rect_(rect),
+        key_(key),
         image_({rect.x1 - rect.x0, rect.y1 - rect.y0}),
         pixels_(*context.space, *context.integrator, context.max_color, context.longest_ray, context.emission,
                 {&image_, rect.x0, rect.y0}) {
@@ -28,9 +31,7 @@ class SegmentMerger final : public TileMerger {
     RecordReader reader(part.records);
     while (!reader.empty()) {
       const auto chain = reader.take<ChainHeader>();
-      if (chain.pixel >= static_cast<std::uint32_t>(rect_.area()) ||
-          chain.links > segments_.capacity() - segments_.size)
-        throw malformed(part.tile);
+      check_room(part.tile, chain.pixel, chain.links);
       double front = chain.front, scalar = chain.scalar_front;
       for (std::uint32_t i = 0; i < chain.links; ++i) {
         const auto link = reader.take<ChainLink>();
@@ -47,11 +48,12 @@ class SegmentMerger final : public TileMerger {
   }
 
   void advance(double final_depth) override {
-    lists_.sort(segments_, static_cast<std::size_t>(rect_.area()));
+    lists_.sort(segments_, static_cast<std::size_t>(rect_.area()), key_);
     pixels_.take(segments_, lists_, final_depth);
+    const std::vector<double>& depth = key_ == Key::front ? segments_.front : segments_.back;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < segments_.size; ++i)
-      if (!(segments_.front[i] < final_depth) && pixels_.open(segments_.pixel(i))) segments_.move(i, kept++);
+      if (!(depth[i] < final_depth) && pixels_.open(segments_.pixel(i))) segments_.move(i, kept++);
     segments_.size = kept;
   }
 
@@ -60,10 +62,14 @@ class SegmentMerger final : public TileMerger {
     return std::move(image_);
   }
 
- private:
-  static scene::Error malformed(std::uint32_t tile) {
-    return {scene::ExitCode::system_failure,
-            fmt::format("exchange: the segments of tile {} are malformed; all ranks must run the same program", tile)};
+ protected:
+  projection::RaySegments& segments() { return segments_; }
+
+  void check_room(std::uint32_t tile, std::uint32_t pixel, std::size_t more) const {
+    if (pixel >= static_cast<std::uint32_t>(rect_.area()) || more > segments_.capacity() - segments_.size)
+      throw scene::Error(
+          scene::ExitCode::system_failure,
+          fmt::format("exchange: the segments of tile {} are malformed; all ranks must run the same program", tile));
   }
 
   void reserve(std::size_t segments) {
@@ -78,15 +84,46 @@ class SegmentMerger final : public TileMerger {
     segments_.reserve(std::min<std::size_t>(std::max(segments, 2 * segments_.capacity()), budget_ / each));
   }
 
+ private:
   std::uint64_t budget_;
   projection::PixelRect rect_;
+  Key key_;
   scene::Image image_;
   TilePixels pixels_;
   projection::RaySegments segments_;
   sorting::PixelLists lists_;
 };
 
+/// The paper's tuples, whose key is the back alone. Equal ones stand by projector, then as they came: the order of
+/// cells.
+class TupleMerger final : public SegmentMerger {
+ public:
+  TupleMerger(const MergeContext& context, const projection::PixelRect& rect)
+      : SegmentMerger(context, rect, Key::back), longest_edge_(context.longest_edge) {}
+
+  void add(const TilePart& part) override {
+    reserve(segments().size + part.fragments);
+    RecordReader reader(part.records);
+    while (!reader.empty()) {
+      const auto record = reader.take<TupleRecord>();
+      check_room(part.tile, record.pixel, 1);
+      // 2^22 arrivals before the number comes round are more than the ties of any one depth.
+      const auto arrival = static_cast<std::uint32_t>(part.projector) << 22 | (arrivals_++ & 0x3fffff);
+      projection::from_tuple(record.tuple, record.pixel, arrival, longest_edge_, segments(), segments().size);
+      ++segments().size;
+    }
+  }
+
+ private:
+  float longest_edge_;
+  std::uint32_t arrivals_ = 0;
+};
+
 }  // namespace
+
+std::unique_ptr<TileMerger> make_tuple_merger(const MergeContext& context, const projection::PixelRect& rect) {
+  return std::make_unique<TupleMerger>(context, rect);
+}
 
 std::unique_ptr<TileMerger> make_segment_merger(const MergeContext& context, const projection::PixelRect& rect) {
   return std::make_unique<SegmentMerger>(context, rect);

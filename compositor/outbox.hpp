@@ -40,7 +40,8 @@ class Outbox {
 
   /// Starts a frame: tells every compositor which of its tiles will get parts. Parts of each of those follow by put(),
   /// the last one of a tile marked so. `map` must live until end_frame().
-  void begin_frame(std::uint32_t frame, const TileMap& map, const std::vector<bool>& has_parts, double longest_ray);
+  void begin_frame(std::uint32_t frame, const TileMap& map, const std::vector<bool>& has_parts, double longest_ray,
+                   float longest_edge);
 
   /// Any thread; parts of one tile in order, from one thread. Blocks while too much waits to be sent; throws the run's
   /// error.

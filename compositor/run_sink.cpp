@@ -39,7 +39,7 @@ void RunSink::integrate(const projection::RaySegments& segments, const sorting::
     if (!open_[p]) continue;
     for (const auto& entry : lists.pixel(p)) {
       const std::uint32_t i = entry.segment;
-      if (!(segments.front[i] < end_depth)) break;
+      if (!(entry.depth < end_depth)) break;
       batch_.length[batch_.size] = (segments.back[i] - segments.front[i]) * length_per_depth_[p];
       batch_.scalar_front[batch_.size] = segments.scalar_front[i];
       batch_.scalar_back[batch_.size] = segments.scalar_back[i];
@@ -76,7 +76,7 @@ void RunSink::merge(const projection::RaySegments& segments, const sorting::Pixe
     bool open = true;
     for (const auto& entry : lists.pixel(p)) {
       const std::uint32_t i = entry.segment;
-      if (!(segments.front[i] < end_depth)) break;
+      if (!(entry.depth < end_depth)) break;
       const std::size_t k = next++;
       if (!open) continue;
       // Light without optical depth (independent emission) does not share a fragment with what absorbs behind it: the

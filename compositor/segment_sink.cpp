@@ -18,7 +18,7 @@ void SegmentSink::write(const projection::RaySegments& segments, const sorting::
     };
     for (const auto& entry : lists.pixel(p)) {
       const std::uint32_t i = entry.segment;
-      if (!(segments.front[i] < end_depth)) break;
+      if (!(entry.depth < end_depth)) break;
       const bool touches =
           chain.links > 0 && segments.front[i] == back && (cell_data_ || segments.scalar_front[i] == scalar);
       if (!touches) {
@@ -45,6 +45,30 @@ void SegmentSink::take(const projection::RaySegments& segments, const sorting::P
 
 bool SegmentSink::take_unordered(const projection::RaySegments& segments, const sorting::PixelLists& lists,
                                  double final_depth) {
+  write(segments, lists, std::numeric_limits<double>::infinity());
+  complete_to(final_depth);
+  send_if_full();
+  return true;
+}
+
+void TupleSink::write(const projection::RaySegments& segments, const sorting::PixelLists& lists, double end_depth) {
+  const auto pixels = static_cast<std::size_t>(rect().area());
+  for (std::size_t p = 0; p < pixels; ++p)
+    for (const auto& entry : lists.pixel(p)) {
+      if (!(entry.depth < end_depth)) break;
+      append(records(), TupleRecord{tile_pixel(p), projection::to_tuple(segments, entry.segment, longest_edge_)});
+      count(1);
+    }
+}
+
+void TupleSink::take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) {
+  write(segments, lists, final_depth);
+  complete_to(final_depth);
+  send_if_full();
+}
+
+bool TupleSink::take_unordered(const projection::RaySegments& segments, const sorting::PixelLists& lists,
+                               double final_depth) {
   write(segments, lists, std::numeric_limits<double>::infinity());
   complete_to(final_depth);
   send_if_full();

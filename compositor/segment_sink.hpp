@@ -31,4 +31,24 @@ class SegmentSink final : public FragmentSink {
   std::span<const std::uint64_t> global_tet_;
 };
 
+/// `--exchange segments` of the `scanline` rasterizer: the paper's 4-tuples, in the order of their cells, as they are.
+class TupleSink final : public FragmentSink {
+ public:
+  /// `longest_edge`: of the whole mesh, world units.
+  TupleSink(float longest_edge, Deliver deliver)
+      : FragmentSink(RecordKind::tuples, std::move(deliver)), longest_edge_(longest_edge) {}
+
+  void take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) override;
+  bool take_unordered(const projection::RaySegments& segments, const sorting::PixelLists& lists,
+                      double final_depth) override;
+  [[nodiscard]] bool open(std::size_t) const override { return true; }
+  [[nodiscard]] std::size_t open_count() const override { return static_cast<std::size_t>(rect().area()); }
+  void finish() override {}
+
+ private:
+  void write(const projection::RaySegments& segments, const sorting::PixelLists& lists, double end_depth);
+
+  float longest_edge_;
+};
+
 }  // namespace tessera::compositor

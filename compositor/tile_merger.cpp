@@ -33,7 +33,7 @@ std::unique_ptr<TileMerger> make_tile_merger(RecordKind kind, const MergeContext
     case RecordKind::chains_of_cells:
       return make_segment_merger(context, rect);
     case RecordKind::tuples:
-      break;
+      return make_tuple_merger(context, rect);
   }
   throw scene::Error(
       scene::ExitCode::system_failure,

@@ -15,6 +15,7 @@ struct MergeContext {
   const projection::PixelSpace* space;
   const SegmentIntegrator* integrator;
   double max_color, longest_ray;
+  float longest_edge;  ///< tuples: the unit of their lengths
   scene::Emission emission;
   std::uint64_t budget_bytes;  ///< for one tile's fragments that cannot be composited yet
 };

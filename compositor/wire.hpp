@@ -6,6 +6,7 @@
 #include <span>
 
 #include "compositor/transport.hpp"
+#include "projection/segment_tuple.hpp"
 
 /// What travels from projectors to compositors, byte by byte. Little endian, no padding, version 1.
 ///
@@ -24,7 +25,7 @@
 ///              next begins, at the same depth and scalar, so 24 bytes a segment carry all of it in double precision:
 ///              the compositor's picture has the bits of a single process's. Scalars of cell data are the same at both
 ///              ends of a link and are not shared with the next.
-///   tuples     TupleRecord each, in the order of arrival: Juliachs et al. 2007, 4.1
+///   tuples     TupleRecord each, in the order of their cells: Juliachs et al. 2007, 4.1
 namespace tessera::compositor {
 
 static_assert(std::endian::native == std::endian::little, "the wire is little endian");
@@ -47,8 +48,10 @@ static_assert(sizeof(MessageHeader) == 16);
 struct FrameBegin {
   double longest_ray;   ///< bounds the world length of a ray inside the whole mesh
   std::uint64_t tiles;  ///< number of bits that follow
+  float longest_edge;   ///< of the whole mesh, world units: the unit of a tuple's length; 0 without tuples
+  std::uint32_t reserved = 0;
 };
-static_assert(sizeof(FrameBegin) == 16);
+static_assert(sizeof(FrameBegin) == 24);
 
 struct PartHeader {
   std::uint32_t tile;
@@ -86,8 +89,7 @@ static_assert(sizeof(ChainLink) == 24);
 /// The paper's 4-tuple and its pixel.
 struct TupleRecord {
   std::uint32_t pixel;
-  float depth_back, length;  ///< length over the data set's longest edge
-  float scalar_front, scalar_back;
+  projection::SegmentTuple tuple;
 };
 static_assert(sizeof(TupleRecord) == 20);
 
@@ -141,6 +143,7 @@ struct TilePart {
   double final_depth = 0;
   std::uint64_t fragments = 0;
   Bytes records;
+  int projector = 0;       ///< at the compositor: whose part, 0 .. N-1
   double start_depth = 0;  ///< at the compositor: the projector's part before this one was complete to here
 };
 

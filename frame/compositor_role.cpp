@@ -179,6 +179,7 @@ class CompositorLoop {
       }
       compositor::FrameCollector::Waiting waiting = of.collector.take(tile);
       const double longest_ray = of.collector.longest_ray();
+      const float longest_edge = of.collector.longest_edge();
       all = waiting.all;
       lock.unlock();
       {
@@ -186,7 +187,7 @@ class CompositorLoop {
         if (merge.merger == nullptr && !waiting.parts.empty())
           merge.merger = make_tile_merger(waiting.parts.front().kind,
                                           {&of.space, &of.integrator, run_.function.max_color(), longest_ray,
-                                           run_.settings.render.emission, budget_.tile},
+                                           longest_edge, run_.settings.render.emission, budget_.tile},
                                           of.grid.rect(tile));
         if (merge.merger != nullptr) compositor::merge(*merge.merger, waiting.parts, waiting.final_depth, budget_.tile);
         // A tile that got nothing stays as empty as the assembled picture is.
@@ -219,6 +220,7 @@ void run_assembler(const DistributedRun& run, const std::function<void(FinishedF
   compositor::ImageAssembly assembly(static_cast<int>(settings.roles.compositors.size()), [&](std::uint32_t frame) {
     return projection::TileGrid{run.jobs[frame].size, settings.render.tile_size};
   });
+  auto last = run.start;
   for (std::size_t left = 0; left < run.jobs.size();) {
     compositor::Message message = [&] {
       const scene::TraceScope timing(settings.compositing, "wait");
@@ -231,7 +233,9 @@ void run_assembler(const DistributedRun& run, const std::function<void(FinishedF
     }
     if (!assembled) continue;
     for (const int projector : settings.roles.projectors) run.transport.send(projector, Channel::frames, {});
-    FinishedFrame finished{assembled->frame, std::move(assembled->image), {}};
+    FinishedFrame finished{assembled->frame, std::move(assembled->image), {}, 0};
+    const auto now = std::chrono::steady_clock::now();
+    finished.frame_ms = std::chrono::duration<double, std::milli>(now - std::exchange(last, now)).count();
     const compositor::FrameEnd& sums = assembled->sums;
     FrameStatistics& statistics = finished.statistics;
     statistics.tets_total = sums.tets_total;

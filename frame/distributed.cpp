@@ -23,19 +23,54 @@ ExchangeBudget exchange_budget(const DistributedSettings& settings) {
           std::clamp(memory / 16 / projectors, least_between_cuts, most_between_cuts)};
 }
 
+LoadedMesh::LoadedMesh(const DistributedSettings& settings, const std::function<ProjectorMesh(std::size_t)>& mesh_of)
+    : settings_(settings.render), mesh_of_(mesh_of) {
+  settings_.memory_bytes = exchange_budget(settings).projection;
+  settings_.trace = settings.projecting;
+}
+
+void LoadedMesh::load(std::size_t number) {
+  if (number_ == number) return;
+  projector_.reset();  // the last mesh's memory before the next one's
+  mesh_ = {};
+  mesh_ = mesh_of_(number);
+  projector_.emplace(*mesh_.part, settings_);
+  number_ = number;
+}
+
+namespace {
+
+/// Meshes are loaded by all ranks together, those that do not project included.
+void take_part_in_loading(const DistributedRun& run, const std::function<ProjectorMesh(std::size_t)>& mesh_of) {
+  for (std::size_t frame = 1; frame < run.jobs.size(); ++frame)
+    if (run.jobs[frame].mesh != run.jobs[frame - 1].mesh) static_cast<void>(mesh_of(run.jobs[frame].mesh));
+}
+
+}  // namespace
+
 void render_distributed(compositor::Transport& transport, const DistributedSettings& settings,
                         std::span<const FrameJob> jobs, const scene::TransferFunction& function,
                         const std::function<ProjectorMesh(std::size_t)>& mesh_of,
                         const std::function<void(FinishedFrame)>& done) {
   if (settings.frames_in_flight < 1)
     throw scene::bad_input(fmt::format("--frames-in-flight {}: it must be at least 1", settings.frames_in_flight));
-  // Its segments neither touch to the bit, as runs and chains need, nor come in the order of fronts.
-  if (settings.render.rasterizer == Rasterizer::scanline)
-    throw scene::bad_input("--rasterizer scanline: not with several processes yet; use --rasterizer planes");
-  const DistributedRun run{transport, settings, jobs, function};
+  if (settings.render.rasterizer == Rasterizer::scanline && settings.exchange == Exchange::runs)
+    throw scene::bad_input("--exchange runs: segments of --rasterizer scanline do not touch; use --exchange segments");
   const int self = transport.rank();
+  std::optional<LoadedMesh> loaded;
+  if (!jobs.empty()) {
+    if (settings.roles.projects(self))
+      loaded.emplace(settings, mesh_of).load(jobs.front().mesh);
+    else
+      static_cast<void>(mesh_of(jobs.front().mesh));
+  }
+  compositor::gather_all(transport, {});  // a frame's time does not count reading
+  const DistributedRun run{transport, settings, jobs, function, std::chrono::steady_clock::now()};
   std::vector<std::function<void()>> parts;
-  if (settings.roles.projects(self)) parts.emplace_back([&] { run_projector(run, mesh_of); });
+  if (loaded)
+    parts.emplace_back([&] { run_projector(run, *loaded); });
+  else
+    parts.emplace_back([&] { take_part_in_loading(run, mesh_of); });
   if (settings.roles.composites(self)) parts.emplace_back([&] { run_compositor(run); });
   if (settings.roles.assembler() == self) parts.emplace_back([&] { run_assembler(run, done); });
 
@@ -56,7 +91,7 @@ void render_distributed(compositor::Transport& transport, const DistributedSetti
   };
   std::vector<std::thread> threads;
   for (std::size_t i = 1; i < parts.size(); ++i) threads.emplace_back([&, i] { guarded(parts[i]); });
-  if (!parts.empty()) guarded(parts.front());
+  if (!parts.empty()) guarded(parts.front());  // projection, where there is one, on the calling thread
   for (auto& thread : threads) thread.join();
   transport.check();
 }

@@ -15,6 +15,7 @@ namespace tessera::frame {
 enum class Exchange {
   runs,      ///< segments that touch end to end, composited: a few fragments a pixel. At most 2e-6 from `segments`
   segments,  ///< raw ray segments, as Juliachs et al. 2007: the bits of a single process whatever the job's shape
+             ///< (scanline: up to the order of equal keys, of which the paper has many)
 };
 
 struct DistributedSettings {
@@ -39,6 +40,7 @@ struct ProjectorMesh {
   std::shared_ptr<const scene::TetMesh> part;  ///< may have no tets
   std::vector<std::uint64_t> global_tet;       ///< index in the whole mesh of each tet, ascending; empty: its own
   double diagonal = 0;                         ///< of the whole mesh's box, world units
+  float longest_edge = 0;                      ///< scanline: of the whole mesh, world units
 };
 
 /// A finished picture, on the assembling rank.
@@ -46,11 +48,12 @@ struct FinishedFrame {
   std::size_t frame;
   scene::Image image;
   FrameStatistics statistics;  ///< of all ranks
+  double frame_ms;             ///< since the frame before it was complete, or since all ranks were ready
 };
 
 /// Renders a list of pictures with all ranks of `transport`; each calls this with the same arguments but for the
 /// functions, which run where their work is:
-///   mesh_of(m)     on projectors, once a mesh, in order: loads this rank's part of mesh m
+///   mesh_of(m)     on every rank, once a mesh, in order, collective: loads this rank's part of mesh m
 ///   done(frame)    on the assembling rank, in order, from a thread of its own
 /// Projectors stream tile by tile while they project; frame i projects while frame i - 1 composites. Nothing but the
 /// order of frames synchronises ranks.

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <chrono>
+#include <optional>
+
 #include "frame/distributed.hpp"
+#include "frame/frame_projector.hpp"
 
 /// The three parts of a distributed run, each a loop on a thread of its own; render_distributed() starts those that a
 /// rank has. All throw the run's error.
@@ -11,10 +15,28 @@ struct DistributedRun {
   const DistributedSettings& settings;
   std::span<const FrameJob> jobs;
   const scene::TransferFunction& function;
+  std::chrono::steady_clock::time_point start;  ///< all ranks were ready
+};
+
+/// A projector's part of the mesh at hand, prepared.
+class LoadedMesh {
+ public:
+  LoadedMesh(const DistributedSettings& settings, const std::function<ProjectorMesh(std::size_t)>& mesh_of);
+  /// Loads mesh `number` unless that is the one at hand.
+  void load(std::size_t number);
+  [[nodiscard]] const ProjectorMesh& mesh() const { return mesh_; }
+  [[nodiscard]] FrameProjector& projector() { return *projector_; }
+
+ private:
+  RenderSettings settings_;
+  const std::function<ProjectorMesh(std::size_t)>& mesh_of_;
+  std::optional<std::size_t> number_;
+  ProjectorMesh mesh_;
+  std::optional<FrameProjector> projector_;
 };
 
 /// Projects this rank's part of every mesh and sends the fragments.
-void run_projector(const DistributedRun& run, const std::function<ProjectorMesh(std::size_t)>& mesh_of);
+void run_projector(const DistributedRun& run, LoadedMesh& loaded);
 
 /// Merges the fragments of this rank's tiles and sends finished tiles to the assembling rank.
 void run_compositor(const DistributedRun& run);

@@ -40,28 +40,19 @@ compositor::FrameEnd counts_of(const FrameStatistics& s) {
 
 }  // namespace
 
-void run_projector(const DistributedRun& run, const std::function<ProjectorMesh(std::size_t)>& mesh_of) {
+void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
   const DistributedSettings& settings = run.settings;
   const ExchangeBudget budget = exchange_budget(settings);
   RenderSettings render = settings.render;
-  render.memory_bytes = budget.projection;
   render.trace = settings.projecting;
 
   compositor::Outbox outbox(run.transport,
                             {settings.roles.compositors, budget.window, budget.backlog, settings.projecting});
-  std::optional<std::size_t> loaded;
-  ProjectorMesh mesh;
-  std::optional<FrameProjector> projector;
   std::size_t left = 0;  // frames that have left the assembling rank
   for (std::size_t frame = 0; frame < run.jobs.size(); ++frame) {
     const FrameJob& job = run.jobs[frame];
-    if (loaded != job.mesh) {
-      projector.reset();
-      mesh = {};
-      mesh = mesh_of(job.mesh);
-      projector.emplace(*mesh.part, render);
-      loaded = job.mesh;
-    }
+    loaded.load(job.mesh);
+    const ProjectorMesh& mesh = loaded.mesh();
     const auto number = static_cast<std::int32_t>(frame);
     if (render.trace != nullptr) render.trace->set_frame(number);
     wait_for_turn(run, frame, left);
@@ -74,10 +65,13 @@ void run_projector(const DistributedRun& run, const std::function<ProjectorMesh(
     task.grid = {job.size, render.tile_size};
     task.function = &run.function;
     task.frame = number;
+    task.longest_edge = mesh.longest_edge;
     const compositor::TileMap map(task.grid.count(), static_cast<int>(settings.roles.compositors.size()),
                                   settings.tile_seed);
     const auto deliver = [&](compositor::TilePart part) { outbox.put(std::move(part)); };
     task.make_sink = [&]() -> std::unique_ptr<compositor::TileSink> {
+      if (render.rasterizer == Rasterizer::scanline)
+        return std::make_unique<compositor::TupleSink>(mesh.longest_edge, deliver);
       if (settings.exchange == Exchange::segments)
         return std::make_unique<compositor::SegmentSink>(mesh.part->association == scene::Association::cell,
                                                          mesh.global_tet, deliver);
@@ -85,9 +79,9 @@ void run_projector(const DistributedRun& run, const std::function<ProjectorMesh(
                                                    render.emission, budget.cut, deliver);
     };
     task.announce = [&](const std::vector<bool>& has_cells) {
-      outbox.begin_frame(static_cast<std::uint32_t>(frame), map, has_cells, mesh.diagonal);
+      outbox.begin_frame(static_cast<std::uint32_t>(frame), map, has_cells, mesh.diagonal, mesh.longest_edge);
     };
-    const FrameStatistics statistics = projector->project(task);
+    const FrameStatistics statistics = loaded.projector().project(task);
     outbox.end_frame(counts_of(statistics));
     if (render.trace != nullptr) render.trace->add_frame(number, start_us);
   }

@@ -1,0 +1,218 @@
+#include "apps/distributed_render.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "apps/frame_list.hpp"
+#include "apps/output_check.hpp"
+#include "apps/run_output.hpp"
+#include "apps/verify.hpp"
+#include "compositor/wire.hpp"
+#include "frame/distributed.hpp"
+#include "frame/mesh_exchange.hpp"
+#include "projection/segment_tuple.hpp"
+#include "scene/trace.hpp"
+
+namespace tessera::apps {
+namespace {
+
+using compositor::Bytes;
+
+std::string process_name(const frame::Roles& roles, int rank) {
+  const bool projects = roles.projects(rank), composites = roles.composites(rank);
+  return fmt::format("rank {} {}", rank,
+                     projects && composites ? "projector + compositor"
+                     : projects             ? "projector"
+                                            : "compositor");
+}
+
+const char* word(frame::Exchange exchange) { return exchange == frame::Exchange::runs ? "runs" : "segments"; }
+
+const char* word(projection::PartitionKind kind) {
+  switch (kind) {
+    case projection::PartitionKind::file:
+      return "file";
+    case projection::PartitionKind::random:
+      return "random";
+    case projection::PartitionKind::curve:
+      break;
+  }
+  return "curve";
+}
+
+/// One rank's share of a run.
+class RankRun {
+ public:
+  RankRun(const RenderOptions& options, compositor::Transport& transport)
+      : options_(options),
+        transport_(transport),
+        roles_(frame::assign_roles(transport.size(), options.projectors, options.compositors)),
+        writes_(transport.rank() == roles_.assembler()),
+        frames_(list_frames(options)),
+        compositing_(projecting_, scene::TraceRole::compositor),
+        output_(writer_options(), frames_) {}
+
+  scene::ExitCode run() {
+    agree_on_finished_frames();
+    if (std::any_of(frames_.begin(), frames_.end(), [](const Frame& frame) { return !frame.finished; }))
+      render();
+    else if (writes_)
+      for (const Frame& frame : frames_) output_.skip(frame);
+    if (!options_.timing.empty()) {
+      io::TraceRun traced = trace_run(options_, tets_, frames_.front(), output_.rendered());
+      traced.ranks = transport_.size();
+      traced.projectors = static_cast<int>(roles_.projectors.size());
+      traced.compositors = static_cast<int>(roles_.compositors.size());
+      traced.exchange = word(options_.exchange);
+      write_rank_traces(transport_, roles_.assembler(), projecting_, process_name(roles_, transport_.rank()), traced,
+                        options_.timing);
+    }
+    Bytes code(1);
+    if (writes_) code[0] = static_cast<std::byte>(output_.finish());
+    return static_cast<scene::ExitCode>(compositor::broadcast(transport_, roles_.assembler(), code)[0]);
+  }
+
+ private:
+  /// Only one rank shows progress.
+  const RenderOptions& writer_options() {
+    if (!writes_) quiet_.progress = false;
+    return quiet_;
+  }
+
+  /// The writing rank's view of the disk holds for all.
+  void agree_on_finished_frames() {
+    if (writes_) check_outputs(options_, frames_);
+    Bytes finished(frames_.size());
+    for (std::size_t i = 0; i < frames_.size(); ++i) finished[i] = std::byte{frames_[i].finished};
+    finished = compositor::broadcast(transport_, roles_.assembler(), std::move(finished));
+    for (std::size_t i = 0; i < frames_.size(); ++i) frames_[i].finished = finished[i] != std::byte{0};
+  }
+
+  /// Of the whole mesh, where the rasterizer wants to know: the longest of all ranks'. Collective.
+  float longest_edge(const scene::TetMesh& part) {
+    if (options_.settings.rasterizer != frame::Rasterizer::scanline) return 0;
+    float longest = projection::longest_edge(part);
+    Bytes mine;
+    compositor::append(mine, longest);
+    for (const Bytes& other : compositor::gather_all(transport_, std::move(mine)))
+      longest = std::max(longest, compositor::RecordReader(other).take<float>());
+    return longest;
+  }
+
+  void render();
+  void take(frame::FinishedFrame finished);
+  Verification verify_frame(const scene::Image& image, const scene::Camera& camera);
+
+  const RenderOptions& options_;
+  RenderOptions quiet_ = options_;
+  compositor::Transport& transport_;
+  frame::Roles roles_;
+  bool writes_;
+  std::vector<Frame> frames_;
+  scene::Trace projecting_{scene::TraceRole::projector};
+  scene::Trace compositing_;
+  RunOutput output_;
+
+  std::uint64_t tets_ = 0;
+  io::LoadedTransferFunction loaded_;
+  std::vector<std::size_t> job_frames_;  ///< frame of each job
+  std::vector<frame::FrameJob> jobs_;
+  std::size_t next_to_report_ = 0;
+  std::vector<double> frame_ms_;            ///< of the frame at hand
+  std::optional<io::MeshFile> whole_mesh_;  ///< for --verify
+};
+
+void RankRun::render() {
+  const bool timed = !options_.timing.empty();
+  scene::Trace* trace = timed ? &projecting_ : nullptr;
+
+  io::MeshFile file;
+  {
+    const scene::TraceScope scope(trace, "read");
+    file = read_input(options_.input, options_.mesh);
+  }
+  const MeshSummary summary = summary_of(file);
+  tets_ = summary.facts.tets;
+  loaded_ = transfer_function_of(summary.facts, options_);
+  if (options_.exchange == frame::Exchange::segments && tets_ > 0xffffffffull)
+    throw scene::bad_input(fmt::format("--exchange segments: {} tets are more than 2^32; use runs", tets_));
+  frame::MeshPart part;
+  if (transport_.rank() == roles_.projectors.front()) part.mesh = std::move(file.mesh);
+  part = frame::redistribute(transport_, std::move(part), summary.facts, options_.partition, roles_.projectors, trace);
+
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    if (frames_[i].finished) continue;
+    const scene::Camera camera = view_of(frames_[i], summary.facts.box, options_.projection);
+    for (int repetition = 0; repetition < std::max(options_.repeat, 1); ++repetition) {
+      jobs_.push_back({camera, frames_[i].size, 0});
+      job_frames_.push_back(i);
+    }
+  }
+
+  frame::DistributedSettings settings;
+  settings.render = options_.settings;
+  settings.roles = roles_;
+  settings.exchange = options_.exchange;
+  settings.frames_in_flight = options_.repeat > 0 ? 1 : options_.frames_in_flight;  // a time is of one frame alone
+  settings.tile_seed = options_.tile_seed;
+  settings.projecting = trace;
+  settings.compositing = timed ? &compositing_ : nullptr;
+
+  if (writes_) {
+    output_.describe(summary, loaded_);
+    output_.note("job", {{"ranks", transport_.size()},
+                         {"projectors", roles_.projectors},
+                         {"compositors", roles_.compositors},
+                         {"exchange", word(options_.exchange)},
+                         {"partition", word(options_.partition.kind)},
+                         {"frames_in_flight", settings.frames_in_flight},
+                         {"seed", options_.tile_seed}});
+  }
+  frame::render_distributed(
+      transport_, settings, jobs_, loaded_.function,
+      [&](std::size_t) {
+        const float edge = longest_edge(part.mesh);
+        return frame::ProjectorMesh{std::make_shared<scene::TetMesh>(std::move(part.mesh)), std::move(part.global_tet),
+                                    diagonal(summary.facts.box), edge};
+      },
+      [&](frame::FinishedFrame finished) { take(std::move(finished)); });
+  for (; writes_ && next_to_report_ < frames_.size(); ++next_to_report_) output_.skip(frames_[next_to_report_]);
+}
+
+Verification RankRun::verify_frame(const scene::Image& image, const scene::Camera& camera) {
+  const scene::TraceScope scope(options_.timing.empty() ? nullptr : &compositing_, "verify");
+  // The reference looks at every cell, so this rank alone reads all of them.
+  if (!whole_mesh_) whole_mesh_ = read_input(options_.input, options_.mesh);
+  return verify(image, whole_mesh_->mesh, camera, loaded_.function, options_.settings, options_.verify);
+}
+
+/// On the writing rank, for every repetition of every frame in order.
+void RankRun::take(frame::FinishedFrame finished) {
+  const std::size_t at = job_frames_[finished.frame];
+  frame_ms_.push_back(finished.frame_ms);
+  if (finished.frame + 1 < jobs_.size() && job_frames_[finished.frame + 1] == at) return;
+  const Frame& frame = frames_[at];
+  {
+    const scene::TraceScope scope(options_.timing.empty() ? nullptr : &compositing_, "write",
+                                  static_cast<std::int32_t>(finished.frame));
+    for (const auto& output : frame.outputs) io::write_image(finished.image, output, options_.image);
+  }
+  FrameRecord record;
+  record.camera = jobs_[finished.frame].camera;
+  record.statistics = finished.statistics;
+  record.frame_ms = std::exchange(frame_ms_, {});
+  if (options_.verify > 0) record.verification = verify_frame(finished.image, record.camera);
+  for (; next_to_report_ < at; ++next_to_report_) output_.skip(frames_[next_to_report_]);
+  output_.add(frame, record);
+  next_to_report_ = at + 1;
+}
+
+}  // namespace
+
+scene::ExitCode render_on_ranks(const RenderOptions& options, compositor::Transport& transport) {
+  return RankRun(options, transport).run();
+}
+
+}  // namespace tessera::apps

@@ -1,0 +1,32 @@
+#include "apps/job.hpp"
+
+#include "compositor/loopback_transport.hpp"
+#include "compositor/mpi_transport.hpp"
+
+namespace tessera::apps {
+
+Job::Job(const std::function<void(const scene::Error&)>& last_words) {
+  if (compositor::launched_by_mpi())
+    mpi_ = std::make_unique<compositor::MpiTransport>(last_words);
+  else
+    alone_ = std::make_unique<compositor::LoopbackNetwork>(1);
+}
+
+Job::~Job() = default;
+
+compositor::Transport& Job::transport() {
+  if (mpi_) return *mpi_;
+  return alone_->rank(0);
+}
+
+std::optional<scene::Error> Job::finish() {
+  if (mpi_) return mpi_->finish();
+  try {
+    alone_->rank(0).check();
+    return std::nullopt;
+  } catch (const scene::Error& error) {
+    return error;
+  }
+}
+
+}  // namespace tessera::apps

@@ -1,0 +1,94 @@
+#include "apps/run_output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "io/atomic_file.hpp"
+
+namespace tessera::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// `frame_ms median X min Y`, milliseconds. The median of an even number is the mean of the middle two.
+std::string frame_ms_line(std::vector<double> times) {
+  std::sort(times.begin(), times.end());
+  const std::size_t middle = times.size() / 2;
+  const double median = times.size() % 2 == 1 ? times[middle] : (times[middle - 1] + times[middle]) / 2;
+  return fmt::format("frame_ms median {:.3f} min {:.3f}", median, times.front());
+}
+
+void write_json(const Json& json, const std::filesystem::path& path) {
+  io::AtomicFile file(path);
+  // A file name need not be UTF-8; JSON must.
+  file.write(json.dump(2, ' ', false, Json::error_handler_t::replace));
+  file.write("\n");
+  file.commit();
+}
+
+}  // namespace
+
+RunOutput::RunOutput(const RenderOptions& options, const std::vector<Frame>& frames)
+    : options_(options),
+      frames_(frames),
+      progress_(options.progress, frames.size()),
+      report_{{"program", "tessera"}, {"version", TESSERA_VERSION}, {"method", method_json(options)}},
+      frame_reports_(Json::array()) {}
+
+void RunOutput::describe(MeshSummary mesh, io::LoadedTransferFunction transfer_function) {
+  mesh_ = std::move(mesh);
+  transfer_function_ = std::move(transfer_function);
+}
+
+void RunOutput::skip(const Frame& frame) {
+  frame_reports_.push_back(frame_json(frame, nullptr));
+  progress_.update(++done_, rendered_);
+}
+
+void RunOutput::add(const Frame& frame, const FrameRecord& record) {
+  frame_reports_.push_back(frame_json(frame, &record));
+  if (rendered_ == 0 && !options_.quiet) {
+    progress_.clear();
+    fmt::print(stderr, "{}\n", run_line(options_, *mesh_, *transfer_function_, frames_, frame, record));
+  }
+  if (options_.repeat > 0) fmt::print("{}\n", frame_ms_line(record.frame_ms));
+  if (record.verification) {
+    fmt::print("{}\n", verification_line(*record.verification, frame.number));
+    met_ = met_ && record.verification->met();
+  }
+  progress_.update(++done_, ++rendered_);
+}
+
+scene::ExitCode RunOutput::finish() {
+  progress_.clear();
+  if (mesh_) {
+    report_["mesh"] = mesh_json(options_.input, *mesh_);
+    report_["transfer_function"] = transfer_function_json(*transfer_function_);
+  } else if (!options_.quiet) {
+    fmt::print(stderr, "{}: all {} frames are there already, nothing rendered\n", options_.input.string(),
+               frames_.size());
+  }
+  report_["frames"] = frame_reports_;
+  if (!options_.report.empty()) write_json(report_, options_.report);
+  return met_ ? scene::ExitCode::complete : scene::ExitCode::accuracy_not_met;
+}
+
+io::TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const Frame& frame, std::size_t rendered) {
+  const Json method = method_json(options);
+  io::TraceRun traced;
+  traced.version = TESSERA_VERSION;
+  traced.input = options.input.string();
+  traced.tets = tets;
+  traced.frames = static_cast<int>(rendered) * std::max(options.repeat, 1);
+  traced.width = frame.size.width;
+  traced.height = frame.size.height;
+  traced.threads =
+      options.settings.threads > 0 ? options.settings.threads : static_cast<int>(std::thread::hardware_concurrency());
+  traced.rasterizer = method.value("rasterizer", "planes");
+  traced.integrator = method.at("integrator");
+  return traced;
+}
+
+}  // namespace tessera::apps

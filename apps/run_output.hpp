@@ -1,0 +1,50 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "apps/frame_list.hpp"
+#include "apps/mesh_input.hpp"
+#include "apps/progress.hpp"
+#include "apps/report.hpp"
+#include "io/chrome_trace.hpp"
+#include "io/transfer_function_file.hpp"
+
+namespace tessera::apps {
+
+/// What a run says while it goes on and at its end: its line, times, verifications, progress, and the report. Used by
+/// the one process or rank that speaks.
+class RunOutput {
+ public:
+  RunOutput(const RenderOptions& options, const std::vector<Frame>& frames);
+
+  /// What the run line and the report say of the mesh; before the first add().
+  void describe(MeshSummary mesh, io::LoadedTransferFunction transfer_function);
+  /// More for the report's head, like the job's shape.
+  void note(const char* name, nlohmann::ordered_json value) { report_[name] = std::move(value); }
+
+  /// A frame that --resume left alone.
+  void skip(const Frame& frame);
+  /// A frame that was rendered and written.
+  void add(const Frame& frame, const FrameRecord& record);
+
+  /// Writes the report, if asked. Complete, or accuracy_not_met.
+  scene::ExitCode finish();
+
+  [[nodiscard]] std::size_t rendered() const { return rendered_; }
+
+ private:
+  const RenderOptions& options_;
+  const std::vector<Frame>& frames_;
+  Progress progress_;
+  std::optional<MeshSummary> mesh_;
+  std::optional<io::LoadedTransferFunction> transfer_function_;
+  nlohmann::ordered_json report_, frame_reports_;
+  bool met_ = true;
+  std::size_t done_ = 0, rendered_ = 0;
+};
+
+/// What a trace says of the run it is of.
+io::TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const Frame& frame, std::size_t rendered);
+
+}  // namespace tessera::apps
