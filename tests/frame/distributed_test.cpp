@@ -90,7 +90,8 @@ std::vector<FinishedFrame> render(const Parts& parts, const Shape& shape, Distri
         transport, mine, jobs, function,
         [&](std::size_t) {
           ProjectorMesh mesh;
-          mesh.part = std::make_shared<scene::TetMesh>(parts[static_cast<std::size_t>(transport.rank())]);
+          const auto rank = static_cast<std::size_t>(transport.rank());
+          mesh.part = std::make_shared<scene::TetMesh>(rank < parts.size() ? parts[rank] : scene::TetMesh{});
           mesh.global_tet = mesh.part->original_cell;
           mesh.diagonal = diagonal;
           return mesh;
