@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <numeric>
 
+#include "apps/distributed_mesh.hpp"
 #include "apps/frame_list.hpp"
 #include "apps/output_check.hpp"
 #include "apps/run_output.hpp"
 #include "apps/verify.hpp"
 #include "compositor/wire.hpp"
 #include "frame/distributed.hpp"
-#include "frame/mesh_exchange.hpp"
 #include "projection/segment_tuple.hpp"
 #include "scene/trace.hpp"
 
@@ -128,20 +128,13 @@ void RankRun::render() {
   const bool timed = !options_.timing.empty();
   scene::Trace* trace = timed ? &projecting_ : nullptr;
 
-  io::MeshFile file;
-  {
-    const scene::TraceScope scope(trace, "read");
-    file = read_input(options_.input, options_.mesh);
-  }
-  const MeshSummary summary = summary_of(file);
+  DistributedMesh mesh =
+      read_distributed(transport_, options_.input, options_.mesh, options_.partition, roles_.projectors, trace);
+  const MeshSummary summary = summary_of(mesh.description, mesh.facts);
   tets_ = summary.facts.tets;
   loaded_ = transfer_function_of(summary.facts, options_);
   if (options_.exchange == frame::Exchange::segments && tets_ > 0xffffffffull)
     throw scene::bad_input(fmt::format("--exchange segments: {} tets are more than 2^32; use runs", tets_));
-  frame::MeshPart part;
-  if (transport_.rank() == roles_.projectors.front()) part.mesh = std::move(file.mesh);
-  part = frame::redistribute(transport_, std::move(part), summary.facts, options_.partition, roles_.projectors, trace);
-
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     if (frames_[i].finished) continue;
     const scene::Camera camera = view_of(frames_[i], summary.facts.box, options_.projection);
@@ -173,9 +166,9 @@ void RankRun::render() {
   frame::render_distributed(
       transport_, settings, jobs_, loaded_.function,
       [&](std::size_t) {
-        const float edge = longest_edge(part.mesh);
-        return frame::ProjectorMesh{std::make_shared<scene::TetMesh>(std::move(part.mesh)), std::move(part.global_tet),
-                                    diagonal(summary.facts.box), edge};
+        const float edge = longest_edge(mesh.part.mesh);
+        return frame::ProjectorMesh{std::make_shared<scene::TetMesh>(std::move(mesh.part.mesh)),
+                                    std::move(mesh.part.global_tet), diagonal(summary.facts.box), edge};
       },
       [&](frame::FinishedFrame finished) { take(std::move(finished)); });
   for (; writes_ && next_to_report_ < frames_.size(); ++next_to_report_) output_.skip(frames_[next_to_report_]);

@@ -9,8 +9,11 @@
 
 namespace tessera::apps {
 
-MeshSummary summary_of(const io::MeshFile& file) {
-  return {file.counts, file.fields, file.notes, file.format, file.mesh.field_name, scene::facts_of(file.mesh)};
+MeshSummary summary_of(const io::MeshFile& file) { return summary_of(file, scene::facts_of(file.mesh)); }
+
+MeshSummary summary_of(const io::MeshFile& description, const scene::MeshFacts& facts) {
+  return {description.counts, description.fields,          description.notes,
+          description.format, description.mesh.field_name, facts};
 }
 
 io::MeshFile read_input(const std::filesystem::path& input, const io::MeshOptions& options) {

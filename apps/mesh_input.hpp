@@ -16,6 +16,8 @@ struct MeshSummary {
   scene::MeshFacts facts;
 };
 MeshSummary summary_of(const io::MeshFile& file);
+/// Where the file's mesh is in parts, with the facts of the whole.
+MeshSummary summary_of(const io::MeshFile& description, const scene::MeshFacts& facts);
 
 /// io::read_mesh, but a regular grid is refused as one. Throws scene::Error.
 io::MeshFile read_input(const std::filesystem::path& input, const io::MeshOptions& options);
