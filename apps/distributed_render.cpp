@@ -61,6 +61,7 @@ class RankRun {
     else if (writes_)
       for (const Frame& frame : frames_) output_.skip(frame);
     if (!options_.timing.empty()) {
+      transport_.trace_to(nullptr, nullptr);
       io::TraceRun traced = trace_run(options_, tets_, frames_.front(), output_.rendered());
       traced.ranks = transport_.size();
       traced.projectors = static_cast<int>(roles_.projectors.size());
@@ -127,6 +128,7 @@ class RankRun {
 void RankRun::render() {
   const bool timed = !options_.timing.empty();
   scene::Trace* trace = timed ? &projecting_ : nullptr;
+  if (timed) transport_.trace_to(&projecting_, &compositing_);
 
   DistributedMesh mesh =
       read_distributed(transport_, options_.input, options_.mesh, options_.partition, roles_.projectors, trace);

@@ -9,8 +9,8 @@ namespace tessera::compositor {
 GroupTransport::GroupTransport(Transport& whole, std::vector<int> ranks)
     : whole_(whole), ranks_(std::move(ranks)), rank_(member(whole.rank())) {}
 
-void GroupTransport::send(int to, Channel channel, Bytes bytes) {
-  whole_.send(ranks_.at(static_cast<std::size_t>(to)), channel, std::move(bytes));
+void GroupTransport::send(int to, Channel channel, Bytes bytes, std::int32_t frame) {
+  whole_.send(ranks_.at(static_cast<std::size_t>(to)), channel, std::move(bytes), frame);
 }
 
 std::optional<Message> GroupTransport::receive(Channel channel, std::chrono::milliseconds timeout) {

@@ -18,11 +18,15 @@ class GroupTransport final : public Transport {
 
   [[nodiscard]] int rank() const override { return rank_; }
   [[nodiscard]] int size() const override { return static_cast<int>(ranks_.size()); }
-  void send(int to, Channel channel, Bytes bytes) override;
+  using Transport::send;
+  void send(int to, Channel channel, Bytes bytes, std::int32_t frame) override;
   using Transport::receive;
   std::optional<Message> receive(Channel channel, std::chrono::milliseconds timeout) override;
   void fail(const scene::Error& error) override { whole_.fail(error); }
   void check() const override { whole_.check(); }
+  void trace_to(scene::Trace* projecting, scene::Trace* compositing) override {
+    whole_.trace_to(projecting, compositing);
+  }
   [[nodiscard]] Traffic sent(Channel channel) const override { return whole_.sent(channel); }
 
  private:

@@ -38,7 +38,7 @@ void TileSender::flush() {
   append(message, TilesHeader{.frame = frame_, .tiles = std::exchange(tiles_, 0)});
   message.insert(message.end(), body_.begin(), body_.end());
   body_.clear();
-  transport_.send(assembler_, Channel::tiles, std::move(message));
+  transport_.send(assembler_, Channel::tiles, std::move(message), static_cast<std::int32_t>(frame_));
 }
 
 void TileSender::end(const FrameEnd& sums) {
@@ -47,7 +47,7 @@ void TileSender::end(const FrameEnd& sums) {
   Bytes message;
   append(message, TilesHeader{.ends = 1, .frame = frame_});
   append(message, sums);
-  transport_.send(assembler_, Channel::tiles, std::move(message));
+  transport_.send(assembler_, Channel::tiles, std::move(message), static_cast<std::int32_t>(frame_));
 }
 
 ImageAssembly::ImageAssembly(int compositors, std::function<projection::TileGrid(std::uint32_t)> grid_of)

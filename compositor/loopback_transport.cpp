@@ -14,7 +14,8 @@ class LoopbackNetwork::Rank final : public Transport {
   [[nodiscard]] int rank() const override { return rank_; }
   [[nodiscard]] int size() const override { return network_.size(); }
 
-  void send(int to, Channel channel, Bytes bytes) override {
+  using Transport::send;
+  void send(int to, Channel channel, Bytes bytes, std::int32_t /*frame*/) override {
     if (mailboxes_.failed()) return;
     if (to != rank_) sent_.add(channel, bytes.size());
     network_.ranks_.at(static_cast<std::size_t>(to))->mailboxes_.deliver(channel, {rank_, std::move(bytes)});
@@ -28,6 +29,7 @@ class LoopbackNetwork::Rank final : public Transport {
     const std::lock_guard lock(network_.fault_);
     for (auto& rank : network_.ranks_) rank->mailboxes_.fail(error);
   }
+  void trace_to(scene::Trace*, scene::Trace*) override {}  // nothing moves
   void check() const override { mailboxes_.check(); }
   [[nodiscard]] Traffic sent(Channel channel) const override { return sent_.of(channel); }
 

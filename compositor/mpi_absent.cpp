@@ -15,10 +15,11 @@ MpiTransport::~MpiTransport() = default;
 std::optional<scene::Error> MpiTransport::finish() { return std::nullopt; }
 int MpiTransport::rank() const { return 0; }
 int MpiTransport::size() const { return 1; }
-void MpiTransport::send(int, Channel, Bytes) {}
+void MpiTransport::send(int, Channel, Bytes, std::int32_t) {}
 std::optional<Message> MpiTransport::receive(Channel, std::chrono::milliseconds) { return std::nullopt; }
 void MpiTransport::fail(const scene::Error&) {}
 void MpiTransport::check() const {}
+void MpiTransport::trace_to(scene::Trace*, scene::Trace*) {}
 Transport::Traffic MpiTransport::sent(Channel) const { return {}; }
 
 }  // namespace tessera::compositor

@@ -4,6 +4,7 @@
 #include <mpi.h>
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <cstdlib>
 #include <cstring>
@@ -67,14 +68,14 @@ class MpiTransport::Engine {
     if (thread_.joinable()) finish();
   }
 
-  void send(int to, Channel channel, Bytes bytes) {
+  void send(int to, Channel channel, Bytes bytes, std::int32_t frame) {
     if (mailboxes.failed()) return;
     if (to == rank) {
       mailboxes.deliver(channel, {rank, std::move(bytes)});
       return;
     }
     sent.add(channel, bytes.size());
-    enqueue({to, static_cast<int>(channel), std::move(bytes)});
+    enqueue({to, static_cast<int>(channel), std::move(bytes), frame});
   }
 
   void fail(const scene::Error& error) {
@@ -98,11 +99,13 @@ class MpiTransport::Engine {
   int rank = 0, size = 1;
   Mailboxes mailboxes;
   TrafficCounters sent;
+  std::atomic<scene::Trace*> projecting = nullptr, compositing = nullptr;
 
  private:
   struct Outgoing {
     int to, tag;
     Bytes bytes;
+    std::int32_t frame = -1;
     MPI_Request request = MPI_REQUEST_NULL;
   };
 
@@ -180,11 +183,21 @@ class MpiTransport::Engine {
       if (mailboxes.failed() && !is_ours) continue;
       pending_.push_back(std::move(message));
       Outgoing& posted = pending_.back();
+      const scene::TraceScope timing = traced(posted);
       checked(MPI_Isend(posted.bytes.data(), static_cast<int>(posted.bytes.size()), MPI_BYTE, posted.to, posted.tag,
                         MPI_COMM_WORLD, &posted.request),
               "send");
     }
     return !queue.empty();
+  }
+
+  /// A span of what a user asks about: fragments, meshes and tiles.
+  scene::TraceScope traced(const Outgoing& message) {
+    scene::Trace* trace = nullptr;
+    if (message.tag == static_cast<int>(Channel::fragments) || message.tag == static_cast<int>(Channel::mesh))
+      trace = projecting;
+    if (message.tag == static_cast<int>(Channel::tiles)) trace = compositing;
+    return {trace, "send", message.frame, message.bytes.size(), 1};
   }
 
   /// Frees messages that have left.
@@ -317,12 +330,18 @@ MpiTransport::~MpiTransport() = default;
 std::optional<scene::Error> MpiTransport::finish() { return engine_->finish(); }
 int MpiTransport::rank() const { return engine_->rank; }
 int MpiTransport::size() const { return engine_->size; }
-void MpiTransport::send(int to, Channel channel, Bytes bytes) { engine_->send(to, channel, std::move(bytes)); }
+void MpiTransport::send(int to, Channel channel, Bytes bytes, std::int32_t frame) {
+  engine_->send(to, channel, std::move(bytes), frame);
+}
 std::optional<Message> MpiTransport::receive(Channel channel, std::chrono::milliseconds timeout) {
   return engine_->mailboxes.receive(channel, timeout);
 }
 void MpiTransport::fail(const scene::Error& error) { engine_->fail(error); }
 void MpiTransport::check() const { engine_->mailboxes.check(); }
+void MpiTransport::trace_to(scene::Trace* projecting, scene::Trace* compositing) {
+  engine_->projecting = projecting;
+  engine_->compositing = compositing;
+}
 Transport::Traffic MpiTransport::sent(Channel channel) const { return engine_->sent.of(channel); }
 
 }  // namespace tessera::compositor

@@ -34,11 +34,13 @@ class MpiTransport final : public Transport {
 
   [[nodiscard]] int rank() const override;
   [[nodiscard]] int size() const override;
-  void send(int to, Channel channel, Bytes bytes) override;
+  using Transport::send;
+  void send(int to, Channel channel, Bytes bytes, std::int32_t frame) override;
   using Transport::receive;
   std::optional<Message> receive(Channel channel, std::chrono::milliseconds timeout) override;
   void fail(const scene::Error& error) override;
   void check() const override;
+  void trace_to(scene::Trace* projecting, scene::Trace* compositing) override;
   [[nodiscard]] Traffic sent(Channel channel) const override;
 
  private:

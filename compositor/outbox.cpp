@@ -102,7 +102,7 @@ void Outbox::drain(Lane& lane) {
     lane.in_flight += message.size();
     bytes_ += message.size();
     ++messages_;
-    transport_.send(lane.rank, Channel::fragments, std::move(message));
+    transport_.send(lane.rank, Channel::fragments, std::move(message), static_cast<std::int32_t>(frame_));
   }
 }
 

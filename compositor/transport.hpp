@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "scene/error.hpp"
+#include "scene/trace.hpp"
 
 namespace tessera::compositor {
 
@@ -45,7 +47,9 @@ class Transport {
   [[nodiscard]] virtual int size() const = 0;
 
   /// Hands the message over and returns at once; who must not run ahead of its receiver asks for credit (outbox.hpp).
-  virtual void send(int to, Channel channel, Bytes bytes) = 0;
+  /// `frame` is for the trace: -1 for none.
+  virtual void send(int to, Channel channel, Bytes bytes, std::int32_t frame) = 0;
+  void send(int to, Channel channel, Bytes bytes) { send(to, channel, std::move(bytes), -1); }
 
   /// The channel's next message, from any rank. Waits for it, without spinning; nothing if `timeout` passes first.
   /// Throws the run's error once there is one.
@@ -60,6 +64,10 @@ class Transport {
 
   /// Throws the run's error if there is one: for long loops that neither send nor receive.
   virtual void check() const = 0;
+
+  /// Where spans of `send` go from now on: fragments and meshes to the projector's face, tiles to the compositor's.
+  /// Null: nowhere. The faces must outlive the transport or be taken back.
+  virtual void trace_to(scene::Trace* projecting, scene::Trace* compositing) = 0;
 
   /// Bytes and messages sent so far on a channel, not counting those to itself.
   struct Traffic {

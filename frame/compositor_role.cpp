@@ -105,6 +105,10 @@ class CompositorLoop {
   void accept(const compositor::Message& message) {
     compositor::RecordReader reader(message.bytes);
     const auto header = compositor::take_header(reader, message.from, run_.transport.rank());
+    // What a rank sends to itself does not move.
+    const bool moved = message.from != run_.transport.rank();
+    const scene::TraceScope timing(trace_, "receive", static_cast<std::int32_t>(header.frame),
+                                   moved ? message.bytes.size() : 0, moved ? 1 : 0);
     const auto& projectors = run_.settings.roles.projectors;
     const auto projector =
         static_cast<int>(std::find(projectors.begin(), projectors.end(), message.from) - projectors.begin());

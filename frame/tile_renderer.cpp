@@ -18,9 +18,12 @@ constexpr std::size_t comfortable_segments = 8192;
 
 void TileRenderer::render(const projection::PixelRect& rect, std::span<projection::TileEntry> entries,
                           compositor::TileSink& sink) {
-  std::sort(entries.begin(), entries.end(), [](const projection::TileEntry& a, const projection::TileEntry& b) {
-    return std::tie(a.near_depth, a.tet) < std::tie(b.near_depth, b.tet);
-  });
+  {
+    const scene::TraceScope timing(context_.trace, "bin");
+    std::sort(entries.begin(), entries.end(), [](const projection::TileEntry& a, const projection::TileEntry& b) {
+      return std::tie(a.near_depth, a.tet) < std::tie(b.near_depth, b.tet);
+    });
+  }
   render_sorted(rect, entries, sink);
 }
 

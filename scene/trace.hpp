@@ -88,6 +88,11 @@ class TraceScope {
   TraceScope(Trace* trace, const char* stage, std::int32_t frame = -1) : trace_(trace) {
     if (trace_ != nullptr) begin(stage, frame);
   }
+  /// With what it moves known beforehand.
+  TraceScope(Trace* trace, const char* stage, std::int32_t frame, std::uint64_t bytes, std::uint32_t messages)
+      : TraceScope(trace, stage, frame) {
+    moved(bytes, messages);
+  }
   ~TraceScope() {
     if (trace_ != nullptr) end();
   }
