@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "compositor/image_assembly.hpp"
+
 namespace tessera::compositor {
 namespace {
 
@@ -159,19 +161,16 @@ void Outbox::put(TilePart part) {
 
 void Outbox::end_frame(FrameEnd sums) {
   std::unique_lock lock(mutex_);
+  FrameEnd traffic{};
+  traffic.fragments = fragments_;
+  for (Lane& lane : lanes_) seal(lane);
+  constexpr std::uint64_t end_bytes = sizeof(MessageHeader) + sizeof(FrameEnd);
+  traffic.bytes = bytes_ + lanes_.size() * end_bytes;
+  traffic.messages = messages_ + lanes_.size();
+  for (const Lane& lane : lanes_) traffic.bytes += lane.waiting, traffic.messages += lane.ready.size();
   for (Lane& lane : lanes_) {
-    seal(lane);
-    FrameEnd end = sums;
     // Once a projector: the first compositor's copy speaks for all of them.
-    if (&lane != &lanes_.front()) end = {};
-    end.bytes = end.messages = end.fragments = 0;
-    if (&lane == &lanes_.back()) {
-      std::uint64_t waiting = 0, messages = 0;
-      for (const Lane& each : lanes_) waiting += each.waiting, messages += each.ready.size();
-      end.fragments = fragments_;
-      end.bytes = bytes_ + waiting;
-      end.messages = messages_ + messages;
-    }
+    const FrameEnd end = &lane == &lanes_.front() ? sum(sums, traffic) : FrameEnd{};
     Bytes message;
     append(message, MessageHeader{.kind = MessageKind::end, .frame = frame_});
     append(message, end);

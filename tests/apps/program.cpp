@@ -30,9 +30,11 @@ std::string contents(const std::string& file) {
   return text.str();
 }
 
-Outcome tessera_to(const std::filesystem::path& standard_output, const std::vector<std::string>& arguments) {
-  std::vector<char*> words{const_cast<char*>(TESSERA_PROGRAM)};
-  for (const auto& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+namespace {
+
+Outcome run(const std::vector<std::string>& command, const std::filesystem::path& standard_output) {
+  std::vector<char*> words;
+  for (const auto& word : command) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
   const Folder folder;
   const std::string err = folder / "err";
@@ -41,7 +43,7 @@ Outcome tessera_to(const std::filesystem::path& standard_output, const std::vect
     redirect("/dev/null", O_RDONLY, STDIN_FILENO);
     redirect(standard_output.c_str(), O_WRONLY | O_CREAT, STDOUT_FILENO);
     redirect(err.c_str(), O_WRONLY | O_CREAT, STDERR_FILENO);
-    execv(TESSERA_PROGRAM, words.data());
+    execvp(words.front(), words.data());
     _exit(127);
   }
   int status = 0;
@@ -49,6 +51,37 @@ Outcome tessera_to(const std::filesystem::path& standard_output, const std::vect
   Outcome outcome;
   outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   outcome.err = contents(err);
+  return outcome;
+}
+
+}  // namespace
+
+Outcome tessera_to(const std::filesystem::path& standard_output, const std::vector<std::string>& arguments) {
+  std::vector<std::string> command{TESSERA_PROGRAM};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return run(command, standard_output);
+}
+
+bool has_mpirun() {
+  const Folder folder;
+  return run({"mpirun", "--version"}, folder / "out").status == 0;
+}
+
+Outcome mpirun(int ranks, const std::vector<std::string>& arguments) {
+  // As root and on fewer cores than ranks, as in a container; Open MPI's own leaks are not ours to report.
+  std::vector<std::string> command{"env",
+                                   "OMPI_ALLOW_RUN_AS_ROOT=1",
+                                   "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
+                                   "ASAN_OPTIONS=detect_leaks=0",
+                                   "mpirun",
+                                   "--oversubscribe",
+                                   "-n",
+                                   std::to_string(ranks),
+                                   TESSERA_PROGRAM};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  const Folder folder;
+  Outcome outcome = run(command, folder / "out");
+  outcome.out = contents(folder / "out");
   return outcome;
 }
 

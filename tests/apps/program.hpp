@@ -18,6 +18,10 @@ Outcome tessera(const std::vector<std::string>& arguments);
 /// The same with standard output going to a file.
 Outcome tessera_to(const std::filesystem::path& standard_output, const std::vector<std::string>& arguments);
 
+/// The same on several ranks. For tests that have asked has_mpirun().
+bool has_mpirun();
+Outcome mpirun(int ranks, const std::vector<std::string>& arguments);
+
 /// A folder of one test's own, removed at its end.
 class Folder {
  public:

@@ -1,0 +1,143 @@
+// The program on several ranks, as users start it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "apps/program.hpp"
+
+namespace tessera::apps {
+namespace {
+
+class Mpirun : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!has_mpirun()) GTEST_SKIP() << "there is no mpirun";
+  }
+};
+
+/// Lines of the program's own on stderr; mpirun has some to say itself.
+std::vector<std::string> own_lines(const Outcome& outcome) {
+  std::vector<std::string> lines;
+  std::istringstream err(outcome.err);
+  for (std::string line; std::getline(err, line);)
+    if (line.starts_with("tessera: ")) lines.push_back(line);
+  return lines;
+}
+
+TEST_F(Mpirun, RawSegmentsGiveTheBytesOfOneProcessForEveryPartitionAndShape) {
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  ASSERT_EQ(tessera({"render", mesh, "-o", folder / "one.pfm", "--size", "70x50", "--quiet"}).status, 0);
+  const std::vector<std::vector<std::string>> shapes{
+      {"--partition", "file"}, {"--partition", "random", "--seed", "7"}, {"--projectors", "1"}, {"--compositors", "1"}};
+  for (const auto& shape : shapes) {
+    std::vector<std::string> arguments{"render",  mesh,         "-o",       folder / "ranks.pfm", "--size", "70x50",
+                                       "--quiet", "--exchange", "segments", "--threads",          "1"};
+    arguments.insert(arguments.end(), shape.begin(), shape.end());
+    const Outcome outcome = mpirun(3, arguments);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(own_lines(outcome).empty()) << outcome.err;
+    EXPECT_EQ(contents(folder / "ranks.pfm"), contents(folder / "one.pfm")) << shape[0] << " " << shape[1];
+  }
+}
+
+TEST_F(Mpirun, RunsMeetTheReferenceAndTheReportSaysTheJobsShape) {
+  const Folder folder;
+  const Outcome outcome = mpirun(4, {"render", folder.cube(), "-o", folder / "a.exr", "--size", "64x64", "--threads",
+                                     "1", "--projectors", "3", "--integrator", "exact", "--verify", "300", "--report",
+                                     folder / "report.json", "--timing", folder / "trace.json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1) << outcome.out;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  const auto report = nlohmann::json::parse(contents(folder / "report.json"));
+  EXPECT_EQ(report.at("job").at("projectors"), nlohmann::json({0, 1, 2}));
+  EXPECT_EQ(report.at("job").at("compositors"), nlohmann::json({3}));
+  EXPECT_EQ(report.at("mesh").at("tets"), 4 * 4 * 4 * 6);
+  const auto& counters = report.at("frames").at(0).at("counters");
+  EXPECT_EQ(counters.at("tets_total"), 4 * 4 * 4 * 6);
+  // A record a run at least; headers come on top.
+  EXPECT_GE(counters.at("exchange_bytes").get<std::uint64_t>(), 32 * counters.at("fragments").get<std::uint64_t>());
+
+  // The trace has all ranks, and the projectors' sends moved the bytes that the report counts.
+  const auto trace = nlohmann::json::parse(contents(folder / "trace.json"));
+  std::set<int> ranks;
+  std::uint64_t sent = 0;
+  for (const auto& event : trace.at("traceEvents")) {
+    ranks.insert(event.at("pid").get<int>());
+    if (event.at("name") == "send" && event.at("args").value("frame", -1) == 0 && event.at("pid") != 3)
+      sent += event.at("args").at("bytes").get<std::uint64_t>();
+  }
+  EXPECT_EQ(ranks, (std::set<int>{0, 1, 2, 3}));
+  EXPECT_EQ(sent, counters.at("exchange_bytes").get<std::uint64_t>());
+}
+
+TEST_F(Mpirun, BadInputIsOneLineInAllAndStatusTwo) {
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  const std::vector<std::vector<std::string>> wrong{
+      {"render", folder / "missing.vtu", "-o", folder / "a.png"},
+      {"render", mesh, "-o", folder / "a.png", "--projectors", "9"},
+      {"render", mesh, "-o", folder / "no/such/folder/a.png"},
+      {"render", mesh, "-o", folder / "a.png", "--camera", folder.file("view.txt", "position 1 2\n")},
+      {"render", mesh, "-o", folder / "a.png", "--field", "nothing"},
+      {"render", mesh, "-o", folder / "a.png", "--exchange", "pigeons"},
+      {"render", folder.file("cut.tets", std::string(20, 'x')), "-o", folder / "a.png"},
+      {"info", folder / "missing.vtu"},
+      {"render"}};
+  for (const auto& arguments : wrong) {
+    const Outcome outcome = mpirun(3, arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_EQ(own_lines(outcome).size(), 1u) << outcome.err;
+  }
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"cube.vtu", "cut.tets", "view.txt"}));
+}
+
+TEST_F(Mpirun, ResumeMakesOnlyWhatIsMissing) {
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  const std::vector<std::string> film{"render",  mesh,         "-o",      folder / "f_%02d.pfm", "--size",
+                                      "40x40",   "--orbit",    "5",       "--threads",           "1",
+                                      "--quiet", "--exchange", "segments"};
+  ASSERT_EQ(mpirun(3, film).status, 0);
+  const std::string third = contents(folder / "f_03.pfm");
+  std::filesystem::remove(folder / "f_03.pfm");
+  std::filesystem::remove(folder / "f_00.pfm");
+  const auto untouched = std::filesystem::last_write_time(folder / "f_02.pfm");
+  auto again = film;
+  again.emplace_back("--resume");
+  ASSERT_EQ(mpirun(2, again).status, 0);
+  EXPECT_EQ(contents(folder / "f_03.pfm"), third);
+  EXPECT_EQ(std::filesystem::last_write_time(folder / "f_02.pfm"), untouched);
+  EXPECT_EQ(folder.names().size(), 6u);
+}
+
+TEST_F(Mpirun, OtherCommandsSpeakOnce) {
+  const Folder folder;
+  const Outcome outcome = mpirun(3, {"info", folder.cube()});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.out, tessera({"info", folder.cube()}).out);
+  const Outcome help = mpirun(3, {"--help"});
+  EXPECT_EQ(help.status, 0);
+  EXPECT_EQ(help.out.find("Usage"), help.out.rfind("Usage"));
+}
+
+TEST_F(Mpirun, TheScanlineRasterizerGivesItsBytesOfOneProcess) {
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  const std::vector<std::string> common{"--size",       "60x60",     "--rasterizer", "scanline",
+                                        "--integrator", "sampled:4", "--quiet"};
+  std::vector<std::string> one{"render", mesh, "-o", folder / "one.pfm"},
+      ranks{"render", mesh, "-o", folder / "ranks.pfm"};
+  one.insert(one.end(), common.begin(), common.end());
+  ranks.insert(ranks.end(), common.begin(), common.end());
+  ASSERT_EQ(tessera(one).status, 0);
+  ASSERT_EQ(mpirun(3, ranks).status, 0);
+  EXPECT_EQ(contents(folder / "ranks.pfm"), contents(folder / "one.pfm"));
+}
+
+}  // namespace
+}  // namespace tessera::apps

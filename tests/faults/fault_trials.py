@@ -1,0 +1,210 @@
+#!/usr/bin/env python3
+"""Breaks runs under mpirun on purpose and checks how they end.
+
+    fault_trials.py --tessera PROGRAM [--trials N] [--seed S] [--ranks R]
+
+Each trial renders a short film on R ranks and breaks it: a rank is killed at a random time, mpirun is told to end or is
+killed itself, the disk is full (a small tmpfs, where this user may mount one), or one rank's piece of the mesh is
+damaged. Checked after each: the run is over within 10 s of the fault; no process of it is left; one line of ours says
+what happened; the status is what it should be; the folder holds whole pictures only, each with the bytes of an
+undisturbed run. Every fourth trial then runs the same command with --resume, which must complete the film.
+
+Prints a line a trial and a table of the stages that were reached. Exit status 1 if any check failed.
+"""
+import argparse
+import collections
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+PATIENCE = 10.0  # seconds from the fault to the end of the last process
+
+
+def processes_of(token):
+    """Processes whose command line names the token, by pid."""
+    found = []
+    for entry in os.listdir("/proc"):
+        if not entry.isdigit():
+            continue
+        try:
+            words = Path("/proc", entry, "cmdline").read_bytes().split(b"\0")
+            state = Path("/proc", entry, "stat").read_text().rsplit(")", 1)[1].split()[0]
+        except (OSError, IndexError):
+            continue
+        if state != "Z" and any(token.encode() in word for word in words):
+            found.append((int(entry), words))
+    return found
+
+
+class Film:
+    """The command that every trial runs, and what it gives when nobody disturbs it."""
+
+    def __init__(self, tessera, ranks, root):
+        self.tessera, self.ranks, self.root = str(tessera), ranks, root
+        self.frames = 24
+        self.mesh = root / "mesh.pvtu"
+        whole = root / "mesh.vtu"
+        self.run_tool("generate", "cube", whole, "n=20")
+        self.run_tool("convert", whole, self.mesh, "--pieces", "4")
+        self.reference = root / "reference"
+        self.reference.mkdir()
+        trace = root / "trace.json"
+        start = time.monotonic()
+        done = subprocess.run(self.command(self.reference, self.mesh) + ["--timing", str(trace)], env=environment(),
+                              capture_output=True, text=True, timeout=300)
+        if done.returncode != 0:
+            sys.exit(f"fault_trials: the undisturbed run failed: {done.stderr}")
+        self.seconds = time.monotonic() - start
+        self.pictures = {path.name: path.read_bytes() for path in self.reference.iterdir()}
+        assert len(self.pictures) == self.frames
+        events = [e for e in json.loads(trace.read_text())["traceEvents"] if e["ph"] == "X" and e["name"] != "frame"]
+        self.traced_seconds = max(e["ts"] + e["dur"] for e in events) / 1e6
+        self.events = events
+
+    def run_tool(self, *words):
+        subprocess.run([self.tessera, *map(str, words), "--quiet"], check=True)
+
+    def command(self, folder, mesh):
+        return ["mpirun", "--oversubscribe", "-n", str(self.ranks), self.tessera, "render", str(mesh), "-o",
+                str(folder / "frame_%03d.pfm"), "--size", "200x200", "--orbit", str(self.frames), "--threads", "1",
+                "--exchange", "segments", "--quiet"]
+
+    def stages_at(self, seconds):
+        """What ranks of the undisturbed run did this long before its end."""
+        at = (self.traced_seconds - (self.seconds - seconds)) * 1e6
+        names = {e["name"] for e in self.events if e["ts"] <= at < e["ts"] + e["dur"]}
+        return names or {"start or end"}
+
+
+def environment():
+    return dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                ASAN_OPTIONS="detect_leaks=0")  # Open MPI's own leaks
+
+
+def check_folder(film, folder, problems):
+    for path in folder.iterdir():
+        if path.name not in film.pictures:
+            problems.append(f"left {path.name}")
+        elif path.read_bytes() != film.pictures[path.name]:
+            problems.append(f"{path.name} is not the undisturbed run's")
+
+
+def trial(film, kind, random_source, number):
+    folder = film.root / f"trial_{number}"
+    folder.mkdir()
+    token = str(folder)
+    mesh, mounted, problems = film.mesh, False, []
+    if kind == "disk":
+        megabytes_for = random_source.randrange(1, film.frames)
+        size = megabytes_for * len(next(iter(film.pictures.values()))) + 4096
+        mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", token],
+                                 capture_output=True).returncode == 0
+        if not mounted:
+            folder.rmdir()
+            return kind, set(), ["skipped"]
+    if kind == "piece":
+        pieces = film.root / f"damaged_{number}"
+        shutil.copytree(film.root, pieces, ignore=shutil.ignore_patterns("trial*", "damaged*", "reference", "*.json"))
+        mesh = pieces / "mesh.pvtu"
+        victim = random_source.choice(sorted(pieces.glob("mesh_*.vtu")))
+        victim.write_bytes(victim.read_bytes()[: random_source.randrange(100, victim.stat().st_size)])
+
+    run = subprocess.Popen(film.command(folder, mesh), env=environment(), stdout=subprocess.PIPE,
+                           stderr=subprocess.PIPE, text=True)
+    delay = random_source.uniform(0, film.seconds) if kind in ("kill", "end", "launcher") else 0
+    fault_at = time.monotonic()
+    if delay:
+        time.sleep(delay)
+        fault_at = time.monotonic()
+        if kind == "kill":
+            ranks = [pid for pid, words in processes_of(token) if words[0] == film.tessera.encode()]
+            if ranks:
+                try:
+                    os.kill(random_source.choice(ranks), signal.SIGKILL)
+                except ProcessLookupError:
+                    pass
+        elif run.poll() is None:
+            run.send_signal(signal.SIGTERM if kind == "end" else signal.SIGKILL)
+    limit = PATIENCE if delay else PATIENCE + 3 * film.seconds  # a fault from the beginning: the run itself counts
+    try:
+        _, errors = run.communicate(timeout=limit)
+    except subprocess.TimeoutExpired:
+        problems.append(f"still runs {limit:.0f} s after the fault")
+        for pid, _ in processes_of(token):
+            os.kill(pid, signal.SIGKILL)
+        _, errors = run.communicate()
+    while processes_of(token) and time.monotonic() < fault_at + limit:
+        time.sleep(0.05)
+    if left := processes_of(token):
+        problems.append(f"{len(left)} processes left")
+        for pid, _ in left:
+            os.kill(pid, signal.SIGKILL)
+
+    lines = [line for line in errors.splitlines() if line.startswith("tessera: ")]
+    finished = run.returncode == 0 and len(list(folder.iterdir())) == film.frames
+    if not finished:
+        # A rank that dies before it could say anything leaves that to mpirun.
+        if len(lines) > 1 or (kind in ("disk", "piece") and len(lines) != 1):
+            problems.append(f"{len(lines)} lines of ours: {lines}")
+        wanted = {"kill": {137, 3}, "end": {143, 3, 1}, "launcher": {-9}, "disk": {3}, "piece": {2}}[kind]
+        if run.returncode not in wanted:
+            problems.append(f"status {run.returncode}, not {sorted(wanted)}")
+    elif kind in ("disk", "piece"):
+        problems.append("succeeded")
+    check_folder(film, folder, problems)
+
+    if kind != "piece" and not mounted and number % 4 == 0:
+        again = subprocess.run(film.command(folder, film.mesh) + ["--resume"], env=environment(), capture_output=True,
+                               text=True, timeout=300)
+        if again.returncode != 0 or len(list(folder.iterdir())) != film.frames:
+            problems.append(f"--resume ended with {again.returncode}: {again.stderr}")
+        check_folder(film, folder, problems)
+    if mounted:
+        subprocess.run(["umount", token], check=True)
+    shutil.rmtree(folder)
+    return kind, film.stages_at(delay) if delay else set(), problems
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    arguments.add_argument("--tessera", required=True, type=Path)
+    arguments.add_argument("--trials", type=int, default=20)
+    arguments.add_argument("--ranks", type=int, default=4)
+    arguments.add_argument("--seed", type=int, default=1)
+    options = arguments.parse_args()
+    if shutil.which("mpirun") is None:
+        print("skipped: there is no mpirun")
+        return 0
+    source = random.Random(options.seed)
+    root = Path(tempfile.mkdtemp(prefix="tessera_faults_"))
+    failures, kinds, stages = 0, collections.Counter(), collections.Counter()
+    try:
+        film = Film(options.tessera.resolve(), options.ranks, root)
+        print(f"seed {options.seed}, {options.ranks} ranks, {film.seconds:.1f} s undisturbed")
+        for number in range(options.trials):
+            kind = ("kill", "kill", "kill", "piece", "kill", "end", "kill", "disk", "kill", "launcher")[number % 10]
+            kind, reached, problems = trial(film, kind, source, number)
+            if problems == ["skipped"]:
+                print(f"trial {number}: {kind} skipped")
+                continue
+            kinds[kind] += 1
+            stages.update(reached)
+            failures += bool(problems)
+            print(f"trial {number}: {kind} {'; '.join(problems) or 'ok'}", flush=True)
+    finally:
+        shutil.rmtree(root)
+    print("kinds: " + ", ".join(f"{kind} {count}" for kind, count in kinds.items()))
+    print("stages under way when it broke: " + ", ".join(f"{stage} {count}" for stage, count in stages.most_common()))
+    print(f"{sum(kinds.values())} trials, {failures} failed")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
