@@ -59,7 +59,11 @@ ExitCode run(int argc, char** argv, Job& job) {
   auto* convert_command = app.add_subcommand("convert", "Write a mesh as tetrahedra with one scalar");
   add_mesh_options(*convert_command, words);
   std::string mesh_output;
-  convert_command->add_option("OUT", mesh_output, ".vtu or .tets")->required();
+  convert_command->add_option("OUT", mesh_output, ".vtu, .tets, or .pvtu with --pieces")->required();
+  std::string pieces, pieces_partition = "curve";
+  convert_command->add_option("--pieces", pieces, "write OUT.pvtu and so many pieces, for mpirun");
+  convert_command->add_option("--partition", pieces_partition,
+                              "which piece a cell goes to: curve (compact, the default), file (order kept), random");
   convert_command->add_flag("--quiet", words.quiet, "nothing on stderr but errors");
 
   auto* generate_command = app.add_subcommand("generate", "Make a mesh");
@@ -99,7 +103,8 @@ ExitCode run(int argc, char** argv, Job& job) {
   if (*render_command) return render(render_options(words), transport);
   if (!job.is_first()) return ExitCode::complete;  // the other commands are for one process
   if (*info_command) info(words.input, mesh_options(words), as_json);
-  if (*convert_command) convert(words.input, mesh_output, mesh_options(words), words.quiet);
+  if (*convert_command)
+    convert(words.input, mesh_output, mesh_options(words), convert_pieces(pieces, pieces_partition), words.quiet);
   if (*timing_command) timing({traces.begin(), traces.end()}, csv, figure);
   if (*generate_command) generate(kind, mesh_output, parameters, words.quiet);
   return ExitCode::complete;

@@ -48,6 +48,7 @@ std::vector<std::uint64_t> gather_rows(Transport& transport, const std::vector<s
   return table;
 }
 
+/// As projection::parts_of_whole, of a mesh that lies on many ranks.
 std::vector<std::uint32_t> parts_of_tets(Transport& transport, const MeshPart& local, const scene::MeshFacts& facts,
                                          const projection::Partition& how, int parts) {
   std::vector<std::uint32_t> part_of(local.mesh.tets.size());

@@ -24,10 +24,6 @@ MeshBlocks read_vtk_xml(const std::filesystem::path& file);
 /// Whether a file that begins as VTK XML does is an unstructured grid in pieces, whatever its name.
 bool is_pvtu(const std::filesystem::path& file);
 
-/// The pieces of a .pvtu in its order, their paths as the file gives them, relative ones against its folder. They need
-/// not exist. Throws Error(bad_input).
-std::vector<std::filesystem::path> pvtu_pieces(const std::filesystem::path& file);
-
 /// Some pieces of the .pvtu `file`, a block each, whose `source` is the piece's file. Throws Error(bad_input) that
 /// names the piece at fault.
 MeshBlocks read_pvtu_pieces(const std::filesystem::path& file, std::span<const std::filesystem::path> pieces);

@@ -27,6 +27,10 @@ namespace tessera::io {
 /// Not if it is to be smoothed, which needs all cells round a point. Throws Error(bad_input) if there is no such file.
 bool readable_in_parts(const std::filesystem::path& file, const MeshOptions& options);
 
+/// The pieces of a .pvtu in its order, their paths as the file gives them, relative ones against its folder. They need
+/// not exist. Throws Error(bad_input).
+std::vector<std::filesystem::path> pvtu_pieces(const std::filesystem::path& file);
+
 /// What a part knows beside its mesh. Small, but for `used_points`.
 struct PartSummary {
   MeshCounts counts;  ///< points of a .tets file are counted in the first part, and its unused ones not at all

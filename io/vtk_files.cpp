@@ -17,6 +17,7 @@
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
 #include "io/mesh_formats.hpp"
+#include "io/mesh_parts.hpp"
 #include "io/text_file.hpp"
 #include "io/vtk_blocks.hpp"
 #include "io/vtk_checks.hpp"

@@ -177,4 +177,27 @@ int part_on_curve(const CurveKey& key, std::span<const CurveKey> splitters) {
   return static_cast<int>(std::upper_bound(splitters.begin(), splitters.end(), key) - splitters.begin());
 }
 
+std::vector<std::uint32_t> parts_of_whole(const scene::TetMesh& mesh, const Partition& how, int parts) {
+  std::vector<std::uint32_t> part_of(mesh.tets.size());
+  const auto fill = [&](const auto& part) {
+    for (std::size_t t = 0; t < part_of.size(); ++t) part_of[t] = static_cast<std::uint32_t>(part(t));
+  };
+  switch (how.kind) {
+    case PartitionKind::file:
+      fill([&](std::size_t t) { return part_in_file_order(t, part_of.size(), parts); });
+      break;
+    case PartitionKind::random:
+      fill([&](std::size_t t) { return part_at_random(t, how.seed, parts); });
+      break;
+    case PartitionKind::curve: {
+      const auto keys = curve_keys(mesh, {}, scene::bounds(mesh));
+      CurveCut cut(keys.size(), parts);
+      while (!cut.done()) cut.narrow(cut.count(keys));
+      fill([&](std::size_t t) { return part_on_curve(keys[t], cut.splitters()); });
+      break;
+    }
+  }
+  return part_of;
+}
+
 }  // namespace tessera::projection

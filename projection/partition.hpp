@@ -97,4 +97,7 @@ class CurveCut {
 /// Part of a key: how many splitters are not greater.
 int part_on_curve(const CurveKey& key, std::span<const CurveKey> splitters);
 
+/// Part of each tet of a mesh that is whole in this process: the same as several processes find.
+std::vector<std::uint32_t> parts_of_whole(const scene::TetMesh& mesh, const Partition& how, int parts);
+
 }  // namespace tessera::projection

@@ -43,6 +43,31 @@ std::array<double, 2> scalar_range(const TetMesh& mesh) {
   return {low + 0.0, high + 0.0};  // -0 becomes 0, as in bounds()
 }
 
+TetMesh subset(const TetMesh& mesh, std::span<const std::uint32_t> tets) {
+  TetMesh part;
+  part.association = mesh.association;
+  part.field_name = mesh.field_name;
+  std::vector<std::uint32_t> vertices;
+  vertices.reserve(4 * tets.size());
+  for (const std::uint32_t t : tets) vertices.insert(vertices.end(), mesh.tets[t].begin(), mesh.tets[t].end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  const bool point = mesh.association == Association::point;
+  for (const std::uint32_t v : vertices) {
+    part.positions.push_back(mesh.positions[v]);
+    if (point) part.scalars.push_back(mesh.scalars[v]);
+  }
+  for (const std::uint32_t t : tets) {
+    Tet tet = mesh.tets[t];
+    for (std::uint32_t& v : tet)
+      v = static_cast<std::uint32_t>(std::lower_bound(vertices.begin(), vertices.end(), v) - vertices.begin());
+    part.tets.push_back(tet);
+    if (!point) part.scalars.push_back(mesh.scalars[t]);
+    if (!mesh.original_cell.empty()) part.original_cell.push_back(mesh.original_cell[t]);
+  }
+  return part;
+}
+
 void validate(const TetMesh& mesh, const std::string& source) {
   const bool point = mesh.association == Association::point;
   const std::size_t expected = point ? mesh.positions.size() : mesh.tets.size();

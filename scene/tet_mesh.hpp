@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,9 @@ double mean_thickness(const TetMesh& mesh);
 
 /// Smallest and largest scalar that tets use; {0, 0} if there are no tets.
 std::array<double, 2> scalar_range(const TetMesh& mesh);
+
+/// Some tets of a mesh, in the order given, with the vertices that they use in the mesh's order.
+TetMesh subset(const TetMesh& mesh, std::span<const std::uint32_t> tets);
 
 /// Throws Error(bad_input, "SOURCE: ...") if an index, size or number breaks the invariants above.
 void validate(const TetMesh& mesh, const std::string& source);

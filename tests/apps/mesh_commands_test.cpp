@@ -2,9 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <tuple>
 
 #include "apps/program.hpp"
+#include "io/mesh_reader.hpp"
+#include "scene/mesh_facts.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -43,6 +48,81 @@ TEST(Convert, WritesTetsThatReadBack) {
   EXPECT_EQ(contents(folder / "c.tets").size(), 16u + 125 * 16 + 384 * 16);
   const auto info = tessera({"info", "--json", folder / "c.tets"});
   EXPECT_EQ(nlohmann::json::parse(info.out).at("tets"), 384);
+}
+
+TEST(Convert, PiecesHoldEveryTetOnceAndFileOrderKeepsThePicture) {
+  const Folder folder;
+  const auto cube = folder.cube(), few = folder / "few.vtu";
+  ASSERT_EQ(tessera({"generate", "cube", few, "n=1"}).status, 0);
+  for (const char* partition : {"file", "curve", "random"})
+    for (const auto& [mesh, pieces, tets] :
+         {std::tuple{cube, "1", 384}, {cube, "3", 384}, {few, "8", 6}}) {  // two of eight have no tets
+      SCOPED_TRACE(testing::Message() << partition << " in " << pieces);
+      const auto run = tessera({"convert", mesh, folder / "p.pvtu", "--pieces", pieces, "--partition", partition});
+      ASSERT_EQ(run.status, 0) << run.err;
+      EXPECT_EQ(run.error_lines(), 1u) << run.err;
+      EXPECT_EQ(nlohmann::json::parse(tessera({"info", "--json", folder / "p.pvtu"}).out).at("tets"), tets);
+      ASSERT_EQ(tessera({"render", folder / "p.pvtu", "-o", folder / "p.exr", "--size", "48x48"}).status, 0);
+      if (partition == std::string("file")) {
+        ASSERT_EQ(tessera({"render", mesh, "-o", folder / "whole.exr", "--size", "48x48"}).status, 0);
+        EXPECT_TRUE(contents(folder / "whole.exr") == contents(folder / "p.exr"));
+      }
+      const io::MeshFile read = io::read_mesh(folder / "p.pvtu"), whole = io::read_mesh(mesh);
+      std::multiset<std::array<double, 16>> expected, found;
+      for (const auto* file : {&read, &whole})
+        for (const scene::Tet& tet : file->mesh.tets) {
+          std::array<double, 16> corners;
+          for (std::size_t k = 0; k < 4; ++k) {
+            const glm::dvec3& p = file->mesh.positions[tet[k]];
+            corners[4 * k] = p.x, corners[4 * k + 1] = p.y, corners[4 * k + 2] = p.z;
+            corners[4 * k + 3] = file->mesh.scalars[tet[k]];
+          }
+          (file == &read ? found : expected).insert(corners);
+        }
+      EXPECT_TRUE(found == expected);
+      EXPECT_EQ(scene::facts_of(read.mesh), scene::facts_of(whole.mesh));
+    }
+}
+
+TEST(Convert, PiecesThatCannotBeWrittenLeaveNothing) {
+  const Folder folder;
+  const auto mesh = folder.cube();
+  const auto names = folder.names();
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"o.vtu", "--pieces", "2"},
+                                                {"o.pvtu"},
+                                                {"o.pvtu", "--pieces", "0"},
+                                                {"o.pvtu", "--pieces", "two"},
+                                                {"o.pvtu", "--pieces", "2", "--partition", "space"},
+                                                {"o.vtu", "--partition", "file"},
+                                                {"no/o.pvtu", "--pieces", "2"}}) {
+    std::vector<std::string> arguments = {"convert", mesh, folder / words[0]};
+    arguments.insert(arguments.end(), words.begin() + 1, words.end());
+    const auto run = tessera(arguments);
+    EXPECT_EQ(run.status, 2) << words[0];
+    EXPECT_EQ(run.error_lines(), 1u) << run.err;
+    EXPECT_EQ(folder.names(), names);
+  }
+  // A folder where a piece should be: found when pieces get their names.
+  std::filesystem::create_directory(folder / "o_0002.vtu");
+  const auto run = tessera({"convert", mesh, folder / "o.pvtu", "--pieces", "4"});
+  EXPECT_NE(run.status, 0);
+  EXPECT_EQ(run.error_lines(), 1u) << run.err;
+  std::filesystem::remove(folder / "o_0002.vtu");
+  EXPECT_EQ(folder.names(), names);
+}
+
+TEST(Convert, PiecesNeverReplaceWhatIsRead) {
+  const Folder folder;
+  ASSERT_EQ(tessera({"convert", folder.cube(), folder / "a.pvtu", "--pieces", "3"}).status, 0);
+  const auto before = contents(folder / "a_0001.vtu");
+  const auto itself = tessera({"convert", folder / "a.pvtu", folder / "a.pvtu", "--pieces", "2"});
+  EXPECT_EQ(itself.status, 2);
+  // Another list over the same pieces.
+  std::filesystem::copy_file(folder / "a.pvtu", folder / "b.pvtu");
+  const auto run = tessera({"convert", folder / "b.pvtu", folder / "a.pvtu", "--pieces", "2"});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.err.find("is an input"), std::string::npos) << run.err;
+  EXPECT_EQ(contents(folder / "a_0001.vtu"), before);
 }
 
 TEST(Convert, RefusesFormatsItDoesNotWrite) {

@@ -149,6 +149,21 @@ TEST(Curve, PartsOfACubeAreCompact) {
   EXPECT_LT(volume, 1.5 * 8);  // a layer of cells more where the cut is 0.4 % off
 }
 
+TEST(Partition, OfAWholeMeshIsTheRulesOwn) {
+  const scene::TetMesh mesh = datasets::cube(3);
+  const auto file = parts_of_whole(mesh, {PartitionKind::file, 1}, 5),
+             random = parts_of_whole(mesh, {PartitionKind::random, 9}, 5),
+             curve = parts_of_whole(mesh, {PartitionKind::curve, 1}, 5);
+  const auto keys = curve_keys(mesh, {}, scene::bounds(mesh));
+  int rounds = 0;
+  const auto splitters = cut(keys, 5, 3, 2, &rounds);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    EXPECT_EQ(static_cast<int>(file[t]), part_in_file_order(t, mesh.tets.size(), 5));
+    EXPECT_EQ(static_cast<int>(random[t]), part_at_random(t, 9, 5));
+    EXPECT_EQ(static_cast<int>(curve[t]), part_on_curve(keys[t], splitters));
+  }
+}
+
 TEST(Curve, KeysCarryTheGivenIndices) {
   const scene::TetMesh mesh = datasets::cube(1);
   const std::vector<std::uint64_t> ids = {10, 20, 30, 40, 50, 60};

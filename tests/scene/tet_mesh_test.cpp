@@ -28,6 +28,24 @@ TEST(TetMesh, ThicknessIsVolumeOverTheLargestFaceAtAnyScale) {
   EXPECT_EQ(mean_thickness({}), 0);
 }
 
+TEST(TetMesh, ASubsetKeepsItsTetsAndNoMore) {
+  TetMesh mesh = corner_tet({1, 2, 3});
+  mesh.positions.push_back({5, 5, 5});
+  mesh.scalars.push_back(55);
+  mesh.tets = {{0, 1, 2, 3}, {5, 1, 3, 2}, {3, 2, 1, 0}};
+  mesh.original_cell = {7, 8, 9};
+  const std::vector<std::uint32_t> second = {1};
+  const TetMesh part = subset(mesh, second);
+  EXPECT_EQ(part.positions, (std::vector<glm::dvec3>{{1, 0, 0}, {0, 2, 0}, {0, 0, 3}, {5, 5, 5}}));
+  EXPECT_EQ(part.scalars, (std::vector<double>{2, 3, 4, 55}));
+  EXPECT_EQ(part.tets, (std::vector<Tet>{{3, 0, 2, 1}}));
+  EXPECT_EQ(part.original_cell, (std::vector<std::uint64_t>{8}));
+  mesh.association = Association::cell;
+  mesh.scalars = {10, 20, 30};
+  EXPECT_EQ(subset(mesh, std::vector<std::uint32_t>{2, 0}).scalars, (std::vector<double>{30, 10}));
+  EXPECT_TRUE(subset(mesh, {}).positions.empty());
+}
+
 TEST(TetMesh, BrokenInvariantsAreNamedWithTheirPlace) {
   TetMesh mesh = corner_tet({1, 1, 1});
   EXPECT_NO_THROW(validate(mesh, "m.vtu"));
