@@ -179,6 +179,47 @@ TEST(Distributed, IsWithinTheReferencesBound) {
   }
 }
 
+/// Runs of all parts by the reference: stretches of touching segments of one part.
+std::uint64_t reference_runs(const Parts& parts, const Camera& camera, ImageSize size,
+                             const TransferFunction& function) {
+  std::uint64_t runs = 0;
+  for (const scene::TetMesh& part : parts) {
+    if (part.tets.empty()) continue;
+    const reference::Reference reference(part, camera, size, function);
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x) {
+        double back = -1;
+        for (const reference::RaySegment& segment : reference.segments(x + 0.5, y + 0.5)) {
+          // Cells are 0.2 long; the two sides of a shared face differ by rounding alone.
+          if (std::fabs(segment.front - back) > 1e-9) ++runs;
+          back = segment.back;
+        }
+      }
+  }
+  return runs;
+}
+
+TEST(Distributed, RunsCostTheirRecordsAndLittleMoreAndNeverMoreThanSegments) {
+  const scene::TetMesh mesh = datasets::cube(10, 0.2);
+  const TransferFunction visible({{0, {0, 0, 1}, 0.1}, {1, {1, 0, 0}, 0.5}});
+  const ImageSize size{64, 64};
+  const auto bytes = [&](const Parts& parts, Exchange exchange) {
+    DistributedSettings settings;
+    settings.render = exact();
+    settings.exchange = exchange;
+    return render(parts, {6, 4, 2}, settings, {{oblique(), size}}, visible).front().statistics;
+  };
+  for (const auto partition : {datasets::Partition::random_blobs, datasets::Partition::interleaved}) {
+    const Parts parts = datasets::parts(mesh, 4, partition, 1);
+    const FrameStatistics runs = bytes(parts, Exchange::runs), segments = bytes(parts, Exchange::segments);
+    const std::uint64_t counted = reference_runs(parts, oblique(), size, visible);
+    EXPECT_LE(runs.fragments, counted);
+    EXPECT_GE(static_cast<double>(runs.fragments), 0.999 * static_cast<double>(counted));  // all of them are visible
+    EXPECT_LE(static_cast<double>(runs.exchange_bytes), 1.1 * static_cast<double>(counted * 32));
+    EXPECT_LE(runs.exchange_bytes, segments.exchange_bytes);
+  }
+}
+
 TEST(Distributed, TakesRanksWithoutCellsARankWithOneAndMoreCompositorsThanTiles) {
   const scene::TetMesh mesh = datasets::cube(4, 0.2);
   const ImageSize size{40, 40};
