@@ -5,9 +5,9 @@
 
 namespace tessera::apps {
 
-Job::Job(const std::function<void(const scene::Error&)>& last_words) {
+Job::Job(std::function<void(const scene::Error&)> speak) : speak_(std::move(speak)) {
   if (compositor::launched_by_mpi())
-    mpi_ = std::make_unique<compositor::MpiTransport>(last_words);
+    mpi_ = std::make_unique<compositor::MpiTransport>(speak_);
   else
     alone_ = std::make_unique<compositor::LoopbackNetwork>(1);
 }
@@ -20,11 +20,15 @@ compositor::Transport& Job::transport() {
 }
 
 std::optional<scene::Error> Job::finish() {
-  if (mpi_) return mpi_->finish();
+  if (mpi_) {
+    expect_end();
+    return mpi_->finish();
+  }
   try {
     alone_->rank(0).check();
     return std::nullopt;
   } catch (const scene::Error& error) {
+    speak_(error);
     return error;
   }
 }

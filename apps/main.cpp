@@ -154,10 +154,6 @@ int main(int argc, char** argv) {
   } catch (...) {
     job->transport().fail(as_error());
   }
-  const bool speaks = job->is_first();
-  if (const std::optional<Error> error = job->finish()) {
-    if (speaks) fail(error->code(), error->what());
-    return static_cast<int>(error->code());
-  }
+  if (const std::optional<Error> error = job->finish()) return static_cast<int>(error->code());
   return static_cast<int>(code);
 }

@@ -54,8 +54,8 @@ bool launched_by_mpi() {
 /// The thread that speaks MPI, and what it shares with the others.
 class MpiTransport::Engine {
  public:
-  Engine(LastResort last_resort, std::chrono::milliseconds patience)
-      : last_resort_(std::move(last_resort)), patience_(patience), thread_([this] { run(); }) {
+  Engine(Speak speak, std::chrono::milliseconds patience)
+      : speak_(std::move(speak)), patience_(patience), thread_([this] { run(); }) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return started_; });
     if (start_error_) {
@@ -281,7 +281,7 @@ class MpiTransport::Engine {
   }
 
   [[noreturn]] void give_up(const scene::Error& error) {
-    last_resort_(error);
+    speak_(error);
     std::_Exit(static_cast<int>(error.code()));
   }
 
@@ -299,13 +299,14 @@ class MpiTransport::Engine {
         enqueue({0, done_tag, {}});
     }
     if (rank == 0 && ranks_done_ == size) {
+      if (mailboxes.failed()) speak_(*mailboxes.error());
       for (int other = 1; other < size; ++other) enqueue({other, clear_tag, {}});
       post();
       all_clear_ = true;
     }
   }
 
-  LastResort last_resort_;
+  Speak speak_;
   std::chrono::milliseconds patience_;
 
   std::mutex mutex_;  // guards what follows
@@ -323,8 +324,8 @@ class MpiTransport::Engine {
   std::thread thread_;  // last: it uses all of the above
 };
 
-MpiTransport::MpiTransport(LastResort last_resort, std::chrono::milliseconds patience)
-    : engine_(std::make_unique<Engine>(std::move(last_resort), patience)) {}
+MpiTransport::MpiTransport(Speak speak, std::chrono::milliseconds patience)
+    : engine_(std::make_unique<Engine>(std::move(speak), patience)) {}
 MpiTransport::~MpiTransport() = default;
 
 std::optional<scene::Error> MpiTransport::finish() { return engine_->finish(); }

@@ -18,14 +18,16 @@ bool launched_by_mpi();
 /// every 20 microseconds while some move and every half millisecond after a while without any.
 ///
 /// Faults: a rank that fails tells rank 0, which decides on the first one it hears of and tells all. A rank that cannot
-/// end in an orderly way within `patience` after that (it hangs in a read, or its peers are gone) calls `last_resort`,
-/// which must end the process. The death of a process is the launcher's to notice: it ends the other ranks by SIGTERM.
+/// end in an orderly way within `patience` after that (it hangs in a read, or its peers are gone) speaks and
+/// ends the process. The death of a process is the launcher's to notice: it ends the other ranks by SIGTERM.
 class MpiTransport final : public Transport {
  public:
-  using LastResort = std::function<void(const scene::Error& error)>;
+  using Speak = std::function<void(const scene::Error& error)>;
 
-  /// Starts MPI. Throws Error(system_failure) if that fails.
-  explicit MpiTransport(LastResort last_resort, std::chrono::milliseconds patience = std::chrono::seconds(5));
+  /// Starts MPI. Throws Error(system_failure) if that fails. `speak` tells the user of the run's error, from any
+  /// thread: on rank 0 before any rank can end, because a launcher ends all ranks as soon as one ends with an error; on
+  /// others as a last resort.
+  explicit MpiTransport(Speak speak, std::chrono::milliseconds patience = std::chrono::seconds(5));
   ~MpiTransport() override;
 
   /// The end of every rank's part, after its last send and receive, after an error too: waits until all ranks are here
