@@ -76,6 +76,15 @@ class Film:
                 str(folder / "frame_%03d.pfm"), "--size", "200x200", "--orbit", str(self.frames), "--threads", "1",
                 "--exchange", "segments", "--quiet"]
 
+    def random_time(self, source):
+        """When to break the run: at any time, or while some stage is under way, each as likely, however short it is."""
+        if source.random() < 0.5:
+            return source.uniform(0, self.seconds)
+        stage = source.choice(sorted({e["name"] for e in self.events}))
+        event = source.choice([e for e in self.events if e["name"] == stage])
+        at = (event["ts"] + source.random() * event["dur"]) / 1e6
+        return max(0.01, self.seconds - self.traced_seconds + at)
+
     def stages_at(self, seconds):
         """What ranks of the undisturbed run did this long before its end."""
         at = (self.traced_seconds - (self.seconds - seconds)) * 1e6
@@ -118,7 +127,7 @@ def trial(film, kind, random_source, number):
 
     run = subprocess.Popen(film.command(folder, mesh), env=environment(), stdout=subprocess.PIPE,
                            stderr=subprocess.PIPE, text=True)
-    delay = random_source.uniform(0, film.seconds) if kind in ("kill", "end", "launcher") else 0
+    delay = film.random_time(random_source) if kind in ("kill", "end", "launcher") else 0
     fault_at = time.monotonic()
     if delay:
         time.sleep(delay)
