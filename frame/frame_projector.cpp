@@ -70,6 +70,7 @@ void FrameProjector::project_vertices(const projection::PixelSpace& space, std::
   const std::vector<glm::dvec3>& positions = prepared_.mesh().positions;
   vertices_.resize(positions.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size(), 4096), [&](const auto& range) {
+    const scene::TraceScope helping(settings_.trace, "transform", frame);
     for (std::size_t v = range.begin(); v != range.end(); ++v) vertices_[v] = space.project(positions[v]);
   });
 }
@@ -90,7 +91,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   std::optional<projection::TileLists> lists;
   {
     const scene::TraceScope timing(settings_.trace, "cull", task.frame);
-    lists.emplace(projected, grid, *task.function, independent);
+    lists.emplace(projected, grid, *task.function, independent, settings_.trace);
   }
   if (task.announce) {
     std::vector<bool> has_cells(grid.count());

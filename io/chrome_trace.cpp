@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -29,45 +30,68 @@ std::string quoted(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// Text of an array's elements, one a line.
+/// Text of an array's elements, one a line. A run has many of them and the time to write them is time of the run: so
+/// numbers are put together by hand, in a third of the time that format strings take.
 class EventText {
  public:
-  explicit EventText(int rank) : rank_(rank) {}
+  EventText(int rank, std::size_t spans) : rank_(std::to_string(rank)) { text_.reserve(1000 + 140 * spans); }
 
   /// `value` is JSON.
   void add_metadata(const char* name, std::uint32_t track, const char* argument, const std::string& value) {
     next();
-    fmt::format_to(std::back_inserter(text_), R"({{"name":"{}","ph":"M","pid":{},"tid":{},"args":{{"{}":{}}}}})", name,
-                   rank_, track, argument, value);
+    text_ += fmt::format(R"({{"name":"{}","ph":"M","pid":{},"tid":{},"args":{{"{}":{}}}}})", name, rank_, track,
+                         argument, value);
   }
 
   void add(const TraceSpan& span, std::uint32_t track, double offset_us) {
     next();
-    const auto out = std::back_inserter(text_);
-    fmt::format_to(
-        out,
-        R"({{"name":"{}","cat":"tessera","ph":"X","pid":{},"tid":{},"ts":{:.3f},"dur":{:.3f},"args":{{"cpu_us":{:.3f})",
-        span.stage, rank_, track, span.start_us + offset_us, span.wall_us, span.cpu_us);
-    if (span.role != TraceRole::both) fmt::format_to(out, R"(,"role":"{}")", word(span.role));
-    if (span.frame >= 0) fmt::format_to(out, R"(,"frame":{})", span.frame);
-    if (span.bytes > 0) fmt::format_to(out, R"(,"bytes":{})", span.bytes);
-    if (span.messages > 0) fmt::format_to(out, R"(,"messages":{})", span.messages);
-    fmt::format_to(out, "}}}}");
+    text_ += R"({"name":")";
+    text_ += span.stage;
+    text_ += R"(","cat":"tessera","ph":"X","pid":)";
+    text_ += rank_;
+    count(R"(,"tid":)", track);
+    time(R"(,"ts":)", span.start_us + offset_us);
+    time(R"(,"dur":)", span.wall_us);
+    time(R"(,"args":{"cpu_us":)", span.cpu_us);
+    if (span.role != TraceRole::both) {
+      text_ += R"(,"role":")";
+      text_ += word(span.role);
+      text_ += '"';
+    }
+    if (span.frame >= 0) count(R"(,"frame":)", static_cast<std::uint64_t>(span.frame));
+    if (span.bytes > 0) count(R"(,"bytes":)", span.bytes);
+    if (span.messages > 0) count(R"(,"messages":)", span.messages);
+    text_ += "}}";
   }
 
   [[nodiscard]] std::string array() && {
-    text_.push_back(']');
-    return fmt::to_string(text_);
+    text_ += ']';
+    return std::move(text_);
   }
 
  private:
-  void next() {
-    const std::string_view separator = text_.size() == 0 ? "[" : ",\n";
-    text_.append(separator.data(), separator.data() + separator.size());
+  void next() { text_ += text_.empty() ? "[" : ",\n"; }
+
+  void count(std::string_view before, std::uint64_t number) {
+    text_ += before;
+    const fmt::format_int digits(number);
+    text_.append(digits.data(), digits.size());
   }
 
-  int rank_;
-  fmt::memory_buffer text_;
+  /// Microseconds to a nanosecond: three digits after the point.
+  void time(std::string_view before, double us) {
+    const auto ns = static_cast<std::int64_t>(std::llround(us * 1000));
+    text_ += before;
+    if (ns < 0) text_ += '-';
+    const std::uint64_t size = ns < 0 ? 0 - static_cast<std::uint64_t>(ns) : static_cast<std::uint64_t>(ns);
+    count("", size / 1000);
+    const auto rest = static_cast<int>(size % 1000);
+    const std::array<char, 4> fraction = {'.', static_cast<char>('0' + rest / 100),
+                                          static_cast<char>('0' + rest / 10 % 10), static_cast<char>('0' + rest % 10)};
+    text_.append(fraction.data(), fraction.size());
+  }
+
+  std::string rank_, text_;
 };
 
 /// Frames that overlap, several in flight, get tracks beside each other: as few as will do for each role.
@@ -126,7 +150,8 @@ nlohmann::ordered_json to_json(const TraceRun& run) {
 
 std::string chrome_trace_events(const scene::Trace& trace, int rank, const std::string& process_name,
                                 double offset_us) {
-  EventText events(rank);
+  const std::vector<TraceSpan> spans = trace.spans();
+  EventText events(rank, spans.size());
   events.add_metadata("process_name", 0, "name", quoted(process_name));
   events.add_metadata("process_sort_index", 0, "sort_index", std::to_string(rank));
   if (const std::string host = host_name(); !host.empty())
@@ -134,7 +159,6 @@ std::string chrome_trace_events(const scene::Trace& trace, int rank, const std::
 
   std::vector<TraceSpan> frames;
   std::map<std::uint32_t, std::array<bool, 3>> roles_of_thread;
-  const std::vector<TraceSpan> spans = trace.spans();
   for (const TraceSpan& span : spans)
     if (std::string_view(span.stage) == "frame")
       frames.push_back(span);

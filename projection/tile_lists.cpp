@@ -79,8 +79,10 @@ void TileLists::for_each_tile(std::size_t tet, Visit visit) const {
 }
 
 TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
-                     const scene::TransferFunction& transfer_function, bool emits_without_extinction)
+                     const scene::TransferFunction& transfer_function, bool emits_without_extinction,
+                     scene::Trace* trace)
     : projected_(&projected),
+      trace_(trace),
       grid_(grid),
       depth_origin_(nearest_depth(projected)),
       extents_(projected.mesh->tet_count()),
@@ -90,6 +92,7 @@ TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
   std::array<CullCounts, block_count> culled;
   std::vector<std::vector<std::uint32_t>> counted(block_count);
   tbb::parallel_for(std::size_t{0}, block_count, [&](std::size_t block) {
+    const scene::TraceScope timing(trace_, "cull");
     CullCounts local;
     std::vector<std::uint32_t>& tiles = counted[block];
     tiles.resize(grid.count(), 0);
@@ -145,6 +148,7 @@ void TileLists::fill(std::size_t first, std::size_t last) {
   const std::size_t tasks =
       std::min<std::size_t>(last - first, 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
   tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
+    const scene::TraceScope timing(trace_, "bin");
     const std::size_t begin = first + (last - first) * task / tasks, end = first + (last - first) * (task + 1) / tasks;
     const std::size_t begin_row = begin / columns, end_row = (end - 1) / columns;
     std::vector<std::uint64_t> next(offsets_.begin() + static_cast<std::ptrdiff_t>(begin - first),

@@ -6,6 +6,7 @@
 
 #include "projection/footprint.hpp"
 #include "projection/planes_rasterizer.hpp"
+#include "scene/trace.hpp"
 #include "scene/transfer_function.hpp"
 
 namespace tessera::projection {
@@ -36,9 +37,10 @@ struct CullCounts {
 /// do. 12 bytes a tet hold what the first pass found; the lists themselves are filled for a band of tiles at a time.
 class TileLists {
  public:
-  /// First pass: culls and counts. Work runs in the caller's task arena (oneTBB).
+  /// First pass: culls and counts. Work runs in the caller's task arena (oneTBB); `trace`, if any, gets spans `cull`
+  /// and `bin` of the threads that help.
   TileLists(const ProjectedMesh& projected, const TileGrid& grid, const scene::TransferFunction& transfer_function,
-            bool emits_without_extinction);
+            bool emits_without_extinction, scene::Trace* trace = nullptr);
 
   [[nodiscard]] const CullCounts& counts() const { return counts_; }
 
@@ -67,6 +69,7 @@ class TileLists {
   void for_each_tile(std::size_t tet, Visit visit) const;
 
   const ProjectedMesh* projected_;
+  scene::Trace* trace_;
   TileGrid grid_;
   double depth_origin_;
   CullCounts counts_;

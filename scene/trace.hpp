@@ -30,6 +30,7 @@ enum class TraceRole : std::uint8_t {
 /// Spans of one thread nest (`integrate` inside `composite`): a span's own time is what no span inside it takes. Spans
 /// of `frame` stand beside the threads, and those of several frames in flight may overlap. The time that a thread
 /// sleeps for others belongs into `wait`, and nothing else does: not into `receive`, `send` or the work it waits for.
+/// Where several threads share a loop, each records its part, inside the span of the thread that began the loop.
 struct TraceSpan {
   const char* stage;     ///< string literal
   std::uint32_t thread;  ///< number of the thread, dense in a process
