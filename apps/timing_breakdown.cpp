@@ -36,13 +36,18 @@ struct Process {
 };
 
 std::vector<Process> processes_of(const io::TraceFile& trace) {
-  std::map<int, std::set<TraceRole>> roles_of_rank;
+  const int frame = stage_number(trace, "frame"), wait = stage_number(trace, "wait");
+  std::map<int, std::set<TraceRole>> roles_of_rank, roles_with_frames;
   for (const FileSpan& span : trace.spans)
-    if (span.role != TraceRole::both) roles_of_rank[span.rank].insert(span.role);
+    if (span.role != TraceRole::both) {
+      roles_of_rank[span.rank].insert(span.role);
+      if (span.stage == frame) roles_with_frames[span.rank].insert(span.role);
+    }
+  for (const auto& [rank, roles] : roles_with_frames) roles_of_rank[rank] = roles;
 
   const auto role_of = [&](const FileSpan& span) {
     const auto roles = roles_of_rank.find(span.rank);
-    if (span.role != TraceRole::both || roles == roles_of_rank.end()) return span.role;
+    if (roles == roles_of_rank.end() || roles->second.contains(span.role)) return span.role;
     if (roles->second.size() == 1) return *roles->second.begin();
     return place_in_pipeline(trace.stages[span.stage]) <= place_in_pipeline("project") ? TraceRole::projector
                                                                                        : TraceRole::compositor;
@@ -50,7 +55,6 @@ std::vector<Process> processes_of(const io::TraceFile& trace) {
   std::map<std::pair<TraceRole, int>, std::vector<FileSpan>> spans_of;
   for (const FileSpan& span : trace.spans) spans_of[{role_of(span), span.rank}].push_back(span);
 
-  const int frame = stage_number(trace, "frame"), wait = stage_number(trace, "wait");
   std::vector<Process> processes;
   for (auto& [key, spans] : spans_of) {
     processes.push_back({key.second, key.first, share_clock(spans, trace.stages.size(), frame, wait)});

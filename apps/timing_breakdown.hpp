@@ -22,7 +22,8 @@
 /// is counted apart, in the same way.
 ///
 /// Where one rank has both roles, each is counted as if it were alone: their spans say for which of them a thread
-/// worked. Spans of such a rank that say no role belong to the projector up to `project`, else to the compositor.
+/// worked. Spans of such a rank that say no role belong to the projector up to `project`, else to the compositor. A
+/// rank's roles are those of its frames: what it did for another one (reading parts of the mesh) is counted with them.
 namespace tessera::apps {
 
 /// One stage in the processes of one role. Times in microseconds and counts are of the run, not of a frame.

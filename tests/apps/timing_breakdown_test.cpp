@@ -217,6 +217,21 @@ TEST(Breakdown, SpansWithoutARoleGoToTheOneThatDoesSuchWork) {
   EXPECT_NE(run.roles[1].stage("write"), nullptr);
 }
 
+TEST(Breakdown, ARankHasTheRolesThatItMadeFramesIn) {
+  io::TraceFile trace;
+  trace.stages = {"frame", "wait", "project", "sort"};
+  for (const auto& [stage, role] :
+       {std::pair{project, TraceRole::projector}, std::pair{frame, TraceRole::compositor}}) {
+    trace.spans.push_back(span(stage, 0, stage == frame ? 50 : 0, 10));
+    trace.spans.back().role = role;
+  }
+  const RunTime run = break_down(trace, "a");
+  ASSERT_EQ(run.roles.size(), 1u);
+  EXPECT_EQ(run.roles[0].role, TraceRole::compositor);
+  ASSERT_EQ(run.roles[0].outside.size(), 1u);
+  EXPECT_EQ(run.roles[0].outside[0].stage, "project");
+}
+
 TEST(Breakdown, EfficiencyIsTheRateACoreAgainstTheSmallestRunOfTheSameMesh) {
   // Twice the processes; frames come twice as fast, then a quarter slower than that.
   std::vector<RunTime> runs = {run_of({4, 4, false, 20, 50, 50, 0}), run_of({2, 2, false, 20, 100, 100, 0}),
