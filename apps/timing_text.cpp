@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace tessera::apps {
 namespace {
@@ -81,14 +82,13 @@ std::string role_table(const RunTime& run, const RoleTime& role) {
   };
   for (const StageTime& stage : role.stages) line(stage);
   line(role.whole);
-  if (role.outside.empty()) return text;
-  text += "  outside of the frames, in all: ";
-  for (std::size_t i = 0; i < role.outside.size(); ++i) {
-    const StageTime& stage = role.outside[i];
-    text += fmt::format("{}{} {:.3f} s", i > 0 ? ", " : "", stage.stage, stage.average_us * 1e-6);
+  const char* separator = "  outside of the frames, in all: ";
+  for (const StageTime& stage : role.outside) {
+    if (stage.worst_us < 500) continue;  // would read 0.000
+    text += fmt::format("{}{} {:.3f} s", std::exchange(separator, ", "), stage.stage, stage.average_us * 1e-6);
     if (several) text += fmt::format(" (worst {:.3f} s, rank {})", stage.worst_us * 1e-6, stage.worst_rank);
   }
-  return text + "\n";
+  return *separator == ',' ? text + "\n" : text;
 }
 
 std::string exchange_table(const RunTime& run) {
@@ -198,7 +198,7 @@ std::string reading_text() {
   return R"(How to read it: each instant of a process's frames goes to the stages that its threads are in, evenly if they are in
 several; `wait` counts while nothing else runs, `other` while no thread is in any stage. So the stages add up to the
 whole. `cpu` is CPU time of the threads that recorded a stage; more than the wall time means several at once.
-`MB/s` is bytes over the time of the threads in that stage.
+`MB/s` is bytes over the time of the threads in that stage; `send` is handing over to MPI, which may move them later.
 )";
 }
 

@@ -68,7 +68,10 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
     task.longest_edge = mesh.longest_edge;
     const compositor::TileMap map(task.grid.count(), static_cast<int>(settings.roles.compositors.size()),
                                   settings.tile_seed);
-    const auto deliver = [&](compositor::TilePart part) { outbox.put(std::move(part)); };
+    const auto deliver = [&](compositor::TilePart part) {
+      const scene::TraceScope timing(render.trace, "pack", number, part.records.size(), 0);
+      outbox.put(std::move(part));
+    };
     task.make_sink = [&]() -> std::unique_ptr<compositor::TileSink> {
       if (render.rasterizer == Rasterizer::scanline)
         return std::make_unique<compositor::TupleSink>(mesh.longest_edge, deliver);

@@ -32,6 +32,7 @@ void TileRenderer::render_sorted(const projection::PixelRect& rect, std::span<co
   if (rect.empty()) return;
   const TileCounts before = counts_;
   if (try_render(rect, entries, sink)) {
+    const scene::TraceScope timing(context_.trace, "composite");
     sink.finish();
     return;
   }
