@@ -7,7 +7,7 @@ namespace tessera::apps {
 
 Job::Job(std::function<void(const scene::Error&)> speak) : speak_(std::move(speak)) {
   if (compositor::launched_by_mpi())
-    mpi_ = std::make_unique<compositor::MpiTransport>(speak_);
+    mpi_ = std::make_unique<compositor::MpiTransport>(speak_, expect_end);
   else
     alone_ = std::make_unique<compositor::LoopbackNetwork>(1);
 }

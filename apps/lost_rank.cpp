@@ -30,7 +30,7 @@ std::atomic<bool> is_ending = false;
 
 extern "C" void on_termination(int signal) {
   if (is_ending && signal == SIGTERM) {
-    const itimerval soon{{0, 0}, {2, 0}};
+    const itimerval soon{{0, 0}, {1, 0}};
     setitimer(ITIMER_REAL, &soon, nullptr);
     return;
   }

@@ -7,7 +7,7 @@ bool launched_by_mpi() { return false; }
 
 class MpiTransport::Engine {};
 
-MpiTransport::MpiTransport(Speak, std::chrono::milliseconds) {
+MpiTransport::MpiTransport(Speak, std::function<void()>, std::chrono::milliseconds) {
   throw scene::Error(scene::ExitCode::system_failure, "MPI: this program was built without it (TESSERA_MPI=OFF)");
 }
 MpiTransport::~MpiTransport() = default;

@@ -54,8 +54,8 @@ bool launched_by_mpi() {
 /// The thread that speaks MPI, and what it shares with the others.
 class MpiTransport::Engine {
  public:
-  Engine(Speak speak, std::chrono::milliseconds patience)
-      : speak_(std::move(speak)), patience_(patience), thread_([this] { run(); }) {
+  Engine(Speak speak, std::function<void()> on_fault, std::chrono::milliseconds patience)
+      : speak_(std::move(speak)), on_fault_(std::move(on_fault)), patience_(patience), thread_([this] { run(); }) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return started_; });
     if (start_error_) {
@@ -70,6 +70,11 @@ class MpiTransport::Engine {
 
   void send(int to, Channel channel, Bytes bytes, std::int32_t frame) {
     if (mailboxes.failed()) return;
+    constexpr std::size_t most_bytes = std::size_t{1} << 30;  // MPI counts in int
+    if (bytes.size() > most_bytes)
+      throw scene::Error(scene::ExitCode::system_failure,
+                         fmt::format("rank {} of {}: a message of {} bytes is too long; make --tile-size smaller", rank,
+                                     size, bytes.size()));
     if (to == rank) {
       mailboxes.deliver(channel, {rank, std::move(bytes)});
       return;
@@ -257,6 +262,7 @@ class MpiTransport::Engine {
   }
 
   void conclude(const scene::Error& error) {
+    if (!mailboxes.failed()) on_fault_();
     mailboxes.fail(error);
     if (!deadline_) deadline_ = Clock::now() + patience_;
   }
@@ -276,7 +282,7 @@ class MpiTransport::Engine {
       deadline_ = Clock::now() + patience_;
     }
     // Rank 0 first: the others only if it cannot.
-    if (deadline_ && Clock::now() > *deadline_ + (rank == 0 ? std::chrono::seconds(0) : std::chrono::seconds(2)))
+    if (deadline_ && Clock::now() > *deadline_ + (rank == 0 ? std::chrono::seconds(0) : std::chrono::seconds(4)))
       give_up(mailboxes.failed() ? *mailboxes.error() : *own_fault_);
   }
 
@@ -307,6 +313,7 @@ class MpiTransport::Engine {
   }
 
   Speak speak_;
+  std::function<void()> on_fault_;
   std::chrono::milliseconds patience_;
 
   std::mutex mutex_;  // guards what follows
@@ -324,8 +331,8 @@ class MpiTransport::Engine {
   std::thread thread_;  // last: it uses all of the above
 };
 
-MpiTransport::MpiTransport(Speak speak, std::chrono::milliseconds patience)
-    : engine_(std::make_unique<Engine>(std::move(speak), patience)) {}
+MpiTransport::MpiTransport(Speak speak, std::function<void()> on_fault, std::chrono::milliseconds patience)
+    : engine_(std::make_unique<Engine>(std::move(speak), std::move(on_fault), patience)) {}
 MpiTransport::~MpiTransport() = default;
 
 std::optional<scene::Error> MpiTransport::finish() { return engine_->finish(); }

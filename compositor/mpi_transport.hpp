@@ -27,7 +27,9 @@ class MpiTransport final : public Transport {
   /// Starts MPI. Throws Error(system_failure) if that fails. `speak` tells the user of the run's error, from any
   /// thread: on rank 0 before any rank can end, because a launcher ends all ranks as soon as one ends with an error; on
   /// others as a last resort.
-  explicit MpiTransport(Speak speak, std::chrono::milliseconds patience = std::chrono::seconds(5));
+  /// `on_fault` is called once on every rank as soon as it knows of the error: from then on the launcher may end it.
+  MpiTransport(Speak speak, std::function<void()> on_fault,
+               std::chrono::milliseconds patience = std::chrono::seconds(5));
   ~MpiTransport() override;
 
   /// The end of every rank's part, after its last send and receive, after an error too: waits until all ranks are here

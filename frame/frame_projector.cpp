@@ -42,8 +42,9 @@ void check_scanline(const projection::ProjectedMesh& projected, const projection
 std::uint64_t segment_budget(const RenderSettings& settings, std::uint64_t held, int threads) {
   const std::uint64_t least = held + static_cast<std::uint64_t>(threads) * (1u << 20);
   if (settings.memory_bytes < least)
-    throw scene::bad_input(fmt::format("--memory {} MiB: this mesh and image need at least {} MiB for frame buffers",
-                                       settings.memory_bytes >> 20, (least >> 20) + 1));
+    throw scene::bad_input(
+        fmt::format("--memory: projection has {} MiB of it and needs at least {} MiB for this mesh and image; raise it",
+                    settings.memory_bytes >> 20, (least >> 20) + 1));
   return (settings.memory_bytes - held) / static_cast<std::uint64_t>(threads);
 }
 
