@@ -139,7 +139,7 @@ class Figure {
     unit_ = seconds ? 1e6 : 1e3;
     unit_name_ = seconds ? "s" : "ms";
     step_ = tick_step(std::max(most / unit_, 1e-6));
-    top_ = step_ * std::ceil(most / unit_ / step_ * 1.04);
+    top_ = step_ * std::max(1.0, std::ceil(most / unit_ / step_ * 1.04));
     for (const RunTime& run : runs) {
       const auto same = [&](const RunTime& other) { return process_words(other) == process_words(run); };
       name_files_ = name_files_ || std::count_if(runs.begin(), runs.end(), same) > 1;
