@@ -94,11 +94,11 @@ io::MeshFile share_description(Transport& transport, std::span<const int> projec
 }
 
 /// The whole by the first projector.
-DistributedMesh read_whole(Transport& transport, const std::filesystem::path& input, const io::MeshOptions& options,
-                           std::span<const int> projectors) {
+DistributedMesh read_whole(Transport& transport, std::span<const std::filesystem::path> files,
+                           const io::MeshOptions& options, std::span<const int> projectors) {
   DistributedMesh result;
   io::MeshFile file;
-  if (transport.rank() == projectors.front()) file = read_input(input, options);
+  if (transport.rank() == projectors.front()) file = read_input(files, options);
   result.description = share_description(transport, projectors, file);
   result.part.mesh = std::move(file.mesh);
   return result;
@@ -147,14 +147,14 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
 
 }  // namespace
 
-DistributedMesh read_distributed(Transport& transport, const std::filesystem::path& input,
+DistributedMesh read_distributed(Transport& transport, std::span<const std::filesystem::path> files,
                                  const io::MeshOptions& options, const projection::Partition& partition,
                                  std::span<const int> projectors, scene::Trace* trace) {
   DistributedMesh result;
   if (transport.size() == 1) {
     {
       const scene::TraceScope scope(trace, "read");
-      result.description = read_input(input, options);
+      result.description = read_input(files, options);
     }
     result.part.mesh = std::move(result.description.mesh);
     result.description.mesh = {};
@@ -168,10 +168,11 @@ DistributedMesh read_distributed(Transport& transport, const std::filesystem::pa
       const scene::TraceScope scope(trace, "read");
       // One rank looks, so that all do the same.
       Bytes in_parts(1);
-      if (transport.rank() == projectors.front()) in_parts[0] = std::byte{io::readable_in_parts(input, options)};
+      if (transport.rank() == projectors.front())
+        in_parts[0] = std::byte{files.size() == 1 && io::readable_in_parts(files.front(), options)};
       in_parts = compositor::broadcast(transport, projectors.front(), std::move(in_parts));
-      result = in_parts[0] != std::byte{0} ? read_parts(transport, input, options, projectors)
-                                           : read_whole(transport, input, options, projectors);
+      result = in_parts[0] != std::byte{0} ? read_parts(transport, files.front(), options, projectors)
+                                           : read_whole(transport, files, options, projectors);
     }
     result.facts = frame::agree_facts(transport, result.part.mesh);
     result.part = frame::redistribute(transport, std::move(result.part), result.facts, partition, projectors, trace);
@@ -181,7 +182,7 @@ DistributedMesh read_distributed(Transport& transport, const std::filesystem::pa
     throw;
   } catch (const std::bad_alloc&) {
     transport.fail(scene::Error(scene::ExitCode::system_failure,
-                                input.string() + ": memory ran out; use more processes or larger machines"));
+                                files.front().string() + ": memory ran out; use more processes or larger machines"));
     transport.check();
     throw;
   }

@@ -23,11 +23,12 @@ struct DistributedMesh {
 
 /// Reads a mesh and gives every projector its part. Collective.
 ///
-/// Formats that can be read in parts (io::readable_in_parts) are read by all projectors at once, each its share; others
-/// by the first projector, which hands them on: one read, where every rank reading in turn would be many. The tets'
-/// numbers, and so every picture, do not depend on how it was read. With one rank it is io::read_mesh and nothing more.
-/// Spans `read` and `partition`. An error of one rank is transport.fail()ed and thrown on all.
-DistributedMesh read_distributed(compositor::Transport& transport, const std::filesystem::path& input,
+/// Several files are the pieces of one mesh. One file of a format that can be read in parts (io::readable_in_parts) is
+/// read by all projectors at once, each its share; anything else by the first projector, which hands it on: one read,
+/// where every rank reading in turn would be many. The tets' numbers, and so every picture, do not depend on how it was
+/// read. With one rank it is io::read_mesh and nothing more. Spans `read` and `partition`. An error of one rank is
+/// transport.fail()ed and thrown on all.
+DistributedMesh read_distributed(compositor::Transport& transport, std::span<const std::filesystem::path> files,
                                  const io::MeshOptions& options, const projection::Partition& partition,
                                  std::span<const int> projectors, scene::Trace* trace);
 

@@ -104,7 +104,7 @@ class RankRun {
 
   void render();
   void take(frame::FinishedFrame finished);
-  Verification verify_frame(const scene::Image& image, const scene::Camera& camera);
+  Verification verify_frame(const Frame& frame, const scene::Image& image, const scene::Camera& camera);
 
   const RenderOptions& options_;
   RenderOptions quiet_ = options_;
@@ -119,10 +119,13 @@ class RankRun {
   std::uint64_t tets_ = 0;
   io::LoadedTransferFunction loaded_;
   std::vector<std::size_t> job_frames_;  ///< frame of each job
+  std::vector<std::size_t> meshes_;      ///< first frame of each mesh of the jobs
   std::vector<frame::FrameJob> jobs_;
   std::size_t next_to_report_ = 0;
   std::vector<double> frame_ms_;            ///< of the frame at hand
   std::optional<io::MeshFile> whole_mesh_;  ///< for --verify
+  std::size_t whole_step_ = 0;
+  io::MeshOptions later_options_;  ///< of the steps after the first
 };
 
 void RankRun::render() {
@@ -130,8 +133,10 @@ void RankRun::render() {
   scene::Trace* trace = timed ? &projecting_ : nullptr;
   if (timed) transport_.trace_to(&projecting_, &compositing_);
 
-  DistributedMesh mesh =
-      read_distributed(transport_, options_.input, options_.mesh, options_.partition, roles_.projectors, trace);
+  // Of a time series the first step, which gives transfer function and view, even if none of its frames is to be made.
+  DistributedMesh mesh = read_distributed(transport_, frames_.front().mesh.files, options_.mesh, options_.partition,
+                                          roles_.projectors, trace);
+  later_options_ = options_of_later_steps(options_.mesh, mesh.description);
   const MeshSummary summary = summary_of(mesh.description, mesh.facts);
   tets_ = summary.facts.tets;
   loaded_ = transfer_function_of(summary.facts, options_);
@@ -139,9 +144,10 @@ void RankRun::render() {
     throw scene::bad_input(fmt::format("--exchange segments: {} tets are more than 2^32; use runs", tets_));
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     if (frames_[i].finished) continue;
+    if (meshes_.empty() || frames_[meshes_.back()].step != frames_[i].step) meshes_.push_back(i);
     const scene::Camera camera = view_of(frames_[i], summary.facts.box, options_.projection);
     for (int repetition = 0; repetition < std::max(options_.repeat, 1); ++repetition) {
-      jobs_.push_back({camera, frames_[i].size, 0});
+      jobs_.push_back({camera, frames_[i].size, meshes_.size() - 1});
       job_frames_.push_back(i);
     }
   }
@@ -167,19 +173,29 @@ void RankRun::render() {
   }
   frame::render_distributed(
       transport_, settings, jobs_, loaded_.function,
-      [&](std::size_t) {
+      [&](std::size_t m) {
+        const Frame& first = frames_[meshes_[m]];
+        if (first.step != 0) {
+          mesh = {};  // the last one's memory before the next one's
+          mesh = read_distributed(transport_, first.mesh.files, later_options_, options_.partition, roles_.projectors,
+                                  trace);
+        }
         const float edge = longest_edge(mesh.part.mesh);
         return frame::ProjectorMesh{std::make_shared<scene::TetMesh>(std::move(mesh.part.mesh)),
-                                    std::move(mesh.part.global_tet), diagonal(summary.facts.box), edge};
+                                    std::move(mesh.part.global_tet), diagonal(mesh.facts.box), edge};
       },
       [&](frame::FinishedFrame finished) { take(std::move(finished)); });
   for (; writes_ && next_to_report_ < frames_.size(); ++next_to_report_) output_.skip(frames_[next_to_report_]);
 }
 
-Verification RankRun::verify_frame(const scene::Image& image, const scene::Camera& camera) {
+Verification RankRun::verify_frame(const Frame& frame, const scene::Image& image, const scene::Camera& camera) {
   const scene::TraceScope scope(options_.timing.empty() ? nullptr : &compositing_, "verify");
   // The reference looks at every cell, so this rank alone reads all of them.
-  if (!whole_mesh_) whole_mesh_ = read_input(options_.input, options_.mesh);
+  if (!whole_mesh_ || whole_step_ != frame.step) {
+    whole_mesh_.reset();
+    whole_mesh_ = read_input(frame.mesh.files, frame.step == 0 ? options_.mesh : later_options_);
+    whole_step_ = frame.step;
+  }
   return verify(image, whole_mesh_->mesh, camera, loaded_.function, options_.settings, options_.verify);
 }
 
@@ -198,7 +214,7 @@ void RankRun::take(frame::FinishedFrame finished) {
   record.camera = jobs_[finished.frame].camera;
   record.statistics = finished.statistics;
   record.frame_ms = std::exchange(frame_ms_, {});
-  if (options_.verify > 0) record.verification = verify_frame(finished.image, record.camera);
+  if (options_.verify > 0) record.verification = verify_frame(frame, finished.image, record.camera);
   for (; next_to_report_ < at; ++next_to_report_) output_.skip(frames_[next_to_report_]);
   output_.add(frame, record);
   next_to_report_ = at + 1;

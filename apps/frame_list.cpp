@@ -5,10 +5,13 @@
 #include <algorithm>
 
 #include "io/camera_file.hpp"
+#include "io/mesh_reader.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::apps {
 namespace {
+
+constexpr std::size_t max_frames = 10'000'000;
 
 /// Length of the `%d` or `%0Nd` (N one or two digits) at the beginning of `text`, its width in `width`; 0 if none.
 std::size_t number_pattern(std::string_view text, int& width) {
@@ -48,11 +51,25 @@ std::vector<Frame> views(const RenderOptions& options) {
     for (std::size_t i = 0; i < frames.size(); ++i)
       frames[i].turn = static_cast<double>(i) / static_cast<double>(frames.size());
   }
-  for (std::size_t i = 0; i < frames.size(); ++i) frames[i].number = static_cast<int>(i);
   return frames;
 }
 
+std::vector<io::TimeStep> steps(const RenderOptions& options) {
+  if (options.more_inputs.empty() && io::is_time_series(options.input)) return io::read_time_series(options.input);
+  std::vector<io::TimeStep> steps = {{0, {options.input}}};
+  for (const auto& input : options.more_inputs) steps.push_back({static_cast<double>(steps.size()), {input}});
+  for (const auto& step : steps)
+    if (steps.size() > 1 && io::is_time_series(step.files.front()))
+      throw scene::bad_input(fmt::format("{}: is a time series in a list of meshes; give it alone, or meshes only",
+                                         step.files.front().string()));
+  return steps;
+}
+
 }  // namespace
+
+bool is_series(const RenderOptions& options) {
+  return !options.more_inputs.empty() || io::is_time_series(options.input);
+}
 
 std::optional<std::string> numbered_name(const std::string& pattern, int number) {
   for (std::size_t at = 0; at < pattern.size(); ++at) {
@@ -65,7 +82,19 @@ std::optional<std::string> numbered_name(const std::string& pattern, int number)
 }
 
 std::vector<Frame> list_frames(const RenderOptions& options) {
-  auto frames = views(options);
+  const auto views_of_each = views(options);
+  std::vector<Frame> frames;
+  const auto series = steps(options);
+  if (series.size() * views_of_each.size() > max_frames)
+    throw scene::bad_input(fmt::format("{}: {} time steps of {} views are more than {} frames; render them in parts",
+                                       options.input.string(), series.size(), views_of_each.size(), max_frames));
+  for (std::size_t step = 0; step < series.size(); ++step)
+    for (Frame frame : views_of_each) {
+      frame.number = static_cast<int>(frames.size());
+      frame.step = step;
+      frame.mesh = series[step];
+      frames.push_back(std::move(frame));
+    }
   for (const auto& output : options.outputs)
     for (auto& frame : frames) {
       const auto numbered = numbered_name(output.string(), frame.number);
@@ -81,6 +110,11 @@ std::vector<Frame> list_frames(const RenderOptions& options) {
         std::error_code ignored;  // unreadable folder: not finished, and the check of outputs says why
         return std::filesystem::is_regular_file(output, ignored);
       });
+  // A film should not end at its last step for want of a file. The first step is looked at for all others.
+  if (is_series(options))
+    for (const auto& frame : frames)
+      if (!frame.finished)
+        for (const auto& file : frame.mesh.files) io::require_mesh_file(file);
   return frames;
 }
 

@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "io/time_series.hpp"
 #include "io/volume_file.hpp"
 #include "scene/error.hpp"
 
@@ -20,7 +21,23 @@ io::MeshFile read_input(const std::filesystem::path& input, const io::MeshOption
   if (io::is_volume_file(input))
     throw scene::bad_input(
         fmt::format("{}: is a regular grid by its name; these are not rendered yet, give a mesh", input.string()));
+  if (io::is_time_series(input))
+    throw scene::bad_input(
+        fmt::format("{}: is a time series, which only render takes; give one of its meshes", input.string()));
   return io::read_mesh(input, options);
+}
+
+io::MeshFile read_input(std::span<const std::filesystem::path> files, const io::MeshOptions& options) {
+  return files.size() == 1 ? read_input(files.front(), options) : io::read_mesh(files, options);
+}
+
+io::MeshOptions options_of_later_steps(io::MeshOptions options, const io::MeshFile& first) {
+  if (!options.field.empty() || first.fields.empty()) return options;
+  options.field = first.mesh.field_name;
+  // Smoothing has made point data of cell data, so only the name is sure.
+  if (!options.smooth)
+    options.field = (first.mesh.association == scene::Association::point ? "point:" : "cell:") + options.field;
+  return options;
 }
 
 double diagonal(const scene::Box& box) {

@@ -19,8 +19,14 @@ MeshSummary summary_of(const io::MeshFile& file);
 /// Where the file's mesh is in parts, with the facts of the whole.
 MeshSummary summary_of(const io::MeshFile& description, const scene::MeshFacts& facts);
 
-/// io::read_mesh, but a regular grid is refused as one. Throws scene::Error.
+/// io::read_mesh, but a regular grid or time series is refused as one. Throws scene::Error.
 io::MeshFile read_input(const std::filesystem::path& input, const io::MeshOptions& options);
+/// Several files are the pieces of one mesh.
+io::MeshFile read_input(std::span<const std::filesystem::path> files, const io::MeshOptions& options);
+
+/// The options with which later steps of a time series are read: their field is the one that was chosen for the first
+/// step. A field that varies in one step and not in the next would else make the film jump to another.
+io::MeshOptions options_of_later_steps(io::MeshOptions options, const io::MeshFile& first);
 
 /// Length of a box's diagonal, world units; 0 if it has no extent.
 double diagonal(const scene::Box& box);

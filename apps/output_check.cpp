@@ -52,6 +52,7 @@ void check_outputs(const RenderOptions& options, const std::vector<Frame>& frame
     check_fits_memory(frame.size);
     for (const auto& output : frame.outputs) {
       check_new(output);
+      for (const auto& file : frame.mesh.files) check_not_input(output, file);
       if (frame.finished) continue;
       // Asking the file system once a folder is enough, but for names that exist.
       std::error_code unknown;

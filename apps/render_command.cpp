@@ -19,12 +19,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// One run's mesh, transfer function and renderer, and what they give.
+/// One run's mesh, transfer function and renderer, and what they give. Of a time series one step is held at a time; the
+/// first gives transfer function and view.
 class Run {
  public:
-  Run(const RenderOptions& options, scene::Trace* trace) : options_(options), trace_(trace), file_(read()) {
+  Run(const RenderOptions& options, scene::Trace* trace, const Frame& first)
+      : options_(options), trace_(trace), file_(read(first, options.mesh)) {
     settings_.trace = trace;
-    renderer_.emplace(file_.mesh, settings_);
   }
 
   [[nodiscard]] const MeshSummary& summary() const { return summary_; }
@@ -32,6 +33,7 @@ class Run {
 
   /// Renders, verifies if asked, and writes the frame's pictures.
   FrameRecord make(const Frame& frame) {
+    hold(frame);
     FrameRecord record;
     record.camera = view_of(frame, summary_.facts.box, options_.projection);
     if (trace_ != nullptr) trace_->set_frame(frame.number);
@@ -62,14 +64,27 @@ class Run {
   }
 
  private:
-  [[nodiscard]] io::MeshFile read() const {
+  [[nodiscard]] io::MeshFile read(const Frame& frame, const io::MeshOptions& options) const {
     const scene::TraceScope scope(trace_, "read");
-    return read_input(options_.input, options_.mesh);
+    return read_input(frame.mesh.files, options);
+  }
+
+  /// Makes the frame's step the one at hand. The last one's memory goes before the next one's comes.
+  void hold(const Frame& frame) {
+    if (frame.step != step_) {
+      renderer_.reset();
+      file_ = {};
+      file_ = read(frame, later_options_);
+      step_ = frame.step;
+    }
+    if (!renderer_) renderer_.emplace(file_.mesh, settings_);
   }
 
   const RenderOptions& options_;
   scene::Trace* trace_;
   io::MeshFile file_;
+  std::size_t step_ = 0;  ///< of file_
+  io::MeshOptions later_options_ = options_of_later_steps(options_.mesh, file_);
   MeshSummary summary_ = summary_of(file_);
   io::LoadedTransferFunction loaded_ = transfer_function_of(summary_.facts, options_);
   frame::RenderSettings settings_ = options_.settings;
@@ -89,7 +104,7 @@ scene::ExitCode render_alone(const RenderOptions& options) {
       continue;
     }
     if (!run) {
-      run.emplace(options, options.timing.empty() ? nullptr : &trace);
+      run.emplace(options, options.timing.empty() ? nullptr : &trace, frames.front());
       output.describe(run->summary(), run->transfer_function());
     }
     output.add(frame, run->make(frame));

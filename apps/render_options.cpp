@@ -89,6 +89,8 @@ io::MeshOptions mesh_options(const RenderWords& words) {
 
 void add_render_options(CLI::App& command, RenderWords& words) {
   add_mesh_options(command, words);
+  command.add_option("MORE", words.more_inputs,
+                     "more meshes: a time series, as is INPUT alone if it is a .pvd or mesh_%04d.vtu");
   command
       .add_option("-o,--output", words.outputs,
                   "picture: .exr .png .pfm; frame_%04d.exr numbers several frames; may be repeated")
@@ -163,6 +165,7 @@ void add_render_options(CLI::App& command, RenderWords& words) {
 RenderOptions render_options(const RenderWords& words) {
   RenderOptions options;
   options.input = words.input;
+  options.more_inputs = {words.more_inputs.begin(), words.more_inputs.end()};
   options.outputs.assign(words.outputs.begin(), words.outputs.end());
   options.mesh = mesh_options(words);
 

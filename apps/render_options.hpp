@@ -18,8 +18,9 @@ namespace tessera::apps {
 
 /// How `tessera render` was called, checked and in values. Files are not looked at yet.
 struct RenderOptions {
-  std::filesystem::path input;
-  std::vector<std::filesystem::path> outputs;  ///< at least one; several are the same frame in several formats
+  std::filesystem::path input;                     ///< a mesh, or what names a time series
+  std::vector<std::filesystem::path> more_inputs;  ///< with `input` the steps of a time series
+  std::vector<std::filesystem::path> outputs;      ///< at least one; several are the same frame in several formats
   io::MeshOptions mesh;
 
   std::string transfer_function;  ///< file or preset; empty: the default one
@@ -54,7 +55,7 @@ struct RenderOptions {
 /// The words as they stand on the command line. CLI11 keeps references to them until it has parsed.
 struct RenderWords {
   std::string input, field, q, max_volume, time_step;
-  std::vector<std::string> outputs;
+  std::vector<std::string> more_inputs, outputs;
   std::string transfer_function, unit_distance, opacity_scale = "1", blend = "linear";
   std::string camera, orbit, size, projection;
   std::string integrator = "auto", accuracy, emission = "absorption", rasterizer = "planes", backend = "auto";

@@ -101,6 +101,8 @@ Json frame_json(const Frame& frame, const FrameRecord* record) {
   Json outputs = Json::array();
   for (const auto& output : frame.outputs) outputs.push_back(output.string());
   Json json = {{"number", frame.number}, {"outputs", outputs}, {"skipped", record == nullptr}};
+  json["time"] = frame.mesh.time;
+  for (const auto& file : frame.mesh.files) json["meshes"].push_back(file.string());
   if (record == nullptr) return json;
   const auto& statistics = record->statistics;
   json["view"] = view_json(record->camera, frame.size);
@@ -172,6 +174,19 @@ std::string transfer_function_line(const io::LoadedTransferFunction& loaded) {
   return line;
 }
 
+std::string frame_line(const RenderOptions& options, const std::vector<Frame>& frames, const Frame& frame,
+                       const FrameRecord& record) {
+  std::string line = fmt::format("frame {} of {}: ", frame.number + 1, frames.size());
+  if (is_series(options)) {
+    line += frame.mesh.files.front().filename().string();
+    if (frame.mesh.files.size() > 1) line += fmt::format(" and {} more", frame.mesh.files.size() - 1);
+    line += ", ";
+  }
+  const double ms = record.frame_ms.front();
+  return line + fmt::format("{} tets projected, {} ms", record.statistics.tets_projected,
+                            ms < 100 ? fmt::format("{:.3g}", ms) : fmt::format("{:.0f}", ms));
+}
+
 std::string run_line(const RenderOptions& options, const MeshSummary& mesh, const io::LoadedTransferFunction& loaded,
                      const std::vector<Frame>& frames, const Frame& first, const FrameRecord& record) {
   const auto& statistics = record.statistics;
@@ -184,6 +199,9 @@ std::string run_line(const RenderOptions& options, const MeshSummary& mesh, cons
                       statistics.tets_projected, statistics.tets_invisible, statistics.tets_outside_view,
                       word(options.settings.rasterizer), method_line(options.settings.integrator),
                       statistics.instruction_set, record.frame_ms.front());
+  if (const std::size_t steps = frames.back().step + 1; is_series(options))
+    line += fmt::format("; transfer function{} of the first of {} time steps, {}, for all",
+                        first.camera ? "" : " and view", steps, frames.front().mesh.files.front().string());
   for (const auto& note : mesh.notes) line += fmt::format("; {}", note);
   return line;
 }

@@ -42,6 +42,10 @@ std::string cells_line(const io::MeshCounts& counts);
 std::string view_line(const scene::Camera& camera);
 std::string transfer_function_line(const io::LoadedTransferFunction& loaded);
 
+/// `frame 12 of 50: mesh_0012.vtu, 842113 tets projected, 512 ms`: one a frame of a run of several.
+std::string frame_line(const RenderOptions& options, const std::vector<Frame>& frames, const Frame& frame,
+                       const FrameRecord& record);
+
 /// The one line of a run, after its first frame: what was read, chosen and culled, and how long the frame took.
 std::string run_line(const RenderOptions& options, const MeshSummary& mesh, const io::LoadedTransferFunction& loaded,
                      const std::vector<Frame>& frames, const Frame& first, const FrameRecord& record);

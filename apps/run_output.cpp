@@ -53,6 +53,10 @@ void RunOutput::add(const Frame& frame, const FrameRecord& record) {
     progress_.clear();
     fmt::print(stderr, "{}\n", run_line(options_, *mesh_, *transfer_function_, frames_, frame, record));
   }
+  if (frames_.size() > 1 && !options_.quiet) {
+    progress_.clear();
+    fmt::print(stderr, "{}\n", frame_line(options_, frames_, frame, record));
+  }
   if (options_.repeat > 0) fmt::print("{}\n", frame_ms_line(record.frame_ms));
   if (record.verification) {
     fmt::print("{}\n", verification_line(*record.verification, frame.number));

@@ -48,6 +48,15 @@ std::string known_extensions() {
   return text;
 }
 
+[[noreturn]] void refuse_extension(const std::filesystem::path& file) {
+  const std::string extension = lower_extension(file);
+  for (const char* volume : {".vti", ".pvti", ".mhd", ".mha", ".nrrd", ".nhdr", ".nii", ".gz", ".raw"})
+    if (extension == volume)
+      throw scene::bad_input(fmt::format("{}: regular grids are not rendered yet; give a mesh", file.string()));
+  throw scene::bad_input(fmt::format("{}: no mesh format has the extension '{}'; known are {}", file.string(),
+                                     file.extension().string(), known_extensions()));
+}
+
 MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& options) {
   switch (family_of(file)) {
     case Family::vtk_xml:
@@ -67,12 +76,7 @@ MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& opt
     case Family::none:
       break;
   }
-  const std::string extension = lower_extension(file);
-  for (const char* volume : {".vti", ".pvti", ".mhd", ".mha", ".nrrd", ".nhdr", ".nii", ".gz", ".raw"})
-    if (extension == volume)
-      throw scene::bad_input(fmt::format("{}: regular grids are not rendered yet; give a mesh", file.string()));
-  throw scene::bad_input(fmt::format("{}: no mesh format has the extension '{}'; known are {}", file.string(),
-                                     file.extension().string(), known_extensions()));
+  refuse_extension(file);
 }
 
 }  // namespace
@@ -106,6 +110,11 @@ MeshCounts& MeshCounts::operator+=(const MeshCounts& other) {
 }
 static_assert(sizeof(MeshCounts) == 12 * sizeof(std::uint64_t));  // one line above for each
 
+void require_mesh_file(const std::filesystem::path& file) {
+  require_file(file);
+  if (!is_mesh_file(file)) refuse_extension(file);
+}
+
 bool is_mesh_file(const std::filesystem::path& file) { return family_of(file) != Family::none; }
 
 MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options) {
@@ -117,6 +126,34 @@ MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options
     MeshFile result = assemble_mesh(std::move(read.blocks), options, source);
     result.format = std::move(read.format);
     result.notes.insert(result.notes.begin(), read.notes.begin(), read.notes.end());
+    return result;
+  });
+}
+
+MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptions& options) {
+  if (files.size() == 1) return read_mesh(files.front(), options);
+  MeshBlocks all;
+  for (const std::filesystem::path& file : files) {
+    const std::string source = file.string();
+    require_file(file);
+    with_clean_errors(source, [&] {
+      MeshBlocks read = read_blocks(file, options);
+      if (family_of(file) != Family::exodus) require_no_time_step(options, source);
+      if (all.format.empty()) all.format = read.format;
+      for (CellBlock& block : read.blocks) {
+        if (block.source.empty()) block.source = source;
+        all.blocks.push_back(std::move(block));
+      }
+      for (std::string& note : read.notes)
+        if (std::find(all.notes.begin(), all.notes.end(), note) == all.notes.end())
+          all.notes.push_back(std::move(note));
+    });
+  }
+  const std::string source = files.empty() ? "mesh" : files.front().string();
+  return with_clean_errors(source, [&] {
+    MeshFile result = assemble_mesh(std::move(all.blocks), options, source);
+    result.format = fmt::format("{} files: {}", files.size(), all.format);
+    result.notes.insert(result.notes.begin(), all.notes.begin(), all.notes.end());
     return result;
   });
 }

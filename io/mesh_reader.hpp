@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -67,6 +68,13 @@ struct MeshFile {
 /// from. Throws Error(bad_input) in one line for a missing, truncated, malformed or empty file, an unknown field, or if
 /// no cell is left; Error(system_failure) if memory runs out. Never leaves VTK's own messages on stderr.
 MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options = {});
+
+/// Reads several files as the pieces of one mesh, their points not merged. Each has to have the chosen field. Throws as
+/// read_mesh.
+MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptions& options = {});
+
+/// Throws Error(bad_input) if the file is not there or has an extension that read_mesh does not know. Does not read it.
+void require_mesh_file(const std::filesystem::path& file);
 
 /// Whether read_mesh knows the extension (upper or lower case). Does not look at the file.
 bool is_mesh_file(const std::filesystem::path& file);

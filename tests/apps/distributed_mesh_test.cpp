@@ -6,7 +6,6 @@
 #include <cstring>
 
 #include "apps/program.hpp"
-#include "compositor/group_transport.hpp"
 #include "compositor/loopback_transport.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
@@ -35,7 +34,7 @@ std::vector<DistributedMesh> read_on(int ranks, const std::filesystem::path& fil
   std::vector<DistributedMesh> result(static_cast<std::size_t>(ranks));
   compositor::run_ranks(ranks, [&](Transport& transport) {
     result[static_cast<std::size_t>(transport.rank())] =
-        read_distributed(transport, file, options, {kind, 1}, projectors, nullptr);
+        read_distributed(transport, std::span(&file, 1), options, {kind, 1}, projectors, nullptr);
   });
   return result;
 }
@@ -126,20 +125,6 @@ TEST(DistributedMesh, AFaultInOnePieceIsTheErrorOfAll) {
   }
   for (const char* name : {"none.pvtu", "none.vtu", "none.tets"})
     EXPECT_THROW(read_on(2, folder / name, {0, 1}, PartitionKind::curve), scene::Error);
-}
-
-TEST(DistributedMesh, AGroupReadsWhileOthersDoNot) {
-  const Folder folder;
-  const std::string file = folder.cube();
-  const io::MeshFile whole = io::read_mesh(file);
-  compositor::run_ranks(4, [&](Transport& transport) {
-    if (transport.rank() == 2) return;  // a compositor, say
-    compositor::GroupTransport group(transport, {3, 0, 1});
-    const std::vector<int> all = {0, 1, 2};
-    const DistributedMesh mesh = read_distributed(group, file, {}, {}, all, nullptr);
-    EXPECT_EQ(mesh.facts, scene::facts_of(whole.mesh));
-    EXPECT_NEAR(static_cast<double>(mesh.part.mesh.tets.size()), whole.mesh.tets.size() / 3.0, 2.0);
-  });
 }
 
 }  // namespace

@@ -198,7 +198,7 @@ TEST(Render, ProgressIsALineThatGoesAway) {
       tessera({"render", folder.cube(), "-o", folder / "%d.pfm", "--size", "8x8", "--orbit", "2", "--progress"});
   EXPECT_EQ(run.status, 0);
   EXPECT_NE(run.err.find("frame 2 of 2"), std::string::npos);
-  EXPECT_EQ(run.error_lines(), 1u);
+  EXPECT_EQ(run.error_lines(), 3u);  // the run's, and each frame's
   EXPECT_TRUE(run.err.ends_with("\x1b[K"));
 }
 

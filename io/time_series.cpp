@@ -1,0 +1,139 @@
+#include "io/time_series.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+#include "io/input_file.hpp"
+#include "io/text_file.hpp"
+#include "io/xml_elements.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+/// A file name with a number in it, as printf's %d or %0Nd.
+struct Pattern {
+  std::string before, after;
+  int width = 0;
+
+  /// The number that makes the pattern this name; none if there is none.
+  [[nodiscard]] std::optional<std::uint64_t> number_in(const std::string& name) const {
+    if (name.size() <= before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after))
+      return std::nullopt;
+    const std::string digits = name.substr(before.size(), name.size() - before.size() - after.size());
+    std::uint64_t number = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
+    if (fmt::format("{:0{}}", number, width) != digits) return std::nullopt;  // 7 is not 007
+    return number;
+  }
+};
+
+std::optional<Pattern> pattern_of(const std::string& name) {
+  for (std::size_t at = name.find('%'); at != std::string::npos; at = name.find('%', at + 1)) {
+    std::size_t end = at + 1;
+    int width = 0;
+    if (end < name.size() && name[end] == '0') {
+      const std::size_t first = ++end;
+      while (end < name.size() && end < first + 2 && name[end] >= '0' && name[end] <= '9')
+        width = 10 * width + (name[end++] - '0');
+      if (end == first) continue;
+    }
+    if (end < name.size() && name[end] == 'd') return Pattern{name.substr(0, at), name.substr(end + 1), width};
+  }
+  return std::nullopt;
+}
+
+bool is_pvd(const std::filesystem::path& input) { return lower_extension(input) == ".pvd"; }
+
+std::vector<TimeStep> read_pattern(const std::filesystem::path& input, const Pattern& pattern) {
+  const std::filesystem::path folder = input.has_parent_path() ? input.parent_path() : std::filesystem::path(".");
+  std::vector<std::pair<std::uint64_t, std::filesystem::path>> found;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (const auto number = pattern.number_in(name)) found.emplace_back(*number, input.parent_path() / name);
+  }
+  if (error)
+    throw scene::bad_input(
+        fmt::format("{}: the folder cannot be listed: {}; check its name", input.string(), error.message()));
+  if (found.empty())
+    throw scene::bad_input(fmt::format("{}: no file has such a name; it would be like {}", input.string(),
+                                       fmt::format("{}{:0{}}{}", pattern.before, 1, pattern.width, pattern.after)));
+  std::sort(found.begin(), found.end());
+  std::vector<TimeStep> steps;
+  for (auto& [number, file] : found) steps.push_back({static_cast<double>(number), {std::move(file)}});
+  return steps;
+}
+
+std::vector<TimeStep> read_pvd(const std::filesystem::path& input) {
+  struct Entry {
+    double time;
+    long part;
+    std::filesystem::path file;
+  };
+  const std::string source = input.string();
+  require_file(input);
+  std::vector<Entry> entries;
+  bool root_seen = false;
+  each_xml_element(read_text_file(input), source, [&](const XmlElement& element) {
+    if (!root_seen) {
+      const std::string* type = element.find("type");
+      if (element.name != "VTKFile" || type == nullptr || *type != "Collection")
+        throw scene::bad_input(
+            fmt::format("{}: it begins with <{}>, not <VTKFile type=\"Collection\">; check that it is a .pvd", source,
+                        element.name.substr(0, 40)));
+      root_seen = true;
+    }
+    if (element.name != "DataSet") return;
+    const auto fail = [&](const std::string& what) {
+      return scene::bad_input(fmt::format("{}: DataSet {} {}; write it anew", source, entries.size(), what));
+    };
+    Entry entry{0, 0, {}};
+    if (const std::string* time = element.find("timestep")) {
+      const auto value = parse_number(*time);
+      if (!value) throw fail(fmt::format("has the timestep {}, which is not a finite number", quote(*time)));
+      entry.time = *value;
+    }
+    if (const std::string* part = element.find("part"); part != nullptr && !part->empty()) {
+      const auto [end, error] = std::from_chars(part->data(), part->data() + part->size(), entry.part);
+      if (error != std::errc() || end != part->data() + part->size())
+        throw fail(fmt::format("has the part {}, which is no whole number", quote(*part)));
+    }
+    const std::string* file = element.find("file");
+    if (file == nullptr || file->empty()) throw fail("names no file");
+    entry.file = input.parent_path() / *file;
+    entries.push_back(std::move(entry));
+  });
+  if (entries.empty()) throw scene::bad_input(fmt::format("{}: it lists no DataSet; write it anew", source));
+  std::stable_sort(entries.begin(), entries.end(),
+                   [](const Entry& a, const Entry& b) { return a.time != b.time ? a.time < b.time : a.part < b.part; });
+  std::vector<TimeStep> steps;
+  for (Entry& entry : entries) {
+    if (steps.empty() || steps.back().time != entry.time) steps.push_back({entry.time, {}});
+    steps.back().files.push_back(std::move(entry.file));
+  }
+  return steps;
+}
+
+}  // namespace
+
+bool is_time_series(const std::filesystem::path& input) {
+  if (is_pvd(input)) return true;
+  std::error_code absent;
+  return pattern_of(input.filename().string()).has_value() && !std::filesystem::exists(input, absent);
+}
+
+std::vector<TimeStep> read_time_series(const std::filesystem::path& input) {
+  if (is_pvd(input)) return read_pvd(input);
+  const auto pattern = pattern_of(input.filename().string());
+  if (!pattern)
+    throw scene::bad_input(
+        fmt::format("{}: is no time series; give a .pvd, or a name with %04d for the number", input.string()));
+  return read_pattern(input, *pattern);
+}
+
+}  // namespace tessera::io
