@@ -13,6 +13,7 @@
 #include "compositor/wire.hpp"
 #include "frame/distributed.hpp"
 #include "projection/segment_tuple.hpp"
+#include "scene/error.hpp"
 #include "scene/trace.hpp"
 
 namespace tessera::apps {
@@ -223,6 +224,8 @@ void RankRun::take(frame::FinishedFrame finished) {
 }  // namespace
 
 scene::ExitCode render_on_ranks(const RenderOptions& options, compositor::Transport& transport) {
+  if (options.deep)
+    throw scene::bad_input(".deep.exr: a deep picture is made by one process yet; leave mpirun, or write .exr");
   return RankRun(options, transport).run();
 }
 

@@ -12,6 +12,7 @@
 #include "apps/run_output.hpp"
 #include "apps/verify.hpp"
 #include "io/chrome_trace.hpp"
+#include "io/image_deep_exr.hpp"
 #include "scene/trace.hpp"
 
 namespace tessera::apps {
@@ -42,17 +43,24 @@ class Run {
       if (trace_ != nullptr) trace_->add_frame(frame.number, frame_begin);
     };
     scene::Image image;
+    scene::DeepImage deep;
     for (int i = 0; i < std::max(options_.repeat, 1); ++i) {
-      image = {};              // the last one's memory before the next one's
+      image = {}, deep = {};   // the last one's memory before the next one's
       if (i > 0) end_frame();  // the last repetition's span holds the writing too
       if (trace_ != nullptr) frame_begin = trace_->now_us();
       const auto start = Clock::now();
-      image = renderer_->render(record.camera, frame.size, loaded_.function, &record.statistics);
+      image = renderer_->render(record.camera, frame.size, loaded_.function, &record.statistics,
+                                options_.deep ? &deep : nullptr);
       record.frame_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
     }
     {
       const scene::TraceScope scope(trace_, "write");
-      for (const auto& output : frame.outputs) io::write_image(image, output, options_.image);
+      for (const auto& output : frame.outputs) {
+        if (io::is_deep_name(output))
+          io::write_deep_exr(deep, output);
+        else
+          io::write_image(image, output, options_.image);
+      }
     }
     end_frame();
     if (options_.verify > 0) {

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <limits>
 #include <string_view>
 
 #include "apps/argument_values.hpp"
+#include "io/image_deep_exr.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::apps {
@@ -42,6 +44,7 @@ frame::RenderSettings render_settings(const RenderWords& words) {
   settings.integrator = chosen_integrator(words);
   if (words.rasterizer == "scanline") settings.rasterizer = frame::Rasterizer::scanline;
   if (words.emission == "independent") settings.emission = scene::Emission::independent;
+  if (!words.deep_accuracy.empty()) settings.deep_accuracy = parse_positive("--deep-accuracy", words.deep_accuracy);
   if (!words.threads.empty()) settings.threads = parse_count("--threads", words.threads, 1, 1024);
   if (!words.tile_size.empty()) settings.tile_size = parse_count("--tile-size", words.tile_size, 1, 1024);
   if (!words.memory.empty()) settings.memory_bytes = parse_bytes("--memory", words.memory);
@@ -93,7 +96,7 @@ void add_render_options(CLI::App& command, RenderWords& words) {
                      "more meshes: a time series, as is INPUT alone if it is a .pvd or mesh_%04d.vtu");
   command
       .add_option("-o,--output", words.outputs,
-                  "picture: .exr .png .pfm; frame_%04d.exr numbers several frames; may be repeated")
+                  "picture: .exr .png .pfm .deep.exr; frame_%04d.exr numbers several frames; may be repeated")
       ->type_name("FILE")
       ->required()
       ->allow_extra_args(false);  // else `-o out.png mesh.vtu` would take the mesh for a second picture
@@ -119,6 +122,10 @@ void add_render_options(CLI::App& command, RenderWords& words) {
   command.add_option("--integrator", words.integrator, "how a segment becomes colour (default: auto)")
       ->type_name("exact|sampled:N|auto");
   command.add_option("--accuracy", words.accuracy, "auto: largest error in linear RGBA (default 1e-4)")
+      ->type_name("EPS");
+  command
+      .add_option("--deep-accuracy", words.deep_accuracy,
+                  ".deep.exr: largest error in linear RGBA of a sample cut anywhere (default 1e-3)")
       ->type_name("EPS");
   command.add_option("--emission", words.emission, "source term (default: absorption)")
       ->type_name("absorption|independent");
@@ -189,6 +196,9 @@ RenderOptions render_options(const RenderWords& words) {
   }
 
   options.settings = render_settings(words);
+  options.deep = std::ranges::any_of(options.outputs, io::is_deep_name);
+  if (!options.deep && !words.deep_accuracy.empty())
+    throw scene::bad_input("--deep-accuracy: is for a deep picture; name one with -o FILE.deep.exr, or leave it out");
   options.image = image_options(words);
   if (!words.projectors.empty()) options.projectors = parse_count("--projectors", words.projectors, 1, no_limit);
   if (!words.compositors.empty()) options.compositors = parse_count("--compositors", words.compositors, 1, no_limit);

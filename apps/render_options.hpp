@@ -36,6 +36,7 @@ struct RenderOptions {
 
   frame::RenderSettings settings;
   io::ImageFileOptions image;
+  bool deep = false;  ///< an output is a deep picture
 
   // Jobs of several ranks; a single process has no use for them.
   std::optional<int> projectors, compositors;
@@ -58,7 +59,8 @@ struct RenderWords {
   std::vector<std::string> more_inputs, outputs;
   std::string transfer_function, unit_distance, opacity_scale = "1", blend = "linear";
   std::string camera, orbit, size, projection;
-  std::string integrator = "auto", accuracy, emission = "absorption", rasterizer = "planes", backend = "auto";
+  std::string integrator = "auto", accuracy, deep_accuracy, emission = "absorption", rasterizer = "planes",
+              backend = "auto";
   std::string threads, tile_size, memory, background, png_bits = "8", repeat, verify, report, timing;
   std::string projectors, compositors, exchange, partition = "curve", frames_in_flight, seed;
   bool smooth = false, half = false, rescale = false, resume = false, progress = false, quiet = false;

@@ -88,6 +88,7 @@ Json method_json(const RenderOptions& options) {
   Json json = {{"integrator", method_line(settings.integrator)}};
   if (settings.integrator.kind == scene::IntegratorKind::automatic) json["accuracy"] = settings.integrator.accuracy;
   json["emission"] = settings.emission == scene::Emission::absorption ? "absorption" : "independent";
+  if (options.deep) json["deep_accuracy"] = settings.deep_accuracy;
   json["rasterizer"] = word(settings.rasterizer);
   json["backend"] = "cpu";
   json["blend"] = options.display_blend ? "display" : "linear";
@@ -117,6 +118,7 @@ Json frame_json(const Frame& frame, const FrameRecord* record) {
                       {"exact_sign_tests", statistics.exact_sign_tests},
                       {"unpaired", statistics.unpaired},
                       {"tiles_split", statistics.tiles_split}};
+  if (statistics.deep_samples > 0) json["counters"]["deep_samples"] = statistics.deep_samples;
   if (statistics.fragments > 0) {
     json["counters"]["fragments"] = statistics.fragments;
     json["counters"]["exchange_bytes"] = statistics.exchange_bytes;

@@ -100,7 +100,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
     task.announce(has_cells);
   }
   const int threads = arena_.max_concurrency();
-  const std::uint64_t held = vertices_.capacity() * sizeof(projection::PixelVertex) + lists->bytes();
+  const std::uint64_t held = vertices_.capacity() * sizeof(projection::PixelVertex) + lists->bytes() + task.kept_bytes;
   // A quarter of what is left for the lists of a band of tiles; the rest for segments.
   const std::uint64_t list_budget =
       std::max<std::uint64_t>(segment_budget(settings_, held, 1) / 4 / sizeof(projection::TileEntry), 1);

@@ -25,8 +25,9 @@ class FrameProjector {
     const projection::PixelSpace* space;
     projection::TileGrid grid;
     const scene::TransferFunction* function;
-    std::int32_t frame = -1;  ///< for the trace
-    float longest_edge = 0;   ///< scanline: of the whole data set, world units; 0: of this mesh
+    std::int32_t frame = -1;       ///< for the trace
+    float longest_edge = 0;        ///< scanline: of the whole data set, world units; 0: of this mesh
+    std::uint64_t kept_bytes = 0;  ///< of the memory budget, for what becomes of the segments
     /// A sink for one thread; tiles go to it one after the other, and each thread takes tiles in ascending order.
     std::function<std::unique_ptr<compositor::TileSink>()> make_sink;
     /// Called once before the first tile: which tiles have cells, so will be given to a sink. May be empty.

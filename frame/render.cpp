@@ -1,11 +1,34 @@
 #include "frame/render.hpp"
 
+#include <fmt/format.h>
+
+#include <optional>
+#include <utility>
+
+#include "compositor/deep_collector.hpp"
+#include "compositor/deep_sink.hpp"
 #include "compositor/segment_integrator.hpp"
 #include "compositor/tile_pixels.hpp"
+#include "compositor/two_sinks.hpp"
 #include "frame/frame_projector.hpp"
 #include "projection/planes_rasterizer.hpp"
+#include "scene/error.hpp"
 
 namespace tessera::frame {
+namespace {
+
+void check_deep(const RenderSettings& settings, const compositor::SegmentIntegrator& integrator) {
+  if (!(settings.deep_accuracy >= 1e-6 && settings.deep_accuracy <= 1))
+    throw scene::bad_input(fmt::format("--deep-accuracy {}: it must be 1e-6 to 1", settings.deep_accuracy));
+  if (settings.rasterizer != Rasterizer::planes)
+    throw scene::bad_input("deep picture: --rasterizer scanline leaves gaps and overlaps in depth; use planes");
+  if (integrator.name() != "exact")
+    throw scene::bad_input(
+        fmt::format("deep picture: --integrator {} gives a segment other light than its parts; use exact or auto",
+                    integrator.name()));
+}
+
+}  // namespace
 
 struct Renderer::State {
   State(const scene::TetMesh& mesh, const RenderSettings& s) : settings(s), projector(mesh, s) {}
@@ -20,7 +43,8 @@ Renderer::Renderer(const scene::TetMesh& mesh, const RenderSettings& settings)
 Renderer::~Renderer() = default;
 
 scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size,
-                              const scene::TransferFunction& transfer_function, FrameStatistics* statistics) {
+                              const scene::TransferFunction& transfer_function, FrameStatistics* statistics,
+                              scene::DeepImage* deep) {
   const RenderSettings& settings = state_->settings;
   const projection::PixelSpace space(camera, size);
   const compositor::SegmentIntegrator integrator(transfer_function, settings.integrator, settings.emission,
@@ -30,15 +54,32 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   task.space = &space;
   task.grid = {size, settings.tile_size};
   task.function = &transfer_function;
-  task.make_sink = [&] {
-    return std::make_unique<compositor::TilePixels>(space, integrator, transfer_function.max_color(),
-                                                    state_->projector.diagonal(), settings.emission,
-                                                    compositor::ImageWindow{&image});
+  const double longest_ray = state_->projector.diagonal();
+  std::optional<compositor::DeepCollector> collector;
+  if (deep != nullptr) {
+    check_deep(settings, integrator);
+    task.kept_bytes = settings.memory_bytes / 2;
+    collector.emplace(size, task.kept_bytes);
+  }
+  task.make_sink = [&]() -> std::unique_ptr<compositor::TileSink> {
+    auto pixels =
+        std::make_unique<compositor::TilePixels>(space, integrator, transfer_function.max_color(), longest_ray,
+                                                 settings.emission, compositor::ImageWindow{&image});
+    if (!collector) return pixels;
+    return std::make_unique<compositor::TwoSinks>(
+        std::move(pixels),
+        std::make_unique<compositor::DeepSink>(space, integrator, transfer_function, longest_ray, settings.emission,
+                                               settings.deep_accuracy, *collector));
   };
   FrameStatistics counted = state_->projector.project(task);
   counted.instruction_set = projection::instruction_set();
   counted.integrator = integrator.name();
+  if (collector) {
+    *deep = collector->image();
+    counted.deep_samples = deep->samples.size();
+  }
   if (statistics != nullptr) *statistics = counted;
+
   return image;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "scene/camera.hpp"
+#include "scene/deep_image.hpp"
 #include "scene/image.hpp"
 #include "scene/optical_model.hpp"
 #include "scene/tet_mesh.hpp"
@@ -25,6 +26,7 @@ struct RenderSettings {
   Rasterizer rasterizer = Rasterizer::planes;
   scene::Integrator integrator;
   scene::Emission emission = scene::Emission::absorption;
+  double deep_accuracy = 1e-3;              ///< of a deep picture, cut anywhere: largest error in linear RGBA
   int threads = 0;                          ///< 0: all cores
   int tile_size = 32;                       ///< pixels a side, 1..1024
   std::uint64_t memory_bytes = 4ull << 30;  ///< budget for frame buffers of all threads beside the mesh
@@ -47,8 +49,9 @@ struct FrameStatistics {
   std::uint64_t fragments = 0;            ///< runs or segments sent to compositors; 0 in a single process
   std::uint64_t exchange_bytes = 0;       ///< of the messages they went in, those to the same rank included
   std::uint64_t exchange_messages = 0;
-  std::string instruction_set;  ///< of the kernels that ran
-  std::string integrator;       ///< what `automatic` chose
+  std::uint64_t deep_samples = 0;  ///< of the deep picture, if one was asked for
+  std::string instruction_set;     ///< of the kernels that ran
+  std::string integrator;          ///< what `automatic` chose
 };
 
 /// Renders one tetrahedral mesh many times in one process. Preparation that does not depend on view or transfer
@@ -63,8 +66,14 @@ class Renderer {
   /// The composited image in memory. The same bits for any thread count, tile size and memory budget on one instruction
   /// set. Throws Error(bad_input) for an invalid camera or size, or a view that the rasterizer cannot do;
   /// Error(system_failure) if one pixel's segments exceed the budget.
+  ///
+  /// With `deep` also the deep picture of the same frame, for which half the memory budget is kept: flattened it is the
+  /// image; cut anywhere in depth by OpenEXR's rules its error is below `deep_accuracy`. It needs the planes rasterizer
+  /// and an exact integrator (exact, automatic), else Error(bad_input); Error(system_failure) if its samples exceed
+  /// their half.
   scene::Image render(const scene::Camera& camera, scene::ImageSize size,
-                      const scene::TransferFunction& transfer_function, FrameStatistics* statistics = nullptr);
+                      const scene::TransferFunction& transfer_function, FrameStatistics* statistics = nullptr,
+                      scene::DeepImage* deep = nullptr);
 
  private:
   struct State;

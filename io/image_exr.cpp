@@ -2,7 +2,6 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <fmt/format.h>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "io/atomic_file.hpp"
+#include "io/exr_stream.hpp"
 #include "io/image_formats.hpp"
 #include "scene/error.hpp"
 
@@ -24,36 +24,6 @@ namespace tessera::io {
 namespace {
 
 constexpr std::array<const char*, 4> channel_names{"R", "G", "B", "A"};
-
-/// Lets OpenEXR write into an AtomicFile.
-class Stream : public Imf::OStream {
- public:
-  Stream(AtomicFile& file, const std::string& name) : Imf::OStream(name.c_str()), file_(file) {}
-  void write(const char bytes[], int count) override {
-    keep([&] { file_.write(bytes, static_cast<std::size_t>(count)); });
-  }
-  std::uint64_t tellp() override { return file_.position(); }
-  void seekp(std::uint64_t position) override {
-    keep([&] { file_.seek(position); });
-  }
-  /// Throws again what a write threw: OpenEXR writes its table of lines in a destructor, which swallows.
-  void rethrow() const {
-    if (failure_) std::rethrow_exception(failure_);
-  }
-
- private:
-  template <class Action>
-  void keep(const Action& action) {
-    try {
-      action();
-    } catch (...) {
-      if (!failure_) failure_ = std::current_exception();
-      throw;
-    }
-  }
-  AtomicFile& file_;
-  std::exception_ptr failure_;
-};
 
 template <class Number>
 void write_rows(Imf::OutputFile& output, const scene::Image& image, const std::filesystem::path& file,
@@ -104,7 +74,7 @@ void write_exr(const scene::Image& image, const std::filesystem::path& file, con
     for (const char* name : channel_names)
       header.channels().insert(name, Imf::Channel(options.half ? Imf::HALF : Imf::FLOAT));
     header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
-    Stream stream(target, file.string());
+    ExrStream stream(target, file.string());
     {
       Imf::OutputFile output(stream, header, 0);
       if (options.half)

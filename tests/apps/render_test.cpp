@@ -192,6 +192,20 @@ TEST(Render, AReportedViewIsACameraFileThatGivesTheSamePicture) {
   EXPECT_TRUE(contents(folder / "a.exr") == contents(folder / "b.exr"));
 }
 
+TEST(Render, ADeepPictureStandsBesideTheFlatOne) {
+  const Folder folder;
+  const auto mesh = folder.cube();
+  ASSERT_EQ(tessera({"render", mesh, "-o", folder / "alone.exr", "--size", "30x20"}).status, 0);
+  const auto run = tessera({"render", mesh, "-o", folder / "a.deep.exr", "-o", folder / "a.exr", "--size", "30x20",
+                            "--deep-accuracy", "1e-2", "--report", folder / "r.json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_TRUE(contents(folder / "a.exr") == contents(folder / "alone.exr"));
+  EXPECT_NE(contents(folder / "a.deep.exr").find("deepscanline"), std::string::npos);
+  const auto report = nlohmann::json::parse(contents(folder / "r.json"));
+  EXPECT_EQ(report.at("method").at("deep_accuracy"), 0.01);
+  EXPECT_GT(report.at("frames").at(0).at("counters").at("deep_samples"), 100);
+}
+
 TEST(Render, ProgressIsALineThatGoesAway) {
   const Folder folder;
   const auto run =

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+#include "projection/footprint.hpp"
+#include "scene/deep_image.hpp"
+
+namespace tessera::compositor {
+
+/// Gathers the deep samples of a picture, rectangle by rectangle in any order and from any thread.
+class DeepCollector {
+ public:
+  /// `most_bytes` bounds what the samples take, the moment in which image() orders them included.
+  DeepCollector(scene::ImageSize size, std::uint64_t most_bytes) : size_(size), most_bytes_(most_bytes) {}
+
+  /// The samples of a rectangle, pixel after pixel row by row, `counts` of them in each. Rectangles are disjoint.
+  /// Throws Error(system_failure) beyond the bound.
+  void add(const projection::PixelRect& rect, std::vector<std::uint32_t> counts,
+           std::vector<scene::DeepImageSample> samples);
+
+  /// The picture; the collector is empty then. Pixels that got none have no samples.
+  scene::DeepImage image();
+
+  static constexpr std::uint64_t bytes_a_pixel = 2 * sizeof(std::uint64_t);  ///< taken whatever the samples are
+
+ private:
+  struct Block {
+    projection::PixelRect rect;
+    std::vector<std::uint32_t> counts;
+    std::vector<scene::DeepImageSample> samples;
+  };
+  scene::ImageSize size_;
+  std::uint64_t most_bytes_, bytes_ = 0;
+  std::mutex mutex_;
+  std::vector<Block> blocks_;
+};
+
+}  // namespace tessera::compositor

@@ -1,0 +1,131 @@
+#include "compositor/deep_sink.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tessera::compositor {
+namespace {
+
+/// Pieces that are integrated together: they stay in a core's second-level cache.
+constexpr std::size_t batch_pieces = 8192;
+
+float finite(double value) {
+  constexpr double most = std::numeric_limits<float>::max();
+  return static_cast<float>(std::clamp(value, -most, most));
+}
+
+}  // namespace
+
+void append_tidy(std::span<const DeepSample> samples, std::vector<scene::DeepImageSample>& to) {
+  const std::size_t first = to.size();
+  for (const DeepSample& s : samples) {
+    const scene::DeepImageSample sample{finite(s.front),    finite(s.back),
+                                        finite(s.light[0]), finite(s.light[1]),
+                                        finite(s.light[2]), static_cast<float>(-std::expm1(-s.optical_depth))};
+    if (sample.alpha == 0 && sample.red == 0 && sample.green == 0 && sample.blue == 0) continue;
+    if (to.size() > first) {
+      scene::DeepImageSample& last = to.back();
+      if (sample.z == sample.z_back && last.z == last.z_back && sample.z == last.z) {
+        const float through = 1 - last.alpha;
+        last.red += through * sample.red;
+        last.green += through * sample.green;
+        last.blue += through * sample.blue;
+        last.alpha += through * sample.alpha;
+        continue;
+      }
+    }
+    to.push_back(sample);
+  }
+}
+
+DeepSink::DeepSink(const projection::PixelSpace& space, const SegmentIntegrator& integrator,
+                   const scene::TransferFunction& function, double longest_ray, scene::Emission emission,
+                   double accuracy, DeepCollector& collector)
+    : space_(&space),
+      integrator_(&integrator),
+      cutter_(function, emission, accuracy),
+      accuracy_(accuracy),
+      left_out_per_transmittance_(opacity_weight(function.max_color(), longest_ray, emission)),
+      termination_error_(integrator.termination_error()),
+      collector_(&collector) {}
+
+void DeepSink::start(const projection::PixelRect& rect) {
+  rect_ = rect;
+  const auto n = static_cast<std::size_t>(rect.area());
+  mergers_.assign(n, DeepMerger(accuracy_));
+  transmittance_before_.assign(n, 1.0);
+  open_.assign(n, 1);
+  open_count_ = n;
+  length_per_depth_.resize(n);
+  std::size_t i = 0;
+  for (int y = rect.y0; y < rect.y1; ++y)
+    for (int x = rect.x0; x < rect.x1; ++x) length_per_depth_[i++] = space_->length_per_depth(x + 0.5, y + 0.5);
+  samples_.clear();
+}
+
+void DeepSink::take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) {
+  for (std::uint32_t p = 0; p < open_.size(); ++p) {
+    if (!open_[p]) continue;
+    for (const auto& entry : lists.pixel(p)) {
+      if (!(entry.depth < final_depth)) break;
+      const std::uint32_t i = entry.segment;
+      cutter_.cut({segments.front[i], segments.back[i], segments.scalar_front[i], segments.scalar_back[i]},
+                  length_per_depth_[p], transmittance_before_[p], pieces_);
+      piece_pixels_.resize(pieces_.size(), p);
+      if (pieces_.size() >= batch_pieces) integrate_pieces();
+    }
+  }
+  integrate_pieces();
+}
+
+void DeepSink::integrate_pieces() {
+  batch_.reserve(pieces_.size());
+  batch_.size = pieces_.size();
+  for (std::size_t k = 0; k < pieces_.size(); ++k) {
+    batch_.length[k] = (pieces_[k].back - pieces_[k].front) * length_per_depth_[piece_pixels_[k]];
+    batch_.scalar_front[k] = pieces_[k].scalar_front;
+    batch_.scalar_back[k] = pieces_[k].scalar_back;
+  }
+  integrator_->integrate(batch_);
+  for (std::size_t k = 0; k < pieces_.size(); ++k) {
+    const std::uint32_t p = piece_pixels_[k];
+    if (!open_[p]) continue;
+    DeepMerger& merger = mergers_[p];
+    ended_.clear();
+    merger.add(
+        {pieces_[k].front, pieces_[k].back, {batch_.red[k], batch_.green[k], batch_.blue[k]}, pieces_[k].optical_depth},
+        ended_);
+    for (const DeepSample& sample : ended_) samples_.push_back({p, sample});
+    if (merger.transmittance() * left_out_per_transmittance_ < termination_error_) {
+      open_[p] = 0;
+      --open_count_;
+    }
+  }
+  pieces_.clear();
+  piece_pixels_.clear();
+}
+
+void DeepSink::finish() {
+  const auto n = static_cast<std::uint32_t>(rect_.area());
+  for (std::uint32_t p = 0; p < n; ++p) {
+    ended_.clear();
+    mergers_[p].end(ended_);
+    for (const DeepSample& sample : ended_) samples_.push_back({p, sample});
+  }
+  std::stable_sort(samples_.begin(), samples_.end(),
+                   [](const PixelSample& a, const PixelSample& b) { return a.pixel < b.pixel; });
+  std::vector<std::uint32_t> counts(n, 0);
+  std::vector<scene::DeepImageSample> tidy;
+  for (auto first = samples_.begin(); first != samples_.end();) {
+    const std::uint32_t p = first->pixel;
+    ended_.clear();
+    for (; first != samples_.end() && first->pixel == p; ++first) ended_.push_back(first->sample);
+    const std::size_t before = tidy.size();
+    append_tidy(ended_, tidy);
+    counts[p] = static_cast<std::uint32_t>(tidy.size() - before);
+  }
+  collector_->add(rect_, std::move(counts), std::move(tidy));
+}
+
+}  // namespace tessera::compositor

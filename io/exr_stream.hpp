@@ -1,0 +1,43 @@
+#pragma once
+
+#include <ImfIO.h>
+
+#include <cstdint>
+#include <exception>
+#include <string>
+
+#include "io/atomic_file.hpp"
+
+namespace tessera::io {
+
+/// Lets OpenEXR write into an AtomicFile.
+class ExrStream : public Imf::OStream {
+ public:
+  ExrStream(AtomicFile& file, const std::string& name) : Imf::OStream(name.c_str()), file_(file) {}
+  void write(const char bytes[], int count) override {
+    keep([&] { file_.write(bytes, static_cast<std::size_t>(count)); });
+  }
+  std::uint64_t tellp() override { return file_.position(); }
+  void seekp(std::uint64_t position) override {
+    keep([&] { file_.seek(position); });
+  }
+  /// Throws again what a write threw: OpenEXR writes its table of lines in a destructor, which swallows.
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  template <class Action>
+  void keep(const Action& action) {
+    try {
+      action();
+    } catch (...) {
+      if (!failure_) failure_ = std::current_exception();
+      throw;
+    }
+  }
+  AtomicFile& file_;
+  std::exception_ptr failure_;
+};
+
+}  // namespace tessera::io

@@ -1,0 +1,256 @@
+#include <ImfChannelList.h>
+#include <ImfDeepFrameBuffer.h>
+#include <ImfDeepScanLineInputFile.h>
+#include <ImfHeader.h>
+#include <ImfPartType.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <glm/geometric.hpp>
+
+#include "datasets/boxes.hpp"
+#include "datasets/modify.hpp"
+#include "datasets/shapes.hpp"
+#include "datasets/transfer_functions.hpp"
+#include "frame/render.hpp"
+#include "io/image_deep_exr.hpp"
+#include "io/mesh_reader.hpp"
+#include "io/temporary_folder.hpp"
+#include "scene/error.hpp"
+#include "support/deep_pixels.hpp"
+
+/// The promise of deep pictures: flattened they are the image, and with an opaque plane put in at any depth they are
+/// within --deep-accuracy of a rendering with that plane.
+namespace tessera::frame {
+namespace {
+
+using scene::Camera;
+using scene::DeepImage;
+using scene::Image;
+using scene::ImageSize;
+using scene::TransferFunction;
+
+/// Everything through a file: what is judged is what OpenEXR reads back.
+DeepImage written_and_read(const DeepImage& image) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder / "a.deep.exr";
+  io::write_deep_exr(image, file);
+  Imf::DeepScanLineInputFile input(file.c_str(), 0);
+  EXPECT_EQ(input.header().type(), Imf::DEEPSCANLINE);
+  const int width = input.header().dataWindow().max.x + 1, height = input.header().dataWindow().max.y + 1;
+  EXPECT_EQ((ImageSize{width, height}), image.size);
+  DeepImage read;
+  read.size = {width, height};
+  const std::size_t pixels = static_cast<std::size_t>(width) * height;
+  std::vector<unsigned int> counts(pixels);
+  const char* names[] = {"Z", "ZBack", "R", "G", "B", "A"};
+  std::vector<std::vector<char*>> pointers(6, std::vector<char*>(pixels));
+  Imf::DeepFrameBuffer frame;
+  frame.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts.data()), sizeof(unsigned int),
+                                          sizeof(unsigned int) * static_cast<std::size_t>(width)));
+  for (std::size_t c = 0; c < 6; ++c) {
+    EXPECT_NE(input.header().channels().findChannel(names[c]), nullptr) << names[c];
+    frame.insert(names[c],
+                 Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(pointers[c].data()), sizeof(char*),
+                                sizeof(char*) * static_cast<std::size_t>(width), sizeof(scene::DeepImageSample)));
+  }
+  input.setFrameBuffer(frame);
+  input.readPixelSampleCounts(0, height - 1);
+  read.begin.assign(1, 0);
+  for (const unsigned int count : counts) read.begin.push_back(read.begin.back() + count);
+  read.samples.resize(read.begin.back());
+  for (std::size_t p = 0; p < pixels; ++p)
+    for (std::size_t c = 0; c < 6; ++c)  // the struct's six floats stand in the order of `names`
+      pointers[c][p] = reinterpret_cast<char*>(read.samples.data() + read.begin[p]) + c * sizeof(float);
+  input.readPixels(0, height - 1);
+  return read;
+}
+
+double largest_difference(const DeepImage& deep, const Image& image, double z, const std::array<double, 3>& plane) {
+  double most = 0;
+  for (std::size_t p = 0; p < image.depth.size(); ++p) {
+    const float* rgba = image.rgba.data() + 4 * p;
+    const auto found = tests::composited(deep.pixel(p), z, plane);
+    for (int c = 0; c < 4; ++c) {
+      const double behind = std::isfinite(z) ? (1.0 - rgba[3]) * (c < 3 ? plane[c] : 1) : 0;
+      most = std::max(most, std::abs(found[c] - (rgba[c] + behind)));
+    }
+  }
+  return most;
+}
+
+void expect_tidy(const DeepImage& deep) {
+  for (std::size_t p = 0; p + 1 < deep.begin.size(); ++p) {
+    float last = -HUGE_VALF;
+    for (const auto& s : deep.pixel(p)) {
+      ASSERT_LE(s.z, s.z_back) << p;
+      ASSERT_GE(s.z, last) << p;
+      ASSERT_TRUE(s.alpha >= 0 && s.alpha <= 1 && s.red >= 0 && s.green >= 0 && s.blue >= 0);
+      ASSERT_TRUE(std::isfinite(s.z_back) && std::isfinite(s.red + s.green + s.blue));
+      last = s.z_back;
+    }
+  }
+}
+
+RenderSettings settings_for(double accuracy, scene::Emission emission = scene::Emission::absorption) {
+  RenderSettings settings;
+  settings.integrator.kind = scene::IntegratorKind::exact;
+  settings.deep_accuracy = accuracy;
+  settings.emission = emission;
+  return settings;
+}
+
+/// Flattens, and inserts white, black and coloured planes at `depths`.
+void expect_promise(const scene::TetMesh& mesh, const Camera& camera, ImageSize size, const TransferFunction& function,
+                    const RenderSettings& settings, const std::vector<double>& depths) {
+  DeepImage made;
+  Renderer renderer(mesh, settings);
+  const Image image = renderer.render(camera, size, function, nullptr, &made);
+  const DeepImage deep = written_and_read(made);
+  expect_tidy(deep);
+  EXPECT_GT(deep.samples.size(), 0u);
+  double brightest = 1;  // with independent emission light is not bounded by 1: floats round it in proportion
+  for (const float v : image.rgba) brightest = std::max(brightest, static_cast<double>(v));
+  EXPECT_LT(largest_difference(deep, image, HUGE_VAL, {}), 1e-5 * brightest);
+  for (std::size_t p = 0; p < image.depth.size(); ++p)
+    if (image.rgba[4 * p + 3] > 0 && settings.emission == scene::Emission::absorption) {
+      EXPECT_EQ(deep.pixel(p).empty() ? HUGE_VALF : deep.pixel(p).front().z, image.depth[p]) << p;
+    }
+  for (const double z : depths) {
+    Camera before = camera;
+    before.clipping_range = scene::ClippingRange{0, z};
+    const Image clipped = renderer.render(before, size, function);
+    for (const auto& plane : {std::array{1.0, 1.0, 1.0}, std::array{0.0, 0.0, 0.0}, std::array{0.2, 1.0, 0.6}})
+      EXPECT_LT(largest_difference(deep, clipped, z, plane), settings.deep_accuracy + 1e-5 * brightest) << "z " << z;
+  }
+}
+
+Camera oblique(scene::ProjectionKind kind = scene::ProjectionKind::orthographic) {
+  Camera camera;
+  camera.position = {3.1, 2.3, 4.2};
+  camera.parallel_scale = 1.8;
+  camera.projection = kind;
+  camera.view_angle = 35;
+  return camera;
+}
+
+const ImageSize small{48, 40};
+const double middle = glm::length(glm::dvec3(3.1, 2.3, 4.2));  // the mesh's centre from oblique()
+
+TEST(Deep, KeepsItsPromiseForPointAndCellDataViewsAndThickness) {
+  const scene::TetMesh points = datasets::cube(8, 0.2), cells = datasets::with_cell_data(points, 6);
+  const TransferFunction functions[] = {datasets::smooth_knots(6), datasets::step_knots(7),
+                                        datasets::benchmark_transfer_function()};
+  std::size_t n = 0;
+  for (const scene::TetMesh* mesh : {&points, &cells})
+    for (const auto kind : {scene::ProjectionKind::orthographic, scene::ProjectionKind::perspective})
+      for (const TransferFunction& function : functions) {
+        const double thickness = std::array{0.05, 1.0, 300.0}[n % 3], accuracy = std::array{1e-3, 1e-2}[n % 2];
+        SCOPED_TRACE(testing::Message() << n++ << ": thickness " << thickness << ", accuracy " << accuracy);
+        expect_promise(*mesh, oblique(kind), small, datasets::scaled(function, thickness), settings_for(accuracy),
+                       {middle - 0.9, middle - 0.31, middle, middle + 0.4});
+      }
+}
+
+TEST(Deep, KeepsItsPromiseForIndependentEmission) {
+  const scene::TetMesh mesh = datasets::cube(6, 0.2);
+  for (const double thickness : {0.0, 0.01, 1.0, 100.0})
+    for (const auto kind : {scene::ProjectionKind::orthographic, scene::ProjectionKind::perspective}) {
+      SCOPED_TRACE(testing::Message() << "thickness " << thickness);
+      expect_promise(mesh, oblique(kind), small, datasets::scaled(datasets::smooth_knots(6), thickness),
+                     settings_for(1e-3, scene::Emission::independent), {middle - 0.5, middle, middle + 0.5});
+    }
+}
+
+TEST(Deep, OneTetWithASharpTransferFunctionIsCutAsFinelyAsItNeeds) {
+  // All of the matter lies in a hundredth of the cell's scalars, and it is thick.
+  const TransferFunction sharp({{0.30, {1, 0, 0}, 0},
+                                {0.31, {0, 1, 0}, 400},
+                                {0.32, {0, 0, 1}, 0},
+                                {0.6, {1, 1, 1}, 0.2},
+                                {0.6, {1, 1, 0}, 30},
+                                {0.9, {0, 1, 1}, 3}});
+  Camera camera;
+  camera.position = {0.31, 0.29, 5};
+  camera.focal_point = {0.31, 0.29, 0};
+  camera.parallel_scale = 0.6;
+  for (const double accuracy : {1e-2, 1e-3, 1e-4})
+    expect_promise(datasets::single_tet(), camera, small, sharp, settings_for(accuracy),
+                   {4.2, 4.5, 4.7, 4.733, 4.8, 4.9, 4.99});
+}
+
+TEST(Deep, OxygenPostCutInItsMiddle) {
+  const std::filesystem::path file =
+      std::filesystem::path(TESSERA_SOURCE_DIR) / "../shared/data/oxygen-post/postxyz.bin";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
+  const scene::TetMesh mesh = io::read_mesh(file).mesh;
+  const ImageSize size{96, 96};
+  const Camera camera = scene::frame_box(scene::bounds(mesh), size);
+  const double centre = glm::length(camera.focal_point - camera.position);
+  const TransferFunction function =
+      datasets::smooth_knots(12, scene::scalar_range(mesh), 6 / scene::mean_thickness(mesh));
+  for (const double accuracy : {1e-3, 1e-2})
+    expect_promise(mesh, camera, size, function, settings_for(accuracy), {centre - 4, centre, centre + 4});
+}
+
+TEST(Deep, GivesTheSameSamplesForAnyThreadsTilesAndMemory) {
+  const scene::TetMesh mesh = datasets::cube(10, 0.2);
+  const ImageSize size{71, 53};
+  const TransferFunction function = datasets::smooth_knots(6);
+  DeepImage expected;
+  const Image image = Renderer(mesh, settings_for(1e-3)).render(oblique(), size, function, nullptr, &expected);
+  const Image alone = Renderer(mesh, settings_for(1e-3)).render(oblique(), size, function);
+  EXPECT_EQ(image.rgba, alone.rgba);  // the picture beside a deep one is the same
+  for (const int threads : {1, 3})
+    for (const int tile : {5, 32, 128})
+      for (const std::uint64_t memory : {64ull << 20, 16ull << 20}) {
+        RenderSettings settings = settings_for(1e-3);
+        settings.threads = threads;
+        settings.tile_size = tile;
+        settings.memory_bytes = memory;
+        DeepImage deep;
+        Renderer(mesh, settings).render(oblique(), size, function, nullptr, &deep);
+        ASSERT_EQ(deep.begin, expected.begin) << threads << " threads, tile " << tile << ", memory " << memory;
+        ASSERT_EQ(std::memcmp(deep.samples.data(), expected.samples.data(),
+                              deep.samples.size() * sizeof(scene::DeepImageSample)),
+                  0);
+      }
+}
+
+TEST(Deep, AnEmptyPictureHasNoSamples) {
+  DeepImage deep;
+  Renderer(scene::TetMesh{}, settings_for(1e-3)).render(oblique(), {9, 7}, datasets::smooth_knots(3), nullptr, &deep);
+  const DeepImage read = written_and_read(deep);
+  EXPECT_EQ(read.begin, std::vector<std::uint64_t>(64, 0));
+}
+
+TEST(Deep, SaysWhatItCannotDo) {
+  const scene::TetMesh mesh = datasets::cube(12, 0.2);
+  const auto attempt = [&](RenderSettings settings, ImageSize size = {8, 8}) {
+    DeepImage deep;
+    try {
+      Renderer(mesh, settings).render(oblique(), size, datasets::smooth_knots(12), nullptr, &deep);
+    } catch (const scene::Error& error) {
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+      return error.code();
+    }
+    return scene::ExitCode::complete;
+  };
+  EXPECT_EQ(attempt(settings_for(1e-3)), scene::ExitCode::complete);
+  RenderSettings settings = settings_for(1e-3);
+  settings.rasterizer = Rasterizer::scanline;
+  EXPECT_EQ(attempt(settings), scene::ExitCode::bad_input);
+  settings = settings_for(1e-3);
+  settings.integrator = {scene::IntegratorKind::sampled, 4};
+  EXPECT_EQ(attempt(settings), scene::ExitCode::bad_input);
+  EXPECT_EQ(attempt(settings_for(0)), scene::ExitCode::bad_input);
+  EXPECT_EQ(attempt(settings_for(NAN)), scene::ExitCode::bad_input);
+  settings = settings_for(1e-6);
+  settings.memory_bytes = 16 << 20;
+  EXPECT_EQ(attempt(settings, {400, 400}), scene::ExitCode::system_failure);
+}
+
+}  // namespace
+}  // namespace tessera::frame
