@@ -13,7 +13,6 @@
 #include "compositor/wire.hpp"
 #include "frame/distributed.hpp"
 #include "projection/segment_tuple.hpp"
-#include "scene/error.hpp"
 #include "scene/trace.hpp"
 
 namespace tessera::apps {
@@ -157,6 +156,7 @@ void RankRun::render() {
   settings.render = options_.settings;
   settings.roles = roles_;
   settings.exchange = options_.exchange;
+  settings.deep = options_.deep;
   settings.frames_in_flight = options_.repeat > 0 ? 1 : options_.frames_in_flight;  // a time is of one frame alone
   settings.tile_seed = options_.tile_seed;
   settings.projecting = trace;
@@ -209,7 +209,7 @@ void RankRun::take(frame::FinishedFrame finished) {
   {
     const scene::TraceScope scope(options_.timing.empty() ? nullptr : &compositing_, "write",
                                   static_cast<std::int32_t>(finished.frame));
-    for (const auto& output : frame.outputs) io::write_image(finished.image, output, options_.image);
+    write_pictures(finished.image, finished.deep, frame, options_);
   }
   FrameRecord record;
   record.camera = jobs_[finished.frame].camera;
@@ -224,8 +224,6 @@ void RankRun::take(frame::FinishedFrame finished) {
 }  // namespace
 
 scene::ExitCode render_on_ranks(const RenderOptions& options, compositor::Transport& transport) {
-  if (options.deep)
-    throw scene::bad_input(".deep.exr: a deep picture is made by one process yet; leave mpirun, or write .exr");
   return RankRun(options, transport).run();
 }
 

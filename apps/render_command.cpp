@@ -12,7 +12,6 @@
 #include "apps/run_output.hpp"
 #include "apps/verify.hpp"
 #include "io/chrome_trace.hpp"
-#include "io/image_deep_exr.hpp"
 #include "scene/trace.hpp"
 
 namespace tessera::apps {
@@ -55,12 +54,7 @@ class Run {
     }
     {
       const scene::TraceScope scope(trace_, "write");
-      for (const auto& output : frame.outputs) {
-        if (io::is_deep_name(output))
-          io::write_deep_exr(deep, output);
-        else
-          io::write_image(image, output, options_.image);
-      }
+      write_pictures(image, deep, frame, options_);
     }
     end_frame();
     if (options_.verify > 0) {

@@ -203,8 +203,8 @@ RenderOptions render_options(const RenderWords& words) {
   if (!words.projectors.empty()) options.projectors = parse_count("--projectors", words.projectors, 1, no_limit);
   if (!words.compositors.empty()) options.compositors = parse_count("--compositors", words.compositors, 1, no_limit);
   if (!words.exchange.empty()) check_word("--exchange", words.exchange, {"runs", "segments"});
-  if (words.exchange.empty() && options.settings.rasterizer == frame::Rasterizer::scanline)
-    options.exchange = frame::Exchange::segments;  // its segments do not touch
+  if (words.exchange.empty() && (options.settings.rasterizer == frame::Rasterizer::scanline || options.deep))
+    options.exchange = frame::Exchange::segments;  // the paper's do not touch; deep samples are cut within segments
   if (words.exchange == "segments") options.exchange = frame::Exchange::segments;
   check_word("--partition", words.partition, {"curve", "file", "random"});
   if (words.partition == "file") options.partition.kind = projection::PartitionKind::file;

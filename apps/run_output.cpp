@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "io/atomic_file.hpp"
+#include "io/image_deep_exr.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -77,6 +78,16 @@ scene::ExitCode RunOutput::finish() {
   report_["frames"] = frame_reports_;
   if (!options_.report.empty()) write_json(report_, options_.report);
   return met_ ? scene::ExitCode::complete : scene::ExitCode::accuracy_not_met;
+}
+
+void write_pictures(const scene::Image& image, const scene::DeepImage& deep, const Frame& frame,
+                    const RenderOptions& options) {
+  for (const auto& output : frame.outputs) {
+    if (io::is_deep_name(output))
+      io::write_deep_exr(deep, output);
+    else
+      io::write_image(image, output, options.image);
+  }
 }
 
 io::TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const Frame& frame, std::size_t rendered) {

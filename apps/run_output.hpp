@@ -44,6 +44,10 @@ class RunOutput {
   std::size_t done_ = 0, rendered_ = 0;
 };
 
+/// Writes a frame's pictures, deep ones from `deep`.
+void write_pictures(const scene::Image& image, const scene::DeepImage& deep, const Frame& frame,
+                    const RenderOptions& options);
+
 /// What a trace says of the run it is of.
 io::TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const Frame& frame, std::size_t rendered);
 

@@ -9,16 +9,24 @@
 
 namespace tessera::compositor {
 
-/// Gathers the deep samples of a picture, rectangle by rectangle in any order and from any thread.
-class DeepCollector {
+/// Takes deep samples, rectangle by rectangle.
+class DeepTarget {
+ public:
+  virtual ~DeepTarget() = default;
+  /// The samples of a rectangle, pixel after pixel row by row, `counts` of them in each. Rectangles are disjoint.
+  virtual void add(const projection::PixelRect& rect, std::vector<std::uint32_t> counts,
+                   std::vector<scene::DeepImageSample> samples) = 0;
+};
+
+/// Gathers the deep samples of a picture, rectangles in any order and from any thread.
+class DeepCollector final : public DeepTarget {
  public:
   /// `most_bytes` bounds what the samples take, the moment in which image() orders them included.
   DeepCollector(scene::ImageSize size, std::uint64_t most_bytes) : size_(size), most_bytes_(most_bytes) {}
 
-  /// The samples of a rectangle, pixel after pixel row by row, `counts` of them in each. Rectangles are disjoint.
   /// Throws Error(system_failure) beyond the bound.
   void add(const projection::PixelRect& rect, std::vector<std::uint32_t> counts,
-           std::vector<scene::DeepImageSample> samples);
+           std::vector<scene::DeepImageSample> samples) override;
 
   /// The picture; the collector is empty then. Pixels that got none have no samples.
   scene::DeepImage image();

@@ -41,7 +41,7 @@ void append_tidy(std::span<const DeepSample> samples, std::vector<scene::DeepIma
 
 DeepSink::DeepSink(const projection::PixelSpace& space, const SegmentIntegrator& integrator,
                    const scene::TransferFunction& function, double longest_ray, scene::Emission emission,
-                   double accuracy, DeepCollector& collector)
+                   double accuracy, DeepTarget& collector)
     : space_(&space),
       integrator_(&integrator),
       cutter_(function, emission, accuracy),

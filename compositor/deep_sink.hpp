@@ -20,7 +20,7 @@ class DeepSink final : public TileSink {
   /// `integrator`, `space` and `collector` must outlive this object; threads share the collector.
   DeepSink(const projection::PixelSpace& space, const SegmentIntegrator& integrator,
            const scene::TransferFunction& function, double longest_ray, scene::Emission emission, double accuracy,
-           DeepCollector& collector);
+           DeepTarget& collector);
 
   void start(const projection::PixelRect& rect) override;
   void take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) override;
@@ -39,7 +39,7 @@ class DeepSink final : public TileSink {
   const SegmentIntegrator* integrator_;
   PieceCutter cutter_;
   double accuracy_, left_out_per_transmittance_, termination_error_;
-  DeepCollector* collector_;
+  DeepTarget* collector_;
   projection::PixelRect rect_{0, 0, 0, 0};
   std::vector<DeepMerger> mergers_;  ///< one a pixel
   std::vector<double> transmittance_before_, length_per_depth_;

@@ -15,17 +15,39 @@ scene::Error malformed(int from) {
           fmt::format("assembly: rank {} sent malformed tiles; run one version of the program on all machines", from)};
 }
 
+/// A tile's deep samples, if it has any.
+void take_deep(RecordReader& reader, const projection::PixelRect& rect, DeepCollector* to) {
+  const auto count = reader.take<std::uint64_t>();
+  if (count == 0) return;
+  std::vector<std::uint32_t> counts(static_cast<std::size_t>(rect.area()));
+  std::vector<scene::DeepImageSample> samples(count);
+  const auto fill = [&](auto& values) {
+    const auto bytes = std::as_writable_bytes(std::span(values));
+    std::ranges::copy(reader.take_bytes(bytes.size()), bytes.begin());
+  };
+  fill(counts);
+  fill(samples);
+  if (to != nullptr) to->add(rect, std::move(counts), std::move(samples));
+}
+
 }  // namespace
 
 TileSender::TileSender(Transport& transport, int assembler, std::uint32_t frame)
     : transport_(transport), assembler_(assembler), frame_(frame) {}
 
-void TileSender::send(std::uint32_t tile, const scene::Image& pixels) {
+void TileSender::send(std::uint32_t tile, const MergedTile& merged) {
   const std::lock_guard lock(mutex_);
   append(body_, std::uint64_t{tile});
-  for (const auto* floats : {&pixels.rgba, &pixels.depth}) {
-    const auto bytes = std::as_bytes(std::span(*floats));
+  const auto append_all = [&](const auto& values) {
+    const auto bytes = std::as_bytes(std::span(values));
     body_.insert(body_.end(), bytes.begin(), bytes.end());
+  };
+  append_all(merged.image.rgba);
+  append_all(merged.image.depth);
+  append(body_, std::uint64_t{merged.deep_samples.size()});
+  if (!merged.deep_samples.empty()) {
+    append_all(merged.deep_counts);
+    append_all(merged.deep_samples);
   }
   ++tiles_;
   if (body_.size() >= message_bytes) flush();
@@ -50,8 +72,9 @@ void TileSender::end(const FrameEnd& sums) {
   transport_.send(assembler_, Channel::tiles, std::move(message), static_cast<std::int32_t>(frame_));
 }
 
-ImageAssembly::ImageAssembly(int compositors, std::function<projection::TileGrid(std::uint32_t)> grid_of)
-    : compositors_(compositors), grid_of_(std::move(grid_of)) {}
+ImageAssembly::ImageAssembly(int compositors, std::function<projection::TileGrid(std::uint32_t)> grid_of,
+                             std::uint64_t deep_bytes)
+    : compositors_(compositors), grid_of_(std::move(grid_of)), deep_bytes_(deep_bytes) {}
 
 std::optional<AssembledFrame> ImageAssembly::accept(const Message& message, int self) {
   RecordReader reader(message.bytes);
@@ -66,6 +89,7 @@ std::optional<AssembledFrame> ImageAssembly::accept(const Message& message, int 
   if (is_new) {
     frame.grid = grid_of_(header.frame);
     frame.image = scene::Image(frame.grid.image);
+    if (deep_bytes_ > 0) frame.deep = std::make_unique<DeepCollector>(frame.grid.image, deep_bytes_);
   }
   for (std::uint32_t i = 0; i < header.tiles; ++i) {
     const auto tile = reader.take<std::uint64_t>();
@@ -79,11 +103,13 @@ std::optional<AssembledFrame> ImageAssembly::accept(const Message& message, int 
       std::memcpy(&frame.image.rgba[4 * to], rgba.data() + from * 4 * sizeof(float), width * 4 * sizeof(float));
       std::memcpy(&frame.image.depth[to], depth.data() + from * sizeof(float), width * sizeof(float));
     }
+    take_deep(reader, rect, frame.deep.get());
   }
   if (header.ends == 0) return std::nullopt;
   frame.sums = sum(frame.sums, reader.take<FrameEnd>());
   if (++frame.ended < compositors_) return std::nullopt;
-  AssembledFrame assembled{header.frame, std::move(frame.image), frame.sums};
+  AssembledFrame assembled{header.frame, std::move(frame.image), frame.sums, {}};
+  if (frame.deep != nullptr) assembled.deep = frame.deep->image();
   frames_.erase(at);
   return assembled;
 }

@@ -2,9 +2,12 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 
+#include "compositor/deep_collector.hpp"
+#include "compositor/tile_merger.hpp"
 #include "compositor/wire.hpp"
 #include "projection/tile_lists.hpp"
 #include "scene/image.hpp"
@@ -14,7 +17,9 @@
 ///
 /// On channel `tiles`, little endian, version as in wire.hpp:
 ///   TilesHeader; `tiles` times: a 32-bit tile number, 32 bits of zero, RGBA floats of its pixels row by row, depth
-///   floats; then, where `ends` is 1, FrameEnd: the sender has no more tiles of the frame.
+///   floats, the 64-bit number of deep samples in the tile, and if that is not 0 their 32-bit number in each pixel and
+///   the samples (scene::DeepImageSample); then, where `ends` is 1, FrameEnd: the sender has no more tiles of the
+///   frame.
 namespace tessera::compositor {
 
 struct TilesHeader {
@@ -30,7 +35,7 @@ static_assert(sizeof(TilesHeader) == 16);
 class TileSender {
  public:
   TileSender(Transport& transport, int assembler, std::uint32_t frame);
-  void send(std::uint32_t tile, const scene::Image& pixels);
+  void send(std::uint32_t tile, const MergedTile& merged);
   void end(const FrameEnd& sums);
 
  private:
@@ -49,13 +54,15 @@ struct AssembledFrame {
   std::uint32_t frame;
   scene::Image image;
   FrameEnd sums;
+  scene::DeepImage deep;  ///< if asked for
 };
 
 /// Puts pictures together on the first compositor. Frames complete in order.
 class ImageAssembly {
  public:
-  /// `grid_of(frame)`: the frame's tiles.
-  ImageAssembly(int compositors, std::function<projection::TileGrid(std::uint32_t)> grid_of);
+  /// `grid_of(frame)`: the frame's tiles. `deep_bytes`: bound of a deep picture's samples; 0: no deep pictures.
+  ImageAssembly(int compositors, std::function<projection::TileGrid(std::uint32_t)> grid_of,
+                std::uint64_t deep_bytes = 0);
 
   /// Takes a message of channel `tiles`; the frame that it completes, if any.
   std::optional<AssembledFrame> accept(const Message& message, int self);
@@ -66,9 +73,11 @@ class ImageAssembly {
     projection::TileGrid grid;
     FrameEnd sums{};
     int ended = 0;
+    std::unique_ptr<DeepCollector> deep;
   };
   int compositors_;
   std::function<projection::TileGrid(std::uint32_t)> grid_of_;
+  std::uint64_t deep_bytes_;
   std::map<std::uint32_t, Frame> frames_;
 };
 

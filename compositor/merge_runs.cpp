@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "compositor/merge_kinds.hpp"
@@ -49,7 +50,7 @@ class RunMerger final : public TileMerger {
     std::erase_if(runs_, [&](const RunRecord& run) { return run.front < final_depth; });
   }
 
-  scene::Image finish() override {
+  MergedTile finish() override {
     scene::Image image({rect_.x1 - rect_.x0, rect_.y1 - rect_.y0});
     for (std::size_t i = 0; i < pixels_.size(); ++i) {
       const Pixel& pixel = pixels_[i];
@@ -59,7 +60,7 @@ class RunMerger final : public TileMerger {
       image.rgba[4 * i + 3] = static_cast<float>(-std::expm1(-pixel.optical_depth));
       image.depth[i] = static_cast<float>(pixel.first_depth);
     }
-    return image;
+    return {std::move(image), {}, {}};
   }
 
  private:

@@ -1,9 +1,14 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
 
+#include "compositor/deep_sink.hpp"
 #include "compositor/merge_kinds.hpp"
 #include "compositor/tile_pixels.hpp"
+#include "compositor/two_sinks.hpp"
 #include "projection/ray_segments.hpp"
 #include "sorting/pixel_lists.hpp"
 
@@ -20,9 +25,14 @@ class SegmentMerger : public TileMerger {
         rect_(rect),
         key_(key),
         image_({rect.x1 - rect.x0, rect.y1 - rect.y0}),
-        pixels_(*context.space, *context.integrator, context.max_color, context.longest_ray, context.emission,
-                {&image_, rect.x0, rect.y0}) {
-    pixels_.start(rect);
+        sink_(std::make_unique<TilePixels>(*context.space, *context.integrator, context.max_color, context.longest_ray,
+                                           context.emission, ImageWindow{&image_, rect.x0, rect.y0})) {
+    if (context.deep_accuracy > 0)
+      sink_ = std::make_unique<TwoSinks>(
+          std::move(sink_),
+          std::make_unique<DeepSink>(*context.space, *context.integrator, *context.function, context.longest_ray,
+                                     context.emission, context.deep_accuracy, deep_));
+    sink_->start(rect);
   }
 
   void add(const TilePart& part) override {
@@ -49,17 +59,17 @@ class SegmentMerger : public TileMerger {
 
   void advance(double final_depth) override {
     lists_.sort(segments_, static_cast<std::size_t>(rect_.area()), key_);
-    pixels_.take(segments_, lists_, final_depth);
+    sink_->take(segments_, lists_, final_depth);
     const std::vector<double>& depth = key_ == Key::front ? segments_.front : segments_.back;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < segments_.size; ++i)
-      if (!(depth[i] < final_depth) && pixels_.open(segments_.pixel(i))) segments_.move(i, kept++);
+      if (!(depth[i] < final_depth) && sink_->open(segments_.pixel(i))) segments_.move(i, kept++);
     segments_.size = kept;
   }
 
-  scene::Image finish() override {
-    pixels_.finish();
-    return std::move(image_);
+  MergedTile finish() override {
+    sink_->finish();
+    return {std::move(image_), std::move(deep_.counts), std::move(deep_.samples)};
   }
 
  protected:
@@ -89,7 +99,17 @@ class SegmentMerger : public TileMerger {
   projection::PixelRect rect_;
   Key key_;
   scene::Image image_;
-  TilePixels pixels_;
+  /// The samples of the tile, which DeepSink gives all at once.
+  struct Deep final : DeepTarget {
+    void add(const projection::PixelRect&, std::vector<std::uint32_t> c,
+             std::vector<scene::DeepImageSample> s) override {
+      counts = std::move(c);
+      samples = std::move(s);
+    }
+    std::vector<std::uint32_t> counts;
+    std::vector<scene::DeepImageSample> samples;
+  } deep_;
+  std::unique_ptr<TileSink> sink_;
   projection::RaySegments segments_;
   sorting::PixelLists lists_;
 };

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "compositor/segment_integrator.hpp"
 #include "compositor/wire.hpp"
 #include "projection/footprint.hpp"
 #include "projection/pixel_space.hpp"
+#include "scene/deep_image.hpp"
 #include "scene/image.hpp"
+#include "scene/transfer_function.hpp"
 
 namespace tessera::compositor {
 
@@ -17,7 +20,17 @@ struct MergeContext {
   double max_color, longest_ray;
   float longest_edge;  ///< tuples: the unit of their lengths
   scene::Emission emission;
-  std::uint64_t budget_bytes;  ///< for one tile's fragments that cannot be composited yet
+  std::uint64_t budget_bytes;                         ///< for one tile's fragments that cannot be composited yet
+  const scene::TransferFunction* function = nullptr;  ///< with deep samples
+  double deep_accuracy = 0;                           ///< > 0: raw segments give deep samples too (deep_sink.hpp)
+};
+
+/// A finished tile.
+struct MergedTile {
+  scene::Image image;  ///< its first pixel at (0, 0)
+  /// Deep samples, row by row: how many in each pixel, and all of them. Empty without.
+  std::vector<std::uint32_t> deep_counts;
+  std::vector<scene::DeepImageSample> deep_samples;
 };
 
 /// One tile of the picture from the fragments of all projectors.
@@ -35,8 +48,8 @@ class TileMerger {
   /// Composites all fragments before this planar depth: no fragment may still come before it.
   virtual void advance(double final_depth) = 0;
 
-  /// The finished tile, its first pixel at (0, 0); after advance(infinity).
-  virtual scene::Image finish() = 0;
+  /// After advance(infinity).
+  virtual MergedTile finish() = 0;
 };
 
 /// Adds parts that are ordered by start_depth and advances to `final_depth`, in steps that stay well within a merger's

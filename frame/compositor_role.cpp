@@ -191,7 +191,8 @@ class CompositorLoop {
         if (merge.merger == nullptr && !waiting.parts.empty())
           merge.merger = make_tile_merger(waiting.parts.front().kind,
                                           {&of.space, &of.integrator, run_.function.max_color(), longest_ray,
-                                           longest_edge, run_.settings.render.emission, budget_.tile},
+                                           longest_edge, run_.settings.render.emission, budget_.tile, &run_.function,
+                                           run_.settings.deep ? run_.settings.render.deep_accuracy : 0},
                                           of.grid.rect(tile));
         if (merge.merger != nullptr) compositor::merge(*merge.merger, waiting.parts, waiting.final_depth, budget_.tile);
         // A tile that got nothing stays as empty as the assembled picture is.
@@ -221,9 +222,12 @@ void run_compositor(const DistributedRun& run) { CompositorLoop(run).loop(); }
 void run_assembler(const DistributedRun& run, const std::function<void(FinishedFrame)>& done) {
   const DistributedSettings& settings = run.settings;
   const compositor::SegmentIntegrator integrator(run.function, settings.render.integrator, settings.render.emission);
-  compositor::ImageAssembly assembly(static_cast<int>(settings.roles.compositors.size()), [&](std::uint32_t frame) {
-    return projection::TileGrid{run.jobs[frame].size, settings.render.tile_size};
-  });
+  compositor::ImageAssembly assembly(
+      static_cast<int>(settings.roles.compositors.size()),
+      [&](std::uint32_t frame) {
+        return projection::TileGrid{run.jobs[frame].size, settings.render.tile_size};
+      },
+      settings.deep ? settings.render.memory_bytes / 2 : 0);
   auto last = run.start;
   for (std::size_t left = 0; left < run.jobs.size();) {
     compositor::Message message = [&] {
@@ -237,7 +241,7 @@ void run_assembler(const DistributedRun& run, const std::function<void(FinishedF
     }
     if (!assembled) continue;
     for (const int projector : settings.roles.projectors) run.transport.send(projector, Channel::frames, {});
-    FinishedFrame finished{assembled->frame, std::move(assembled->image), {}, 0};
+    FinishedFrame finished{assembled->frame, std::move(assembled->image), std::move(assembled->deep), {}, 0};
     const auto now = std::chrono::steady_clock::now();
     finished.frame_ms = std::chrono::duration<double, std::milli>(now - std::exchange(last, now)).count();
     const compositor::FrameEnd& sums = assembled->sums;
@@ -255,6 +259,7 @@ void run_assembler(const DistributedRun& run, const std::function<void(FinishedF
     statistics.fragments = sums.fragments;
     statistics.exchange_bytes = sums.bytes;
     statistics.exchange_messages = sums.messages;
+    statistics.deep_samples = finished.deep.samples.size();
     statistics.instruction_set = projection::instruction_set();
     statistics.integrator = integrator.name();
     ++left;

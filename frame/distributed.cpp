@@ -56,6 +56,9 @@ void render_distributed(compositor::Transport& transport, const DistributedSetti
     throw scene::bad_input(fmt::format("--frames-in-flight {}: it must be at least 1", settings.frames_in_flight));
   if (settings.render.rasterizer == Rasterizer::scanline && settings.exchange == Exchange::runs)
     throw scene::bad_input("--exchange runs: segments of --rasterizer scanline do not touch; use --exchange segments");
+  if (settings.deep && settings.exchange == Exchange::runs)
+    throw scene::bad_input("--exchange runs: a deep picture needs the segments that runs are made of; use segments");
+  if (settings.deep) check_deep(settings.render, function);
   const int self = transport.rank();
   std::optional<LoadedMesh> loaded;
   if (!jobs.empty()) {

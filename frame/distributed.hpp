@@ -22,6 +22,7 @@ struct DistributedSettings {
   RenderSettings render;  ///< `memory_bytes` and `threads` are each rank's; `trace` is not used
   Roles roles;
   Exchange exchange = Exchange::runs;
+  bool deep = false;                    ///< deep pictures too (Renderer::render); they need raw segments
   int frames_in_flight = 2;             ///< frames a projector may be ahead of the assembled picture, at least 1
   std::uint64_t tile_seed = 1;          ///< of the tile map
   scene::Trace* projecting = nullptr;   ///< face of this rank's trace for its projector; null: no timing
@@ -47,6 +48,7 @@ struct ProjectorMesh {
 struct FinishedFrame {
   std::size_t frame;
   scene::Image image;
+  scene::DeepImage deep;       ///< if asked for
   FrameStatistics statistics;  ///< of all ranks
   double frame_ms;             ///< since the frame before it was complete, or since all ranks were ready
 };

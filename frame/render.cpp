@@ -15,20 +15,17 @@
 #include "scene/error.hpp"
 
 namespace tessera::frame {
-namespace {
-
-void check_deep(const RenderSettings& settings, const compositor::SegmentIntegrator& integrator) {
+void check_deep(const RenderSettings& settings, const scene::TransferFunction& function) {
   if (!(settings.deep_accuracy >= 1e-6 && settings.deep_accuracy <= 1))
     throw scene::bad_input(fmt::format("--deep-accuracy {}: it must be 1e-6 to 1", settings.deep_accuracy));
   if (settings.rasterizer != Rasterizer::planes)
     throw scene::bad_input("deep picture: --rasterizer scanline leaves gaps and overlaps in depth; use planes");
+  const compositor::SegmentIntegrator integrator(function, settings.integrator, settings.emission);
   if (integrator.name() != "exact")
     throw scene::bad_input(
         fmt::format("deep picture: --integrator {} gives a segment other light than its parts; use exact or auto",
                     integrator.name()));
 }
-
-}  // namespace
 
 struct Renderer::State {
   State(const scene::TetMesh& mesh, const RenderSettings& s) : settings(s), projector(mesh, s) {}
@@ -57,7 +54,7 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   const double longest_ray = state_->projector.diagonal();
   std::optional<compositor::DeepCollector> collector;
   if (deep != nullptr) {
-    check_deep(settings, integrator);
+    check_deep(settings, transfer_function);
     task.kept_bytes = settings.memory_bytes / 2;
     collector.emplace(size, task.kept_bytes);
   }
@@ -79,7 +76,6 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
     counted.deep_samples = deep->samples.size();
   }
   if (statistics != nullptr) *statistics = counted;
-
   return image;
 }
 

@@ -80,4 +80,7 @@ class Renderer {
   std::unique_ptr<State> state_;
 };
 
+/// Throws Error(bad_input) where deep pictures cannot be made with these settings.
+void check_deep(const RenderSettings& settings, const scene::TransferFunction& function);
+
 }  // namespace tessera::frame
