@@ -45,6 +45,16 @@ TEST_F(Mpirun, RawSegmentsGiveTheBytesOfOneProcessForEveryPartitionAndShape) {
   }
 }
 
+TEST_F(Mpirun, ADeepPictureHasTheBytesOfOneProcess) {
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  ASSERT_EQ(tessera({"render", mesh, "-o", folder / "one.deep.exr", "--size", "50x40", "--quiet"}).status, 0);
+  const Outcome outcome =
+      mpirun(3, {"render", mesh, "-o", folder / "ranks.deep.exr", "--size", "50x40", "--quiet", "--projectors", "2"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(contents(folder / "ranks.deep.exr"), contents(folder / "one.deep.exr"));
+}
+
 TEST_F(Mpirun, RunsMeetTheReferenceAndTheReportSaysTheJobsShape) {
   const Folder folder;
   const Outcome outcome = mpirun(4, {"render", folder.cube(), "-o", folder / "a.exr", "--size", "64x64", "--threads",
