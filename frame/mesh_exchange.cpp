@@ -43,7 +43,7 @@ std::vector<std::uint64_t> gather_rows(Transport& transport, const std::vector<s
       throw scene::Error(scene::ExitCode::system_failure,
                          "ranks disagree on the number of projectors; run one program");
     table.resize(table.size() + row.size());
-    std::memcpy(table.data() + table.size() - row.size(), bytes.data(), size);
+    if (size > 0) std::memcpy(table.data() + table.size() - row.size(), bytes.data(), size);
   }
   return table;
 }

@@ -30,7 +30,7 @@ std::vector<std::uint64_t> reduce_all(compositor::Transport& transport, std::vec
   if (transport.rank() != 0) {
     transport.send(0, Channel::agreement, bytes_of());
     const Bytes result = take();
-    std::memcpy(values.data(), result.data(), size);
+    if (size > 0) std::memcpy(values.data(), result.data(), size);
     return values;
   }
   for (int others = transport.size() - 1; others > 0; --others) {
