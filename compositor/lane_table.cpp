@@ -1,0 +1,103 @@
+#include "compositor/lane_table.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace tessera::compositor {
+namespace {
+
+constexpr double scalar_limit = 0x1p30;
+constexpr double largest_number = 1e18;
+
+double channel_of(const scene::Knot& knot, int channel) {
+  return channel == 0 ? knot.extinction : knot.color[channel - 1];
+}
+
+/// What a ray meets at one position, coming from below and going on above: the two differ at a step.
+struct Place {
+  double position;
+  scene::Knot below, above;
+};
+
+std::vector<Place> places_of(const scene::TransferFunction& function, double origin, double unit) {
+  std::vector<Place> places;
+  const auto add = [&](double position, const scene::Knot& knot) {
+    if (places.empty() || places.back().position < position)
+      places.push_back({position, knot, knot});
+    else
+      places.back().above = knot;
+  };
+  const auto knots = function.knots();
+  const auto position = [&](const scene::Knot& knot) { return (knot.value - origin) / unit; };
+  // Knots out of reach: the function's value at the end of the range stands for them.
+  if (position(knots.front()) < -scalar_limit) add(-scalar_limit, function.evaluate(origin - scalar_limit * unit));
+  for (const scene::Knot& knot : knots)
+    if (std::abs(position(knot)) <= scalar_limit) add(lane_scalar(knot.value, origin, unit), knot);
+  if (position(knots.back()) > scalar_limit) add(scalar_limit, function.evaluate(origin + scalar_limit * unit));
+  return places;
+}
+
+float bounded(double x) { return static_cast<float>(std::clamp(x, -largest_number, largest_number)); }
+
+}  // namespace
+
+float lane_scalar(double value, double scalar_origin, double scalar_unit) {
+  const double n = std::nearbyint((value - scalar_origin) / scalar_unit);
+  return static_cast<float>(static_cast<std::int32_t>(std::clamp(n, -scalar_limit, scalar_limit)));
+}
+
+LaneTable::LaneTable(const scene::TransferFunction& function, double scalar_origin, double scalar_unit,
+                     double length_unit, scene::Emission emission_)
+    : emission(emission_), has_clear(false) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const std::vector<Place> places = places_of(function, scalar_origin, scalar_unit);
+  knot_count = places.size();
+  stride = knot_count + 2 + padding;
+  rows.assign(column_count * stride, 0.0f);
+  float* const edges = &rows[edge * stride];
+  std::fill(edges, edges + stride, infinity);
+  edges[0] = -infinity;
+  for (std::size_t i = 0; i < knot_count; ++i) edges[i + 1] = static_cast<float>(places[i].position);
+
+  for (std::size_t i = 0; i <= knot_count; ++i) {
+    const Place &first = places[i == 0 ? 0 : i - 1], &second = places[i == knot_count ? i - 1 : i];
+    const scene::Knot& low = i == 0 ? first.below : first.above;
+    const scene::Knot& high = i == knot_count ? second.above : second.below;
+    const double width = second.position - first.position;
+    const auto emits = [&](const scene::Knot& knot) {
+      return knot.extinction > 0 ||
+             (emission == scene::Emission::independent && std::max({knot.color.x, knot.color.y, knot.color.z}) > 0);
+    };
+    has_clear = has_clear || !(emits(low) || emits(high));
+    const bool from_low = low.extinction <= high.extinction;
+    rows[base * stride + i] = static_cast<float>(from_low ? first.position : second.position);
+    for (int c = 0; c < 4; ++c) {
+      const double unit = c == 0 ? 0.5 * length_unit : emission == scene::Emission::independent ? length_unit : 1.0;
+      const double start = bounded(channel_of(low, c) * unit), end = bounded(channel_of(high, c) * unit);
+      rows[static_cast<std::size_t>(half_extinction + 2 * c) * stride + i] = static_cast<float>(from_low ? start : end);
+      rows[static_cast<std::size_t>(half_extinction_slope + 2 * c) * stride + i] =
+          width > 0 ? static_cast<float>((end - start) / width) : 0.0f;
+    }
+  }
+
+  // About four cells a knot: evenly spread knots then have a cell of their own.
+  const float* const knots = edges + 1;
+  const std::size_t cells = std::bit_ceil(4 * knot_count);
+  const float width = knots[knot_count - 1] - knots[0];
+  grid_origin = knots[0];
+  grid_scale = width > 0 ? static_cast<float>(cells) / width : 0.0f;
+  last_cell = static_cast<float>(cells - 1);
+  std::vector<std::size_t> in_cell(cells, 0);
+  for (std::size_t i = 0; i < knot_count; ++i)
+    ++in_cell[static_cast<std::size_t>(std::clamp((knots[i] - grid_origin) * grid_scale, 0.0f, last_cell))];
+  std::size_t before = 0;
+  for (const std::size_t n : in_cell) {
+    knots_before.push_back(static_cast<std::int32_t>(before));
+    before += n;
+  }
+  largest_step = std::bit_floor(*std::max_element(in_cell.begin(), in_cell.end()));
+}
+
+}  // namespace tessera::compositor
