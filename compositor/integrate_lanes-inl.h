@@ -284,13 +284,11 @@ HWY_INLINE Light integrate_lanes(const Lookup<form>& table, VF length, VF front,
   const auto index = table.index(walk.interval, active);
   const VF end = walk.target(table, index), span = HN::Sub(end, front);
   walk.active = HN::And(active, HN::Ne(end, back));
-  // Most segments lie in one interval, so the first piece does without the division and blends of the others.
-  if (HN::AllFalse(d, walk.active)) {
-    lanes::add_piece<true>(table, index, front, end, span, length, so_far);
-  } else {
-    walk.length_per_scalar = HN::Div(length, HN::IfThenElse(walk.active, HN::Sub(back, front), one));
-    const VF piece = HN::IfThenElse(walk.active, HN::Mul(span, walk.length_per_scalar), length);
-    lanes::add_piece<true>(table, index, front, end, span, piece, so_far);
+  // What a level segment's division gives is not used.
+  walk.length_per_scalar = HN::Div(length, HN::Sub(back, front));
+  const VF piece = HN::IfThenElse(walk.active, HN::Mul(span, walk.length_per_scalar), length);
+  lanes::add_piece<true>(table, index, front, end, span, piece, so_far);
+  if (!HN::AllFalse(d, walk.active)) {
     walk.scalar = end;
     walk.active = HN::And(walk.active, HN::Lt(so_far.optical_depth, HN::Set(d, lanes::opaque_depth)));
     walk.go_on(table, lanes::pieces_a_fold, so_far);
