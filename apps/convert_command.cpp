@@ -29,7 +29,7 @@ void write_mesh(const scene::TetMesh& mesh, const std::filesystem::path& output)
 
 namespace {
 
-const char* word(projection::PartitionKind kind) {
+const char* order_words(projection::PartitionKind kind) {
   switch (kind) {
     case projection::PartitionKind::file:
       return "file order";
@@ -98,7 +98,7 @@ void convert(const std::filesystem::path& input, const std::filesystem::path& ou
   if (!quiet)
     fmt::print(stderr, "{}: {}; field {} written to {}{}\n", input.string(), cells_line(file.counts),
                file.mesh.field_name, output.string(),
-               pieces ? fmt::format(" and {} pieces ({}{})", pieces->count, word(pieces->partition.kind),
+               pieces ? fmt::format(" and {} pieces ({}{})", pieces->count, order_words(pieces->partition.kind),
                                     pieces->partition.kind == projection::PartitionKind::random
                                         ? fmt::format(", seed {}", pieces->partition.seed)
                                         : "")

@@ -27,10 +27,14 @@ function(tessera_library name)
   target_link_libraries(tessera_${name} PUBLIC ${ARG_LINK} PRIVATE tessera_warnings ${ARG_PRIVATE_LINK})
 endfunction()
 
-# tessera_test(NAME SOURCES ... LINK ...): a GoogleTest program, registered test by test.
+# tessera_test(NAME [UNITY] SOURCES ... LINK ...): a GoogleTest program, registered test by test. UNITY: its sources name
+# their helpers differently, so that a unity build (the preset sanitize) may compile several at once.
 function(tessera_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "UNITY" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
+  if(NOT ARG_UNITY)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
+  endif()
   target_link_libraries(${name} PRIVATE tessera_warnings ${ARG_LINK} GTest::gtest GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${CMAKE_SOURCE_DIR}/tests)
   target_compile_definitions(${name} PRIVATE TESSERA_SOURCE_DIR="${CMAKE_SOURCE_DIR}")

@@ -17,7 +17,7 @@
 namespace tessera::frame {
 namespace {
 
-int thread_count(int asked) { return asked > 0 ? asked : tbb::info::default_concurrency(); }
+int cores_or(int asked) { return asked > 0 ? asked : tbb::info::default_concurrency(); }
 
 const RenderSettings& checked(const RenderSettings& settings) {
   if (settings.threads < 0 || settings.threads > 4096)
@@ -52,10 +52,9 @@ std::uint64_t segment_budget(const RenderSettings& settings, std::uint64_t held,
 
 FrameProjector::FrameProjector(const scene::TetMesh& mesh, const RenderSettings& settings)
     : settings_(checked(settings)),
-      parallelism_(
-          tbb::global_control::max_allowed_parallelism,
-          static_cast<std::size_t>(std::max(thread_count(settings.threads), tbb::info::default_concurrency()))),
-      arena_(thread_count(settings.threads)),
+      parallelism_(tbb::global_control::max_allowed_parallelism,
+                   static_cast<std::size_t>(std::max(cores_or(settings.threads), tbb::info::default_concurrency()))),
+      arena_(cores_or(settings.threads)),
       prepared_(arena_.execute([&] {
         const scene::TraceScope timing(settings.trace, "prepare");
         return projection::PreparedMesh(mesh);

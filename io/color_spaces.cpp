@@ -28,13 +28,13 @@ const glm::dmat3& rgb_from_xyz() {
 }
 
 /// XYZ of (1, 1, 1): D65, and the reason why greys have a* = b* = 0 exactly.
-dvec3 white() { return xyz_from_rgb() * dvec3(1); }
+dvec3 display_white() { return xyz_from_rgb() * dvec3(1); }
 
 double lab_curve(double t) { return t > 0.008856 ? std::cbrt(t) : 7.787 * t + 16.0 / 116; }
 double lab_curve_inverse(double f) { return f * f * f > 0.008856 ? f * f * f : (f - 16.0 / 116) / 7.787; }
 
 dvec3 lab_from_display(const dvec3& display) {
-  const dvec3 xyz = xyz_from_rgb() * decode_srgb(display) / white();
+  const dvec3 xyz = xyz_from_rgb() * decode_srgb(display) / display_white();
   const dvec3 f{lab_curve(xyz.x), lab_curve(xyz.y), lab_curve(xyz.z)};
   return {116 * f.y - 16, 500 * (f.x - f.y), 200 * (f.y - f.z)};
 }
@@ -42,7 +42,7 @@ dvec3 lab_from_display(const dvec3& display) {
 dvec3 display_from_lab(const dvec3& lab) {
   const double y = (lab.x + 16) / 116;
   const dvec3 xyz{lab_curve_inverse(lab.y / 500 + y), lab_curve_inverse(y), lab_curve_inverse(y - lab.z / 200)};
-  const dvec3 display = encode_srgb(rgb_from_xyz() * (xyz * white()));
+  const dvec3 display = encode_srgb(rgb_from_xyz() * (xyz * display_white()));
   const double largest = std::max({1.0, display.x, display.y, display.z});
   return glm::max(display / largest, dvec3(0));
 }

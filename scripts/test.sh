@@ -24,7 +24,7 @@ build_and_test() {  # build_and_test PRESET
 stage format scripts/lint.sh format
 stage release build_and_test release
 stage sanitize build_and_test sanitize
-if [ "${CI:-}" = true ]; then stage fuzz scripts/fuzz.sh; fi
+if [ "${CI:-}" = true ]; then stage fuzz scripts/fuzz.sh 20; fi
 
 # ctest's own closing lines once more, last, where they are found.
 for preset in sanitize release; do

@@ -35,7 +35,7 @@ class Thread {
   double now_;
 };
 
-void project(Trace& trace, int frame, double begin, double frame_ms) {
+void project_frame(Trace& trace, int frame, double begin, double frame_ms) {
   for (std::uint32_t number = 0; number < 2; ++number) {
     Thread thread(trace, number, frame, begin + (number == 0 ? 0 : 10));
     if (number == 0) thread.span("transform", 10, 10);
@@ -68,7 +68,7 @@ void TracedPipeline::write(const std::filesystem::path& file) const {
                     rank < projectors ? TraceRole::projector : TraceRole::compositor});
     for (int frame = 0; frame < frames; ++frame) {
       const double begin = 2000 + every_ms * frame - lag;
-      if (rank < projectors) project(projecting, frame, begin, frame_ms);
+      if (rank < projectors) project_frame(projecting, frame, begin, frame_ms);
       if (compositor >= 0 && compositor < compositors)
         composite(compositing, frame, begin + compositors_begin_ms, frame_ms,
                   static_cast<std::uint64_t>(2000 * projectors / compositors), compositor == 0);

@@ -21,7 +21,7 @@ namespace {
 
 using testing::message_of;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Positions and scalars of the tets in their order, as bits.
 std::vector<double> content(const scene::TetMesh& mesh) {
@@ -104,7 +104,8 @@ CellBlock piece_at(int p) {
   for (glm::dvec3& x : block.positions) x.x += p;
   block.fields.clear();
   std::vector<double> constant(block.positions.size(), p), noisy;
-  for (std::size_t v = 0; v < block.positions.size(); ++v) noisy.push_back(v == 3 ? nan : static_cast<double>(v) - p);
+  for (std::size_t v = 0; v < block.positions.size(); ++v)
+    noisy.push_back(v == 3 ? no_number : static_cast<double>(v) - p);
   std::vector<double> cells;
   for (std::size_t c = 0; c < block.cell_count(); ++c) cells.push_back(static_cast<double>(c * c));
   block.fields.push_back(field_of_values("piece", "double", scene::Association::point, 1, constant));
@@ -229,7 +230,7 @@ TEST_F(MeshParts, RangesOfTetsGiveTheWhole) {
   scene::TetMesh mesh;
   for (int v = 0; v < 40; ++v) {
     mesh.positions.push_back({v % 3, (v / 3) % 4, v / 12 + 0.25 * v});
-    mesh.scalars.push_back(v == 11 ? nan : v * 0.5);
+    mesh.scalars.push_back(v == 11 ? no_number : v * 0.5);
   }
   // Vertices 30 and more are used by none, 11 only by tets that are blanked; one tet comes twice, one has collapsed.
   for (std::uint32_t t = 0; t < 20; ++t) mesh.tets.push_back({t, t + 2, (7 * t) % 30, (t * t + 5) % 30});
@@ -261,7 +262,7 @@ TEST_F(MeshParts, MorePartsThanTetsLeaveSomeEmpty) {
 TEST_F(MeshParts, NothingLeftIsSaidOnceForAllParts) {
   scene::TetMesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  mesh.scalars = {1, 2, nan, 4};
+  mesh.scalars = {1, 2, no_number, 4};
   mesh.tets = {{0, 1, 2, 3}, {3, 2, 1, 0}};
   const auto file = folder / "nan.tets";
   write_tets(mesh, file);

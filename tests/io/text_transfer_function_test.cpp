@@ -10,7 +10,7 @@ namespace {
 
 using test::expect_bad_input;
 
-scene::TransferFunction parse(std::string_view text, const TransferFunctionOptions& options = {}) {
+scene::TransferFunction parse_function(std::string_view text, const TransferFunctionOptions& options = {}) {
   return parse_text_transfer_function(text, "tf.txt", options).function;
 }
 
@@ -24,13 +24,13 @@ TEST(TextTransferFunction, TakesNumbersAsTheyStand) {
 }
 
 TEST(TextTransferFunction, AllowsCommentsBlankLinesWindowsLinesAndAByteOrderMark) {
-  const auto f = parse("\xEF\xBB\xBF# a comment\r\n\r\n  \t0 0 0 0 1 # and another\r\n+1e0\t1 1 1 .5");
+  const auto f = parse_function("\xEF\xBB\xBF# a comment\r\n\r\n  \t0 0 0 0 1 # and another\r\n+1e0\t1 1 1 .5");
   ASSERT_EQ(f.knots().size(), 2u);
   EXPECT_EQ(f.knots()[1], (scene::Knot{1, {1, 1, 1}, 0.5}));
 }
 
 TEST(TextTransferFunction, KeepsAStep) {
-  const auto f = parse("0 0 0 0 1\n1 0 0 0 1\n1 1 1 1 5\n2 1 1 1 5\n");
+  const auto f = parse_function("0 0 0 0 1\n1 0 0 0 1\n1 1 1 1 5\n2 1 1 1 5\n");
   EXPECT_EQ(f.knots().size(), 4u);
   EXPECT_DOUBLE_EQ(f.evaluate(1).extinction, 5);
 }
@@ -38,7 +38,7 @@ TEST(TextTransferFunction, KeepsAStep) {
 TEST(TextTransferFunction, OpacityScaleMultipliesExtinction) {
   TransferFunctionOptions options;
   options.opacity_scale = 2.5;
-  EXPECT_DOUBLE_EQ(parse("0 1 1 1 2\n", options).knots()[0].extinction, 5);
+  EXPECT_DOUBLE_EQ(parse_function("0 1 1 1 2\n", options).knots()[0].extinction, 5);
 }
 
 TEST(TextTransferFunction, RefusesWhatIsNotFiveNumbersNamingFileAndLine) {
@@ -68,13 +68,13 @@ TEST(TextTransferFunction, RefusesWhatIsNotFiveNumbersNamingFileAndLine) {
   for (const auto& bad : cases) {
     auto parts = bad.parts;
     parts.insert(parts.end(), {"tf.txt: line 4: ", "; "});
-    expect_bad_input([&] { parse(std::string(good) + bad.line + "\n"); }, parts);
+    expect_bad_input([&] { parse_function(std::string(good) + bad.line + "\n"); }, parts);
   }
 }
 
 TEST(TextTransferFunction, RefusesAFileWithoutKnots) {
-  expect_bad_input([] { parse(""); }, {"tf.txt: ", "no knot"});
-  expect_bad_input([] { parse("# nothing\n\n"); }, {"tf.txt: ", "no knot"});
+  expect_bad_input([] { parse_function(""); }, {"tf.txt: ", "no knot"});
+  expect_bad_input([] { parse_function("# nothing\n\n"); }, {"tf.txt: ", "no knot"});
 }
 
 TEST(TextTransferFunction, SaysThatAUnitDistanceDoesNotApply) {
