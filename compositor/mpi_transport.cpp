@@ -101,10 +101,17 @@ class MpiTransport::Engine {
     return mailboxes.error();
   }
 
+  /// What was sent before is on the old faces when this returns.
+  void trace_to(scene::Trace* projecting, scene::Trace* compositing) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return queue_.empty() && !posting_; });
+    projecting_ = projecting;
+    compositing_ = compositing;
+  }
+
   int rank = 0, size = 1;
   Mailboxes mailboxes;
   TrafficCounters sent;
-  std::atomic<scene::Trace*> projecting = nullptr, compositing = nullptr;
 
  private:
   struct Outgoing {
@@ -182,6 +189,7 @@ class MpiTransport::Engine {
     {
       const std::lock_guard lock(mutex_);
       queue.swap(queue_);
+      posting_ = !queue.empty();
     }
     for (Outgoing& message : queue) {
       const bool is_ours = message.tag >= fault_tag;
@@ -193,15 +201,21 @@ class MpiTransport::Engine {
                         MPI_COMM_WORLD, &posted.request),
               "send");
     }
-    return !queue.empty();
+    if (queue.empty()) return false;
+    {
+      const std::lock_guard lock(mutex_);
+      posting_ = false;
+    }
+    changed_.notify_all();
+    return true;
   }
 
   /// A span of what a user asks about: fragments, meshes and tiles.
   scene::TraceScope traced(const Outgoing& message) {
     scene::Trace* trace = nullptr;
     if (message.tag == static_cast<int>(Channel::fragments) || message.tag == static_cast<int>(Channel::mesh))
-      trace = projecting;
-    if (message.tag == static_cast<int>(Channel::tiles)) trace = compositing;
+      trace = projecting_;
+    if (message.tag == static_cast<int>(Channel::tiles)) trace = compositing_;
     return {trace, "send", message.frame, message.bytes.size(), 1};
   }
 
@@ -318,6 +332,7 @@ class MpiTransport::Engine {
 
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
+  bool posting_ = false;  // messages are between the queue and MPI
   std::deque<Outgoing> queue_;
   std::optional<scene::Error> own_fault_, start_error_;
   bool started_ = false, finishing_ = false, fault_told_ = false;
@@ -347,8 +362,7 @@ std::optional<Message> MpiTransport::receive(Channel channel, std::chrono::milli
 void MpiTransport::fail(const scene::Error& error) { engine_->fail(error); }
 void MpiTransport::check() const { engine_->mailboxes.check(); }
 void MpiTransport::trace_to(scene::Trace* projecting, scene::Trace* compositing) {
-  engine_->projecting = projecting;
-  engine_->compositing = compositing;
+  engine_->trace_to(projecting, compositing);
 }
 Transport::Traffic MpiTransport::sent(Channel channel) const { return engine_->sent.of(channel); }
 
