@@ -332,7 +332,8 @@ class MpiTransport::Engine {
 
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
-  bool posting_ = false;  // messages are between the queue and MPI
+  bool posting_ = false;                                         // messages are between the queue and MPI
+  scene::Trace *projecting_ = nullptr, *compositing_ = nullptr;  // changed while nothing is being posted
   std::deque<Outgoing> queue_;
   std::optional<scene::Error> own_fault_, start_error_;
   bool started_ = false, finishing_ = false, fault_told_ = false;
