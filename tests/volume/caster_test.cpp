@@ -1,0 +1,273 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "scene/error.hpp"
+#include "support/instruction_sets.hpp"
+#include "volume/double_caster.hpp"
+#include "volume/render.hpp"
+
+namespace tessera {
+namespace {
+
+constexpr scene::ImageSize size{96, 80};
+
+/// A small volume of samples in [0, 1], with its values at hand.
+struct Volume {
+  scene::Grid grid;
+  std::vector<float> values;
+  std::unique_ptr<scene::MemorySource> source;
+
+  [[nodiscard]] double at(std::int64_t i, std::int64_t j, std::int64_t k) const {
+    const scene::GridIndex n = grid.geometry.samples();
+    return values[static_cast<std::size_t>(i + n[0] * (j + n[1] * k))];
+  }
+};
+
+enum class Field { smooth, noise };
+
+Volume make_volume(scene::GridIndex samples, Field field, bool cell_data = false) {
+  Volume v;
+  scene::GridGeometry& g = v.grid.geometry;
+  for (std::size_t a = 0; a < 3; ++a) g.points[a] = samples[a] + (cell_data ? 1 : 0);
+  g.association = cell_data ? scene::Association::cell : scene::Association::point;
+  g.origin = {-1, -0.8, -0.6};
+  for (int a = 0; a < 3; ++a)
+    g.spacing[a] = -2 * g.origin[a] / static_cast<double>(g.points[static_cast<std::size_t>(a)] - 1);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  for (std::int64_t k = 0; k < samples[2]; ++k)
+    for (std::int64_t j = 0; j < samples[1]; ++j)
+      for (std::int64_t i = 0; i < samples[0]; ++i) {
+        const double x = double(i) / double(samples[0]), y = double(j) / double(samples[1]),
+                     z = double(k) / double(samples[2]);
+        v.values.push_back(
+            field == Field::noise
+                ? uniform(random)
+                : static_cast<float>(0.5 + 0.25 * std::sin(9 * x) * std::cos(7 * y + z) + 0.2 * std::cos(8 * z * x)));
+      }
+  v.source = scene::MemorySource::of(v.grid, v.values);
+  return v;
+}
+
+scene::TransferFunction smooth_function() {
+  return scene::TransferFunction({{0.0, {0, 0, 0.3}, 0},
+                                  {0.3, {0.1, 0.3, 0.9}, 0.4},
+                                  {0.5, {0.2, 0.9, 0.3}, 0},
+                                  {0.7, {0.9, 0.8, 0.1}, 3},
+                                  {0.8, {1, 0.3, 0}, 0.2},
+                                  {1, {1, 1, 1}, 8}});
+}
+
+/// Peaks a fiftieth of the range wide, and nothing between them.
+scene::TransferFunction sharp_function() {
+  return scene::TransferFunction({{0.5, {0.1, 0.3, 0.9}, 0},
+                                  {0.51, {0.2, 0.9, 0.3}, 60},
+                                  {0.52, {0.9, 0.8, 0.1}, 0},
+                                  {0.8, {1, 0.3, 0}, 0},
+                                  {1, {1, 1, 1}, 40}});
+}
+
+scene::TransferFunction many_knots() {
+  std::vector<scene::Knot> knots;
+  for (int n = 0; n <= 100; ++n)
+    knots.push_back(
+        {n / 100.0, {0.5 + 0.5 * std::sin(n), 0.5, 0.5 + 0.5 * std::cos(0.3 * n)}, 1.5 + 1.5 * std::cos(0.2 * n)});
+  return scene::TransferFunction(knots);
+}
+
+scene::Camera view(const char* name) {
+  scene::Camera c;
+  c.position = {3.1, 2.3, 4.2};
+  c.parallel_scale = 1.4;
+  c.view_up = {0, 1, 0};
+  const std::string n = name;
+  if (n == "from -x") c.position = {-4, 0.3, 0.2};
+  if (n == "from y") c.position = {0.5, 4, 0.1}, c.view_up = {0, 0, 1};
+  if (n == "along z") c.position = {0, 0, 5};
+  if (n == "perspective") c.projection = scene::ProjectionKind::perspective, c.view_angle = 30;
+  if (n == "inside") {
+    c.projection = scene::ProjectionKind::perspective;
+    c.view_angle = 110;
+    c.position = {0.1, 0.05, 0.2}, c.focal_point = {-0.5, 0.3, -0.1};
+  }
+  if (n == "clipped") c.clipping_range = {5.2, 6.1};
+  return c;
+}
+constexpr const char* views[] = {"oblique", "from -x", "from y", "along z", "perspective", "inside", "clipped"};
+
+scene::Image render(const Volume& v, const scene::Camera& camera, const scene::TransferFunction& function,
+                    volume::RenderSettings settings = {}, volume::RenderStatistics* statistics = nullptr) {
+  if (settings.threads == 0) settings.threads = 2;
+  return volume::Renderer(*v.source, settings).render(camera, size, function, statistics);
+}
+
+volume::RenderSettings exact() {
+  volume::RenderSettings s;
+  s.method = volume::Method::exact;
+  return s;
+}
+
+/// Largest difference from double precision over pixels of a coarse lattice.
+double error_of(const scene::Image& image, const Volume& v, const scene::Camera& camera,
+                const scene::TransferFunction& function, scene::Emission emission = scene::Emission::absorption) {
+  const tests::DoubleCaster caster{v.grid.geometry, [&](auto i, auto j, auto k) { return v.at(i, j, k); }, function,
+                                   emission};
+  double worst = 0;
+  for (int y = 3; y < size.height; y += 11)
+    for (int x = 2; x < size.width; x += 9) {
+      const auto pixel = caster.cast(camera, size, x + 0.5, y + 0.5);
+      for (int c = 0; c < 4; ++c)
+        worst =
+            std::max(worst, std::abs(pixel.rgba[c] - image.rgba[4 * image.index(x, y) + static_cast<std::size_t>(c)]));
+      if (pixel.rgba[3] > 1e-6) {
+        EXPECT_NEAR(image.depth[image.index(x, y)], pixel.depth, 2e-5) << x << ' ' << y;
+      }
+    }
+  return worst;
+}
+
+bool same_bits(const scene::Image& a, const scene::Image& b) {
+  return a.rgba.size() == b.rgba.size() && std::memcmp(a.rgba.data(), b.rgba.data(), a.rgba.size() * 4) == 0 &&
+         std::memcmp(a.depth.data(), b.depth.data(), a.depth.size() * 4) == 0;
+}
+
+TEST(VolumeCaster, ExactIsWithin1e5OfDoublePrecisionFromAllSides) {
+  const Volume v = make_volume({37, 30, 26}, Field::smooth);
+  for (const char* name : views)
+    EXPECT_LT(error_of(render(v, view(name), smooth_function(), exact()), v, view(name), smooth_function()), 1e-5)
+        << name;
+}
+
+TEST(VolumeCaster, ExactIsWithin1e5InNoise) {
+  // Every voxel's field is as far from straight as it can be.
+  const Volume v = make_volume({21, 18, 17}, Field::noise);
+  for (const char* name : views)
+    for (const auto& function : {smooth_function(), sharp_function(), many_knots()})
+      EXPECT_LT(error_of(render(v, view(name), function, exact()), v, view(name), function), 1e-5)
+          << name << ", " << function.knots().size() << " knots";
+}
+
+TEST(VolumeCaster, AutomaticMeetsItsAccuracyInNoise) {
+  const Volume v = make_volume({21, 18, 17}, Field::noise);
+  for (const double accuracy : {1e-3, 1e-4, 1e-5}) {
+    volume::RenderSettings s;
+    s.accuracy = accuracy;
+    for (const auto& function : {smooth_function(), sharp_function()})
+      EXPECT_LT(error_of(render(v, view("oblique"), function, s), v, view("oblique"), function), accuracy);
+  }
+}
+
+TEST(VolumeCaster, EveryInstructionSetIsWithin1e5) {
+  const Volume v = make_volume({21, 18, 17}, Field::noise);
+  tests::for_each_instruction_set([&](const char* name) {
+    volume::RenderStatistics statistics;
+    EXPECT_LT(error_of(render(v, view("perspective"), smooth_function(), exact(), &statistics), v, view("perspective"),
+                       smooth_function()),
+              1e-5)
+        << name;
+    EXPECT_EQ(statistics.instruction_set, name);
+  });
+}
+
+TEST(VolumeCaster, CellDataAreConstantVoxels) {
+  const Volume v = make_volume({19, 17, 20}, Field::noise, true);
+  for (const char* name : {"oblique", "from -x", "perspective"})
+    EXPECT_LT(error_of(render(v, view(name), smooth_function(), exact()), v, view(name), smooth_function()), 1e-5)
+        << name;
+}
+
+TEST(VolumeCaster, IndependentEmission) {
+  const Volume v = make_volume({21, 18, 17}, Field::noise);
+  volume::RenderSettings s = exact();
+  s.emission = scene::Emission::independent;
+  EXPECT_LT(
+      error_of(render(v, view("oblique"), smooth_function(), s), v, view("oblique"), smooth_function(), s.emission),
+      1e-5);
+}
+
+TEST(VolumeCaster, BlankSamplesBlankTheirVoxels) {
+  Volume v = make_volume({21, 18, 17}, Field::noise);
+  std::mt19937 random(3);
+  for (int n = 0; n < 200; ++n) v.values[random() % v.values.size()] = n % 3 == 0 ? -HUGE_VALF : NAN;
+  v.source = scene::MemorySource::of(v.grid, v.values);
+  std::uint64_t blanks = 0;
+  for (const float value : v.values) blanks += std::isfinite(value) ? 0 : 1;
+  volume::RenderStatistics statistics;
+  EXPECT_LT(error_of(render(v, view("oblique"), smooth_function(), exact(), &statistics), v, view("oblique"),
+                     smooth_function()),
+            1e-5);
+  EXPECT_EQ(statistics.blank_samples, blanks);
+}
+
+TEST(VolumeCaster, SameBitsForAnyBricksThreadsAndCache) {
+  const Volume v = make_volume({37, 30, 26}, Field::smooth);
+  for (const char* name : {"oblique", "from -x", "inside"}) {
+    const scene::Image image = render(v, view(name), sharp_function());
+    for (const int brick : {2, 3, 8, 11, 64})
+      for (const int threads : {1, 2}) {
+        volume::RenderSettings s;
+        s.brick_size = brick, s.threads = threads;
+        EXPECT_TRUE(same_bits(render(v, view(name), sharp_function(), s), image)) << name << ' ' << brick;
+        s.memory_bytes = static_cast<std::uint64_t>(4 * std::pow(brick + 1, 3)) * 3;
+        s.cache = brick % 2 == 0 ? volume::CachePolicy::proximity : volume::CachePolicy::lru;
+        volume::RenderStatistics statistics;
+        EXPECT_TRUE(same_bits(render(v, view(name), sharp_function(), s, &statistics), image)) << name << ' ' << brick;
+        EXPECT_LE(statistics.peak_bytes, s.memory_bytes);
+      }
+  }
+}
+
+TEST(VolumeCaster, ARegionHasThePixelsOfTheWhole) {
+  const Volume v = make_volume({37, 30, 26}, Field::smooth);
+  const scene::Image whole = render(v, view("oblique"), smooth_function());
+  volume::Renderer renderer(*v.source, {});
+  const volume::PixelRegion region{13, 7, 61, 50};
+  const scene::Image part = renderer.render(view("oblique"), size, smooth_function(), nullptr, region);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) {
+      const bool inside = x >= region.x0 && x < region.x1 && y >= region.y0 && y < region.y1;
+      for (std::size_t c = 0; c < 4; ++c)
+        ASSERT_EQ(part.rgba[4 * part.index(x, y) + c], inside ? whole.rgba[4 * whole.index(x, y) + c] : 0.0f);
+    }
+}
+
+TEST(VolumeCaster, InvisibleBricksAreNotLoaded) {
+  Volume v = make_volume({65, 65, 65}, Field::smooth);
+  for (std::size_t n = 0; n < v.values.size(); ++n) v.values[n] = n % 65 > 40 ? 0.9f : 0.1f;
+  v.source = scene::MemorySource::of(v.grid, v.values);
+  const scene::TransferFunction function({{0.5, {1, 1, 1}, 0}, {1, {1, 1, 1}, 3}});
+  volume::RenderSettings s;
+  s.brick_size = 16;
+  volume::RenderStatistics statistics;
+  EXPECT_LT(error_of(render(v, view("oblique"), function, s, &statistics), v, view("oblique"), function), 1e-4);
+  EXPECT_EQ(statistics.bricks_total, 64u);
+  EXPECT_EQ(statistics.bricks_invisible, 32u);
+  EXPECT_LE(statistics.bricks_loaded, 32u);
+}
+
+TEST(VolumeCaster, AHomogeneousBoxFollowsBeerAndLambert) {
+  Volume v = make_volume({5, 4, 3}, Field::smooth);
+  std::fill(v.values.begin(), v.values.end(), 0.5f);
+  v.source = scene::MemorySource::of(v.grid, v.values);
+  const scene::Image image = render(v, view("along z"), scene::TransferFunction({{0, {0.25, 0.5, 1}, 2}}), exact());
+  const std::size_t middle = 4 * image.index(48, 40);
+  const double alpha = -std::expm1(-2 * 1.2);  // extinction 2 over a box 1.2 thick
+  EXPECT_NEAR(image.rgba[middle + 3], alpha, 1e-6);
+  EXPECT_NEAR(image.rgba[middle], 0.25 * alpha, 1e-6);
+  EXPECT_NEAR(image.depth[middle / 4], 4.4, 1e-5);
+}
+
+TEST(VolumeCaster, ABudgetBelowOneBrickIsRefused) {
+  const Volume v = make_volume({37, 30, 26}, Field::smooth);
+  volume::RenderSettings s;
+  s.memory_bytes = 1000;
+  EXPECT_THROW(volume::Renderer(*v.source, s), scene::Error);
+}
+
+}  // namespace
+}  // namespace tessera

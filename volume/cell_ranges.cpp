@@ -1,0 +1,172 @@
+#include "volume/cell_ranges.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+namespace tessera::volume {
+namespace {
+
+constexpr std::int64_t block_side = 64;
+
+/// Rounded outwards, so that a range in floats holds the doubles' one.
+float rounded_down(double x) {
+  const auto f = static_cast<float>(x);
+  return static_cast<double>(f) > x ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
+}
+float rounded_up(double x) {
+  const auto f = static_cast<float>(x);
+  return static_cast<double>(f) < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
+}
+
+/// Ranges of raw samples, and what a block adds to the whole volume's.
+template <class T>
+void scan_block(const scene::SampleSource& source, const scene::GridIndex& first_voxel, CellRanges& ranges,
+                double& lowest, double& highest, std::uint64_t& blanks) {
+  const scene::GridIndex samples = source.geometry().samples(), voxels = source.geometry().voxels();
+  const std::int64_t shared = source.geometry().association == scene::Association::point ? 1 : 0;
+  scene::SampleBox box;
+  for (std::size_t a = 0; a < 3; ++a) {
+    box.low[a] = first_voxel[a];
+    box.high[a] = std::min(first_voxel[a] + block_side, voxels[a]) + shared;
+  }
+  std::vector<T> values(static_cast<std::size_t>(box.count()));
+  source.read(box, std::span<T>(values));
+  const std::int64_t width = box.extent(0), height = box.extent(1);
+  constexpr std::int64_t side = CellRanges::side;
+  lowest = std::numeric_limits<double>::infinity(), highest = -lowest, blanks = 0;
+  for (std::int64_t c = box.low[2] / side; c * side < box.high[2] - shared; ++c)
+    for (std::int64_t b = box.low[1] / side; b * side < box.high[1] - shared; ++b)
+      for (std::int64_t a = box.low[0] / side; a * side < box.high[0] - shared; ++a) {
+        const auto last = [&](std::int64_t cell, std::size_t axis) {
+          return std::min((cell + 1) * side + shared, box.high[axis]);
+        };
+        T low = std::numeric_limits<T>::infinity(), high = -low;
+        for (std::int64_t k = c * side; k < last(c, 2); ++k)
+          for (std::int64_t j = b * side; j < last(b, 1); ++j) {
+            const T* const row = &values[static_cast<std::size_t>(
+                ((k - box.low[2]) * height + (j - box.low[1])) * width - box.low[0] + a * side)];
+            const std::int64_t count = last(a, 0) - a * side;
+            bool blank = false;
+            for (std::int64_t i = 0; i < count; ++i) {
+              const bool finite = std::abs(row[i]) <= std::numeric_limits<T>::max();
+              blank |= !finite;
+              low = finite && row[i] < low ? row[i] : low;
+              high = finite && row[i] > high ? row[i] : high;
+            }
+            if (!blank) continue;
+            // A blank counts in the cell that it is the lowest corner of, or in the last one.
+            const auto owned = [&](std::int64_t index, std::int64_t cell, std::size_t axis) {
+              return index < (cell + 1) * side || index == samples[axis] - 1;
+            };
+            for (std::int64_t i = 0; i < count; ++i)
+              if (!(std::abs(row[i]) <= std::numeric_limits<T>::max()) && owned(a * side + i, a, 0) && owned(j, b, 1) &&
+                  owned(k, c, 2))
+                ++blanks;
+          }
+        const auto cell = static_cast<std::size_t>(a + ranges.cells[0] * (b + ranges.cells[1] * c));
+        ranges.low[cell] = rounded_down(static_cast<double>(low));
+        ranges.high[cell] = rounded_up(static_cast<double>(high));
+        lowest = std::min(lowest, static_cast<double>(low));
+        highest = std::max(highest, static_cast<double>(high));
+      }
+}
+
+/// Whether single precision holds every sample.
+bool fits_float(scene::SampleType type) {
+  return type != scene::SampleType::int32 && type != scene::SampleType::uint32 && type != scene::SampleType::float64;
+}
+
+}  // namespace
+
+CellRanges::CellRanges(const scene::SampleSource& source, int threads) {
+  const scene::GridIndex voxels = source.geometry().voxels();
+  scene::GridIndex blocks;
+  for (std::size_t a = 0; a < 3; ++a) {
+    cells[a] = (voxels[a] + side - 1) / side;
+    blocks[a] = (voxels[a] + block_side - 1) / block_side;
+  }
+  low.resize(static_cast<std::size_t>(cells[0] * cells[1] * cells[2]));
+  high.resize(low.size());
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+  std::mutex mutex;
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    tbb::parallel_for(std::int64_t{0}, blocks[0] * blocks[1] * blocks[2], [&](std::int64_t n) {
+      const scene::GridIndex first{n % blocks[0] * block_side, n / blocks[0] % blocks[1] * block_side,
+                                   n / blocks[0] / blocks[1] * block_side};
+      double block_low, block_high;
+      std::uint64_t blanks;
+      if (fits_float(source.grid().type))
+        scan_block<float>(source, first, *this, block_low, block_high, blanks);
+      else
+        scan_block<double>(source, first, *this, block_low, block_high, blanks);
+      const std::lock_guard lock(mutex);
+      lowest = std::min(lowest, block_low);
+      highest = std::max(highest, block_high);
+      range.blanks += blanks;
+    });
+  });
+  if (lowest <= highest) {
+    range.low = std::min(source.grid().value(lowest), source.grid().value(highest));
+    range.high = std::max(source.grid().value(lowest), source.grid().value(highest));
+  }
+  lanes = LaneSamples(source.grid(), range);
+  for (std::size_t cell = 0; cell < low.size(); ++cell) {
+    if (low[cell] > high[cell]) continue;
+    const float a = lanes.lane(low[cell]), b = lanes.lane(high[cell]);
+    low[cell] = std::min(a, b);
+    high[cell] = std::max(a, b);
+  }
+}
+
+std::vector<std::uint8_t> visible_cells(const CellRanges& ranges, const compositor::LaneTable& table) {
+  using compositor::LaneTable;
+  // Intervals of the table that show anything, counted from the lowest.
+  std::vector<std::size_t> shown_before(table.knot_count + 2, 0);
+  for (std::size_t i = 0; i <= table.knot_count; ++i) {
+    const auto any = [&](int column) { return table.column(column)[i] != 0; };
+    bool shows = any(LaneTable::half_extinction) || any(LaneTable::half_extinction_slope);
+    if (table.emission == scene::Emission::independent)
+      for (int c = LaneTable::red; c <= LaneTable::blue_slope; ++c) shows = shows || any(c);
+    shown_before[i + 1] = shown_before[i] + (shows ? 1 : 0);
+  }
+  const float* const knots = table.column(LaneTable::edge) + 1;
+  const auto interval = [&](float s) {
+    return static_cast<std::size_t>(std::upper_bound(knots, knots + table.knot_count, s) - knots);
+  };
+  std::vector<std::uint8_t> visible(ranges.count(), 0);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, ranges.count(), 4096), [&](const auto& some) {
+    for (std::size_t cell = some.begin(); cell != some.end(); ++cell)
+      if (ranges.low[cell] <= ranges.high[cell])
+        visible[cell] = shown_before[interval(ranges.high[cell]) + 1] > shown_before[interval(ranges.low[cell])];
+  });
+  return visible;
+}
+
+std::vector<std::uint8_t> visible_bricks(const CellRanges& ranges, const std::vector<std::uint8_t>& visible,
+                                         const BrickLayout& layout) {
+  std::vector<std::uint8_t> shown(layout.count(), 0);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, layout.count(), 256), [&](const auto& some) {
+    for (std::size_t brick = some.begin(); brick != some.end(); ++brick) {
+      const scene::GridIndex place = layout.place(brick);
+      scene::GridIndex first, last;
+      for (std::size_t a = 0; a < 3; ++a) {
+        first[a] = place[a] * layout.size / CellRanges::side;
+        last[a] = (std::min((place[a] + 1) * layout.size, layout.voxels[a]) - 1) / CellRanges::side;
+      }
+      for (std::int64_t c = first[2]; c <= last[2]; ++c)
+        for (std::int64_t b = first[1]; b <= last[1]; ++b)
+          for (std::int64_t a = first[0]; a <= last[0]; ++a)
+            shown[brick] |= visible[static_cast<std::size_t>(a + ranges.cells[0] * (b + ranges.cells[1] * c))];
+    }
+  });
+  return shown;
+}
+
+}  // namespace tessera::volume

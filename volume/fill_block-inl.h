@@ -1,0 +1,274 @@
+// Samples from bricks into a SlabBlock, as lane scalars; included once per instruction set.
+//
+// Cells of 8^3 voxels that the transfer function hides are not read: their samples become the cell's smallest value,
+// which the function hides as well. Whether a sample is read depends on those cells alone, not on bricks.
+
+#if defined(TESSERA_VOLUME_FILL_BLOCK_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_VOLUME_FILL_BLOCK_INL_H_
+#undef TESSERA_VOLUME_FILL_BLOCK_INL_H_
+#else
+#define TESSERA_VOLUME_FILL_BLOCK_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+
+#include "volume/frame_view.hpp"
+#include "volume/slab_block.hpp"
+#include "volume/tile_rays.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::volume {
+namespace HWY_NAMESPACE {
+/// Whether some cell that the transfer function shows holds one of the voxels low <= (i, j, k) <= high.
+HWY_INLINE bool any_visible(const FrameView& frame, const std::int64_t (&low)[3], const std::int64_t (&high)[3]) {
+  const scene::GridIndex& cells = frame.ranges->cells;
+  constexpr std::int64_t side = CellRanges::side;
+  for (std::int64_t c = low[2] / side; c <= high[2] / side; ++c)
+    for (std::int64_t b = low[1] / side; b <= high[1] / side; ++b)
+      for (std::int64_t a = low[0] / side; a <= high[0] / side; ++a)
+        if (frame.visible[a + cells[0] * (b + cells[1] * c)] != 0) return true;
+  return false;
+}
+
+namespace fill {
+
+namespace HN = hwy::HWY_NAMESPACE;
+using DD = HN::ScalableTag<double>;
+using DFH = HN::Rebind<float, DD>;
+using DIH = HN::Rebind<std::int32_t, DD>;
+
+HWY_INLINE HN::Vec<DD> load_doubles(const float* p) { return HN::PromoteTo(DD(), HN::LoadU(DFH(), p)); }
+HWY_INLINE HN::Vec<DD> load_doubles(const double* p) { return HN::LoadU(DD(), p); }
+HWY_INLINE HN::Vec<DD> load_doubles(const std::int32_t* p) { return HN::PromoteTo(DD(), HN::LoadU(DIH(), p)); }
+template <class T>
+HWY_INLINE HN::Vec<DD> load_doubles(const T* p) {
+  if constexpr (sizeof(T) < 4) {
+    return HN::PromoteTo(DD(), HN::PromoteTo(DIH(), HN::LoadU(HN::Rebind<T, DD>(), p)));
+  } else {
+    HWY_ALIGN double values[HN::MaxLanes(DD())];
+    for (std::size_t i = 0; i < HN::Lanes(DD()); ++i) values[i] = p[i];
+    return HN::Load(DD(), values);
+  }
+}
+
+/// LaneSamples::lane() of `count` samples, to the bit.
+template <class T>
+HWY_INLINE void convert(const T* from, std::int64_t count, const LaneSamples& lanes, float* to) {
+  const DD d;
+  const auto factor = HN::Set(d, lanes.factor), term = HN::Set(d, lanes.term);
+  const auto n = static_cast<std::int64_t>(HN::Lanes(d));
+  const auto some = [&](const T* p, float* out) HWY_ATTR {
+    const auto sample = load_doubles(p);
+    const auto lane = HN::Round(HN::MulAdd(sample, factor, term));
+    // inf - inf and NaN - NaN are NaN, x - x is 0: blanks become NaN.
+    HN::StoreU(HN::DemoteTo(DFH(), HN::Add(lane, HN::Sub(sample, sample))), DFH(), out);
+  };
+  std::int64_t i = 0;
+  for (; i + n <= count; i += n) some(from + i, to + i);
+  if (i >= count) return;
+  T last[HN::MaxLanes(DD())] = {};
+  float out[HN::MaxLanes(DD())];
+  for (std::int64_t l = 0; l < n && i + l < count; ++l) last[l] = from[i + l];
+  some(last, out);
+  for (std::int64_t l = 0; l < n && i + l < count; ++l) to[i + l] = out[l];
+}
+
+HWY_INLINE void convert_any(const std::byte* from, scene::SampleType type, std::int64_t first, std::int64_t count,
+                            const LaneSamples& lanes, float* to) {
+  const auto as = [&](auto kind) HWY_ATTR {
+    using T = decltype(kind);
+    convert(reinterpret_cast<const T*>(from) + first, count, lanes, to);
+  };
+  switch (type) {
+    case scene::SampleType::int8:
+      return as(std::int8_t{});
+    case scene::SampleType::uint8:
+      return as(std::uint8_t{});
+    case scene::SampleType::int16:
+      return as(std::int16_t{});
+    case scene::SampleType::uint16:
+      return as(std::uint16_t{});
+    case scene::SampleType::int32:
+      return as(std::int32_t{});
+    case scene::SampleType::uint32:
+      return as(std::uint32_t{});
+    case scene::SampleType::float32:
+      return as(float{});
+    case scene::SampleType::float64:
+      return as(double{});
+  }
+}
+
+/// Native boxes and where their samples go in the block.
+struct Target {
+  const FrameView& frame;
+  const RayAxes axes;
+  SlabBlock& block;
+  std::int64_t first_k;  ///< of slice 0
+  int slices;
+
+  /// Slice of a lattice plane along the k axis.
+  HWY_INLINE int slice_of(std::int64_t native_k) const {
+    const std::int64_t last = frame.samples[static_cast<std::size_t>(axes.k)] - 1;
+    return static_cast<int>((axes.mirrored ? last - native_k : native_k) - first_k);
+  }
+
+  /// Calls put(x_low, x_high, to, stride) for the samples of a native row that the block holds: sample x goes to
+  /// to[(x - x_low) * stride]. For the x axis as k, the stride is not constant: `put` then gets samples one by one.
+  template <class Put>
+  HWY_INLINE void row(std::int64_t y, std::int64_t z, std::int64_t x_low, std::int64_t x_high, const Put& put) const {
+    if (axes.k != 0) {
+      const int n = slice_of(axes.k == 1 ? y : z);
+      const auto s = static_cast<std::size_t>(n);
+      const std::int64_t j = (axes.k == 1 ? z : y) - block.low_j[s];
+      if (n < 0 || n >= slices || j < 0 || j >= block.rows) return;
+      const std::int64_t low = std::max<std::int64_t>(x_low, block.low_i[s]),
+                         high = std::min<std::int64_t>(x_high, block.low_i[s] + block.pitch - 1);
+      if (low <= high) put(low, high, block.slice(n) + j * block.pitch + (low - block.low_i[s]));
+    } else {
+      for (std::int64_t x = x_low; x <= x_high; ++x) {
+        const int n = slice_of(x);
+        if (n < 0 || n >= slices) continue;
+        const auto s = static_cast<std::size_t>(n);
+        const std::int64_t i = y - block.low_i[s], j = z - block.low_j[s];
+        if (i >= 0 && i < block.pitch && j >= 0 && j < block.rows) put(x, x, block.slice(n) + j * block.pitch + i);
+      }
+    }
+  }
+};
+
+}  // namespace fill
+
+/// Fills the block, whose slices have been laid out, with slices first_k .. first_k + slices - 1.
+HWY_INLINE void fill_block(const FrameView& frame, const RayAxes& axes, std::int64_t first_k, int slices,
+                           std::vector<float>& row_memory, SlabBlock& block) {
+  using namespace fill;
+  const Target target{frame, axes, block, first_k, slices};
+  const scene::GridIndex &samples = frame.samples, &cells = frame.ranges->cells;
+  const auto ia = static_cast<std::size_t>(axes.i), ja = static_cast<std::size_t>(axes.j),
+             ka = static_cast<std::size_t>(axes.k);
+  // The native box round all slices.
+  std::int64_t low[3], high[3];
+  low[ia] = *std::min_element(block.low_i.begin(), block.low_i.begin() + slices);
+  low[ja] = *std::min_element(block.low_j.begin(), block.low_j.begin() + slices);
+  high[ia] = *std::max_element(block.low_i.begin(), block.low_i.begin() + slices) + block.pitch - 1;
+  high[ja] = *std::max_element(block.low_j.begin(), block.low_j.begin() + slices) + block.rows - 1;
+  low[ka] = axes.mirrored ? samples[ka] - first_k - slices : first_k;
+  high[ka] = low[ka] + slices - 1;
+  for (std::size_t a = 0; a < 3; ++a) high[a] = std::min(high[a], samples[a] - 1);
+
+  constexpr std::int64_t side = CellRanges::side;
+  const std::int64_t shared = frame.cell_data ? 0 : 1;
+  const auto cell_of = [&](std::size_t axis, std::int64_t sample)
+                           HWY_ATTR { return std::min(sample / side, cells[axis] - 1); };
+  // Which cells along x are seen by a row of samples: its own and, on a shared plane, the cell before it.
+  const std::int64_t first_cell = std::max<std::int64_t>(0, cell_of(0, low[0]) - shared),
+                     last_cell = cell_of(0, high[0]);
+  const auto seen = [&](std::int64_t a, std::int64_t y, std::int64_t z) HWY_ATTR {
+    const std::int64_t b = cell_of(1, y), c = cell_of(2, z);
+    const std::int64_t b0 = shared != 0 && y % side == 0 && b > 0 ? b - 1 : b;
+    const std::int64_t c0 = shared != 0 && z % side == 0 && c > 0 ? c - 1 : c;
+    for (std::int64_t cc = c0; cc <= c; ++cc)
+      for (std::int64_t bb = b0; bb <= b; ++bb)
+        if (frame.visible[a + cells[0] * (bb + cells[1] * cc)] != 0) return true;
+    return false;
+  };
+  const std::int64_t all_low[3] = {std::max<std::int64_t>(0, low[0] - shared),
+                                   std::max<std::int64_t>(0, low[1] - shared),
+                                   std::max<std::int64_t>(0, low[2] - shared)};
+  bool some_hidden = false;
+  for (std::int64_t c = all_low[2] / side; c <= cell_of(2, high[2]) && !some_hidden; ++c)
+    for (std::int64_t b = all_low[1] / side; b <= cell_of(1, high[1]) && !some_hidden; ++b)
+      for (std::int64_t a = first_cell; a <= last_cell && !some_hidden; ++a)
+        some_hidden = frame.visible[a + cells[0] * (b + cells[1] * c)] == 0;
+  if (some_hidden)
+    for (std::int64_t z = low[2]; z <= high[2]; ++z)
+      for (std::int64_t y = low[1]; y <= high[1]; ++y)
+        for (std::int64_t a = cell_of(0, low[0]); a <= last_cell; ++a) {
+          const float hidden =
+              frame.ranges->low[static_cast<std::size_t>(a + cells[0] * (cell_of(1, y) + cells[1] * cell_of(2, z)))];
+          const std::int64_t x0 = std::max(low[0], a * side),
+                             x1 = a == last_cell ? high[0] : std::min(high[0], a * side + side - 1);
+          target.row(y, z, x0, x1, [&](std::int64_t xa, std::int64_t xb, float* to) HWY_ATTR {
+            std::fill(to, to + (xb - xa + 1), hidden);
+          });
+        }
+
+  const BrickLayout& layout = frame.bricks->layout();
+  const scene::SampleType type = frame.bricks->source().grid().type;
+  scene::GridIndex first_brick, last_brick;
+  for (std::size_t a = 0; a < 3; ++a) {
+    // A sample that two bricks share is taken from either; the lower one may be the only one that is seen.
+    first_brick[a] = layout.brick_of(a, std::max<std::int64_t>(0, low[a] - shared));
+    last_brick[a] = layout.brick_of(a, high[a]);
+  }
+  for (std::int64_t bz = first_brick[2]; bz <= last_brick[2]; ++bz)
+    for (std::int64_t by = first_brick[1]; by <= last_brick[1]; ++by)
+      for (std::int64_t bx = first_brick[0]; bx <= last_brick[0]; ++bx) {
+        const scene::GridIndex place{bx, by, bz};
+        if (frame.brick_visible[layout.number(place)] == 0) continue;
+        const scene::SampleBox box = layout.box(place);
+        const scene::GridIndex room = layout.room(place);
+        std::int64_t from[3], to[3];
+        for (std::size_t a = 0; a < 3; ++a) {
+          from[a] = std::max(low[a], box.low[a]);
+          to[a] = std::min(high[a], box.high[a] - 1);
+        }
+        const std::byte* bytes = nullptr;
+        for (std::int64_t z = from[2]; z <= to[2]; ++z)
+          for (std::int64_t y = from[1]; y <= to[1]; ++y) {
+            std::int64_t x = from[0];
+            while (x <= to[0]) {
+              // A run of samples that belong to seen cells: [8a, 8a + 8] each.
+              std::int64_t end = to[0];
+              if (some_hidden) {
+                const std::int64_t a = cell_of(0, x);
+                if (!seen(a, y, z) && !(shared != 0 && x % side == 0 && a > 0 && seen(a - 1, y, z))) {
+                  x = std::max(x + 1, a == cells[0] - 1 ? to[0] + 1 : a * side + side);
+                  continue;
+                }
+                if (!seen(a, y, z)) {
+                  end = x;
+                } else {
+                  end = std::min(to[0], a == cells[0] - 1 ? to[0] : a * side + side - 1 + shared);
+                }
+              }
+              if (bytes == nullptr) bytes = frame.bricks->acquire(layout.number(place), frame.trace);
+              const std::int64_t row_start = ((z - box.low[2]) * room[1] + (y - box.low[1])) * room[0] - box.low[0];
+              if (axes.k != 0) {
+                target.row(y, z, x, end, [&](std::int64_t xa, std::int64_t xb, float* out) HWY_ATTR {
+                  convert_any(bytes, type, row_start + xa, xb - xa + 1, frame.ranges->lanes, out);
+                });
+              } else {
+                row_memory.resize(static_cast<std::size_t>(end - x + 1));
+                convert_any(bytes, type, row_start + x, end - x + 1, frame.ranges->lanes, row_memory.data());
+                target.row(y, z, x, end, [&](std::int64_t xa, std::int64_t, float* out) HWY_ATTR {
+                  *out = row_memory[static_cast<std::size_t>(xa - x)];
+                });
+              }
+              x = end + 1;
+            }
+          }
+        if (bytes != nullptr) frame.bricks->release(layout.number(place));
+      }
+
+  // Columns and rows beyond the volume repeat its last ones.
+  for (int n = 0; n < slices; ++n) {
+    const auto s = static_cast<std::size_t>(n);
+    const std::int64_t columns = std::min<std::int64_t>(block.pitch, samples[ia] - block.low_i[s]),
+                       rows = std::min<std::int64_t>(block.rows, samples[ja] - block.low_j[s]);
+    float* const slice = block.slice(n);
+    for (std::int64_t j = 0; j < rows && columns < block.pitch; ++j)
+      std::fill(slice + j * block.pitch + columns, slice + (j + 1) * block.pitch, slice[j * block.pitch + columns - 1]);
+    for (std::int64_t j = rows; j < block.rows; ++j)
+      std::copy_n(slice + (rows - 1) * block.pitch, block.pitch, slice + j * block.pitch);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::volume
+HWY_AFTER_NAMESPACE();
+
+#endif

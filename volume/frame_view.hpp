@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "compositor/lane_table.hpp"
+#include "scene/camera.hpp"
+#include "scene/grid.hpp"
+#include "volume/brick_cache.hpp"
+#include "volume/cell_ranges.hpp"
+#include "volume/render.hpp"
+
+namespace tessera::volume {
+
+/// Rays of all pixels in index space (voxels; DESIGN: "scene/grid.hpp, index frame"), affine in pixel coordinates.
+///
+/// The ray of pixel (x, y), y down, is origin(x, y) + t * direction(x, y), where t is planar depth, world units.
+struct PixelRays {
+  glm::dvec3 origin, origin_x, origin_y;  ///< origin(x, y) = origin + x * origin_x + y * origin_y
+  glm::dvec3 direction, direction_x, direction_y;
+  double tangent_x0, tangent_y0, tangent_step;  ///< perspective: tangent = (x - x0, y - y0) * step; 0 orthographic
+  double near_depth, far_depth;
+
+  /// A valid camera and size; a regular grid.
+  PixelRays(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry);
+};
+
+/// All that one frame's tiles share; read-only while they are made.
+struct FrameView {
+  const PixelRays* rays;
+  const compositor::LaneTable* table;
+  const CellRanges* ranges;
+  const std::uint8_t* visible;        ///< by cell of `ranges`
+  const std::uint8_t* brick_visible;  ///< by brick: whether it holds voxels of a visible cell
+  BrickCache* bricks;
+  scene::GridIndex voxels, samples;
+  bool cell_data;
+  double length_unit;         ///< of the table, world units
+  float least_transmittance;  ///< a ray that lets less through is done
+  float piece_tolerance;      ///< largest error of one piece of a ray, linear RGBA
+  float largest_color;
+  scene::Trace* trace;
+};
+
+/// Sums over tiles.
+struct TileCounts {
+  std::uint64_t rays = 0, voxels_visited = 0, samples = 0;
+};
+
+}  // namespace tessera::volume

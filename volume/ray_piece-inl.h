@@ -1,0 +1,218 @@
+// The light of one stretch of a ray inside one voxel, a lane each; included once per instruction set.
+//
+// Field     Along a ray the trilinear field is a cubic: with v in [0, 1] over the stretch it is a straight line between
+//           its ends, s_0 + v (s_1 - s_0), and a rest of mean m = (2 s_mid - s_0 - s_1) / 3, which Simpson's rule gives
+//           exactly. The rest is b-shaped, -4 b ((v - 1/2)^2 - 1/4) with b = 3 m / 2, and odd,
+//           p_3 v (v - 1/2) (v - 1).
+// Integral  Within one interval of the transfer function extinction and colour are linear in s. The line is moved by m,
+//           so that optical depth is that of the cubic, and integrated exactly (compositor/integrate_lanes-inl.h).
+// Error     What is left of the rest, r, has mean zero and is of even or odd form, so its products with constant, and
+//           of the even part with linear, terms vanish. There stay, per colour, |k' c'| l (4 b^2 / 45 + |b p_3| / 20
+//           + |p_3 (s_1 - s_0)| / 60) from the product of extinction and colour, and |k'|^2 c l^2 |r| (|s_1 - s_0| +
+//           |r|) / 30 from how the rest shifts light and shadow inside the voxel. Both are below
+//             l rho (rho + 0.3 |s_1 - s_0|) (0.1 |k' c'| + 0.03 |k'|^2 c l),  rho = |b| + |p_3| / 4.
+//           Where that exceeds the tolerance the stretch is halved: the bound falls to an eighth at least.
+// Knots     A stretch that leaves its interval is cut where the cubic crosses the knot: between extrema it is monotone,
+//           Newton's method, kept in its bracket, finds the place.
+
+#if defined(TESSERA_VOLUME_RAY_PIECE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_VOLUME_RAY_PIECE_INL_H_
+#undef TESSERA_VOLUME_RAY_PIECE_INL_H_
+#else
+#define TESSERA_VOLUME_RAY_PIECE_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "volume/windows-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::volume {
+namespace HWY_NAMESPACE {
+
+using CL::lanes::Progress;
+using compositor::LaneTable;
+
+/// One stretch a lane. The field at its ends and middle, the cubic's leading coefficient over it, and its length (zero:
+/// nothing there). Where in the slab it begins, and how much of the slab it takes.
+struct Piece {
+  VF s_0, s_mid, s_1, p_3, length, begin, extent;
+};
+
+/// Where light begins along each ray, in slabs from the chunk's first; NaN until then.
+struct FirstLight {
+  VF place;
+  MF seen;
+};
+
+HWY_INLINE void note_first_light(const Progress& progress, VF place, FirstLight& first) {
+  const DF d;
+  const MF now = HN::AndNot(first.seen, HN::Gt(progress.alpha, HN::Zero(d)));
+  first.place = HN::IfThenElse(now, place, first.place);
+  first.seen = HN::Or(first.seen, now);
+}
+
+/// The transfer function where all lanes are in one interval.
+struct UniformLookup {
+  using Index = int;
+  float row[LaneTable::column_count];
+  bool independent, has_clear = false;
+  float product_bound, shadow_bound;  ///< 0.1 |k' c'| and 0.03 |k'|^2 c
+  HWY_INLINE VF at(int column, Index) const { return HN::Set(DF(), row[column]); }
+};
+
+/// Whether a stretch errs more than `tolerance`; see Error above. Bounds already divided by it.
+HWY_INLINE MF too_rough(VF length, VF m, VF p_3, VF span, VF product_bound, VF shadow_bound) {
+  const DF d;
+  const VF rho = HN::MulAdd(HN::Abs(p_3), HN::Set(d, 0.25f), HN::Mul(HN::Abs(m), HN::Set(d, 1.5f)));
+  const VF spread = HN::MulAdd(HN::Abs(span), HN::Set(d, 0.3f), rho);
+  const VF scale = HN::MulAdd(length, shadow_bound, product_bound);
+  return HN::Gt(HN::Mul(HN::Mul(length, rho), HN::Mul(spread, scale)), HN::Set(d, 1.0f));
+}
+
+/// Adds the stretches if they are smooth enough; false, and nothing added, if not.
+template <bool cell_data>
+HWY_INLINE bool add_uniform(const UniformLookup& table, const Piece& piece, Progress& progress) {
+  const DF d;
+  const VF span = HN::Sub(piece.s_1, piece.s_0);
+  if (cell_data) {
+    CL::lanes::add_piece<false>(table, 0, piece.s_0, piece.s_1, span, piece.length, progress);
+    return true;
+  }
+  const VF m = HN::Mul(HN::Sub(HN::Add(piece.s_mid, piece.s_mid), HN::Add(piece.s_0, piece.s_1)), HN::Set(d, 1 / 3.0f));
+  const MF rough =
+      too_rough(piece.length, m, piece.p_3, span, HN::Set(d, table.product_bound), HN::Set(d, table.shadow_bound));
+  if (HWY_UNLIKELY(!HN::AllFalse(d, rough))) return false;
+  CL::lanes::add_piece<false>(table, 0, HN::Add(piece.s_0, m), HN::Add(piece.s_1, m), span, piece.length, progress);
+  return true;
+}
+
+/// A cubic over v in [0, 1].
+struct Cubic {
+  VF p_0, p_1, p_2, p_3;
+  HWY_INLINE VF at(VF v) const { return HN::MulAdd(HN::MulAdd(HN::MulAdd(p_3, v, p_2), v, p_1), v, p_0); }
+  HWY_INLINE VF slope(VF v) const {
+    const DF d;
+    return HN::MulAdd(HN::MulAdd(HN::Mul(HN::Set(d, 3.0f), p_3), v, HN::Add(p_2, p_2)), v, p_1);
+  }
+};
+
+/// Places of the cubic's extrema in (0, 1), 1 where there are none.
+HWY_INLINE void find_extrema(const Cubic& c, VF& first, VF& second) {
+  const DF d;
+  const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f), three = HN::Set(d, 3.0f);
+  const VF discriminant = HN::NegMulAdd(HN::Mul(three, c.p_1), c.p_3, HN::Mul(c.p_2, c.p_2));
+  const VF root = HN::Sqrt(HN::Max(zero, discriminant));
+  const VF q = HN::Neg(HN::Add(c.p_2, HN::CopySign(root, c.p_2)));
+  const auto inside = [&](VF v) HWY_ATTR {
+    const MF good = HN::And(HN::Gt(discriminant, zero), HN::And(HN::Gt(v, zero), HN::Lt(v, one)));
+    return HN::IfThenElse(good, v, one);
+  };
+  const VF a = inside(HN::Div(q, HN::Mul(three, c.p_3))), b = inside(HN::Div(c.p_1, q));
+  first = HN::Min(a, b);
+  second = HN::Max(a, b);
+}
+
+/// v in [low, high] where the cubic, monotone there, has the value `level`, which lies between its ends'.
+HWY_INLINE VF find_crossing(const Cubic& c, VF low, VF high, VF s_low, VF s_high, VF level, MF wanted) {
+  const DF d;
+  const VF half = HN::Set(d, 0.5f);
+  const MF rises = HN::Gt(s_high, s_low);
+  VF v = HN::MulAdd(HN::Sub(high, low), HN::Div(HN::Sub(level, s_low), HN::Sub(s_high, s_low)), low);
+  for (int step = 0; step < 12; ++step) {
+    const VF excess = HN::Sub(c.at(v), level);
+    const MF above = HN::Gt(excess, HN::Zero(d));
+    // What lies on the far side becomes the bracket's end.
+    const MF beyond = HN::Xor(above, HN::Not(rises));
+    high = HN::IfThenElse(beyond, v, high);
+    low = HN::IfThenElse(beyond, low, v);
+    VF next = HN::Sub(v, HN::Div(excess, c.slope(v)));
+    const MF kept = HN::And(HN::Ge(next, low), HN::Le(next, high));
+    next = HN::IfThenElse(kept, next, HN::Mul(half, HN::Add(low, high)));
+    const MF moving = HN::And(wanted, HN::Gt(HN::Abs(HN::Sub(next, v)), HN::Set(d, 1e-6f)));
+    v = next;
+    if (HN::AllFalse(d, moving)) break;
+  }
+  return v;
+}
+
+/// Stretches that cross knots, are rough, or whose lanes are in different intervals. NaN samples are blank.
+template <class Lookup>
+HWY_NOINLINE void add_any(const Lookup& table, float tolerance, float largest_color, const Piece& piece,
+                          Progress& progress, FirstLight& first, std::uint64_t& pieces) {
+  const DF d;
+  const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f), half = HN::Set(d, 0.5f);
+  MF active = HN::And(HN::Gt(piece.length, zero), HN::Eq(piece.s_mid, piece.s_mid));
+  if (HN::AllFalse(d, active)) return;
+  const VF s_0 = HN::IfThenElseZero(active, piece.s_0), s_mid = HN::IfThenElseZero(active, piece.s_mid),
+           s_1 = HN::IfThenElseZero(active, piece.s_1), p_3 = HN::IfThenElseZero(active, piece.p_3);
+  Cubic c;
+  c.p_0 = s_0;
+  c.p_3 = p_3;
+  const VF bend = HN::Sub(HN::Add(s_0, s_1), HN::Add(s_mid, s_mid));
+  c.p_2 = HN::NegMulAdd(HN::Set(d, 1.5f), p_3, HN::Add(bend, bend));
+  c.p_1 = HN::Sub(HN::Sub(HN::Sub(s_1, s_0), c.p_2), p_3);
+
+  // Monotone if the slope's Bezier coefficients are of one sign.
+  const VF d_1 = HN::Add(c.p_1, c.p_2), d_2 = HN::Add(d_1, HN::MulAdd(HN::Set(d, 3.0f), p_3, c.p_2));
+  const VF least = HN::Min(c.p_1, HN::Min(d_1, d_2)), most = HN::Max(c.p_1, HN::Max(d_1, d_2));
+  VF turn_1 = one, turn_2 = one;
+  if (!HN::AllFalse(d, HN::And(active, HN::And(HN::Lt(least, zero), HN::Gt(most, zero)))))
+    find_extrema(c, turn_1, turn_2);
+
+  const VF per_tolerance = HN::Set(d, 1 / tolerance);
+  VF v = zero, s = s_0;
+  // Each round ends at a knot, an extremum, a halving or the stretch's end; knots are few but for wild functions.
+  for (int round = 0; round < 4096; ++round) {
+    const VF turn = HN::IfThenElse(HN::Lt(v, turn_1), turn_1, HN::IfThenElse(HN::Lt(v, turn_2), turn_2, one));
+    const VF s_turn = HN::IfThenElse(HN::Eq(turn, one), s_1, c.at(turn));
+    const MF up = HN::Ge(s_turn, s);
+    const VI to_far_edge = HN::IfThenElseZero(HN::RebindMask(DI(), up), HN::Set(DI(), 1));
+    const VI interval = table.locate(s, up);
+    const auto index = table.index(interval, active);
+    const VF knot = table.far_edge(interval, index, to_far_edge);
+    const MF crosses = HN::And(active, HN::Or(HN::And(up, HN::Lt(knot, s_turn)), HN::AndNot(up, HN::Gt(knot, s_turn))));
+    VF end = turn, s_end = s_turn;
+    if (!HN::AllFalse(d, crosses)) {
+      const VF at_knot = find_crossing(c, v, turn, s, s_turn, knot, crosses);
+      end = HN::IfThenElse(crosses, at_knot, end);
+      s_end = HN::IfThenElse(crosses, knot, s_end);
+    }
+    const VF slope = HN::Mul(HN::Set(d, 2.0f), HN::Abs(table.at(LaneTable::half_extinction_slope, index)));
+    const VF color_slope = HN::Max(
+        HN::Max(HN::Abs(table.at(LaneTable::red_slope, index)), HN::Abs(table.at(LaneTable::green_slope, index))),
+        HN::Abs(table.at(LaneTable::blue_slope, index)));
+    VF product_bound = HN::Mul(HN::Set(d, 0.1f), HN::Mul(slope, color_slope));
+    if (table.independent) product_bound = zero;
+    product_bound = HN::Mul(product_bound, per_tolerance);
+    const VF shadow_bound = HN::Mul(HN::Mul(HN::Mul(slope, slope), HN::Set(d, 0.03f * largest_color)), per_tolerance);
+    VF extent, m, length;
+    for (int halvings = 0;; ++halvings) {
+      extent = HN::Sub(end, v);
+      const VF middle = c.at(HN::MulAdd(half, extent, v));
+      m = HN::Mul(HN::Sub(HN::Add(middle, middle), HN::Add(s, s_end)), HN::Set(d, 1 / 3.0f));
+      length = HN::IfThenElseZero(active, HN::Mul(extent, piece.length));
+      const VF cubed = HN::Mul(p_3, HN::Mul(extent, HN::Mul(extent, extent)));
+      const MF rough = too_rough(length, m, cubed, HN::Sub(s_end, s), product_bound, shadow_bound);
+      if (HN::AllFalse(d, rough) || halvings == 5) break;
+      end = HN::IfThenElse(rough, HN::MulAdd(half, extent, v), end);
+      s_end = HN::IfThenElse(rough, middle, s_end);
+    }
+    pieces += HN::CountTrue(d, active);
+    CL::lanes::add_piece<false>(table, index, HN::Add(s, m), HN::Add(s_end, m), HN::Sub(s_end, s), length, progress);
+    note_first_light(progress, HN::MulAdd(v, piece.extent, piece.begin), first);
+    v = HN::IfThenElse(active, end, v);
+    s = HN::IfThenElse(active, s_end, s);
+    active = HN::And(active, HN::Lt(v, one));
+    if (HN::AllFalse(d, active)) return;
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::volume
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,175 @@
+#include "volume/render.hpp"
+
+#include <fmt/format.h>
+#include <hwy/targets.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "scene/error.hpp"
+#include "volume/cell_ranges.hpp"
+#include "volume/frame_view.hpp"
+#include "volume/tile_caster.hpp"
+
+namespace tessera::volume {
+namespace {
+
+void check(const RenderSettings& settings) {
+  if (settings.brick_size < 2 || settings.brick_size > 1 << 16)
+    throw scene::bad_input(fmt::format("brick size {}; it must be 2 to 65536 voxels", settings.brick_size));
+  if (!(settings.accuracy > 0) || !std::isfinite(settings.accuracy))
+    throw scene::bad_input(fmt::format("accuracy {}; it must be positive", settings.accuracy));
+  if (!(settings.step > 0) || !std::isfinite(settings.step))
+    throw scene::bad_input(fmt::format("step {}; it must be positive, in voxels", settings.step));
+  if (settings.threads < 0) throw scene::bad_input(fmt::format("{} threads; give 0 or more", settings.threads));
+  if (settings.preload_limit < 0)
+    throw scene::bad_input(fmt::format("preload limit {}; give 0 or more", settings.preload_limit));
+}
+
+/// World units; a power of two near the mean voxel's side.
+double length_unit_of(const scene::GridGeometry& geometry) {
+  double side = 1;
+  for (std::size_t a = 0; a < 3; ++a)
+    side *= geometry.lattice(a, geometry.points[a] - 1) / static_cast<double>(geometry.points[a] - 1);
+  return std::ldexp(1.0, std::ilogb(std::cbrt(side)));
+}
+
+/// Tiles along a curve that stays in one place for long, so that neighbours find each other's bricks.
+std::vector<std::pair<int, int>> tiles_of(const PixelRegion& region) {
+  std::vector<std::pair<int, int>> tiles;
+  const int side = TileRays::side;
+  for (int y = region.y0 / side * side; y < region.y1; y += side)
+    for (int x = region.x0 / side * side; x < region.x1; x += side) tiles.emplace_back(x, y);
+  const auto spread = [](std::uint32_t n) {
+    std::uint64_t bits = 0;
+    for (int b = 0; b < 16; ++b) bits |= static_cast<std::uint64_t>(n >> b & 1) << 2 * b;
+    return bits;
+  };
+  const auto place = [&](const std::pair<int, int>& tile) {
+    return spread(static_cast<std::uint32_t>(tile.first / side)) |
+           spread(static_cast<std::uint32_t>(tile.second / side)) << 1;
+  };
+  std::sort(tiles.begin(), tiles.end(), [&](const auto& a, const auto& b) { return place(a) < place(b); });
+  return tiles;
+}
+
+}  // namespace
+
+struct Renderer::State {
+  State(const scene::SampleSource& source_, const RenderSettings& settings_)
+      : source(source_),
+        settings(settings_),
+        ranges(source_, settings_.threads),
+        bricks(source_, BrickLayout(source_.geometry(), settings_.brick_size, settings_.edge_bricks),
+               settings_.memory_bytes, settings_.cache) {}
+
+  const scene::SampleSource& source;
+  RenderSettings settings;
+  CellRanges ranges;
+  BrickCache bricks;
+};
+
+Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& settings) {
+  check(settings);
+  if (source.geometry().rectilinear())
+    throw scene::bad_input("rectilinear coordinates are not rendered yet; resample the volume");
+  if (settings.method == Method::sampled || settings.method == Method::preintegrated || settings.shading)
+    throw scene::bad_input("this method is not there yet; use exact or auto");
+  state_ = std::make_unique<State>(source, settings);
+}
+
+Renderer::~Renderer() = default;
+
+scene::ValueRange Renderer::range() const { return state_->ranges.range; }
+
+scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size,
+                              const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
+                              std::optional<PixelRegion> region) {
+  scene::validate(camera);
+  scene::validate(size);
+  State& state = *state_;
+  const RenderSettings& settings = state.settings;
+  const scene::TraceScope frame_scope(settings.trace, "frame");
+  const PixelRegion all{0, 0, size.width, size.height};
+  const PixelRegion wanted = region ? PixelRegion{std::max(0, region->x0), std::max(0, region->y0),
+                                                  std::min(size.width, region->x1), std::min(size.height, region->y1)}
+                                    : all;
+  scene::Image image(size);
+  const BrickCache::Counts before = state.bricks.counts();
+  const PixelRays rays(camera, size, state.source.geometry());
+  const double length_unit = length_unit_of(state.source.geometry());
+  const compositor::LaneTable table(transfer_function, state.ranges.lanes.origin, state.ranges.lanes.unit, length_unit,
+                                    settings.emission);
+  std::vector<std::uint8_t> visible, brick_visible;
+  TileCounts counts;
+  tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    const BrickLayout& layout = state.bricks.layout();
+    {
+      const scene::TraceScope scope(settings.trace, "cull");
+      visible = visible_cells(state.ranges, table);
+      brick_visible = visible_bricks(state.ranges, visible, layout);
+    }
+    const double accuracy = settings.method == Method::exact ? 2e-6 : settings.accuracy;
+    double brightest = transfer_function.max_color();
+    if (settings.emission == scene::Emission::independent) {
+      const scene::Box box = scene::bounds(state.source.geometry());
+      brightest *= glm::length(box.high - box.low);
+    }
+    FrameView frame{};
+    frame.rays = &rays;
+    frame.table = &table;
+    frame.ranges = &state.ranges;
+    frame.visible = visible.data();
+    frame.brick_visible = brick_visible.data();
+    frame.bricks = &state.bricks;
+    frame.voxels = state.source.geometry().voxels();
+    frame.samples = state.source.geometry().samples();
+    frame.cell_data = state.source.geometry().association == scene::Association::cell;
+    frame.length_unit = length_unit;
+    frame.least_transmittance = static_cast<float>(std::min(0.25, accuracy / 4 / std::max(1.0, brightest)));
+    frame.piece_tolerance = static_cast<float>(accuracy / 64);
+    frame.largest_color = static_cast<float>(std::max(1e-30, transfer_function.max_color()));
+    frame.trace = settings.trace;
+
+    const auto tiles = tiles_of(wanted);
+    tbb::enumerable_thread_specific<std::unique_ptr<TileMemory>> memories(
+        [] { return std::make_unique<TileMemory>(); });
+    tbb::enumerable_thread_specific<TileCounts> tile_counts;
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, tiles.size(), 1),
+        [&](const auto& some) {
+          const scene::TraceScope scope(settings.trace, "project");
+          for (std::size_t n = some.begin(); n != some.end(); ++n)
+            cast_tile(frame, tiles[n].first, tiles[n].second, wanted, *memories.local(), image, tile_counts.local());
+        },
+        tbb::auto_partitioner());
+    for (const TileCounts& c : tile_counts) {
+      counts.rays += c.rays;
+      counts.voxels_visited += c.voxels_visited;
+      counts.samples += c.samples;
+    }
+  });
+  if (statistics != nullptr) {
+    const BrickCache::Counts after = state.bricks.counts();
+    RenderStatistics s;
+    s.rays = counts.rays, s.voxels_visited = counts.voxels_visited, s.samples = counts.samples;
+    s.bricks_total = brick_visible.size();
+    s.bricks_invisible = static_cast<std::uint64_t>(std::count(brick_visible.begin(), brick_visible.end(), 0));
+    s.brick_hits = after.hits - before.hits, s.bricks_loaded = after.loads - before.loads;
+    s.bricks_evicted = after.evictions - before.evictions, s.bytes_loaded = after.bytes_loaded - before.bytes_loaded;
+    s.bytes_resident = after.bytes, s.peak_bytes = after.peak_bytes;
+    s.blank_samples = state.ranges.range.blanks;
+    s.instruction_set = hwy::TargetName(static_cast<std::int64_t>(
+        static_cast<std::uint64_t>(hwy::SupportedTargets()) & -static_cast<std::uint64_t>(hwy::SupportedTargets())));
+    *statistics = s;
+  }
+  return image;
+}
+
+}  // namespace tessera::volume

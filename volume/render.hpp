@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "scene/camera.hpp"
+#include "scene/image.hpp"
+#include "scene/optical_model.hpp"
+#include "scene/sample_source.hpp"
+#include "scene/trace.hpp"
+#include "scene/transfer_function.hpp"
+
+namespace tessera::volume {
+
+/// How the field along a ray becomes colour and opacity.
+enum class Method {
+  automatic,     ///< as exact, to `accuracy`: the default
+  exact,         ///< the trilinear field's cubic, cut where it crosses knots; error below 1e-5, mostly near 1e-6
+  sampled,       ///< one sample in the middle of each step (midpoint rule, second order)
+  preintegrated  ///< a table over the scalars at both ends of a step (Engel, Kraus, Ertl 2001)
+};
+
+/// What the brick cache throws out first ([Mol08] 3.3).
+enum class CachePolicy {
+  lru,       ///< the brick that has not been used for longest
+  proximity  ///< the brick whose centre is farthest from a cone round the view frustum
+};
+
+/// How much memory a brick at the volume's high end takes ([Mol08] Table 6.2).
+enum class EdgeBricks { variable, fixed };
+
+/// Blinn-Phong with central differences of the trilinear field, one voxel either way, as the normal; two-sided.
+/// c becomes c * (ambient + diffuse |n.l|) + specular |n.h|^shininess. Where the gradient is zero, c stays as it is.
+struct Shading {
+  double ambient = 0.2, diffuse = 0.8, specular = 0.2, shininess = 32;
+  glm::dvec3 to_light{0, 0, 1};  ///< towards the light; any length but zero
+  bool camera_light = true;      ///< `to_light` in the camera's frame (right, up, towards the eye), else in the world's
+};
+
+struct RenderSettings {
+  Method method = Method::automatic;
+  double accuracy = 1e-4;  ///< automatic only: largest error in linear RGBA
+  double step = 0.5;       ///< sampled, preintegrated: in voxels (cube root of a mean voxel's volume), > 0
+  scene::Emission emission = scene::Emission::absorption;
+  std::optional<Shading> shading;
+  int threads = 0;      ///< 0: all cores
+  int brick_size = 32;  ///< voxels a side, 2 or more; bricks share their border samples
+  EdgeBricks edge_bricks = EdgeBricks::variable;
+  std::uint64_t memory_bytes = 4ull << 30;  ///< budget of the bricks in memory
+  CachePolicy cache = CachePolicy::lru;
+  int preload_limit = 0;  ///< proximity: bricks near the frustum that are loaded ahead after a frame, at most
+  scene::Trace* trace = nullptr;
+};
+
+/// What happened in one frame.
+struct RenderStatistics {
+  std::uint64_t rays = 0;                                ///< rays that meet the volume
+  std::uint64_t voxels_visited = 0;                      ///< stretches of rays in one voxel that were evaluated
+  std::uint64_t samples = 0;                             ///< pieces integrated, or samples taken
+  std::uint64_t bricks_total = 0, bricks_invisible = 0;  ///< the latter are never loaded
+  std::uint64_t brick_hits = 0, bricks_loaded = 0, bricks_evicted = 0;  ///< uses that found it in memory; else
+  std::uint64_t bytes_loaded = 0, bytes_resident = 0, peak_bytes = 0;   ///< of bricks; the last two at the end
+  std::uint64_t blank_samples = 0;                                      ///< of the whole volume (NaN, infinite)
+  std::string instruction_set;                                          ///< of the kernels that ran
+};
+
+/// Pixels x0 <= x < x1, y0 <= y < y1.
+struct PixelRegion {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+/// Casts rays through one volume many times, in one process. The constructor reads all of it once, for the ranges of
+/// values by which empty space is skipped; the source must outlive the renderer.
+///
+/// Bits   on one instruction set the image is the same for any brick size, memory budget, cache policy, thread count
+///        and region.
+class Renderer {
+ public:
+  /// Throws Error(bad_input) for settings out of range.
+  Renderer(const scene::SampleSource& source, const RenderSettings& settings);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// The composited image in memory; only the pixels of `region` if there is one, the others stay empty. Throws
+  /// Error(bad_input) for an invalid camera or size; Error(system_failure) if the budget does not hold the bricks that
+  /// the threads need at one time.
+  scene::Image render(const scene::Camera& camera, scene::ImageSize size,
+                      const scene::TransferFunction& transfer_function, RenderStatistics* statistics = nullptr,
+                      std::optional<PixelRegion> region = std::nullopt);
+
+  /// Of the whole volume, blank samples left out.
+  [[nodiscard]] scene::ValueRange range() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace tessera::volume

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace tessera::volume {
+
+/// The samples that one tile's rays need on their way through a chunk of 16 slabs of voxels, as lane scalars.
+///
+/// Slices   slice n lies at k = first_k + n (point data: lattice planes 0..16; cell data: voxels 0..15). It holds
+///          columns i of [low_i[n], low_i[n] + pitch) and rows j of [low_j[n], low_j[n] + rows): slices slide along
+///          with the rays. Columns and rows beyond the volume repeat its last ones.
+/// Slabs    slab n lies between slices n and n + 1. Samples slab_i[n] <= i <= slab_i_last[n], and so for j, are in both
+///          slices; they hold all that the tile's rays meet, and at least 8 columns and rows.
+/// Chunks   chunk c begins at k = 16 c, whatever bricks there are.
+struct SlabBlock {
+  static constexpr int slabs = 16, slices = slabs + 1;
+  static constexpr std::ptrdiff_t margin = 64;  ///< floats that may be read past either end
+
+  std::array<int, slices> low_i, low_j;
+  std::array<int, slabs> slab_i, slab_i_last, slab_j, slab_j_last;
+  std::ptrdiff_t pitch = 0, rows = 0;
+  std::vector<float> samples;
+
+  [[nodiscard]] float* slice(int n) { return samples.data() + margin + n * pitch * rows; }
+  [[nodiscard]] const float* at(int n, int i, int j) const {
+    const auto s = static_cast<std::size_t>(n);
+    return samples.data() + margin + (n * rows + (j - low_j[s])) * pitch + (i - low_i[s]);
+  }
+  /// Makes room for `pitch` and `rows` as they are; what is there is garbage, but finite or NaN.
+  void reserve() {
+    const auto size = static_cast<std::size_t>(2 * margin + slices * pitch * rows);
+    if (samples.size() < size) samples.resize(size, 0.0f);
+  }
+};
+
+}  // namespace tessera::volume

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "scene/image.hpp"
+#include "volume/frame_view.hpp"
+#include "volume/slab_block.hpp"
+#include "volume/tile_rays.hpp"
+
+namespace tessera::volume {
+
+/// One thread's memory.
+struct TileMemory {
+  TileRays rays;
+  SlabBlock block;
+  std::vector<float> row;
+};
+
+/// Casts the rays of the tile whose first pixel is (x0, y0), multiples of 32, and writes those of its pixels that lie
+/// in `region`. Early ends, skipped space and order of sums depend on the frame alone.
+void cast_tile(const FrameView& frame, int x0, int y0, const PixelRegion& region, TileMemory& memory,
+               scene::Image& image, TileCounts& counts);
+
+}  // namespace tessera::volume

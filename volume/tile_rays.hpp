@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+
+namespace tessera::volume {
+
+/// The rays of one tile of 32x32 pixels, as lanes see them. Tiles and packets lie on fixed places of the image.
+///
+/// Order    packet by packet, a packet being 4x4 pixels: ray = packet * 16 + (y % 4) * 4 + x % 4.
+/// Axes     k is the axis along which rays move most, mirrored where they move down, so that k grows along every ray;
+///          (i, j) are the other two, i the lower. Units are voxels. A ray is at (x, y) = (ax + bx k, ay + by k), with
+///          |bx|, |by| <= 1, between k_in and k_out (empty if k_in >= k_out).
+/// Arrays   structure of arrays; every ray has a place, pixels outside of the image included.
+struct TileRays {
+  static constexpr int side = 32, packet_side = 4;
+  static constexpr int packet_rays = packet_side * packet_side, packets = side * side / packet_rays;
+  static constexpr int count = side * side;
+
+  alignas(64) double ax[count], bx[count], ay[count], by[count], k_in[count], k_out[count];
+  alignas(64) double depth_0[count], depth_k[count];  ///< planar depth = depth_0 + depth_k * k, world units
+  alignas(64) float length_k[count];                  ///< length of the ray per k, in the table's unit
+  // Light gathered so far, and the k at which it began; NaN until then.
+  alignas(64) float alpha[count], transmittance[count], red[count], green[count], blue[count];
+  alignas(64) double first_k[count];
+
+  static constexpr int pixel_x(int ray) {
+    return ray / packet_rays % (side / packet_side) * packet_side + ray % packet_side;
+  }
+  static constexpr int pixel_y(int ray) {
+    return ray / packet_rays / (side / packet_side) * packet_side + ray % packet_rays / packet_side;
+  }
+};
+
+/// What TileRays::k and its neighbours i, j are in the volume.
+struct RayAxes {
+  int i = 0, j = 1, k = 2;
+  bool mirrored = false;  ///< k counts down from the last lattice point
+
+  [[nodiscard]] static RayAxes of(int code) {
+    const int k = code / 2;
+    return {k == 0 ? 1 : 0, k == 2 ? 1 : 2, k, code % 2 == 1};
+  }
+};
+
+}  // namespace tessera::volume
