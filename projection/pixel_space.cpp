@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "projection/project_lanes.hpp"
+
 namespace tessera::projection {
 namespace {
 
@@ -39,6 +41,19 @@ PixelVertex PixelSpace::project(const glm::dvec3& p_world) const {
             depth};
   return {half_width * depth + across * pixels_per_unit_, half_height * depth - upward * pixels_per_unit_, depth,
           depth};
+}
+
+void PixelSpace::project(std::span<const glm::dvec3> p_world, std::span<PixelVertex> out) const {
+  const LinearMap map{{position_.x, position_.y, position_.z},
+                      {basis_.right.x, basis_.right.y, basis_.right.z},
+                      {basis_.up.x, basis_.up.y, basis_.up.z},
+                      {basis_.forward.x, basis_.forward.y, basis_.forward.z},
+                      0.5 * size_.width,
+                      0.5 * size_.height,
+                      pixels_per_unit_,
+                      perspective_};
+  const std::size_t done = project_lanes(map, p_world, out);
+  for (std::size_t i = done; i < p_world.size(); ++i) out[i] = project(p_world[i]);
 }
 
 double PixelSpace::length_per_depth(double x, double y) const {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 
 #include "scene/camera.hpp"
 #include "scene/tet_mesh.hpp"
@@ -28,6 +29,9 @@ class PixelSpace {
   PixelSpace(const scene::Camera& camera, scene::ImageSize size);
 
   [[nodiscard]] PixelVertex project(const glm::dvec3& p_world) const;
+
+  /// The same of many points, on SIMD lanes, to the same bits: out[i] is project(p_world[i]). Spans of one length.
+  void project(std::span<const glm::dvec3> p_world, std::span<PixelVertex> out) const;
 
   /// World length per unit of planar depth along the ray through a pixel position: 1 in orthographic projection.
   [[nodiscard]] double length_per_depth(double x, double y) const;

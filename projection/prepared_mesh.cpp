@@ -29,6 +29,20 @@ PreparedMesh::PreparedMesh(const scene::TetMesh& mesh) : mesh_(&mesh), permutati
       permutation_[t] = static_cast<std::uint8_t>(corner[0] | (corner[1] << 2) | (corner[2] << 4) | (corner[3] << 6));
     }
   });
+  block_bounds_.resize((mesh.tets.size() + block_tets - 1) / block_tets);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, block_bounds_.size(), 64), [&](const auto& range) {
+    for (std::size_t b = range.begin(); b != range.end(); ++b) {
+      std::array<double, 2> bounds = scalar_bounds(b * block_tets);
+      const std::size_t end = std::min((b + 1) * block_tets, mesh.tets.size());
+      for (std::size_t t = b * block_tets + 1; t < end; ++t) {
+        const auto [low, high] = scalar_bounds(t);
+        bounds = {std::min(bounds[0], low), std::max(bounds[1], high)};
+      }
+      block_bounds_[b] = bounds;
+    }
+  });
+  scalars_are_floats_ = std::all_of(mesh.scalars.begin(), mesh.scalars.end(),
+                                    [](double s) { return static_cast<double>(static_cast<float>(s)) == s; });
 }
 
 std::array<double, 2> PreparedMesh::scalar_bounds(std::size_t tet) const {

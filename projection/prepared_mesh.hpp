@@ -28,12 +28,25 @@ class PreparedMesh {
     return {t[p & 3], t[(p >> 2) & 3], t[(p >> 4) & 3], t[(p >> 6) & 3]};
   }
 
+  /// Asks for what canonical() will read beside the tet.
+  void prefetch(std::size_t tet) const { __builtin_prefetch(&permutation_[tet]); }
+
   /// Smallest and largest scalar in a tet.
   [[nodiscard]] std::array<double, 2> scalar_bounds(std::size_t tet) const;
+
+  /// Tets of a block: those of block b are b * block_tets to (b + 1) * block_tets, the last block may be short.
+  static constexpr std::size_t block_tets = 64;
+  [[nodiscard]] std::size_t block_count() const { return block_bounds_.size(); }
+  /// Smallest and largest scalar in a block, so that whole blocks are culled; a quarter of a byte a tet.
+  [[nodiscard]] std::array<double, 2> block_scalar_bounds(std::size_t block) const { return block_bounds_[block]; }
+  /// Whether all scalars are float numbers, as those of most files are: comparing them in float is then exact.
+  [[nodiscard]] bool scalars_are_floats() const { return scalars_are_floats_; }
 
  private:
   const scene::TetMesh* mesh_;
   std::vector<std::uint8_t> permutation_;  ///< four 2-bit corner numbers a tet
+  std::vector<std::array<double, 2>> block_bounds_;
+  bool scalars_are_floats_ = false;
 };
 
 }  // namespace tessera::projection

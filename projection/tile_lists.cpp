@@ -6,6 +6,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -21,12 +22,10 @@ float depth_behind(double origin, double depth) {
 }
 
 double nearest_depth(const ProjectedMesh& projected) {
-  const auto vertices = projected.vertices;
   const double nearest = tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, vertices.size(), 4096), std::numeric_limits<double>::max(),
+      tbb::blocked_range<std::size_t>(0, projected.vertices.size(), 8192), std::numeric_limits<double>::max(),
       [&](const auto& range, double least) {
-        for (std::size_t v = range.begin(); v != range.end(); ++v) least = std::min(least, vertices[v].depth);
-        return least;
+        return std::min(least, smallest_depth(projected.vertices.subspan(range.begin(), range.end() - range.begin())));
       },
       [](double a, double b) { return std::min(a, b); });
   return std::max(projected.near_depth, nearest);
@@ -41,11 +40,14 @@ bool crosses_eye_plane(const std::array<PixelVertex, 4>& c) {
   return !(c[0].w > 0 && c[1].w > 0 && c[2].w > 0 && c[3].w > 0);
 }
 
-/// Blocks of tets that are counted apart; few, as each has one counter a tile.
-constexpr std::size_t block_count = 16;
+static_assert(PreparedMesh::block_tets == cull_block_cells);
 
-std::size_t block_begin(std::size_t block, std::size_t tets) {
-  return tets / block_count * block + std::min(block, tets % block_count);
+/// Runs of blocks that are culled and filled apart: a few a thread, so that none waits long for the last, yet their
+/// counters, one a tile each, stay below 32 MiB.
+std::size_t run_count(std::size_t blocks, std::size_t tiles) {
+  const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+  const std::size_t most = std::max<std::size_t>((std::size_t{8} << 20) / tiles, 1);
+  return std::clamp<std::size_t>(std::min(8 * threads, blocks), 1, most);
 }
 
 }  // namespace
@@ -57,121 +59,206 @@ PixelRect TileGrid::rect(std::size_t tile) const {
           std::min((row + 1) * tile_size, image.height)};
 }
 
+/// Of a projected tet.
 template <class Visit>
 void TileLists::for_each_tile(std::size_t tet, Visit visit) const {
-  const Extent& e = extents_[tet];
-  if (e.column0 > e.column1) return;
+  const std::uint32_t place = buffers_->places[tet];
   const auto columns = static_cast<std::size_t>(grid_.columns());
-  const bool box_is_window = e.column0 != e.column1 || e.row0 != e.row1;
-  std::array<PixelVertex, 4> corners;
-  bool crossing = false;
-  if (box_is_window) {
-    corners = corners_of(*projected_, tet);
-    crossing = crosses_eye_plane(corners);
+  if (place < wide_place) {
+    const std::size_t first = place & 0xffffff, right = place >> 24 & 15, down = place >> 28;
+    for (std::size_t row = 0; row <= down; ++row)
+      for (std::size_t column = 0; column <= right; ++column) visit(first + row * columns + column);
+    return;
   }
-  for (std::size_t row = e.row0; row <= e.row1; ++row)
-    for (std::size_t column = e.column0; column <= e.column1; ++column) {
-      const std::size_t tile = row * columns + column;
-      // Such a cell's extent is the whole window; its tiles are those that no plane through the eye parts from it.
+  const std::array<PixelVertex, 4> corners = corners_of(*projected_, tet);
+  const PixelRect box = footprint(corners, {0, 0, grid_.image.width, grid_.image.height});
+  const int size = grid_.tile_size;
+  const bool crossing = crosses_eye_plane(corners);
+  for (int row = box.y0 / size; row <= (box.y1 - 1) / size; ++row)
+    for (int column = box.x0 / size; column <= (box.x1 - 1) / size; ++column) {
+      const std::size_t tile = static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(column);
+      // Such a cell's box is the whole window; its tiles are those that no plane through the eye parts from it.
       if (crossing && footprint(corners, grid_.rect(tile)).empty()) continue;
-      visit(tile, e.near_depth);
+      visit(tile);
     }
 }
 
 TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
                      const scene::TransferFunction& transfer_function, bool emits_without_extinction,
-                     scene::Trace* trace)
+                     scene::Trace* trace, TileListBuffers* buffers)
     : projected_(&projected),
       trace_(trace),
       grid_(grid),
+      buffers_(buffers != nullptr ? buffers : &own_),
       depth_origin_(nearest_depth(projected)),
-      extents_(projected.mesh->tet_count()),
+      view_(projected.near_depth, projected.far_depth, depth_origin_, grid.image, grid.tile_size),
+      projected_tets_(projected.mesh->block_count()),
       tile_counts_(grid.count(), 0) {
-  const std::size_t tets = extents_.size();
-  const PixelRect window{0, 0, grid.image.width, grid.image.height};
-  std::array<CullCounts, block_count> culled;
-  std::vector<std::vector<std::uint32_t>> counted(block_count);
-  tbb::parallel_for(std::size_t{0}, block_count, [&](std::size_t block) {
+  const scene::TetMesh& mesh = projected.mesh->mesh();
+  buffers_->vertices.reset(projected.vertices.size());
+  buffers_->places.reset(projected_tets_.size() * cull_block_cells);
+  buffers_->near_depths.reset(projected_tets_.size() * cull_block_cells);
+  buffers_->entries.clear();
+  const bool per_cell = mesh.association == scene::Association::cell;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, projected.vertices.size(), 4096), [&](const auto& range) {
     const scene::TraceScope timing(trace_, "cull");
-    CullCounts local;
-    std::vector<std::uint32_t>& tiles = counted[block];
-    tiles.resize(grid.count(), 0);
-    for (std::size_t t = block_begin(block, tets); t != block_begin(block + 1, tets); ++t) {
-      Extent& extent = extents_[t];
-      extent = {1, 1, 0, 0, 0};
-      const auto [low, high] = projected.mesh->scalar_bounds(t);
-      if (!transfer_function.visible(low, high, emits_without_extinction)) {
-        ++local.invisible;
-        continue;
-      }
-      const std::array<PixelVertex, 4> c = corners_of(projected, t);
-      const auto [nearest, farthest] = std::minmax({c[0].depth, c[1].depth, c[2].depth, c[3].depth});
-      if (!(farthest > projected.near_depth && nearest < projected.far_depth)) {
-        ++local.outside_view;
-        continue;
-      }
-      const PixelRect box = footprint(c, window);
-      if (box.empty()) {
-        // Inside the window's span in both directions, yet without a pixel centre?
-        const auto inside = [&](const PixelVertex& v) {
-          return v.w > 0 && v.x > 0 && v.x < window.x1 * v.w && v.y > 0 && v.y < window.y1 * v.w;
-        };
-        ++(std::any_of(c.begin(), c.end(), inside) ? local.between_pixels : local.outside_view);
-        continue;
-      }
-      ++local.projected;
-      const auto tile = [&](int pixel) { return static_cast<std::uint16_t>(pixel / grid.tile_size); };
-      extent = {tile(box.x0), tile(box.y0), tile(box.x1 - 1), tile(box.y1 - 1),
-                depth_behind(depth_origin_, std::max(nearest, projected.near_depth))};
-      for_each_tile(t, [&](std::size_t i, float) { ++tiles[i]; });
-    }
-    culled[block] = local;
+    const std::size_t n = range.end() - range.begin();
+    make_cull_vertices(projected.vertices.subspan(range.begin(), n),
+                       per_cell ? std::span<const double>() : std::span(mesh.scalars).subspan(range.begin(), n),
+                       depth_origin_, buffers_->vertices.data() + range.begin());
   });
-  for (std::size_t block = 0; block < block_count; ++block) {
-    counts_.invisible += culled[block].invisible;
-    counts_.outside_view += culled[block].outside_view;
-    counts_.between_pixels += culled[block].between_pixels;
-    counts_.projected += culled[block].projected;
-    for (std::size_t i = 0; i < tile_counts_.size(); ++i) tile_counts_[i] += counted[block][i];
+
+  const ClearIntervals clear(transfer_function, emits_without_extinction);
+  const std::size_t blocks = projected_tets_.size();
+  runs_.resize(run_count(blocks, grid.count()));
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    runs_[r].first_block = blocks * r / runs_.size();
+    runs_[r].last_block = blocks * (r + 1) / runs_.size();
   }
+  tbb::parallel_for(
+      std::size_t{0}, runs_.size(),
+      [&](std::size_t r) {
+        const scene::TraceScope timing(trace_, "cull");
+        cull(runs_[r], clear);
+      },
+      tbb::simple_partitioner());
+  for (Run& run : runs_) {
+    counts_.invisible += run.culled.invisible;
+    counts_.outside_view += run.culled.outside_view;
+    counts_.between_pixels += run.culled.between_pixels;
+    counts_.projected += run.culled.projected;
+    for (std::size_t i = 0; i < tile_counts_.size(); ++i) {
+      const std::uint32_t here = run.tiles[i];
+      run.tiles[i] = static_cast<std::uint32_t>(tile_counts_[i]);  // below the number of tets, so 32 bits hold it
+      tile_counts_[i] += here;
+    }
+  }
+}
+
+void TileLists::cull(Run& run, const ClearIntervals& clear) {
+  const PreparedMesh& prepared = *projected_->mesh;
+  const scene::TetMesh& mesh = prepared.mesh();
+  const bool per_cell = mesh.association == scene::Association::cell;
+  CullCounts& counts = run.culled;
+  run.tiles.assign(grid_.count(), 0);
+  std::vector<ClearFloats> clear_here;
+  for (std::size_t block = run.first_block; block < run.last_block; ++block) {
+    const std::size_t first = block * cull_block_cells;
+    const std::size_t n = std::min(cull_block_cells, mesh.tets.size() - first);
+    const auto [low, high] = prepared.block_scalar_bounds(block);
+    if (clear.hold(low, high)) {
+      counts.invisible += n;
+      continue;
+    }
+    clear_here.clear();
+    for (const ClearIntervals::Interval& interval : clear.meeting(low, high))
+      clear_here.push_back(clear_floats(interval, prepared.scalars_are_floats()));
+    CulledBlock culled = cull_cells(view_, buffers_->vertices.data(), std::span(mesh.tets).subspan(first, n),
+                                    per_cell ? mesh.scalars.data() + first : nullptr, clear_here,
+                                    &buffers_->places[first], &buffers_->near_depths[first]);
+    counts.invisible += static_cast<std::uint64_t>(std::popcount(culled.invisible));
+    counts.outside_view += static_cast<std::uint64_t>(std::popcount(culled.outside_view));
+    counts.between_pixels += static_cast<std::uint64_t>(std::popcount(culled.between_pixels));
+    for (std::uint64_t unsure = culled.unsure; unsure != 0; unsure &= unsure - 1) {
+      const auto cell = static_cast<std::size_t>(std::countr_zero(unsure));
+      if (cull_exactly(first + cell, clear, counts)) culled.projected |= std::uint64_t{1} << cell;
+    }
+    counts.projected += static_cast<std::uint64_t>(std::popcount(culled.projected));
+    projected_tets_[block] = culled.projected;
+    for (std::uint64_t left = culled.projected; left != 0; left &= left - 1) {
+      const std::size_t tet = first + static_cast<std::size_t>(std::countr_zero(left));
+      const std::uint32_t place = buffers_->places[tet];
+      if (place < most_places)
+        ++run.tiles[place];
+      else
+        for_each_tile(tet, [&](std::size_t tile) { ++run.tiles[tile]; });
+    }
+  }
+}
+
+bool TileLists::cull_exactly(std::size_t tet, const ClearIntervals& clear, CullCounts& counts) {
+  const auto [low, high] = projected_->mesh->scalar_bounds(tet);
+  if (clear.hold(low, high)) {
+    ++counts.invisible;
+    return false;
+  }
+  const std::array<PixelVertex, 4> c = corners_of(*projected_, tet);
+  const auto [nearest, farthest] = std::minmax({c[0].depth, c[1].depth, c[2].depth, c[3].depth});
+  if (!(farthest > projected_->near_depth && nearest < projected_->far_depth)) {
+    ++counts.outside_view;
+    return false;
+  }
+  const PixelRect window{0, 0, grid_.image.width, grid_.image.height}, box = footprint(c, window);
+  if (box.empty()) {
+    // Inside the window's span in both directions, yet without a pixel centre?
+    const auto inside = [&](const PixelVertex& v) {
+      return v.w > 0 && v.x > 0 && v.x < window.x1 * v.w && v.y > 0 && v.y < window.y1 * v.w;
+    };
+    ++(std::any_of(c.begin(), c.end(), inside) ? counts.between_pixels : counts.outside_view);
+    return false;
+  }
+  buffers_->near_depths[tet] = depth_behind(depth_origin_, std::max(nearest, projected_->near_depth));
+  const int column = box.x0 / grid_.tile_size, row = box.y0 / grid_.tile_size;
+  const int right = (box.x1 - 1) / grid_.tile_size - column, down = (box.y1 - 1) / grid_.tile_size - row;
+  const bool wide =
+      right > largest_place_span || down > largest_place_span || grid_.count() > most_places || crosses_eye_plane(c);
+  const auto bits = [](int number, int shift) { return static_cast<std::uint32_t>(number) << shift; };
+  buffers_->places[tet] =
+      wide ? wide_place : bits(row * grid_.columns() + column, 0) | bits(right, 24) | bits(down, 28);
+  return true;
 }
 
 void TileLists::fill(std::size_t first, std::size_t last) {
   first_ = first;
   offsets_.assign(last - first + 1, 0);
   for (std::size_t i = first; i < last; ++i) offsets_[i - first + 1] = offsets_[i - first] + tile_counts_[i];
-  entries_.resize(offsets_.back());
-  // Each task fills its own run of tiles and reads all extents: no shared counters, and the lists come out in tet
-  // order.
-  const auto columns = static_cast<std::size_t>(grid_.columns());
-  const std::size_t first_row = first / columns, last_row = (last - 1) / columns;
-  const std::size_t tasks =
-      std::min<std::size_t>(last - first, 2 * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
-  tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
-    const scene::TraceScope timing(trace_, "bin");
-    const std::size_t begin = first + (last - first) * task / tasks, end = first + (last - first) * (task + 1) / tasks;
-    const std::size_t begin_row = begin / columns, end_row = (end - 1) / columns;
-    std::vector<std::uint64_t> next(offsets_.begin() + static_cast<std::ptrdiff_t>(begin - first),
-                                    offsets_.begin() + static_cast<std::ptrdiff_t>(end - first));
-    for (std::size_t t = 0; t < extents_.size(); ++t) {
-      const Extent& e = extents_[t];
-      if (e.column0 > e.column1 || e.row1 < begin_row || e.row0 > end_row || e.row1 < first_row || e.row0 > last_row)
-        continue;
-      for_each_tile(t, [&](std::size_t tile, float near_depth) {
-        if (tile >= begin && tile < end) entries_[next[tile - begin]++] = {near_depth, static_cast<std::uint32_t>(t)};
-      });
+  buffers_->entries.reset(offsets_.back());
+  tbb::parallel_for(
+      std::size_t{0}, runs_.size(),
+      [&](std::size_t r) {
+        const scene::TraceScope timing(trace_, "bin");
+        fill(r, first, last);
+      },
+      tbb::simple_partitioner());
+}
+
+void TileLists::fill(std::size_t r, std::size_t first, std::size_t last) {
+  const Run& run = runs_[r];
+  std::vector<std::uint64_t> next(last - first);
+  bool any = false;
+  for (std::size_t i = first; i < last; ++i) {
+    next[i - first] = offsets_[i - first] + run.tiles[i];
+    any |= (r + 1 < runs_.size() ? runs_[r + 1].tiles[i] : tile_counts_[i]) > run.tiles[i];
+  }
+  if (!any) return;
+  TileEntry* const entries = buffers_->entries.data();
+  const std::size_t tiles = last - first;
+  for (std::size_t block = run.first_block; block < run.last_block; ++block)
+    for (std::uint64_t left = projected_tets_[block]; left != 0; left &= left - 1) {
+      const std::size_t tet = block * cull_block_cells + static_cast<std::size_t>(std::countr_zero(left));
+      const TileEntry entry{buffers_->near_depths[tet], static_cast<std::uint32_t>(tet)};
+      const std::uint32_t place = buffers_->places[tet];
+      // Tiles before the band wrap to large numbers.
+      if (place < most_places) {
+        if (place - first < tiles) entries[next[place - first]++] = entry;
+      } else {
+        for_each_tile(tet, [&](std::size_t tile) {
+          if (tile - first < tiles) entries[next[tile - first]++] = entry;
+        });
+      }
     }
-  });
 }
 
 std::span<TileEntry> TileLists::tile(std::size_t tile) {
   const std::size_t i = tile - first_;
-  return std::span(entries_).subspan(offsets_[i], offsets_[i + 1] - offsets_[i]);
+  return {buffers_->entries.data() + offsets_[i], buffers_->entries.data() + offsets_[i + 1]};
 }
 
 std::size_t TileLists::bytes() const {
-  return extents_.capacity() * sizeof(Extent) + tile_counts_.capacity() * sizeof(std::uint64_t) +
-         offsets_.capacity() * sizeof(std::uint64_t) + entries_.capacity() * sizeof(TileEntry);
+  return buffers_->vertices.bytes() + buffers_->places.bytes() + buffers_->near_depths.bytes() +
+         buffers_->entries.bytes() + projected_tets_.capacity() * sizeof(std::uint64_t) +
+         runs_.size() * grid_.count() * sizeof(std::uint32_t) +
+         (tile_counts_.capacity() + offsets_.capacity()) * sizeof(std::uint64_t);
 }
 
 }  // namespace tessera::projection

@@ -4,7 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "projection/cull_cells.hpp"
 #include "projection/footprint.hpp"
+#include "projection/large_array.hpp"
 #include "projection/planes_rasterizer.hpp"
 #include "scene/trace.hpp"
 #include "scene/transfer_function.hpp"
@@ -31,16 +33,28 @@ struct CullCounts {
   std::uint64_t projected = 0;
 };
 
+/// Memory of TileLists, kept from frame to frame.
+struct TileListBuffers {
+  LargeArray<CullVertex> vertices;
+  LargeArray<std::uint32_t> places;  ///< one a tet: where its box lies (cull_cells.hpp), if it is projected
+  LargeArray<float> near_depths;     ///< one a tet
+  LargeArray<TileEntry> entries;     ///< the lists
+};
+
 /// The cells of each tile, for one view and transfer function.
 ///
 /// Two passes, count and fill, so that lists have their final size at once and stand in tet order whatever the threads
-/// do. 12 bytes a tet hold what the first pass found; the lists themselves are filled for a band of tiles at a time.
+/// do. Both go over the tets in runs of blocks of 64; each run counts its entries of every tile, and fills them where
+/// the runs before it end. A block without visible scalars costs nothing, in either pass. 8 bytes a tet hold what
+/// the first pass found, beside 16 a vertex; the lists, 8 bytes an entry, are filled for a band of tiles at a time.
 class TileLists {
  public:
   /// First pass: culls and counts. Work runs in the caller's task arena (oneTBB); `trace`, if any, gets spans `cull`
-  /// and `bin` of the threads that help.
+  /// and `bin` of the threads that help. `buffers`, if any, must outlive this object and serve no other meanwhile.
   TileLists(const ProjectedMesh& projected, const TileGrid& grid, const scene::TransferFunction& transfer_function,
-            bool emits_without_extinction, scene::Trace* trace = nullptr);
+            bool emits_without_extinction, scene::Trace* trace = nullptr, TileListBuffers* buffers = nullptr);
+  TileLists(const TileLists&) = delete;
+  TileLists& operator=(const TileLists&) = delete;
 
   [[nodiscard]] const CullCounts& counts() const { return counts_; }
 
@@ -61,23 +75,30 @@ class TileLists {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  struct Extent {
-    std::uint16_t column0, row0, column1, row1;  ///< inclusive tiles; column0 > column1: culled
-    float near_depth;
+  struct Run {
+    std::size_t first_block = 0, last_block = 0;
+    CullCounts culled;
+    std::vector<std::uint32_t> tiles;  ///< entries in each tile; later those of the runs before
   };
+  void cull(Run& run, const ClearIntervals& clear);
+  bool cull_exactly(std::size_t tet, const ClearIntervals& clear, CullCounts& counts);
+  void fill(std::size_t run, std::size_t first, std::size_t last);
   template <class Visit>
   void for_each_tile(std::size_t tet, Visit visit) const;
 
   const ProjectedMesh* projected_;
   scene::Trace* trace_;
   TileGrid grid_;
+  TileListBuffers own_;
+  TileListBuffers* buffers_;
   double depth_origin_;
+  CullView view_;
   CullCounts counts_;
-  std::vector<Extent> extents_;             ///< one a tet
-  std::vector<std::uint64_t> tile_counts_;  ///< one a tile
-  std::size_t first_ = 0;                   ///< of the last fill
-  std::vector<std::uint64_t> offsets_;      ///< one a tile of the last fill, and the end
-  std::vector<TileEntry> entries_;
+  std::vector<Run> runs_;
+  std::vector<std::uint64_t> projected_tets_;  ///< a bit a tet
+  std::vector<std::uint64_t> tile_counts_;     ///< one a tile
+  std::size_t first_ = 0;                      ///< of the last fill
+  std::vector<std::uint64_t> offsets_;         ///< one a tile of the last fill, and the end
 };
 
 }  // namespace tessera::projection

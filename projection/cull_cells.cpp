@@ -1,0 +1,289 @@
+#include "projection/cull_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "projection/cull_cells.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::projection {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+double smallest(const PixelVertex* vertices, std::size_t count) {
+  double least = std::numeric_limits<double>::max();
+  std::size_t v = 0;
+#if HWY_TARGET != HWY_SCALAR
+  const hn::ScalableTag<double> d;
+  auto least_lanes = hn::Set(d, least);
+  for (; v + hn::Lanes(d) <= count; v += hn::Lanes(d)) {
+    hn::Vec<decltype(d)> x, y, w, depth;
+    hn::LoadInterleaved4(d, &vertices[v].x, x, y, w, depth);
+    least_lanes = hn::Min(depth, least_lanes);
+  }
+  least = hn::GetLane(hn::MinOfLanes(d, least_lanes));
+#endif
+  for (; v < count; ++v) least = vertices[v].depth < least ? vertices[v].depth : least;
+  return least;
+}
+
+HWY_INLINE CullVertex cull_vertex(const PixelVertex& v, double scalar, double depth_origin) {
+  CullVertex out;
+  out.x = static_cast<float>(v.x / v.w);
+  out.y = static_cast<float>(v.y / v.w);
+  const double size = (v.depth < 0 ? -v.depth : v.depth) + (depth_origin < 0 ? -depth_origin : depth_origin);
+  const double depth = (v.depth - depth_origin) - 4e-16 * size;
+  // What rounding to float may add is taken off before.
+  const double lower = depth - (depth < 0 ? -depth : depth) * 0x1p-23 - 0x1p-149;
+  out.depth = static_cast<float>(lower < 3e38 ? lower : 3e38);
+  out.scalar = static_cast<float>(scalar);
+  return out;
+}
+
+#if HWY_TARGET == HWY_SCALAR
+
+void make_vertices(const PixelVertex* vertices, const double* scalars, std::size_t count, double depth_origin,
+                   CullVertex* out) {
+  for (std::size_t v = 0; v < count; ++v)
+    out[v] = cull_vertex(vertices[v], scalars != nullptr ? scalars[v] : 0, depth_origin);
+}
+
+CulledBlock cull(const CullView&, const CullVertex*, const scene::Tet*, std::size_t count, const double*,
+                 const ClearFloats*, std::size_t, std::uint32_t*, float*) {
+  CulledBlock block;
+  block.unsure = ~std::uint64_t{0} >> (cull_block_cells - count);
+  return block;
+}
+
+#else
+
+void make_vertices(const PixelVertex* vertices, const double* scalars, std::size_t count, double depth_origin,
+                   CullVertex* out) {
+  const hn::ScalableTag<double> dd;
+  const hn::Rebind<float, decltype(dd)> df;
+  const std::size_t lanes = hn::Lanes(dd);
+  const auto origin = hn::Set(dd, depth_origin), origin_size = hn::Abs(origin);
+  std::size_t v = 0;
+  for (; v + lanes <= count; v += lanes) {
+    hn::Vec<decltype(dd)> x, y, w, depth;
+    hn::LoadInterleaved4(dd, &vertices[v].x, x, y, w, depth);
+    const auto offset =
+        hn::Sub(hn::Sub(depth, origin), hn::Mul(hn::Add(hn::Abs(depth), origin_size), hn::Set(dd, 4e-16)));
+    const auto lower = hn::Sub(hn::Sub(offset, hn::Mul(hn::Abs(offset), hn::Set(dd, 0x1p-23))), hn::Set(dd, 0x1p-149));
+    const auto scalar = scalars != nullptr ? hn::LoadU(dd, scalars + v) : hn::Zero(dd);
+    hn::StoreInterleaved4(hn::DemoteTo(df, hn::Div(x, w)), hn::DemoteTo(df, hn::Div(y, w)),
+                          hn::DemoteTo(df, hn::Min(lower, hn::Set(dd, 3e38))), hn::DemoteTo(df, scalar), df, &out[v].x);
+  }
+  for (; v < count; ++v) out[v] = cull_vertex(vertices[v], scalars != nullptr ? scalars[v] : 0, depth_origin);
+}
+
+using D = hn::ScalableTag<float>;
+using V = hn::Vec<D>;
+using M = hn::Mask<D>;
+
+HWY_INLINE std::uint64_t bits_of(M mask) {
+  std::uint64_t bits = 0;
+  hn::StoreMaskBits(D(), mask, reinterpret_cast<std::uint8_t*>(&bits));
+  return bits;
+}
+
+/// Interval of whole numbers [low, high) of pixels whose centres lie in [least, most], and whether floats are sure.
+struct Covered {
+  V low, high;
+  M empty, sure;  ///< empty: certainly
+};
+
+/// Ten times the rounding of a float pixel position and of what is added to it here, and of footprint()'s slack.
+HWY_INLINE V slack_of(V pixel) { return hn::MulAdd(hn::Abs(pixel), hn::Set(D(), 0x1p-22f), hn::Set(D(), 1e-7f)); }
+
+HWY_INLINE Covered covered(V least, V most, V side) {
+  const D d;
+  const V half = hn::Set(d, 0.5f), zero = hn::Zero(d);
+  const auto in_window = [&](V v) HWY_ATTR { return hn::Min(hn::Max(v, zero), side); };
+  const V from = hn::Sub(least, half), from_slack = slack_of(least);
+  const V to = hn::Add(most, half), to_slack = slack_of(most);  // floor(most - 1/2) + 1
+  const V first = in_window(hn::Ceil(hn::Sub(from, from_slack))), last = in_window(hn::Floor(hn::Add(to, to_slack)));
+  const M first_sure = hn::Eq(first, in_window(hn::Ceil(hn::Add(from, from_slack))));
+  const M last_sure = hn::Eq(last, in_window(hn::Floor(hn::Sub(to, to_slack))));
+  return {first, last, hn::Ge(first, last), hn::And(first_sure, last_sure)};
+}
+
+/// Boxes of cells, a cell after the other: smallest and largest of x, y, depth, scalar.
+HWY_INLINE void boxes_of(const CullVertex* vertices, const scene::Tet* tets, std::size_t count, float* low,
+                         float* high) {
+  const hn::FixedTag<float, 4> d;
+  for (std::size_t t = 0; t < count; ++t) {
+    const auto a = hn::Load(d, &vertices[tets[t][0]].x), b = hn::Load(d, &vertices[tets[t][1]].x);
+    const auto c = hn::Load(d, &vertices[tets[t][2]].x), e = hn::Load(d, &vertices[tets[t][3]].x);
+    hn::Store(hn::Min(hn::Min(a, b), hn::Min(c, e)), d, low + 4 * t);
+    hn::Store(hn::Max(hn::Max(a, b), hn::Max(c, e)), d, high + 4 * t);
+  }
+}
+
+CulledBlock cull(const CullView& view, const CullVertex* vertices, const scene::Tet* tets, std::size_t count,
+                 const double* cell_scalars, const ClearFloats* clear, std::size_t clear_count, std::uint32_t* places,
+                 float* near_depths) {
+  CulledBlock block;
+  const std::uint64_t cells = ~std::uint64_t{0} >> (cull_block_cells - count);
+  if (view.nothing_sure) {
+    block.unsure = cells;
+    return block;
+  }
+  alignas(64) float low[4 * cull_block_cells], high[4 * cull_block_cells], scalars[cull_block_cells];
+  boxes_of(vertices, tets, count, low, high);
+  if (cell_scalars != nullptr)
+    for (std::size_t t = 0; t < count; ++t) scalars[t] = static_cast<float>(cell_scalars[t]);
+
+  const D d;
+  const hn::RebindToSigned<D> di;
+  const std::size_t lanes = hn::Lanes(d);
+  for (std::size_t t = count; t < (count + lanes - 1) / lanes * lanes; ++t) {  // any numbers
+    for (std::size_t i = 0; i < 4; ++i) low[4 * t + i] = high[4 * t + i] = 0;
+    scalars[t] = 0;
+  }
+  const V width = hn::Set(d, view.width), height = hn::Set(d, view.height), half = hn::Set(d, 0.5f);
+  for (std::size_t t = 0; t < count; t += lanes) {
+    V x_low, y_low, depth_low, scalar_low, x_high, y_high, depth_high, scalar_high;
+    hn::LoadInterleaved4(d, low + 4 * t, x_low, y_low, depth_low, scalar_low);
+    hn::LoadInterleaved4(d, high + 4 * t, x_high, y_high, depth_high, scalar_high);
+    if (cell_scalars != nullptr) scalar_low = scalar_high = hn::Load(d, scalars + t);
+
+    M hidden = hn::Lt(half, half), may_be_hidden = hidden;
+    for (std::size_t i = 0; i < clear_count; ++i) {
+      hidden = hn::Or(hidden, hn::And(hn::Ge(scalar_low, hn::Set(d, clear[i].sure_low)),
+                                      hn::Le(scalar_high, hn::Set(d, clear[i].sure_high))));
+      may_be_hidden = hn::Or(may_be_hidden, hn::And(hn::Ge(scalar_low, hn::Set(d, clear[i].maybe_low)),
+                                                    hn::Le(scalar_high, hn::Set(d, clear[i].maybe_high))));
+    }
+
+    // The farthest that a vertex of this CullVertex::depth may lie.
+    const auto at_most = [&](V v) HWY_ATTR {
+      return hn::Add(hn::MulAdd(hn::Abs(v), hn::Set(d, 4e-7f), v), hn::Set(d, view.depth_slack));
+    };
+    const M too_near = hn::Lt(at_most(depth_high), hn::Set(d, view.near_low));
+    const M too_far = hn::Gt(depth_low, hn::Set(d, view.far_high));
+    const M in_depth =
+        hn::And(hn::Gt(depth_low, hn::Set(d, view.near_high)), hn::Lt(at_most(depth_low), hn::Set(d, view.far_low)));
+
+    const Covered columns = covered(x_low, x_high, width), rows = covered(y_low, y_high, height);
+    const V widest = hn::Max(hn::Max(hn::Abs(x_low), hn::Abs(x_high)), hn::Max(hn::Abs(y_low), hn::Abs(y_high)));
+    const M tame = hn::Lt(widest, hn::Set(d, 1e30f));
+    const M empty = hn::Or(columns.empty, rows.empty);
+    const M covers = hn::AndNot(empty, hn::And(columns.sure, rows.sure));
+    const auto inside = [&](V least, V most, V side) HWY_ATTR {
+      return hn::And(hn::Gt(least, slack_of(least)), hn::Lt(hn::Add(most, slack_of(most)), side));
+    };
+    const auto outside = [&](V least, V most, V side) HWY_ATTR {
+      return hn::Or(hn::Lt(hn::Add(most, slack_of(most)), hn::Zero(d)), hn::Gt(hn::Sub(least, slack_of(least)), side));
+    };
+    const M all_inside = hn::And(inside(x_low, x_high, width), inside(y_low, y_high, height));
+    const M all_outside = hn::Or(outside(x_low, x_high, width), outside(y_low, y_high, height));
+
+    const M drawn = hn::And(in_depth, tame);
+    const std::uint64_t hidden_bits = bits_of(hidden), visible = ~bits_of(may_be_hidden);
+    const std::uint64_t drawn_bits = visible & bits_of(drawn), empty_bits = drawn_bits & bits_of(empty);
+    const std::uint64_t here = cells >> t & (~std::uint64_t{0} >> (64 - lanes));
+    const std::uint64_t projected = drawn_bits & bits_of(covers) & here;
+    const std::uint64_t outside_bits =
+        ((visible & bits_of(hn::Or(too_near, too_far))) | (empty_bits & bits_of(all_outside))) & here;
+    const std::uint64_t between = empty_bits & bits_of(all_inside) & ~outside_bits & here;
+    block.projected |= projected << t;
+    block.invisible |= (hidden_bits & here) << t;
+    block.outside_view |= outside_bits << t;
+    block.between_pixels |= between << t;
+
+    // Whole numbers up to 65536 plus a half, over the tile's size: floats are off by less than half a pixel.
+    const V inverse = hn::Set(d, view.inverse_tile_size);
+    const auto tile = [&](V pixel) HWY_ATTR { return hn::Floor(hn::Mul(pixel, inverse)); };
+    const V column0 = tile(hn::Add(columns.low, half)), column1 = tile(hn::Sub(columns.high, half));
+    const V row0 = tile(hn::Add(rows.low, half)), row1 = tile(hn::Sub(rows.high, half));
+    const auto first = hn::ConvertTo(di, hn::MulAdd(row0, hn::Set(d, view.columns), column0));
+    const auto more_columns = hn::ConvertTo(di, hn::Sub(column1, column0));
+    const auto more_rows = hn::ConvertTo(di, hn::Sub(row1, row0));
+    const auto place = hn::Or(first, hn::Or(hn::ShiftLeft<24>(more_columns), hn::ShiftLeft<28>(more_rows)));
+    const auto wide = hn::Gt(hn::Max(more_columns, more_rows), hn::Set(di, largest_place_span));
+    hn::StoreU(hn::IfThenElse(wide, hn::Set(di, static_cast<std::int32_t>(wide_place)), place), di,
+               reinterpret_cast<std::int32_t*>(places + t));
+    hn::StoreU(hn::Max(depth_low, hn::Set(d, view.near_low)), d, near_depths + t);
+  }
+  block.unsure = cells & ~(block.projected | block.invisible | block.outside_view | block.between_pixels);
+  return block;
+}
+
+#endif  // HWY_TARGET == HWY_SCALAR
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::projection
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tessera::projection {
+namespace {
+
+float not_above(double v) {
+  const auto f = static_cast<float>(v);
+  return static_cast<double>(f) <= v ? f : std::nextafter(f, -std::numeric_limits<float>::infinity());
+}
+float not_below(double v) { return -not_above(-v); }
+
+}  // namespace
+
+HWY_EXPORT(smallest);
+HWY_EXPORT(make_vertices);
+HWY_EXPORT(cull);
+
+double smallest_depth(std::span<const PixelVertex> vertices) {
+  return HWY_DYNAMIC_DISPATCH(smallest)(vertices.data(), vertices.size());
+}
+
+void make_cull_vertices(std::span<const PixelVertex> vertices, std::span<const double> scalars, double depth_origin,
+                        CullVertex* out) {
+  HWY_DYNAMIC_DISPATCH(make_vertices)
+  (vertices.data(), scalars.empty() ? nullptr : scalars.data(), vertices.size(), depth_origin, out);
+}
+
+ClearFloats clear_floats(const ClearIntervals::Interval& interval, bool exact) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  if (exact) {
+    const float low = not_below(interval.low), high = not_above(interval.high);
+    return {low, high, low, high};
+  }
+  // Rounding keeps order: s >= low makes float(s) >= float(low), and float(s) > float(low) comes from s > low only.
+  const auto low = static_cast<float>(interval.low), high = static_cast<float>(interval.high);
+  return {std::isinf(interval.low) ? low : std::nextafter(low, infinity),
+          std::isinf(interval.high) ? high : std::nextafter(high, -infinity), low, high};
+}
+
+CullView::CullView(double near_depth, double far_depth, double depth_origin, scene::ImageSize image, int tile_size)
+    : width(static_cast<float>(image.width)),
+      height(static_cast<float>(image.height)),
+      inverse_tile_size(1.0f / static_cast<float>(tile_size)),
+      columns(static_cast<float>((image.width + tile_size - 1) / tile_size)) {
+  constexpr double most = 1e37;
+  const double to_near = near_depth - depth_origin, to_far = far_depth - depth_origin;
+  const double rows = (image.height + tile_size - 1) / tile_size;
+  nothing_sure = !(std::abs(depth_origin) < most && std::abs(near_depth) < most &&
+                   (std::abs(far_depth) < most || std::isinf(far_depth))) ||
+                 static_cast<double>(columns) * rows > static_cast<double>(most_places);
+  const double near_slack = 1e-15 * (std::abs(near_depth) + std::abs(depth_origin));
+  near_low = not_above(to_near - near_slack);
+  near_high = not_below(to_near + near_slack);
+  const double far_slack = std::isinf(far_depth) ? 0 : 1e-15 * (std::abs(far_depth) + std::abs(depth_origin));
+  far_low = not_above(to_far - far_slack);
+  far_high = not_below(to_far + far_slack);
+  depth_slack = not_below(2e-15 * std::abs(depth_origin) + 0x1p-146);
+}
+
+CulledBlock cull_cells(const CullView& view, const CullVertex* vertices, std::span<const scene::Tet> tets,
+                       const double* cell_scalars, std::span<const ClearFloats> clear, std::uint32_t* places,
+                       float* near_depths) {
+  return HWY_DYNAMIC_DISPATCH(cull)(view, vertices, tets.data(), tets.size(), cell_scalars, clear.data(), clear.size(),
+                                    places, near_depths);
+}
+
+}  // namespace tessera::projection
+#endif  // HWY_ONCE
