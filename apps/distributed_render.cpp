@@ -183,7 +183,11 @@ void RankRun::render() {
         }
         const float edge = longest_edge(mesh.part.mesh);
         return frame::ProjectorMesh{std::make_shared<scene::TetMesh>(std::move(mesh.part.mesh)),
-                                    std::move(mesh.part.global_tet), diagonal(mesh.facts.box), edge};
+                                    std::move(mesh.part.global_tet),
+                                    diagonal(mesh.facts.box),
+                                    mesh.facts.box,
+                                    mesh.facts.scalar_range,
+                                    edge};
       },
       [&](frame::FinishedFrame finished) { take(std::move(finished)); });
   for (; writes_ && next_to_report_ < frames_.size(); ++next_to_report_) output_.skip(frames_[next_to_report_]);

@@ -125,6 +125,7 @@ Json frame_json(const Frame& frame, const FrameRecord* record) {
     json["counters"]["exchange_messages"] = statistics.exchange_messages;
   }
   json["instruction_set"] = statistics.instruction_set;
+  json["arithmetic"] = statistics.on_lattice ? "lattice" : "double";
   json["integrator"] = statistics.integrator;
   if (record->verification) {
     const auto& judgement = record->verification->judgement;

@@ -24,6 +24,8 @@ class FrameCollector {
   [[nodiscard]] bool has_all_ends() const { return ends_ == projectors_; }
   [[nodiscard]] double longest_ray() const { return longest_ray_; }
   [[nodiscard]] float longest_edge() const { return longest_edge_; }
+  /// Of the frame's lattice segments; units of 0 without.
+  [[nodiscard]] const projection::Lattice& lattice() const { return lattice_; }
   [[nodiscard]] const FrameEnd& sums() const { return sums_; }
 
   /// Parts of a tile that wait to be merged.
@@ -67,6 +69,7 @@ class FrameCollector {
   int begins_ = 0, ends_ = 0;
   double longest_ray_ = 0;
   float longest_edge_ = 0;
+  projection::Lattice lattice_;
   FrameEnd sums_{};
   struct Debt {
     std::uint32_t tile;

@@ -127,7 +127,8 @@ FrameEnd sum(const FrameEnd& a, const FrameEnd& b) {
           a.tiles_split + b.tiles_split,
           a.fragments + b.fragments,
           a.bytes + b.bytes,
-          a.messages + b.messages};
+          a.messages + b.messages,
+          a.on_lattice + b.on_lattice};
 }
 
 }  // namespace tessera::compositor

@@ -7,6 +7,7 @@ namespace tessera::compositor {
 
 std::unique_ptr<TileMerger> make_segment_merger(const MergeContext& context, const projection::PixelRect& rect);
 std::unique_ptr<TileMerger> make_tuple_merger(const MergeContext& context, const projection::PixelRect& rect);
+std::unique_ptr<TileMerger> make_window_merger(const MergeContext& context, const projection::PixelRect& rect);
 std::unique_ptr<TileMerger> make_run_merger(const MergeContext& context, const projection::PixelRect& rect);
 
 }  // namespace tessera::compositor

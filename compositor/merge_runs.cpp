@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "compositor/integrate_lanes.hpp"
 #include "compositor/merge_kinds.hpp"
+#include "compositor/window_kernel.hpp"
 
 namespace tessera::compositor {
 namespace {
@@ -16,7 +18,8 @@ namespace {
 class RunMerger final : public TileMerger {
  public:
   RunMerger(const MergeContext& context, const projection::PixelRect& rect)
-      : budget_(context.budget_bytes),
+      : context_(context),
+        budget_(context.budget_bytes),
         rect_(rect),
         weight_(opacity_weight(context.max_color, context.longest_ray, context.emission)),
         termination_error_(context.integrator->termination_error()),
@@ -29,14 +32,35 @@ class RunMerger final : public TileMerger {
                                      "--memory or make --tile-size smaller",
                                      rect_.x0, rect_.y0, runs_.size() + part.fragments));
     RecordReader reader(part.records);
-    while (!reader.empty()) {
-      const auto run = reader.take<RunRecord>();
-      if (run.pixel >= pixels_.size())
-        throw scene::Error(
-            scene::ExitCode::system_failure,
-            fmt::format("exchange: the runs of tile {} are malformed; all ranks must run the same program", part.tile));
-      runs_.push_back(run);
+    const auto check = [&](std::uint32_t pixel, bool right) {
+      if (right && pixel < pixels_.size()) return;
+      throw scene::Error(
+          scene::ExitCode::system_failure,
+          fmt::format("exchange: the runs of tile {} are malformed; all ranks must run the same program", part.tile));
+    };
+    if (part.kind == RecordKind::runs) {
+      while (!reader.empty()) {
+        const auto run = reader.take<RunRecord>();
+        check(run.pixel, true);
+        runs_.push_back(run);
+      }
+      return;
     }
+    const projection::Lattice& lattice = *context_.lattice;
+    single_.clear();
+    while (!reader.empty()) {
+      const auto header = reader.take<RunsHeader>();
+      check(header.pixel, context_.table != nullptr);
+      for (int i = 0; i < header.runs; ++i) {
+        const auto run = reader.take<LatticeRun>();
+        const double front = lattice.depth(run.front);
+        runs_.push_back({front, static_cast<float>(lattice.depth(run.back) - front), run.red, run.green, run.blue,
+                         run.optical_depth, header.pixel});
+      }
+      for (int i = 0; i < header.segments; ++i)
+        single_.push_back({header.pixel, reader.take<projection::LatticeSegment>()});
+    }
+    integrate_single();
   }
 
   void advance(double final_depth) override {
@@ -70,6 +94,29 @@ class RunMerger final : public TileMerger {
     bool open = true;
   };
 
+  /// Runs of one segment, with the bits that their projector would have found.
+  void integrate_single() {
+    if (single_.empty()) return;
+    batch_.reserve(single_.size());
+    batch_.size = single_.size();
+    for (std::size_t i = 0; i < single_.size(); ++i) {
+      const auto& [pixel, segment] = single_[i];
+      const double x = rect_.x0 + static_cast<int>(pixel) % rect_.width() + 0.5,
+                   y = rect_.y0 + static_cast<int>(pixel) / rect_.width() + 0.5;
+      batch_.length[i] =
+          static_cast<float>(segment.back - segment.front) * static_cast<float>(context_.space->length_per_depth(x, y));
+      batch_.scalar_front[i] = segment.scalar_front;
+      batch_.scalar_back[i] = segment.scalar_back;
+    }
+    integrate_lanes(*context_.table, batch_);
+    for (std::size_t i = 0; i < single_.size(); ++i) {
+      const auto& [pixel, segment] = single_[i];
+      const double front = first_visible_depth(*context_.lattice, segment, *context_.integrator);
+      runs_.push_back({front, static_cast<float>(context_.lattice->depth(segment.back) - front), batch_.red[i],
+                       batch_.green[i], batch_.blue[i], batch_.optical_depth[i], pixel});
+    }
+  }
+
   void composite(const RunRecord& run, Pixel& pixel) const {
     if (!pixel.open) return;
     if (pixel.optical_depth == 0 && run.optical_depth > 0) pixel.first_depth = run.front;
@@ -81,11 +128,18 @@ class RunMerger final : public TileMerger {
     pixel.open = pixel.transmittance * weight_ >= termination_error_;
   }
 
+  MergeContext context_;
   std::uint64_t budget_;
   projection::PixelRect rect_;
   double weight_, termination_error_;
   std::vector<Pixel> pixels_;
   std::vector<RunRecord> runs_;
+  struct Single {
+    std::uint32_t pixel;
+    projection::LatticeSegment segment;
+  };
+  std::vector<Single> single_;
+  FloatBatch batch_;
 };
 
 }  // namespace

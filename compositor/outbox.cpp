@@ -50,7 +50,7 @@ void Outbox::take_credit() {
 }
 
 void Outbox::begin_frame(std::uint32_t frame, const TileMap& map, const std::vector<bool>& has_parts,
-                         double longest_ray, float longest_edge) {
+                         const FrameBegin& facts) {
   const std::lock_guard lock(mutex_);
   frame_ = frame;
   map_ = &map;
@@ -65,7 +65,9 @@ void Outbox::begin_frame(std::uint32_t frame, const TileMap& map, const std::vec
     lane.order.clear();
     Bytes message;
     append(message, MessageHeader{.kind = MessageKind::begin, .frame = frame_});
-    append(message, FrameBegin{longest_ray, tiles.size(), longest_edge});
+    FrameBegin begin = facts;
+    begin.tiles = tiles.size();
+    append(message, begin);
     Bytes bits((tiles.size() + 7) / 8, std::byte{0});
     for (std::size_t i = 0; i < tiles.size(); ++i)
       if (has_parts[tiles[i]]) {

@@ -39,9 +39,9 @@ class Outbox {
   Outbox& operator=(const Outbox&) = delete;
 
   /// Starts a frame: tells every compositor which of its tiles will get parts. Parts of each of those follow by put(),
-  /// the last one of a tile marked so. `map` must live until end_frame().
-  void begin_frame(std::uint32_t frame, const TileMap& map, const std::vector<bool>& has_parts, double longest_ray,
-                   float longest_edge);
+  /// the last one of a tile marked so. `facts`: all but the number of tiles. `map` must live until end_frame().
+  void begin_frame(std::uint32_t frame, const TileMap& map, const std::vector<bool>& has_parts,
+                   const FrameBegin& facts);
 
   /// Any thread; parts of one tile in order, from one thread. Blocks while too much waits to be sent; throws the run's
   /// error.

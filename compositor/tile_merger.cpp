@@ -28,10 +28,13 @@ std::unique_ptr<TileMerger> make_tile_merger(RecordKind kind, const MergeContext
                                              const projection::PixelRect& rect) {
   switch (kind) {
     case RecordKind::runs:
+    case RecordKind::lattice_runs:
       return make_run_merger(context, rect);
     case RecordKind::chains:
     case RecordKind::chains_of_cells:
       return make_segment_merger(context, rect);
+    case RecordKind::lattice:
+      return make_window_merger(context, rect);
     case RecordKind::tuples:
       return make_tuple_merger(context, rect);
   }

@@ -3,9 +3,11 @@
 #include <memory>
 #include <vector>
 
+#include "compositor/lane_table.hpp"
 #include "compositor/segment_integrator.hpp"
 #include "compositor/wire.hpp"
 #include "projection/footprint.hpp"
+#include "projection/lattice.hpp"
 #include "projection/pixel_space.hpp"
 #include "scene/deep_image.hpp"
 #include "scene/image.hpp"
@@ -23,6 +25,10 @@ struct MergeContext {
   std::uint64_t budget_bytes;                         ///< for one tile's fragments that cannot be composited yet
   const scene::TransferFunction* function = nullptr;  ///< with deep samples
   double deep_accuracy = 0;                           ///< > 0: raw segments give deep samples too (deep_sink.hpp)
+  // Lattice segments:
+  const projection::Lattice* lattice = nullptr;
+  const LaneTable* table = nullptr;  ///< on that lattice
+  scene::Trace* trace = nullptr;
 };
 
 /// A finished tile.
@@ -36,7 +42,7 @@ struct MergedTile {
 /// One tile of the picture from the fragments of all projectors.
 ///
 /// Parts may come in any order; the picture does not depend on it, as fragments have a total order: segments by
-/// (front, back, tet), runs by all they hold. One merger is used by one thread at a time.
+/// (front, back, tet) or, as runs, by all they hold. One merger is used by one thread at a time.
 class TileMerger {
  public:
   virtual ~TileMerger() = default;

@@ -6,9 +6,11 @@
 #include <span>
 
 #include "compositor/transport.hpp"
+#include "projection/lattice.hpp"
 #include "projection/segment_tuple.hpp"
+#include "projection/segment_windows.hpp"
 
-/// What travels from projectors to compositors, byte by byte. Little endian, no padding, version 1.
+/// What travels from projectors to compositors, byte by byte. Little endian, no padding, version 2.
 ///
 ///   message    MessageHeader, then by its kind
 ///     begin    FrameBegin, then one bit a tile of the receiver in its order, lowest bit first: 1 where parts will come
@@ -25,16 +27,27 @@
 ///              next begins, at the same depth and scalar, so 24 bytes a segment carry all of it in double precision:
 ///              the compositor's picture has the bits of a single process's. Scalars of cell data are the same at both
 ///              ends of a link and are not shared with the next.
+///   lattice    LatticeHeader and `segments` LatticeSegments each: segments of one pixel in any order, on the frame's
+///              integer lattice, 16 bytes each: the compositor's picture has the bits of a single process's.
+///   lattice_runs  RunsHeader, `runs` LatticeRuns and `segments` LatticeSegments each: runs of one pixel. A run of one
+///              segment is that segment, 16 bytes, integrated by the compositor.
 ///   tuples     TupleRecord each, in the order of their cells: Juliachs et al. 2007, 4.1
 namespace tessera::compositor {
 
 static_assert(std::endian::native == std::endian::little, "the wire is little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 1;
+inline constexpr std::uint16_t wire_version = 2;
 
 enum class MessageKind : std::uint16_t { begin = 1, parts = 2, end = 3 };
-enum class RecordKind : std::uint8_t { runs = 1, chains = 2, chains_of_cells = 3, tuples = 4 };
+enum class RecordKind : std::uint8_t {
+  runs = 1,
+  chains = 2,
+  chains_of_cells = 3,
+  tuples = 4,
+  lattice = 5,
+  lattice_runs = 6
+};
 
 struct MessageHeader {
   std::uint32_t magic = wire_magic;
@@ -50,8 +63,9 @@ struct FrameBegin {
   std::uint64_t tiles;  ///< number of bits that follow
   float longest_edge;   ///< of the whole mesh, world units: the unit of a tuple's length; 0 without tuples
   std::uint32_t reserved = 0;
+  projection::Lattice lattice{};  ///< of lattice segments; all 0 without
 };
-static_assert(sizeof(FrameBegin) == 24);
+static_assert(sizeof(FrameBegin) == 56);
 
 struct PartHeader {
   std::uint32_t tile;
@@ -86,6 +100,27 @@ struct ChainLink {
 };
 static_assert(sizeof(ChainLink) == 24);
 
+/// Segments of one pixel on the lattice.
+struct LatticeHeader {
+  std::uint32_t pixel, segments;
+};
+static_assert(sizeof(LatticeHeader) == 8);
+static_assert(sizeof(projection::LatticeSegment) == 16);
+
+/// Runs of one pixel on the lattice.
+struct RunsHeader {
+  std::uint32_t pixel;
+  std::uint16_t runs, segments;
+};
+static_assert(sizeof(RunsHeader) == 8);
+
+/// RunRecord with its depths in steps of the lattice.
+struct LatticeRun {
+  std::int32_t front, back;
+  float red, green, blue, optical_depth;
+};
+static_assert(sizeof(LatticeRun) == 24);
+
 /// The paper's 4-tuple and its pixel.
 struct TupleRecord {
   std::uint32_t pixel;
@@ -98,8 +133,9 @@ struct FrameEnd {
   std::uint64_t tets_total, tets_invisible, tets_outside_view, tets_between_pixels, tets_projected;
   std::uint64_t segments, max_segments_alive, peak_buffer_bytes, exact_sign_tests, tiles_split;
   std::uint64_t fragments, bytes, messages;  ///< sent to compositors, itself included
+  std::uint64_t on_lattice;                  ///< 1: the projector's segments are on the integer lattice
 };
-static_assert(sizeof(FrameEnd) == 13 * 8);
+static_assert(sizeof(FrameEnd) == 14 * 8);
 
 /// Appends a record's bytes.
 template <class Record>

@@ -40,6 +40,7 @@ struct Frame {
   projection::PixelSpace space;
   compositor::SegmentIntegrator integrator;
   compositor::TileSender sender;
+  std::optional<compositor::LaneTable> table;  ///< of lattice segments
   double start_us = 0;
 
   struct Merge {
@@ -118,6 +119,9 @@ class CompositorLoop {
       case compositor::MessageKind::begin: {
         const auto begin = reader.take<compositor::FrameBegin>();
         to.collector.begin(projector, begin, reader.take_bytes((begin.tiles + 7) / 8));
+        if (!to.table && begin.lattice.depth_unit > 0)
+          to.table.emplace(run_.function, begin.lattice.scalar_origin, begin.lattice.scalar_unit,
+                           begin.lattice.depth_unit, run_.settings.render.emission);
         if (to.collector.has_all_begins())
           for (auto& [tile, merge] : to.merges) schedule(to, tile);
         break;
@@ -192,7 +196,8 @@ class CompositorLoop {
           merge.merger = make_tile_merger(waiting.parts.front().kind,
                                           {&of.space, &of.integrator, run_.function.max_color(), longest_ray,
                                            longest_edge, run_.settings.render.emission, budget_.tile, &run_.function,
-                                           run_.settings.deep ? run_.settings.render.deep_accuracy : 0},
+                                           run_.settings.deep ? run_.settings.render.deep_accuracy : 0,
+                                           &of.collector.lattice(), of.table ? &*of.table : nullptr, trace_},
                                           of.grid.rect(tile));
         if (merge.merger != nullptr) compositor::merge(*merge.merger, waiting.parts, waiting.final_depth, budget_.tile);
         // A tile that got nothing stays as empty as the assembled picture is.
@@ -259,6 +264,7 @@ void run_assembler(const DistributedRun& run, const std::function<void(FinishedF
     statistics.fragments = sums.fragments;
     statistics.exchange_bytes = sums.bytes;
     statistics.exchange_messages = sums.messages;
+    statistics.on_lattice = sums.on_lattice > 0;
     statistics.deep_samples = finished.deep.samples.size();
     statistics.instruction_set = projection::instruction_set();
     statistics.integrator = integrator.name();

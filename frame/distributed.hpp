@@ -41,6 +41,8 @@ struct ProjectorMesh {
   std::shared_ptr<const scene::TetMesh> part;  ///< may have no tets
   std::vector<std::uint64_t> global_tet;       ///< index in the whole mesh of each tet, ascending; empty: its own
   double diagonal = 0;                         ///< of the whole mesh's box, world units
+  scene::Box box;                              ///< of the whole mesh
+  std::array<double, 2> scalar_range{};        ///< of the whole mesh
   float longest_edge = 0;                      ///< scanline: of the whole mesh, world units
 };
 

@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
+#include "frame/lattice_tile_renderer.hpp"
 #include "frame/tile_renderer.hpp"
 #include "scene/error.hpp"
 
@@ -37,6 +38,55 @@ void check_scanline(const projection::ProjectedMesh& projected, const projection
         "--rasterizer scanline: its 32-bit floats do not hold this scene's depths, pixels or scalars; use --rasterizer "
         "planes");
 }
+
+/// One thread's part in a frame: tiles, one after the other.
+class TileWorker {
+ public:
+  TileWorker() = default;
+  TileWorker(const TileWorker&) = delete;
+  TileWorker& operator=(const TileWorker&) = delete;
+  virtual ~TileWorker() = default;
+  virtual void render(std::size_t tile, const projection::PixelRect& rect,
+                      std::span<projection::TileEntry> entries) = 0;
+  [[nodiscard]] virtual TileCounts counts() const = 0;
+};
+
+class DoubleWorker final : public TileWorker {
+ public:
+  DoubleWorker(const TileContext& context, std::unique_ptr<compositor::TileSink> sink)
+      : renderer_(context), sink_(std::move(sink)) {}
+  void render(std::size_t tile, const projection::PixelRect& rect, std::span<projection::TileEntry> entries) override {
+    sink_->begin_tile(tile, rect);
+    renderer_.render(rect, entries, *sink_);
+    sink_->end_tile();
+  }
+  [[nodiscard]] TileCounts counts() const override { return renderer_.counts(); }
+
+ private:
+  TileRenderer renderer_;
+  std::unique_ptr<compositor::TileSink> sink_;
+};
+
+class LatticeWorker final : public TileWorker {
+ public:
+  LatticeWorker(const TileContext& context, const projection::LatticeView& view,
+                std::unique_ptr<compositor::WindowSink> sink)
+      : renderer_(context, view), sink_(std::move(sink)) {}
+  void render(std::size_t tile, const projection::PixelRect& rect, std::span<projection::TileEntry> entries) override {
+    sink_->begin_tile(tile, rect);
+    renderer_.render(rect, entries, *sink_);
+    sink_->end_tile();
+  }
+  [[nodiscard]] TileCounts counts() const override {
+    TileCounts counts = renderer_.counts();
+    counts.segments = sink_->segments();
+    return counts;
+  }
+
+ private:
+  LatticeTileRenderer renderer_;
+  std::unique_ptr<compositor::WindowSink> sink_;
+};
 
 /// What is left of the budget for segments, shared by the threads.
 std::uint64_t segment_budget(const RenderSettings& settings, std::uint64_t held, int threads) {
@@ -71,7 +121,8 @@ void FrameProjector::project_vertices(const projection::PixelSpace& space, std::
   vertices_.resize(positions.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size(), 4096), [&](const auto& range) {
     const scene::TraceScope helping(settings_.trace, "transform", frame);
-    for (std::size_t v = range.begin(); v != range.end(); ++v) vertices_[v] = space.project(positions[v]);
+    const std::size_t n = range.end() - range.begin();
+    space.project(std::span(positions).subspan(range.begin(), n), std::span(vertices_).subspan(range.begin(), n));
   });
 }
 
@@ -91,7 +142,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   std::optional<projection::TileLists> lists;
   {
     const scene::TraceScope timing(settings_.trace, "cull", task.frame);
-    lists.emplace(projected, grid, *task.function, independent, settings_.trace);
+    lists.emplace(projected, grid, *task.function, independent, settings_.trace, &list_buffers_);
   }
   if (task.announce) {
     std::vector<bool> has_cells(grid.count());
@@ -107,11 +158,11 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
 
   const TileContext context{&projected,      lists->depth_origin(), budget,
                             settings_.trace, settings_.rasterizer,  longest_edge};
-  struct Worker {
-    TileRenderer renderer;
-    std::unique_ptr<compositor::TileSink> sink;
-  };
-  tbb::enumerable_thread_specific<Worker> workers([&] { return Worker{TileRenderer(context), task.make_sink()}; });
+  tbb::enumerable_thread_specific<std::unique_ptr<TileWorker>> workers([&]() -> std::unique_ptr<TileWorker> {
+    if (task.lattice == nullptr) return std::make_unique<DoubleWorker>(context, task.make_sink());
+    const projection::LatticeView view{projected, *task.lattice, space.perspective()};
+    return std::make_unique<LatticeWorker>(context, view, task.make_window_sink());
+  });
   std::uint64_t most_list_bytes = 0;
   for (std::size_t first = 0; first < grid.count();) {
     std::size_t last = first;
@@ -129,12 +180,10 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
     tbb::parallel_for(
         0, threads,
         [&](int) {
-          Worker& worker = workers.local();
+          TileWorker& worker = *workers.local();
           for (std::size_t tile = next++; tile < last; tile = next++) {
             if (lists->entry_count(tile) == 0) continue;
-            worker.sink->begin_tile(tile, grid.rect(tile));
-            worker.renderer.render(grid.rect(tile), lists->tile(tile), *worker.sink);
-            worker.sink->end_tile();
+            worker.render(tile, grid.rect(tile), lists->tile(tile));
           }
         },
         tbb::simple_partitioner());
@@ -143,14 +192,15 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
 
   FrameStatistics statistics;
   statistics.tets_total = prepared_.tet_count();
+  statistics.on_lattice = task.lattice != nullptr;
   const projection::CullCounts& culled = lists->counts();
   statistics.tets_invisible = culled.invisible;
   statistics.tets_outside_view = culled.outside_view;
   statistics.tets_between_pixels = culled.between_pixels;
   statistics.tets_projected = culled.projected;
   statistics.peak_buffer_bytes = vertices_.capacity() * sizeof(projection::PixelVertex) + most_list_bytes;
-  for (const Worker& worker : workers) {
-    const TileCounts& counts = worker.renderer.counts();
+  for (const std::unique_ptr<TileWorker>& worker : workers) {
+    const TileCounts counts = worker->counts();
     statistics.segments += counts.segments;
     statistics.max_segments_alive = std::max(statistics.max_segments_alive, counts.max_segments_alive);
     statistics.peak_buffer_bytes += counts.peak_bytes;

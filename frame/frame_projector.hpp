@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "compositor/tile_sink.hpp"
+#include "compositor/window_sink.hpp"
 #include "frame/render.hpp"
+#include "projection/lattice.hpp"
 #include "projection/prepared_mesh.hpp"
 #include "projection/tile_lists.hpp"
 
@@ -30,6 +32,9 @@ class FrameProjector {
     std::uint64_t kept_bytes = 0;  ///< of the memory budget, for what becomes of the segments
     /// A sink for one thread; tiles go to it one after the other, and each thread takes tiles in ascending order.
     std::function<std::unique_ptr<compositor::TileSink>()> make_sink;
+    /// If set, tiles are rendered on this lattice and go to sinks of make_window_sink; else in double precision.
+    const projection::Lattice* lattice = nullptr;
+    std::function<std::unique_ptr<compositor::WindowSink>()> make_window_sink;
     /// Called once before the first tile: which tiles have cells, so will be given to a sink. May be empty.
     std::function<void(const std::vector<bool>& has_cells)> announce;
   };
@@ -51,6 +56,7 @@ class FrameProjector {
   double diagonal_ = 0;
   float longest_edge_ = 0;  ///< scanline only
   std::vector<projection::PixelVertex> vertices_;
+  projection::TileListBuffers list_buffers_;
 };
 
 }  // namespace tessera::frame

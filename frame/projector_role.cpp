@@ -6,8 +6,11 @@
 #include "compositor/outbox.hpp"
 #include "compositor/run_sink.hpp"
 #include "compositor/segment_sink.hpp"
+#include "compositor/window_runs.hpp"
+#include "compositor/window_segments.hpp"
 #include "frame/distributed_roles.hpp"
 #include "frame/frame_projector.hpp"
+#include "frame/lattice_frame.hpp"
 
 namespace tessera::frame {
 namespace {
@@ -35,7 +38,8 @@ compositor::FrameEnd counts_of(const FrameStatistics& s) {
           .tiles_split = s.tiles_split,
           .fragments = 0,
           .bytes = 0,
-          .messages = 0};
+          .messages = 0,
+          .on_lattice = s.on_lattice ? 1u : 0u};
 }
 
 }  // namespace
@@ -81,8 +85,27 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
       return std::make_unique<compositor::RunSink>(space, integrator, run.function.max_color(), mesh.diagonal,
                                                    render.emission, budget.cut, deliver);
     };
+    const std::optional<projection::Lattice> lattice =
+        settings.deep ? std::nullopt : lattice_of(space, mesh.box, mesh.scalar_range, run.function, render);
+    std::optional<compositor::LaneTable> table;
+    if (lattice) {
+      table.emplace(run.function, lattice->scalar_origin, lattice->scalar_unit, lattice->depth_unit, render.emission);
+      task.lattice = &*lattice;
+      task.make_window_sink = [&]() -> std::unique_ptr<compositor::WindowSink> {
+        if (settings.exchange == Exchange::segments)
+          return std::make_unique<compositor::WindowSegments>(*lattice, deliver);
+        const compositor::WindowScene scene{
+            &space, &*table, &integrator, *lattice,
+            compositor::opacity_weight(run.function.max_color(), mesh.diagonal, render.emission)};
+        return std::make_unique<compositor::WindowRuns>(scene, budget.cut, deliver);
+      };
+    }
     task.announce = [&](const std::vector<bool>& has_cells) {
-      outbox.begin_frame(static_cast<std::uint32_t>(frame), map, has_cells, mesh.diagonal, mesh.longest_edge);
+      outbox.begin_frame(static_cast<std::uint32_t>(frame), map, has_cells,
+                         {.longest_ray = mesh.diagonal,
+                          .tiles = 0,
+                          .longest_edge = mesh.longest_edge,
+                          .lattice = lattice.value_or(projection::Lattice{})});
     };
     const FrameStatistics statistics = loaded.projector().project(task);
     outbox.end_frame(counts_of(statistics));

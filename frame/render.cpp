@@ -10,7 +10,9 @@
 #include "compositor/segment_integrator.hpp"
 #include "compositor/tile_pixels.hpp"
 #include "compositor/two_sinks.hpp"
+#include "compositor/window_pixels.hpp"
 #include "frame/frame_projector.hpp"
+#include "frame/lattice_frame.hpp"
 #include "projection/planes_rasterizer.hpp"
 #include "scene/error.hpp"
 
@@ -28,10 +30,13 @@ void check_deep(const RenderSettings& settings, const scene::TransferFunction& f
 }
 
 struct Renderer::State {
-  State(const scene::TetMesh& mesh, const RenderSettings& s) : settings(s), projector(mesh, s) {}
+  State(const scene::TetMesh& mesh, const RenderSettings& s)
+      : settings(s), projector(mesh, s), box(scene::bounds(mesh)), scalar_range(scene::scalar_range(mesh)) {}
 
   RenderSettings settings;
   FrameProjector projector;
+  scene::Box box;
+  std::array<double, 2> scalar_range;
 };
 
 Renderer::Renderer(const scene::TetMesh& mesh, const RenderSettings& settings)
@@ -68,6 +73,20 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
         std::make_unique<compositor::DeepSink>(space, integrator, transfer_function, longest_ray, settings.emission,
                                                settings.deep_accuracy, *collector));
   };
+  const std::optional<projection::Lattice> lattice =
+      collector ? std::nullopt : lattice_of(space, state_->box, state_->scalar_range, transfer_function, settings);
+  std::optional<compositor::LaneTable> table;
+  if (lattice) {
+    table.emplace(transfer_function, lattice->scalar_origin, lattice->scalar_unit, lattice->depth_unit,
+                  settings.emission);
+    task.lattice = &*lattice;
+    const compositor::WindowScene scene{
+        &space, &*table, &integrator, *lattice,
+        compositor::opacity_weight(transfer_function.max_color(), longest_ray, settings.emission)};
+    task.make_window_sink = [scene, &image] {
+      return std::make_unique<compositor::WindowPixels>(scene, compositor::ImageWindow{&image});
+    };
+  }
   FrameStatistics counted = state_->projector.project(task);
   counted.instruction_set = projection::instruction_set();
   counted.integrator = integrator.name();

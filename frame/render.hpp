@@ -50,6 +50,7 @@ struct FrameStatistics {
   std::uint64_t exchange_bytes = 0;       ///< of the messages they went in, those to the same rank included
   std::uint64_t exchange_messages = 0;
   std::uint64_t deep_samples = 0;  ///< of the deep picture, if one was asked for
+  bool on_lattice = false;         ///< the integer lattice held the frame; false: double precision
   std::string instruction_set;     ///< of the kernels that ran
   std::string integrator;          ///< what `automatic` chose
 };

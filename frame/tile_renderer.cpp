@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <tuple>
 
 #include "scene/error.hpp"
 
@@ -20,9 +19,7 @@ void TileRenderer::render(const projection::PixelRect& rect, std::span<projectio
                           compositor::TileSink& sink) {
   {
     const scene::TraceScope timing(context_.trace, "bin");
-    std::sort(entries.begin(), entries.end(), [](const projection::TileEntry& a, const projection::TileEntry& b) {
-      return std::tie(a.near_depth, a.tet) < std::tie(b.near_depth, b.tet);
-    });
+    projection::order_by_depth(entries, depth_order_);
   }
   render_sorted(rect, entries, sink);
 }

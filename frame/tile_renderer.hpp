@@ -6,6 +6,7 @@
 #include "compositor/segment_batch.hpp"
 #include "compositor/tile_sink.hpp"
 #include "frame/render.hpp"
+#include "projection/depth_order.hpp"
 #include "projection/planes_rasterizer.hpp"
 #include "projection/ray_segments.hpp"
 #include "projection/scanline_rasterizer.hpp"
@@ -68,6 +69,7 @@ class TileRenderer {
   std::size_t rasterize(std::span<const projection::TileEntry> entries, const projection::PixelRect& rect);
 
   TileContext context_;
+  projection::DepthOrderScratch depth_order_;
   projection::RaySegments segments_;
   projection::ScanlineBuffers scanline_;
   sorting::PixelLists lists_;

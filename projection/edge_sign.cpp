@@ -54,7 +54,7 @@ int sign_2x2(double a, double b, double c, double d) {
 
 }  // namespace
 
-int edge_sign(const PixelVertex& a, const PixelVertex& b, double px, double py) {
+int edge_sign(const PixelVertex& a, const PixelVertex& b, double px, double py, bool* on_edge) {
   ExactSum sum;
   sum.add_product(a.x, b.y);
   sum.add_product(-a.y, b.x);
@@ -63,6 +63,7 @@ int edge_sign(const PixelVertex& a, const PixelVertex& b, double px, double py) 
   sum.add_product(a.w, b.x, py);
   sum.add_product(-a.x, b.w, py);
   if (const int sign = sum.sign(); sign != 0) return sign;
+  if (on_edge != nullptr) *on_edge = true;
   if (const int along_x = sign_2x2(a.y, a.w, b.y, b.w); along_x != 0) return along_x;
   return sign_2x2(a.w, a.x, b.w, b.x);
 }

@@ -12,6 +12,7 @@ namespace tessera::projection {
 /// small and positive: the sign is then that of dE/dx, or, where that is zero too, of dE/dy (DESIGN section 3, the tie
 /// rule). 0 is left only where a and b lie on one ray: such an edge has no sides, and no face with it is hit.
 /// edge_sign(a, b) = -edge_sign(b, a).
-int edge_sign(const PixelVertex& a, const PixelVertex& b, double px, double py);
+/// `on_edge`, if any, is set where E is zero: the ray meets the edge.
+int edge_sign(const PixelVertex& a, const PixelVertex& b, double px, double py, bool* on_edge = nullptr);
 
 }  // namespace tessera::projection

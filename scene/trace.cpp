@@ -113,4 +113,46 @@ void TraceScope::end() {
   mine.spans.push_back(span);
 }
 
+namespace {
+
+std::uint64_t processor_ticks() {
+#if defined(__x86_64__)
+  return __builtin_ia32_rdtsc();
+#else
+  return static_cast<std::uint64_t>(Clock::now().time_since_epoch().count());
+#endif
+}
+
+}  // namespace
+
+void TraceLaps::begin() {
+  start_us_ = trace_->now_us();
+  start_cpu_us_ = trace_->mine().cpu_time(start_us_);
+  last_ = processor_ticks();
+}
+
+void TraceLaps::add(const char* stage) {
+  const std::uint64_t now = processor_ticks(), ticks = now - last_;
+  last_ = now;
+  for (std::size_t i = 0; i < stages_; ++i)
+    if (sums_[i].stage == stage) {
+      sums_[i].ticks += ticks;
+      return;
+    }
+  if (stages_ < sums_.size()) sums_[stages_++] = {stage, ticks};
+}
+
+void TraceLaps::end() {
+  const double wall_us = trace_->now_us() - start_us_;
+  const double cpu_us = std::max(0.0, trace_->mine().cpu_time(start_us_ + wall_us) - start_cpu_us_);
+  double all = 0, at_us = start_us_;
+  for (const Sum& sum : sums_) all += static_cast<double>(sum.ticks);
+  for (std::size_t i = 0; i < stages_ && all > 0; ++i) {
+    const double share = static_cast<double>(sums_[i].ticks) / all;
+    trace_->add({sums_[i].stage, trace_->mine().number, at_us, wall_us * share, cpu_us * share, trace_->frame(), 0, 0,
+                 trace_->role()});
+    at_us += wall_us * share;
+  }
+}
+
 }  // namespace tessera::scene

@@ -13,6 +13,7 @@
 #include "projection/segment_tuple.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
+#include "scene/mesh_facts.hpp"
 
 namespace tessera::frame {
 namespace {
@@ -84,6 +85,8 @@ std::vector<FinishedFrame> render(const Parts& parts, const Shape& shape, Distri
                                   const std::vector<FrameJob>& jobs, const TransferFunction& function,
                                   double diagonal = 4, float longest_edge = 0) {
   std::vector<FinishedFrame> frames;
+  scene::MeshFacts whole;
+  for (const scene::TetMesh& part : parts) whole = scene::joined(whole, scene::facts_of(part));
   compositor::run_ranks(shape.ranks, [&](compositor::Transport& transport) {
     DistributedSettings mine = settings;
     mine.roles = assign_roles(shape.ranks, shape.projectors, shape.compositors);
@@ -95,6 +98,8 @@ std::vector<FinishedFrame> render(const Parts& parts, const Shape& shape, Distri
           mesh.part = std::make_shared<scene::TetMesh>(rank < parts.size() ? parts[rank] : scene::TetMesh{});
           mesh.global_tet = mesh.part->original_cell;
           mesh.diagonal = diagonal;
+          mesh.box = whole.box;
+          mesh.scalar_range = whole.scalar_range;
           mesh.longest_edge = longest_edge;
           return mesh;
         },
@@ -320,7 +325,10 @@ TEST(Distributed, AnErrorOfOneRankIsTheErrorOfAll) {
               transport, mine, jobs, six_knots(),
               [&](std::size_t) -> ProjectorMesh {
                 if (transport.rank() == broken) throw scene::bad_input("piece_2.vtu: is cut short; copy it again");
-                return {std::make_shared<scene::TetMesh>(parts[static_cast<std::size_t>(transport.rank())]), {}, 4};
+                ProjectorMesh part;
+                part.part = std::make_shared<scene::TetMesh>(parts[static_cast<std::size_t>(transport.rank())]);
+                part.diagonal = 4;
+                return part;
               },
               [&](FinishedFrame) {});
         } catch (const scene::Error& error) {
@@ -341,26 +349,28 @@ TEST(Distributed, AFullDiskWhileWritingEndsAllAfterTheFramesBeforeIt) {
   const scene::TetMesh mesh = datasets::cube(6, 0.2);
   const auto parts = slices(mesh, 3);
   std::atomic<int> written = 0;
-  EXPECT_THROW(
-      compositor::run_ranks(
-          3,
-          [&](compositor::Transport& transport) {
-            DistributedSettings settings;
-            settings.render = exact();
-            settings.roles = assign_roles(3, 3, 3);
-            const std::vector<FrameJob> jobs(9, FrameJob{oblique(), {64, 64}});
-            render_distributed(
-                transport, settings, jobs, six_knots(),
-                [&](std::size_t) {
-                  return ProjectorMesh{
-                      std::make_shared<scene::TetMesh>(parts[static_cast<std::size_t>(transport.rank())]), {}, 4};
-                },
-                [&](const FinishedFrame& frame) {
-                  if (frame.frame == 3) throw scene::Error(scene::ExitCode::system_failure, "full");
-                  ++written;
-                });
-          }),
-      scene::Error);
+  EXPECT_THROW(compositor::run_ranks(3,
+                                     [&](compositor::Transport& transport) {
+                                       DistributedSettings settings;
+                                       settings.render = exact();
+                                       settings.roles = assign_roles(3, 3, 3);
+                                       const std::vector<FrameJob> jobs(9, FrameJob{oblique(), {64, 64}});
+                                       render_distributed(
+                                           transport, settings, jobs, six_knots(),
+                                           [&](std::size_t) {
+                                             ProjectorMesh part;
+                                             part.part = std::make_shared<scene::TetMesh>(
+                                                 parts[static_cast<std::size_t>(transport.rank())]);
+                                             part.diagonal = 4;
+                                             return part;
+                                           },
+                                           [&](const FinishedFrame& frame) {
+                                             if (frame.frame == 3)
+                                               throw scene::Error(scene::ExitCode::system_failure, "full");
+                                             ++written;
+                                           });
+                                     }),
+               scene::Error);
   EXPECT_EQ(written, 3);
 }
 

@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "compositor/merge_kinds.hpp"
+#include "compositor/window_pixels.hpp"
+
+namespace tessera::compositor {
+namespace {
+
+constexpr int side = projection::SegmentWindows::side;
+constexpr std::size_t first_capacity = 16;  // segments a pixel
+
+/// Lattice segments: windowed, sorted and integrated by the code that does it for a single process.
+class WindowMerger final : public TileMerger {
+ public:
+  WindowMerger(const MergeContext& context, const projection::PixelRect& rect)
+      : trace_(context.trace),
+        budget_(context.budget_bytes),
+        rect_(rect),
+        lattice_(*context.lattice),
+        image_({rect.width(), rect.height()}),
+        places_(static_cast<std::size_t>(rect.area())) {
+    const WindowScene scene{context.space, context.table, context.integrator, lattice_,
+                            opacity_weight(context.max_color, context.longest_ray, context.emission)};
+    const auto next = [](int v) { return (v & ~(side - 1)) + side; };
+    for (int y = rect.y0; y < rect.y1; y = next(y))
+      for (int x = rect.x0; x < rect.x1; x = next(x))
+        add_square(scene, {x, y, std::min(rect.x1, next(x)), std::min(rect.y1, next(y))});
+  }
+
+  void add(const TilePart& part) override {
+    RecordReader reader(part.records);
+    while (!reader.empty()) {
+      const auto header = reader.take<LatticeHeader>();
+      if (header.pixel >= places_.size())
+        throw scene::Error(scene::ExitCode::system_failure,
+                           fmt::format("exchange: the segments of tile {} are malformed; all ranks must run the same "
+                                       "program",
+                                       part.tile));
+      const Place place = places_[header.pixel];
+      projection::SegmentWindows& windows = squares_[place.square].windows;
+      for (std::uint32_t i = 0; i < header.segments; ++i) {
+        const auto segment = reader.take<projection::LatticeSegment>();
+        while (!windows.push(place.pixel, segment)) grow(windows);
+      }
+    }
+  }
+
+  void advance(double final_depth) override {
+    const std::int64_t step = step_at(final_depth);
+    scene::TraceLaps laps(trace_);
+    for (Square& square : squares_) square.pixels->take(square.windows, step, laps);
+  }
+
+  MergedTile finish() override {
+    for (Square& square : squares_) square.pixels->finish();
+    return {std::move(image_), {}, {}};
+  }
+
+ private:
+  struct Square {
+    projection::SegmentWindows windows;
+    std::unique_ptr<WindowPixels> pixels;
+  };
+  /// Where a pixel of the tile is.
+  struct Place {
+    std::uint32_t square, pixel;
+  };
+
+  void add_square(const WindowScene& scene, const projection::PixelRect& rect) {
+    const auto number = static_cast<std::uint32_t>(squares_.size());
+    Square& square = squares_.emplace_back();
+    square.windows.reset(static_cast<std::size_t>(rect.area()), first_capacity);
+    square.pixels = std::make_unique<WindowPixels>(scene, ImageWindow{&image_, rect_.x0, rect_.y0});
+    square.pixels->start(rect);
+    bytes_ += square.windows.bytes();
+    std::uint32_t pixel = 0;
+    for (int y = rect.y0; y < rect.y1; ++y)
+      for (int x = rect.x0; x < rect.x1; ++x)
+        places_[static_cast<std::size_t>(y - rect_.y0) * static_cast<std::size_t>(rect_.width()) +
+                static_cast<std::size_t>(x - rect_.x0)] = {number, pixel++};
+  }
+
+  void grow(projection::SegmentWindows& windows) {
+    const std::size_t more = windows.bytes_after_growth() - windows.bytes();
+    if (bytes_ + more > budget_)
+      throw scene::Error(
+          scene::ExitCode::system_failure,
+          fmt::format("the tile at pixel {},{} holds more than {} ray segments of a pixel at once, beyond "
+                      "the memory budget; raise --memory or make --tile-size smaller",
+                      rect_.x0, rect_.y0, windows.capacity()));
+    windows.grow();
+    bytes_ += more;
+  }
+
+  /// The first step that does not lie before `depth`.
+  [[nodiscard]] std::int64_t step_at(double depth) const {
+    const double steps = (depth - lattice_.depth_origin) / lattice_.depth_unit;
+    if (!(std::abs(steps) < 0x1p40)) return steps > 0 ? 1LL << 40 : -(1LL << 40);
+    auto step = static_cast<std::int64_t>(std::ceil(steps));
+    while (lattice_.depth(static_cast<double>(step - 1)) >= depth) --step;
+    while (lattice_.depth(static_cast<double>(step)) < depth) ++step;
+    return step;
+  }
+
+  scene::Trace* trace_;
+  std::uint64_t budget_, bytes_ = 0;
+  projection::PixelRect rect_;
+  projection::Lattice lattice_;
+  scene::Image image_;
+  std::vector<Place> places_;
+  std::vector<Square> squares_;
+};
+
+}  // namespace
+
+std::unique_ptr<TileMerger> make_window_merger(const MergeContext& context, const projection::PixelRect& rect) {
+  if (context.lattice == nullptr || context.table == nullptr)
+    throw scene::Error(scene::ExitCode::system_failure,
+                       "exchange: lattice segments without a lattice; all ranks must run the same program");
+  return std::make_unique<WindowMerger>(context, rect);
+}
+
+}  // namespace tessera::compositor

@@ -1,0 +1,66 @@
+#include "compositor/window_runs.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace tessera::compositor {
+
+void WindowRuns::begin_tile(std::size_t tile, const projection::PixelRect& rect) {
+  writer_.begin_tile(tile, rect);
+  bytes_since_cut_ = 0;
+}
+
+void WindowRuns::start(const projection::PixelRect& rect) {
+  writer_.start(rect);
+  state_.start(rect, *scene_.space);
+  open_count_ = state_.open_pixels(rect, open_);
+}
+
+void WindowRuns::take(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) {
+  segments_ += composite_windows(rules_, windows, final_step, state_, laps);
+  write_ended();
+  open_count_ = state_.open_pixels(writer_.rect(), open_);
+  if (bytes_since_cut_ >= bytes_between_cuts_) {
+    end_runs();
+    writer_.complete_to(scene_.lattice.depth(static_cast<double>(final_step)));
+    bytes_since_cut_ = 0;
+  }
+  laps.lap("composite");
+  writer_.send_if_full();
+}
+
+void WindowRuns::end_runs() {
+  for (std::size_t p = 0; p < static_cast<std::size_t>(writer_.rect().area()); ++p) state_.end_run(p);
+  write_ended();
+}
+
+void WindowRuns::write_ended() {
+  std::vector<WindowState::Run>& ended = state_.ended;
+  if (ended.empty()) return;
+  const auto by_pixel = [](const WindowState::Run& a, const WindowState::Run& b) { return a.pixel < b.pixel; };
+  if (!std::is_sorted(ended.begin(), ended.end(), by_pixel)) std::stable_sort(ended.begin(), ended.end(), by_pixel);
+  Bytes& out = writer_.records();
+  const std::size_t before = out.size();
+  constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max();
+  for (auto first = ended.begin(); first != ended.end();) {
+    auto last = first;
+    while (last != ended.end() && last->pixel == first->pixel && static_cast<std::size_t>(last - first) < most) ++last;
+    const auto segments = std::partition(first, last, [](const WindowState::Run& run) { return run.several; });
+    append(out, RunsHeader{writer_.tile_pixel(first->pixel), static_cast<std::uint16_t>(segments - first),
+                           static_cast<std::uint16_t>(last - segments)});
+    for (auto run = first; run != segments; ++run) {
+      const double front = first_visible_depth(scene_.lattice, run->first, *scene_.integrator);
+      append(out,
+             LatticeRun{scene_.lattice.depth_step(front), run->back, static_cast<float>(run->red),
+                        static_cast<float>(run->green), static_cast<float>(run->blue),
+                        static_cast<float>(std::min(run->optical_depth, double{std::numeric_limits<float>::max()}))});
+    }
+    for (auto run = segments; run != last; ++run) append(out, run->first);
+    writer_.count(static_cast<std::uint64_t>(last - first));
+    first = last;
+  }
+  bytes_since_cut_ += out.size() - before;
+  ended.clear();
+}
+
+}  // namespace tessera::compositor

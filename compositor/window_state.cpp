@@ -1,0 +1,66 @@
+#include <limits>
+
+#include "compositor/segment_integrator.hpp"
+#include "compositor/window_kernel.hpp"
+
+namespace tessera::compositor {
+namespace {
+constexpr int side = projection::SegmentWindows::side;
+}
+
+void WindowState::start(const projection::PixelRect& rect, const projection::PixelSpace& space) {
+  for (auto* a : {&red, &green, &blue, &optical_depth}) a->fill(0);
+  transmittance.fill(1);
+  ray_transmittance.fill(1);
+  open.fill(0);
+  first_back.fill(not_yet);
+  back.fill(not_yet);
+  several.fill(0);
+  length_per_step.fill(0);
+  ended.clear();
+  std::size_t p = 0;
+  for (int y = rect.y0; y < rect.y1; ++y)
+    for (int x = rect.x0; x < rect.x1; ++x, ++p) {
+      open[p] = -1;
+      length_per_step[p] = static_cast<float>(space.length_per_depth(x + 0.5, y + 0.5));
+    }
+}
+
+void WindowState::end_run(std::size_t p) {
+  if (first_back[p] != not_yet)
+    ended.push_back({static_cast<std::uint32_t>(p),
+                     back[p],
+                     several[p] != 0,
+                     {first_front[p], first_back[p], first_scalar_front[p], first_scalar_back[p]},
+                     red[p],
+                     green[p],
+                     blue[p],
+                     optical_depth[p]});
+  red[p] = green[p] = blue[p] = optical_depth[p] = 0;
+  transmittance[p] = 1;
+  several[p] = 0;
+  first_back[p] = back[p] = not_yet;
+}
+
+int WindowState::open_pixels(const projection::PixelRect& rect, projection::OpenPixels& open_rows) const {
+  open_rows.fill(0);
+  int count = 0;
+  std::size_t p = 0;
+  for (int y = rect.y0; y < rect.y1; ++y) {
+    std::uint32_t row = 0;
+    for (int x = rect.x0; x < rect.x1; ++x, ++p) row |= static_cast<std::uint32_t>(open[p] & 1) << (x % side);
+    open_rows[static_cast<std::size_t>(y % side)] = row;
+    count += __builtin_popcount(row);
+  }
+  return count;
+}
+
+double first_visible_depth(const projection::Lattice& lattice, const projection::LatticeSegment& segment,
+                           const SegmentIntegrator& integrator) {
+  const double along =
+      integrator.first_visible(lattice.scalar(segment.scalar_front), lattice.scalar(segment.scalar_back)).value_or(0);
+  const double front = lattice.depth(segment.front), back = lattice.depth(segment.back);
+  return front + (back - front) * along;
+}
+
+}  // namespace tessera::compositor

@@ -1,0 +1,74 @@
+#include "frame/lattice_frame.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <limits>
+
+#include "projection/lattice_rasterizer.hpp"
+
+namespace tessera::frame {
+namespace {
+
+constexpr double most_optical_depth = 2000;
+constexpr double most_error = 2e-5;  // of a pixel, from scalars' rounding
+// Along a ray on which the scalar is constant, an error of extinction shows in proportion to the ray's optical depth,
+// but what is deeper than this is dark: only rays at the foot of a very steep ramp could show more.
+constexpr double most_change_of_depth = 64;
+constexpr double margin = 1.001;  // keeps rounding and the planes' error inside the lattice
+
+/// Planar depths between which the box lies, in front of the eye and inside the clipping range.
+std::array<double, 2> depth_range(const projection::PixelSpace& space, const scene::Box& box) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p((corner & 1) != 0 ? box.high.x : box.low.x, (corner & 2) != 0 ? box.high.y : box.low.y,
+                       (corner & 4) != 0 ? box.high.z : box.low.z);
+    const double depth = space.project(p).depth;
+    low = std::min(low, depth), high = std::max(high, depth);
+  }
+  return {std::max(low, space.near_depth()), std::min(high, space.far_depth())};
+}
+
+}  // namespace
+
+std::optional<projection::Lattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
+                                              const std::array<double, 2>& scalar_range,
+                                              const scene::TransferFunction& function, const RenderSettings& settings) {
+  using projection::Lattice;
+  if (settings.rasterizer != Rasterizer::planes || settings.integrator.kind == scene::IntegratorKind::sampled ||
+      box.empty() || !projection::lattice_available())
+    return std::nullopt;
+  const auto [near, far] = depth_range(space, box);
+  if (!(near <= far) || !std::isfinite(far - near)) return std::nullopt;
+
+  Lattice lattice{};
+  lattice.depth_origin = near + (far - near) / 2;
+  // Depths are known to 1e-16 of their size; a flat mesh far away needs no finer steps.
+  const double half_depth = std::max((far - near) / 2, 1e-6 * std::abs(far));
+  lattice.depth_unit = Lattice::unit_for(margin * half_depth);
+  if (function.max_extinction() * (far - near) > most_optical_depth) return std::nullopt;
+
+  const auto knots = function.knots();
+  const auto [low, high] = scalar_range;
+  const double first = std::clamp(knots.front().value, low, high), last = std::clamp(knots.back().value, low, high);
+  lattice.scalar_origin = first + (last - first) / 2;
+  const double reach =
+      std::max({high - lattice.scalar_origin, lattice.scalar_origin - low, 1e-12 * std::abs(lattice.scalar_origin)});
+  if (!std::isfinite(reach)) return std::nullopt;
+  lattice.scalar_unit = Lattice::unit_for(margin * reach);
+  for (std::size_t i = 1; i < knots.size(); ++i) {
+    const scene::Knot &a = knots[i - 1], &b = knots[i];
+    if (a.value == b.value || b.value < low || a.value > high) continue;
+    // A scalar is known to 16 steps (gradients over a square) or half a float's last place.
+    const double reached =
+        std::max(std::abs(a.value - lattice.scalar_origin), std::abs(b.value - lattice.scalar_origin));
+    const double scalar_error = std::max(16 * lattice.scalar_unit, std::min(reached, reach) * 0x1p-24);
+    const glm::dvec3 color = glm::abs(b.color - a.color);
+    const double optical_depth = std::abs(b.extinction - a.extinction) * (far - near);
+    const double most_change = std::max({color.x, color.y, color.z, std::min(optical_depth, most_change_of_depth)});
+    if (most_change * scalar_error > most_error * (b.value - a.value)) return std::nullopt;
+  }
+  return lattice;
+}
+
+}  // namespace tessera::frame

@@ -1,0 +1,86 @@
+#include "frame/lattice_tile_renderer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scene/error.hpp"
+
+namespace tessera::frame {
+namespace {
+
+constexpr std::size_t first_capacity = 32;  // segments a pixel: 1 MiB of windows, the largest the networks sort
+constexpr std::size_t cells_at_once = 16;
+// Computed depths may lie this many steps before the cell's nearest vertex (planes: 16, irregular cells: rounding).
+constexpr std::int64_t depth_error = 64;
+
+}  // namespace
+
+void LatticeTileRenderer::render(const projection::PixelRect& rect, std::span<projection::TileEntry> entries,
+                                 compositor::WindowSink& sink) {
+  {
+    const scene::TraceScope timing(context_.trace, "bin");
+    projection::order_by_depth(entries, depth_order_);
+  }
+  constexpr int side = projection::SegmentWindows::side;
+  for (int y = rect.y0; y < rect.y1; y = (y & ~(side - 1)) + side)
+    for (int x = rect.x0; x < rect.x1; x = (x & ~(side - 1)) + side)
+      render_square({x, y, std::min(rect.x1, (x & ~(side - 1)) + side), std::min(rect.y1, (y & ~(side - 1)) + side)},
+                    entries, sink);
+}
+
+void LatticeTileRenderer::render_square(const projection::PixelRect& rect,
+                                        std::span<const projection::TileEntry> entries, compositor::WindowSink& sink) {
+  if (rect.empty()) return;
+  if (try_render(rect, entries, sink)) return;
+  if (rect.area() == 1)
+    throw scene::Error(
+        scene::ExitCode::system_failure,
+        fmt::format(
+            "pixel {},{}: more than {} of its ray segments overlap in depth, beyond the memory budget; raise --memory",
+            rect.x0, rect.y0, windows_.capacity()));
+  ++counts_.tiles_split;
+  const int x = (rect.x0 + rect.x1 + 1) / 2, y = (rect.y0 + rect.y1 + 1) / 2;
+  for (const projection::PixelRect& quarter :
+       {projection::PixelRect{rect.x0, rect.y0, x, y}, projection::PixelRect{x, rect.y0, rect.x1, y},
+        projection::PixelRect{rect.x0, y, x, rect.y1}, projection::PixelRect{x, y, rect.x1, rect.y1}})
+    render_square(quarter, entries, sink);
+}
+
+std::int64_t LatticeTileRenderer::step_before(float near_depth) const {
+  const double steps = (context_.depth_origin + near_depth - view_.lattice.depth_origin) / view_.lattice.depth_unit;
+  return static_cast<std::int64_t>(std::floor(std::clamp(steps, -0x1p32, 0x1p32))) - depth_error;
+}
+
+bool LatticeTileRenderer::try_render(const projection::PixelRect& rect, std::span<const projection::TileEntry> entries,
+                                     compositor::WindowSink& sink) {
+  scene::TraceLaps laps(context_.trace);
+  windows_.reset(static_cast<std::size_t>(rect.area()), first_capacity);
+  sink.start(rect);
+  for (std::size_t from = 0; from < entries.size() && sink.any_open(); from += cells_at_once) {
+    const auto cells = entries.subspan(from, std::min(cells_at_once, entries.size() - from));
+    stream_.size = 0;
+    projection::rasterize_lattice(view_, cells, entries.subspan(from + cells.size()), rect, sink.open(), scratch_,
+                                  stream_, counts_.raster);
+    for (std::size_t dealt = 0; (dealt = windows_.deal(stream_, dealt)) < stream_.size;) {
+      counts_.max_segments_alive = std::max(counts_.max_segments_alive, windows_.total());
+      laps.lap("project");
+      // What lies before these cells is final.
+      sink.take(windows_, step_before(cells.front().near_depth), laps);
+      if (windows_.count(static_cast<std::size_t>(stream_.pixel[dealt])) < windows_.capacity()) continue;
+      if (windows_.bytes_after_growth() > context_.budget_bytes) return false;
+      windows_.grow();
+    }
+    counts_.peak_bytes = std::max<std::uint64_t>(counts_.peak_bytes, windows_.bytes() + stream_.bytes());
+  }
+  counts_.max_segments_alive = std::max(counts_.max_segments_alive, windows_.total());
+  laps.lap("project");
+  sink.take(windows_, std::numeric_limits<std::int64_t>::max(), laps);
+  sink.finish();
+  laps.lap("composite");
+  return true;
+}
+
+}  // namespace tessera::frame

@@ -1,0 +1,394 @@
+#include "projection/lattice_rasterizer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "projection/edge_sign.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "projection/lattice_rasterizer.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "projection/lattice_setup-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::projection {
+namespace HWY_NAMESPACE {
+
+bool available() { return HWY_TARGET != HWY_SCALAR; }
+
+#if HWY_TARGET == HWY_SCALAR
+void rasterize(const LatticeView&, std::span<const TileEntry>, std::span<const TileEntry>, const PixelRect&,
+               const OpenPixels&, LatticeScratch&, SegmentStream&, RasterCounts&) {}
+#else
+using F = hn::ScalableTag<float>;
+using I = hn::RebindToSigned<F>;
+using VF = hn::Vec<F>;
+using VI = hn::Vec<I>;
+using MF = hn::Mask<F>;
+using D4 = hn::FixedTag<std::int32_t, 4>;
+using V4 = hn::Vec<D4>;
+
+// A block of pixels is a vector of lanes: 4 x 4, 4 x 2 or 2 x 2.
+constexpr int lanes = static_cast<int>(hn::MaxLanes(F()));
+constexpr int block_width = lanes >= 8 ? 4 : 2, block_height = lanes / block_width;
+static_assert(block_width * block_height == lanes);
+
+HWY_INLINE VI lane_column() { return hn::And(hn::Iota(I(), 0), hn::Set(I(), block_width - 1)); }
+HWY_INLINE VI lane_row() { return hn::ShiftRight < block_width == 4 ? 2 : 1 > (hn::Iota(I(), 0)); }
+
+/// x * column + y * row for every lane: by adding bits, as a 32-bit multiplication costs ten times an addition.
+HWY_INLINE VI block_steps(std::int32_t x, std::int32_t y) {
+  const I d;
+  const auto bit = [&](VI number, int b) HWY_ATTR { return hn::Ne(hn::And(number, hn::Set(d, b)), hn::Zero(d)); };
+  const VI column = lane_column(), row = lane_row(), vx = hn::Set(d, x), vy = hn::Set(d, y);
+  VI sum = hn::IfThenElseZero(bit(column, 1), vx);
+  if constexpr (block_width == 4) sum = hn::IfThenElse(bit(column, 2), hn::Add(sum, hn::Add(vx, vx)), sum);
+  sum = hn::IfThenElse(bit(row, 1), hn::Add(sum, vy), sum);
+  if constexpr (block_height == 4) sum = hn::IfThenElse(bit(row, 2), hn::Add(sum, hn::Add(vy, vy)), sum);
+  return sum;
+}
+
+/// Which edges and faces play which part, by the set of front faces (bit f of the index).
+struct Roles {
+  std::uint8_t valid;          ///< some pixel can be hit
+  std::uint8_t three;          ///< one face against three
+  std::uint8_t single_behind;  ///< the one is the back face
+  std::uint8_t outline[4];     ///< edges between front and back (three: the fourth repeats the third)
+  std::uint8_t inner[3];       ///< two and two: the front faces', the back faces' edge. Three: 01, 02, 12 of the three
+  std::uint8_t face[4];        ///< two and two: front 0, 1, back 0, 1; three: the one, then 0, 1, 2
+};
+
+constexpr Roles roles_of(unsigned front) {
+  Roles r{};
+  unsigned count = 0;
+  for (unsigned f = 0; f < 4; ++f) count += front >> f & 1;
+  r.valid = count >= 1 && count <= 3;
+  if (!r.valid) return r;
+  r.three = count != 2;
+  r.single_behind = count == 3;
+  int outlines = 0;
+  for (int e = 0; e < 6; ++e)
+    if ((front >> edge_faces[e][0] & 1) != (front >> edge_faces[e][1] & 1))
+      r.outline[outlines++] = static_cast<std::uint8_t>(e);
+  for (; outlines < 4; ++outlines) r.outline[outlines] = r.outline[outlines - 1];
+  int next = 0;
+  const auto add = [&](bool is_front) {
+    for (unsigned f = 0; f < 4; ++f)
+      if ((front >> f & 1) == (is_front ? 1u : 0u)) r.face[next++] = static_cast<std::uint8_t>(f);
+  };
+  add(count < 3), add(count == 3);
+  const auto between = [&](int f, int g) {
+    for (int e = 0; e < 6; ++e)
+      if (edge_faces[e][0] == f && edge_faces[e][1] == g) return static_cast<std::uint8_t>(e);
+    return std::uint8_t{0};
+  };
+  if (r.three) {
+    r.inner[0] = between(r.face[1], r.face[2]);
+    r.inner[1] = between(r.face[1], r.face[3]);
+    r.inner[2] = between(r.face[2], r.face[3]);
+  } else {
+    r.inner[0] = between(r.face[0], r.face[1]);
+    r.inner[1] = r.inner[2] = between(r.face[2], r.face[3]);
+  }
+  return r;
+}
+
+struct RoleTable {
+  Roles roles[16];
+};
+constexpr RoleTable make_role_table() {
+  RoleTable t{};
+  for (unsigned front = 0; front < 16; ++front) t.roles[front] = roles_of(front);
+  return t;
+}
+constexpr RoleTable role_table = make_role_table();
+
+/// Replaces edge functions that are not certain by +-2, with the sign of exact arithmetic and the tie rule. Returns the
+/// lanes whose ray meets an edge of the outline between two faces that it passes: it is in the cell for no way at all,
+/// which rounded planes would not say.
+HWY_NOINLINE std::uint64_t settle(const LatticeView& view, const CellBatch& batch, int t, const Roles& roles,
+                                  std::uint64_t uncertain, int corner_x, int corner_y, float (*edges)[lanes],
+                                  RasterCounts& counts) {
+  std::uint64_t touching = 0;
+  const scene::Tet corners = view.projected.mesh->canonical(batch.tet[t]);
+  for (; uncertain != 0; uncertain &= uncertain - 1) {
+    const int lane = __builtin_ctzll(uncertain);
+    const double px = corner_x + lane % block_width + 0.5, py = corner_y + lane / block_width + 0.5;
+    for (int e = 0; e < 6; ++e) {
+      if (std::abs(edges[e][lane]) > 1) continue;
+      bool on_edge = false;
+      const int sign = edge_sign(view.projected.vertices[corners[edge_from[e]]],
+                                 view.projected.vertices[corners[edge_to[e]]], px, py, &on_edge);
+      const unsigned edge_on = batch.edge_on[t] >> edge_faces[e][0] | batch.edge_on[t] >> edge_faces[e][1];
+      if (on_edge && (edge_on & 1) == 0 && std::find(roles.outline, roles.outline + 4, e) != roles.outline + 4)
+        touching |= std::uint64_t{1} << lane;
+      ++counts.exact_sign_tests;
+      edges[e][lane] = static_cast<float>(2 * ((batch.flipped[t] >> e & 1) != 0 ? -sign : sign));
+    }
+  }
+  return touching;
+}
+
+/// Depth (steps) and scalar where the lanes' rays pass one side of the cell.
+struct Crossing {
+  VI depth;
+  VF scalar;
+};
+
+/// The planes of one face over the block, advanced from block to block.
+struct FaceSteps {
+  VI depth, scalar, weight;
+};
+
+template <bool perspective, bool per_cell>
+struct CellRaster {
+  const LatticeView& view;
+  const CellBatch& batch;
+  int t;
+  const Roles& roles;
+  FaceSteps steps[4];
+  // The planes at the block's first pixel, of faces 0 to 3.
+  alignas(16) std::int32_t depth[4], scalar[4], weight[4];
+
+  HWY_INLINE void prepare() {
+    for (int k = 0; k < 4; ++k) {
+      const int f = roles.face[k];
+      steps[k].depth = block_steps(batch.depth_x[t][f], batch.depth_y[t][f]);
+      if constexpr (!per_cell) steps[k].scalar = block_steps(batch.scalar_x[t][f], batch.scalar_y[t][f]);
+      if constexpr (perspective) steps[k].weight = block_steps(batch.weight_x[t][f], batch.weight_y[t][f]);
+    }
+  }
+
+  /// One plane of the face that a lane's ray passes.
+  template <class Plane>
+  HWY_INLINE static VI choose2(MF first, Plane plane, int a, int b) {
+    return hn::IfThenElse(hn::RebindMask(I(), first), plane(a), plane(b));
+  }
+
+  template <class Plane>
+  HWY_INLINE static VI choose3(MF first, MF second, Plane plane) {
+    return hn::IfThenElse(hn::RebindMask(I(), first), plane(1),
+                          hn::IfThenElse(hn::RebindMask(I(), second), plane(2), plane(3)));
+  }
+
+  template <class Choose>
+  HWY_INLINE Crossing crossing(Choose choose, VF cell_scalar) const {
+    const I d;
+    const F df;
+    const VI z = choose([&](int k) HWY_ATTR { return hn::Add(steps[k].depth, hn::Set(d, depth[roles.face[k]])); });
+    Crossing c;
+    c.scalar = cell_scalar;
+    if constexpr (!perspective) {
+      c.depth = z;
+      if constexpr (!per_cell)
+        c.scalar = hn::ConvertTo(
+            df, choose([&](int k) HWY_ATTR { return hn::Add(steps[k].scalar, hn::Set(d, scalar[roles.face[k]])); }));
+    } else {
+      const VF w = hn::ConvertTo(
+          df, choose([&](int k) HWY_ATTR { return hn::Add(steps[k].weight, hn::Set(d, weight[roles.face[k]])); }));
+      // One Newton step makes the estimate (11 to 14 bits) right to float rounding.
+      const VF estimate = hn::ApproximateReciprocal(w);
+      const VF inverse =
+          hn::Mul(hn::Mul(estimate, hn::NegMulAdd(w, estimate, hn::Set(df, 2.0f))), hn::Set(df, CellBatch::weight_one));
+      const VI behind = hn::NearestInt(hn::Mul(hn::ConvertTo(df, z), inverse));
+      c.depth = hn::Add(behind, choose([&](int k) HWY_ATTR { return hn::Set(d, batch.depth_c[t][roles.face[k]]); }));
+      if constexpr (!per_cell) {
+        const VI s =
+            choose([&](int k) HWY_ATTR { return hn::Add(steps[k].scalar, hn::Set(d, scalar[roles.face[k]])); });
+        const VF s_c = hn::BitCast(
+            df, choose([&](int k) HWY_ATTR { return hn::BitCast(d, hn::Set(df, batch.scalar_c[t][roles.face[k]])); }));
+        c.scalar = hn::MulAdd(hn::ConvertTo(df, s), inverse, s_c);
+      }
+    }
+    return c;
+  }
+
+  template <bool three>
+  HWY_INLINE void run(const PixelRect& rect, const PixelRect& square, SegmentStream& out, RasterCounts& counts) {
+    const I d;
+    const F df;
+    const VI column = lane_column(), row = lane_row();
+    const VF zero = hn::Zero(df), one = hn::Set(df, 1.0f), minus_one = hn::Set(df, -1.0f);
+    const VF cell_scalar = hn::Set(df, per_cell ? batch.cell_scalar[t] : 0.0f);
+    const int x0 = batch.x0[t], x1 = batch.x1[t], y0 = batch.y0[t], y1 = batch.y1[t];
+    prepare();
+    const VI right = hn::Set(d, x1), bottom = hn::Set(d, y1);
+    const auto edge = [&](int e, VF x, VF y) HWY_ATTR {
+      return hn::MulAdd(hn::Set(df, batch.edge_x[e][t]), x,
+                        hn::MulAdd(hn::Set(df, batch.edge_y[e][t]), y, hn::Set(df, batch.edge[e][t])));
+    };
+    const VI first_pixel =
+        hn::Set(d, (rect.y0 - square.y0) * rect.width() + (rect.x0 - square.x0));  // of the square, in the rectangle
+    const D4 d4;
+    constexpr int log_width = block_width == 4 ? 2 : 1;
+    const V4 depth_advance = hn::ShiftLeft<log_width>(hn::Load(d4, batch.depth_x[t]));
+    V4 scalar_advance = depth_advance, weight_advance = depth_advance;
+    if constexpr (!per_cell) scalar_advance = hn::ShiftLeft<log_width>(hn::Load(d4, batch.scalar_x[t]));
+    if constexpr (perspective) weight_advance = hn::ShiftLeft<log_width>(hn::Load(d4, batch.weight_x[t]));
+    for (int by = y0; by < y1; by += block_height) {
+      const VI py = hn::Add(row, hn::Set(d, by));
+      const VF y = hn::ConvertTo(df, hn::Sub(py, hn::Set(d, CellBatch::center)));
+      const auto in_rows = hn::Lt(py, bottom);
+      const VI row_start = hn::Sub(hn::Mul(py, hn::Set(d, rect.width())), first_pixel);
+      V4 block_depth = at(batch.depth[t], batch.depth_x[t], batch.depth_y[t], x0, by), block_scalar = block_depth,
+         block_weight = block_depth;
+      if constexpr (!per_cell) block_scalar = at(batch.scalar[t], batch.scalar_x[t], batch.scalar_y[t], x0, by);
+      if constexpr (perspective) block_weight = at(batch.weight[t], batch.weight_x[t], batch.weight_y[t], x0, by);
+      const auto advance = [&]() HWY_ATTR {
+        block_depth = hn::Add(block_depth, depth_advance);
+        if constexpr (!per_cell) block_scalar = hn::Add(block_scalar, scalar_advance);
+        if constexpr (perspective) block_weight = hn::Add(block_weight, weight_advance);
+      };
+      for (int bx = x0; bx < x1; bx += block_width, advance()) {
+        const VI px = hn::Add(column, hn::Set(d, bx));
+        const VF x = hn::ConvertTo(df, hn::Sub(px, hn::Set(d, CellBatch::center)));
+        VF outline[4];
+        for (int k = 0; k < (three ? 3 : 4); ++k) outline[k] = edge(roles.outline[k], x, y);
+        VF least = hn::Min(hn::Min(outline[0], outline[1]), outline[2]);
+        if constexpr (!three) least = hn::Min(least, outline[3]);
+        const auto in_box = hn::RebindMask(df, hn::And(in_rows, hn::Lt(px, right)));
+        const MF possible = hn::And(in_box, hn::Gt(least, minus_one));
+        if (hn::AllFalse(df, possible)) continue;
+
+        VF inner[3];
+        for (int k = 0; k < (three ? 3 : 2); ++k) inner[k] = edge(roles.inner[k], x, y);
+        VF sure = hn::Min(hn::Min(hn::Abs(inner[0]), hn::Abs(inner[1])), least);
+        if constexpr (three) sure = hn::Min(sure, hn::Abs(inner[2]));
+        MF hit = possible;
+        std::uint64_t touching = 0;
+        const MF uncertain = hn::And(possible, hn::Le(sure, one));
+        if (HWY_UNLIKELY(!hn::AllFalse(df, uncertain))) {
+          alignas(64) float edges[6][lanes];
+          for (int e = 0; e < 6; ++e) hn::Store(edge(e, x, y), df, edges[e]);
+          std::uint8_t bits[8] = {0};
+          hn::StoreMaskBits(df, uncertain, bits);
+          touching = settle(view, batch, t, roles, bits[0] | static_cast<std::uint64_t>(bits[1]) << 8, square.x0 + bx,
+                            square.y0 + by, edges, counts);
+          least = hn::Load(df, edges[roles.outline[0]]);
+          for (int k = 1; k < (three ? 3 : 4); ++k) least = hn::Min(least, hn::Load(df, edges[roles.outline[k]]));
+          for (int k = 0; k < (three ? 3 : 2); ++k) inner[k] = hn::Load(df, edges[roles.inner[k]]);
+          hit = hn::And(possible, hn::Gt(least, zero));
+        }
+        hn::Store(block_depth, d4, depth);
+        if constexpr (!per_cell) hn::Store(block_scalar, d4, scalar);
+        if constexpr (perspective) hn::Store(block_weight, d4, weight);
+        Crossing first, second;
+        if constexpr (three) {
+          const MF is0 = hn::And(hn::Gt(inner[0], zero), hn::Gt(inner[1], zero)), is1 = hn::Gt(inner[2], zero);
+          first = crossing([&](auto plane) HWY_ATTR { return plane(0); }, cell_scalar);
+          second = crossing([&](auto plane) HWY_ATTR { return choose3(is0, is1, plane); }, cell_scalar);
+        } else {
+          const MF is0 = hn::Gt(inner[0], zero), is2 = hn::Gt(inner[1], zero);
+          first = crossing([&](auto plane) HWY_ATTR { return choose2(is0, plane, 0, 1); }, cell_scalar);
+          second = crossing([&](auto plane) HWY_ATTR { return choose2(is2, plane, 2, 3); }, cell_scalar);
+        }
+        if (HWY_UNLIKELY(touching != 0)) {
+          const std::uint8_t bits[8] = {static_cast<std::uint8_t>(touching), static_cast<std::uint8_t>(touching >> 8)};
+          second.depth = hn::IfThenElse(hn::LoadMaskBits(d, bits), first.depth, second.depth);
+        }
+        const VF scalar_front = three && roles.single_behind ? second.scalar : first.scalar;
+        const VF scalar_back = three && roles.single_behind ? first.scalar : second.scalar;
+        const VI pixel = hn::Add(row_start, px);
+        const auto hit_int = hn::RebindMask(d, hit);
+        // Compress in registers and store whole vectors: a compressing store is slower on several processors.
+        hn::StoreU(hn::Compress(pixel, hit_int), d, out.pixel.data() + out.size);
+        hn::StoreU(hn::Compress(hn::Min(first.depth, second.depth), hit_int), d, out.front.data() + out.size);
+        hn::StoreU(hn::Compress(hn::Max(first.depth, second.depth), hit_int), d, out.back.data() + out.size);
+        hn::StoreU(hn::Compress(scalar_front, hit), df, out.scalar_front.data() + out.size);
+        hn::StoreU(hn::Compress(scalar_back, hit), df, out.scalar_back.data() + out.size);
+        out.size += hn::CountTrue(df, hit);
+      }
+    }
+  }
+
+  /// The planes of faces 0 to 3 at a pixel of the square.
+  HWY_INLINE static V4 at(const std::int32_t* start, const std::int32_t* x, const std::int32_t* y, int px, int py) {
+    const D4 d4;
+    return hn::Add(hn::Load(d4, start), hn::Add(hn::Mul(hn::Load(d4, x), hn::Set(d4, px - CellBatch::center)),
+                                                hn::Mul(hn::Load(d4, y), hn::Set(d4, py - CellBatch::center))));
+  }
+};
+
+template <bool perspective, bool per_cell>
+void rasterize_cells(const LatticeView& view, const CellBatch& batch, const PixelRect& rect, const PixelRect& square,
+                     const OpenPixels& open, SegmentStream& out, RasterCounts& counts) {
+  for (int t = 0; t < batch.size; ++t) {
+    const Roles& roles = role_table.roles[batch.front_faces[t] & 15];
+    if (!roles.valid || batch.x0[t] >= batch.x1[t]) continue;
+    std::uint32_t takes = 0;
+    for (int y = batch.y0[t]; y < batch.y1[t]; ++y) takes |= open[y];
+    const std::uint64_t columns = (std::uint64_t{1} << batch.x1[t]) - (std::uint64_t{1} << batch.x0[t]);
+    if ((takes & columns) == 0) continue;
+    CellRaster<perspective, per_cell> raster{view, batch, t, roles, {}, {}, {}, {}};
+    if (roles.three)
+      raster.template run<true>(rect, square, out, counts);
+    else
+      raster.template run<false>(rect, square, out, counts);
+  }
+}
+
+/// An irregular cell, from double precision to the lattice.
+HWY_NOINLINE void rasterize_irregular(const LatticeView& view, const TileEntry& entry, const PixelRect& rect,
+                                      LatticeScratch& scratch, SegmentStream& out, RasterCounts& counts) {
+  RaySegments& s = scratch.segments;
+  const auto area = static_cast<std::size_t>(rect.area());
+  if (s.capacity() < area) s.reserve(area);
+  s.size = 0;
+  rasterize_planes(view.projected, {&entry, 1}, rect, s, counts);
+  for (std::size_t i = 0; i < s.size; ++i) {
+    out.pixel[out.size] = static_cast<std::int32_t>(s.pixel(i));
+    out.front[out.size] = view.lattice.depth_step(s.front[i]);
+    out.back[out.size] = view.lattice.depth_step(s.back[i]);
+    out.scalar_front[out.size] = static_cast<float>(view.lattice.scalar_step(s.scalar_front[i]));
+    out.scalar_back[out.size] = static_cast<float>(view.lattice.scalar_step(s.scalar_back[i]));
+    ++out.size;
+  }
+}
+
+void rasterize(const LatticeView& view, std::span<const TileEntry> entries, std::span<const TileEntry> ahead,
+               const PixelRect& rect, const OpenPixels& open, LatticeScratch& scratch, SegmentStream& out,
+               RasterCounts& counts) {
+  const PixelRect square{rect.x0 & ~(SegmentWindows::side - 1), rect.y0 & ~(SegmentWindows::side - 1), 0, 0};
+  const bool per_cell = view.projected.mesh->mesh().association == scene::Association::cell;
+  CellBatch batch;
+  for (std::size_t from = 0; from < entries.size(); from += CellBatch::most) {
+    const auto cells = entries.subspan(from, std::min<std::size_t>(CellBatch::most, entries.size() - from));
+    out.reserve(out.size + cells.size() * static_cast<std::size_t>(rect.area()));
+    if (from == 0) prefetch_cells(view.projected, ahead);
+    if (view.perspective)
+      set_up_cells<true>(view, cells, rect, batch);
+    else
+      set_up_cells<false>(view, cells, rect, batch);
+    for (unsigned irregular = batch.irregular; irregular != 0; irregular &= irregular - 1)
+      rasterize_irregular(view, cells[static_cast<std::size_t>(__builtin_ctz(irregular))], rect, scratch, out, counts);
+    if (view.perspective)
+      per_cell ? rasterize_cells<true, true>(view, batch, rect, square, open, out, counts)
+               : rasterize_cells<true, false>(view, batch, rect, square, open, out, counts);
+    else
+      per_cell ? rasterize_cells<false, true>(view, batch, rect, square, open, out, counts)
+               : rasterize_cells<false, false>(view, batch, rect, square, open, out, counts);
+  }
+}
+#endif  // HWY_SCALAR
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::projection
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tessera::projection {
+HWY_EXPORT(rasterize);
+HWY_EXPORT(available);
+
+bool lattice_available() { return HWY_DYNAMIC_DISPATCH(available)(); }
+
+void rasterize_lattice(const LatticeView& view, std::span<const TileEntry> entries, std::span<const TileEntry> ahead,
+                       const PixelRect& rect, const OpenPixels& open, LatticeScratch& scratch, SegmentStream& out,
+                       RasterCounts& counts) {
+  HWY_DYNAMIC_DISPATCH(rasterize)(view, entries, ahead, rect, open, scratch, out, counts);
+}
+
+}  // namespace tessera::projection
+#endif  // HWY_ONCE

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "projection/lattice.hpp"
+#include "projection/planes_rasterizer.hpp"
+#include "projection/ray_segments.hpp"
+#include "projection/segment_windows.hpp"
+
+namespace tessera::projection {
+
+/// What the lattice rasterizer reads of a frame.
+struct LatticeView {
+  ProjectedMesh projected;
+  Lattice lattice;
+  bool perspective;
+};
+
+/// Working memory of one thread.
+struct LatticeScratch {
+  RaySegments segments;  ///< of irregular cells, from the double-precision rasterizer
+};
+
+/// Bit x of rows[y]: pixel (x, y) of the square still takes segments.
+using OpenPixels = std::array<std::uint32_t, SegmentWindows::side>;
+
+/// The `planes` rasterizer on the integer lattice: cells to ray segments for the pixels of `rect`, which lies in one
+/// square of 32 x 32 pixels aligned to multiples of 32. Appends to `out`.
+///
+/// Sixteen cells are set up at once, a cell a lane, in double precision; then a cell at a time is rasterized, a pixel a
+/// lane, in blocks of 4 x 4 pixels (AVX-512), 4 x 2 or 2 x 2:
+///   - Six edge functions E in float tell which pixels are hit, and through which faces. Seen from the eye a cell has
+///   two
+///     front and two back faces, or one and three; the silhouette's edges decide on the hit, the one or three inner
+///     edges on the face. Each E is scaled so that its rounding error is below 1: |E| > 1 is certain. Lanes that are
+///     not (a few in 10^4) get the exact sign with the tie rule (edge_sign.hpp), so hits are those of rasterize_planes.
+///   - Depth and scalar of a face are planes over the square's pixels, in integers: start, step in x, step in y. No
+///     rounding depends on block or lane, so neighbours compute the same bits for their common face. A gradient
+///     is rounded to a whole step a pixel: at most 16 steps of error within the square.
+///   - Under perspective 1/depth and its products are the planes; a quotient of two gives what lies behind a vertex of
+///     the face, so precision is relative to the face.
+/// Measured on cube 64 (31 pixels a cell): bench/RESULTS.md.
+///
+/// Irregular cells go through rasterize_planes: those that cross the eye plane or the clipping range, have a corner
+/// within a 16th of the others' distance of the eye, have a face edge-on to 2^-9 of a pixel (but for orthographic views
+/// of faces that are so for certain), or reach over 2^14 pixels. Their depths differ from their neighbours' by a few
+/// steps.
+///
+/// Cells behind closed pixels alone are skipped; single closed pixels still get segments. `ahead` are the entries that
+/// will come next: their numbers are fetched meanwhile.
+void rasterize_lattice(const LatticeView& view, std::span<const TileEntry> entries, std::span<const TileEntry> ahead,
+                       const PixelRect& rect, const OpenPixels& open, LatticeScratch& scratch, SegmentStream& out,
+                       RasterCounts& counts);
+
+/// Whether this processor's instruction set has lanes (SSE4 or better).
+bool lattice_available();
+
+}  // namespace tessera::projection

@@ -1,0 +1,348 @@
+// Set-up of the lattice rasterizer: sixteen cells at once, a cell a lane, in double precision. Included once per
+// instruction set (Highway's include guard idiom).
+
+#if defined(TESSERA_PROJECTION_LATTICE_SETUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_PROJECTION_LATTICE_SETUP_INL_H_
+#undef TESSERA_PROJECTION_LATTICE_SETUP_INL_H_
+#else
+#define TESSERA_PROJECTION_LATTICE_SETUP_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstring>
+
+#include "projection/lattice_rasterizer.hpp"
+
+HWY_BEFORE_NAMESPACE();
+#if HWY_TARGET != HWY_SCALAR
+namespace tessera::projection {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::ScalableTag<double>;
+using V = hn::Vec<D>;
+using M = hn::Mask<D>;
+
+// Edges by their corners i < j with the two faces they lie in, and faces by their corners a < b < c with the edges bc,
+// ac, ab.
+constexpr int edge_from[6] = {0, 0, 0, 1, 1, 2}, edge_to[6] = {1, 2, 3, 2, 3, 3};
+constexpr int edge_faces[6][2] = {{0, 1}, {0, 2}, {1, 2}, {0, 3}, {1, 3}, {2, 3}};
+constexpr int face_corners[4][3] = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
+/// (a, b, c) turns the way that (0, 1, 2) does, seen from outside the cell.
+constexpr bool face_outward[4] = {true, false, true, false};
+/// E of the edge is positive inside its first face if that face's area is, turned outward.
+constexpr bool edge_inward[6] = {true, false, true, true, false, true};
+
+/// Sixteen cells ready for their pixels. Pixels are numbered from the square's corner; planes and edge functions start
+/// at the centre of pixel (center, center).
+struct CellBatch {
+  static constexpr int most = 16, center = 16;
+  static constexpr float weight_one = 0x1p30f;
+
+  int size;
+  unsigned irregular;  ///< bit t: left to the double-precision rasterizer
+  std::uint32_t tet[most];
+  alignas(64) std::int32_t x0[most], x1[most], y0[most], y1[most];  ///< candidate pixels, half open
+  std::uint8_t front_faces[most];                                   ///< bit f: a front face
+  std::uint8_t edge_on[most];                                       ///< bit f: seen edge-on
+  std::uint8_t flipped[most];                                       ///< bit e: stored edge function is -E
+  // E / (its rounding error), positive inside the first of the edge's faces.
+  alignas(64) float edge[6][most], edge_x[6][most], edge_y[6][most];
+  // Planes of faces 0 to 3: depth (perspective: depth behind corner c, times weight), scalar likewise, and weight (w of
+  // the nearest corner / w, times 2^30).
+  alignas(64) std::int32_t depth[most][4], depth_x[most][4], depth_y[most][4];
+  alignas(64) std::int32_t scalar[most][4], scalar_x[most][4], scalar_y[most][4];
+  alignas(64) std::int32_t weight[most][4], weight_x[most][4], weight_y[most][4];
+  alignas(64) std::int32_t depth_c[most][4];
+  alignas(64) float scalar_c[most][4];
+  alignas(64) float cell_scalar[most];
+};
+
+/// Nearest integers modulo 2^32 of |v| < 2^51: in the sum with 1.5 * 2^52 the lowest bit counts ones.
+HWY_INLINE hn::Vec<hn::Rebind<std::int32_t, D>> wrapped(V v) {
+  const D d;
+  const hn::RebindToUnsigned<D> du;
+  const hn::Rebind<std::uint32_t, D> du32;
+  const hn::Rebind<std::int32_t, D> di32;
+  return hn::BitCast(di32, hn::TruncateTo(du32, hn::BitCast(du, hn::Add(v, hn::Set(d, 0x1.8p52)))));
+}
+
+/// A plane over the square: value at its centre and steps.
+struct Plane {
+  V start, x, y;
+};
+
+/// The face's plane through the values q at its corners.
+struct FaceShape {
+  V ax, ay, x1, y1, x2, y2, inverse_area;
+};
+HWY_INLINE Plane plane_of(const FaceShape& s, V qa, V qb, V qc) {
+  const V q1 = hn::Sub(qb, qa), q2 = hn::Sub(qc, qa);
+  Plane p;
+  p.x = hn::Mul(hn::Sub(hn::Mul(q1, s.y2), hn::Mul(q2, s.y1)), s.inverse_area);
+  p.y = hn::Mul(hn::Sub(hn::Mul(s.x1, q2), hn::Mul(s.x2, q1)), s.inverse_area);
+  p.start = hn::NegMulAdd(p.x, s.ax, hn::NegMulAdd(p.y, s.ay, qa));
+  return p;
+}
+
+template <class Select>
+HWY_INLINE void store_planes(const Plane (&planes)[4], Select select, std::int32_t (*out)[4]) {
+  const hn::Rebind<std::int32_t, D> d;
+  hn::StoreInterleaved4(wrapped(select(planes[0])), wrapped(select(planes[1])), wrapped(select(planes[2])),
+                        wrapped(select(planes[3])), d, &out[0][0]);
+}
+HWY_INLINE void store_planes(const Plane (&planes)[4], std::int32_t (*start)[4], std::int32_t (*x)[4],
+                             std::int32_t (*y)[4]) {
+  store_planes(
+      planes, [](const Plane& p) HWY_ATTR { return p.start; }, start);
+  store_planes(
+      planes, [](const Plane& p) HWY_ATTR { return p.x; }, x);
+  store_planes(
+      planes, [](const Plane& p) HWY_ATTR { return p.y; }, y);
+}
+
+HWY_INLINE unsigned bits_of(M mask) {
+  std::uint8_t bits[8] = {0};
+  hn::StoreMaskBits(D(), mask, bits);
+  return bits[0];
+}
+
+/// One vector of cells: the first of them is cell `from` of the batch.
+template <bool perspective>
+HWY_INLINE void set_up_lanes(const LatticeView& view, const double (*corner)[8][4], const double (*corner_scalar)[8],
+                             const PixelRect& rect, int square_x, int square_y, int from, CellBatch& batch) {
+  const D d;
+  const auto number = [](double v) HWY_ATTR { return hn::Set(D(), v); };
+  const V zero = hn::Zero(d), one = number(1);
+  const Lattice& lattice = view.lattice;
+  V x[4], y[4], z[4], s[4], w[4], order[4];
+  M irregular = hn::Lt(zero, zero);
+  V nearest = number(HUGE_VAL), farthest = number(-HUGE_VAL);
+  for (int i = 0; i < 4; ++i) {
+    V depth;
+    hn::LoadInterleaved4(d, &corner[i][0][0], x[i], y[i], w[i], depth);
+    if constexpr (perspective) {
+      irregular = hn::Or(irregular, hn::Not(hn::Gt(w[i], zero)));
+      const V inverse = hn::Div(one, hn::IfThenElse(hn::Gt(w[i], zero), w[i], one));
+      x[i] = hn::Mul(x[i], inverse), y[i] = hn::Mul(y[i], inverse);
+      w[i] = inverse;
+      order[i] = hn::Neg(inverse);
+    }
+    x[i] = hn::Sub(x[i], number(square_x + CellBatch::center + 0.5));
+    y[i] = hn::Sub(y[i], number(square_y + CellBatch::center + 0.5));
+    nearest = hn::Min(nearest, depth), farthest = hn::Max(farthest, depth);
+    z[i] = hn::Mul(hn::Sub(depth, number(lattice.depth_origin)), number(1 / lattice.depth_unit));
+    if constexpr (!perspective) order[i] = z[i];
+    s[i] = hn::Mul(hn::Sub(hn::LoadU(d, corner_scalar[i]), number(lattice.scalar_origin)),
+                   number(1 / lattice.scalar_unit));
+  }
+  irregular = hn::Or(irregular, hn::Or(hn::Lt(nearest, number(view.projected.near_depth)),
+                                       hn::Gt(farthest, number(view.projected.far_depth))));
+  if constexpr (perspective) {
+    const V w_most = hn::Max(hn::Max(w[0], w[1]), hn::Max(w[2], w[3]));
+    const V w_least = hn::Min(hn::Min(w[0], w[1]), hn::Min(w[2], w[3]));
+    irregular = hn::Or(irregular, hn::Gt(w_most, hn::Mul(w_least, number(16))));
+  }
+
+  // Candidate pixels: centres inside the bounding box, widened by far more than rounding.
+  const V x_low = hn::Min(hn::Min(x[0], x[1]), hn::Min(x[2], x[3]));
+  const V x_high = hn::Max(hn::Max(x[0], x[1]), hn::Max(x[2], x[3]));
+  const V y_low = hn::Min(hn::Min(y[0], y[1]), hn::Min(y[2], y[3]));
+  const V y_high = hn::Max(hn::Max(y[0], y[1]), hn::Max(y[2], y[3]));
+  const V reach = hn::Max(hn::Max(hn::Neg(x_low), x_high), hn::Max(hn::Neg(y_low), y_high));
+  irregular = hn::Or(irregular, hn::Not(hn::Lt(reach, number(16384))));
+  const V slack = number(1e-6);
+  const hn::Rebind<std::int32_t, D> di32;
+  const auto store_bound = [&](V v, int low, int high, std::int32_t* out) HWY_ATTR {
+    hn::StoreU(hn::DemoteTo(di32, hn::Min(hn::Max(v, number(low)), number(high))), di32, out + from);
+  };
+  const V center = number(CellBatch::center);
+  store_bound(hn::Add(hn::Ceil(hn::Sub(x_low, slack)), center), rect.x0 - square_x, rect.x1 - square_x, batch.x0);
+  store_bound(hn::Add(hn::Floor(hn::Add(x_high, slack)), hn::Add(center, one)), rect.x0 - square_x, rect.x1 - square_x,
+              batch.x1);
+  store_bound(hn::Add(hn::Ceil(hn::Sub(y_low, slack)), center), rect.y0 - square_y, rect.y1 - square_y, batch.y0);
+  store_bound(hn::Add(hn::Floor(hn::Add(y_high, slack)), hn::Add(center, one)), rect.y0 - square_y, rect.y1 - square_y,
+              batch.y1);
+
+  // Faces: area, which side of the cell, planes.
+  M is_zero[4], positive[4];
+  FaceShape shape[4];
+  for (int f = 0; f < 4; ++f) {
+    const int a = face_corners[f][0], b = face_corners[f][1], c = face_corners[f][2];
+    FaceShape& n = shape[f];
+    n.ax = x[a], n.ay = y[a];
+    n.x1 = hn::Sub(x[b], x[a]), n.y1 = hn::Sub(y[b], y[a]);
+    n.x2 = hn::Sub(x[c], x[a]), n.y2 = hn::Sub(y[c], y[a]);
+    const V area = hn::Sub(hn::Mul(n.x1, n.y2), hn::Mul(n.x2, n.y1));
+    const V span = hn::Add(hn::Add(hn::Abs(n.x1), hn::Abs(n.y1)), hn::Add(hn::Abs(n.x2), hn::Abs(n.y2)));
+    // Edge-on for certain: orthographic coordinates and their differences are exact, and the products are zeros or have
+    // the same factors, as where two corners coincide or all line up along an axis.
+    is_zero[f] = hn::Lt(zero, zero);
+    if constexpr (!perspective) {
+      const auto both_zero = [&](V p, V q) HWY_ATTR { return hn::And(hn::Eq(p, zero), hn::Eq(q, zero)); };
+      is_zero[f] = hn::Or(hn::Or(both_zero(n.x1, n.x2), both_zero(n.y1, n.y2)),
+                          hn::Or(hn::Or(both_zero(n.x1, n.y1), both_zero(n.x2, n.y2)),
+                                 hn::And(hn::Eq(n.x1, n.x2), hn::Eq(n.y1, n.y2))));
+    }
+    irregular = hn::Or(irregular, hn::And(hn::Le(hn::Abs(area), hn::Mul(span, number(0x1p-9))), hn::Not(is_zero[f])));
+    n.inverse_area = hn::IfThenZeroElse(is_zero[f], hn::Div(one, hn::IfThenElse(is_zero[f], one, area)));
+    positive[f] = hn::Gt(face_outward[f] ? area : hn::Neg(area), zero);
+  }
+  // The cell's volume has the sign of a front face's outward area: order grows with depth, and is linear on faces.
+  const V z1 = hn::Sub(order[1], order[0]), z2 = hn::Sub(order[2], order[0]), z3 = hn::Sub(order[3], order[0]);
+  const V X1 = shape[0].x1, Y1 = shape[0].y1, X2 = shape[0].x2, Y2 = shape[0].y2, X3 = shape[1].x2, Y3 = shape[1].y2;
+  const V volume =
+      hn::MulAdd(z1, hn::MulSub(X2, Y3, hn::Mul(X3, Y2)),
+                 hn::MulAdd(z2, hn::MulSub(X3, Y1, hn::Mul(X1, Y3)), hn::Mul(z3, hn::MulSub(X1, Y2, hn::Mul(X2, Y1)))));
+  const M upright = hn::Ge(volume, zero);
+  // Edge-on faces, which no ray passes, fill up the sides: the first counts as a front face, others as back faces.
+  M seen_zero = hn::Lt(zero, zero);
+  unsigned front_bits[4], edge_on_bits[4];
+  M front[4];
+  for (int f = 0; f < 4; ++f) {
+    const M facing = hn::Not(hn::Xor(positive[f], upright));
+    front[f] = hn::Or(hn::AndNot(is_zero[f], facing), hn::And(is_zero[f], hn::Not(seen_zero)));
+    seen_zero = hn::Or(seen_zero, is_zero[f]);
+    front_bits[f] = bits_of(front[f]);
+    edge_on_bits[f] = bits_of(is_zero[f]);
+  }
+
+  // Edge functions over the largest rounding error of the six; 2^-23 would do, the rest is margin.
+  unsigned flip_bits[6];
+  const hn::Rebind<float, D> df;
+  V start[6], along_x[6], along_y[6], error = number(1e-290);
+  for (int e = 0; e < 6; ++e) {
+    const int a = edge_from[e], b = edge_to[e];
+    start[e] = hn::MulSub(x[a], y[b], hn::Mul(x[b], y[a]));
+    along_x[e] = hn::Sub(y[a], y[b]), along_y[e] = hn::Sub(x[b], x[a]);
+    const V reached = hn::Add(hn::Abs(along_x[e]), hn::Abs(along_y[e]));
+    error = hn::Max(error, hn::MulAdd(reached, number(17), hn::Abs(start[e])));
+  }
+  const V scale = hn::Div(number(0x1p22), error);
+  for (int e = 0; e < 6; ++e) {
+    const M without_sides = hn::And(hn::Eq(along_x[e], zero), hn::Eq(along_y[e], zero));
+    const M inward = edge_inward[e] ? upright : hn::Not(upright);
+    const M flip = hn::Xor(inward, front[edge_faces[e][0]]);
+    flip_bits[e] = bits_of(flip);
+    const V signed_scale = hn::IfThenElse(flip, hn::Neg(scale), scale);
+    // An edge without sides lies between two edge-on faces; it never decides.
+    const V scaled = hn::IfThenElse(without_sides, number(4), hn::Mul(start[e], signed_scale));
+    hn::StoreU(hn::DemoteTo(df, scaled), df, batch.edge[e] + from);
+    hn::StoreU(hn::DemoteTo(df, hn::Mul(along_x[e], signed_scale)), df, batch.edge_x[e] + from);
+    hn::StoreU(hn::DemoteTo(df, hn::Mul(along_y[e], signed_scale)), df, batch.edge_y[e] + from);
+  }
+
+  Plane planes[4];
+  const bool per_cell = view.projected.mesh->mesh().association == scene::Association::cell;
+  if constexpr (!perspective) {
+    for (int f = 0; f < 4; ++f)
+      planes[f] = plane_of(shape[f], z[face_corners[f][0]], z[face_corners[f][1]], z[face_corners[f][2]]);
+    store_planes(planes, batch.depth + from, batch.depth_x + from, batch.depth_y + from);
+    if (!per_cell) {
+      for (int f = 0; f < 4; ++f)
+        planes[f] = plane_of(shape[f], s[face_corners[f][0]], s[face_corners[f][1]], s[face_corners[f][2]]);
+      store_planes(planes, batch.scalar + from, batch.scalar_x + from, batch.scalar_y + from);
+    }
+  } else {
+    V weights[4][3];
+    for (int f = 0; f < 4; ++f) {
+      const V wa = w[face_corners[f][0]], wb = w[face_corners[f][1]], wc = w[face_corners[f][2]];
+      const V most = hn::Max(wa, hn::Max(wb, wc));
+      weights[f][0] = hn::Div(wa, most), weights[f][1] = hn::Div(wb, most), weights[f][2] = hn::Div(wc, most);
+      const V full = number(CellBatch::weight_one);
+      planes[f] =
+          plane_of(shape[f], hn::Mul(weights[f][0], full), hn::Mul(weights[f][1], full), hn::Mul(weights[f][2], full));
+    }
+    store_planes(planes, batch.weight + from, batch.weight_x + from, batch.weight_y + from);
+    const auto relative = [&](const V(&q)[4], int f) HWY_ATTR {
+      const V qc = hn::Round(q[face_corners[f][2]]);
+      return plane_of(shape[f], hn::Mul(weights[f][0], hn::Sub(q[face_corners[f][0]], qc)),
+                      hn::Mul(weights[f][1], hn::Sub(q[face_corners[f][1]], qc)),
+                      hn::Mul(weights[f][2], hn::Sub(q[face_corners[f][2]], qc)));
+    };
+    for (int f = 0; f < 4; ++f) planes[f] = relative(z, f);
+    store_planes(planes, batch.depth + from, batch.depth_x + from, batch.depth_y + from);
+    hn::Vec<hn::Rebind<std::int32_t, D>> corner_depth[4];
+    for (int f = 0; f < 4; ++f) corner_depth[f] = wrapped(z[face_corners[f][2]]);
+    hn::StoreInterleaved4(corner_depth[0], corner_depth[1], corner_depth[2], corner_depth[3], di32,
+                          &batch.depth_c[from][0]);
+    if (!per_cell) {
+      for (int f = 0; f < 4; ++f) planes[f] = relative(s, f);
+      store_planes(planes, batch.scalar + from, batch.scalar_x + from, batch.scalar_y + from);
+      hn::Vec<hn::Rebind<float, D>> corner_value[4];
+      for (int f = 0; f < 4; ++f) corner_value[f] = hn::DemoteTo(df, hn::Round(s[face_corners[f][2]]));
+      hn::StoreInterleaved4(corner_value[0], corner_value[1], corner_value[2], corner_value[3], df,
+                            &batch.scalar_c[from][0]);
+    }
+  }
+  if (per_cell) hn::StoreU(hn::DemoteTo(df, hn::Round(s[0])), df, batch.cell_scalar + from);
+
+  const unsigned irregular_bits = bits_of(irregular);
+  for (int lane = 0; lane < static_cast<int>(hn::Lanes(d)); ++lane) {
+    unsigned faces = 0, edge_on = 0, flips = 0;
+    for (unsigned f = 0; f < 4; ++f) {
+      faces |= (front_bits[f] >> lane & 1) << f;
+      edge_on |= (edge_on_bits[f] >> lane & 1) << f;
+    }
+    for (unsigned e = 0; e < 6; ++e) flips |= (flip_bits[e] >> lane & 1) << e;
+    const bool left_out = (irregular_bits >> lane & 1) != 0;
+    batch.front_faces[from + lane] = static_cast<std::uint8_t>(left_out ? 0 : faces);
+    batch.edge_on[from + lane] = static_cast<std::uint8_t>(edge_on);
+    batch.flipped[from + lane] = static_cast<std::uint8_t>(flips);
+  }
+  batch.irregular |= irregular_bits << from;
+}
+
+/// Lists name cells all over the mesh: fetch the next batches' corner indices, and their vertices, while this batch is
+/// worked on. `ahead` begins with the next batch.
+HWY_INLINE void prefetch_cells(const ProjectedMesh& projected, std::span<const TileEntry> ahead) {
+  const scene::TetMesh& mesh = projected.mesh->mesh();
+  const bool per_cell = mesh.association == scene::Association::cell;
+  const std::size_t near = std::min<std::size_t>(ahead.size(), CellBatch::most);
+  for (std::size_t i = 0; i < near; ++i)
+    for (const std::uint32_t v : mesh.tets[ahead[i].tet]) {
+      __builtin_prefetch(&projected.vertices[v]);
+      if (!per_cell) __builtin_prefetch(&mesh.scalars[v]);
+    }
+  const std::size_t far = std::min<std::size_t>(ahead.size(), 3 * CellBatch::most);
+  for (std::size_t i = 2 * CellBatch::most; i < far; ++i) {
+    __builtin_prefetch(&mesh.tets[ahead[i].tet]);
+    projected.mesh->prefetch(ahead[i].tet);
+    if (per_cell) __builtin_prefetch(&mesh.scalars[ahead[i].tet]);
+  }
+}
+
+/// Sets up at most CellBatch::most cells.
+template <bool perspective>
+HWY_INLINE void set_up_cells(const LatticeView& view, std::span<const TileEntry> cells, const PixelRect& rect,
+                             CellBatch& batch) {
+  const int square_x = rect.x0 & ~(SegmentWindows::side - 1), square_y = rect.y0 & ~(SegmentWindows::side - 1);
+  const scene::TetMesh& mesh = view.projected.mesh->mesh();
+  const bool per_cell = mesh.association == scene::Association::cell;
+  const auto lanes = static_cast<int>(hn::Lanes(D()));
+  batch.size = static_cast<int>(cells.size());
+  batch.irregular = 0;
+  for (int from = 0; from < batch.size; from += lanes) {
+    alignas(64) double corner[4][8][4], corner_scalar[4][8];
+    for (int lane = 0; lane < lanes; ++lane) {
+      const int t = std::min(from + lane, batch.size - 1);
+      const std::uint32_t tet = cells[static_cast<std::size_t>(t)].tet;
+      batch.tet[from + lane] = tet;
+      const scene::Tet corners = view.projected.mesh->canonical(tet);
+      for (int i = 0; i < 4; ++i) {
+        std::memcpy(corner[i][lane], &view.projected.vertices[corners[i]], sizeof(PixelVertex));
+        corner_scalar[i][lane] = mesh.scalars[per_cell ? tet : corners[i]];
+      }
+    }
+    set_up_lanes<perspective>(view, corner, corner_scalar, rect, square_x, square_y, from, batch);
+  }
+  batch.irregular &= (1u << batch.size) - 1;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::projection
+#endif  // HWY_SCALAR
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,75 @@
+#include "projection/segment_windows.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "projection/segment_windows.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::projection {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET == HWY_SCALAR
+std::size_t deal(const SegmentStream& s, std::size_t, std::size_t, std::size_t, LatticeSegment*, std::uint32_t*) {
+  return s.size;
+}
+#else
+/// Segments are made records a vector at a time (a transposition in registers), then stored one by one: one 16-byte
+/// load and store each, in a loop that has no branch to mispredict but its end.
+std::size_t deal(const SegmentStream& s, std::size_t from, std::size_t capacity, std::size_t stride,
+                 LatticeSegment* lists, std::uint32_t* counts) {
+  const hn::ScalableTag<std::int32_t> d;
+  const hn::RebindToFloat<decltype(d)> df;
+  constexpr std::size_t most = 16;
+  const std::size_t lanes = hn::Lanes(d);
+  alignas(64) LatticeSegment records[most];
+  for (std::size_t i = from; i < s.size; i += lanes) {
+    hn::StoreInterleaved4(hn::LoadU(d, s.front.data() + i), hn::LoadU(d, s.back.data() + i),
+                          hn::BitCast(d, hn::LoadU(df, s.scalar_front.data() + i)),
+                          hn::BitCast(d, hn::LoadU(df, s.scalar_back.data() + i)), d,
+                          reinterpret_cast<std::int32_t*>(records));
+    const std::size_t end = s.size - i < lanes ? s.size - i : lanes;
+    for (std::size_t k = 0; k < end; ++k) {
+      const auto pixel = static_cast<std::size_t>(s.pixel[i + k]);
+      const std::uint32_t count = counts[pixel];
+      if (HWY_UNLIKELY(count == capacity)) return i + k;
+      lists[count * stride + pixel] = records[k];
+      counts[pixel] = count + 1;
+    }
+  }
+  return s.size;
+}
+#endif  // HWY_SCALAR
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::projection
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tessera::projection {
+HWY_EXPORT(deal);
+
+std::size_t SegmentWindows::deal(const SegmentStream& stream, std::size_t from) {
+  return HWY_DYNAMIC_DISPATCH(deal)(stream, from, capacity_, stride(), segments_.data(), counts_.data());
+}
+
+void SegmentWindows::reset(std::size_t pixels, std::size_t capacity) {
+  pixels_ = pixels;
+  capacity_ = capacity;
+  fit();
+  clear();
+}
+
+void SegmentWindows::grow() {
+  capacity_ *= 2;
+  fit();
+}
+
+void SegmentWindows::fit() {
+  const std::size_t elements = capacity_ * stride() + pixel_padding;
+  if (segments_.size() < elements) segments_.resize(elements);
+}
+
+}  // namespace tessera::projection
+#endif  // HWY_ONCE
