@@ -1,4 +1,4 @@
-// Packets of rays through one chunk of 16 slabs; included once per instruction set.
+// Packets of rays through one chunk of 32 slabs; included once per instruction set.
 //
 // In a slab a ray (|bx|, |by| <= 1) crosses at most one plane of either other axis: three stretches at most, each in
 // one voxel. Where the whole window of samples that a packet may meet lies in one interval of the transfer function,
@@ -6,7 +6,7 @@
 // same as integrating them: nothing.
 //
 // Numbers  positions are float, relative to the voxel in which the ray is at the chunk's first plane, from double at
-//          each chunk: 1e-6 voxel at most. So they depend on ray and chunk only.
+//          each chunk: 2e-6 voxel at most. So they depend on ray and chunk only.
 
 #if defined(TESSERA_VOLUME_CAST_SLABS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_CAST_SLABS_INL_H_
@@ -20,8 +20,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "volume/frame_view.hpp"
 #include "volume/fill_block-inl.h"
+#include "volume/frame_view.hpp"
 #include "volume/ray_piece-inl.h"
 #include "volume/slab_block.hpp"
 #include "volume/tile_rays.hpp"
@@ -115,25 +115,27 @@ struct Lanes {
   VF k_in, k_out;                       ///< relative to the chunk's first plane
   VF length, bends;                     ///< of the ray per slab; bx by
   int i_base, j_base;
+  bool whole;  ///< all lanes go from the chunk's first plane to its last
 };
 
-/// Cell and stretch of the slab for each lane.
+/// A lane's way through one voxel of a slab: the voxel, relative to (i, j) of the chunk's first plane, and where it
+/// begins and ends, 0 to 1 from plane to plane.
 struct Stretch {
   VF i, j, begin, end;
 };
 
-template <bool cell_data, class Window, class Lookup>
-HWY_INLINE void cast_slab(const ChunkView& chunk, const Lookup& lookup, const Lanes& lanes, int n, int i_window,
-                          int j_window, CurrentInterval& current, Progress& progress, FirstLight& first,
-                          TileCounts& counts) {
-  const DF d;
-  const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f), half = HN::Set(d, 0.5f);
-  const float* const front = chunk.block.at(n, i_window, j_window);
-  const float* const back = cell_data ? front : chunk.block.at(n + 1, i_window, j_window);
-  const Window window(front, back, chunk.block.pitch);
-  const bool uniform = current.holds(window, *front);
-  if (uniform && current.clear()) return;
+/// A packet's way through a slab.
+struct SlabPath {
+  VF k, x, y;             ///< the front plane, and where the rays meet it
+  VF from, to;            ///< the part of the slab that counts
+  Stretch stretches[3];   ///< front to back
+  VF i_offset, j_offset;  ///< of a voxel in the window
+};
 
+HWY_INLINE SlabPath path_of(const Lanes& lanes, int n, int i_window, int j_window) {
+  const DF d;
+  const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f);
+  SlabPath path;
   const VF k = HN::Set(d, static_cast<float>(n));
   const VF from = HN::Min(HN::Max(HN::Sub(lanes.k_in, k), zero), one),
            to = HN::Max(HN::Min(HN::Sub(lanes.k_out, k), one), from);
@@ -155,84 +157,351 @@ HWY_INLINE void cast_slab(const ChunkView& chunk, const Lookup& lookup, const La
   const VF u_i = crossing(i_0, i_1, x, lanes.per_bx), u_j = crossing(j_0, j_1, y, lanes.per_by);
   const VF u_1 = HN::Min(u_i, u_j), u_2 = HN::Max(u_i, u_j);
   const MF i_first = HN::Lt(u_i, u_j);
-  const Stretch stretches[3] = {{i_0, j_0, from, u_1},
-                                {HN::IfThenElse(i_first, i_1, i_0), HN::IfThenElse(i_first, j_0, j_1), u_1, u_2},
-                                {i_1, j_1, u_2, to}};
-  const VF i_offset = HN::Sub(lanes.i, HN::Set(d, static_cast<float>(i_window - lanes.i_base))),
-           j_offset = HN::Sub(lanes.j, HN::Set(d, static_cast<float>(j_window - lanes.j_base)));
-  for (const Stretch& stretch : stretches) {
+  path.k = k, path.x = x, path.y = y, path.from = from, path.to = to;
+  path.stretches[0] = {i_0, j_0, from, u_1};
+  path.stretches[1] = {HN::IfThenElse(i_first, i_1, i_0), HN::IfThenElse(i_first, j_0, j_1), u_1, u_2};
+  path.stretches[2] = {i_1, j_1, u_2, to};
+  path.i_offset = HN::Sub(lanes.i, HN::Set(d, static_cast<float>(i_window - lanes.i_base)));
+  path.j_offset = HN::Sub(lanes.j, HN::Set(d, static_cast<float>(j_window - lanes.j_base)));
+  return path;
+}
+
+template <class Window>
+HWY_INLINE VI window_index(const Window& window, const SlabPath& path, const Stretch& stretch) {
+  VF i = HN::Add(stretch.i, path.i_offset), j = HN::Add(stretch.j, path.j_offset);
+  if constexpr (std::is_same_v<Window, GatherWindow>) {
+    // Lanes without a stretch may be anywhere.
+    const MF there = HN::Gt(path.to, path.from);
+    i = HN::IfThenElseZero(there, i);
+    j = HN::IfThenElseZero(there, j);
+  }
+  return window.index(i, j);
+}
+
+/// The trilinear field of a lane's voxel along its ray: a + u c, where a and c are bilinear in (x, y).
+struct VoxelField {
+  VF a00, ai, aj, aij, c00, ci, cj, cij;
+  VF x, y;  ///< at u = 0, from the voxel's corner
+
+  HWY_INLINE VoxelField(const Corners& s, VF x_in, VF y_in) : x(x_in), y(y_in) {
+    a00 = s.a00;
+    ai = HN::Sub(s.a10, s.a00), aj = HN::Sub(s.a01, s.a00), aij = HN::Sub(HN::Sub(s.a11, s.a01), ai);
+    const VF c10 = HN::Sub(s.b10, s.a10), c01 = HN::Sub(s.b01, s.a01), c11 = HN::Sub(s.b11, s.a11);
+    c00 = HN::Sub(s.b00, s.a00);
+    ci = HN::Sub(c10, c00), cj = HN::Sub(c01, c00), cij = HN::Sub(HN::Sub(c11, c01), ci);
+  }
+  HWY_INLINE VF at(VF u, VF bx, VF by) const {
+    const VF fx = HN::MulAdd(u, bx, x), fy = HN::MulAdd(u, by, y);
+    const VF a = HN::MulAdd(fy, HN::MulAdd(fx, aij, aj), HN::MulAdd(fx, ai, a00));
+    const VF c = HN::MulAdd(fy, HN::MulAdd(fx, cij, cj), HN::MulAdd(fx, ci, c00));
+    return HN::MulAdd(u, c, a);
+  }
+  /// At u = 0.
+  HWY_INLINE VF at_front() const { return HN::MulAdd(y, HN::MulAdd(x, aij, aj), HN::MulAdd(x, ai, a00)); }
+  /// At u = 1, where the ray is at (x_1, y_1) relative to the chunk's voxel, and this one at (i, j).
+  HWY_INLINE VF at_back(VF x_1, VF y_1, VF i, VF j) const {
+    const VF fx = HN::Sub(x_1, i), fy = HN::Sub(y_1, j);
+    const VF a = HN::MulAdd(fy, HN::MulAdd(fx, aij, aj), HN::MulAdd(fx, ai, a00));
+    return HN::Add(a, HN::MulAdd(fy, HN::MulAdd(fx, cij, cj), HN::MulAdd(fx, ci, c00)));
+  }
+  /// Value at the middle u of a stretch of extent e, and the mean over it: every product of two of x, y and u adds a
+  /// twelfth of the product of their changes. `ee` is e^2 / 12.
+  HWY_INLINE void middle_and_mean(VF u, VF ee, VF bx, VF by, VF bends, VF& middle, VF& mean) const {
+    const VF fx = HN::MulAdd(u, bx, x), fy = HN::MulAdd(u, by, y);
+    const VF a_y = HN::MulAdd(fx, aij, aj), c_y = HN::MulAdd(fx, cij, cj), c_x = HN::MulAdd(fy, cij, ci);
+    const VF a = HN::MulAdd(fy, a_y, HN::MulAdd(fx, ai, a00)), c = HN::MulAdd(fy, c_y, HN::MulAdd(fx, ci, c00));
+    middle = HN::MulAdd(u, c, a);
+    const VF twist = HN::MulAdd(bends, HN::MulAdd(u, cij, aij), HN::MulAdd(bx, c_x, HN::Mul(by, c_y)));
+    mean = HN::MulAdd(ee, twist, middle);
+  }
+};
+
+/// Voxel by voxel, for the lanes that are `wanted`.
+template <bool cell_data, class Window, class Lookup>
+HWY_NOINLINE void cast_voxels(const FrameView& frame, const Lookup& lookup, const Lanes& lanes, const SlabPath& path,
+                              const Window& window, const UniformLookup* uniform, MF wanted, Progress& progress,
+                              FirstLight& first, TileCounts& counts) {
+  const DF d;
+  const VF half = HN::Set(d, 0.5f);
+  for (const Stretch& stretch : path.stretches) {
     const VF extent = HN::Sub(stretch.end, stretch.begin);
-    const MF there = HN::Gt(extent, zero);
+    const MF there = HN::And(wanted, HN::Gt(extent, HN::Zero(d)));
     const std::size_t voxels = HN::CountTrue(d, there);
     if (voxels == 0) continue;
-    counts.voxels_visited += voxels;
-    VF i_there = HN::Add(stretch.i, i_offset), j_there = HN::Add(stretch.j, j_offset);
-    if constexpr (std::is_same_v<Window, GatherWindow>) {
-      i_there = HN::IfThenElseZero(there, i_there);
-      j_there = HN::IfThenElseZero(there, j_there);
-    }
-    const VI index = window.index(i_there, j_there);
+    const VI index = window_index(window, path, stretch);
     Piece piece;
-    piece.begin = HN::Add(stretch.begin, k);
+    piece.begin = HN::Add(stretch.begin, path.k);
     piece.extent = extent;
-    piece.length = HN::Mul(extent, lanes.length);
+    piece.length = HN::IfThenElseZero(there, HN::Mul(extent, lanes.length));
     if constexpr (cell_data) {
       piece.s_0 = piece.s_mid = piece.s_1 = window.front(index);
-      piece.p_3 = zero;
+      piece.p_3 = HN::Zero(d);
     } else {
-      const Corners s = window.corners(index);
-      const VF ai = HN::Sub(s.a10, s.a00), aj = HN::Sub(s.a01, s.a00), aij = HN::Sub(HN::Sub(s.a11, s.a01), ai);
-      const VF c00 = HN::Sub(s.b00, s.a00), c10 = HN::Sub(s.b10, s.a10), c01 = HN::Sub(s.b01, s.a01),
-               c11 = HN::Sub(s.b11, s.a11);
-      const VF ci = HN::Sub(c10, c00), cj = HN::Sub(c01, c00), cij = HN::Sub(HN::Sub(c11, c01), ci);
-      const VF x_in = HN::Sub(x, stretch.i), y_in = HN::Sub(y, stretch.j);
-      const auto field = [&](VF u) HWY_ATTR {
-        const VF fx = HN::MulAdd(u, lanes.bx, x_in), fy = HN::MulAdd(u, lanes.by, y_in);
-        const VF a = HN::MulAdd(fy, HN::MulAdd(fx, aij, aj), HN::MulAdd(fx, ai, s.a00));
-        const VF c = HN::MulAdd(fy, HN::MulAdd(fx, cij, cj), HN::MulAdd(fx, ci, c00));
-        return HN::MulAdd(u, c, a);
-      };
-      piece.s_0 = field(stretch.begin);
-      piece.s_mid = field(HN::Mul(half, HN::Add(stretch.begin, stretch.end)));
-      piece.s_1 = field(stretch.end);
-      piece.p_3 = HN::Mul(HN::Mul(cij, lanes.bends), HN::Mul(extent, HN::Mul(extent, extent)));
+      const VoxelField field(window.corners(index), HN::Sub(path.x, stretch.i), HN::Sub(path.y, stretch.j));
+      piece.s_0 = field.at(stretch.begin, lanes.bx, lanes.by);
+      piece.s_mid = field.at(HN::Mul(half, HN::Add(stretch.begin, stretch.end)), lanes.bx, lanes.by);
+      piece.s_1 = field.at(stretch.end, lanes.bx, lanes.by);
+      piece.p_3 = HN::Mul(HN::Mul(field.cij, lanes.bends), HN::Mul(extent, HN::Mul(extent, extent)));
     }
-    if (HWY_LIKELY(uniform) && HWY_LIKELY(add_uniform<cell_data>(current.uniform(), piece, progress))) {
+    if (uniform != nullptr && HWY_LIKELY(add_uniform<cell_data>(*uniform, piece, progress))) {
       counts.samples += voxels;
       if (HWY_UNLIKELY(!HN::AllTrue(d, first.seen))) note_first_light(progress, piece.begin, first);
     } else {
-      add_any(lookup, chunk.frame.piece_tolerance, chunk.frame.largest_color, piece, progress, first, counts.samples);
+      add_any(lookup, frame.piece_tolerance, frame.largest_color, piece, progress, first, counts.samples);
     }
   }
 }
 
-/// Lanes [lane, lane + Lanes()) of a packet through the chunk.
-template <bool cell_data, class Lookup>
-HWY_INLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int ray, const Reach& reach,
-                           CurrentInterval& current, TileRays& rays, TileCounts& counts) {
+/// Where a packet's rays meet a slab's front plane: place, voxel, and the field there. Carried from slab to slab while
+/// all lanes go on.
+struct PlaneState {
+  VF x, y, i, j, s;
+  int n = -1;  ///< the plane; -1: nothing carried
+};
+
+/// The slab as a whole, as far as it is smooth: see cast_slab.
+struct SlabLine {
+  VF s_0, s_1, middle[3], mean, rho;
+};
+
+/// The line of a slab that all lanes cross from plane to plane, in the packet's window.
+template <bool inner, class Window>
+HWY_INLINE SlabLine whole_line(const Lanes& lanes, const Window& window, int n, int i_window, int j_window,
+                               PlaneState& plane, VF& crossings) {
+  const DF d;
+  const VF one = HN::Set(d, 1.0f), half = HN::Set(d, 0.5f), twelfth = HN::Set(d, 1 / 12.0f);
+  const auto cell = [&](VF position, VF least, VF most) HWY_ATTR {
+    const VF floor = HN::Floor(position);
+    return inner ? floor : HN::Min(HN::Max(floor, least), most);
+  };
+  const bool carried = plane.n == n;
+  if (!carried) {
+    const VF k = HN::Set(d, static_cast<float>(n));
+    plane.x = HN::MulAdd(k, lanes.bx, lanes.x), plane.y = HN::MulAdd(k, lanes.by, lanes.y);
+    plane.i = cell(plane.x, lanes.i_least, lanes.i_most), plane.j = cell(plane.y, lanes.j_least, lanes.j_most);
+  }
+  const VF x = plane.x, y = plane.y, i_0 = plane.i, j_0 = plane.j;
+  const VF next = HN::Set(d, static_cast<float>(n + 1));
+  const VF x_1 = HN::MulAdd(next, lanes.bx, lanes.x), y_1 = HN::MulAdd(next, lanes.by, lanes.y);
+  // By rounding a ray may seem to cross two planes; the second is at its very end.
+  const auto next_cell = [&](VF first, VF last)
+                             HWY_ATTR { return HN::Min(HN::Max(last, HN::Sub(first, one)), HN::Add(first, one)); };
+  const VF i_1 = next_cell(i_0, cell(x_1, lanes.i_least, lanes.i_most)),
+           j_1 = next_cell(j_0, cell(y_1, lanes.j_least, lanes.j_most));
+  // Rounding may put a crossing a little before or behind the slab: what one stretch has too much, the next has too
+  // little.
+  const auto crossing = [&](VF c_0, VF c_1, VF position, VF per_slope) HWY_ATTR {
+    return HN::IfThenElse(HN::Eq(c_0, c_1), one, HN::Mul(HN::Sub(HN::Max(c_0, c_1), position), per_slope));
+  };
+  const VF u_i = crossing(i_0, i_1, x, lanes.per_bx), u_j = crossing(j_0, j_1, y, lanes.per_by);
+  const VF u_1 = HN::Min(u_i, u_j), u_2 = HN::Max(u_i, u_j);
+  const MF i_first = HN::Lt(u_i, u_j);
+  const VF i_mid = HN::IfThenElse(i_first, i_1, i_0), j_mid = HN::IfThenElse(i_first, j_0, j_1);
+  crossings = HN::Add(crossings, HN::Add(HN::Abs(HN::Sub(i_1, i_0)), HN::Abs(HN::Sub(j_1, j_0))));
+
+  const VF i_offset = HN::Sub(lanes.i, HN::Set(d, static_cast<float>(i_window - lanes.i_base))),
+           j_offset = HN::Sub(lanes.j, HN::Set(d, static_cast<float>(j_window - lanes.j_base)));
+  const auto field_of = [&](VF i, VF j) HWY_ATTR {
+    return VoxelField(window.corners(window.index(HN::Add(i, i_offset), HN::Add(j, j_offset))), HN::Sub(x, i),
+                      HN::Sub(y, j));
+  };
+  SlabLine line;
+  VF mean;
+  {
+    const VoxelField field = field_of(i_0, j_0);
+    line.s_0 = carried ? plane.s : field.at_front();
+    field.middle_and_mean(HN::Mul(half, u_1), HN::Mul(HN::Mul(u_1, u_1), twelfth), lanes.bx, lanes.by, lanes.bends,
+                          line.middle[0], mean);
+    line.mean = HN::Mul(u_1, mean);
+    line.rho = HN::Mul(half, u_1);
+  }
+  const VF at_1 = HN::Mul(half, HN::Add(u_1, u_2)), at_2 = HN::MulAdd(half, u_2, half);
+  {
+    const VoxelField field = field_of(i_mid, j_mid);
+    const VF e = HN::Sub(u_2, u_1);
+    field.middle_and_mean(at_1, HN::Mul(HN::Mul(e, e), twelfth), lanes.bx, lanes.by, lanes.bends, line.middle[1], mean);
+    line.mean = HN::MulAdd(e, mean, line.mean);
+  }
+  {
+    const VoxelField field = field_of(i_1, j_1);
+    const VF e = HN::Sub(one, u_2);
+    field.middle_and_mean(at_2, HN::Mul(HN::Mul(e, e), twelfth), lanes.bx, lanes.by, lanes.bends, line.middle[2], mean);
+    line.mean = HN::MulAdd(e, mean, line.mean);
+    line.s_1 = field.at_back(x_1, y_1, i_1, j_1);
+  }
+  const VF span = HN::Sub(line.s_1, line.s_0);
+  const auto off = [&](VF at, VF middle) HWY_ATTR { return HN::Abs(HN::Sub(middle, HN::MulAdd(at, span, line.s_0))); };
+  const VF most = HN::Max(HN::Max(off(line.rho, line.middle[0]), off(at_1, line.middle[1])), off(at_2, line.middle[2]));
+  line.rho = HN::Add(most, most);
+  plane = {x_1, y_1, i_1, j_1, line.s_1, n + 1};
+  return line;
+}
+
+/// The line of a slab that lanes may enter or leave anywhere. Lanes that are not there give anything.
+template <class Window>
+HWY_INLINE SlabLine part_line(const Lanes& lanes, const SlabPath& path, const Window& window) {
+  const DF d;
+  const VF half = HN::Set(d, 0.5f);
+  const VF extent = HN::Sub(path.to, path.from);
+  const VF per_extent = HN::Div(HN::Set(d, 1.0f), extent);
+  SlabLine line;
+  VF at[3];
+  line.mean = HN::Zero(d);
+  for (int p = 0; p < 3; ++p) {
+    const Stretch& stretch = path.stretches[p];
+    const VoxelField field(window.corners(window_index(window, path, stretch)), HN::Sub(path.x, stretch.i),
+                           HN::Sub(path.y, stretch.j));
+    const VF e = HN::Sub(stretch.end, stretch.begin);
+    at[p] = HN::Mul(half, HN::Add(stretch.begin, stretch.end));
+    VF mean;
+    field.middle_and_mean(at[p], HN::Mul(HN::Mul(e, e), HN::Set(d, 1 / 12.0f)), lanes.bx, lanes.by, lanes.bends,
+                          line.middle[p], mean);
+    line.mean = HN::MulAdd(HN::Mul(e, per_extent), mean, line.mean);
+    if (p == 0) line.s_0 = field.at(stretch.begin, lanes.bx, lanes.by);
+    if (p == 2) line.s_1 = field.at(stretch.end, lanes.bx, lanes.by);
+  }
+  const VF slope = HN::Mul(HN::Sub(line.s_1, line.s_0), per_extent);
+  line.rho = HN::Zero(d);
+  for (int p = 0; p < 3; ++p)
+    line.rho =
+        HN::Max(line.rho, HN::Abs(HN::Sub(line.middle[p], HN::MulAdd(HN::Sub(at[p], path.from), slope, line.s_0))));
+  line.rho = HN::Add(line.rho, line.rho);
+  return line;
+}
+
+/// A slab whose lanes are in several intervals, or cross knots.
+template <class Window, class Lookup>
+HWY_NOINLINE void cast_mixed(const FrameView& frame, const Lookup& lookup, const Lanes& lanes, const SlabPath& path,
+                             const SlabLine& line, const Window& window, Progress& progress, FirstLight& first,
+                             TileCounts& counts) {
+  const DF d;
+  const VF zero = HN::Zero(d), half = HN::Set(d, 0.5f);
+  const MF there = HN::Gt(path.to, path.from);
+  const VF span = HN::Sub(line.s_1, line.s_0), m = HN::NegMulAdd(half, HN::Add(line.s_0, line.s_1), line.mean);
+  const VF length = HN::Mul(lanes.length, HN::Sub(path.to, path.from));
+  const VF spread = HN::Mul(HN::Mul(length, line.rho), HN::MulAdd(HN::Abs(span), HN::Set(d, 0.25f), line.rho));
+  const VF* const s = line.middle;
+  const VF low = HN::Sub(HN::Min(HN::Min(line.s_0, line.s_1), HN::Min(s[0], HN::Min(s[1], s[2]))), line.rho),
+           high = HN::Add(HN::Max(HN::Max(line.s_0, line.s_1), HN::Max(s[0], HN::Max(s[1], s[2]))), line.rho);
+  const VI interval = lookup.locate(low, HN::Eq(zero, zero));
+  const auto index = lookup.index(interval, there);
+  const VF edge = lookup.far_edge(interval, index, HN::Set(DI(), 1));
+  const VF kappa_slope = HN::Abs(
+      HN::Add(lookup.at(LaneTable::half_extinction_slope, index), lookup.at(LaneTable::half_extinction_slope, index)));
+  const VF color_slope = HN::Max(
+      HN::Max(HN::Abs(lookup.at(LaneTable::red_slope, index)), HN::Abs(lookup.at(LaneTable::green_slope, index))),
+      HN::Abs(lookup.at(LaneTable::blue_slope, index)));
+  const VF scale =
+      HN::Mul(HN::Mul(kappa_slope, HN::Set(d, 1 / frame.piece_tolerance)),
+              HN::MulAdd(HN::Mul(length, kappa_slope), HN::Set(d, 0.03f * frame.largest_color), color_slope));
+  const MF together = HN::And(HN::And(there, HN::Lt(high, edge)), HN::Le(HN::Mul(spread, scale), HN::Set(d, 1.0f)));
+  if (!HN::AllFalse(d, together)) {
+    const auto kept = [&](VF v) HWY_ATTR { return HN::IfThenElseZero(together, v); };
+    CL::lanes::add_piece<false>(lookup, index, kept(HN::Add(line.s_0, m)), kept(HN::Add(line.s_1, m)), kept(span),
+                                kept(length), progress);
+    counts.samples += HN::CountTrue(d, together);
+    note_first_light(progress, HN::Add(path.from, path.k), first);
+  }
+  const MF apart = HN::AndNot(together, there);
+  if (!HN::AllFalse(d, apart))
+    cast_voxels<false>(frame, lookup, lanes, path, window, nullptr, apart, progress, first, counts);
+}
+
+/// One slab. Where the field along a lane's ray is smooth over all its voxels in the slab and in one interval of the
+/// transfer function, they are integrated together: as a line between the slab's ends, moved to the mean of the cubics.
+/// The rest r is then not even about the middle, and what it leaves of the product of extinction and colour is below
+/// |k' c'| l rho (rho + |s_1 - s_0| / 4), where rho, twice the largest distance from the line at the middle of any
+/// stretch, bounds a rest with two kinks.
+template <bool cell_data, class Window, class Lookup>
+HWY_INLINE void cast_slab(const ChunkView& chunk, const Lookup& lookup, const Lanes& lanes, int n, int i_window,
+                          int j_window, bool inner, CurrentInterval& current, PlaneState& plane, VF& crossings,
+                          Progress& progress, FirstLight& first, TileCounts& counts) {
+  const DF d;
+  const VF half = HN::Set(d, 0.5f);
+  const float* const front = chunk.block.at(n, i_window, j_window);
+  const float* const back = cell_data ? front : chunk.block.at(n + 1, i_window, j_window);
+  const Window window(front, back, chunk.block.pitch);
+  const bool uniform = current.holds(window, *front);
+  if (uniform && current.clear()) return;
+  const UniformLookup& table = current.uniform();
+  if constexpr (cell_data) {
+    const SlabPath path = path_of(lanes, n, i_window, j_window);
+    for (const Stretch& stretch : path.stretches)
+      counts.voxels_visited += HN::CountTrue(d, HN::Gt(stretch.end, stretch.begin));
+    cast_voxels<cell_data>(chunk.frame, lookup, lanes, path, window, uniform ? &table : nullptr,
+                           HN::Gt(path.to, path.from), progress, first, counts);
+  } else {
+    const auto smooth = [&](const SlabLine& line, VF span, VF length) HWY_ATTR {
+      const VF spread = HN::Mul(HN::Mul(length, line.rho), HN::MulAdd(HN::Abs(span), HN::Set(d, 0.25f), line.rho));
+      const VF scale = HN::MulAdd(length, HN::Set(d, table.shadow_bound), HN::Set(d, 10 * table.product_bound));
+      return HN::AllFalse(d, HN::Gt(HN::Mul(spread, scale), HN::Set(d, 1.0f)));
+    };
+    if (HWY_LIKELY(lanes.whole)) {
+      counts.voxels_visited += HN::Lanes(d);
+      const SlabLine line = inner ? whole_line<true>(lanes, window, n, i_window, j_window, plane, crossings)
+                                  : whole_line<false>(lanes, window, n, i_window, j_window, plane, crossings);
+      const VF span = HN::Sub(line.s_1, line.s_0);
+      if (HWY_LIKELY(uniform) && HWY_LIKELY(smooth(line, span, lanes.length))) {
+        const VF m = HN::NegMulAdd(half, HN::Add(line.s_0, line.s_1), line.mean);
+        CL::lanes::add_piece<false>(table, 0, HN::Add(line.s_0, m), HN::Add(line.s_1, m), span, lanes.length, progress);
+        counts.samples += HN::Lanes(d);
+        if (HWY_UNLIKELY(!HN::AllTrue(d, first.seen)))
+          note_first_light(progress, HN::Set(d, static_cast<float>(n)), first);
+        return;
+      }
+      const SlabPath path = path_of(lanes, n, i_window, j_window);
+      if (uniform)
+        cast_voxels<cell_data>(chunk.frame, lookup, lanes, path, window, &table, HN::Gt(path.to, path.from), progress,
+                               first, counts);
+      else
+        cast_mixed(chunk.frame, lookup, lanes, path, line, window, progress, first, counts);
+      return;
+    }
+    plane.n = -1;
+    const SlabPath path = path_of(lanes, n, i_window, j_window);
+    for (const Stretch& stretch : path.stretches)
+      counts.voxels_visited += HN::CountTrue(d, HN::Gt(stretch.end, stretch.begin));
+    const SlabLine line = part_line(lanes, path, window);
+    cast_mixed(chunk.frame, lookup, lanes, path, line, window, progress, first, counts);
+  }
+}
+
+/// Lanes [ray, ray + Lanes()) at the chunk's first plane; voxels relative to (i_base, j_base).
+HWY_INLINE Lanes lanes_of(const ChunkView& chunk, int ray, int i_base, int j_base, const TileRays& rays) {
   const DF d;
   const FrameView& frame = chunk.frame;
   constexpr std::size_t most = HN::MaxLanes(DF());
   const std::size_t lane_count = HN::Lanes(d);
   const int voxels_i = static_cast<int>(frame.voxels[static_cast<std::size_t>(chunk.axes.i)]),
             voxels_j = static_cast<int>(frame.voxels[static_cast<std::size_t>(chunk.axes.j)]);
-  HWY_ALIGN float x[most], y[most], i[most], j[most], bx[most], by[most], k_in[most], k_out[most];
-  int i_base = 0, j_base = 0, unused = 0;
-  slab_range(reach.x_low, reach.x_high, 0, voxels_i, i_base, unused);
-  slab_range(reach.y_low, reach.y_high, 0, voxels_j, j_base, unused);
   const auto first_k = static_cast<double>(chunk.first_k);
-  for (std::size_t l = 0; l < lane_count; ++l) {
-    const std::size_t r = static_cast<std::size_t>(ray) + l;
-    const double px = rays.ax[r] + rays.bx[r] * first_k, py = rays.ay[r] + rays.by[r] * first_k;
-    const double floor_x = std::floor(px), floor_y = std::floor(py);
-    x[l] = static_cast<float>(px - floor_x), y[l] = static_cast<float>(py - floor_y);
-    i[l] = static_cast<float>(floor_x - i_base), j[l] = static_cast<float>(floor_y - j_base);
-    bx[l] = static_cast<float>(rays.bx[r]), by[l] = static_cast<float>(rays.by[r]);
-    k_in[l] = static_cast<float>(std::min(std::max(rays.k_in[r] - first_k, -1.0), 20.0));
-    k_out[l] = static_cast<float>(std::min(std::max(rays.k_out[r] - first_k, -1.0), 20.0));
-  }
   Lanes lanes;
-  const VF one = HN::Set(d, 1.0f), zero = HN::Zero(d);
+  const VF one = HN::Set(d, 1.0f);
+  // In double up to here.
+  HWY_ALIGN float x[most], y[most], i[most], j[most], bx[most], by[most], k_in[most], k_out[most];
+  const HN::Rebind<double, HN::Half<DF>> dd;
+  const HN::Rebind<float, decltype(dd)> dh;
+  const auto k_0 = HN::Set(dd, first_k);
+  for (std::size_t l = 0; l < lane_count; l += HN::Lanes(dd)) {
+    const std::size_t r = static_cast<std::size_t>(ray) + l;
+    const auto axis = [&](const double* a, const double* b, int base, float* place, float* cell,
+                          float* slope) HWY_ATTR {
+      const auto slopes = HN::Load(dd, b + r), places = HN::MulAdd(slopes, k_0, HN::Load(dd, a + r));
+      const auto floors = HN::Floor(places);
+      HN::Store(HN::DemoteTo(dh, HN::Sub(places, floors)), dh, place + l);
+      HN::Store(HN::DemoteTo(dh, HN::Sub(floors, HN::Set(dd, base))), dh, cell + l);
+      HN::Store(HN::DemoteTo(dh, slopes), dh, slope + l);
+    };
+    axis(rays.ax, rays.bx, i_base, x, i, bx);
+    axis(rays.ay, rays.by, j_base, y, j, by);
+    const auto end = [&](const double* k, float* out) HWY_ATTR {
+      const auto relative = HN::Sub(HN::Load(dd, k + r), k_0);
+      HN::Store(HN::DemoteTo(dh, HN::Min(HN::Max(relative, HN::Set(dd, -1.0)), HN::Set(dd, SlabBlock::slabs + 4.0))),
+                dh, out + l);
+    };
+    end(rays.k_in, k_in);
+    end(rays.k_out, k_out);
+  }
   lanes.bx = HN::Load(d, bx), lanes.by = HN::Load(d, by);
   lanes.per_bx = HN::Div(one, lanes.bx), lanes.per_by = HN::Div(one, lanes.by);
   lanes.x = HN::Load(d, x), lanes.y = HN::Load(d, y);
@@ -245,21 +514,47 @@ HWY_INLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int ray
   lanes.length = HN::LoadU(d, rays.length_k + ray);
   lanes.bends = HN::Mul(lanes.bx, lanes.by);
   lanes.i_base = i_base, lanes.j_base = j_base;
+  return lanes;
+}
 
+/// Lanes [lane, lane + Lanes()) of a packet through the chunk.
+template <bool cell_data, class Lookup>
+HWY_INLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int ray, const Reach& reach,
+                           CurrentInterval& current, TileRays& rays, TileCounts& counts) {
+  const DF d;
+  const FrameView& frame = chunk.frame;
+  constexpr std::size_t most = HN::MaxLanes(DF());
+  const std::size_t lane_count = HN::Lanes(d);
+  const VF one = HN::Set(d, 1.0f), zero = HN::Zero(d);
+  const int voxels_i = static_cast<int>(frame.voxels[static_cast<std::size_t>(chunk.axes.i)]),
+            voxels_j = static_cast<int>(frame.voxels[static_cast<std::size_t>(chunk.axes.j)]);
+  int i_base = 0, j_base = 0, unused = 0;
+  slab_range(reach.x_low, reach.x_high, 0, voxels_i, i_base, unused);
+  slab_range(reach.y_low, reach.y_high, 0, voxels_j, j_base, unused);
+  const auto first_k = static_cast<double>(chunk.first_k);
+  Lanes lanes = lanes_of(chunk, ray, i_base, j_base, rays);
   const VF before = HN::LoadU(d, rays.transmittance + ray), least = HN::Set(d, frame.least_transmittance);
   lanes.k_out = HN::IfThenElse(HN::Lt(before, least), HN::Set(d, -1.0f), lanes.k_out);
+  const auto find_whole = [&]() HWY_ATTR {
+    return HN::AllTrue(
+        d, HN::And(HN::Le(lanes.k_in, zero), HN::Ge(lanes.k_out, HN::Set(d, static_cast<float>(chunk.slabs)))));
+  };
+  lanes.whole = find_whole();
   FirstLight first;
   const VF alpha_before = HN::LoadU(d, rays.alpha + ray);
   first.seen = HN::Gt(alpha_before, zero);
   first.place = HN::Set(d, -1.0f);
   const MF seen_before = first.seen;
   Progress progress{zero, one, zero, zero, zero, zero};
+  PlaneState plane;
+  VF crossings = zero;
 
   for (int n = 0; n < chunk.slabs; ++n) {
     if (n % 4 == 0) {
       // Rays that let nothing through any more, or have left the volume, are done.
       const VF left = HN::Mul(before, progress.transmittance);
       lanes.k_out = HN::IfThenElse(HN::Lt(left, least), HN::Set(d, -1.0f), lanes.k_out);
+      lanes.whole = find_whole();
       if (HN::AllFalse(d, HN::Gt(lanes.k_out, HN::Set(d, static_cast<float>(n))))) break;
     }
     if (n % 8 == 0) {
@@ -291,11 +586,13 @@ HWY_INLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int ray
     slab_range(reach.y_low, reach.y_high, n, voxels_j, j_first, j_last);
     const auto s = static_cast<std::size_t>(n);
     const SlabBlock& block = chunk.block;
+    const bool inner = i_first > 0 && i_last < voxels_i - 1 && j_first > 0 && j_last < voxels_j - 1;
     // A window may not reach beyond what both slices hold.
     const auto cast = [&]<class Window>(int columns, int rows) HWY_ATTR {
       const int i_window = std::max(block.slab_i[s], std::min(i_first, block.slab_i_last[s] - columns + 1)),
                 j_window = std::max(block.slab_j[s], std::min(j_first, block.slab_j_last[s] - rows + 1));
-      cast_slab<cell_data, Window>(chunk, lookup, lanes, n, i_window, j_window, current, progress, first, counts);
+      cast_slab<cell_data, Window>(chunk, lookup, lanes, n, i_window, j_window, inner, current, plane, crossings,
+                                   progress, first, counts);
     };
 #if HWY_TARGET <= HWY_AVX3
     if (i_last - i_first <= SmallWindow::columns - 2 && j_last - j_first <= SmallWindow::rows - 2)
@@ -307,6 +604,7 @@ HWY_INLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int ray
       cast.template operator()<GatherWindow>(1, 1);
   }
 
+  counts.voxels_visited += static_cast<std::uint64_t>(HN::GetLane(HN::SumOfLanes(d, crossings)));
   const auto add = [&](float* sum, VF part)
                        HWY_ATTR { HN::StoreU(HN::MulAdd(before, part, HN::LoadU(d, sum + ray)), d, sum + ray); };
   add(rays.alpha, progress.alpha);

@@ -13,6 +13,7 @@
 #include "volume/cast_slabs-inl.h"
 #include "volume/fill_block-inl.h"
 #include "volume/ray_setup-inl.h"
+#include "volume/sample_slabs-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
@@ -20,26 +21,40 @@ namespace HWY_NAMESPACE {
 
 /// Where a packet's rays may be in the chunk that begins at first_k; `any` if there are any that it may add to.
 HWY_INLINE Reach reach_of(const FrameView& frame, const TileRays& rays, int packet, double first_k, double last_k) {
-  double x_low[2] = {1e30, 1e30}, x_high[2] = {-1e30, -1e30}, y_low[2] = {1e30, 1e30}, y_high[2] = {-1e30, -1e30};
-  int any = 0;
-  const double ends[2] = {first_k, first_k + SlabBlock::slabs};
+  namespace HN = hwy::HWY_NAMESPACE;
+  const HN::ScalableTag<double> d;
+  const auto most = HN::Set(d, 1e30), least = HN::Set(d, -1e30);
+  auto x_low_0 = most, x_low_1 = most, y_low_0 = most, y_low_1 = most;
+  auto x_high_0 = least, x_high_1 = least, y_high_0 = least, y_high_1 = least;
+  const auto k_0 = HN::Set(d, first_k), k_1 = HN::Set(d, first_k + SlabBlock::slabs);
   const auto first = static_cast<std::size_t>(packet) * TileRays::packet_rays;
-  for (std::size_t r = first; r < first + TileRays::packet_rays; ++r) {
-    const bool here =
-        rays.k_in[r] < last_k && rays.k_out[r] > first_k && rays.transmittance[r] >= frame.least_transmittance;
-    any |= here ? 1 : 0;
-    for (int e = 0; e < 2; ++e) {
-      const double x = rays.ax[r] + rays.bx[r] * ends[e], y = rays.ay[r] + rays.by[r] * ends[e];
-      x_low[e] = std::min(x_low[e], here ? x : 1e30), x_high[e] = std::max(x_high[e], here ? x : -1e30);
-      y_low[e] = std::min(y_low[e], here ? y : 1e30), y_high[e] = std::max(y_high[e], here ? y : -1e30);
-    }
+  bool any = false;
+  for (std::size_t r = first; r < first + TileRays::packet_rays; r += HN::Lanes(d)) {
+    const auto through = HN::PromoteTo(d, HN::LoadU(HN::Rebind<float, decltype(d)>(), rays.transmittance + r));
+    const auto here = HN::And(
+        HN::And(HN::Lt(HN::Load(d, rays.k_in + r), HN::Set(d, last_k)), HN::Gt(HN::Load(d, rays.k_out + r), k_0)),
+        HN::Ge(through, HN::Set(d, static_cast<double>(frame.least_transmittance))));
+    any = any || !HN::AllFalse(d, here);
+    const auto widen = [&](const double* a, const double* b, auto k, auto& low, auto& high) HWY_ATTR {
+      const auto place = HN::MulAdd(HN::Load(d, b + r), k, HN::Load(d, a + r));
+      low = HN::Min(low, HN::IfThenElse(here, place, most));
+      high = HN::Max(high, HN::IfThenElse(here, place, least));
+    };
+    widen(rays.ax, rays.bx, k_0, x_low_0, x_high_0);
+    widen(rays.ax, rays.bx, k_1, x_low_1, x_high_1);
+    widen(rays.ay, rays.by, k_0, y_low_0, y_high_0);
+    widen(rays.ay, rays.by, k_1, y_low_1, y_high_1);
   }
   Reach reach;
-  for (int e = 0; e < 2; ++e) {
-    reach.x_low[e] = static_cast<float>(x_low[e]), reach.x_high[e] = static_cast<float>(x_high[e]);
-    reach.y_low[e] = static_cast<float>(y_low[e]), reach.y_high[e] = static_cast<float>(y_high[e]);
+  const auto lowest = [&](auto v) HWY_ATTR { return static_cast<float>(HN::GetLane(HN::MinOfLanes(d, v))); };
+  const auto highest = [&](auto v) HWY_ATTR { return static_cast<float>(HN::GetLane(HN::MaxOfLanes(d, v))); };
+  if (any) {
+    reach.x_low[0] = lowest(x_low_0), reach.x_low[1] = lowest(x_low_1);
+    reach.x_high[0] = highest(x_high_0), reach.x_high[1] = highest(x_high_1);
+    reach.y_low[0] = lowest(y_low_0), reach.y_low[1] = lowest(y_low_1);
+    reach.y_high[0] = highest(y_high_0), reach.y_high[1] = highest(y_high_1);
   }
-  reach.any = any != 0;
+  reach.any = any;
   return reach;
 }
 
@@ -109,7 +124,11 @@ HWY_INLINE void cast_rays(const FrameView& frame, const RayAxes& axes, TileMemor
     const int slices = slabs + (frame.cell_data ? 0 : 1);
     if (!tile.any || !lay_out(frame, axes, tile, k, slabs, slices, memory.block)) continue;
     fill_block(frame, axes, k, slices, memory.row, memory.block);
-    cast_chunk(ChunkView{frame, axes, memory.block, k, slabs, reach}, rays, counts);
+    const ChunkView chunk{frame, axes, memory.block, k, slabs, reach};
+    if (frame.step > 0)
+      sample_chunk(chunk, rays, counts);
+    else
+      cast_chunk(chunk, rays, counts);
   }
 }
 
@@ -119,6 +138,7 @@ void cast_tile_here(const FrameView& frame, int x0, int y0, const PixelRegion& r
   for (int r = 0; r < TileRays::count; ++r) {
     rays.alpha[r] = rays.red[r] = rays.green[r] = rays.blue[r] = 0;
     rays.transmittance[r] = 1;
+    rays.carried[r] = std::numeric_limits<float>::quiet_NaN();
     rays.first_k[r] = std::numeric_limits<double>::quiet_NaN();
   }
   const unsigned codes = axis_codes(*frame.rays, x0, y0);

@@ -10,6 +10,7 @@
 #include "scene/grid.hpp"
 #include "volume/brick_cache.hpp"
 #include "volume/cell_ranges.hpp"
+#include "volume/preintegrated_table.hpp"
 #include "volume/render.hpp"
 
 namespace tessera::volume {
@@ -41,6 +42,8 @@ struct FrameView {
   float least_transmittance;  ///< a ray that lets less through is done
   float piece_tolerance;      ///< largest error of one piece of a ray, linear RGBA
   float largest_color;
+  double step = 0;                                    ///< sampled, preintegrated: length in the table's unit; else 0
+  const PreintegratedTable* preintegrated = nullptr;  ///< null: sampled
   scene::Trace* trace;
 };
 

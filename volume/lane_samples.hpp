@@ -16,6 +16,7 @@ namespace tessera::volume {
 struct LaneSamples {
   double origin = 0, unit = 1;
   double factor = 1, term = 0;
+  bool scales_floats = true;  ///< the factor is a power of two that floats hold, the term zero
 
   LaneSamples() = default;
   LaneSamples(const scene::Grid& grid, const scene::ValueRange& range) {
@@ -26,6 +27,8 @@ struct LaneSamples {
     unit = reach > 0 ? std::ldexp(1.0, std::max(std::ilogb(reach) + 1 - 29, -1000)) : 1.0;
     factor = grid.scale / unit;
     term = (grid.shift - origin) / unit;
+    int exponent = 0;
+    scales_floats = term == 0 && std::frexp(factor, &exponent) == 0.5 && std::abs(exponent) < 120;
   }
 
   [[nodiscard]] float lane(double sample) const {

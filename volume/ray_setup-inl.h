@@ -46,39 +46,65 @@ HWY_INLINE void set_up_rays(const FrameView& frame, int x0, int y0, int code, Ti
   const double end_i = static_cast<double>(frame.voxels[static_cast<std::size_t>(axes.i)]),
                end_j = static_cast<double>(frame.voxels[static_cast<std::size_t>(axes.j)]),
                end_k = static_cast<double>(frame.voxels[static_cast<std::size_t>(axes.k)]);
-  const double per_unit = 1 / frame.length_unit;
   const bool perspective = rays.tangent_step != 0;
-  for (int ray = 0; ray < TileRays::count; ++ray) {
-    const double px = x0 + TileRays::pixel_x(ray) + 0.5, py = y0 + TileRays::pixel_y(ray) + 0.5;
-    double o[3], d[3];
-    for (int a = 0; a < 3; ++a) {
-      o[a] = rays.origin[a] + px * rays.origin_x[a] + py * rays.origin_y[a];
-      d[a] = rays.direction[a] + px * rays.direction_x[a] + py * rays.direction_y[a];
+  namespace HN = hwy::HWY_NAMESPACE;
+  const HN::ScalableTag<double> d;
+  const auto set = [&](double v) HWY_ATTR { return HN::Set(d, v); };
+  const auto zero = HN::Zero(d), one = set(1.0);
+  HWY_ALIGN double column[TileRays::packet_rays], row[TileRays::packet_rays];
+  for (int ray = 0; ray < TileRays::packet_rays; ++ray)
+    column[ray] = TileRays::pixel_x(ray) + 0.5, row[ray] = TileRays::pixel_y(ray) + 0.5;
+  for (int ray = 0; ray < TileRays::count; ray += static_cast<int>(HN::Lanes(d))) {
+    const int packet = ray & ~(TileRays::packet_rays - 1), lane = ray - packet;
+    const auto px = HN::Add(set(x0 + TileRays::pixel_x(packet)), HN::Load(d, column + lane)),
+               py = HN::Add(set(y0 + TileRays::pixel_y(packet)), HN::Load(d, row + lane));
+    const auto along = [&](int a, const glm::dvec3& v, const glm::dvec3& v_x, const glm::dvec3& v_y)
+                           HWY_ATTR { return HN::MulAdd(py, set(v_y[a]), HN::MulAdd(px, set(v_x[a]), set(v[a]))); };
+    const auto origin = [&](int a) HWY_ATTR { return along(a, rays.origin, rays.origin_x, rays.origin_y); };
+    const auto direction = [&](int a) HWY_ATTR { return along(a, rays.direction, rays.direction_x, rays.direction_y); };
+    const auto di = direction(axes.i), dj = direction(axes.j), dk_signed = direction(axes.k), o_k = origin(axes.k);
+    const auto dk = HN::Abs(dk_signed), ok = axes.mirrored ? HN::Sub(set(end_k), o_k) : o_k;
+    auto here = HN::Eq(zero, zero);
+    if (perspective) {
+      // As axis_code() has it: the lowest of equal axes.
+      const auto not_less = [&](auto other, int axis) HWY_ATTR {
+        return axes.k < axis ? HN::Ge(dk, HN::Abs(other)) : HN::Gt(dk, HN::Abs(other));
+      };
+      const auto signed_right = axes.mirrored ? HN::Lt(dk_signed, zero) : HN::Ge(dk_signed, zero);
+      here = HN::And(signed_right, HN::And(not_less(di, axes.i), not_less(dj, axes.j)));
     }
-    const bool here = !perspective || axis_code(d[0], d[1], d[2]) == code;
-    const double dk = std::abs(d[axes.k]), ok = axes.mirrored ? end_k - o[axes.k] : o[axes.k];
-    const double per_k = 1 / dk;
-    const double bx = d[axes.i] * per_k, by = d[axes.j] * per_k;
-    const double ax = o[axes.i] - ok * bx, ay = o[axes.j] - ok * by;
-    double in = std::max(0.0, ok + rays.near_depth * dk), out_k = std::min(end_k, ok + rays.far_depth * dk);
-    const auto clip = [&](double a, double b, double end) HWY_ATTR {
-      if (b == 0) {
-        if (a < 0 || a > end) out_k = -1;
-        return;
-      }
-      const double low = -a / b, high = (end - a) / b;
-      in = std::max(in, b > 0 ? low : high);
-      out_k = std::min(out_k, b > 0 ? high : low);
+    const auto per_k = HN::Div(one, HN::IfThenElse(here, dk, one));
+    const auto bx = HN::Mul(di, per_k), by = HN::Mul(dj, per_k);
+    const auto ax = HN::NegMulAdd(ok, bx, origin(axes.i)), ay = HN::NegMulAdd(ok, by, origin(axes.j));
+    auto in = HN::Max(zero, HN::MulAdd(set(rays.near_depth), dk, ok));
+    auto out_k = set(end_k);
+    if (std::isfinite(rays.far_depth)) out_k = HN::Min(out_k, HN::MulAdd(set(rays.far_depth), dk, ok));
+    const auto clip = [&](auto a, auto b, double end) HWY_ATTR {
+      const auto level = HN::Eq(b, zero);
+      const auto outside = HN::And(level, HN::Or(HN::Lt(a, zero), HN::Gt(a, set(end))));
+      const auto per_b = HN::Div(one, HN::IfThenElse(level, one, b));
+      const auto first = HN::Mul(HN::Neg(a), per_b), second = HN::Mul(HN::Sub(set(end), a), per_b);
+      in = HN::Max(in, HN::IfThenElse(level, in, HN::Min(first, second)));
+      out_k = HN::Min(out_k, HN::IfThenElse(level, out_k, HN::Max(first, second)));
+      out_k = HN::IfThenElse(outside, set(-1.0), out_k);
     };
     clip(ax, bx, end_i);
     clip(ay, by, end_j);
-    if (!here || !(in < out_k)) in = 1, out_k = 0;
-    const double tx = (px - rays.tangent_x0) * rays.tangent_step, ty = (py - rays.tangent_y0) * rays.tangent_step;
-    out.ax[ray] = here ? ax : 0, out.bx[ray] = here ? bx : 0;
-    out.ay[ray] = here ? ay : 0, out.by[ray] = here ? by : 0;
-    out.k_in[ray] = in, out.k_out[ray] = out_k;
-    out.depth_0[ray] = -ok * per_k, out.depth_k[ray] = per_k;
-    out.length_k[ray] = static_cast<float>(std::sqrt(1 + tx * tx + ty * ty) * per_k * per_unit);
+    const auto kept = HN::And(here, HN::Lt(in, out_k));
+    const auto tx = HN::Mul(HN::Sub(px, set(rays.tangent_x0)), set(rays.tangent_step)),
+               ty = HN::Mul(HN::Sub(py, set(rays.tangent_y0)), set(rays.tangent_step));
+    const auto length =
+        HN::Mul(HN::Mul(HN::Sqrt(HN::MulAdd(tx, tx, HN::MulAdd(ty, ty, one))), per_k), set(1 / frame.length_unit));
+    HN::Store(HN::IfThenElseZero(here, ax), d, out.ax + ray);
+    HN::Store(HN::IfThenElseZero(here, bx), d, out.bx + ray);
+    HN::Store(HN::IfThenElseZero(here, ay), d, out.ay + ray);
+    HN::Store(HN::IfThenElseZero(here, by), d, out.by + ray);
+    HN::Store(HN::IfThenElse(kept, in, one), d, out.k_in + ray);
+    HN::Store(HN::IfThenElseZero(kept, out_k), d, out.k_out + ray);
+    HN::Store(HN::Neg(HN::Mul(ok, per_k)), d, out.depth_0 + ray);
+    HN::Store(per_k, d, out.depth_k + ray);
+    HN::Store(HN::DemoteTo(HN::Rebind<float, decltype(d)>(), length), HN::Rebind<float, decltype(d)>(),
+              out.length_k + ray);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <glm/glm.hpp>
 
 #include "scene/error.hpp"
 #include "volume/cell_ranges.hpp"
@@ -32,11 +33,15 @@ void check(const RenderSettings& settings) {
 }
 
 /// World units; a power of two near the mean voxel's side.
-double length_unit_of(const scene::GridGeometry& geometry) {
-  double side = 1;
+double length_unit_of(double voxel_side) { return std::ldexp(1.0, std::ilogb(voxel_side)); }
+
+/// World units: the side of a cube as large as a mean voxel.
+double voxel_side_of(const scene::GridGeometry& geometry) {
+  double volume = std::abs(glm::determinant(geometry.direction));
   for (std::size_t a = 0; a < 3; ++a)
-    side *= geometry.lattice(a, geometry.points[a] - 1) / static_cast<double>(geometry.points[a] - 1);
-  return std::ldexp(1.0, std::ilogb(std::cbrt(side)));
+    volume *= (geometry.lattice(a, geometry.points[a] - 1) - geometry.lattice(a, 0)) /
+              static_cast<double>(geometry.points[a] - 1);
+  return std::cbrt(volume);
 }
 
 /// Tiles along a curve that stays in one place for long, so that neighbours find each other's bricks.
@@ -78,8 +83,9 @@ Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& sett
   check(settings);
   if (source.geometry().rectilinear())
     throw scene::bad_input("rectilinear coordinates are not rendered yet; resample the volume");
-  if (settings.method == Method::sampled || settings.method == Method::preintegrated || settings.shading)
-    throw scene::bad_input("this method is not there yet; use exact or auto");
+  if (settings.shading) throw scene::bad_input("shading is not there yet");
+  if (settings.method == Method::preintegrated && settings.emission == scene::Emission::independent)
+    throw scene::bad_input("pre-integration needs emission in proportion to extinction; use sampled or exact");
   state_ = std::make_unique<State>(source, settings);
 }
 
@@ -102,7 +108,7 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   scene::Image image(size);
   const BrickCache::Counts before = state.bricks.counts();
   const PixelRays rays(camera, size, state.source.geometry());
-  const double length_unit = length_unit_of(state.source.geometry());
+  const double voxel_side = voxel_side_of(state.source.geometry()), length_unit = length_unit_of(voxel_side);
   const compositor::LaneTable table(transfer_function, state.ranges.lanes.origin, state.ranges.lanes.unit, length_unit,
                                     settings.emission);
   std::vector<std::uint8_t> visible, brick_visible;
@@ -112,7 +118,9 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
     const BrickLayout& layout = state.bricks.layout();
     {
       const scene::TraceScope scope(settings.trace, "cull");
-      visible = visible_cells(state.ranges, table);
+      // A step between two values may show what neither of them shows, so pre-integration needs the true ones.
+      visible = settings.method == Method::preintegrated ? std::vector<std::uint8_t>(state.ranges.count(), 1)
+                                                         : visible_cells(state.ranges, table);
       brick_visible = visible_bricks(state.ranges, visible, layout);
     }
     const double accuracy = settings.method == Method::exact ? 2e-6 : settings.accuracy;
@@ -136,6 +144,20 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
     frame.piece_tolerance = static_cast<float>(accuracy / 64);
     frame.largest_color = static_cast<float>(std::max(1e-30, transfer_function.max_color()));
     frame.trace = settings.trace;
+
+    std::optional<PreintegratedTable> preintegrated;
+    if (settings.method == Method::sampled || settings.method == Method::preintegrated) {
+      frame.step = settings.step * voxel_side / length_unit;
+      frame.least_transmittance = 1e-6f;
+    }
+    if (settings.method == Method::preintegrated) {
+      const LaneSamples& lanes = state.ranges.lanes;
+      const auto lane_of = [&](double value) { return compositor::lane_scalar(value, lanes.origin, lanes.unit); };
+      const scene::ValueRange& range = state.ranges.range;
+      preintegrated.emplace(table, range.empty() ? 0.0f : lane_of(range.low),
+                            range.empty() ? 0.0f : lane_of(range.high), static_cast<float>(frame.step));
+      frame.preintegrated = &*preintegrated;
+    }
 
     const auto tiles = tiles_of(wanted);
     tbb::enumerable_thread_specific<std::unique_ptr<TileMemory>> memories(
@@ -165,8 +187,8 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
     s.bricks_evicted = after.evictions - before.evictions, s.bytes_loaded = after.bytes_loaded - before.bytes_loaded;
     s.bytes_resident = after.bytes, s.peak_bytes = after.peak_bytes;
     s.blank_samples = state.ranges.range.blanks;
-    s.instruction_set = hwy::TargetName(static_cast<std::int64_t>(
-        static_cast<std::uint64_t>(hwy::SupportedTargets()) & -static_cast<std::uint64_t>(hwy::SupportedTargets())));
+    const std::int64_t sets = hwy::SupportedTargets() & HWY_TARGETS;
+    s.instruction_set = hwy::TargetName(sets & -sets);
     *statistics = s;
   }
   return image;

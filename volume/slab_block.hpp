@@ -7,16 +7,16 @@
 
 namespace tessera::volume {
 
-/// The samples that one tile's rays need on their way through a chunk of 16 slabs of voxels, as lane scalars.
+/// The samples that one tile's rays need on their way through a chunk of 32 slabs of voxels, as lane scalars.
 ///
-/// Slices   slice n lies at k = first_k + n (point data: lattice planes 0..16; cell data: voxels 0..15). It holds
+/// Slices   slice n lies at k = first_k + n (point data: lattice planes 0..32; cell data: voxels 0..31). It holds
 ///          columns i of [low_i[n], low_i[n] + pitch) and rows j of [low_j[n], low_j[n] + rows): slices slide along
 ///          with the rays. Columns and rows beyond the volume repeat its last ones.
 /// Slabs    slab n lies between slices n and n + 1. Samples slab_i[n] <= i <= slab_i_last[n], and so for j, are in both
 ///          slices; they hold all that the tile's rays meet, and at least 8 columns and rows.
-/// Chunks   chunk c begins at k = 16 c, whatever bricks there are.
+/// Chunks   chunk c begins at k = 32 c, whatever bricks there are.
 struct SlabBlock {
-  static constexpr int slabs = 16, slices = slabs + 1;
+  static constexpr int slabs = 32, slices = slabs + 1;
   static constexpr std::ptrdiff_t margin = 64;  ///< floats that may be read past either end
 
   std::array<int, slices> low_i, low_j;

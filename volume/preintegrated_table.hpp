@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "compositor/lane_table.hpp"
+
+namespace tessera::volume {
+
+/// Optical depth and light of one step of a ray by the scalars at its ends, the field being linear between them.
+///
+/// Grid      size x size entries, the front's scalar by row, from `low` on, 1 / scale apart, in lane scalars.
+/// Channels  0 optical depth; 1 to 3 red, green, blue that leave the step's front. Each entry is the exact integral.
+struct PreintegratedTable {
+  static constexpr int default_size = 512;
+
+  /// `step` in the table's length unit. low < high, the field's range.
+  PreintegratedTable(const compositor::LaneTable& function, float low_scalar, float high_scalar, float step,
+                     int size_ = default_size);
+
+  [[nodiscard]] const float* channel(int c) const {
+    return entries.data() +
+           static_cast<std::size_t>(c) * static_cast<std::size_t>(size) * static_cast<std::size_t>(size);
+  }
+
+  int size;
+  float low, scale;
+  std::vector<float> entries;
+};
+
+}  // namespace tessera::volume
