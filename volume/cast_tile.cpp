@@ -94,13 +94,15 @@ HWY_INLINE bool lay_out(const FrameView& frame, const RayAxes& axes, const Reach
   return true;
 }
 
-HWY_INLINE void cast_rays(const FrameView& frame, const RayAxes& axes, TileMemory& memory, TileCounts& counts) {
+/// Packets that `wanted` leaves out are laid out, as what others find must not depend on them, but not cast.
+HWY_INLINE void cast_rays(const FrameView& frame, const RayAxes& axes, std::uint64_t wanted, TileMemory& memory,
+                          TileCounts& counts) {
   TileRays& rays = memory.rays;
   double first = 1e30, last = -1e30;
   for (int r = 0; r < TileRays::count; ++r) {
     if (!(rays.k_in[r] < rays.k_out[r])) continue;
     first = std::min(first, rays.k_in[r]), last = std::max(last, rays.k_out[r]);
-    ++counts.rays;
+    counts.rays += wanted >> (r / TileRays::packet_rays) & 1;
   }
   const std::int64_t end_k = frame.voxels[static_cast<std::size_t>(axes.k)];
   if (!(first < last)) return;
@@ -123,6 +125,12 @@ HWY_INLINE void cast_rays(const FrameView& frame, const RayAxes& axes, TileMemor
     }
     const int slices = slabs + (frame.cell_data ? 0 : 1);
     if (!tile.any || !lay_out(frame, axes, tile, k, slabs, slices, memory.block)) continue;
+    bool any = false;
+    for (int p = 0; p < TileRays::packets; ++p) {
+      reach[p].any = reach[p].any && (wanted >> p & 1) != 0;
+      any = any || reach[p].any;
+    }
+    if (!any) continue;
     fill_block(frame, axes, k, slices, memory.row, memory.block);
     const ChunkView chunk{frame, axes, memory.block, k, slabs, reach};
     if (frame.step > 0)
@@ -141,11 +149,20 @@ void cast_tile_here(const FrameView& frame, int x0, int y0, const PixelRegion& r
     rays.carried[r] = std::numeric_limits<float>::quiet_NaN();
     rays.first_k[r] = std::numeric_limits<double>::quiet_NaN();
   }
+  static_assert(TileRays::packets == 64);
+  std::uint64_t wanted = 0;
+  for (int p = 0; p < TileRays::packets; ++p) {
+    const int x = x0 + TileRays::pixel_x(p * TileRays::packet_rays),
+              y = y0 + TileRays::pixel_y(p * TileRays::packet_rays);
+    if (x < region.x1 && x + TileRays::packet_side > region.x0 && y < region.y1 &&
+        y + TileRays::packet_side > region.y0)
+      wanted |= std::uint64_t{1} << p;
+  }
   const unsigned codes = axis_codes(*frame.rays, x0, y0);
   for (int code = 0; code < 6; ++code) {
     if ((codes >> code & 1) == 0) continue;
     set_up_rays(frame, x0, y0, code, rays);
-    cast_rays(frame, RayAxes::of(code), memory, counts);
+    cast_rays(frame, RayAxes::of(code), wanted, memory, counts);
     for (int r = 0; r < TileRays::count; ++r) {
       const int x = x0 + TileRays::pixel_x(r), y = y0 + TileRays::pixel_y(r);
       if (x < region.x0 || x >= region.x1 || y < region.y0 || y >= region.y1 || !(rays.k_in[r] < rays.k_out[r]))

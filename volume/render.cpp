@@ -14,6 +14,7 @@
 
 #include "scene/error.hpp"
 #include "volume/cell_ranges.hpp"
+#include "volume/cost_map.hpp"
 #include "volume/frame_view.hpp"
 #include "volume/tile_caster.hpp"
 
@@ -192,6 +193,24 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
     *statistics = s;
   }
   return image;
+}
+
+CostMap Renderer::cost_map(const scene::Camera& camera, scene::ImageSize size,
+                           const scene::TransferFunction& transfer_function, CostMethod method, double resolution,
+                           std::optional<PixelRegion> region) const {
+  const State& state = *state_;
+  const scene::GridGeometry& geometry = state.source.geometry();
+  const compositor::LaneTable table(transfer_function, state.ranges.lanes.origin, state.ranges.lanes.unit,
+                                    length_unit_of(voxel_side_of(geometry)), state.settings.emission);
+  const std::vector<std::uint8_t> visible = visible_cells(state.ranges, table);
+  const bool by_voxels = state.settings.method == Method::automatic || state.settings.method == Method::exact;
+  CostMap map;
+  tbb::task_arena arena(state.settings.threads > 0 ? state.settings.threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    map = volume::cost_map(camera, size, geometry, {state.ranges.cells, visible}, {method, resolution, by_voxels},
+                           region);
+  });
+  return map;
 }
 
 }  // namespace tessera::volume

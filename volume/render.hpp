@@ -72,6 +72,12 @@ struct PixelRegion {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
+/// Regions that begin and end at multiples of this many pixels share no work with their neighbours.
+inline constexpr int region_grain = 4;
+
+struct CostMap;
+enum class CostMethod;
+
 /// Casts rays through one volume many times, in one process. The constructor reads all of it once, for the ranges of
 /// values by which empty space is skipped; the source must outlive the renderer.
 ///
@@ -91,6 +97,12 @@ class Renderer {
   scene::Image render(const scene::Camera& camera, scene::ImageSize size,
                       const scene::TransferFunction& transfer_function, RenderStatistics* statistics = nullptr,
                       std::optional<PixelRegion> region = std::nullopt);
+
+  /// What each pixel will cost, for the split of the image between processes (cost_map.hpp): from the cells of 8^3
+  /// voxels that the transfer function shows. `region`: in map pixels.
+  [[nodiscard]] CostMap cost_map(const scene::Camera& camera, scene::ImageSize size,
+                                 const scene::TransferFunction& transfer_function, CostMethod method, double resolution,
+                                 std::optional<PixelRegion> region = std::nullopt) const;
 
   /// Of the whole volume, blank samples left out.
   [[nodiscard]] scene::ValueRange range() const;

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/camera.hpp"
+#include "scene/grid.hpp"
+#include "volume/cell_ranges.hpp"
+#include "volume/image_split.hpp"
+
+namespace tessera::volume {
+
+/// How the cost of a pixel is found from the boxes behind it ([Mol08] 4.1).
+enum class CostMethod {
+  accurate,  ///< each ray's way through what the caster visits of it
+  backface,  ///< back faces alone, a weight at each corner, linear between
+  splatting  ///< a sphere round each box
+};
+
+/// Cells of 8^3 voxels (CellRanges) and which of them the transfer function shows.
+struct VisibleCells {
+  scene::GridIndex cells;
+  std::span<const std::uint8_t> visible;  ///< one byte a cell
+};
+
+/// Voxels that will be visited, a box in index space.
+struct CostBox {
+  glm::dvec3 low, high;
+};
+
+struct CostSettings {
+  CostMethod method = CostMethod::accurate;
+  double resolution = 0.5;  ///< map pixels an image pixel along each axis, in (0, 1]; 0.5 is the thesis's "quarter"
+  /// What a stretch of ray costs: the voxels it crosses (exact integrals), or else its length (samples at steps).
+  bool by_voxels = true;
+};
+
+/// The visible cells of 8^3 voxels as boxes, joined along the first axis where they touch.
+std::vector<CostBox> visible_boxes(const VisibleCells& cells, const scene::GridIndex& voxels);
+
+/// Size of the map of an image.
+scene::ImageSize map_size(scene::ImageSize image, double resolution);
+
+/// The image pixels that the volume may cover; all of them if it reaches behind the eye.
+PixelRegion footprint(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry);
+
+/// The cost of the map pixels of `region` (default: all), in 1/64 voxels (or mean voxel sides).
+///
+/// `accurate` marches the ray of each map pixel's centre as the caster does: eight slabs of voxels at a time, which
+/// count if a packet of 4 x 4 pixels round the ray may meet a visible cell in them. The approximations sum over
+/// visible_boxes(), each with its true total by the depth of its centre: `backface` counts a corner 1 inside the box's
+/// outline and 0.25 on it, faces cut in two triangles through the inner corner ([Mol08] A.4); `splatting` the chords of
+/// a sphere as wide as the box. Boxes that reach behind the eye are done by each ray's way through them.
+///
+/// Throws Error(bad_input) for a resolution out of range. Uses the calling thread's arena.
+CostMap cost_map(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,
+                 const VisibleCells& cells, const CostSettings& settings,
+                 std::optional<PixelRegion> region = std::nullopt);
+
+}  // namespace tessera::volume

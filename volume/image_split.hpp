@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "scene/camera.hpp"
+#include "volume/render.hpp"
+
+namespace tessera::volume {
+
+/// Cost of the pixels of (part of) a picture, as whole numbers so that sums do not depend on who adds them.
+///
+/// Map pixel (x, y) stands for the image's pixels round ((x + 0.5) / resolution, (y + 0.5) / resolution).
+struct CostMap {
+  double resolution = 1;            ///< map pixels an image pixel, along each axis
+  scene::ImageSize size{0, 0};      ///< of the whole map
+  PixelRegion region;               ///< the part of it that is here, map pixels
+  std::vector<std::uint32_t> cost;  ///< row by row in the region
+
+  [[nodiscard]] int width() const { return region.x1 - region.x0; }
+  [[nodiscard]] int height() const { return region.y1 - region.y0; }
+};
+
+/// Summed-area table of a cost map (Crow 1984): the cost of any rectangle from four numbers.
+class SummedArea {
+ public:
+  explicit SummedArea(const CostMap& map);
+
+  /// Cost of the region's first `x` columns and first `y` rows.
+  [[nodiscard]] std::uint64_t sum(int x, int y) const {
+    return sums_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_ + 1) + static_cast<std::size_t>(x)];
+  }
+
+ private:
+  int width_;
+  std::vector<std::uint64_t> sums_;
+};
+
+/// A picture cut into rows of columns, one rectangle a process ([Mol08] 4.2): a row may have any number of columns, so
+/// any number of processes works.
+struct ImageSplit {
+  std::vector<int> rows;                  ///< edges in image pixels, from 0 to the height
+  std::vector<std::vector<int>> columns;  ///< of each row: edges from 0 to the width
+
+  [[nodiscard]] int processes() const;
+  [[nodiscard]] PixelRegion region(int process) const;
+};
+
+/// How many columns each row has, for `processes` rectangles that are not far from square.
+std::vector<int> columns_of_rows(int processes, scene::ImageSize size);
+
+/// `area` in equal rectangles, as rows of columns: where nothing is known of the cost. Rectangles at the rim of `area`
+/// reach to the picture's.
+ImageSplit even_split(int processes, scene::ImageSize size, const PixelRegion& area);
+
+/// What a process says of its part of the map: the two stages of the parallel search ([Mol08] Figure 4.3), in which
+/// only sums along edges travel.
+///   first    the cost of each of its rows: the right-most column of its table
+///   second   for each map row in which a row of rectangles begins: the cost above it of each of its columns
+/// All processes gather both and find the same edges. A split by one process is the same with one part.
+struct RowSums {
+  PixelRegion region;               ///< of the map
+  std::vector<std::uint64_t> rows;  ///< of the region
+};
+struct ColumnSums {
+  PixelRegion region;
+  std::vector<std::vector<std::uint64_t>> columns;  ///< of the region's columns, for each of the map rows asked for
+};
+
+/// The search for the split lines, in proportion to `weights`, one a process: how much of the work each should get.
+/// Edges may lie inside a map pixel, whose cost counts as spread evenly; they are multiples of `grain` image pixels
+/// (where the picture is large enough for that).
+class SplitSearch {
+ public:
+  SplitSearch(scene::ImageSize image, double resolution, scene::ImageSize map, std::vector<double> weights, int grain);
+
+  static RowSums row_sums(const CostMap& map, const SummedArea& table);
+  void find_rows(const std::vector<RowSums>& parts);
+
+  /// Map rows at which column sums are needed, after find_rows().
+  [[nodiscard]] const std::vector<int>& map_rows() const { return map_rows_; }
+  static ColumnSums column_sums(const CostMap& map, const SummedArea& table, const std::vector<int>& map_rows);
+  [[nodiscard]] ImageSplit find_columns(const std::vector<ColumnSums>& parts) const;
+
+ private:
+  scene::ImageSize image_, map_;
+  double resolution_;
+  int grain_;
+  std::vector<double> weights_;
+  std::vector<int> per_row_, rows_, map_rows_;
+};
+
+/// Both stages with the whole map in one place.
+ImageSplit split(const CostMap& map, scene::ImageSize image, const std::vector<double>& weights, int grain = 1);
+
+}  // namespace tessera::volume
