@@ -52,7 +52,8 @@ std::string known_extensions() {
   const std::string extension = lower_extension(file);
   for (const char* volume : {".vti", ".pvti", ".mhd", ".mha", ".nrrd", ".nhdr", ".nii", ".gz", ".raw"})
     if (extension == volume)
-      throw scene::bad_input(fmt::format("{}: regular grids are not rendered yet; give a mesh", file.string()));
+      throw scene::bad_input(fmt::format(
+          "{}: it is a regular grid, no mesh; render, info and convert take it as a volume", file.string()));
   throw scene::bad_input(fmt::format("{}: no mesh format has the extension '{}'; known are {}", file.string(),
                                      file.extension().string(), known_extensions()));
 }

@@ -237,11 +237,11 @@ std::string block_name(vtkCompositeDataIterator& iterator) {
 
 }  // namespace
 
-void add_vtk_fields(vtkDataSet& data, Association association, CellBlock& block, const std::string& source) {
+void add_vtk_fields(vtkDataSet& data, Association association, std::size_t expected, CellBlock& block,
+                    const std::string& source) {
   const bool point = association == Association::point;
   vtkDataSetAttributes& attributes =
       point ? static_cast<vtkDataSetAttributes&>(*data.GetPointData()) : *data.GetCellData();
-  const auto expected = point ? block.positions.size() : block.cell_count();
   for (int k = 0; k < attributes.GetNumberOfArrays(); ++k) {
     vtkSmartPointer<vtkDataArray> array = attributes.GetArray(k);  // null for arrays of strings
     if (!array || array->GetNumberOfComponents() < 1) continue;
@@ -282,15 +282,15 @@ CellBlock block_from_vtk(vtkDataSet& data, const std::string& name, const std::s
     add_rectilinear_points(*rectilinear, n, block, where);
     add_grid_cells(n, block, where);
   } else if (vtkImageData::SafeDownCast(&data)) {
-    throw scene::bad_input(
-        fmt::format("{}: it is a regular grid (image data); these are not rendered yet, give a mesh", where));
+    throw scene::bad_input(fmt::format(
+        "{}: it is a regular grid (image data), no mesh; render, info and convert take it as a volume", where));
   } else {
     throw scene::bad_input(fmt::format("{}: it holds {}, no cells of volume; give a mesh", where, data.GetClassName()));
   }
   block.point_ghost = ghost_bits(*data.GetPointData(), block.positions.size());
   block.cell_ghost = ghost_bits(*data.GetCellData(), block.cell_count());
-  add_vtk_fields(data, Association::point, block, where);
-  add_vtk_fields(data, Association::cell, block, where);
+  add_vtk_fields(data, Association::point, block.positions.size(), block, where);
+  add_vtk_fields(data, Association::cell, block.cell_count(), block, where);
   return block;
 }
 

@@ -20,7 +20,9 @@ CellBlock block_from_vtk(vtkDataSet& data, const std::string& name, const std::s
 /// which `notes` has a line. Throws Error(bad_input) for images (regular grids) and other data objects.
 std::vector<CellBlock> blocks_from_vtk(vtkDataObject& data, const std::string& source, std::vector<std::string>& notes);
 
-/// Adds the arrays of a VTK data set's points or cells as fields.
-void add_vtk_fields(vtkDataSet& data, scene::Association association, CellBlock& block, const std::string& source);
+/// Adds the arrays of a VTK data set's points or cells as fields. Throws Error(bad_input) for one that has not
+/// `expected` tuples.
+void add_vtk_fields(vtkDataSet& data, scene::Association association, std::size_t expected, CellBlock& block,
+                    const std::string& source);
 
 }  // namespace tessera::io

@@ -108,8 +108,8 @@ MeshBlocks read_vtk_xml(const std::filesystem::path& file) {
     throw scene::bad_input(fmt::format("{}: it does not begin as a VTK XML file does; check that it is a {}", source,
                                        extension.substr(1)));
   if (type == "ImageData" || type == "PImageData")
-    throw scene::bad_input(
-        fmt::format("{}: it is a regular grid (image data); these are not rendered yet, give a mesh", source));
+    throw scene::bad_input(fmt::format(
+        "{}: it is a regular grid (image data), no mesh; render, info and convert take it as a volume", source));
   if (!kind) throw scene::bad_input(fmt::format("{}: its type is '{}'; give a mesh", source, type));
 
   // Pieces one by one, so that the whole reads as its parts do, and faults name the piece.

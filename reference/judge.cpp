@@ -48,7 +48,7 @@ std::vector<std::array<double, 2>> nearby_offsets() {
   return offsets;
 }
 
-bool excusable(const std::array<float, 4>& value, const Reference& reference, PixelIndex at, double bound) {
+bool excusable(const std::array<float, 4>& value, const RayReference& reference, PixelIndex at, double bound) {
   std::array<double, 4> low, high;
   low.fill(std::numeric_limits<double>::infinity());
   high.fill(-std::numeric_limits<double>::infinity());
@@ -63,8 +63,8 @@ bool excusable(const std::array<float, 4>& value, const Reference& reference, Pi
 
 }  // namespace
 
-Judgement judge(const scene::Image& image, const Reference& reference, double bound, std::span<const PixelIndex> pixels,
-                int threads) {
+Judgement judge(const scene::Image& image, const RayReference& reference, double bound,
+                std::span<const PixelIndex> pixels, int threads) {
   const scene::ImageSize size = reference.size();
   if (image.size != size)
     throw scene::bad_input(fmt::format("judge: the image is {}x{}, its reference {}x{}; render both at one size",

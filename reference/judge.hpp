@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-#include "reference/reference.hpp"
+#include "reference/ray_reference.hpp"
 #include "scene/image.hpp"
 
 namespace tessera::reference {
@@ -35,7 +35,7 @@ struct Judgement {
 ///          examined for an excuse.
 /// NaN      or infinity in the image counts as an infinite error, never excused.
 /// Throws   scene::Error(bad_input) if the sizes differ, or a pixel lies outside.
-Judgement judge(const scene::Image& image, const Reference& reference, double bound,
+Judgement judge(const scene::Image& image, const RayReference& reference, double bound,
                 std::span<const PixelIndex> pixels = {}, int threads = 0);
 
 }  // namespace tessera::reference

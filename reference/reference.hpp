@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "reference/ray_reference.hpp"
 #include "reference/ray_tet.hpp"
 #include "reference/view.hpp"
 #include "scene/camera.hpp"
@@ -23,20 +24,6 @@ struct RaySegment {
   std::size_t tet;
 };
 
-/// What a ray sees.
-struct Pixel {
-  double r = 0, g = 0, b = 0, a = 0;  ///< linear RGB premultiplied by a; a = 1 - transmittance
-  double z = 0;                       ///< planar depth where a begins to grow; infinite if a is 0
-  double length = 0;                  ///< world length of the ray inside the mesh (overlapping cells count each)
-  std::size_t segments = 0;
-};
-
-/// A pixel of the image; (0, 0) is the top left.
-struct PixelIndex {
-  int x, y;
-  bool operator==(const PixelIndex&) const = default;
-};
-
 /// The slow, exact renderer that the fast one is judged against. Brute force in double precision: every ray against
 /// every tetrahedron whose projected box holds it; no acceleration structure, no shortcut for invisible cells, no code
 /// shared with the fast way but the plain values of scene/.
@@ -46,7 +33,7 @@ struct PixelIndex {
 /// Error    about 1e-13 in linear RGBA. Cell data is constant in a tet, point data linear between the two hits.
 /// Threads  const functions may be called from several threads; `pixels` and `image` use all cores themselves.
 /// Cost     256x256 pixels over 0.5 M tets: seconds to a minute. One point query is a pass over all tets' boxes.
-class Reference {
+class Reference final : public RayReference {
  public:
   /// The mesh must outlive the reference. Throws scene::Error(bad_input) for an invalid camera or size, an empty
   /// transfer function, or a mesh that breaks its invariants.
@@ -57,15 +44,15 @@ class Reference {
   [[nodiscard]] std::vector<RaySegment> segments(double x, double y) const;
 
   /// The same ray's colour. Any position, not only pixel centres.
-  [[nodiscard]] Pixel pixel(double x, double y) const;
+  [[nodiscard]] Pixel pixel(double x, double y) const override;
 
   /// The rays through the centres of `wanted`, in that order. `threads` 0: all cores.
-  [[nodiscard]] std::vector<Pixel> pixels(std::span<const PixelIndex> wanted, int threads = 0) const;
+  [[nodiscard]] std::vector<Pixel> pixels(std::span<const PixelIndex> wanted, int threads = 0) const override;
 
   /// Every pixel, row-major, row 0 at the top.
   [[nodiscard]] std::vector<Pixel> image(int threads = 0) const;
 
-  [[nodiscard]] scene::ImageSize size() const { return size_; }
+  [[nodiscard]] scene::ImageSize size() const override { return size_; }
 
  private:
   /// Pixel coordinates outside of which no ray meets the tet.
@@ -87,12 +74,5 @@ class Reference {
   std::vector<ProjectedVertex> vertices_;
   std::vector<Box> boxes_;
 };
-
-/// All pixels of an image, row-major.
-std::vector<PixelIndex> all_pixels(scene::ImageSize size);
-
-/// `count` different pixels, each set equally likely, row-major; all of them if there are no more. The same seed gives
-/// the same pixels everywhere.
-std::vector<PixelIndex> random_pixels(scene::ImageSize size, std::size_t count, std::uint64_t seed);
 
 }  // namespace tessera::reference

@@ -56,6 +56,12 @@ ProjectedVertex View::project(const glm::dvec3& p_world) const {
   return {{rounded_to_grid(half_width_ + across), rounded_to_grid(half_height_ - upward), 1}, depth};
 }
 
+View::Ray View::ray(double x, double y) const {
+  const double across = (x - half_width_) / pixels_per_unit_, upward = (half_height_ - y) / pixels_per_unit_;
+  const glm::dvec3 aside = right_ * across + up_ * upward;
+  return perspective_ ? Ray{position_, forward_ + aside} : Ray{position_ + aside, forward_};
+}
+
 double View::length_per_depth(double x, double y) const {
   if (!perspective_) return 1;
   const double across = (x - half_width_) / pixels_per_unit_, upward = (y - half_height_) / pixels_per_unit_;

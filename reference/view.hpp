@@ -24,6 +24,12 @@ class View {
   /// on pixel centres do, whatever the decimal noise of the camera.
   [[nodiscard]] ProjectedVertex project(const glm::dvec3& p_world) const;
 
+  /// The ray through (x, y): at planar depth z it is at `origin` + z * `step`. Not rounded.
+  struct Ray {
+    glm::dvec3 origin, step;
+  };
+  [[nodiscard]] Ray ray(double x, double y) const;
+
   /// World length of the ray through (x, y) per unit of planar depth: 1 in orthographic projection, more towards the
   /// picture's rim in perspective.
   [[nodiscard]] double length_per_depth(double x, double y) const;

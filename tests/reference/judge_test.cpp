@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "reference/reference.hpp"
 #include "scene/error.hpp"
 #include "small_meshes.hpp"
 

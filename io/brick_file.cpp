@@ -1,0 +1,340 @@
+#include "io/brick_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "io/atomic_file.hpp"
+#include "io/field_choice.hpp"
+#include "io/input_file.hpp"
+#include "io/json_text.hpp"
+#include "io/volume_formats.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+using BrickJson = nlohmann::json;
+using scene::GridIndex;
+using scene::SampleBox;
+
+static_assert(std::endian::native == std::endian::little, "brick files are written as they lie in memory");
+
+constexpr std::string_view brick_magic = "TESSBRK1";
+constexpr int least_side = 8, most_side = 1024;
+constexpr std::uint64_t longest_brick_header = 1 << 28;  // rectilinear coordinates are in it
+
+struct BlockRange {
+  double low, high;
+  std::uint64_t blanks;
+};
+static_assert(sizeof(BlockRange) == 24);
+
+/// The blocks of a volume and where their samples begin, in samples.
+class Blocks {
+ public:
+  Blocks(const GridIndex& samples, std::int64_t side) : samples_(samples), side_(side) {
+    for (std::size_t a = 0; a < 3; ++a) count_[a] = (samples[a] + side - 1) / side;
+  }
+  [[nodiscard]] const GridIndex& count() const { return count_; }
+  [[nodiscard]] std::int64_t total() const { return count_[0] * count_[1] * count_[2]; }
+  [[nodiscard]] std::int64_t number(const GridIndex& b) const { return (b[2] * count_[1] + b[1]) * count_[0] + b[0]; }
+  [[nodiscard]] SampleBox box(const GridIndex& b) const {
+    SampleBox box;
+    for (std::size_t a = 0; a < 3; ++a) {
+      box.low[a] = b[a] * side_;
+      box.high[a] = std::min(samples_[a], box.low[a] + side_);
+    }
+    return box;
+  }
+  /// Samples of all blocks before this one: whole layers, whole rows of blocks in its layer, blocks in its row.
+  [[nodiscard]] std::int64_t first_sample(const GridIndex& b) const {
+    const SampleBox own = box(b);
+    return own.low[2] * samples_[1] * samples_[0] + own.extent(2) * own.low[1] * samples_[0] +
+           own.extent(2) * own.extent(1) * own.low[0];
+  }
+
+ private:
+  GridIndex samples_, count_{};
+  std::int64_t side_;
+};
+
+/// An open file that is read by position.
+class Descriptor {
+ public:
+  explicit Descriptor(const std::filesystem::path& file)
+      : name_(file.string()), descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (descriptor_ < 0) fail("cannot be opened");
+  }
+  ~Descriptor() { ::close(descriptor_); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  void read(std::uint64_t at, std::byte* to, std::uint64_t count) const {
+    while (count > 0) {
+      const ssize_t got = ::pread(descriptor_, to, count, static_cast<off_t>(at));
+      if (got < 0 && errno == EINTR) continue;
+      if (got <= 0) fail(fmt::format("cannot be read at byte {}", at));
+      at += static_cast<std::uint64_t>(got), to += got, count -= static_cast<std::uint64_t>(got);
+    }
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw scene::Error(scene::ExitCode::system_failure,
+                       fmt::format("{}: it {}: {}; check the disk", name_, what, std::strerror(errno)));
+  }
+  std::string name_;
+  int descriptor_;
+};
+
+class BrickSource final : public scene::SampleSource {
+ public:
+  BrickSource(scene::Grid grid, const std::filesystem::path& file, std::int64_t side, scene::ValueRange whole,
+              std::vector<BlockRange> ranges, std::uint64_t first_byte)
+      : SampleSource(std::move(grid), file.string()),
+        file_(file),
+        side_(side),
+        blocks_(geometry().samples(), side),
+        whole_(whole),
+        ranges_(std::move(ranges)),
+        first_byte_(first_byte) {}
+
+  [[nodiscard]] std::optional<scene::ValueRange> known_range(const SampleBox& box) const override {
+    if (box == geometry().all_samples()) return whole_;
+    scene::ValueRange range;
+    each_block(box, [&](const GridIndex& b) {
+      const BlockRange& r = ranges_[static_cast<std::size_t>(blocks_.number(b))];
+      range.low = std::min(range.low, r.low);
+      range.high = std::max(range.high, r.high);
+      range.blanks += r.blanks;
+    });
+    return range;
+  }
+  [[nodiscard]] GridIndex storage_block() const override { return {side_, side_, side_}; }
+  [[nodiscard]] std::uint64_t bytes_read() const override { return bytes_read_.load(std::memory_order_relaxed); }
+
+ private:
+  template <class Visit>
+  void each_block(const SampleBox& box, const Visit& visit) const {
+    if (box.count() == 0) return;
+    const auto last = [&](std::size_t a) { return (box.high[a] - 1) / side_; };
+    for (std::int64_t k = box.low[2] / side_; k <= last(2); ++k)
+      for (std::int64_t j = box.low[1] / side_; j <= last(1); ++j)
+        for (std::int64_t i = box.low[0] / side_; i <= last(0); ++i) visit(GridIndex{i, j, k});
+  }
+
+  void read_samples(const SampleBox& box, const scene::SampleLayout& layout, std::byte* destination) const override {
+    std::vector<std::byte> scratch;
+    each_block(box, [&](const GridIndex& b) {
+      const SampleBox block = blocks_.box(b);
+      SampleBox part;
+      for (std::size_t a = 0; a < 3; ++a) {
+        part.low[a] = std::max(box.low[a], block.low[a]);
+        part.high[a] = std::min(box.high[a], block.high[a]);
+      }
+      read_part(b, block, part, box, layout, scratch, destination);
+    });
+  }
+
+  /// Bytes from the first to the last sample wanted of each slice, or of all slices where that is hardly more.
+  void read_part(const GridIndex& b, const SampleBox& block, const SampleBox& part, const SampleBox& box,
+                 const scene::SampleLayout& layout, std::vector<std::byte>& scratch, std::byte* destination) const {
+    const std::size_t size = scene::size_of(grid().type), to_size = scene::size_of(layout.type);
+    const std::int64_t row = block.extent(0), slice = row * block.extent(1);
+    const auto in_block = [&](std::int64_t i, std::int64_t j, std::int64_t k) {
+      return (k - block.low[2]) * slice + (j - block.low[1]) * row + i - block.low[0];
+    };
+    const std::int64_t slice_span = (part.extent(1) - 1) * row + part.extent(0);
+    const bool together = 4 * slice_span >= slice;
+    const std::int64_t at_once = together ? part.extent(2) : 1;
+    const std::int64_t span = (at_once - 1) * slice + slice_span;
+    scratch.resize(static_cast<std::size_t>(span) * size);
+    for (std::int64_t k = part.low[2]; k < part.high[2]; k += at_once) {
+      const std::int64_t first = in_block(part.low[0], part.low[1], k);
+      file_.read(first_byte_ + static_cast<std::uint64_t>(blocks_.first_sample(b) + first) * size, scratch.data(),
+                 scratch.size());
+      bytes_read_.fetch_add(scratch.size(), std::memory_order_relaxed);
+      for (std::int64_t kk = k; kk < k + at_once; ++kk)
+        for (std::int64_t j = part.low[1]; j < part.high[1]; ++j) {
+          const std::int64_t from = in_block(part.low[0], j, kk) - first;
+          const std::int64_t to =
+              (kk - box.low[2]) * layout.slice_pitch + (j - box.low[1]) * layout.row_pitch + part.low[0] - box.low[0];
+          scene::convert_samples(scratch.data() + static_cast<std::size_t>(from) * size, grid().type, 1, false,
+                                 part.extent(0), destination + static_cast<std::size_t>(to) * to_size, layout.type);
+        }
+    }
+  }
+
+  Descriptor file_;
+  std::int64_t side_;
+  Blocks blocks_;
+  scene::ValueRange whole_;
+  std::vector<BlockRange> ranges_;
+  std::uint64_t first_byte_;
+  mutable std::atomic<std::uint64_t> bytes_read_ = 0;
+};
+
+BrickJson json_of_vector(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+glm::dvec3 vector_of_json(const BrickJson& json) { return {json.at(0), json.at(1), json.at(2)}; }
+
+BrickJson brick_header_of(const scene::Grid& grid, int side, const scene::ValueRange& range) {
+  const scene::GridGeometry& g = grid.geometry;
+  BrickJson direction = BrickJson::array();
+  for (int column = 0; column < 3; ++column)
+    for (int row = 0; row < 3; ++row) direction.push_back(g.direction[column][row]);
+  return {{"points", g.points},
+          {"association", g.association == scene::Association::cell ? "cell" : "point"},
+          {"origin", json_of_vector(g.origin)},
+          {"direction", direction},
+          {"spacing", json_of_vector(g.spacing)},
+          {"coordinates", g.coordinates},
+          {"type", scene::name_of(grid.type)},
+          {"scale", grid.scale},
+          {"shift", grid.shift},
+          {"field", grid.field_name},
+          {"block", side},
+          {"low", range.low},
+          {"high", range.high},
+          {"blanks", range.blanks}};
+}
+
+struct BrickHeader {
+  scene::Grid grid;
+  std::int64_t side = 0;
+  scene::ValueRange range;
+};
+
+BrickHeader parse_brick_header(const std::string& text, const std::filesystem::path& file) {
+  BrickHeader header;
+  try {
+    const BrickJson json = parse_json(text, file.string());
+    scene::GridGeometry& g = header.grid.geometry;
+    g.points = json.at("points").get<GridIndex>();
+    if (json.at("association") == "cell") g.association = scene::Association::cell;
+    g.origin = vector_of_json(json.at("origin"));
+    g.spacing = vector_of_json(json.at("spacing"));
+    const BrickJson& direction = json.at("direction");
+    for (int column = 0; column < 3; ++column)
+      for (int row = 0; row < 3; ++row)
+        g.direction[column][row] = direction.at(static_cast<std::size_t>(3 * column + row));
+    g.coordinates = json.at("coordinates").get<std::array<std::vector<double>, 3>>();
+    const auto type = parse_sample_type(json.at("type").get<std::string>());
+    if (!type) throw damaged(file, fmt::format("its type is '{}'", json.at("type").get<std::string>()));
+    header.grid.type = *type;
+    header.grid.scale = json.at("scale");
+    header.grid.shift = json.at("shift");
+    header.grid.field_name = json.at("field");
+    header.side = json.at("block");
+    header.range = {json.at("low"), json.at("high"), json.at("blanks")};
+  } catch (const BrickJson::exception&) {
+    throw damaged(file, "its header lacks a word or a number");
+  }
+  if (header.side < least_side || header.side > most_side)
+    throw damaged(file, fmt::format("its blocks have {} samples a side", header.side));
+  return header;
+}
+
+}  // namespace
+
+bool looks_like_bricks(std::string_view beginning) { return beginning.starts_with(brick_magic); }
+
+VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& options) {
+  const std::uint64_t size = require_file(file);
+  std::uint64_t length = 0;
+  const std::uint64_t before = brick_magic.size() + sizeof length;
+  std::string text;
+  {
+    const Descriptor opened(file);
+    if (size < before) throw damaged(file, "its header is cut off");
+    opened.read(brick_magic.size(), reinterpret_cast<std::byte*>(&length), sizeof length);
+    if (length > longest_brick_header || length > size - before) throw damaged(file, "its header is cut off");
+    text.resize(length);
+    opened.read(before, reinterpret_cast<std::byte*>(text.data()), length);
+  }
+  BrickHeader header = parse_brick_header(text, file);
+  scene::validate(header.grid, file.string());
+  const Blocks blocks(header.grid.geometry.samples(), header.side);
+  const auto count = static_cast<std::uint64_t>(blocks.total());
+  const auto samples = static_cast<std::uint64_t>(header.grid.geometry.all_samples().count());
+  const std::uint64_t left = size - before - length;  // validate() keeps the products below 2^63
+  if (count > left / sizeof(BlockRange) ||
+      left - count * sizeof(BlockRange) != samples * scene::size_of(header.grid.type))
+    throw damaged(file, fmt::format("{} samples in {} blocks do not fit its {} bytes", samples, count, size));
+  std::vector<BlockRange> ranges(count);
+  const Descriptor opened(file);
+  opened.read(before + length, reinterpret_cast<std::byte*>(ranges.data()), count * sizeof(BlockRange));
+
+  VolumeFile result;
+  result.format = fmt::format("brick file, blocks of {}^3", header.side);
+  FieldSummary field{.name = header.grid.field_name,
+                     .association = header.grid.geometry.association,
+                     .type = listed_type(header.grid.type)};
+  field.low = header.range.empty() ? 0 : header.range.low;
+  field.high = header.range.empty() ? 0 : header.range.high;
+  field.nan_count = header.range.blanks;
+  result.fields.push_back(field);
+  choose_field(options.field, result.fields, file.string());  // refuses any other
+  result.range = header.range;
+  result.source = std::make_unique<BrickSource>(std::move(header.grid), file, header.side, header.range,
+                                                std::move(ranges), before + length + count * sizeof(BlockRange));
+  return result;
+}
+
+void write_bricks(const scene::SampleSource& source, const std::filesystem::path& file, int side) {
+  if (side < least_side || side > most_side)
+    throw scene::bad_input(
+        fmt::format("--block: {} is not a block's side; give {} to {}", side, least_side, most_side));
+  const scene::Grid& grid = source.grid();
+  const std::size_t size = scene::size_of(grid.type);
+  const Blocks blocks(grid.geometry.samples(), side);
+  std::vector<BlockRange> ranges(static_cast<std::size_t>(blocks.total()));
+  scene::ValueRange whole = scene::value_range(source);
+  const std::string header = brick_header_of(grid, side, whole).dump();
+  const std::uint64_t length = header.size();
+
+  AtomicFile out(file);
+  out.write(brick_magic);
+  out.write(&length, sizeof length);
+  out.write(header);
+  const std::uint64_t table = out.position();
+  out.write(ranges.data(), ranges.size() * sizeof(BlockRange));
+  std::vector<std::byte> samples;
+  std::vector<double> values;
+  GridIndex b{};
+  for (b[2] = 0; b[2] < blocks.count()[2]; ++b[2])
+    for (b[1] = 0; b[1] < blocks.count()[1]; ++b[1])
+      for (b[0] = 0; b[0] < blocks.count()[0]; ++b[0]) {
+        const SampleBox box = blocks.box(b);
+        const auto count = static_cast<std::size_t>(box.count());
+        samples.resize(count * size);
+        source.read(box, {.type = grid.type}, samples);
+        out.write(samples.data(), samples.size());
+        values.resize(count);
+        scene::convert_samples(samples.data(), grid.type, 1, false, box.count(),
+                               reinterpret_cast<std::byte*>(values.data()), scene::SampleType::float64);
+        scene::ValueRange range;
+        for (const double sample : values) {
+          if (!std::isfinite(sample)) {
+            ++range.blanks;
+            continue;
+          }
+          const double value = grid.value(sample);
+          range.low = std::min(range.low, value);
+          range.high = std::max(range.high, value);
+        }
+        ranges[static_cast<std::size_t>(blocks.number(b))] = {range.low, range.high, range.blanks};
+      }
+  out.seek(table);
+  out.write(ranges.data(), ranges.size() * sizeof(BlockRange));
+  out.commit();
+}
+
+}  // namespace tessera::io

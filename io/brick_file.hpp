@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "io/volume_reader.hpp"
+#include "scene/sample_source.hpp"
+
+namespace tessera::io {
+
+/// A brick file (.bricks): a volume cut into blocks that lie together, each with its range, so that a volume larger
+/// than memory is read by need and invisible blocks are never read.
+///
+///   bytes 0..7     "TESSBRK1"
+///   bytes 8..15    uint64 length H of the header
+///   bytes 16..     H bytes of JSON: points [3], association, origin [3], direction [9, column by column], spacing [3],
+///                  coordinates [3 lists, empty where regular], type, scale, shift, field, block (a side, in samples),
+///                  low, high, blanks (of all values)
+///   then           for each block, i fastest: float64 low, float64 high, uint64 blanks (24 bytes)
+///   then           the samples of each block in the same order, i fastest in it, without padding; blocks at the upper
+///                  boundary are smaller
+/// Everything little endian. No sample is stored twice: a brick with a border reads from up to 27 blocks.
+VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& options);
+bool looks_like_bricks(std::string_view beginning);
+
+/// Writes one with blocks of `side` samples (8 to 1024). Reads `source` one layer of blocks at a time. Appears by
+/// rename. Throws Error(bad_input) for a side out of range, Error(system_failure) if it cannot be written.
+void write_bricks(const scene::SampleSource& source, const std::filesystem::path& file, int side = 64);
+
+}  // namespace tessera::io

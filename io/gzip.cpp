@@ -1,0 +1,66 @@
+#include "io/gzip.hpp"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+/// Fills `out` as far as the stream goes; the number of bytes written. Several gzip members follow one another.
+std::size_t inflate_into(std::span<const std::byte> stream, std::span<std::byte> out) {
+  constexpr std::size_t most = std::numeric_limits<uInt>::max();
+  constexpr int either_header = 15 + 32;  // zlib finds out whether it is gzip's or its own
+  z_stream z{};
+  if (inflateInit2(&z, either_header) != Z_OK) throw std::bad_alloc();
+  std::size_t in_at = 0, out_at = 0;
+  while (out_at < out.size() && in_at < stream.size()) {
+    const auto in_now = static_cast<uInt>(std::min(most, stream.size() - in_at));
+    const auto out_now = static_cast<uInt>(std::min(most, out.size() - out_at));
+    z.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(stream.data() + in_at));
+    z.avail_in = in_now;
+    z.next_out = reinterpret_cast<Bytef*>(out.data() + out_at);
+    z.avail_out = out_now;
+    const int result = ::inflate(&z, Z_NO_FLUSH);
+    in_at += in_now - z.avail_in;
+    out_at += out_now - z.avail_out;
+    if (result == Z_STREAM_END) {
+      if (inflateReset(&z) != Z_OK) break;
+      continue;
+    }
+    if (result != Z_OK) break;
+  }
+  inflateEnd(&z);
+  return out_at;
+}
+
+}  // namespace
+
+std::vector<std::byte> inflate_beginning(std::span<const std::byte> stream, std::size_t count) {
+  std::vector<std::byte> out(count);
+  out.resize(inflate_into(stream, out));
+  return out;
+}
+
+std::vector<std::byte> inflate(std::span<const std::byte> stream, std::uint64_t count, const std::string& source) {
+  constexpr std::uint64_t best = 1040;  // 1032 and room for headers
+  if (count / best > stream.size())
+    throw scene::bad_input(
+        fmt::format("{}: its header asks for {} bytes, {} compressed ones cannot hold them; the file is truncated or "
+                    "damaged, write it anew",
+                    source, count, stream.size()));
+  std::vector<std::byte> out(count);
+  const std::size_t written = inflate_into(stream, out);
+  if (written != count)
+    throw scene::bad_input(
+        fmt::format("{}: its compressed samples end or break after {} of {} bytes; the file is truncated or damaged, "
+                    "write it anew",
+                    source, written, count));
+  return out;
+}
+
+}  // namespace tessera::io

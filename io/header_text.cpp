@@ -1,0 +1,80 @@
+#include "io/header_text.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "io/volume_formats.hpp"
+
+namespace tessera::io {
+namespace {
+
+constexpr std::string_view header_blanks = " \t\r\n,()";
+
+/// Words between header_blanks, commas and brackets.
+std::vector<std::string_view> header_words_of(std::string_view text) {
+  std::vector<std::string_view> words;
+  while (true) {
+    const std::size_t start = text.find_first_not_of(header_blanks);
+    if (start == std::string_view::npos) return words;
+    const std::size_t stop = std::min(text.find_first_of(header_blanks, start), text.size());
+    words.push_back(text.substr(start, stop - start));
+    text.remove_prefix(stop);
+  }
+}
+
+template <class T>
+bool header_parsed(std::string_view word, T& value) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc() && end == word.data() + word.size();
+}
+
+}  // namespace
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view white = " \t\r\n";
+  const std::size_t start = text.find_first_not_of(white);
+  if (start == std::string_view::npos) return {};
+  return text.substr(start, text.find_last_not_of(white) - start + 1);
+}
+
+std::vector<double> header_numbers(std::string_view text, std::size_t count, const std::filesystem::path& file,
+                                   const char* what) {
+  std::vector<double> numbers;
+  for (const std::string_view word : header_words_of(text)) {
+    double value = 0;
+    if (!header_parsed(word, value)) break;
+    numbers.push_back(value);
+  }
+  if (numbers.size() != count || header_words_of(text).size() != count)
+    throw damaged(file,
+                  fmt::format("{} is '{}', not {} number{}", what, text.substr(0, 60), count, count > 1 ? "s" : ""));
+  return numbers;
+}
+
+std::int64_t header_count(std::string_view text, std::int64_t low, std::int64_t high, const std::filesystem::path& file,
+                          const char* what) {
+  std::int64_t value = 0;
+  if (!header_parsed(trimmed(text), value) || value < low || value > high)
+    throw damaged(file,
+                  fmt::format("{} is '{}', not a whole number from {} to {}", what, text.substr(0, 40), low, high));
+  return value;
+}
+
+std::vector<std::int64_t> header_count_list(std::string_view text, const std::filesystem::path& file,
+                                            const char* what) {
+  std::vector<std::int64_t> counts;
+  for (const std::string_view word : header_words_of(text))
+    counts.push_back(header_count(word, 1, std::int64_t{1} << 40, file, what));
+  return counts;
+}
+
+scene::GridIndex header_counts(std::string_view text, const std::filesystem::path& file, const char* what) {
+  const auto counts = header_count_list(text, file, what);
+  if (counts.size() != 3)
+    throw damaged(file, fmt::format("{} is '{}', not three whole numbers", what, text.substr(0, 60)));
+  return {counts[0], counts[1], counts[2]};
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "scene/grid.hpp"
+
+/// Numbers in the text headers of volumes (MetaImage, NRRD). All throw Error(bad_input, "FILE: WHAT is ...").
+namespace tessera::io {
+
+/// Without white space at either end.
+std::string_view trimmed(std::string_view text);
+
+/// Exactly `count` numbers between blanks, commas or brackets; "nan" is one.
+std::vector<double> header_numbers(std::string_view text, std::size_t count, const std::filesystem::path& file,
+                                   const char* what);
+
+/// One whole number in [low, high].
+std::int64_t header_count(std::string_view text, std::int64_t low, std::int64_t high, const std::filesystem::path& file,
+                          const char* what);
+
+/// Whole numbers above 0, below 2^40, as many as there are.
+std::vector<std::int64_t> header_count_list(std::string_view text, const std::filesystem::path& file, const char* what);
+
+/// Exactly three of them.
+scene::GridIndex header_counts(std::string_view text, const std::filesystem::path& file, const char* what);
+
+}  // namespace tessera::io

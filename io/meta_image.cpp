@@ -1,0 +1,146 @@
+// MetaImage (.mhd, .mha). Source: the MetaIO documentation of Kitware's MetaImage format. VTK's reader drops the
+// orientation, so the header is read here.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cctype>
+#include <map>
+
+#include "io/header_text.hpp"
+#include "io/input_file.hpp"
+#include "io/volume_formats.hpp"
+
+namespace tessera::io {
+namespace {
+
+struct ElementType {
+  const char* name;
+  scene::SampleType type;
+};
+constexpr std::array element_types = {
+    ElementType{"MET_CHAR", scene::SampleType::int8},     ElementType{"MET_UCHAR", scene::SampleType::uint8},
+    ElementType{"MET_SHORT", scene::SampleType::int16},   ElementType{"MET_USHORT", scene::SampleType::uint16},
+    ElementType{"MET_INT", scene::SampleType::int32},     ElementType{"MET_UINT", scene::SampleType::uint32},
+    ElementType{"MET_FLOAT", scene::SampleType::float32}, ElementType{"MET_DOUBLE", scene::SampleType::float64}};
+
+/// Keys in the file's order end with ElementDataFile; after its line a local payload begins.
+struct MetaHeader {
+  std::map<std::string, std::string> values;
+  std::size_t end = 0;
+
+  [[nodiscard]] const std::string* find(std::initializer_list<const char*> names) const {
+    for (const char* name : names)
+      if (const auto v = values.find(name); v != values.end()) return &v->second;
+    return nullptr;
+  }
+};
+
+MetaHeader parse_meta_header(std::string_view text, const std::filesystem::path& file) {
+  MetaHeader header;
+  while (header.end < text.size()) {
+    const std::size_t stop = std::min(text.find('\n', header.end), text.size());
+    const std::string_view line = text.substr(header.end, stop - header.end);
+    header.end = std::min(stop + 1, text.size());
+    const std::size_t equals = line.find('=');
+    if (trimmed(line).empty()) continue;
+    if (equals == std::string_view::npos)
+      throw damaged(file, fmt::format("'{}' is no line 'Key = value' of its header", trimmed(line).substr(0, 40)));
+    const std::string key(trimmed(line.substr(0, equals)));
+    header.values[key] = std::string(trimmed(line.substr(equals + 1)));
+    if (key == "ElementDataFile") return header;
+  }
+  throw damaged(file, "its header has no ElementDataFile");
+}
+
+bool meta_is_true(const std::string* value) {
+  return value && !value->empty() && (std::tolower(static_cast<unsigned char>(value->front())) == 't' || *value == "1");
+}
+
+}  // namespace
+
+bool looks_like_meta_image(std::string_view beginning) {
+  return beginning.starts_with("ObjectType") || beginning.starts_with("NDims") ||
+         (beginning.starts_with("Comment") && beginning.find("NDims") != std::string_view::npos);
+}
+
+StoredVolume read_meta_image_header(const std::filesystem::path& file) {
+  constexpr std::size_t longest_header = 1 << 16;
+  const std::string text = read_beginning(file, longest_header);
+  const MetaHeader header = parse_meta_header(text, file);
+  StoredVolume volume;
+  volume.format = "MetaImage";
+  const auto reals = [&](const char* what, const std::string& value, std::size_t count) {
+    return header_numbers(value, count, file, what);
+  };
+
+  if (const auto* object = header.find({"ObjectType"}); object && *object != "Image")
+    throw scene::bad_input(fmt::format("{}: it holds a '{}', not an image; give a volume", file.string(), *object));
+  const auto* dimensions = header.find({"NDims"});
+  if (!dimensions) throw damaged(file, "its header has no NDims");
+  if (*dimensions != "3")
+    throw scene::bad_input(fmt::format("{}: it has {} dimensions; a volume has three", file.string(), *dimensions));
+  const auto* size = header.find({"DimSize"});
+  if (!size) throw damaged(file, "its header has no DimSize");
+  volume.grid.geometry.points = header_counts(*size, file, "DimSize");
+
+  const auto* type = header.find({"ElementType"});
+  if (!type) throw damaged(file, "its header has no ElementType");
+  const auto* known =
+      std::find_if(element_types.begin(), element_types.end(), [&](const ElementType& t) { return *type == t.name; });
+  if (known == element_types.end())
+    throw scene::bad_input(
+        fmt::format("{}: its ElementType '{}' is none that is read; write MET_UCHAR, MET_SHORT, "
+                    "MET_USHORT, MET_INT, MET_FLOAT or MET_DOUBLE",
+                    file.string(), *type));
+  volume.number = known->type;
+  if (const auto* channels = header.find({"ElementNumberOfChannels"}))
+    volume.components = static_cast<int>(header_count(*channels, 1, 64, file, "ElementNumberOfChannels"));
+  const bool big = meta_is_true(header.find({"BinaryDataByteOrderMSB", "ElementByteOrderMSB"}));
+  volume.swapped = big != (std::endian::native == std::endian::big);
+  if (const auto* binary = header.find({"BinaryData"}); binary && !meta_is_true(binary))
+    throw scene::bad_input(fmt::format("{}: its samples are text; write them binary", file.string()));
+  volume.compressed = meta_is_true(header.find({"CompressedData"}));
+
+  scene::GridGeometry& g = volume.grid.geometry;
+  glm::dvec3 spacing(1);
+  if (const auto* value = header.find({"ElementSpacing", "ElementSize"})) {
+    const auto s = reals("ElementSpacing", *value, 3);
+    spacing = {s[0], s[1], s[2]};
+  }
+  std::array<glm::dvec3, 3> steps = {glm::dvec3(spacing.x, 0, 0), glm::dvec3(0, spacing.y, 0),
+                                     glm::dvec3(0, 0, spacing.z)};
+  if (const auto* value = header.find({"TransformMatrix", "Rotation", "Orientation"})) {
+    const auto m = reals("TransformMatrix", *value, 9);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      steps[axis] = glm::dvec3(m[3 * axis], m[3 * axis + 1], m[3 * axis + 2]) * spacing[static_cast<int>(axis)];
+  }
+  set_axes(g, steps);
+  if (const auto* value = header.find({"Offset", "Position", "Origin"})) {
+    const auto o = reals("Offset", *value, 3);
+    g.origin = {o[0], o[1], o[2]};
+  }
+  if (const auto* value = header.find({"ElementToIntensityFunctionSlope"}))
+    volume.grid.scale = reals("ElementToIntensityFunctionSlope", *value, 1)[0];
+  if (const auto* value = header.find({"ElementToIntensityFunctionOffset"}))
+    volume.grid.shift = reals("ElementToIntensityFunctionOffset", *value, 1)[0];
+  if (volume.grid.scale != 1 || volume.grid.shift != 0)
+    volume.notes.push_back(
+        fmt::format("values are {:.9g} * sample + {:.9g}, as its header says", volume.grid.scale, volume.grid.shift));
+
+  const std::string& payload = *header.find({"ElementDataFile"});
+  if (payload.starts_with("LIST") || payload.find('%') != std::string::npos)
+    throw scene::bad_input(fmt::format("{}: its slices are in several files; write one", file.string()));
+  const bool local = payload == "LOCAL" || payload == "Local" || payload == "local";
+  volume.payload = local ? file : file.parent_path() / payload;
+  volume.offset = local ? header.end : 0;
+  if (const auto* value = header.find({"HeaderSize"}); value && !local) {
+    if (*value == "-1")
+      volume.at_end = true;
+    else
+      volume.offset = static_cast<std::uint64_t>(header_count(*value, 0, std::int64_t{1} << 40, file, "HeaderSize"));
+  }
+  return volume;
+}
+
+}  // namespace tessera::io

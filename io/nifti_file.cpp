@@ -1,0 +1,199 @@
+// NIfTI-1 and NIfTI-2. Source: Cox et al., "A (sort of) new image data format standard: NIfTI-1", 2004, and the headers
+// nifti1.h and nifti2.h of the NIfTI Data Format Working Group. VTK's reader leaves slope, intercept and the
+// orientation to its caller and keeps all samples in memory, so the header is read here.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <glm/geometric.hpp>
+
+#include "io/gzip.hpp"
+#include "io/input_file.hpp"
+#include "io/mapped_file.hpp"
+#include "io/volume_formats.hpp"
+
+namespace tessera::io {
+namespace {
+
+constexpr std::size_t header_size_1 = 348, header_size_2 = 540;
+
+bool is_gzip(std::span<const std::byte> bytes) {
+  return bytes.size() > 2 && bytes[0] == std::byte{0x1f} && bytes[1] == std::byte{0x8b};
+}
+
+/// Up to 540 bytes, out of a gzip stream if it is one.
+std::vector<std::byte> header_bytes(const MappedFile& file) {
+  if (is_gzip(file.bytes())) return inflate_beginning(file.bytes(), header_size_2);
+  const auto first = file.bytes().subspan(0, std::min(file.bytes().size(), header_size_2));
+  return {first.begin(), first.end()};
+}
+
+class NiftiHeader {
+ public:
+  explicit NiftiHeader(std::vector<std::byte> bytes) : bytes_(std::move(bytes)) {
+    if (bytes_.size() < header_size_1) return;
+    for (const bool swapped : {false, true}) {
+      swapped_ = swapped;
+      const auto size = get<std::int32_t>(0);
+      if (size == static_cast<std::int32_t>(header_size_1) && magic(344, "n+1")) version_ = 1;
+      if (size == static_cast<std::int32_t>(header_size_1) && magic(344, "ni1")) version_ = 1, separate_ = true;
+      if (size == static_cast<std::int32_t>(header_size_2) && bytes_.size() >= header_size_2 && magic(4, "n+2"))
+        version_ = 2;
+      if (version_ != 0) return;
+    }
+  }
+
+  [[nodiscard]] int version() const { return version_; }
+  [[nodiscard]] bool separate() const { return separate_; }
+  [[nodiscard]] bool swapped() const { return swapped_; }
+  [[nodiscard]] std::int64_t dim(std::size_t k) const {
+    return version_ == 1 ? get<std::int16_t>(40 + 2 * k) : get<std::int64_t>(16 + 8 * k);
+  }
+  [[nodiscard]] int datatype() const { return get<std::int16_t>(version_ == 1 ? 70 : 12); }
+  [[nodiscard]] double pixdim(std::size_t k) const { return real(76 + 4 * k, 104 + 8 * k); }
+  [[nodiscard]] double vox_offset() const {
+    return version_ == 1 ? get<float>(108) : static_cast<double>(get<std::int64_t>(168));
+  }
+  [[nodiscard]] double slope() const { return real(112, 176); }
+  [[nodiscard]] double intercept() const { return real(116, 184); }
+  [[nodiscard]] int qform_code() const { return version_ == 1 ? get<std::int16_t>(252) : get<std::int32_t>(344); }
+  [[nodiscard]] int sform_code() const { return version_ == 1 ? get<std::int16_t>(254) : get<std::int32_t>(348); }
+  /// quatern_b, c, d, qoffset_x, y, z.
+  [[nodiscard]] double quaternion(std::size_t k) const { return real(256 + 4 * k, 352 + 8 * k); }
+  [[nodiscard]] double srow(std::size_t row, std::size_t column) const {
+    return real(280 + 16 * row + 4 * column, 400 + 32 * row + 8 * column);
+  }
+
+ private:
+  [[nodiscard]] bool magic(std::size_t at, const char* text) const {
+    return std::memcmp(bytes_.data() + at, text, 4) == 0;
+  }
+  template <class T>
+  [[nodiscard]] T get(std::size_t at) const {
+    std::array<std::byte, sizeof(T)> raw;
+    std::memcpy(raw.data(), bytes_.data() + at, sizeof(T));
+    if (swapped_) std::reverse(raw.begin(), raw.end());
+    return std::bit_cast<T>(raw);
+  }
+  [[nodiscard]] double real(std::size_t at_1, std::size_t at_2) const {
+    return version_ == 1 ? static_cast<double>(get<float>(at_1)) : get<double>(at_2);
+  }
+
+  std::vector<std::byte> bytes_;
+  int version_ = 0;
+  bool separate_ = false, swapped_ = false;
+};
+
+struct NiftiType {
+  int code;
+  scene::SampleType type;
+  int components;
+};
+constexpr std::array nifti_types = {
+    NiftiType{2, scene::SampleType::uint8, 1},    NiftiType{4, scene::SampleType::int16, 1},
+    NiftiType{8, scene::SampleType::int32, 1},    NiftiType{16, scene::SampleType::float32, 1},
+    NiftiType{64, scene::SampleType::float64, 1}, NiftiType{128, scene::SampleType::uint8, 3},
+    NiftiType{256, scene::SampleType::int8, 1},   NiftiType{512, scene::SampleType::uint16, 1},
+    NiftiType{768, scene::SampleType::uint32, 1}, NiftiType{2304, scene::SampleType::uint8, 4}};
+
+/// nifti1.h, "METHOD 2": the rotation of a unit quaternion with a >= 0, the third axis mirrored where qfac is -1.
+std::array<glm::dvec3, 3> quaternion_steps(const NiftiHeader& header, const glm::dvec3& spacing) {
+  double b = header.quaternion(0), c = header.quaternion(1), d = header.quaternion(2);
+  double a = 1 - (b * b + c * c + d * d);
+  if (a < 1e-7) {  // a half turn: rounding may leave it below 0
+    const double length = std::sqrt(b * b + c * c + d * d);
+    b /= length, c /= length, d /= length, a = 0;
+  } else {
+    a = std::sqrt(a);
+  }
+  const double mirror = header.pixdim(0) < 0 ? -1 : 1;
+  return {glm::dvec3(a * a + b * b - c * c - d * d, 2 * (b * c + a * d), 2 * (b * d - a * c)) * spacing.x,
+          glm::dvec3(2 * (b * c - a * d), a * a + c * c - b * b - d * d, 2 * (c * d + a * b)) * spacing.y,
+          glm::dvec3(2 * (b * d + a * c), 2 * (c * d - a * b), a * a + d * d - c * c - b * b) * spacing.z * mirror};
+}
+
+void set_nifti_geometry(const NiftiHeader& header, const std::filesystem::path& file, StoredVolume& volume) {
+  scene::GridGeometry& g = volume.grid.geometry;
+  glm::dvec3 spacing;
+  for (std::size_t axis = 0; axis < 3; ++axis) spacing[static_cast<int>(axis)] = std::abs(header.pixdim(axis + 1));
+  if (header.sform_code() > 0) {
+    std::array<glm::dvec3, 3> steps;
+    for (std::size_t column = 0; column < 3; ++column)
+      steps[column] = {header.srow(0, column), header.srow(1, column), header.srow(2, column)};
+    set_axes(g, steps);
+    g.origin = {header.srow(0, 3), header.srow(1, 3), header.srow(2, 3)};
+    volume.notes.emplace_back("placed by its sform");
+  } else if (header.qform_code() > 0) {
+    set_axes(g, quaternion_steps(header, spacing));
+    g.spacing = spacing;  // as it stands, without the quaternion's rounding
+    g.origin = {header.quaternion(3), header.quaternion(4), header.quaternion(5)};
+    volume.notes.emplace_back("placed by its qform");
+  } else {
+    g.spacing = spacing;
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(g.spacing[axis] > 0) || !std::isfinite(g.spacing[axis]))
+      throw damaged(file, fmt::format("the spacing along {} is {}", "xyz"[axis], g.spacing[axis]));
+}
+
+}  // namespace
+
+bool looks_like_nifti(const std::filesystem::path& file) {
+  const MappedFile mapped(file);
+  const auto bytes = mapped.bytes();
+  // A gzip file that is no volume is not worth inflating, but only its beginning tells.
+  return bytes.size() >= 20 && NiftiHeader(header_bytes(mapped)).version() != 0;
+}
+
+StoredVolume read_nifti_header(const std::filesystem::path& file) {
+  const MappedFile mapped(file);
+  const NiftiHeader header(header_bytes(mapped));
+  if (header.version() == 0)
+    throw damaged(file, "it does not begin with a whole NIfTI header (348 or 540 bytes with its magic word)");
+  if (header.separate())
+    throw scene::bad_input(
+        fmt::format("{}: its samples are in another file (.hdr and .img); write one .nii", file.string()));
+  StoredVolume volume;
+  volume.format = fmt::format("NIfTI-{}", header.version());
+  const std::int64_t dimensions = header.dim(0);
+  if (dimensions < 1 || dimensions > 7) throw damaged(file, fmt::format("its header says {} dimensions", dimensions));
+  for (std::size_t k = 1; k <= static_cast<std::size_t>(dimensions); ++k) {
+    if (header.dim(k) < 1) throw damaged(file, fmt::format("dimension {} is {}", k, header.dim(k)));
+    if (k > 3 && header.dim(k) > 1)
+      throw scene::bad_input(
+          fmt::format("{}: it has {} dimensions, dimension {} holds {}; a volume has three, write one of them alone",
+                      file.string(), dimensions, k, header.dim(k)));
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    volume.grid.geometry.points[axis] = static_cast<std::int64_t>(axis) < dimensions ? header.dim(axis + 1) : 1;
+  const auto* type = std::find_if(nifti_types.begin(), nifti_types.end(),
+                                  [&](const NiftiType& known) { return known.code == header.datatype(); });
+  if (type == nifti_types.end())
+    throw scene::bad_input(
+        fmt::format("{}: its data type {} is none that is read; write 8, 16 or 32-bit integers or "
+                    "32 or 64-bit floats",
+                    file.string(), header.datatype()));
+  volume.number = type->type;
+  volume.components = type->components;
+  volume.swapped = header.swapped();
+  if (header.slope() != 0 && std::isfinite(header.slope()) && std::isfinite(header.intercept())) {
+    volume.grid.scale = header.slope();
+    volume.grid.shift = header.intercept();
+    if (volume.grid.scale != 1 || volume.grid.shift != 0)
+      volume.notes.push_back(
+          fmt::format("values are {:.9g} * sample + {:.9g}, as its header says", volume.grid.scale, volume.grid.shift));
+  }
+  set_nifti_geometry(header, file, volume);
+  const double offset = header.vox_offset();
+  if (!(offset >= 0 && offset < 1e9)) throw damaged(file, fmt::format("its samples begin at byte {}", offset));
+  // A single file never has them inside its header; old writers left 0.
+  const double least = header.version() == 1 ? header_size_1 : header_size_2;
+  volume.offset = static_cast<std::uint64_t>(std::max(offset, least + 4));
+  volume.payload = file;
+  volume.compressed = volume.compressed_whole = is_gzip(mapped.bytes());
+  return volume;
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,213 @@
+// NRRD. Source: Kindlmann, "Definition of NRRD File Format", teem.sourceforge.net/nrrd/format.html. VTK's reader gives
+// up on files with space directions, so the header is read here.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cctype>
+#include <cmath>
+#include <map>
+
+#include "io/header_text.hpp"
+#include "io/input_file.hpp"
+#include "io/volume_formats.hpp"
+
+namespace tessera::io {
+namespace {
+
+using scene::SampleType;
+
+struct NrrdTypeName {
+  const char* name;
+  SampleType type;
+};
+constexpr std::array nrrd_type_names = {NrrdTypeName{"signed char", SampleType::int8},
+                                        NrrdTypeName{"int8", SampleType::int8},
+                                        NrrdTypeName{"int8_t", SampleType::int8},
+                                        NrrdTypeName{"uchar", SampleType::uint8},
+                                        NrrdTypeName{"unsigned char", SampleType::uint8},
+                                        NrrdTypeName{"uint8", SampleType::uint8},
+                                        NrrdTypeName{"uint8_t", SampleType::uint8},
+                                        NrrdTypeName{"short", SampleType::int16},
+                                        NrrdTypeName{"short int", SampleType::int16},
+                                        NrrdTypeName{"signed short", SampleType::int16},
+                                        NrrdTypeName{"signed short int", SampleType::int16},
+                                        NrrdTypeName{"int16", SampleType::int16},
+                                        NrrdTypeName{"int16_t", SampleType::int16},
+                                        NrrdTypeName{"ushort", SampleType::uint16},
+                                        NrrdTypeName{"unsigned short", SampleType::uint16},
+                                        NrrdTypeName{"unsigned short int", SampleType::uint16},
+                                        NrrdTypeName{"uint16", SampleType::uint16},
+                                        NrrdTypeName{"uint16_t", SampleType::uint16},
+                                        NrrdTypeName{"int", SampleType::int32},
+                                        NrrdTypeName{"signed int", SampleType::int32},
+                                        NrrdTypeName{"int32", SampleType::int32},
+                                        NrrdTypeName{"int32_t", SampleType::int32},
+                                        NrrdTypeName{"uint", SampleType::uint32},
+                                        NrrdTypeName{"unsigned int", SampleType::uint32},
+                                        NrrdTypeName{"uint32", SampleType::uint32},
+                                        NrrdTypeName{"uint32_t", SampleType::uint32},
+                                        NrrdTypeName{"float", SampleType::float32},
+                                        NrrdTypeName{"double", SampleType::float64}};
+
+std::string lower_words(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
+/// NrrdFields by name, spaces in names left out, so that "space origin" and "spaceorigin" are one.
+struct NrrdFields {
+  std::map<std::string, std::string> values;
+  std::size_t end = 0;  ///< where an attached payload begins
+
+  [[nodiscard]] const std::string* find(const char* name) const {
+    const auto v = values.find(name);
+    return v == values.end() ? nullptr : &v->second;
+  }
+};
+
+NrrdFields parse_fields(std::string_view text, const std::filesystem::path& file) {
+  NrrdFields fields;
+  bool first = true;
+  while (fields.end < text.size()) {
+    const std::size_t stop = std::min(text.find('\n', fields.end), text.size());
+    const std::string_view line = trimmed(text.substr(fields.end, stop - fields.end));
+    fields.end = std::min(stop + 1, text.size());
+    if (std::exchange(first, false)) continue;  // NRRD000x
+    if (line.empty()) return fields;            // the header's end
+    const std::size_t colon = line.find(':');
+    if (line.front() == '#') continue;
+    if (colon == std::string_view::npos)
+      throw damaged(file, fmt::format("'{}' is no line 'field: value' of its header", line.substr(0, 40)));
+    if (line.substr(colon).starts_with(":=")) continue;  // a key of the user's
+    std::string name = lower_words(line.substr(0, colon));
+    std::erase(name, ' ');
+    fields.values[name] = std::string(trimmed(line.substr(colon + 1)));
+  }
+  return fields;  // .nhdr may end without a blank line
+}
+
+const std::string& required_field(const NrrdFields& fields, const char* name, const std::filesystem::path& file) {
+  const auto* value = fields.find(name);
+  if (!value) throw damaged(file, fmt::format("its header has no field '{}'", name));
+  return *value;
+}
+
+/// One vector an axis, "none" as nothing: `(1,0,0) none (0,0.5,0)`.
+std::vector<std::optional<glm::dvec3>> space_vectors_of(std::string_view text, const std::filesystem::path& file) {
+  std::vector<std::optional<glm::dvec3>> vectors;
+  text = trimmed(text);
+  while (!text.empty()) {
+    if (text.starts_with("none")) {
+      vectors.emplace_back();
+      text = trimmed(text.substr(4));
+      continue;
+    }
+    const std::size_t close = text.find(')');
+    if (text.front() != '(' || close == std::string_view::npos)
+      throw damaged(file, fmt::format("space directions hold '{}', no vector", text.substr(0, 40)));
+    const auto v = header_numbers(text.substr(0, close + 1), 3, file, "a space direction");
+    vectors.emplace_back(glm::dvec3(v[0], v[1], v[2]));
+    text = trimmed(text.substr(close + 1));
+  }
+  return vectors;
+}
+
+/// Spacing and origin along `axes`, whose first is a component axis if there are four.
+void set_nrrd_geometry(const NrrdFields& fields, std::size_t axes, const std::filesystem::path& file,
+                       StoredVolume& volume) {
+  const std::size_t skip = axes - 3;
+  scene::GridGeometry& g = volume.grid.geometry;
+  if (const auto* directions = fields.find("spacedirections")) {
+    const auto vectors = space_vectors_of(*directions, file);
+    if (vectors.size() != axes)
+      throw damaged(file, fmt::format("it has {} space directions for {} axes", vectors.size(), axes));
+    std::array<glm::dvec3, 3> steps;
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (!vectors[a + skip]) throw damaged(file, fmt::format("axis {} has no space direction", a + skip));
+      steps[a] = *vectors[a + skip];
+    }
+    set_axes(g, steps);
+    if (const auto* origin = fields.find("spaceorigin")) {
+      const auto o = header_numbers(*origin, 3, file, "space origin");
+      g.origin = {o[0], o[1], o[2]};
+    }
+    return;
+  }
+  const auto per_axis = [&](const char* name, const char* words, double otherwise, glm::dvec3& out) {
+    const auto* value = fields.find(name);
+    if (!value) return;
+    const auto numbers = header_numbers(*value, axes, file, words);
+    for (std::size_t a = 0; a < 3; ++a)
+      out[static_cast<int>(a)] = std::isnan(numbers[a + skip]) ? otherwise : numbers[a + skip];
+  };
+  glm::dvec3 spacing(1);
+  per_axis("spacings", "spacings", 1, spacing);
+  set_axes(g, {glm::dvec3(spacing.x, 0, 0), glm::dvec3(0, spacing.y, 0), glm::dvec3(0, 0, spacing.z)});
+  per_axis("axismins", "axis mins", 0, g.origin);
+}
+
+}  // namespace
+
+bool looks_like_nrrd(std::string_view beginning) { return beginning.starts_with("NRRD000"); }
+
+StoredVolume read_nrrd_header(const std::filesystem::path& file) {
+  constexpr std::size_t longest_nrrd_header = 1 << 20;
+  const std::string text = read_beginning(file, longest_nrrd_header);
+  const NrrdFields fields = parse_fields(text, file);
+  StoredVolume volume;
+  volume.format = "NRRD";
+
+  const auto sizes = header_count_list(required_field(fields, "sizes", file), file, "sizes");
+  const auto dimension = header_count(required_field(fields, "dimension", file), 1, 16, file, "dimension");
+  if (sizes.size() != static_cast<std::size_t>(dimension))
+    throw damaged(file, fmt::format("it has {} sizes for {} dimensions", sizes.size(), dimension));
+  const bool components = dimension == 4 && sizes[0] <= 16;
+  if (dimension != 3 && !components)
+    throw scene::bad_input(fmt::format("{}: it has {} dimensions; a volume has three, or four with components first",
+                                       file.string(), dimension));
+  const std::size_t skip = components ? 1 : 0;
+  if (components) volume.components = static_cast<int>(sizes[0]);
+  volume.grid.geometry.points = {sizes[skip], sizes[skip + 1], sizes[skip + 2]};
+
+  const std::string type = lower_words(required_field(fields, "type", file));
+  const auto* known = std::find_if(nrrd_type_names.begin(), nrrd_type_names.end(),
+                                   [&](const NrrdTypeName& t) { return type == t.name; });
+  if (known == nrrd_type_names.end())
+    throw scene::bad_input(
+        fmt::format("{}: its type '{}' is none that is read; write 8, 16 or 32-bit integers, float "
+                    "or double",
+                    file.string(), type.substr(0, 40)));
+  volume.number = known->type;
+  const std::string encoding = lower_words(required_field(fields, "encoding", file));
+  volume.compressed = encoding == "gzip" || encoding == "gz";
+  if (!volume.compressed && encoding != "raw")
+    throw scene::bad_input(
+        fmt::format("{}: its encoding '{}' is not read; write raw or gzip", file.string(), encoding.substr(0, 40)));
+  const auto* endian = fields.find("endian");
+  if (!endian && scene::size_of(volume.number) > 1) throw damaged(file, "its header has no field 'endian'");
+  volume.swapped = endian && (lower_words(*endian) == "big") != (std::endian::native == std::endian::big);
+  set_nrrd_geometry(fields, sizes.size(), file, volume);
+
+  volume.payload = file;
+  volume.offset = fields.end;
+  if (const auto* detached = fields.find("datafile")) {
+    if (detached->starts_with("LIST") || detached->find('%') != std::string::npos)
+      throw scene::bad_input(fmt::format("{}: its slices are in several files; write one", file.string()));
+    volume.payload = file.parent_path() / *detached;
+    volume.offset = 0;
+  }
+  if (const auto* lines = fields.find("lineskip"); lines && *lines != "0")
+    throw scene::bad_input(fmt::format("{}: 'line skip' is not read; say it as 'byte skip'", file.string()));
+  if (const auto* bytes = fields.find("byteskip")) {
+    if (*bytes == "-1")
+      volume.at_end = true;
+    else
+      volume.offset += static_cast<std::uint64_t>(header_count(*bytes, 0, std::int64_t{1} << 40, file, "byte skip"));
+  }
+  return volume;
+}
+
+}  // namespace tessera::io

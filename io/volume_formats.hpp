@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/volume_reader.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io {
+
+/// What a header says of one array of samples and of where its bytes are.
+struct StoredVolume {
+  scene::Grid grid;  ///< geometry, scale, shift; type and name follow from the choice of a component
+  scene::SampleType number = scene::SampleType::uint8;  ///< of each component
+  int components = 1;
+  bool swapped = false;           ///< bytes are of the other order than this machine's
+  std::filesystem::path payload;  ///< the file itself, or another
+  std::uint64_t offset = 0;       ///< of the payload in it
+  bool at_end = false;            ///< instead of an offset: the payload ends with the file
+  bool exact_size = false;        ///< the file must end with the payload
+  bool compressed = false;        ///< gzip or zlib from `offset` on; with `compressed_whole` from the beginning
+  bool compressed_whole = false;
+  std::string format;
+  std::vector<std::string> notes;
+};
+
+StoredVolume read_nifti_header(const std::filesystem::path& file);
+StoredVolume read_nrrd_header(const std::filesystem::path& file);
+StoredVolume read_meta_image_header(const std::filesystem::path& file);
+StoredVolume describe_raw(const std::filesystem::path& file, const VolumeOptions& options);
+
+/// .vti .vtr .vtk by VTK.
+VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions& options);
+
+/// Whether the beginning of a file is that of the format.
+bool looks_like_nifti(const std::filesystem::path& file);
+bool looks_like_nrrd(std::string_view beginning);
+bool looks_like_meta_image(std::string_view beginning);
+/// VTK XML image data or rectilinear grid, or legacy VTK of one; other kinds of VTK are meshes.
+bool looks_like_vtk_grid(std::string_view beginning);
+
+/// Spacing and direction from what one step of the index along each axis is in the world.
+void set_axes(scene::GridGeometry& geometry, const std::array<glm::dvec3, 3>& steps);
+
+/// "float" for float32, "double" for float64, else the type's name: as meshes' fields are listed.
+std::string listed_type(scene::SampleType type);
+
+/// bad_input of a damaged file.
+scene::Error damaged(const std::filesystem::path& file, const std::string& what);
+
+}  // namespace tessera::io

@@ -1,0 +1,206 @@
+#include "io/volume_reader.hpp"
+
+#include <fmt/format.h>
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <cctype>
+#include <glm/geometric.hpp>
+
+#include "io/brick_file.hpp"
+#include "io/clean_errors.hpp"
+#include "io/field_choice.hpp"
+#include "io/gzip.hpp"
+#include "io/input_file.hpp"
+#include "io/mapped_file.hpp"
+#include "io/volume_file.hpp"
+#include "io/volume_formats.hpp"
+
+namespace tessera::io {
+namespace {
+
+/// What kind of volume a file begins as.
+enum class VolumeKind { none, vtk, meta_image, nrrd, nifti, bricks };
+
+VolumeKind volume_kind_of(const std::filesystem::path& file) {
+  const std::string beginning = read_beginning(file, 4096);
+  if (looks_like_bricks(beginning)) return VolumeKind::bricks;
+  if (looks_like_vtk_grid(beginning)) return VolumeKind::vtk;
+  if (looks_like_nrrd(beginning)) return VolumeKind::nrrd;
+  if (looks_like_meta_image(beginning)) return VolumeKind::meta_image;
+  return looks_like_nifti(file) ? VolumeKind::nifti : VolumeKind::none;
+}
+
+struct VolumePayload {
+  std::span<const std::byte> bytes;
+  std::shared_ptr<const void> owner;
+  bool from_file = false;
+};
+
+VolumePayload payload_of(const StoredVolume& volume, std::uint64_t needed) {
+  const std::string source = volume.payload.string();
+  const std::uint64_t size = require_file(volume.payload);
+  auto mapped = std::make_shared<const MappedFile>(volume.payload);
+  if (volume.compressed) {
+    const std::uint64_t skip = volume.compressed_whole ? 0 : volume.offset;
+    const std::uint64_t before = volume.compressed_whole ? volume.offset : 0;
+    if (skip > size) throw damaged(volume.payload, fmt::format("its samples begin at byte {} of {}", skip, size));
+    auto bytes =
+        std::make_shared<const std::vector<std::byte>>(inflate(mapped->bytes().subspan(skip), before + needed, source));
+    return {std::span<const std::byte>(*bytes).subspan(before), bytes, false};
+  }
+  if (volume.at_end && needed <= size) return {mapped->bytes().subspan(size - needed), mapped, true};
+  if (volume.offset > size || needed > size - volume.offset || (volume.exact_size && needed != size - volume.offset)) {
+    const scene::GridIndex& n = volume.grid.geometry.points;
+    throw scene::bad_input(fmt::format(
+        "{}: {}x{}x{} samples of {} {} are {} bytes, the file has {}{}; {}", source, n[0], n[1], n[2],
+        volume.components, scene::name_of(volume.number), needed, size > volume.offset ? size - volume.offset : 0,
+        volume.offset > 0 ? fmt::format(" after its first {}", volume.offset) : "",
+        volume.exact_size ? "give the right dimensions and type" : "the file is truncated, write it anew"));
+  }
+  return {mapped->bytes().subspan(volume.offset, needed), mapped, true};
+}
+
+/// Counts of bytes that a header asks for, in arithmetic that a damaged one cannot overflow.
+std::uint64_t bytes_needed(const StoredVolume& volume, const std::string& source) {
+  std::uint64_t needed = scene::size_of(volume.number) * static_cast<std::uint64_t>(volume.components);
+  for (const std::int64_t n : volume.grid.geometry.points)
+    if (__builtin_mul_overflow(needed, static_cast<std::uint64_t>(n), &needed) || needed > (1ull << 62))
+      throw scene::bad_input(fmt::format(
+          "{}: its header asks for more samples than can be addressed; it is damaged, write it anew", source));
+  return needed;
+}
+
+/// Fields, choice and source of one array of samples.
+VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const std::string& source) {
+  const std::uint64_t needed = bytes_needed(volume, source);
+  scene::validate(volume.grid, source);
+  const VolumePayload payload = payload_of(volume, needed);
+  VolumeFile result;
+  result.format = std::move(volume.format);
+  result.notes = std::move(volume.notes);
+
+  FieldSummary field{.name = "samples", .components = volume.components, .type = listed_type(volume.number)};
+  field.high = 1;  // until it is known; nobody chooses by it
+  const FieldChoice choice = choose_field(options.field, std::span(&field, 1), source);
+  const auto source_with = [&](int component) {
+    scene::Grid grid = volume.grid;
+    grid.type = volume.number;
+    grid.field_name = choice.label;
+    if (component == magnitude) {
+      grid.type = scene::size_of(volume.number) < 4 || volume.number == scene::SampleType::float32
+                      ? scene::SampleType::float32
+                      : scene::SampleType::float64;
+      if (grid.shift != 0)
+        throw scene::bad_input(
+            fmt::format("{}: its components are shifted by {}, so their magnitude has no meaning; choose one with "
+                        "--field samples:0",
+                        source, grid.shift));
+      grid.scale = std::abs(grid.scale);
+    }
+    return std::make_unique<scene::MemorySource>(
+        std::move(grid), payload.bytes, payload.owner, source,
+        scene::ComponentChoice{volume.components, component == magnitude ? -1 : component, volume.number},
+        volume.swapped, payload.from_file);
+  };
+  result.source = source_with(choice.component);
+  result.range = scene::value_range(*result.source);
+  const bool other = volume.components > 1 && choice.component != magnitude && volume.grid.shift == 0;
+  const scene::ValueRange listed = other ? scene::value_range(*source_with(magnitude)) : result.range;
+  field.low = listed.empty() ? 0 : listed.low;
+  field.high = listed.empty() ? 0 : listed.high;
+  field.nan_count = listed.blanks;
+  result.fields.push_back(std::move(field));
+  return result;
+}
+
+/// A file that says of itself what it holds.
+VolumeFile open_described(const std::filesystem::path& file, VolumeKind kind, const VolumeOptions& options,
+                          const std::string& source) {
+  switch (kind) {
+    case VolumeKind::vtk: {
+      VolumeFile result = read_vtk_grid(file, options);
+      result.range = scene::value_range(*result.source);
+      return result;
+    }
+    case VolumeKind::bricks:
+      return open_bricks(file, options);
+    case VolumeKind::meta_image:
+      return open_stored(read_meta_image_header(file), options, source);
+    case VolumeKind::nrrd:
+      return open_stored(read_nrrd_header(file), options, source);
+    case VolumeKind::nifti:
+      return open_stored(read_nifti_header(file), options, source);
+    case VolumeKind::none:
+      break;
+  }
+  const std::string extension = lower_extension(file);
+  if (extension == ".nii" || extension == ".gz") return open_stored(read_nifti_header(file), options, source);
+  throw scene::bad_input(fmt::format("{}: it does not begin as a {} does; check what it is", source,
+                                     extension.empty() ? "volume" : extension.substr(1)));
+}
+
+}  // namespace
+
+scene::Error damaged(const std::filesystem::path& file, const std::string& what) {
+  return scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it anew", file.string(), what));
+}
+
+std::string listed_type(scene::SampleType type) {
+  if (type == scene::SampleType::float32) return "float";
+  if (type == scene::SampleType::float64) return "double";
+  return scene::name_of(type);
+}
+
+void set_axes(scene::GridGeometry& geometry, const std::array<glm::dvec3, 3>& steps) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const glm::dvec3& step = steps[static_cast<std::size_t>(axis)];
+    const double length = glm::length(step);
+    geometry.spacing[axis] = length;
+    // Without a length validate() says so; the axis itself keeps the message to the point.
+    geometry.direction[axis] = glm::dvec3(axis == 0, axis == 1, axis == 2);
+    if (length > 0 && std::isfinite(length)) geometry.direction[axis] = step / length + 0.0;
+  }
+}
+
+bool is_volume(const std::filesystem::path& file) {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(file, unknown) || std::filesystem::file_size(file, unknown) == 0 || unknown)
+    return is_volume_file(file);
+  if (lower_extension(file) == ".raw") return true;
+  if (volume_kind_of(file) != VolumeKind::none) return true;
+  return is_volume_file(file);  // a damaged one is told as what it was meant to be
+}
+
+void require_volume(const std::filesystem::path& file) {
+  require_file(file);
+  if (!is_volume(file))
+    throw scene::bad_input(
+        fmt::format("{}: it is no volume as the first step is one; give volumes only", file.string()));
+}
+
+VolumeFile open_volume(const std::filesystem::path& file, const VolumeOptions& options) {
+  const std::string source = file.string();
+  require_file(file);
+  return with_clean_errors(source, [&] {
+    const std::string extension = lower_extension(file);
+    const VolumeKind kind = volume_kind_of(file);
+    const bool raw = kind == VolumeKind::none && (extension == ".raw" || options.describes_raw());
+    if (!raw && options.describes_raw())
+      throw scene::bad_input(
+          fmt::format("{}: --dims, --type, --spacing, --origin, --endian and --skip are for .raw files; this one says "
+                      "them itself",
+                      source));
+    VolumeFile result =
+        raw ? open_stored(describe_raw(file, options), options, source) : open_described(file, kind, options, source);
+    if (result.range.empty())
+      throw scene::bad_input(fmt::format("{}: none of its {} samples is a finite number; choose another field", source,
+                                         result.source->geometry().all_samples().count()));
+    if (result.range.blanks > 0)
+      result.notes.push_back(
+          fmt::format("{} samples are NaN, infinite or hidden: their voxels are blank", result.range.blanks));
+    return result;
+  });
+}
+
+}  // namespace tessera::io

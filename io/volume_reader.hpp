@@ -1,0 +1,65 @@
+#pragma once
+
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/mesh_reader.hpp"
+#include "scene/sample_source.hpp"
+
+namespace tessera::io {
+
+/// What the user may say about a volume file; the defaults read any file that describes itself.
+struct VolumeOptions {
+  std::string field{};  ///< as MeshOptions::field
+  // A .raw file says nothing of itself, but perhaps by its name: NAME_WxHxD_TYPE.raw. These win over the name, and are
+  // refused for other files.
+  std::optional<scene::GridIndex> dims{};
+  std::optional<scene::SampleType> type{};
+  std::optional<glm::dvec3> spacing{}, origin{};
+  bool big_endian = false;
+  std::uint64_t skip = 0;  ///< bytes before the first sample
+
+  /// Whether one of the .raw options is given.
+  [[nodiscard]] bool describes_raw() const { return dims || type || spacing || origin || big_endian || skip > 0; }
+};
+
+/// A volume whose samples wait in the file, or in memory where they had to be decompressed.
+struct VolumeFile {
+  std::unique_ptr<scene::SampleSource> source;
+  scene::ValueRange range;  ///< of the chosen field, and its blanks
+  std::vector<FieldSummary> fields;
+  std::vector<std::string> notes;  ///< one line each: what was chosen or applied, or odd about the file
+  std::string format;
+};
+
+/// Whether the file is a regular or rectilinear grid: by what it begins with, so that a .vtk may be a mesh or a volume
+/// and a name may be wrong; by its name where it is not there or is .raw.
+bool is_volume(const std::filesystem::path& file);
+
+/// Throws Error(bad_input) if the file is not there, or is a mesh. Does not read its samples.
+void require_volume(const std::filesystem::path& file);
+
+/// Opens a volume.
+///
+///   .vti .vtr, .vtk of structured points or a rectilinear grid: by VTK, all of it in memory. Extent, origin, spacing
+///       and direction apply. A curvilinear .vtk is a mesh. 64-bit integers become doubles. Hidden samples are blank.
+///   .mhd .mha: origin, spacing, orientation, slope and offset apply; raw (mapped) or compressed.
+///   .nrrd .nhdr: space origin and directions, else axis minimums and spacings; raw (mapped) or gzip. A first axis of
+///       components is allowed; content "old min" and the measurement frame mean nothing here.
+///   .nii .nii.gz (NIfTI-1 and 2): sform, else qform, else the spacing alone; slope and intercept apply.
+///   .raw: described by the options or by its name, mapped. .bricks: what write_bricks made, read brick by brick.
+///
+/// World coordinates are the file's own (NIfTI's point right, anterior, up; MetaImage's and NRRD's whatever they say).
+/// Headers are compared with the file's size before memory is asked for. Throws Error(bad_input) in one line for a
+/// missing, truncated, malformed or flat file, for four or more dimensions, for an encoding or type not known, for an
+/// unknown field, or if no sample is finite.
+VolumeFile open_volume(const std::filesystem::path& file, const VolumeOptions& options = {});
+
+/// Name of a type on the command line and in .raw names: uint8, int16, float32, ... (float and double too).
+std::optional<scene::SampleType> parse_sample_type(const std::string& text);
+
+}  // namespace tessera::io

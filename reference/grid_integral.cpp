@@ -1,0 +1,121 @@
+#include "reference/grid_integral.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace tessera::reference {
+namespace {
+
+constexpr double largest_optical_step = 0.5;
+constexpr double depth_of_nothing = 41.45;  // exp(-41.45) < 1e-18
+
+/// Gauss-Legendre on [-1, 1], eight points: nodes +-x with weight w. Abramowitz, Stegun, table 25.4.
+constexpr std::array<std::array<double, 2>, 4> gauss{{{0.1834346424956498, 0.3626837833783620},
+                                                      {0.5255324099163290, 0.3137066458778873},
+                                                      {0.7966664774136267, 0.2223810344533745},
+                                                      {0.9602898564975363, 0.1012285362903763}}};
+
+/// Integral of a cubic from u0 to u1, about the middle so that short pieces do not cancel.
+double area(const Cubic& p, double u0, double u1) {
+  const double m = (u0 + u1) / 2, h = (u1 - u0) / 2;
+  const double curvature = p.c[2] + 3 * p.c[3] * m;  // half the second derivative
+  return 2 * h * (p.at(m) + curvature * h * h / 3);
+}
+
+/// a + b * p.
+Cubic linear_of(double a, double b, const Cubic& p) { return {{a + b * p.c[0], b * p.c[1], b * p.c[2], b * p.c[3]}}; }
+
+/// Places in (0, 1) where the cubic turns round.
+std::vector<double> turning_points(const Cubic& p) {
+  const double a = 3 * p.c[3], b = 2 * p.c[2], c = p.c[1];
+  std::vector<double> points;
+  const auto keep = [&](double u) {
+    if (u > 0 && u < 1) points.push_back(u);
+  };
+  const double discriminant = b * b - 4 * a * c;
+  if (!(discriminant > 0)) return points;
+  // The form without cancellation; a may be zero.
+  const double q = -(b + std::copysign(std::sqrt(discriminant), b)) / 2;
+  if (a != 0) keep(q / a);
+  if (q != 0) keep(c / q);
+  std::sort(points.begin(), points.end());
+  return points;
+}
+
+/// Where the cubic, monotone in [u0, u1], takes a value between those at the ends.
+double crossing(const Cubic& p, double u0, double u1, double value) {
+  const bool rising = p.at(u1) > p.at(u0);
+  while (true) {
+    const double middle = u0 + (u1 - u0) / 2;
+    if (!(middle > u0 && middle < u1)) return middle;
+    ((p.at(middle) < value) == rising ? u0 : u1) = middle;
+  }
+}
+
+}  // namespace
+
+double GridIntegral::opacity() const { return -std::expm1(-optical_depth_); }
+
+bool GridIntegral::opaque() const { return optical_depth_ > depth_of_nothing; }
+
+void GridIntegral::add(double length, const Cubic& scalar, double depth_front, double depth_back) {
+  if (!(length > 0)) return;
+  std::vector<double> ends = {0};
+  for (const double u : turning_points(scalar)) ends.push_back(u);
+  ends.push_back(1);
+  std::vector<double> cuts = ends;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    const double one = scalar.at(ends[i]), other = scalar.at(ends[i + 1]);
+    const double low = std::min(one, other), high = std::max(one, other);
+    for (const scene::Knot& knot : knots_)
+      if (knot.value > low && knot.value < high) cuts.push_back(crossing(scalar, ends[i], ends[i + 1], knot.value));
+  }
+  std::sort(cuts.begin(), cuts.end());
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
+    if (cuts[i + 1] > cuts[i]) add_piece(length, scalar, cuts[i], cuts[i + 1], depth_front, depth_back);
+}
+
+void GridIntegral::add_piece(double length, const Cubic& scalar, double u0, double u1, double depth_front,
+                             double depth_back) {
+  // The knots on either side of the piece; a value on a step belongs to the step's upper knot.
+  const double within = scalar.at((u0 + u1) / 2);
+  std::size_t above = 0;
+  while (above < knots_.size() && knots_[above].value <= within) ++above;
+  const scene::Knot& low = knots_[above == 0 ? 0 : above - 1];
+  const scene::Knot& high = knots_[above == knots_.size() ? above - 1 : above];
+  const auto along = [&](double at_low, double at_high) {
+    if (!(high.value > low.value)) return Cubic{{at_low, 0, 0, 0}};
+    const double slope = (at_high - at_low) / (high.value - low.value);
+    return linear_of(at_low - slope * low.value, slope, scalar);
+  };
+  const Cubic extinction = along(low.extinction, high.extinction);
+  const std::array<Cubic, 3> color = {along(low.color.x, high.color.x), along(low.color.y, high.color.y),
+                                      along(low.color.z, high.color.z)};
+  if (low.extinction > 0 || high.extinction > 0)
+    if (std::isinf(first_visible_depth_)) first_visible_depth_ = depth_front + (depth_back - depth_front) * u0;
+  add_color(length, u0, u1, 0, extinction, color, 0);
+  optical_depth_ += std::max(0.0, length * area(extinction, u0, u1));
+}
+
+void GridIntegral::add_color(double length, double u0, double u1, double before, const Cubic& extinction,
+                             const std::array<Cubic, 3>& color, int depth) {
+  constexpr int deepest = 50;
+  if (optical_depth_ + before > depth_of_nothing) return;
+  if (length * area(extinction, u0, u1) > largest_optical_step && depth < deepest) {
+    const double middle = (u0 + u1) / 2;
+    add_color(length, u0, middle, before, extinction, color, depth + 1);
+    add_color(length, middle, u1, before + length * area(extinction, u0, middle), extinction, color, depth + 1);
+    return;
+  }
+  for (const auto& [x, weight] : gauss)
+    for (const double side : {-x, x}) {
+      const double u = u0 + (u1 - u0) * (1 + side) / 2;
+      const double source = emission_ == scene::Emission::absorption ? extinction.at(u) : 1;
+      const double seen = std::exp(-(optical_depth_ + before + length * area(extinction, u0, u)));
+      const double factor = weight / 2 * (u1 - u0) * length * source * seen;
+      for (std::size_t i = 0; i < 3; ++i) color_[i] += factor * color[i].at(u);
+    }
+}
+
+}  // namespace tessera::reference

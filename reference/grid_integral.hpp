@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <span>
+
+#include "scene/optical_model.hpp"
+#include "scene/transfer_function.hpp"
+
+namespace tessera::reference {
+
+/// A polynomial of degree three in u: c[0] + c[1] u + c[2] u^2 + c[3] u^3.
+struct Cubic {
+  std::array<double, 4> c{0, 0, 0, 0};
+
+  [[nodiscard]] double at(double u) const { return ((c[3] * u + c[2]) * u + c[1]) * u + c[0]; }
+};
+
+/// The volume rendering integral along one ray, front to back, where the scalar is a cubic in each stretch: what
+/// Integral is for linear ones.
+///
+/// A stretch is cut at the cubic's turning points, and between them where it passes a knot of the transfer function
+/// (bisection down to neighbouring doubles). In a piece extinction and colour are cubics too, the optical depth is a
+/// quartic in closed form, and the colour is Gauss-Legendre quadrature with eight points on steps of at most half a
+/// unit of optical depth. Error about 1e-12 in linear RGBA. It stops where T < 1e-18.
+class GridIntegral {
+ public:
+  /// The knots must outlive the integral.
+  GridIntegral(std::span<const scene::Knot> knots, scene::Emission emission) : knots_(knots), emission_(emission) {}
+
+  /// The next stretch: its world length, the scalar over u in [0, 1], the planar depths at its ends.
+  void add(double length, const Cubic& scalar, double depth_front, double depth_back);
+
+  [[nodiscard]] std::array<double, 3> color() const { return color_; }  ///< linear RGB, premultiplied
+  [[nodiscard]] double opacity() const;
+  [[nodiscard]] double optical_depth() const { return optical_depth_; }
+  [[nodiscard]] double first_visible_depth() const { return first_visible_depth_; }
+  [[nodiscard]] bool opaque() const;  ///< nothing behind can be seen
+
+ private:
+  /// A piece u0 to u1 of a stretch in which the transfer function is linear.
+  void add_piece(double length, const Cubic& scalar, double u0, double u1, double depth_front, double depth_back);
+  /// Colour of [u0, u1], which lies `before` of optical depth behind the piece's front.
+  void add_color(double length, double u0, double u1, double before, const Cubic& extinction,
+                 const std::array<Cubic, 3>& color, int depth);
+
+  std::span<const scene::Knot> knots_;
+  scene::Emission emission_;
+  std::array<double, 3> color_{0, 0, 0};
+  double optical_depth_ = 0;
+  double first_visible_depth_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace tessera::reference

@@ -1,0 +1,164 @@
+#include "reference/grid_reference.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "reference/grid_integral.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::reference {
+namespace {
+
+constexpr double plane_tolerance = 1e-9;  // voxels
+
+/// p + (q - p) * (a + b u); p and q of degree two at most.
+Cubic mixed(const Cubic& p, const Cubic& q, double a, double b) {
+  Cubic result;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double difference = q.c[i] - p.c[i];
+    result.c[i] += p.c[i] + difference * a;
+    if (i < 3) result.c[i + 1] += difference * b;
+  }
+  return result;
+}
+
+}  // namespace
+
+GridReference::GridReference(const scene::SampleSource& source, const scene::Camera& camera, scene::ImageSize size,
+                             const scene::TransferFunction& transfer_function, scene::Emission emission)
+    : source_(&source),
+      size_((scene::validate(camera), scene::validate(size), size)),
+      knots_(transfer_function.knots().begin(), transfer_function.knots().end()),
+      emission_(emission),
+      view_(camera, size),
+      to_local_(scene::world_to_local(source.geometry())) {
+  if (knots_.empty()) throw scene::bad_input("transfer function: it has no knot; give one or more");
+}
+
+std::int64_t GridReference::voxel_along(std::size_t axis, double local) const {
+  const scene::GridGeometry& g = source_->geometry();
+  std::int64_t low = 0, high = g.points[axis] - 1;  // lattice(low) <= local < lattice(high), clamped
+  while (high - low > 1) {
+    const std::int64_t middle = low + (high - low) / 2;
+    (g.lattice(axis, middle) <= local ? low : high) = middle;
+  }
+  return low;
+}
+
+GridReference::LocalRay GridReference::local_ray(double x, double y) const {
+  const scene::GridGeometry& g = source_->geometry();
+  const View::Ray world = view_.ray(x, y);
+  LocalRay ray{
+      to_local_ * (world.origin - g.origin), to_local_ * world.step, {-1, -1, -1}, view_.nearest(), view_.farthest()};
+  double span = 0;  // planar depth that the volume covers at most: where parallel planes need not be crossed
+  const scene::Box box = scene::bounds(g);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p(corner & 1 ? box.low.x : box.high.x, corner & 2 ? box.low.y : box.high.y,
+                       corner & 4 ? box.low.z : box.high.z);
+    span = std::max(span, std::abs(view_.project(p).depth));
+  }
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int axis = static_cast<int>(a);
+    const double low = g.lattice(a, 0), high = g.lattice(a, g.points[a] - 1);
+    const double voxel = (high - low) / static_cast<double>(g.points[a] - 1);
+    if (std::abs(ray.step[axis]) * span < plane_tolerance * voxel) {
+      const double local = ray.origin[axis];
+      // Where an infinitesimal shift of the ray moves it along this axis.
+      const auto moved = [&](double dx, double dy) {
+        const View::Ray other = view_.ray(x + dx, y + dy);
+        return (to_local_ * (other.origin - world.origin) + (to_local_ * (other.step - world.step)) * span)[axis];
+      };
+      const double by_x = moved(1, 0), by_y = moved(0, 1);
+      const double shift = std::abs(by_x) > plane_tolerance * voxel ? by_x : by_y;
+      const double shifted = local + std::copysign(plane_tolerance * voxel, shift);
+      ray.in_plane[a] = shifted >= low && shifted < high ? voxel_along(a, shifted) : -1;
+      if (ray.in_plane[a] < 0) ray.end = ray.begin;
+      continue;
+    }
+    double enter = (low - ray.origin[axis]) / ray.step[axis], leave = (high - ray.origin[axis]) / ray.step[axis];
+    if (enter > leave) std::swap(enter, leave);
+    ray.begin = std::max(ray.begin, enter);
+    ray.end = std::min(ray.end, leave);
+  }
+  return ray;
+}
+
+Pixel GridReference::pixel(double x, double y) const {
+  const scene::Grid& grid = source_->grid();
+  const scene::GridGeometry& g = grid.geometry;
+  const LocalRay ray = local_ray(x, y);
+  GridIntegral integral(knots_, emission_);
+  Pixel pixel;
+
+  // Every place where the ray passes a plane of the lattice, each computed from the plane alone.
+  std::vector<double> cuts;
+  if (ray.begin < ray.end) {
+    cuts = {ray.begin, ray.end};
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (ray.in_plane[a] >= 0) continue;
+      const int axis = static_cast<int>(a);
+      const auto at = [&](double z) { return voxel_along(a, ray.origin[axis] + z * ray.step[axis]); };
+      const std::int64_t one = at(ray.begin), other = at(ray.end), first = std::min(one, other),
+                         last = std::max(one, other);
+      for (std::int64_t i = first; i <= last + 1; ++i) {
+        const double z = (g.lattice(a, i) - ray.origin[axis]) / ray.step[axis];
+        if (z > ray.begin && z < ray.end) cuts.push_back(z);
+      }
+    }
+    std::sort(cuts.begin(), cuts.end());
+  }
+
+  const double length_per_depth = view_.length_per_depth(x, y);
+  for (std::size_t c = 0; c + 1 < cuts.size() && !integral.opaque(); ++c) {
+    const double z0 = cuts[c], z1 = cuts[c + 1];
+    if (!(z1 > z0)) continue;
+    const glm::dvec3 middle = ray.origin + ray.step * ((z0 + z1) / 2);
+    scene::SampleBox box;
+    for (std::size_t a = 0; a < 3; ++a) {
+      box.low[a] = ray.in_plane[a] >= 0 ? ray.in_plane[a] : voxel_along(a, middle[static_cast<int>(a)]);
+      box.high[a] = box.low[a] + (g.association == scene::Association::cell ? 1 : 2);
+    }
+    std::array<double, 8> samples{};
+    const auto count = static_cast<std::size_t>(box.count());
+    source_->read(box, std::span(samples).first(count));
+    if (!std::all_of(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(count),
+                     [](double s) { return std::isfinite(s); }))
+      continue;
+    std::array<Cubic, 8> field;
+    for (std::size_t i = 0; i < count; ++i) field[i].c[0] = grid.value(samples[i]);
+    if (count == 8) {
+      for (std::size_t a = 0; a < 3; ++a) {  // i first: neighbours in the box's order
+        const int axis = static_cast<int>(a);
+        const double low = g.lattice(a, box.low[a]), side = g.lattice(a, box.low[a] + 1) - low;
+        const double at_front = (ray.origin[axis] + z0 * ray.step[axis] - low) / side;
+        const double rise = (z1 - z0) * ray.step[axis] / side;
+        for (std::size_t i = 0; i < (8u >> (a + 1)); ++i)
+          field[i] = mixed(field[2 * i], field[2 * i + 1], at_front, rise);
+      }
+    }
+    const double length = (z1 - z0) * length_per_depth;
+    integral.add(length, field[0], z0, z1);
+    pixel.length += length;
+    ++pixel.segments;
+  }
+  pixel.r = integral.color()[0], pixel.g = integral.color()[1], pixel.b = integral.color()[2];
+  pixel.a = integral.opacity();
+  pixel.z = integral.first_visible_depth();
+  return pixel;
+}
+
+std::vector<Pixel> GridReference::pixels(std::span<const PixelIndex> wanted, int threads) const {
+  std::vector<Pixel> result(wanted.size());
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, wanted.size(),
+                      [&](std::size_t i) { result[i] = pixel(wanted[i].x + 0.5, wanted[i].y + 0.5); });
+  });
+  return result;
+}
+
+}  // namespace tessera::reference

@@ -1,0 +1,237 @@
+#include "reference/grid_reference.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <glm/geometric.hpp>
+#include <random>
+
+#include "reference/judge.hpp"
+#include "reference/reference.hpp"
+#include "scene/error.hpp"
+#include "small_meshes.hpp"
+
+namespace tessera::reference {
+namespace {
+
+using scene::Association;
+using scene::Emission;
+using scene::MemorySource;
+using scene::ProjectionKind;
+using scene::TransferFunction;
+
+using Source = std::unique_ptr<MemorySource>;
+
+scene::GridGeometry lattice(const scene::GridIndex& points, const glm::dvec3& low, const glm::dvec3& high) {
+  scene::GridGeometry g;
+  g.points = points;
+  g.origin = low;
+  for (int a = 0; a < 3; ++a)
+    g.spacing[a] = (high[a] - low[a]) / static_cast<double>(points[static_cast<std::size_t>(a)] - 1);
+  return g;
+}
+
+/// The field at the lattice points, or at the voxels' middles for cell data.
+Source sampled(const scene::GridGeometry& geometry, const std::function<double(const glm::dvec3&)>& field) {
+  scene::Grid grid;
+  grid.geometry = geometry;
+  const scene::GridIndex n = geometry.samples();
+  const double half = geometry.association == Association::cell ? 0.5 : 0;
+  std::vector<double> values;
+  for (std::int64_t k = 0; k < n[2]; ++k)
+    for (std::int64_t j = 0; j < n[1]; ++j)
+      for (std::int64_t i = 0; i < n[0]; ++i)
+        values.push_back(field(scene::world_of_index(
+            geometry, glm::dvec3(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)) + half)));
+  return MemorySource::of(grid, values);
+}
+
+const TransferFunction bumpy({{-1, {0.2, 0.4, 1}, 0},
+                              {-0.3, {0.9, 0.1, 0.3}, 2},
+                              {0.1, {0.1, 0.9, 0.2}, 0},
+                              {0.1, {1, 1, 0}, 5},
+                              {0.6, {0, 0.3, 1}, 0.5},
+                              {1.2, {1, 1, 1}, 9}});
+
+double wave(const glm::dvec3& p) { return std::sin(3 * p.x + p.y) * std::cos(2 * p.z - p.x) + 0.2 * p.y; }
+
+void expect_equal(const Pixel& a, const Pixel& b, double tolerance) {
+  EXPECT_NEAR(a.r, b.r, tolerance);
+  EXPECT_NEAR(a.g, b.g, tolerance);
+  EXPECT_NEAR(a.b, b.b, tolerance);
+  EXPECT_NEAR(a.a, b.a, tolerance);
+}
+
+constexpr scene::ImageSize window{20, 16};
+constexpr double rounding = 1e-12;  // a few hundred pieces, each right to 1e-15 or so
+
+TEST(GridReference, AConstantFieldObeysBeerLambertInEveryProjection) {
+  const Source source = sampled(lattice({5, 3, 4}, {-1, -1, -1}, {1, 1, 1}), [](auto&) { return 0.5; });
+  const TransferFunction gray({{0.5, {1, 0.5, 0.25}, 1.3}});
+  for (const ProjectionKind projection : {ProjectionKind::orthographic, ProjectionKind::perspective})
+    for (const glm::dvec3 eye : {glm::dvec3(3, 2, 4), glm::dvec3(0.1, 0.2, 0.3)}) {
+      const GridReference reference(*source, looking(eye, {0, 0, 0}, projection, 1), window, gray);
+      double thickest = 0;
+      for (const Pixel& p : reference.pixels(all_pixels(window))) {
+        EXPECT_NEAR(p.a, -std::expm1(-1.3 * p.length), rounding);
+        EXPECT_NEAR(p.r, p.a, rounding);
+        EXPECT_NEAR(p.b, 0.25 * p.a, rounding);
+        thickest = std::max(thickest, p.length);
+      }
+      EXPECT_GT(thickest, 0.7);  // an eye inside sees from itself on
+    }
+}
+
+TEST(GridReference, TheLengthInTheBoxIsThatOfItsChord) {
+  const Source source = sampled(lattice({4, 4, 4}, {-1, -1, -1}, {1, 1, 1}), wave);
+  const scene::Camera camera = looking({0, 0, 5}, {0, 0, 0}, ProjectionKind::orthographic, 1.5);
+  const GridReference reference(*source, camera, {30, 30}, bumpy);
+  EXPECT_NEAR(reference.pixel(15.3, 14.2).length, 2, rounding);
+  EXPECT_EQ(reference.pixel(4.9, 15).length, 0);  // the box spans 20 of 30 pixels
+}
+
+TEST(GridReference, ALinearFieldIsTheSameAsInTetrahedra) {
+  const auto linear = [](const glm::dvec3& p) { return 0.4 * p.x - 0.3 * p.y + 0.5 * p.z; };
+  const Source source = sampled(lattice({4, 4, 4}, {-1, -1, -1}, {1, 1, 1}), linear);
+  const scene::TetMesh mesh = box_of_tets(3, {-1, -1, -1}, {1, 1, 1}, linear);
+  for (const Emission emission : {Emission::absorption, Emission::independent})
+    for (const ProjectionKind projection : {ProjectionKind::orthographic, ProjectionKind::perspective}) {
+      const scene::Camera camera = looking({2.1, 1.7, 3.3}, {0, 0, 0}, projection, 1.6);
+      const GridReference grid(*source, camera, window, bumpy, emission);
+      const Reference tets(mesh, camera, window, bumpy, emission);
+      const auto a = grid.pixels(all_pixels(window)), b = tets.image();
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        expect_equal(a[i], b[i], 1e-8);  // tets' rays are rounded to 2^-32 pixel
+        if (a[i].a > 1e-6) {
+          EXPECT_NEAR(a[i].z, b[i].z, 1e-6);
+        }
+      }
+    }
+}
+
+TEST(GridReference, OneVoxelOfEightValuesIsTheSumOfVeryManySamples) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> any(-1, 1.2);
+  scene::Grid grid;
+  grid.geometry = lattice({2, 2, 2}, {0, 0, 0}, {1, 2, 0.5});
+  std::vector<double> v(8);
+  for (double& x : v) x = any(random);
+  const Source source = MemorySource::of(grid, v);
+  const scene::Camera camera = looking({2, 3, 2.5}, {0.5, 1, 0.25}, ProjectionKind::orthographic, 0.9);
+  const GridReference reference(*source, camera, window, bumpy);
+  const View view(camera, window);
+  for (const auto& [x, y] : {std::array{10.2, 8.1}, std::array{8.0, 9.5}, std::array{12.4, 6.7}}) {
+    const Pixel pixel = reference.pixel(x, y);
+    ASSERT_GT(pixel.length, 0.1);
+    constexpr int steps = 400000;
+    const View::Ray ray = view.ray(x, y);
+    const double begin = 0, end = 8, dz = (end - begin) / steps;
+    double depth = 0, red = 0;
+    for (int i = 0; i < steps; ++i) {
+      const glm::dvec3 p = (ray.origin + ray.step * (begin + (i + 0.5) * dz)) / glm::dvec3(1, 2, 0.5);
+      if (p.x < 0 || p.y < 0 || p.z < 0 || p.x > 1 || p.y > 1 || p.z > 1) continue;
+      const auto mix = [](double a, double b, double u) { return a + (b - a) * u; };
+      const double s = mix(mix(mix(v[0], v[1], p.x), mix(v[2], v[3], p.x), p.y),
+                           mix(mix(v[4], v[5], p.x), mix(v[6], v[7], p.x), p.y), p.z);
+      const scene::Knot k = bumpy.evaluate(s);
+      red += k.extinction * k.color.x * std::exp(-depth - k.extinction * dz / 2) * dz;
+      depth += k.extinction * dz;
+    }
+    EXPECT_NEAR(pixel.r, red, 5e-4);  // 2e-5 long steps at a step of the function by 5 and at both ends
+    EXPECT_NEAR(pixel.a, -std::expm1(-depth), 5e-4);
+  }
+}
+
+TEST(GridReference, RectilinearTurnedAndScaledGridsOfOneFieldAgree) {
+  const scene::GridGeometry plain = lattice({7, 5, 6}, {-1, -1, -1}, {1, 1, 1});
+  const Source source = sampled(plain, wave);
+  std::vector<double> values(7 * 5 * 6);
+  source->read(plain.all_samples(), std::span(values));
+  scene::Grid listed;
+  listed.geometry = plain;
+  listed.geometry.origin = {0, 0, 0};
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::int64_t i = 0; i < plain.points[a]; ++i)
+      listed.geometry.coordinates[a].push_back(-1 + plain.lattice(a, i));
+  listed.scale = -2;
+  std::vector<double> halved(values);
+  for (double& v : halved) v /= -2;
+
+  // Axes (i, j, k) along (y, z, x): the same samples in another order.
+  scene::Grid turned;
+  turned.geometry = plain;
+  turned.geometry.points = {5, 6, 7};
+  turned.geometry.spacing = {plain.spacing.y, plain.spacing.z, plain.spacing.x};
+  turned.geometry.direction = {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
+  std::vector<double> reordered;
+  for (std::size_t x = 0; x < 7; ++x)
+    for (std::size_t z = 0; z < 6; ++z)
+      for (std::size_t y = 0; y < 5; ++y) reordered.push_back(values[(z * 5 + y) * 7 + x]);
+
+  const Source a = MemorySource::of(listed, halved), b = MemorySource::of(turned, reordered);
+  const scene::Camera camera = looking({2.1, 1.7, 3.3}, {0, 0, 0}, ProjectionKind::perspective, 1.6);
+  const GridReference first(*source, camera, window, bumpy), second(*a, camera, window, bumpy),
+      third(*b, camera, window, bumpy);
+  for (const PixelIndex p : all_pixels(window)) {
+    const Pixel truth = first.pixel(p.x + 0.5, p.y + 0.5);
+    expect_equal(second.pixel(p.x + 0.5, p.y + 0.5), truth, 1e-10);  // coordinates rounded otherwise, extinction 9
+    expect_equal(third.pixel(p.x + 0.5, p.y + 0.5), truth, 1e-10);
+  }
+}
+
+TEST(GridReference, CellDataIsConstantInVoxelsAndRaysInTheirFacesAreDecided) {
+  scene::GridGeometry g = lattice({3, 3, 3}, {-1, -1, -1}, {1, 1, 1});
+  g.association = Association::cell;
+  const Source source = sampled(g, [](const glm::dvec3& p) { return (p.x < 0 ? 0 : 1) + (p.z < 0 ? 0 : 2.0); });
+  std::vector<scene::Knot> knots;
+  for (int v = 0; v < 4; ++v) knots.push_back({static_cast<double>(v), {1, 1, 1}, v + 1.0});
+  const scene::Camera camera = looking({0, 0, 5}, {0, 0, 0}, ProjectionKind::orthographic, 1);
+  const GridReference reference(*source, camera, {10, 10}, TransferFunction(knots));
+  EXPECT_NEAR(reference.pixel(2, 3).a, -std::expm1(-(1 + 3)), rounding);
+  EXPECT_NEAR(reference.pixel(7, 3).a, -std::expm1(-(2 + 4)), rounding);
+  EXPECT_NEAR(reference.pixel(5, 5).a, -std::expm1(-(2 + 4)), rounding);  // in x = 0: the shift goes right
+  EXPECT_NEAR(reference.pixel(0, 5).a, -std::expm1(-(1 + 3)), rounding);  // in the left boundary: the shift goes in
+  EXPECT_EQ(reference.pixel(10, 5).a, 0);                                 // in the right one: out
+}
+
+TEST(GridReference, ABlankSampleBlanksItsVoxelsAndNoMore) {
+  scene::GridGeometry g = lattice({4, 2, 2}, {0, 0, 0}, {3, 1, 1});
+  scene::Grid grid;
+  grid.geometry = g;
+  std::vector<double> values(16, 0.5);
+  values[2] = std::nan("");  // at (2, 0, 0): voxels 1 and 2 of three
+  const Source source = MemorySource::of(grid, values);
+  const scene::Camera camera = looking({-5, 0.5, 0.5}, {0, 0.5, 0.5}, ProjectionKind::orthographic, 1);
+  const GridReference reference(*source, camera, {11, 11}, TransferFunction({{0, {1, 1, 1}, 0.7}}));
+  const Pixel pixel = reference.pixel(5.5, 5.4);
+  EXPECT_NEAR(pixel.length, 1, rounding);
+  EXPECT_NEAR(pixel.a, -std::expm1(-0.7), rounding);
+  EXPECT_NEAR(pixel.z, 5, rounding);
+}
+
+TEST(GridReference, ClippingCutsTheRay) {
+  const Source source = sampled(lattice({4, 4, 4}, {-1, -1, -1}, {1, 1, 1}), [](auto&) { return 1.0; });
+  scene::Camera camera = looking({0, 0, 5}, {0, 0, 0}, ProjectionKind::orthographic, 1);
+  camera.clipping_range = scene::ClippingRange{4.5, 5.25};
+  const GridReference reference(*source, camera, {10, 10}, TransferFunction({{0, {1, 1, 1}, 1}}));
+  EXPECT_NEAR(reference.pixel(4.9, 5.2).length, 0.75, rounding);
+}
+
+TEST(GridReference, TheJudgeTakesItAsItTakesMeshes) {
+  const Source source = sampled(lattice({6, 6, 6}, {-1, -1, -1}, {1, 1, 1}), wave);
+  const scene::Camera camera = looking({2, 1, 3}, {0, 0, 0}, ProjectionKind::orthographic, 1.6);
+  const GridReference reference(*source, camera, window, bumpy);
+  scene::Image image(window);
+  const auto truth = reference.pixels(all_pixels(window));
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const double rgba[4] = {truth[i].r, truth[i].g, truth[i].b, truth[i].a};
+    for (std::size_t c = 0; c < 4; ++c) image.rgba[4 * i + c] = static_cast<float>(rgba[c]);
+  }
+  EXPECT_TRUE(judge(image, reference, 1e-7).passed);
+  image.rgba[4 * image.index(10, 8) + 1] += 1e-3f;
+  EXPECT_FALSE(judge(image, reference, 1e-4).passed);
+}
+
+}  // namespace
+}  // namespace tessera::reference
