@@ -5,6 +5,7 @@
 #include <span>
 
 #include "reference/ray_reference.hpp"
+#include "reference/reference.hpp"  // what most who judge need
 #include "scene/image.hpp"
 
 namespace tessera::reference {
