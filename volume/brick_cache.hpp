@@ -40,6 +40,10 @@ class BrickCache {
   /// proximity: distances by brick number that the next evictions go by, the largest first.
   void set_distances(std::vector<float> distances);
 
+  /// proximity: loads up to `limit` of the bricks that are `wanted` (by number) and not in memory, the nearest to the
+  /// cone first, as long as they fit without throwing out one that is nearer. Between frames.
+  void preload(int limit, const std::vector<std::uint8_t>& wanted, scene::Trace* trace);
+
   [[nodiscard]] Counts counts() const;
   [[nodiscard]] const BrickLayout& layout() const { return layout_; }
   [[nodiscard]] const scene::SampleSource& source() const { return source_; }

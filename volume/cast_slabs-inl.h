@@ -23,6 +23,7 @@
 #include "volume/fill_block-inl.h"
 #include "volume/frame_view.hpp"
 #include "volume/ray_piece-inl.h"
+#include "volume/shading-inl.h"
 #include "volume/slab_block.hpp"
 #include "volume/tile_rays.hpp"
 
@@ -113,6 +114,7 @@ struct Lanes {
   VF i, j;                              ///< of that voxel, relative to (i_base, j_base)
   VF i_least, i_most, j_least, j_most;  ///< voxels of the volume, relative to (i, j)
   VF k_in, k_out;                       ///< relative to the chunk's first plane
+  VF light_view;                        ///< shading: cosine between light and view
   VF length, bends;                     ///< of the ray per slab; bx by
   int i_base, j_base;
   bool whole;  ///< all lanes go from the chunk's first plane to its last
@@ -196,6 +198,13 @@ struct VoxelField {
     const VF c = HN::MulAdd(fy, HN::MulAdd(fx, cij, cj), HN::MulAdd(fx, ci, c00));
     return HN::MulAdd(u, c, a);
   }
+  /// Changes per voxel along i, j and k.
+  HWY_INLINE void gradient(VF u, VF bx, VF by, VF& g_i, VF& g_j, VF& g_k) const {
+    const VF fx = HN::MulAdd(u, bx, x), fy = HN::MulAdd(u, by, y);
+    g_i = HN::MulAdd(fy, HN::MulAdd(u, cij, aij), HN::MulAdd(u, ci, ai));
+    g_j = HN::MulAdd(fx, HN::MulAdd(u, cij, aij), HN::MulAdd(u, cj, aj));
+    g_k = HN::MulAdd(fy, HN::MulAdd(fx, cij, cj), HN::MulAdd(fx, ci, c00));
+  }
   /// At u = 0.
   HWY_INLINE VF at_front() const { return HN::MulAdd(y, HN::MulAdd(x, aij, aj), HN::MulAdd(x, ai, a00)); }
   /// At u = 1, where the ray is at (x_1, y_1) relative to the chunk's voxel, and this one at (i, j).
@@ -218,11 +227,12 @@ struct VoxelField {
 
 /// Voxel by voxel, for the lanes that are `wanted`.
 template <bool cell_data, class Window, class Lookup>
-HWY_NOINLINE void cast_voxels(const FrameView& frame, const Lookup& lookup, const Lanes& lanes, const SlabPath& path,
-                              const Window& window, const UniformLookup* uniform, MF wanted, Progress& progress,
-                              FirstLight& first, TileCounts& counts) {
+HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const Lookup& lookup, const Lanes& lanes,
+                              const SlabPath& path, const Window& window, const UniformLookup* uniform, MF wanted,
+                              Progress& progress, FirstLight& first, TileCounts& counts) {
   const DF d;
-  const VF half = HN::Set(d, 0.5f);
+  const VF half = HN::Set(d, 0.5f), zero = HN::Zero(d), one = HN::Set(d, 1.0f);
+  const bool lit_part = frame.shading != nullptr && !cell_data;
   for (const Stretch& stretch : path.stretches) {
     const VF extent = HN::Sub(stretch.end, stretch.begin);
     const MF there = HN::And(wanted, HN::Gt(extent, HN::Zero(d)));
@@ -230,6 +240,7 @@ HWY_NOINLINE void cast_voxels(const FrameView& frame, const Lookup& lookup, cons
     if (voxels == 0) continue;
     const VI index = window_index(window, path, stretch);
     Piece piece;
+    Lit lit{one, zero};
     piece.begin = HN::Add(stretch.begin, path.k);
     piece.extent = extent;
     piece.length = HN::IfThenElseZero(there, HN::Mul(extent, lanes.length));
@@ -242,12 +253,29 @@ HWY_NOINLINE void cast_voxels(const FrameView& frame, const Lookup& lookup, cons
       piece.s_mid = field.at(HN::Mul(half, HN::Add(stretch.begin, stretch.end)), lanes.bx, lanes.by);
       piece.s_1 = field.at(stretch.end, lanes.bx, lanes.by);
       piece.p_3 = HN::Mul(HN::Mul(field.cij, lanes.bends), HN::Mul(extent, HN::Mul(extent, extent)));
+      if (lit_part) {
+        VF g_i, g_j, g_k;
+        field.gradient(HN::Mul(half, HN::Add(stretch.begin, stretch.end)), lanes.bx, lanes.by, g_i, g_j, g_k);
+        const auto kept = [&](VF v) HWY_ATTR { return HN::IfThenElseZero(HN::And(there, HN::Eq(v, v)), v); };
+        g_i = kept(g_i), g_j = kept(g_j), g_k = kept(g_k);
+        const VF slope = HN::MulAdd(lanes.bx, g_i, HN::MulAdd(lanes.by, g_j, g_k));
+        const VF per_length =
+            HN::Div(HN::Set(d, static_cast<float>(frame.shading->unit / frame.length_unit)), lanes.length);
+        lit = shade(*frame.shading, axes, g_i, g_j, g_k, slope, per_length, lanes.light_view);
+      }
     }
-    if (uniform != nullptr && HWY_LIKELY(add_uniform<cell_data>(*uniform, piece, progress))) {
+    Progress part{zero, one, zero, zero, zero, zero};
+    Progress& target = lit_part ? part : progress;
+    if (uniform != nullptr && HWY_LIKELY(add_uniform<cell_data>(*uniform, piece, target))) {
       counts.samples += voxels;
-      if (HWY_UNLIKELY(!HN::AllTrue(d, first.seen))) note_first_light(progress, piece.begin, first);
+      if (HWY_UNLIKELY(!HN::AllTrue(d, first.seen))) note_first_light(target, piece.begin, first);
     } else {
-      add_any(lookup, frame.piece_tolerance, frame.largest_color, piece, progress, first, counts.samples);
+      add_any(lookup, frame.piece_tolerance, frame.largest_color, piece, target, first, counts.samples);
+    }
+    if (lit_part) {
+      put_behind(part, lit, progress);
+      // Within the stretch light is measured from its own front.
+      note_first_light(progress, piece.begin, first);
     }
   }
 }
@@ -371,9 +399,9 @@ HWY_INLINE SlabLine part_line(const Lanes& lanes, const SlabPath& path, const Wi
 
 /// A slab whose lanes are in several intervals, or cross knots.
 template <class Window, class Lookup>
-HWY_NOINLINE void cast_mixed(const FrameView& frame, const Lookup& lookup, const Lanes& lanes, const SlabPath& path,
-                             const SlabLine& line, const Window& window, Progress& progress, FirstLight& first,
-                             TileCounts& counts) {
+HWY_NOINLINE void cast_mixed(const FrameView& frame, const RayAxes& axes, const Lookup& lookup, const Lanes& lanes,
+                             const SlabPath& path, const SlabLine& line, const Window& window, Progress& progress,
+                             FirstLight& first, TileCounts& counts) {
   const DF d;
   const VF zero = HN::Zero(d), half = HN::Set(d, 0.5f);
   const MF there = HN::Gt(path.to, path.from);
@@ -404,7 +432,20 @@ HWY_NOINLINE void cast_mixed(const FrameView& frame, const Lookup& lookup, const
   }
   const MF apart = HN::AndNot(together, there);
   if (!HN::AllFalse(d, apart))
-    cast_voxels<false>(frame, lookup, lanes, path, window, nullptr, apart, progress, first, counts);
+    cast_voxels<false>(frame, axes, lookup, lanes, path, window, nullptr, apart, progress, first, counts);
+}
+
+/// A slab, voxel by voxel.
+template <class Window, class Lookup>
+HWY_NOINLINE void cast_shaded(const ChunkView& chunk, const Lookup& lookup, const Lanes& lanes, int n, int i_window,
+                              int j_window, const UniformLookup* uniform, const Window& window, Progress& progress,
+                              FirstLight& first, TileCounts& counts) {
+  const DF d;
+  const SlabPath path = path_of(lanes, n, i_window, j_window);
+  for (const Stretch& stretch : path.stretches)
+    counts.voxels_visited += HN::CountTrue(d, HN::Gt(stretch.end, stretch.begin));
+  cast_voxels<false>(chunk.frame, chunk.axes, lookup, lanes, path, window, uniform, HN::Gt(path.to, path.from),
+                     progress, first, counts);
 }
 
 /// One slab. Where the field along a lane's ray is smooth over all its voxels in the slab and in one interval of the
@@ -428,7 +469,7 @@ HWY_INLINE void cast_slab(const ChunkView& chunk, const Lookup& lookup, const La
     const SlabPath path = path_of(lanes, n, i_window, j_window);
     for (const Stretch& stretch : path.stretches)
       counts.voxels_visited += HN::CountTrue(d, HN::Gt(stretch.end, stretch.begin));
-    cast_voxels<cell_data>(chunk.frame, lookup, lanes, path, window, uniform ? &table : nullptr,
+    cast_voxels<cell_data>(chunk.frame, chunk.axes, lookup, lanes, path, window, uniform ? &table : nullptr,
                            HN::Gt(path.to, path.from), progress, first, counts);
   } else {
     const auto smooth = [&](const SlabLine& line, VF span, VF length) HWY_ATTR {
@@ -436,7 +477,7 @@ HWY_INLINE void cast_slab(const ChunkView& chunk, const Lookup& lookup, const La
       const VF scale = HN::MulAdd(length, HN::Set(d, table.shadow_bound), HN::Set(d, 10 * table.product_bound));
       return HN::AllFalse(d, HN::Gt(HN::Mul(spread, scale), HN::Set(d, 1.0f)));
     };
-    if (HWY_LIKELY(lanes.whole)) {
+    if (HWY_LIKELY(lanes.whole && chunk.frame.shading == nullptr)) {
       counts.voxels_visited += HN::Lanes(d);
       const SlabLine line = inner ? whole_line<true>(lanes, window, n, i_window, j_window, plane, crossings)
                                   : whole_line<false>(lanes, window, n, i_window, j_window, plane, crossings);
@@ -451,18 +492,23 @@ HWY_INLINE void cast_slab(const ChunkView& chunk, const Lookup& lookup, const La
       }
       const SlabPath path = path_of(lanes, n, i_window, j_window);
       if (uniform)
-        cast_voxels<cell_data>(chunk.frame, lookup, lanes, path, window, &table, HN::Gt(path.to, path.from), progress,
-                               first, counts);
+        cast_voxels<cell_data>(chunk.frame, chunk.axes, lookup, lanes, path, window, &table, HN::Gt(path.to, path.from),
+                               progress, first, counts);
       else
-        cast_mixed(chunk.frame, lookup, lanes, path, line, window, progress, first, counts);
+        cast_mixed(chunk.frame, chunk.axes, lookup, lanes, path, line, window, progress, first, counts);
       return;
     }
     plane.n = -1;
+    if (chunk.frame.shading != nullptr) {
+      cast_shaded(chunk, lookup, lanes, n, i_window, j_window, uniform ? &table : nullptr, window, progress, first,
+                  counts);
+      return;
+    }
     const SlabPath path = path_of(lanes, n, i_window, j_window);
     for (const Stretch& stretch : path.stretches)
       counts.voxels_visited += HN::CountTrue(d, HN::Gt(stretch.end, stretch.begin));
     const SlabLine line = part_line(lanes, path, window);
-    cast_mixed(chunk.frame, lookup, lanes, path, line, window, progress, first, counts);
+    cast_mixed(chunk.frame, chunk.axes, lookup, lanes, path, line, window, progress, first, counts);
   }
 }
 
@@ -512,6 +558,7 @@ HWY_INLINE Lanes lanes_of(const ChunkView& chunk, int ray, int i_base, int j_bas
   lanes.j_most = HN::Add(lanes.j_least, HN::Set(d, static_cast<float>(voxels_j - 1)));
   lanes.k_in = HN::Load(d, k_in), lanes.k_out = HN::Load(d, k_out);
   lanes.length = HN::LoadU(d, rays.length_k + ray);
+  lanes.light_view = frame.shading != nullptr ? HN::LoadU(d, rays.light_view + ray) : one;
   lanes.bends = HN::Mul(lanes.bx, lanes.by);
   lanes.i_base = i_base, lanes.j_base = j_base;
   return lanes;

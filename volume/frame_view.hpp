@@ -28,6 +28,16 @@ struct PixelRays {
   PixelRays(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry);
 };
 
+/// Light and material as kernels want them. Gradients are per voxel along the grid's axes; with W the linear part of
+/// the map from world to index times `unit`, a world gradient is W^T g.
+struct ShadingView {
+  double ambient, diffuse, specular, shininess;
+  double unit;          ///< world units a world gradient is taken per: a voxel's side, so that squares fit a float
+  double metric[3][3];  ///< W W^T: squares of world gradients
+  double light[3];      ///< W l, l the unit vector towards the light: products with it
+  double light_eye[3];  ///< l along the camera's right and up axes and towards the eye
+};
+
 /// All that one frame's tiles share; read-only while they are made.
 struct FrameView {
   const PixelRays* rays;
@@ -44,6 +54,7 @@ struct FrameView {
   float largest_color;
   double step = 0;                                    ///< sampled, preintegrated: length in the table's unit; else 0
   const PreintegratedTable* preintegrated = nullptr;  ///< null: sampled
+  const ShadingView* shading = nullptr;               ///< null: none
   scene::Trace* trace;
 };
 

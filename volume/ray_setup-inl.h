@@ -95,6 +95,14 @@ HWY_INLINE void set_up_rays(const FrameView& frame, int x0, int y0, int code, Ti
                ty = HN::Mul(HN::Sub(py, set(rays.tangent_y0)), set(rays.tangent_step));
     const auto length =
         HN::Mul(HN::Mul(HN::Sqrt(HN::MulAdd(tx, tx, HN::MulAdd(ty, ty, one))), per_k), set(1 / frame.length_unit));
+    if (frame.shading != nullptr) {
+      const double(&l)[3] = frame.shading->light_eye;
+      // Towards the eye along the ray: (-tx, ty, 1) in the camera's frame, y being down the picture.
+      const auto towards = HN::NegMulAdd(tx, set(l[0]), HN::MulAdd(ty, set(l[1]), set(l[2])));
+      const auto cosine = HN::Div(towards, HN::Sqrt(HN::MulAdd(tx, tx, HN::MulAdd(ty, ty, one))));
+      HN::Store(HN::DemoteTo(HN::Rebind<float, decltype(d)>(), cosine), HN::Rebind<float, decltype(d)>(),
+                out.light_view + ray);
+    }
     HN::Store(HN::IfThenElseZero(here, ax), d, out.ax + ray);
     HN::Store(HN::IfThenElseZero(here, bx), d, out.bx + ray);
     HN::Store(HN::IfThenElseZero(here, ay), d, out.ay + ray);

@@ -45,6 +45,57 @@ double voxel_side_of(const scene::GridGeometry& geometry) {
   return std::cbrt(volume);
 }
 
+ShadingView shading_view(const Shading& s, const scene::Camera& camera, const scene::GridGeometry& geometry,
+                         double voxel_side) {
+  ShadingView view{s.ambient, s.diffuse, s.specular, s.shininess, voxel_side, {}, {}, {}};
+  const scene::ViewBasis basis = scene::view_basis(camera);
+  const glm::dvec3 l = glm::normalize(s.to_light);
+  const glm::dvec3 light = s.camera_light ? basis.right * l.x + basis.up * l.y - basis.forward * l.z : l;
+  view.light_eye[0] = glm::dot(light, basis.right), view.light_eye[1] = glm::dot(light, basis.up);
+  view.light_eye[2] = -glm::dot(light, basis.forward);
+  const glm::dmat3 to_local = scene::world_to_local(geometry);
+  glm::dvec3 rows[3];
+  for (int a = 0; a < 3; ++a)
+    rows[a] = glm::dvec3(to_local[0][a], to_local[1][a], to_local[2][a]) * (voxel_side / geometry.spacing[a]);
+  for (int a = 0; a < 3; ++a) {
+    view.light[a] = glm::dot(rows[a], light);
+    for (int b = 0; b < 3; ++b) view.metric[a][b] = glm::dot(rows[a], rows[b]);
+  }
+  return view;
+}
+
+/// Distance of every brick's centre to the cone round the view frustum ([Mol08] 3.3), world units, 0 inside. In
+/// orthographic views the cone is a cylinder.
+std::vector<float> cone_distances(const scene::Camera& camera, scene::ImageSize size, const PixelRegion& region,
+                                  const scene::GridGeometry& geometry, const BrickLayout& layout) {
+  const scene::ViewBasis basis = scene::view_basis(camera);
+  const bool perspective = camera.projection == scene::ProjectionKind::perspective;
+  const double half_height = perspective ? std::tan(glm::radians(camera.view_angle / 2)) : camera.parallel_scale;
+  const double pixel = 2 * half_height / size.height;
+  const glm::dvec2 middle{(region.x0 + region.x1) / 2.0 - size.width / 2.0,
+                          size.height / 2.0 - (region.y0 + region.y1) / 2.0};
+  const glm::dvec3 shift = (basis.right * middle.x + basis.up * middle.y) * pixel;
+  const double radius = 0.5 * pixel * std::hypot(region.x1 - region.x0, region.y1 - region.y0);
+  const glm::dvec3 apex = perspective ? camera.position : camera.position + shift;
+  const glm::dvec3 axis = perspective ? glm::normalize(basis.forward + shift) : basis.forward;
+  const double slope = perspective ? radius : 0, across = perspective ? 0 : radius;
+  std::vector<float> distances(layout.count());
+  for (std::size_t brick = 0; brick < distances.size(); ++brick) {
+    const scene::SampleBox box = layout.box(layout.place(brick));
+    glm::dvec3 centre;
+    for (int a = 0; a < 3; ++a)
+      centre[a] =
+          0.5 * static_cast<double>(box.low[static_cast<std::size_t>(a)] + box.high[static_cast<std::size_t>(a)] - 1);
+    const glm::dvec3 from_apex = scene::world_of_index(geometry, centre) - apex;
+    const double along = glm::dot(from_apex, axis), off = glm::length(from_apex - axis * along);
+    const double outside = (off - across - slope * along) / std::sqrt(1 + slope * slope);
+    // Behind the apex the apex itself is nearest.
+    distances[brick] =
+        static_cast<float>(perspective && along + slope * off < 0 ? glm::length(from_apex) : std::max(0.0, outside));
+  }
+  return distances;
+}
+
 /// Tiles along a curve that stays in one place for long, so that neighbours find each other's bricks.
 std::vector<std::pair<int, int>> tiles_of(const PixelRegion& region) {
   std::vector<std::pair<int, int>> tiles;
@@ -84,7 +135,12 @@ Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& sett
   check(settings);
   if (source.geometry().rectilinear())
     throw scene::bad_input("rectilinear coordinates are not rendered yet; resample the volume");
-  if (settings.shading) throw scene::bad_input("shading is not there yet");
+  if (settings.shading && settings.method != Method::exact && settings.method != Method::automatic)
+    throw scene::bad_input("shading needs the exact or auto method");
+  if (settings.shading && settings.emission == scene::Emission::independent)
+    throw scene::bad_input("shading needs emission in proportion to extinction");
+  if (settings.shading && !(glm::length(settings.shading->to_light) > 0))
+    throw scene::bad_input("the direction to the light has no length");
   if (settings.method == Method::preintegrated && settings.emission == scene::Emission::independent)
     throw scene::bad_input("pre-integration needs emission in proportion to extinction; use sampled or exact");
   state_ = std::make_unique<State>(source, settings);
@@ -114,6 +170,11 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
                                     settings.emission);
   std::vector<std::uint8_t> visible, brick_visible;
   TileCounts counts;
+  std::vector<float> distances;
+  if (settings.cache == CachePolicy::proximity) {
+    distances = cone_distances(camera, size, wanted, state.source.geometry(), state.bricks.layout());
+    state.bricks.set_distances(distances);
+  }
   tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
   arena.execute([&] {
     const BrickLayout& layout = state.bricks.layout();
@@ -160,6 +221,12 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
       frame.preintegrated = &*preintegrated;
     }
 
+    ShadingView shading;
+    if (settings.shading) {
+      shading = shading_view(*settings.shading, camera, state.source.geometry(), voxel_side);
+      frame.shading = &shading;
+    }
+
     const auto tiles = tiles_of(wanted);
     tbb::enumerable_thread_specific<std::unique_ptr<TileMemory>> memories(
         [] { return std::make_unique<TileMemory>(); });
@@ -178,6 +245,10 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
       counts.samples += c.samples;
     }
   });
+  if (!distances.empty() && settings.preload_limit > 0) {
+    const scene::TraceScope scope(settings.trace, "prepare");
+    state.bricks.preload(settings.preload_limit, brick_visible, settings.trace);
+  }
   if (statistics != nullptr) {
     const BrickCache::Counts after = state.bricks.counts();
     RenderStatistics s;

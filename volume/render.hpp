@@ -32,8 +32,9 @@ enum class CachePolicy {
 /// How much memory a brick at the volume's high end takes ([Mol08] Table 6.2).
 enum class EdgeBricks { variable, fixed };
 
-/// Blinn-Phong with central differences of the trilinear field, one voxel either way, as the normal; two-sided.
-/// c becomes c * (ambient + diffuse |n.l|) + specular |n.h|^shininess. Where the gradient is zero, c stays as it is.
+/// Blinn-Phong, two-sided. The normal is the gradient of the trilinear field, taken in the middle of every stretch of a
+/// ray inside a voxel and kept over it. c becomes c * (ambient + diffuse |n.l|) + specular |n.h|^shininess; where the
+/// gradient is zero, and in cell data, it stays as it is. With exact and automatic, absorption only.
 struct Shading {
   double ambient = 0.2, diffuse = 0.8, specular = 0.2, shininess = 32;
   glm::dvec3 to_light{0, 0, 1};  ///< towards the light; any length but zero

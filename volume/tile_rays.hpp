@@ -19,6 +19,7 @@ struct TileRays {
   alignas(64) double ax[count], bx[count], ay[count], by[count], k_in[count], k_out[count];
   alignas(64) double depth_0[count], depth_k[count];  ///< planar depth = depth_0 + depth_k * k, world units
   alignas(64) float length_k[count];                  ///< length of the ray per k, in the table's unit
+  alignas(64) float light_view[count];                ///< shading: cosine between the light and the view
   // Light gathered so far, and the k at which it began; NaN until then.
   alignas(64) float alpha[count], transmittance[count], red[count], green[count], blue[count];
   alignas(64) double first_k[count];

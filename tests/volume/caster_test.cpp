@@ -1,13 +1,16 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <glm/glm.hpp>
 #include <memory>
 #include <random>
 #include <vector>
 
 #include "scene/error.hpp"
 #include "support/instruction_sets.hpp"
+#include "volume/brick_cache.hpp"
 #include "volume/double_caster.hpp"
 #include "volume/render.hpp"
 
@@ -307,6 +310,75 @@ TEST(VolumeCaster, SteppingHasTheSameBitsForAnyBricksThreadsAndCache) {
       EXPECT_TRUE(same_bits(render(v, view("inside"), sharp_function(), s), image)) << brick;
     }
   }
+}
+
+TEST(VolumeCaster, ShadingOfALinearFieldFollowsBlinnAndPhong) {
+  // One normal everywhere: a shaded pixel is its unshaded one times a factor, and white in proportion to its opacity.
+  Volume v = make_volume({17, 14, 12}, Field::smooth);
+  const glm::dvec3 gradient{0.21, 0.33, -0.17};
+  const scene::GridIndex n = v.grid.geometry.samples();
+  for (std::int64_t k = 0; k < n[2]; ++k)
+    for (std::int64_t j = 0; j < n[1]; ++j)
+      for (std::int64_t i = 0; i < n[0]; ++i)
+        v.values[static_cast<std::size_t>(i + n[0] * (j + n[1] * k))] =
+            static_cast<float>(0.5 + glm::dot(gradient, scene::world_of_index(v.grid.geometry, {i, j, k})));
+  v.source = scene::MemorySource::of(v.grid, v.values);
+  for (const char* name : {"oblique", "from -x", "from y", "perspective", "inside"})
+    for (const bool camera_light : {true, false}) {
+      volume::RenderSettings s = exact();
+      const scene::Image plain = render(v, view(name), smooth_function(), s);
+      s.shading = volume::Shading{0.3, 0.6, 0.4, 9, {0.4, -0.3, 0.8}, camera_light};
+      const scene::Image shaded = render(v, view(name), smooth_function(), s);
+      const scene::Camera camera = view(name);
+      const scene::ViewBasis basis = scene::view_basis(camera);
+      const bool perspective = camera.projection == scene::ProjectionKind::perspective;
+      const glm::dvec3 l0 = glm::normalize(s.shading->to_light);
+      const glm::dvec3 l = camera_light ? basis.right * l0.x + basis.up * l0.y - basis.forward * l0.z : l0;
+      const glm::dvec3 normal = glm::normalize(gradient);
+      double worst = 0;
+      for (int y = 0; y < size.height; y += 3)
+        for (int x = 0; x < size.width; x += 3) {
+          const double pixel = 2 * std::tan(glm::radians(camera.view_angle / 2)) / size.height;
+          glm::dvec3 ray = basis.forward;
+          if (perspective)
+            ray += basis.right * ((x + 0.5 - size.width / 2.0) * pixel) -
+                   basis.up * ((y + 0.5 - size.height / 2.0) * pixel);
+          const glm::dvec3 half = glm::normalize(l - glm::normalize(ray));
+          const double own = 0.3 + 0.6 * std::abs(glm::dot(normal, l)),
+                       white = 0.4 * std::pow(std::abs(glm::dot(normal, half)), 9);
+          const std::size_t at = 4 * plain.index(x, y);
+          for (std::size_t c = 0; c < 3; ++c)
+            worst = std::max(worst,
+                             std::abs(shaded.rgba[at + c] - (own * plain.rgba[at + c] + white * plain.rgba[at + 3])));
+          worst = std::max(worst, double(std::abs(shaded.rgba[at + 3] - plain.rgba[at + 3])));
+        }
+      // Gradients of samples rounded to float, one voxel apart, are right to 1e-6 of themselves; the power makes it
+      // 1e-5.
+      EXPECT_LT(worst, 3e-5) << name << ' ' << camera_light;
+    }
+}
+
+TEST(BrickCache, ProximityThrowsOutTheFarthestAndLoadsTheNearestAhead) {
+  const Volume v = make_volume({65, 65, 65}, Field::smooth);
+  const volume::BrickLayout layout(v.grid.geometry, 16, volume::EdgeBricks::variable);
+  volume::BrickCache cache(*v.source, layout, 4 * 17 * 17 * 17 * 4, volume::CachePolicy::proximity);
+  std::vector<float> distances(layout.count());
+  for (std::size_t n = 0; n < distances.size(); ++n) distances[n] = static_cast<float>(n);
+  cache.set_distances(distances);
+  for (const std::size_t brick : {0u, 1u, 60u, 2u, 3u}) {
+    cache.acquire(brick, nullptr);
+    cache.release(brick);
+  }
+  EXPECT_FALSE(cache.resident(60));
+  for (const std::size_t brick : {0u, 1u, 2u, 3u}) EXPECT_TRUE(cache.resident(brick));
+  const std::vector<std::uint8_t> wanted(layout.count(), 1);
+  cache.preload(2, wanted, nullptr);
+  EXPECT_EQ(cache.counts().loads, 5u) << "nothing nearer is missing";
+  std::reverse(distances.begin(), distances.end());
+  cache.set_distances(distances);
+  cache.preload(2, wanted, nullptr);
+  for (const std::size_t brick : {63u, 62u, 2u, 3u}) EXPECT_TRUE(cache.resident(brick));
+  EXPECT_EQ(cache.counts().evictions, 3u);
 }
 
 TEST(VolumeCaster, ABudgetBelowOneBrickIsRefused) {
