@@ -1,0 +1,304 @@
+#include "frame/sort_first.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+#include <optional>
+#include <utility>
+
+#include "scene/error.hpp"
+
+namespace tessera::frame {
+namespace {
+
+using compositor::Bytes;
+using compositor::Channel;
+using volume::CostMap;
+using volume::ImageSplit;
+using volume::PixelRegion;
+
+/// What travels with the pixels of a rank's rectangle.
+struct RegionHeader {
+  std::uint64_t frame;
+  PixelRegion region;
+  std::uint64_t rays, voxels_visited, samples, bricks_total, bricks_invisible, brick_hits, bricks_loaded,
+      bricks_evicted, bytes_loaded, bytes_resident, peak_bytes, blank_samples;
+  double cpu_seconds;
+};
+static_assert(sizeof(RegionHeader) == 16 * 8);
+
+template <class T>
+void append(Bytes& bytes, std::span<const T> values) {
+  const auto raw = std::as_bytes(values);
+  bytes.insert(bytes.end(), raw.begin(), raw.end());
+}
+
+/// Takes values off the front of a rank's message.
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> bytes) : left_(bytes) {}
+  template <class T>
+  void take(std::span<T> values) {
+    if (values.size_bytes() > left_.size())
+      throw scene::Error(scene::ExitCode::system_failure,
+                         "exchange: a message is shorter than it says; all ranks must run the same program");
+    if (!values.empty()) std::memcpy(values.data(), left_.data(), values.size_bytes());
+    left_ = left_.subspan(values.size_bytes());
+  }
+  template <class T>
+  T take() {
+    T value;
+    take(std::span(&value, 1));
+    return value;
+  }
+
+ private:
+  std::span<const std::byte> left_;
+};
+
+double process_cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+PixelRegion scaled(const PixelRegion& r, double resolution, scene::ImageSize map, scene::ImageSize image) {
+  const auto edge = [&](int v, int length, int map_length) {
+    return v == length ? map_length : std::min(map_length, static_cast<int>(std::floor(v * resolution)));
+  };
+  return {edge(r.x0, image.width, map.width), edge(r.y0, image.height, map.height), edge(r.x1, image.width, map.width),
+          edge(r.y1, image.height, map.height)};
+}
+
+volume::CostMethod method_of(Balance balance) {
+  switch (balance) {
+    case Balance::backface:
+      return volume::CostMethod::backface;
+    case Balance::splatting:
+      return volume::CostMethod::splatting;
+    default:
+      return volume::CostMethod::accurate;
+  }
+}
+
+/// One rank's part in a run.
+class SortFirst {
+ public:
+  SortFirst(compositor::Transport& transport, const SortFirstSettings& settings,
+            const scene::TransferFunction& function, volume::Renderer& renderer, const scene::GridGeometry& geometry)
+      : transport_(transport),
+        settings_(settings),
+        function_(function),
+        renderer_(renderer),
+        geometry_(geometry),
+        weights_(settings.weights.empty() ? std::vector<double>(static_cast<std::size_t>(transport.size()), 1.0)
+                                          : settings.weights) {
+    if (weights_.size() != static_cast<std::size_t>(transport.size()) ||
+        !std::all_of(weights_.begin(), weights_.end(), [](double w) { return w > 0 && std::isfinite(w); }))
+      throw scene::bad_input("balance: as many positive weights as there are processes are needed");
+  }
+
+  /// The picture on rank 0, nothing elsewhere.
+  std::optional<FinishedVolumeFrame> render(std::size_t number, const VolumeJob& job) {
+    const ImageSplit split = [&] {
+      const scene::TraceScope timing(settings_.trace, "partition", static_cast<std::int32_t>(number));
+      return split_of(job);
+    }();
+    const PixelRegion mine = split.region(transport_.rank());
+    const double cpu_before = process_cpu_seconds();
+    volume::RenderStatistics statistics;
+    scene::Image image = renderer_.render(job.camera, job.size, function_, &statistics, mine);
+    const double cpu = process_cpu_seconds() - cpu_before;
+    if (settings_.balance == Balance::previous) share_times(cpu);
+    last_split_ = split;
+    last_size_ = job.size;
+    RegionHeader header{number,
+                        mine,
+                        statistics.rays,
+                        statistics.voxels_visited,
+                        statistics.samples,
+                        statistics.bricks_total,
+                        statistics.bricks_invisible,
+                        statistics.brick_hits,
+                        statistics.bricks_loaded,
+                        statistics.bricks_evicted,
+                        statistics.bytes_loaded,
+                        statistics.bytes_resident,
+                        statistics.peak_bytes,
+                        statistics.blank_samples,
+                        cpu};
+    if (transport_.rank() != 0) {
+      send(header, image);
+      return std::nullopt;
+    }
+    FinishedVolumeFrame finished{number, std::move(image), statistics, split, {}, {}, 0};
+    finished.samples.assign(static_cast<std::size_t>(transport_.size()), statistics.samples);
+    finished.cpu_seconds.assign(static_cast<std::size_t>(transport_.size()), cpu);
+    for (int others = transport_.size() - 1; others > 0; --others) {
+      const compositor::Message message = [&] {
+        const scene::TraceScope timing(settings_.trace, "wait", static_cast<std::int32_t>(number));
+        return transport_.receive(Channel::tiles);
+      }();
+      const scene::TraceScope timing(settings_.trace, "assemble", static_cast<std::int32_t>(number),
+                                     message.bytes.size(), 1);
+      place(message, finished);
+    }
+    return finished;
+  }
+
+ private:
+  ImageSplit split_of(const VolumeJob& job) {
+    const int processes = transport_.size();
+    const PixelRegion area = volume::footprint(job.camera, job.size, geometry_);
+    if (settings_.balance == Balance::even || (settings_.balance == Balance::previous && times_.empty())) {
+      // The other ways to split are collective: no rank runs ahead of the picture that rank 0 puts together.
+      compositor::gather_all(transport_, {});
+      return volume::even_split(processes, job.size, area);
+    }
+    if (settings_.balance == Balance::previous)
+      return volume::split(map_of_times(job.size), job.size, weights_, volume::region_grain);
+
+    const scene::ImageSize map = volume::map_size(job.size, settings_.resolution);
+    const PixelRegion map_area = scaled(area, settings_.resolution, map, job.size);
+    const bool has_last = last_split_.has_value() && last_size_ == job.size;
+    const PixelRegion part = has_last
+                                 ? scaled(last_split_->region(transport_.rank()), settings_.resolution, map, job.size)
+                                 : volume::even_split(processes, map, map_area).region(transport_.rank());
+    const CostMap costs =
+        renderer_.cost_map(job.camera, job.size, function_, method_of(settings_.balance), settings_.resolution, part);
+    const volume::SummedArea table(costs);
+    volume::SplitSearch search(job.size, settings_.resolution, map, weights_, volume::region_grain);
+    search.find_rows(gather_rows(volume::SplitSearch::row_sums(costs, table)));
+    return search.find_columns(gather_columns(volume::SplitSearch::column_sums(costs, table, search.map_rows())));
+  }
+
+  std::vector<volume::RowSums> gather_rows(const volume::RowSums& own) {
+    Bytes bytes;
+    append(bytes, std::span(&own.region, 1));
+    append(bytes, std::span<const std::uint64_t>(own.rows));
+    std::vector<volume::RowSums> all;
+    for (const Bytes& of_rank : compositor::gather_all(transport_, std::move(bytes))) {
+      Reader reader(of_rank);
+      volume::RowSums& part = all.emplace_back();
+      part.region = reader.take<PixelRegion>();
+      part.rows.resize((of_rank.size() - sizeof(PixelRegion)) / sizeof(std::uint64_t));
+      reader.take(std::span(part.rows));
+    }
+    return all;
+  }
+
+  std::vector<volume::ColumnSums> gather_columns(const volume::ColumnSums& own) {
+    Bytes bytes;
+    append(bytes, std::span(&own.region, 1));
+    for (const auto& columns : own.columns) append(bytes, std::span<const std::uint64_t>(columns));
+    std::vector<volume::ColumnSums> all;
+    for (const Bytes& of_rank : compositor::gather_all(transport_, std::move(bytes))) {
+      Reader reader(of_rank);
+      volume::ColumnSums& part = all.emplace_back();
+      part.region = reader.take<PixelRegion>();
+      part.columns.resize(own.columns.size());
+      for (auto& columns : part.columns) {
+        columns.resize(static_cast<std::size_t>(std::max(0, part.region.x1 - part.region.x0)));
+        reader.take(std::span(columns));
+      }
+    }
+    return all;
+  }
+
+  void share_times(double cpu) {
+    Bytes bytes;
+    append(bytes, std::span<const double>(&cpu, 1));
+    times_.clear();
+    for (const Bytes& of_rank : compositor::gather_all(transport_, std::move(bytes)))
+      times_.push_back(Reader(of_rank).take<double>());
+  }
+
+  /// The times of the last frame, each spread over its rectangle.
+  [[nodiscard]] CostMap map_of_times(scene::ImageSize size) const {
+    CostMap map;
+    map.resolution = settings_.resolution;
+    map.size = volume::map_size(size, settings_.resolution);
+    map.region = {0, 0, map.size.width, map.size.height};
+    map.cost.assign(static_cast<std::size_t>(map.size.width) * static_cast<std::size_t>(map.size.height), 0);
+    for (int rank = 0; rank < transport_.size(); ++rank) {
+      const PixelRegion r = scaled(last_split_->region(rank), settings_.resolution, map.size, last_size_);
+      const double pixels = std::max(1.0, static_cast<double>(r.x1 - r.x0) * (r.y1 - r.y0));
+      const double nanoseconds = 1e9 * times_[static_cast<std::size_t>(rank)] / pixels;
+      for (int y = r.y0; y < std::min(r.y1, map.size.height); ++y)
+        for (int x = r.x0; x < std::min(r.x1, map.size.width); ++x)
+          map.cost[static_cast<std::size_t>(y) * static_cast<std::size_t>(map.size.width) +
+                   static_cast<std::size_t>(x)] = static_cast<std::uint32_t>(std::min(nanoseconds, 4e9));
+    }
+    return map;
+  }
+
+  void send(const RegionHeader& header, const scene::Image& image) {
+    Bytes bytes;
+    const PixelRegion& r = header.region;
+    append(bytes, std::span(&header, 1));
+    for (int y = r.y0; y < r.y1; ++y) {
+      const auto width = static_cast<std::size_t>(r.x1 - r.x0);
+      append(bytes, std::span(image.rgba).subspan(4 * image.index(r.x0, y), 4 * width));
+      append(bytes, std::span(image.depth).subspan(image.index(r.x0, y), width));
+    }
+    transport_.send(0, Channel::tiles, std::move(bytes), static_cast<std::int32_t>(header.frame));
+  }
+
+  void place(const compositor::Message& message, FinishedVolumeFrame& finished) {
+    Reader reader(message.bytes);
+    const auto header = reader.take<RegionHeader>();
+    const PixelRegion& r = header.region;
+    const scene::ImageSize size = finished.image.size;
+    if (header.frame != finished.frame || r.x0 < 0 || r.y0 < 0 || r.x1 > size.width || r.y1 > size.height)
+      throw scene::Error(scene::ExitCode::system_failure,
+                         "exchange: a rectangle of another picture came; all ranks must run the same program");
+    for (int y = r.y0; y < r.y1; ++y) {
+      const auto width = static_cast<std::size_t>(r.x1 - r.x0);
+      reader.take(std::span(finished.image.rgba).subspan(4 * finished.image.index(r.x0, y), 4 * width));
+      reader.take(std::span(finished.image.depth).subspan(finished.image.index(r.x0, y), width));
+    }
+    volume::RenderStatistics& s = finished.statistics;
+    s.rays += header.rays, s.voxels_visited += header.voxels_visited, s.samples += header.samples;
+    s.brick_hits += header.brick_hits, s.bricks_loaded += header.bricks_loaded;
+    s.bricks_evicted += header.bricks_evicted, s.bytes_loaded += header.bytes_loaded;
+    s.bytes_resident += header.bytes_resident, s.peak_bytes += header.peak_bytes;
+    finished.samples[static_cast<std::size_t>(message.from)] = header.samples;
+    finished.cpu_seconds[static_cast<std::size_t>(message.from)] = header.cpu_seconds;
+  }
+
+  compositor::Transport& transport_;
+  const SortFirstSettings& settings_;
+  const scene::TransferFunction& function_;
+  volume::Renderer& renderer_;
+  const scene::GridGeometry& geometry_;
+  std::vector<double> weights_, times_;
+  std::optional<ImageSplit> last_split_;
+  scene::ImageSize last_size_{0, 0};
+};
+
+}  // namespace
+
+void render_sort_first(compositor::Transport& transport, const SortFirstSettings& settings,
+                       std::span<const VolumeJob> jobs, const scene::TransferFunction& function,
+                       volume::Renderer& renderer, const scene::GridGeometry& geometry,
+                       const std::function<void(FinishedVolumeFrame)>& done) {
+  try {
+    SortFirst run(transport, settings, function, renderer, geometry);
+    compositor::gather_all(transport, {});  // a frame's time does not count reading
+    auto last = std::chrono::steady_clock::now();
+    for (std::size_t number = 0; number < jobs.size(); ++number) {
+      auto finished = run.render(number, jobs[number]);
+      if (!finished) continue;
+      const auto now = std::chrono::steady_clock::now();
+      finished->frame_ms = std::chrono::duration<double, std::milli>(now - std::exchange(last, now)).count();
+      done(std::move(*finished));
+    }
+  } catch (const scene::Error& error) {
+    transport.fail(error);
+  }
+  transport.check();
+}
+
+}  // namespace tessera::frame

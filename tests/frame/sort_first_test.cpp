@@ -1,0 +1,102 @@
+#include "frame/sort_first.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+#include "compositor/loopback_transport.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::frame {
+namespace {
+
+/// A bright ball off the centre of a hazy box.
+std::unique_ptr<scene::MemorySource> ball() {
+  scene::Grid grid;
+  constexpr std::int64_t n = 40;
+  grid.geometry.points = {n, n, n};
+  grid.geometry.origin = glm::dvec3(-1);
+  grid.geometry.spacing = glm::dvec3(2.0 / (n - 1));
+  std::vector<float> values;
+  for (std::int64_t k = 0; k < n; ++k)
+    for (std::int64_t j = 0; j < n; ++j)
+      for (std::int64_t i = 0; i < n; ++i) {
+        const glm::dvec3 p =
+            2.0 * glm::dvec3(double(i), double(j), double(k)) / double(n - 1) - 1.0 - glm::dvec3(0.4, 0.3, 0.2);
+        values.push_back(static_cast<float>(std::exp(-4 * (p.x * p.x + p.y * p.y + p.z * p.z))));
+      }
+  return scene::MemorySource::of(grid, std::move(values));
+}
+
+scene::TransferFunction haze() { return scene::TransferFunction({{0.1, {0.2, 0.4, 1}, 0}, {0.9, {1, 0.5, 0.2}, 5}}); }
+
+std::vector<VolumeJob> orbit(int frames) {
+  std::vector<VolumeJob> jobs;
+  scene::Camera camera;
+  camera.position = {2.5, 1.8, 3.3};
+  camera.parallel_scale = 1.6;
+  for (int i = 0; i < frames; ++i) jobs.push_back({scene::orbit(camera, i / 8.0), {101, 67}});
+  camera.projection = scene::ProjectionKind::perspective;
+  camera.position = {0.1, 0.2, 0.6};  // inside
+  camera.view_angle = 80;
+  jobs.push_back({camera, {101, 67}});
+  return jobs;
+}
+
+std::vector<FinishedVolumeFrame> render(int ranks, const SortFirstSettings& settings,
+                                        const std::vector<VolumeJob>& jobs) {
+  const auto source = ball();
+  std::vector<FinishedVolumeFrame> frames;
+  compositor::run_ranks(ranks, [&](compositor::Transport& transport) {
+    volume::RenderSettings render;
+    render.threads = 1;
+    volume::Renderer renderer(*source, render);
+    render_sort_first(transport, settings, jobs, haze(), renderer, source->geometry(),
+                      [&](FinishedVolumeFrame frame) { frames.push_back(std::move(frame)); });
+  });
+  return frames;
+}
+
+TEST(SortFirst, AnyNumberOfProcessesAndAnyBalanceGivesTheBitsOfOne) {
+  const std::vector<VolumeJob> jobs = orbit(3);
+  const auto source = ball();
+  volume::RenderSettings alone;
+  alone.threads = 2;
+  volume::Renderer renderer(*source, alone);
+  std::vector<scene::Image> expected;
+  for (const VolumeJob& job : jobs) expected.push_back(renderer.render(job.camera, job.size, haze()));
+  for (const int ranks : {1, 2, 3, 6})
+    for (const Balance balance :
+         {Balance::accurate, Balance::backface, Balance::splatting, Balance::previous, Balance::even}) {
+      SortFirstSettings settings;
+      settings.balance = balance;
+      settings.resolution = ranks == 3 ? 1.0 : 0.5;
+      const auto frames = render(ranks, settings, jobs);
+      ASSERT_EQ(frames.size(), jobs.size());
+      for (std::size_t i = 0; i < jobs.size(); ++i) {
+        EXPECT_EQ(frames[i].frame, i);
+        EXPECT_EQ(frames[i].image.rgba, expected[i].rgba) << ranks << " ranks, frame " << i;
+        EXPECT_EQ(frames[i].image.depth, expected[i].depth);
+        EXPECT_EQ(frames[i].samples.size(), static_cast<std::size_t>(ranks));
+        EXPECT_EQ(std::accumulate(frames[i].samples.begin(), frames[i].samples.end(), std::uint64_t{0}),
+                  frames[i].statistics.samples);
+      }
+    }
+}
+
+TEST(SortFirst, WeightsShareTheWorkAndWrongOnesAreRefused) {
+  SortFirstSettings settings;
+  settings.weights = {3, 1};
+  const auto frames = render(2, settings, orbit(2));
+  ASSERT_EQ(frames.size(), 3u);
+  const volume::PixelRegion first = frames[1].split.region(0), second = frames[1].split.region(1);
+  const auto area = [](const volume::PixelRegion& r) { return (r.x1 - r.x0) * (r.y1 - r.y0); };
+  EXPECT_GT(area(first), area(second));
+  settings.weights = {1, 1, 1};
+  EXPECT_THROW(static_cast<void>(render(2, settings, orbit(1))), scene::Error);
+}
+
+}  // namespace
+}  // namespace tessera::frame
