@@ -6,6 +6,7 @@
 
 #include "io/camera_file.hpp"
 #include "io/mesh_reader.hpp"
+#include "io/volume_reader.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::apps {
@@ -114,7 +115,8 @@ std::vector<Frame> list_frames(const RenderOptions& options) {
   if (is_series(options))
     for (const auto& frame : frames)
       if (!frame.finished)
-        for (const auto& file : frame.mesh.files) io::require_mesh_file(file);
+        for (const auto& file : frame.mesh.files)
+          options.is_volume ? io::require_volume(file) : io::require_mesh_file(file);
   return frames;
 }
 

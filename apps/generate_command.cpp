@@ -6,7 +6,10 @@
 
 #include "apps/argument_values.hpp"
 #include "apps/convert_command.hpp"
+#include "apps/output_check.hpp"
 #include "datasets/generate.hpp"
+#include "datasets/volumes.hpp"
+#include "io/volume_writer.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::apps {
@@ -25,7 +28,9 @@ std::string generator_help() {
   std::string text = "Kinds, with their parameters and defaults:\n";
   for (const auto& generator : datasets::generators())
     text += fmt::format("  {}: {}\n{}", generator.name, generator.help, parameter_help(generator.parameters));
-  return text + "Parameters of every kind:\n" + parameter_help(datasets::common_parameters());
+  for (const auto& generator : datasets::volume_generators())
+    text += fmt::format("  {}: {}\n{}", generator.name, generator.help, parameter_help(generator.parameters));
+  return text + "Parameters of every mesh:\n" + parameter_help(datasets::common_parameters());
 }
 
 void generate(const std::string& kind, const std::filesystem::path& output, const std::vector<std::string>& parameters,
@@ -38,6 +43,16 @@ void generate(const std::string& kind, const std::filesystem::path& output, cons
     const auto name = parameter.substr(0, equals);
     if (!values.emplace(name, parse_number(name, parameter.substr(equals + 1))).second)
       throw scene::bad_input(fmt::format("generate: {} is given twice; give it once", name));
+  }
+  if (io::is_volume_output(output)) {
+    check_output_file(output, {});
+    const auto volume = datasets::generate_volume(kind, values);
+    io::write_volume(*volume, output);
+    const auto& points = volume->geometry().points;
+    if (!quiet)
+      fmt::print(stderr, "{}: {} of {}x{}x{} {} samples\n", output.string(), kind, points[0], points[1], points[2],
+                 scene::name_of(volume->grid().type));
+    return;
   }
   check_mesh_output(output, {});
   const auto mesh = datasets::generate(kind, values);

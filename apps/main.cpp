@@ -12,6 +12,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "apps/argument_values.hpp"
 #include "apps/convert_command.hpp"
 #include "apps/generate_command.hpp"
 #include "apps/info_command.hpp"
@@ -19,6 +20,8 @@
 #include "apps/render_command.hpp"
 #include "apps/render_options.hpp"
 #include "apps/timing_command.hpp"
+#include "apps/volume_input.hpp"
+#include "apps/volume_options.hpp"
 #include "compositor/instruction_sets.hpp"
 #include "scene/error.hpp"
 
@@ -36,6 +39,12 @@ int fail(ExitCode code, std::string_view message) {
   return static_cast<int>(code);
 }
 
+/// Whether a rectilinear grid, which is a volume, is asked for as the mesh that it is too.
+bool to_mesh(const std::filesystem::path& input, const std::filesystem::path& output) {
+  const auto extension = output.extension();
+  return (extension == ".vtu" || extension == ".tets" || extension == ".pvtu") && io::is_mesh_file(input);
+}
+
 ExitCode run(int argc, char** argv, Job& job) {
   compositor::Transport& transport = job.transport();
   if (transport.size() > 1) {
@@ -43,34 +52,41 @@ ExitCode run(int argc, char** argv, Job& job) {
     compositor::agree_instruction_sets(transport);
   }
 
-  CLI::App app("Tessera renders scientific volumes: unstructured meshes, exactly, on the CPU.", "tessera");
+  CLI::App app("Tessera renders scientific volumes: unstructured meshes and regular grids, exactly, on the CPU.",
+               "tessera");
   app.set_version_flag("--version", std::string("tessera ") + TESSERA_VERSION);
   app.require_subcommand(1);
 
   RenderWords words;
-  auto* render_command = app.add_subcommand("render", "Render a mesh to pictures");
+  auto* render_command = app.add_subcommand("render", "Render a mesh or a volume to pictures");
   add_render_options(*render_command, words);
 
   bool as_json = false;
-  auto* info_command = app.add_subcommand("info", "Say what a mesh file holds and how it would be rendered");
+  auto* info_command = app.add_subcommand("info", "Say what a mesh or volume holds and how it would be rendered");
   add_mesh_options(*info_command, words);
   info_command->add_flag("--json", as_json, "for machines");
 
-  auto* convert_command = app.add_subcommand("convert", "Write a mesh as tetrahedra with one scalar");
+  auto* convert_command = app.add_subcommand("convert", "Write a mesh as tetrahedra, or a volume, with one scalar");
   add_mesh_options(*convert_command, words);
   std::string mesh_output;
-  convert_command->add_option("OUT", mesh_output, ".vtu, .tets, or .pvtu with --pieces")->required();
+  convert_command
+      ->add_option("OUT", mesh_output,
+                   "of a mesh .vtu, .tets, or .pvtu with --pieces; of a volume .vti .vtr .nrrd .raw .bricks")
+      ->required();
   std::string pieces, pieces_partition = "curve";
   convert_command->add_option("--pieces", pieces, "write OUT.pvtu and so many pieces, for mpirun");
   convert_command->add_option("--partition", pieces_partition,
                               "which piece a cell goes to: curve (compact, the default), file (order kept), random");
+  std::string block = "64";
+  convert_command->add_option("--block", block, ".bricks: samples a side of a block (default 64)");
   convert_command->add_flag("--quiet", words.quiet, "nothing on stderr but errors");
 
-  auto* generate_command = app.add_subcommand("generate", "Make a mesh");
+  auto* generate_command = app.add_subcommand("generate", "Make a mesh or a volume");
   std::string kind;
   std::vector<std::string> parameters;
   generate_command->add_option("KIND", kind, "what to make, see below")->required();
-  generate_command->add_option("OUT", mesh_output, ".vtu or .tets")->required();
+  generate_command->add_option("OUT", mesh_output, "of a mesh .vtu or .tets; of a volume .vti .nrrd .raw .bricks")
+      ->required();
   generate_command->add_option("PARAMETERS", parameters, "NAME=VALUE ...");
   generate_command->add_flag("--quiet", words.quiet, "nothing on stderr but errors");
   generate_command->footer(generator_help);
@@ -102,8 +118,16 @@ ExitCode run(int argc, char** argv, Job& job) {
 
   if (*render_command) return render(render_options(words), transport);
   if (!job.is_first()) return ExitCode::complete;  // the other commands are for one process
-  if (*info_command) info(words.input, mesh_options(words), as_json);
-  if (*convert_command)
+  if (*info_command) {
+    if (is_volume_input(words))
+      volume_info(words.input, volume_options(words), as_json);
+    else
+      info(words.input, mesh_options(words), as_json);
+  }
+  if (*convert_command && is_volume_input(words) && !to_mesh(words.input, mesh_output))
+    convert_volume(words.input, mesh_output, volume_options(words), parse_count("--block", block, 8, 1024),
+                   words.quiet);
+  else if (*convert_command)
     convert(words.input, mesh_output, mesh_options(words), convert_pieces(pieces, pieces_partition), words.quiet);
   if (*timing_command) timing({traces.begin(), traces.end()}, csv, figure);
   if (*generate_command) generate(kind, mesh_output, parameters, words.quiet);

@@ -19,8 +19,8 @@ MeshSummary summary_of(const io::MeshFile& description, const scene::MeshFacts& 
 
 io::MeshFile read_input(const std::filesystem::path& input, const io::MeshOptions& options) {
   if (io::is_volume_file(input))
-    throw scene::bad_input(
-        fmt::format("{}: is a regular grid by its name; these are not rendered yet, give a mesh", input.string()));
+    throw scene::bad_input(fmt::format(
+        "{}: is a regular grid by its name, no mesh; give a mesh, or write .vti, .nrrd or .bricks", input.string()));
   if (io::is_time_series(input))
     throw scene::bad_input(
         fmt::format("{}: is a time series, which only render takes; give one of its meshes", input.string()));
@@ -61,6 +61,11 @@ io::LoadedTransferFunction transfer_function_of(const scene::MeshFacts& facts, c
   loading.display_colors = options.display_blend;
   loading.rescale = options.rescale;
   loading.opacity_scale = options.opacity_scale;
+  if (options.transfer_function.empty() && options.is_volume) {
+    auto loaded = io::load_transfer_function("cool-warm:rise", loading);
+    loaded.name += " (default)";
+    return loaded;
+  }
   return options.transfer_function.empty() ? io::default_transfer_function(loading)
                                            : io::load_transfer_function(options.transfer_function, loading);
 }

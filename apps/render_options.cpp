@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "apps/argument_values.hpp"
+#include "apps/volume_options.hpp"
 #include "io/image_deep_exr.hpp"
 #include "scene/error.hpp"
 
@@ -36,12 +37,12 @@ scene::Integrator chosen_integrator(const RenderWords& words) {
   return integrator;
 }
 
-frame::RenderSettings render_settings(const RenderWords& words) {
+frame::RenderSettings render_settings(const RenderWords& words, bool for_volume) {
   check_word("--emission", words.emission, {"absorption", "independent"});
   check_word("--rasterizer", words.rasterizer, {"planes", "scanline"});
   check_word("--backend", words.backend, {"auto", "cpu"}, {"osmesa", "egl"});
   frame::RenderSettings settings;
-  settings.integrator = chosen_integrator(words);
+  if (!for_volume) settings.integrator = chosen_integrator(words);
   if (words.rasterizer == "scanline") settings.rasterizer = frame::Rasterizer::scanline;
   if (words.emission == "independent") settings.emission = scene::Emission::independent;
   if (!words.deep_accuracy.empty()) settings.deep_accuracy = parse_positive("--deep-accuracy", words.deep_accuracy);
@@ -67,7 +68,11 @@ io::ImageFileOptions image_options(const RenderWords& words) {
 }  // namespace
 
 void add_mesh_options(CLI::App& command, RenderWords& words) {
-  command.add_option("INPUT", words.input, "mesh file: .vtu .pvtu .vtk .ex2 .xyz .ele .tets .stl ...")->required();
+  command
+      .add_option(
+          "INPUT", words.input,
+          "mesh: .vtu .pvtu .vtk .ex2 .xyz .ele .tets .stl ...; volume: .vti .vtr .vtk .mhd .nrrd .nii .nii.gz .raw")
+      ->required();
   command
       .add_option("--field", words.field, "scalar: NAME, NAME:mag, NAME:x; with point: or cell: before it if needed")
       ->type_name("NAME");
@@ -77,6 +82,7 @@ void add_mesh_options(CLI::App& command, RenderWords& words) {
       ->type_name("VOLUME");
   command.add_option("--time-step", words.time_step, "Exodus: step counted from 0 (default: the last)")
       ->type_name("STEP");
+  add_volume_options(command, words);
 }
 
 io::MeshOptions mesh_options(const RenderWords& words) {
@@ -120,7 +126,7 @@ void add_render_options(CLI::App& command, RenderWords& words) {
       ->type_name("orthographic|perspective");
 
   command.add_option("--integrator", words.integrator, "how a segment becomes colour (default: auto)")
-      ->type_name("exact|sampled:N|auto");
+      ->type_name("exact|sampled:N|auto; of volumes exact|sampled|preintegrated|auto");
   command.add_option("--accuracy", words.accuracy, "auto: largest error in linear RGBA (default 1e-4)")
       ->type_name("EPS");
   command
@@ -134,10 +140,13 @@ void add_render_options(CLI::App& command, RenderWords& words) {
                   "how cells become ray segments (default: planes; the paper's: scanline)")
       ->type_name("planes|scanline");
   command.add_option("--backend", words.backend, "default: auto")->type_name("auto|cpu");
+  add_volume_render_options(command, words);
   command.add_option("--threads", words.threads, "threads (default: all cores)")->type_name("T");
   command.add_option("--tile-size", words.tile_size, "pixels a side of a thread's tile (default 32)")
       ->type_name("PIXELS");
-  command.add_option("--memory", words.memory, "budget of the frame buffers, like 512M (default 4G)")
+  command
+      .add_option("--memory", words.memory,
+                  "budget of the frame buffers, or of a volume's bricks, like 512M (default 4G)")
       ->type_name("SIZE");
 
   command.add_option("--projectors", words.projectors, "under mpirun: ranks that project (default: all)")
@@ -195,7 +204,14 @@ RenderOptions render_options(const RenderWords& words) {
     if (words.projection == "perspective") options.projection = scene::ProjectionKind::perspective;
   }
 
-  options.settings = render_settings(words);
+  options.is_volume = is_volume_input(words);
+  options.settings = render_settings(words, options.is_volume);
+  if (options.is_volume) {
+    options.volume = volume_options(words);
+    options.volume_settings = volume_settings(words, options.settings);
+  } else {
+    refuse_volume_options(words);
+  }
   options.deep = std::ranges::any_of(options.outputs, io::is_deep_name);
   if (!options.deep && !words.deep_accuracy.empty())
     throw scene::bad_input("--deep-accuracy: is for a deep picture; name one with -o FILE.deep.exr, or leave it out");

@@ -11,8 +11,10 @@
 #include "frame/render.hpp"
 #include "io/image_file.hpp"
 #include "io/mesh_reader.hpp"
+#include "io/volume_reader.hpp"
 #include "projection/partition.hpp"
 #include "scene/camera.hpp"
+#include "volume/render.hpp"
 
 namespace tessera::apps {
 
@@ -22,6 +24,9 @@ struct RenderOptions {
   std::vector<std::filesystem::path> more_inputs;  ///< with `input` the steps of a time series
   std::vector<std::filesystem::path> outputs;      ///< at least one; several are the same frame in several formats
   io::MeshOptions mesh;
+  bool is_volume = false;  ///< the input is a grid: `volume` and `volume_settings` count, not `mesh` and `settings`
+  io::VolumeOptions volume;
+  volume::RenderSettings volume_settings;
 
   std::string transfer_function;  ///< file or preset; empty: the default one
   std::optional<double> unit_distance;
@@ -62,8 +67,9 @@ struct RenderWords {
   std::string integrator = "auto", accuracy, deep_accuracy, emission = "absorption", rasterizer = "planes",
               backend = "auto";
   std::string threads, tile_size, memory, background, png_bits = "8", repeat, verify, report, timing;
+  std::string dims, type, spacing, origin, endian, skip, step, brick_size, cache;
   std::string projectors, compositors, exchange, partition = "curve", frames_in_flight, seed;
-  bool smooth = false, half = false, rescale = false, resume = false, progress = false, quiet = false;
+  bool smooth = false, shade = false, half = false, rescale = false, resume = false, progress = false, quiet = false;
 };
 
 /// Declares the options of `tessera render` on its subcommand.

@@ -127,20 +127,23 @@ Json frame_json(const Frame& frame, const FrameRecord* record) {
   json["instruction_set"] = statistics.instruction_set;
   json["arithmetic"] = statistics.on_lattice ? "lattice" : "double";
   json["integrator"] = statistics.integrator;
-  if (record->verification) {
-    const auto& judgement = record->verification->judgement;
-    json["verify"] = {{"pixels", judgement.pixels_checked},
-                      {"max_error", judgement.max_error},
-                      {"rms_error", judgement.rms_error},
-                      {"max_error_not_excused", judgement.max_error_not_excused},
-                      {"worst_pixel", {judgement.worst_x, judgement.worst_y}},
-                      {"worst_value", judgement.worst_value},
-                      {"worst_reference", judgement.worst_reference},
-                      {"over_bound", judgement.over_bound},
-                      {"excused", judgement.excused},
-                      {"met", record->verification->met()}};
-    if (record->verification->bound) json["verify"]["bound"] = *record->verification->bound;
-  }
+  if (record->verification) json["verify"] = verification_json(*record->verification);
+  return json;
+}
+
+Json verification_json(const Verification& verification) {
+  const auto& judgement = verification.judgement;
+  Json json = {{"pixels", judgement.pixels_checked},
+               {"max_error", judgement.max_error},
+               {"rms_error", judgement.rms_error},
+               {"max_error_not_excused", judgement.max_error_not_excused},
+               {"worst_pixel", {judgement.worst_x, judgement.worst_y}},
+               {"worst_value", judgement.worst_value},
+               {"worst_reference", judgement.worst_reference},
+               {"over_bound", judgement.over_bound},
+               {"excused", judgement.excused},
+               {"met", verification.met()}};
+  if (verification.bound) json["bound"] = *verification.bound;
   return json;
 }
 

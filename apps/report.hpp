@@ -37,6 +37,9 @@ nlohmann::ordered_json method_json(const RenderOptions& options);
 /// A frame's number, pictures, view, times, counters and verification; without a record, that it was skipped.
 nlohmann::ordered_json frame_json(const Frame& frame, const FrameRecord* record);
 
+/// The report's "verify".
+nlohmann::ordered_json verification_json(const Verification& verification);
+
 /// `18 kept of 20: 1 ghost and 1 NaN dropped`
 std::string cells_line(const io::MeshCounts& counts);
 std::string view_line(const scene::Camera& camera);

@@ -13,7 +13,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// `frame_ms median X min Y`, milliseconds. The median of an even number is the mean of the middle two.
+}  // namespace
+
 std::string frame_ms_line(std::vector<double> times) {
   std::sort(times.begin(), times.end());
   const std::size_t middle = times.size() / 2;
@@ -28,8 +29,6 @@ void write_json(const Json& json, const std::filesystem::path& path) {
   file.write("\n");
   file.commit();
 }
-
-}  // namespace
 
 RunOutput::RunOutput(const RenderOptions& options, const std::vector<Frame>& frames)
     : options_(options),

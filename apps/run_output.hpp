@@ -48,6 +48,12 @@ class RunOutput {
 void write_pictures(const scene::Image& image, const scene::DeepImage& deep, const Frame& frame,
                     const RenderOptions& options);
 
+/// `frame_ms median X min Y`, milliseconds. The median of an even number is the mean of the middle two.
+std::string frame_ms_line(std::vector<double> times);
+
+/// Appears by rename. Text that is not UTF-8 is replaced.
+void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
+
 /// What a trace says of the run it is of.
 io::TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const Frame& frame, std::size_t rendered);
 

@@ -23,6 +23,8 @@ constexpr double flat_opacity = 0.1;
 
 std::vector<OpacityPoint> inverse_ramp() { return {{0, 0.2}, {1, 0.03}}; }
 std::vector<OpacityPoint> ends() { return {{0, 0.2}, {0.5, 0.005}, {1, 0.2}}; }
+/// The ground of a scan or a simulation is mostly its low end: clear, so that what stands in it is seen.
+std::vector<OpacityPoint> rise() { return {{0, 0}, {0.1, 0}, {0.5, 0.15}, {1, 0.6}}; }
 std::vector<OpacityPoint> surface() { return {{0, 0}, {0.45, 0}, {0.55, 0.9}, {1, 0.9}}; }
 std::vector<OpacityPoint> flat() { return {{0, flat_opacity}, {1, flat_opacity}}; }
 
@@ -42,10 +44,11 @@ struct Variant {
   std::string_view name;
   std::vector<OpacityPoint> (*points)();
 };
-constexpr std::array<Variant, 6> variants{{{"ramp", opacity_ramp},
+constexpr std::array<Variant, 7> variants{{{"ramp", opacity_ramp},
                                            {"inverse", inverse_ramp},
                                            {"ends", ends},
                                            {"peaks", peaks},
+                                           {"rise", rise},
                                            {"surface", surface},
                                            {"flat", flat}}};
 

@@ -15,6 +15,7 @@ namespace tessera::io {
 ///   inverse  the same from high to low
 ///   ends     0.2 at both ends, 0.005 in the middle: for signed fields and their extremes
 ///   peaks    five thin shells on a clear ground, like nested level sets
+///   rise     clear up to 10 % of the range, then 0.15 in the middle and 0.6 at the high end (volumes' default)
 ///   surface  clear below 45 % of the range, 0.9 above 55 %: nearly a surface at the middle value
 ///   flat     0.1 everywhere
 /// Whether `name` is one; its variant counts too, so that `viridis:peak` is refused by preset() with the list.

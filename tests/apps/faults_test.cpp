@@ -173,9 +173,9 @@ TEST(Faults, APictureLargerThanMemoryIsRefusedInTime) {
   expect_fault(3, {"render", folder.cube(), "--quiet", "-o", folder / "a.png", "--size", side + "x" + side}, {"GiB"});
 }
 
-TEST(Faults, RegularGridsAreNotRenderedYet) {
+TEST(Faults, AnAbsentVolumeIsNamed) {
   for (const char* name : {"a.vti", "a.nrrd", "a.nii", "a.nii.gz", "a.mhd", "a.raw"})
-    expect_fault(2, {"render", name, "--quiet", "-o", "a.png"}, {name, "not rendered yet"});
+    expect_fault(2, {"render", name, "--quiet", "-o", "a.png"}, {name, "no such file"});
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 
 using test::expect_bad_input;
 
-constexpr std::array<const char*, 6> variants{"ramp", "inverse", "ends", "peaks", "surface", "flat"};
+constexpr std::array<const char*, 7> variants{"ramp", "inverse", "ends", "peaks", "rise", "surface", "flat"};
 
 double opacity(const LoadedTransferFunction& loaded, double s) {
   return -std::expm1(-loaded.function.evaluate(s).extinction * loaded.unit_distance.value());

@@ -1,0 +1,136 @@
+#include "apps/volume_options.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "apps/argument_values.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::apps {
+namespace {
+
+/// Three values between the separators.
+template <class T, class Parse>
+std::array<T, 3> three(const std::string& option, const std::string& text, char separator, const char* allowed,
+                       const Parse& parse) {
+  std::array<T, 3> values{};
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t stop = k < 2 ? text.find(separator, at) : text.size();
+    if (stop == std::string::npos) throw scene::bad_input(fmt::format("{}: '{}' is not {}", option, text, allowed));
+    values[k] = parse(text.substr(at, stop - at));
+    at = stop + 1;
+  }
+  return values;
+}
+
+glm::dvec3 vector(const std::string& option, const std::string& text, bool positive) {
+  const auto v = three<double>(option, text, ',', "three numbers; write X,Y,Z", [&](const std::string& word) {
+    return positive ? parse_positive(option, word) : parse_number(option, word);
+  });
+  return {v[0], v[1], v[2]};
+}
+
+}  // namespace
+
+void add_volume_options(CLI::App& command, RenderWords& words) {
+  command.add_option("--dims", words.dims, ".raw: samples along x, y, z (or NAME_WxHxD_uint8.raw)")->type_name("WxHxD");
+  command.add_option("--type", words.type, ".raw: uint8, int16, uint16, float32, ...")->type_name("TYPE");
+  command.add_option("--spacing", words.spacing, ".raw: world units between samples (default 1,1,1)")
+      ->type_name("X,Y,Z");
+  command.add_option("--origin", words.origin, ".raw: world position of the first sample (default 0,0,0)")
+      ->type_name("X,Y,Z");
+  command.add_option("--endian", words.endian, ".raw: byte order (default little)")->type_name("little|big");
+  command.add_option("--skip", words.skip, ".raw: bytes before the first sample")->type_name("BYTES");
+}
+
+void add_volume_render_options(CLI::App& command, RenderWords& words) {
+  command.add_option("--step", words.step, "volumes: length of a step of sampled and preintegrated (default 0.5)")
+      ->type_name("VOXELS");
+  command.add_flag("--shade", words.shade, "volumes: Blinn-Phong with a light beside the camera");
+  command.add_option("--brick-size", words.brick_size, "volumes: voxels a side of a brick (default 32)")
+      ->type_name("VOXELS");
+  command.add_option("--cache", words.cache, "volumes: which brick goes first when memory is full (default lru)")
+      ->type_name("lru|proximity");
+}
+
+io::VolumeOptions volume_options(const RenderWords& words) {
+  io::VolumeOptions options;
+  options.field = words.field;
+  if (!words.dims.empty())
+    options.dims =
+        three<std::int64_t>("--dims", words.dims, 'x', "three sizes; write WxHxD", [](const std::string& word) {
+          return std::int64_t{parse_count("--dims", word, 1, std::numeric_limits<int>::max())};
+        });
+  if (!words.type.empty()) {
+    options.type = io::parse_sample_type(words.type);
+    if (!options.type)
+      throw scene::bad_input(fmt::format(
+          "--type: '{}' is unknown; use int8, uint8, int16, uint16, int32, uint32, float32 or float64", words.type));
+  }
+  if (!words.spacing.empty()) options.spacing = vector("--spacing", words.spacing, true);
+  if (!words.origin.empty()) options.origin = vector("--origin", words.origin, false);
+  if (!words.endian.empty() && words.endian != "little" && words.endian != "big")
+    throw scene::bad_input(fmt::format("--endian: '{}' is unknown; use little or big", words.endian));
+  options.big_endian = words.endian == "big";
+  if (!words.skip.empty())
+    options.skip = static_cast<std::uint64_t>(parse_count("--skip", words.skip, 0, std::numeric_limits<int>::max()));
+  return options;
+}
+
+bool is_volume_input(const RenderWords& words) {
+  return volume_options(words).describes_raw() || io::is_volume(words.input);
+}
+
+volume::RenderSettings volume_settings(const RenderWords& words, const frame::RenderSettings& common) {
+  volume::RenderSettings settings;
+  const std::string& method = words.integrator;
+  if (method == "auto")
+    settings.method = volume::Method::automatic;
+  else if (method == "exact")
+    settings.method = volume::Method::exact;
+  else if (method == "sampled")
+    settings.method = volume::Method::sampled;
+  else if (method == "preintegrated")
+    settings.method = volume::Method::preintegrated;
+  else
+    throw scene::bad_input(
+        fmt::format("--integrator: '{}' is none for volumes; use auto, exact, sampled or preintegrated", method));
+  if (!words.accuracy.empty()) {
+    if (settings.method != volume::Method::automatic)
+      throw scene::bad_input(
+          fmt::format("--accuracy: has no effect with --integrator {}; leave one of the two out", method));
+    settings.accuracy = parse_positive("--accuracy", words.accuracy);
+  }
+  if (!words.step.empty()) {
+    if (settings.method != volume::Method::sampled && settings.method != volume::Method::preintegrated)
+      throw scene::bad_input(
+          fmt::format("--step: has no effect with --integrator {}; use sampled or preintegrated, or "
+                      "leave it out",
+                      method));
+    settings.step = parse_positive("--step", words.step);
+  }
+  if (words.shade) settings.shading.emplace();
+  if (!words.brick_size.empty()) settings.brick_size = parse_count("--brick-size", words.brick_size, 2, 1 << 20);
+  if (words.cache == "proximity")
+    settings.cache = volume::CachePolicy::proximity;
+  else if (!words.cache.empty() && words.cache != "lru")
+    throw scene::bad_input(fmt::format("--cache: '{}' is unknown; use lru or proximity", words.cache));
+  settings.emission = common.emission;
+  settings.threads = common.threads;
+  settings.memory_bytes = common.memory_bytes;
+  return settings;
+}
+
+void refuse_volume_options(const RenderWords& words) {
+  const std::pair<const char*, bool> given[] = {{"--step", !words.step.empty()},
+                                                {"--shade", words.shade},
+                                                {"--brick-size", !words.brick_size.empty()},
+                                                {"--cache", !words.cache.empty()}};
+  for (const auto& [option, is_given] : given)
+    if (is_given)
+      throw scene::bad_input(fmt::format("{}: is for volumes, and the input is a mesh; leave it out", option));
+}
+
+}  // namespace tessera::apps

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "apps/render_options.hpp"
+
+namespace tessera::apps {
+
+/// The options that describe a .raw file; `render`, `info` and `convert` have them.
+void add_volume_options(CLI::App& command, RenderWords& words);
+/// The options of `tessera render` that are for volumes only.
+void add_volume_render_options(CLI::App& command, RenderWords& words);
+
+io::VolumeOptions volume_options(const RenderWords& words);
+
+/// Whether the input of these words is a volume: by its content, or because .raw options describe it.
+bool is_volume_input(const RenderWords& words);
+
+/// How a volume is rendered. Throws scene::Error(bad_input) naming the option.
+volume::RenderSettings volume_settings(const RenderWords& words, const frame::RenderSettings& common);
+
+/// Throws if an option that is for volumes only is given.
+void refuse_volume_options(const RenderWords& words);
+
+}  // namespace tessera::apps

@@ -1,0 +1,89 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "apps/program.hpp"
+
+namespace tessera::apps {
+namespace {
+
+/// A small generated volume.
+std::string ripples(const Folder& folder, const std::string& name, const std::string& bits = "32") {
+  const Outcome made = tessera({"generate", "ripples", folder / name, "n=20", "bits=" + bits, "--quiet"});
+  EXPECT_EQ(made.status, 0) << made.err;
+  return folder / name;
+}
+
+TEST(VolumeCommands, AVolumeRendersVerifiedWithinWhatIsPromised) {
+  const Folder folder;
+  for (const char* bits : {"8", "16", "32"})
+    for (const char* projection : {"orthographic", "perspective"}) {
+      const Outcome run =
+          tessera({"render", ripples(folder, "a.vti", bits), "-o", folder / "a.png", "--size", "60x50", "--projection",
+                   projection, "--accuracy", "1e-5", "--verify", "3000", "--report", folder / "r.json"});
+      EXPECT_EQ(run.status, 0) << run.out << run.err;
+      EXPECT_EQ(run.error_lines(), 1u) << run.err;
+      const auto report = nlohmann::json::parse(contents(folder / "r.json"));
+      EXPECT_EQ(report["volume"]["points"], (std::vector<int>{20, 20, 20}));
+      EXPECT_LT(report["frames"][0]["verify"]["max_error"], 1e-5);
+      EXPECT_GT(report["frames"][0]["counters"]["voxels_visited"], 0);
+      EXPECT_TRUE(report["transfer_function"].contains("unit_distance"));
+    }
+}
+
+TEST(VolumeCommands, EveryFormatThatConvertWritesGivesTheSamePicture) {
+  const Folder folder;
+  const std::string original = ripples(folder, "a.vti");
+  ASSERT_EQ(tessera({"render", original, "-o", folder / "a.pfm", "--size", "40x40", "--quiet"}).status, 0);
+  for (const char* name : {"b.nrrd", "b.vtr", "b.bricks"}) {
+    ASSERT_EQ(tessera({"convert", original, folder / name, "--block", "8", "--quiet"}).status, 0);
+    const Outcome run = tessera({"render", folder / name, "-o", folder / "b.pfm", "--size", "40x40", "--quiet"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    if (std::string(name) == "b.vtr") continue;  // its coordinates are rounded otherwise
+    EXPECT_EQ(contents(folder / "b.pfm"), contents(folder / "a.pfm")) << name;
+  }
+}
+
+TEST(VolumeCommands, InfoSaysWhatAVolumeHolds) {
+  const Folder folder;
+  const Outcome text = tessera({"info", ripples(folder, "a.bricks")});
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_NE(text.out.find("20x20x20 float32 samples"), std::string::npos) << text.out;
+  const auto json = nlohmann::json::parse(tessera({"info", folder / "a.bricks", "--json"}).out);
+  EXPECT_EQ(json["bounds"][0], (std::vector<double>{-1, -1, -1}));
+  EXPECT_TRUE(json["renders"].contains("view"));
+}
+
+TEST(VolumeCommands, FaultsOfVolumesAreOneLineAndLeaveNothing) {
+  const Folder folder;
+  const std::string raw = folder.file("x_4x4x4_uint8.raw", std::string(63, 'x'));
+  const std::string vti = ripples(folder, "a.vti"), mesh = folder.cube();
+  const auto before = folder.names();
+  const std::vector<std::pair<std::vector<std::string>, std::string>> faults = {
+      {{raw}, "the file has 63"},
+      {{raw, "--dims", "4x4"}, "--dims"},
+      {{raw, "--type", "float16"}, "float16"},
+      {{vti, "--dims", "2x2x2"}, "--dims"},
+      {{vti, "--smooth"}, "--smooth"},
+      {{vti, "--integrator", "sampled:3"}, "sampled:3"},
+      {{vti, "--step", "2"}, "--step"},
+      {{vti, "--field", "heat"}, "heat"},
+      {{mesh, "--shade"}, "--shade"},
+      {{folder / "absent.nii.gz"}, "no such file"},
+      {{folder / ""}, ""}};
+  for (const auto& [arguments, words] : faults) {
+    std::vector<std::string> all = {"render"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    for (const char* more : {"-o", "", "--quiet"}) all.emplace_back(more);
+    all[all.size() - 2] = folder / "a.png";
+    const Outcome run = tessera(all);
+    EXPECT_EQ(run.status, 2) << run.err;
+    EXPECT_EQ(run.error_lines(), 1u) << run.err;
+    EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
+  }
+  EXPECT_EQ(folder.names(), before);
+}
+
+}  // namespace
+}  // namespace tessera::apps
