@@ -204,7 +204,8 @@ RenderOptions render_options(const RenderWords& words) {
     if (words.projection == "perspective") options.projection = scene::ProjectionKind::perspective;
   }
 
-  options.is_volume = is_volume_input(words);
+  // The caster knows no rectilinear lattice yet; as cells they are rendered all the same.
+  options.is_volume = is_volume_input(words) && !io::is_rectilinear(words.input);
   options.settings = render_settings(words, options.is_volume);
   if (options.is_volume) {
     options.volume = volume_options(words);
