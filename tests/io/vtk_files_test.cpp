@@ -141,7 +141,7 @@ TEST_F(VtkFiles, RegularGridsAreRefusedByName) {
                   "SPACING 1 1 1\nPOINT_DATA 8\nSCALARS f float 1\nLOOKUP_TABLE default\n0 0 0 0 0 0 0 0\n")
                 .find("regular grid"),
             std::string::npos);
-  EXPECT_NE(error("v.vti", "x").find("regular grids"), std::string::npos);
+  EXPECT_NE(error("v.vti", "x").find("regular grid"), std::string::npos);
   EXPECT_NE(error("v.vtu", "<VTKFile type=\"ImageData\"></VTKFile>").find("regular grid"), std::string::npos);
 }
 

@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "datasets/boxes.hpp"
+#include "projection/views.hpp"
 #include "reference/reference.hpp"
 #include "support/instruction_sets.hpp"
 
@@ -59,32 +60,6 @@ Rays rasterized(const scene::TetMesh& mesh, const scene::Camera& camera, scene::
     });
   if (counts_out != nullptr) *counts_out = counts;
   return rays;
-}
-
-scene::Camera oblique() {
-  scene::Camera camera;
-  camera.position = {3.1, 2.3, 4.2};
-  camera.parallel_scale = 1.8;
-  return camera;
-}
-
-scene::Camera perspective(const glm::dvec3& position, double angle) {
-  scene::Camera camera;
-  camera.position = position;
-  camera.focal_point = {0.05, -0.1, 0.02};
-  camera.projection = scene::ProjectionKind::perspective;
-  camera.view_angle = angle;
-  return camera;
-}
-
-/// A view along z in which a vertex of the split of [-1, 1]^3 into n voxels lies on every second pixel's centre.
-scene::Camera aligned(int n, int height) {
-  scene::Camera camera;
-  const double pixel = 1.0 / n;  // half a voxel
-  camera.position = {pixel / 2, -pixel / 2, 5};
-  camera.focal_point = {pixel / 2, -pixel / 2, 0};
-  camera.parallel_scale = pixel * height / 2;
-  return camera;
 }
 
 /// The same cells on every ray as the reference, and the same numbers to rounding.
