@@ -7,17 +7,19 @@ namespace tessera::compositor {
 
 void WindowPixels::start(const projection::PixelRect& rect) {
   rect_ = rect;
+  segments_here_ = 0;
   state_.start(rect, *scene_.space);
   open_count_ = state_.open_pixels(rect, open_);
 }
 
 void WindowPixels::take(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) {
-  segments_ += composite_windows(rules_, windows, final_step, state_, laps);
+  segments_here_ += composite_windows(rules_, windows, final_step, state_, laps);
   open_count_ = state_.open_pixels(rect_, open_);
   laps.lap("composite");
 }
 
 void WindowPixels::finish() {
+  segments_ += segments_here_;
   scene::Image& image = *window_.image;
   const WindowState& s = state_;
   std::size_t p = 0;

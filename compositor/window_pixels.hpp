@@ -28,6 +28,7 @@ class WindowPixels final : public WindowSink {
 
   void start(const projection::PixelRect& rect) override;
   void take(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) override;
+  bool take_unordered(projection::SegmentWindows&, std::int64_t, scene::TraceLaps&) override { return false; }
   [[nodiscard]] const projection::OpenPixels& open() const override { return open_; }
   [[nodiscard]] bool any_open() const override { return open_count_ > 0; }
   /// Writes the pixels of the rectangle into their place in the window's image.
@@ -41,7 +42,7 @@ class WindowPixels final : public WindowSink {
   projection::PixelRect rect_{0, 0, 0, 0};
   projection::OpenPixels open_{};
   int open_count_ = 0;
-  std::uint64_t segments_ = 0;
+  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< of finished rectangles, of this one
   WindowState state_;
 };
 

@@ -12,6 +12,7 @@ void WindowRuns::begin_tile(std::size_t tile, const projection::PixelRect& rect)
 
 void WindowRuns::start(const projection::PixelRect& rect) {
   writer_.start(rect);
+  rules_.least_transmittance = scene_.least_transmittance();
   state_.start(rect, *scene_.space);
   open_count_ = state_.open_pixels(rect, open_);
 }
@@ -20,13 +21,24 @@ void WindowRuns::take(projection::SegmentWindows& windows, std::int64_t final_st
   segments_ += composite_windows(rules_, windows, final_step, state_, laps);
   write_ended();
   open_count_ = state_.open_pixels(writer_.rect(), open_);
-  if (bytes_since_cut_ >= bytes_between_cuts_) {
-    end_runs();
-    writer_.complete_to(scene_.lattice.depth(static_cast<double>(final_step)));
-    bytes_since_cut_ = 0;
-  }
+  if (bytes_since_cut_ >= bytes_between_cuts_) cut(final_step);
   laps.lap("composite");
   writer_.send_if_full();
+}
+
+bool WindowRuns::take_unordered(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) {
+  rules_.least_transmittance = 0;
+  segments_ += composite_windows(rules_, windows, std::numeric_limits<std::int64_t>::max(), state_, laps);
+  cut(final_step);
+  laps.lap("composite");
+  writer_.send_if_full();
+  return true;
+}
+
+void WindowRuns::cut(std::int64_t final_step) {
+  end_runs();
+  writer_.complete_to(scene_.lattice.depth(static_cast<double>(final_step)));
+  bytes_since_cut_ = 0;
 }
 
 void WindowRuns::end_runs() {

@@ -20,6 +20,8 @@ class WindowRuns final : public WindowSink {
   void end_tile() override { writer_.end_tile(); }
   void start(const projection::PixelRect& rect) override;
   void take(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) override;
+  /// Runs are then shorter, and no pixel of the rectangle closes any more, as what hides it may lie behind it.
+  bool take_unordered(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) override;
   [[nodiscard]] const projection::OpenPixels& open() const override { return open_; }
   [[nodiscard]] bool any_open() const override { return open_count_ > 0; }
   void finish() override { end_runs(); }
@@ -27,6 +29,7 @@ class WindowRuns final : public WindowSink {
 
  private:
   void end_runs();
+  void cut(std::int64_t final_step);
   void write_ended();
 
   WindowScene scene_;

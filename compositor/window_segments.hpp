@@ -18,6 +18,10 @@ class WindowSegments final : public WindowSink {
   void end_tile() override { writer_.end_tile(); }
   void start(const projection::PixelRect& rect) override { writer_.start(rect); }
   void take(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) override;
+  bool take_unordered(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) override {
+    take(windows, final_step, laps);  // all of them, always
+    return true;
+  }
   [[nodiscard]] const projection::OpenPixels& open() const override { return open_; }
   [[nodiscard]] bool any_open() const override { return true; }
   void finish() override {}

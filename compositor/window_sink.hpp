@@ -33,6 +33,10 @@ class WindowSink {
   /// What it does is lapped as `sort`, `integrate` and `composite` (fragments: `pack`).
   virtual void take(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) = 0;
 
+  /// Takes all segments, though later ones may come between them; what lies before `final_step` is complete. False, and
+  /// nothing taken, if the sink needs them in order; start() must then undo all that the rectangle gave it so far.
+  virtual bool take_unordered(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) = 0;
+
   /// Pixels that still take anything, and whether there are any.
   [[nodiscard]] virtual const projection::OpenPixels& open() const = 0;
   [[nodiscard]] virtual bool any_open() const = 0;

@@ -70,8 +70,12 @@ bool LatticeTileRenderer::try_render(const projection::PixelRect& rect, std::spa
       // What lies before these cells is final.
       sink.take(windows_, step_before(cells.front().near_depth), laps);
       if (windows_.count(static_cast<std::size_t>(stream_.pixel[dealt])) < windows_.capacity()) continue;
-      if (windows_.bytes_after_growth() > context_.budget_bytes) return false;
-      windows_.grow();
+      if (windows_.bytes_after_growth() <= context_.budget_bytes) {
+        windows_.grow();
+        continue;
+      }
+      if (!sink.take_unordered(windows_, step_before(cells.front().near_depth), laps)) return false;
+      ++counts_.tiles_split;
     }
     counts_.peak_bytes = std::max<std::uint64_t>(counts_.peak_bytes, windows_.bytes() + stream_.bytes());
   }

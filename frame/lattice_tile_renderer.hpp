@@ -14,7 +14,8 @@ namespace tessera::frame {
 /// double precision.
 ///
 /// Windows hold a few dozen segments a pixel. If one is full of segments that overlap in depth, all grow, up to the
-/// budget; then the square is rendered in quarters. Nothing is ever dropped.
+/// budget; then a sink that takes segments in any order gets them all, and for one that does not the square is rendered
+/// in quarters. Nothing is ever dropped.
 class LatticeTileRenderer {
  public:
   /// `context` is the double-precision renderer's: entries, budget and trace are the same.

@@ -10,6 +10,7 @@
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
 #include "datasets/shapes.hpp"
+#include "frame/leaning_stack.hpp"
 #include "projection/segment_tuple.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
@@ -306,6 +307,36 @@ TEST(Distributed, DeepTilesStreamThroughALittleMemoryWithoutDeadlock) {
         // Interleaved, a ray has thousands of runs, each rounded to float by 6e-8 of what it adds.
         EXPECT_LE(difference(frame.image, expected), exchange == Exchange::segments ? 0 : 2e-6);
     }
+}
+
+/// More segments overlap in depth than the projectors' memory holds, after some have already left.
+TEST(Distributed, CellsThatOverlapBeyondMemoryAreSentOnce) {
+  scene::TetMesh mesh = leaning_stack(20000);
+  const scene::TetMesh front = datasets::cube(4, 0.2);  // its runs have ended and left when memory runs out
+  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
+  for (const glm::dvec3& p : front.positions) mesh.positions.emplace_back(0.2 * p.x, 0.2 * p.y, 6 + p.z);
+  mesh.scalars.insert(mesh.scalars.end(), front.scalars.begin(), front.scalars.end());
+  for (const scene::Tet& tet : front.tets)
+    mesh.tets.push_back({tet[0] + base, tet[1] + base, tet[2] + base, tet[3] + base});
+  Camera camera;
+  camera.position = {0.0031, 0.0047, 9};
+  camera.focal_point = {0.0031, 0.0047, 0};
+  camera.parallel_scale = 0.06;
+  const ImageSize size{24, 24};
+  const TransferFunction function({{0, {0, 0.2, 1}, 0.1}, {1, {1, 0.3, 0}, 1.5}});
+  const Image expected = Renderer(mesh, exact()).render(camera, size, function);
+  for (const auto partition : {datasets::Partition::interleaved, datasets::Partition::random_blobs}) {
+    DistributedSettings settings;
+    settings.render = exact();
+    settings.render.memory_bytes = 96ull << 20;  // compositors hold a tile's runs, projectors not all its windows
+    settings.render.threads = 2;
+    settings.render.tile_size = 8;
+    const auto frames = render(datasets::parts(mesh, 2, partition, 2), {4, 2, 2}, settings, {{camera, size}}, function);
+    ASSERT_EQ(frames.size(), 1u);
+    EXPECT_GT(frames[0].statistics.tiles_split, 0u);
+    // Up to 20,000 runs of a ray are each rounded to float.
+    EXPECT_LE(difference(frames[0].image, expected), 2e-5);
+  }
 }
 
 TEST(Distributed, AnErrorOfOneRankIsTheErrorOfAll) {

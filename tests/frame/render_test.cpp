@@ -7,6 +7,7 @@
 
 #include "datasets/boxes.hpp"
 #include "datasets/kuhn.hpp"
+#include "frame/leaning_stack.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
 
@@ -152,29 +153,6 @@ TEST(Render, CullingInvisibleCellsChangesNoBit) {
   // The reference projects all cells.
   const reference::Reference reference(mesh, oblique(), {64, 64}, peak);
   EXPECT_LT(reference::judge(image, reference, 1e-6).max_error, 1e-6);  // float output rounds by 6e-8
-}
-
-/// Under a small square, `layers` slabs of 12 tets, each so oblique that all overlap in depth; beside them a coarse
-/// box.
-scene::TetMesh leaning_stack(int layers) {
-  scene::TetMesh mesh = datasets::cube(2, 0);
-  const double side = 0.02, lean = 2.0;
-  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
-  for (int layer = 0; layer <= layers; ++layer) {
-    const double z = 1.5 + 1.0 * layer / layers;
-    for (const double x : {0.0, side})
-      for (const double y : {0.0, side}) {
-        mesh.positions.push_back({x, y, z + lean * x / side});
-        mesh.scalars.push_back(0.5 + 0.5 * std::sin(0.01 * layer));
-      }
-  }
-  for (int layer = 0; layer < layers; ++layer) {
-    std::array<std::uint32_t, 8> corners;
-    for (std::uint32_t b = 0; b < 8; ++b)
-      corners[b] = base + 4 * (static_cast<std::uint32_t>(layer) + (b >> 2)) + 2 * (b & 1) + (b >> 1 & 1);
-    datasets::append_kuhn(corners, mesh.tets);
-  }
-  return mesh;
 }
 
 TEST(Render, AStackOfTwentyThousandThinCellsIsRightInBoundedMemory) {
