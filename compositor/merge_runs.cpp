@@ -32,8 +32,8 @@ class RunMerger final : public TileMerger {
                                      "--memory or make --tile-size smaller",
                                      rect_.x0, rect_.y0, runs_.size() + part.fragments));
     RecordReader reader(part.records);
-    const auto check = [&](std::uint32_t pixel, bool right) {
-      if (right && pixel < pixels_.size()) return;
+    const auto check = [&](std::uint32_t pixel) {
+      if (pixel < pixels_.size()) return;
       throw scene::Error(
           scene::ExitCode::system_failure,
           fmt::format("exchange: the runs of tile {} are malformed; all ranks must run the same program", part.tile));
@@ -41,16 +41,19 @@ class RunMerger final : public TileMerger {
     if (part.kind == RecordKind::runs) {
       while (!reader.empty()) {
         const auto run = reader.take<RunRecord>();
-        check(run.pixel, true);
+        check(run.pixel);
         runs_.push_back(run);
       }
       return;
     }
+    if (context_.lattice == nullptr || context_.table == nullptr)
+      throw scene::Error(scene::ExitCode::system_failure,
+                         "exchange: runs on a lattice without one; all ranks must run the same program");
     const projection::Lattice& lattice = *context_.lattice;
     single_.clear();
     while (!reader.empty()) {
       const auto header = reader.take<RunsHeader>();
-      check(header.pixel, context_.table != nullptr);
+      check(header.pixel);
       for (int i = 0; i < header.runs; ++i) {
         const auto run = reader.take<LatticeRun>();
         const double front = lattice.depth(run.front);

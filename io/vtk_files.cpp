@@ -167,15 +167,7 @@ MeshBlocks read_vtk_legacy(const std::filesystem::path& file) {
   vtkSmartPointer<vtkDataObject> data;
   const std::string warning = with_quiet_vtk(source, "the file is truncated or damaged, write it anew", [&] {
     vtkNew<vtkDataSetReader> reader;
-    reader->SetFileName(source.c_str());
-    reader->ReadAllScalarsOn();
-    reader->ReadAllVectorsOn();
-    reader->ReadAllNormalsOn();
-    reader->ReadAllTensorsOn();
-    reader->ReadAllColorScalarsOn();
-    reader->ReadAllTCoordsOn();
-    reader->ReadAllFieldsOn();
-    reader->Update();
+    read_all_arrays(*reader, source);
     data = reader->GetOutputDataObject(0);
   });
   if (!data) throw scene::bad_input(fmt::format("{}: it holds no VTK data set; give a mesh", source));

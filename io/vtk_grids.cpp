@@ -81,15 +81,7 @@ vtkSmartPointer<vtkDataSet> read_vtk_volume_data(const std::filesystem::path& fi
       return;
     }
     vtkNew<vtkDataSetReader> reader;
-    reader->SetFileName(source.c_str());
-    reader->ReadAllScalarsOn();
-    reader->ReadAllVectorsOn();
-    reader->ReadAllNormalsOn();
-    reader->ReadAllTensorsOn();
-    reader->ReadAllColorScalarsOn();
-    reader->ReadAllTCoordsOn();
-    reader->ReadAllFieldsOn();
-    reader->Update();
+    read_all_arrays(*reader, source);
     data = reader->GetOutput();
   });
   if (!data) throw scene::bad_input(fmt::format("{}: nothing can be read; write it anew", source));

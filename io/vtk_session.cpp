@@ -1,6 +1,7 @@
 #include "io/vtk_session.hpp"
 
 #include <fmt/format.h>
+#include <vtkDataSetReader.h>
 #include <vtkLogger.h>
 #include <vtkObjectFactory.h>
 #include <vtkOutputWindow.h>
@@ -90,6 +91,18 @@ std::string with_quiet_vtk(const std::string& source, const std::string& remedy,
   }
   if (!quiet.trap->error.empty()) throw scene::bad_input(fmt::format("{}: {}; {}", source, quiet.trap->error, remedy));
   return quiet.trap->warning;
+}
+
+void read_all_arrays(vtkDataSetReader& reader, const std::string& source) {
+  reader.SetFileName(source.c_str());
+  reader.ReadAllScalarsOn();
+  reader.ReadAllVectorsOn();
+  reader.ReadAllNormalsOn();
+  reader.ReadAllTensorsOn();
+  reader.ReadAllColorScalarsOn();
+  reader.ReadAllTCoordsOn();
+  reader.ReadAllFieldsOn();
+  reader.Update();
 }
 
 }  // namespace tessera::io

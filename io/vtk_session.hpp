@@ -3,6 +3,8 @@
 #include <functional>
 #include <string>
 
+class vtkDataSetReader;
+
 namespace tessera::io {
 
 /// Runs one read or write by VTK with VTK's messages caught instead of printed, and returns what it warned of.
@@ -11,5 +13,9 @@ namespace tessera::io {
 /// An error that VTK reports (it does not throw) becomes Error(bad_input, "SOURCE: <VTK's words>; REMEDY"), as does
 /// running out of memory, which with small files means damaged counts.
 std::string with_quiet_vtk(const std::string& source, const std::string& remedy, const std::function<void()>& work);
+
+/// Reads a legacy file, of meshes or grids, with all of its arrays instead of the active ones alone. Within
+/// with_quiet_vtk().
+void read_all_arrays(vtkDataSetReader& reader, const std::string& source);
 
 }  // namespace tessera::io
