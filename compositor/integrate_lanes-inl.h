@@ -264,6 +264,35 @@ HWY_NOINLINE Progress go_far(const Lookup& table, Walk walk, Progress so_far) {
 
 }  // namespace lanes
 
+/// integrate_lanes() for segments that lie in one interval and are at most step_depth thick, which most are: straight
+/// on, the same bits. `more`: the active lanes whose segment is not so, and whose light is not the answer.
+/// Lanes that are not active may hold any finite numbers, and get zeros.
+template <TableForm form>
+HWY_INLINE Light integrate_simple(const Lookup<form>& table, VF length, VF front, VF back, MF active, MF& more) {
+  const DF d;
+  const VF zero = HN::Zero(d);
+  active = HN::And(active, HN::Gt(length, zero));
+  length = HN::IfThenElseZero(active, HN::Min(length, HN::Set(d, lanes::most_length)));
+  const MF up = HN::Ge(back, front);
+  const VI interval = table.locate(front, up);
+  const auto index = table.index(interval, active);
+  const VF knot = table.far_edge(interval, index, HN::IfThenElseZero(HN::RebindMask(DI(), up), HN::Set(DI(), 1)));
+  const VF end = HN::IfThenElse(up, HN::Min(knot, back), HN::Max(knot, back));
+  const VF start = table.at(LaneTable::half_extinction, index),
+           slope = table.at(LaneTable::half_extinction_slope, index);
+  const VF base = table.at(LaneTable::base, index);
+  const VF from = HN::Sub(front, base), to = HN::Sub(back, base);
+  const lanes::Stretch whole{HN::Mul(HN::MulAdd(slope, from, start), length),
+                             HN::Mul(HN::MulAdd(slope, to, start), length), from, HN::Sub(back, front), length};
+  const VF depth = HN::Add(whole.depth_front, whole.depth_back);
+  more = HN::And(active, HN::Or(HN::Ne(end, back), HN::Gt(depth, HN::Set(d, lanes::step_depth))));
+  const lanes::StretchLight light = lanes::stretch_light(whole, table.independent);
+  const auto color = [&](int c) HWY_ATTR {
+    return HN::MulAdd(table.at(c + 1, index), light.moment, HN::Mul(table.at(c, index), light.weight));
+  };
+  return {light.alpha, depth, color(LaneTable::red), color(LaneTable::green), color(LaneTable::blue)};
+}
+
 /// The integral over one segment a lane. `length` in the table's unit, >= 0; `front` and `back` as lane_scalar() gives
 /// scalars. Finite where `active`; lanes that are not active may hold anything and get zeros.
 template <TableForm form>

@@ -61,15 +61,13 @@ HWY_INLINE bool level_before(const projection::LatticeSegment& a, const projecti
   return a.scalar_back < b.scalar_back;
 }
 
-/// Puts equal keys in order, which the network does not.
-HWY_NOINLINE void settle_ties(const projection::LatticeSegment* list, std::size_t stride, std::size_t count,
-                              std::size_t lanes, std::int32_t* keys, std::int32_t* slots) {
+/// Puts equal keys in order, which the network does not. A slot is where in `list` its segment is.
+HWY_NOINLINE void settle_ties(const projection::LatticeSegment* list, std::size_t count, std::size_t lanes,
+                              std::int32_t* keys, std::int32_t* slots) {
   for (std::size_t i = 1; i < count; ++i) {
     const std::int32_t key = keys[i * lanes], slot = slots[i * lanes];
-    const projection::LatticeSegment& segment = list[static_cast<std::size_t>(slot) * stride];
     std::size_t hole = i;
-    for (; hole > 0 && keys[(hole - 1) * lanes] == key &&
-           level_before(segment, list[static_cast<std::size_t>(slots[(hole - 1) * lanes]) * stride]);
+    for (; hole > 0 && keys[(hole - 1) * lanes] == key && level_before(list[slot], list[slots[(hole - 1) * lanes]]);
          --hole)
       slots[hole * lanes] = slots[(hole - 1) * lanes];
     slots[hole * lanes] = slot;
@@ -79,52 +77,140 @@ HWY_NOINLINE void settle_ties(const projection::LatticeSegment* list, std::size_
 /// Lists longer than the networks: one lane after the other.
 HWY_NOINLINE void sort_long(const projection::LatticeSegment* list, std::size_t stride, std::size_t count,
                             std::size_t lanes, std::int32_t* keys, std::int32_t* slots) {
-  const auto at = [&](std::int32_t slot) -> const projection::LatticeSegment& {
-    return list[static_cast<std::size_t>(slot) * stride];
-  };
   std::vector<std::int32_t> order(count);
-  for (std::size_t i = 0; i < count; ++i) order[i] = static_cast<std::int32_t>(i);
+  for (std::size_t i = 0; i < count; ++i) order[i] = static_cast<std::int32_t>(i * stride);
   std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-    return at(a).front != at(b).front ? at(a).front < at(b).front : level_before(at(a), at(b));
+    return list[a].front != list[b].front ? list[a].front < list[b].front : level_before(list[a], list[b]);
   });
   for (std::size_t i = 0; i < count; ++i) {
-    keys[i * lanes] = at(order[i]).front;
+    keys[i * lanes] = list[order[i]].front;
     slots[i * lanes] = order[i];
   }
 }
+
+/// One field of four segments a lane each, in lanes 4 j + i of vector i: transposed in registers, which takes a quarter
+/// of the time of gathers.
+struct Fields {
+  VI front, back;
+  VF scalar_front, scalar_back;
+};
+constexpr std::size_t most_lanes = HN::MaxLanes(DI());
+
+HWY_INLINE Fields transposed(VI v0, VI v1, VI v2, VI v3) {
+  const DI d;
+  const HN::RepartitionToWide<DI> wide;
+  const auto pairs = [&](VI v) HWY_ATTR { return HN::BitCast(wide, v); };
+  const auto low01 = pairs(HN::InterleaveLower(d, v0, v1)), high01 = pairs(HN::InterleaveUpper(d, v0, v1));
+  const auto low23 = pairs(HN::InterleaveLower(d, v2, v3)), high23 = pairs(HN::InterleaveUpper(d, v2, v3));
+  const DF df;
+  return {HN::BitCast(d, HN::InterleaveLower(wide, low01, low23)),
+          HN::BitCast(d, HN::InterleaveUpper(wide, low01, low23)),
+          HN::BitCast(df, HN::InterleaveLower(wide, high01, high23)),
+          HN::BitCast(df, HN::InterleaveUpper(wide, high01, high23))};
+}
+
+/// list[lane + slots[lane]], `lanes` / 4 of them: lanes first, first + 4, first + 8...
+template <std::size_t lanes>
+HWY_INLINE auto load_every_fourth(const projection::LatticeSegment* list, const std::int32_t* slots, int first) {
+  if constexpr (lanes == 4) {
+    return HN::Load(HN::FixedTag<std::int32_t, 4>(),
+                    reinterpret_cast<const std::int32_t*>(list + first + slots[first]));
+  } else {
+    const auto low = load_every_fourth<lanes / 2>(list, slots, first);
+    const auto high = load_every_fourth<lanes / 2>(list, slots, first + static_cast<int>(lanes) / 2);
+    return HN::Combine(HN::FixedTag<std::int32_t, lanes>(), high, low);
+  }
+}
+
+/// The segment list[lane + slots[lane]] in every lane.
+HWY_INLINE Fields load_fields(const projection::LatticeSegment* list, const std::int32_t* slots) {
+  return transposed(load_every_fourth<most_lanes>(list, slots, 0), load_every_fourth<most_lanes>(list, slots, 1),
+                    load_every_fourth<most_lanes>(list, slots, 2), load_every_fourth<most_lanes>(list, slots, 3));
+}
+
+/// What a block of rows, a segment of every pixel in each, sends to the eye: numbers [row * lanes + lane].
+struct LightRows {
+  static constexpr std::size_t most = 32, numbers = most * most_lanes;
+  alignas(64) float alpha[numbers], optical_depth[numbers], red[numbers], green[numbers], blue[numbers];
+  alignas(64) std::int32_t back[numbers];
+  bool lit[most];  ///< some lane of the row has light or depth
+  // Segments that take more than one piece, until there are enough to fill the lanes.
+  std::size_t waiting = 0;
+  alignas(64) float length[numbers + most_lanes], scalar_front[numbers + most_lanes], scalar_back[numbers + most_lanes];
+  alignas(64) std::int32_t place[numbers + most_lanes];
+
+  HWY_INLINE void put(const Light& light, std::size_t at) {
+    const DF d;
+    HN::Store(light.alpha, d, alpha + at), HN::Store(light.optical_depth, d, optical_depth + at);
+    HN::Store(light.red, d, red + at), HN::Store(light.green, d, green + at), HN::Store(light.blue, d, blue + at);
+  }
+  HWY_INLINE void defer(MF more, std::size_t at, VF l, VF front, VF back_scalar) {
+    const DF d;
+    const DI di;
+    HN::StoreU(HN::Compress(l, more), d, length + waiting);
+    HN::StoreU(HN::Compress(front, more), d, scalar_front + waiting);
+    HN::StoreU(HN::Compress(back_scalar, more), d, scalar_back + waiting);
+    HN::StoreU(HN::Compress(HN::Iota(di, static_cast<std::int32_t>(at)), HN::RebindMask(di, more)), di,
+               place + waiting);
+    waiting += HN::CountTrue(d, more);
+  }
+  template <TableForm form>
+  HWY_INLINE void integrate_waiting(const Lookup<form>& table) {
+    const DF d;
+    alignas(64) float now[5][most_lanes];
+    for (std::size_t i = 0; i < waiting; i += HN::Lanes(d)) {
+      const std::size_t here = std::min(HN::Lanes(d), waiting - i);
+      const Light light = integrate_lanes(table, HN::Load(d, length + i), HN::Load(d, scalar_front + i),
+                                          HN::Load(d, scalar_back + i), HN::FirstN(d, here));
+      HN::Store(light.alpha, d, now[0]), HN::Store(light.optical_depth, d, now[1]);
+      HN::Store(light.red, d, now[2]), HN::Store(light.green, d, now[3]), HN::Store(light.blue, d, now[4]);
+      for (std::size_t k = 0; k < here; ++k) {
+        const auto at = static_cast<std::size_t>(place[i + k]);
+        alpha[at] = now[0][k], optical_depth[at] = now[1][k];
+        red[at] = now[2][k], green[at] = now[3][k], blue[at] = now[4][k];
+      }
+    }
+    waiting = 0;
+  }
+};
 
 /// The pixels [pixel, pixel + lanes) of a square.
 template <TableForm form>
 class PixelGroup {
  public:
-  PixelGroup(const Lookup<form>& table, projection::SegmentWindows& windows, std::size_t pixel, WindowState& state)
+  PixelGroup(const Lookup<form>& table, projection::SegmentWindows& windows, std::size_t pixel, WindowState& state,
+             LightRows& light)
       : table_(table),
         windows_(windows),
         state_(state),
+        light_(light),
         pixel_(pixel),
-        list_(windows.segments() + pixel),
-        base_(reinterpret_cast<const std::int32_t*>(list_)) {}
+        list_(windows.segments() + pixel) {}
 
   /// Brings keys and slots in order. Returns the number of rows: the longest list's length.
   HWY_INLINE std::size_t sort() {
     const DI d;
     const std::size_t lanes = HN::Lanes(d);
     const std::uint32_t* counts = windows_.counts() + pixel_;
-    std::size_t most = 0;
-    for (std::size_t lane = 0; lane < lanes; ++lane) most = std::max<std::size_t>(most, counts[lane]);
+    const VI count = HN::LoadU(d, reinterpret_cast<const std::int32_t*>(counts));
+    const auto most = static_cast<std::size_t>(HN::GetLane(HN::MaxOfLanes(d, count)));
     if (most == 0) return 0;
     const std::size_t chunks = (most + sorting::HWY_NAMESPACE::sort_chunk - 1) / sorting::HWY_NAMESPACE::sort_chunk;
     const std::size_t rows = chunks * sorting::HWY_NAMESPACE::sort_chunk;
     if (state_.keys.size() < rows * lanes) state_.keys.resize(rows * lanes), state_.slots.resize(rows * lanes);
     std::int32_t *keys = state_.keys.data(), *slots = state_.slots.data();
-    const VI count = HN::LoadU(d, reinterpret_cast<const std::int32_t*>(counts));
-    const VI first = HN::ShiftLeft<2>(HN::Iota(d, 0));
     for (std::size_t row = 0; row < rows; ++row) {
       const auto here = HN::Lt(HN::Set(d, static_cast<std::int32_t>(row)), count);
       VI key = HN::Set(d, no_key);
-      if (row < most) key = HN::IfThenElse(here, HN::GatherIndex(d, base_ + 4 * row * windows_.stride(), first), key);
+      const std::size_t slot = row * windows_.stride();
+      if (row < most) {
+        VI front, back, scalar_front, scalar_back;
+        HN::LoadInterleaved4(d, reinterpret_cast<const std::int32_t*>(list_ + slot), front, back, scalar_front,
+                             scalar_back);
+        key = HN::IfThenElse(here, front, key);
+      }
       HN::StoreU(key, d, keys + row * lanes);
-      HN::StoreU(HN::IfThenElseZero(here, HN::Set(d, static_cast<std::int32_t>(row))), d, slots + row * lanes);
+      HN::StoreU(HN::IfThenElseZero(here, HN::Set(d, static_cast<std::int32_t>(slot))), d, slots + row * lanes);
     }
     if (chunks <= 4) {
       sorting::HWY_NAMESPACE::sort_lanes(keys, slots, static_cast<int>(chunks));
@@ -140,7 +226,7 @@ class PixelGroup {
         HN::StoreMaskBits(d, ties, bits);
         for (std::uint64_t left = bits[0] | static_cast<std::uint64_t>(bits[1]) << 8; left != 0; left &= left - 1) {
           const auto lane = static_cast<std::size_t>(__builtin_ctzll(left));
-          settle_ties(list_ + lane, windows_.stride(), counts[lane], lanes, keys + lane, slots + lane);
+          settle_ties(list_ + lane, counts[lane], lanes, keys + lane, slots + lane);
         }
       }
     } else {
@@ -148,6 +234,40 @@ class PixelGroup {
         sort_long(list_ + lane, windows_.stride(), counts[lane], lanes, keys + lane, slots + lane);
     }
     return most;
+  }
+
+  /// The light of the rows [from, to) before `final_step`, in pixels that are open. Returns where it ended: behind the
+  /// last row with a final segment.
+  HWY_INLINE std::size_t integrate(std::size_t from, std::size_t to, std::int32_t final_step) {
+    const DI d;
+    const DF df;
+    const std::size_t lanes = HN::Lanes(d);
+    const VF length_per_step = HN::Load(df, &state_.length_per_step[pixel_]), zero = HN::Zero(df);
+    const auto open = HN::Lt(HN::Load(d, &state_.open[pixel_]), HN::Zero(d));
+    const VI end = HN::Set(d, final_step);
+    for (std::size_t row = from; row < to; ++row) {
+      const VI front = HN::LoadU(d, state_.keys.data() + row * lanes);
+      const auto is_final = HN::Lt(front, end);
+      if (HN::AllFalse(d, is_final)) {
+        to = row;
+        break;
+      }
+      const std::size_t at = (row - from) * lanes;
+      const Fields s = load_fields(list_, state_.slots.data() + row * lanes);
+      HN::Store(s.back, d, light_.back + at);
+      const VF length = HN::Mul(HN::ConvertTo(df, HN::Sub(s.back, front)), length_per_step);
+      MF more;
+      const Light light = integrate_simple(table_, length, s.scalar_front, s.scalar_back,
+                                           HN::RebindMask(df, HN::And(is_final, open)), more);
+      light_.put(light, at);
+      MF lit = HN::Or(more, HN::Gt(light.optical_depth, zero));
+      if (table_.independent)
+        lit = HN::Or(lit, HN::Gt(HN::Add(light.red, HN::Add(light.green, light.blue)), zero));
+      light_.lit[row - from] = !HN::AllFalse(df, lit);
+      if (!HN::AllFalse(df, more)) light_.defer(more, at, length, s.scalar_front, s.scalar_back);
+    }
+    light_.integrate_waiting(table_);
+    return to;
   }
 
   /// Composites what lies before `final_step`; returns how many segments are done with.
@@ -158,58 +278,50 @@ class PixelGroup {
     const std::size_t p = pixel_;
     load_light();
     Doubles ray = load(rules.runs ? &state_.ray_transmittance[p] : &state_.transmittance[p]);
-    const VF length_per_step = HN::Load(df, &state_.length_per_step[p]);
     VI open = HN::Load(d, &state_.open[p]);
     const VF least_transmittance = HN::Set(df, static_cast<float>(rules.least_transmittance));
-    const VI first = HN::ShiftLeft<2>(HN::Iota(d, 0)), end = HN::Set(d, final_step);
-    const VI stride = HN::Set(d, static_cast<std::int32_t>(4 * windows_.stride()));
-    const float* scalars = reinterpret_cast<const float*>(base_);
+    const VI end = HN::Set(d, final_step);
     VI done = HN::Zero(d);
-    for (std::size_t row = 0; row < rows; ++row) {
-      const VI front = HN::LoadU(d, state_.keys.data() + row * lanes);
-      const auto is_final = HN::Lt(front, end);
-      const auto takes = HN::And(is_final, HN::Lt(open, HN::Zero(d)));
-      done = HN::Sub(done, HN::VecFromMask(d, is_final));
-      if (HN::AllFalse(d, takes)) {
-        if (HN::AllFalse(d, is_final)) break;
-        continue;
-      }
-      const VI at = HN::Add(first, HN::Mul(stride, HN::LoadU(d, state_.slots.data() + row * lanes)));
-      const VI back = HN::GatherIndex(d, base_ + 1, at);
-      const VF scalar_front = HN::GatherIndex(df, scalars + 2, at), scalar_back = HN::GatherIndex(df, scalars + 3, at);
-      const VF length = HN::Mul(HN::ConvertTo(df, HN::Sub(back, front)), length_per_step);
-      const Light light = integrate_lanes(table_, length, scalar_front, scalar_back, HN::RebindMask(df, takes));
-
-      auto shows = HN::Gt(light.optical_depth, HN::Zero(df));
-      if (rules.runs) {
-        go_on_in_run(takes, HN::RebindMask(d, shows), front, back);
-        // A run begins where it shows, if only by light (independent emission).
-        const VF colors = HN::Add(HN::Abs(light.red), HN::Add(HN::Abs(light.green), HN::Abs(light.blue)));
-        shows = HN::Or(shows, HN::Gt(colors, HN::Zero(df)));
-        const auto again =
-            HN::And(HN::RebindMask(d, shows), HN::Ne(HN::Load(d, &state_.first_back[p]), HN::Set(d, no_key)));
-        HN::Store(HN::Or(HN::Load(d, &state_.several[p]), HN::VecFromMask(d, again)), d, &state_.several[p]);
-      }
-      const VI seen = HN::Load(d, &state_.first_back[p]);
-      const auto appears = HN::And(HN::RebindMask(d, shows), HN::Eq(seen, HN::Set(d, no_key)));
-      if (!HN::AllFalse(d, appears)) {
-        const auto keep = [&](auto value, auto tag, auto* to) HWY_ATTR {
-          HN::Store(HN::IfThenElse(HN::RebindMask(tag, appears), value, HN::Load(tag, to)), tag, to);
+    for (std::size_t from = 0, to; from < rows; from = to) {
+      HN::Store(open, d, &state_.open[p]);
+      const std::size_t most = std::min(rows, from + LightRows::most);
+      to = integrate(from, most, final_step);
+      for (std::size_t row = from; row < to; ++row) {
+        const VI front = HN::LoadU(d, state_.keys.data() + row * lanes);
+        const auto is_final = HN::Lt(front, end);
+        const auto takes = HN::And(is_final, HN::Lt(open, HN::Zero(d)));
+        done = HN::Sub(done, HN::VecFromMask(d, is_final));
+        const std::size_t at = (row - from) * lanes;
+        if (!rules.runs && !light_.lit[row - from]) continue;
+        const MF adds = HN::RebindMask(df, takes);
+        const auto number = [&](const float* numbers) HWY_ATTR {
+          return HN::IfThenElseZero(adds, HN::Load(df, numbers + at));
         };
-        keep(front, d, &state_.first_front[p]);
-        keep(back, d, &state_.first_back[p]);
-        keep(scalar_front, df, &state_.first_scalar_front[p]);
-        keep(scalar_back, df, &state_.first_scalar_back[p]);
+        const VF depth = number(light_.optical_depth), alpha = number(light_.alpha);
+        const VF red = number(light_.red), green = number(light_.green), blue = number(light_.blue);
+        auto shows = HN::RebindMask(d, HN::Gt(depth, HN::Zero(df)));
+        if (rules.runs) {
+          go_on_in_run(takes, shows, front, HN::Load(d, light_.back + at));
+          // A run begins where it shows, if only by light (independent emission).
+          const VF colors = HN::Add(HN::Abs(red), HN::Add(HN::Abs(green), HN::Abs(blue)));
+          shows = HN::Or(shows, HN::RebindMask(d, HN::Gt(colors, HN::Zero(df))));
+          const auto again = HN::And(shows, HN::Ne(HN::Load(d, &state_.first_back[p]), HN::Set(d, no_key)));
+          HN::Store(HN::Or(HN::Load(d, &state_.several[p]), HN::VecFromMask(d, again)), d, &state_.several[p]);
+        }
+        const auto appears = HN::And(shows, HN::Eq(HN::Load(d, &state_.first_back[p]), HN::Set(d, no_key)));
+        if (!HN::AllFalse(d, appears)) keep_first(appears, row);
+        red_ = multiply_add(transmittance_, promote(red), red_);
+        green_ = multiply_add(transmittance_, promote(green), green_);
+        blue_ = multiply_add(transmittance_, promote(blue), blue_);
+        const Doubles depths = promote(depth), alphas = promote(alpha);
+        optical_depth_ = {HN::Add(optical_depth_.low, depths.low), HN::Add(optical_depth_.high, depths.high)};
+        transmittance_ = dimmed(transmittance_, alphas);
+        ray = rules.runs ? dimmed(ray, alphas) : transmittance_;
+        // After each segment, not each window: where a ray ends must not depend on how its segments were cut.
+        open = HN::And(open, HN::VecFromMask(d, HN::RebindMask(d, HN::Ge(demote(ray), least_transmittance))));
       }
-      red_ = multiply_add(transmittance_, promote(light.red), red_);
-      green_ = multiply_add(transmittance_, promote(light.green), green_);
-      blue_ = multiply_add(transmittance_, promote(light.blue), blue_);
-      const Doubles depth = promote(light.optical_depth), alpha = promote(light.alpha);
-      optical_depth_ = {HN::Add(optical_depth_.low, depth.low), HN::Add(optical_depth_.high, depth.high)};
-      transmittance_ = dimmed(transmittance_, alpha);
-      ray = rules.runs ? dimmed(ray, alpha) : transmittance_;
-      // After each segment, not each window: where a ray ends must not depend on how its segments were cut.
-      open = HN::And(open, HN::VecFromMask(d, HN::RebindMask(d, HN::Ge(demote(ray), least_transmittance))));
+      if (to < most) break;
+      if (HN::AllFalse(d, HN::Lt(open, HN::Zero(d)))) break;
     }
     store_light();
     if (rules.runs) store(ray, &state_.ray_transmittance[p]);
@@ -261,6 +373,20 @@ class PixelGroup {
     HN::Store(HN::IfThenElse(takes, on, now), d, &state_.back[p]);
   }
 
+  /// Notes the row's segments as those in which lanes begin to show.
+  HWY_NOINLINE void keep_first(HN::Mask<DI> appears, std::size_t row) {
+    const std::size_t lanes = HN::Lanes(DI());
+    std::uint8_t bits[8] = {0};
+    HN::StoreMaskBits(DI(), appears, bits);
+    for (std::uint64_t left = bits[0] | static_cast<std::uint64_t>(bits[1]) << 8; left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::size_t>(__builtin_ctzll(left));
+      const projection::LatticeSegment& s = list_[static_cast<std::int32_t>(lane) + state_.slots[row * lanes + lane]];
+      const std::size_t p = pixel_ + lane;
+      state_.first_front[p] = s.front, state_.first_back[p] = s.back;
+      state_.first_scalar_front[p] = s.scalar_front, state_.first_scalar_back[p] = s.scalar_back;
+    }
+  }
+
   /// Leaves in the windows what was not final. Returns how many segments are gone.
   HWY_INLINE std::uint64_t keep_rest(VI done) {
     const DI d;
@@ -279,7 +405,7 @@ class PixelGroup {
       std::size_t kept = 0;
       const std::size_t stride = windows_.stride();
       for (; from < count; ++from)
-        state_.rest[kept++] = list_[lane + static_cast<std::size_t>(state_.slots[from * lanes + lane]) * stride];
+        state_.rest[kept++] = list_[lane + static_cast<std::size_t>(state_.slots[from * lanes + lane])];
       for (std::size_t k = 0; k < kept; ++k) list_[lane + k * stride] = state_.rest[k];
     }
     return gone;
@@ -288,9 +414,9 @@ class PixelGroup {
   const Lookup<form>& table_;
   projection::SegmentWindows& windows_;
   WindowState& state_;
+  LightRows& light_;
   std::size_t pixel_;
   projection::LatticeSegment* list_;
-  const std::int32_t* base_;
   Doubles red_, green_, blue_, optical_depth_, transmittance_;
 };
 
@@ -299,8 +425,9 @@ std::uint64_t composite_form(const WindowRules& rules, projection::SegmentWindow
                              WindowState& state, scene::TraceLaps& laps) {
   const Lookup<form> lookup(*rules.table);
   std::uint64_t done = 0;
+  LightRows light;
   for (std::size_t pixel = 0; pixel < windows.pixels(); pixel += HN::Lanes(DI())) {
-    PixelGroup<form> group(lookup, windows, pixel, state);
+    PixelGroup<form> group(lookup, windows, pixel, state, light);
     const std::size_t rows = group.sort();
     laps.lap("sort");
     if (rows > 0) done += group.composite(rows, final_step, rules);
