@@ -212,7 +212,7 @@ class PixelGroup {
       HN::StoreU(key, d, keys + row * lanes);
       HN::StoreU(HN::IfThenElseZero(here, HN::Set(d, static_cast<std::int32_t>(slot))), d, slots + row * lanes);
     }
-    if (chunks <= 4) {
+    if (chunks <= static_cast<std::size_t>(sorting::HWY_NAMESPACE::most_sort_chunks)) {
       sorting::HWY_NAMESPACE::sort_lanes(keys, slots, static_cast<int>(chunks));
       auto ties = HN::Lt(count, HN::Zero(d));
       VI key = HN::LoadU(d, keys);

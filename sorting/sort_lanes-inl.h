@@ -88,13 +88,13 @@ HWY_INLINE void run_on_rows(std::int32_t* keys, std::int32_t* slots) {
   }
 }
 
-/// Exchanges row i of `low` with row i (reversed: rows - 1 - i) of `high`, for all rows.
+/// Exchanges row `low` + i with row `high` + i (reversed: `high` - i), i < rows.
 template <bool reversed>
 HWY_INLINE void exchange_rows(std::int32_t* keys, std::int32_t* slots, int low, int high, int rows) {
   const SortTag d;
   const auto lanes = static_cast<int>(hn::Lanes(d));
   for (int i = 0; i < rows; ++i) {
-    const int a = (low + i) * lanes, b = (high + (reversed ? rows - 1 - i : i)) * lanes;
+    const int a = (low + i) * lanes, b = (reversed ? high - i : high + i) * lanes;
     SortVec key_a = hn::LoadU(d, keys + a), slot_a = hn::LoadU(d, slots + a);
     SortVec key_b = hn::LoadU(d, keys + b), slot_b = hn::LoadU(d, slots + b);
     exchange(key_a, slot_a, key_b, slot_b);
@@ -103,31 +103,32 @@ HWY_INLINE void exchange_rows(std::int32_t* keys, std::int32_t* slots, int low, 
   }
 }
 
-/// Sorts every lane's keys, ascending, and takes the slots along: `chunks` (1 to 4) times 16 rows; lists that are
-/// shorter are filled up with the largest key. Not stable. Sorting 16 rows takes 63 exchanges of 5 instructions for
-/// all lanes, so about one instruction an element; each doubling adds two thirds of that.
+/// Beyond this many chunks a merge of n log^2 n exchanges loses to sorting lane after lane.
+constexpr int most_sort_chunks = 64;
+
+/// Sorts every lane's keys, ascending, and takes the slots along: `chunks` (1 to most_sort_chunks) times 16 rows; lists
+/// that are shorter are filled up with the largest key. Not stable. Sorting 16 rows takes 63 exchanges of 5
+/// instructions for all lanes, so about one instruction an element; each doubling adds two thirds of that and more.
+///
+/// Runs of 16 rows are merged by Batcher's bitonic sorter in the form in which all comparisons point one way: rows
+/// beyond the last would hold largest keys, so that what would meet them stays.
 HWY_INLINE void sort_lanes(std::int32_t* keys, std::int32_t* slots, int chunks) {
   const auto row = static_cast<std::size_t>(hn::Lanes(SortTag()));
-  const auto merge = [&](int chunk) HWY_ATTR {
-    run_on_rows<merge_network>(keys + chunk * sort_chunk * row, slots + chunk * sort_chunk * row);
-  };
-  for (int c = 0; c < chunks; ++c)
-    run_on_rows<sort_network>(keys + c * sort_chunk * row, slots + c * sort_chunk * row);
-  for (int c = 0; c + 1 < chunks; c += 2) {
-    exchange_rows<true>(keys, slots, c * sort_chunk, (c + 1) * sort_chunk, sort_chunk);
-    merge(c), merge(c + 1);
+  const auto at = [&](int chunk) { return static_cast<std::size_t>(chunk * sort_chunk) * row; };
+  for (int c = 0; c < chunks; ++c) run_on_rows<sort_network>(keys + at(c), slots + at(c));
+  for (int run = 1; run < chunks; run *= 2) {
+    for (int low = 0; low + run < chunks; low += 2 * run) {
+      const int end = chunks < low + 2 * run ? chunks : low + 2 * run, high_chunks = end - low - run;
+      exchange_rows<true>(keys, slots, (low + run - high_chunks) * sort_chunk, end * sort_chunk - 1,
+                          high_chunks * sort_chunk);
+      for (int stride = run / 2; stride >= 1; stride /= 2)
+        for (int c = low; c + stride < end; c += 2 * stride) {
+          const int met = end - c - stride < stride ? end - c - stride : stride;
+          exchange_rows<false>(keys, slots, c * sort_chunk, (c + stride) * sort_chunk, met * sort_chunk);
+        }
+      for (int c = low; c < end; ++c) run_on_rows<merge_network>(keys + at(c), slots + at(c));
+    }
   }
-  if (chunks <= 2) return;
-  if (chunks == 3) {
-    // The fourth chunk would hold largest keys alone: what would meet them stays.
-    exchange_rows<true>(keys, slots, sort_chunk, 2 * sort_chunk, sort_chunk);
-  } else {
-    exchange_rows<true>(keys, slots, 0, 2 * sort_chunk, 2 * sort_chunk);
-    exchange_rows<false>(keys, slots, 2 * sort_chunk, 3 * sort_chunk, sort_chunk);
-    merge(3);
-  }
-  exchange_rows<false>(keys, slots, 0, sort_chunk, sort_chunk);
-  merge(0), merge(1), merge(2);
 }
 
 }  // namespace HWY_NAMESPACE
