@@ -126,6 +126,19 @@ void FrameProjector::project_vertices(const projection::PixelSpace& space, std::
   });
 }
 
+void FrameProjector::place_on_lattice(const projection::Lattice& lattice, bool perspective) {
+  const scene::TetMesh& mesh = prepared_.mesh();
+  const bool per_point = mesh.association == scene::Association::point;
+  lattice_vertices_.reset(vertices_.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, vertices_.size(), 4096), [&](const auto& range) {
+    const std::size_t n = range.end() - range.begin();
+    projection::make_lattice_vertices(
+        std::span(vertices_).subspan(range.begin(), n),
+        per_point ? std::span(mesh.scalars).subspan(range.begin(), n) : std::span<const double>(), lattice, perspective,
+        {lattice_vertices_.data() + range.begin(), n});
+  });
+}
+
 FrameStatistics FrameProjector::project(const Task& task) {
   return arena_.execute([&] { return project_in_arena(task); });
 }
@@ -138,6 +151,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   const float longest_edge = task.longest_edge > 0 ? task.longest_edge : longest_edge_;
   if (settings_.rasterizer == Rasterizer::scanline) check_scanline(projected, space, longest_edge);
   const projection::TileGrid& grid = task.grid;
+  if (task.lattice != nullptr) place_on_lattice(*task.lattice, space.perspective());
 
   std::optional<projection::TileLists> lists;
   {
@@ -150,7 +164,9 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
     task.announce(has_cells);
   }
   const int threads = arena_.max_concurrency();
-  const std::uint64_t held = vertices_.capacity() * sizeof(projection::PixelVertex) + lists->bytes() + task.kept_bytes;
+  const std::uint64_t vertex_bytes =
+      vertices_.capacity() * sizeof(projection::PixelVertex) + lattice_vertices_.bytes();
+  const std::uint64_t held = vertex_bytes + lists->bytes() + task.kept_bytes;
   // A quarter of what is left for the lists of a band of tiles; the rest for segments.
   const std::uint64_t list_budget =
       std::max<std::uint64_t>(segment_budget(settings_, held, 1) / 4 / sizeof(projection::TileEntry), 1);
@@ -160,7 +176,10 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
                             settings_.trace, settings_.rasterizer,  longest_edge};
   tbb::enumerable_thread_specific<std::unique_ptr<TileWorker>> workers([&]() -> std::unique_ptr<TileWorker> {
     if (task.lattice == nullptr) return std::make_unique<DoubleWorker>(context, task.make_sink());
-    const projection::LatticeView view{projected, *task.lattice, space.perspective()};
+    const projection::LatticeView view{projected,
+                                       {lattice_vertices_.data(), lattice_vertices_.size()},
+                                       *task.lattice,
+                                       space.perspective()};
     return std::make_unique<LatticeWorker>(context, view, task.make_window_sink());
   });
   std::uint64_t most_list_bytes = 0;
@@ -198,7 +217,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   statistics.tets_outside_view = culled.outside_view;
   statistics.tets_between_pixels = culled.between_pixels;
   statistics.tets_projected = culled.projected;
-  statistics.peak_buffer_bytes = vertices_.capacity() * sizeof(projection::PixelVertex) + most_list_bytes;
+  statistics.peak_buffer_bytes = vertex_bytes + most_list_bytes;
   for (const std::unique_ptr<TileWorker>& worker : workers) {
     const TileCounts counts = worker->counts();
     statistics.segments += counts.segments;

@@ -10,7 +10,8 @@
 #include "compositor/tile_sink.hpp"
 #include "compositor/window_sink.hpp"
 #include "frame/render.hpp"
-#include "projection/lattice.hpp"
+#include "projection/large_array.hpp"
+#include "projection/lattice_rasterizer.hpp"
 #include "projection/prepared_mesh.hpp"
 #include "projection/tile_lists.hpp"
 
@@ -48,6 +49,7 @@ class FrameProjector {
  private:
   FrameStatistics project_in_arena(const Task& task);
   void project_vertices(const projection::PixelSpace& space, std::int32_t frame);
+  void place_on_lattice(const projection::Lattice& lattice, bool perspective);
 
   RenderSettings settings_;
   tbb::global_control parallelism_;  ///< more threads than cores, where asked for, without oneTBB's warning
@@ -56,6 +58,7 @@ class FrameProjector {
   double diagonal_ = 0;
   float longest_edge_ = 0;  ///< scanline only
   std::vector<projection::PixelVertex> vertices_;
+  projection::LargeArray<projection::LatticeVertex> lattice_vertices_;
   projection::TileListBuffers list_buffers_;
 };
 

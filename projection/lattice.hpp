@@ -24,7 +24,9 @@ struct Lattice {
   }
 
   [[nodiscard]] static std::int32_t step_of(double value, double origin, double unit) {
-    return static_cast<std::int32_t>(std::clamp(std::nearbyint((value - origin) / unit), -limit, limit));
+    const double steps = std::nearbyint((value - origin) / unit);
+    // Written so that what is not a number, as vertices of no cell may have, ends at the limit too.
+    return static_cast<std::int32_t>(steps > -limit ? std::min(steps, limit) : -limit);
   }
   [[nodiscard]] std::int32_t depth_step(double depth) const { return step_of(depth, depth_origin, depth_unit); }
   [[nodiscard]] std::int32_t scalar_step(double scalar) const { return step_of(scalar, scalar_origin, scalar_unit); }

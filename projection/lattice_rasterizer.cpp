@@ -121,11 +121,11 @@ HWY_NOINLINE std::uint64_t settle(const LatticeView& view, const CellBatch& batc
       bool on_edge = false;
       const int sign = edge_sign(view.projected.vertices[corners[edge_from[e]]],
                                  view.projected.vertices[corners[edge_to[e]]], px, py, &on_edge);
-      const unsigned edge_on = batch.edge_on[t] >> edge_faces[e][0] | batch.edge_on[t] >> edge_faces[e][1];
+      const unsigned edge_on = batch.edge_on(t) >> edge_faces[e][0] | batch.edge_on(t) >> edge_faces[e][1];
       if (on_edge && (edge_on & 1) == 0 && std::find(roles.outline, roles.outline + 4, e) != roles.outline + 4)
         touching |= std::uint64_t{1} << lane;
       ++counts.exact_sign_tests;
-      edges[e][lane] = static_cast<float>(2 * ((batch.flipped[t] >> e & 1) != 0 ? -sign : sign));
+      edges[e][lane] = static_cast<float>(2 * ((batch.flipped(t) >> e & 1) != 0 ? -sign : sign));
     }
   }
   return touching;
@@ -315,8 +315,8 @@ template <bool perspective, bool per_cell>
 void rasterize_cells(const LatticeView& view, const CellBatch& batch, const PixelRect& rect, const PixelRect& square,
                      const OpenPixels& open, SegmentStream& out, RasterCounts& counts) {
   for (int t = 0; t < batch.size; ++t) {
-    const Roles& roles = role_table.roles[batch.front_faces[t] & 15];
-    if (!roles.valid || batch.x0[t] >= batch.x1[t]) continue;
+    const Roles& roles = role_table.roles[batch.front_faces(t)];
+    if (!roles.valid || (batch.irregular >> t & 1) != 0 || batch.x0[t] >= batch.x1[t]) continue;
     std::uint32_t takes = 0;
     for (int y = batch.y0[t]; y < batch.y1[t]; ++y) takes |= open[y];
     const std::uint64_t columns = (std::uint64_t{1} << batch.x1[t]) - (std::uint64_t{1} << batch.x0[t]);
@@ -356,7 +356,7 @@ void rasterize(const LatticeView& view, std::span<const TileEntry> entries, std:
   for (std::size_t from = 0; from < entries.size(); from += CellBatch::most) {
     const auto cells = entries.subspan(from, std::min<std::size_t>(CellBatch::most, entries.size() - from));
     out.reserve(out.size + cells.size() * static_cast<std::size_t>(rect.area()));
-    if (from == 0) prefetch_cells(view.projected, ahead);
+    if (from == 0) prefetch_cells(view, ahead);
     if (view.perspective)
       set_up_cells<true>(view, cells, rect, batch);
     else
@@ -381,6 +381,18 @@ HWY_AFTER_NAMESPACE();
 namespace tessera::projection {
 HWY_EXPORT(rasterize);
 HWY_EXPORT(available);
+
+void make_lattice_vertices(std::span<const PixelVertex> vertices, std::span<const double> scalars,
+                           const Lattice& lattice, bool perspective, std::span<LatticeVertex> out) {
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const PixelVertex& v = vertices[i];
+    LatticeVertex& to = out[i];
+    to = {v.x, v.y, 1, lattice.depth_step(v.depth), scalars.empty() ? 0 : lattice.scalar_step(scalars[i])};
+    if (!perspective) continue;
+    to.inverse_w = v.w > 0 ? 1 / v.w : 0;
+    to.x *= to.inverse_w, to.y *= to.inverse_w;
+  }
+}
 
 bool lattice_available() { return HWY_DYNAMIC_DISPATCH(available)(); }
 

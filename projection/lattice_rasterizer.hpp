@@ -11,9 +11,22 @@
 
 namespace tessera::projection {
 
+/// A vertex as set-up wants it, in half a cache line: what cells share is divided and rounded once.
+struct LatticeVertex {
+  double x, y;                 ///< pixel position
+  double inverse_w;            ///< perspective: 1 / depth, 0 for a vertex that is not in front of the eye; else 1
+  std::int32_t depth, scalar;  ///< in the lattice's steps; the scalar is that of point data
+};
+static_assert(sizeof(LatticeVertex) == 32);
+
+/// out[v] from vertices[v] and scalars[v]; `scalars` is empty for cell data.
+void make_lattice_vertices(std::span<const PixelVertex> vertices, std::span<const double> scalars,
+                           const Lattice& lattice, bool perspective, std::span<LatticeVertex> out);
+
 /// What the lattice rasterizer reads of a frame.
 struct LatticeView {
   ProjectedMesh projected;
+  std::span<const LatticeVertex> vertices;  ///< of all vertices of `projected`
   Lattice lattice;
   bool perspective;
 };

@@ -10,7 +10,7 @@
 
 #include <hwy/highway.h>
 
-#include <cstring>
+#include <algorithm>
 
 #include "projection/lattice_rasterizer.hpp"
 
@@ -44,9 +44,7 @@ struct CellBatch {
   unsigned irregular;  ///< bit t: left to the double-precision rasterizer
   std::uint32_t tet[most];
   alignas(64) std::int32_t x0[most], x1[most], y0[most], y1[most];  ///< candidate pixels, half open
-  std::uint8_t front_faces[most];                                   ///< bit f: a front face
-  std::uint8_t edge_on[most];                                       ///< bit f: seen edge-on
-  std::uint8_t flipped[most];                                       ///< bit e: stored edge function is -E
+  alignas(64) std::uint32_t bits[most];                             ///< see front_faces() and so on
   // E / (its rounding error), positive inside the first of the edge's faces.
   alignas(64) float edge[6][most], edge_x[6][most], edge_y[6][most];
   // Planes of faces 0 to 3: depth (perspective: depth behind corner c, times weight), scalar likewise, and weight (w of
@@ -57,6 +55,13 @@ struct CellBatch {
   alignas(64) std::int32_t depth_c[most][4];
   alignas(64) float scalar_c[most][4];
   alignas(64) float cell_scalar[most];
+
+  /// Bit f: a front face. Of an irregular cell it says nothing.
+  [[nodiscard]] unsigned front_faces(int t) const { return bits[t] & 15; }
+  /// Bit f: seen edge-on.
+  [[nodiscard]] unsigned edge_on(int t) const { return bits[t] >> 8 & 15; }
+  /// Bit e: the stored edge function is -E.
+  [[nodiscard]] unsigned flipped(int t) const { return bits[t] >> 16 & 63; }
 };
 
 /// Nearest integers modulo 2^32 of |v| < 2^51: in the sum with 1.5 * 2^52 the lowest bit counts ones.
@@ -108,37 +113,50 @@ HWY_INLINE unsigned bits_of(M mask) {
   return bits[0];
 }
 
-/// One vector of cells: the first of them is cell `from` of the batch.
+/// Depths outside these are, or may be, outside the clipping range.
+struct DepthBounds {
+  double near, far;  ///< steps
+  explicit DepthBounds(const LatticeView& view) {
+    const Lattice& l = view.lattice;
+    const auto steps = [&](double depth, double sign) {
+      return std::clamp((depth - l.depth_origin) / l.depth_unit + sign, -2 * Lattice::limit, 2 * Lattice::limit);
+    };
+    near = steps(view.projected.near_depth, 1), far = steps(view.projected.far_depth, -1);
+  }
+};
+
+/// One vector of cells: the first of them is cell `from` of the batch. `cell_scalar` is read of cell data only.
 template <bool perspective>
-HWY_INLINE void set_up_lanes(const LatticeView& view, const double (*corner)[8][4], const double (*corner_scalar)[8],
-                             const PixelRect& rect, int square_x, int square_y, int from, CellBatch& batch) {
+HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds, const LatticeVertex (*corner)[8],
+                             const double* cell_scalar, const PixelRect& rect, int square_x, int square_y, int from,
+                             CellBatch& batch) {
   const D d;
+  const hn::Rebind<std::int32_t, D> di32;
+  const hn::RebindToUnsigned<D> du64;
+  const hn::Rebind<std::uint32_t, D> du32;
   const auto number = [](double v) HWY_ATTR { return hn::Set(D(), v); };
   const V zero = hn::Zero(d), one = number(1);
-  const Lattice& lattice = view.lattice;
   V x[4], y[4], z[4], s[4], w[4], order[4];
   M irregular = hn::Lt(zero, zero);
   V nearest = number(HUGE_VAL), farthest = number(-HUGE_VAL);
   for (int i = 0; i < 4; ++i) {
-    V depth;
-    hn::LoadInterleaved4(d, &corner[i][0][0], x[i], y[i], w[i], depth);
+    V steps;
+    hn::LoadInterleaved4(d, reinterpret_cast<const double*>(corner[i]), x[i], y[i], w[i], steps);
+    const auto both = hn::BitCast(du64, steps);
+    z[i] = hn::PromoteTo(d, hn::BitCast(di32, hn::TruncateTo(du32, both)));
+    s[i] = hn::PromoteTo(d, hn::BitCast(di32, hn::TruncateTo(du32, hn::ShiftRight<32>(both))));
     if constexpr (perspective) {
       irregular = hn::Or(irregular, hn::Not(hn::Gt(w[i], zero)));
-      const V inverse = hn::Div(one, hn::IfThenElse(hn::Gt(w[i], zero), w[i], one));
-      x[i] = hn::Mul(x[i], inverse), y[i] = hn::Mul(y[i], inverse);
-      w[i] = inverse;
-      order[i] = hn::Neg(inverse);
+      order[i] = hn::Neg(w[i]);
+    } else {
+      order[i] = z[i];
     }
     x[i] = hn::Sub(x[i], number(square_x + CellBatch::center + 0.5));
     y[i] = hn::Sub(y[i], number(square_y + CellBatch::center + 0.5));
-    nearest = hn::Min(nearest, depth), farthest = hn::Max(farthest, depth);
-    z[i] = hn::Mul(hn::Sub(depth, number(lattice.depth_origin)), number(1 / lattice.depth_unit));
-    if constexpr (!perspective) order[i] = z[i];
-    s[i] = hn::Mul(hn::Sub(hn::LoadU(d, corner_scalar[i]), number(lattice.scalar_origin)),
-                   number(1 / lattice.scalar_unit));
+    nearest = hn::Min(nearest, z[i]), farthest = hn::Max(farthest, z[i]);
   }
-  irregular = hn::Or(irregular, hn::Or(hn::Lt(nearest, number(view.projected.near_depth)),
-                                       hn::Gt(farthest, number(view.projected.far_depth))));
+  irregular =
+      hn::Or(irregular, hn::Or(hn::Lt(nearest, number(bounds.near)), hn::Gt(farthest, number(bounds.far))));
   if constexpr (perspective) {
     const V w_most = hn::Max(hn::Max(w[0], w[1]), hn::Max(w[2], w[3]));
     const V w_least = hn::Min(hn::Min(w[0], w[1]), hn::Min(w[2], w[3]));
@@ -153,7 +171,6 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const double (*corner)[8][
   const V reach = hn::Max(hn::Max(hn::Neg(x_low), x_high), hn::Max(hn::Neg(y_low), y_high));
   irregular = hn::Or(irregular, hn::Not(hn::Lt(reach, number(16384))));
   const V slack = number(1e-6);
-  const hn::Rebind<std::int32_t, D> di32;
   const auto store_bound = [&](V v, int low, int high, std::int32_t* out) HWY_ATTR {
     hn::StoreU(hn::DemoteTo(di32, hn::Min(hn::Max(v, number(low)), number(high))), di32, out + from);
   };
@@ -198,18 +215,20 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const double (*corner)[8][
   const M upright = hn::Ge(volume, zero);
   // Edge-on faces, which no ray passes, fill up the sides: the first counts as a front face, others as back faces.
   M seen_zero = hn::Lt(zero, zero);
-  unsigned front_bits[4], edge_on_bits[4];
   M front[4];
+  // What is true of a cell, a bit each: front faces from bit 0, edge-on faces from 8, flipped edges from 16.
+  auto bits = hn::Zero(du64);
+  const auto add_bit = [&](M mask, int bit) HWY_ATTR {
+    bits = hn::Or(bits, hn::IfThenElseZero(hn::RebindMask(du64, mask), hn::Set(du64, std::uint64_t{1} << bit)));
+  };
   for (int f = 0; f < 4; ++f) {
     const M facing = hn::Not(hn::Xor(positive[f], upright));
     front[f] = hn::Or(hn::AndNot(is_zero[f], facing), hn::And(is_zero[f], hn::Not(seen_zero)));
     seen_zero = hn::Or(seen_zero, is_zero[f]);
-    front_bits[f] = bits_of(front[f]);
-    edge_on_bits[f] = bits_of(is_zero[f]);
+    add_bit(front[f], f), add_bit(is_zero[f], 8 + f);
   }
 
   // Edge functions over the largest rounding error of the six; 2^-23 would do, the rest is margin.
-  unsigned flip_bits[6];
   const hn::Rebind<float, D> df;
   V start[6], along_x[6], along_y[6], error = number(1e-290);
   for (int e = 0; e < 6; ++e) {
@@ -224,7 +243,7 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const double (*corner)[8][
     const M without_sides = hn::And(hn::Eq(along_x[e], zero), hn::Eq(along_y[e], zero));
     const M inward = edge_inward[e] ? upright : hn::Not(upright);
     const M flip = hn::Xor(inward, front[edge_faces[e][0]]);
-    flip_bits[e] = bits_of(flip);
+    add_bit(flip, 16 + e);
     const V signed_scale = hn::IfThenElse(flip, hn::Neg(scale), scale);
     // An edge without sides lies between two edge-on faces; it never decides.
     const V scaled = hn::IfThenElse(without_sides, number(4), hn::Mul(start[e], signed_scale));
@@ -276,39 +295,29 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const double (*corner)[8][
                             &batch.scalar_c[from][0]);
     }
   }
-  if (per_cell) hn::StoreU(hn::DemoteTo(df, hn::Round(s[0])), df, batch.cell_scalar + from);
-
-  const unsigned irregular_bits = bits_of(irregular);
-  for (int lane = 0; lane < static_cast<int>(hn::Lanes(d)); ++lane) {
-    unsigned faces = 0, edge_on = 0, flips = 0;
-    for (unsigned f = 0; f < 4; ++f) {
-      faces |= (front_bits[f] >> lane & 1) << f;
-      edge_on |= (edge_on_bits[f] >> lane & 1) << f;
-    }
-    for (unsigned e = 0; e < 6; ++e) flips |= (flip_bits[e] >> lane & 1) << e;
-    const bool left_out = (irregular_bits >> lane & 1) != 0;
-    batch.front_faces[from + lane] = static_cast<std::uint8_t>(left_out ? 0 : faces);
-    batch.edge_on[from + lane] = static_cast<std::uint8_t>(edge_on);
-    batch.flipped[from + lane] = static_cast<std::uint8_t>(flips);
+  if (per_cell) {
+    const V scalar = hn::Mul(hn::Sub(hn::LoadU(d, cell_scalar), number(view.lattice.scalar_origin)),
+                             number(1 / view.lattice.scalar_unit));
+    hn::StoreU(hn::DemoteTo(df, hn::Round(scalar)), df, batch.cell_scalar + from);
   }
-  batch.irregular |= irregular_bits << from;
+
+  hn::StoreU(hn::TruncateTo(du32, bits), du32, batch.bits + from);
+  batch.irregular |= bits_of(irregular) << from;
 }
 
 /// Lists name cells all over the mesh: fetch the next batches' corner indices, and their vertices, while this batch is
 /// worked on. `ahead` begins with the next batch.
-HWY_INLINE void prefetch_cells(const ProjectedMesh& projected, std::span<const TileEntry> ahead) {
-  const scene::TetMesh& mesh = projected.mesh->mesh();
+HWY_INLINE void prefetch_cells(const LatticeView& view, std::span<const TileEntry> ahead) {
+  const PreparedMesh& prepared = *view.projected.mesh;
+  const scene::TetMesh& mesh = prepared.mesh();
   const bool per_cell = mesh.association == scene::Association::cell;
   const std::size_t near = std::min<std::size_t>(ahead.size(), CellBatch::most);
   for (std::size_t i = 0; i < near; ++i)
-    for (const std::uint32_t v : mesh.tets[ahead[i].tet]) {
-      __builtin_prefetch(&projected.vertices[v]);
-      if (!per_cell) __builtin_prefetch(&mesh.scalars[v]);
-    }
+    for (const std::uint32_t v : mesh.tets[ahead[i].tet]) __builtin_prefetch(&view.vertices[v]);
   const std::size_t far = std::min<std::size_t>(ahead.size(), 3 * CellBatch::most);
   for (std::size_t i = 2 * CellBatch::most; i < far; ++i) {
     __builtin_prefetch(&mesh.tets[ahead[i].tet]);
-    projected.mesh->prefetch(ahead[i].tet);
+    prepared.prefetch(ahead[i].tet);
     if (per_cell) __builtin_prefetch(&mesh.scalars[ahead[i].tet]);
   }
 }
@@ -318,24 +327,25 @@ template <bool perspective>
 HWY_INLINE void set_up_cells(const LatticeView& view, std::span<const TileEntry> cells, const PixelRect& rect,
                              CellBatch& batch) {
   const int square_x = rect.x0 & ~(SegmentWindows::side - 1), square_y = rect.y0 & ~(SegmentWindows::side - 1);
-  const scene::TetMesh& mesh = view.projected.mesh->mesh();
-  const bool per_cell = mesh.association == scene::Association::cell;
+  const PreparedMesh& prepared = *view.projected.mesh;
+  const bool per_cell = prepared.mesh().association == scene::Association::cell;
+  const DepthBounds bounds(view);
   const auto lanes = static_cast<int>(hn::Lanes(D()));
+  const LatticeVertex* const vertices = view.vertices.data();
   batch.size = static_cast<int>(cells.size());
   batch.irregular = 0;
   for (int from = 0; from < batch.size; from += lanes) {
-    alignas(64) double corner[4][8][4], corner_scalar[4][8];
+    alignas(64) LatticeVertex corner[4][8];
+    double cell_scalar[8];
     for (int lane = 0; lane < lanes; ++lane) {
       const int t = std::min(from + lane, batch.size - 1);
       const std::uint32_t tet = cells[static_cast<std::size_t>(t)].tet;
       batch.tet[from + lane] = tet;
-      const scene::Tet corners = view.projected.mesh->canonical(tet);
-      for (int i = 0; i < 4; ++i) {
-        std::memcpy(corner[i][lane], &view.projected.vertices[corners[i]], sizeof(PixelVertex));
-        corner_scalar[i][lane] = mesh.scalars[per_cell ? tet : corners[i]];
-      }
+      const scene::Tet corners = prepared.canonical(tet);
+      for (int i = 0; i < 4; ++i) corner[i][lane] = vertices[corners[i]];
+      if (per_cell) cell_scalar[lane] = prepared.mesh().scalars[tet];
     }
-    set_up_lanes<perspective>(view, corner, corner_scalar, rect, square_x, square_y, from, batch);
+    set_up_lanes<perspective>(view, bounds, corner, cell_scalar, rect, square_x, square_y, from, batch);
   }
   batch.irregular &= (1u << batch.size) - 1;
 }

@@ -37,10 +37,15 @@ struct Scene {
     const auto [low, high] = scene::scalar_range(mesh);
     const double depth = (near + far) / 2, scalar = (low + high) / 2;
     lattice = {depth, Lattice::unit_for(1.001 * (far - near) / 2), scalar, Lattice::unit_for(1.001 * (high - low) / 2)};
+    const bool per_point = mesh.association == scene::Association::point;
+    lattice_vertices.resize(vertices.size());
+    make_lattice_vertices(vertices, per_point ? std::span(mesh.scalars) : std::span<const double>(), lattice,
+                          space.perspective(), lattice_vertices);
   }
 
   [[nodiscard]] LatticeView view() const {
-    return {{&prepared, vertices, space.near_depth(), space.far_depth()}, lattice, space.perspective()};
+    return {{&prepared, vertices, space.near_depth(), space.far_depth()}, lattice_vertices, lattice,
+            space.perspective()};
   }
 
   PreparedMesh prepared;
@@ -48,6 +53,7 @@ struct Scene {
   scene::ImageSize size;
   std::vector<PixelVertex> vertices;
   Lattice lattice{};
+  std::vector<LatticeVertex> lattice_vertices;
 };
 
 /// All segments, the picture rasterized in rectangles of `tile` pixels a side, a power of two up to 32.
