@@ -38,15 +38,16 @@ static_assert(block_width * block_height == lanes);
 HWY_INLINE VI lane_column() { return hn::And(hn::Iota(I(), 0), hn::Set(I(), block_width - 1)); }
 HWY_INLINE VI lane_row() { return hn::ShiftRight < block_width == 4 ? 2 : 1 > (hn::Iota(I(), 0)); }
 
-/// x * column + y * row for every lane: by adding bits, as a 32-bit multiplication costs ten times an addition.
-HWY_INLINE VI block_steps(std::int32_t x, std::int32_t y) {
+/// x * column + y * row for every lane, given x, 2 x, y and 2 y: by adding bits, as a 32-bit multiplication costs ten
+/// times an addition.
+HWY_INLINE VI block_steps(std::int32_t x, std::int32_t x2, std::int32_t y, std::int32_t y2) {
   const I d;
   const auto bit = [&](VI number, int b) HWY_ATTR { return hn::Ne(hn::And(number, hn::Set(d, b)), hn::Zero(d)); };
-  const VI column = lane_column(), row = lane_row(), vx = hn::Set(d, x), vy = hn::Set(d, y);
-  VI sum = hn::IfThenElseZero(bit(column, 1), vx);
-  if constexpr (block_width == 4) sum = hn::IfThenElse(bit(column, 2), hn::Add(sum, hn::Add(vx, vx)), sum);
-  sum = hn::IfThenElse(bit(row, 1), hn::Add(sum, vy), sum);
-  if constexpr (block_height == 4) sum = hn::IfThenElse(bit(row, 2), hn::Add(sum, hn::Add(vy, vy)), sum);
+  const VI column = lane_column(), row = lane_row();
+  VI sum = hn::IfThenElseZero(bit(column, 1), hn::Set(d, x));
+  if constexpr (block_width == 4) sum = hn::IfThenElse(bit(column, 2), hn::Add(sum, hn::Set(d, x2)), sum);
+  sum = hn::IfThenElse(bit(row, 1), hn::Add(sum, hn::Set(d, y)), sum);
+  if constexpr (block_height == 4) sum = hn::IfThenElse(bit(row, 2), hn::Add(sum, hn::Set(d, y2)), sum);
   return sum;
 }
 
@@ -152,13 +153,23 @@ struct CellRaster {
   // The planes at the block's first pixel, of faces 0 to 3.
   alignas(16) std::int32_t depth[4], scalar[4], weight[4];
 
-  HWY_INLINE void prepare() {
+  /// The steps of one quantity's four planes.
+  template <class Put>
+  HWY_INLINE void prepare(const std::int32_t* x, const std::int32_t* y, Put put) {
+    const D4 d4;
+    alignas(16) std::int32_t x2[4], y2[4];
+    hn::Store(hn::ShiftLeft<1>(hn::Load(d4, x)), d4, x2), hn::Store(hn::ShiftLeft<1>(hn::Load(d4, y)), d4, y2);
     for (int k = 0; k < 4; ++k) {
       const int f = roles.face[k];
-      steps[k].depth = block_steps(batch.depth_x[t][f], batch.depth_y[t][f]);
-      if constexpr (!per_cell) steps[k].scalar = block_steps(batch.scalar_x[t][f], batch.scalar_y[t][f]);
-      if constexpr (perspective) steps[k].weight = block_steps(batch.weight_x[t][f], batch.weight_y[t][f]);
+      put(k, block_steps(x[f], x2[f], y[f], y2[f]));
     }
+  }
+  HWY_INLINE void prepare() {
+    prepare(batch.depth_x[t], batch.depth_y[t], [&](int k, VI v) HWY_ATTR { steps[k].depth = v; });
+    if constexpr (!per_cell)
+      prepare(batch.scalar_x[t], batch.scalar_y[t], [&](int k, VI v) HWY_ATTR { steps[k].scalar = v; });
+    if constexpr (perspective)
+      prepare(batch.weight_x[t], batch.weight_y[t], [&](int k, VI v) HWY_ATTR { steps[k].weight = v; });
   }
 
   /// One plane of the face that a lane's ray passes.
@@ -314,19 +325,33 @@ struct CellRaster {
 template <bool perspective, bool per_cell>
 void rasterize_cells(const LatticeView& view, const CellBatch& batch, const PixelRect& rect, const PixelRect& square,
                      const OpenPixels& open, SegmentStream& out, RasterCounts& counts) {
+  // Cells of one shape after the other, so that branches go the same way.
+  unsigned shapes[2] = {0, 0};
   for (int t = 0; t < batch.size; ++t) {
     const Roles& roles = role_table.roles[batch.front_faces(t)];
-    if (!roles.valid || (batch.irregular >> t & 1) != 0 || batch.x0[t] >= batch.x1[t]) continue;
+    const unsigned takes = roles.valid && batch.x0[t] < batch.x1[t] && batch.y0[t] < batch.y1[t];
+    shapes[roles.three] |= takes << t;
+  }
+  const std::uint32_t all = static_cast<std::uint32_t>((std::uint64_t{1} << rect.width()) - 1)
+                            << (rect.x0 - square.x0);
+  bool all_open = true;
+  for (int y = rect.y0 - square.y0; y < rect.y1 - square.y0; ++y) all_open = all_open && open[y] == all;
+  const auto shut = [&](int t) {
     std::uint32_t takes = 0;
     for (int y = batch.y0[t]; y < batch.y1[t]; ++y) takes |= open[y];
     const std::uint64_t columns = (std::uint64_t{1} << batch.x1[t]) - (std::uint64_t{1} << batch.x0[t]);
-    if ((takes & columns) == 0) continue;
-    CellRaster<perspective, per_cell> raster{view, batch, t, roles, {}, {}, {}, {}};
-    if (roles.three)
-      raster.template run<true>(rect, square, out, counts);
-    else
-      raster.template run<false>(rect, square, out, counts);
-  }
+    return (takes & columns) == 0;
+  };
+  for (const int three : {0, 1})
+    for (unsigned cells = shapes[three] & ~batch.irregular; cells != 0; cells &= cells - 1) {
+      const int t = __builtin_ctz(cells);
+      if (!all_open && shut(t)) continue;
+      CellRaster<perspective, per_cell> raster{view, batch, t, role_table.roles[batch.front_faces(t)], {}, {}, {}, {}};
+      if (three == 1)
+        raster.template run<true>(rect, square, out, counts);
+      else
+        raster.template run<false>(rect, square, out, counts);
+    }
 }
 
 /// An irregular cell, from double precision to the lattice.
