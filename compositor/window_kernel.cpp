@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "compositor/integrate_lanes-inl.h"
+#include "projection/pack_lanes-inl.h"
 #include "sorting/sort_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -147,12 +148,12 @@ struct LightRows {
   HWY_INLINE void defer(MF more, std::size_t at, VF l, VF front, VF back_scalar) {
     const DF d;
     const DI di;
-    HN::StoreU(HN::Compress(l, more), d, length + waiting);
-    HN::StoreU(HN::Compress(front, more), d, scalar_front + waiting);
-    HN::StoreU(HN::Compress(back_scalar, more), d, scalar_back + waiting);
-    HN::StoreU(HN::Compress(HN::Iota(di, static_cast<std::int32_t>(at)), HN::RebindMask(di, more)), di,
-               place + waiting);
-    waiting += HN::CountTrue(d, more);
+    const projection::HWY_NAMESPACE::LanePacker pack(HN::RebindMask(di, more));
+    HN::StoreU(pack(l), d, length + waiting);
+    HN::StoreU(pack(front), d, scalar_front + waiting);
+    HN::StoreU(pack(back_scalar), d, scalar_back + waiting);
+    HN::StoreU(pack(HN::Iota(di, static_cast<std::int32_t>(at))), di, place + waiting);
+    waiting += pack.count();
   }
   template <TableForm form>
   HWY_INLINE void integrate_waiting(const Lookup<form>& table) {

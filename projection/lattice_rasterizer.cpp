@@ -11,6 +11,7 @@
 #include <hwy/highway.h>
 
 #include "projection/lattice_setup-inl.h"
+#include "projection/pack_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
@@ -303,13 +304,14 @@ struct CellRaster {
         const VF scalar_back = three && roles.single_behind ? first.scalar : second.scalar;
         const VI pixel = hn::Add(row_start, px);
         const auto hit_int = hn::RebindMask(d, hit);
-        // Compress in registers and store whole vectors: a compressing store is slower on several processors.
-        hn::StoreU(hn::Compress(pixel, hit_int), d, out.pixel.data() + out.size);
-        hn::StoreU(hn::Compress(hn::Min(first.depth, second.depth), hit_int), d, out.front.data() + out.size);
-        hn::StoreU(hn::Compress(hn::Max(first.depth, second.depth), hit_int), d, out.back.data() + out.size);
-        hn::StoreU(hn::Compress(scalar_front, hit), df, out.scalar_front.data() + out.size);
-        hn::StoreU(hn::Compress(scalar_back, hit), df, out.scalar_back.data() + out.size);
-        out.size += hn::CountTrue(df, hit);
+        // Packed in registers and stored as whole vectors: a compressing store is slower on several processors.
+        const LanePacker pack(hit_int);
+        hn::StoreU(pack(pixel), d, out.pixel.data() + out.size);
+        hn::StoreU(pack(hn::Min(first.depth, second.depth)), d, out.front.data() + out.size);
+        hn::StoreU(pack(hn::Max(first.depth, second.depth)), d, out.back.data() + out.size);
+        hn::StoreU(pack(scalar_front), df, out.scalar_front.data() + out.size);
+        hn::StoreU(pack(scalar_back), df, out.scalar_back.data() + out.size);
+        out.size += pack.count();
       }
     }
   }

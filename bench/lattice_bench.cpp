@@ -1,0 +1,205 @@
+// The lattice path's kernels: nanoseconds a cell (set up and rasterized), a segment (dealt to its pixel's window) and a
+// segment (sorted, integrated, composited), by the mean size of a cell in pixels and by instruction set, on one thread;
+// and whole frames on one and two threads.
+//
+//   lattice_bench --benchmark_filter=composite/.*AVX3
+//
+// Mesh: cube 32 (TESSERA_BENCH_CUBE=n for another); view and transfer function are those of all speed figures, the
+// image is as large as the size in pixels asks. For the machine's own limits beside them: machine_bench.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+#include <hwy/targets.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "compositor/lane_table.hpp"
+#include "compositor/window_kernel.hpp"
+#include "datasets/boxes.hpp"
+#include "datasets/transfer_functions.hpp"
+#include "frame/lattice_frame.hpp"
+#include "frame/render.hpp"
+#include "projection/depth_order.hpp"
+#include "projection/lattice_rasterizer.hpp"
+#include "projection/tile_lists.hpp"
+#include "scene/mesh_facts.hpp"
+
+namespace {
+
+using namespace tessera;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+scene::Camera figures_camera() {
+  scene::Camera camera;
+  camera.position = {3.1, 2.3, 4.2};
+  camera.focal_point = {0, 0, 0};
+  camera.parallel_scale = 1.8;
+  return camera;
+}
+
+/// A mesh in a view, its cells in the lists of tiles, in depth order.
+struct Frame {
+  Frame(const scene::TetMesh& m, int pixels)
+      : mesh(&m),
+        prepared(m),
+        size{pixels, pixels},
+        space(figures_camera(), size),
+        function(datasets::benchmark_transfer_function()),
+        grid{size, 32} {
+    vertices.resize(m.positions.size());
+    space.project(m.positions, vertices);
+    const projection::ProjectedMesh projected{&prepared, vertices, space.near_depth(), space.far_depth()};
+    lattice = *frame::lattice_of(space, scene::bounds(m), scene::scalar_range(m), function, {});
+    lattice_vertices.resize(vertices.size());
+    projection::make_lattice_vertices(vertices, m.scalars, lattice, false, lattice_vertices);
+    lists = std::make_unique<projection::TileLists>(projected, grid, function, false);
+    lists->fill(0, grid.count());
+    projection::DepthOrderScratch scratch;
+    for (std::size_t tile = 0; tile < grid.count(); ++tile) {
+      projection::order_by_depth(lists->tile(tile), scratch);
+      entries += lists->entry_count(tile);
+    }
+    view = {projected, lattice_vertices, lattice, false};
+  }
+  const scene::TetMesh* mesh;
+  projection::PreparedMesh prepared;
+  scene::ImageSize size;
+  projection::PixelSpace space;
+  scene::TransferFunction function;
+  projection::TileGrid grid;
+  std::vector<projection::PixelVertex> vertices;
+  std::vector<projection::LatticeVertex> lattice_vertices;
+  projection::Lattice lattice{};
+  projection::LatticeView view{};
+  std::unique_ptr<projection::TileLists> lists;
+  std::size_t entries = 0;
+};
+
+/// Nanoseconds of each stage over all tiles, in the order of a frame: sixteen cells, dealt, and composited when a list
+/// is full.
+struct Stages {
+  double rasterize = 0, deal = 0, composite = 0;
+  std::uint64_t cells = 0, segments = 0;
+};
+
+void run_tiles(Frame& f, Stages& stages) {
+  const compositor::LaneTable table(f.function, f.lattice.scalar_origin, f.lattice.scalar_unit, f.lattice.depth_unit,
+                                    scene::Emission::absorption);
+  const compositor::WindowRules rules{&table, 0};
+  const auto state = std::make_unique<compositor::WindowState>();
+  projection::SegmentWindows windows;
+  projection::SegmentStream stream;
+  projection::LatticeScratch scratch;
+  projection::RasterCounts counts;
+  projection::OpenPixels open;
+  scene::TraceLaps laps(nullptr);
+  for (std::size_t tile = 0; tile < f.grid.count(); ++tile) {
+    const std::span<const projection::TileEntry> entries = f.lists->tile(tile);
+    const projection::PixelRect rect = f.grid.rect(tile);
+    windows.reset(static_cast<std::size_t>(rect.area()), 32);
+    state->start(rect, f.space);
+    state->open_pixels(rect, open);
+    const auto composite = [&](std::int64_t final_step) {
+      const auto start = Clock::now();
+      stages.segments += composite_windows(rules, windows, final_step, *state, laps);
+      stages.composite += seconds_since(start);
+    };
+    constexpr std::size_t at_once = 256;  // cells between looks at the clock
+    for (std::size_t from = 0; from < entries.size(); from += at_once) {
+      const auto cells = entries.subspan(from, std::min(at_once, entries.size() - from));
+      stream.size = 0;
+      auto start = Clock::now();
+      rasterize_lattice(f.view, cells, entries.subspan(from + cells.size()), rect, open, scratch, stream, counts);
+      stages.rasterize += seconds_since(start);
+      const double near = f.lists->depth_origin() + cells.front().near_depth - f.lattice.depth_origin;
+      const auto before = static_cast<std::int64_t>(std::floor(near / f.lattice.depth_unit)) - 64;
+      for (std::size_t dealt = 0; dealt < stream.size;) {
+        start = Clock::now();
+        dealt = windows.deal(stream, dealt);
+        stages.deal += seconds_since(start);
+        if (dealt == stream.size) break;
+        composite(before);
+        if (windows.count(static_cast<std::size_t>(stream.pixel[dealt])) == windows.capacity()) windows.grow();
+      }
+    }
+    composite(std::numeric_limits<std::int64_t>::max());
+    stages.cells += entries.size();
+  }
+}
+
+void choose(std::int64_t target) {
+  hwy::SetSupportedTargetsForTest(target);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+void kernels(benchmark::State& state, const scene::TetMesh& mesh, int pixels, std::int64_t target) {
+  choose(target);
+  Frame frame(mesh, pixels);
+  Stages least;
+  double best = std::numeric_limits<double>::infinity();
+  for (auto _ : state) {
+    Stages stages;
+    run_tiles(frame, stages);
+    const double all = stages.rasterize + stages.deal + stages.composite;
+    state.SetIterationTime(all);
+    if (all < best) best = all, least = stages;
+  }
+  const auto cells = static_cast<double>(least.cells), segments = static_cast<double>(least.segments);
+  state.counters["pixels_a_cell"] = segments / cells;
+  state.counters["rasterize_ns_a_cell"] = 1e9 * least.rasterize / cells;
+  state.counters["deal_ns_a_segment"] = 1e9 * least.deal / segments;
+  state.counters["composite_ns_a_segment"] = 1e9 * least.composite / segments;
+  state.counters["all_ns_a_segment"] = 1e9 * best / segments;
+  choose(0);
+}
+
+void frames(benchmark::State& state, const scene::TetMesh& mesh, int threads, std::int64_t target) {
+  choose(target);
+  frame::RenderSettings settings;
+  settings.integrator.kind = scene::IntegratorKind::exact;
+  settings.threads = threads;
+  frame::Renderer renderer(mesh, settings);
+  const scene::TransferFunction function = datasets::benchmark_transfer_function();
+  frame::FrameStatistics statistics;
+  double best = std::numeric_limits<double>::infinity();
+  for (auto _ : state) {
+    const auto start = Clock::now();
+    renderer.render(figures_camera(), {1024, 1024}, function, &statistics);
+    const double seconds = seconds_since(start);
+    state.SetIterationTime(seconds);
+    best = std::min(best, seconds);
+  }
+  state.counters["least_ms"] = 1e3 * best;
+  state.counters["Mseg_s"] = 1e-6 * static_cast<double>(statistics.segments) / best;
+  choose(0);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const char* side = std::getenv("TESSERA_BENCH_CUBE");
+  const scene::TetMesh mesh = datasets::cube(side != nullptr ? std::atoi(side) : 32);
+  for (const std::int64_t target : {std::int64_t{HWY_AVX3}, std::int64_t{HWY_AVX2}, std::int64_t{HWY_SSE4}}) {
+    if ((hwy::SupportedTargets() & target) == 0) continue;
+    const char* name = hwy::TargetName(target);
+    for (const int pixels : {192, 384, 768, 1536})
+      benchmark::RegisterBenchmark(fmt::format("kernels/{}/{}", pixels, name).c_str(),
+                                   [&mesh, pixels, target](benchmark::State& s) { kernels(s, mesh, pixels, target); })
+          ->UseManualTime()
+          ->Unit(benchmark::kMillisecond);
+    for (const int threads : {1, 2})
+      benchmark::RegisterBenchmark(fmt::format("frame/{}/{}_threads", name, threads).c_str(),
+                                   [&mesh, threads, target](benchmark::State& s) { frames(s, mesh, threads, target); })
+          ->UseManualTime()
+          ->Unit(benchmark::kMillisecond);
+  }
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+}

@@ -1,0 +1,65 @@
+// Lanes of a mask moved to the front; included once per instruction set (Highway's include guard idiom).
+
+#if defined(TESSERA_PROJECTION_PACK_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_PROJECTION_PACK_LANES_INL_H_
+#undef TESSERA_PROJECTION_PACK_LANES_INL_H_
+#else
+#define TESSERA_PROJECTION_PACK_LANES_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include "projection/pack_lanes.hpp"
+
+HWY_BEFORE_NAMESPACE();
+#if HWY_TARGET != HWY_SCALAR
+namespace tessera::projection {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Packs vectors of 32-bit lanes by one mask. What lies behind the packed lanes is any of the vector's.
+class LanePacker {
+ public:
+  using F = hn::ScalableTag<float>;
+  using I = hn::RebindToSigned<F>;
+
+  explicit HWY_INLINE LanePacker(hn::Mask<I> mask) : mask_(mask), count_(hn::CountTrue(I(), mask)) {
+#if HWY_TARGET > HWY_AVX3
+    std::uint8_t bits[8] = {0};
+    hn::StoreMaskBits(I(), mask, bits);
+    bits_ = bits[0];
+#endif
+  }
+
+  [[nodiscard]] std::size_t count() const { return count_; }
+
+  HWY_INLINE hn::Vec<I> operator()(hn::Vec<I> v) const {
+#if HWY_TARGET <= HWY_AVX3
+    return hn::Compress(v, mask_);
+#else
+    const I d;
+    if constexpr (hn::MaxLanes(I()) == 8) {
+      return hn::TableLookupLanes(v, hn::IndicesFromVec(d, hn::Load(d, packing_orders.lanes8[bits_].data())));
+    } else {
+      const hn::Repartition<std::uint8_t, I> bytes;
+      return hn::BitCast(
+          d, hn::TableLookupBytes(hn::BitCast(bytes, v), hn::Load(bytes, packing_orders.bytes4[bits_].data())));
+    }
+#endif
+  }
+  HWY_INLINE hn::Vec<F> operator()(hn::Vec<F> v) const { return hn::BitCast(F(), (*this)(hn::BitCast(I(), v))); }
+
+ private:
+  hn::Mask<I> mask_;
+  std::size_t count_;
+#if HWY_TARGET > HWY_AVX3
+  unsigned bits_;
+#endif
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::projection
+#endif  // HWY_SCALAR
+HWY_AFTER_NAMESPACE();
+
+#endif
