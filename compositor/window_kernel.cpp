@@ -274,59 +274,16 @@ class PixelGroup {
   /// Composites what lies before `final_step`; returns how many segments are done with.
   HWY_INLINE std::uint64_t composite(std::size_t rows, std::int32_t final_step, const WindowRules& rules) {
     const DI d;
-    const DF df;
-    const std::size_t lanes = HN::Lanes(d);
-    const std::size_t p = pixel_;
-    load_light();
-    Doubles ray = load(rules.runs ? &state_.ray_transmittance[p] : &state_.transmittance[p]);
-    VI open = HN::Load(d, &state_.open[p]);
-    const VF least_transmittance = HN::Set(df, static_cast<float>(rules.least_transmittance));
     const VI end = HN::Set(d, final_step);
     VI done = HN::Zero(d);
     for (std::size_t from = 0, to; from < rows; from = to) {
-      HN::Store(open, d, &state_.open[p]);
       const std::size_t most = std::min(rows, from + LightRows::most);
       to = integrate(from, most, final_step);
-      for (std::size_t row = from; row < to; ++row) {
-        const VI front = HN::LoadU(d, state_.keys.data() + row * lanes);
-        const auto is_final = HN::Lt(front, end);
-        const auto takes = HN::And(is_final, HN::Lt(open, HN::Zero(d)));
-        done = HN::Sub(done, HN::VecFromMask(d, is_final));
-        const std::size_t at = (row - from) * lanes;
-        if (!rules.runs && !light_.lit[row - from]) continue;
-        const MF adds = HN::RebindMask(df, takes);
-        const auto number = [&](const float* numbers) HWY_ATTR {
-          return HN::IfThenElseZero(adds, HN::Load(df, numbers + at));
-        };
-        const VF depth = number(light_.optical_depth), alpha = number(light_.alpha);
-        const VF red = number(light_.red), green = number(light_.green), blue = number(light_.blue);
-        auto shows = HN::RebindMask(d, HN::Gt(depth, HN::Zero(df)));
-        if (rules.runs) {
-          go_on_in_run(takes, shows, front, HN::Load(d, light_.back + at));
-          // A run begins where it shows, if only by light (independent emission).
-          const VF colors = HN::Add(HN::Abs(red), HN::Add(HN::Abs(green), HN::Abs(blue)));
-          shows = HN::Or(shows, HN::RebindMask(d, HN::Gt(colors, HN::Zero(df))));
-          const auto again = HN::And(shows, HN::Ne(HN::Load(d, &state_.first_back[p]), HN::Set(d, no_key)));
-          HN::Store(HN::Or(HN::Load(d, &state_.several[p]), HN::VecFromMask(d, again)), d, &state_.several[p]);
-        }
-        const auto appears = HN::And(shows, HN::Eq(HN::Load(d, &state_.first_back[p]), HN::Set(d, no_key)));
-        if (!HN::AllFalse(d, appears)) keep_first(appears, row);
-        red_ = multiply_add(transmittance_, promote(red), red_);
-        green_ = multiply_add(transmittance_, promote(green), green_);
-        blue_ = multiply_add(transmittance_, promote(blue), blue_);
-        const Doubles depths = promote(depth), alphas = promote(alpha);
-        optical_depth_ = {HN::Add(optical_depth_.low, depths.low), HN::Add(optical_depth_.high, depths.high)};
-        transmittance_ = dimmed(transmittance_, alphas);
-        ray = rules.runs ? dimmed(ray, alphas) : transmittance_;
-        // After each segment, not each window: where a ray ends must not depend on how its segments were cut.
-        open = HN::And(open, HN::VecFromMask(d, HN::RebindMask(d, HN::Ge(demote(ray), least_transmittance))));
-      }
-      if (to < most) break;
-      if (HN::AllFalse(d, HN::Lt(open, HN::Zero(d)))) break;
+      for (std::size_t row = from; row < to; ++row)
+        done = HN::Sub(done, HN::VecFromMask(d, HN::Lt(HN::LoadU(d, keys(row)), end)));
+      const bool open = rules.runs ? add_runs(from, to, end, rules) : add_rows(from, to, rules);
+      if (to < most || !open) break;
     }
-    store_light();
-    if (rules.runs) store(ray, &state_.ray_transmittance[p]);
-    HN::Store(open, d, &state_.open[p]);
     return keep_rest(done);
   }
 
@@ -335,6 +292,110 @@ class PixelGroup {
     return {HN::NegMulAdd(transmittance.low, alpha.low, transmittance.low),
             HN::NegMulAdd(transmittance.high, alpha.high, transmittance.high)};
   }
+  HWY_INLINE const std::int32_t* keys(std::size_t row) const { return state_.keys.data() + row * HN::Lanes(DI()); }
+
+  /// The rows' light into a picture's pixels. Returns whether some pixel stays open.
+  HWY_INLINE bool add_rows(std::size_t from, std::size_t to, const WindowRules& rules) {
+    const DI d;
+    const DF df;
+    const DD dd;
+    const HalfF half;
+    const std::size_t p = pixel_, lanes = HN::Lanes(d), half_lanes = HN::Lanes(half);
+    Doubles red = load(&state_.red[p]), green = load(&state_.green[p]), blue = load(&state_.blue[p]);
+    Doubles transmittance = load(&state_.transmittance[p]);
+    const VD least = HN::Set(dd, rules.least_transmittance);
+    const auto is_open = [&](std::size_t half_of) HWY_ATTR {
+      const HN::Rebind<std::int32_t, DD> di32;
+      return HN::Lt(HN::PromoteTo(dd, HN::LoadU(di32, &state_.open[p + half_of])), HN::Zero(dd));
+    };
+    // A pixel that closes takes no more: it has no weight.
+    auto open_low = is_open(0), open_high = is_open(half_lanes);
+    for (std::size_t row = from; row < to; ++row) {
+      if (!light_.lit[row - from]) continue;
+      const std::size_t at = (row - from) * lanes;
+      const VD weight_low = HN::IfThenElseZero(open_low, transmittance.low);
+      const VD weight_high = HN::IfThenElseZero(open_high, transmittance.high);
+      const auto low = [&](const float* v) HWY_ATTR { return HN::PromoteTo(dd, HN::Load(half, v + at)); };
+      const auto high = [&](const float* v) HWY_ATTR { return HN::PromoteTo(dd, HN::Load(half, v + at + half_lanes)); };
+      const auto add = [&](Doubles& sum, const float* v) HWY_ATTR {
+        sum = {HN::MulAdd(weight_low, low(v), sum.low), HN::MulAdd(weight_high, high(v), sum.high)};
+      };
+      add(red, light_.red), add(green, light_.green), add(blue, light_.blue);
+      transmittance = {HN::NegMulAdd(weight_low, low(light_.alpha), transmittance.low),
+                       HN::NegMulAdd(weight_high, high(light_.alpha), transmittance.high)};
+      // After each segment, not each window: where a ray ends must not depend on how its segments were cut.
+      open_low = HN::And(open_low, HN::Ge(transmittance.low, least));
+      open_high = HN::And(open_high, HN::Ge(transmittance.high, least));
+    }
+    store(red, &state_.red[p]), store(green, &state_.green[p]), store(blue, &state_.blue[p]);
+    store(transmittance, &state_.transmittance[p]);
+    note_first(from, to);
+    const VF closed = demote({HN::IfThenElseZero(open_low, HN::Set(dd, -1)), HN::IfThenElseZero(open_high, HN::Set(dd, -1))});
+    const VI open = HN::ConvertTo(d, closed);
+    HN::Store(open, d, &state_.open[p]);
+    return !HN::AllTrue(df, HN::Ge(closed, HN::Zero(df)));
+  }
+
+  /// Where lanes that have shown nothing yet begin to. (Lanes closed by a row show what it has: it is theirs.)
+  HWY_INLINE void note_first(std::size_t from, std::size_t to) {
+    const DI d;
+    const DF df;
+    auto unseen = HN::Eq(HN::Load(d, &state_.first_back[pixel_]), HN::Set(d, no_key));
+    for (std::size_t row = from; row < to && !HN::AllFalse(d, unseen); ++row) {
+      if (!light_.lit[row - from]) continue;
+      const VF depth = HN::Load(df, light_.optical_depth + (row - from) * HN::Lanes(d));
+      const auto appears = HN::And(unseen, HN::RebindMask(d, HN::Gt(depth, HN::Zero(df))));
+      if (HN::AllFalse(d, appears)) continue;
+      keep_first(appears, row);
+      unseen = HN::AndNot(appears, unseen);
+    }
+  }
+
+  /// The same in runs. Returns whether some pixel stays open.
+  HWY_INLINE bool add_runs(std::size_t from, std::size_t to, VI end, const WindowRules& rules) {
+    const DI d;
+    const DF df;
+    const std::size_t lanes = HN::Lanes(d);
+    const std::size_t p = pixel_;
+    load_light();
+    Doubles ray = load(&state_.ray_transmittance[p]);
+    VI open = HN::Load(d, &state_.open[p]);
+    const VF least_transmittance = HN::Set(df, static_cast<float>(rules.least_transmittance));
+    for (std::size_t row = from; row < to; ++row) {
+      const VI front = HN::LoadU(d, keys(row));
+      const auto takes = HN::And(HN::Lt(front, end), HN::Lt(open, HN::Zero(d)));
+      const std::size_t at = (row - from) * lanes;
+      const MF adds = HN::RebindMask(df, takes);
+      const auto number = [&](const float* numbers) HWY_ATTR {
+        return HN::IfThenElseZero(adds, HN::Load(df, numbers + at));
+      };
+      const VF depth = number(light_.optical_depth), alpha = number(light_.alpha);
+      const VF red = number(light_.red), green = number(light_.green), blue = number(light_.blue);
+      auto shows = HN::RebindMask(d, HN::Gt(depth, HN::Zero(df)));
+      go_on_in_run(takes, shows, front, HN::Load(d, light_.back + at));
+      // A run begins where it shows, if only by light (independent emission).
+      const VF colors = HN::Add(HN::Abs(red), HN::Add(HN::Abs(green), HN::Abs(blue)));
+      shows = HN::Or(shows, HN::RebindMask(d, HN::Gt(colors, HN::Zero(df))));
+      const auto seen = HN::Ne(HN::Load(d, &state_.first_back[p]), HN::Set(d, no_key));
+      HN::Store(HN::Or(HN::Load(d, &state_.several[p]), HN::VecFromMask(d, HN::And(shows, seen))), d,
+                &state_.several[p]);
+      const auto appears = HN::AndNot(seen, shows);
+      if (!HN::AllFalse(d, appears)) keep_first(appears, row);
+      red_ = multiply_add(transmittance_, promote(red), red_);
+      green_ = multiply_add(transmittance_, promote(green), green_);
+      blue_ = multiply_add(transmittance_, promote(blue), blue_);
+      const Doubles depths = promote(depth), alphas = promote(alpha);
+      optical_depth_ = {HN::Add(optical_depth_.low, depths.low), HN::Add(optical_depth_.high, depths.high)};
+      transmittance_ = dimmed(transmittance_, alphas);
+      ray = dimmed(ray, alphas);
+      open = HN::And(open, HN::VecFromMask(d, HN::RebindMask(d, HN::Ge(demote(ray), least_transmittance))));
+    }
+    store_light();
+    store(ray, &state_.ray_transmittance[p]);
+    HN::Store(open, d, &state_.open[p]);
+    return !HN::AllFalse(d, HN::Lt(open, HN::Zero(d)));
+  }
+
   HWY_INLINE void load_light() {
     const std::size_t p = pixel_;
     red_ = load(&state_.red[p]), green_ = load(&state_.green[p]), blue_ = load(&state_.blue[p]);

@@ -1,6 +1,5 @@
 #include "compositor/window_pixels.hpp"
 
-#include <cmath>
 #include <limits>
 
 namespace tessera::compositor {
@@ -29,7 +28,7 @@ void WindowPixels::finish() {
       image.rgba[4 * at + 0] = static_cast<float>(s.red[p]);
       image.rgba[4 * at + 1] = static_cast<float>(s.green[p]);
       image.rgba[4 * at + 2] = static_cast<float>(s.blue[p]);
-      image.rgba[4 * at + 3] = static_cast<float>(-std::expm1(-s.optical_depth[p]));
+      image.rgba[4 * at + 3] = static_cast<float>(1 - s.transmittance[p]);
       image.depth[at] = std::numeric_limits<float>::infinity();
       if (s.first_back[p] != WindowState::not_yet)
         image.depth[at] = static_cast<float>(first_visible_depth(
