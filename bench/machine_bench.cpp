@@ -24,8 +24,10 @@ double multiply_add(std::size_t rounds, float* sink) {
   const hn::ScalableTag<float> d;
   using V = hn::Vec<decltype(d)>;
   const V factor = hn::Set(d, 0.999f), term = hn::Set(d, 1e-3f);
-  V a = term, b = term, c = term, e = term, f = term, g = term, h = term, i = term, j = term, k = term, l = term,
-    m = term;
+  // All different, or a compiler computes one for all.
+  const auto start = [&](int i) HWY_ATTR { return hn::Set(d, static_cast<float>(i)); };
+  V a = start(1), b = start(2), c = start(3), e = start(4), f = start(5), g = start(6), h = start(7), i = start(8),
+    j = start(9), k = start(10), l = start(11), m = start(12);
   for (std::size_t r = 0; r < rounds; ++r) {
     a = hn::MulAdd(a, factor, term), b = hn::MulAdd(b, factor, term), c = hn::MulAdd(c, factor, term);
     e = hn::MulAdd(e, factor, term), f = hn::MulAdd(f, factor, term), g = hn::MulAdd(g, factor, term);

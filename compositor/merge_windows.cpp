@@ -86,7 +86,7 @@ class WindowMerger final : public TileMerger {
 
   void grow(projection::SegmentWindows& windows) {
     const std::size_t more = windows.bytes_after_growth() - windows.bytes();
-    if (bytes_ + more > budget_)
+    if (bytes_ + more > budget_ || windows.bytes_after_growth() > windows.most_bytes)
       throw scene::Error(
           scene::ExitCode::system_failure,
           fmt::format("the tile at pixel {},{} holds more than {} ray segments of a pixel at once, beyond "

@@ -62,13 +62,19 @@ HWY_INLINE bool level_before(const projection::LatticeSegment& a, const projecti
   return a.scalar_back < b.scalar_back;
 }
 
-/// Puts equal keys in order, which the network does not. A slot is where in `list` its segment is.
+/// The segment `slot` bytes behind `list`. Slots in bytes spare the address a shift.
+HWY_INLINE const projection::LatticeSegment& segment_at(const projection::LatticeSegment* list, std::int32_t slot) {
+  return *reinterpret_cast<const projection::LatticeSegment*>(reinterpret_cast<const char*>(list) + slot);
+}
+
+/// Puts equal keys in order, which the network does not.
 HWY_NOINLINE void settle_ties(const projection::LatticeSegment* list, std::size_t count, std::size_t lanes,
                               std::int32_t* keys, std::int32_t* slots) {
   for (std::size_t i = 1; i < count; ++i) {
     const std::int32_t key = keys[i * lanes], slot = slots[i * lanes];
     std::size_t hole = i;
-    for (; hole > 0 && keys[(hole - 1) * lanes] == key && level_before(list[slot], list[slots[(hole - 1) * lanes]]);
+    for (; hole > 0 && keys[(hole - 1) * lanes] == key &&
+           level_before(segment_at(list, slot), segment_at(list, slots[(hole - 1) * lanes]));
          --hole)
       slots[hole * lanes] = slots[(hole - 1) * lanes];
     slots[hole * lanes] = slot;
@@ -79,12 +85,13 @@ HWY_NOINLINE void settle_ties(const projection::LatticeSegment* list, std::size_
 HWY_NOINLINE void sort_long(const projection::LatticeSegment* list, std::size_t stride, std::size_t count,
                             std::size_t lanes, std::int32_t* keys, std::int32_t* slots) {
   std::vector<std::int32_t> order(count);
-  for (std::size_t i = 0; i < count; ++i) order[i] = static_cast<std::int32_t>(i * stride);
-  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-    return list[a].front != list[b].front ? list[a].front < list[b].front : level_before(list[a], list[b]);
+  for (std::size_t i = 0; i < count; ++i) order[i] = static_cast<std::int32_t>(i * stride * sizeof *list);
+  std::sort(order.begin(), order.end(), [&](std::int32_t i, std::int32_t j) {
+    const projection::LatticeSegment &a = segment_at(list, i), &b = segment_at(list, j);
+    return a.front != b.front ? a.front < b.front : level_before(a, b);
   });
   for (std::size_t i = 0; i < count; ++i) {
-    keys[i * lanes] = list[order[i]].front;
+    keys[i * lanes] = segment_at(list, order[i]).front;
     slots[i * lanes] = order[i];
   }
 }
@@ -110,12 +117,12 @@ HWY_INLINE Fields transposed(VI v0, VI v1, VI v2, VI v3) {
           HN::BitCast(df, HN::InterleaveUpper(wide, high01, high23))};
 }
 
-/// list[lane + slots[lane]], `lanes` / 4 of them: lanes first, first + 4, first + 8...
+/// Those of load_fields(), `lanes` / 4 of them: lanes first, first + 4, first + 8...
 template <std::size_t lanes>
 HWY_INLINE auto load_every_fourth(const projection::LatticeSegment* list, const std::int32_t* slots, int first) {
   if constexpr (lanes == 4) {
     return HN::Load(HN::FixedTag<std::int32_t, 4>(),
-                    reinterpret_cast<const std::int32_t*>(list + first + slots[first]));
+                    reinterpret_cast<const std::int32_t*>(&segment_at(list + first, slots[first])));
   } else {
     const auto low = load_every_fourth<lanes / 2>(list, slots, first);
     const auto high = load_every_fourth<lanes / 2>(list, slots, first + static_cast<int>(lanes) / 2);
@@ -123,7 +130,7 @@ HWY_INLINE auto load_every_fourth(const projection::LatticeSegment* list, const 
   }
 }
 
-/// The segment list[lane + slots[lane]] in every lane.
+/// In every lane the segment that its slot names, counted from list[lane].
 HWY_INLINE Fields load_fields(const projection::LatticeSegment* list, const std::int32_t* slots) {
   return transposed(load_every_fourth<most_lanes>(list, slots, 0), load_every_fourth<most_lanes>(list, slots, 1),
                     load_every_fourth<most_lanes>(list, slots, 2), load_every_fourth<most_lanes>(list, slots, 3));
@@ -211,7 +218,8 @@ class PixelGroup {
         key = HN::IfThenElse(here, front, key);
       }
       HN::StoreU(key, d, keys + row * lanes);
-      HN::StoreU(HN::IfThenElseZero(here, HN::Set(d, static_cast<std::int32_t>(slot))), d, slots + row * lanes);
+      HN::StoreU(HN::IfThenElseZero(here, HN::Set(d, static_cast<std::int32_t>(slot * sizeof *list_))), d,
+                 slots + row * lanes);
     }
     if (chunks <= static_cast<std::size_t>(sorting::HWY_NAMESPACE::most_sort_chunks)) {
       sorting::HWY_NAMESPACE::sort_lanes(keys, slots, static_cast<int>(chunks));
@@ -262,8 +270,7 @@ class PixelGroup {
                                            HN::RebindMask(df, HN::And(is_final, open)), more);
       light_.put(light, at);
       MF lit = HN::Or(more, HN::Gt(light.optical_depth, zero));
-      if (table_.independent)
-        lit = HN::Or(lit, HN::Gt(HN::Add(light.red, HN::Add(light.green, light.blue)), zero));
+      if (table_.independent) lit = HN::Or(lit, HN::Gt(HN::Add(light.red, HN::Add(light.green, light.blue)), zero));
       light_.lit[row - from] = !HN::AllFalse(df, lit);
       if (!HN::AllFalse(df, more)) light_.defer(more, at, length, s.scalar_front, s.scalar_back);
     }
@@ -330,7 +337,8 @@ class PixelGroup {
     store(red, &state_.red[p]), store(green, &state_.green[p]), store(blue, &state_.blue[p]);
     store(transmittance, &state_.transmittance[p]);
     note_first(from, to);
-    const VF closed = demote({HN::IfThenElseZero(open_low, HN::Set(dd, -1)), HN::IfThenElseZero(open_high, HN::Set(dd, -1))});
+    const VF closed =
+        demote({HN::IfThenElseZero(open_low, HN::Set(dd, -1)), HN::IfThenElseZero(open_high, HN::Set(dd, -1))});
     const VI open = HN::ConvertTo(d, closed);
     HN::Store(open, d, &state_.open[p]);
     return !HN::AllTrue(df, HN::Ge(closed, HN::Zero(df)));
@@ -366,9 +374,8 @@ class PixelGroup {
       const auto takes = HN::And(HN::Lt(front, end), HN::Lt(open, HN::Zero(d)));
       const std::size_t at = (row - from) * lanes;
       const MF adds = HN::RebindMask(df, takes);
-      const auto number = [&](const float* numbers) HWY_ATTR {
-        return HN::IfThenElseZero(adds, HN::Load(df, numbers + at));
-      };
+      const auto number = [&](const float* numbers)
+                              HWY_ATTR { return HN::IfThenElseZero(adds, HN::Load(df, numbers + at)); };
       const VF depth = number(light_.optical_depth), alpha = number(light_.alpha);
       const VF red = number(light_.red), green = number(light_.green), blue = number(light_.blue);
       auto shows = HN::RebindMask(d, HN::Gt(depth, HN::Zero(df)));
@@ -442,7 +449,7 @@ class PixelGroup {
     HN::StoreMaskBits(DI(), appears, bits);
     for (std::uint64_t left = bits[0] | static_cast<std::uint64_t>(bits[1]) << 8; left != 0; left &= left - 1) {
       const auto lane = static_cast<std::size_t>(__builtin_ctzll(left));
-      const projection::LatticeSegment& s = list_[static_cast<std::int32_t>(lane) + state_.slots[row * lanes + lane]];
+      const projection::LatticeSegment& s = segment_at(list_ + lane, state_.slots[row * lanes + lane]);
       const std::size_t p = pixel_ + lane;
       state_.first_front[p] = s.front, state_.first_back[p] = s.back;
       state_.first_scalar_front[p] = s.scalar_front, state_.first_scalar_back[p] = s.scalar_back;
@@ -466,8 +473,7 @@ class PixelGroup {
       if (state_.rest.size() < count) state_.rest.resize(count);
       std::size_t kept = 0;
       const std::size_t stride = windows_.stride();
-      for (; from < count; ++from)
-        state_.rest[kept++] = list_[lane + static_cast<std::size_t>(state_.slots[from * lanes + lane])];
+      for (; from < count; ++from) state_.rest[kept++] = segment_at(list_ + lane, state_.slots[from * lanes + lane]);
       for (std::size_t k = 0; k < kept; ++k) list_[lane + k * stride] = state_.rest[k];
     }
     return gone;

@@ -164,8 +164,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
     task.announce(has_cells);
   }
   const int threads = arena_.max_concurrency();
-  const std::uint64_t vertex_bytes =
-      vertices_.capacity() * sizeof(projection::PixelVertex) + lattice_vertices_.bytes();
+  const std::uint64_t vertex_bytes = vertices_.capacity() * sizeof(projection::PixelVertex) + lattice_vertices_.bytes();
   const std::uint64_t held = vertex_bytes + lists->bytes() + task.kept_bytes;
   // A quarter of what is left for the lists of a band of tiles; the rest for segments.
   const std::uint64_t list_budget =
@@ -176,10 +175,8 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
                             settings_.trace, settings_.rasterizer,  longest_edge};
   tbb::enumerable_thread_specific<std::unique_ptr<TileWorker>> workers([&]() -> std::unique_ptr<TileWorker> {
     if (task.lattice == nullptr) return std::make_unique<DoubleWorker>(context, task.make_sink());
-    const projection::LatticeView view{projected,
-                                       {lattice_vertices_.data(), lattice_vertices_.size()},
-                                       *task.lattice,
-                                       space.perspective()};
+    const projection::LatticeView view{
+        projected, {lattice_vertices_.data(), lattice_vertices_.size()}, *task.lattice, space.perspective()};
     return std::make_unique<LatticeWorker>(context, view, task.make_window_sink());
   });
   std::uint64_t most_list_bytes = 0;

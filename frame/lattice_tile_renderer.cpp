@@ -70,7 +70,7 @@ bool LatticeTileRenderer::try_render(const projection::PixelRect& rect, std::spa
       // What lies before these cells is final.
       sink.take(windows_, step_before(cells.front().near_depth), laps);
       if (windows_.count(static_cast<std::size_t>(stream_.pixel[dealt])) < windows_.capacity()) continue;
-      if (windows_.bytes_after_growth() <= context_.budget_bytes) {
+      if (windows_.bytes_after_growth() <= std::min<std::uint64_t>(context_.budget_bytes, windows_.most_bytes)) {
         windows_.grow();
         continue;
       }

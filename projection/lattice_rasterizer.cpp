@@ -334,8 +334,7 @@ void rasterize_cells(const LatticeView& view, const CellBatch& batch, const Pixe
     const unsigned takes = roles.valid && batch.x0[t] < batch.x1[t] && batch.y0[t] < batch.y1[t];
     shapes[roles.three] |= takes << t;
   }
-  const std::uint32_t all = static_cast<std::uint32_t>((std::uint64_t{1} << rect.width()) - 1)
-                            << (rect.x0 - square.x0);
+  const std::uint32_t all = static_cast<std::uint32_t>((std::uint64_t{1} << rect.width()) - 1) << (rect.x0 - square.x0);
   bool all_open = true;
   for (int y = rect.y0 - square.y0; y < rect.y1 - square.y0; ++y) all_open = all_open && open[y] == all;
   const auto shut = [&](int t) {

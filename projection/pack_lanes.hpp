@@ -5,8 +5,8 @@
 
 namespace tessera::projection {
 
-/// Which lane comes i-th when the lanes of a mask are moved to the front: order[mask bits][i], for 8 lanes of 32 bits, and
-/// for 4 as the bytes of a shuffle. (Highway 1.0's Compress copies its tables to the stack at every call under some
+/// Which lane comes i-th when the lanes of a mask are moved to the front: order[mask bits][i], for 8 lanes of 32 bits,
+/// and for 4 as the bytes of a shuffle. (Highway 1.0's Compress copies its tables to the stack at every call under some
 /// compilers, which takes 40 times as long as the permutation.)
 struct PackingOrders {
   alignas(32) std::array<std::array<std::int32_t, 8>, 256> lanes8{};

@@ -44,8 +44,9 @@ class SegmentWindows {
   /// Empties the lists: one for each of `pixels` pixels, with room for `capacity` segments.
   void reset(std::size_t pixels, std::size_t capacity);
 
-  /// Doubles the room of every list; what is in them stays.
+  /// Doubles the room of every list; what is in them stays. Not beyond most_bytes.
   void grow();
+  static constexpr std::size_t most_bytes = 0x7fffffff;  ///< a 32-bit number says where in the lists a segment is
   [[nodiscard]] std::size_t bytes_after_growth() const {
     return (2 * capacity_ * stride() + pixel_padding) * sizeof(LatticeSegment);
   }
