@@ -212,10 +212,11 @@ class PixelGroup {
       VI key = HN::Set(d, no_key);
       const std::size_t slot = row * windows_.stride();
       if (row < most) {
-        VI front, back, scalar_front, scalar_back;
-        HN::LoadInterleaved4(d, reinterpret_cast<const std::int32_t*>(list_ + slot), front, back, scalar_front,
-                             scalar_back);
-        key = HN::IfThenElse(here, front, key);
+        const auto quarter = [&](std::size_t q) HWY_ATTR {
+          return HN::LoadU(d, reinterpret_cast<const std::int32_t*>(list_ + slot + q * lanes / 4));
+        };
+        const VI low = HN::ConcatEven(d, quarter(1), quarter(0)), high = HN::ConcatEven(d, quarter(3), quarter(2));
+        key = HN::IfThenElse(here, HN::ConcatEven(d, high, low), key);
       }
       HN::StoreU(key, d, keys + row * lanes);
       HN::StoreU(HN::IfThenElseZero(here, HN::Set(d, static_cast<std::int32_t>(slot * sizeof *list_))), d,
@@ -456,26 +457,30 @@ class PixelGroup {
     }
   }
 
-  /// Leaves in the windows what was not final. Returns how many segments are gone.
+  /// Leaves in the windows what was not final, in order. Returns how many segments are gone.
   HWY_INLINE std::uint64_t keep_rest(VI done) {
     const DI d;
-    const std::size_t lanes = HN::Lanes(d);
+    // Lanes beyond the last pixel share their memory with other lists.
+    const std::size_t lanes = HN::Lanes(d), own = std::min(lanes, windows_.pixels() - pixel_);
     std::uint32_t* counts = windows_.counts() + pixel_;
-    alignas(64) std::int32_t finished[HN::MaxLanes(DI())];
-    HN::Store(done, d, finished);
-    std::uint64_t gone = 0;
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      const std::size_t count = counts[lane];
-      std::size_t from = state_.open[pixel_ + lane] != 0 ? static_cast<std::size_t>(finished[lane]) : count;
-      gone += from;
-      counts[lane] = static_cast<std::uint32_t>(count - from);
-      if (from == count) continue;
-      if (state_.rest.size() < count) state_.rest.resize(count);
-      std::size_t kept = 0;
-      const std::size_t stride = windows_.stride();
-      for (; from < count; ++from) state_.rest[kept++] = segment_at(list_ + lane, state_.slots[from * lanes + lane]);
-      for (std::size_t k = 0; k < kept; ++k) list_[lane + k * stride] = state_.rest[k];
-    }
+    const VI count = HN::LoadU(d, reinterpret_cast<const std::int32_t*>(counts));
+    const auto open = HN::Lt(HN::Load(d, &state_.open[pixel_]), HN::Zero(d));
+    const VI left = HN::IfThenElseZero(open, HN::Sub(count, done));
+    HN::StoreU(left, d, reinterpret_cast<std::int32_t*>(counts));
+    const auto most = static_cast<std::size_t>(HN::GetLane(HN::MaxOfLanes(d, left)));
+    const auto gone = static_cast<std::uint64_t>(HN::GetLane(HN::SumOfLanes(d, HN::Sub(count, left))));
+    if (most == 0) return gone;
+    // As many of each lane, so that no branch depends on one: what is not a lane's own is behind its list's end.
+    alignas(64) std::int32_t first[most_lanes];
+    HN::Store(done, d, first);
+    if (state_.rest.size() < most * lanes) state_.rest.resize(most * lanes);
+    const std::size_t last = state_.slots.size() / lanes - 1;
+    for (std::size_t k = 0; k < most; ++k)
+      for (std::size_t lane = 0; lane < own; ++lane) {
+        const std::size_t row = std::min(static_cast<std::size_t>(first[lane]) + k, last);
+        state_.rest[k * lanes + lane] = segment_at(list_ + lane, state_.slots[row * lanes + lane]);
+      }
+    for (std::size_t k = 0; k < most; ++k) std::copy_n(&state_.rest[k * lanes], own, list_ + k * windows_.stride());
     return gone;
   }
 
