@@ -12,6 +12,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "projection/pack_lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
@@ -245,12 +247,13 @@ void rasterize_cell(const ProjectedMesh& projected, const Cell& cell, std::uint3
 
     const V in_tile = hn::MulAdd(hn::Sub(py, tile_top), tile_width, hn::Sub(px, tile_left));
     const auto packed = hn::Or(hn::BitCast(du, hn::ConvertTo(di, in_tile)), tet_bits);
-    hn::CompressStore(packed, hn::RebindMask(du, hit), du, out.pixel_and_tet.data() + out.size);
-    hn::CompressStore(front, hit, d, out.front.data() + out.size);
-    hn::CompressStore(back, hit, d, out.back.data() + out.size);
-    hn::CompressStore(scalar_front, hit, d, out.scalar_front.data() + out.size);
-    hn::CompressStore(scalar_back, hit, d, out.scalar_back.data() + out.size);
-    out.size += hn::CountTrue(d, hit);
+    const WideLanePacker pack(hn::RebindMask(du, hit));
+    hn::StoreU(pack(packed), du, out.pixel_and_tet.data() + out.size);
+    hn::StoreU(pack(front), d, out.front.data() + out.size);
+    hn::StoreU(pack(back), d, out.back.data() + out.size);
+    hn::StoreU(pack(scalar_front), d, out.scalar_front.data() + out.size);
+    hn::StoreU(pack(scalar_back), d, out.scalar_back.data() + out.size);
+    out.size += pack.count();
   }
 }
 
