@@ -11,7 +11,7 @@ namespace tessera::compositor {
 namespace {
 
 constexpr int side = projection::SegmentWindows::side;
-constexpr std::size_t first_capacity = 16;  // segments a pixel
+constexpr std::size_t first_capacity = 8;  // segments a pixel
 
 /// Lattice segments: windowed, sorted and integrated by the code that does it for a single process.
 class WindowMerger final : public TileMerger {
@@ -21,14 +21,14 @@ class WindowMerger final : public TileMerger {
         budget_(context.budget_bytes),
         rect_(rect),
         lattice_(*context.lattice),
+        scene_{context.space, context.table, context.integrator, lattice_,
+               opacity_weight(context.max_color, context.longest_ray, context.emission)},
         image_({rect.width(), rect.height()}),
         places_(static_cast<std::size_t>(rect.area())) {
-    const WindowScene scene{context.space, context.table, context.integrator, lattice_,
-                            opacity_weight(context.max_color, context.longest_ray, context.emission)};
     const auto next = [](int v) { return (v & ~(side - 1)) + side; };
     for (int y = rect.y0; y < rect.y1; y = next(y))
       for (int x = rect.x0; x < rect.x1; x = next(x))
-        add_square(scene, {x, y, std::min(rect.x1, next(x)), std::min(rect.y1, next(y))});
+        add_square({x, y, std::min(rect.x1, next(x)), std::min(rect.y1, next(y))});
   }
 
   void add(const TilePart& part) override {
@@ -41,7 +41,9 @@ class WindowMerger final : public TileMerger {
                                        "program",
                                        part.tile));
       const Place place = places_[header.pixel];
-      projection::SegmentWindows& windows = squares_[place.square].windows;
+      Square& square = squares_[place.square];
+      if (!square.pixels) open(square);
+      projection::SegmentWindows& windows = square.windows;
       for (std::uint32_t i = 0; i < header.segments; ++i) {
         const auto segment = reader.take<projection::LatticeSegment>();
         while (!windows.push(place.pixel, segment)) grow(windows);
@@ -52,16 +54,20 @@ class WindowMerger final : public TileMerger {
   void advance(double final_depth) override {
     const std::int64_t step = step_at(final_depth);
     scene::TraceLaps laps(trace_);
-    for (Square& square : squares_) square.pixels->take(square.windows, step, laps);
+    for (Square& square : squares_)
+      if (square.pixels) square.pixels->take(square.windows, step, laps);
   }
 
   MergedTile finish() override {
-    for (Square& square : squares_) square.pixels->finish();
+    for (Square& square : squares_)
+      if (square.pixels) square.pixels->finish();
     return {std::move(image_), {}, {}};
   }
 
  private:
+  /// Opened by its first segment: a large tile has many, most of them empty at any time.
   struct Square {
+    projection::PixelRect rect;
     projection::SegmentWindows windows;
     std::unique_ptr<WindowPixels> pixels;
   };
@@ -70,13 +76,9 @@ class WindowMerger final : public TileMerger {
     std::uint32_t square, pixel;
   };
 
-  void add_square(const WindowScene& scene, const projection::PixelRect& rect) {
+  void add_square(const projection::PixelRect& rect) {
     const auto number = static_cast<std::uint32_t>(squares_.size());
-    Square& square = squares_.emplace_back();
-    square.windows.reset(static_cast<std::size_t>(rect.area()), first_capacity);
-    square.pixels = std::make_unique<WindowPixels>(scene, ImageWindow{&image_, rect_.x0, rect_.y0});
-    square.pixels->start(rect);
-    bytes_ += square.windows.bytes();
+    squares_.push_back({rect, {}, nullptr});
     std::uint32_t pixel = 0;
     for (int y = rect.y0; y < rect.y1; ++y)
       for (int x = rect.x0; x < rect.x1; ++x)
@@ -84,16 +86,27 @@ class WindowMerger final : public TileMerger {
                 static_cast<std::size_t>(x - rect_.x0)] = {number, pixel++};
   }
 
+  void open(Square& square) {
+    square.windows.reset(static_cast<std::size_t>(square.rect.area()), first_capacity);
+    square.pixels = std::make_unique<WindowPixels>(scene_, ImageWindow{&image_, rect_.x0, rect_.y0});
+    square.pixels->start(square.rect);
+    hold(square.windows.bytes() + sizeof(WindowPixels), first_capacity);
+  }
+
   void grow(projection::SegmentWindows& windows) {
-    const std::size_t more = windows.bytes_after_growth() - windows.bytes();
-    if (bytes_ + more > budget_ || windows.bytes_after_growth() > windows.most_bytes)
-      throw scene::Error(
-          scene::ExitCode::system_failure,
-          fmt::format("the tile at pixel {},{} holds more than {} ray segments of a pixel at once, beyond "
-                      "the memory budget; raise --memory or make --tile-size smaller",
-                      rect_.x0, rect_.y0, windows.capacity()));
+    const std::size_t grown = windows.bytes_after_growth(), more = grown - windows.bytes();
+    hold(grown > windows.most_bytes ? budget_ + 1 : more, windows.capacity());
     windows.grow();
-    bytes_ += more;
+  }
+
+  void hold(std::uint64_t more_bytes, std::size_t capacity) {
+    bytes_ += more_bytes;
+    if (bytes_ <= budget_) return;
+    throw scene::Error(
+        scene::ExitCode::system_failure,
+        fmt::format("the tile at pixel {},{} holds more than {} ray segments of a pixel at once, beyond the memory "
+                    "budget; raise --memory or make --tile-size smaller",
+                    rect_.x0, rect_.y0, capacity));
   }
 
   /// The first step that does not lie before `depth`.
@@ -110,6 +123,7 @@ class WindowMerger final : public TileMerger {
   std::uint64_t budget_, bytes_ = 0;
   projection::PixelRect rect_;
   projection::Lattice lattice_;
+  WindowScene scene_;
   scene::Image image_;
   std::vector<Place> places_;
   std::vector<Square> squares_;
