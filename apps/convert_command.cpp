@@ -6,6 +6,7 @@
 #include "apps/mesh_input.hpp"
 #include "apps/output_check.hpp"
 #include "apps/report.hpp"
+#include "datasets/modify.hpp"
 #include "io/mesh_parts.hpp"
 #include "io/pvtu_writer.hpp"
 #include "scene/error.hpp"
@@ -91,9 +92,10 @@ std::optional<ConvertPieces> convert_pieces(const std::string& pieces, const std
 }
 
 void convert(const std::filesystem::path& input, const std::filesystem::path& output, const io::MeshOptions& options,
-             const std::optional<ConvertPieces>& pieces, bool quiet) {
+             int subdivide, const std::optional<ConvertPieces>& pieces, bool quiet) {
   pieces ? check_pieces_output(output, input, pieces->count) : check_mesh_output(output, input);
-  const auto file = read_input(input, options);
+  auto file = read_input(input, options);
+  for (int time = 0; time < subdivide; ++time) file.mesh = datasets::subdivided(file.mesh);
   pieces ? write_pieces(file.mesh, output, *pieces) : write_mesh(file.mesh, output);
   if (!quiet)
     fmt::print(stderr, "{}: {}; field {} written to {}{}\n", input.string(), cells_line(file.counts),

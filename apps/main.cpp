@@ -77,6 +77,8 @@ ExitCode run(int argc, char** argv, Job& job) {
   convert_command->add_option("--pieces", pieces, "write OUT.pvtu and so many pieces, for mpirun");
   convert_command->add_option("--partition", pieces_partition,
                               "which piece a cell goes to: curve (compact, the default), file (order kept), random");
+  std::string subdivide = "0";
+  convert_command->add_option("--subdivide", subdivide, "of a mesh: times every tetrahedron is cut into eight");
   std::string block = "64";
   convert_command->add_option("--block", block, ".bricks: samples a side of a block (default 64)");
   convert_command->add_flag("--quiet", words.quiet, "nothing on stderr but errors");
@@ -128,7 +130,8 @@ ExitCode run(int argc, char** argv, Job& job) {
     convert_volume(words.input, mesh_output, volume_options(words), parse_count("--block", block, 8, 1024),
                    words.quiet);
   else if (*convert_command)
-    convert(words.input, mesh_output, mesh_options(words), convert_pieces(pieces, pieces_partition), words.quiet);
+    convert(words.input, mesh_output, mesh_options(words), parse_count("--subdivide", subdivide, 0, 8),
+            convert_pieces(pieces, pieces_partition), words.quiet);
   if (*timing_command) timing({traces.begin(), traces.end()}, csv, figure);
   if (*generate_command) generate(kind, mesh_output, parameters, words.quiet);
   return ExitCode::complete;

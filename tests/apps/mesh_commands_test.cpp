@@ -50,6 +50,19 @@ TEST(Convert, WritesTetsThatReadBack) {
   EXPECT_EQ(nlohmann::json::parse(info.out).at("tets"), 384);
 }
 
+TEST(Convert, SubdividingCutsEveryTetIntoEightAndKeepsTheField) {
+  const Folder folder;
+  ASSERT_EQ(tessera({"convert", folder.cube(), folder / "fine.tets", "--subdivide", "1"}).status, 0);
+  const auto coarse = nlohmann::json::parse(tessera({"info", "--json", folder.cube()}).out);
+  const auto fine = nlohmann::json::parse(tessera({"info", "--json", folder / "fine.tets"}).out);
+  EXPECT_EQ(fine.at("tets"), 8 * 384);
+  EXPECT_EQ(fine.at("bounds"), coarse.at("bounds"));
+  EXPECT_EQ(fine.at("field").at("range"), coarse.at("field").at("range"));
+  const auto refused = tessera({"convert", folder.cube(), folder / "no.tets", "--subdivide", "9"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_EQ(refused.error_lines(), 1u);
+}
+
 TEST(Convert, PiecesHoldEveryTetOnceAndFileOrderKeepsThePicture) {
   const Folder folder;
   const auto cube = folder.cube(), few = folder / "few.vtu";
