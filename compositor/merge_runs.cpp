@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -67,13 +68,20 @@ class RunMerger final : public TileMerger {
   }
 
   void advance(double final_depth) override {
+    if (runs_.empty()) return;
     // By all a run holds: equal runs are interchangeable, so the order of arrival shows nowhere.
-    const auto key = [](const RunRecord& run) {
-      return std::tie(run.pixel, run.front, run.thickness, run.optical_depth, run.red, run.green, run.blue);
+    const auto before = [&](std::uint32_t a, std::uint32_t b) {
+      const auto key = [](const RunRecord& run) {
+        return std::tie(run.front, run.thickness, run.optical_depth, run.red, run.green, run.blue);
+      };
+      return key(runs_[a]) < key(runs_[b]);
     };
-    std::sort(runs_.begin(), runs_.end(), [&](const RunRecord& a, const RunRecord& b) { return key(a) < key(b); });
-    for (const RunRecord& run : runs_)
-      if (run.front < final_depth) composite(run, pixels_[run.pixel]);
+    deal_to_pixels();
+    for (std::size_t pixel = 0; pixel < pixels_.size(); ++pixel) {
+      const auto first = order_.begin() + first_of_[pixel], last = order_.begin() + first_of_[pixel + 1];
+      if (last - first > 1) std::sort(first, last, before);
+      for (auto i = first; i != last && runs_[*i].front < final_depth; ++i) composite(runs_[*i], pixels_[pixel]);
+    }
     std::erase_if(runs_, [&](const RunRecord& run) { return run.front < final_depth; });
   }
 
@@ -96,6 +104,16 @@ class RunMerger final : public TileMerger {
     double first_depth = std::numeric_limits<double>::infinity();
     bool open = true;
   };
+
+  /// Numbers of runs, pixel by pixel: those of pixel p are order_[first_of_[p]] up to order_[first_of_[p + 1]].
+  void deal_to_pixels() {
+    first_of_.assign(pixels_.size() + 1, 0);
+    for (const RunRecord& run : runs_) ++first_of_[run.pixel + 1];
+    std::partial_sum(first_of_.begin(), first_of_.end(), first_of_.begin());
+    order_.resize(runs_.size());
+    next_.assign(first_of_.begin(), first_of_.end());
+    for (std::size_t i = 0; i < runs_.size(); ++i) order_[next_[runs_[i].pixel]++] = static_cast<std::uint32_t>(i);
+  }
 
   /// Runs of one segment, with the bits that their projector would have found.
   void integrate_single() {
@@ -137,6 +155,7 @@ class RunMerger final : public TileMerger {
   double weight_, termination_error_;
   std::vector<Pixel> pixels_;
   std::vector<RunRecord> runs_;
+  std::vector<std::uint32_t> order_, first_of_, next_;
   struct Single {
     std::uint32_t pixel;
     projection::LatticeSegment segment;

@@ -1,0 +1,230 @@
+#!/usr/bin/env python3
+"""The speed of meshes where it was asked for: one table of what was wanted, what is reached, and by which command.
+
+    bench/targets.py [--tessera build/release/apps/tessera] [--work FOLDER] [--data FOLDER] [--repeat 5]
+                     [--json FILE] [--results bench/RESULTS.md] [--only cube,large,real,parallel,modes]
+
+Makes its meshes in FOLDER (kept, so that a second run starts at once): cubes, a TetGen filling of a box, graded meshes
+of 15.8 and 51.1 M tets, and with --data (a folder with oxygen-post/ and bracket/) those, cut into eight. View and
+transfer function are those of all speed figures unless a row says otherwise; 1024 x 1024, `exact`, two threads. A time
+is the least of the repeats, its median beside it. The section between the script's marks in the results file is
+replaced; what stands outside is kept.
+"""
+import argparse
+import datetime
+import json
+import os
+import pathlib
+import re
+import statistics
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent
+BEGIN, END = "<!-- targets.py begin -->", "<!-- targets.py end -->"
+MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+BOX = """ply
+format ascii 1.0
+element vertex 8
+property float x
+property float y
+property float z
+element face 6
+property list uchar int vertex_indices
+end_header
+-1 -1 -1\n1 -1 -1\n1 1 -1\n-1 1 -1\n-1 -1 1\n1 -1 1\n1 1 1\n-1 1 1
+4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7
+"""
+
+
+def run(command):
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True, env=os.environ | MPI)
+    if done.returncode != 0:
+        sys.exit(f"targets.py: {' '.join(str(c) for c in command)}\n{done.stderr.strip()}")
+    return done.stdout
+
+
+class Bench:
+    def __init__(self, args):
+        self.args, self.rows, self.seen = args, [], {}
+        args.work.mkdir(parents=True, exist_ok=True)
+
+    def mesh(self, name, *command):
+        """A mesh made by a tessera command that ends with its file's place, if it is not there yet."""
+        file = self.args.work / name
+        if not file.exists():
+            run([self.args.tessera] + [file if c == "OUT" else c for c in command])
+        return file
+
+    def render(self, mesh, *extra, threads=2, ranks=1, figures=True, repeat=None, verify=0):
+        report = self.args.work / "report.json"
+        command = [self.args.tessera, "render", mesh, "-o", self.args.work / "out.pfm", "--size", "1024x1024",
+                   "--threads", threads, "--repeat", repeat or self.args.repeat, "--report", report, "--quiet", *extra]
+        if "--integrator" not in extra:
+            command += ["--integrator", "exact"]
+        if figures and "--camera" not in extra:
+            command += ["--camera", HERE / "camera.txt"]
+        if figures and "--transfer-function" not in extra:
+            command += ["--transfer-function", HERE / "transfer_function.txt"]
+        if verify:
+            command += ["--verify", verify]
+        if ranks > 1:
+            command = ["mpirun", "--oversubscribe", "-n", ranks] + command
+        run(command)
+        frame = json.loads(report.read_text())["frames"][0]
+        times = sorted(frame["frame_ms"])
+        frame |= {"least": times[0], "median": statistics.median(times)}
+        frame["rate"] = frame["counters"]["segments"] / times[0] / 1e3  # Mseg/s
+        return frame
+
+    def row(self, what, wanted, reached, command=""):
+        self.rows.append({"what": what, "wanted": wanted, "reached": reached, "command": command})
+        print(f"{what}: wanted {wanted}; {reached}", flush=True)
+
+
+def ms(frame):
+    return f"{frame['least']:.0f} ms (median {frame['median']:.0f})"
+
+
+def error(frame):
+    return f"error {frame['verify']['max_error']:.1e}" if "verify" in frame else ""
+
+
+def cubes(b):
+    c64, c32 = b.mesh("cube64.tets", "generate", "cube", "OUT", "n=64"), b.mesh("cube32.tets", "generate", "cube",
+                                                                                "OUT", "n=32")
+    f = b.render(c64, verify=200)
+    b.row("cube 64", "<= 130 ms", f"{ms(f)}, {f['rate']:.0f} Mseg/s, {error(f)}")
+    one = b.render(c64, threads=1)
+    b.row("cube 64, second thread", ">= 1.9x", f"{one['least'] / f['least']:.2f}x ({ms(one)} on one)")
+    f = b.render(c32, verify=200)
+    b.row("cube 32", ">= 400 Mseg/s at 2e-5", f"{f['rate']:.0f} Mseg/s, {error(f)}")
+    c128 = b.mesh("cube128.tets", "generate", "cube", "OUT", "n=128")
+    f = b.render(c128)
+    b.row("cube 128, 12.6 M tets", "<= 300 ms", f"{ms(f)}, {f['rate']:.0f} Mseg/s")
+    peak, tets = f["counters"]["peak_buffer_bytes"], f["counters"]["tets_total"]
+    b.row("memory above the mesh, cube 128", "<= 32 B a tet + 64 MiB",
+          f"{(peak - (64 << 20)) / tets:.0f} B a tet + 64 MiB ({peak / 2**20:.0f} MiB in all)")
+    box = b.args.work / "box.ply"
+    box.write_text(BOX)
+    delaunay = b.mesh("delaunay.tets", "convert", box, "OUT", "--max-volume", "1.55e-5")
+    f = b.render(delaunay, verify=200)
+    b.row(f"TetGen Delaunay, {f['counters']['tets_total']:,} tets", ">= 400 Mseg/s",
+          f"{f['rate']:.0f} Mseg/s, {ms(f)}, {error(f)}")
+
+
+def large(b):
+    for name, n, wanted in (("graded, 15.8 M tets", 138, "<= 500 ms"), ("graded, 51.1 M tets", 204, "<= 1500 ms")):
+        f = b.render(b.mesh(f"graded{n}.tets", "generate", "graded", "OUT", f"n={n}"), repeat=3)
+        peak, tets = f["counters"]["peak_buffer_bytes"], f["counters"]["tets_total"]
+        b.row(f"{name}", wanted, f"{ms(f)}, {f['rate']:.0f} Mseg/s; {(peak - (64 << 20)) / tets:.0f} B a tet + 64 MiB")
+
+
+def real(b):
+    if b.args.data is None:
+        print("real meshes: no --data, left out")
+        return
+    for name, file, options in (("oxygen-post", "oxygen-post/postxyz.bin", ["--q", b.args.data / "oxygen-post/postq.bin"]),
+                                ("bracket", "bracket/bracket_appended_compressed.vtu", [])):
+        mesh = b.mesh(f"{name}.tets", "convert", b.args.data / file, "OUT", "--subdivide", "1", *options)
+        f = b.render(mesh, figures=False, verify=200)
+        b.row(f"{name}, cut into {f['counters']['tets_total']:,} tets, default view", ">= 300 Mseg/s",
+              f"{f['rate']:.0f} Mseg/s, {ms(f)}, {error(f)}")
+
+
+def parallel(b):
+    c64 = b.mesh("cube64.tets", "generate", "cube", "OUT", "n=64")
+    threads, ranks = b.render(c64), b.render(c64, threads=1, ranks=2)
+    b.row("cube 64, 2 ranks x 1 thread against 1 x 2", "within 10 %",
+          f"{100 * (ranks['least'] / threads['least'] - 1):+.0f} % ({ms(ranks)} against {ms(threads)})")
+
+    def processor(ranks, *extra):
+        trace = b.args.work / "trace.json"
+        table = b.args.work / "stages.csv"
+        b.render(c64, "--timing", trace, *extra, threads=1, ranks=ranks)
+        run([b.args.tessera, "timing", trace, "--csv", table])
+        return table.read_text()
+
+    def cpu_of(table):
+        """CPU [ms] of all stages of a frame, of all processes, but waiting and what a file costs."""
+        lines = [line.split(",") for line in table.strip().splitlines()]
+        rows = [dict(zip(lines[0], line)) for line in lines[1:]]
+        return sum(float(r["cpu_ms"]) * int(r["role_processes"]) for r in rows
+                   if r["part"] == "frame" and r["cpu_ms"] and r["stage"] not in ("wait", "write", "whole", "other"))
+
+    totals = [cpu_of(processor(1)), cpu_of(processor(16, "--projectors", 8, "--compositors", 8))]
+    if totals[0] > 0:
+        b.row("cube 64, CPU of 8 + 8 ranks against one process", "<= 1.15x", f"{totals[1] / totals[0]:.2f}x")
+
+
+def modes(b):
+    c64 = b.mesh("cube64.tets", "generate", "cube", "OUT", "n=64")
+    knots = [line.split() for line in (HERE / "transfer_function.txt").read_text().splitlines()
+             if line.strip() and not line.startswith("#")]
+
+    def function(name, lines):
+        file = b.args.work / name
+        file.write_text("\n".join(" ".join(str(w) for w in line) for line in lines) + "\n")
+        return file
+
+    base = b.render(c64)
+    opaque = function("opaque.txt", [k[:4] + [float(k[4]) * 40 + 20] for k in knots])
+    full, ended = b.render(c64, "--transfer-function", opaque), b.render(
+        c64, "--transfer-function", opaque, "--integrator", "auto", "--accuracy", "4e-3")
+    b.row("cube 64, opaque function (x 40 + 20), rays ended at 1e-3", "<= 0.5x",
+          f"{ended['least'] / base['least']:.2f}x of the usual function ({full['least'] / base['least']:.2f}x with `exact`)")
+    few = b.render(c64, "--transfer-function", function("few.txt", [[0, 0, 0, 0, 0], [0.92, 1, 1, 1, 0], [1, 1, .5, .2, 8]]))
+    shown = 100 * few["counters"]["tets_projected"] / few["counters"]["tets_total"]
+    b.row(f"cube 64, a function that shows {shown:.1f} % of the cells", "<= 0.15x", f"{few['least'] / base['least']:.3f}x")
+    auto = b.render(c64, "--integrator", "auto")
+    b.row("cube 64, `auto` at 1e-4 against `exact`", "<= 1x", f"{auto['least'] / base['least']:.2f}x")
+    eye = function("perspective.txt", [["position", 3.1, 2.3, 4.2], ["focal_point", 0, 0, 0], ["view_up", 0, 1, 0],
+                                       ["view_angle", 35]])
+    p = b.render(c64, "--camera", eye, verify=200)
+    b.row("cube 64, perspective, ns a segment against orthographic", "<= 1.25x",
+          f"{base['rate'] / p['rate']:.2f}x, {error(p)}")
+    for count in (14, 30, 64, 256):
+        lines = [[i / (count - 1), (i % 3) / 2, i / count, 1 - i / count, 1.5 + 1.5 * ((i * 7) % 11) / 11]
+                 for i in range(count)]
+        f = b.render(c64, "--transfer-function", function(f"knots{count}.txt", lines), verify=200)
+        b.row(f"cube 64, {count} knots against 6", "-", f"{f['least'] / base['least']:.2f}x, {error(f)}")
+
+
+def write(args, b, load):
+    cpu = next((l.split(":", 1)[1].strip() for l in open("/proc/cpuinfo") if l.startswith("model name")), "?")
+    commit = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], capture_output=True, text=True)
+    words = re.sub(r"(--(?:tessera|work|data) )\S*/", r"\1", " ".join(sys.argv[1:]))
+    text = [BEGIN, "", f"{datetime.date.today().isoformat()}, commit {commit.stdout.strip()}: {cpu}, {os.cpu_count()} cores, "
+            f"load average before {load:.1f}, after {os.getloadavg()[0]:.1f}.", "", f"`bench/targets.py {words}`", "",
+            "| what | wanted | reached |", "|---|---|---|"]
+    text += [f"| {r['what']} | {r['wanted']} | {r['reached']} |" for r in b.rows] + ["", END]
+    if args.json:
+        args.json.write_text(json.dumps(b.rows, indent=1) + "\n")
+    if args.results:
+        old = args.results.read_text() if args.results.exists() else f"# Speed figures\n\n{BEGIN}\n{END}\n"
+        before, rest = old.split(BEGIN, 1) if BEGIN in old else (old + "\n", END + "\n")
+        args.results.write_text(before + "\n".join(text) + rest.split(END, 1)[1])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--tessera", type=pathlib.Path, default=ROOT / "build" / "release" / "apps" / "tessera")
+    parser.add_argument("--work", type=pathlib.Path, default=ROOT / "build" / "targets")
+    parser.add_argument("--data", type=pathlib.Path)
+    parser.add_argument("--repeat", type=int, default=5)
+    parser.add_argument("--only", default="cube,large,real,parallel,modes")
+    parser.add_argument("--json", type=pathlib.Path)
+    parser.add_argument("--results", type=pathlib.Path)
+    args = parser.parse_args()
+    if not args.tessera.exists():
+        sys.exit(f"targets.py: {args.tessera}: no such program; build it or name it with --tessera")
+    b, load = Bench(args), os.getloadavg()[0]
+    for name, group in (("cube", cubes), ("large", large), ("real", real), ("parallel", parallel), ("modes", modes)):
+        if name in args.only.split(","):
+            group(b)
+    write(args, b, load)
+
+
+if __name__ == "__main__":
+    main()
