@@ -124,14 +124,7 @@ scene::ExitCode render_alone(const RenderOptions& options) {
 }  // namespace
 
 scene::ExitCode render(const RenderOptions& options, compositor::Transport& transport) {
-  if (options.is_volume) {
-    // One rank renders with its threads until the picture of a volume is split among ranks.
-    if (transport.rank() != 0) return scene::ExitCode::complete;
-    if (transport.size() > 1 && !options.quiet)
-      fmt::print(stderr, "{}: a volume is rendered by rank 0 alone, {} ranks idle\n", options.input.string(),
-                 transport.size() - 1);
-    return render_volume(options);
-  }
+  if (options.is_volume) return render_volume(options, transport);
   if (transport.size() > 1) return render_on_ranks(options, transport);
   frame::assign_roles(1, options.projectors, options.compositors);  // more than one of either needs mpirun
   return render_alone(options);

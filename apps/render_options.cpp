@@ -210,6 +210,9 @@ RenderOptions render_options(const RenderWords& words) {
   if (options.is_volume) {
     options.volume = volume_options(words);
     options.volume_settings = volume_settings(words, options.settings);
+    options.balance = balance_settings(words);
+    options.show_balance = !words.show.empty();
+    refuse_mesh_words(words);
   } else {
     refuse_volume_options(words);
   }

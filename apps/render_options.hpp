@@ -9,6 +9,7 @@
 
 #include "frame/distributed.hpp"
 #include "frame/render.hpp"
+#include "frame/sort_first.hpp"
 #include "io/image_file.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/volume_reader.hpp"
@@ -27,6 +28,8 @@ struct RenderOptions {
   bool is_volume = false;  ///< the input is a grid: `volume` and `volume_settings` count, not `mesh` and `settings`
   io::VolumeOptions volume;
   volume::RenderSettings volume_settings;
+  frame::SortFirstSettings balance;  ///< of a volume's picture between ranks
+  bool show_balance = false;
 
   std::string transfer_function;  ///< file or preset; empty: the default one
   std::optional<double> unit_distance;
@@ -67,7 +70,8 @@ struct RenderWords {
   std::string integrator = "auto", accuracy, deep_accuracy, emission = "absorption", rasterizer = "planes",
               backend = "auto";
   std::string threads, tile_size, memory, background, png_bits = "8", repeat, verify, report, timing;
-  std::string dims, type, spacing, origin, endian, skip, step, brick_size, cache;
+  std::string dims, type, spacing, origin, endian, skip, step, brick_size, cache, preload;
+  std::string balance, balance_resolution, balance_weights, show;
   std::string projectors, compositors, exchange, partition = "curve", frames_in_flight, seed;
   bool smooth = false, shade = false, half = false, rescale = false, resume = false, progress = false, quiet = false;
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "apps/argument_values.hpp"
@@ -53,6 +54,26 @@ void add_volume_render_options(CLI::App& command, RenderWords& words) {
       ->type_name("VOXELS");
   command.add_option("--cache", words.cache, "volumes: which brick goes first when memory is full (default lru)")
       ->type_name("lru|proximity");
+  command
+      .add_option("--preload", words.preload,
+                  "volumes, --cache proximity: bricks near the view that are loaded ahead, a frame (default 0)")
+      ->type_name("BRICKS");
+  command
+      .add_option("--balance", words.balance,
+                  "volumes, under mpirun: how the picture is split between processes (default accurate)")
+      ->type_name("accurate|backface|splatting|previous|even");
+  command
+      .add_option("--balance-resolution", words.balance_resolution,
+                  "volumes: of the cost map, its pixels an image pixel along each axis (default 0.5)")
+      ->type_name("FACTOR");
+  command
+      .add_option("--balance-weights", words.balance_weights,
+                  "volumes, under mpirun: how much of the work each process gets (default: all the same)")
+      ->type_name("W,W,...");
+  command
+      .add_option("--show", words.show,
+                  "volumes: bricks drawn in the colours of the processes, and the cost map as a second picture")
+      ->type_name("balance");
 }
 
 io::VolumeOptions volume_options(const RenderWords& words) {
@@ -117,17 +138,69 @@ volume::RenderSettings volume_settings(const RenderWords& words, const frame::Re
     settings.cache = volume::CachePolicy::proximity;
   else if (!words.cache.empty() && words.cache != "lru")
     throw scene::bad_input(fmt::format("--cache: '{}' is unknown; use lru or proximity", words.cache));
+  if (!words.preload.empty()) {
+    if (settings.cache != volume::CachePolicy::proximity)
+      throw scene::bad_input("--preload: has no effect without --cache proximity; add it, or leave --preload out");
+    settings.preload_limit = parse_count("--preload", words.preload, 0, 1 << 20);
+  }
   settings.emission = common.emission;
   settings.threads = common.threads;
   settings.memory_bytes = common.memory_bytes;
   return settings;
 }
 
+frame::SortFirstSettings balance_settings(const RenderWords& words) {
+  frame::SortFirstSettings settings;
+  constexpr std::pair<const char*, frame::Balance> known[] = {{"accurate", frame::Balance::accurate},
+                                                              {"backface", frame::Balance::backface},
+                                                              {"splatting", frame::Balance::splatting},
+                                                              {"previous", frame::Balance::previous},
+                                                              {"even", frame::Balance::even}};
+  const auto* const found =
+      std::ranges::find_if(known, [&](const auto& choice) { return words.balance == choice.first; });
+  if (found != std::end(known))
+    settings.balance = found->second;
+  else if (!words.balance.empty())
+    throw scene::bad_input(
+        fmt::format("--balance: '{}' is unknown; use accurate, backface, splatting, previous or even", words.balance));
+  if (!words.balance_resolution.empty()) {
+    settings.resolution = parse_positive("--balance-resolution", words.balance_resolution);
+    if (settings.resolution > 1 || settings.resolution < 1e-3)
+      throw scene::bad_input(fmt::format("--balance-resolution: {} is not from 0.001 to 1", words.balance_resolution));
+  }
+  if (!words.show.empty() && words.show != "balance")
+    throw scene::bad_input(fmt::format("--show: '{}' is unknown; use balance", words.show));
+  for (std::size_t at = 0; !words.balance_weights.empty() && at <= words.balance_weights.size();) {
+    const std::size_t stop = std::min(words.balance_weights.find(',', at), words.balance_weights.size());
+    settings.weights.push_back(parse_positive("--balance-weights", words.balance_weights.substr(at, stop - at)));
+    at = stop + 1;
+  }
+  return settings;
+}
+
+void refuse_mesh_words(const RenderWords& words) {
+  const std::pair<const char*, bool> given[] = {{"--projectors", !words.projectors.empty()},
+                                                {"--compositors", !words.compositors.empty()},
+                                                {"--exchange", !words.exchange.empty()},
+                                                {"--partition", words.partition != "curve"},
+                                                {"--frames-in-flight", !words.frames_in_flight.empty()},
+                                                {"--seed", !words.seed.empty()},
+                                                {"--tile-size", !words.tile_size.empty()}};
+  for (const auto& [option, is_given] : given)
+    if (is_given)
+      throw scene::bad_input(fmt::format("{}: is for meshes, and the input is a volume; leave it out", option));
+}
+
 void refuse_volume_options(const RenderWords& words) {
   const std::pair<const char*, bool> given[] = {{"--step", !words.step.empty()},
                                                 {"--shade", words.shade},
                                                 {"--brick-size", !words.brick_size.empty()},
-                                                {"--cache", !words.cache.empty()}};
+                                                {"--cache", !words.cache.empty()},
+                                                {"--preload", !words.preload.empty()},
+                                                {"--balance", !words.balance.empty()},
+                                                {"--balance-resolution", !words.balance_resolution.empty()},
+                                                {"--balance-weights", !words.balance_weights.empty()},
+                                                {"--show", !words.show.empty()}};
   for (const auto& [option, is_given] : given)
     if (is_given)
       throw scene::bad_input(fmt::format("{}: is for volumes, and the input is a mesh; leave it out", option));

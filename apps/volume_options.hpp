@@ -19,6 +19,12 @@ bool is_volume_input(const RenderWords& words);
 /// How a volume is rendered. Throws scene::Error(bad_input) naming the option.
 volume::RenderSettings volume_settings(const RenderWords& words, const frame::RenderSettings& common);
 
+/// How a volume's picture is split between ranks. Throws as volume_settings().
+frame::SortFirstSettings balance_settings(const RenderWords& words);
+
+/// Throws if an option of jobs that render meshes is given.
+void refuse_mesh_words(const RenderWords& words);
+
 /// Throws if an option that is for volumes only is given.
 void refuse_volume_options(const RenderWords& words);
 

@@ -3,86 +3,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
-#include <thread>
+#include <utility>
 
+#include "apps/balance_picture.hpp"
+#include "apps/distributed_render.hpp"
 #include "apps/frame_list.hpp"
 #include "apps/mesh_input.hpp"
 #include "apps/output_check.hpp"
 #include "apps/run_output.hpp"
 #include "apps/verify.hpp"
 #include "apps/volume_input.hpp"
+#include "apps/volume_report.hpp"
+#include "frame/sort_first.hpp"
 #include "io/chrome_trace.hpp"
 #include "reference/grid_reference.hpp"
 
 namespace tessera::apps {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
-
-const char* word(volume::Method method) {
-  constexpr std::array words = {"auto", "exact", "sampled", "preintegrated"};
-  return words[static_cast<std::size_t>(method)];
-}
-
-std::string method_words(const volume::RenderSettings& settings) {
-  std::string words = word(settings.method);
-  if (settings.method == volume::Method::automatic) words += fmt::format(" to {:g}", settings.accuracy);
-  if (settings.method == volume::Method::sampled || settings.method == volume::Method::preintegrated)
-    words += fmt::format(" every {:g} voxels", settings.step);
-  if (settings.shading) words += ", shaded";
-  return words;
-}
-
-/// What one frame gave.
-struct Made {
-  scene::Camera camera;
-  volume::RenderStatistics statistics;
-  std::vector<double> frame_ms;
-  std::optional<Verification> verification;
-};
-
-Json method_json_of(const RenderOptions& options) {
-  const volume::RenderSettings& s = options.volume_settings;
-  Json json = {{"integrator", word(s.method)}};
-  if (s.method == volume::Method::automatic) json["accuracy"] = s.accuracy;
-  if (s.method == volume::Method::sampled || s.method == volume::Method::preintegrated) json["step"] = s.step;
-  json["emission"] = s.emission == scene::Emission::absorption ? "absorption" : "independent";
-  json["shade"] = s.shading.has_value();
-  json["backend"] = "cpu";
-  json["blend"] = options.display_blend ? "display" : "linear";
-  json["threads"] = s.threads;
-  json["brick_size"] = s.brick_size;
-  json["cache"] = s.cache == volume::CachePolicy::lru ? "lru" : "proximity";
-  json["memory_bytes"] = s.memory_bytes;
-  return json;
-}
-
-Json made_json(const Frame& frame, const Made& made) {
-  const volume::RenderStatistics& s = made.statistics;
-  Json outputs = Json::array();
-  for (const auto& output : frame.outputs) outputs.push_back(output.string());
-  Json json = {{"number", frame.number}, {"outputs", outputs}, {"skipped", false}, {"time", frame.mesh.time}};
-  json["view"] = view_json(made.camera, frame.size);
-  json["frame_ms"] = made.frame_ms;
-  json["counters"] = {{"rays", s.rays},
-                      {"voxels_visited", s.voxels_visited},
-                      {"samples", s.samples},
-                      {"bricks_total", s.bricks_total},
-                      {"bricks_invisible", s.bricks_invisible},
-                      {"brick_hits", s.brick_hits},
-                      {"bricks_loaded", s.bricks_loaded},
-                      {"bricks_evicted", s.bricks_evicted},
-                      {"bytes_loaded", s.bytes_loaded},
-                      {"bytes_resident", s.bytes_resident},
-                      {"peak_bytes", s.peak_bytes},
-                      {"blank_samples", s.blank_samples}};
-  json["instruction_set"] = s.instruction_set;
-  if (made.verification) json["verify"] = verification_json(*made.verification);
-  return json;
-}
+using compositor::Bytes;
 
 /// The largest error that is promised, in linear RGBA; none where steps decide it.
 std::optional<double> promised(const volume::RenderSettings& settings) {
@@ -103,88 +44,6 @@ Verification verified(const scene::Image& image, const scene::SampleSource& sour
   return verification;
 }
 
-/// One run's volume, transfer function and renderer. Of a time series one step is held at a time; the first gives
-/// transfer function and view.
-class VolumeRun {
- public:
-  VolumeRun(const RenderOptions& options, scene::Trace* trace, const Frame& first)
-      : options_(options), trace_(trace), file_(opened(first)) {}
-
-  [[nodiscard]] const io::VolumeFile& file() const { return file_; }
-  [[nodiscard]] const io::LoadedTransferFunction& transfer_function() const { return loaded_; }
-
-  Made make(const Frame& frame) {
-    hold(frame);
-    Made made;
-    made.camera = view_of(frame, box_, options_.projection);
-    if (trace_ != nullptr) trace_->set_frame(frame.number);
-    scene::Image image;
-    double frame_begin = 0;
-    for (int i = 0; i < std::max(options_.repeat, 1); ++i) {
-      image = {};
-      if (trace_ != nullptr && i > 0) trace_->add_frame(frame.number, frame_begin);
-      if (trace_ != nullptr) frame_begin = trace_->now_us();
-      const auto start = Clock::now();
-      image = renderer_->render(made.camera, frame.size, loaded_.function, &made.statistics);
-      made.frame_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
-    }
-    {
-      const scene::TraceScope scope(trace_, "write");
-      write_pictures(image, {}, frame, options_);
-    }
-    if (trace_ != nullptr) trace_->add_frame(frame.number, frame_begin);
-    if (options_.verify > 0) {
-      const scene::TraceScope scope(trace_, "verify");
-      made.verification = verified(image, *file_.source, made.camera, loaded_.function, options_);
-    }
-    return made;
-  }
-
- private:
-  [[nodiscard]] io::VolumeFile opened(const Frame& frame) const {
-    const scene::TraceScope scope(trace_, "read");
-    return io::open_volume(frame.mesh.files.front(), options_.volume);
-  }
-
-  void hold(const Frame& frame) {
-    if (frame.step != step_) {
-      renderer_.reset();
-      file_ = {};
-      file_ = opened(frame);
-      step_ = frame.step;
-    }
-    if (renderer_) return;
-    volume::RenderSettings settings = options_.volume_settings;
-    settings.trace = trace_;
-    renderer_.emplace(*file_.source, settings);
-  }
-
-  const RenderOptions& options_;
-  scene::Trace* trace_;
-  io::VolumeFile file_;
-  std::size_t step_ = 0;
-  scene::Box box_ = scene::bounds(file_.source->geometry());
-  io::LoadedTransferFunction loaded_ = transfer_function_of(facts_of(file_), options_);
-  std::optional<volume::Renderer> renderer_;
-};
-
-std::string volume_run_line(const RenderOptions& options, const VolumeRun& run, const std::vector<Frame>& frames,
-                            const Frame& first, const Made& made) {
-  const io::VolumeFile& file = run.file();
-  const volume::RenderStatistics& s = made.statistics;
-  std::string line = fmt::format("{}: {}; field {} ({}) {:.6g} to {:.6g}; {}; view {}, {}x{}", options.input.string(),
-                                 samples_line(file), file.source->grid().field_name,
-                                 file.source->geometry().association == scene::Association::point ? "point" : "cell",
-                                 file.range.low, file.range.high, transfer_function_line(run.transfer_function()),
-                                 view_line(made.camera), first.size.width, first.size.height);
-  if (frames.size() > 1) line += fmt::format(" (frame {} of {})", first.number + 1, frames.size());
-  line += fmt::format("; {} of {} bricks invisible, {} loaded; {} voxels visited; {}, {}, {:.3g} ms",
-                      s.bricks_invisible, s.bricks_total, s.bricks_loaded, s.voxels_visited,
-                      method_words(options.volume_settings), s.instruction_set, made.frame_ms.front());
-  for (const auto& note : file.notes) line += fmt::format("; {}", note);
-  return line;
-}
-
 void refuse_mesh_options(const RenderOptions& options) {
   const auto refuse = [](const char* option) {
     throw scene::bad_input(fmt::format("{}: is for meshes, and the input is a volume; leave it out", option));
@@ -199,59 +58,201 @@ void refuse_mesh_options(const RenderOptions& options) {
     throw scene::bad_input("--verify: the reference does not shade; leave --shade out");
 }
 
+/// With --show balance every picture has its cost map beside it.
+std::vector<Frame> frames_of(const RenderOptions& options) {
+  std::vector<Frame> frames = list_frames(options);
+  if (!options.show_balance) return frames;
+  for (Frame& frame : frames) {
+    const std::size_t pictures = frame.outputs.size();
+    for (std::size_t i = 0; i < pictures; ++i) {
+      frame.outputs.push_back(cost_name(frame.outputs[i]));
+      frame.finished = frame.finished && std::filesystem::exists(frame.outputs.back());
+    }
+  }
+  return frames;
+}
+
+/// One rank's part of a run. Of a time series one step is held at a time; the first gives transfer function and view.
+class VolumeRun {
+ public:
+  VolumeRun(const RenderOptions& options, compositor::Transport& transport)
+      : options_(options),
+        transport_(transport),
+        speaks_(transport.rank() == 0),
+        frames_(frames_of(options)),
+        progress_(options.progress && speaks_, frames_.size()),
+        sort_first_(transport, balance()) {}
+
+  scene::ExitCode run() {
+    agree_on_finished_frames();
+    for (const Frame& frame : frames_) {
+      if (frame.finished)
+        skip(frame);
+      else
+        make(frame);
+    }
+    progress_.clear();
+    if (!options_.timing.empty()) write_trace();
+    Bytes code(1);
+    if (speaks_) code[0] = static_cast<std::byte>(finish());
+    return static_cast<scene::ExitCode>(compositor::broadcast(transport_, 0, code)[0]);
+  }
+
+ private:
+  [[nodiscard]] scene::Trace* trace() { return options_.timing.empty() ? nullptr : &recording_; }
+
+  [[nodiscard]] frame::SortFirstSettings balance() {
+    frame::SortFirstSettings settings = options_.balance;
+    settings.keep_cost = options_.show_balance;
+    settings.trace = trace();
+    return settings;
+  }
+
+  /// The speaking rank's view of the disk holds for all.
+  void agree_on_finished_frames() {
+    if (speaks_) check_outputs(options_, frames_);
+    Bytes finished(frames_.size());
+    for (std::size_t i = 0; i < frames_.size(); ++i) finished[i] = std::byte{frames_[i].finished};
+    finished = compositor::broadcast(transport_, 0, std::move(finished));
+    for (std::size_t i = 0; i < frames_.size(); ++i) frames_[i].finished = finished[i] != std::byte{0};
+  }
+
+  void skip(const Frame& frame) {
+    ++done_;
+    if (!speaks_) return;
+    frame_reports_.push_back(volume_frame_json(options_, frame, nullptr));
+    progress_.update(done_, rendered_);
+  }
+
+  void open(const Frame& frame) {
+    renderer_.reset();
+    file_ = {};
+    {
+      const scene::TraceScope scope(trace(), "read");
+      file_ = io::open_volume(frame.mesh.files.front(), options_.volume);
+    }
+    step_ = frame.step;
+    if (box_) return;
+    box_ = scene::bounds(file_.source->geometry());
+    loaded_ = transfer_function_of(facts_of(file_), options_);
+  }
+
+  void hold(const Frame& frame) {
+    if (!box_) open(frames_.front());
+    if (frame.step != step_) open(frame);
+    if (renderer_) return;
+    const scene::TraceScope scope(trace(), "prepare");
+    volume::RenderSettings settings = options_.volume_settings;
+    settings.trace = trace();
+    renderer_.emplace(*file_.source, settings);
+  }
+
+  void make(const Frame& frame) {
+    hold(frame);
+    VolumeFrameRecord record;
+    record.camera = view_of(frame, *box_, options_.projection);
+    if (trace() != nullptr) recording_.set_frame(frame.number);
+    std::optional<frame::FinishedVolumeFrame> finished;
+    double frame_begin = 0;
+    for (int i = 0; i < std::max(options_.repeat, 1); ++i) {
+      finished.reset();  // the last one's memory before the next one's
+      if (trace() != nullptr && i > 0) recording_.add_frame(frame.number, frame_begin);
+      if (trace() != nullptr) frame_begin = recording_.now_us();
+      finished = sort_first_.render(*renderer_, loaded_.function, {record.camera, frame.size},
+                                    static_cast<std::size_t>(frame.number));
+      if (finished) record.frame_ms.push_back(finished->frame_ms);
+    }
+    if (finished) {
+      const scene::TraceScope scope(trace(), "write");
+      write(*finished, frame, record.camera);
+    }
+    if (trace() != nullptr) recording_.add_frame(frame.number, frame_begin);
+    ++done_, ++rendered_;
+    if (finished) say(frame, *finished, std::move(record));
+  }
+
+  void write(const frame::FinishedVolumeFrame& finished, const Frame& frame, const scene::Camera& camera) const {
+    if (!options_.show_balance) return write_pictures(finished.image, {}, frame, options_);
+    scene::Image shown = finished.image;
+    draw_bricks(shown, camera, file_.source->geometry(), renderer_->visible_bricks(loaded_.function), finished.split);
+    const scene::Image cost = cost_picture(finished.cost, frame.size, finished.split);
+    for (std::size_t i = 0; i < frame.outputs.size(); ++i)
+      io::write_image(2 * i < frame.outputs.size() ? shown : cost, frame.outputs[i], options_.image);
+  }
+
+  /// On rank 0.
+  void say(const Frame& frame, const frame::FinishedVolumeFrame& finished, VolumeFrameRecord record) {
+    record.statistics = finished.statistics;
+    record.split = finished.split;
+    record.samples = finished.samples;
+    record.cpu_seconds = finished.cpu_seconds;
+    if (options_.verify > 0) {
+      const scene::TraceScope scope(trace(), "verify");
+      record.verification = verified(finished.image, *file_.source, record.camera, loaded_.function, options_);
+    }
+    frame_reports_.push_back(volume_frame_json(options_, frame, &record));
+    progress_.clear();
+    if (rendered_ == 1 && !options_.quiet)
+      fmt::print(stderr, "{}\n", volume_run_line(options_, file_, loaded_, frames_, frame, record));
+    if (frames_.size() > 1 && !options_.quiet)
+      fmt::print(stderr, "{}\n", volume_frame_line(options_, frames_, frame, record));
+    if (options_.repeat > 0) fmt::print("{}\n", frame_ms_line(record.frame_ms));
+    if (record.verification) {
+      fmt::print("{}\n", verification_line(*record.verification, frame.number));
+      met_ = met_ && record.verification->met();
+    }
+    progress_.update(done_, rendered_);
+  }
+
+  void write_trace() {
+    transport_.trace_to(nullptr, nullptr);
+    io::TraceRun traced = box_ ? trace_run(options_, 0, frames_.front(), rendered_) : io::TraceRun{};
+    traced.ranks = transport_.size();
+    traced.rasterizer.clear();
+    traced.integrator = method_word(options_.volume_settings.method);
+    write_rank_traces(transport_, 0, recording_, fmt::format("rank {}", transport_.rank()), traced, options_.timing);
+  }
+
+  [[nodiscard]] scene::ExitCode finish() const {
+    Json report = {{"program", "tessera"},
+                   {"version", TESSERA_VERSION},
+                   {"method", volume_method_json(options_, transport_.size())}};
+    if (box_) {
+      report["volume"] = volume_json(options_.input, file_);
+      report["transfer_function"] = transfer_function_json(loaded_);
+    } else if (!options_.quiet) {
+      fmt::print(stderr, "{}: all {} frames are there already, nothing rendered\n", options_.input.string(),
+                 frames_.size());
+    }
+    report["frames"] = frame_reports_;
+    if (!options_.report.empty()) write_json(report, options_.report);
+    return met_ ? scene::ExitCode::complete : scene::ExitCode::accuracy_not_met;
+  }
+
+  const RenderOptions& options_;
+  compositor::Transport& transport_;
+  bool speaks_;
+  std::vector<Frame> frames_;
+  Progress progress_;
+  scene::Trace recording_;
+  frame::SortFirst sort_first_;
+
+  io::VolumeFile file_;
+  std::size_t step_ = 0;           ///< of file_
+  std::optional<scene::Box> box_;  ///< of the first step; none until something is read
+  io::LoadedTransferFunction loaded_;
+  std::optional<volume::Renderer> renderer_;
+
+  Json frame_reports_ = Json::array();
+  std::size_t done_ = 0, rendered_ = 0;
+  bool met_ = true;
+};
+
 }  // namespace
 
-scene::ExitCode render_volume(const RenderOptions& options) {
+scene::ExitCode render_volume(const RenderOptions& options, compositor::Transport& transport) {
   refuse_mesh_options(options);
-  const auto frames = list_frames(options);
-  check_outputs(options, frames);
-  Progress progress(options.progress, frames.size());
-  scene::Trace trace;
-  std::optional<VolumeRun> run;  // nothing is read if every frame is there already
-  Json report = {{"program", "tessera"}, {"version", TESSERA_VERSION}, {"method", method_json_of(options)}};
-  Json frame_reports = Json::array();
-  std::size_t done = 0, rendered = 0;
-  bool met = true;
-  for (const auto& frame : frames) {
-    if (frame.finished) {
-      frame_reports.push_back(frame_json(frame, nullptr));
-      progress.update(++done, rendered);
-      continue;
-    }
-    if (!run) run.emplace(options, options.timing.empty() ? nullptr : &trace, frames.front());
-    const Made made = run->make(frame);
-    frame_reports.push_back(made_json(frame, made));
-    progress.clear();
-    if (rendered == 0 && !options.quiet)
-      fmt::print(stderr, "{}\n", volume_run_line(options, *run, frames, frame, made));
-    if (frames.size() > 1 && !options.quiet)
-      fmt::print(stderr, "frame {} of {}: {} voxels visited, {:.3g} ms\n", frame.number + 1, frames.size(),
-                 made.statistics.voxels_visited, made.frame_ms.front());
-    if (options.repeat > 0) fmt::print("{}\n", frame_ms_line(made.frame_ms));
-    if (made.verification) {
-      fmt::print("{}\n", verification_line(*made.verification, frame.number));
-      met = met && made.verification->met();
-    }
-    progress.update(++done, ++rendered);
-  }
-  progress.clear();
-  if (run) {
-    report["volume"] = volume_json(options.input, run->file());
-    report["transfer_function"] = transfer_function_json(run->transfer_function());
-  } else if (!options.quiet) {
-    fmt::print(stderr, "{}: all {} frames are there already, nothing rendered\n", options.input.string(),
-               frames.size());
-  }
-  report["frames"] = frame_reports;
-  if (!options.report.empty()) write_json(report, options.report);
-  if (!options.timing.empty()) {
-    const std::vector<std::string> events{io::chrome_trace_events(trace, 0, "rank 0")};
-    io::TraceRun traced = run ? trace_run(options, 0, frames.front(), rendered) : io::TraceRun{};
-    traced.rasterizer.clear();
-    traced.integrator = word(options.volume_settings.method);
-    io::write_chrome_trace(events, traced, options.timing);
-  }
-  return met ? scene::ExitCode::complete : scene::ExitCode::accuracy_not_met;
+  return VolumeRun(options, transport).run();
 }
 
 }  // namespace tessera::apps

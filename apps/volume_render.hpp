@@ -1,12 +1,14 @@
 #pragma once
 
 #include "apps/render_options.hpp"
+#include "compositor/transport.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::apps {
 
-/// `tessera render` of a regular or rectilinear grid, in one process with threads: view, transfer function, pictures,
-/// times, report and verification as for meshes. Throws scene::Error, also for options that are for meshes only.
-scene::ExitCode render_volume(const RenderOptions& options);
+/// `tessera render` of a regular grid on all ranks of the job, one or more: view, transfer function, pictures, times,
+/// report and verification as for meshes; the picture is split between ranks (frame/sort_first.hpp), rank 0 writes and
+/// speaks. Collective. Throws scene::Error, also for options that are for meshes only.
+scene::ExitCode render_volume(const RenderOptions& options, compositor::Transport& transport);
 
 }  // namespace tessera::apps

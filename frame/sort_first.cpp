@@ -1,5 +1,7 @@
 #include "frame/sort_first.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -8,7 +10,9 @@
 #include <optional>
 #include <utility>
 
+#include "frame/reduce.hpp"
 #include "scene/error.hpp"
+#include "volume/learned_work.hpp"
 
 namespace tessera::frame {
 namespace {
@@ -83,33 +87,40 @@ volume::CostMethod method_of(Balance balance) {
   }
 }
 
-/// One rank's part in a run.
-class SortFirst {
+}  // namespace
+
+/// One rank's part.
+class SortFirst::State {
  public:
-  SortFirst(compositor::Transport& transport, const SortFirstSettings& settings,
-            const scene::TransferFunction& function, volume::Renderer& renderer, const scene::GridGeometry& geometry)
+  State(compositor::Transport& transport, SortFirstSettings settings)
       : transport_(transport),
-        settings_(settings),
-        function_(function),
-        renderer_(renderer),
-        geometry_(geometry),
-        weights_(settings.weights.empty() ? std::vector<double>(static_cast<std::size_t>(transport.size()), 1.0)
-                                          : settings.weights) {
-    if (weights_.size() != static_cast<std::size_t>(transport.size()) ||
-        !std::all_of(weights_.begin(), weights_.end(), [](double w) { return w > 0 && std::isfinite(w); }))
-      throw scene::bad_input("balance: as many positive weights as there are processes are needed");
+        settings_(std::move(settings)),
+        weights_(settings_.weights.empty() ? std::vector<double>(static_cast<std::size_t>(transport.size()), 1.0)
+                                           : settings_.weights) {
+    if (weights_.size() != static_cast<std::size_t>(transport.size()))
+      throw scene::bad_input(
+          fmt::format("balance: {} weights for {} processes; give one for each", weights_.size(), transport.size()));
+    if (!std::all_of(weights_.begin(), weights_.end(), [](double w) { return w > 0 && std::isfinite(w); }))
+      throw scene::bad_input("balance: weights must be positive numbers");
   }
 
-  /// The picture on rank 0, nothing elsewhere.
-  std::optional<FinishedVolumeFrame> render(std::size_t number, const VolumeJob& job) {
+  std::optional<FinishedVolumeFrame> render(volume::Renderer& renderer, const scene::TransferFunction& function,
+                                            const VolumeJob& job, std::size_t number) {
+    {
+      // No rank runs ahead of the picture that rank 0 puts together, and a frame's time does not count reading.
+      const scene::TraceScope timing(settings_.trace, "wait", static_cast<std::int32_t>(number));
+      compositor::gather_all(transport_, {});
+    }
+    const auto begin = std::chrono::steady_clock::now();
     const ImageSplit split = [&] {
       const scene::TraceScope timing(settings_.trace, "partition", static_cast<std::int32_t>(number));
-      return split_of(job);
+      look(renderer, function, job);
+      return split_of(renderer, function, job);
     }();
     const PixelRegion mine = split.region(transport_.rank());
     const double cpu_before = process_cpu_seconds();
     volume::RenderStatistics statistics;
-    scene::Image image = renderer_.render(job.camera, job.size, function_, &statistics, mine);
+    scene::Image image = renderer.render(job.camera, job.size, function, &statistics, mine);
     const double cpu = process_cpu_seconds() - cpu_before;
     if (settings_.balance == Balance::previous) share_times(cpu);
     last_split_ = split;
@@ -133,7 +144,12 @@ class SortFirst {
       send(header, image);
       return std::nullopt;
     }
-    FinishedVolumeFrame finished{number, std::move(image), statistics, split, {}, {}, 0};
+    FinishedVolumeFrame finished;
+    finished.frame = number;
+    finished.image = std::move(image);
+    finished.statistics = statistics;
+    finished.split = split;
+    finished.cost = std::move(cost_);
     finished.samples.assign(static_cast<std::size_t>(transport_.size()), statistics.samples);
     finished.cpu_seconds.assign(static_cast<std::size_t>(transport_.size()), cpu);
     for (int others = transport_.size() - 1; others > 0; --others) {
@@ -145,20 +161,24 @@ class SortFirst {
                                      message.bytes.size(), 1);
       place(message, finished);
     }
+    finished.frame_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
     return finished;
   }
 
  private:
-  ImageSplit split_of(const VolumeJob& job) {
+  ImageSplit split_of(const volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job) {
     const int processes = transport_.size();
-    const PixelRegion area = volume::footprint(job.camera, job.size, geometry_);
-    if (settings_.balance == Balance::even || (settings_.balance == Balance::previous && times_.empty())) {
-      // The other ways to split are collective: no rank runs ahead of the picture that rank 0 puts together.
-      compositor::gather_all(transport_, {});
-      return volume::even_split(processes, job.size, area);
-    }
-    if (settings_.balance == Balance::previous)
-      return volume::split(map_of_times(job.size), job.size, weights_, volume::region_grain);
+    const Balance balance = settings_.balance;
+    const auto cost_of = [&](std::optional<PixelRegion> part) {
+      return renderer.cost_map(job.camera, job.size, function, method_of(balance), settings_.resolution, part,
+                               rates_ ? &*rates_ : nullptr);
+    };
+    const bool by_times = balance == Balance::previous && !times_.empty();
+    if (settings_.keep_cost && transport_.rank() == 0) cost_ = by_times ? map_of_times(job.size) : cost_of({});
+    if (processes == 1) return {{0, job.size.height}, {{0, job.size.width}}};
+    const PixelRegion area = volume::footprint(job.camera, job.size, renderer.geometry());
+    if (by_times) return volume::split(map_of_times(job.size), job.size, weights_, volume::region_grain);
+    if (balance == Balance::even || balance == Balance::previous) return volume::even_split(processes, job.size, area);
 
     const scene::ImageSize map = volume::map_size(job.size, settings_.resolution);
     const PixelRegion map_area = scaled(area, settings_.resolution, map, job.size);
@@ -166,12 +186,25 @@ class SortFirst {
     const PixelRegion part = has_last
                                  ? scaled(last_split_->region(transport_.rank()), settings_.resolution, map, job.size)
                                  : volume::even_split(processes, map, map_area).region(transport_.rank());
-    const CostMap costs =
-        renderer_.cost_map(job.camera, job.size, function_, method_of(settings_.balance), settings_.resolution, part);
+    const CostMap costs = cost_of(part);
     const volume::SummedArea table(costs);
     volume::SplitSearch search(job.size, settings_.resolution, map, weights_, volume::region_grain);
     search.find_rows(gather_rows(volume::SplitSearch::row_sums(costs, table)));
     return search.find_columns(gather_columns(volume::SplitSearch::column_sums(costs, table, search.map_rows())));
+  }
+
+  /// What a look at every 32nd ray teaches of the work that this view takes: each rank looks at the rectangle it had in
+  /// the frame before, whose bricks it holds. Collective.
+  void look(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job) {
+    if ((transport_.size() == 1 && !settings_.keep_cost) || settings_.balance != Balance::accurate) return;
+    const bool has_last = last_split_.has_value() && last_size_ == job.size;
+    const PixelRegion area = volume::footprint(job.camera, job.size, renderer.geometry());
+    const PixelRegion part = has_last ? last_split_->region(transport_.rank())
+                                      : volume::even_split(transport_.size(), job.size, area).region(transport_.rank());
+    volume::WorkTally tally(renderer.geometry().voxels());
+    renderer.look(job.camera, job.size, function, tally, part);
+    rates_.emplace(renderer.geometry().voxels());
+    rates_->learn(reduce_all(transport_, tally.take(), Reduction::sum));
   }
 
   std::vector<volume::RowSums> gather_rows(const volume::RowSums& own) {
@@ -269,32 +302,31 @@ class SortFirst {
   }
 
   compositor::Transport& transport_;
-  const SortFirstSettings& settings_;
-  const scene::TransferFunction& function_;
-  volume::Renderer& renderer_;
-  const scene::GridGeometry& geometry_;
+  const SortFirstSettings settings_;
   std::vector<double> weights_, times_;
+  std::optional<volume::WorkRates> rates_;
   std::optional<ImageSplit> last_split_;
   scene::ImageSize last_size_{0, 0};
+  CostMap cost_;
 };
 
-}  // namespace
+SortFirst::SortFirst(compositor::Transport& transport, SortFirstSettings settings)
+    : state_(std::make_unique<State>(transport, std::move(settings))) {}
+SortFirst::~SortFirst() = default;
+
+std::optional<FinishedVolumeFrame> SortFirst::render(volume::Renderer& renderer,
+                                                     const scene::TransferFunction& function, const VolumeJob& job,
+                                                     std::size_t number) {
+  return state_->render(renderer, function, job, number);
+}
 
 void render_sort_first(compositor::Transport& transport, const SortFirstSettings& settings,
                        std::span<const VolumeJob> jobs, const scene::TransferFunction& function,
-                       volume::Renderer& renderer, const scene::GridGeometry& geometry,
-                       const std::function<void(FinishedVolumeFrame)>& done) {
+                       volume::Renderer& renderer, const std::function<void(FinishedVolumeFrame)>& done) {
   try {
-    SortFirst run(transport, settings, function, renderer, geometry);
-    compositor::gather_all(transport, {});  // a frame's time does not count reading
-    auto last = std::chrono::steady_clock::now();
-    for (std::size_t number = 0; number < jobs.size(); ++number) {
-      auto finished = run.render(number, jobs[number]);
-      if (!finished) continue;
-      const auto now = std::chrono::steady_clock::now();
-      finished->frame_ms = std::chrono::duration<double, std::milli>(now - std::exchange(last, now)).count();
-      done(std::move(*finished));
-    }
+    SortFirst run(transport, settings);
+    for (std::size_t number = 0; number < jobs.size(); ++number)
+      if (auto finished = run.render(renderer, function, jobs[number], number)) done(std::move(*finished));
   } catch (const scene::Error& error) {
     transport.fail(error);
   }

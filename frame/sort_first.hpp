@@ -1,6 +1,8 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,7 +15,7 @@ namespace tessera::frame {
 
 /// How the picture of a volume is split between processes ([Mol08] chapter 4).
 enum class Balance {
-  accurate,  ///< by what each pixel will cost: CostMethod
+  accurate,  ///< by what each pixel will cost, as a look at every 32nd ray tells
   backface,
   splatting,
   previous,  ///< by the CPU times of the frame before, each spread evenly over its rectangle; to compare with
@@ -22,8 +24,9 @@ enum class Balance {
 
 struct SortFirstSettings {
   Balance balance = Balance::accurate;
-  double resolution = 0.25;     ///< of the cost map, map pixels an image pixel along each axis
+  double resolution = 0.5;      ///< of the cost map, map pixels an image pixel along each axis
   std::vector<double> weights;  ///< how much of the work each rank should get; empty: equal
+  bool keep_cost = false;       ///< rank 0 finds the cost of the whole picture too, to be shown
   scene::Trace* trace = nullptr;
 };
 
@@ -40,19 +43,39 @@ struct FinishedVolumeFrame {
   volume::ImageSplit split;
   std::vector<std::uint64_t> samples;  ///< of each rank
   std::vector<double> cpu_seconds;     ///< of each rank's rendering, all its threads
-  double frame_ms;                     ///< since the frame before it was complete, or since all ranks were ready
+  double frame_ms;                     ///< from when all ranks were ready to the picture in memory, split included
+  volume::CostMap cost;                ///< of the whole picture, if SortFirstSettings::keep_cost
 };
 
-/// Renders pictures of one volume with all ranks of `transport` (sort first): each casts the rays of one rectangle
-/// through its own `renderer` of the same volume, rank 0 gathers ([Mol08] 6.3.2). Each rank calls this with the same
-/// arguments but for `done`, which runs on rank 0, in order.
+/// Renders pictures of volumes with all ranks of `transport` (sort first): each casts the rays of one rectangle through
+/// its own renderer of the same volume, rank 0 gathers ([Mol08] 6.3.2). A single rank casts all and splits nothing.
 ///
 /// The split is found by all ranks together in two stages (volume/image_split.hpp): each finds the cost of the
 /// rectangle it had in the frame before, of an even tile in the first one. The bits of the picture are those of one
-/// process, for any split. Throws the run's error, on every rank.
+/// process, for any split.
+class SortFirst {
+ public:
+  /// Throws Error(bad_input) unless there are no weights or as many positive ones as ranks. `transport` must outlive
+  /// it.
+  SortFirst(compositor::Transport& transport, SortFirstSettings settings);
+  ~SortFirst();
+  SortFirst(const SortFirst&) = delete;
+  SortFirst& operator=(const SortFirst&) = delete;
+
+  /// The picture on rank 0, nothing elsewhere. Collective: the same arguments on every rank, but for the renderer,
+  /// which is each rank's own. Throws the run's error, or this rank's, which the caller gives to transport.fail().
+  std::optional<FinishedVolumeFrame> render(volume::Renderer& renderer, const scene::TransferFunction& function,
+                                            const VolumeJob& job, std::size_t number);
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
+
+/// A list of pictures of one volume. Each rank calls this with the same arguments but for `done`, which runs on rank 0,
+/// in order. Throws the run's error, on every rank.
 void render_sort_first(compositor::Transport& transport, const SortFirstSettings& settings,
                        std::span<const VolumeJob> jobs, const scene::TransferFunction& function,
-                       volume::Renderer& renderer, const scene::GridGeometry& geometry,
-                       const std::function<void(FinishedVolumeFrame)>& done);
+                       volume::Renderer& renderer, const std::function<void(FinishedVolumeFrame)>& done);
 
 }  // namespace tessera::frame

@@ -564,6 +564,37 @@ HWY_INLINE Lanes lanes_of(const ChunkView& chunk, int ray, int i_base, int j_bas
   return lanes;
 }
 
+/// A packet's work in a group of eight slabs, for the tally.
+struct GroupWork {
+  int first;
+  VF k_out, depth_before;
+  std::uint64_t samples_before;
+
+  /// As the work stands before slab `next`, or where the packet stopped.
+  HWY_NOINLINE void add_to(const ChunkView& chunk, const Lanes& lanes, const Reach& reach, int next,
+                           const Progress& progress, const TileCounts& counts) const {
+    const DF d;
+    const VF begin = HN::Max(lanes.k_in, HN::Set(d, static_cast<float>(first))),
+             end = HN::Min(k_out, HN::Set(d, static_cast<float>(std::min(next, first + 8))));
+    const float slabs = HN::GetLane(HN::SumOfLanes(d, HN::Max(HN::Zero(d), HN::Sub(end, begin))));
+    if (!(slabs > 0)) return;
+    const VF depth = HN::Div(HN::Sub(progress.optical_depth, depth_before), lanes.length);
+    const float thick = HN::GetLane(HN::SumOfLanes(d, HN::Min(HN::Max(depth, HN::Zero(d)), HN::Set(d, 1e4f))));
+    const float along = (static_cast<float>(first) + 4) / SlabBlock::slabs;
+    const auto middle = [&](const float(&low)[2], const float(&high)[2]) {
+      return static_cast<std::int64_t>(0.5f * ((low[0] + high[0]) * (1 - along) + (low[1] + high[1]) * along));
+    };
+    const std::int64_t k = std::min<std::int64_t>(chunk.first_k + first + 4,
+                                                  chunk.frame.voxels[static_cast<std::size_t>(chunk.axes.k)] - 1);
+    std::int64_t place[3];
+    place[chunk.axes.i] = middle(reach.x_low, reach.x_high);
+    place[chunk.axes.j] = middle(reach.y_low, reach.y_high);
+    place[chunk.axes.k] = chunk.axes.mirrored ? chunk.frame.voxels[static_cast<std::size_t>(chunk.axes.k)] - 1 - k : k;
+    chunk.frame.tally->add(chunk.frame.tally->cells().number(place[0], place[1], place[2]),
+                           counts.samples - samples_before, slabs, thick);
+  }
+};
+
 /// Lanes [lane, lane + Lanes()) of a packet through the chunk.
 template <bool cell_data, class Lookup>
 HWY_INLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int ray, const Reach& reach,
@@ -596,7 +627,13 @@ HWY_INLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int ray
   PlaneState plane;
   VF crossings = zero;
 
+  const bool tallies = frame.tally != nullptr;
+  GroupWork group{};
   for (int n = 0; n < chunk.slabs; ++n) {
+    if (HWY_UNLIKELY(tallies) && n % 8 == 0) {
+      if (n > 0) group.add_to(chunk, lanes, reach, n, progress, counts);
+      group = {n, lanes.k_out, progress.optical_depth, counts.samples};
+    }
     if (n % 4 == 0) {
       // Rays that let nothing through any more, or have left the volume, are done.
       const VF left = HN::Mul(before, progress.transmittance);
@@ -651,6 +688,7 @@ HWY_INLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int ray
       cast.template operator()<GatherWindow>(1, 1);
   }
 
+  if (HWY_UNLIKELY(tallies)) group.add_to(chunk, lanes, reach, chunk.slabs, progress, counts);
   counts.voxels_visited += static_cast<std::uint64_t>(HN::GetLane(HN::SumOfLanes(d, crossings)));
   const auto add = [&](float* sum, VF part)
                        HWY_ATTR { HN::StoreU(HN::MulAdd(before, part, HN::LoadU(d, sum + ray)), d, sum + ray); };

@@ -113,6 +113,8 @@ HWY_INLINE void cast_rays(const FrameView& frame, const RayAxes& axes, std::uint
     Reach tile{{1e30f, 1e30f}, {-1e30f, -1e30f}, {1e30f, 1e30f}, {-1e30f, -1e30f}, false};
     for (int p = 0; p < TileRays::packets; ++p) {
       const auto first_k = static_cast<double>(k);
+      reach[p].any = false;
+      if (frame.tally != nullptr && (wanted >> p & 1) == 0) continue;  // a look's light does not matter
       reach[p] = reach_of(frame, rays, p, first_k, first_k + slabs);
       if (!reach[p].any) continue;
       tile.any = true;
@@ -133,15 +135,21 @@ HWY_INLINE void cast_rays(const FrameView& frame, const RayAxes& axes, std::uint
     if (!any) continue;
     fill_block(frame, axes, k, slices, memory.row, memory.block);
     const ChunkView chunk{frame, axes, memory.block, k, slabs, reach};
-    if (frame.step > 0)
+    if (frame.step > 0 && frame.tally == nullptr)
       sample_chunk(chunk, rays, counts);
     else
       cast_chunk(chunk, rays, counts);
   }
 }
 
+/// Two packets of a tile, one a line of eight tiles after the other, that a look casts.
+HWY_INLINE std::uint64_t looked_at(int tile_x, int tile_y) {
+  const int x = (3 * tile_x + 5 * tile_y + 1) % 8, y = (5 * tile_x + 2 * tile_y + 4) % 8;
+  return std::uint64_t{1} << (8 * y + x) | std::uint64_t{1} << (8 * ((y + 4) % 8) + (x + 4) % 8);
+}
+
 void cast_tile_here(const FrameView& frame, int x0, int y0, const PixelRegion& region, TileMemory& memory,
-                    scene::Image& image, TileCounts& counts) {
+                    scene::Image* image, TileCounts& counts) {
   TileRays& rays = memory.rays;
   for (int r = 0; r < TileRays::count; ++r) {
     rays.alpha[r] = rays.red[r] = rays.green[r] = rays.blue[r] = 0;
@@ -158,21 +166,22 @@ void cast_tile_here(const FrameView& frame, int x0, int y0, const PixelRegion& r
         y + TileRays::packet_side > region.y0)
       wanted |= std::uint64_t{1} << p;
   }
+  if (frame.tally != nullptr) wanted &= looked_at(x0 / TileRays::side, y0 / TileRays::side);
   const unsigned codes = axis_codes(*frame.rays, x0, y0);
   for (int code = 0; code < 6; ++code) {
     if ((codes >> code & 1) == 0) continue;
     set_up_rays(frame, x0, y0, code, rays);
     cast_rays(frame, RayAxes::of(code), wanted, memory, counts);
-    for (int r = 0; r < TileRays::count; ++r) {
+    for (int r = 0; image != nullptr && r < TileRays::count; ++r) {
       const int x = x0 + TileRays::pixel_x(r), y = y0 + TileRays::pixel_y(r);
       if (x < region.x0 || x >= region.x1 || y < region.y0 || y >= region.y1 || !(rays.k_in[r] < rays.k_out[r]))
         continue;
-      const std::size_t pixel = image.index(x, y);
-      float* const rgba = &image.rgba[4 * pixel];
+      const std::size_t pixel = image->index(x, y);
+      float* const rgba = &image->rgba[4 * pixel];
       rgba[0] = std::max(0.0f, rays.red[r]), rgba[1] = std::max(0.0f, rays.green[r]);
       rgba[2] = std::max(0.0f, rays.blue[r]), rgba[3] = std::min(1.0f, std::max(0.0f, rays.alpha[r]));
       if (rgba[3] > 0 && rays.first_k[r] >= 0)
-        image.depth[pixel] = static_cast<float>(rays.depth_0[r] + rays.depth_k[r] * rays.first_k[r]);
+        image->depth[pixel] = static_cast<float>(rays.depth_0[r] + rays.depth_k[r] * rays.first_k[r]);
     }
   }
 }
@@ -185,7 +194,7 @@ HWY_AFTER_NAMESPACE();
 namespace tessera::volume {
 HWY_EXPORT(cast_tile_here);
 void cast_tile(const FrameView& frame, int x0, int y0, const PixelRegion& region, TileMemory& memory,
-               scene::Image& image, TileCounts& counts) {
+               scene::Image* image, TileCounts& counts) {
   HWY_DYNAMIC_DISPATCH(cast_tile_here)(frame, x0, y0, region, memory, image, counts);
 }
 }  // namespace tessera::volume

@@ -198,7 +198,8 @@ class Costs {
     const auto slab_at = [&](double t) { return mirrored ? size[k] - (origin[k] + t * d[k]) : origin[k] + t * d[k]; };
     const auto depth_at = [&](double slab) { return ((mirrored ? size[k] - slab : slab) - origin[k]) / d[k]; };
     constexpr auto side = static_cast<double>(CellRanges::side);
-    double way = 0;
+    double way = 0, depth = 0;
+    const double length = space_.length_per_depth(px, py) / settings_.length_unit;
     for (double slab = std::floor(slab_at(from) / side) * side; slab < size[k] && depth_at(slab) < to; slab += side) {
       const double t0 = depth_at(slab), t1 = depth_at(slab + side);
       const double begin = std::max(from, t0), end = std::min(to, t1);
@@ -220,9 +221,20 @@ class Costs {
         high[static_cast<std::size_t>(axis)] =
             static_cast<std::int64_t>(std::clamp(std::floor(last / side), 0.0, most));
       }
-      if (any_visible(cells, low, high)) way += end - begin;
+      if (!any_visible(cells, low, high)) continue;
+      if (settings_.learned == nullptr) {
+        way += end - begin;
+        continue;
+      }
+      const glm::dvec3 middle = origin + 0.5 * (begin + end) * d;
+      const std::size_t cell =
+          settings_.learned->cells().number(static_cast<std::int64_t>(middle.x), static_cast<std::int64_t>(middle.y),
+                                            static_cast<std::int64_t>(middle.z));
+      way += (end - begin) * steep[k] * settings_.learned->samples(cell);
+      depth += (end - begin) * length * settings_.learned->depth(cell);
+      if (depth > settings_.most_depth) break;
     }
-    return way * rate(px, py);
+    return settings_.learned == nullptr ? way * rate(px, py) : way;
   }
 
   static bool any_visible(const VisibleCells& cells, const std::array<std::int64_t, 3>& low,

@@ -9,6 +9,7 @@
 #include "scene/grid.hpp"
 #include "volume/cell_ranges.hpp"
 #include "volume/image_split.hpp"
+#include "volume/learned_work.hpp"
 
 namespace tessera::volume {
 
@@ -35,6 +36,10 @@ struct CostSettings {
   double resolution = 0.5;  ///< map pixels an image pixel along each axis, in (0, 1]; 0.5 is the thesis's "quarter"
   /// What a stretch of ray costs: the voxels it crosses (exact integrals), or else its length (samples at steps).
   bool by_voxels = true;
+  /// accurate, not null: samples a slab as a look has taught, and rays end where they let nothing through.
+  const WorkRates* learned = nullptr;
+  double length_unit = 1;   ///< world units, of the optical depths learned
+  double most_depth = 1e9;  ///< optical depth at which rays end
 };
 
 /// The visible cells of 8^3 voxels as boxes, joined along the first axis where they touch.
@@ -49,10 +54,11 @@ PixelRegion footprint(const scene::Camera& camera, scene::ImageSize image, const
 /// The cost of the map pixels of `region` (default: all), in 1/64 voxels (or mean voxel sides).
 ///
 /// `accurate` marches the ray of each map pixel's centre as the caster does: eight slabs of voxels at a time, which
-/// count if a packet of 4 x 4 pixels round the ray may meet a visible cell in them. The approximations sum over
-/// visible_boxes(), each with its true total by the depth of its centre: `backface` counts a corner 1 inside the box's
-/// outline and 0.25 on it, faces cut in two triangles through the inner corner ([Mol08] A.4); `splatting` the chords of
-/// a sphere as wide as the box. Boxes that reach behind the eye are done by each ray's way through them.
+/// count if a packet of 4 x 4 pixels round the ray may meet a visible cell in them; with what was learned, samples
+/// count instead of voxels, until the ray is dark. The approximations sum over visible_boxes(), each with its true
+/// total by the depth of its centre: `backface` counts a corner 1 inside the box's outline and 0.25 on it, faces cut in
+/// two triangles through the inner corner ([Mol08] A.4); `splatting` the chords of a sphere as wide as the box. Boxes
+/// that reach behind the eye are done by each ray's way through them.
 ///
 /// Throws Error(bad_input) for a resolution out of range. Uses the calling thread's arena.
 CostMap cost_map(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,

@@ -10,6 +10,7 @@
 #include "scene/grid.hpp"
 #include "volume/brick_cache.hpp"
 #include "volume/cell_ranges.hpp"
+#include "volume/learned_work.hpp"
 #include "volume/preintegrated_table.hpp"
 #include "volume/render.hpp"
 
@@ -55,6 +56,7 @@ struct FrameView {
   double step = 0;                                    ///< sampled, preintegrated: length in the table's unit; else 0
   const PreintegratedTable* preintegrated = nullptr;  ///< null: sampled
   const ShadingView* shading = nullptr;               ///< null: none
+  WorkTally* tally = nullptr;  ///< not null: a look that counts where work would be, at every 32nd ray
   scene::Trace* trace;
 };
 

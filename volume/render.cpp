@@ -115,6 +115,18 @@ std::vector<std::pair<int, int>> tiles_of(const PixelRegion& region) {
   return tiles;
 }
 
+PixelRegion within(scene::ImageSize size, const std::optional<PixelRegion>& region) {
+  if (!region) return {0, 0, size.width, size.height};
+  return {std::max(0, region->x0), std::max(0, region->y0), std::min(size.width, region->x1),
+          std::min(size.height, region->y1)};
+}
+
+/// What a cast gives beside its light.
+struct Cast {
+  std::vector<std::uint8_t> brick_visible;
+  TileCounts counts;
+};
+
 }  // namespace
 
 struct Renderer::State {
@@ -125,8 +137,28 @@ struct Renderer::State {
         bricks(source_, BrickLayout(source_.geometry(), settings_.brick_size, settings_.edge_bricks),
                settings_.memory_bytes, settings_.cache) {}
 
+  [[nodiscard]] compositor::LaneTable table_of(const scene::TransferFunction& function) const {
+    return {function, ranges.lanes.origin, ranges.lanes.unit, length_unit, settings.emission};
+  }
+
+  /// A ray that lets less through is done.
+  [[nodiscard]] float least_transmittance(const scene::TransferFunction& function) const {
+    if (settings.method == Method::sampled || settings.method == Method::preintegrated) return 1e-6f;
+    double brightest = function.max_color();
+    if (settings.emission == scene::Emission::independent) {
+      const scene::Box box = scene::bounds(source.geometry());
+      brightest *= glm::length(box.high - box.low);
+    }
+    return static_cast<float>(std::min(0.25, accuracy() / 4 / std::max(1.0, brightest)));
+  }
+  [[nodiscard]] double accuracy() const { return settings.method == Method::exact ? 2e-6 : settings.accuracy; }
+
+  void cast(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
+            const PixelRegion& wanted, WorkTally* tally, scene::Image* image, Cast& result);
+
   const scene::SampleSource& source;
   RenderSettings settings;
+  double voxel_side = voxel_side_of(source.geometry()), length_unit = length_unit_of(voxel_side);
   CellRanges ranges;
   BrickCache bricks;
 };
@@ -150,72 +182,69 @@ Renderer::~Renderer() = default;
 
 scene::ValueRange Renderer::range() const { return state_->ranges.range; }
 
-scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size,
-                              const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
-                              std::optional<PixelRegion> region) {
-  scene::validate(camera);
-  scene::validate(size);
-  State& state = *state_;
-  const RenderSettings& settings = state.settings;
-  const scene::TraceScope frame_scope(settings.trace, "frame");
-  const PixelRegion all{0, 0, size.width, size.height};
-  const PixelRegion wanted = region ? PixelRegion{std::max(0, region->x0), std::max(0, region->y0),
-                                                  std::min(size.width, region->x1), std::min(size.height, region->y1)}
-                                    : all;
-  scene::Image image(size);
-  const BrickCache::Counts before = state.bricks.counts();
-  const PixelRays rays(camera, size, state.source.geometry());
-  const double voxel_side = voxel_side_of(state.source.geometry()), length_unit = length_unit_of(voxel_side);
-  const compositor::LaneTable table(transfer_function, state.ranges.lanes.origin, state.ranges.lanes.unit, length_unit,
-                                    settings.emission);
-  std::vector<std::uint8_t> visible, brick_visible;
-  TileCounts counts;
-  std::vector<float> distances;
-  if (settings.cache == CachePolicy::proximity) {
-    distances = cone_distances(camera, size, wanted, state.source.geometry(), state.bricks.layout());
-    state.bricks.set_distances(distances);
+const scene::GridGeometry& Renderer::geometry() const { return state_->source.geometry(); }
+
+std::vector<std::array<glm::dvec3, 2>> Renderer::visible_bricks(
+    const scene::TransferFunction& transfer_function) const {
+  const State& state = *state_;
+  const compositor::LaneTable table = state.table_of(transfer_function);
+  const BrickLayout& layout = state.bricks.layout();
+  const std::vector<std::uint8_t> shown =
+      volume::visible_bricks(state.ranges, visible_cells(state.ranges, table), layout);
+  std::vector<std::array<glm::dvec3, 2>> boxes;
+  for (std::size_t brick = 0; brick < shown.size(); ++brick) {
+    if (shown[brick] == 0) continue;
+    const scene::GridIndex place = layout.place(brick);
+    std::array<glm::dvec3, 2>& box = boxes.emplace_back();
+    for (std::size_t a = 0; a < 3; ++a) {
+      box[0][static_cast<int>(a)] = static_cast<double>(place[a] * layout.size);
+      box[1][static_cast<int>(a)] = static_cast<double>(std::min((place[a] + 1) * layout.size, layout.voxels[a]));
+    }
   }
+  return boxes;
+}
+
+/// The rays of the pixels `wanted`: an image, or a tally.
+void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
+                           const scene::TransferFunction& transfer_function, const PixelRegion& wanted,
+                           WorkTally* tally, scene::Image* image, Cast& result) {
+  const PixelRays rays(camera, size, source.geometry());
+  const compositor::LaneTable table = table_of(transfer_function);
+  std::vector<std::uint8_t> visible;
   tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
   arena.execute([&] {
-    const BrickLayout& layout = state.bricks.layout();
     {
       const scene::TraceScope scope(settings.trace, "cull");
       // A step between two values may show what neither of them shows, so pre-integration needs the true ones.
-      visible = settings.method == Method::preintegrated ? std::vector<std::uint8_t>(state.ranges.count(), 1)
-                                                         : visible_cells(state.ranges, table);
-      brick_visible = visible_bricks(state.ranges, visible, layout);
-    }
-    const double accuracy = settings.method == Method::exact ? 2e-6 : settings.accuracy;
-    double brightest = transfer_function.max_color();
-    if (settings.emission == scene::Emission::independent) {
-      const scene::Box box = scene::bounds(state.source.geometry());
-      brightest *= glm::length(box.high - box.low);
+      visible = settings.method == Method::preintegrated ? std::vector<std::uint8_t>(ranges.count(), 1)
+                                                         : visible_cells(ranges, table);
+      result.brick_visible = volume::visible_bricks(ranges, visible, bricks.layout());
     }
     FrameView frame{};
     frame.rays = &rays;
     frame.table = &table;
-    frame.ranges = &state.ranges;
+    frame.ranges = &ranges;
     frame.visible = visible.data();
-    frame.brick_visible = brick_visible.data();
-    frame.bricks = &state.bricks;
-    frame.voxels = state.source.geometry().voxels();
-    frame.samples = state.source.geometry().samples();
-    frame.cell_data = state.source.geometry().association == scene::Association::cell;
+    frame.brick_visible = result.brick_visible.data();
+    frame.bricks = &bricks;
+    frame.voxels = source.geometry().voxels();
+    frame.samples = source.geometry().samples();
+    frame.cell_data = source.geometry().association == scene::Association::cell;
     frame.length_unit = length_unit;
-    frame.least_transmittance = static_cast<float>(std::min(0.25, accuracy / 4 / std::max(1.0, brightest)));
-    frame.piece_tolerance = static_cast<float>(accuracy / 64);
+    frame.least_transmittance = least_transmittance(transfer_function);
+    frame.piece_tolerance = static_cast<float>(accuracy() / 64);
     frame.largest_color = static_cast<float>(std::max(1e-30, transfer_function.max_color()));
+    frame.tally = tally;
     frame.trace = settings.trace;
 
     std::optional<PreintegratedTable> preintegrated;
-    if (settings.method == Method::sampled || settings.method == Method::preintegrated) {
+    if (settings.method == Method::sampled || settings.method == Method::preintegrated)
       frame.step = settings.step * voxel_side / length_unit;
-      frame.least_transmittance = 1e-6f;
-    }
-    if (settings.method == Method::preintegrated) {
-      const LaneSamples& lanes = state.ranges.lanes;
-      const auto lane_of = [&](double value) { return compositor::lane_scalar(value, lanes.origin, lanes.unit); };
-      const scene::ValueRange& range = state.ranges.range;
+    if (settings.method == Method::preintegrated && tally == nullptr) {
+      const auto lane_of = [&](double value) {
+        return compositor::lane_scalar(value, ranges.lanes.origin, ranges.lanes.unit);
+      };
+      const scene::ValueRange& range = ranges.range;
       preintegrated.emplace(table, range.empty() ? 0.0f : lane_of(range.low),
                             range.empty() ? 0.0f : lane_of(range.high), static_cast<float>(frame.step));
       frame.preintegrated = &*preintegrated;
@@ -223,7 +252,7 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
 
     ShadingView shading;
     if (settings.shading) {
-      shading = shading_view(*settings.shading, camera, state.source.geometry(), voxel_side);
+      shading = shading_view(*settings.shading, camera, source.geometry(), voxel_side);
       frame.shading = &shading;
     }
 
@@ -234,27 +263,46 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, tiles.size(), 1),
         [&](const auto& some) {
-          const scene::TraceScope scope(settings.trace, "project");
+          const scene::TraceScope scope(settings.trace, tally == nullptr ? "project" : "partition");
           for (std::size_t n = some.begin(); n != some.end(); ++n)
             cast_tile(frame, tiles[n].first, tiles[n].second, wanted, *memories.local(), image, tile_counts.local());
         },
         tbb::auto_partitioner());
     for (const TileCounts& c : tile_counts) {
-      counts.rays += c.rays;
-      counts.voxels_visited += c.voxels_visited;
-      counts.samples += c.samples;
+      result.counts.rays += c.rays;
+      result.counts.voxels_visited += c.voxels_visited;
+      result.counts.samples += c.samples;
     }
   });
-  if (!distances.empty() && settings.preload_limit > 0) {
+}
+
+scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size,
+                              const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
+                              std::optional<PixelRegion> region) {
+  scene::validate(camera);
+  scene::validate(size);
+  State& state = *state_;
+  const RenderSettings& settings = state.settings;
+  const scene::TraceScope frame_scope(settings.trace, "frame");
+  const PixelRegion wanted = within(size, region);
+  const BrickCache::Counts before = state.bricks.counts();
+  const bool near_ones = settings.cache == CachePolicy::proximity;
+  if (near_ones)
+    state.bricks.set_distances(cone_distances(camera, size, wanted, state.source.geometry(), state.bricks.layout()));
+  scene::Image image(size);
+  Cast cast;
+  state.cast(camera, size, transfer_function, wanted, nullptr, &image, cast);
+  if (near_ones && settings.preload_limit > 0) {
     const scene::TraceScope scope(settings.trace, "prepare");
-    state.bricks.preload(settings.preload_limit, brick_visible, settings.trace);
+    state.bricks.preload(settings.preload_limit, cast.brick_visible, settings.trace);
   }
   if (statistics != nullptr) {
     const BrickCache::Counts after = state.bricks.counts();
     RenderStatistics s;
-    s.rays = counts.rays, s.voxels_visited = counts.voxels_visited, s.samples = counts.samples;
-    s.bricks_total = brick_visible.size();
-    s.bricks_invisible = static_cast<std::uint64_t>(std::count(brick_visible.begin(), brick_visible.end(), 0));
+    s.rays = cast.counts.rays, s.voxels_visited = cast.counts.voxels_visited, s.samples = cast.counts.samples;
+    s.bricks_total = cast.brick_visible.size();
+    s.bricks_invisible =
+        static_cast<std::uint64_t>(std::count(cast.brick_visible.begin(), cast.brick_visible.end(), 0));
     s.brick_hits = after.hits - before.hits, s.bricks_loaded = after.loads - before.loads;
     s.bricks_evicted = after.evictions - before.evictions, s.bytes_loaded = after.bytes_loaded - before.bytes_loaded;
     s.bytes_resident = after.bytes, s.peak_bytes = after.peak_bytes;
@@ -266,19 +314,28 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   return image;
 }
 
+void Renderer::look(const scene::Camera& camera, scene::ImageSize size,
+                    const scene::TransferFunction& transfer_function, WorkTally& tally,
+                    std::optional<PixelRegion> region) {
+  scene::validate(camera);
+  scene::validate(size);
+  Cast unused;
+  state_->cast(camera, size, transfer_function, within(size, region), &tally, nullptr, unused);
+}
+
 CostMap Renderer::cost_map(const scene::Camera& camera, scene::ImageSize size,
                            const scene::TransferFunction& transfer_function, CostMethod method, double resolution,
-                           std::optional<PixelRegion> region) const {
+                           std::optional<PixelRegion> region, const WorkRates* learned) const {
   const State& state = *state_;
   const scene::GridGeometry& geometry = state.source.geometry();
-  const compositor::LaneTable table(transfer_function, state.ranges.lanes.origin, state.ranges.lanes.unit,
-                                    length_unit_of(voxel_side_of(geometry)), state.settings.emission);
-  const std::vector<std::uint8_t> visible = visible_cells(state.ranges, table);
+  const std::vector<std::uint8_t> visible = visible_cells(state.ranges, state.table_of(transfer_function));
   const bool by_voxels = state.settings.method == Method::automatic || state.settings.method == Method::exact;
   CostMap map;
   tbb::task_arena arena(state.settings.threads > 0 ? state.settings.threads : tbb::task_arena::automatic);
   arena.execute([&] {
-    map = volume::cost_map(camera, size, geometry, {state.ranges.cells, visible}, {method, resolution, by_voxels},
+    map = volume::cost_map(camera, size, geometry, {state.ranges.cells, visible},
+                           {method, resolution, by_voxels, learned, state.length_unit,
+                            -std::log(static_cast<double>(state.least_transmittance(transfer_function)))},
                            region);
   });
   return map;

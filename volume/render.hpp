@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "scene/camera.hpp"
 #include "scene/image.hpp"
@@ -77,6 +79,8 @@ struct PixelRegion {
 inline constexpr int region_grain = 4;
 
 struct CostMap;
+class WorkTally;
+class WorkRates;
 enum class CostMethod;
 
 /// Casts rays through one volume many times, in one process. The constructor reads all of it once, for the ranges of
@@ -99,14 +103,26 @@ class Renderer {
                       const scene::TransferFunction& transfer_function, RenderStatistics* statistics = nullptr,
                       std::optional<PixelRegion> region = std::nullopt);
 
+  /// Casts every 32nd ray of the picture, or of a region of it, and counts where in the volume the work was
+  /// (learned_work.hpp); makes no light. As render() otherwise.
+  void look(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
+            WorkTally& tally, std::optional<PixelRegion> region = std::nullopt);
+
   /// What each pixel will cost, for the split of the image between processes (cost_map.hpp): from the cells of 8^3
-  /// voxels that the transfer function shows. `region`: in map pixels.
+  /// voxels that the transfer function shows, and from what a look has taught, if given. `region`: in map
+  /// pixels.
   [[nodiscard]] CostMap cost_map(const scene::Camera& camera, scene::ImageSize size,
                                  const scene::TransferFunction& transfer_function, CostMethod method, double resolution,
-                                 std::optional<PixelRegion> region = std::nullopt) const;
+                                 std::optional<PixelRegion> region = std::nullopt,
+                                 const WorkRates* learned = nullptr) const;
 
   /// Of the whole volume, blank samples left out.
   [[nodiscard]] scene::ValueRange range() const;
+  [[nodiscard]] const scene::GridGeometry& geometry() const;
+
+  /// Corners, in index space, of the bricks that the transfer function shows anything of.
+  [[nodiscard]] std::vector<std::array<glm::dvec3, 2>> visible_bricks(
+      const scene::TransferFunction& transfer_function) const;
 
  private:
   struct State;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numeric>
@@ -53,7 +54,7 @@ std::vector<FinishedVolumeFrame> render(int ranks, const SortFirstSettings& sett
     volume::RenderSettings render;
     render.threads = 1;
     volume::Renderer renderer(*source, render);
-    render_sort_first(transport, settings, jobs, haze(), renderer, source->geometry(),
+    render_sort_first(transport, settings, jobs, haze(), renderer,
                       [&](FinishedVolumeFrame frame) { frames.push_back(std::move(frame)); });
   });
   return frames;
@@ -84,6 +85,40 @@ TEST(SortFirst, AnyNumberOfProcessesAndAnyBalanceGivesTheBitsOfOne) {
                   frames[i].statistics.samples);
       }
     }
+}
+
+/// (largest - least) / mean.
+double deviation(const std::vector<std::uint64_t>& samples) {
+  const auto [least, most] = std::minmax_element(samples.begin(), samples.end());
+  return static_cast<double>(*most - *least) * static_cast<double>(samples.size()) /
+         static_cast<double>(std::accumulate(samples.begin(), samples.end(), std::uint64_t{0}));
+}
+
+TEST(SortFirst, AccurateBalanceSharesCountedSamplesFromTheFirstFrameOnAndWhereRaysEndEarly) {
+  // Each view far from the one before: nothing that was rendered then is of use. The ball is opaque.
+  std::vector<VolumeJob> jobs;
+  scene::Camera camera;
+  camera.position = {2.5, 1.8, 3.3};
+  camera.parallel_scale = 1.3;
+  for (const double turn : {0.0, 0.3, 0.75}) jobs.push_back({scene::orbit(camera, turn), {320, 320}});
+  const scene::TransferFunction opaque({{0.1, {0.2, 0.4, 1}, 0.2}, {0.5, {0.2, 0.4, 1}, 1}, {0.6, {1, 0.5, 0.2}, 200}});
+  const auto source = ball();
+  const auto worst_of = [&](Balance balance) {
+    double worst = 0;
+    SortFirstSettings settings;
+    settings.balance = balance;
+    compositor::run_ranks(6, [&](compositor::Transport& transport) {
+      volume::RenderSettings render;
+      render.threads = 1;
+      volume::Renderer renderer(*source, render);
+      render_sort_first(transport, settings, jobs, opaque, renderer,
+                        [&](const FinishedVolumeFrame& frame) { worst = std::max(worst, deviation(frame.samples)); });
+    });
+    return worst;
+  };
+  // Edges lie on every fourth pixel: two pixels of about a hundred on each side of a rectangle.
+  EXPECT_LT(worst_of(Balance::accurate), 0.16);
+  EXPECT_GT(worst_of(Balance::even), 0.3);
 }
 
 TEST(SortFirst, WeightsShareTheWorkAndWrongOnesAreRefused) {

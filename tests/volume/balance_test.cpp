@@ -9,6 +9,7 @@
 #include "scene/error.hpp"
 #include "volume/cost_map.hpp"
 #include "volume/image_split.hpp"
+#include "volume/learned_work.hpp"
 #include "volume/render.hpp"
 
 namespace tessera::volume {
@@ -189,6 +190,32 @@ TEST(Balance, TheTwoStageSearchInPartsFindsTheSplitOfOneProcess) {
     EXPECT_EQ(found.rows, expected.rows);
     EXPECT_EQ(found.columns, expected.columns);
   }
+}
+
+TEST(Balance, CellsThatNoRayMetLeanOnThoseAroundThem) {
+  const scene::GridIndex voxels{64, 64, 64};
+  WorkTally tally(voxels);
+  ASSERT_EQ(tally.cells().count(), 512u);
+  // Two samples a slab in the low half along i, none in the other; one cell is left out.
+  const std::size_t unseen = tally.cells().number(20, 30, 30);
+  for (std::int64_t k = 0; k < 64; k += 8)
+    for (std::int64_t j = 0; j < 64; j += 8)
+      for (std::int64_t i = 0; i < 64; i += 8) {
+        const std::size_t cell = tally.cells().number(i, j, k);
+        if (cell != unseen) tally.add(cell, i < 32 ? 2000 : 0, 1000, i < 32 ? 500.0f : 0.0f);
+      }
+  WorkRates rates(voxels);
+  rates.learn(tally.take());
+  EXPECT_NEAR(rates.samples(tally.cells().number(4, 4, 4)), 2, 0.05);
+  EXPECT_NEAR(rates.samples(tally.cells().number(60, 4, 4)), 0, 0.05);
+  EXPECT_NEAR(rates.depth(tally.cells().number(4, 4, 4)), 0.5, 0.02);
+  EXPECT_NEAR(rates.samples(unseen), 2, 0.1);
+  EXPECT_NEAR(rates.depth(unseen), 0.5, 0.05);
+  for (const std::uint64_t word : tally.take()) EXPECT_EQ(word, 0u);
+  // A volume of any size has few cells; places outside count for the nearest.
+  const WorkCells large({2048, 2048, 2048});
+  EXPECT_EQ(large.count(), std::size_t{1} << 15);
+  EXPECT_EQ(large.number(-5, 3000, 0), large.number(0, 2047, 0));
 }
 
 TEST(Balance, MapsOfQuarterResolutionGiveProcessesTheSameWork) {

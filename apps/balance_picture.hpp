@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <span>
+
+#include "scene/camera.hpp"
+#include "scene/grid.hpp"
+#include "scene/image.hpp"
+#include "volume/image_split.hpp"
+
+/// `--show balance`: who rendered what, and what it was thought to cost ([Mol08] Figures 1.2, 4.1, 4.4).
+namespace tessera::apps {
+
+/// Draws the outlines of `bricks` (low and high corners in index space) over the picture, dimmed, on black; each pixel of a line
+/// in the colour of the process that rendered it. Where rectangles meet there is a white line.
+void draw_bricks(scene::Image& image, const scene::Camera& camera, const scene::GridGeometry& geometry,
+                 std::span<const std::array<glm::dvec3, 2>> bricks, const volume::ImageSplit& split);
+
+/// The cost map at the picture's size: black where nothing is to be done, over blue, red and yellow to white at the
+/// dearest pixel, and white lines where rectangles meet. Opaque.
+scene::Image cost_picture(const volume::CostMap& cost, scene::ImageSize size, const volume::ImageSplit& split);
+
+/// Where the cost map of a picture goes: `a.png` gives `a.cost.png`.
+std::filesystem::path cost_name(const std::filesystem::path& picture);
+
+}  // namespace tessera::apps

@@ -1,0 +1,119 @@
+// Volumes on several ranks, as users start them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "apps/program.hpp"
+
+namespace tessera::apps {
+namespace {
+
+class VolumeMpirun : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!has_mpirun()) GTEST_SKIP() << "there is no mpirun";
+    ASSERT_EQ(tessera({"generate", "ripples", volume_, "n=24", "--quiet"}).status, 0);
+  }
+  /// `render` of the volume with these words, small, quiet, one thread a rank.
+  [[nodiscard]] std::vector<std::string> render(const std::string& output, std::vector<std::string> more = {}) const {
+    std::vector<std::string> words{"render", volume_, "-o", output, "--size", "70x50", "--threads", "1", "--quiet"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  /// The program's own lines on stderr; mpirun has some to say itself.
+  static std::size_t own_lines(const Outcome& outcome) {
+    std::istringstream err(outcome.err);
+    std::size_t count = 0;
+    for (std::string line; std::getline(err, line);) count += line.starts_with("tessera: ") ? 1 : 0;
+    return count;
+  }
+
+  const Folder folder_;
+  const std::string volume_ = folder_ / "v.nrrd";
+};
+
+TEST_F(VolumeMpirun, AnyNumberOfProcessesGivesTheBytesOfOne) {
+  ASSERT_EQ(tessera(render(folder_ / "one_%d.exr", {"--orbit", "2"})).status, 0);
+  const std::pair<int, const char*> runs[] = {{2, "accurate"}, {3, "backface"}, {6, "accurate"},
+                                              {3, "previous"}, {2, "even"},     {3, "splatting"}};
+  for (const auto& [ranks, balance] : runs) {
+    const Outcome outcome = mpirun(ranks, render(folder_ / "ranks_%d.exr", {"--orbit", "2", "--balance", balance}));
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    for (const char* number : {"0", "1"})
+      EXPECT_EQ(contents(folder_ / "ranks_" + number + ".exr"), contents(folder_ / "one_" + number + ".exr"))
+          << ranks << " by " << balance;
+  }
+}
+
+TEST_F(VolumeMpirun, TheReportAndTheTraceHaveEveryRanksPart) {
+  const Outcome outcome = mpirun(3, render(folder_ / "a.exr", {"--verify", "300", "--report", folder_ / "r.json",
+                                                               "--timing", folder_ / "t.json"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1) << outcome.out;
+  const auto report = nlohmann::json::parse(contents(folder_ / "r.json"));
+  EXPECT_EQ(report.at("method").at("ranks"), 3);
+  const auto& frame = report.at("frames").at(0);
+  ASSERT_EQ(frame.at("balance").at("processes").size(), 3u);
+  std::uint64_t samples = 0;
+  int pixels = 0;
+  for (const auto& process : frame.at("balance").at("processes")) {
+    samples += process.at("samples").get<std::uint64_t>();
+    const auto r = process.at("rectangle").get<std::vector<int>>();
+    pixels += (r[2] - r[0]) * (r[3] - r[1]);
+  }
+  EXPECT_EQ(samples, frame.at("counters").at("samples").get<std::uint64_t>());
+  EXPECT_EQ(pixels, 70 * 50);
+  const auto trace = nlohmann::json::parse(contents(folder_ / "t.json"));
+  std::set<int> ranks;
+  for (const auto& event : trace.at("traceEvents")) ranks.insert(event.at("pid").get<int>());
+  EXPECT_EQ(ranks, (std::set<int>{0, 1, 2}));
+}
+
+TEST_F(VolumeMpirun, WeightsGiveAProcessMoreOfTheWork) {
+  ASSERT_EQ(mpirun(2, render(folder_ / "a.exr", {"--balance-weights", "3,1", "--report", folder_ / "r.json"})).status,
+            0);
+  const auto report = nlohmann::json::parse(contents(folder_ / "r.json"));
+  const auto& processes = report.at("frames").at(0).at("balance").at("processes");
+  EXPECT_GT(processes.at(0).at("samples").get<double>(), 2 * processes.at(1).at("samples").get<double>());
+}
+
+TEST_F(VolumeMpirun, ResumeMakesOnlyWhatIsMissing) {
+  const auto film = render(folder_ / "f_%d.pfm", {"--orbit", "4", "--resume"});
+  ASSERT_EQ(mpirun(2, film).status, 0);
+  const std::string third = contents(folder_ / "f_2.pfm");
+  std::filesystem::remove(folder_ / "f_2.pfm");
+  const auto untouched = std::filesystem::last_write_time(folder_ / "f_3.pfm");
+  ASSERT_EQ(mpirun(3, film).status, 0);
+  EXPECT_EQ(contents(folder_ / "f_2.pfm"), third);
+  EXPECT_EQ(std::filesystem::last_write_time(folder_ / "f_3.pfm"), untouched);
+}
+
+TEST_F(VolumeMpirun, ShowBalanceDrawsBricksAndTheCostMap) {
+  ASSERT_EQ(mpirun(2, render(folder_ / "a.png", {"--show", "balance", "--brick-size", "8"})).status, 0);
+  ASSERT_EQ(tessera(render(folder_ / "b.png")).status, 0);
+  EXPECT_EQ(folder_.names(), (std::vector<std::string>{"a.cost.png", "a.png", "b.png", "v.nrrd"}));
+  EXPECT_NE(contents(folder_ / "a.png"), contents(folder_ / "b.png"));
+}
+
+TEST_F(VolumeMpirun, FaultsAreOneLineInAllAndLeaveNothing) {
+  const std::vector<std::vector<std::string>> wrong{
+      {"--balance", "fair"}, {"--balance-resolution", "2"}, {"--balance-weights", "1,2"}, {"--balance-weights", "1,x"},
+      {"--show", "me"},      {"--projectors", "1"},         {"--field", "nothing"},       {"--camera", folder_ / "no"},
+      {"--preload", "3"}};
+  for (const auto& words : wrong) {
+    const Outcome outcome = mpirun(3, render(folder_ / "a.png", words));
+    EXPECT_EQ(outcome.status, 2) << words[0] << outcome.err;
+    EXPECT_EQ(own_lines(outcome), 1u) << words[0] << outcome.err;
+  }
+  const Outcome flat = mpirun(2, {"render", folder_.file("x_9x9x9_uint8.raw", "short"), "-o", folder_ / "a.png"});
+  EXPECT_EQ(flat.status, 2);
+  EXPECT_EQ(own_lines(flat), 1u) << flat.err;
+  EXPECT_EQ(folder_.names(), (std::vector<std::string>{"v.nrrd", "x_9x9x9_uint8.raw"}));
+}
+
+}  // namespace
+}  // namespace tessera::apps
