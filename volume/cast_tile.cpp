@@ -142,10 +142,16 @@ HWY_INLINE void cast_rays(const FrameView& frame, const RayAxes& axes, std::uint
   }
 }
 
-/// Two packets of a tile, one a line of eight tiles after the other, that a look casts.
-HWY_INLINE std::uint64_t looked_at(int tile_x, int tile_y) {
-  const int x = (3 * tile_x + 5 * tile_y + 1) % 8, y = (5 * tile_x + 2 * tile_y + 4) % 8;
-  return std::uint64_t{1} << (8 * y + x) | std::uint64_t{1} << (8 * ((y + 4) % 8) + (x + 4) % 8);
+/// The packets of a tile that a look casts: the first `count` of an ordered dither, shifted from tile to tile.
+HWY_INLINE std::uint64_t looked_at(int tile_x, int tile_y, int count) {
+  std::uint64_t packets = 0;
+  for (int p = 0; p < TileRays::packets; ++p) {
+    const int x = (p + 3 * tile_x + 5 * tile_y) % 8, y = (p / 8 + 5 * tile_x + 2 * tile_y) % 8;
+    int order = 0;
+    for (int bit = 0; bit < 3; ++bit) order = order << 2 | ((x ^ y) >> bit & 1) << 1 | (y >> bit & 1);
+    if (order < count) packets |= std::uint64_t{1} << p;
+  }
+  return packets;
 }
 
 void cast_tile_here(const FrameView& frame, int x0, int y0, const PixelRegion& region, TileMemory& memory,
@@ -166,7 +172,7 @@ void cast_tile_here(const FrameView& frame, int x0, int y0, const PixelRegion& r
         y + TileRays::packet_side > region.y0)
       wanted |= std::uint64_t{1} << p;
   }
-  if (frame.tally != nullptr) wanted &= looked_at(x0 / TileRays::side, y0 / TileRays::side);
+  if (frame.tally != nullptr) wanted &= looked_at(x0 / TileRays::side, y0 / TileRays::side, frame.looked_packets);
   const unsigned codes = axis_codes(*frame.rays, x0, y0);
   for (int code = 0; code < 6; ++code) {
     if ((codes >> code & 1) == 0) continue;

@@ -56,7 +56,8 @@ struct FrameView {
   double step = 0;                                    ///< sampled, preintegrated: length in the table's unit; else 0
   const PreintegratedTable* preintegrated = nullptr;  ///< null: sampled
   const ShadingView* shading = nullptr;               ///< null: none
-  WorkTally* tally = nullptr;  ///< not null: a look that counts where work would be, at every 32nd ray
+  WorkTally* tally = nullptr;                         ///< not null: a look that counts where work would be
+  int looked_packets = 0;                             ///< of each tile
   scene::Trace* trace;
 };
 

@@ -235,6 +235,9 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
     frame.piece_tolerance = static_cast<float>(accuracy() / 64);
     frame.largest_color = static_cast<float>(std::max(1e-30, transfer_function.max_color()));
     frame.tally = tally;
+    // A thousand packets or more, whatever the picture's size.
+    const double tiles_in_picture = static_cast<double>(size.width) * size.height / (TileRays::side * TileRays::side);
+    frame.looked_packets = static_cast<int>(std::clamp(1024 / tiles_in_picture, 2.0, 32.0));
     frame.trace = settings.trace;
 
     std::optional<PreintegratedTable> preintegrated;

@@ -103,8 +103,8 @@ class Renderer {
                       const scene::TransferFunction& transfer_function, RenderStatistics* statistics = nullptr,
                       std::optional<PixelRegion> region = std::nullopt);
 
-  /// Casts every 32nd ray of the picture, or of a region of it, and counts where in the volume the work was
-  /// (learned_work.hpp); makes no light. As render() otherwise.
+  /// Casts every 32nd ray of the picture (more of a small one), or of a region of it, and counts where in the volume
+  /// the work was (learned_work.hpp); makes no light. As render() otherwise.
   void look(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
             WorkTally& tally, std::optional<PixelRegion> region = std::nullopt);
 

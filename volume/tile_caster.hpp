@@ -15,7 +15,8 @@ struct TileMemory {
 };
 
 /// Casts the rays of the tile whose first pixel is (x0, y0), multiples of 32, and writes those of its pixels that lie
-/// in `region`; a look (FrameView::tally) casts a few packets and needs no image. Early ends, skipped space and order of sums depend on the frame alone.
+/// in `region`; a look (FrameView::tally) casts a few packets and needs no image. Early ends, skipped space and order
+/// of sums depend on the frame alone.
 void cast_tile(const FrameView& frame, int x0, int y0, const PixelRegion& region, TileMemory& memory,
                scene::Image* image, TileCounts& counts);
 
