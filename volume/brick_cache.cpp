@@ -128,20 +128,25 @@ void BrickCache::set_distances(std::vector<float> distances) {
   for (const std::size_t brick : by_use_) by_distance_.insert({distances_[brick], brick});
 }
 
-void BrickCache::preload(int limit, const std::vector<std::uint8_t>& wanted, scene::Trace* trace) {
+void BrickCache::preload(int limit, const std::vector<std::uint8_t>& wanted, const std::atomic<bool>& stop,
+                         scene::Trace* trace) {
   std::vector<std::pair<float, std::size_t>> missing;
   for (std::size_t brick = 0; brick < distances_.size(); ++brick)
     if (wanted[brick] != 0 && !resident(brick)) missing.emplace_back(distances_[brick], brick);
   const std::size_t count = std::min(missing.size(), static_cast<std::size_t>(limit));
   std::partial_sort(missing.begin(), missing.begin() + static_cast<std::ptrdiff_t>(count), missing.end());
-  for (std::size_t n = 0; n < count; ++n) {
+  for (std::size_t n = 0; n < count && !stop.load(std::memory_order_relaxed); ++n) {
     const auto [distance, brick] = missing[n];
     {
       const std::lock_guard lock(mutex_);
       const bool fits = counts_.bytes + bytes_of(brick) <= budget_;
       if (!fits && (by_distance_.empty() || by_distance_.rbegin()->first <= distance)) return;
     }
-    acquire(brick, trace);
+    try {
+      acquire(brick, trace);
+    } catch (const scene::Error&) {
+      return;
+    }
     release(brick);
   }
 }

@@ -41,8 +41,9 @@ class BrickCache {
   void set_distances(std::vector<float> distances);
 
   /// proximity: loads up to `limit` of the bricks that are `wanted` (by number) and not in memory, the nearest to the
-  /// cone first, as long as they fit without throwing out one that is nearer. Between frames.
-  void preload(int limit, const std::vector<std::uint8_t>& wanted, scene::Trace* trace);
+  /// cone first, as long as they fit without throwing out one that is nearer, and until `stop`. Between frames, on any
+  /// thread; what the source throws is kept for the frame that asks for the brick.
+  void preload(int limit, const std::vector<std::uint8_t>& wanted, const std::atomic<bool>& stop, scene::Trace* trace);
 
   [[nodiscard]] Counts counts() const;
   [[nodiscard]] const BrickLayout& layout() const { return layout_; }

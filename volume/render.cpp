@@ -8,9 +8,12 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <thread>
+#include <utility>
 
 #include "scene/error.hpp"
 #include "volume/cell_ranges.hpp"
@@ -156,11 +159,29 @@ struct Renderer::State {
   void cast(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
             const PixelRegion& wanted, WorkTally* tally, scene::Image* image, Cast& result);
 
+  /// Bricks near the view, while the picture is gathered and written; the next frame ends it.
+  void begin_preload(std::vector<std::uint8_t> wanted) {
+    stop_preload = false;
+    preloading = std::thread([this, wanted = std::move(wanted)] {
+      const scene::TraceScope scope(settings.trace, "prepare");
+      bricks.preload(settings.preload_limit, wanted, stop_preload, settings.trace);
+    });
+  }
+  void end_preload() {
+    if (!preloading.joinable()) return;
+    stop_preload = true;
+    preloading.join();
+  }
+  ~State() { end_preload(); }
+
   const scene::SampleSource& source;
   RenderSettings settings;
   double voxel_side = voxel_side_of(source.geometry()), length_unit = length_unit_of(voxel_side);
   CellRanges ranges;
   BrickCache bricks;
+  BrickCache::Counts counts_before;  ///< as the last frame's statistics ended: loads ahead count for the next one
+  std::atomic<bool> stop_preload = false;
+  std::thread preloading;
 };
 
 Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& settings) {
@@ -288,19 +309,18 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   const RenderSettings& settings = state.settings;
   const scene::TraceScope frame_scope(settings.trace, "frame");
   const PixelRegion wanted = within(size, region);
-  const BrickCache::Counts before = state.bricks.counts();
+  state.end_preload();
+  const BrickCache::Counts before = state.counts_before;
   const bool near_ones = settings.cache == CachePolicy::proximity;
   if (near_ones)
     state.bricks.set_distances(cone_distances(camera, size, wanted, state.source.geometry(), state.bricks.layout()));
   scene::Image image(size);
   Cast cast;
   state.cast(camera, size, transfer_function, wanted, nullptr, &image, cast);
-  if (near_ones && settings.preload_limit > 0) {
-    const scene::TraceScope scope(settings.trace, "prepare");
-    state.bricks.preload(settings.preload_limit, cast.brick_visible, settings.trace);
-  }
+  const BrickCache::Counts after = state.bricks.counts();
+  state.counts_before = after;
+  if (near_ones && settings.preload_limit > 0) state.begin_preload(cast.brick_visible);
   if (statistics != nullptr) {
-    const BrickCache::Counts after = state.bricks.counts();
     RenderStatistics s;
     s.rays = cast.counts.rays, s.voxels_visited = cast.counts.voxels_visited, s.samples = cast.counts.samples;
     s.bricks_total = cast.brick_visible.size();

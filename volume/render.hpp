@@ -54,7 +54,7 @@ struct RenderSettings {
   EdgeBricks edge_bricks = EdgeBricks::variable;
   std::uint64_t memory_bytes = 4ull << 30;  ///< budget of the bricks in memory
   CachePolicy cache = CachePolicy::lru;
-  int preload_limit = 0;  ///< proximity: bricks near the frustum that are loaded ahead after a frame, at most
+  int preload_limit = 0;  ///< proximity: bricks near the frustum loaded ahead between frames, at most; asynchronously
   scene::Trace* trace = nullptr;
 };
 

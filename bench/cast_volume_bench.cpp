@@ -1,0 +1,108 @@
+// The ray caster of regular grids: time of a 1024x1024 picture of 256^3 samples in memory, and CPU nanoseconds a voxel
+// visited, of all threads together; for each method, asked accuracy and kind of sample, shaded or not, and with an
+// opaque and a sparse transfer function, where early ends and skipped space show.
+//
+//   cast_volume_bench [--benchmark_filter=auto]      TESSERA_BENCH_VOLUME=n for n^3 samples, TESSERA_BENCH_THREADS=t
+//
+// View and transfer function are those of all speed figures (bench/camera.txt, bench/transfer_function.txt).
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <ctime>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "datasets/volumes.hpp"
+#include "volume/render.hpp"
+
+namespace {
+
+using namespace tessera;
+
+double cpu_seconds() {
+  timespec now;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+int number(const char* name, int otherwise) {
+  const char* const text = std::getenv(name);
+  return text != nullptr ? std::atoi(text) : otherwise;
+}
+
+std::unique_ptr<scene::SampleSource> ripples(int bits) {
+  const int n = number("TESSERA_BENCH_VOLUME", 256);
+  const auto made = datasets::generate_volume("ripples", {{"n", n}, {"bits", bits}});
+  const auto count = static_cast<std::size_t>(made->geometry().all_samples().count());
+  const auto kept = [&](auto kind) -> std::unique_ptr<scene::SampleSource> {
+    std::vector<decltype(kind)> samples(count);
+    made->read(made->geometry().all_samples(), std::span(samples));
+    return scene::MemorySource::of(made->grid(), std::move(samples));
+  };
+  return bits == 8 ? kept(std::uint8_t{}) : kept(float{});
+}
+
+/// bench/transfer_function.txt, or one that is opaque or clear but for its ends.
+scene::TransferFunction function(const std::string& kind, double scale) {
+  std::vector<scene::Knot> knots = {{0.0, {0.0, 0.0, 0.3}, 0.0}, {0.3, {0.1, 0.3, 0.9}, 0.4},
+                                    {0.5, {0.2, 0.9, 0.3}, 0.0}, {0.7, {0.9, 0.8, 0.1}, 3.0},
+                                    {0.8, {1.0, 0.3, 0.0}, 0.2}, {1.0, {1.0, 1.0, 1.0}, 8.0}};
+  if (kind == "opaque")
+    for (scene::Knot& knot : knots) knot.extinction *= 30;
+  if (kind == "sparse") knots = {{0.85, {1, 0.6, 0.2}, 0}, {0.95, {1, 1, 1}, 10}, {1.0, {1, 1, 1}, 10}};
+  for (scene::Knot& knot : knots) knot.value *= scale;
+  return scene::TransferFunction(knots);
+}
+
+void cast(benchmark::State& state, volume::RenderSettings settings, int bits, const std::string& kind) {
+  static std::map<int, std::unique_ptr<scene::SampleSource>> sources;
+  auto& source = sources[bits];
+  if (!source) source = ripples(bits);
+  settings.threads = number("TESSERA_BENCH_THREADS", 2);
+  volume::Renderer renderer(*source, settings);
+  scene::Camera camera;
+  camera.position = {3.1, 2.3, 4.2};
+  camera.parallel_scale = 1.8;
+  const scene::TransferFunction f = function(kind, bits == 8 ? 255 : 1);
+  volume::RenderStatistics statistics;
+  renderer.render(camera, {1024, 1024}, f);
+  const double before = cpu_seconds();
+  for (auto _ : state) benchmark::DoNotOptimize(renderer.render(camera, {1024, 1024}, f, &statistics));
+  const double each = (cpu_seconds() - before) / static_cast<double>(state.iterations());
+  state.counters["cpu_ms"] = 1e3 * each;
+  state.counters["ns_voxel"] = 1e9 * each / static_cast<double>(statistics.voxels_visited);
+  state.counters["pieces_voxel"] =
+      static_cast<double>(statistics.samples) / static_cast<double>(statistics.voxels_visited);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  const auto add = [](const std::string& name, const volume::RenderSettings& settings, int bits = 32,
+                      const char* kind = "usual") {
+    benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) { cast(state, settings, bits, kind); })
+        ->Unit(benchmark::kMillisecond)
+        ->UseRealTime();
+  };
+  volume::RenderSettings automatic, exact, sampled, shaded;
+  exact.method = volume::Method::exact;
+  sampled.method = volume::Method::sampled;
+  shaded.shading.emplace();
+  for (const double accuracy : {1e-5, 1e-4, 1e-3}) {
+    automatic.accuracy = accuracy;
+    add(fmt::format("auto/{:g}", accuracy), automatic);
+  }
+  automatic.accuracy = 1e-4;
+  add("auto/0.0001/8bit", automatic, 8);
+  add("auto/0.0001/opaque", automatic, 32, "opaque");
+  add("auto/0.0001/sparse", automatic, 32, "sparse");
+  add("auto/0.0001/shaded", shaded);
+  add("exact", exact);
+  add("sampled/0.5", sampled);
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
+}
