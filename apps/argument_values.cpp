@@ -63,7 +63,7 @@ std::uint64_t parse_bytes(const std::string& option, const std::string& text) {
 }
 
 scene::Integrator parse_integrator(const std::string& option, const std::string& text, double accuracy) {
-  constexpr std::string_view prefix = "sampled:";
+  constexpr std::string_view prefix = "sampled:", table_prefix = "preintegrated:";
   scene::Integrator integrator;
   integrator.accuracy = accuracy;
   if (text == "exact") {
@@ -76,10 +76,18 @@ scene::Integrator parse_integrator(const std::string& option, const std::string&
       throw wrong(option, text, "sampled:N with N from 1 to 4096, like sampled:8");
     integrator.kind = scene::IntegratorKind::sampled;
     integrator.samples = *samples;
-  } else if (text == "preintegrated" || text == "partial") {
-    throw scene::bad_input(fmt::format("{}: '{}' is not available yet; use exact, sampled:N or auto", option, text));
+  } else if (text == "partial") {
+    integrator.kind = scene::IntegratorKind::partial;
+  } else if (text == "preintegrated" || std::string_view(text).starts_with(table_prefix)) {
+    integrator.kind = scene::IntegratorKind::preintegrated;
+    if (text != "preintegrated") {
+      const auto size = number<int>(std::string_view(text).substr(table_prefix.size()));
+      if (!size || *size < 8 || *size > 512)
+        throw wrong(option, text, "preintegrated:N with N from 8 to 512, like preintegrated:128");
+      integrator.table_size = *size;
+    }
   } else {
-    throw wrong(option, text, "an integrator; use exact, sampled:N or auto");
+    throw wrong(option, text, "an integrator; use exact, sampled:N, preintegrated[:N], partial or auto");
   }
   return integrator;
 }

@@ -18,7 +18,8 @@ scene::ImageSize parse_size(const std::string& option, const std::string& text);
 /// At least 1M.
 std::uint64_t parse_bytes(const std::string& option, const std::string& text);
 
-/// `exact`, `sampled:N` with N from 1 to 4096, or `auto`; `accuracy` goes into the result.
+/// `exact`, `sampled:N` with N from 1 to 4096, `preintegrated` or `preintegrated:N` with N from 8 to 512, `partial`, or
+/// `auto`; `accuracy` goes into the result.
 scene::Integrator parse_integrator(const std::string& option, const std::string& text, double accuracy);
 
 /// `R,G,B` as linear light, each >= 0, or a name: black, white, gray (linear 0.2158, what sRGB shows half way), red,

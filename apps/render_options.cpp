@@ -126,7 +126,7 @@ void add_render_options(CLI::App& command, RenderWords& words) {
       ->type_name("orthographic|perspective");
 
   command.add_option("--integrator", words.integrator, "how a segment becomes colour (default: auto)")
-      ->type_name("exact|sampled:N|auto; of volumes exact|sampled|preintegrated|auto");
+      ->type_name("auto|exact|sampled:N|preintegrated[:N]|partial; of volumes auto|exact|sampled|preintegrated");
   command.add_option("--accuracy", words.accuracy, "auto: largest error in linear RGBA (default 1e-4)")
       ->type_name("EPS");
   command

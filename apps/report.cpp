@@ -25,6 +25,10 @@ std::string method_line(const scene::Integrator& integrator) {
       return "exact";
     case scene::IntegratorKind::sampled:
       return fmt::format("sampled:{}", integrator.samples);
+    case scene::IntegratorKind::preintegrated:
+      return fmt::format("preintegrated:{}", integrator.table_size);
+    case scene::IntegratorKind::partial:
+      return "partial";
     case scene::IntegratorKind::automatic:
       break;
   }

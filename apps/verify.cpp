@@ -18,6 +18,8 @@ std::optional<double> promised_error(const frame::RenderSettings& settings) {
     case scene::IntegratorKind::automatic:
       return integrator.accuracy;
     case scene::IntegratorKind::sampled:
+    case scene::IntegratorKind::preintegrated:
+    case scene::IntegratorKind::partial:
       break;
   }
   return std::nullopt;

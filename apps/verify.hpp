@@ -12,8 +12,8 @@
 
 namespace tessera::apps {
 
-/// The largest error that is promised, in linear RGBA: 2e-5 for exact, what was asked for automatic, none for sampled
-/// or with the scanline rasterizer, whose error is only reported.
+/// The largest error that is promised, in linear RGBA: 2e-5 for exact, what was asked for automatic, none for sampled,
+/// preintegrated and partial or with the scanline rasterizer, whose error is only reported.
 std::optional<double> promised_error(const frame::RenderSettings& settings);
 
 struct Verification {

@@ -20,6 +20,17 @@ SegmentIntegrator::SegmentIntegrator(const scene::TransferFunction& function, co
             fmt::format("--integrator sampled:{}: the number of samples must be at least 1", integrator.samples));
       samples_ = integrator.samples;
       break;
+    case scene::IntegratorKind::preintegrated:
+      if (integrator.table_size < 8 || integrator.table_size > 512)
+        throw scene::bad_input(
+            fmt::format("--integrator preintegrated:{}: the table's size must be 8 to 512", integrator.table_size));
+      segments_ = std::make_shared<SegmentTable>(function, emission, integrator.table_size);
+      break;
+    case scene::IntegratorKind::partial:
+      if (emission == scene::Emission::independent)
+        throw scene::bad_input("--integrator partial: knows emission by absorption only; use exact or auto");
+      psi_ = std::make_shared<PsiTable>();
+      break;
     case scene::IntegratorKind::automatic:
       if (!(integrator.accuracy > 0))
         throw scene::bad_input(fmt::format("--accuracy {}: it must be positive", integrator.accuracy));
@@ -33,6 +44,10 @@ void SegmentIntegrator::integrate(SegmentBatch& batch) const {
   const scene::TraceScope timing(trace_, "integrate");
   if (samples_ > 0)
     integrate_sampled(table_, emission_, samples_, batch);
+  else if (segments_)
+    integrate_preintegrated(*segments_, emission_, batch);
+  else if (psi_)
+    integrate_partial(table_, *psi_, batch);
   else
     integrate_exact(table_, emission_, batch);
 }
@@ -55,7 +70,11 @@ std::optional<double> SegmentIntegrator::first_visible(double front, double back
   }
 }
 
-std::string SegmentIntegrator::name() const { return samples_ > 0 ? fmt::format("sampled:{}", samples_) : "exact"; }
+std::string SegmentIntegrator::name() const {
+  if (samples_ > 0) return fmt::format("sampled:{}", samples_);
+  if (segments_) return fmt::format("preintegrated:{}", segments_->size);
+  return psi_ ? "partial" : "exact";
+}
 
 double opacity_weight(double max_color, double longest_ray, scene::Emission emission) {
   return std::max(1.0, emission == scene::Emission::absorption ? max_color : max_color * longest_ray);

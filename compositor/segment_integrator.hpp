@@ -1,10 +1,13 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "compositor/piecewise_table.hpp"
+#include "compositor/psi_table.hpp"
 #include "compositor/segment_batch.hpp"
+#include "compositor/segment_table.hpp"
 #include "scene/optical_model.hpp"
 #include "scene/trace.hpp"
 #include "scene/transfer_function.hpp"
@@ -15,8 +18,9 @@ namespace tessera::compositor {
 /// Volume Rendering", 1995), for a transfer function that is piecewise linear in the scalar.
 class SegmentIntegrator {
  public:
-  /// Throws Error(bad_input) if the integrator's numbers are out of range. `trace`, if any, gets an `integrate` span
-  /// a batch.
+  /// Throws Error(bad_input) if the integrator's numbers are out of range, or for `partial` with independent emission,
+  /// which its table knows nothing of. Tables are made here and shared by copies. `trace`, if any, gets an `integrate`
+  /// span a batch.
   SegmentIntegrator(const scene::TransferFunction& function, const scene::Integrator& integrator,
                     scene::Emission emission, scene::Trace* trace = nullptr);
 
@@ -26,7 +30,7 @@ class SegmentIntegrator {
   /// Where along a segment, 0 at its front to 1 at its back, the extinction first becomes positive; none if nowhere.
   [[nodiscard]] std::optional<double> first_visible(double scalar_front, double scalar_back) const;
 
-  /// The form that runs: "exact" or "sampled:16".
+  /// The form that runs: "exact", "sampled:16", "preintegrated:128" or "partial".
   [[nodiscard]] std::string name() const;
 
   /// What a ray may leave out behind nearly opaque matter: largest error in linear RGBA by early termination.
@@ -36,7 +40,10 @@ class SegmentIntegrator {
   PiecewiseTable table_;
   scene::Emission emission_;
   scene::Trace* trace_;
-  int samples_ = 0;  ///< 0: exact
+  int samples_ = 0;  ///< 0: not sampled
+  // At most one of them; none and no samples: exact.
+  std::shared_ptr<const SegmentTable> segments_;
+  std::shared_ptr<const PsiTable> psi_;
   double termination_error_;
 };
 
@@ -57,5 +64,13 @@ void integrate_exact(const PiecewiseTable& table, scene::Emission emission, Segm
 /// `sampled:Ns`: Ns samples at the middles of Ns equal steps of length / Ns, each step homogeneous (Juliachs et al.
 /// 2007, 4.3, where the printed dx = 1 / Ns is read as l / Ns, as its own remark on null elements needs).
 void integrate_sampled(const PiecewiseTable& table, scene::Emission emission, int samples, SegmentBatch& batch);
+
+/// `preintegrated:N`: one lookup a segment in a table of the transfer function (segment_table.hpp).
+void integrate_preintegrated(const SegmentTable& table, scene::Emission emission, SegmentBatch& batch);
+
+/// `partial` (Moreland and Angel 2004): cut at the knots like `exact`, then M, there Psi, from a table (psi_table.hpp)
+/// that no transfer function changes. Exact where the colour does not change; else wrong by Psi's error times the
+/// change, which does not shrink with the segment: it adds up over many thin ones. Emission by absorption only.
+void integrate_partial(const PiecewiseTable& table, const PsiTable& psi, SegmentBatch& batch);
 
 }  // namespace tessera::compositor

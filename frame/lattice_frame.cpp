@@ -35,8 +35,9 @@ std::optional<projection::Lattice> lattice_of(const projection::PixelSpace& spac
                                               const std::array<double, 2>& scalar_range,
                                               const scene::TransferFunction& function, const RenderSettings& settings) {
   using projection::Lattice;
-  if (settings.rasterizer != Rasterizer::planes || settings.integrator.kind == scene::IntegratorKind::sampled ||
-      box.empty() || !projection::lattice_available())
+  const bool exact = settings.integrator.kind == scene::IntegratorKind::exact ||
+                     settings.integrator.kind == scene::IntegratorKind::automatic;
+  if (settings.rasterizer != Rasterizer::planes || !exact || box.empty() || !projection::lattice_available())
     return std::nullopt;
   const auto [near, far] = depth_range(space, box);
   if (!(near <= far) || !std::isfinite(far - near)) return std::nullopt;

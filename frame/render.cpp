@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -33,10 +34,21 @@ struct Renderer::State {
   State(const scene::TetMesh& mesh, const RenderSettings& s)
       : settings(s), projector(mesh, s), box(scene::bounds(mesh)), scalar_range(scene::scalar_range(mesh)) {}
 
+  /// The integrator of this function. Its tables are kept for as long as the function stays.
+  const compositor::SegmentIntegrator& integrator(const scene::TransferFunction& f) {
+    if (!kept || !std::ranges::equal(f.knots(), function.knots())) {
+      kept.emplace(f, settings.integrator, settings.emission, settings.trace);
+      function = f;
+    }
+    return *kept;
+  }
+
   RenderSettings settings;
   FrameProjector projector;
   scene::Box box;
   std::array<double, 2> scalar_range;
+  scene::TransferFunction function;
+  std::optional<compositor::SegmentIntegrator> kept;
 };
 
 Renderer::Renderer(const scene::TetMesh& mesh, const RenderSettings& settings)
@@ -49,8 +61,7 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
                               scene::DeepImage* deep) {
   const RenderSettings& settings = state_->settings;
   const projection::PixelSpace space(camera, size);
-  const compositor::SegmentIntegrator integrator(transfer_function, settings.integrator, settings.emission,
-                                                 settings.trace);
+  const compositor::SegmentIntegrator& integrator = state_->integrator(transfer_function);
   scene::Image image(size);
   FrameProjector::Task task;
   task.space = &space;

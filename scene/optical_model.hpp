@@ -10,15 +10,18 @@ enum class Emission {
 
 /// How a ray segment becomes colour and opacity (DESIGN: Integrals).
 enum class IntegratorKind {
-  exact,     ///< split at the transfer function's knots, error near rounding
-  sampled,   ///< `samples` midpoint samples a segment, at step length / samples
-  automatic  ///< the cheapest that meets `accuracy`
+  exact,          ///< split at the transfer function's knots, error near rounding
+  sampled,        ///< `samples` midpoint samples a segment, at step length / samples
+  preintegrated,  ///< one lookup a segment in a table of `table_size` scalars a side
+  partial,        ///< split at the knots, attenuation of a linear piece from a table (Moreland, Angel 2004)
+  automatic       ///< the cheapest that meets `accuracy`
 };
 
 struct Integrator {
   IntegratorKind kind = IntegratorKind::automatic;
   int samples = 0;         ///< sampled only, >= 1
   double accuracy = 1e-4;  ///< automatic only: largest error in linear RGBA
+  int table_size = 128;    ///< preintegrated only, 8 to 512
 };
 
 }  // namespace tessera::scene

@@ -189,6 +189,110 @@ TEST(SegmentIntegrator, SampledConvergesToExactWithTheSquareOfTheStep) {
   EXPECT_NEAR(fine.r, integrated(f, {s}, Emission::independent)[0].r, 1e-8);
 }
 
+TEST(SegmentIntegrator, TablesAreExactWhereTheColourIsConstantAndExtinctionLinear) {
+  const TransferFunction f({{-1, {0.2, 0.5, 1}, 0.5}, {3, {0.2, 0.5, 1}, 40}});
+  std::mt19937 random(41);
+  std::uniform_real_distribution<double> scalar(-1, 3), power(-6, 3);
+  std::vector<Segment> segments;
+  for (int i = 0; i < 200; ++i) segments.push_back({std::pow(10, power(random)), scalar(random), scalar(random)});
+  const auto exact = integrated(f, segments, Emission::absorption);
+  for (const Integrator& integrator :
+       {Integrator{.kind = IntegratorKind::preintegrated, .table_size = 16}, Integrator{IntegratorKind::partial}}) {
+    const auto light = integrated(f, segments, Emission::absorption, integrator);
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      // The table's floats: 6e-8 of the extinction, times what is left of the light at that depth (at most 1 / e).
+      EXPECT_NEAR(light[i].r, exact[i].r, 1e-7);
+      EXPECT_NEAR(light[i].b, exact[i].b, 1e-7);
+      EXPECT_NEAR(light[i].transmittance, exact[i].transmittance, 1e-7);
+    }
+  }
+}
+
+/// The largest error over random segments against the exact integral.
+double table_error(const TransferFunction& f, const std::vector<Segment>& segments, Emission emission,
+                   const Integrator& integrator) {
+  const auto exact = integrated(f, segments, emission), light = integrated(f, segments, emission, integrator);
+  double error = 0;
+  for (std::size_t i = 0; i < segments.size(); ++i)
+    error = std::max({error, std::abs(light[i].r - exact[i].r), std::abs(light[i].g - exact[i].g),
+                      std::abs(light[i].b - exact[i].b), std::abs(light[i].transmittance - exact[i].transmittance)});
+  return error;
+}
+
+TEST(SegmentIntegrator, PreintegratedConvergesWithTheTablesSize) {
+  std::mt19937 random(43);
+  std::uniform_real_distribution<double> scalar(0, 1), length(0, 2);
+  std::vector<Segment> segments;
+  for (int i = 0; i < 2000; ++i) segments.push_back({length(random), scalar(random), scalar(random)});
+  // Without kinks inside, with the square of the size; with them, at least linearly.
+  const TransferFunction smooth({{0, {0, 0.3, 1}, 1}, {1, {1, 0.6, 0}, 5}});
+  const TransferFunction kinked = random_function(random, 7, 5, false);
+  for (const Emission emission : {Emission::absorption, Emission::independent}) {
+    const auto error = [&](const TransferFunction& f, int size) {
+      return table_error(f, segments, emission, {.kind = IntegratorKind::preintegrated, .table_size = size});
+    };
+    const double coarse = error(smooth, 16), fine = error(smooth, 64);
+    EXPECT_GT(coarse / fine, 10);  // 16 but for where the largest error lies between entries
+    EXPECT_LT(fine, emission == Emission::absorption ? 1e-3 : 2e-3);  // light of up to 1, or of the length
+    const double coarse_kinked = error(kinked, 16), fine_kinked = error(kinked, 64);
+    EXPECT_GT(coarse_kinked / fine_kinked, 2.5);
+    EXPECT_LT(fine_kinked, 2e-2);
+  }
+}
+
+TEST(SegmentIntegrator, PreintegratedCutsOffWhatLiesOutsideTheKnots) {
+  const TransferFunction f({{0, {0.1, 0.2, 0.9}, 2}, {1, {0.9, 0.5, 0.1}, 2}});
+  const TransferFunction step({{0.5, {1, 0, 0}, 3}, {0.5, {0, 1, 0}, 1}}), one({{0.5, {1, 0, 0}, 3}});
+  const std::vector<Segment> segments{{1, -5, 6},  {1, 6, -5},    {2, -3, -1},    {0.5, 4, 4},    {0.7, -2, -2},
+                                      {1, 0, 1},   {1, -1, 0},    {1, 1, 9},      {3, 0.5, 0.5},  {3, 0.2, 0.5},
+                                      {1, 0.5, 2}, {1, 0.8, 0.5}, {1, 0.5, -0.5}, {0, 0.3, 0.31}, {1, 2, 7}};
+  const Integrator fine{.kind = IntegratorKind::preintegrated, .table_size = 128};
+  // Between the knots the error is the table's, from the colour's change along w (size / 4 steps, second order).
+  EXPECT_LT(table_error(f, segments, Emission::absorption, fine), 4e-4);
+  // A step alone leaves nothing to the table.
+  EXPECT_LT(table_error(step, segments, Emission::absorption, fine), 1e-9);
+  EXPECT_LT(table_error(one, segments, Emission::independent, fine), 1e-9);
+}
+
+TEST(SegmentIntegrator, PartialErrsByItsTableOnly) {
+  std::mt19937 random(47);
+  std::uniform_real_distribution<double> scalar(0, 1), power(-4, 1);
+  for (int trial = 0; trial < 5; ++trial) {
+    const TransferFunction f = random_function(random, 9, 5, true);
+    std::vector<Segment> segments;
+    for (int i = 0; i < 500; ++i) segments.push_back({std::pow(10, power(random)), scalar(random), scalar(random)});
+    // Ten pieces at most, each off by 1e-6 of a change of colour of at most 1, attenuated.
+    EXPECT_LT(table_error(f, segments, Emission::absorption, {IntegratorKind::partial}), 1e-5);
+  }
+}
+
+TEST(PsiTable, ErrsAsItsHeaderSays) {
+  // Light of a white segment whose extinction is its scalar, beside a blue one's: red alone comes from 1 - M.
+  std::mt19937 random(53);
+  for (const auto& [deepest, bound] : {std::pair{10.0, 1e-5}, {1e3, 2e-2}, {1e6, 2e-2}}) {
+    const TransferFunction f({{0, {1, 0, 0}, 0}, {deepest, {0, 0, 1}, deepest}});
+    std::uniform_real_distribution<double> scalar(0, deepest);
+    std::vector<Segment> segments;
+    for (int i = 0; i < 3000; ++i) segments.push_back({1, scalar(random), scalar(random)});
+    EXPECT_LT(table_error(f, segments, Emission::absorption, {IntegratorKind::partial}), bound);
+  }
+}
+
+TEST(SegmentIntegrator, TablesStayFiniteInExtremes) {
+  for (const double extinction : {0.0, 1e-12, 1e12}) {
+    const TransferFunction f({{0, {0, 0, 1}, 0}, {0.3, {1, 1, 1}, extinction}, {1, {1, 0, 0}, 0}});
+    for (const Integrator& integrator :
+         {Integrator{.kind = IntegratorKind::preintegrated, .table_size = 32}, Integrator{IntegratorKind::partial}})
+      for (const Segment& s : {Segment{1, 0, 1}, Segment{1e6, 1, 0}, Segment{1e-12, 0.3, 0.3}, Segment{1, 0, 0}}) {
+        const Light light = integrated(f, {s}, Emission::absorption, integrator)[0];
+        EXPECT_GE(light.r, 0);
+        EXPECT_LE(light.r, 1 + 1e-6);
+        EXPECT_GE(light.transmittance, 0);
+        EXPECT_LE(light.transmittance, 1);
+      }
+  }
+}
+
 TEST(SegmentIntegrator, FindsWhereExtinctionBegins) {
   const TransferFunction f({{0, {1, 1, 1}, 0}, {0.4, {1, 1, 1}, 0}, {0.5, {1, 1, 1}, 2}, {0.8, {1, 1, 1}, 0}});
   const SegmentIntegrator integrator(f, {IntegratorKind::exact, 0, 0}, Emission::absorption);
@@ -203,6 +307,9 @@ TEST(SegmentIntegrator, RefusesNumbersOutOfRange) {
   const TransferFunction f({{0, {1, 1, 1}, 1}});
   EXPECT_THROW(SegmentIntegrator(f, {IntegratorKind::sampled, 0, 0}, Emission::absorption), scene::Error);
   EXPECT_THROW(SegmentIntegrator(f, {IntegratorKind::automatic, 0, -1}, Emission::absorption), scene::Error);
+  EXPECT_THROW(SegmentIntegrator(f, {.kind = IntegratorKind::preintegrated, .table_size = 7}, Emission::absorption),
+               scene::Error);
+  EXPECT_THROW(SegmentIntegrator(f, {IntegratorKind::partial}, Emission::independent), scene::Error);
 }
 
 }  // namespace

@@ -172,6 +172,32 @@ TEST(Distributed, TuplesOfTheScanlineRasterizerGiveItsPictureOfASingleProcess) {
   EXPECT_THROW(render(slices(mesh, 2), {2, 2, 2}, settings, {{oblique(), size}}, six_knots()), scene::Error);
 }
 
+TEST(Distributed, TabledIntegratorsGiveThePictureOfASingleProcess) {
+  const scene::TetMesh mesh = datasets::cube(6, 0.2);
+  const ImageSize size{60, 50};
+  const Image exact_picture = Renderer(mesh, exact()).render(oblique(), size, six_knots());
+  for (const auto kind : {scene::IntegratorKind::preintegrated, scene::IntegratorKind::partial}) {
+    DistributedSettings settings;
+    settings.render.integrator = {.kind = kind, .table_size = 64};
+    Renderer alone(mesh, settings.render);
+    const Image expected = alone.render(oblique(), size, six_knots());
+    EXPECT_TRUE(same_bits(alone.render(oblique(), size, six_knots()), expected));  // the kept table
+    // Entries are 1 / 63 of the range apart, beside ramps a tenth of it wide: near a kink an eighth of 1 / 6 of its
+    // rise.
+    EXPECT_LT(difference(expected, exact_picture), 2e-2);
+    EXPECT_GT(difference(expected, exact_picture), 0);
+    for (const Exchange exchange : {Exchange::segments, Exchange::runs}) {
+      settings.exchange = exchange;
+      const auto frames = render(datasets::parts(mesh, 3, datasets::Partition::random_blobs, 1), {5, 3, 2}, settings,
+                                 {{oblique(), size}}, six_knots());
+      if (exchange == Exchange::segments)
+        EXPECT_TRUE(same_bits(frames.front().image, expected));
+      else
+        EXPECT_LT(difference(frames.front().image, expected), 2e-6);  // runs are rounded to float
+    }
+  }
+}
+
 TEST(Distributed, IsWithinTheReferencesBound) {
   const scene::TetMesh mesh = datasets::cube(10, 0.2);
   const reference::Reference reference(mesh, oblique(), {80, 60}, six_knots());
