@@ -6,6 +6,7 @@
 
 #include "apps/mesh_input.hpp"
 #include "apps/report.hpp"
+#include "scene/mesh_check.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -35,17 +36,81 @@ void print_text(const std::filesystem::path& input, const MeshSummary& file, con
   for (const auto& note : file.notes) fmt::print("note      {}\n", note);
 }
 
+void print_finding(const char* name, const scene::MeshCheck::Finding& finding, const std::string& more = "") {
+  fmt::print("  {:<21} {}{}\n", name, finding.count, more);
+  for (const auto& place : finding.places)
+    fmt::print("    {}{} at ({:.9g} {:.9g} {:.9g}){}\n", place.cell,
+               place.other != place.cell ? fmt::format(" and {}", place.other) : "", place.at.x, place.at.y, place.at.z,
+               place.value > 0 ? fmt::format(", {:.3g}", place.value) : "");
+}
+
+void print_check(const scene::MeshCheck& check) {
+  fmt::print("check     {} tets, {} points: {}\n", check.tets, check.points,
+             check.clean() ? "every ray meets each place once"
+                           : "cells overlap, fold or do not match; pictures are wrong where cells overlap");
+  print_finding("overlapping pairs", check.overlaps,
+                fmt::format("{}, {} tets", check.more_overlaps ? " or more" : "", check.overlapping_cells));
+  print_finding("folded tets", check.inverted);
+  print_finding("non-conforming faces", check.non_conforming_faces);
+  print_finding("flat tets", check.flat);
+  print_finding("slivers above 100:1", check.slivers,
+                fmt::format(", {} above 1e4, {} above 1e6, worst {:.3g}", check.slivers_1e4, check.slivers_1e6,
+                            check.worst_aspect));
+  print_finding("duplicate points", check.duplicate_points);
+  fmt::print("  {:<21} {} right-handed, {} left-handed\n", "orientation", check.right_handed, check.left_handed);
+}
+
+nlohmann::ordered_json finding_json(const scene::MeshCheck::Finding& finding) {
+  nlohmann::ordered_json places = nlohmann::ordered_json::array();
+  for (const auto& place : finding.places) {
+    nlohmann::ordered_json json = {{"id", place.cell}};
+    if (place.other != place.cell) json["other"] = place.other;
+    json["at"] = {place.at.x, place.at.y, place.at.z};
+    if (place.value > 0) json["value"] = place.value;
+    places.push_back(json);
+  }
+  return {{"count", finding.count}, {"places", places}};
+}
+
+nlohmann::ordered_json check_json(const scene::MeshCheck& check) {
+  nlohmann::ordered_json json = {{"tets", check.tets}, {"points", check.points}, {"clean", check.clean()}};
+  json["overlaps"] = finding_json(check.overlaps);
+  json["overlaps"]["cells"] = check.overlapping_cells;
+  json["overlaps"]["more"] = check.more_overlaps;
+  json["folded"] = finding_json(check.inverted);
+  json["non_conforming_faces"] = finding_json(check.non_conforming_faces);
+  json["flat"] = finding_json(check.flat);
+  json["slivers"] = finding_json(check.slivers);
+  json["slivers"]["above_1e4"] = check.slivers_1e4;
+  json["slivers"]["above_1e6"] = check.slivers_1e6;
+  json["slivers"]["worst_aspect"] = check.worst_aspect;
+  json["duplicate_points"] = finding_json(check.duplicate_points);
+  json["right_handed"] = check.right_handed;
+  json["left_handed"] = check.left_handed;
+  return json;
+}
+
 }  // namespace
 
-void info(const std::filesystem::path& input, const io::MeshOptions& options, bool as_json) {
-  const auto file = summary_of(read_input(input, options));
+void info(const std::filesystem::path& input, const io::MeshOptions& options, bool as_json, bool check) {
+  std::optional<scene::MeshCheck> checked;
+  const auto file = [&] {
+    const io::MeshFile read = read_input(input, options);
+    if (check) checked = scene::check_mesh(read.mesh);
+    return summary_of(read);
+  }();
   const auto loaded = transfer_function_of(file.facts, RenderOptions{});
-  if (!as_json) return print_text(input, file, loaded);
+  if (!as_json) {
+    print_text(input, file, loaded);
+    if (checked) print_check(*checked);
+    return;
+  }
 
   auto json = mesh_json(input, file);
   const scene::ImageSize size;
   json["renders"] = {{"transfer_function", transfer_function_json(loaded)},
                      {"view", view_json(scene::frame_box(file.facts.box, size), size)}};
+  if (checked) json["check"] = check_json(*checked);
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 

@@ -65,6 +65,8 @@ ExitCode run(int argc, char** argv, Job& job) {
   auto* info_command = app.add_subcommand("info", "Say what a mesh or volume holds and how it would be rendered");
   add_mesh_options(*info_command, words);
   info_command->add_flag("--json", as_json, "for machines");
+  bool check = false;
+  info_command->add_flag("--check", check, "meshes: overlapping cells, folds, unmatched faces, slivers, duplicates");
 
   auto* convert_command = app.add_subcommand("convert", "Write a mesh as tetrahedra, or a volume, with one scalar");
   add_mesh_options(*convert_command, words);
@@ -121,10 +123,12 @@ ExitCode run(int argc, char** argv, Job& job) {
   if (*render_command) return render(render_options(words), transport);
   if (!job.is_first()) return ExitCode::complete;  // the other commands are for one process
   if (*info_command) {
+    if (check && is_volume_input(words))
+      throw scene::bad_input("--check: is for meshes, and the input is a volume; leave it out");
     if (is_volume_input(words))
       volume_info(words.input, volume_options(words), as_json);
     else
-      info(words.input, mesh_options(words), as_json);
+      info(words.input, mesh_options(words), as_json, check);
   }
   if (*convert_command && is_volume_input(words) && !to_mesh(words.input, mesh_output))
     convert_volume(words.input, mesh_output, volume_options(words), parse_count("--block", block, 8, 1024),
