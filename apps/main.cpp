@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "apps/argument_values.hpp"
+#include "apps/chart_command.hpp"
 #include "apps/convert_command.hpp"
 #include "apps/generate_command.hpp"
 #include "apps/info_command.hpp"
@@ -95,6 +96,10 @@ ExitCode run(int argc, char** argv, Job& job) {
   generate_command->add_flag("--quiet", words.quiet, "nothing on stderr but errors");
   generate_command->footer(generator_help);
 
+  auto* chart_command = app.add_subcommand("chart", "Chart time against error of every method on this data and view");
+  ChartWords chart_words;
+  add_chart_options(*chart_command, words, chart_words);
+
   auto* timing_command = app.add_subcommand("timing", "Say where the time of traced runs went");
   std::vector<std::string> traces;
   std::string csv, figure;
@@ -106,7 +111,7 @@ ExitCode run(int argc, char** argv, Job& job) {
   if (argc > 1 && argv[1][0] != '-' &&
       app.get_subcommands([&](const CLI::App* command) { return command->get_name() == argv[1]; }).empty())
     throw scene::bad_input(
-        fmt::format("arguments: '{}' is no command; use render, info, convert, generate or timing", argv[1]));
+        fmt::format("arguments: '{}' is no command; use render, info, convert, generate, chart or timing", argv[1]));
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version
@@ -136,6 +141,7 @@ ExitCode run(int argc, char** argv, Job& job) {
   else if (*convert_command)
     convert(words.input, mesh_output, mesh_options(words), parse_count("--subdivide", subdivide, 0, 8),
             convert_pieces(pieces, pieces_partition), words.quiet);
+  if (*chart_command) chart(words, chart_words);
   if (*timing_command) timing({traces.begin(), traces.end()}, csv, figure);
   if (*generate_command) generate(kind, mesh_output, parameters, words.quiet);
   return ExitCode::complete;

@@ -1,21 +1,16 @@
 #include "apps/timing_figure.hpp"
 
-#include <cairo-svg.h>
-#include <cairo.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "apps/timing_text.hpp"
-#include "io/atomic_file.hpp"
-#include "io/input_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::apps {
@@ -67,57 +62,6 @@ std::string three_digits(double value) {
   return fmt::format("{:.{}f}", value, value >= 100 ? 0 : value >= 10 ? 1 : value >= 1 ? 2 : 3);
 }
 
-/// Cairo with our few shapes. Lengths are points, y runs downwards.
-class Canvas {
- public:
-  explicit Canvas(cairo_surface_t* surface) : cairo_(cairo_create(surface)) {
-    cairo_select_font_face(cairo_.get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
-  }
-  [[nodiscard]] cairo_t* get() const { return cairo_.get(); }
-
-  void color(std::uint32_t rgb) {
-    cairo_set_source_rgb(get(), (rgb >> 16 & 255) / 255.0, (rgb >> 8 & 255) / 255.0, (rgb & 255) / 255.0);
-  }
-  void rectangle(double x, double y, double width, double height, std::uint32_t rgb) {
-    color(rgb);
-    cairo_rectangle(get(), x, y, width, height);
-    cairo_fill(get());
-  }
-  void line(double x0, double y0, double x1, double y1, double width, std::uint32_t rgb) {
-    color(rgb);
-    cairo_set_line_width(get(), width);
-    cairo_move_to(get(), x0, y0);
-    cairo_line_to(get(), x1, y1);
-    cairo_stroke(get());
-  }
-  [[nodiscard]] double text_width(const std::string& text, double size) {
-    cairo_set_font_size(get(), size);
-    cairo_text_extents_t extents;
-    cairo_text_extents(get(), text.c_str(), &extents);
-    return extents.x_advance;
-  }
-  /// `align` 0: x is the text's left end, 0.5 its middle, 1 its right end. y is the base line.
-  void text(double x, double y, const std::string& text, double size, double align = 0, std::uint32_t rgb = 0x222222) {
-    const double width = text_width(text, size);
-    color(rgb);
-    cairo_move_to(get(), x - align * width, y);
-    cairo_show_text(get(), text.c_str());
-  }
-  void upward_text(double x, double y, const std::string& label, double size) {
-    cairo_save(get());
-    cairo_translate(get(), x, y);
-    cairo_rotate(get(), -M_PI / 2);
-    text(0, 0, label, size, 0.5);
-    cairo_restore(get());
-  }
-
- private:
-  struct Destroy {
-    void operator()(cairo_t* cairo) const { cairo_destroy(cairo); }
-  };
-  std::unique_ptr<cairo_t, Destroy> cairo_;
-};
-
 class Figure {
  public:
   explicit Figure(std::span<const RunTime> runs) : runs_(runs) {
@@ -153,9 +97,7 @@ class Figure {
   }
   [[nodiscard]] static double height() { return above + plot_height + below; }
 
-  void draw(cairo_surface_t* surface, double scale) const {
-    Canvas canvas(surface);
-    cairo_scale(canvas.get(), scale, scale);
+  void draw(Canvas& canvas) const {
     canvas.rectangle(0, 0, width(), height(), 0xffffff);
     canvas.upward_text(18, above + plot_height / 2, fmt::format("time a frame, {}, average over processes", unit_name_),
                        11);
@@ -269,25 +211,7 @@ class Figure {
   bool name_files_ = false;  ///< where their processes do not tell runs apart
 };
 
-cairo_status_t append(void* text, const unsigned char* bytes, unsigned int count) {
-  static_cast<std::string*>(text)->append(reinterpret_cast<const char*>(bytes), count);
-  return CAIRO_STATUS_SUCCESS;
-}
-
-void check(cairo_status_t status, const std::filesystem::path& file) {
-  if (status != CAIRO_STATUS_SUCCESS)
-    throw scene::Error(scene::ExitCode::system_failure,
-                       fmt::format("{}: the figure could not be drawn: {}; try the other of .svg and .png",
-                                   file.string(), cairo_status_to_string(status)));
-}
-
 }  // namespace
-
-void check_figure_path(const std::filesystem::path& file) {
-  const std::string extension = io::lower_extension(file);
-  if (extension != ".svg" && extension != ".png")
-    throw scene::bad_input(fmt::format("{}: a figure's name ends in .svg or .png; choose one", file.string()));
-}
 
 void write_figure(std::span<const RunTime> runs, const std::filesystem::path& file) {
   check_figure_path(file);
@@ -296,28 +220,7 @@ void write_figure(std::span<const RunTime> runs, const std::filesystem::path& fi
     throw scene::bad_input(fmt::format("{}: {} traces do not fit into one figure; give at most {}", file.string(),
                                        runs.size(), most_runs));
   const Figure figure(runs);
-  struct Destroy {
-    void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
-  };
-  using Surface = std::unique_ptr<cairo_surface_t, Destroy>;
-  std::string bytes;
-  if (io::lower_extension(file) == ".svg") {
-    const Surface surface(cairo_svg_surface_create_for_stream(append, &bytes, figure.width(), Figure::height()));
-    figure.draw(surface.get(), 1);
-    cairo_surface_finish(surface.get());
-    check(cairo_surface_status(surface.get()), file);
-  } else {
-    constexpr double pixels_a_point = 2;
-    const Surface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24,
-                                                     static_cast<int>(std::lround(figure.width() * pixels_a_point)),
-                                                     static_cast<int>(std::lround(Figure::height() * pixels_a_point))));
-    check(cairo_surface_status(surface.get()), file);
-    figure.draw(surface.get(), pixels_a_point);
-    check(cairo_surface_write_to_png_stream(surface.get(), append, &bytes), file);
-  }
-  io::AtomicFile output(file);
-  output.write(bytes);
-  output.commit();
+  write_drawing(figure.width(), Figure::height(), file, [&](Canvas& canvas) { figure.draw(canvas); });
 }
 
 }  // namespace tessera::apps

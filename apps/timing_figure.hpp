@@ -3,13 +3,11 @@
 #include <filesystem>
 #include <span>
 
+#include "apps/canvas.hpp"
 #include "apps/timing_breakdown.hpp"
 
 /// Figure 9 of the paper: the breakdown as stacked bars, one bar a run, one panel a role.
 namespace tessera::apps {
-
-/// Throws Error(bad_input) unless the name ends in .svg or .png.
-void check_figure_path(const std::filesystem::path& file);
 
 /// Bars are average time a frame; the tick beside a bar is the worst process's whole. Colours are of Okabe, Ito, "Color
 /// Universal Design", 2008, so that colour-blind readers can tell them apart, and adjoining bars are parted by white.

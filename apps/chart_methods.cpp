@@ -1,0 +1,208 @@
+#include "apps/chart_methods.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <glm/geometric.hpp>
+#include <numeric>
+
+#include "compositor/loopback_transport.hpp"
+#include "frame/distributed.hpp"
+#include "projection/scanline_rasterizer.hpp"
+#include "scene/mesh_facts.hpp"
+
+namespace tessera::apps {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using scene::IntegratorKind;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+class MeshRenderer final : public ChartRenderer {
+ public:
+  MeshRenderer(const ChartScene& scene, const frame::RenderSettings& settings)
+      : scene_(scene), renderer_(*scene.mesh, settings) {
+    renderer_.render(scene_.camera, {1, 1}, scene_.function);  // makes the transfer function's tables
+  }
+  std::pair<scene::Image, double> frame() override {
+    const auto start = Clock::now();
+    scene::Image image = renderer_.render(scene_.camera, scene_.size, scene_.function);
+    return {std::move(image), ms_since(start)};
+  }
+
+ private:
+  const ChartScene& scene_;
+  frame::Renderer renderer_;
+};
+
+class VolumeRenderer final : public ChartRenderer {
+ public:
+  VolumeRenderer(const ChartScene& scene, const volume::RenderSettings& settings)
+      : scene_(scene), renderer_(*scene.volume, settings) {}
+  std::pair<scene::Image, double> frame() override {
+    const auto start = Clock::now();
+    scene::Image image = renderer_.render(scene_.camera, scene_.size, scene_.function);
+    return {std::move(image), ms_since(start)};
+  }
+
+ private:
+  const ChartScene& scene_;
+  volume::Renderer renderer_;
+};
+
+/// Two ranks of one thread each, as threads of this process: every other cell to each, the worst partition there is.
+class ExchangeRenderer final : public ChartRenderer {
+ public:
+  ExchangeRenderer(const ChartScene& scene, const frame::RenderSettings& render, frame::Exchange exchange)
+      : scene_(scene), facts_(scene::facts_of(*scene.mesh)) {
+    settings_.render = render;
+    settings_.render.threads = 1;
+    settings_.exchange = exchange;
+    settings_.roles = frame::assign_roles(ranks, ranks, ranks);
+    for (std::uint32_t rank = 0; rank < ranks; ++rank) {
+      std::vector<std::uint32_t> tets;
+      for (std::uint32_t t = rank; t < scene.mesh->tets.size(); t += ranks) tets.push_back(t);
+      ids_[rank].assign(tets.begin(), tets.end());
+      parts_[rank] = std::make_shared<const scene::TetMesh>(scene::subset(*scene.mesh, tets));
+    }
+  }
+  std::pair<scene::Image, double> frame() override {
+    scene::Image image;
+    const std::vector<frame::FrameJob> jobs = {{scene_.camera, scene_.size, 0}};
+    double ms = 0;
+    compositor::run_ranks(ranks, [&](compositor::Transport& transport) {
+      render_distributed(
+          transport, settings_, jobs, scene_.function,
+          [&](std::size_t) {
+            const auto rank = static_cast<std::size_t>(transport.rank());
+            const glm::dvec3 extent = facts_.box.high - facts_.box.low;
+            return frame::ProjectorMesh{parts_[rank], ids_[rank],          glm::length(extent),
+                                        facts_.box,   facts_.scalar_range, 0};
+          },
+          [&](frame::FinishedFrame done) {
+            image = std::move(done.image);
+            ms = done.frame_ms;
+          });
+    });
+    return {std::move(image), ms};
+  }
+
+ private:
+  static constexpr int ranks = 2;
+  const ChartScene& scene_;
+  scene::MeshFacts facts_;
+  frame::DistributedSettings settings_;
+  std::shared_ptr<const scene::TetMesh> parts_[ranks];
+  std::vector<std::uint64_t> ids_[ranks];
+};
+
+std::vector<ChartMethod> mesh_methods(const ChartScene& scene) {
+  std::vector<ChartMethod> methods;
+  const bool orthographic = scene.camera.projection == scene::ProjectionKind::orthographic;
+  const auto settings = [&](frame::Rasterizer rasterizer, const scene::Integrator& integrator) {
+    frame::RenderSettings s;
+    s.rasterizer = rasterizer;
+    s.integrator = integrator;
+    s.emission = scene.emission;
+    s.threads = scene.threads;
+    s.memory_bytes = scene.memory_bytes;
+    return s;
+  };
+  const auto add = [&](frame::Rasterizer rasterizer, const char* family, const std::string& word,
+                       const scene::Integrator& integrator, const std::string& options) {
+    const bool planes = rasterizer == frame::Rasterizer::planes;
+    const std::string prefix = planes ? "planes" : "scanline";
+    ChartMethod method{fmt::format("{}, {}", prefix, family), fmt::format("{} {}", prefix, word),
+                       planes ? options : "--rasterizer scanline " + options, nullptr, ""};
+    if (!planes && !orthographic) method.left_out = "scanline takes orthographic views only";
+    if (integrator.kind == IntegratorKind::partial && scene.emission == scene::Emission::independent)
+      method.left_out = "partial knows emission by absorption only";
+    method.make = [s = settings(rasterizer, integrator)](const ChartScene& all) {
+      return std::make_unique<MeshRenderer>(all, s);
+    };
+    methods.push_back(std::move(method));
+  };
+  const auto plain = [&](frame::Rasterizer rasterizer, IntegratorKind kind, const char* word) {
+    add(rasterizer, word, word, {.kind = kind}, fmt::format("--integrator {}", word));
+  };
+  const auto sampled = [&](frame::Rasterizer rasterizer, int n) {
+    const auto word = fmt::format("sampled:{}", n);
+    add(rasterizer, "sampled", word, {.kind = IntegratorKind::sampled, .samples = n}, "--integrator " + word);
+  };
+  const auto table = [&](frame::Rasterizer rasterizer, int n) {
+    const auto word = fmt::format("preintegrated:{}", n);
+    add(rasterizer, "preintegrated", word, {.kind = IntegratorKind::preintegrated, .table_size = n},
+        "--integrator " + word);
+  };
+  const auto automatic = [&](double accuracy) {
+    add(frame::Rasterizer::planes, "auto", fmt::format("auto {:g}", accuracy),
+        {.kind = IntegratorKind::automatic, .accuracy = accuracy}, fmt::format("--accuracy {:g}", accuracy));
+  };
+  using enum frame::Rasterizer;
+  for (const double accuracy : {1e-4, 1e-2, 1e-3, 1e-5}) automatic(accuracy);
+  plain(planes, IntegratorKind::exact, "exact");
+  for (const int n : {1, 4}) sampled(planes, n);
+  table(planes, 128);
+  plain(planes, IntegratorKind::partial, "partial");
+  sampled(scanline, 4);
+  table(scanline, 128);
+  for (const int n : {2, 8}) sampled(planes, n);
+  plain(scanline, IntegratorKind::exact, "exact");
+  table(planes, 32), table(planes, 64);
+  for (const auto& [exchange, word] :
+       {std::pair{frame::Exchange::runs, "runs"}, {frame::Exchange::segments, "segments"}})
+    methods.push_back({"two ranks, every other cell", fmt::format("exchange {}", word),
+                       fmt::format("--exchange {} --partition random", word),
+                       [s = settings(planes, {}), exchange = exchange](const ChartScene& all) {
+                         return std::make_unique<ExchangeRenderer>(all, s, exchange);
+                       },
+                       ""});
+  for (const int n : {1, 2, 8}) sampled(scanline, n);
+  for (const int n : {16, 32}) sampled(planes, n);
+  for (const char* gl : {"gl-compute", "gl-fragment"})
+    methods.push_back({gl, gl, fmt::format("--compositor {}", gl), nullptr, "OpenGL compositors are not built in"});
+  return methods;
+}
+
+std::vector<ChartMethod> volume_methods(const ChartScene& scene) {
+  std::vector<ChartMethod> methods;
+  const auto add = [&](const char* family, const std::string& name, const std::string& options, volume::Method method,
+                       double number) {
+    volume::RenderSettings s;
+    s.method = method;
+    (method == volume::Method::automatic ? s.accuracy : s.step) = number;
+    s.emission = scene.emission;
+    s.threads = scene.threads;
+    s.memory_bytes = scene.memory_bytes;
+    methods.push_back(
+        {family, name, options, [s](const ChartScene& all) { return std::make_unique<VolumeRenderer>(all, s); }, ""});
+  };
+  const auto automatic = [&](double accuracy) {
+    add("auto", fmt::format("auto {:g}", accuracy), fmt::format("--accuracy {:g}", accuracy), volume::Method::automatic,
+        accuracy);
+  };
+  const auto stepped = [&](double step) {
+    add("sampled", fmt::format("sampled, step {:g}", step), fmt::format("--integrator sampled --step {:g}", step),
+        volume::Method::sampled, step);
+    add("preintegrated", fmt::format("preintegrated, step {:g}", step),
+        fmt::format("--integrator preintegrated --step {:g}", step), volume::Method::preintegrated, step);
+  };
+  for (const double accuracy : {1e-4, 1e-2, 1e-3, 1e-5}) automatic(accuracy);
+  stepped(1);
+  add("exact", "exact", "--integrator exact", volume::Method::exact, 1);
+  for (const double step : {2.0, 0.5, 4.0, 0.25, 0.125}) stepped(step);
+  methods.push_back({"slices (GL)", "slices (GL)", "--renderer slice", nullptr, "the slice renderer is not built in"});
+  return methods;
+}
+
+}  // namespace
+
+std::vector<ChartMethod> chart_methods(const ChartScene& scene) {
+  return scene.mesh != nullptr ? mesh_methods(scene) : volume_methods(scene);
+}
+
+}  // namespace tessera::apps
