@@ -156,7 +156,7 @@ std::vector<ChartMethod> mesh_methods(const ChartScene& scene) {
   for (const auto& [exchange, word] :
        {std::pair{frame::Exchange::runs, "runs"}, {frame::Exchange::segments, "segments"}})
     methods.push_back({"two ranks, every other cell", fmt::format("exchange {}", word),
-                       fmt::format("--exchange {} --partition random", word),
+                       fmt::format("mpirun -n 2, --exchange {} --partition random", word),
                        [s = settings(planes, {}), exchange = exchange](const ChartScene& all) {
                          return std::make_unique<ExchangeRenderer>(all, s, exchange);
                        },

@@ -44,8 +44,10 @@ std::optional<projection::Lattice> lattice_of(const projection::PixelSpace& spac
 
   Lattice lattice{};
   lattice.depth_origin = near + (far - near) / 2;
-  // Depths are known to 1e-16 of their size; a flat mesh far away needs no finer steps.
-  const double half_depth = std::max((far - near) / 2, 1e-6 * std::abs(far));
+  // The eye's distance rounds the lattice's origin: thin cells of a mesh that is flat beside it keep their thickness in
+  // double precision alone.
+  const double half_depth = (far - near) / 2;
+  if (half_depth < 1e-6 * std::abs(far)) return std::nullopt;
   lattice.depth_unit = Lattice::unit_for(margin * half_depth);
   if (function.max_extinction() * (far - near) > most_optical_depth) return std::nullopt;
 

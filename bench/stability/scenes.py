@@ -1,0 +1,249 @@
+"""The stresses: each turns one parameter until something breaks. `stresses()` lists them.
+
+A stress is a name, what its parameter is, its values from harmless to hopeless, and a function from a value to a scene:
+{"input": file, "args": words of `tessera render`, "verify": pixels}. Scenes are generated, so that anybody can make them.
+"""
+import array
+import math
+import struct
+
+KNOTS = [(0.0, 0.05, 0.1, 0.6, 0.0), (0.2, 0.1, 0.4, 0.9, 0.3), (0.4, 0.2, 0.8, 0.2, 0.1), (0.6, 0.9, 0.8, 0.1, 1.0),
+         (0.8, 0.9, 0.3, 0.1, 0.2), (1.0, 1.0, 0.9, 0.8, 2.0)]
+
+
+class Maker:
+    """Makes inputs in a folder, each once."""
+
+    def __init__(self, folder, tessera):
+        self.folder, self.tessera, self.made = folder, tessera, set()
+
+    def path(self, name):
+        return self.folder / name
+
+    def generated(self, kind, ext=".vtu", **parameters):
+        words = [f"{k}={v!r}" if isinstance(v, float) else f"{k}={v}" for k, v in parameters.items()]
+        name = self.path("-".join([kind, *words]).replace("=", "").replace("+", "p") + ext)
+        if name not in self.made:
+            self.tessera("generate", kind, name, *words, "--quiet")
+            self.made.add(name)
+        return name
+
+    def text(self, name, lines):
+        path = self.path(name)
+        path.write_text("".join(" ".join(str(w) for w in line) + "\n" for line in lines))
+        return path
+
+    def function(self, name, knots):
+        return self.text(name + ".tf.txt", [[repr(float(x)) for x in k] for k in knots])
+
+    def camera(self, name, position, focal_point, scale=None, angle=None, up=(0, 1, 0), clip=None):
+        lines = [["position", *map(repr, map(float, position))], ["focal_point", *map(repr, map(float, focal_point))],
+                 ["view_up", *up]]
+        lines.append(["parallel_scale", repr(float(scale))] if angle is None else ["view_angle", repr(float(angle))])
+        if clip:
+            lines.append(["clipping_range", *map(repr, map(float, clip))])
+        return self.text(name + ".camera.txt", lines)
+
+    def tets(self, name, points, cells, scalars):
+        path = self.path(name + ".tets")
+        with open(path, "wb") as f:
+            f.write(struct.pack("<qq", len(points), len(cells)))
+            array.array("f", [x for p in points for x in p]).tofile(f)
+            array.array("f", scalars).tofile(f)
+            array.array("i", [v for c in cells for v in c]).tofile(f)
+        return path
+
+    def loaded(self, path):
+        with open(path, "rb") as f:
+            n, m = struct.unpack("<qq", f.read(16))
+            xyz, s, t = array.array("f"), array.array("f"), array.array("i")
+            xyz.fromfile(f, 3 * n), s.fromfile(f, n), t.fromfile(f, 4 * m)
+        return ([tuple(xyz[3 * i:3 * i + 3]) for i in range(n)], [tuple(t[4 * i:4 * i + 4]) for i in range(m)], list(s))
+
+
+def scene(path, *args, verify=300, size="64x64"):
+    return {"input": path, "args": [*args, "--size", size], "verify": verify}
+
+
+def powers(first, last, step=1):
+    """10^first, 10^(first + step), ..., 10^last."""
+    return [10.0 ** e for e in range(first, last + (1 if step > 0 else -1), step)]
+
+
+def scaled(knots, values=1.0, extinction=1.0, shift=0.0):
+    return [(shift + values * k[0], *k[1:4], extinction * k[4]) for k in knots]
+
+
+def oscillating(count):
+    return [((i + 0.5) / (2 * count), *((0.9, 0.2, 0.1, 4.0) if i % 2 else (0.1, 0.3, 0.9, 0.0))) for i in range(2 * count)]
+
+
+def hashed(i):
+    return (i * 2654435761 % 4294967296) / 4294967296
+
+
+def random_knots(count):
+    return [(i / max(count - 1, 1), hashed(3 * i), hashed(3 * i + 1), hashed(3 * i + 2), 4 * hashed(7 * i + 5))
+            for i in range(count)]
+
+
+def steps(count):
+    knots = []
+    for i in range(count):
+        low, high = ([hashed(11 * i + j) for j in range(3)] + [3 * hashed(13 * i)] for _ in range(2))
+        knots.append(((i + 1) / (count + 1), *([hashed(11 * (i - 1) + j) for j in range(3)] + [3 * hashed(13 * (i - 1))])))
+        knots.append(((i + 1) / (count + 1), *high))
+    return knots
+
+
+def mesh_stresses(m):
+    f = lambda: m.function("plain", KNOTS)
+    cube = lambda n=6, **more: m.generated("cube", n=n, **more)
+    tf = lambda: ("--transfer-function", f())
+
+    def seen_at(angle):
+        s = m.generated("regular", nx=8, ny=8, nz=8)
+        # Vertices on pixel centres at angle 0: 64 pixels over 2 units, cells of 4 pixels.
+        eye = (1 + 1 / 64 + 4 * math.sin(angle), 1 + 1 / 64 + 4 * math.sin(angle) * 0.7, 4)
+        return scene(s, "--camera", m.camera(f"edge-{angle:g}", eye, (1 + 1 / 64, 1 + 1 / 64, 0), scale=1), *tf(), verify=4096)
+
+    def unshared(share):
+        name = f"unshared-{share:g}"
+        points, cells, scalars = m.loaded(m.generated("cube", ".tets", n=5))
+        p, s, c = list(points), list(scalars), []
+        for i, cell in enumerate(cells):
+            if hashed(i) >= share:
+                c.append(cell)
+                continue
+            c.append(tuple(range(len(p), len(p) + 4)))
+            p += [points[v] for v in cell]
+            s += [scalars[v] for v in cell]
+        return scene(m.tets(name, p, c, s), *tf())
+
+    def stack(layers=1000, thickness=1.0, extinction=3.0, width=0.3, verify=64):
+        path = m.generated("stack", layers=int(layers), width=width, thickness=float(thickness))
+        knots = scaled(KNOTS, extinction=extinction)
+        look = m.camera("stack", (0.003, 0.001, 5), (0.003, 0.001, 0), scale=0.2)
+        return scene(path, "--transfer-function", m.function(f"stack-{extinction:g}", knots), "--camera", look,
+                     verify=verify, size="16x16")
+
+    def offset(ratio):
+        cells = 1 / 3
+        return scene(cube(offset=float(ratio * cells)), *tf())
+
+    def scale(value):
+        knots = m.function(f"scale-{value:g}", scaled(KNOTS, extinction=1 / value))
+        return scene(cube(scale=float(value)), "--transfer-function", knots)
+
+    def field(span):
+        points, cells, scalars = m.loaded(m.generated("cube", ".tets", n=5))
+        path = m.tets(f"field-{span:g}", points, cells, [s * span for s in scalars])
+        return scene(path, "--transfer-function", m.function(f"field-{span:g}", scaled(KNOTS, values=span or 1)))
+
+    def offset_field(ratio):
+        points, cells, scalars = m.loaded(m.generated("cube", ".tets", n=5))
+        path = m.tets(f"fieldoffset-{ratio:g}", points, cells, [s + ratio for s in scalars])
+        return scene(path, "--transfer-function", m.function(f"fieldoffset-{ratio:g}", scaled(KNOTS, shift=ratio)))
+
+    def with_knots(name, knots):
+        return scene(cube(), "--transfer-function", m.function(name, knots))
+
+    def angle(degrees):
+        return scene(cube(), *tf(), "--camera", m.camera(f"angle-{degrees:g}", (0.1, 0.2, 2.5), (0, 0, 0), angle=degrees))
+
+    def eye(place):
+        where = {"outside": (0.3, 0.2, 3), "inside": (0.111, -0.07, 0.05), "on a face": (0.1, 0.05, 0.0),
+                 "on an edge": (0.125, 0.0, 0.0), "in a vertex": (0.0, 0.0, 0.0), "on the boundary": (0.3, 0.2, 1.0)}[place]
+        s = m.generated("regular", nx=8, ny=8, nz=8, spacing=0.25, offset=-1.0)
+        return scene(s, *tf(), "--camera", m.camera("eye-" + place.replace(" ", ""), where, (0.2, 0.3, -1), angle=90))
+
+    def near(share):
+        return scene(cube(), *tf(), "--camera", m.camera(f"near-{share:g}", (1.3, 0.9, 3), (0, 0, 0), angle=40,
+                                                         clip=(1 + 3 * share, 1 + 3 * share + 0.5)))
+
+    def subpixel(pixels):
+        n = 12  # cells of 2 / n, window of 64 pixels
+        return scene(cube(n), *tf(), "--camera", m.camera(f"sub-{pixels:g}", (1.3, 0.9, 5), (0.001, 0.002, 0),
+                                                          scale=32 * (2 / n) / pixels), verify=4096)
+
+    def zoomed(pixels):
+        return scene(m.generated("tet"), *tf(), "--camera",
+                     m.camera(f"zoom-{pixels:g}", (0.25, 0.2, 5), (0.25, 0.2, 0), scale=32 / pixels))
+
+    plain = lambda *args, **more: scene(cube(), *tf(), *args, **more)
+    return [
+        ("slivers", "aspect ratio", powers(2, 14, 2), lambda v: scene(m.generated("slivers", n=4, aspect=v), *tf())),
+        ("volume ratio", "largest over smallest cell", powers(1, 15, 2), lambda v: scene(m.generated("graded", n=8, volume_ratio=v), *tf())),
+        ("edge-on faces", "angle to the view, radian", powers(-1, -15, -2) + [0.0], seen_at),
+        ("coincident vertices", "share of cells with vertices of their own", [0.0, 0.5, 1.0], unshared),
+        ("inverted cells", "0 none, 1 all, 2 every other", [0, 1, 2], lambda v: scene(cube(inverted=v), *tf())),
+        ("small cells", "pixels a cell", powers(1, -4, -1), subpixel),
+        ("large cells", "pixels a cell", powers(1, 9, 2), zoomed),
+        ("far from the origin", "offset over cell size", [0.0] + powers(3, 15, 2), offset),
+        ("scene scale", "world units", powers(-30, 30, 10), scale),
+        ("extinction", "times world size", [0.0] + powers(-12, 12, 4), lambda v: with_knots(f"k-{v:g}", scaled(KNOTS, extinction=v))),
+        ("knots", "number", [2, 6, 14, 15, 30, 100, 1000, 4096], lambda v: with_knots(f"knots-{v}", random_knots(v))),
+        ("steps", "number", [1, 7, 50, 300], lambda v: with_knots(f"steps-{v}", steps(v))),
+        ("oscillations", "over the range", [1, 10, 100, 1000], lambda v: with_knots(f"osc-{v}", oscillating(v))),
+        ("field range", "largest value", [0.0] + powers(-30, 30, 10), field),
+        ("field far from zero", "offset over range", powers(0, 7), offset_field),
+        ("view angle", "degrees", [1, 30, 90, 150, 170, 178, 179], angle),
+        ("eye", "place", ["outside", "inside", "on the boundary", "on a face", "on an edge", "in a vertex"], eye),
+        ("near plane", "share of the way through", [0.0, 0.25, 0.5, 0.75, 1.0], near),
+        ("image", "pixels", ["1x1", "1x777", "777x1", "63x65", "16384x8", "4x16384"], lambda v: plain(size=v)),
+        ("tiles", "pixels a side", [1, 7, 31, 32, 33, 1000], lambda v: plain("--tile-size", v, size="101x67")),
+        ("memory", "budget", ["64M", "16M", "8M"], lambda v: plain("--memory", v, size="101x67")),
+        ("depth complexity", "segments a ray", [1.0, 10.0, 100.0, 1e3, 1e4], lambda v: stack(v, verify=4 if v > 1e4 else 16)),
+        ("nearly equal depths", "thickness of 1e4 layers", powers(0, -15, -3), lambda v: stack(1e4, v, extinction=3 / v, verify=8)),
+        ("faint segments", "optical depth of each of 1e4", powers(-4, -13, -3), lambda v: stack(1e4, 1.0, extinction=v * 1e4, verify=8)),
+    ]
+
+
+def volume_stresses(m):
+    tf = lambda name="vplain", knots=KNOTS: ("--transfer-function", m.function(name, knots))
+    ripples = lambda n=24, **more: m.generated("ripples", ".vti", n=n, **more)
+
+    def raw(name, dims, spacing, value):
+        path = m.path(f"{name}.raw")
+        w, h, d = dims
+        data = array.array("f", (value(i, j, k) for k in range(d) for j in range(h) for i in range(w)))
+        path.write_bytes(data.tobytes())
+        return path, ["--dims", f"{w}x{h}x{d}", "--type", "float32", "--spacing", ",".join(map(repr, map(float, spacing)))]
+
+    smooth = lambda i, j, k: 0.5 + 0.5 * math.sin(0.4 * i + 0.7 * j) * math.cos(0.5 * k + 0.1 * i)
+
+    def spacing(ratio):
+        path, words = raw(f"spacing-{ratio:g}", (16, 16, 16), (1, 1, ratio), smooth)
+        knots = scaled(KNOTS, extinction=0.2 / max(ratio, 1))
+        return scene(path, *words, *tf(f"spacing-{ratio:g}", knots))
+
+    def thin(dims):
+        path, words = raw("thin-" + dims, tuple(map(int, dims.split("x"))), (1, 1, 1), smooth)
+        return scene(path, *words, *tf())
+
+    def opaque(kappa):
+        knots = [(0.0, 0.1, 0.2, 0.9, 0.0), (0.5, 0.1, 0.2, 0.9, 0.0), (0.5, 0.9, 0.4, 0.1, kappa), (1.0, 0.9, 0.4, 0.1, kappa)]
+        return scene(m.generated("checker", ".vti", n=8), *tf(f"opaque-{kappa:g}", knots))
+
+    def offset(ratio):
+        path, words = raw("raw-offset", (16, 16, 16), (1, 1, 1), smooth)
+        return scene(path, *words, *tf(), "--origin", f"{float(ratio)!r},{float(ratio)!r},{float(ratio)!r}")
+
+    def angle(degrees):
+        return scene(ripples(), *tf(), "--camera", m.camera(f"vangle-{degrees:g}", (0.1, 0.2, 2.5), (0, 0, 0), angle=degrees))
+
+    return [
+        ("voxel spacing", "z over x", powers(-3, 3), spacing),
+        ("thin volumes", "samples", ["2x2x2", "2x16x16", "16x2x16", "16x16x2", "2x2x64"], thin),
+        ("bricks", "voxels a side", [2, 3, 8, 32, 1000], lambda v: scene(ripples(), *tf(), "--brick-size", v)),
+        ("opaque beside empty", "extinction", powers(0, 12, 3), opaque),
+        ("knots (grid)", "number", [2, 14, 30, 100, 1000, 4096], lambda v: scene(ripples(), *tf(f"vk-{v}", random_knots(v)))),
+        ("oscillations (grid)", "over the range", [1, 10, 100, 1000], lambda v: scene(ripples(), *tf(f"vo-{v}", oscillating(v)))),
+        ("extinction (grid)", "times world size", [0.0] + powers(-12, 12, 4), lambda v: scene(ripples(), *tf(f"ve-{v:g}", scaled(KNOTS, extinction=v)))),
+        ("grid far from the origin", "offset over voxel", [0.0] + powers(3, 12, 3), offset),
+        ("view angle (grid)", "degrees", [1, 90, 170, 179], angle),
+        ("image (grid)", "pixels", ["1x1", "1x777", "777x1", "63x65"], lambda v: scene(ripples(), *tf(), size=v)),
+        ("grid scale", "world units", powers(-20, 20, 10), lambda v: scene(
+            raw(f"gs-{v:g}", (12, 12, 12), (v, v, v), smooth)[0], *raw(f"gs-{v:g}", (12, 12, 12), (v, v, v), smooth)[1],
+            *tf(f"gs-{v:g}", scaled(KNOTS, extinction=0.2 / v)))),
+    ]

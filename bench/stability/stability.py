@@ -1,0 +1,226 @@
+#!/usr/bin/env python3
+"""Turns one parameter after the other until a method breaks.
+
+    bench/stability/stability.py [--tessera build/release/apps/tessera] [--only WORD,...] [--methods WORD,...] [--reduced]
+        [--json FILE] [--document docs/STABILITY.md] [--figure docs/images/stability.svg]
+
+Each picture is judged by `--verify` against the double-precision reference of that very scene. For every method: the
+first value at which its error passes 1e-3, and the first at which it fails outright (no picture, NaN, a crash). Ends
+with status 1 if the default breaks its promise of 1e-4 anywhere. `--reduced`: the first and last value of each stress,
+the default method alone; what the tests run. Needs Python's standard library alone.
+"""
+import argparse
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+import scenes
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+BEGIN, END = "<!-- stability.py begin -->", "<!-- stability.py end -->"
+MESH = {"default": [], "exact": ["--integrator", "exact"], "partial": ["--integrator", "partial"],
+        "preintegrated:128": ["--integrator", "preintegrated"], "sampled:4": ["--integrator", "sampled:4"],
+        "paper (scanline, sampled:8)": ["--rasterizer", "scanline", "--integrator", "sampled:8"]}
+GRID = {"default": [], "exact": ["--integrator", "exact"],
+        "sampled, 0.5": ["--integrator", "sampled", "--step", "0.5"],
+        "sampled, 10": ["--integrator", "sampled", "--step", "10"],
+        "preintegrated, 0.5": ["--integrator", "preintegrated", "--step", "0.5"]}
+BAD = 1e-3
+# Breaks of the default that are known and written down in docs/STABILITY.md; they are reported but end no run.
+KNOWN = {"opaque beside empty"}
+
+
+class Runner:
+    def __init__(self, program, folder, threads):
+        self.program, self.folder, self.threads = program, folder, threads
+
+    def generate(self, *words):
+        subprocess.run([str(self.program), *map(str, words)], check=True, capture_output=True, text=True)
+
+    def render(self, scene, words):
+        report = self.folder / "report.json"
+        command = [self.program, "render", scene["input"], "-o", self.folder / "picture.pfm", *scene["args"], *words,
+                   "--verify", scene["verify"], "--report", report, "--quiet", "--threads", self.threads]
+        command = [str(w) for w in command]
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+        except subprocess.TimeoutExpired:
+            return {"failed": "no picture within 300 s", "command": command}
+        if done.returncode not in (0, 4):
+            return {"failed": done.stderr.strip().split("\n")[-1] or f"status {done.returncode}", "status": done.returncode,
+                    "command": command}
+        judged = json.loads(report.read_text())["frames"][0]
+        verify = judged["verify"]
+        error = verify["max_error"] if verify["max_error"] is not None else math.inf
+        # Without a bound none is looked at for an excuse.
+        bound = verify.get("bound")
+        return {"error": verify["max_error_not_excused"] if bound else error, "met": verify["met"], "excused": verify["excused"],
+                "arithmetic": judged.get("arithmetic"), "command": command}
+
+
+def value_words(v):
+    return v if isinstance(v, str) else f"{v:g}"
+
+
+def verdicts(results):
+    """(first value above BAD, first value that fails outright)"""
+    worse = next((r["value"] for r in results if r.get("error", 0) > BAD or "failed" in r), None)
+    failed = next((r["value"] for r in results if "failed" in r or not math.isfinite(r.get("error", 0))), None)
+    return worse, failed
+
+
+def measure(args, folder):
+    runner = Runner(args.tessera, folder, args.threads)
+    maker = scenes.Maker(folder, runner.generate)
+    out, broken, start = [], [], time.monotonic()
+    for kind, stresses, methods in (("mesh", scenes.mesh_stresses(maker), MESH), ("grid", scenes.volume_stresses(maker), GRID)):
+        for name, parameter, values, make in stresses:
+            if args.only and not any(w in name for w in args.only.split(",")):
+                continue
+            if args.seconds and time.monotonic() - start > args.seconds:
+                print(f"{name}: not run, --seconds are over")
+                continue
+            if args.reduced:
+                values = [v for v in (values[0], values[-1])]
+                if name == "depth complexity":
+                    values = [1.0, 1e3]
+            stress = {"kind": kind, "name": name, "parameter": parameter, "values": [value_words(v) for v in values], "methods": {}}
+            made = {}
+            for value in values:
+                try:
+                    made[value] = make(value)
+                except subprocess.CalledProcessError as error:
+                    made[value] = error.stderr.strip()
+            for method, words in methods.items():
+                if args.methods and method.split()[0].split(",")[0] not in args.methods.split(","):
+                    continue
+                results = []
+                for value in values:
+                    if isinstance(made[value], str):
+                        result = {"failed": made[value]}
+                    else:
+                        result = runner.render(made[value], words)
+                    result["value"] = value_words(value)
+                    results.append(result)
+                    if method == "default" and not result.get("met", False):
+                        broken.append((name, value_words(value), result))
+                worse, failed = verdicts(results)
+                for r in results:
+                    if "command" in r:
+                        r["command"] = " ".join(w.replace(str(folder), "FOLDER") for w in r["command"][1:])
+                stress["methods"][method] = {"results": results, "above_1e-3": worse, "fails": failed}
+                worst = max((r.get("error", math.inf) for r in results), default=0)
+                print(f"{name:24s} {method:28s} worst {worst:9.2e}  above 1e-3: {worse}  fails: {failed}", flush=True)
+            out.append(stress)
+    return out, broken
+
+
+def document(path, stresses, figure):
+    lines = [BEGIN, ""]
+    if figure:
+        lines += [f"![error against each stress's parameter](images/{figure.name})", ""]
+    for kind, title in (("mesh", "Meshes"), ("grid", "Regular grids")):
+        mine = [s for s in stresses if s["kind"] == kind]
+        if not mine:
+            continue
+        methods = list(dict.fromkeys(m for s in mine for m in s["methods"]))
+        lines += [f"### {title}", "", "| stress, parameter | values | " + " | ".join(methods) + " |",
+                  "|---|---|" + "---|" * len(methods)]
+        for s in mine:
+            cells = []
+            for m in methods:
+                r = s["methods"].get(m)
+                if r is None:
+                    cells.append("")
+                    continue
+                worst = max((x.get("error", 0) for x in r["results"]), default=0)
+                words = "passes" if r["above_1e-3"] is None else f"**> 1e-3 at {r['above_1e-3']}**"
+                if r["fails"] is not None:
+                    words += f", **fails at {r['fails']}**"
+                cells.append(f"{words}, {worst:.0e}")
+            lines.append(f"| {s['name']}: {s['parameter']} | {s['values'][0]} to {s['values'][-1]} | " + " | ".join(cells) + " |")
+        lines.append("")
+    reasons = sorted({(m, s["name"], r["value"], r["failed"]) for s in stresses for m, d in s["methods"].items()
+                      for r in d["results"] if "failed" in r})
+    if reasons:
+        lines += ["What \"fails\" means, in the program's words:", ""]
+        lines += [f"- {m}, {name} at {value}: {words.replace('tessera: ', '')}" for m, name, value, words in reasons]
+        lines.append("")
+    text = path.read_text()
+    begin, end = text.index(BEGIN), text.index(END)
+    path.write_text(text[:begin] + "\n".join(lines) + "\n" + text[end:])
+
+
+COLORS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f"]
+
+
+def figure(path, stresses):
+    """Small charts: error (logarithmic) by the parameter's values, in their order; a cross on top is a failure."""
+    columns, w, h, low, high = 4, 235, 150, -9, 1
+    rows = (len(stresses) + columns - 1) // columns
+    methods = list(dict.fromkeys(m for s in stresses for m in s["methods"]))
+    color = {m: COLORS[i % len(COLORS)] for i, m in enumerate(methods)}
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{columns * w + 20}" height="{rows * h + 60}" '
+           'font-family="sans-serif" font-size="9"><rect width="100%" height="100%" fill="white"/>']
+    for i, m in enumerate(methods):
+        out.append(f'<rect x="{20 + 175 * (i % 5)}" y="{8 + 16 * (i // 5)}" width="10" height="10" fill="{color[m]}"/>'
+                   f'<text x="{34 + 175 * (i % 5)}" y="{17 + 16 * (i // 5)}" font-size="11">{m}</text>')
+    for n, s in enumerate(stresses):
+        x0, y0 = 20 + (n % columns) * w + 26, 50 + (n // columns) * h + 14
+        width, height = w - 44, h - 52
+        y = lambda e: y0 + height * (high - min(max(math.log10(max(e, 1e-300)), low), high)) / (high - low)
+        out.append(f'<text x="{x0}" y="{y0 - 5}" font-size="10.5">{s["name"]}</text>')
+        for power in (-9, -6, -3, 0):
+            at = y(10.0 ** power)
+            out.append(f'<line x1="{x0}" x2="{x0 + width}" y1="{at:.1f}" y2="{at:.1f}" stroke="{"#bbb" if power == -3 else "#e4e4e4"}"/>'
+                       f'<text x="{x0 - 3}" y="{at + 3:.1f}" text-anchor="end">1e{power}</text>')
+        count = len(s["values"])
+        x = lambda i: x0 + width * (i + 0.5) / count
+        for i, value in enumerate(s["values"]):
+            if i in (0, count - 1) or count <= 4:
+                out.append(f'<text x="{x(i):.1f}" y="{y0 + height + 11}" text-anchor="middle">{value}</text>')
+        out.append(f'<text x="{x0 + width / 2}" y="{y0 + height + 23}" text-anchor="middle" fill="#777">{s["parameter"]}</text>')
+        for m, d in reversed(list(s["methods"].items())):
+            points = [(x(i), y(r["error"])) for i, r in enumerate(d["results"]) if "error" in r]
+            out.append(f'<polyline fill="none" stroke="{color[m]}" stroke-width="{2.2 if m == "default" else 1.1}" points="' +
+                       " ".join(f"{a:.1f},{b:.1f}" for a, b in points) + '"/>')
+            out += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="1.8" fill="{color[m]}"/>' for a, b in points]
+            out += [f'<text x="{x(i):.1f}" y="{y0 + 6}" text-anchor="middle" font-weight="bold" fill="{color[m]}">x</text>'
+                    for i, r in enumerate(d["results"]) if "failed" in r]
+    path.write_text("\n".join(out + ["</svg>\n"]))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--tessera", type=pathlib.Path, default=ROOT / "build/release/apps/tessera")
+    parser.add_argument("--only", help="words in stresses' names")
+    parser.add_argument("--methods", help="methods by their first word")
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--seconds", type=float, help="begin no stress after these")
+    parser.add_argument("--reduced", action="store_true")
+    parser.add_argument("--json", type=pathlib.Path)
+    parser.add_argument("--document", type=pathlib.Path)
+    parser.add_argument("--figure", type=pathlib.Path)
+    args = parser.parse_args()
+    if args.reduced:
+        args.methods = "default"
+    with tempfile.TemporaryDirectory() as folder:
+        stresses, broken = measure(args, pathlib.Path(folder))
+    if args.json:
+        args.json.write_text(json.dumps(stresses, indent=1))
+    if args.figure:
+        figure(args.figure, stresses)
+    if args.document:
+        document(args.document, stresses, args.figure)
+    for name, value, result in broken:
+        print(f"default BROKEN: {name} at {value}: {result.get('failed', result.get('error'))}\n    {result.get('command', '')}")
+    print(f"{len(stresses)} stresses, default broken in {len(broken)} places")
+    sys.exit(1 if any(name not in KNOWN for name, _, _ in broken) else 0)
+
+
+if __name__ == "__main__":
+    main()
