@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 
 #include "compositor/integrate_lanes.hpp"
 
@@ -30,6 +31,17 @@ PreintegratedTable::PreintegratedTable(const compositor::LaneTable& function, fl
     for (std::size_t c = 0; c < 4; ++c)
       std::copy_n(channels[c]->begin(), n, &entries[(c * n + static_cast<std::size_t>(front)) * n]);
   });
+}
+
+int PreintegratedTable::size_for(const compositor::LaneTable& function, float low_scalar, float high_scalar) {
+  const float* const edges = function.column(compositor::LaneTable::edge);
+  float closest = high_scalar - low_scalar;
+  for (std::size_t knot = 2; knot <= function.knot_count; ++knot)
+    if (edges[knot] > low_scalar && edges[knot - 1] < high_scalar && edges[knot] > edges[knot - 1])
+      closest = std::min(closest, edges[knot] - edges[knot - 1]);
+  if (!(closest > 0)) return least_size;
+  const float wanted = std::min(16 * (high_scalar - low_scalar) / closest, static_cast<float>(most_size));
+  return std::clamp(static_cast<int>(std::bit_ceil(static_cast<unsigned>(wanted))), least_size, most_size);
 }
 
 }  // namespace tessera::volume

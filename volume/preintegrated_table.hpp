@@ -11,11 +11,14 @@ namespace tessera::volume {
 /// Grid      size x size entries, the front's scalar by row, from `low` on, 1 / scale apart, in lane scalars.
 /// Channels  0 optical depth; 1 to 3 red, green, blue that leave the step's front. Each entry is the exact integral.
 struct PreintegratedTable {
-  static constexpr int default_size = 512;
+  static constexpr int least_size = 512, most_size = 2048;
 
   /// `step` in the table's length unit. low < high, the field's range.
-  PreintegratedTable(const compositor::LaneTable& function, float low_scalar, float high_scalar, float step,
-                     int size_ = default_size);
+  PreintegratedTable(const compositor::LaneTable& function, float low_scalar, float high_scalar, float step, int size_);
+
+  /// Entries a side at which the closest knots are sixteen entries apart, so far as `most_size` goes: between entries
+  /// the table is bilinear, and cuts peaks that lie between them.
+  static int size_for(const compositor::LaneTable& function, float low_scalar, float high_scalar);
 
   [[nodiscard]] const float* channel(int c) const {
     return entries.data() +

@@ -269,8 +269,9 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
         return compositor::lane_scalar(value, ranges.lanes.origin, ranges.lanes.unit);
       };
       const scene::ValueRange& range = ranges.range;
-      preintegrated.emplace(table, range.empty() ? 0.0f : lane_of(range.low),
-                            range.empty() ? 0.0f : lane_of(range.high), static_cast<float>(frame.step));
+      const float low = range.empty() ? 0.0f : lane_of(range.low), high = range.empty() ? 0.0f : lane_of(range.high);
+      preintegrated.emplace(table, low, high, static_cast<float>(frame.step),
+                            PreintegratedTable::size_for(table, low, high));
       frame.preintegrated = &*preintegrated;
     }
 
