@@ -2,7 +2,7 @@
 """How evenly processes share the picture of a volume: over a turn and a zoom, with 0, 2 and 4 frames left out between
 those that are rendered, for each --balance ([Mol08] chapter 4).
 
-    bench/balance.py --tessera build/release/apps/tessera [--processes 6] [--size 512x512] [--volume FILE]
+    bench/balance.py --tessera build/release/apps/tessera [--processes 6] [--size 512x512] [--volume FILE] [--animations turn,zoom]
         [--transfer-function FILE] [--results bench/RESULTS.md]
 
 Prints a table: (largest - least) / mean of the samples (pieces) that processes counted, worst and mean over frames, and
@@ -56,6 +56,7 @@ def main():
     parser.add_argument("--volume", help="default: ripples of 128^3 samples")
     parser.add_argument("--transfer-function", default="cool-warm:rise")
     parser.add_argument("--methods", default=",".join(METHODS))
+    parser.add_argument("--animations", default="turn,zoom")
     parser.add_argument("--results", type=pathlib.Path)
     args = parser.parse_args()
     lines = ["| animation | balance | left out | first frame | worst after | mean after | CPU time, mean |",
@@ -67,7 +68,7 @@ def main():
             run([args.tessera, "generate", "ripples", volume, "n=128", "--quiet"])
         info = json.loads(subprocess.run([str(args.tessera), "info", str(volume), "--json"], capture_output=True,
                                          text=True, check=True).stdout)
-        for kind in ("turn", "zoom"):
+        for kind in args.animations.split(","):
             path = list(views(kind, info["bounds"], args.frames))
             for left_out in (0, 2, 4):
                 for method in args.methods.split(","):
