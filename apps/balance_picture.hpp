@@ -13,8 +13,8 @@
 /// `--show balance`: who rendered what, and what it was thought to cost ([Mol08] Figures 1.2, 4.1, 4.4).
 namespace tessera::apps {
 
-/// Draws the outlines of `bricks` (low and high corners in index space) over the picture, dimmed, on black; each pixel of a line
-/// in the colour of the process that rendered it. Where rectangles meet there is a white line.
+/// Draws the outlines of `bricks` (low and high corners in index space) over the picture, dimmed, on black; each pixel
+/// of a line in the colour of the process that rendered it. Where rectangles meet there is a white line.
 void draw_bricks(scene::Image& image, const scene::Camera& camera, const scene::GridGeometry& geometry,
                  std::span<const std::array<glm::dvec3, 2>> bricks, const volume::ImageSplit& split);
 

@@ -287,10 +287,33 @@ struct PlaneState {
   int n = -1;  ///< the plane; -1: nothing carried
 };
 
-/// The slab as a whole, as far as it is smooth: see cast_slab.
+/// The slab as a whole, as far as it is smooth: see cast_slab. The field stays within rho of the line from s_0 to s_1.
 struct SlabLine {
-  VF s_0, s_1, middle[3], mean, rho;
+  VF s_0, s_1, mean, rho;
 };
+
+/// What a stretch's cubic is besides the chord between its ends: the even part's height and a quarter of the odd one's
+/// coefficient (ray_piece-inl.h), which bound it together.
+HWY_INLINE VF bump_of(VF s_0, VF middle, VF s_1, VF p_3) {
+  const DF d;
+  const VF even = HN::NegMulAdd(HN::Set(d, 0.5f), HN::Add(s_0, s_1), middle);
+  return HN::MulAdd(HN::Set(d, 0.25f), HN::Abs(p_3), HN::Abs(even));
+}
+
+/// The cubic at a stretch's other end: Simpson's rule is exact, mean = (s_0 + 4 middle + s_1) / 6.
+HWY_INLINE VF other_end(VF s, VF middle, VF mean) {
+  const DF d;
+  return HN::Sub(HN::MulAdd(HN::Set(d, 6.0f), mean, HN::Mul(HN::Set(d, -4.0f), middle)), s);
+}
+
+/// Bound of the field's distance from the slab's line: the borders', and the bumps between. Not a number where the
+/// field is not.
+HWY_INLINE VF distance_bound(VF border_1, VF line_1, VF border_2, VF line_2, const VF (&bump)[3]) {
+  const VF borders = HN::Max(HN::Abs(HN::Sub(border_1, line_1)), HN::Abs(HN::Sub(border_2, line_2)));
+  const VF bumps = HN::Max(HN::Max(bump[0], bump[1]), bump[2]);
+  const VF any = HN::Add(HN::Add(bump[0], bump[1]), HN::Add(bump[2], HN::Add(border_1, border_2)));
+  return HN::MulAdd(HN::Zero(DF()), any, HN::Add(borders, bumps));
+}
 
 /// The line of a slab that all lanes cross from plane to plane, in the packet's window.
 template <bool inner, class Window>
@@ -334,33 +357,37 @@ HWY_INLINE SlabLine whole_line(const Lanes& lanes, const Window& window, int n, 
                       HN::Sub(y, j));
   };
   SlabLine line;
-  VF mean;
+  VF bump[3], border[2], middle, mean;
   {
     const VoxelField field = field_of(i_0, j_0);
     line.s_0 = carried ? plane.s : field.at_front();
-    field.middle_and_mean(HN::Mul(half, u_1), HN::Mul(HN::Mul(u_1, u_1), twelfth), lanes.bx, lanes.by, lanes.bends,
-                          line.middle[0], mean);
+    const VF ee = HN::Mul(u_1, u_1);
+    field.middle_and_mean(HN::Mul(half, u_1), HN::Mul(ee, twelfth), lanes.bx, lanes.by, lanes.bends, middle, mean);
     line.mean = HN::Mul(u_1, mean);
-    line.rho = HN::Mul(half, u_1);
-  }
-  const VF at_1 = HN::Mul(half, HN::Add(u_1, u_2)), at_2 = HN::MulAdd(half, u_2, half);
-  {
-    const VoxelField field = field_of(i_mid, j_mid);
-    const VF e = HN::Sub(u_2, u_1);
-    field.middle_and_mean(at_1, HN::Mul(HN::Mul(e, e), twelfth), lanes.bx, lanes.by, lanes.bends, line.middle[1], mean);
-    line.mean = HN::MulAdd(e, mean, line.mean);
+    border[0] = other_end(line.s_0, middle, mean);
+    bump[0] = bump_of(line.s_0, middle, border[0], HN::Mul(HN::Mul(field.cij, lanes.bends), HN::Mul(ee, u_1)));
   }
   {
     const VoxelField field = field_of(i_1, j_1);
-    const VF e = HN::Sub(one, u_2);
-    field.middle_and_mean(at_2, HN::Mul(HN::Mul(e, e), twelfth), lanes.bx, lanes.by, lanes.bends, line.middle[2], mean);
+    const VF e = HN::Sub(one, u_2), ee = HN::Mul(e, e);
+    field.middle_and_mean(HN::MulAdd(half, u_2, half), HN::Mul(ee, twelfth), lanes.bx, lanes.by, lanes.bends, middle,
+                          mean);
     line.mean = HN::MulAdd(e, mean, line.mean);
     line.s_1 = field.at_back(x_1, y_1, i_1, j_1);
+    border[1] = other_end(line.s_1, middle, mean);
+    bump[2] = bump_of(border[1], middle, line.s_1, HN::Mul(HN::Mul(field.cij, lanes.bends), HN::Mul(ee, e)));
+  }
+  {
+    const VoxelField field = field_of(i_mid, j_mid);
+    const VF e = HN::Sub(u_2, u_1), ee = HN::Mul(e, e);
+    field.middle_and_mean(HN::Mul(half, HN::Add(u_1, u_2)), HN::Mul(ee, twelfth), lanes.bx, lanes.by, lanes.bends,
+                          middle, mean);
+    line.mean = HN::MulAdd(e, mean, line.mean);
+    bump[1] = bump_of(border[0], middle, border[1], HN::Mul(HN::Mul(field.cij, lanes.bends), HN::Mul(ee, e)));
   }
   const VF span = HN::Sub(line.s_1, line.s_0);
-  const auto off = [&](VF at, VF middle) HWY_ATTR { return HN::Abs(HN::Sub(middle, HN::MulAdd(at, span, line.s_0))); };
-  const VF most = HN::Max(HN::Max(off(line.rho, line.middle[0]), off(at_1, line.middle[1])), off(at_2, line.middle[2]));
-  line.rho = HN::Add(most, most);
+  line.rho =
+      distance_bound(border[0], HN::MulAdd(u_1, span, line.s_0), border[1], HN::MulAdd(u_2, span, line.s_0), bump);
   plane = {x_1, y_1, i_1, j_1, line.s_1, n + 1};
   return line;
 }
@@ -373,27 +400,27 @@ HWY_INLINE SlabLine part_line(const Lanes& lanes, const SlabPath& path, const Wi
   const VF extent = HN::Sub(path.to, path.from);
   const VF per_extent = HN::Div(HN::Set(d, 1.0f), extent);
   SlabLine line;
-  VF at[3];
-  line.mean = HN::Zero(d);
+  VF middle[3], mean[3], p_3[3];
+  line.mean = line.s_0 = line.s_1 = HN::Zero(d);
   for (int p = 0; p < 3; ++p) {
     const Stretch& stretch = path.stretches[p];
     const VoxelField field(window.corners(window_index(window, path, stretch)), HN::Sub(path.x, stretch.i),
                            HN::Sub(path.y, stretch.j));
-    const VF e = HN::Sub(stretch.end, stretch.begin);
-    at[p] = HN::Mul(half, HN::Add(stretch.begin, stretch.end));
-    VF mean;
-    field.middle_and_mean(at[p], HN::Mul(HN::Mul(e, e), HN::Set(d, 1 / 12.0f)), lanes.bx, lanes.by, lanes.bends,
-                          line.middle[p], mean);
-    line.mean = HN::MulAdd(HN::Mul(e, per_extent), mean, line.mean);
+    const VF e = HN::Sub(stretch.end, stretch.begin), ee = HN::Mul(e, e);
+    field.middle_and_mean(HN::Mul(half, HN::Add(stretch.begin, stretch.end)), HN::Mul(ee, HN::Set(d, 1 / 12.0f)),
+                          lanes.bx, lanes.by, lanes.bends, middle[p], mean[p]);
+    p_3[p] = HN::Mul(HN::Mul(field.cij, lanes.bends), HN::Mul(ee, e));
+    line.mean = HN::MulAdd(HN::Mul(e, per_extent), mean[p], line.mean);
     if (p == 0) line.s_0 = field.at(stretch.begin, lanes.bx, lanes.by);
     if (p == 2) line.s_1 = field.at(stretch.end, lanes.bx, lanes.by);
   }
   const VF slope = HN::Mul(HN::Sub(line.s_1, line.s_0), per_extent);
-  line.rho = HN::Zero(d);
-  for (int p = 0; p < 3; ++p)
-    line.rho =
-        HN::Max(line.rho, HN::Abs(HN::Sub(line.middle[p], HN::MulAdd(HN::Sub(at[p], path.from), slope, line.s_0))));
-  line.rho = HN::Add(line.rho, line.rho);
+  const VF border_1 = other_end(line.s_0, middle[0], mean[0]), border_2 = other_end(line.s_1, middle[2], mean[2]);
+  const VF bump[3] = {bump_of(line.s_0, middle[0], border_1, p_3[0]), bump_of(border_1, middle[1], border_2, p_3[1]),
+                      bump_of(border_2, middle[2], line.s_1, p_3[2])};
+  const auto on_line = [&](VF at) HWY_ATTR { return HN::MulAdd(HN::Sub(at, path.from), slope, line.s_0); };
+  line.rho =
+      distance_bound(border_1, on_line(path.stretches[1].begin), border_2, on_line(path.stretches[2].begin), bump);
   return line;
 }
 
@@ -408,9 +435,7 @@ HWY_NOINLINE void cast_mixed(const FrameView& frame, const RayAxes& axes, const 
   const VF span = HN::Sub(line.s_1, line.s_0), m = HN::NegMulAdd(half, HN::Add(line.s_0, line.s_1), line.mean);
   const VF length = HN::Mul(lanes.length, HN::Sub(path.to, path.from));
   const VF spread = HN::Mul(HN::Mul(length, line.rho), HN::MulAdd(HN::Abs(span), HN::Set(d, 0.25f), line.rho));
-  const VF* const s = line.middle;
-  const VF low = HN::Sub(HN::Min(HN::Min(line.s_0, line.s_1), HN::Min(s[0], HN::Min(s[1], s[2]))), line.rho),
-           high = HN::Add(HN::Max(HN::Max(line.s_0, line.s_1), HN::Max(s[0], HN::Max(s[1], s[2]))), line.rho);
+  const VF low = HN::Sub(HN::Min(line.s_0, line.s_1), line.rho), high = HN::Add(HN::Max(line.s_0, line.s_1), line.rho);
   const VI interval = lookup.locate(low, HN::Eq(zero, zero));
   const auto index = lookup.index(interval, there);
   const VF edge = lookup.far_edge(interval, index, HN::Set(DI(), 1));
@@ -451,8 +476,8 @@ HWY_NOINLINE void cast_shaded(const ChunkView& chunk, const Lookup& lookup, cons
 /// One slab. Where the field along a lane's ray is smooth over all its voxels in the slab and in one interval of the
 /// transfer function, they are integrated together: as a line between the slab's ends, moved to the mean of the cubics.
 /// The rest r is then not even about the middle, and what it leaves of the product of extinction and colour is below
-/// |k' c'| l rho (rho + |s_1 - s_0| / 4), where rho, twice the largest distance from the line at the middle of any
-/// stretch, bounds a rest with two kinks.
+/// |k' c'| l rho (rho + |s_1 - s_0| / 4), where rho bounds |r|: the line's distance from the field at the borders
+/// between voxels, and what the cubics add between.
 template <bool cell_data, class Window, class Lookup>
 HWY_INLINE void cast_slab(const ChunkView& chunk, const Lookup& lookup, const Lanes& lanes, int n, int i_window,
                           int j_window, bool inner, CurrentInterval& current, PlaneState& plane, VF& crossings,

@@ -30,7 +30,7 @@ GRID = {"default": [], "exact": ["--integrator", "exact"],
         "sampled, 10": ["--integrator", "sampled", "--step", "10"],
         "preintegrated, 0.5": ["--integrator", "preintegrated", "--step", "0.5"]}
 BAD = 1e-3
-# Breaks of the default that are known and written down in docs/STABILITY.md; they are reported but end no run.
+# Breaks of the default's promise that are known and written down in docs/STABILITY.md; they are reported but end no run.
 KNOWN = {"opaque beside empty"}
 
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "apps/program.hpp"
@@ -30,6 +31,17 @@ TEST(VolumeCommands, AVolumeRendersVerifiedWithinWhatIsPromised) {
       EXPECT_GT(report["frames"][0]["counters"]["voxels_visited"], 0);
       EXPECT_TRUE(report["transfer_function"].contains("unit_distance"));
     }
+}
+
+/// Along the diagonal of a voxel whose corners alternate the field is an odd cubic: where it is in the middle, and at
+/// both ends, says nothing of what it reaches between.
+TEST(VolumeCommands, BumpsInsideAVoxelAreSeenThroughASteepFunction) {
+  const Folder folder;
+  ASSERT_EQ(tessera({"generate", "checker", folder / "k.vti", "n=2", "--quiet"}).status, 0);
+  std::ofstream(folder / "step.txt") << "0 .1 .2 .9 0\n.501 .1 .2 .9 0\n.501 .9 .4 .1 1\n1 .9 .4 .1 1\n";
+  const Outcome run = tessera({"render", folder / "k.vti", "-o", folder / "a.png", "--size", "64x64",
+                               "--transfer-function", folder / "step.txt", "--verify", "4096"});
+  EXPECT_EQ(run.status, 0) << run.out << run.err;
 }
 
 TEST(VolumeCommands, EveryFormatThatConvertWritesGivesTheSamePicture) {
