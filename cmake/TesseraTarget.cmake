@@ -29,6 +29,22 @@ function(tessera_library name)
   target_link_libraries(tessera_${name} PUBLIC ${ARG_LINK} PRIVATE tessera_warnings ${ARG_PRIVATE_LINK})
 endfunction()
 
+# tessera_shaders(NAME FILES ...): the GLSL files of a folder as strings in <NAME>/shader_files.hpp, each named after its
+# file: merge_lists.comp is tessera::NAME::shader_files::merge_lists_comp.
+function(tessera_shaders name)
+  set(header "#pragma once\n\n#include \"gl/shader.hpp\"\n\nnamespace tessera::${name}::shader_files {\n")
+  foreach(file ${ARGN})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${file})
+    file(READ ${file} text)
+    get_filename_component(identifier ${file} NAME)
+    string(REPLACE "." "_" identifier ${identifier})
+    string(APPEND header "inline constexpr gl::ShaderSource ${identifier}{\"${name}/${file}\", R\"glsl(${text})glsl\"};\n")
+  endforeach()
+  string(APPEND header "}\n")
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/include/${name}-shaders/${name}/shader_files.hpp CONTENT "${header}" @ONLY)
+  target_include_directories(tessera_${name} PRIVATE ${CMAKE_BINARY_DIR}/include/${name}-shaders)
+endfunction()
+
 # tessera_test(NAME [UNITY] SOURCES ... LINK ...): a GoogleTest program, registered test by test. UNITY: its sources name
 # their helpers differently, so that a unity build (the preset sanitize) may compile several at once.
 function(tessera_test name)

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+namespace tessera::gl {
+
+/// A shared library opened at run time. It stays open: drivers keep threads and thread-local memory whose code must not
+/// go away.
+class Library {
+ public:
+  /// Throws Error(system_failure) naming the library, and what to install.
+  Library(const char* file, const char* what, const char* package);
+
+  /// A function of the library; throws Error(system_failure) if it lacks it.
+  template <class Function>
+  Function* function(const char* name) const {
+    return reinterpret_cast<Function*>(symbol(name));
+  }
+
+ private:
+  [[nodiscard]] void* symbol(const char* name) const;
+
+  const char* what_;
+  void* handle_;
+};
+
+}  // namespace tessera::gl

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "gl/context.hpp"
+
+namespace tessera::gl {
+
+/// A shader file: what messages call it, and its text.
+struct ShaderSource {
+  const char* file;
+  std::string_view text;
+};
+
+/// One stage of a program, from files put one after the other. The version line goes before them.
+struct Stage {
+  GLenum kind;  ///< GL_COMPUTE_SHADER, GL_VERTEX_SHADER, GL_FRAGMENT_SHADER
+  std::vector<ShaderSource> files;
+};
+
+/// A linked program. Throws Error(system_failure) in one line that names file and line of the first thing the compiler
+/// did not like.
+class Program {
+ public:
+  Program(const Context& context, const std::vector<Stage>& stages);
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  void use() const { gl_->UseProgram(name_); }
+  /// Uniforms by their layout(location).
+  void set(GLint location, GLuint value) const { gl_->ProgramUniform1ui(name_, location, value); }
+  void set(GLint location, GLint value) const { gl_->ProgramUniform1i(name_, location, value); }
+  void set(GLint location, GLfloat value) const { gl_->ProgramUniform1f(name_, location, value); }
+
+ private:
+  const Functions* gl_;
+  GLuint name_ = 0;
+};
+
+/// The first complaint of a compiler's log as "FILE:LINE: words". Mesa writes "0:12(5): error: ...", NVIDIA "0(12) :
+/// error
+/// ...", others "ERROR: 0:12: ...", lines counted through the version line and all files (Mesa knows no #line FILE).
+std::string first_complaint(std::string_view log, const std::vector<ShaderSource>& files);
+
+}  // namespace tessera::gl

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <initializer_list>
+
+#include "gl/context.hpp"
+
+namespace tessera::gl {
+
+/// A 2D texture without filtering, that grows: reserve() forgets what was in it if it has to.
+class Texture {
+ public:
+  Texture(const Context& context, GLenum format) : context_(&context), format_(format) {}
+  ~Texture();
+  Texture(const Texture&) = delete;
+  Texture& operator=(const Texture&) = delete;
+
+  /// At least so many texels; both at most GL_MAX_TEXTURE_SIZE. Throws Error(system_failure) if the device has no
+  /// memory. True: it is a new texture.
+  bool reserve(int width, int height);
+  [[nodiscard]] GLuint name() const { return name_; }
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+  void bind(GLuint unit) const { context_->gl().BindTextureUnit(unit, name_); }
+
+ private:
+  const Context* context_;
+  GLenum format_;
+  GLuint name_ = 0;
+  int width_ = 0, height_ = 0;
+};
+
+/// Textures that fragments are drawn into, the first as attachment 0 and so on.
+class Framebuffer {
+ public:
+  explicit Framebuffer(const Context& context);
+  ~Framebuffer();
+  Framebuffer(const Framebuffer&) = delete;
+  Framebuffer& operator=(const Framebuffer&) = delete;
+
+  /// Throws Error(system_failure) if the device cannot draw into these.
+  void attach(std::initializer_list<const Texture*> textures);
+  void bind() const { context_->gl().BindFramebuffer(GL_DRAW_FRAMEBUFFER, name_); }
+  void clear(int attachment, const float (&value)[4]) const {
+    context_->gl().ClearNamedFramebufferfv(name_, GL_COLOR, attachment, value);
+  }
+
+ private:
+  const Context* context_;
+  GLuint name_ = 0;
+};
+
+}  // namespace tessera::gl

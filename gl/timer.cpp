@@ -1,0 +1,66 @@
+#include "gl/timer.hpp"
+
+#include <algorithm>
+#include <thread>
+
+namespace tessera::gl {
+
+StageTimer::StageTimer(const Context& context, scene::Trace* trace) : context_(&context), trace_(trace) {
+  // Rows are threads: the device takes the number of one that does nothing else.
+  if (trace_ != nullptr) std::thread([this] { row_ = trace_->thread_number(); }).join();
+}
+
+StageTimer::~StageTimer() {
+  if (!queries_.empty()) context_->gl().DeleteQueries(static_cast<GLsizei>(queries_.size()), queries_.data());
+}
+
+void StageTimer::mark() {
+  const Functions& gl = context_->gl();
+  if (used_ == queries_.size()) {
+    queries_.push_back(0);
+    gl.CreateQueries(GL_TIMESTAMP, 1, &queries_.back());
+  }
+  gl.QueryCounter(queries_[used_++], GL_TIMESTAMP);
+}
+
+void StageTimer::begin(std::int32_t frame) {
+  if (trace_ == nullptr) return;
+  frame_ = frame;
+  used_ = 0;
+  laps_.clear();
+  GLint64 now = 0;
+  context_->gl().GetInteger64v(GL_TIMESTAMP, &now);
+  offset_us_ = trace_->now_us() - 1e-3 * static_cast<double>(now);
+  mark();
+}
+
+void StageTimer::lap(const char* stage, std::uint32_t passes) {
+  if (trace_ == nullptr) return;
+  laps_.push_back({stage, passes});
+  mark();
+}
+
+void StageTimer::collect() {
+  if (trace_ == nullptr) return;
+  GLuint64 last = 0;
+  for (std::size_t i = 0; i < used_; ++i) {
+    GLuint64 now = 0;
+    context_->gl().GetQueryObjectui64v(queries_[i], GL_QUERY_RESULT, &now);
+    if (i > 0) {
+      scene::TraceSpan span{};
+      span.stage = laps_[i - 1].stage;
+      span.thread = row_;
+      span.start_us = 1e-3 * static_cast<double>(last) + offset_us_;
+      span.wall_us = 1e-3 * static_cast<double>(std::max(now, last) - last);
+      span.frame = frame_;
+      span.passes = laps_[i - 1].passes;
+      span.role = trace_->role();
+      trace_->add(span);
+    }
+    last = std::max(now, last);
+  }
+  used_ = 0;
+  laps_.clear();
+}
+
+}  // namespace tessera::gl
