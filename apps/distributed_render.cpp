@@ -156,6 +156,7 @@ void RankRun::render() {
   settings.render = options_.settings;
   settings.roles = roles_;
   settings.exchange = options_.exchange;
+  settings.compositing_on = options_.compositing_on;
   settings.deep = options_.deep;
   settings.frames_in_flight = options_.repeat > 0 ? 1 : options_.frames_in_flight;  // a time is of one frame alone
   settings.tile_seed = options_.tile_seed;

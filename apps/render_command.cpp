@@ -125,7 +125,8 @@ scene::ExitCode render_alone(const RenderOptions& options) {
 
 scene::ExitCode render(const RenderOptions& options, compositor::Transport& transport) {
   if (options.is_volume) return render_volume(options, transport);
-  if (transport.size() > 1) return render_on_ranks(options, transport);
+  // A device is fed by the same exchange in one process, which then is its only rank.
+  if (transport.size() > 1 || !options.compositing_on.backends.empty()) return render_on_ranks(options, transport);
   frame::assign_roles(1, options.projectors, options.compositors);  // more than one of either needs mpirun
   return render_alone(options);
 }

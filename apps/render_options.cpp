@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "apps/argument_values.hpp"
+#include "apps/compositing_options.hpp"
 #include "apps/volume_options.hpp"
 #include "io/image_deep_exr.hpp"
 #include "scene/error.hpp"
@@ -16,17 +17,6 @@ namespace tessera::apps {
 namespace {
 
 constexpr int no_limit = std::numeric_limits<int>::max();
-
-/// Throws unless `text` is one of `known`; says so separately if it is one of `later`.
-void check_word(const char* option, const std::string& text, std::initializer_list<std::string_view> known,
-                std::initializer_list<std::string_view> later = {}) {
-  for (const auto word : known)
-    if (text == word) return;
-  const auto use = fmt::format("use {}", fmt::join(known, " or "));
-  for (const auto word : later)
-    if (text == word) throw scene::bad_input(fmt::format("{}: '{}' is not available yet; {}", option, text, use));
-  throw scene::bad_input(fmt::format("{}: '{}' is unknown; {}", option, text, use));
-}
 
 scene::Integrator chosen_integrator(const RenderWords& words) {
   const double accuracy = words.accuracy.empty() ? 1e-4 : parse_positive("--accuracy", words.accuracy);
@@ -40,7 +30,6 @@ scene::Integrator chosen_integrator(const RenderWords& words) {
 frame::RenderSettings render_settings(const RenderWords& words, bool for_volume) {
   check_word("--emission", words.emission, {"absorption", "independent"});
   check_word("--rasterizer", words.rasterizer, {"planes", "scanline"});
-  check_word("--backend", words.backend, {"auto", "cpu"}, {"osmesa", "egl"});
   frame::RenderSettings settings;
   if (!for_volume) settings.integrator = chosen_integrator(words);
   if (words.rasterizer == "scanline") settings.rasterizer = frame::Rasterizer::scanline;
@@ -139,7 +128,7 @@ void add_render_options(CLI::App& command, RenderWords& words) {
       .add_option("--rasterizer", words.rasterizer,
                   "how cells become ray segments (default: planes; the paper's: scanline)")
       ->type_name("planes|scanline");
-  command.add_option("--backend", words.backend, "default: auto")->type_name("auto|cpu");
+  add_compositing_options(command, words);
   add_volume_render_options(command, words);
   command.add_option("--threads", words.threads, "threads (default: all cores)")->type_name("T");
   command.add_option("--tile-size", words.tile_size, "pixels a side of a thread's tile (default 32)")
@@ -223,8 +212,12 @@ RenderOptions render_options(const RenderWords& words) {
   if (!words.projectors.empty()) options.projectors = parse_count("--projectors", words.projectors, 1, no_limit);
   if (!words.compositors.empty()) options.compositors = parse_count("--compositors", words.compositors, 1, no_limit);
   if (!words.exchange.empty()) check_word("--exchange", words.exchange, {"runs", "segments"});
-  if (words.exchange.empty() && (options.settings.rasterizer == frame::Rasterizer::scanline || options.deep))
-    options.exchange = frame::Exchange::segments;  // the paper's do not touch; deep samples are cut within segments
+  options.compositing_on = compositing_settings(words, options.is_volume);
+  options.settings.bounded = !composites_as_printed(options.compositing_on);
+  if (words.exchange.empty() && (options.settings.rasterizer == frame::Rasterizer::scanline || options.deep ||
+                                 !options.compositing_on.backends.empty()))
+    // The paper's do not touch; deep samples are cut within segments; a device that only got runs had nothing to do.
+    options.exchange = frame::Exchange::segments;
   if (words.exchange == "segments") options.exchange = frame::Exchange::segments;
   check_word("--partition", words.partition, {"curve", "file", "random"});
   if (words.partition == "file") options.partition.kind = projection::PartitionKind::file;

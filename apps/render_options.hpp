@@ -50,6 +50,7 @@ struct RenderOptions {
   std::optional<int> projectors, compositors;
   frame::Exchange exchange = frame::Exchange::runs;
   projection::Partition partition;
+  frame::CompositingSettings compositing_on;
   int frames_in_flight = 2;
   std::uint64_t tile_seed = 1;  ///< of the tile map
 
@@ -67,8 +68,8 @@ struct RenderWords {
   std::vector<std::string> more_inputs, outputs;
   std::string transfer_function, unit_distance, opacity_scale = "1", blend = "linear";
   std::string camera, orbit, size, projection;
-  std::string integrator = "auto", accuracy, deep_accuracy, emission = "absorption", rasterizer = "planes",
-              backend = "auto";
+  std::string integrator = "auto", accuracy, deep_accuracy, emission = "absorption", rasterizer = "planes";
+  std::string backend, compositor, framebuffer, egl_device;
   std::string threads, tile_size, memory, background, png_bits = "8", repeat, verify, report, timing;
   std::string dims, type, spacing, origin, endian, skip, step, brick_size, cache, preload;
   std::string balance, balance_resolution, balance_weights, show;

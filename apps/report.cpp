@@ -94,7 +94,10 @@ Json method_json(const RenderOptions& options) {
   json["emission"] = settings.emission == scene::Emission::absorption ? "absorption" : "independent";
   if (options.deep) json["deep_accuracy"] = settings.deep_accuracy;
   json["rasterizer"] = word(settings.rasterizer);
-  json["backend"] = "cpu";
+  const auto& on = options.compositing_on;
+  const bool fragment = on.gl.method == compositor::GlMethod::fragment;
+  json["compositor"] = on.backends.empty() ? "cpu" : fragment ? "gl-fragment" : "gl-compute";
+  if (!on.backends.empty() && fragment) json["framebuffer"] = on.gl.half ? "half" : "float";
   json["blend"] = options.display_blend ? "display" : "linear";
   json["threads"] = settings.threads;  // 0: all cores
   json["tile_size"] = settings.tile_size;
@@ -131,6 +134,7 @@ Json frame_json(const Frame& frame, const FrameRecord* record) {
   json["instruction_set"] = statistics.instruction_set;
   json["arithmetic"] = statistics.on_lattice ? "lattice" : "double";
   json["integrator"] = statistics.integrator;
+  json["backend"] = statistics.composited_on.empty() ? "cpu" : statistics.composited_on;
   if (record->verification) json["verify"] = verification_json(*record->verification);
   return json;
 }
@@ -209,6 +213,7 @@ std::string run_line(const RenderOptions& options, const MeshSummary& mesh, cons
                       statistics.tets_projected, statistics.tets_invisible, statistics.tets_outside_view,
                       word(options.settings.rasterizer), method_line(options.settings.integrator),
                       statistics.instruction_set, record.frame_ms.front());
+  if (!options.compositing_on.backends.empty()) line += fmt::format("; composited by {}", statistics.composited_on);
   if (const std::size_t steps = frames.back().step + 1; is_series(options))
     line += fmt::format("; transfer function{} of the first of {} time steps, {}, for all",
                         first.camera ? "" : " and view", steps, frames.front().mesh.files.front().string());

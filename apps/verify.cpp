@@ -10,7 +10,7 @@
 namespace tessera::apps {
 
 std::optional<double> promised_error(const frame::RenderSettings& settings) {
-  if (settings.rasterizer == frame::Rasterizer::scanline) return std::nullopt;
+  if (settings.rasterizer == frame::Rasterizer::scanline || !settings.bounded) return std::nullopt;
   const scene::Integrator& integrator = settings.integrator;
   switch (integrator.kind) {
     case scene::IntegratorKind::exact:

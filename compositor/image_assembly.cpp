@@ -128,7 +128,8 @@ FrameEnd sum(const FrameEnd& a, const FrameEnd& b) {
           a.fragments + b.fragments,
           a.bytes + b.bytes,
           a.messages + b.messages,
-          a.on_lattice + b.on_lattice};
+          a.on_lattice + b.on_lattice,
+          a.failed_devices + b.failed_devices};
 }
 
 }  // namespace tessera::compositor

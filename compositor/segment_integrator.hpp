@@ -33,6 +33,9 @@ class SegmentIntegrator {
   /// The form that runs: "exact", "sampled:16", "preintegrated:128" or "partial".
   [[nodiscard]] std::string name() const;
 
+  /// Of the sampled form; 0: exact.
+  [[nodiscard]] int samples() const { return samples_; }
+
   /// What a ray may leave out behind nearly opaque matter: largest error in linear RGBA by early termination.
   [[nodiscard]] double termination_error() const { return termination_error_; }
 

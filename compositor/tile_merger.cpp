@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compositor/gl_merger.hpp"
 #include "compositor/merge_kinds.hpp"
 
 namespace tessera::compositor {
@@ -26,6 +27,7 @@ void merge(TileMerger& merger, const std::vector<TilePart>& parts, double final_
 
 std::unique_ptr<TileMerger> make_tile_merger(RecordKind kind, const MergeContext& context,
                                              const projection::PixelRect& rect) {
+  if (context.device != nullptr) return make_gl_merger(context, rect);
   switch (kind) {
     case RecordKind::runs:
     case RecordKind::lattice_runs:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <vector>
 
@@ -15,6 +16,8 @@
 
 namespace tessera::compositor {
 
+class GlCompositor;
+
 /// What a compositor knows of its frame. All must outlive the mergers.
 struct MergeContext {
   const projection::PixelSpace* space;
@@ -29,6 +32,12 @@ struct MergeContext {
   const projection::Lattice* lattice = nullptr;
   const LaneTable* table = nullptr;  ///< on that lattice
   scene::Trace* trace = nullptr;
+  // On a device (gl_merger.hpp), which wants a table and units (in `lattice`) in any case:
+  GlCompositor* device = nullptr;
+  bool on_lattice = true;  ///< false: `lattice` is device_units()
+  std::uint32_t frame = 0;
+  /// Not null: where the device fails the CPU takes over, and this is set.
+  std::atomic<bool>* device_failed = nullptr;
 };
 
 /// A finished tile.

@@ -10,7 +10,7 @@
 #include "projection/segment_tuple.hpp"
 #include "projection/segment_windows.hpp"
 
-/// What travels from projectors to compositors, byte by byte. Little endian, no padding, version 2.
+/// What travels from projectors to compositors, byte by byte. Little endian, no padding, version 3.
 ///
 ///   message    MessageHeader, then by its kind
 ///     begin    FrameBegin, then one bit a tile of the receiver in its order, lowest bit first: 1 where parts will come
@@ -37,7 +37,7 @@ namespace tessera::compositor {
 static_assert(std::endian::native == std::endian::little, "the wire is little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 2;
+inline constexpr std::uint16_t wire_version = 3;
 
 enum class MessageKind : std::uint16_t { begin = 1, parts = 2, end = 3 };
 enum class RecordKind : std::uint8_t {
@@ -134,8 +134,9 @@ struct FrameEnd {
   std::uint64_t segments, max_segments_alive, peak_buffer_bytes, exact_sign_tests, tiles_split;
   std::uint64_t fragments, bytes, messages;  ///< sent to compositors, itself included
   std::uint64_t on_lattice;                  ///< 1: the projector's segments are on the integer lattice
+  std::uint64_t failed_devices;              ///< compositors whose device failed and that went on with the CPU
 };
-static_assert(sizeof(FrameEnd) == 14 * 8);
+static_assert(sizeof(FrameEnd) == 15 * 8);
 
 /// Appends a record's bytes.
 template <class Record>

@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "compositor/frame_collector.hpp"
+#include "compositor/gl_merger.hpp"
 #include "compositor/image_assembly.hpp"
 #include "compositor/tile_merger.hpp"
 #include "frame/distributed_roles.hpp"
@@ -20,6 +21,12 @@ namespace {
 using compositor::Channel;
 
 int thread_count(int asked) { return asked > 0 ? asked : tbb::info::default_concurrency(); }
+
+/// Workers that feed a device wait for it with a tile each: a few more keep tiles in flight.
+int worker_count(const DistributedRun& run) {
+  constexpr int tiles_in_flight = 6;
+  return thread_count(run.settings.render.threads) + (run.device.device != nullptr ? tiles_in_flight : 0);
+}
 
 /// A frame at its compositor.
 struct Frame {
@@ -40,7 +47,8 @@ struct Frame {
   projection::PixelSpace space;
   compositor::SegmentIntegrator integrator;
   compositor::TileSender sender;
-  std::optional<compositor::LaneTable> table;  ///< of lattice segments
+  std::optional<compositor::LaneTable> table;  ///< of lattice segments, or for a device
+  projection::Lattice units;                   ///< on a device: the table's
   double start_us = 0;
 
   struct Merge {
@@ -57,7 +65,7 @@ class CompositorLoop {
       : run_(run),
         budget_(exchange_budget(run.settings)),
         trace_(run.settings.compositing),
-        workers_(thread_count(run.settings.render.threads), [&](const std::exception& error) { fail(error); }) {
+        workers_(worker_count(run), [&](const std::exception& error) { fail(error); }) {
     const auto& ranks = run.settings.roles.compositors;
     self_ = static_cast<int>(std::find(ranks.begin(), ranks.end(), run.transport.rank()) - ranks.begin());
   }
@@ -162,7 +170,9 @@ class CompositorLoop {
       for (std::size_t p = 0; p < run_.settings.roles.projectors.size(); ++p)
         give_back(static_cast<int>(p), first.collector.pay(static_cast<int>(p)));
       if (first.number != frames_finished_ || !first.collector.finished()) return;
-      first.sender.end(first.collector.sums());
+      compositor::FrameEnd sums = first.collector.sums();
+      sums.failed_devices += run_.device.failed ? 1 : 0;
+      first.sender.end(sums);
       if (trace_ != nullptr) trace_->add_frame(static_cast<std::int32_t>(first.number), first.start_us);
       frames_.erase(frames_.begin());
       ++frames_finished_;
@@ -188,6 +198,13 @@ class CompositorLoop {
       compositor::FrameCollector::Waiting waiting = of.collector.take(tile);
       const double longest_ray = of.collector.longest_ray();
       const float longest_edge = of.collector.longest_edge();
+      const bool on_lattice = of.collector.lattice().depth_unit > 0;
+      if (run_.device.device != nullptr && of.units.depth_unit == 0) {
+        of.units = on_lattice ? of.collector.lattice() : compositor::device_units(run_.function, longest_ray);
+        if (!of.table)
+          of.table.emplace(run_.function, of.units.scalar_origin, of.units.scalar_unit, of.units.depth_unit,
+                           run_.settings.render.emission);
+      }
       all = waiting.all;
       lock.unlock();
       {
@@ -197,7 +214,9 @@ class CompositorLoop {
                                           {&of.space, &of.integrator, run_.function.max_color(), longest_ray,
                                            longest_edge, run_.settings.render.emission, budget_.tile, &run_.function,
                                            run_.settings.deep ? run_.settings.render.deep_accuracy : 0,
-                                           &of.collector.lattice(), of.table ? &*of.table : nullptr, trace_},
+                                           run_.device.device != nullptr ? &of.units : &of.collector.lattice(),
+                                           of.table ? &*of.table : nullptr, trace_, run_.device.device.get(),
+                                           on_lattice, of.number, run_.device.may_fail ? &run_.device.failed : nullptr},
                                           of.grid.rect(tile));
         if (merge.merger != nullptr) compositor::merge(*merge.merger, waiting.parts, waiting.final_depth, budget_.tile);
         // A tile that got nothing stays as empty as the assembled picture is.
@@ -268,6 +287,9 @@ void run_assembler(const DistributedRun& run, const std::function<void(FinishedF
     statistics.deep_samples = finished.deep.samples.size();
     statistics.instruction_set = projection::instruction_set();
     statistics.integrator = integrator.name();
+    statistics.composited_on = run.device.name;
+    if (sums.failed_devices > 0)
+      statistics.composited_on += fmt::format(", of which {} failed and left the rest to the CPU", sums.failed_devices);
     ++left;
     done(std::move(finished));
   }

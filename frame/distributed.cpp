@@ -59,6 +59,13 @@ void render_distributed(compositor::Transport& transport, const DistributedSetti
   if (settings.deep && settings.exchange == Exchange::runs)
     throw scene::bad_input("--exchange runs: a deep picture needs the segments that runs are made of; use segments");
   if (settings.deep) check_deep(settings.render, function);
+  const auto& backends = settings.compositing_on.backends;
+  const bool on_device = std::any_of(backends.begin(), backends.end(), [](Backend b) { return b != Backend::cpu; });
+  if (on_device && settings.deep)
+    throw scene::bad_input("deep picture: it is made on the CPU; leave out --compositor and --backend");
+  if (on_device && settings.compositing_on.gl.method == compositor::GlMethod::fragment &&
+      settings.exchange == Exchange::runs)
+    throw scene::bad_input("--exchange runs: --compositor gl-fragment takes ray segments; use --exchange segments");
   const int self = transport.rank();
   std::optional<LoadedMesh> loaded;
   if (!jobs.empty()) {
@@ -67,8 +74,10 @@ void render_distributed(compositor::Transport& transport, const DistributedSetti
     else
       static_cast<void>(mesh_of(jobs.front().mesh));
   }
+  CompositingDevice device;
+  open_compositing_device(settings.compositing_on, settings.roles, transport, settings.compositing, device);
   compositor::gather_all(transport, {});  // a frame's time does not count reading
-  const DistributedRun run{transport, settings, jobs, function, std::chrono::steady_clock::now()};
+  const DistributedRun run{transport, settings, jobs, function, device, std::chrono::steady_clock::now()};
   std::vector<std::function<void()>> parts;
   if (loaded)
     parts.emplace_back([&] { run_projector(run, *loaded); });

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "compositor/transport.hpp"
+#include "frame/compositing_device.hpp"
 #include "frame/render.hpp"
 #include "frame/roles.hpp"
 
@@ -22,6 +23,7 @@ struct DistributedSettings {
   RenderSettings render;  ///< `memory_bytes` and `threads` are each rank's; `trace` is not used
   Roles roles;
   Exchange exchange = Exchange::runs;
+  CompositingSettings compositing_on;
   bool deep = false;                    ///< deep pictures too (Renderer::render); they need raw segments
   int frames_in_flight = 2;             ///< frames a projector may be ahead of the assembled picture, at least 1
   std::uint64_t tile_seed = 1;          ///< of the tile map

@@ -15,6 +15,7 @@ struct DistributedRun {
   const DistributedSettings& settings;
   std::span<const FrameJob> jobs;
   const scene::TransferFunction& function;
+  const CompositingDevice& device;              ///< of this rank's compositor
   std::chrono::steady_clock::time_point start;  ///< all ranks were ready
 };
 

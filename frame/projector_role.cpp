@@ -39,7 +39,8 @@ compositor::FrameEnd counts_of(const FrameStatistics& s) {
           .fragments = 0,
           .bytes = 0,
           .messages = 0,
-          .on_lattice = s.on_lattice ? 1u : 0u};
+          .on_lattice = s.on_lattice ? 1u : 0u,
+          .failed_devices = 0};
 }
 
 }  // namespace

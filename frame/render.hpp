@@ -27,6 +27,7 @@ struct RenderSettings {
   scene::Integrator integrator;
   scene::Emission emission = scene::Emission::absorption;
   double deep_accuracy = 1e-3;              ///< of a deep picture, cut anywhere: largest error in linear RGBA
+  bool bounded = true;                      ///< false: composited on a device whose error is only reported
   int threads = 0;                          ///< 0: all cores
   int tile_size = 32;                       ///< pixels a side, 1..1024
   std::uint64_t memory_bytes = 4ull << 30;  ///< budget for frame buffers of all threads beside the mesh
@@ -53,6 +54,7 @@ struct FrameStatistics {
   bool on_lattice = false;         ///< the integer lattice held the frame; false: double precision
   std::string instruction_set;     ///< of the kernels that ran
   std::string integrator;          ///< what `automatic` chose
+  std::string composited_on;       ///< CompositingDevice::name, of all compositors; empty in a single process
 };
 
 /// Renders one tetrahedral mesh many times in one process. Preparation that does not depend on view or transfer

@@ -1,0 +1,138 @@
+#include "compositor/gl_compositor.hpp"
+
+#include <fmt/format.h>
+
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "compositor/gl_kernel.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::compositor {
+
+class GlCompositor::Worker {
+ public:
+  Worker(gl::Platform platform, const GlSettings& settings, scene::Trace* trace)
+      : settings_(settings), trace_(trace), thread_([this, platform] { live(platform); }) {}
+  ~Worker() {
+    {
+      const std::lock_guard lock(mutex_);
+      ending_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+  }
+
+  std::string opened() { return opened_.get_future().get(); }
+
+  std::future<std::vector<GlLight>> take(GlFragments fragments, const GlRules& rules) {
+    GlJob job{std::move(fragments), rules, {}};
+    auto future = job.done.get_future();
+    {
+      const std::lock_guard lock(mutex_);
+      if (failure_)
+        job.done.set_exception(failure_);
+      else
+        jobs_.push_back(std::move(job));
+    }
+    changed_.notify_all();
+    return future;
+  }
+
+ private:
+  using Batch = std::vector<GlJob>;
+
+  /// The thread: the context lives and dies here.
+  void live(gl::Platform platform) {
+    std::unique_ptr<gl::Context> context;
+    std::unique_ptr<GlKernel> kernel;
+    try {
+      context = gl::open_context(platform, settings_.egl_device);
+      kernel = settings_.method == GlMethod::compute ? make_compute_kernel(*context, trace_)
+                                                     : make_fragment_kernel(*context, settings_, trace_);
+      opened_.set_value(context->name());
+    } catch (...) {
+      opened_.set_exception(std::current_exception());
+      return;
+    }
+    std::deque<Batch> under_way;
+    try {
+      work(*context, *kernel, under_way);
+    } catch (...) {
+      fail(std::current_exception(), under_way);
+    }
+  }
+
+  void work(gl::Context& context, GlKernel& kernel, std::deque<Batch>& under_way) {
+    for (int batches = 0;;) {
+      Batch batch = next(under_way.empty());
+      if (batch.empty() && under_way.empty()) return;
+      if (!batch.empty()) {
+        if (settings_.fault != GlFault::none && batches++ >= settings_.fault_after)
+          context.pretend(settings_.fault == GlFault::lost ? GL_CONTEXT_LOST : GL_OUT_OF_MEMORY);
+        under_way.push_back(std::move(batch));
+        kernel.begin(under_way.back());
+        context.check("compositing");
+        if (under_way.size() < static_cast<std::size_t>(kernel.in_flight())) continue;
+      }
+      auto lights = kernel.finish();
+      Batch done = std::move(under_way.front());
+      under_way.pop_front();
+      for (std::size_t i = 0; i < done.size(); ++i) done[i].done.set_value(std::move(lights[i]));
+    }
+  }
+
+  /// Jobs of one frame, as many as make a batch. Waits for some if `wait`; none: the end, or there are none now.
+  Batch next(bool wait) {
+    std::unique_lock lock(mutex_);
+    if (wait) changed_.wait(lock, [&] { return ending_ || !jobs_.empty(); });
+    Batch batch;
+    std::size_t fragments = 0;
+    while (!ending_ && !jobs_.empty()) {
+      const GlJob& job = jobs_.front();
+      fragments += job.fragments.keys.size();
+      if (!batch.empty() &&
+          (job.rules.frame != batch.front().rules.frame || fragments > GlCompositor::comfortable_fragments))
+        break;
+      batch.push_back(std::move(jobs_.front()));
+      jobs_.pop_front();
+    }
+    return batch;
+  }
+
+  void fail(const std::exception_ptr& failure, std::deque<Batch>& under_way) {
+    const std::lock_guard lock(mutex_);
+    failure_ = failure;
+    for (Batch& batch : under_way)
+      for (GlJob& job : batch) job.done.set_exception(failure);
+    for (GlJob& job : jobs_) job.done.set_exception(failure);
+    jobs_.clear();
+  }
+
+  GlSettings settings_;
+  scene::Trace* trace_;
+  std::mutex mutex_;  // guards what follows
+  std::condition_variable changed_;
+  std::deque<GlJob> jobs_;
+  std::exception_ptr failure_;
+  bool ending_ = false;
+  std::promise<std::string> opened_;
+  std::thread thread_;  // last: it uses all of the above
+};
+
+GlCompositor::GlCompositor(gl::Platform platform, const GlSettings& settings, scene::Trace* trace)
+    : worker_(std::make_unique<Worker>(platform, settings, trace)) {
+  name_ =
+      fmt::format("{} ({})", settings.method == GlMethod::compute ? "gl-compute" : "gl-fragment", worker_->opened());
+}
+
+GlCompositor::~GlCompositor() = default;
+
+std::future<std::vector<GlLight>> GlCompositor::composite(GlFragments fragments, const GlRules& rules) {
+  return worker_->take(std::move(fragments), rules);
+}
+
+}  // namespace tessera::compositor

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <future>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "compositor/gl_fragments.hpp"
+#include "gl/context.hpp"
+#include "scene/trace.hpp"
+
+namespace tessera::compositor {
+
+/// How a device composites.
+enum class GlMethod {
+  compute,   ///< compute shaders on storage buffers
+  fragment,  ///< as Juliachs et al. 2007, 4.3: scanline by scanline in textures
+};
+
+/// Faults that tests ask for.
+enum class GlFault { none, lost, memory };
+
+struct GlSettings {
+  GlMethod method = GlMethod::compute;
+  bool half = true;            ///< fragment: 16-bit framebuffer, as the paper's; false: 32-bit
+  bool by_local_rank = false;  ///< --egl-device local-rank
+  gl::EglDevice egl_device;
+  // Tests:
+  int texture_limit = 0;  ///< fragment: largest texture, if the device's is not to be used up; 0: the device's
+  GlFault fault = GlFault::none;
+  int fault_after = 0;  ///< batches
+};
+
+/// A device that composites tiles: a thread of its own, which has the context. Many tiles may be in flight: their jobs
+/// are put together in batches, and while the device works on one batch the next is uploaded.
+class GlCompositor {
+ public:
+  /// Opens the context and compiles. Throws Error(system_failure) in one line. `trace`: stages `sort`, `integrate`,
+  /// `composite` by the device's clock, on a row of their own; may be null.
+  GlCompositor(gl::Platform platform, const GlSettings& settings, scene::Trace* trace);
+  /// Fails jobs that are not done.
+  ~GlCompositor();
+  GlCompositor(const GlCompositor&) = delete;
+  GlCompositor& operator=(const GlCompositor&) = delete;
+
+  /// "gl-compute (OSMesa, llvmpipe ...)".
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+  /// One light a list. From any thread. The future throws Error(system_failure) if the device fails; so do all later
+  /// ones.
+  std::future<std::vector<GlLight>> composite(GlFragments fragments, const GlRules& rules);
+
+  /// Most fragments that should come in one job; a single pixel may have more.
+  static constexpr std::size_t comfortable_fragments = 1 << 20;
+
+ private:
+  class Worker;
+  std::string name_;
+  std::unique_ptr<Worker> worker_;
+};
+
+}  // namespace tessera::compositor

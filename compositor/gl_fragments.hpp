@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "compositor/lane_table.hpp"
+#include "sorting/gl_list_sort.hpp"
+
+namespace tessera::compositor {
+
+/// Fragments of a tile for a device, pixel by pixel, in no order within a pixel.
+struct GlFragments {
+  /// A pixel's fragments are [begin, begin + count).
+  struct List {
+    std::uint32_t pixel;  ///< row by row in the tile
+    std::uint32_t begin, count;
+  };
+  int width = 0;            ///< of the tile, pixels
+  std::vector<List> lists;  ///< none empty, ascending in pixel and begin
+  /// One a fragment; `element` is the fragment's number.
+  std::vector<sorting::GlKey> keys;
+  /// A ray segment {length, scalar at entry, scalar at exit, -1}, in the table's units; or a run {red, green, blue,
+  /// optical depth}.
+  std::vector<std::array<float, 4>> values;
+};
+
+/// What the device makes of a list.
+struct GlLight {
+  float red, green, blue, optical_depth;
+  std::uint32_t first;  ///< the first fragment along the ray with optical depth; no_fragment: none
+  std::uint32_t padding[3];
+  static constexpr std::uint32_t no_fragment = 0xffffffff;
+};
+static_assert(sizeof(GlLight) == 32);
+
+/// How a frame's fragments become light.
+struct GlRules {
+  const LaneTable* table;     ///< of a frame; lives until its tiles are done
+  std::uint32_t frame;        ///< its number; jobs of one frame share all of this
+  int samples;                ///< 0: exact
+  float least_transmittance;  ///< behind less nothing shows
+};
+
+}  // namespace tessera::compositor

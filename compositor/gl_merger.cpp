@@ -1,0 +1,330 @@
+#include "compositor/gl_merger.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <future>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "compositor/gl_compositor.hpp"
+#include "compositor/gl_fallback.hpp"
+#include "compositor/merge_kinds.hpp"
+#include "compositor/window_kernel.hpp"
+#include "projection/segment_tuple.hpp"
+
+namespace tessera::compositor {
+namespace {
+
+/// So many fragments of a tile wait for the rest of it before what is final goes to the device.
+constexpr std::size_t patient_fragments = 1 << 20;
+
+/// A float's bits as an integer in the same order.
+std::uint32_t ordered(float x) {
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;
+}
+
+/// A scalar in the table's units: as lane_scalar() has it where the transfer function has knots, so that a value at a
+/// step stays there; beyond, where rounding to whole units would do no good, as it is.
+float device_scalar(double value, const projection::Lattice& units) {
+  const double n = (value - units.scalar_origin) / units.scalar_unit;
+  return std::abs(n) < projection::Lattice::limit ? lane_scalar(value, units.scalar_origin, units.scalar_unit)
+                                                  : static_cast<float>(n);
+}
+
+class GlMerger final : public TileMerger {
+ public:
+  GlMerger(const MergeContext& context, const projection::PixelRect& rect)
+      : context_(context),
+        units_(*context.lattice),
+        rect_(rect),
+        weight_(opacity_weight(context.max_color, context.longest_ray, context.emission)),
+        rules_{context.table, context.frame, context.integrator->samples(),
+               static_cast<float>(context.integrator->termination_error() / weight_)},
+        pixels_(static_cast<std::size_t>(rect.area())) {
+    length_.reserve(pixels_.size());
+    for (int y = rect.y0; y < rect.y1; ++y)
+      for (int x = rect.x0; x < rect.x1; ++x) length_.push_back(context.space->length_per_depth(x + 0.5, y + 0.5));
+  }
+
+  void add(const TilePart& part) override {
+    reserve(fragments_.size() + part.fragments);
+    RecordReader reader(part.records);
+    while (!reader.empty()) switch (part.kind) {
+        case RecordKind::lattice: {
+          const auto header = reader.take<LatticeHeader>();
+          check(part, header.pixel);
+          for (std::uint32_t i = 0; i < header.segments; ++i)
+            add(header.pixel, reader.take<projection::LatticeSegment>());
+          break;
+        }
+        case RecordKind::lattice_runs: {
+          const auto header = reader.take<RunsHeader>();
+          check(part, header.pixel);
+          for (int i = 0; i < header.runs; ++i) {
+            const auto run = reader.take<LatticeRun>();
+            push({double(run.front),
+                  double(run.back),
+                  {run.red, run.green, run.blue, run.optical_depth},
+                  header.pixel,
+                  ordered(run.optical_depth)});
+          }
+          for (int i = 0; i < header.segments; ++i) add(header.pixel, reader.take<projection::LatticeSegment>());
+          break;
+        }
+        case RecordKind::runs: {
+          const auto run = reader.take<RunRecord>();
+          check(part, run.pixel);
+          push({run.front,
+                run.front + run.thickness,
+                {run.red, run.green, run.blue, run.optical_depth},
+                run.pixel,
+                ordered(run.optical_depth)});
+          break;
+        }
+        case RecordKind::chains:
+        case RecordKind::chains_of_cells:
+          add_chain(part, reader);
+          break;
+        case RecordKind::tuples: {
+          const auto record = reader.take<TupleRecord>();
+          check(part, record.pixel);
+          by_back_ = true;
+          const auto [front, back] =
+              projection::depths_of(record.tuple.z_back, record.tuple.length, context_.longest_edge);
+          // As TupleMerger: equal ones stand by projector, then as they came.
+          add(record.pixel, front, back, record.tuple.scalar_front, record.tuple.scalar_back,
+              static_cast<std::uint32_t>(part.projector) << 22 | (arrivals_++ & 0x3fffff));
+          break;
+        }
+      }
+  }
+
+  void advance(double final_depth) override {
+    const bool all = std::isinf(final_depth) && final_depth > 0;
+    if (!all && fragments_.size() < patient_fragments &&
+        fragments_.size() * sizeof(Fragment) < context_.budget_bytes / 2)
+      return;
+    const double final_step = on_lattice() ? (final_depth - units_.depth_origin) / units_.depth_unit : final_depth;
+    const auto rest = std::partition(fragments_.begin(), fragments_.end(), [&](const Fragment& fragment) {
+      return all || (by_back_ ? fragment.back : fragment.front) < final_step;
+    });
+    composite({fragments_.begin(), rest});
+    fragments_.erase(fragments_.begin(), rest);
+  }
+
+  MergedTile finish() override {
+    scene::Image image({rect_.width(), rect_.height()});
+    for (std::size_t i = 0; i < pixels_.size(); ++i) {
+      const Pixel& pixel = pixels_[i];
+      image.rgba[4 * i + 0] = static_cast<float>(pixel.red);
+      image.rgba[4 * i + 1] = static_cast<float>(pixel.green);
+      image.rgba[4 * i + 2] = static_cast<float>(pixel.blue);
+      image.rgba[4 * i + 3] = static_cast<float>(-std::expm1(-pixel.optical_depth));
+      image.depth[i] = static_cast<float>(pixel.first_depth);
+    }
+    return {std::move(image), {}, {}};
+  }
+
+ private:
+  struct Fragment {
+    double front, back;          ///< steps of the lattice, or planar depth
+    std::array<float, 4> value;  ///< GlFragments
+    std::uint32_t pixel, tie;
+  };
+  struct Pixel {
+    double red = 0, green = 0, blue = 0, transmittance = 1, optical_depth = 0;
+    double first_depth = std::numeric_limits<double>::infinity();
+    bool open = true;
+  };
+
+  [[nodiscard]] bool on_lattice() const { return context_.on_lattice; }
+
+  void check(const TilePart& part, std::uint32_t pixel) const {
+    if (pixel < pixels_.size()) return;
+    throw scene::Error(scene::ExitCode::system_failure,
+                       fmt::format("exchange: the fragments of tile {} are malformed; all ranks must run the same "
+                                   "program",
+                                   part.tile));
+  }
+
+  void reserve(std::size_t count) {
+    if (count * sizeof(Fragment) > context_.budget_bytes || count > std::numeric_limits<std::uint32_t>::max())
+      throw scene::Error(scene::ExitCode::system_failure,
+                         fmt::format("the tile at pixel {},{} holds {} fragments at once, beyond the memory budget; "
+                                     "raise --memory or make --tile-size smaller",
+                                     rect_.x0, rect_.y0, count));
+  }
+
+  void push(const Fragment& fragment) {
+    if (pixels_[fragment.pixel].open) fragments_.push_back(fragment);
+  }
+
+  void add(std::uint32_t pixel, const projection::LatticeSegment& s) {
+    const float length = static_cast<float>(s.back - s.front) * static_cast<float>(length_[pixel]);
+    push(
+        {double(s.front), double(s.back), {length, s.scalar_front, s.scalar_back, -1}, pixel, ordered(s.scalar_front)});
+  }
+
+  void add(std::uint32_t pixel, double front, double back, double scalar_front, double scalar_back, std::uint32_t tie) {
+    push({front,
+          back,
+          {static_cast<float>((back - front) * length_[pixel] / units_.depth_unit), device_scalar(scalar_front, units_),
+           device_scalar(scalar_back, units_), -1},
+          pixel,
+          tie});
+  }
+
+  void add_chain(const TilePart& part, RecordReader& reader) {
+    const bool cell_data = part.kind == RecordKind::chains_of_cells;
+    const auto chain = reader.take<ChainHeader>();
+    check(part, chain.pixel);
+    double front = chain.front, scalar = chain.scalar_front;
+    for (std::uint32_t i = 0; i < chain.links; ++i) {
+      const auto link = reader.take<ChainLink>();
+      add(chain.pixel, front, link.back, cell_data ? link.scalar : scalar, link.scalar,
+          static_cast<std::uint32_t>(link.tet));
+      front = link.back;
+      scalar = link.scalar;
+    }
+  }
+
+  /// Depths to 32-bit integers, in the finest steps, a power of two, that span all of them: on the lattice its own.
+  struct Steps {
+    double origin = 0, per_unit = 1;
+    [[nodiscard]] std::uint32_t of(double depth) const {
+      return static_cast<std::uint32_t>(std::min((depth - origin) * per_unit, 4294967294.0));
+    }
+  };
+  static Steps steps_of(std::span<const Fragment> fragments) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Fragment& f : fragments) low = std::min(low, f.front), high = std::max(high, f.back);
+    if (!(high > low)) return {low, 1};
+    return {low, std::exp2(std::floor(std::log2(4294967295.0 / (high - low))))};
+  }
+
+  void composite(std::span<const Fragment> fragments) {
+    if (fragments.empty()) return;
+    const Steps steps = steps_of(fragments);
+    std::vector<std::uint32_t> begin(pixels_.size() + 1, 0), order(fragments.size());
+    for (const Fragment& f : fragments) ++begin[f.pixel + 1];
+    for (std::size_t p = 0; p < pixels_.size(); ++p) begin[p + 1] += begin[p];
+    std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+    for (std::size_t i = 0; i < fragments.size(); ++i)
+      order[next[fragments[i].pixel]++] = static_cast<std::uint32_t>(i);
+
+    // Whole rows of pixels to a job, as many as are comfortable.
+    struct Portion {
+      std::size_t first_pixel, end_pixel;
+      std::future<std::vector<GlLight>> lights;
+    };
+    std::vector<Portion> portions;
+    const auto width = static_cast<std::size_t>(rect_.width());
+    for (std::size_t p = 0; p < pixels_.size();) {
+      const std::size_t first = p;
+      do p = std::min(p + width, pixels_.size());
+      while (p < pixels_.size() &&
+             begin[std::min(p + width, pixels_.size())] - begin[first] <= GlCompositor::comfortable_fragments);
+      if (begin[p] == begin[first]) continue;
+      portions.push_back(
+          {first, p, context_.device->composite(portion(fragments, order, begin, first, p, steps), rules_)});
+    }
+    for (Portion& portion : portions) {
+      const std::vector<GlLight> lights = [&] {
+        const scene::TraceScope timing(context_.trace, "wait", static_cast<std::int32_t>(context_.frame));
+        try {
+          return portion.lights.get();
+        } catch (const scene::Error&) {
+          if (context_.device_failed == nullptr) throw;
+          *context_.device_failed = true;
+          const GlFragments again =
+              this->portion(fragments, order, begin, portion.first_pixel, portion.end_pixel, steps);
+          return composite_on_cpu(again, rules_, *context_.integrator, units_);
+        }
+      }();
+      std::size_t list = 0;
+      for (std::size_t p = portion.first_pixel; p < portion.end_pixel; ++p) {
+        if (begin[p] == begin[p + 1]) continue;
+        const GlLight& light = lights[list++];
+        const Fragment* first =
+            light.first == GlLight::no_fragment ? nullptr : &fragments[order[begin[portion.first_pixel] + light.first]];
+        add_light(light, first, pixels_[p]);
+      }
+    }
+  }
+
+  GlFragments portion(std::span<const Fragment> fragments, const std::vector<std::uint32_t>& order,
+                      const std::vector<std::uint32_t>& begin, std::size_t first, std::size_t end,
+                      const Steps& steps) const {
+    GlFragments out;
+    out.width = rect_.width();
+    out.keys.reserve(begin[end] - begin[first]);
+    out.values.reserve(begin[end] - begin[first]);
+    for (std::size_t p = first; p < end; ++p) {
+      if (begin[p] == begin[p + 1]) continue;
+      out.lists.push_back({static_cast<std::uint32_t>(p), begin[p] - begin[first], begin[p + 1] - begin[p]});
+      for (std::uint32_t i = begin[p]; i < begin[p + 1]; ++i) {
+        const Fragment& f = fragments[order[i]];
+        // With the back as the key the front says nothing.
+        out.keys.push_back({by_back_ ? steps.of(f.back) : steps.of(f.front), steps.of(f.back), f.tie,
+                            static_cast<std::uint32_t>(out.keys.size())});
+        out.values.push_back(f.value);
+      }
+    }
+    return out;
+  }
+
+  /// All of the light lies behind what the pixel has.
+  void add_light(const GlLight& light, const Fragment* first, Pixel& pixel) const {
+    if (!pixel.open) return;
+    if (pixel.optical_depth == 0 && first != nullptr && std::isinf(pixel.first_depth))
+      pixel.first_depth = visible_depth(*first);
+    pixel.red += pixel.transmittance * double{light.red};
+    pixel.green += pixel.transmittance * double{light.green};
+    pixel.blue += pixel.transmittance * double{light.blue};
+    pixel.optical_depth += double{light.optical_depth};
+    pixel.transmittance = std::exp(-pixel.optical_depth);
+    pixel.open = pixel.transmittance * weight_ >= context_.integrator->termination_error();
+  }
+
+  [[nodiscard]] double visible_depth(const Fragment& f) const {
+    const auto depth = [&](double at) { return on_lattice() ? units_.depth(at) : at; };
+    if (f.value[3] >= 0) return depth(f.front);  // a run begins where it shows
+    const auto scalar = [&](float at) { return units_.scalar(double{at}); };
+    const double along = context_.integrator->first_visible(scalar(f.value[1]), scalar(f.value[2])).value_or(0);
+    return depth(f.front) + (depth(f.back) - depth(f.front)) * along;
+  }
+
+  MergeContext context_;
+  projection::Lattice units_;
+  projection::PixelRect rect_;
+  double weight_;
+  GlRules rules_;
+  std::vector<Pixel> pixels_;
+  std::vector<double> length_;  ///< world length per unit of planar depth, by pixel
+  std::vector<Fragment> fragments_;
+  bool by_back_ = false;
+  std::uint32_t arrivals_ = 0;
+};
+
+}  // namespace
+
+projection::Lattice device_units(const scene::TransferFunction& function, double longest_ray) {
+  using projection::Lattice;
+  const double low = function.knots().front().value, high = function.knots().back().value;
+  Lattice units{};
+  units.depth_unit = longest_ray > 0 ? std::exp2(std::ceil(std::log2(longest_ray))) : 1;
+  units.scalar_origin = low + (high - low) / 2;
+  units.scalar_unit = Lattice::unit_for(std::max((high - low) / 2, 1e-12 * std::abs(units.scalar_origin)));
+  return units;
+}
+
+std::unique_ptr<TileMerger> make_gl_merger(const MergeContext& context, const projection::PixelRect& rect) {
+  return std::make_unique<GlMerger>(context, rect);
+}
+
+}  // namespace tessera::compositor

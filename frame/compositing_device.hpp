@@ -1,0 +1,43 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "compositor/gl_compositor.hpp"
+#include "compositor/transport.hpp"
+#include "frame/roles.hpp"
+
+namespace tessera::frame {
+
+/// Where a compositor works.
+enum class Backend {
+  cpu,
+  automatic,  ///< a GPU through EGL, if one answers; else the CPU
+  osmesa,
+  egl
+};
+
+/// How all compositors of a job work.
+struct CompositingSettings {
+  std::vector<Backend> backends;  ///< one a compositor, or one for all; none: the CPU
+  compositor::GlSettings gl;      ///< of those on a device
+  bool software_will_do = false;  ///< tests: automatic takes a software device
+};
+
+/// This rank's device, if it has one, and what all compositors work on, in words: "cpu", "gl-compute (EGL, ...)",
+/// "cpu (EGL: no hardware device answers)"; several kinds are joined by " + ".
+struct CompositingDevice {
+  std::unique_ptr<compositor::GlCompositor> device;
+  bool may_fail = false;                     ///< the CPU takes over then (Backend::automatic)
+  mutable std::atomic<bool> failed = false;  ///< it did
+  std::string name;
+};
+
+/// Opens this rank's device into `made`. Collective. Throws Error(bad_input) if there is neither one backend nor one
+/// for each compositor, Error(system_failure) if a device that was asked for by name cannot be opened.
+void open_compositing_device(const CompositingSettings& settings, const Roles& roles, compositor::Transport& transport,
+                             scene::Trace* trace, CompositingDevice& made);
+
+}  // namespace tessera::frame

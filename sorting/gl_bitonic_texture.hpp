@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gl/shader.hpp"
+#include "gl/texture.hpp"
+
+namespace tessera::sorting {
+
+/// An element of the sorting texture: a ray segment as Juliachs et al. 2007, 4.3 have it, and what settles equal
+/// depths, in a texture of its own.
+struct TextureSegment {
+  float scalar_front, scalar_back, length, z_back;
+};
+struct TextureTie {
+  std::uint32_t tie, place;
+};
+
+/// Sorts lists of ray segments by decreasing z_back in a texture, as printed: ping-pong fragment passes of bitonic sort
+/// over lists padded with null elements to a power of two. (The print's power is 2^(ceil(log2 S) + 1), one too large;
+/// its null elements are {0, 0, 0, 0}, which assumes z_back > 0: here their z_back is null_depth.)
+///
+/// A list that is longer than the texture is wide takes several rows, so the paper's limit on depth complexity is gone;
+/// the number of lists that fit one texture shrinks instead.
+class GlBitonicTexture {
+ public:
+  static constexpr float null_depth = -3.4e38f;
+
+  /// `limit`: largest side of a texture; 0: the device's.
+  explicit GlBitonicTexture(const gl::Context& context, int limit = 0);
+
+  /// The vertex stage of a triangle that covers the viewport; `column` is the instance's number.
+  static gl::ShaderSource whole_target();
+
+  /// How lists of up to `longest` elements lie in the texture. Throws Error(system_failure) if one does not fit.
+  struct Layout {
+    std::uint32_t log2_size, log2_width;  ///< elements of a padded list, and of a row
+    int rows_a_list, lists;               ///< rows of a list; lists that fit
+    [[nodiscard]] std::size_t stride() const { return std::size_t{1} << log2_size; }
+  };
+  [[nodiscard]] Layout layout(std::uint32_t longest) const;
+
+  /// Uploads `lists` padded lists, one after the other with the layout's stride, and sorts them. Afterwards the
+  /// textures are bound to units 0 and 1. Returns the number of passes.
+  std::uint32_t sort(const Layout& layout, int lists, std::span<const TextureSegment> segments,
+                     std::span<const TextureTie> ties);
+  /// What sort() left: rows of width().
+  [[nodiscard]] const gl::Texture& sorted_ties() const { return targets_[sorted_].ties; }
+
+ private:
+  struct Target {
+    explicit Target(const gl::Context& context)
+        : segments(context, GL_RGBA32F), ties(context, GL_RG32UI), framebuffer(context) {}
+    gl::Texture segments, ties;
+    gl::Framebuffer framebuffer;
+  };
+  const gl::Context* context_;
+  int limit_;
+  gl::Program pass_;
+  std::array<Target, 2> targets_;
+  std::size_t sorted_ = 0;  ///< the target that holds the result
+};
+
+}  // namespace tessera::sorting

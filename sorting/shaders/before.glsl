@@ -1,0 +1,7 @@
+// The depth order of keys {front, back, tie, element}, the last of which makes it total.
+bool before(uvec4 a, uvec4 b) {
+  if (a.x != b.x) return a.x < b.x;
+  if (a.y != b.y) return a.y < b.y;
+  if (a.z != b.z) return a.z < b.z;
+  return a.w < b.w;
+}

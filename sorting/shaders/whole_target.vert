@@ -1,0 +1,7 @@
+// One triangle that covers the viewport; instances number the columns that are composited.
+layout(location = 0) flat out int column;
+
+void main() {
+  column = gl_InstanceID;
+  gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0);
+}

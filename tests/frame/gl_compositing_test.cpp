@@ -1,0 +1,225 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "compositor/loopback_transport.hpp"
+#include "datasets/boxes.hpp"
+#include "datasets/modify.hpp"
+#include "datasets/shapes.hpp"
+#include "frame/distributed.hpp"
+#include "projection/segment_tuple.hpp"
+#include "reference/judge.hpp"
+#include "scene/mesh_facts.hpp"
+#include "support/gl_context.hpp"
+
+namespace tessera::frame {
+namespace {
+
+using scene::Image;
+using scene::ImageSize;
+
+scene::TransferFunction bands() {
+  return scene::TransferFunction({{0, {0, 0, 0.3}, 0},
+                                  {0.3, {0.1, 0.3, 0.9}, 0.4},
+                                  {0.5, {0.2, 0.9, 0.3}, 0},
+                                  {0.7, {0.9, 0.8, 0.1}, 3},
+                                  {0.8, {1, 0.3, 0}, 0.2},
+                                  {1, {1, 1, 1}, 8}});
+}
+
+scene::Camera camera(bool inside) {
+  scene::Camera camera;
+  camera.position = inside ? glm::dvec3(0.1, 0.2, 0.15) : glm::dvec3(3.1, 2.3, 4.2);
+  camera.parallel_scale = 1.8;
+  camera.view_angle = 80;
+  if (inside) camera.projection = scene::ProjectionKind::perspective;
+  return camera;
+}
+
+/// A small cube of 6 * 6^3 tets on `projectors` + `compositors` ranks, each third tet to the same projector.
+struct GlJobSetup {
+  int projectors = 1, compositors = 1;
+  std::vector<Backend> backends = {Backend::osmesa};
+  Exchange exchange = Exchange::segments;
+  scene::IntegratorKind integrator = scene::IntegratorKind::exact;
+  Rasterizer rasterizer = Rasterizer::planes;
+  bool inside = false, shared = false;
+  compositor::GlSettings gl{};
+  int frames = 1;
+};
+
+std::vector<FinishedFrame> rendered(const GlJobSetup& setup, const scene::TetMesh& mesh) {
+  const scene::MeshFacts facts = scene::facts_of(mesh);
+  const int ranks = setup.shared ? std::max(setup.projectors, setup.compositors) : setup.projectors + setup.compositors;
+  DistributedSettings settings;
+  settings.render.integrator.kind = setup.integrator;
+  settings.render.integrator.samples = 5;
+  settings.render.rasterizer = setup.rasterizer;
+  settings.render.threads = 1;
+  settings.render.tile_size = 16;
+  settings.exchange = setup.exchange;
+  settings.compositing_on = {setup.backends, setup.gl, true};
+  settings.roles = assign_roles(ranks, setup.projectors, setup.compositors);
+  std::vector<FinishedFrame> frames;
+  compositor::run_ranks(ranks, [&](compositor::Transport& transport) {
+    render_distributed(
+        transport, settings,
+        std::vector<FrameJob>(static_cast<std::size_t>(setup.frames), {camera(setup.inside), {48, 40}}), bands(),
+        [&](std::size_t) {
+          ProjectorMesh part;
+          auto tets = std::make_shared<scene::TetMesh>(mesh);
+          tets->tets.clear();
+          for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+            if (static_cast<int>(t / 3) % setup.projectors == transport.rank()) {
+              tets->tets.push_back(mesh.tets[t]);
+              part.global_tet.push_back(t);
+            }
+          part.part = tets;
+          part.diagonal = 4;
+          part.box = facts.box;
+          part.scalar_range = facts.scalar_range;
+          part.longest_edge = projection::longest_edge(mesh);
+          return part;
+        },
+        [&](FinishedFrame frame) { frames.push_back(std::move(frame)); });
+  });
+  return frames;
+}
+
+scene::TetMesh small_cube() { return datasets::cube(6); }
+
+double difference(const Image& a, const Image& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i) most = std::max(most, std::fabs(double{a.rgba[i]} - b.rgba[i]));
+  return most;
+}
+
+#define TESSERA_NEEDS_OSMESA() \
+  if (tests::osmesa_or_none() == nullptr) GTEST_SKIP() << "OSMesa cannot be opened"
+
+TEST(GlCompositing, ExactIsWithinItsPromiseOfTheReference) {
+  TESSERA_NEEDS_OSMESA();
+  const scene::TetMesh mesh = small_cube();
+  for (const bool inside : {false, true})
+    for (const Exchange exchange : {Exchange::segments, Exchange::runs}) {
+      GlJobSetup setup;
+      setup.inside = inside;
+      setup.exchange = exchange;
+      setup.shared = true;
+      const auto frames = rendered(setup, mesh);
+      ASSERT_EQ(frames.size(), 1u);
+      EXPECT_NE(frames[0].statistics.composited_on.find("gl-compute (OSMesa"), std::string::npos);
+      const reference::Reference reference(mesh, camera(inside), {48, 40}, bands(), scene::Emission::absorption);
+      const auto judged =
+          reference::judge(frames[0].image, reference, 2e-5, reference::random_pixels({48, 40}, 300, 1), 1);
+      EXPECT_TRUE(judged.passed) << judged.max_error;
+    }
+}
+
+TEST(GlCompositing, AnyMixOfCompositorsGivesThePictureOfTheCpu) {
+  TESSERA_NEEDS_OSMESA();
+  const scene::TetMesh mesh = small_cube();
+  GlJobSetup setup;
+  setup.projectors = setup.compositors = 2;
+  setup.backends = {Backend::cpu};
+  const Image cpu = rendered(setup, mesh)[0].image;
+  for (const std::vector<Backend>& backends :
+       {std::vector{Backend::osmesa}, {Backend::cpu, Backend::osmesa}, {Backend::osmesa, Backend::cpu}})
+    for (const Exchange exchange : {Exchange::segments, Exchange::runs}) {
+      setup.backends = backends;
+      setup.exchange = exchange;
+      const auto frames = rendered(setup, mesh);
+      EXPECT_LT(difference(cpu, frames[0].image), 5e-6);  // floats' roundings
+      const std::string& on = frames[0].statistics.composited_on;
+      EXPECT_EQ(on.find("cpu") != std::string::npos, backends.size() == 2) << on;
+    }
+}
+
+TEST(GlCompositing, FragmentShadersGiveThePictureOfTheCpusSamples) {
+  TESSERA_NEEDS_OSMESA();
+  const scene::TetMesh mesh = small_cube();
+  for (const Rasterizer rasterizer : {Rasterizer::planes, Rasterizer::scanline}) {
+    GlJobSetup setup;
+    setup.integrator = scene::IntegratorKind::sampled;
+    setup.rasterizer = rasterizer;
+    setup.projectors = 2;
+    setup.backends = {Backend::cpu};
+    const Image cpu = rendered(setup, mesh)[0].image;
+    setup.backends = {Backend::osmesa};
+    setup.gl.method = compositor::GlMethod::fragment;
+    setup.gl.half = false;
+    EXPECT_LT(difference(cpu, rendered(setup, mesh)[0].image), 1e-4);
+    setup.gl.half = true;
+    // About 20 blends of a half's 2^-12 each, of values around one.
+    EXPECT_LT(difference(cpu, rendered(setup, mesh)[0].image), 20 * 0x1p-12);
+  }
+}
+
+TEST(GlCompositing, FramesFollowOneAnother) {
+  TESSERA_NEEDS_OSMESA();
+  GlJobSetup setup;
+  setup.frames = 3;
+  const auto frames = rendered(setup, small_cube());
+  ASSERT_EQ(frames.size(), 3u);
+  // Which fragments go in which batch varies; what becomes of them does not.
+  EXPECT_EQ(frames[0].image.rgba, frames[1].image.rgba);
+  EXPECT_EQ(frames[0].image.rgba, frames[2].image.rgba);
+}
+
+/// The one error of a job.
+scene::Error error_of(const GlJobSetup& setup) {
+  try {
+    rendered(setup, small_cube());
+  } catch (const scene::Error& error) {
+    return error;
+  }
+  ADD_FAILURE() << "no error";
+  return scene::bad_input("");
+}
+
+TEST(GlCompositing, ADeviceThatFailsUnderWayEndsTheJobOnAllRanks) {
+  TESSERA_NEEDS_OSMESA();
+  for (const auto fault : {compositor::GlFault::lost, compositor::GlFault::memory}) {
+    GlJobSetup setup;
+    setup.projectors = setup.compositors = 2;
+    setup.gl.fault = fault;
+    setup.gl.fault_after = 1;
+    setup.frames = 3;
+    const scene::Error error = error_of(setup);
+    EXPECT_EQ(error.code(), scene::ExitCode::system_failure);
+    EXPECT_NE(std::string(error.what()).find("OSMesa, "), std::string::npos) << error.what();
+  }
+}
+
+TEST(GlCompositing, BackendsMustBeOneOrOneForEachCompositor) {
+  GlJobSetup setup;
+  setup.compositors = 3;
+  setup.backends = {Backend::cpu, Backend::osmesa};
+  EXPECT_EQ(error_of(setup).code(), scene::ExitCode::bad_input);
+}
+
+TEST(GlCompositing, AutomaticGoesOnWithTheCpuWhereTheDeviceFailsAndSaysSo) {
+  try {
+    static_cast<void>(gl::open_context(gl::Platform::egl));
+  } catch (const scene::Error& error) {
+    GTEST_SKIP() << error.what();
+  }
+  const scene::TetMesh mesh = small_cube();
+  GlJobSetup setup;
+  setup.backends = {Backend::cpu};
+  const Image cpu = rendered(setup, mesh)[0].image;
+  setup.backends = {Backend::automatic};
+  setup.gl.fault = compositor::GlFault::lost;
+  for (const int after : {0, 2}) {
+    setup.gl.fault_after = after;
+    const auto frames = rendered(setup, mesh);
+    EXPECT_LT(difference(cpu, frames[0].image), 5e-6);
+    EXPECT_NE(frames[0].statistics.composited_on.find("1 failed"), std::string::npos)
+        << frames[0].statistics.composited_on;
+  }
+}
+
+}  // namespace
+}  // namespace tessera::frame
