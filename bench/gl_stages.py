@@ -15,7 +15,7 @@ import tempfile
 def self_times(trace):
     """Milliseconds of each stage, for threads and (without CPU time) for the device's row."""
     rows = collections.defaultdict(list)
-    for event in json.load(open(trace)):
+    for event in json.load(open(trace))["traceEvents"]:
         if event.get("ph") == "X" and event["name"] != "frame":
             rows[event["tid"]].append(event)
     times, passes = collections.Counter(), collections.Counter()

@@ -124,7 +124,7 @@ class GlCompositor::Worker {
 };
 
 GlCompositor::GlCompositor(gl::Platform platform, const GlSettings& settings, scene::Trace* trace)
-    : worker_(std::make_unique<Worker>(platform, settings, trace)) {
+    : method_(settings.method), worker_(std::make_unique<Worker>(platform, settings, trace)) {
   name_ =
       fmt::format("{} ({})", settings.method == GlMethod::compute ? "gl-compute" : "gl-fragment", worker_->opened());
 }

@@ -43,6 +43,7 @@ class GlCompositor {
   GlCompositor(const GlCompositor&) = delete;
   GlCompositor& operator=(const GlCompositor&) = delete;
 
+  [[nodiscard]] GlMethod method() const { return method_; }
   /// "gl-compute (OSMesa, llvmpipe ...)".
   [[nodiscard]] const std::string& name() const { return name_; }
 
@@ -55,6 +56,7 @@ class GlCompositor {
 
  private:
   class Worker;
+  GlMethod method_;
   std::string name_;
   std::unique_ptr<Worker> worker_;
 };

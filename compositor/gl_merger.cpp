@@ -71,7 +71,8 @@ class GlMerger final : public TileMerger {
                   double(run.back),
                   {run.red, run.green, run.blue, run.optical_depth},
                   header.pixel,
-                  ordered(run.optical_depth)});
+                  ordered(run.optical_depth),
+                  0});
           }
           for (int i = 0; i < header.segments; ++i) add(header.pixel, reader.take<projection::LatticeSegment>());
           break;
@@ -102,6 +103,7 @@ class GlMerger final : public TileMerger {
           break;
         }
       }
+    integrate_batch();
   }
 
   void advance(double final_depth) override {
@@ -135,6 +137,7 @@ class GlMerger final : public TileMerger {
     double front, back;          ///< steps of the lattice, or planar depth
     std::array<float, 4> value;  ///< GlFragments
     std::uint32_t pixel, tie;
+    float along = 0;  ///< of light: where it begins, 0 at the front to 1 at the back
   };
   struct Pixel {
     double red = 0, green = 0, blue = 0, transmittance = 1, optical_depth = 0;
@@ -143,6 +146,11 @@ class GlMerger final : public TileMerger {
   };
 
   [[nodiscard]] bool on_lattice() const { return context_.on_lattice; }
+  /// What the lattice does not hold (very steep or thick transfer functions) is beyond `exact` in floats: such segments
+  /// are integrated here, in double, and the device sorts and composites their light.
+  [[nodiscard]] bool integrates_here() const {
+    return !on_lattice() && rules_.samples == 0 && context_.device->method() == GlMethod::compute;
+  }
 
   void check(const TilePart& part, std::uint32_t pixel) const {
     if (pixel < pixels_.size()) return;
@@ -171,12 +179,35 @@ class GlMerger final : public TileMerger {
   }
 
   void add(std::uint32_t pixel, double front, double back, double scalar_front, double scalar_back, std::uint32_t tie) {
-    push({front,
-          back,
-          {static_cast<float>((back - front) * length_[pixel] / units_.depth_unit), device_scalar(scalar_front, units_),
-           device_scalar(scalar_back, units_), -1},
-          pixel,
-          tie});
+    if (!pixels_[pixel].open) return;
+    Fragment fragment{front, back, {}, pixel, tie, 0};
+    if (integrates_here()) {
+      const std::size_t i = batch_.size++;
+      batch_.reserve(std::max(batch_.size, 2 * i));
+      batch_.length[i] = (back - front) * length_[pixel];
+      batch_.scalar_front[i] = scalar_front;
+      batch_.scalar_back[i] = scalar_back;
+    } else {
+      fragment.value = {static_cast<float>((back - front) * length_[pixel] / units_.depth_unit),
+                        device_scalar(scalar_front, units_), device_scalar(scalar_back, units_), -1};
+    }
+    fragments_.push_back(fragment);
+  }
+
+  /// The batch's light takes the place of the last fragments' values.
+  void integrate_batch() {
+    if (batch_.size == 0) return;
+    context_.integrator->integrate(batch_);
+    const std::size_t first = fragments_.size() - batch_.size;
+    for (std::size_t i = 0; i < batch_.size; ++i) {
+      Fragment& fragment = fragments_[first + i];
+      fragment.value = {static_cast<float>(batch_.red[i]), static_cast<float>(batch_.green[i]),
+                        static_cast<float>(batch_.blue[i]), static_cast<float>(batch_.optical_depth[i])};
+      if (batch_.optical_depth[i] > 0)
+        fragment.along = static_cast<float>(
+            context_.integrator->first_visible(batch_.scalar_front[i], batch_.scalar_back[i]).value_or(0));
+    }
+    batch_.size = 0;
   }
 
   void add_chain(const TilePart& part, RecordReader& reader) {
@@ -293,7 +324,7 @@ class GlMerger final : public TileMerger {
 
   [[nodiscard]] double visible_depth(const Fragment& f) const {
     const auto depth = [&](double at) { return on_lattice() ? units_.depth(at) : at; };
-    if (f.value[3] >= 0) return depth(f.front);  // a run begins where it shows
+    if (f.value[3] >= 0) return depth(f.front) + (depth(f.back) - depth(f.front)) * f.along;
     const auto scalar = [&](float at) { return units_.scalar(double{at}); };
     const double along = context_.integrator->first_visible(scalar(f.value[1]), scalar(f.value[2])).value_or(0);
     return depth(f.front) + (depth(f.back) - depth(f.front)) * along;
@@ -307,6 +338,7 @@ class GlMerger final : public TileMerger {
   std::vector<Pixel> pixels_;
   std::vector<double> length_;  ///< world length per unit of planar depth, by pixel
   std::vector<Fragment> fragments_;
+  SegmentBatch batch_;
   bool by_back_ = false;
   std::uint32_t arrivals_ = 0;
 };
