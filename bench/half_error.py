@@ -74,7 +74,7 @@ def main():
             frame = json.load(open(report))["frames"][0]
             depth = frame["counters"].get("most_segments_of_a_pixel")
             if not depth:
-                depth = int(parameters[0][2:]) * (2 if kind == "stack" else 3)  # a voxel's six tets: about three on a ray
+                depth = int(parameters[0].split("=")[1]) * (2 if kind == "stack" else 3)  # a voxel's six tets: about three on a ray
             errors = [max(abs(a - b) for a, b in zip(pictures[0], p)) for p in pictures[1:]]
             rows.append((depth, *errors))
     print("| ray segments of the deepest pixel, about | 16-bit framebuffer | 32-bit framebuffer |\n|---|---|---|")

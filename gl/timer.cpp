@@ -6,11 +6,22 @@
 namespace tessera::gl {
 
 StageTimer::StageTimer(const Context& context, scene::Trace* trace) : context_(&context), trace_(trace) {
-  // Rows are threads: the device takes the number of one that does nothing else.
-  if (trace_ != nullptr) std::thread([this] { row_ = trace_->thread_number(); }).join();
+  if (trace_ == nullptr) return;
+  // Rows are threads: the device has the number of one that does nothing else, and lives as long, as a number may go to
+  // the next thread.
+  row_thread_ = std::thread([this] {
+    row_ = trace_->thread_number();
+    numbered_.release();
+    ended_.acquire();
+  });
+  numbered_.acquire();
 }
 
 StageTimer::~StageTimer() {
+  if (row_thread_.joinable()) {
+    ended_.release();
+    row_thread_.join();
+  }
   if (!queries_.empty()) context_->gl().DeleteQueries(static_cast<GLsizei>(queries_.size()), queries_.data());
 }
 

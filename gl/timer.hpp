@@ -1,5 +1,7 @@
 #pragma once
 
+#include <semaphore>
+#include <thread>
 #include <vector>
 
 #include "gl/context.hpp"
@@ -33,6 +35,8 @@ class StageTimer {
 
   const Context* context_;
   scene::Trace* trace_;
+  std::thread row_thread_;
+  std::binary_semaphore numbered_{0}, ended_{0};
   std::uint32_t row_ = 0;
   std::int32_t frame_ = -1;
   double offset_us_ = 0;  ///< device's clock to the trace's

@@ -53,7 +53,8 @@ TEST_F(GlRender, OneProcessComputesWithinTheExactPromiseAndSaysWhere) {
   EXPECT_EQ(report.at("method").at("compositor"), "gl-compute");
   EXPECT_TRUE(report.at("frames").at(0).at("backend").get<std::string>().starts_with("gl-compute (OSMesa"));
   std::size_t passes = 0;
-  for (const auto& event : nlohmann::json::parse(contents(folder / "trace.json")).at("traceEvents"))
+  const auto trace = nlohmann::json::parse(contents(folder / "trace.json"));
+  for (const auto& event : trace.at("traceEvents"))
     if (event.at("name") == "sort" && event.at("args").contains("passes"))
       passes += event.at("args").at("passes").get<int>();
   EXPECT_GE(passes, 1u);
