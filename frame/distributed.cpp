@@ -66,6 +66,10 @@ void render_distributed(compositor::Transport& transport, const DistributedSetti
   if (on_device && settings.compositing_on.gl.method == compositor::GlMethod::fragment &&
       settings.exchange == Exchange::runs)
     throw scene::bad_input("--exchange runs: --compositor gl-fragment takes ray segments; use --exchange segments");
+  if (on_device && settings.compositing_on.gl.method == compositor::GlMethod::fragment &&
+      (settings.render.integrator.kind == scene::IntegratorKind::preintegrated ||
+       settings.render.integrator.kind == scene::IntegratorKind::partial))
+    throw scene::bad_input("--integrator: --compositor gl-fragment knows sampled:N, exact and auto; use one of these");
   const int self = transport.rank();
   std::optional<LoadedMesh> loaded;
   if (!jobs.empty()) {
