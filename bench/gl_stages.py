@@ -27,7 +27,7 @@ def self_times(trace):
                 open_spans.pop()
             key = (device, e["name"])
             times[key] += e["dur"] / 1e3
-            passes[key] += e["args"].get("passes", 0)
+            passes[key] += e["args"].get("messages", 0)
             if open_spans:
                 times[(device, open_spans[-1]["name"])] -= e["dur"] / 1e3
             open_spans.append(e)

@@ -64,7 +64,7 @@ void StageTimer::collect() {
       span.start_us = 1e-3 * static_cast<double>(last) + offset_us_;
       span.wall_us = 1e-3 * static_cast<double>(std::max(now, last) - last);
       span.frame = frame_;
-      span.passes = laps_[i - 1].passes;
+      span.messages = laps_[i - 1].passes;
       span.role = trace_->role();
       trace_->add(span);
     }

@@ -21,7 +21,8 @@ class StageTimer {
 
   /// Commands that follow belong to no stage until the first lap().
   void begin(std::int32_t frame);
-  /// The commands since the last lap were `stage`, a string literal, in so many passes over the lists.
+  /// The commands since the last lap were `stage`, a string literal, in so many passes over the lists: the trace has
+  /// them as the messages that they are, to the device.
   void lap(const char* stage, std::uint32_t passes = 0);
   /// Adds the spans to the trace; the device must be through with the commands.
   void collect();

@@ -61,7 +61,6 @@ class EventText {
     if (span.frame >= 0) count(R"(,"frame":)", static_cast<std::uint64_t>(span.frame));
     if (span.bytes > 0) count(R"(,"bytes":)", span.bytes);
     if (span.messages > 0) count(R"(,"messages":)", span.messages);
-    if (span.passes > 0) count(R"(,"passes":)", span.passes);
     text_ += "}}";
   }
 

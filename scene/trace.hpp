@@ -41,7 +41,6 @@ struct TraceSpan {
   std::uint64_t bytes = 0;     ///< moved (pack, send, receive, read, write)
   std::uint32_t messages = 0;  ///< moved (send, receive)
   TraceRole role = TraceRole::both;
-  std::uint32_t passes = 0;  ///< over the lists, of a device that sorts in passes
 };
 
 /// Collects spans of all threads of a process. Give work a null pointer instead and timing costs nothing.

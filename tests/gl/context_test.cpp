@@ -196,7 +196,7 @@ TEST(StageTimer, StagesAreSpansOnARowOfTheirOwn) {
   const auto spans = trace.spans();
   ASSERT_EQ(spans.size(), 2u);
   EXPECT_STREQ(spans[0].stage, "sort");
-  EXPECT_EQ(spans[0].passes, 7u);
+  EXPECT_EQ(spans[0].messages, 7u);
   EXPECT_EQ(spans[0].frame, 3);
   EXPECT_NE(spans[0].thread, mine);
   EXPECT_GE(spans[0].wall_us, 0);
