@@ -55,8 +55,8 @@ TEST_F(GlRender, OneProcessComputesWithinTheExactPromiseAndSaysWhere) {
   std::size_t passes = 0;
   const auto trace = nlohmann::json::parse(contents(folder / "trace.json"));
   for (const auto& event : trace.at("traceEvents"))
-    if (event.at("name") == "sort" && event.at("args").contains("passes"))
-      passes += event.at("args").at("passes").get<int>();
+    if (event.at("name") == "sort" && event.at("args").contains("messages"))
+      passes += event.at("args").at("messages").get<int>();
   EXPECT_GE(passes, 1u);
   const auto timing = tessera({"timing", folder / "trace.json"});
   EXPECT_EQ(timing.status, 0) << timing.err;
