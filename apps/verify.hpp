@@ -13,8 +13,8 @@
 namespace tessera::apps {
 
 /// The largest error that is promised, in linear RGBA: 2e-5 for exact, what was asked for automatic, none for sampled,
-/// preintegrated and partial, with the scanline rasterizer, or composited as printed (gl-fragment): there the error is only
-/// reported.
+/// preintegrated and partial, with the scanline rasterizer, or composited as printed (gl-fragment): there the error is
+/// only reported.
 std::optional<double> promised_error(const frame::RenderSettings& settings);
 
 struct Verification {
