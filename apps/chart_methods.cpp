@@ -54,18 +54,26 @@ class VolumeRenderer final : public ChartRenderer {
   volume::Renderer renderer_;
 };
 
-/// Two ranks of one thread each, as threads of this process: every other cell to each, the worst partition there is.
-class ExchangeRenderer final : public ChartRenderer {
+/// Ranks of one thread each as threads of this process, every other cell to each, the worst partition there is; or one
+/// rank with all threads, whose compositor may be a device.
+class RanksRenderer final : public ChartRenderer {
  public:
-  ExchangeRenderer(const ChartScene& scene, const frame::RenderSettings& render, frame::Exchange exchange)
-      : scene_(scene), facts_(scene::facts_of(*scene.mesh)) {
+  RanksRenderer(const ChartScene& scene, const frame::RenderSettings& render, frame::Exchange exchange, int ranks,
+                const frame::CompositingSettings& compositing_on)
+      : scene_(scene),
+        facts_(scene::facts_of(*scene.mesh)),
+        ranks_(ranks),
+        parts_(static_cast<std::size_t>(ranks)),
+        ids_(static_cast<std::size_t>(ranks)) {
     settings_.render = render;
-    settings_.render.threads = 1;
+    if (ranks > 1) settings_.render.threads = 1;
     settings_.exchange = exchange;
+    settings_.compositing_on = compositing_on;
     settings_.roles = frame::assign_roles(ranks, ranks, ranks);
-    for (std::uint32_t rank = 0; rank < ranks; ++rank) {
+    for (std::size_t rank = 0; rank < parts_.size(); ++rank) {
       std::vector<std::uint32_t> tets;
-      for (std::uint32_t t = rank; t < scene.mesh->tets.size(); t += ranks) tets.push_back(t);
+      for (std::size_t t = rank; t < scene.mesh->tets.size(); t += parts_.size())
+        tets.push_back(static_cast<std::uint32_t>(t));
       ids_[rank].assign(tets.begin(), tets.end());
       parts_[rank] = std::make_shared<const scene::TetMesh>(scene::subset(*scene.mesh, tets));
     }
@@ -74,7 +82,7 @@ class ExchangeRenderer final : public ChartRenderer {
     scene::Image image;
     const std::vector<frame::FrameJob> jobs = {{scene_.camera, scene_.size, 0}};
     double ms = 0;
-    compositor::run_ranks(ranks, [&](compositor::Transport& transport) {
+    compositor::run_ranks(ranks_, [&](compositor::Transport& transport) {
       render_distributed(
           transport, settings_, jobs, scene_.function,
           [&](std::size_t) {
@@ -92,12 +100,12 @@ class ExchangeRenderer final : public ChartRenderer {
   }
 
  private:
-  static constexpr int ranks = 2;
   const ChartScene& scene_;
   scene::MeshFacts facts_;
+  int ranks_;
   frame::DistributedSettings settings_;
-  std::shared_ptr<const scene::TetMesh> parts_[ranks];
-  std::vector<std::uint64_t> ids_[ranks];
+  std::vector<std::shared_ptr<const scene::TetMesh>> parts_;
+  std::vector<std::vector<std::uint64_t>> ids_;
 };
 
 std::vector<ChartMethod> mesh_methods(const ChartScene& scene) {
@@ -158,13 +166,34 @@ std::vector<ChartMethod> mesh_methods(const ChartScene& scene) {
     methods.push_back({"two ranks, every other cell", fmt::format("exchange {}", word),
                        fmt::format("mpirun -n 2, --exchange {} --partition random", word),
                        [s = settings(planes, {}), exchange = exchange](const ChartScene& all) {
-                         return std::make_unique<ExchangeRenderer>(all, s, exchange);
+                         return std::make_unique<RanksRenderer>(all, s, exchange, 2, frame::CompositingSettings());
                        },
                        ""});
   for (const int n : {1, 2, 8}) sampled(scanline, n);
   for (const int n : {16, 32}) sampled(planes, n);
-  for (const char* gl : {"gl-compute", "gl-fragment"})
-    methods.push_back({gl, gl, fmt::format("--compositor {}", gl), nullptr, "OpenGL compositors are not built in"});
+  const auto device = [&](const std::string& options, compositor::GlMethod method, bool half,
+                          const scene::Integrator& integrator) {
+    frame::CompositingSettings on;
+    on.backends = {frame::Backend::osmesa};
+    on.gl.method = method;
+    on.gl.half = half;
+    const bool compute = method == compositor::GlMethod::compute;
+    const std::string name = fmt::format("{} {}",
+                                         compute ? "gl-compute"
+                                         : half  ? "gl-fragment half"
+                                                 : "gl-fragment float",
+                                         compute ? "exact" : "sampled:4");
+    methods.push_back({compute ? "gl-compute" : "gl-fragment", name, "--backend osmesa " + options,
+                       [s = settings(planes, integrator), on](const ChartScene& all) {
+                         return std::make_unique<RanksRenderer>(all, s, frame::Exchange::segments, 1, on);
+                       },
+                       ""});
+  };
+  using compositor::GlMethod;
+  const scene::Integrator four{.kind = IntegratorKind::sampled, .samples = 4};
+  device("--compositor gl-compute --integrator exact", GlMethod::compute, false, {.kind = IntegratorKind::exact});
+  device("--compositor gl-fragment --framebuffer float --integrator sampled:4", GlMethod::fragment, false, four);
+  device("--compositor gl-fragment --framebuffer half --integrator sampled:4", GlMethod::fragment, true, four);
   return methods;
 }
 
