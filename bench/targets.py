@@ -194,7 +194,7 @@ def modes(b):
 def write(args, b, load):
     cpu = next((l.split(":", 1)[1].strip() for l in open("/proc/cpuinfo") if l.startswith("model name")), "?")
     commit = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], capture_output=True, text=True)
-    words = re.sub(r"(--(?:tessera|work|data) )\S*/", r"\1", " ".join(sys.argv[1:]))
+    words = re.sub(r"(--(?:tessera|work|data|json) )\S*/", r"\1", " ".join(sys.argv[1:]))
     text = [BEGIN, "", f"{datetime.date.today().isoformat()}, commit {commit.stdout.strip()}: {cpu}, {os.cpu_count()} cores, "
             f"load average before {load:.1f}, after {os.getloadavg()[0]:.1f}.", "", f"`bench/targets.py {words}`", "",
             "| what | wanted | reached |", "|---|---|---|"]
