@@ -23,7 +23,8 @@ struct WindowState {
       projection::SegmentWindows::most_pixels + projection::SegmentWindows::pixel_padding;
   static constexpr std::int32_t not_yet = 0x7fffffff;
 
-  alignas(64) std::array<double, pixels> red, green, blue, optical_depth, transmittance;
+  alignas(64) std::array<double, pixels> red, green, blue, transmittance;
+  alignas(64) std::array<double, pixels> optical_depth;   ///< runs only: a picture's opacity is 1 - transmittance
   alignas(64) std::array<float, pixels> length_per_step;  ///< world units, in the lattice's unit of depth
   alignas(64) std::array<std::int32_t, pixels> open;      ///< -1 or 0: takes nothing any more
   /// The run's first segment with optical depth (or light); first_back is not_yet before there is one.
