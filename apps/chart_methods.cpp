@@ -22,11 +22,15 @@ double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-class MeshRenderer final : public ChartRenderer {
+/// A mesh's or a volume's renderer, in this process alone.
+template <class Renderer>
+class LocalRenderer final : public ChartRenderer {
  public:
-  MeshRenderer(const ChartScene& scene, const frame::RenderSettings& settings)
-      : scene_(scene), renderer_(*scene.mesh, settings) {
-    renderer_.render(scene_.camera, {1, 1}, scene_.function);  // makes the transfer function's tables
+  template <class Data, class Settings>
+  LocalRenderer(const ChartScene& scene, const Data& data, const Settings& settings)
+      : scene_(scene), renderer_(data, settings) {
+    // Makes the tables of the transfer function, which a mesh's renderer keeps.
+    if (scene.mesh != nullptr) renderer_.render(scene_.camera, {1, 1}, scene_.function);
   }
   std::pair<scene::Image, double> frame() override {
     const auto start = Clock::now();
@@ -36,22 +40,7 @@ class MeshRenderer final : public ChartRenderer {
 
  private:
   const ChartScene& scene_;
-  frame::Renderer renderer_;
-};
-
-class VolumeRenderer final : public ChartRenderer {
- public:
-  VolumeRenderer(const ChartScene& scene, const volume::RenderSettings& settings)
-      : scene_(scene), renderer_(*scene.volume, settings) {}
-  std::pair<scene::Image, double> frame() override {
-    const auto start = Clock::now();
-    scene::Image image = renderer_.render(scene_.camera, scene_.size, scene_.function);
-    return {std::move(image), ms_since(start)};
-  }
-
- private:
-  const ChartScene& scene_;
-  volume::Renderer renderer_;
+  Renderer renderer_;
 };
 
 /// Ranks of one thread each as threads of this process, every other cell to each, the worst partition there is; or one
@@ -130,7 +119,7 @@ std::vector<ChartMethod> mesh_methods(const ChartScene& scene) {
     if (integrator.kind == IntegratorKind::partial && scene.emission == scene::Emission::independent)
       method.left_out = "partial knows emission by absorption only";
     method.make = [s = settings(rasterizer, integrator)](const ChartScene& all) {
-      return std::make_unique<MeshRenderer>(all, s);
+      return std::make_unique<LocalRenderer<frame::Renderer>>(all, *all.mesh, s);
     };
     methods.push_back(std::move(method));
   };
@@ -208,7 +197,9 @@ std::vector<ChartMethod> volume_methods(const ChartScene& scene) {
     s.threads = scene.threads;
     s.memory_bytes = scene.memory_bytes;
     methods.push_back(
-        {family, name, options, [s](const ChartScene& all) { return std::make_unique<VolumeRenderer>(all, s); }, ""});
+        {family, name, options,
+         [s](const ChartScene& all) { return std::make_unique<LocalRenderer<volume::Renderer>>(all, *all.volume, s); },
+         ""});
   };
   const auto automatic = [&](double accuracy) {
     add("auto", fmt::format("auto {:g}", accuracy), fmt::format("--accuracy {:g}", accuracy), volume::Method::automatic,

@@ -13,6 +13,7 @@
 #include "compositor/gl_compositor.hpp"
 #include "compositor/gl_fallback.hpp"
 #include "compositor/merge_kinds.hpp"
+#include "compositor/merged_pixel.hpp"
 #include "compositor/window_kernel.hpp"
 #include "projection/segment_tuple.hpp"
 
@@ -119,18 +120,7 @@ class GlMerger final : public TileMerger {
     fragments_.erase(fragments_.begin(), rest);
   }
 
-  MergedTile finish() override {
-    scene::Image image({rect_.width(), rect_.height()});
-    for (std::size_t i = 0; i < pixels_.size(); ++i) {
-      const Pixel& pixel = pixels_[i];
-      image.rgba[4 * i + 0] = static_cast<float>(pixel.red);
-      image.rgba[4 * i + 1] = static_cast<float>(pixel.green);
-      image.rgba[4 * i + 2] = static_cast<float>(pixel.blue);
-      image.rgba[4 * i + 3] = static_cast<float>(-std::expm1(-pixel.optical_depth));
-      image.depth[i] = static_cast<float>(pixel.first_depth);
-    }
-    return {std::move(image), {}, {}};
-  }
+  MergedTile finish() override { return {image_of(pixels_, {rect_.width(), rect_.height()}), {}, {}}; }
 
  private:
   struct Fragment {
@@ -138,11 +128,6 @@ class GlMerger final : public TileMerger {
     std::array<float, 4> value;  ///< GlFragments
     std::uint32_t pixel, tie;
     float along = 0;  ///< of light: where it begins, 0 at the front to 1 at the back
-  };
-  struct Pixel {
-    double red = 0, green = 0, blue = 0, transmittance = 1, optical_depth = 0;
-    double first_depth = std::numeric_limits<double>::infinity();
-    bool open = true;
   };
 
   [[nodiscard]] bool on_lattice() const { return context_.on_lattice; }
@@ -310,7 +295,7 @@ class GlMerger final : public TileMerger {
   }
 
   /// All of the light lies behind what the pixel has.
-  void add_light(const GlLight& light, const Fragment* first, Pixel& pixel) const {
+  void add_light(const GlLight& light, const Fragment* first, MergedPixel& pixel) const {
     if (!pixel.open) return;
     if (pixel.optical_depth == 0 && first != nullptr && std::isinf(pixel.first_depth))
       pixel.first_depth = visible_depth(*first);
@@ -335,7 +320,7 @@ class GlMerger final : public TileMerger {
   projection::PixelRect rect_;
   double weight_;
   GlRules rules_;
-  std::vector<Pixel> pixels_;
+  std::vector<MergedPixel> pixels_;
   std::vector<double> length_;  ///< world length per unit of planar depth, by pixel
   std::vector<Fragment> fragments_;
   SegmentBatch batch_;

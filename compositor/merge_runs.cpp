@@ -10,6 +10,7 @@
 
 #include "compositor/integrate_lanes.hpp"
 #include "compositor/merge_kinds.hpp"
+#include "compositor/merged_pixel.hpp"
 #include "compositor/window_kernel.hpp"
 
 namespace tessera::compositor {
@@ -85,26 +86,9 @@ class RunMerger final : public TileMerger {
     std::erase_if(runs_, [&](const RunRecord& run) { return run.front < final_depth; });
   }
 
-  MergedTile finish() override {
-    scene::Image image({rect_.x1 - rect_.x0, rect_.y1 - rect_.y0});
-    for (std::size_t i = 0; i < pixels_.size(); ++i) {
-      const Pixel& pixel = pixels_[i];
-      image.rgba[4 * i + 0] = static_cast<float>(pixel.red);
-      image.rgba[4 * i + 1] = static_cast<float>(pixel.green);
-      image.rgba[4 * i + 2] = static_cast<float>(pixel.blue);
-      image.rgba[4 * i + 3] = static_cast<float>(-std::expm1(-pixel.optical_depth));
-      image.depth[i] = static_cast<float>(pixel.first_depth);
-    }
-    return {std::move(image), {}, {}};
-  }
+  MergedTile finish() override { return {image_of(pixels_, {rect_.width(), rect_.height()}), {}, {}}; }
 
  private:
-  struct Pixel {
-    double red = 0, green = 0, blue = 0, transmittance = 1, optical_depth = 0;
-    double first_depth = std::numeric_limits<double>::infinity();
-    bool open = true;
-  };
-
   /// Numbers of runs, pixel by pixel: those of pixel p are order_[first_of_[p]] up to order_[first_of_[p + 1]].
   void deal_to_pixels() {
     first_of_.assign(pixels_.size() + 1, 0);
@@ -138,7 +122,7 @@ class RunMerger final : public TileMerger {
     }
   }
 
-  void composite(const RunRecord& run, Pixel& pixel) const {
+  void composite(const RunRecord& run, MergedPixel& pixel) const {
     if (!pixel.open) return;
     if (pixel.optical_depth == 0 && run.optical_depth > 0) pixel.first_depth = run.front;
     pixel.red += pixel.transmittance * double{run.red};
@@ -153,7 +137,7 @@ class RunMerger final : public TileMerger {
   std::uint64_t budget_;
   projection::PixelRect rect_;
   double weight_, termination_error_;
-  std::vector<Pixel> pixels_;
+  std::vector<MergedPixel> pixels_;
   std::vector<RunRecord> runs_;
   std::vector<std::uint32_t> order_, first_of_, next_;
   struct Single {
