@@ -1,17 +1,20 @@
 #!/usr/bin/env python3
-"""Renders a tetrahedral mesh with VTK's unstructured-grid ray caster (Bunyk), timed.
+"""Renders a tetrahedral mesh or a regular grid with VTK's software ray casters, timed.
 
-    xvfb-run -a /usr/bin/python3 vtk_raycast.py MESH --camera CAM.txt --transfer-function TF.txt
-        [--integrator full|partial] [--repeat K] [--threads T] [--output OUT.pfm] [--json OUT.json]
+    xvfb-run -a /usr/bin/python3 vtk_raycast.py MESH --camera CAM.txt --transfer-function TF.txt [--caster bunyk|zsweep]
+        [--integrator full|partial|linear|homogeneous] [--repeat K] [--threads T] [--output OUT.pfm] [--json OUT.json]
 
 MESH is .tets or .vtu (linear tets only); camera and transfer function are Tessera's text files. Needs python3-vtk9,
-python3-numpy and a display (xvfb-run). Also a module: `render` is what compare_vtk.py calls.
+python3-numpy and a display (xvfb-run). Also a module: `render` and `render_grid` are what compare_vtk.py and
+vtk_chart.py call.
 
-What VTK does differently, and is measured as it is: the picture is 8-bit; with `full` the integral comes from a table
+What VTK does differently, and is measured as it is: the picture is 8-bit. With `full` the integral comes from a table
 (vtkUnstructuredGridPreIntegration), with `partial` from Moreland and Angel's formula and tables for opacity
-(vtkUnstructuredGridPartialPreIntegration). VTK's unstructured mappers read "opacity" as extinction per unit distance,
-so extinctions pass unchanged. A frame is the time of vtkRenderWindow::Render() after a change of the camera, so that
-nothing is reused but what VTK keeps by itself (the faces' neighbours, built in the first frame).
+(vtkUnstructuredGridPartialPreIntegration), with `linear` from a formula for colour and opacity that are linear along a
+segment, with `homogeneous` from their means. VTK's unstructured mappers read "opacity" as extinction per unit distance,
+so extinctions pass unchanged. The fixed-point caster of grids keeps opacity and colour in 15 bits, and of 8-bit samples
+takes the transfer function at whole values alone. A frame is the time of vtkRenderWindow::Render() after a change of
+the camera, so that nothing is reused but what VTK keeps by itself (the faces' neighbours, built in the first frame).
 """
 import argparse
 import json
@@ -69,32 +72,70 @@ def grid_of(points, corners, scalars, on_cells=False):
     return grid
 
 
-def render(grid, camera, knots, integrator="partial", repeat=0, threads=None, cells=False):
-    """(linear RGB, row 0 at the top, float32 [h, w, 3]; seconds of the first frame; list of `repeat` frames' seconds)"""
+INTEGRATORS = {"full": vtk.vtkUnstructuredGridPreIntegration, "partial": vtk.vtkUnstructuredGridPartialPreIntegration,
+               "linear": vtk.vtkUnstructuredGridLinearRayIntegrator,
+               "homogeneous": vtk.vtkUnstructuredGridHomogeneousRayIntegrator}
+
+
+def render(grid, camera, knots, integrator="partial", repeat=0, threads=None, cells=False, caster="bunyk", seconds=None):
+    """(linear RGB, row 0 at the top, float32 [h, w, 3]; seconds of the first frame; list of `repeat` frames' seconds).
+    With `seconds`, no further frame once these are spent."""
     color, extinction = vtk.vtkColorTransferFunction(), vtk.vtkPiecewiseFunction()
     color.AllowDuplicateScalarsOn()
     extinction.AllowDuplicateScalarsOn()
     for value, r, g, b, kappa in knots:
         color.AddRGBPoint(value, r, g, b)
         extinction.AddPoint(value, kappa)
-    prop = vtk.vtkVolumeProperty()
-    prop.SetColor(color)
-    prop.SetScalarOpacity(extinction)
-    prop.SetScalarOpacityUnitDistance(1.0)
-    prop.SetInterpolationTypeToLinear()
-    prop.ShadeOff()
-
-    mapper = vtk.vtkUnstructuredGridVolumeRayCastMapper()
-    mapper.SetRayCastFunction(vtk.vtkUnstructuredGridBunykRayCastFunction())
-    mapper.SetRayIntegrator({"full": vtk.vtkUnstructuredGridPreIntegration,
-                             "partial": vtk.vtkUnstructuredGridPartialPreIntegration}[integrator]())
+    if caster == "bunyk":
+        mapper = vtk.vtkUnstructuredGridVolumeRayCastMapper()
+        mapper.SetRayCastFunction(vtk.vtkUnstructuredGridBunykRayCastFunction())
+        if threads:
+            mapper.SetNumberOfThreads(threads)
+    else:
+        mapper = vtk.vtkUnstructuredGridVolumeZSweepMapper()
+    mapper.SetRayIntegrator(INTEGRATORS[integrator]())
     mapper.AutoAdjustSampleDistancesOff()
     mapper.SetImageSampleDistance(1.0)
-    if threads:
-        mapper.SetNumberOfThreads(threads)
     if cells:
         mapper.SetScalarModeToUseCellData()
     mapper.SetInputData(grid)
+    return frames(mapper, color, extinction, 1.0, camera, repeat, seconds)
+
+
+def render_grid(image, camera, knots, step, repeat=0, threads=None, seconds=None):
+    """As render(), of a vtkImageData with vtkFixedPointVolumeRayCastMapper. `step` in voxels (cube root of a voxel's
+    volume)."""
+    distance = step * float(np.prod(image.GetSpacing())) ** (1 / 3)
+    color, opacity = vtk.vtkColorTransferFunction(), vtk.vtkPiecewiseFunction()
+    color.AllowDuplicateScalarsOn()
+    opacity.AllowDuplicateScalarsOn()
+    for value, r, g, b, kappa in knots:
+        color.AddRGBPoint(value, r, g, b)
+    # Opacity is 1 - exp(-kappa d), which is no line between knots: knots in between keep VTK's function the same as ours.
+    for (v0, *_, k0), (v1, *_, k1) in zip(knots, knots[1:]):
+        for u in np.linspace(0, 1, 33) if v1 > v0 else ():
+            opacity.AddPoint(v0 + (v1 - v0) * u, -np.expm1(-(k0 + (k1 - k0) * u) * distance))
+    if len(knots) == 1:
+        opacity.AddPoint(knots[0][0], -np.expm1(-knots[0][4] * distance))
+    mapper = vtk.vtkFixedPointVolumeRayCastMapper()
+    mapper.AutoAdjustSampleDistancesOff()
+    mapper.LockSampleDistanceToInputSpacingOff()
+    mapper.SetImageSampleDistance(1.0)
+    mapper.SetSampleDistance(distance)
+    mapper.SetInteractiveSampleDistance(distance)
+    if threads:
+        mapper.SetNumberOfThreads(threads)
+    mapper.SetInputData(image)
+    return frames(mapper, color, opacity, distance, camera, repeat, seconds)
+
+
+def frames(mapper, color, opacity, unit_distance, camera, repeat, budget):
+    prop = vtk.vtkVolumeProperty()
+    prop.SetColor(color)
+    prop.SetScalarOpacity(opacity)
+    prop.SetScalarOpacityUnitDistance(unit_distance)
+    prop.SetInterpolationTypeToLinear()
+    prop.ShadeOff()
     volume = vtk.vtkVolume()
     volume.SetMapper(mapper)
     volume.SetProperty(prop)
@@ -117,17 +158,13 @@ def render(grid, camera, knots, integrator="partial", repeat=0, threads=None, ce
         view.SetParallelScale(camera["parallel_scale"][0])
     else:
         view.SetViewAngle(camera["view_angle"][0])
-    # VTK 9.1's unstructured ray caster casts a pixel's ray through its lower left corner, and spreads n pixels' rays over
-    # n - 1 pixels (measured: its pictures fit exact ones when moved by 0.50 pixel and shrunk by 1.0 pixel along both
-    # axes). The opposite transform after the projection puts its rays through the middles.
-    middle = vtk.vtkTransform()
-    middle.Translate(-1.0 / width, -1.0 / height, 0)
-    middle.Scale(1 - 1.0 / width, 1 - 1.0 / height, 1)
-    view.SetUserTransform(middle)
     renderer.ResetCameraClippingRange()
+    straighten(renderer, volume, width, height)
 
     seconds = []
     for frame in range(repeat + 1):
+        if frame > 1 and budget and sum(seconds) + seconds[-1] > budget:
+            break
         view.Modified()
         volume.Modified()
         start = time.perf_counter()
@@ -141,6 +178,43 @@ def render(grid, camera, knots, integrator="partial", repeat=0, threads=None, ce
     grab.Update()
     pixels = vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars()).reshape(height, width, -1)
     return pixels[::-1, :, :3].astype(np.float32) / 255, seconds[0], seconds[1:]
+
+
+def straighten(renderer, volume, width, height):
+    """Moves the view so that VTK's rays go through the middles of the window's pixels.
+
+    VTK 9.1 draws the n pixels' rays of its ray casters as a linearly interpolated texture whose first and last texel's
+    middles lie on the edges of n pixels: n rays over n - 1 pixels (measured on meshes by least squares: 1.0 pixel along
+    both axes). The opposite transform after the projection puts the rays where they are shown. What the interpolation
+    itself smears, half a pixel near the edges of the volume's window and nothing in its middle, stays.
+    """
+    view = renderer.GetActiveCamera()
+    mapper = volume.GetMapper()
+    straight = vtk.vtkTransform()
+    if mapper.IsA("vtkUnstructuredGridVolumeRayCastMapper"):
+        # Its texture is the window, and its rays go through the pixels' lower left corners (measured: 0.50 pixel).
+        straight.Translate(-1.0 / width, -1.0 / height, 0)
+        straight.Scale(1 - 1.0 / width, 1 - 1.0 / height, 1)
+    elif mapper.IsA("vtkFixedPointVolumeRayCastMapper"):
+        # Its texture is the window of the volume's box and two pixels about it.
+        low, high = [width, height], [0, 0]
+        bounds = volume.GetBounds()
+        for corner in range(8):
+            renderer.SetWorldPoint(*(bounds[2 * i + (corner >> i & 1)] for i in range(3)), 1.0)
+            renderer.WorldToDisplay()
+            for axis in range(2):
+                low[axis] = min(low[axis], renderer.GetDisplayPoint()[axis])
+                high[axis] = max(high[axis], renderer.GetDisplayPoint()[axis])
+        scale, shift = [], []
+        for axis, size in enumerate((width, height)):
+            first, last = max(low[axis] - 2, 0), min(high[axis] + 2, size - 1)
+            n = int(last - first + 1)
+            scale.append((n - 1) / n)
+            # Pixel x -> first + 0.5 + (x - first) (n - 1) / n, in coordinates of -1 to 1.
+            shift.append(2 * (int(first) / n + 0.5) / size - 1 + scale[-1])
+        straight.Translate(shift[0], shift[1], 0)
+        straight.Scale(scale[0], scale[1], 1)
+    view.SetUserTransform(straight)
 
 
 def write_pfm(path, rgb):
@@ -162,7 +236,8 @@ def main():
     parser.add_argument("mesh")
     parser.add_argument("--camera", required=True)
     parser.add_argument("--transfer-function", required=True)
-    parser.add_argument("--integrator", choices=["full", "partial"], default="partial")
+    parser.add_argument("--caster", choices=["bunyk", "zsweep"], default="bunyk")
+    parser.add_argument("--integrator", choices=list(INTEGRATORS), default="partial")
     parser.add_argument("--repeat", type=int, default=3)
     parser.add_argument("--threads", type=int)
     parser.add_argument("--output")
@@ -170,8 +245,8 @@ def main():
     args = parser.parse_args()
     grid = read_mesh(args.mesh)
     rgb, first, seconds = render(grid, read_camera(args.camera), read_knots(args.transfer_function), args.integrator,
-                                 args.repeat, args.threads)
-    figures = {"renderer": f"VTK {vtk.VTK_VERSION} Bunyk ray caster, {args.integrator} pre-integration",
+                                 args.repeat, args.threads, caster=args.caster)
+    figures = {"renderer": f"VTK {vtk.VTK_VERSION} {args.caster} ray caster, {args.integrator}",
                "tets": grid.GetNumberOfCells(), "first_ms": 1e3 * first, "frame_ms": [1e3 * s for s in seconds]}
     if args.output:
         write_pfm(args.output, rgb)
