@@ -36,12 +36,15 @@ void print_text(const std::filesystem::path& input, const MeshSummary& file, con
   for (const auto& note : file.notes) fmt::print("note      {}\n", note);
 }
 
-void print_finding(const char* name, const scene::MeshCheck::Finding& finding, const std::string& more = "") {
+void print_finding(const char* name, const scene::MeshCheck::Finding& finding, const std::string& more = "",
+                   bool pairs = false) {
   fmt::print("  {:<21} {}{}\n", name, finding.count, more);
   for (const auto& place : finding.places)
     fmt::print("    {}{} at ({:.9g} {:.9g} {:.9g}){}\n", place.cell,
-               place.other != place.cell ? fmt::format(" and {}", place.other) : "", place.at.x, place.at.y, place.at.z,
-               place.value > 0 ? fmt::format(", {:.3g}", place.value) : "");
+               place.other != place.cell ? fmt::format(" and {}", place.other)
+               : pairs                   ? " and itself"
+                                         : "",
+               place.at.x, place.at.y, place.at.z, place.value > 0 ? fmt::format(", {:.3g}", place.value) : "");
 }
 
 void print_check(const scene::MeshCheck& check) {
@@ -49,7 +52,7 @@ void print_check(const scene::MeshCheck& check) {
              check.clean() ? "every ray meets each place once"
                            : "cells overlap, fold or do not match; pictures are wrong where cells overlap");
   print_finding("overlapping pairs", check.overlaps,
-                fmt::format("{}, {} tets", check.more_overlaps ? " or more" : "", check.overlapping_cells));
+                fmt::format("{}, {} cells", check.more_overlaps ? " or more" : "", check.overlapping_cells), true);
   print_finding("folded tets", check.inverted);
   print_finding("non-conforming faces", check.non_conforming_faces);
   print_finding("flat tets", check.flat);

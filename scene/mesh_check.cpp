@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 #include <queue>
+#include <set>
 #include <unordered_set>
 
 #include "scene/box_tree.hpp"
@@ -141,8 +142,15 @@ class Check {
     const Corners c = corners_of(mesh_, tet);
     return {mesh_.cell_of(tet), mesh_.cell_of(other), 0.25 * (c[0] + c[1] + c[2] + c[3]), 0};
   }
+  /// A cell that several tets came from has one place in the list, whatever the count counts.
+  static void list(MeshCheck::Finding& finding, const MeshCheck::Place& place) {
+    if (finding.places.size() == MeshCheck::most_places) return;
+    for (const MeshCheck::Place& p : finding.places)
+      if (p.cell == place.cell && p.other == place.other) return;
+    finding.places.push_back(place);
+  }
   static void note(MeshCheck::Finding& finding, const MeshCheck::Place& place) {
-    if (finding.places.size() < MeshCheck::most_places) finding.places.push_back(place);
+    list(finding, place);
     ++finding.count;
   }
 
@@ -191,14 +199,15 @@ class Check {
       result_.slivers_1e6 += aspect > 1e6 ? 1 : 0;
       worst.emplace_back(-aspect, t);
       if (worst.size() < 4096) continue;
-      std::nth_element(worst.begin(), worst.begin() + MeshCheck::most_places, worst.end());
-      worst.resize(MeshCheck::most_places);
+      // More than are listed: several may be of one cell.
+      std::nth_element(worst.begin(), worst.begin() + 1024, worst.end());
+      worst.resize(1024);
     }
     std::sort(worst.begin(), worst.end());
     for (const auto& [aspect, t] : worst) {
-      if (result_.slivers.places.size() == MeshCheck::most_places) break;
-      result_.slivers.places.push_back(place(t, t));
-      result_.slivers.places.back().value = -aspect;
+      MeshCheck::Place where = place(t, t);
+      where.value = -aspect;
+      list(result_.slivers, where);
     }
   }
 
@@ -301,16 +310,22 @@ class Check {
     const BoxTree tree(boxes);
     std::unordered_set<std::uint64_t> seen;
     std::queue<std::pair<std::uint32_t, std::uint32_t>> pending;
-    std::vector<std::uint8_t> overlapping(mesh_.tets.size(), 0);
+    std::set<std::pair<std::uint64_t, std::uint64_t>> pairs;  // of cells
+    std::unordered_set<std::uint64_t> overlapping;
     const auto consider = [&](std::uint32_t a, std::uint32_t b) {
       if (a == b || a == none || b == none || result_.more_overlaps) return;
       if (a > b) std::swap(a, b);
       // Who lies on two sides of a common face has nothing in common; if not, the pair is a seed.
       if (!overlap(a, b) || !seen.insert(std::uint64_t{a} << 32 | b).second) return;
-      note(result_.overlaps, place(a, b));
-      overlapping[a] = overlapping[b] = 1;
+      const std::uint64_t one = mesh_.cell_of(a), other = mesh_.cell_of(b);
+      const std::uint64_t first = std::min(one, other), second = std::max(one, other);
+      if (pairs.emplace(first, second).second) {
+        const MeshCheck::Place where = place(a, b);
+        note(result_.overlaps, {first, second, where.at, 0});
+        overlapping.insert({first, second});
+      }
       pending.emplace(a, b);
-      result_.more_overlaps = result_.overlaps.count >= MeshCheck::most_overlaps;
+      result_.more_overlaps = seen.size() >= MeshCheck::most_overlaps;
     };
     for (const auto& [a, b] : seeds_) consider(a, b);
     for (const Face& f : boundary_) tree.visit(box_of(triangle(f)), [&](std::uint32_t t) { consider(f.tet, t); });
@@ -319,7 +334,7 @@ class Check {
       pending.pop();
       for (std::size_t k = 0; k < 4; ++k) consider(neighbor_[4 * a + k], b), consider(a, neighbor_[4 * b + k]);
     }
-    result_.overlapping_cells = static_cast<std::uint64_t>(std::count(overlapping.begin(), overlapping.end(), 1));
+    result_.overlapping_cells = overlapping.size();
   }
 
   const TetMesh& mesh_;

@@ -14,14 +14,14 @@ namespace tessera::scene {
 ///
 /// By position   points that coincide count as one, so that seams and pieces are no cracks.
 /// Cost          n log n for sorting faces and points and for the trees; the tests of pairs go with the mesh's surface
-///               and with the overlaps there are, of which at most `most_overlaps` pairs are followed.
+///               and with the overlaps there are, of which at most `most_overlaps` pairs of tets are followed.
 struct MeshCheck {
   static constexpr std::size_t most_overlaps = 1'000'000, most_places = 5;
 
-  /// Where the first ones are (the worst ones, of slivers).
+  /// Where the first ones are (the worst ones, of slivers); no cell or pair of cells twice.
   struct Place {
     std::uint64_t cell = 0;   ///< of the file, as TetMesh::cell_of()
-    std::uint64_t other = 0;  ///< the second cell of a pair; else the same
+    std::uint64_t other = 0;  ///< the second cell of a pair, never below the first; else the same
     glm::dvec3 at{0};         ///< centre of the tet, or the point
     double value = 0;         ///< of slivers: the aspect ratio
   };
@@ -49,12 +49,13 @@ struct MeshCheck {
   /// part of it: hanging nodes, or a quadrilateral cut along different diagonals. The picture is right where they match
   /// in space; a face that only one cell has is not shared to the bit.
   Finding non_conforming_faces;
-  /// Pairs of tets, neither flat nor above an aspect of 1e6, that share more than 1e-6 of the smaller one's longest
-  /// edge along every direction. Found from the boundary: where cells overlap but neither folds nor boundary faces lie
-  /// inside other cells, there is no overlap, as the number of cells over a point changes only there.
+  /// Pairs of cells with tets, neither flat nor above an aspect of 1e6, that share more than 1e-6 of the smaller one's
+  /// longest edge along every direction. A cell so warped that its own tets overlap is a pair with itself. Found from
+  /// the boundary: where cells overlap but neither folds nor boundary faces lie inside other cells, there is no
+  /// overlap, as the number of cells over a point changes only there.
   Finding overlaps;
   bool more_overlaps = false;           ///< than were followed
-  std::uint64_t overlapping_cells = 0;  ///< tets that are in such a pair
+  std::uint64_t overlapping_cells = 0;  ///< cells that are in such a pair
 
   [[nodiscard]] bool clean() const {
     return overlaps.count == 0 && inverted.count == 0 && non_conforming_faces.count == 0;

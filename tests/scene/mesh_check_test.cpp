@@ -113,8 +113,37 @@ TEST(MeshCheck, AVertexPushedThroughAFaceIsAFoldAndCellsOverlap) {
 TEST(MeshCheck, TheSameCellTwiceOverlapsItself) {
   const MeshCheck check = check_mesh(datasets::merged({datasets::cube(2), datasets::cube(2)}));
   EXPECT_EQ(check.duplicate_points.count, 27u);
-  EXPECT_GE(check.overlaps.count, 48u);
+  EXPECT_EQ(check.overlaps.count, 48u);
   EXPECT_EQ(check.overlapping_cells, 96u);
+}
+
+TEST(MeshCheck, CellsOfSeveralTetsAreCountedAndListedOncePerPair) {
+  // Two voxels of six tets each, one moved by half a side into the other, beside a third on its own.
+  TetMesh mesh = datasets::merged({datasets::regular_split(1, 1, 1, glm::dvec3(1)),
+                                   datasets::regular_split(1, 1, 1, glm::dvec3(1), {0.5, 0.25, 0.125}),
+                                   datasets::regular_split(1, 1, 1, glm::dvec3(1), {5, 0, 0})});
+  ASSERT_EQ(mesh.tets.size(), 18u);
+  for (std::size_t t = 0; t < 18; ++t) mesh.original_cell.push_back(40 - t / 6);
+  const MeshCheck check = check_mesh(mesh);
+  EXPECT_EQ(check.overlaps.count, 1u);
+  EXPECT_EQ(check.overlapping_cells, 2u);
+  ASSERT_EQ(check.overlaps.places.size(), 1u);
+  EXPECT_EQ(check.overlaps.places[0].cell, 39u);
+  EXPECT_EQ(check.overlaps.places[0].other, 40u);
+}
+
+TEST(MeshCheck, ACellWhoseOwnTetsOverlapIsAPairWithItself) {
+  TetMesh mesh = datasets::regular_split(1, 1, 1, glm::dvec3(1));
+  mesh.original_cell.assign(mesh.tets.size(), 7);
+  // A corner pushed through the cell and out again.
+  for (glm::dvec3& p : mesh.positions)
+    if (p == glm::dvec3(1, 0, 0)) p = {-0.5, 1.25, 1.5};
+  const MeshCheck check = check_mesh(mesh);
+  EXPECT_EQ(check.overlaps.count, 1u);
+  EXPECT_EQ(check.overlapping_cells, 1u);
+  ASSERT_EQ(check.overlaps.places.size(), 1u);
+  EXPECT_EQ(check.overlaps.places[0].other, 7u);
+  EXPECT_EQ(check.inverted.places.size(), 1u);
 }
 
 TEST(MeshCheck, FindsHangingNodesAndDiagonalsThatDoNotMatch) {

@@ -1,0 +1,91 @@
+// What VTK's own writers write, in all their encodings.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <vtkDoubleArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkUnstructuredGridWriter.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "io/mesh_reader.hpp"
+#include "io/temporary_folder.hpp"
+#include "scene/mesh_check.hpp"
+
+namespace tessera::io {
+namespace {
+
+/// `n` hexahedra side by side along x, each with points of its own, of which the second is moved halfway into the
+/// first, and a twin of the last.
+vtkNew<vtkUnstructuredGrid> hexahedra(int n) {
+  vtkNew<vtkUnstructuredGrid> grid;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkDoubleArray> field;
+  field->SetName("f");
+  for (int cell = 0; cell <= n; ++cell) {
+    const double x = cell == 1 ? 0.5 : cell == n ? n - 1 : cell;
+    vtkIdType corners[8];
+    for (int k = 0; k < 8; ++k) {
+      const int u = (k == 1 || k == 2 || k == 5 || k == 6) ? 1 : 0, v = k % 4 >= 2 ? 1 : 0, w = k / 4;
+      corners[k] = points->InsertNextPoint(x + u, v, w);
+      field->InsertNextValue(x + u + 2 * v + 3 * w);
+    }
+    grid->InsertNextCell(VTK_HEXAHEDRON, 8, corners);
+  }
+  grid->SetPoints(points);
+  grid->GetPointData()->AddArray(field);
+  return grid;
+}
+
+/// Cells 0 and 1, and n - 1 with its twin.
+void expect_pairs(const std::filesystem::path& file, int n) {
+  const MeshFile read = read_mesh(file);
+  ASSERT_EQ(read.mesh.tets.size(), 6u * static_cast<std::size_t>(n + 1)) << file;
+  const scene::MeshCheck check = scene::check_mesh(read.mesh);
+  EXPECT_EQ(check.overlaps.count, 2u) << file;
+  EXPECT_EQ(check.overlapping_cells, 4u) << file;
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> pairs;
+  for (const auto& place : check.overlaps.places) pairs.emplace_back(place.cell, place.other);
+  std::sort(pairs.begin(), pairs.end());
+  const auto last = static_cast<std::uint64_t>(n);
+  EXPECT_EQ(pairs, (std::vector<std::pair<std::uint64_t, std::uint64_t>>{{0, 1}, {last - 1, last}})) << file;
+}
+
+TEST(VtkWritten, OverlappingHexahedraAreOnePairEachInEveryEncoding) {
+  constexpr int n = 5;
+  const auto grid = hexahedra(n);
+  const test::TemporaryFolder folder;
+  for (const int mode : {vtkXMLWriter::Ascii, vtkXMLWriter::Binary, vtkXMLWriter::Appended})
+    for (const bool compressed : {false, true})
+      for (const bool base64 : {false, true}) {
+        vtkNew<vtkXMLUnstructuredGridWriter> writer;
+        const auto file = folder / fmt::format("{}-{}-{}.vtu", mode, compressed, base64);
+        writer->SetFileName(file.c_str());
+        writer->SetDataMode(mode);
+        writer->SetEncodeAppendedData(base64);
+        if (!compressed) writer->SetCompressorTypeToNone();
+        writer->SetInputData(grid);
+        ASSERT_EQ(writer->Write(), 1);
+        expect_pairs(file, n);
+      }
+  for (const int type : {VTK_ASCII, VTK_BINARY}) {
+    vtkNew<vtkUnstructuredGridWriter> writer;
+    const auto file = folder / fmt::format("{}.vtk", type);
+    writer->SetFileName(file.c_str());
+    writer->SetFileType(type);
+    writer->SetInputData(grid);
+    ASSERT_EQ(writer->Write(), 1);
+    expect_pairs(file, n);
+  }
+}
+
+}  // namespace
+}  // namespace tessera::io
