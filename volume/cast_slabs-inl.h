@@ -97,6 +97,10 @@ class CurrentInterval {
                   std::abs(uniform_.row[LaneTable::blue_slope])});
     uniform_.product_bound = uniform_.independent ? 0 : 0.1f * slope * color_slope / frame_.piece_tolerance;
     uniform_.shadow_bound = 0.03f * slope * slope * frame_.largest_color / frame_.piece_tolerance;
+    uniform_.extinction = 2 * uniform_.row[LaneTable::half_extinction];
+    if (slope > 0) uniform_.extinction += slope * (high_ - low_);
+    uniform_.dimming_bound =
+        uniform_.extinction * (uniform_.independent ? 1 : uniform_.extinction) * color_slope / frame_.piece_tolerance;
   }
 
   const LaneTable& table_;
@@ -447,7 +451,12 @@ HWY_NOINLINE void cast_mixed(const FrameView& frame, const RayAxes& axes, const 
   const VF scale =
       HN::Mul(HN::Mul(kappa_slope, HN::Set(d, 1 / frame.piece_tolerance)),
               HN::MulAdd(HN::Mul(length, kappa_slope), HN::Set(d, 0.03f * frame.largest_color), color_slope));
-  const MF together = HN::And(HN::And(there, HN::Lt(high, edge)), HN::Le(HN::Mul(spread, scale), HN::Set(d, 1.0f)));
+  const VF extinction = HN::Max(extinction_at(lookup, index, low), extinction_at(lookup, index, high));
+  const VF dimming = HN::Mul(HN::Mul(length, extinction), lookup.independent ? length : HN::Mul(length, extinction));
+  const VF dimmed =
+      HN::Mul(HN::Mul(dimming, color_slope), HN::Mul(line.rho, HN::Set(d, 1 / (9 * frame.piece_tolerance))));
+  const MF together =
+      HN::And(HN::And(there, HN::Lt(high, edge)), HN::Le(HN::MulAdd(spread, scale, dimmed), HN::Set(d, 1.0f)));
   if (!HN::AllFalse(d, together)) {
     const auto kept = [&](VF v) HWY_ATTR { return HN::IfThenElseZero(together, v); };
     CL::lanes::add_piece<false>(lookup, index, kept(HN::Add(line.s_0, m)), kept(HN::Add(line.s_1, m)), kept(span),
@@ -477,7 +486,8 @@ HWY_NOINLINE void cast_shaded(const ChunkView& chunk, const Lookup& lookup, cons
 /// transfer function, they are integrated together: as a line between the slab's ends, moved to the mean of the cubics.
 /// The rest r is then not even about the middle, and what it leaves of the product of extinction and colour is below
 /// |k' c'| l rho (rho + |s_1 - s_0| / 4), where rho bounds |r|: the line's distance from the field at the borders
-/// between voxels, and what the cubics add between.
+/// between voxels, and what the cubics add between. Dimming (ray_piece-inl.h) meets the rest's first moment, at most
+/// rho / 9 for two bends: |c'| (k l)^2 rho / 9.
 template <bool cell_data, class Window, class Lookup>
 HWY_INLINE void cast_slab(const ChunkView& chunk, const Lookup& lookup, const Lanes& lanes, int n, int i_window,
                           int j_window, bool inner, CurrentInterval& current, PlaneState& plane, VF& crossings,
@@ -500,7 +510,8 @@ HWY_INLINE void cast_slab(const ChunkView& chunk, const Lookup& lookup, const La
     const auto smooth = [&](const SlabLine& line, VF span, VF length) HWY_ATTR {
       const VF spread = HN::Mul(HN::Mul(length, line.rho), HN::MulAdd(HN::Abs(span), HN::Set(d, 0.25f), line.rho));
       const VF scale = HN::MulAdd(length, HN::Set(d, table.shadow_bound), HN::Set(d, 10 * table.product_bound));
-      return HN::AllFalse(d, HN::Gt(HN::Mul(spread, scale), HN::Set(d, 1.0f)));
+      const VF dimmed = HN::Mul(HN::Mul(length, HN::Set(d, table.dimming_bound / 9)), HN::Mul(length, line.rho));
+      return HN::AllFalse(d, HN::Gt(HN::MulAdd(spread, scale, dimmed), HN::Set(d, 1.0f)));
     };
     if (HWY_LIKELY(lanes.whole && chunk.frame.shading == nullptr)) {
       counts.voxels_visited += HN::Lanes(d);

@@ -8,9 +8,11 @@
 //           so that optical depth is that of the cubic, and integrated exactly (compositor/integrate_lanes-inl.h).
 // Error     What is left of the rest, r, has mean zero and is of even or odd form, so its products with constant, and
 //           of the even part with linear, terms vanish. There stay, per colour, |k' c'| l (4 b^2 / 45 + |b p_3| / 20
-//           + |p_3 (s_1 - s_0)| / 60) from the product of extinction and colour, and |k'|^2 c l^2 |r| (|s_1 - s_0| +
+//           + |p_3 (s_1 - s_0)| / 60) from the product of extinction and colour, |k'|^2 c l^2 |r| (|s_1 - s_0| +
 //           |r|) / 30 from how the rest shifts light and shadow inside the voxel. Both are below
 //             l rho (rho + 0.3 |s_1 - s_0|) (0.1 |k' c'| + 0.03 |k'|^2 c l),  rho = |b| + |p_3| / 4.
+//           Light of the front dims that of the back, so colour's own rest counts though k be constant: T falls by k l,
+//           and its products with the odd and even part leave |c'| (k l)^2 (|p_3| / 120 + k l |b| / 90).
 //           Where that exceeds the tolerance the stretch is halved: the bound falls to an eighth at least.
 // Knots     A stretch that leaves its interval is cut where the cubic crosses the knot: between extrema it is monotone,
 //           Newton's method, kept in its bracket, finds the place.
@@ -61,16 +63,26 @@ struct UniformLookup {
   float row[LaneTable::column_count];
   bool independent, has_clear = false;
   float product_bound, shadow_bound;  ///< 0.1 |k' c'| and 0.03 |k'|^2 c
+  float dimming_bound, extinction;    ///< |c'| k^2 (independent emission: |c'| k) and k, at most in the interval
   HWY_INLINE VF at(int column, Index) const { return HN::Set(DF(), row[column]); }
 };
 
-/// Whether a stretch errs more than `tolerance`; see Error above. Bounds already divided by it.
-HWY_INLINE MF too_rough(VF length, VF m, VF p_3, VF span, VF product_bound, VF shadow_bound) {
+/// The bounds of an interval of the transfer function, already divided by the tolerance.
+struct RoughnessBounds {
+  VF product, shadow, dimming, extinction;
+};
+
+/// Whether a stretch errs more than the tolerance; see Error above.
+HWY_INLINE MF too_rough(VF length, VF m, VF p_3, VF span, const RoughnessBounds& bounds) {
   const DF d;
-  const VF rho = HN::MulAdd(HN::Abs(p_3), HN::Set(d, 0.25f), HN::Mul(HN::Abs(m), HN::Set(d, 1.5f)));
+  const VF odd = HN::Abs(p_3), even = HN::Abs(m);
+  const VF rho = HN::MulAdd(odd, HN::Set(d, 0.25f), HN::Mul(even, HN::Set(d, 1.5f)));
   const VF spread = HN::MulAdd(HN::Abs(span), HN::Set(d, 0.3f), rho);
-  const VF scale = HN::MulAdd(length, shadow_bound, product_bound);
-  return HN::Gt(HN::Mul(HN::Mul(length, rho), HN::Mul(spread, scale)), HN::Set(d, 1.0f));
+  const VF scale = HN::MulAdd(length, bounds.shadow, bounds.product);
+  const VF depth = HN::Mul(length, bounds.extinction);
+  const VF dimmed = HN::MulAdd(odd, HN::Set(d, 1 / 120.0f), HN::Mul(HN::Mul(even, depth), HN::Set(d, 1 / 60.0f)));
+  const VF error = HN::MulAdd(HN::Mul(rho, spread), scale, HN::Mul(HN::Mul(length, bounds.dimming), dimmed));
+  return HN::Gt(HN::Mul(length, error), HN::Set(d, 1.0f));
 }
 
 /// Adds the stretches if they are smooth enough; false, and nothing added, if not.
@@ -83,8 +95,9 @@ HWY_INLINE bool add_uniform(const UniformLookup& table, const Piece& piece, Prog
     return true;
   }
   const VF m = HN::Mul(HN::Sub(HN::Add(piece.s_mid, piece.s_mid), HN::Add(piece.s_0, piece.s_1)), HN::Set(d, 1 / 3.0f));
-  const MF rough =
-      too_rough(piece.length, m, piece.p_3, span, HN::Set(d, table.product_bound), HN::Set(d, table.shadow_bound));
+  const MF rough = too_rough(piece.length, m, piece.p_3, span,
+                             {HN::Set(d, table.product_bound), HN::Set(d, table.shadow_bound),
+                              HN::Set(d, table.dimming_bound), HN::Set(d, table.extinction)});
   if (HWY_UNLIKELY(!HN::AllFalse(d, rough))) return false;
   CL::lanes::add_piece<false>(table, 0, HN::Add(piece.s_0, m), HN::Add(piece.s_1, m), span, piece.length, progress);
   return true;
@@ -139,6 +152,17 @@ HWY_INLINE VF find_crossing(const Cubic& c, VF low, VF high, VF s_low, VF s_high
   return v;
 }
 
+/// At scalar s of an interval.
+template <class Lookup>
+HWY_INLINE VF extinction_at(const Lookup& table, typename Lookup::Index index, VF s) {
+  const VF half = HN::MulAdd(table.at(LaneTable::half_extinction_slope, index),
+                             HN::Sub(s, table.at(LaneTable::base, index)), table.at(LaneTable::half_extinction, index));
+  return HN::Add(half, half);
+}
+
+/// A stretch is halved no more often; 4096 of an optical depth of 1e4 are still thin.
+constexpr int most_halvings = 12;
+
 /// Stretches that cross knots, are rough, or whose lanes are in different intervals. NaN samples are blank.
 template <class Lookup>
 HWY_NOINLINE void add_any(const Lookup& table, float tolerance, float largest_color, const Piece& piece,
@@ -185,10 +209,13 @@ HWY_NOINLINE void add_any(const Lookup& table, float tolerance, float largest_co
     const VF color_slope = HN::Max(
         HN::Max(HN::Abs(table.at(LaneTable::red_slope, index)), HN::Abs(table.at(LaneTable::green_slope, index))),
         HN::Abs(table.at(LaneTable::blue_slope, index)));
-    VF product_bound = HN::Mul(HN::Set(d, 0.1f), HN::Mul(slope, color_slope));
-    if (table.independent) product_bound = zero;
-    product_bound = HN::Mul(product_bound, per_tolerance);
-    const VF shadow_bound = HN::Mul(HN::Mul(HN::Mul(slope, slope), HN::Set(d, 0.03f * largest_color)), per_tolerance);
+    RoughnessBounds bounds;
+    bounds.product = HN::Mul(HN::Set(d, 0.1f), HN::Mul(slope, color_slope));
+    if (table.independent) bounds.product = zero;
+    bounds.product = HN::Mul(bounds.product, per_tolerance);
+    bounds.shadow = HN::Mul(HN::Mul(HN::Mul(slope, slope), HN::Set(d, 0.03f * largest_color)), per_tolerance);
+    // What is dimmed already needs no care: behind 14 optical depths any of it is right.
+    const VF seen = HN::Mul(per_tolerance, HN::Mul(color_slope, progress.transmittance));
     VF extent, m, length;
     for (int halvings = 0;; ++halvings) {
       extent = HN::Sub(end, v);
@@ -196,8 +223,12 @@ HWY_NOINLINE void add_any(const Lookup& table, float tolerance, float largest_co
       m = HN::Mul(HN::Sub(HN::Add(middle, middle), HN::Add(s, s_end)), HN::Set(d, 1 / 3.0f));
       length = HN::IfThenElseZero(active, HN::Mul(extent, piece.length));
       const VF cubed = HN::Mul(p_3, HN::Mul(extent, HN::Mul(extent, extent)));
-      const MF rough = too_rough(length, m, cubed, HN::Sub(s_end, s), product_bound, shadow_bound);
-      if (HN::AllFalse(d, rough) || halvings == 5) break;
+      // Between two places where the cubic does not turn, extinction is largest at one of them.
+      bounds.extinction = HN::Max(extinction_at(table, index, s), extinction_at(table, index, s_end));
+      bounds.dimming =
+          HN::Mul(seen, table.independent ? bounds.extinction : HN::Mul(bounds.extinction, bounds.extinction));
+      const MF rough = too_rough(length, m, cubed, HN::Sub(s_end, s), bounds);
+      if (HN::AllFalse(d, rough) || halvings == most_halvings) break;
       end = HN::IfThenElse(rough, HN::MulAdd(half, extent, v), end);
       s_end = HN::IfThenElse(rough, middle, s_end);
     }
