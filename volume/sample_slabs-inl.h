@@ -183,12 +183,16 @@ HWY_INLINE void sample_lanes(const ChunkView& chunk, const Lookup& lookup, const
       const MF good = HN::And(active, HN::And(HN::Eq(back, back), HN::Eq(carried, carried)));
       VF found[4];
       look_up(*table, HN::IfThenElseZero(good, carried), HN::IfThenElseZero(good, back), found);
-      const VF part = HN::IfThenElse(HN::Eq(number, step_final), HN::Div(extent, step_each), one);
-      depth = HN::IfThenElseZero(good, HN::Mul(part, found[0]));
-      const VF whole = HN::Sub(one, HN::Exp(d, HN::Neg(found[0]))), opacity = HN::Sub(one, HN::Exp(d, HN::Neg(depth)));
-      const MF shorter = HN::And(HN::Lt(part, one), HN::Gt(whole, HN::Set(d, 1e-6f)));
-      const VF share = HN::IfThenElseZero(good, HN::IfThenElse(shorter, HN::Div(opacity, whole), part));
-      for (int c = 0; c < 3; ++c) color[c] = HN::Mul(share, found[c + 1]);
+      depth = HN::IfThenElseZero(good, found[0]);
+      for (int c = 0; c < 3; ++c) color[c] = HN::IfThenElseZero(good, found[c + 1]);
+      // The last step is shorter than the table's, and its light is no share of theirs: integrated as the table is.
+      const MF final_one = HN::And(good, HN::Eq(number, step_final));
+      if (!HN::AllFalse(d, final_one)) {
+        const CL::Light exact = CL::integrate_lanes(lookup, HN::Mul(extent, lanes.length), carried, back, final_one);
+        depth = HN::IfThenElse(final_one, exact.optical_depth, depth);
+        const VF own[] = {exact.red, exact.green, exact.blue};
+        for (int c = 0; c < 3; ++c) color[c] = HN::IfThenElse(final_one, own[c], color[c]);
+      }
       carried = HN::IfThenElse(active, back, carried);
     }
     for (int c = 0; c < 3; ++c) light[c] = HN::MulAdd(through, color[c], light[c]);

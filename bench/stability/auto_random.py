@@ -4,7 +4,8 @@
     bench/stability/auto_random.py [--tessera build/release/apps/tessera] [--cases 1000] [--seed 1] [--first 0]
 
 Case i of a seed is the same everywhere: a random mesh or grid, transfer function, view and accuracy (1e-2 to 1e-5), and
-`--verify` on random pixels. Prints each case that breaks with the command that makes it again (`--first i --cases 1
+`--verify` on random pixels. A pixel that is excused (docs/ACCURACY.md) breaks no case, since one of 400 is more than an
+image may have on the whole: they are counted over all cases, of which they must stay below 1e-4. Prints each case that breaks with the command that makes it again (`--first i --cases 1
 --keep FOLDER` keeps its files), and ends with status 1 if any did. Needs Python's standard library alone.
 """
 import argparse
@@ -93,7 +94,7 @@ def run_case(tessera, seed, number, folder, threads):
     if done.returncode != 0 and done.returncode != 4:
         return False, words, f"status {done.returncode}: {done.stderr.strip()}", accuracy, None
     verify = json.loads((folder / "r.json").read_text())["frames"][0]["verify"]
-    return verify["met"], words, done.stdout.strip(), accuracy, verify["max_error_not_excused"]
+    return verify["max_error_not_excused"] <= accuracy, words, done.stdout.strip(), accuracy, verify
 
 
 def main():
@@ -105,20 +106,22 @@ def main():
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--keep", type=pathlib.Path, help="folder for the last case's files")
     args = parser.parse_args()
-    broken, worst = [], 0.0
+    broken, worst, pixels, excused = [], 0.0, 0, 0
     with tempfile.TemporaryDirectory() as scratch:
         folder = args.keep or pathlib.Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)
         for number in range(args.first, args.first + args.cases):
-            met, words, said, accuracy, error = run_case(str(args.tessera), args.seed, number, folder, args.threads)
-            if error is not None:
-                worst = max(worst, error / accuracy)
+            met, words, said, accuracy, verify = run_case(str(args.tessera), args.seed, number, folder, args.threads)
+            if verify is not None:
+                worst = max(worst, verify["max_error_not_excused"] / accuracy)
+                pixels, excused = pixels + verify["pixels"], excused + verify["excused"]
             if not met:
                 broken.append(number)
                 print(f"BROKEN: seed {args.seed} case {number}: {words}, accuracy {accuracy:.3g}: {said}", flush=True)
     print(f"seed {args.seed}, cases {args.first} to {args.first + args.cases - 1}: {len(broken)} broken; "
-          f"largest error {worst:.3g} of what was asked")
-    sys.exit(1 if broken else 0)
+          f"largest error {worst:.3g} of what was asked; {excused} of {pixels} pixels excused")
+    # Three standard deviations of a share of 1e-4.
+    sys.exit(1 if broken or excused > 1e-4 * pixels + 3 * math.sqrt(1e-4 * pixels) else 0)
 
 
 if __name__ == "__main__":
