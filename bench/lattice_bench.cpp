@@ -107,7 +107,9 @@ void run_tiles(Frame& f, Stages& stages) {
     state->open_pixels(rect, open);
     const auto composite = [&](std::int64_t final_step) {
       const auto start = Clock::now();
-      stages.segments += composite_windows(rules, windows, final_step, *state, laps);
+      stages.segments += composite_windows(
+          rules, windows, final_step,
+          final_step < std::numeric_limits<std::int64_t>::max() ? 3 * windows.capacity() / 4 : 1, *state, laps);
       stages.composite += seconds_since(start);
     };
     constexpr std::size_t at_once = 256;  // cells between looks at the clock

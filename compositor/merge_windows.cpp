@@ -55,7 +55,7 @@ class WindowMerger final : public TileMerger {
     const std::int64_t step = step_at(final_depth);
     scene::TraceLaps laps(trace_);
     for (Square& square : squares_)
-      if (square.pixels) square.pixels->take(square.windows, step, laps);
+      if (square.pixels) square.pixels->take(square.windows, step, 1, laps);
   }
 
   MergedTile finish() override {

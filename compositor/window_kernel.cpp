@@ -18,8 +18,8 @@ namespace tessera::compositor {
 namespace HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
-std::uint64_t composite_windows(const WindowRules&, projection::SegmentWindows&, std::int32_t, WindowState&,
-                                scene::TraceLaps&) {
+std::uint64_t composite_windows(const WindowRules&, projection::SegmentWindows&, std::int32_t, std::int32_t,
+                                WindowState&, scene::TraceLaps&) {
   return 0;
 }
 #else
@@ -202,7 +202,6 @@ class PixelGroup {
     const std::uint32_t* counts = windows_.counts() + pixel_;
     const VI count = HN::LoadU(d, reinterpret_cast<const std::int32_t*>(counts));
     const auto most = static_cast<std::size_t>(HN::GetLane(HN::MaxOfLanes(d, count)));
-    if (most == 0) return 0;
     const std::size_t chunks = (most + sorting::HWY_NAMESPACE::sort_chunk - 1) / sorting::HWY_NAMESPACE::sort_chunk;
     const std::size_t rows = chunks * sorting::HWY_NAMESPACE::sort_chunk;
     if (state_.keys.size() < rows * lanes) state_.keys.resize(rows * lanes), state_.slots.resize(rows * lanes);
@@ -495,31 +494,35 @@ class PixelGroup {
 
 template <TableForm form>
 std::uint64_t composite_form(const WindowRules& rules, projection::SegmentWindows& windows, std::int32_t final_step,
-                             WindowState& state, scene::TraceLaps& laps) {
+                             std::int32_t at_least, WindowState& state, scene::TraceLaps& laps) {
   const Lookup<form> lookup(*rules.table);
   std::uint64_t done = 0;
   LightRows light;
-  for (std::size_t pixel = 0; pixel < windows.pixels(); pixel += HN::Lanes(DI())) {
+  const DI d;
+  const VI few = HN::Set(d, at_least - 1);
+  for (std::size_t pixel = 0; pixel < windows.pixels(); pixel += HN::Lanes(d)) {
+    const VI count = HN::LoadU(d, reinterpret_cast<const std::int32_t*>(windows.counts() + pixel));
+    if (HN::AllFalse(d, HN::Gt(count, few))) continue;
     PixelGroup<form> group(lookup, windows, pixel, state, light);
     const std::size_t rows = group.sort();
     laps.lap("sort");
-    if (rows > 0) done += group.composite(rows, final_step, rules);
+    done += group.composite(rows, final_step, rules);
     laps.lap("integrate");
   }
   return done;
 }
 
 std::uint64_t composite_windows(const WindowRules& rules, projection::SegmentWindows& windows, std::int32_t final_step,
-                                WindowState& state, scene::TraceLaps& laps) {
+                                std::int32_t at_least, WindowState& state, scene::TraceLaps& laps) {
   switch (form_of(*rules.table)) {
     case TableForm::one_vector:
-      return composite_form<TableForm::one_vector>(rules, windows, final_step, state, laps);
+      return composite_form<TableForm::one_vector>(rules, windows, final_step, at_least, state, laps);
     case TableForm::two_vectors:
-      return composite_form<TableForm::two_vectors>(rules, windows, final_step, state, laps);
+      return composite_form<TableForm::two_vectors>(rules, windows, final_step, at_least, state, laps);
     case TableForm::many:
       break;
   }
-  return composite_form<TableForm::many>(rules, windows, final_step, state, laps);
+  return composite_form<TableForm::many>(rules, windows, final_step, at_least, state, laps);
 }
 #endif  // HWY_SCALAR
 
@@ -532,9 +535,10 @@ namespace tessera::compositor {
 HWY_EXPORT(composite_windows);
 
 std::uint64_t composite_windows(const WindowRules& rules, projection::SegmentWindows& windows, std::int64_t final_step,
-                                WindowState& state, scene::TraceLaps& laps) {
+                                std::size_t at_least, WindowState& state, scene::TraceLaps& laps) {
   const auto end = static_cast<std::int32_t>(std::clamp<std::int64_t>(final_step, -0x7fffffff, 0x7fffffff));
-  return HWY_DYNAMIC_DISPATCH(composite_windows)(rules, windows, end, state, laps);
+  const auto several = static_cast<std::int32_t>(std::clamp<std::size_t>(at_least, 1, 0x7fffffff));
+  return HWY_DYNAMIC_DISPATCH(composite_windows)(rules, windows, end, several, state, laps);
 }
 
 }  // namespace tessera::compositor

@@ -73,12 +73,12 @@ struct WindowRules {
 constexpr std::int32_t touching_steps = 64;
 
 /// Sorts, integrates and composites, in each pixel's order, all segments of the windows whose front lies before
-/// `final_step`, and removes them, 16 pixels at a time, a pixel a lane. Returns how many segments are gone, those left
-/// out behind opaque ones included.
+/// `final_step`, and removes them, 16 pixels at a time, a pixel a lane; groups of pixels none of which has `at_least`
+/// segments wait. Returns how many segments are gone, those left out behind opaque ones included.
 ///
 /// Order: front, back, then the scalars, so that what is equal is interchangeable, and no process, partition or thread
 /// shows in a pixel's bits. In a mesh whose cells do not overlap only segments of length zero are level.
 std::uint64_t composite_windows(const WindowRules& rules, projection::SegmentWindows& windows, std::int64_t final_step,
-                                WindowState& state, scene::TraceLaps& laps);
+                                std::size_t at_least, WindowState& state, scene::TraceLaps& laps);
 
 }  // namespace tessera::compositor

@@ -11,8 +11,9 @@ void WindowPixels::start(const projection::PixelRect& rect) {
   open_count_ = state_.open_pixels(rect, open_);
 }
 
-void WindowPixels::take(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) {
-  segments_here_ += composite_windows(rules_, windows, final_step, state_, laps);
+void WindowPixels::take(projection::SegmentWindows& windows, std::int64_t final_step, std::size_t at_least,
+                        scene::TraceLaps& laps) {
+  segments_here_ += composite_windows(rules_, windows, final_step, at_least, state_, laps);
   open_count_ = state_.open_pixels(rect_, open_);
   laps.lap("composite");
 }

@@ -27,7 +27,8 @@ class WindowPixels final : public WindowSink {
       : scene_(scene), rules_{scene.table, scene.least_transmittance()}, window_(window) {}
 
   void start(const projection::PixelRect& rect) override;
-  void take(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) override;
+  void take(projection::SegmentWindows& windows, std::int64_t final_step, std::size_t at_least,
+            scene::TraceLaps& laps) override;
   bool take_unordered(projection::SegmentWindows&, std::int64_t, scene::TraceLaps&) override { return false; }
   [[nodiscard]] const projection::OpenPixels& open() const override { return open_; }
   [[nodiscard]] bool any_open() const override { return open_count_ > 0; }

@@ -17,18 +17,22 @@ void WindowRuns::start(const projection::PixelRect& rect) {
   open_count_ = state_.open_pixels(rect, open_);
 }
 
-void WindowRuns::take(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) {
-  segments_ += composite_windows(rules_, windows, final_step, state_, laps);
+void WindowRuns::take(projection::SegmentWindows& windows, std::int64_t final_step, std::size_t at_least,
+                      scene::TraceLaps& laps) {
+  segments_ += composite_windows(rules_, windows, final_step, at_least, state_, laps);
   write_ended();
+  if (bytes_since_cut_ >= bytes_between_cuts_) {
+    segments_ += composite_windows(rules_, windows, final_step, 1, state_, laps);
+    cut(final_step);
+  }
   open_count_ = state_.open_pixels(writer_.rect(), open_);
-  if (bytes_since_cut_ >= bytes_between_cuts_) cut(final_step);
   laps.lap("composite");
   writer_.send_if_full();
 }
 
 bool WindowRuns::take_unordered(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) {
   rules_.least_transmittance = 0;
-  segments_ += composite_windows(rules_, windows, std::numeric_limits<std::int64_t>::max(), state_, laps);
+  segments_ += composite_windows(rules_, windows, std::numeric_limits<std::int64_t>::max(), 1, state_, laps);
   cut(final_step);
   laps.lap("composite");
   writer_.send_if_full();

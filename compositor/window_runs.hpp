@@ -19,7 +19,8 @@ class WindowRuns final : public WindowSink {
   void begin_tile(std::size_t tile, const projection::PixelRect& rect) override;
   void end_tile() override { writer_.end_tile(); }
   void start(const projection::PixelRect& rect) override;
-  void take(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) override;
+  void take(projection::SegmentWindows& windows, std::int64_t final_step, std::size_t at_least,
+            scene::TraceLaps& laps) override;
   /// Runs are then shorter, and no pixel of the rectangle closes any more, as what hides it may lie behind it.
   bool take_unordered(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) override;
   [[nodiscard]] const projection::OpenPixels& open() const override { return open_; }

@@ -2,7 +2,8 @@
 
 namespace tessera::compositor {
 
-void WindowSegments::take(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) {
+void WindowSegments::take(projection::SegmentWindows& windows, std::int64_t final_step, std::size_t /*at_least*/,
+                          scene::TraceLaps& laps) {
   Bytes& out = writer_.records();
   for (std::size_t p = 0; p < windows.pixels(); ++p) {
     const std::uint32_t count = windows.count(p);

@@ -17,9 +17,10 @@ class WindowSegments final : public WindowSink {
   void begin_tile(std::size_t tile, const projection::PixelRect& rect) override { writer_.begin_tile(tile, rect); }
   void end_tile() override { writer_.end_tile(); }
   void start(const projection::PixelRect& rect) override { writer_.start(rect); }
-  void take(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) override;
+  void take(projection::SegmentWindows& windows, std::int64_t final_step, std::size_t at_least,
+            scene::TraceLaps& laps) override;
   bool take_unordered(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) override {
-    take(windows, final_step, laps);  // all of them, always
+    take(windows, final_step, 1, laps);  // all of them, always
     return true;
   }
   [[nodiscard]] const projection::OpenPixels& open() const override { return open_; }

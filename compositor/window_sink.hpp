@@ -29,9 +29,10 @@ class WindowSink {
   virtual void start(const projection::PixelRect& rect) = 0;
 
   /// Takes, in each pixel's order, all segments whose front lies before `final_step` (a lattice depth) and removes them
-  /// from the windows; no later segment may come before them.
+  /// from the windows; no later segment may come before them. Lists of less than `at_least` may be left for later.
   /// What it does is lapped as `sort`, `integrate` and `composite` (fragments: `pack`).
-  virtual void take(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) = 0;
+  virtual void take(projection::SegmentWindows& windows, std::int64_t final_step, std::size_t at_least,
+                    scene::TraceLaps& laps) = 0;
 
   /// Takes all segments, though later ones may come between them; what lies before `final_step` is complete. False, and
   /// nothing taken, if the sink needs them in order; start() must then undo all that the rectangle gave it so far.

@@ -13,6 +13,8 @@ namespace {
 
 constexpr std::size_t first_capacity = 32;  // segments a pixel: 1 MiB of windows, the largest the networks sort
 constexpr std::size_t cells_at_once = 16;
+// Where one list is full, lists of fewer quarters than this wait: what is sorted should be final, not short.
+constexpr std::size_t fullness = 3;
 // Computed depths may lie this many steps before the cell's nearest vertex (planes: 16, irregular cells: rounding).
 constexpr std::int64_t depth_error = 64;
 
@@ -68,7 +70,7 @@ bool LatticeTileRenderer::try_render(const projection::PixelRect& rect, std::spa
       counts_.max_segments_alive = std::max(counts_.max_segments_alive, windows_.total());
       laps.lap("project");
       // What lies before these cells is final.
-      sink.take(windows_, step_before(cells.front().near_depth), laps);
+      sink.take(windows_, step_before(cells.front().near_depth), fullness * windows_.capacity() / 4, laps);
       if (windows_.count(static_cast<std::size_t>(stream_.pixel[dealt])) < windows_.capacity()) continue;
       if (windows_.bytes_after_growth() <= std::min<std::uint64_t>(context_.budget_bytes, windows_.most_bytes)) {
         windows_.grow();
@@ -81,7 +83,7 @@ bool LatticeTileRenderer::try_render(const projection::PixelRect& rect, std::spa
   }
   counts_.max_segments_alive = std::max(counts_.max_segments_alive, windows_.total());
   laps.lap("project");
-  sink.take(windows_, std::numeric_limits<std::int64_t>::max(), laps);
+  sink.take(windows_, std::numeric_limits<std::int64_t>::max(), 1, laps);
   sink.finish();
   laps.lap("composite");
   return true;
