@@ -17,12 +17,16 @@ namespace {
 struct ElementType {
   const char* name;
   scene::SampleType type;
+  StoredVolume::Wide wide = StoredVolume::Wide::no;
 };
 constexpr std::array element_types = {
-    ElementType{"MET_CHAR", scene::SampleType::int8},     ElementType{"MET_UCHAR", scene::SampleType::uint8},
-    ElementType{"MET_SHORT", scene::SampleType::int16},   ElementType{"MET_USHORT", scene::SampleType::uint16},
-    ElementType{"MET_INT", scene::SampleType::int32},     ElementType{"MET_UINT", scene::SampleType::uint32},
-    ElementType{"MET_FLOAT", scene::SampleType::float32}, ElementType{"MET_DOUBLE", scene::SampleType::float64}};
+    ElementType{"MET_CHAR", scene::SampleType::int8}, ElementType{"MET_UCHAR", scene::SampleType::uint8},
+    ElementType{"MET_SHORT", scene::SampleType::int16}, ElementType{"MET_USHORT", scene::SampleType::uint16},
+    ElementType{"MET_INT", scene::SampleType::int32}, ElementType{"MET_UINT", scene::SampleType::uint32},
+    ElementType{"MET_FLOAT", scene::SampleType::float32}, ElementType{"MET_DOUBLE", scene::SampleType::float64},
+    // MET_LONG is of four bytes or of eight, as its writer's machine had it.
+    ElementType{"MET_LONG_LONG", scene::SampleType::float64, StoredVolume::Wide::int64},
+    ElementType{"MET_ULONG_LONG", scene::SampleType::float64, StoredVolume::Wide::uint64}};
 
 /// Keys in the file's order end with ElementDataFile; after its line a local payload begins.
 struct MetaHeader {
@@ -86,21 +90,26 @@ StoredVolume read_meta_image_header(const std::filesystem::path& file) {
 
   const auto* type = header.find({"ElementType"});
   if (!type) throw damaged(file, "its header has no ElementType");
+  std::string_view word = *type;
+  if (word.ends_with("_ARRAY")) word.remove_suffix(6);  // several channels
   const auto* known =
-      std::find_if(element_types.begin(), element_types.end(), [&](const ElementType& t) { return *type == t.name; });
+      std::find_if(element_types.begin(), element_types.end(), [&](const ElementType& t) { return word == t.name; });
   if (known == element_types.end())
     throw scene::bad_input(
         fmt::format("{}: its ElementType '{}' is none that is read; write MET_UCHAR, MET_SHORT, "
                     "MET_USHORT, MET_INT, MET_FLOAT or MET_DOUBLE",
                     file.string(), *type));
   volume.number = known->type;
+  volume.wide = known->wide;
   if (const auto* channels = header.find({"ElementNumberOfChannels"}))
     volume.components = static_cast<int>(header_count(*channels, 1, 64, file, "ElementNumberOfChannels"));
   const bool big = meta_is_true(header.find({"BinaryDataByteOrderMSB", "ElementByteOrderMSB"}));
   volume.swapped = big != (std::endian::native == std::endian::big);
   if (const auto* binary = header.find({"BinaryData"}); binary && !meta_is_true(binary))
-    throw scene::bad_input(fmt::format("{}: its samples are text; write them binary", file.string()));
+    volume.coding = StoredVolume::Coding::text;
   volume.compressed = meta_is_true(header.find({"CompressedData"}));
+  if (volume.compressed && volume.coding == StoredVolume::Coding::text)
+    throw scene::bad_input(fmt::format("{}: its samples are compressed text; write them binary", file.string()));
 
   scene::GridGeometry& g = volume.grid.geometry;
   glm::dvec3 spacing(1);
@@ -135,6 +144,8 @@ StoredVolume read_meta_image_header(const std::filesystem::path& file) {
   volume.payload = local ? file : file.parent_path() / payload;
   volume.offset = local ? header.end : 0;
   if (const auto* value = header.find({"HeaderSize"}); value && !local) {
+    if (*value == "-1" && volume.coding == StoredVolume::Coding::text)
+      throw scene::bad_input(fmt::format("{}: 'HeaderSize = -1' is for binary samples only", file.string()));
     if (*value == "-1")
       volume.at_end = true;
     else

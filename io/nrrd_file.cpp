@@ -10,6 +10,7 @@
 
 #include "io/header_text.hpp"
 #include "io/input_file.hpp"
+#include "io/mapped_file.hpp"
 #include "io/volume_formats.hpp"
 
 namespace tessera::io {
@@ -50,6 +51,11 @@ constexpr std::array nrrd_type_names = {NrrdTypeName{"signed char", SampleType::
                                         NrrdTypeName{"float", SampleType::float32},
                                         NrrdTypeName{"double", SampleType::float64}};
 
+constexpr std::array nrrd_int64_names = {
+    "longlong", "long long", "long long int", "signed long long", "signed long long int", "int64", "int64_t"};
+constexpr std::array nrrd_uint64_names = {"ulonglong", "unsigned long long", "unsigned long long int", "uint64",
+                                          "uint64_t"};
+
 std::string lower_words(std::string_view text) {
   std::string result(text);
   std::transform(result.begin(), result.end(), result.begin(),
@@ -85,6 +91,7 @@ NrrdFields parse_fields(std::string_view text, const std::filesystem::path& file
     std::string name = lower_words(line.substr(0, colon));
     std::erase(name, ' ');
     fields.values[name] = std::string(trimmed(line.substr(colon + 1)));
+    if (name == "datafile" && fields.values[name].starts_with("LIST")) return fields;  // names follow
   }
   return fields;  // .nhdr may end without a blank line
 }
@@ -113,6 +120,19 @@ std::vector<std::optional<glm::dvec3>> space_vectors_of(std::string_view text, c
     text = trimmed(text.substr(close + 1));
   }
   return vectors;
+}
+
+/// Where the line after `lines` more of them begins.
+std::uint64_t after_lines(const std::filesystem::path& payload, std::uint64_t offset, std::int64_t lines) {
+  if (lines == 0) return offset;
+  require_file(payload);
+  const MappedFile mapped(payload);
+  for (; lines > 0; --lines) {
+    const std::size_t end = offset < mapped.text().size() ? mapped.text().find('\n', offset) : std::string_view::npos;
+    if (end == std::string_view::npos) throw damaged(payload, "it has fewer lines than are to be skipped");
+    offset = end + 1;
+  }
+  return offset;
 }
 
 /// Spacing and origin along `axes`, whose first is a component axis if there are four.
@@ -175,19 +195,26 @@ StoredVolume read_nrrd_header(const std::filesystem::path& file) {
   const std::string type = lower_words(required_field(fields, "type", file));
   const auto* known = std::find_if(nrrd_type_names.begin(), nrrd_type_names.end(),
                                    [&](const NrrdTypeName& t) { return type == t.name; });
-  if (known == nrrd_type_names.end())
-    throw scene::bad_input(
-        fmt::format("{}: its type '{}' is none that is read; write 8, 16 or 32-bit integers, float "
-                    "or double",
-                    file.string(), type.substr(0, 40)));
-  volume.number = known->type;
+  if (std::ranges::count(nrrd_int64_names, type) > 0)
+    volume.wide = StoredVolume::Wide::int64;
+  else if (std::ranges::count(nrrd_uint64_names, type) > 0)
+    volume.wide = StoredVolume::Wide::uint64;
+  else if (known == nrrd_type_names.end())
+    throw scene::bad_input(fmt::format("{}: its type '{}' is none that is read; write integers, float or double",
+                                       file.string(), type.substr(0, 40)));
+  volume.number = volume.wide == StoredVolume::Wide::no ? known->type : SampleType::float64;
   const std::string encoding = lower_words(required_field(fields, "encoding", file));
   volume.compressed = encoding == "gzip" || encoding == "gz";
-  if (!volume.compressed && encoding != "raw")
-    throw scene::bad_input(
-        fmt::format("{}: its encoding '{}' is not read; write raw or gzip", file.string(), encoding.substr(0, 40)));
+  if (encoding == "ascii" || encoding == "text" || encoding == "txt")
+    volume.coding = StoredVolume::Coding::text;
+  else if (encoding == "hex")
+    volume.coding = StoredVolume::Coding::hex;
+  else if (!volume.compressed && encoding != "raw")
+    throw scene::bad_input(fmt::format("{}: its encoding '{}' is not read; write raw, gzip, ascii or hex",
+                                       file.string(), encoding.substr(0, 40)));
   const auto* endian = fields.find("endian");
-  if (!endian && scene::size_of(volume.number) > 1) throw damaged(file, "its header has no field 'endian'");
+  if (!endian && scene::size_of(volume.number) > 1 && volume.coding != StoredVolume::Coding::text)
+    throw damaged(file, "its header has no field 'endian'");
   volume.swapped = endian && (lower_words(*endian) == "big") != (std::endian::native == std::endian::big);
   set_nrrd_geometry(fields, sizes.size(), file, volume);
 
@@ -199,13 +226,18 @@ StoredVolume read_nrrd_header(const std::filesystem::path& file) {
     volume.payload = file.parent_path() / *detached;
     volume.offset = 0;
   }
-  if (const auto* lines = fields.find("lineskip"); lines && *lines != "0")
-    throw scene::bad_input(fmt::format("{}: 'line skip' is not read; say it as 'byte skip'", file.string()));
+  if (const auto* lines = fields.find("lineskip"))
+    volume.offset = after_lines(volume.payload, volume.offset, header_count(*lines, 0, 1 << 20, file, "line skip"));
   if (const auto* bytes = fields.find("byteskip")) {
+    // Lines are skipped before a gzip stream begins, bytes after it is inflated.
     if (*bytes == "-1")
       volume.at_end = true;
     else
-      volume.offset += static_cast<std::uint64_t>(header_count(*bytes, 0, std::int64_t{1} << 40, file, "byte skip"));
+      (volume.compressed ? volume.skip_inflated : volume.offset) +=
+          static_cast<std::uint64_t>(header_count(*bytes, 0, std::int64_t{1} << 40, file, "byte skip"));
+    if (volume.at_end && (volume.compressed || volume.coding != StoredVolume::Coding::binary))
+      throw scene::bad_input(
+          fmt::format("{}: 'byte skip: -1' is for raw samples only; say where they begin", file.string()));
   }
   return volume;
 }

@@ -24,6 +24,9 @@ struct StoredVolume {
   bool exact_size = false;        ///< the file must end with the payload
   bool compressed = false;        ///< gzip or zlib from `offset` on; with `compressed_whole` from the beginning
   bool compressed_whole = false;
+  std::uint64_t skip_inflated = 0;  ///< compressed: bytes before the samples in what comes out
+  enum class Coding { binary, text, hex } coding = Coding::binary;
+  enum class Wide { no, int64, uint64 } wide = Wide::no;  ///< 64-bit integers; `number` is float64, which they become
   std::string format;
   std::vector<std::string> notes;
 };

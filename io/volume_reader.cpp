@@ -13,6 +13,7 @@
 #include "io/gzip.hpp"
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
+#include "io/stored_samples.hpp"
 #include "io/volume_file.hpp"
 #include "io/volume_formats.hpp"
 
@@ -43,11 +44,21 @@ VolumePayload payload_of(const StoredVolume& volume, std::uint64_t needed) {
   auto mapped = std::make_shared<const MappedFile>(volume.payload);
   if (volume.compressed) {
     const std::uint64_t skip = volume.compressed_whole ? 0 : volume.offset;
-    const std::uint64_t before = volume.compressed_whole ? volume.offset : 0;
+    const std::uint64_t before = (volume.compressed_whole ? volume.offset : 0) + volume.skip_inflated;
     if (skip > size) throw damaged(volume.payload, fmt::format("its samples begin at byte {} of {}", skip, size));
     auto bytes =
         std::make_shared<const std::vector<std::byte>>(inflate(mapped->bytes().subspan(skip), before + needed, source));
     return {std::span<const std::byte>(*bytes).subspan(before), bytes, false};
+  }
+  if (volume.coding != StoredVolume::Coding::binary) {
+    if (volume.offset > size)
+      throw damaged(volume.payload, fmt::format("its samples begin at byte {} of {}", volume.offset, size));
+    const std::string_view text = mapped->text().substr(volume.offset);
+    auto bytes = std::make_shared<const std::vector<std::byte>>(
+        volume.coding == StoredVolume::Coding::hex
+            ? bytes_of_hex(text, needed, source)
+            : samples_of_text(text, needed / scene::size_of(volume.number), volume.number, source));
+    return {std::span<const std::byte>(*bytes), bytes, false};
   }
   if (volume.at_end && needed <= size) return {mapped->bytes().subspan(size - needed), mapped, true};
   if (volume.offset > size || needed > size - volume.offset || (volume.exact_size && needed != size - volume.offset)) {
@@ -75,7 +86,18 @@ std::uint64_t bytes_needed(const StoredVolume& volume, const std::string& source
 VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const std::string& source) {
   const std::uint64_t needed = bytes_needed(volume, source);
   scene::validate(volume.grid, source);
-  const VolumePayload payload = payload_of(volume, needed);
+  VolumePayload payload = payload_of(volume, needed);
+  if (volume.coding == StoredVolume::Coding::text) volume.swapped = false;
+  if (volume.wide != StoredVolume::Wide::no) {
+    if (volume.coding != StoredVolume::Coding::text) {
+      const bool is_signed = volume.wide == StoredVolume::Wide::int64;
+      auto values =
+          std::make_shared<const std::vector<double>>(doubles_of_int64(payload.bytes, is_signed, volume.swapped));
+      payload = {std::as_bytes(std::span<const double>(*values)), values, false};
+      volume.swapped = false;
+    }
+    volume.notes.emplace_back("64-bit integers are held as doubles");
+  }
   VolumeFile result;
   result.format = std::move(volume.format);
   result.notes = std::move(volume.notes);

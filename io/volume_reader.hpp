@@ -48,11 +48,12 @@ void require_volume(const std::filesystem::path& file);
 
 /// Opens a volume.
 ///
-///   .vti .vtr, .vtk of structured points or a rectilinear grid: by VTK, all of it in memory. Extent, origin, spacing
+///   .vti .pvti .vtr, .vtk of structured points or a rectilinear grid: by VTK, all of it in memory. Extent, origin,
+///   spacing
 ///       and direction apply. A curvilinear .vtk is a mesh. 64-bit integers become doubles. Hidden samples are blank.
-///   .mhd .mha: origin, spacing, orientation, slope and offset apply; raw (mapped) or compressed.
-///   .nrrd .nhdr: space origin and directions, else axis minimums and spacings; raw (mapped) or gzip. A first axis of
-///       components is allowed; content "old min" and the measurement frame mean nothing here.
+///   .mhd .mha: origin, spacing, orientation, slope and offset apply; raw (mapped), compressed or text.
+///   .nrrd .nhdr: space origin and directions, else axis minimums and spacings; raw (mapped), gzip, ascii or hex. A
+///       first axis of components is allowed; content "old min" and the measurement frame mean nothing here.
 ///   .nii .nii.gz (NIfTI-1 and 2): sform, else qform, else the spacing alone; slope and intercept apply.
 ///   .raw: described by the options or by its name, mapped. .bricks: what write_bricks made, read brick by brick.
 ///

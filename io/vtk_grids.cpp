@@ -11,11 +11,13 @@
 #include <vtkSmartPointer.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkXMLImageDataReader.h>
+#include <vtkXMLPImageDataReader.h>
 #include <vtkXMLRectilinearGridReader.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "io/field_choice.hpp"
 #include "io/input_file.hpp"
@@ -24,6 +26,7 @@
 #include "io/vtk_blocks.hpp"
 #include "io/vtk_checks.hpp"
 #include "io/vtk_session.hpp"
+#include "io/xml_elements.hpp"
 
 namespace tessera::io {
 namespace {
@@ -57,24 +60,72 @@ std::optional<SampleType> stored_vtk_type(vtkDataArray& array) {
   }
 }
 
-vtkSmartPointer<vtkDataSet> read_vtk_volume_data(const std::filesystem::path& file, bool xml, bool image,
+enum class VtkGridKind { legacy, image, image_pieces, rectilinear };
+
+/// VTK fills what a file that is cut short lacks with zeros, and says nothing.
+void require_xml_end(const std::filesystem::path& file) {
+  const MappedFile mapped(file);
+  const std::string_view text = mapped.text();
+  if (text.substr(text.size() - std::min<std::size_t>(text.size(), 1024)).find("</VTKFile") == std::string_view::npos)
+    throw damaged(file, "it does not end with </VTKFile>");
+}
+
+/// Cells of "i0 i1 j0 j1 k0 k1"; an extent that is none has none.
+double extent_cells(const std::string* extent) {
+  std::istringstream words(extent ? *extent : std::string());
+  double cells = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    double low = 0, high = 0;
+    if (!(words >> low >> high)) return 0;
+    cells *= std::max(0.0, high - low);
+  }
+  return cells;
+}
+
+/// The pieces of a .pvti are images of their own, and as many cells as it has at least: VTK leaves zeros where it has
+/// none.
+void require_image_pieces(const std::filesystem::path& file) {
+  const MappedFile mapped(file);
+  double whole = 0, in_pieces = 0;
+  each_xml_element(mapped.text(), file.string(), [&](const XmlElement& element) {
+    if (element.name == "PImageData") whole = extent_cells(element.find("WholeExtent"));
+    if (element.name != "Piece") return;
+    in_pieces += extent_cells(element.find("Extent"));
+    const std::string* name = element.find("Source");
+    if (!name) throw damaged(file, "a piece has no Source");
+    const std::filesystem::path piece = file.parent_path() / *name;
+    require_file(piece);
+    const std::string beginning = read_beginning(piece, 4096);
+    if (beginning.find("\"ImageData\"") == std::string::npos)
+      throw scene::bad_input(
+          fmt::format("{}: it is a piece of {} and no .vti; write them anew", piece.string(), file.string()));
+    require_xml_end(piece);
+  });
+  if (in_pieces < whole)
+    throw damaged(file, fmt::format("its pieces have {:.0f} of its {:.0f} cells", in_pieces, whole));
+}
+
+vtkSmartPointer<vtkXMLReader> xml_reader_of(VtkGridKind kind) {
+  if (kind == VtkGridKind::image) return vtkSmartPointer<vtkXMLImageDataReader>::New();
+  if (kind == VtkGridKind::image_pieces) return vtkSmartPointer<vtkXMLPImageDataReader>::New();
+  return vtkSmartPointer<vtkXMLRectilinearGridReader>::New();
+}
+
+vtkSmartPointer<vtkDataSet> read_vtk_volume_data(const std::filesystem::path& file, VtkGridKind kind,
                                                  std::vector<std::string>& notes) {
   const std::string source = file.string();
+  const bool xml = kind != VtkGridKind::legacy;
   if (xml) {
+    if (kind == VtkGridKind::image_pieces) require_image_pieces(file);
     check_vtk_xml(file);
-    // VTK fills what a file that is cut short lacks with zeros, and says nothing.
-    const MappedFile mapped(file);
-    const std::string_view text = mapped.text();
-    if (text.substr(text.size() - std::min<std::size_t>(text.size(), 1024)).find("</VTKFile") == std::string_view::npos)
-      throw damaged(file, "it does not end with </VTKFile>");
+    require_xml_end(file);
   } else {
     check_vtk_legacy(MappedFile(file).text(), source);
   }
   vtkSmartPointer<vtkDataSet> data;
   const std::string warning = with_quiet_vtk(source, "the file is truncated or damaged, write it anew", [&] {
     if (xml) {
-      const auto reader = vtkSmartPointer<vtkXMLReader>::Take(
-          image ? static_cast<vtkXMLReader*>(vtkXMLImageDataReader::New()) : vtkXMLRectilinearGridReader::New());
+      const auto reader = xml_reader_of(kind);
       reader->SetFileName(source.c_str());
       reader->Update();
       data = vtkDataSet::SafeDownCast(reader->GetOutputDataObject(0));
@@ -210,11 +261,12 @@ bool looks_like_vtk_grid(std::string_view beginning) {
 VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions& options) {
   const std::string source = file.string(), beginning = read_beginning(file, 4096);
   const bool xml = !beginning.starts_with("# vtk DataFile");
-  const bool image = beginning.find("\"ImageData\"") != std::string::npos;
-  if (xml && beginning.find("\"PImageData\"") != std::string::npos)
-    throw scene::bad_input(fmt::format("{}: volumes in pieces are not read; write one .vti", source));
+  const VtkGridKind kind = !xml                                                    ? VtkGridKind::legacy
+                           : beginning.find("\"PImageData\"") != std::string::npos ? VtkGridKind::image_pieces
+                           : beginning.find("\"ImageData\"") != std::string::npos  ? VtkGridKind::image
+                                                                                   : VtkGridKind::rectilinear;
   VolumeFile result;
-  const auto data = read_vtk_volume_data(file, xml, image, result.notes);
+  const auto data = read_vtk_volume_data(file, kind, result.notes);
   scene::Grid grid;
   grid.geometry = vtk_geometry_of(*data, file);
   result.format = fmt::format("{} ({})", xml ? "VTK XML" : "legacy VTK",

@@ -77,13 +77,27 @@ class XmlCheck {
         check_count(tag, name);
       check_extent(tag, "Extent");
     });
-    for (const char* grid : {"StructuredGrid", "RectilinearGrid", "PStructuredGrid", "PRectilinearGrid"})
+    for (const char* grid : {"StructuredGrid", "RectilinearGrid", "PStructuredGrid", "PRectilinearGrid", "PImageData"})
       each_tag(grid, [&](std::string_view tag) { check_extent(tag, "WholeExtent"); });
+    each_tag("ImageData", [&](std::string_view tag) { check_image(tag); });
     for (const char* array : {"DataArray", "Array", "PDataArray"})
       each_tag(array, [&](std::string_view tag) {
         check_count(tag, "NumberOfComponents");
         check_count(tag, "NumberOfTuples");
       });
+  }
+
+  /// Values that the file could hold at most.
+  [[nodiscard]] std::uint64_t most_values() const { return most_values_; }
+
+  /// Cells of an extent, at least one along each axis.
+  [[nodiscard]] static double cells_of(std::string_view tag, const char* name) {
+    const auto text = attribute(tag, name);
+    const auto values = text ? numbers(*text) : std::nullopt;
+    double cells = 1;
+    for (std::size_t axis = 0; values && values->size() == 6 && axis < 3; ++axis)
+      cells *= std::max(1.0, static_cast<double>((*values)[2 * axis + 1]) - static_cast<double>((*values)[2 * axis]));
+    return cells;
   }
 
   [[noreturn]] void fail(const std::string& what) const {
@@ -117,6 +131,14 @@ class XmlCheck {
       fail(fmt::format("{} '{}' has {:.3g} points, at most 2^32 - 1 are read", name, text->substr(0, 60), points));
   }
 
+  /// An image has a number for each cell at least, if it has any; eight bits are a byte.
+  void check_image(std::string_view tag) const {
+    check_extent(tag, "WholeExtent");
+    if (cells_of(tag, "WholeExtent") > 8.0 * static_cast<double>(most_values_))
+      fail(fmt::format("WholeExtent is '{}', a file of {} bytes cannot hold that",
+                       attribute(tag, "WholeExtent").value_or(""), text_.size()));
+  }
+
   std::string_view text_;
   const std::string& source_;
   std::uint64_t most_values_ = 0;
@@ -127,6 +149,7 @@ class XmlCheck {
 void check_vtk_xml(const std::filesystem::path& file) {
   const std::string source = file.string();
   std::vector<std::filesystem::path> pieces;
+  double image_cells = 0, most_values = 0;
   {
     const MappedFile mapped(file);
     const XmlCheck check(mapped.text(), source);
@@ -135,6 +158,7 @@ void check_vtk_xml(const std::filesystem::path& file) {
       if (const auto name = attribute(tag, "Source"))
         pieces.push_back(file.parent_path() / std::filesystem::path(*name));
     });
+    check.each_tag("PImageData", [&](std::string_view tag) { image_cells = XmlCheck::cells_of(tag, "WholeExtent"); });
   }
   for (const std::filesystem::path& piece : pieces) {
     // A piece is no parallel file: one level, so that a file that names itself ends here.
@@ -145,8 +169,15 @@ void check_vtk_xml(const std::filesystem::path& file) {
           fmt::format("{}: it is a piece of {} and does not begin as a VTK XML file does; write it "
                       "anew",
                       piece_source, source));
-    XmlCheck(mapped.text(), piece_source).check();
+    const XmlCheck check(mapped.text(), piece_source);
+    check.check();
+    most_values += static_cast<double>(check.most_values());
   }
+  if (image_cells > 8 * most_values)
+    throw scene::bad_input(
+        fmt::format("{}: its WholeExtent has {:.3g} cells, its {} pieces cannot hold them; the file "
+                    "is damaged, write it anew",
+                    source, image_cells, pieces.size()));
 }
 
 }  // namespace tessera::io

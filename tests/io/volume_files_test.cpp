@@ -143,8 +143,8 @@ TEST_F(VolumeFiles, NiftiOfMoreDimensionsTooManySamplesOrTooFewBytesIsRefused) {
   expect_refused(folder.write("short.nii", test::nifti().substr(0, 399)), "48 bytes");
   expect_refused(folder.write("header.nii", test::nifti().substr(0, 200)), "NIfTI header");
   file = test::nifti();
-  put<std::int16_t>(file, 70, 1024);
-  expect_refused(folder.write("long.nii", file), "data type 1024");
+  put<std::int16_t>(file, 70, 32);
+  expect_refused(folder.write("complex.nii", file), "data type 32");
   put<std::int16_t>(file, 70, 4), put<std::int16_t>(file, 46, 1);
   expect_refused(folder.write("flat.nii", file), "1 point along z");
 }
@@ -174,14 +174,40 @@ TEST_F(VolumeFiles, NrrdDetachedSkippedAndBigEndianSamplesAreRead) {
   EXPECT_EQ(volume.source->geometry().origin, glm::dvec3(5, 0, 0));
 }
 
+TEST_F(VolumeFiles, NrrdSamplesMayBeTextHexadecimalWideOrBehindLinesAndCompressedBytes) {
+  const auto head = [](const std::string& type, const std::string& encoding, const std::string& more = "") {
+    return "NRRD0004\ntype: " + type + "\ndimension: 3\nsizes: 2 2 2\nendian: little\nencoding: " + encoding + "\n" +
+           more + "\n";
+  };
+  const std::vector<double> wanted{0, 1, -2, 3, 4, 5, 6, 127};
+  const auto samples_of = [&](const std::string& content) {
+    return all_samples(*open_volume(folder.write("a.nrrd", content)).source);
+  };
+  EXPECT_EQ(samples_of(head("int8", "ascii") + "0 1 -2\n3,4 5 +6\r\n127"), wanted);
+  EXPECT_EQ(samples_of(head("float", "text") + "0 1e0 -2.0 3 4 5 6 127 beyond"), wanted);
+  EXPECT_EQ(samples_of(head("signed char", "hex") + "00 01 fe\n03 04 05 06 7F"), wanted);
+  const std::string bytes = bytes_of(std::vector<std::int8_t>(wanted.begin(), wanted.end()));
+  EXPECT_EQ(samples_of(head("int8", "raw", "line skip: 2\nbyte skip: 1\n") + "one\ntwo\n?" + bytes), wanted);
+  EXPECT_EQ(samples_of(head("longlong", "raw") + bytes_of(std::vector<std::int64_t>(wanted.begin(), wanted.end()))),
+            wanted);
+  const VolumeFile blank = open_volume(folder.write("b.nrrd", head("double", "text") + "0 1 2 nan 4 inf 6 7"));
+  EXPECT_EQ(blank.range, (scene::ValueRange{0, 7, 2}));
+}
+
 TEST_F(VolumeFiles, NrrdFaultsAreNamed) {
   const auto with = [&](const std::string& lines) {
     return folder.write("a.nrrd", "NRRD0004\n" + lines + "\n" + std::string(8, 'x'));
   };
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2\nencoding: raw\n"), "2 sizes for 3 dimensions");
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 -2\nencoding: raw\n"), "sizes is '-2'");
-  expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: hex\n"), "'hex'");
-  expect_refused(with("type: int64\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n"), "'int64'");
+  expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: bzip2\n"), "'bzip2'");
+  expect_refused(with("type: block\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n"), "'block'");
+  expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: hex\n"), "after 4 of 8 bytes");
+  expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: ascii\n\n1 2 3 4 5 6 7 300 "), "'300 ");
+  expect_refused(with("type: uint8\ndimension: 3\nsizes: 9000 9000 9000\nencoding: text\n"), "of 729000000000 numbers");
+  expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\nline skip: 9\n"), "fewer lines");
+  expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: LIST\na.raw\nb.raw"),
+                 "several files");
   expect_refused(with("type: uint16\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n"), "'endian'");
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 3\nencoding: raw\n"), "12 bytes, the file has 8");
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 2\nspacings: 1 0 1\nencoding: raw\n"), "along y is 0");
@@ -203,6 +229,18 @@ TEST_F(VolumeFiles, MetaImagePlacesScalesAndReadsLocalAndSeparateSamples) {
     EXPECT_EQ(volume->range, (scene::ValueRange{-1, 21, 0}));
     EXPECT_EQ(scene::world_of_index(volume->source->geometry(), {2, 1, 1}), glm::dvec3(1 - 3, 2 + 4, 3 + 4));
   }
+  std::string text = head;
+  text.replace(text.find("BinaryData = True"), 17, "BinaryData = False");
+  EXPECT_EQ(
+      all_samples(
+          *open_volume(folder.write("t.mha", text + "ElementDataFile = LOCAL\n0 1 2 3 4 5 6 7 8 9 10 11\n")).source),
+      counting<double>(12));
+  std::string wide = head;
+  wide.replace(wide.find("MET_SHORT"), 9, "MET_ULONG_LONG");
+  EXPECT_EQ(all_samples(*open_volume(folder.write("w.mha", wide + "ElementDataFile = LOCAL\n" +
+                                                               bytes_of(counting<std::uint64_t>(12))))
+                             .source),
+            counting<double>(12));
   expect_refused(folder.write("c.mha", head + "ElementDataFile = LOCAL\n" + samples.substr(1)), "the file has 23");
   expect_refused(folder.write("d.mha", head), "no ElementDataFile");
   expect_refused(folder.write("e.mhd", "NDims = 2\nElementDataFile = LOCAL\n"), "2 dimensions");
@@ -259,6 +297,36 @@ TEST_F(VolumeFiles, VtkImagesKeepExtentDirectionCellDataAndHiddenSamples) {
   const VolumeFile wide = open_volume(file, {.field = "long"});
   EXPECT_EQ(wide.source->grid().type, SampleType::float64);
   EXPECT_EQ(all_samples(*wide.source)[0], -7);
+}
+
+TEST_F(VolumeFiles, ImagesInPiecesAreOneAndGapsOrHugeExtentsAreRefused) {
+  const auto piece = [](const std::string& extent, const std::string& numbers) {
+    return "<?xml version=\"1.0\"?><VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\"><ImageData "
+           "WholeExtent=\"" +
+           extent + "\" Origin=\"1 2 3\" Spacing=\"2 3 4\"><Piece Extent=\"" + extent +
+           "\"><PointData Scalars=\"c\"><DataArray type=\"Float32\" Name=\"c\" format=\"ascii\">" + numbers +
+           "</DataArray></PointData></Piece></ImageData></VTKFile>";
+  };
+  folder.write("p0.vti", piece("0 1 0 1 0 1", "0 1 3 4 6 7 9 10"));
+  folder.write("p1.vti", piece("1 2 0 1 0 1", "1 2 4 5 7 8 10 11"));
+  const auto whole = [](const std::string& extent, const std::string& second) {
+    return "<?xml version=\"1.0\"?><VTKFile type=\"PImageData\" version=\"1.0\" "
+           "byte_order=\"LittleEndian\"><PImageData "
+           "WholeExtent=\"" +
+           extent +
+           "\" GhostLevel=\"0\" Origin=\"1 2 3\" Spacing=\"2 3 4\"><PPointData Scalars=\"c\"><PDataArray "
+           "type=\"Float32\" Name=\"c\"/></PPointData><Piece Extent=\"0 1 0 1 0 1\" Source=\"p0.vti\"/>" +
+           second + "</PImageData></VTKFile>";
+  };
+  const std::string second = "<Piece Extent=\"1 2 0 1 0 1\" Source=\"p1.vti\"/>";
+  const VolumeFile volume = open_volume(folder.write("p.pvti", whole("0 2 0 1 0 1", second)));
+  EXPECT_EQ(all_samples(*volume.source), counting<double>(12));
+  EXPECT_EQ(volume.source->geometry().origin, glm::dvec3(1, 2, 3));
+  expect_refused(folder.write("gap.pvti", whole("0 2 0 1 0 1", "")), "1 of its 2 cells");
+  expect_refused(folder.write("huge.pvti", whole("0 1000 0 1000 0 1000", second)), "cells");
+  expect_refused(folder.write("gone.pvti", whole("0 2 0 1 0 1", "<Piece Extent=\"1 2 0 1 0 1\" Source=\"no.vti\"/>")),
+                 "no such file");
+  expect_refused(folder.write("huge.vti", piece("0 1500 0 1500 0 1500", "1 2")), "cannot hold");
 }
 
 TEST_F(VolumeFiles, RectilinearCoordinatesThatFallAreTurnedOver) {
