@@ -54,9 +54,39 @@ HWY_INLINE HN::Vec<DD> load_doubles(const T* p) {
   }
 }
 
-/// LaneSamples::lane() of `count` samples, to the bit.
+/// LaneSamples::lane() of `count` samples, to the bit. So many as `readable` from `from` on may be read, and as many
+/// floats as a vector holds from `to` on be written over with what they hold.
 template <class T>
-HWY_INLINE void convert(const T* from, std::int64_t count, const LaneSamples& lanes, float* to) {
+HWY_INLINE void convert(const T* from, std::int64_t count, std::int64_t readable, const LaneSamples& lanes, float* to) {
+  std::int64_t i = 0;
+  if constexpr (std::is_same_v<T, float> || sizeof(T) <= 2) {
+    // A power of two and no shift: single precision rounds the same.
+    if (lanes.scales_floats) {
+      const HN::ScalableTag<float> df;
+      const auto scale = HN::Set(df, static_cast<float>(lanes.factor));
+      const auto wide = static_cast<std::int64_t>(HN::Lanes(df));
+      const auto vector_at = [&](std::int64_t at) HWY_ATTR {
+        if constexpr (std::is_same_v<T, float>) {
+          const auto sample = HN::LoadU(df, from + at);
+          return HN::Add(HN::Round(HN::Mul(sample, scale)), HN::Sub(sample, sample));
+        } else {
+          const HN::RebindToSigned<decltype(df)> di;
+          const auto sample = HN::ConvertTo(df, HN::PromoteTo(di, HN::LoadU(HN::Rebind<T, decltype(df)>(), from + at)));
+          return HN::Round(HN::Mul(sample, scale));
+        }
+      };
+      for (; i + wide <= count; i += wide) HN::StoreU(vector_at(i), df, to + i);
+      if (i == count) return;
+      if (i + wide <= readable) {
+        HN::BlendedStore(vector_at(i), HN::FirstN(df, static_cast<std::size_t>(count - i)), df, to + i);
+        return;
+      }
+      if (count >= wide) {
+        HN::StoreU(vector_at(count - wide), df, to + count - wide);
+        return;
+      }
+    }
+  }
   const DD d;
   const auto factor = HN::Set(d, lanes.factor), term = HN::Set(d, lanes.term);
   const auto n = static_cast<std::int64_t>(HN::Lanes(d));
@@ -66,24 +96,6 @@ HWY_INLINE void convert(const T* from, std::int64_t count, const LaneSamples& la
     // inf - inf and NaN - NaN are NaN, x - x is 0: blanks become NaN.
     HN::StoreU(HN::DemoteTo(DFH(), HN::Add(lane, HN::Sub(sample, sample))), DFH(), out);
   };
-  std::int64_t i = 0;
-  if constexpr (std::is_same_v<T, float>) {
-    // A power of two and no shift: single precision rounds the same.
-    if (lanes.scales_floats) {
-      const HN::ScalableTag<float> df;
-      const auto scale = HN::Set(df, static_cast<float>(lanes.factor));
-      const auto wide = static_cast<std::int64_t>(HN::Lanes(df));
-      const auto one_vector = [&](std::int64_t at) HWY_ATTR {
-        const auto sample = HN::LoadU(df, from + at);
-        HN::StoreU(HN::Add(HN::Round(HN::Mul(sample, scale)), HN::Sub(sample, sample)), df, to + at);
-      };
-      if (count >= wide) {
-        for (; i + wide <= count; i += wide) one_vector(i);
-        if (i < count) one_vector(count - wide);
-        return;
-      }
-    }
-  }
   for (; i + n <= count; i += n) some(from + i, to + i);
   if (i >= count) return;
   T last[HN::MaxLanes(DD())] = {};
@@ -93,30 +105,36 @@ HWY_INLINE void convert(const T* from, std::int64_t count, const LaneSamples& la
   for (std::int64_t l = 0; l < n && i + l < count; ++l) to[i + l] = out[l];
 }
 
-HWY_INLINE void convert_any(const std::byte* from, scene::SampleType type, std::int64_t first, std::int64_t count,
-                            const LaneSamples& lanes, float* to) {
-  const auto as = [&](auto kind) HWY_ATTR {
-    using T = decltype(kind);
-    convert(reinterpret_cast<const T*>(from) + first, count, lanes, to);
-  };
+/// Calls f with a number of the samples' type.
+template <class F>
+HWY_INLINE void with_type(scene::SampleType type, const F& f) {
   switch (type) {
     case scene::SampleType::int8:
-      return as(std::int8_t{});
+      return f(std::int8_t{});
     case scene::SampleType::uint8:
-      return as(std::uint8_t{});
+      return f(std::uint8_t{});
     case scene::SampleType::int16:
-      return as(std::int16_t{});
+      return f(std::int16_t{});
     case scene::SampleType::uint16:
-      return as(std::uint16_t{});
+      return f(std::uint16_t{});
     case scene::SampleType::int32:
-      return as(std::int32_t{});
+      return f(std::int32_t{});
     case scene::SampleType::uint32:
-      return as(std::uint32_t{});
+      return f(std::uint32_t{});
     case scene::SampleType::float32:
-      return as(float{});
+      return f(float{});
     case scene::SampleType::float64:
-      return as(double{});
+      return f(double{});
   }
+}
+
+/// Samples [first, first + count) of a brick of `samples`.
+HWY_INLINE void convert_any(const std::byte* from, scene::SampleType type, std::int64_t first, std::int64_t count,
+                            std::int64_t samples, const LaneSamples& lanes, float* to) {
+  with_type(type, [&](auto kind) HWY_ATTR {
+    using T = decltype(kind);
+    convert(reinterpret_cast<const T*>(from) + first, count, samples - first, lanes, to);
+  });
 }
 
 /// Native boxes and where their samples go in the block.
@@ -131,6 +149,39 @@ struct Target {
   HWY_INLINE int slice_of(std::int64_t native_k) const {
     const std::int64_t last = frame.samples[static_cast<std::size_t>(axes.k)] - 1;
     return static_cast<int>((axes.mirrored ? last - native_k : native_k) - first_k);
+  }
+
+  /// Calls put(x, y, z, count, to) for every row of samples of the native box [low, high] that the block holds, slice
+  /// by slice; not for the x axis as k.
+  template <class Put>
+  HWY_INLINE void rows_in(const std::int64_t (&low)[3], const std::int64_t (&high)[3], const Put& put) const {
+    const auto ka = static_cast<std::size_t>(axes.k), ja = static_cast<std::size_t>(axes.j);
+    for (std::int64_t k = low[ka]; k <= high[ka]; ++k) {
+      const int n = slice_of(k);
+      if (n < 0 || n >= slices) continue;
+      const auto s = static_cast<std::size_t>(n);
+      const std::int64_t x_0 = std::max<std::int64_t>(low[0], block.low_i[s]),
+                         x_1 = std::min<std::int64_t>(high[0], block.low_i[s] + block.pitch - 1),
+                         j_0 = std::max<std::int64_t>(low[ja], block.low_j[s]),
+                         j_1 = std::min<std::int64_t>(high[ja], block.low_j[s] + block.rows - 1);
+      if (x_0 > x_1) continue;
+      float* to = block.slice(n) + (j_0 - block.low_j[s]) * block.pitch + (x_0 - block.low_i[s]);
+      for (std::int64_t j = j_0; j <= j_1; ++j, to += block.pitch)
+        put(x_0, axes.k == 1 ? k : j, axes.k == 1 ? j : k, x_1 - x_0 + 1, to);
+    }
+  }
+  /// Whether rows_in() has any.
+  HWY_INLINE bool any_in(const std::int64_t (&low)[3], const std::int64_t (&high)[3]) const {
+    const auto ka = static_cast<std::size_t>(axes.k), ja = static_cast<std::size_t>(axes.j);
+    for (std::int64_t k = low[ka]; k <= high[ka]; ++k) {
+      const int n = slice_of(k);
+      if (n < 0 || n >= slices) continue;
+      const auto s = static_cast<std::size_t>(n);
+      if (low[0] < block.low_i[s] + block.pitch && high[0] >= block.low_i[s] && low[ja] < block.low_j[s] + block.rows &&
+          high[ja] >= block.low_j[s])
+        return true;
+    }
+    return false;
   }
 
   /// Calls put(x_low, x_high, to, stride) for the samples of a native row that the block holds: sample x goes to
@@ -235,6 +286,22 @@ HWY_INLINE void fill_block(const FrameView& frame, const RayAxes& axes, std::int
           to[a] = std::min(high[a], box.high[a] - 1);
         }
         const std::byte* bytes = nullptr;
+        const std::int64_t in_brick = room[0] * room[1] * room[2];
+        if (!some_hidden && axes.k != 0) {
+          if (!target.any_in(from, to)) continue;
+          bytes = frame.bricks->acquire(layout.number(place), frame.trace);
+          with_type(type, [&](auto kind) HWY_ATTR {
+            using T = decltype(kind);
+            const auto* const brick = reinterpret_cast<const T*>(bytes);
+            target.rows_in(
+                from, to, [&](std::int64_t x, std::int64_t y, std::int64_t z, std::int64_t count, float* out) HWY_ATTR {
+                  const std::int64_t at = ((z - box.low[2]) * room[1] + (y - box.low[1])) * room[0] + (x - box.low[0]);
+                  convert(brick + at, count, in_brick - at, frame.ranges->lanes, out);
+                });
+          });
+          frame.bricks->release(layout.number(place));
+          continue;
+        }
         for (std::int64_t z = from[2]; z <= to[2]; ++z)
           for (std::int64_t y = from[1]; y <= to[1]; ++y) {
             std::int64_t x = from[0];
@@ -257,11 +324,11 @@ HWY_INLINE void fill_block(const FrameView& frame, const RayAxes& axes, std::int
               const std::int64_t row_start = ((z - box.low[2]) * room[1] + (y - box.low[1])) * room[0] - box.low[0];
               if (axes.k != 0) {
                 target.row(y, z, x, end, [&](std::int64_t xa, std::int64_t xb, float* out) HWY_ATTR {
-                  convert_any(bytes, type, row_start + xa, xb - xa + 1, frame.ranges->lanes, out);
+                  convert_any(bytes, type, row_start + xa, xb - xa + 1, in_brick, frame.ranges->lanes, out);
                 });
               } else {
                 row_memory.resize(static_cast<std::size_t>(end - x + 1));
-                convert_any(bytes, type, row_start + x, end - x + 1, frame.ranges->lanes, row_memory.data());
+                convert_any(bytes, type, row_start + x, end - x + 1, in_brick, frame.ranges->lanes, row_memory.data());
                 target.row(y, z, x, end, [&](std::int64_t xa, std::int64_t, float* out) HWY_ATTR {
                   *out = row_memory[static_cast<std::size_t>(xa - x)];
                 });

@@ -45,6 +45,7 @@ struct FrameView {
   const compositor::LaneTable* table;
   const CellRanges* ranges;
   const std::uint8_t* visible;        ///< by cell of `ranges`
+  bool some_hidden;                   ///< whether some cell is not visible
   const std::uint8_t* brick_visible;  ///< by brick: whether it holds voxels of a visible cell
   BrickCache* bricks;
   scene::GridIndex voxels, samples;

@@ -58,6 +58,7 @@ class SmallWindow {
     return VI{_mm512_cvttps_epi32(_mm512_fmadd_ps(j.raw, _mm512_set1_ps(columns), i.raw))};
   }
   HWY_INLINE VF front(VI index) const { return VF{_mm512_permutex2var_ps(a0_, index.raw, a1_)}; }
+  HWY_INLINE VF back(VI index) const { return VF{_mm512_permutex2var_ps(b0_, index.raw, b1_)}; }
   HWY_INLINE Corners corners(VI index) const {
     const __m512i i00 = index.raw, i10 = _mm512_add_epi32(i00, _mm512_set1_epi32(1)),
                   i01 = _mm512_add_epi32(i00, _mm512_set1_epi32(columns)),
@@ -104,6 +105,7 @@ class LargeWindow {
     return VI{_mm512_cvttps_epi32(_mm512_fmadd_ps(j.raw, _mm512_set1_ps(columns), i.raw))};
   }
   HWY_INLINE VF front(VI index) const { return find(a_, index.raw); }
+  HWY_INLINE VF back(VI index) const { return find(b_, index.raw); }
   HWY_INLINE Corners corners(VI index) const {
     const __m512i i00 = index.raw, i10 = _mm512_add_epi32(i00, _mm512_set1_epi32(1)),
                   i01 = _mm512_add_epi32(i00, _mm512_set1_epi32(columns)),
@@ -128,6 +130,8 @@ class LargeWindow {
 /// Any width, from memory.
 class GatherWindow {
  public:
+  static constexpr int columns = 1, rows = 1;  ///< that must be in the block from where it begins
+
   HWY_INLINE GatherWindow(const float* a, const float* b, std::ptrdiff_t pitch) : a_(a), b_(b), pitch_(pitch) {}
   /// It would take as long to look as to integrate.
   HWY_INLINE bool all_in(float, float) const { return false; }
@@ -135,6 +139,7 @@ class GatherWindow {
     return HN::ConvertTo(DI(), HN::MulAdd(j, HN::Set(DF(), static_cast<float>(pitch_)), i));
   }
   HWY_INLINE VF front(VI index) const { return HN::GatherIndex(DF(), a_, index); }
+  HWY_INLINE VF back(VI index) const { return HN::GatherIndex(DF(), b_, index); }
   HWY_INLINE Corners corners(VI index) const {
     const DF d;
     return {HN::GatherIndex(d, a_, index),          HN::GatherIndex(d, a_ + 1, index),

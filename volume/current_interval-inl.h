@@ -1,0 +1,87 @@
+// The interval of the transfer function in which a packet was last; included once per instruction set.
+
+#if defined(TESSERA_VOLUME_CURRENT_INTERVAL_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_VOLUME_CURRENT_INTERVAL_INL_H_
+#undef TESSERA_VOLUME_CURRENT_INTERVAL_INL_H_
+#else
+#define TESSERA_VOLUME_CURRENT_INTERVAL_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "volume/frame_view.hpp"
+#include "volume/ray_piece-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::volume {
+namespace HWY_NAMESPACE {
+
+/// The interval of the transfer function in which a packet was last, ready for use.
+class CurrentInterval {
+ public:
+  HWY_INLINE CurrentInterval(const LaneTable& table, const FrameView& frame) : table_(table), frame_(frame) {
+    uniform_.independent = table.emission == scene::Emission::independent;
+    set(0);
+  }
+  /// Whether all samples of the window are in one interval, which then is the current one.
+  template <class Window>
+  HWY_INLINE bool holds(const Window& window, float some_sample) {
+    if (window.all_in(low_, high_)) return true;
+    const float* const knots = table_.column(LaneTable::edge) + 1;
+    const auto n = static_cast<std::size_t>(std::upper_bound(knots, knots + table_.knot_count, some_sample) - knots);
+    if (n == interval_) return false;
+    set(n);
+    return window.all_in(low_, high_);
+  }
+  /// Whether [low, high] lies in the current interval, in the lanes that are live.
+  [[nodiscard]] HWY_INLINE bool around(VF low, VF high, MF live) const {
+    const DF d;
+    const MF inside = HN::And(HN::Ge(low, HN::Set(d, low_)), HN::Lt(high, HN::Set(d, high_)));
+    return HN::AllFalse(d, HN::AndNot(inside, live));
+  }
+  /// Makes interval n the current one.
+  HWY_INLINE void move_to(std::size_t n) {
+    if (n != interval_) set(n);
+  }
+  [[nodiscard]] HWY_INLINE bool clear() const { return clear_; }
+  [[nodiscard]] HWY_INLINE const UniformLookup& uniform() const { return uniform_; }
+
+ private:
+  HWY_NOINLINE void set(std::size_t n) {
+    interval_ = n;
+    low_ = table_.column(LaneTable::edge)[n];
+    high_ = table_.column(LaneTable::edge)[n + 1];
+    clear_ = true;
+    for (int c = 0; c < LaneTable::column_count; ++c) {
+      uniform_.row[c] = table_.column(c)[n];
+      const bool color = c >= LaneTable::red;
+      if (c >= LaneTable::half_extinction && (!color || uniform_.independent) && uniform_.row[c] != 0) clear_ = false;
+    }
+    const float slope = 2 * std::abs(uniform_.row[LaneTable::half_extinction_slope]);
+    const float color_slope =
+        std::max({std::abs(uniform_.row[LaneTable::red_slope]), std::abs(uniform_.row[LaneTable::green_slope]),
+                  std::abs(uniform_.row[LaneTable::blue_slope])});
+    uniform_.product_bound = uniform_.independent ? 0 : 0.1f * slope * color_slope / frame_.piece_tolerance;
+    uniform_.shadow_bound = 0.03f * slope * slope * frame_.largest_color / frame_.piece_tolerance;
+    uniform_.extinction = 2 * uniform_.row[LaneTable::half_extinction];
+    if (slope > 0) uniform_.extinction += slope * (high_ - low_);
+    uniform_.dimming_bound =
+        uniform_.extinction * (uniform_.independent ? 1 : uniform_.extinction) * color_slope / frame_.piece_tolerance;
+  }
+
+  const LaneTable& table_;
+  const FrameView& frame_;
+  std::size_t interval_ = 0;
+  float low_, high_;
+  bool clear_ = false;
+  UniformLookup uniform_;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::volume
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,259 @@
+// The field along a packet's rays in slabs that they cross from plane to plane; included once per instruction set.
+//
+// Way       Axes i and j are mirrored, lane by lane, where a ray moves down, so that all slopes are positive. p is the
+//           axis whose plane a ray crosses first in the slab (at u_1), q the other (at u_2; 1: not crossed). A lane
+//           meets at most eight lattice points a slice, numbered by their places along p and q from the voxel it
+//           enters: 00 10 01 11 there, 20 21 behind p's plane, 12 22 behind q's.
+// Field     Inside a voxel it is a cubic of u; half its second derivative in the middle of a stretch, tau, times e^2 /
+// 6
+//           is what the stretch's mean lies below the middle of its ends (Simpson's rule, which cubics obey exactly),
+//           e being the stretch's share of the slab. So the slab's mean follows from its values at planes and crossings
+//           and three taus. tau = b_p b_q D_pq + b_p D_pk + b_q D_qk, products of differences and slopes.
+// Line      The field is the line between the slab's ends and a rest: at the crossings d_1 and d_2, and between them
+// the
+//           cubics' bumps, at most e^2 |tau| / 4 of the even part and e^3 b_p b_q |D_pqk| / 4 of the odd (Bezier).
+
+#if defined(TESSERA_VOLUME_SLAB_LINES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_VOLUME_SLAB_LINES_INL_H_
+#undef TESSERA_VOLUME_SLAB_LINES_INL_H_
+#else
+#define TESSERA_VOLUME_SLAB_LINES_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <type_traits>
+
+#include "volume/packet_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::volume {
+namespace HWY_NAMESPACE {
+
+/// A packet's lanes in mirrored axes; see Way above.
+struct MirroredLanes {
+  VF x, y, bx, by, per_bx, per_by;      ///< slopes not negative, their inverses finite
+  VF i_least, i_most, j_least, j_most;  ///< voxels of the volume
+  VF sign_i, sign_j;                    ///< +1, or -1 where mirrored
+  VF i, j;                              ///< lattice point 0 of the axes, relative to (i_base, j_base)
+  MF down_i, down_j, live;
+  VF bends;
+
+  explicit HWY_INLINE MirroredLanes(const Lanes& lanes) {
+    const DF d;
+    const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f);
+    const auto axis = [&](VF position, VF slope, VF least, VF most, VF& x_out, VF& b_out, VF& per, VF& sign,
+                          VF& least_out, VF& most_out, MF& down) HWY_ATTR {
+      down = HN::Lt(slope, zero);
+      sign = HN::IfThenElse(down, HN::Neg(one), one);
+      x_out = HN::Mul(sign, position);
+      b_out = HN::Abs(slope);
+      per = HN::Div(one, HN::Max(b_out, HN::Set(d, 1e-30f)));
+      least_out = HN::IfThenElse(down, HN::Sub(HN::Neg(most), one), least);
+      most_out = HN::IfThenElse(down, HN::Sub(HN::Neg(least), one), most);
+    };
+    axis(lanes.x, lanes.bx, lanes.i_least, lanes.i_most, x, bx, per_bx, sign_i, i_least, i_most, down_i);
+    axis(lanes.y, lanes.by, lanes.j_least, lanes.j_most, y, by, per_by, sign_j, j_least, j_most, down_j);
+    i = lanes.i, j = lanes.j;
+    bends = HN::Mul(bx, by);
+    live = HN::Lt(lanes.k_in, lanes.k_out);
+  }
+};
+
+/// What is found of up to eight slabs; s[n] at slab n's front plane.
+struct SlabLines {
+  static constexpr int most = 8;
+  VF s[most + 1];
+  VF u_1[most], u_2[most], f_1[most], f_2[most];  ///< crossings and the field there
+  VF sag[most];                                   ///< sum of e^3 tau / 6
+  VF bump[most];
+};
+
+/// A slab as one line: the mean is shift above the middle of its ends, the field within rho of the line. Not a number
+/// where the field is not.
+struct Line {
+  VF s_0, s_1, span, shift, rho;
+};
+
+HWY_INLINE Line line_of(const SlabLines& lines, int n) {
+  const DF d;
+  const VF one = HN::Set(d, 1.0f), half = HN::Set(d, 0.5f);
+  Line line;
+  line.s_0 = lines.s[n], line.s_1 = lines.s[n + 1];
+  line.span = HN::Sub(line.s_1, line.s_0);
+  const VF u_1 = lines.u_1[n], u_2 = lines.u_2[n];
+  const VF d_1 = HN::IfThenElseZero(HN::Lt(u_1, one), HN::Sub(lines.f_1[n], HN::MulAdd(u_1, line.span, line.s_0))),
+           d_2 = HN::IfThenElseZero(HN::Lt(u_2, one), HN::Sub(lines.f_2[n], HN::MulAdd(u_2, line.span, line.s_0)));
+  // Trapezia: the ends' weights are half the stretches beside them.
+  const VF kinks = HN::MulAdd(d_1, u_2, HN::Mul(d_2, HN::Sub(one, u_1)));
+  line.shift = HN::NegMulAdd(HN::Set(d, 1.0f), lines.sag[n], HN::Mul(half, kinks));
+  line.rho = HN::Add(HN::Max(HN::Abs(d_1), HN::Abs(d_2)), lines.bump[n]);
+  return line;
+}
+
+/// Where slab n's window begins, and whether voxels at the volume's border may be met.
+struct WindowPlace {
+  const float *front, *back;
+  int i, j;
+  bool inner;
+};
+
+/// The field of slab n of the chunk into place m of `lines`; if `last`, the field at its back plane, too.
+template <class Window>
+HWY_INLINE void find_line(const MirroredLanes& lanes, const Lanes& base, const Window& window, const WindowPlace& place,
+                          std::ptrdiff_t pitch, int n, int m, SlabLines& lines, VF& voxels) {
+  const DF d;
+  const DI di;
+  const VF one = HN::Set(d, 1.0f), half = HN::Set(d, 0.5f);
+  const VF k = HN::Set(d, static_cast<float>(n));
+  const VF x = HN::MulAdd(k, lanes.bx, lanes.x), y = HN::MulAdd(k, lanes.by, lanes.y);
+  VF i = HN::Floor(x), j = HN::Floor(y);
+  if (HWY_UNLIKELY(!place.inner)) {
+    i = HN::Min(HN::Max(i, lanes.i_least), lanes.i_most);
+    j = HN::Min(HN::Max(j, lanes.j_least), lanes.j_most);
+  }
+  const VF fx = HN::Sub(x, i), fy = HN::Sub(y, j);
+  VF u_i = HN::Min(HN::Mul(HN::Sub(one, fx), lanes.per_bx), one),
+     u_j = HN::Min(HN::Mul(HN::Sub(one, fy), lanes.per_by), one);
+  if (HWY_UNLIKELY(!place.inner)) {
+    u_i = HN::IfThenElse(HN::Eq(i, lanes.i_most), one, u_i);
+    u_j = HN::IfThenElse(HN::Eq(j, lanes.j_most), one, u_j);
+  }
+  const VF u_1 = HN::Min(u_i, u_j), u_2 = HN::Max(u_i, u_j);
+  const MF i_first = HN::Lt(u_i, u_j), cross_1 = HN::Lt(u_1, one), cross_2 = HN::Lt(u_2, one);
+  const auto first = [&](VF a, VF b) HWY_ATTR { return HN::IfThenElse(i_first, a, b); };
+  const VF voxel = HN::IfThenElseZero(lanes.live, one);
+  voxels =
+      HN::Add(HN::Add(voxels, voxel), HN::Add(HN::IfThenElseZero(cross_1, voxel), HN::IfThenElseZero(cross_2, voxel)));
+
+  // Elements of the window: i + columns j.
+  constexpr bool gathers = std::is_same_v<Window, GatherWindow>;
+  const float columns = static_cast<float>(gathers ? pitch : Window::columns);
+  const VI step_i = HN::IfThenElse(HN::RebindMask(di, lanes.down_i), HN::Set(di, -1), HN::Set(di, 1)),
+           step_j = HN::IfThenElse(HN::RebindMask(di, lanes.down_j), HN::Set(di, -static_cast<std::int32_t>(columns)),
+                                   HN::Set(di, static_cast<std::int32_t>(columns)));
+  const float origin = static_cast<float>(place.i - base.i_base) + columns * static_cast<float>(place.j - base.j_base);
+  const auto element = [&](VF i_at, VF j_at) HWY_ATTR {
+    const VF at = HN::MulAdd(HN::Set(d, columns), HN::MulAdd(lanes.sign_j, j_at, lanes.j),
+                             HN::MulAdd(lanes.sign_i, i_at, lanes.i));
+    const VF in_window = HN::Sub(at, HN::Set(d, origin));
+    // Lanes that are not there may be anywhere.
+    return HN::ConvertTo(di, gathers ? HN::IfThenElseZero(lanes.live, in_window) : in_window);
+  };
+  const auto if_int = [&](MF mask, VI v) HWY_ATTR { return HN::IfThenElseZero(HN::RebindMask(di, mask), v); };
+  VI step_p = HN::IfThenElse(HN::RebindMask(di, i_first), step_i, step_j),
+     step_q = HN::IfThenElse(HN::RebindMask(di, i_first), step_j, step_i);
+  if (gathers) step_p = if_int(lanes.live, step_p), step_q = if_int(lanes.live, step_q);
+  const VI at_00 = element(i, j), at_10 = HN::Add(at_00, step_p), at_01 = HN::Add(at_00, step_q),
+           at_11 = HN::Add(at_10, step_q);
+  // What is not crossed has nothing behind it: no step, so that nothing but the voxel's own points is read.
+  const VI beyond_p = if_int(cross_1, step_p), beyond_q = if_int(cross_2, step_q);
+  const VI at_20 = HN::Add(at_10, beyond_p), at_21 = HN::Add(at_11, beyond_p), at_12 = HN::Add(at_11, beyond_q),
+           at_22 = HN::Add(at_21, beyond_q);
+
+  const VF b_p = first(lanes.bx, lanes.by), b_q = first(lanes.by, lanes.bx);
+  const VF p_0 = first(fx, fy), q_0 = first(fy, fx);
+  const VF e_0 = u_1, e_1 = HN::Sub(u_2, u_1), e_2 = HN::Sub(one, u_2);
+  const VF q_1 = HN::MulAdd(u_1, b_q, q_0), p_2 = HN::Mul(e_1, b_p);
+
+  // The voxel it enters.
+  const VF a_10 = window.front(at_10), b_10 = window.back(at_10), a_11 = window.front(at_11), b_11 = window.back(at_11);
+  const VF qa = HN::Sub(a_11, a_10), qb = HN::Sub(b_11, b_10), d_qk = HN::Sub(qb, qa);
+  VF tau_0, third_0;
+  {
+    const VF a_00 = window.front(at_00), b_00 = window.back(at_00), a_01 = window.front(at_01),
+             b_01 = window.back(at_01);
+    const VF pa_0 = HN::Sub(a_10, a_00), pa_1 = HN::Sub(a_11, a_01), pb_0 = HN::Sub(b_10, b_00),
+             pb_1 = HN::Sub(b_11, b_01);
+    const VF front_0 = HN::MulAdd(p_0, pa_0, a_00), front_1 = HN::MulAdd(p_0, pa_1, a_01);
+    lines.s[m] = HN::MulAdd(q_0, HN::Sub(front_1, front_0), front_0);
+    const VF d_pq = HN::Sub(pa_1, pa_0);
+    third_0 = HN::Sub(HN::Sub(pb_1, pb_0), d_pq);
+    const VF p_middle = HN::MulAdd(HN::Mul(half, u_1), b_p, p_0);
+    const VF weight = HN::NegMulAdd(b_q, HN::Sub(one, p_middle), HN::Mul(b_p, q_1));
+    tau_0 = HN::MulAdd(lanes.bends, d_pq, HN::MulAdd(third_0, weight, HN::Mul(b_q, d_qk)));
+    tau_0 = HN::MulAdd(b_p, HN::Sub(pb_0, pa_0), tau_0);
+  }
+  {
+    const VF a = HN::MulAdd(q_1, qa, a_10), b = HN::MulAdd(q_1, qb, b_10);
+    lines.f_1[m] = HN::MulAdd(u_1, HN::Sub(b, a), a);
+  }
+
+  // Behind p's plane.
+  const VF a_21 = window.front(at_21), b_21 = window.back(at_21);
+  const VF pa_1 = HN::Sub(a_21, a_11), pb_1 = HN::Sub(b_21, b_11), d_pk = HN::Sub(pb_1, pa_1);
+  VF tau_1, third_1;
+  {
+    const VF a_20 = window.front(at_20), b_20 = window.back(at_20);
+    const VF d_pq = HN::Sub(pa_1, HN::Sub(a_20, a_10));
+    third_1 = HN::Sub(HN::Sub(pb_1, HN::Sub(b_20, b_10)), d_pq);
+    const VF q_middle = HN::MulAdd(HN::Mul(half, e_1), b_q, q_1);
+    const VF weight = HN::NegMulAdd(b_p, HN::Sub(one, q_middle), HN::Mul(lanes.bends, u_2));
+    tau_1 = HN::MulAdd(lanes.bends, d_pq, HN::MulAdd(third_1, weight, HN::Mul(b_q, d_qk)));
+    tau_1 = HN::MulAdd(b_p, d_pk, tau_1);
+    const VF a = HN::MulAdd(p_2, pa_1, a_11), b = HN::MulAdd(p_2, pb_1, b_11);
+    lines.f_2[m] = HN::MulAdd(u_2, HN::Sub(b, a), a);
+  }
+
+  // Behind q's plane.
+  VF tau_2, third_2;
+  {
+    const VF a_12 = window.front(at_12), b_12 = window.back(at_12), a_22 = window.front(at_22),
+             b_22 = window.back(at_22);
+    const VF qa_1 = HN::Sub(a_12, a_11), qb_1 = HN::Sub(b_12, b_11);
+    const VF d_pq = HN::Sub(HN::Sub(a_22, a_21), qa_1);
+    third_2 = HN::Sub(HN::Sub(HN::Sub(b_22, b_21), qb_1), d_pq);
+    const VF p_middle = HN::MulAdd(HN::Mul(half, e_2), b_p, p_2);
+    const VF weight = HN::MulAdd(b_q, p_middle, lanes.bends);
+    tau_2 = HN::MulAdd(lanes.bends, d_pq, HN::MulAdd(third_2, weight, HN::Mul(b_q, HN::Sub(qb_1, qa_1))));
+    tau_2 = HN::MulAdd(b_p, d_pk, tau_2);
+  }
+
+  const VF ee_0 = HN::Mul(e_0, e_0), ee_1 = HN::Mul(e_1, e_1), ee_2 = HN::Mul(e_2, e_2);
+  const VF w_0 = HN::Mul(ee_0, tau_0), w_1 = HN::Mul(ee_1, tau_1), w_2 = HN::Mul(ee_2, tau_2);
+  lines.u_1[m] = u_1, lines.u_2[m] = u_2;
+  lines.sag[m] = HN::Mul(HN::Set(d, 1 / 6.0f), HN::MulAdd(e_0, w_0, HN::MulAdd(e_1, w_1, HN::Mul(e_2, w_2))));
+  const VF even = HN::Max(HN::Max(HN::Abs(w_0), HN::Abs(w_1)), HN::Abs(w_2));
+  const VF odd =
+      HN::MulAdd(HN::Mul(e_0, ee_0), HN::Abs(third_0),
+                 HN::MulAdd(HN::Mul(e_1, ee_1), HN::Abs(third_1), HN::Mul(HN::Mul(e_2, ee_2), HN::Abs(third_2))));
+  // Not a number where any of them is not: Max may leave that out.
+  const VF any = HN::MulAdd(HN::Zero(d), lines.sag[m], HN::MulAdd(lanes.bends, odd, even));
+  lines.bump[m] = HN::Mul(HN::Set(d, 0.25f), any);
+}
+
+/// The field at slab n's back plane, into place m + 1.
+template <class Window>
+HWY_INLINE void find_back(const MirroredLanes& lanes, const Lanes& base, const Window& window, const WindowPlace& place,
+                          std::ptrdiff_t pitch, int n, int m, SlabLines& lines) {
+  const DF d;
+  const DI di;
+  const VF k = HN::Set(d, static_cast<float>(n + 1));
+  const VF x = HN::MulAdd(k, lanes.bx, lanes.x), y = HN::MulAdd(k, lanes.by, lanes.y);
+  VF i = HN::Floor(x), j = HN::Floor(y);
+  if (HWY_UNLIKELY(!place.inner)) {
+    i = HN::Min(HN::Max(i, lanes.i_least), lanes.i_most);
+    j = HN::Min(HN::Max(j, lanes.j_least), lanes.j_most);
+  }
+  const VF fx = HN::Sub(x, i), fy = HN::Sub(y, j);
+  constexpr bool gathers = std::is_same_v<Window, GatherWindow>;
+  const float columns = static_cast<float>(gathers ? pitch : Window::columns);
+  const float origin = static_cast<float>(place.i - base.i_base) + columns * static_cast<float>(place.j - base.j_base);
+  const VF at = HN::Sub(
+      HN::MulAdd(HN::Set(d, columns), HN::MulAdd(lanes.sign_j, j, lanes.j), HN::MulAdd(lanes.sign_i, i, lanes.i)),
+      HN::Set(d, origin));
+  const auto kept = [&](VF v) HWY_ATTR { return gathers ? HN::IfThenElseZero(lanes.live, v) : v; };
+  const VI at_00 = HN::ConvertTo(di, kept(at)), step_i = HN::ConvertTo(di, kept(lanes.sign_i)),
+           step_j = HN::ConvertTo(di, kept(HN::Mul(HN::Set(d, columns), lanes.sign_j)));
+  const VI at_10 = HN::Add(at_00, step_i);
+  const VF b_00 = window.back(at_00), b_10 = window.back(at_10), b_01 = window.back(HN::Add(at_00, step_j)),
+           b_11 = window.back(HN::Add(at_10, step_j));
+  const VF back_0 = HN::MulAdd(fx, HN::Sub(b_10, b_00), b_00), back_1 = HN::MulAdd(fx, HN::Sub(b_11, b_01), b_01);
+  lines.s[m + 1] = HN::MulAdd(fy, HN::Sub(back_1, back_0), back_0);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::volume
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,243 @@
+// Rays through a slab voxel by voxel, and slabs that cross knots; included once per instruction set.
+
+#if defined(TESSERA_VOLUME_VOXEL_PIECES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_VOLUME_VOXEL_PIECES_INL_H_
+#undef TESSERA_VOLUME_VOXEL_PIECES_INL_H_
+#else
+#define TESSERA_VOLUME_VOXEL_PIECES_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "volume/current_interval-inl.h"
+#include "volume/packet_lanes-inl.h"
+#include "volume/shading-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::volume {
+namespace HWY_NAMESPACE {
+
+/// The trilinear field of a lane's voxel along its ray: a + u c, where a and c are bilinear in (x, y).
+struct VoxelField {
+  VF a00, ai, aj, aij, c00, ci, cj, cij;
+  VF x, y;  ///< at u = 0, from the voxel's corner
+
+  HWY_INLINE VoxelField(const Corners& s, VF x_in, VF y_in) : x(x_in), y(y_in) {
+    a00 = s.a00;
+    ai = HN::Sub(s.a10, s.a00), aj = HN::Sub(s.a01, s.a00), aij = HN::Sub(HN::Sub(s.a11, s.a01), ai);
+    const VF c10 = HN::Sub(s.b10, s.a10), c01 = HN::Sub(s.b01, s.a01), c11 = HN::Sub(s.b11, s.a11);
+    c00 = HN::Sub(s.b00, s.a00);
+    ci = HN::Sub(c10, c00), cj = HN::Sub(c01, c00), cij = HN::Sub(HN::Sub(c11, c01), ci);
+  }
+  HWY_INLINE VF at(VF u, VF bx, VF by) const {
+    const VF fx = HN::MulAdd(u, bx, x), fy = HN::MulAdd(u, by, y);
+    const VF a = HN::MulAdd(fy, HN::MulAdd(fx, aij, aj), HN::MulAdd(fx, ai, a00));
+    const VF c = HN::MulAdd(fy, HN::MulAdd(fx, cij, cj), HN::MulAdd(fx, ci, c00));
+    return HN::MulAdd(u, c, a);
+  }
+  /// Changes per voxel along i, j and k.
+  HWY_INLINE void gradient(VF u, VF bx, VF by, VF& g_i, VF& g_j, VF& g_k) const {
+    const VF fx = HN::MulAdd(u, bx, x), fy = HN::MulAdd(u, by, y);
+    g_i = HN::MulAdd(fy, HN::MulAdd(u, cij, aij), HN::MulAdd(u, ci, ai));
+    g_j = HN::MulAdd(fx, HN::MulAdd(u, cij, aij), HN::MulAdd(u, cj, aj));
+    g_k = HN::MulAdd(fy, HN::MulAdd(fx, cij, cj), HN::MulAdd(fx, ci, c00));
+  }
+  /// At u = 0.
+  HWY_INLINE VF at_front() const { return HN::MulAdd(y, HN::MulAdd(x, aij, aj), HN::MulAdd(x, ai, a00)); }
+  /// At u = 1, where the ray is at (x_1, y_1) relative to the chunk's voxel, and this one at (i, j).
+  HWY_INLINE VF at_back(VF x_1, VF y_1, VF i, VF j) const {
+    const VF fx = HN::Sub(x_1, i), fy = HN::Sub(y_1, j);
+    const VF a = HN::MulAdd(fy, HN::MulAdd(fx, aij, aj), HN::MulAdd(fx, ai, a00));
+    return HN::Add(a, HN::MulAdd(fy, HN::MulAdd(fx, cij, cj), HN::MulAdd(fx, ci, c00)));
+  }
+  /// Value at the middle u of a stretch of extent e, and the mean over it: every product of two of x, y and u adds a
+  /// twelfth of the product of their changes. `ee` is e^2 / 12.
+  HWY_INLINE void middle_and_mean(VF u, VF ee, VF bx, VF by, VF bends, VF& middle, VF& mean) const {
+    const VF fx = HN::MulAdd(u, bx, x), fy = HN::MulAdd(u, by, y);
+    const VF a_y = HN::MulAdd(fx, aij, aj), c_y = HN::MulAdd(fx, cij, cj), c_x = HN::MulAdd(fy, cij, ci);
+    const VF a = HN::MulAdd(fy, a_y, HN::MulAdd(fx, ai, a00)), c = HN::MulAdd(fy, c_y, HN::MulAdd(fx, ci, c00));
+    middle = HN::MulAdd(u, c, a);
+    const VF twist = HN::MulAdd(bends, HN::MulAdd(u, cij, aij), HN::MulAdd(bx, c_x, HN::Mul(by, c_y)));
+    mean = HN::MulAdd(ee, twist, middle);
+  }
+};
+
+/// Voxel by voxel, for the lanes that are `wanted`.
+template <bool cell_data, class Window, class Lookup>
+HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const Lookup& lookup, const Lanes& lanes,
+                              const SlabPath& path, const Window& window, const UniformLookup* uniform, MF wanted,
+                              Progress& progress, FirstLight& first, TileCounts& counts) {
+  const DF d;
+  const VF half = HN::Set(d, 0.5f), zero = HN::Zero(d), one = HN::Set(d, 1.0f);
+  const bool lit_part = frame.shading != nullptr && !cell_data;
+  for (const Stretch& stretch : path.stretches) {
+    const VF extent = HN::Sub(stretch.end, stretch.begin);
+    const MF there = HN::And(wanted, HN::Gt(extent, HN::Zero(d)));
+    const std::size_t voxels = HN::CountTrue(d, there);
+    if (voxels == 0) continue;
+    const VI index = window_index(window, path, stretch);
+    Piece piece;
+    Lit lit{one, zero};
+    piece.begin = HN::Add(stretch.begin, path.k);
+    piece.extent = extent;
+    piece.length = HN::IfThenElseZero(there, HN::Mul(extent, lanes.length));
+    if constexpr (cell_data) {
+      piece.s_0 = piece.s_mid = piece.s_1 = window.front(index);
+      piece.p_3 = HN::Zero(d);
+    } else {
+      const VoxelField field(window.corners(index), HN::Sub(path.x, stretch.i), HN::Sub(path.y, stretch.j));
+      piece.s_0 = field.at(stretch.begin, lanes.bx, lanes.by);
+      piece.s_mid = field.at(HN::Mul(half, HN::Add(stretch.begin, stretch.end)), lanes.bx, lanes.by);
+      piece.s_1 = field.at(stretch.end, lanes.bx, lanes.by);
+      piece.p_3 = HN::Mul(HN::Mul(field.cij, lanes.bends), HN::Mul(extent, HN::Mul(extent, extent)));
+      if (lit_part) {
+        VF g_i, g_j, g_k;
+        field.gradient(HN::Mul(half, HN::Add(stretch.begin, stretch.end)), lanes.bx, lanes.by, g_i, g_j, g_k);
+        const auto kept = [&](VF v) HWY_ATTR { return HN::IfThenElseZero(HN::And(there, HN::Eq(v, v)), v); };
+        g_i = kept(g_i), g_j = kept(g_j), g_k = kept(g_k);
+        const VF slope = HN::MulAdd(lanes.bx, g_i, HN::MulAdd(lanes.by, g_j, g_k));
+        const VF per_length =
+            HN::Div(HN::Set(d, static_cast<float>(frame.shading->unit / frame.length_unit)), lanes.length);
+        lit = shade(*frame.shading, axes, g_i, g_j, g_k, slope, per_length, lanes.light_view);
+      }
+    }
+    Progress part{zero, one, zero, zero, zero, zero};
+    Progress& target = lit_part ? part : progress;
+    if (uniform != nullptr && HWY_LIKELY(add_uniform<cell_data>(*uniform, piece, target))) {
+      counts.samples += voxels;
+      if (HWY_UNLIKELY(!HN::AllTrue(d, first.seen))) note_first_light(target, piece.begin, first);
+    } else {
+      add_any(lookup, frame.piece_tolerance, frame.largest_color, piece, target, first, counts.samples);
+    }
+    if (lit_part) {
+      put_behind(part, lit, progress);
+      // Within the stretch light is measured from its own front.
+      note_first_light(progress, piece.begin, first);
+    }
+  }
+}
+
+/// The slab as a whole, as far as it is smooth: see cast_slab. The field stays within rho of the line from s_0 to s_1.
+struct SlabLine {
+  VF s_0, s_1, mean, rho;
+};
+
+/// What a stretch's cubic is besides the chord between its ends: the even part's height and a quarter of the odd one's
+/// coefficient (ray_piece-inl.h), which bound it together.
+HWY_INLINE VF bump_of(VF s_0, VF middle, VF s_1, VF p_3) {
+  const DF d;
+  const VF even = HN::NegMulAdd(HN::Set(d, 0.5f), HN::Add(s_0, s_1), middle);
+  return HN::MulAdd(HN::Set(d, 0.25f), HN::Abs(p_3), HN::Abs(even));
+}
+
+/// The cubic at a stretch's other end: Simpson's rule is exact, mean = (s_0 + 4 middle + s_1) / 6.
+HWY_INLINE VF other_end(VF s, VF middle, VF mean) {
+  const DF d;
+  return HN::Sub(HN::MulAdd(HN::Set(d, 6.0f), mean, HN::Mul(HN::Set(d, -4.0f), middle)), s);
+}
+
+/// Bound of the field's distance from the slab's line: the borders', and the bumps between. Not a number where the
+/// field is not.
+HWY_INLINE VF distance_bound(VF border_1, VF line_1, VF border_2, VF line_2, const VF (&bump)[3]) {
+  const VF borders = HN::Max(HN::Abs(HN::Sub(border_1, line_1)), HN::Abs(HN::Sub(border_2, line_2)));
+  const VF bumps = HN::Max(HN::Max(bump[0], bump[1]), bump[2]);
+  const VF any = HN::Add(HN::Add(bump[0], bump[1]), HN::Add(bump[2], HN::Add(border_1, border_2)));
+  return HN::MulAdd(HN::Zero(DF()), any, HN::Add(borders, bumps));
+}
+
+/// The line of a slab that lanes may enter or leave anywhere. Lanes that are not there give anything.
+template <class Window>
+HWY_INLINE SlabLine part_line(const Lanes& lanes, const SlabPath& path, const Window& window) {
+  const DF d;
+  const VF half = HN::Set(d, 0.5f);
+  const VF extent = HN::Sub(path.to, path.from);
+  const VF per_extent = HN::Div(HN::Set(d, 1.0f), extent);
+  SlabLine line;
+  VF middle[3], mean[3], p_3[3];
+  line.mean = line.s_0 = line.s_1 = HN::Zero(d);
+  for (int p = 0; p < 3; ++p) {
+    const Stretch& stretch = path.stretches[p];
+    const VoxelField field(window.corners(window_index(window, path, stretch)), HN::Sub(path.x, stretch.i),
+                           HN::Sub(path.y, stretch.j));
+    const VF e = HN::Sub(stretch.end, stretch.begin), ee = HN::Mul(e, e);
+    field.middle_and_mean(HN::Mul(half, HN::Add(stretch.begin, stretch.end)), HN::Mul(ee, HN::Set(d, 1 / 12.0f)),
+                          lanes.bx, lanes.by, lanes.bends, middle[p], mean[p]);
+    p_3[p] = HN::Mul(HN::Mul(field.cij, lanes.bends), HN::Mul(ee, e));
+    line.mean = HN::MulAdd(HN::Mul(e, per_extent), mean[p], line.mean);
+    if (p == 0) line.s_0 = field.at(stretch.begin, lanes.bx, lanes.by);
+    if (p == 2) line.s_1 = field.at(stretch.end, lanes.bx, lanes.by);
+  }
+  const VF slope = HN::Mul(HN::Sub(line.s_1, line.s_0), per_extent);
+  const VF border_1 = other_end(line.s_0, middle[0], mean[0]), border_2 = other_end(line.s_1, middle[2], mean[2]);
+  const VF bump[3] = {bump_of(line.s_0, middle[0], border_1, p_3[0]), bump_of(border_1, middle[1], border_2, p_3[1]),
+                      bump_of(border_2, middle[2], line.s_1, p_3[2])};
+  const auto on_line = [&](VF at) HWY_ATTR { return HN::MulAdd(HN::Sub(at, path.from), slope, line.s_0); };
+  line.rho =
+      distance_bound(border_1, on_line(path.stretches[1].begin), border_2, on_line(path.stretches[2].begin), bump);
+  return line;
+}
+
+/// A slab whose lanes are in several intervals, or cross knots.
+template <class Window, class Lookup>
+HWY_NOINLINE void cast_mixed(const FrameView& frame, const RayAxes& axes, const Lookup& lookup, const Lanes& lanes,
+                             const SlabPath& path, const SlabLine& line, const Window& window, CurrentInterval& current,
+                             Progress& progress, FirstLight& first, TileCounts& counts) {
+  const DF d;
+  const VF zero = HN::Zero(d), half = HN::Set(d, 0.5f);
+  const MF there = HN::Gt(path.to, path.from);
+  const VF span = HN::Sub(line.s_1, line.s_0), m = HN::NegMulAdd(half, HN::Add(line.s_0, line.s_1), line.mean);
+  const VF length = HN::Mul(lanes.length, HN::Sub(path.to, path.from));
+  const VF spread = HN::Mul(HN::Mul(length, line.rho), HN::MulAdd(HN::Abs(span), HN::Set(d, 0.25f), line.rho));
+  const VF low = HN::Sub(HN::Min(line.s_0, line.s_1), line.rho), high = HN::Add(HN::Max(line.s_0, line.s_1), line.rho);
+  const VI interval = lookup.locate(low, HN::Eq(zero, zero));
+  const auto index = lookup.index(interval, there);
+  current.move_to(static_cast<std::size_t>(
+      HN::GetLane(HN::MaxOfLanes(DI(), HN::IfThenElseZero(HN::RebindMask(DI(), there), interval)))));
+  const VF edge = lookup.far_edge(interval, index, HN::Set(DI(), 1));
+  const VF kappa_slope = HN::Abs(
+      HN::Add(lookup.at(LaneTable::half_extinction_slope, index), lookup.at(LaneTable::half_extinction_slope, index)));
+  const VF color_slope = HN::Max(
+      HN::Max(HN::Abs(lookup.at(LaneTable::red_slope, index)), HN::Abs(lookup.at(LaneTable::green_slope, index))),
+      HN::Abs(lookup.at(LaneTable::blue_slope, index)));
+  const VF scale =
+      HN::Mul(HN::Mul(kappa_slope, HN::Set(d, 1 / frame.piece_tolerance)),
+              HN::MulAdd(HN::Mul(length, kappa_slope), HN::Set(d, 0.03f * frame.largest_color), color_slope));
+  const VF extinction = HN::Max(extinction_at(lookup, index, low), extinction_at(lookup, index, high));
+  const VF dimming = HN::Mul(HN::Mul(length, extinction), lookup.independent ? length : HN::Mul(length, extinction));
+  const VF dimmed =
+      HN::Mul(HN::Mul(dimming, color_slope), HN::Mul(line.rho, HN::Set(d, 1 / (9 * frame.piece_tolerance))));
+  const MF together =
+      HN::And(HN::And(there, HN::Lt(high, edge)), HN::Le(HN::MulAdd(spread, scale, dimmed), HN::Set(d, 1.0f)));
+  if (!HN::AllFalse(d, together)) {
+    const auto kept = [&](VF v) HWY_ATTR { return HN::IfThenElseZero(together, v); };
+    CL::lanes::add_piece<false>(lookup, index, kept(HN::Add(line.s_0, m)), kept(HN::Add(line.s_1, m)), kept(span),
+                                kept(length), progress);
+    counts.samples += HN::CountTrue(d, together);
+    note_first_light(progress, HN::Add(path.from, path.k), first);
+  }
+  const MF apart = HN::AndNot(together, there);
+  if (!HN::AllFalse(d, apart))
+    cast_voxels<false>(frame, axes, lookup, lanes, path, window, nullptr, apart, progress, first, counts);
+}
+
+/// A slab, voxel by voxel.
+template <class Window, class Lookup>
+HWY_NOINLINE void cast_shaded(const ChunkView& chunk, const Lookup& lookup, const Lanes& lanes, int n, int i_window,
+                              int j_window, const UniformLookup* uniform, const Window& window, Progress& progress,
+                              FirstLight& first, TileCounts& counts) {
+  const DF d;
+  const SlabPath path = path_of(lanes, n, i_window, j_window);
+  for (const Stretch& stretch : path.stretches)
+    counts.voxels_visited += HN::CountTrue(d, HN::Gt(stretch.end, stretch.begin));
+  cast_voxels<false>(chunk.frame, chunk.axes, lookup, lanes, path, window, uniform, HN::Gt(path.to, path.from),
+                     progress, first, counts);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::volume
+HWY_AFTER_NAMESPACE();
+
+#endif
