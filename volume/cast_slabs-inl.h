@@ -25,11 +25,13 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
-/// Voxels that a packet may meet, by slab of the chunk.
+/// Voxels that a packet may meet, by slab of the chunk, and the windows that hold their corners.
 struct PacketSlabs {
   static constexpr int slabs = SlabBlock::slabs;
   HWY_ALIGN int i_first[slabs], i_last[slabs], j_first[slabs], j_last[slabs];
   int widest_i = 0, widest_j = 0;  ///< most of last - first
+  HWY_ALIGN int i_window[slabs], j_window[slabs], front[slabs], back[slabs], border[slabs];
+  HWY_ALIGN float origin[slabs];
 
   HWY_INLINE PacketSlabs(const Reach& reach, int voxels_i, int voxels_j) {
     for (int n = 0; n < slabs; ++n) slab_range(reach.x_low, reach.x_high, n, voxels_i, i_first[n], i_last[n]);
@@ -37,6 +39,23 @@ struct PacketSlabs {
     for (int n = 0; n < slabs; ++n) {
       widest_i = std::max(widest_i, i_last[n] - i_first[n]);
       widest_j = std::max(widest_j, j_last[n] - j_first[n]);
+      border[n] = i_first[n] <= 0 || i_last[n] >= voxels_i - 1 || j_first[n] <= 0 || j_last[n] >= voxels_j - 1;
+    }
+  }
+
+  /// Where the windows lie in the block. They may not reach beyond what both slices hold.
+  template <class Window>
+  HWY_INLINE void place_windows(const SlabBlock& block, int slab_count) {
+    constexpr bool gathers = std::is_same_v<Window, GatherWindow>;
+    const auto pitch = static_cast<int>(block.pitch), rows = static_cast<int>(block.rows);
+    const int columns = gathers ? pitch : Window::columns;
+    for (int n = 0; n < slab_count; ++n) {
+      const auto s = static_cast<std::size_t>(n);
+      i_window[n] = std::max(block.slab_i[s], std::min(i_first[n], block.slab_i_last[s] - Window::columns + 1));
+      j_window[n] = std::max(block.slab_j[s], std::min(j_first[n], block.slab_j_last[s] - Window::rows + 1));
+      front[n] = (n * rows + j_window[n] - block.low_j[s]) * pitch + i_window[n] - block.low_i[s];
+      back[n] = ((n + 1) * rows + j_window[n] - block.low_j[s + 1]) * pitch + i_window[n] - block.low_i[s + 1];
+      origin[n] = static_cast<float>(i_first[0] - i_window[n] + columns * (j_first[0] - j_window[n]));
     }
   }
 };
@@ -83,11 +102,9 @@ class PacketCast {
         lookup_(lookup),
         slabs_(slabs),
         lanes_(lanes),
-        mirrored_(lanes),
+        mirrored_(lanes, std::is_same_v<Window, GatherWindow> ? static_cast<int>(chunk.block.pitch) : Window::columns),
         current_(current),
         counts_(counts),
-        voxels_i_(static_cast<int>(frame_.voxels[static_cast<std::size_t>(chunk.axes.i)])),
-        voxels_j_(static_cast<int>(frame_.voxels[static_cast<std::size_t>(chunk.axes.j)])),
         before_(before) {
     const DF d;
     const VF zero = HN::Zero(d);
@@ -155,17 +172,9 @@ class PacketCast {
   }
 
   HWY_INLINE WindowPlace place_of(int n) const {
-    const auto s = static_cast<std::size_t>(n);
-    const SlabBlock& block = chunk_.block;
-    WindowPlace place;
-    // A window may not reach beyond what both slices hold.
-    place.i = std::max(block.slab_i[s], std::min(slabs_.i_first[n], block.slab_i_last[s] - Window::columns + 1));
-    place.j = std::max(block.slab_j[s], std::min(slabs_.j_first[n], block.slab_j_last[s] - Window::rows + 1));
-    place.inner = slabs_.i_first[n] > 0 && slabs_.i_last[n] < voxels_i_ - 1 && slabs_.j_first[n] > 0 &&
-                  slabs_.j_last[n] < voxels_j_ - 1;
-    place.front = block.at(n, place.i, place.j);
-    place.back = cell_data ? place.front : block.at(n + 1, place.i, place.j);
-    return place;
+    const float* const samples = chunk_.block.slice(0);
+    const float* const front = samples + slabs_.front[n];
+    return {front, cell_data ? front : samples + slabs_.back[n], slabs_.origin[n], slabs_.border[n] == 0};
   }
 
   /// Lanes in slab n.
@@ -198,13 +207,13 @@ class PacketCast {
       if constexpr (!cell_data) {
         const WindowPlace place = place_of(n);
         const Window window(place.front, place.back, chunk_.block.pitch);
-        if (lookup_.has_clear && current_.holds(window, *place.front) && current_.clear()) {
+        if (frame_.some_clear && current_.holds(window, *place.front) && current_.clear()) {
           kind = Kind::empty;
           continue;
         }
-        find_line(mirrored_, lanes_, window, place, chunk_.block.pitch, n, n - begin, lines, crossings_);
-        if (n + 1 == end || kind_of(n + 1) != Kind::lines || lookup_.has_clear)
-          find_back(mirrored_, lanes_, window, place, chunk_.block.pitch, n, n - begin, lines);
+        find_line(mirrored_, window, place, chunk_.block.pitch, n, n - begin, lines, crossings_);
+        if (n + 1 == end || kind_of(n + 1) != Kind::lines || frame_.some_clear)
+          find_back(mirrored_, window, place, chunk_.block.pitch, n, n - begin, lines);
       }
     }
     kinds[end - begin] = Kind::empty;
@@ -288,7 +297,7 @@ class PacketCast {
     const DF d;
     const WindowPlace place = place_of(n);
     const Window window(place.front, place.back, chunk_.block.pitch);
-    const SlabPath path = path_of(lanes_, n, place.i, place.j);
+    const SlabPath path = path_of(lanes_, n, slabs_.i_window[n], slabs_.j_window[n]);
     if (uniform) {
       cast_voxels<false>(frame_, chunk_.axes, lookup_, lanes_, path, window, &current_.uniform(), live, progress_,
                          first_, counts_);
@@ -306,7 +315,7 @@ class PacketCast {
     const Window window(place.front, place.back, chunk_.block.pitch);
     const bool uniform = current_.holds(window, *place.front);
     if (uniform && current_.clear()) return;
-    const SlabPath path = path_of(lanes_, n, place.i, place.j);
+    const SlabPath path = path_of(lanes_, n, slabs_.i_window[n], slabs_.j_window[n]);
     for (const Stretch& stretch : path.stretches)
       counts_.voxels_visited += HN::CountTrue(d, HN::Gt(stretch.end, stretch.begin));
     if (cell_data || frame_.shading != nullptr) {
@@ -328,7 +337,6 @@ class PacketCast {
   MirroredLanes mirrored_;
   CurrentInterval& current_;
   TileCounts& counts_;
-  int voxels_i_, voxels_j_;
   VF before_;  ///< transmittance up to the chunk
   VF crossings_;
   float plain_from_, plain_to_;
@@ -379,8 +387,9 @@ HWY_NOINLINE void cast_chunk_as(const ChunkView& chunk, TileRays& rays, TileCoun
   for (int packet = 0; packet < TileRays::packets; ++packet) {
     const Reach& reach = chunk.reach[packet];
     if (!reach.any) continue;
-    const PacketSlabs slabs(reach, voxels_i, voxels_j);
+    PacketSlabs slabs(reach, voxels_i, voxels_j);
     const auto cast = [&]<class Window>() HWY_ATTR {
+      slabs.template place_windows<Window>(chunk.block, chunk.slabs);
       for (int lane = 0; lane < TileRays::packet_rays; lane += static_cast<int>(HN::Lanes(DF())))
         cast_lanes<cell_data, Window>(chunk, lookup, packet * TileRays::packet_rays + lane, reach, slabs, current, rays,
                                       counts);

@@ -125,9 +125,11 @@ CellRanges::CellRanges(const scene::SampleSource& source, int threads) {
   }
 }
 
-std::vector<std::uint8_t> visible_cells(const CellRanges& ranges, const compositor::LaneTable& table) {
+namespace {
+
+/// Intervals of the table that show anything, counted from the lowest: those before each.
+std::vector<std::size_t> shown_intervals(const compositor::LaneTable& table) {
   using compositor::LaneTable;
-  // Intervals of the table that show anything, counted from the lowest.
   std::vector<std::size_t> shown_before(table.knot_count + 2, 0);
   for (std::size_t i = 0; i <= table.knot_count; ++i) {
     const auto any = [&](int column) { return table.column(column)[i] != 0; };
@@ -136,10 +138,29 @@ std::vector<std::uint8_t> visible_cells(const CellRanges& ranges, const composit
       for (int c = LaneTable::red; c <= LaneTable::blue_slope; ++c) shows = shows || any(c);
     shown_before[i + 1] = shown_before[i] + (shows ? 1 : 0);
   }
-  const float* const knots = table.column(LaneTable::edge) + 1;
-  const auto interval = [&](float s) {
-    return static_cast<std::size_t>(std::upper_bound(knots, knots + table.knot_count, s) - knots);
-  };
+  return shown_before;
+}
+
+std::size_t interval_of(const compositor::LaneTable& table, float s) {
+  const float* const knots = table.column(compositor::LaneTable::edge) + 1;
+  return static_cast<std::size_t>(std::upper_bound(knots, knots + table.knot_count, s) - knots);
+}
+
+}  // namespace
+
+bool any_clear(const CellRanges& ranges, const compositor::LaneTable& table) {
+  float low = std::numeric_limits<float>::infinity(), high = -low;
+  for (std::size_t cell = 0; cell < ranges.count(); ++cell)
+    low = std::min(low, ranges.low[cell]), high = std::max(high, ranges.high[cell]);
+  if (!(low <= high)) return true;
+  const std::vector<std::size_t> shown_before = shown_intervals(table);
+  const std::size_t first = interval_of(table, low), last = interval_of(table, high);
+  return shown_before[last + 1] - shown_before[first] < last + 1 - first;
+}
+
+std::vector<std::uint8_t> visible_cells(const CellRanges& ranges, const compositor::LaneTable& table) {
+  const std::vector<std::size_t> shown_before = shown_intervals(table);
+  const auto interval = [&](float s) { return interval_of(table, s); };
   std::vector<std::uint8_t> visible(ranges.count(), 0);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, ranges.count(), 4096), [&](const auto& some) {
     for (std::size_t cell = some.begin(); cell != some.end(); ++cell)

@@ -32,6 +32,9 @@ struct CellRanges {
 /// One byte a cell: 1 where the transfer function shows anything of its range.
 std::vector<std::uint8_t> visible_cells(const CellRanges& ranges, const compositor::LaneTable& table);
 
+/// Whether the transfer function shows nothing of some value in the volume's range.
+bool any_clear(const CellRanges& ranges, const compositor::LaneTable& table);
+
 /// One byte a brick: 1 where it holds voxels of a visible cell.
 std::vector<std::uint8_t> visible_bricks(const CellRanges& ranges, const std::vector<std::uint8_t>& visible,
                                          const BrickLayout& layout);

@@ -46,6 +46,7 @@ struct FrameView {
   const CellRanges* ranges;
   const std::uint8_t* visible;        ///< by cell of `ranges`
   bool some_hidden;                   ///< whether some cell is not visible
+  bool some_clear;                    ///< whether the transfer function shows nothing of some value in the volume
   const std::uint8_t* brick_visible;  ///< by brick: whether it holds voxels of a visible cell
   BrickCache* bricks;
   scene::GridIndex voxels, samples;

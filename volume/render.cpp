@@ -247,6 +247,7 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
     frame.ranges = &ranges;
     frame.visible = visible.data();
     frame.some_hidden = std::find(visible.begin(), visible.end(), 0) != visible.end();
+    frame.some_clear = any_clear(ranges, table);
     frame.brick_visible = result.brick_visible.data();
     frame.bricks = &bricks;
     frame.voxels = source.geometry().voxels();

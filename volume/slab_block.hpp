@@ -25,6 +25,7 @@ struct SlabBlock {
   std::vector<float> samples;
 
   [[nodiscard]] float* slice(int n) { return samples.data() + margin + n * pitch * rows; }
+  [[nodiscard]] const float* slice(int n) const { return samples.data() + margin + n * pitch * rows; }
   [[nodiscard]] const float* at(int n, int i, int j) const {
     const auto s = static_cast<std::size_t>(n);
     return samples.data() + margin + (n * rows + (j - low_j[s])) * pitch + (i - low_i[s]);

@@ -36,15 +36,18 @@ struct MirroredLanes {
   VF i_least, i_most, j_least, j_most;  ///< voxels of the volume
   VF sign_i, sign_j;                    ///< +1, or -1 where mirrored
   VF i, j;                              ///< lattice point 0 of the axes, relative to (i_base, j_base)
-  MF down_i, down_j, live;
+  VI step_i, step_j;                    ///< elements of the window from a lattice point to the next
+  MF live;
   VF bends;
 
-  explicit HWY_INLINE MirroredLanes(const Lanes& lanes) {
+  /// `columns` of the window.
+  HWY_INLINE MirroredLanes(const Lanes& lanes, int columns) {
     const DF d;
+    const DI di;
     const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f);
     const auto axis = [&](VF position, VF slope, VF least, VF most, VF& x_out, VF& b_out, VF& per, VF& sign,
-                          VF& least_out, VF& most_out, MF& down) HWY_ATTR {
-      down = HN::Lt(slope, zero);
+                          VF& least_out, VF& most_out) HWY_ATTR {
+      const MF down = HN::Lt(slope, zero);
       sign = HN::IfThenElse(down, HN::Neg(one), one);
       x_out = HN::Mul(sign, position);
       b_out = HN::Abs(slope);
@@ -52,9 +55,11 @@ struct MirroredLanes {
       least_out = HN::IfThenElse(down, HN::Sub(HN::Neg(most), one), least);
       most_out = HN::IfThenElse(down, HN::Sub(HN::Neg(least), one), most);
     };
-    axis(lanes.x, lanes.bx, lanes.i_least, lanes.i_most, x, bx, per_bx, sign_i, i_least, i_most, down_i);
-    axis(lanes.y, lanes.by, lanes.j_least, lanes.j_most, y, by, per_by, sign_j, j_least, j_most, down_j);
+    axis(lanes.x, lanes.bx, lanes.i_least, lanes.i_most, x, bx, per_bx, sign_i, i_least, i_most);
+    axis(lanes.y, lanes.by, lanes.j_least, lanes.j_most, y, by, per_by, sign_j, j_least, j_most);
     i = lanes.i, j = lanes.j;
+    step_i = HN::ConvertTo(di, sign_i);
+    step_j = HN::ConvertTo(di, HN::Mul(HN::Set(d, static_cast<float>(columns)), sign_j));
     bends = HN::Mul(bx, by);
     live = HN::Lt(lanes.k_in, lanes.k_out);
   }
@@ -91,16 +96,16 @@ HWY_INLINE Line line_of(const SlabLines& lines, int n) {
   return line;
 }
 
-/// Where slab n's window begins, and whether voxels at the volume's border may be met.
+/// Where a slab's window begins, and whether all voxels that may be met have neighbours in the volume.
 struct WindowPlace {
   const float *front, *back;
-  int i, j;
+  float origin;  ///< element of voxel (i_base, j_base), negative
   bool inner;
 };
 
 /// The field of slab n of the chunk into place m of `lines`; if `last`, the field at its back plane, too.
 template <class Window>
-HWY_INLINE void find_line(const MirroredLanes& lanes, const Lanes& base, const Window& window, const WindowPlace& place,
+HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, const WindowPlace& place,
                           std::ptrdiff_t pitch, int n, int m, SlabLines& lines, VF& voxels) {
   const DF d;
   const DI di;
@@ -128,24 +133,17 @@ HWY_INLINE void find_line(const MirroredLanes& lanes, const Lanes& base, const W
 
   // Elements of the window: i + columns j.
   constexpr bool gathers = std::is_same_v<Window, GatherWindow>;
-  const float columns = static_cast<float>(gathers ? pitch : Window::columns);
-  const VI step_i = HN::IfThenElse(HN::RebindMask(di, lanes.down_i), HN::Set(di, -1), HN::Set(di, 1)),
-           step_j = HN::IfThenElse(HN::RebindMask(di, lanes.down_j), HN::Set(di, -static_cast<std::int32_t>(columns)),
-                                   HN::Set(di, static_cast<std::int32_t>(columns)));
-  const float origin = static_cast<float>(place.i - base.i_base) + columns * static_cast<float>(place.j - base.j_base);
-  const auto element = [&](VF i_at, VF j_at) HWY_ATTR {
-    const VF at = HN::MulAdd(HN::Set(d, columns), HN::MulAdd(lanes.sign_j, j_at, lanes.j),
-                             HN::MulAdd(lanes.sign_i, i_at, lanes.i));
-    const VF in_window = HN::Sub(at, HN::Set(d, origin));
-    // Lanes that are not there may be anywhere.
-    return HN::ConvertTo(di, gathers ? HN::IfThenElseZero(lanes.live, in_window) : in_window);
-  };
+  const VF in_window = HN::Add(HN::MulAdd(HN::Set(d, static_cast<float>(gathers ? pitch : Window::columns)),
+                                          HN::MulAdd(lanes.sign_j, j, lanes.j), HN::MulAdd(lanes.sign_i, i, lanes.i)),
+                               HN::Set(d, place.origin));
   const auto if_int = [&](MF mask, VI v) HWY_ATTR { return HN::IfThenElseZero(HN::RebindMask(di, mask), v); };
-  VI step_p = HN::IfThenElse(HN::RebindMask(di, i_first), step_i, step_j),
-     step_q = HN::IfThenElse(HN::RebindMask(di, i_first), step_j, step_i);
+  VI step_p = HN::IfThenElse(HN::RebindMask(di, i_first), lanes.step_i, lanes.step_j),
+     step_q = HN::IfThenElse(HN::RebindMask(di, i_first), lanes.step_j, lanes.step_i);
+  VI at_00 = HN::ConvertTo(di, in_window);
+  // Lanes that are not there may be anywhere.
   if (gathers) step_p = if_int(lanes.live, step_p), step_q = if_int(lanes.live, step_q);
-  const VI at_00 = element(i, j), at_10 = HN::Add(at_00, step_p), at_01 = HN::Add(at_00, step_q),
-           at_11 = HN::Add(at_10, step_q);
+  if (gathers) at_00 = if_int(lanes.live, at_00);
+  const VI at_10 = HN::Add(at_00, step_p), at_01 = HN::Add(at_00, step_q), at_11 = HN::Add(at_10, step_q);
   // What is not crossed has nothing behind it: no step, so that nothing but the voxel's own points is read.
   const VI beyond_p = if_int(cross_1, step_p), beyond_q = if_int(cross_2, step_q);
   const VI at_20 = HN::Add(at_10, beyond_p), at_21 = HN::Add(at_11, beyond_p), at_12 = HN::Add(at_11, beyond_q),
@@ -224,7 +222,7 @@ HWY_INLINE void find_line(const MirroredLanes& lanes, const Lanes& base, const W
 
 /// The field at slab n's back plane, into place m + 1.
 template <class Window>
-HWY_INLINE void find_back(const MirroredLanes& lanes, const Lanes& base, const Window& window, const WindowPlace& place,
+HWY_INLINE void find_back(const MirroredLanes& lanes, const Window& window, const WindowPlace& place,
                           std::ptrdiff_t pitch, int n, int m, SlabLines& lines) {
   const DF d;
   const DI di;
@@ -237,14 +235,11 @@ HWY_INLINE void find_back(const MirroredLanes& lanes, const Lanes& base, const W
   }
   const VF fx = HN::Sub(x, i), fy = HN::Sub(y, j);
   constexpr bool gathers = std::is_same_v<Window, GatherWindow>;
-  const float columns = static_cast<float>(gathers ? pitch : Window::columns);
-  const float origin = static_cast<float>(place.i - base.i_base) + columns * static_cast<float>(place.j - base.j_base);
-  const VF at = HN::Sub(
-      HN::MulAdd(HN::Set(d, columns), HN::MulAdd(lanes.sign_j, j, lanes.j), HN::MulAdd(lanes.sign_i, i, lanes.i)),
-      HN::Set(d, origin));
-  const auto kept = [&](VF v) HWY_ATTR { return gathers ? HN::IfThenElseZero(lanes.live, v) : v; };
-  const VI at_00 = HN::ConvertTo(di, kept(at)), step_i = HN::ConvertTo(di, kept(lanes.sign_i)),
-           step_j = HN::ConvertTo(di, kept(HN::Mul(HN::Set(d, columns), lanes.sign_j)));
+  const VF at = HN::Add(HN::MulAdd(HN::Set(d, static_cast<float>(gathers ? pitch : Window::columns)),
+                                   HN::MulAdd(lanes.sign_j, j, lanes.j), HN::MulAdd(lanes.sign_i, i, lanes.i)),
+                        HN::Set(d, place.origin));
+  const auto kept = [&](VI v) HWY_ATTR { return gathers ? HN::IfThenElseZero(HN::RebindMask(di, lanes.live), v) : v; };
+  const VI at_00 = kept(HN::ConvertTo(di, at)), step_i = kept(lanes.step_i), step_j = kept(lanes.step_j);
   const VI at_10 = HN::Add(at_00, step_i);
   const VF b_00 = window.back(at_00), b_10 = window.back(at_10), b_01 = window.back(HN::Add(at_00, step_j)),
            b_11 = window.back(HN::Add(at_10, step_j));

@@ -180,6 +180,70 @@ HWY_INLINE SlabLine part_line(const Lanes& lanes, const SlabPath& path, const Wi
   return line;
 }
 
+#if HWY_TARGET <= HWY_AVX3
+/// cast_voxels() for few lanes, all of which have seen light: their stretches are put side by side, integrated from
+/// their own fronts, sixteen at once, and put behind each other by lane.
+template <class Window, class Lookup>
+HWY_NOINLINE void cast_few(const FrameView& frame, const Lookup& lookup, const Lanes& lanes, const SlabPath& path,
+                           const Window& window, MF wanted, Progress& progress, TileCounts& counts) {
+  const DF d;
+  const VF half = HN::Set(d, 0.5f), zero = HN::Zero(d), one = HN::Set(d, 1.0f);
+  constexpr std::size_t lanes_each = HN::MaxLanes(DF()), most = 3 * lanes_each;
+  HWY_ALIGN float s_0[most + lanes_each], s_mid[most + lanes_each], s_1[most + lanes_each], p_3[most + lanes_each],
+      length[most + lanes_each];
+  MF there[3];
+  std::size_t begin[4] = {0, 0, 0, 0};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Stretch& stretch = path.stretches[k];
+    const VF extent = HN::Sub(stretch.end, stretch.begin);
+    there[k] = HN::And(wanted, HN::Gt(extent, zero));
+    begin[k + 1] = begin[k] + HN::CountTrue(d, there[k]);
+    if (begin[k + 1] == begin[k]) continue;
+    const VoxelField field(window.corners(window_index(window, path, stretch)), HN::Sub(path.x, stretch.i),
+                           HN::Sub(path.y, stretch.j));
+    const VF middle = HN::Mul(half, HN::Add(stretch.begin, stretch.end));
+    const auto keep = [&](VF v, float* to)
+                          HWY_ATTR { HN::StoreU(VF{_mm512_maskz_compress_ps(there[k].raw, v.raw)}, d, to + begin[k]); };
+    keep(field.at(stretch.begin, lanes.bx, lanes.by), s_0);
+    keep(field.at(middle, lanes.bx, lanes.by), s_mid);
+    keep(field.at(stretch.end, lanes.bx, lanes.by), s_1);
+    keep(HN::Mul(HN::Mul(field.cij, lanes.bends), HN::Mul(extent, HN::Mul(extent, extent))), p_3);
+    keep(HN::Mul(extent, lanes.length), length);
+  }
+  const std::size_t count = begin[3];
+  if (count == 0) return;
+  HN::StoreU(zero, d, length + count);
+  HWY_ALIGN float light[6][most + lanes_each];
+  for (std::size_t n = 0; n < count; n += lanes_each) {
+    Piece piece{HN::Load(d, s_0 + n),
+                HN::Load(d, s_mid + n),
+                HN::Load(d, s_1 + n),
+                HN::Load(d, p_3 + n),
+                HN::Load(d, length + n),
+                zero,
+                zero};
+    Progress part{zero, one, zero, zero, zero, zero};
+    FirstLight seen{zero, HN::Eq(zero, zero)};
+    add_any(lookup, frame.piece_tolerance, frame.largest_color, piece, part, seen, counts.samples);
+    const VF parts[6] = {part.alpha, part.transmittance, part.optical_depth, part.red, part.green, part.blue};
+    for (int c = 0; c < 6; ++c) HN::Store(parts[c], d, light[c] + n);
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (begin[k + 1] == begin[k]) continue;
+    const auto part = [&](int c)
+                          HWY_ATTR { return VF{_mm512_maskz_expandloadu_ps(there[k].raw, light[c] + begin[k])}; };
+    const VF through = progress.transmittance;
+    progress.alpha = HN::MulAdd(through, part(0), progress.alpha);
+    progress.transmittance =
+        HN::Mul(through, VF{_mm512_mask_expandloadu_ps(one.raw, there[k].raw, light[1] + begin[k])});
+    progress.optical_depth = HN::Add(progress.optical_depth, part(2));
+    progress.red = HN::MulAdd(through, part(3), progress.red);
+    progress.green = HN::MulAdd(through, part(4), progress.green);
+    progress.blue = HN::MulAdd(through, part(5), progress.blue);
+  }
+}
+#endif
+
 /// A slab whose lanes are in several intervals, or cross knots.
 template <class Window, class Lookup>
 HWY_NOINLINE void cast_mixed(const FrameView& frame, const RayAxes& axes, const Lookup& lookup, const Lanes& lanes,
@@ -219,8 +283,12 @@ HWY_NOINLINE void cast_mixed(const FrameView& frame, const RayAxes& axes, const 
     note_first_light(progress, HN::Add(path.from, path.k), first);
   }
   const MF apart = HN::AndNot(together, there);
-  if (!HN::AllFalse(d, apart))
-    cast_voxels<false>(frame, axes, lookup, lanes, path, window, nullptr, apart, progress, first, counts);
+  if (HN::AllFalse(d, apart)) return;
+#if HWY_TARGET <= HWY_AVX3
+  if (frame.shading == nullptr && HN::AllTrue(d, HN::Or(first.seen, HN::Not(apart))))
+    return cast_few(frame, lookup, lanes, path, window, apart, progress, counts);
+#endif
+  cast_voxels<false>(frame, axes, lookup, lanes, path, window, nullptr, apart, progress, first, counts);
 }
 
 /// A slab, voxel by voxel.
