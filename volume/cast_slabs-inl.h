@@ -252,8 +252,13 @@ class PacketCast {
         const VF middle = HN::Mul(half, HN::Add(a.s_0, b.s_1)), tent = HN::Sub(a.s_1, middle);
         const VF rho = HN::Add(HN::Abs(tent), r), tilt = HN::Mul(HN::Abs(span), HN::Set(d, 0.25f));
         const VF even = HN::MulAdd(rho, rho, HN::Mul(r, tilt)), any = HN::Mul(rho, HN::Add(rho, tilt));
-        const VF error = HN::Mul(length, HN::MulAdd(HN::Set(d, 10 * table.product_bound), even,
-                                                    HN::Mul(HN::Mul(length, HN::Set(d, table.shadow_bound)), any)));
+        const VF dimmed = HN::Mul(HN::Mul(length, HN::Set(d, table.dimming_bound)),
+                                  HN::MulAdd(HN::Mul(HN::Abs(tent), HN::Mul(length, HN::Set(d, table.extinction))),
+                                             HN::Set(d, 1 / 60.0f), HN::Mul(r, HN::Set(d, 0.25f))));
+        const VF error =
+            HN::MulAdd(length, dimmed,
+                       HN::Mul(length, HN::MulAdd(HN::Set(d, 10 * table.product_bound), even,
+                                                  HN::Mul(HN::Mul(length, HN::Set(d, table.shadow_bound)), any))));
         if (HN::AllFalse(d, HN::Gt(error, HN::Set(d, 1.0f)))) {
           const VF shift = HN::Mul(half, HN::Add(tent, HN::Add(a.shift, b.shift)));
           add_uniform_line(a.s_0, b.s_1, span, shift, length, n);
@@ -274,7 +279,8 @@ class PacketCast {
       if (current_.clear()) return 1;
       const VF spread = HN::Mul(HN::Mul(length, a.rho), HN::MulAdd(HN::Abs(a.span), HN::Set(d, 0.25f), a.rho));
       const VF scale = HN::MulAdd(length, HN::Set(d, table.shadow_bound), HN::Set(d, 10 * table.product_bound));
-      if (HWY_LIKELY(HN::AllFalse(d, HN::Gt(HN::Mul(spread, scale), HN::Set(d, 1.0f))))) {
+      const VF dimmed = HN::Mul(HN::Mul(length, HN::Set(d, table.dimming_bound / 9)), HN::Mul(length, a.rho));
+      if (HWY_LIKELY(HN::AllFalse(d, HN::Gt(HN::MulAdd(spread, scale, dimmed), HN::Set(d, 1.0f))))) {
         add_uniform_line(a.s_0, a.s_1, a.span, a.shift, length, n);
         return 1;
       }
