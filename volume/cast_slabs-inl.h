@@ -285,7 +285,7 @@ class PacketCast {
         return 1;
       }
     }
-    add_slowly(a, n, uniform, live);
+    add_slowly(lines, a, m, n, live, length);
     return 1;
   }
 
@@ -299,19 +299,11 @@ class PacketCast {
   }
 
   /// A slab that crosses knots, or is rough.
-  HWY_NOINLINE void add_slowly(const Line& line, int n, bool uniform, MF live) {
-    const DF d;
-    const WindowPlace place = place_of(n);
-    const Window window(place.front, place.back, chunk_.block.pitch);
-    const SlabPath path = path_of(lanes_, n, slabs_.i_window[n], slabs_.j_window[n]);
-    if (uniform) {
-      cast_voxels<false>(frame_, chunk_.axes, lookup_, lanes_, path, window, &current_.uniform(), live, progress_,
-                         first_, counts_);
-      return;
-    }
-    const VF mean = HN::MulAdd(HN::Set(d, 0.5f), HN::Add(line.s_0, line.s_1), line.shift);
-    cast_mixed(frame_, chunk_.axes, lookup_, lanes_, path, SlabLine{line.s_0, line.s_1, mean, line.rho}, window,
-               current_, progress_, first_, counts_);
+  HWY_NOINLINE void add_slowly(const SlabLines& lines, const Line& line, int m, int n, MF live, VF length) {
+    const MF apart = cast_mixed(frame_, lookup_, line, live, HN::Set(DF(), static_cast<float>(n)), length, current_,
+                                progress_, first_, counts_);
+    if (HN::AllFalse(DF(), apart)) return;
+    cast_stretches(frame_, lookup_, lanes_.length, lines, m, n, apart, progress_, first_, counts_);
   }
 
   /// A slab in which lanes begin or end, cell data, shaded.
@@ -330,9 +322,15 @@ class PacketCast {
                              counts_);
       return;
     }
-    if constexpr (!cell_data)
-      cast_mixed(frame_, chunk_.axes, lookup_, lanes_, path, part_line(lanes_, path, window), window, current_,
-                 progress_, first_, counts_);
+    if constexpr (!cell_data) {
+      const MF there = HN::Gt(path.to, path.from);
+      const VF length = HN::IfThenElseZero(there, HN::Mul(lanes_.length, HN::Sub(path.to, path.from)));
+      const MF apart = cast_mixed(frame_, lookup_, part_line(lanes_, path, window), there, HN::Add(path.from, path.k),
+                                  length, current_, progress_, first_, counts_);
+      if (!HN::AllFalse(d, apart))
+        cast_voxels<false>(frame_, chunk_.axes, lookup_, lanes_, path, window, nullptr, apart, progress_, first_,
+                           counts_);
+    }
   }
 
   const ChunkView& chunk_;

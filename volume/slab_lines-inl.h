@@ -72,6 +72,7 @@ struct SlabLines {
   VF u_1[most], u_2[most], f_1[most], f_2[most];  ///< crossings and the field there
   VF sag[most];                                   ///< sum of e^3 tau / 6
   VF bump[most];
+  VF even[3][most], odd[3][most];  ///< of each stretch: e^2 tau, and the cubic's coefficient over it
 };
 
 /// A slab as one line: the mean is shift above the middle of its ends, the field within rho of the line. Not a number
@@ -211,12 +212,16 @@ HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, cons
   const VF w_0 = HN::Mul(ee_0, tau_0), w_1 = HN::Mul(ee_1, tau_1), w_2 = HN::Mul(ee_2, tau_2);
   lines.u_1[m] = u_1, lines.u_2[m] = u_2;
   lines.sag[m] = HN::Mul(HN::Set(d, 1 / 6.0f), HN::MulAdd(e_0, w_0, HN::MulAdd(e_1, w_1, HN::Mul(e_2, w_2))));
-  const VF even = HN::Max(HN::Max(HN::Abs(w_0), HN::Abs(w_1)), HN::Abs(w_2));
-  const VF odd =
-      HN::MulAdd(HN::Mul(e_0, ee_0), HN::Abs(third_0),
-                 HN::MulAdd(HN::Mul(e_1, ee_1), HN::Abs(third_1), HN::Mul(HN::Mul(e_2, ee_2), HN::Abs(third_2))));
+  lines.even[0][m] = w_0, lines.even[1][m] = w_1, lines.even[2][m] = w_2;
+  const VF odd_0 = HN::Mul(HN::Mul(HN::Mul(lanes.bends, e_0), ee_0), third_0),
+           odd_1 = HN::Mul(HN::Mul(HN::Mul(lanes.bends, e_1), ee_1), third_1),
+           odd_2 = HN::Mul(HN::Mul(HN::Mul(lanes.bends, e_2), ee_2), third_2);
+  lines.odd[0][m] = odd_0, lines.odd[1][m] = odd_1, lines.odd[2][m] = odd_2;
+  const VF even = HN::Max(HN::Max(HN::Abs(w_0), HN::Abs(w_1)), HN::Abs(w_2)),
+           odd = HN::Max(HN::Max(HN::Abs(odd_0), HN::Abs(odd_1)), HN::Abs(odd_2));
   // Not a number where any of them is not: Max may leave that out.
-  const VF any = HN::MulAdd(HN::Zero(d), lines.sag[m], HN::MulAdd(lanes.bends, odd, even));
+  const VF all = HN::Add(HN::Add(odd_0, odd_1), HN::Add(odd_2, lines.sag[m]));
+  const VF any = HN::MulAdd(HN::Zero(d), all, HN::Add(odd, even));
   lines.bump[m] = HN::Mul(HN::Set(d, 0.25f), any);
 }
 

@@ -15,6 +15,7 @@
 #include "volume/current_interval-inl.h"
 #include "volume/packet_lanes-inl.h"
 #include "volume/shading-inl.h"
+#include "volume/slab_lines-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
@@ -120,11 +121,6 @@ HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const
   }
 }
 
-/// The slab as a whole, as far as it is smooth: see cast_slab. The field stays within rho of the line from s_0 to s_1.
-struct SlabLine {
-  VF s_0, s_1, mean, rho;
-};
-
 /// What a stretch's cubic is besides the chord between its ends: the even part's height and a quarter of the odd one's
 /// coefficient (ray_piece-inl.h), which bound it together.
 HWY_INLINE VF bump_of(VF s_0, VF middle, VF s_1, VF p_3) {
@@ -150,14 +146,15 @@ HWY_INLINE VF distance_bound(VF border_1, VF line_1, VF border_2, VF line_2, con
 
 /// The line of a slab that lanes may enter or leave anywhere. Lanes that are not there give anything.
 template <class Window>
-HWY_INLINE SlabLine part_line(const Lanes& lanes, const SlabPath& path, const Window& window) {
+HWY_INLINE Line part_line(const Lanes& lanes, const SlabPath& path, const Window& window) {
   const DF d;
   const VF half = HN::Set(d, 0.5f);
   const VF extent = HN::Sub(path.to, path.from);
   const VF per_extent = HN::Div(HN::Set(d, 1.0f), extent);
-  SlabLine line;
+  Line line;
+  VF total = HN::Zero(d);
   VF middle[3], mean[3], p_3[3];
-  line.mean = line.s_0 = line.s_1 = HN::Zero(d);
+  line.s_0 = line.s_1 = total;
   for (int p = 0; p < 3; ++p) {
     const Stretch& stretch = path.stretches[p];
     const VoxelField field(window.corners(window_index(window, path, stretch)), HN::Sub(path.x, stretch.i),
@@ -166,11 +163,13 @@ HWY_INLINE SlabLine part_line(const Lanes& lanes, const SlabPath& path, const Wi
     field.middle_and_mean(HN::Mul(half, HN::Add(stretch.begin, stretch.end)), HN::Mul(ee, HN::Set(d, 1 / 12.0f)),
                           lanes.bx, lanes.by, lanes.bends, middle[p], mean[p]);
     p_3[p] = HN::Mul(HN::Mul(field.cij, lanes.bends), HN::Mul(ee, e));
-    line.mean = HN::MulAdd(HN::Mul(e, per_extent), mean[p], line.mean);
+    total = HN::MulAdd(HN::Mul(e, per_extent), mean[p], total);
     if (p == 0) line.s_0 = field.at(stretch.begin, lanes.bx, lanes.by);
     if (p == 2) line.s_1 = field.at(stretch.end, lanes.bx, lanes.by);
   }
-  const VF slope = HN::Mul(HN::Sub(line.s_1, line.s_0), per_extent);
+  line.span = HN::Sub(line.s_1, line.s_0);
+  line.shift = HN::NegMulAdd(half, HN::Add(line.s_0, line.s_1), total);
+  const VF slope = HN::Mul(line.span, per_extent);
   const VF border_1 = other_end(line.s_0, middle[0], mean[0]), border_2 = other_end(line.s_1, middle[2], mean[2]);
   const VF bump[3] = {bump_of(line.s_0, middle[0], border_1, p_3[0]), bump_of(border_1, middle[1], border_2, p_3[1]),
                       bump_of(border_2, middle[2], line.s_1, p_3[2])};
@@ -180,81 +179,89 @@ HWY_INLINE SlabLine part_line(const Lanes& lanes, const SlabPath& path, const Wi
   return line;
 }
 
-#if HWY_TARGET <= HWY_AVX3
-/// cast_voxels() for few lanes, all of which have seen light: their stretches are put side by side, integrated from
-/// their own fronts, sixteen at once, and put behind each other by lane.
-template <class Window, class Lookup>
-HWY_NOINLINE void cast_few(const FrameView& frame, const Lookup& lookup, const Lanes& lanes, const SlabPath& path,
-                           const Window& window, MF wanted, Progress& progress, TileCounts& counts) {
+/// The stretches of a slab (slab_lines-inl.h) one by one, for the lanes that are `wanted`. Few lanes, all of which have
+/// seen light, are put side by side, integrated from their own fronts sixteen at once, and put behind each other by
+/// lane.
+template <class Lookup>
+HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, VF slab_length, const SlabLines& lines,
+                                 int m, int n, MF wanted, Progress& progress, FirstLight& first, TileCounts& counts) {
   const DF d;
   const VF half = HN::Set(d, 0.5f), zero = HN::Zero(d), one = HN::Set(d, 1.0f);
-  constexpr std::size_t lanes_each = HN::MaxLanes(DF()), most = 3 * lanes_each;
-  HWY_ALIGN float s_0[most + lanes_each], s_mid[most + lanes_each], s_1[most + lanes_each], p_3[most + lanes_each],
-      length[most + lanes_each];
+  const VF u_1 = lines.u_1[m], u_2 = lines.u_2[m], s_end = lines.s[m + 1];
+  const VF place[4] = {zero, u_1, u_2, one};
+  // Behind a plane that is not crossed there is nothing.
+  const VF value[4] = {lines.s[m], HN::IfThenElse(HN::Lt(u_1, one), lines.f_1[m], s_end),
+                       HN::IfThenElse(HN::Lt(u_2, one), lines.f_2[m], s_end), s_end};
+  Piece pieces[3];
   MF there[3];
-  std::size_t begin[4] = {0, 0, 0, 0};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Stretch& stretch = path.stretches[k];
-    const VF extent = HN::Sub(stretch.end, stretch.begin);
-    there[k] = HN::And(wanted, HN::Gt(extent, zero));
-    begin[k + 1] = begin[k] + HN::CountTrue(d, there[k]);
-    if (begin[k + 1] == begin[k]) continue;
-    const VoxelField field(window.corners(window_index(window, path, stretch)), HN::Sub(path.x, stretch.i),
-                           HN::Sub(path.y, stretch.j));
-    const VF middle = HN::Mul(half, HN::Add(stretch.begin, stretch.end));
-    const auto keep = [&](VF v, float* to)
-                          HWY_ATTR { HN::StoreU(VF{_mm512_maskz_compress_ps(there[k].raw, v.raw)}, d, to + begin[k]); };
-    keep(field.at(stretch.begin, lanes.bx, lanes.by), s_0);
-    keep(field.at(middle, lanes.bx, lanes.by), s_mid);
-    keep(field.at(stretch.end, lanes.bx, lanes.by), s_1);
-    keep(HN::Mul(HN::Mul(field.cij, lanes.bends), HN::Mul(extent, HN::Mul(extent, extent))), p_3);
-    keep(HN::Mul(extent, lanes.length), length);
+  for (int k = 0; k < 3; ++k) {
+    Piece& p = pieces[k];
+    p.extent = HN::Sub(place[k + 1], place[k]);
+    there[k] = HN::And(wanted, HN::Gt(p.extent, zero));
+    p.s_0 = value[k], p.s_1 = value[k + 1];
+    p.s_mid = HN::NegMulAdd(HN::Set(d, 0.25f), lines.even[k][m], HN::Mul(half, HN::Add(p.s_0, p.s_1)));
+    p.p_3 = lines.odd[k][m];
+    p.length = HN::IfThenElseZero(there[k], HN::Mul(p.extent, slab_length));
+    p.begin = HN::Add(place[k], HN::Set(d, static_cast<float>(n)));
   }
-  const std::size_t count = begin[3];
-  if (count == 0) return;
-  HN::StoreU(zero, d, length + count);
-  HWY_ALIGN float light[6][most + lanes_each];
-  for (std::size_t n = 0; n < count; n += lanes_each) {
-    Piece piece{HN::Load(d, s_0 + n),
-                HN::Load(d, s_mid + n),
-                HN::Load(d, s_1 + n),
-                HN::Load(d, p_3 + n),
-                HN::Load(d, length + n),
-                zero,
-                zero};
-    Progress part{zero, one, zero, zero, zero, zero};
-    FirstLight seen{zero, HN::Eq(zero, zero)};
-    add_any(lookup, frame.piece_tolerance, frame.largest_color, piece, part, seen, counts.samples);
-    const VF parts[6] = {part.alpha, part.transmittance, part.optical_depth, part.red, part.green, part.blue};
-    for (int c = 0; c < 6; ++c) HN::Store(parts[c], d, light[c] + n);
+#if HWY_TARGET <= HWY_AVX3
+  if (HN::AllTrue(d, HN::Or(first.seen, HN::Not(wanted)))) {
+    constexpr std::size_t lanes_each = HN::MaxLanes(DF()), most = 4 * lanes_each;
+    HWY_ALIGN float s_0[most], s_mid[most], s_1[most], p_3[most], length[most];
+    std::size_t begin[4] = {0, 0, 0, 0};
+    for (std::size_t k = 0; k < 3; ++k) {
+      begin[k + 1] = begin[k] + HN::CountTrue(d, there[k]);
+      const auto keep = [&](VF v, float* to) HWY_ATTR {
+        HN::StoreU(VF{_mm512_maskz_compress_ps(there[k].raw, v.raw)}, d, to + begin[k]);
+      };
+      keep(pieces[k].s_0, s_0), keep(pieces[k].s_mid, s_mid), keep(pieces[k].s_1, s_1);
+      keep(pieces[k].p_3, p_3), keep(pieces[k].length, length);
+    }
+    HWY_ALIGN float light[6][most];
+    for (std::size_t n_0 = 0; n_0 < begin[3]; n_0 += lanes_each) {
+      const MF used = HN::FirstN(d, begin[3] - n_0);
+      const Piece piece{HN::Load(d, s_0 + n_0),
+                        HN::Load(d, s_mid + n_0),
+                        HN::Load(d, s_1 + n_0),
+                        HN::Load(d, p_3 + n_0),
+                        HN::IfThenElseZero(used, HN::Load(d, length + n_0)),
+                        zero,
+                        zero};
+      Progress part{zero, one, zero, zero, zero, zero};
+      FirstLight seen{zero, HN::Eq(zero, zero)};
+      add_any(lookup, frame.piece_tolerance, frame.largest_color, piece, part, seen, counts.samples);
+      const VF parts[6] = {part.alpha, part.transmittance, part.optical_depth, part.red, part.green, part.blue};
+      for (int c = 0; c < 6; ++c) HN::Store(parts[c], d, light[c] + n_0);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto part = [&](int c)
+                            HWY_ATTR { return VF{_mm512_maskz_expandloadu_ps(there[k].raw, light[c] + begin[k])}; };
+      const VF through = progress.transmittance;
+      progress.alpha = HN::MulAdd(through, part(0), progress.alpha);
+      progress.transmittance =
+          HN::Mul(through, VF{_mm512_mask_expandloadu_ps(one.raw, there[k].raw, light[1] + begin[k])});
+      progress.optical_depth = HN::Add(progress.optical_depth, part(2));
+      progress.red = HN::MulAdd(through, part(3), progress.red);
+      progress.green = HN::MulAdd(through, part(4), progress.green);
+      progress.blue = HN::MulAdd(through, part(5), progress.blue);
+    }
+    return;
   }
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (begin[k + 1] == begin[k]) continue;
-    const auto part = [&](int c)
-                          HWY_ATTR { return VF{_mm512_maskz_expandloadu_ps(there[k].raw, light[c] + begin[k])}; };
-    const VF through = progress.transmittance;
-    progress.alpha = HN::MulAdd(through, part(0), progress.alpha);
-    progress.transmittance =
-        HN::Mul(through, VF{_mm512_mask_expandloadu_ps(one.raw, there[k].raw, light[1] + begin[k])});
-    progress.optical_depth = HN::Add(progress.optical_depth, part(2));
-    progress.red = HN::MulAdd(through, part(3), progress.red);
-    progress.green = HN::MulAdd(through, part(4), progress.green);
-    progress.blue = HN::MulAdd(through, part(5), progress.blue);
-  }
-}
 #endif
+  for (const Piece& piece : pieces)
+    add_any(lookup, frame.piece_tolerance, frame.largest_color, piece, progress, first, counts.samples);
+}
 
-/// A slab whose lanes are in several intervals, or cross knots.
-template <class Window, class Lookup>
-HWY_NOINLINE void cast_mixed(const FrameView& frame, const RayAxes& axes, const Lookup& lookup, const Lanes& lanes,
-                             const SlabPath& path, const SlabLine& line, const Window& window, CurrentInterval& current,
-                             Progress& progress, FirstLight& first, TileCounts& counts) {
+/// A slab, or the part of it that counts, whose lanes are in several intervals, or cross knots: adds the lanes that may
+/// be taken as a line, and gives the others. `length`: of the lanes that are there; `begin`: slabs from the chunk's
+/// first.
+template <class Lookup>
+HWY_NOINLINE MF cast_mixed(const FrameView& frame, const Lookup& lookup, const Line& line, MF there, VF begin,
+                           VF length, CurrentInterval& current, Progress& progress, FirstLight& first,
+                           TileCounts& counts) {
   const DF d;
-  const VF zero = HN::Zero(d), half = HN::Set(d, 0.5f);
-  const MF there = HN::Gt(path.to, path.from);
-  const VF span = HN::Sub(line.s_1, line.s_0), m = HN::NegMulAdd(half, HN::Add(line.s_0, line.s_1), line.mean);
-  const VF length = HN::Mul(lanes.length, HN::Sub(path.to, path.from));
-  const VF spread = HN::Mul(HN::Mul(length, line.rho), HN::MulAdd(HN::Abs(span), HN::Set(d, 0.25f), line.rho));
+  const VF zero = HN::Zero(d);
+  const VF spread = HN::Mul(HN::Mul(length, line.rho), HN::MulAdd(HN::Abs(line.span), HN::Set(d, 0.25f), line.rho));
   const VF low = HN::Sub(HN::Min(line.s_0, line.s_1), line.rho), high = HN::Add(HN::Max(line.s_0, line.s_1), line.rho);
   const VI interval = lookup.locate(low, HN::Eq(zero, zero));
   const auto index = lookup.index(interval, there);
@@ -277,31 +284,12 @@ HWY_NOINLINE void cast_mixed(const FrameView& frame, const RayAxes& axes, const 
       HN::And(HN::And(there, HN::Lt(high, edge)), HN::Le(HN::MulAdd(spread, scale, dimmed), HN::Set(d, 1.0f)));
   if (!HN::AllFalse(d, together)) {
     const auto kept = [&](VF v) HWY_ATTR { return HN::IfThenElseZero(together, v); };
-    CL::lanes::add_piece<false>(lookup, index, kept(HN::Add(line.s_0, m)), kept(HN::Add(line.s_1, m)), kept(span),
-                                kept(length), progress);
+    CL::lanes::add_piece<false>(lookup, index, kept(HN::Add(line.s_0, line.shift)), kept(HN::Add(line.s_1, line.shift)),
+                                kept(line.span), kept(length), progress);
     counts.samples += HN::CountTrue(d, together);
-    note_first_light(progress, HN::Add(path.from, path.k), first);
+    note_first_light(progress, begin, first);
   }
-  const MF apart = HN::AndNot(together, there);
-  if (HN::AllFalse(d, apart)) return;
-#if HWY_TARGET <= HWY_AVX3
-  if (frame.shading == nullptr && HN::AllTrue(d, HN::Or(first.seen, HN::Not(apart))))
-    return cast_few(frame, lookup, lanes, path, window, apart, progress, counts);
-#endif
-  cast_voxels<false>(frame, axes, lookup, lanes, path, window, nullptr, apart, progress, first, counts);
-}
-
-/// A slab, voxel by voxel.
-template <class Window, class Lookup>
-HWY_NOINLINE void cast_shaded(const ChunkView& chunk, const Lookup& lookup, const Lanes& lanes, int n, int i_window,
-                              int j_window, const UniformLookup* uniform, const Window& window, Progress& progress,
-                              FirstLight& first, TileCounts& counts) {
-  const DF d;
-  const SlabPath path = path_of(lanes, n, i_window, j_window);
-  for (const Stretch& stretch : path.stretches)
-    counts.voxels_visited += HN::CountTrue(d, HN::Gt(stretch.end, stretch.begin));
-  cast_voxels<false>(chunk.frame, chunk.axes, lookup, lanes, path, window, uniform, HN::Gt(path.to, path.from),
-                     progress, first, counts);
+  return HN::AndNot(together, there);
 }
 
 }  // namespace HWY_NAMESPACE
