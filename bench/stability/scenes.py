@@ -1,7 +1,8 @@
 """The stresses: each turns one parameter until something breaks. `stresses()` lists them.
 
 A stress is a name, what its parameter is, its values from harmless to hopeless, and a function from a value to a scene:
-{"input": file, "args": words of `tessera render`, "verify": pixels}. Scenes are generated, so that anybody can make them.
+{"input": file, "args": words of `tessera render`, "verify": pixels, "methods": None for all, or those it is for}. Scenes
+are generated, so that anybody can make them.
 """
 import array
 import math
@@ -61,8 +62,8 @@ class Maker:
         return ([tuple(xyz[3 * i:3 * i + 3]) for i in range(n)], [tuple(t[4 * i:4 * i + 4]) for i in range(m)], list(s))
 
 
-def scene(path, *args, verify=300, size="64x64"):
-    return {"input": path, "args": [*args, "--size", size], "verify": verify}
+def scene(path, *args, verify=300, size="64x64", methods=None):
+    return {"input": path, "args": [*args, "--size", size], "verify": verify, "methods": methods}
 
 
 def powers(first, last, step=1):
@@ -124,8 +125,18 @@ def mesh_stresses(m):
         path = m.generated("stack", layers=int(layers), width=width, thickness=float(thickness))
         knots = scaled(KNOTS, extinction=extinction)
         look = m.camera("stack", (0.003, 0.001, 5), (0.003, 0.001, 0), scale=0.2)
+        # The reference takes a quarter of a minute at 1e5 cells a ray, too long to ask it of every method.
+        deep = layers > 3e4
         return scene(path, "--transfer-function", m.function(f"stack-{extinction:g}", knots), "--camera", look,
-                     verify=verify, size="16x16")
+                     verify=1 if deep else verify, size="16x16", methods=("default",) if deep else None)
+
+    def neighbours(ratio):
+        """A fan of six tets over a hexagon, and under each a neighbour whose height is smaller by the ratio."""
+        ring = [(math.cos(math.pi * i / 3), math.sin(math.pi * i / 3), 0.0) for i in range(6)]
+        points = [*ring, (0.0, 0.0, 0.0), (0.1, 0.05, 1.0), (0.1, 0.05, -1.0 / ratio)]
+        cells = [(i, (i + 1) % 6, 6, apex) for i in range(6) for apex in (7, 8)]
+        scalars = [0.5 + 0.4 * math.sin(2.0 * i) for i in range(6)] + [0.2, 0.9, 0.6]
+        return scene(m.tets(f"neighbours-{ratio:g}", points, cells, scalars), "--transfer-function", m.function("neighbours", scaled(KNOTS, extinction=2)))
 
     def offset(ratio):
         cells = 1 / 3
@@ -174,6 +185,7 @@ def mesh_stresses(m):
     return [
         ("slivers", "aspect ratio", powers(2, 14, 2), lambda v: scene(m.generated("slivers", n=4, aspect=v), *tf())),
         ("volume ratio", "largest over smallest cell", powers(1, 15, 2), lambda v: scene(m.generated("graded", n=8, volume_ratio=v), *tf())),
+        ("neighbours' volumes", "of two that share a face", powers(0, 12, 3), neighbours),
         ("edge-on faces", "angle to the view, radian", powers(-1, -15, -2) + [0.0], seen_at),
         ("coincident vertices", "share of cells with vertices of their own", [0.0, 0.5, 1.0], unshared),
         ("inverted cells", "0 none, 1 all, 2 every other", [0, 1, 2], lambda v: scene(cube(inverted=v), *tf())),
@@ -193,9 +205,66 @@ def mesh_stresses(m):
         ("image", "pixels", ["1x1", "1x777", "777x1", "63x65", "16384x8", "4x16384"], lambda v: plain(size=v)),
         ("tiles", "pixels a side", [1, 7, 31, 32, 33, 1000], lambda v: plain("--tile-size", v, size="101x67")),
         ("memory", "budget", ["64M", "16M", "8M"], lambda v: plain("--memory", v, size="101x67")),
-        ("depth complexity", "segments a ray", [1.0, 10.0, 100.0, 1e3, 1e4], lambda v: stack(v, verify=4 if v > 1e4 else 16)),
+        ("depth complexity", "segments a ray", powers(0, 5), lambda v: stack(v, verify=16)),
         ("nearly equal depths", "thickness of 1e4 layers", powers(0, -15, -3), lambda v: stack(1e4, v, extinction=3 / v, verify=8)),
         ("faint segments", "optical depth of each of 1e4", powers(-4, -13, -3), lambda v: stack(1e4, 1.0, extinction=v * 1e4, verify=8)),
+        ("opacity 1e-9 a segment", "segments a ray", powers(2, 5), lambda v: stack(v, 1.0, extinction=1e-9 * v, verify=8)),
+    ]
+
+
+def large_stresses(m):
+    """What needs 6 GB and minutes."""
+    tf = m.function("plain", KNOTS)
+    return [("large image", "pixels", ["4096x4096", "16384x16384"],
+             lambda v: scene(m.generated("cube", n=6), "--transfer-function", tf, size=v, verify=100, methods=("default",)))]
+
+
+GL = ["--backend", "osmesa", "--compositor", "gl-fragment", "--integrator", "sampled:8", "--framebuffer"]
+PRINTED = {"default": [], "sampled:4": ["--integrator", "sampled:4"], "preintegrated:128": ["--integrator", "preintegrated"],
+           "paper (scanline, sampled:8)": ["--rasterizer", "scanline", "--integrator", "sampled:8"],
+           "scanline, exact": ["--rasterizer", "scanline", "--integrator", "exact"],
+           "GL, 16-bit blending": [*GL, "half"], "GL, 32-bit blending": [*GL, "float"]}
+
+
+def printed_stresses(m):
+    """The limits of the published methods, each with the methods that have it, and the default beside them."""
+    cube = lambda: m.generated("cube", n=4)
+    look = lambda scale=0.2: m.camera(f"deep-{scale:g}", (0.003, 0.001, 5), (0.003, 0.001, 0), scale=scale)
+
+    def peak(width):
+        knots = [(0.0, 0.1, 0.2, 0.9, 0.05), (0.5 - width, 0.1, 0.2, 0.9, 0.05), (0.5, 1.0, 0.6, 0.1, 0.5 / width),
+                 (0.5 + width, 0.9, 0.4, 0.1, 0.05), (1.0, 0.9, 0.4, 0.1, 0.05)]
+        return scene(cube(), "--transfer-function", m.function(f"peak-{width:g}", knots),
+                     methods=("default", "sampled:4", "preintegrated:128", "paper (scanline, sampled:8)"))
+
+    def edges(ratio):
+        path = m.generated("graded", n=8, volume_ratio=ratio)
+        knots = m.function("edges", scaled(KNOTS, extinction=3))
+        span = min(1.0, 4 * ratio ** (-1 / 3))  # the view follows the smallest cells
+        eye = (0.3 * span, 0.2 * span, 4.0)
+        return scene(path, "--transfer-function", knots, "--camera", m.camera(f"edges-{ratio:g}", eye, (0, 0, 0), scale=span),
+                     methods=("default", "scanline, exact"))
+
+    def pile(layers, thickness=1.0, extinction=3.0, verify=16, methods=(), size="16x16"):
+        path = m.generated("stack", layers=int(layers), width=0.3, thickness=float(thickness))
+        knots = m.function(f"pile-{extinction:g}", scaled(KNOTS, extinction=extinction))
+        return scene(path, "--transfer-function", knots, "--camera", look(), verify=verify, size=size, methods=("default", *methods))
+
+    def aligned(angle):
+        s = m.generated("regular", nx=8, ny=8, nz=8, cell_data=1)
+        eye = (1 + 1 / 64 + 4 * math.sin(angle), 1 + 1 / 64 + 4 * math.sin(angle) * 0.7, 4)
+        return scene(s, "--camera", m.camera(f"aligned-{angle:g}", eye, (1 + 1 / 64, 1 + 1 / 64, 0), scale=1),
+                     "--transfer-function", m.function("plain", KNOTS), verify=4096, methods=("default", "scanline, exact"))
+
+    half = ("GL, 16-bit blending", "GL, 32-bit blending")
+    return [
+        ("fixed Ns, thin features", "width of a peak over the range", [0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4], peak),
+        ("length over the longest edge", "volume of largest over smallest cell", powers(1, 15, 2), edges),
+        ("16-bit blending", "segments a ray", [1.0, 10.0, 100.0, 1e3], lambda v: pile(v, methods=half)),
+        ("lists longer than a texture", "segments a ray", [4e3, 1.6e4, 3.2e4], lambda v: pile(v, verify=4, methods=half[1:], size="4x4")),
+        ("z_back as the only key", "thickness of 1e3 layers, eye at 5", powers(0, -8, -1),
+         lambda v: pile(1e3, v, extinction=3 / v, methods=("scanline, exact",))),
+        ("no tie rule", "angle of faces to the view, cell data", powers(-1, -9, -2) + [0.0], aligned),
     ]
 
 

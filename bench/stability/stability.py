@@ -2,12 +2,14 @@
 """Turns one parameter after the other until a method breaks.
 
     bench/stability/stability.py [--tessera build/release/apps/tessera] [--only WORD,...] [--methods WORD,...] [--reduced]
-        [--json FILE] [--document docs/STABILITY.md] [--figure docs/images/stability.svg]
+        [--large] [--json FILE] [--document docs/STABILITY.md] [--figure docs/images/stability.svg]
 
 Each picture is judged by `--verify` against the double-precision reference of that very scene. For every method: the
-first value at which its error passes 1e-3, and the first at which it fails outright (no picture, NaN, a crash). Ends
-with status 1 if the default breaks its promise of 1e-4 anywhere. `--reduced`: the first and last value of each stress,
-the default method alone; what the tests run. Needs Python's standard library alone.
+first value at which its error passes 1e-3, and the first at which it fails outright (no picture, NaN, a crash). Partitions
+over MPI are compared with one process (partitions.py). Ends with status 1 if the default breaks its promise anywhere: 1e-4,
+but for excused pixels, which may be 1e-4 of all that were looked at. `--reduced`: the first and last value of each
+stress, the default method alone; what the tests run. `--large`: pictures of 16384 x 16384 too (6 GB, minutes). Needs
+Python's standard library alone.
 """
 import argparse
 import json
@@ -18,6 +20,7 @@ import sys
 import tempfile
 import time
 
+import partitions
 import scenes
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
@@ -30,8 +33,9 @@ GRID = {"default": [], "exact": ["--integrator", "exact"],
         "sampled, 10": ["--integrator", "sampled", "--step", "10"],
         "preintegrated, 0.5": ["--integrator", "preintegrated", "--step", "0.5"]}
 BAD = 1e-3
-# Breaks of the default's promise that are known and written down in docs/STABILITY.md; they are reported but end no run.
-KNOWN = {"opaque beside empty"}
+# The stress and value at which more of the default's pixels are excused than may be, as docs/STABILITY.md says; an error
+# that is not excused is known nowhere.
+KNOWN = {("opaque beside empty", "1")}
 
 
 class Runner:
@@ -59,6 +63,7 @@ class Runner:
         # Without a bound none is looked at for an excuse.
         bound = verify.get("bound")
         return {"error": verify["max_error_not_excused"] if bound else error, "met": verify["met"], "excused": verify["excused"],
+                "pixels": verify["pixels"], "bound": bound, "ms": min(judged["frame_ms"]),
                 "arithmetic": judged.get("arithmetic"), "command": command}
 
 
@@ -77,7 +82,11 @@ def measure(args, folder):
     runner = Runner(args.tessera, folder, args.threads)
     maker = scenes.Maker(folder, runner.generate)
     out, broken, start = [], [], time.monotonic()
-    for kind, stresses, methods in (("mesh", scenes.mesh_stresses(maker), MESH), ("grid", scenes.volume_stresses(maker), GRID)):
+    kinds = [("mesh", scenes.mesh_stresses(maker) + (scenes.large_stresses(maker) if args.large else []), MESH),
+             ("grid", scenes.volume_stresses(maker), GRID), ("printed", scenes.printed_stresses(maker), scenes.PRINTED)]
+    for kind, stresses, methods in kinds:
+        if args.reduced and kind == "printed":
+            continue
         for name, parameter, values, make in stresses:
             if args.only and not any(w in name for w in args.only.split(",")):
                 continue
@@ -86,7 +95,7 @@ def measure(args, folder):
                 continue
             if args.reduced:
                 values = [v for v in (values[0], values[-1])]
-                if name == "depth complexity":
+                if name in ("depth complexity", "opacity 1e-9 a segment"):
                     values = [1.0, 1e3]
             stress = {"kind": kind, "name": name, "parameter": parameter, "values": [value_words(v) for v in values], "methods": {}}
             made = {}
@@ -102,12 +111,17 @@ def measure(args, folder):
                 for value in values:
                     if isinstance(made[value], str):
                         result = {"failed": made[value]}
+                    elif made[value]["methods"] and method not in made[value]["methods"]:
+                        continue
                     else:
                         result = runner.render(made[value], words)
                     result["value"] = value_words(value)
                     results.append(result)
-                    if method == "default" and not result.get("met", False):
+                    bound = result.get("bound")
+                    if method == "default" and ("failed" in result or not result["error"] <= bound):
                         broken.append((name, value_words(value), result))
+                if not results:
+                    continue
                 worse, failed = verdicts(results)
                 for r in results:
                     if "command" in r:
@@ -116,10 +130,28 @@ def measure(args, folder):
                 worst = max((r.get("error", math.inf) for r in results), default=0)
                 print(f"{name:24s} {method:28s} worst {worst:9.2e}  above 1e-3: {worse}  fails: {failed}", flush=True)
             out.append(stress)
-    return out, broken
+    rows = []
+    if not args.only or any(w in "partitions" for w in args.only.split(",")):
+        rows = [] if args.reduced else partitions.measure(args.tessera, maker, folder)
+    for row in rows:
+        if not partitions.kept(row):
+            broken.append(("partition", row["partition"], {"failed": json.dumps(row)}))
+    return out, rows, broken
 
 
-def document(path, stresses, figure):
+def too_many_excused(stresses):
+    """(excused, pixels) of the default where that is not known; the known places' words."""
+    excused, pixels, known = 0, 0, []
+    for s in stresses:
+        for r in s["methods"].get("default", {"results": []})["results"]:
+            if (s["name"], r["value"]) in KNOWN:
+                known.append(f"{s['name']} at {r['value']}: {r.get('excused')} of {r.get('pixels')} pixels excused")
+            elif "pixels" in r:
+                excused, pixels = excused + r["excused"], pixels + r["pixels"]
+    return excused, pixels, known
+
+
+def document(path, stresses, rows, figure):
     lines = [BEGIN, ""]
     if figure:
         lines += [f"![error against each stress's parameter](images/{figure.name})", ""]
@@ -144,11 +176,32 @@ def document(path, stresses, figure):
                 cells.append(f"{words}, {worst:.0e}")
             lines.append(f"| {s['name']}: {s['parameter']} | {s['values'][0]} to {s['values'][-1]} | " + " | ".join(cells) + " |")
         lines.append("")
+    printed = [s for s in stresses if s["kind"] == "printed"]
+    if printed:
+        lines += ["### The printed methods' own limits", "", "| limit, parameter | values | what becomes of them |", "|---|---|---|"]
+        for s in printed:
+            words = []
+            for m, d in s["methods"].items():
+                worst = max((x.get("error", 0) for x in d["results"]), default=0)
+                said = "passes" if d["above_1e-3"] is None else f"**> 1e-3 at {d['above_1e-3']}**"
+                said += f", **fails at {d['fails']}**" if d["fails"] is not None else ""
+                words.append(f"{m}: {said}, {worst:.0e}")
+            lines.append(f"| {s['name']}: {s['parameter']} | {s['values'][0]} to {s['values'][-1]} | " + "; ".join(words) + " |")
+        lines.append("")
+    if rows:
+        lines += ["### Partitions over MPI", "", "Against one process with the whole mesh; `segments` promises its bits, `runs` 2e-6.", "",
+                  "| partition | ranks | `segments`: the same bits | `runs`: largest difference |", "|---|---|---|---|"]
+        lines += [f"| {r['partition']} | {r['ranks']} | " + (f"{'yes' if r['same_bits'] else '**no**'} | {r['runs_difference']:.1e} |"
+                  if "failed" not in r else f"**failed** | {r['failed']} |") for r in rows]
+        lines.append("")
     reasons = sorted({(m, s["name"], r["value"], r["failed"]) for s in stresses for m, d in s["methods"].items()
                       for r in d["results"] if "failed" in r})
     if reasons:
         lines += ["What \"fails\" means, in the program's words:", ""]
-        lines += [f"- {m}, {name} at {value}: {words.replace('tessera: ', '')}" for m, name, value, words in reasons]
+        said = {}
+        for m, name, value, words in reasons:
+            said.setdefault((m, words.replace("tessera: ", "")), {}).setdefault(name, []).append(value)
+        lines += [f"- {m}: {words} ({'; '.join(n + ' at ' + ', '.join(v) for n, v in where.items())})" for (m, words), where in said.items()]
         lines.append("")
     text = path.read_text()
     begin, end = text.index(BEGIN), text.index(END)
@@ -202,6 +255,7 @@ def main():
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--seconds", type=float, help="begin no stress after these")
     parser.add_argument("--reduced", action="store_true")
+    parser.add_argument("--large", action="store_true", help="pictures of 16384 x 16384 too")
     parser.add_argument("--json", type=pathlib.Path)
     parser.add_argument("--document", type=pathlib.Path)
     parser.add_argument("--figure", type=pathlib.Path)
@@ -209,17 +263,23 @@ def main():
     if args.reduced:
         args.methods = "default"
     with tempfile.TemporaryDirectory() as folder:
-        stresses, broken = measure(args, pathlib.Path(folder))
+        start = time.monotonic()
+        stresses, rows, broken = measure(args, pathlib.Path(folder))
     if args.json:
-        args.json.write_text(json.dumps(stresses, indent=1))
+        args.json.write_text(json.dumps({"stresses": stresses, "partitions": rows}, indent=1))
     if args.figure:
         figure(args.figure, stresses)
     if args.document:
-        document(args.document, stresses, args.figure)
+        document(args.document, stresses, rows, args.figure)
     for name, value, result in broken:
         print(f"default BROKEN: {name} at {value}: {result.get('failed', result.get('error'))}\n    {result.get('command', '')}")
-    print(f"{len(stresses)} stresses, default broken in {len(broken)} places")
-    sys.exit(1 if any(name not in KNOWN for name, _, _ in broken) else 0)
+    excused, pixels, known = too_many_excused(stresses)
+    for words in known:
+        print(f"known: {words}")
+    print(f"{len(stresses)} stresses and {len(rows)} partitions in {time.monotonic() - start:.0f} s, default broken in "
+          f"{len(broken)} places; {excused} of {pixels} pixels excused")
+    # Three standard deviations of a share of 1e-4.
+    sys.exit(1 if broken or excused > 1e-4 * pixels + 3 * math.sqrt(1e-4 * pixels) else 0)
 
 
 if __name__ == "__main__":

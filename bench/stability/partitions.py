@@ -1,0 +1,124 @@
+"""Partitions that nobody would choose, over MPI, against one process: the same bits, or the difference.
+
+Each partition is a .pvtu whose pieces hold what it says, rendered by ranks of one thread; `--exchange segments` promises
+the bits of one process with the whole mesh, `runs` a difference of 2e-6 at most.
+"""
+import array
+import json
+import os
+import random
+import shutil
+import subprocess
+
+RANKS = 3
+
+
+def write_vtu(path, points, cells, scalars, ghosts=None):
+    """Points that no cell uses are left out; so do partitioners."""
+    used = sorted({v for c in cells for v in c})
+    number = {v: i for i, v in enumerate(used)}
+    join = lambda values: " ".join(values)
+    ghost = (f'<DataArray type="UInt8" Name="vtkGhostType" format="ascii">{join(str(g) for g in ghosts)}</DataArray>'
+             if ghosts is not None else "")
+    path.write_text(f'''<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64"><UnstructuredGrid>
+<Piece NumberOfPoints="{len(used)}" NumberOfCells="{len(cells)}">
+<PointData><DataArray type="Float64" Name="f" format="ascii">{join(repr(scalars[v]) for v in used)}</DataArray></PointData>
+<CellData>{ghost}</CellData>
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">{join(repr(x) for v in used for x in points[v])}</DataArray></Points>
+<Cells><DataArray type="Int64" Name="connectivity" format="ascii">{join(str(number[v]) for c in cells for v in c)}</DataArray>
+<DataArray type="Int64" Name="offsets" format="ascii">{join(str(4 * (i + 1)) for i in range(len(cells)))}</DataArray>
+<DataArray type="UInt8" Name="types" format="ascii">{join("10" for _ in cells)}</DataArray></Cells>
+</Piece></UnstructuredGrid></VTKFile>
+''')
+    return path
+
+
+def write_pvtu(folder, name, pieces, points, scalars):
+    """`pieces`: lists of (cell, ghost)."""
+    ghosts = any(g for piece in pieces for _, g in piece)
+    sources = []
+    for i, piece in enumerate(pieces):
+        file = write_vtu(folder / f"{name}-{i}.vtu", points, [c for c, _ in piece], scalars,
+                         [g for _, g in piece] if ghosts else None)
+        sources.append(f'<Piece Source="{file.name}"/>')
+    path = folder / f"{name}.pvtu"
+    path.write_text(f'''<VTKFile type="PUnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64"><PUnstructuredGrid GhostLevel="{int(ghosts)}">
+<PPointData><PDataArray type="Float64" Name="f"/></PPointData>
+<PCellData>{'<PDataArray type="UInt8" Name="vtkGhostType"/>' if ghosts else ""}</PCellData>
+<PPoints><PDataArray type="Float64" NumberOfComponents="3"/></PPoints>
+{"".join(sources)}</PUnstructuredGrid></VTKFile>
+''')
+    return path
+
+
+def dealt(cells, count, piece_of):
+    pieces = [[] for _ in range(count)]
+    for i, cell in enumerate(cells):
+        pieces[piece_of(i)].append((cell, 0))
+    return pieces
+
+
+def with_ghosts(pieces):
+    """Every piece with its neighbours' cells that touch it, marked as ghosts (vtkGhostType 1)."""
+    out = []
+    for i, piece in enumerate(pieces):
+        mine = {v for cell, _ in piece for v in cell}
+        out.append(piece + [(cell, 1) for j, other in enumerate(pieces) if j != i for cell, _ in other
+                            if any(v in mine for v in cell)])
+    return out
+
+
+def partitions(cells):
+    r = random.Random(1)
+    third = lambda i: i * RANKS // len(cells)
+    return [("blocks", RANKS, dealt(cells, RANKS, third)),
+            ("random", RANKS, dealt(cells, RANKS, lambda _: r.randrange(RANKS))),
+            ("interleaved, every third cell", RANKS, dealt(cells, RANKS, lambda i: i % RANKS)),
+            ("one cell here, the rest there", RANKS, dealt(cells, 2, lambda i: int(i != len(cells) // 2))),
+            ("ghost cells left in", RANKS, with_ghosts(dealt(cells, RANKS, third))),
+            ("pieces without a cell", RANKS, dealt(cells, 7, lambda i: 2 + 3 * (i % 2))),
+            ("more ranks than pieces", 5, dealt(cells, 2, lambda i: i % 2))]
+
+
+def measure(program, maker, folder):
+    """[{partition, ranks, same_bits, runs_difference}]; empty without mpirun. A picture that is not made is `failed`."""
+    if shutil.which("mpirun") is None:
+        return []
+    points, cells, scalars = maker.loaded(maker.generated("cube", ".tets", n=6))
+    whole = write_vtu(folder / "whole.vtu", points, cells, scalars)
+    env = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMPI_MCA_rmaps_base_oversubscribe="1")
+
+    def picture(file, ranks, *words):
+        out = folder / "partition.pfm"
+        out.unlink(missing_ok=True)
+        command = [str(program), "render", str(file), "-o", str(out), "--size", "96x96", "--opacity-scale", "3", "--quiet",
+                   "--threads", "1", *words]
+        if ranks:
+            command = ["mpirun", "--oversubscribe", "-n", str(ranks), *command]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=300, env=env)
+        if done.returncode:
+            raise RuntimeError(done.stderr.strip().split("\n")[0])
+        return out.read_bytes()
+
+    def difference(a, b):
+        x, y = array.array("f"), array.array("f")
+        body = len(a) - 4 * 3 * 96 * 96
+        x.frombytes(a[body:]), y.frombytes(b[body:])
+        return max(abs(p - q) for p, q in zip(x, y))
+
+    one, results = picture(whole, 0), []
+    for name, ranks, pieces in partitions(cells):
+        file = write_pvtu(folder, name.replace(" ", "-").replace(",", ""), pieces, points, scalars)
+        row = {"partition": name, "ranks": ranks}
+        try:
+            row["same_bits"] = picture(file, ranks, "--exchange", "segments", "--partition", "file") == one
+            row["runs_difference"] = difference(picture(file, ranks, "--exchange", "runs", "--partition", "file"), one)
+        except (RuntimeError, subprocess.TimeoutExpired) as error:
+            row["failed"] = str(error)
+        results.append(row)
+        print(f"partition: {json.dumps(row)}", flush=True)
+    return results
+
+
+def kept(row):
+    return row.get("same_bits", False) and row["runs_difference"] <= 2e-6
