@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Random scenes against the promise of `--accuracy`: no pixel may be further off than asked.
 
-    bench/stability/auto_random.py [--tessera build/release/apps/tessera] [--cases 1000] [--seed 1] [--first 0]
+    bench/stability/auto_random.py [--tessera build/release/apps/tessera] [--cases 1000] [--seed 1] [--first 0] [--times]
 
 Case i of a seed is the same everywhere: a random mesh or grid, transfer function, view and accuracy (1e-2 to 1e-5), and
-`--verify` on random pixels. A pixel that is excused (docs/ACCURACY.md) breaks no case, since one of 400 is more than an
+`--verify` on random pixels. With `--times` the pictures are `--larger` times as wide and high, each is rendered by every
+other method too, and `auto` is compared with the fastest one that keeps the accuracy: cases of less than 50 ms are left
+out, and a case counts as slow above 1.1 times the spread (median over fastest of five frames) of both. A pixel that is excused (docs/ACCURACY.md) breaks no case, since one of 400 is more than an
 image may have on the whole: they are counted over all cases, of which they must stay below 1e-4. Prints each case that breaks with the command that makes it again (`--first i --cases 1
 --keep FOLDER` keeps its files), and ends with status 1 if any did. Needs Python's standard library alone.
 """
@@ -13,6 +15,7 @@ import json
 import math
 import pathlib
 import random
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -80,21 +83,71 @@ def random_input(r, tessera, folder):
     return path, extra, f"{kind} {' '.join(words)}"
 
 
-def run_case(tessera, seed, number, folder, threads):
+MESH = [["--integrator", w] for w in ("exact", "sampled:1", "sampled:2", "sampled:4", "sampled:16", "preintegrated:128", "partial")]
+GRID = [["--integrator", "exact"]] + [["--integrator", m, "--step", s] for m in ("sampled", "preintegrated") for s in ("2", "1", "0.5", "0.25")]
+
+
+def timed(command, folder):
+    """(fastest, median ms, largest error); none if there is no picture."""
+    done = subprocess.run([*command, "--repeat", "5"], capture_output=True, text=True, timeout=600)
+    if done.returncode not in (0, 4):
+        return None
+    frame = json.loads((folder / "r.json").read_text())["frames"][0]
+    return min(frame["frame_ms"]), statistics.median(frame["frame_ms"]), frame["verify"]["max_error"]
+
+
+def time_case(tessera, seed, number, folder, args):
+    """(ratio of auto to the best, ratio that the spread allows, words); none below 50 ms."""
+    command, words, accuracy = case_of(tessera, seed, number, folder, args.threads, args.larger)
+    at = command.index("--accuracy")
+    auto = timed(command, folder)
+    if auto is None or auto[0] < 50:
+        return None
+    best, name = auto, "auto"
+    for method in GRID if words.split()[0] in ("ripples", "checker") else MESH:
+        other = timed([*command[:at], *method, *command[at + 2:]], folder)
+        if other and other[2] <= accuracy and other[0] < best[0]:
+            best, name = other, " ".join(method)
+    auto = min(auto, timed(command, folder))
+    return auto[0] / best[0], 1.1 * (auto[1] / auto[0]) * (best[1] / best[0]), f"{words}, accuracy {accuracy:.2g}: auto {auto[0]:.0f} ms, best {name} {best[0]:.0f} ms"
+
+
+def case_of(tessera, seed, number, folder, threads, larger=1):
+    """(command, the input's words, accuracy); its files are in `folder`, the report is to be r.json."""
     r = random.Random(f"{seed}/{number}")
     path, extra, words = random_input(r, tessera, folder)
     knots = transfer_function(r, 0.0, 1.0)
     (folder / "tf.txt").write_text("".join(" ".join(repr(float(x)) for x in k) + "\n" for k in knots))
-    (folder / "camera.txt").write_text(camera(r, r.choice([24, 48, 96])))
+    (folder / "camera.txt").write_text(camera(r, larger * r.choice([24, 48, 96])))
     accuracy = 10 ** r.uniform(-5, -2)
-    command = [tessera, "render", str(path), *extra, "--transfer-function", str(folder / "tf.txt"), "--camera",
-               str(folder / "camera.txt"), "--accuracy", repr(accuracy), "-o", str(folder / "o.pfm"), "--verify", "400",
-               "--report", str(folder / "r.json"), "--quiet", "--threads", str(threads)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=600)
+    return [tessera, "render", str(path), *extra, "--transfer-function", str(folder / "tf.txt"), "--camera",
+            str(folder / "camera.txt"), "--accuracy", repr(accuracy), "-o", str(folder / "o.pfm"), "--verify", "400",
+            "--report", str(folder / "r.json"), "--threads", str(threads)], words, accuracy
+
+
+def run_case(tessera, seed, number, folder, threads):
+    command, words, accuracy = case_of(tessera, seed, number, folder, threads)
+    done = subprocess.run([*command, "--quiet"], capture_output=True, text=True, timeout=600)
     if done.returncode != 0 and done.returncode != 4:
         return False, words, f"status {done.returncode}: {done.stderr.strip()}", accuracy, None
     verify = json.loads((folder / "r.json").read_text())["frames"][0]["verify"]
     return verify["max_error_not_excused"] <= accuracy, words, done.stdout.strip(), accuracy, verify
+
+
+def times(args):
+    ratios, slow = [], 0
+    with tempfile.TemporaryDirectory() as scratch:
+        for number in range(args.first, args.first + args.cases):
+            result = time_case(str(args.tessera), args.seed, number, args.keep or pathlib.Path(scratch), args)
+            if result is None:
+                continue
+            ratio, allowed, words = result
+            ratios.append(ratio)
+            slow += ratio > allowed
+            print(f"{'SLOW' if ratio > allowed else 'ok  '} case {number}: {ratio:.2f} (allowed {allowed:.2f}): {words}", flush=True)
+    if ratios:
+        print(f"{len(ratios)} cases of 50 ms and more: {slow} slow, median ratio {statistics.median(ratios):.2f}, largest {max(ratios):.2f}")
+    sys.exit(1 if slow else 0)
 
 
 def main():
@@ -105,7 +158,11 @@ def main():
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--keep", type=pathlib.Path, help="folder for the last case's files")
+    parser.add_argument("--times", action="store_true", help="compare auto with the fastest method that is near enough")
+    parser.add_argument("--larger", type=int, default=6)
     args = parser.parse_args()
+    if args.times:
+        return times(args)
     broken, worst, pixels, excused = [], 0.0, 0, 0
     with tempfile.TemporaryDirectory() as scratch:
         folder = args.keep or pathlib.Path(scratch)
