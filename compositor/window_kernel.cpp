@@ -288,7 +288,9 @@ class PixelGroup {
       to = integrate(from, most, final_step);
       for (std::size_t row = from; row < to; ++row)
         done = HN::Sub(done, HN::VecFromMask(d, HN::Lt(HN::LoadU(d, keys(row)), end)));
-      const bool open = rules.runs ? add_runs(from, to, end, rules) : add_rows(from, to, rules);
+      const bool open = !rules.runs                     ? add_rows(from, to, rules)
+                        : rules.least_transmittance > 0 ? add_runs<true>(from, to, end, rules)
+                                                        : add_runs<false>(from, to, end, rules);
       if (to < most || !open) break;
     }
     return keep_rest(done);
@@ -359,48 +361,96 @@ class PixelGroup {
     }
   }
 
-  /// The same in runs. Returns whether some pixel stays open.
+  /// The same in runs, a lane's run in registers while it goes on. Returns whether some pixel stays open; that may
+  /// change only where `closes`.
+  template <bool closes>
   HWY_INLINE bool add_runs(std::size_t from, std::size_t to, VI end, const WindowRules& rules) {
     const DI d;
     const DF df;
     const std::size_t lanes = HN::Lanes(d);
     const std::size_t p = pixel_;
-    load_light();
-    Doubles ray = load(&state_.ray_transmittance[p]);
-    VI open = HN::Load(d, &state_.open[p]);
+    const VI none = HN::Set(d, no_key), zero = HN::Zero(d);
     const VF least_transmittance = HN::Set(df, static_cast<float>(rules.least_transmittance));
+    VI open = HN::Load(d, &state_.open[p]);
+    Doubles ray = load(&state_.ray_transmittance[p]);
+    VI run_back, several;
+    HN::Mask<DI> seen;
+    const auto resume = [&]() HWY_ATTR {
+      load_light();
+      run_back = HN::Load(d, &state_.back[p]), several = HN::Load(d, &state_.several[p]);
+      seen = HN::Ne(HN::Load(d, &state_.first_back[p]), none);
+    };
+    const auto save = [&]() HWY_ATTR {
+      store_light();
+      HN::Store(run_back, d, &state_.back[p]), HN::Store(several, d, &state_.several[p]);
+    };
+    resume();
     for (std::size_t row = from; row < to; ++row) {
       const VI front = HN::LoadU(d, keys(row));
-      const auto takes = HN::And(HN::Lt(front, end), HN::Lt(open, HN::Zero(d)));
+      const auto takes = HN::And(HN::Lt(front, end), HN::Lt(open, zero));
       const std::size_t at = (row - from) * lanes;
-      const MF adds = HN::RebindMask(df, takes);
-      const auto number = [&](const float* numbers)
-                              HWY_ATTR { return HN::IfThenElseZero(adds, HN::Load(df, numbers + at)); };
-      const VF depth = number(light_.optical_depth), alpha = number(light_.alpha);
+      // Lanes that took nothing from the start have no light; lanes that have closed since have.
+      const auto number = [&](const float* numbers) HWY_ATTR {
+        const VF all = HN::Load(df, numbers + at);
+        return closes ? HN::IfThenElseZero(HN::RebindMask(df, takes), all) : all;
+      };
+      const VF depth = number(light_.optical_depth);
+      const auto absorbs = HN::RebindMask(d, HN::Gt(depth, HN::Zero(df)));
+      // Runs end where the next segment does not touch.
+      const auto in_run = HN::And(takes, HN::Ne(run_back, none));
+      auto ends = HN::And(in_run, HN::Gt(HN::Abs(HN::Sub(front, run_back)), HN::Set(d, touching_steps)));
+      if (table_.independent) {
+        // Light without extinction does not share a run with what absorbs behind it either: a run's front is where
+        // absorption begins.
+        const auto clear = HN::RebindMask(d, HN::Le(demote(optical_depth_), HN::Zero(df)));
+        ends = HN::Or(ends, HN::And(HN::And(in_run, absorbs), HN::And(seen, clear)));
+      }
+      if (HWY_UNLIKELY(!HN::AllFalse(d, ends))) {
+        save();
+        end_runs(ends);
+        resume();
+      }
+      // All that take one are in a run up to its back. Irregular cells' depths are a few steps off: a run does not go
+      // back.
+      const VI back = HN::Load(d, light_.back + at);
+      const VI on = HN::IfThenElse(HN::Eq(run_back, none), back, HN::Max(run_back, back));
+      run_back = HN::IfThenElse(takes, on, run_back);
+      if (!light_.lit[row - from]) continue;
+
       const VF red = number(light_.red), green = number(light_.green), blue = number(light_.blue);
-      auto shows = HN::RebindMask(d, HN::Gt(depth, HN::Zero(df)));
-      go_on_in_run(takes, shows, front, HN::Load(d, light_.back + at));
-      // A run begins where it shows, if only by light (independent emission).
-      const VF colors = HN::Add(HN::Abs(red), HN::Add(HN::Abs(green), HN::Abs(blue)));
-      shows = HN::Or(shows, HN::RebindMask(d, HN::Gt(colors, HN::Zero(df))));
-      const auto seen = HN::Ne(HN::Load(d, &state_.first_back[p]), HN::Set(d, no_key));
-      HN::Store(HN::Or(HN::Load(d, &state_.several[p]), HN::VecFromMask(d, HN::And(shows, seen))), d,
-                &state_.several[p]);
+      auto shows = absorbs;
+      if (table_.independent) {
+        // A run begins where it shows, if only by light.
+        const VF colors = HN::Add(HN::Abs(red), HN::Add(HN::Abs(green), HN::Abs(blue)));
+        shows = HN::Or(shows, HN::RebindMask(d, HN::Gt(colors, HN::Zero(df))));
+      }
+      several = HN::Or(several, HN::VecFromMask(d, HN::And(shows, seen)));
       const auto appears = HN::AndNot(seen, shows);
       if (!HN::AllFalse(d, appears)) keep_first(appears, row);
+      seen = HN::Or(seen, appears);
       red_ = multiply_add(transmittance_, promote(red), red_);
       green_ = multiply_add(transmittance_, promote(green), green_);
       blue_ = multiply_add(transmittance_, promote(blue), blue_);
-      const Doubles depths = promote(depth), alphas = promote(alpha);
+      const Doubles depths = promote(depth), alphas = promote(number(light_.alpha));
       optical_depth_ = {HN::Add(optical_depth_.low, depths.low), HN::Add(optical_depth_.high, depths.high)};
       transmittance_ = dimmed(transmittance_, alphas);
-      ray = dimmed(ray, alphas);
-      open = HN::And(open, HN::VecFromMask(d, HN::RebindMask(d, HN::Ge(demote(ray), least_transmittance))));
+      if constexpr (closes) {
+        ray = dimmed(ray, alphas);
+        open = HN::And(open, HN::VecFromMask(d, HN::RebindMask(d, HN::Ge(demote(ray), least_transmittance))));
+      }
     }
-    store_light();
+    save();
+    if constexpr (!closes) return true;
     store(ray, &state_.ray_transmittance[p]);
     HN::Store(open, d, &state_.open[p]);
-    return !HN::AllFalse(d, HN::Lt(open, HN::Zero(d)));
+    return !HN::AllFalse(d, HN::Lt(open, zero));
+  }
+
+  HWY_NOINLINE void end_runs(HN::Mask<DI> lanes) {
+    std::uint8_t bits[8] = {0};
+    HN::StoreMaskBits(DI(), lanes, bits);
+    for (std::uint64_t left = bits[0] | static_cast<std::uint64_t>(bits[1]) << 8; left != 0; left &= left - 1)
+      state_.end_run(pixel_ + static_cast<std::size_t>(__builtin_ctzll(left)));
   }
 
   HWY_INLINE void load_light() {
@@ -412,34 +462,6 @@ class PixelGroup {
     const std::size_t p = pixel_;
     store(red_, &state_.red[p]), store(green_, &state_.green[p]), store(blue_, &state_.blue[p]);
     store(optical_depth_, &state_.optical_depth[p]), store(transmittance_, &state_.transmittance[p]);
-  }
-
-  /// Ends the runs of lanes whose next segment does not touch; then all that take one are in a run up to its back.
-  /// Light without extinction (independent emission) does not share a run with what absorbs behind it either: a run's
-  /// front is where absorption begins.
-  HWY_INLINE void go_on_in_run(HN::Mask<DI> takes, HN::Mask<DI> absorbs, VI front, VI back) {
-    const DI d;
-    const std::size_t p = pixel_;
-    const VI run_back = HN::Load(d, &state_.back[p]);
-    const auto in_run = HN::And(takes, HN::Ne(run_back, HN::Set(d, no_key)));
-    const VI gap = HN::Abs(HN::Sub(front, run_back));
-    auto ends = HN::And(in_run, HN::Gt(gap, HN::Set(d, touching_steps)));
-    const DF df;
-    const auto clear = HN::RebindMask(d, HN::Le(demote(optical_depth_), HN::Zero(df)));
-    const auto lit = HN::Ne(HN::Load(d, &state_.first_back[p]), HN::Set(d, no_key));
-    ends = HN::Or(ends, HN::And(HN::And(in_run, absorbs), HN::And(lit, clear)));
-    if (HWY_UNLIKELY(!HN::AllFalse(d, ends))) {
-      store_light();
-      std::uint8_t bits[8] = {0};
-      HN::StoreMaskBits(d, ends, bits);
-      for (std::uint64_t left = bits[0] | static_cast<std::uint64_t>(bits[1]) << 8; left != 0; left &= left - 1)
-        state_.end_run(p + static_cast<std::size_t>(__builtin_ctzll(left)));
-      load_light();
-    }
-    // Irregular cells' depths are a few steps off: a run does not go back.
-    const VI now = HN::Load(d, &state_.back[p]);
-    const VI on = HN::IfThenElse(HN::Eq(now, HN::Set(d, no_key)), back, HN::Max(now, back));
-    HN::Store(HN::IfThenElse(takes, on, now), d, &state_.back[p]);
   }
 
   /// Notes the row's segments as those in which lanes begin to show.
