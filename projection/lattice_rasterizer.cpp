@@ -1,17 +1,13 @@
 #include "projection/lattice_rasterizer.hpp"
 
 #include <algorithm>
-#include <cmath>
-
-#include "projection/edge_sign.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "projection/lattice_rasterizer.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "projection/lattice_setup-inl.h"
-#include "projection/pack_lanes-inl.h"
+#include "projection/lattice_small-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
@@ -23,16 +19,10 @@ bool available() { return HWY_TARGET != HWY_SCALAR; }
 void rasterize(const LatticeView&, std::span<const TileEntry>, std::span<const TileEntry>, const PixelRect&,
                const OpenPixels&, LatticeScratch&, SegmentStream&, RasterCounts&) {}
 #else
-using F = hn::ScalableTag<float>;
-using I = hn::RebindToSigned<F>;
-using VF = hn::Vec<F>;
-using VI = hn::Vec<I>;
-using MF = hn::Mask<F>;
 using D4 = hn::FixedTag<std::int32_t, 4>;
 using V4 = hn::Vec<D4>;
 
 // A block of pixels is a vector of lanes: 4 x 4, 4 x 2 or 2 x 2.
-constexpr int lanes = static_cast<int>(hn::MaxLanes(F()));
 constexpr int block_width = lanes >= 8 ? 4 : 2, block_height = lanes / block_width;
 static_assert(block_width * block_height == lanes);
 
@@ -52,83 +42,14 @@ HWY_INLINE VI block_steps(std::int32_t x, std::int32_t x2, std::int32_t y, std::
   return sum;
 }
 
-/// Which edges and faces play which part, by the set of front faces (bit f of the index).
-struct Roles {
-  std::uint8_t valid;          ///< some pixel can be hit
-  std::uint8_t three;          ///< one face against three
-  std::uint8_t single_behind;  ///< the one is the back face
-  std::uint8_t outline[4];     ///< edges between front and back (three: the fourth repeats the third)
-  std::uint8_t inner[3];       ///< two and two: the front faces', the back faces' edge. Three: 01, 02, 12 of the three
-  std::uint8_t face[4];        ///< two and two: front 0, 1, back 0, 1; three: the one, then 0, 1, 2
-};
-
-constexpr Roles roles_of(unsigned front) {
-  Roles r{};
-  unsigned count = 0;
-  for (unsigned f = 0; f < 4; ++f) count += front >> f & 1;
-  r.valid = count >= 1 && count <= 3;
-  if (!r.valid) return r;
-  r.three = count != 2;
-  r.single_behind = count == 3;
-  int outlines = 0;
-  for (int e = 0; e < 6; ++e)
-    if ((front >> edge_faces[e][0] & 1) != (front >> edge_faces[e][1] & 1))
-      r.outline[outlines++] = static_cast<std::uint8_t>(e);
-  for (; outlines < 4; ++outlines) r.outline[outlines] = r.outline[outlines - 1];
-  int next = 0;
-  const auto add = [&](bool is_front) {
-    for (unsigned f = 0; f < 4; ++f)
-      if ((front >> f & 1) == (is_front ? 1u : 0u)) r.face[next++] = static_cast<std::uint8_t>(f);
-  };
-  add(count < 3), add(count == 3);
-  const auto between = [&](int f, int g) {
-    for (int e = 0; e < 6; ++e)
-      if (edge_faces[e][0] == f && edge_faces[e][1] == g) return static_cast<std::uint8_t>(e);
-    return std::uint8_t{0};
-  };
-  if (r.three) {
-    r.inner[0] = between(r.face[1], r.face[2]);
-    r.inner[1] = between(r.face[1], r.face[3]);
-    r.inner[2] = between(r.face[2], r.face[3]);
-  } else {
-    r.inner[0] = between(r.face[0], r.face[1]);
-    r.inner[1] = r.inner[2] = between(r.face[2], r.face[3]);
-  }
-  return r;
-}
-
-struct RoleTable {
-  Roles roles[16];
-};
-constexpr RoleTable make_role_table() {
-  RoleTable t{};
-  for (unsigned front = 0; front < 16; ++front) t.roles[front] = roles_of(front);
-  return t;
-}
-constexpr RoleTable role_table = make_role_table();
-
-/// Replaces edge functions that are not certain by +-2, with the sign of exact arithmetic and the tie rule. Returns the
-/// lanes whose ray meets an edge of the outline between two faces that it passes: it is in the cell for no way at all,
-/// which rounded planes would not say.
-HWY_NOINLINE std::uint64_t settle(const LatticeView& view, const CellBatch& batch, int t, const Roles& roles,
-                                  std::uint64_t uncertain, int corner_x, int corner_y, float (*edges)[lanes],
-                                  RasterCounts& counts) {
+/// settle_pixel() for the lanes of a block. Returns those whose ray touches.
+HWY_NOINLINE std::uint64_t settle(const LatticeView& view, const CellBatch& batch, int t, unsigned uncertain,
+                                  int corner_x, int corner_y, float (*edges)[lanes], RasterCounts& counts) {
   std::uint64_t touching = 0;
-  const scene::Tet corners = view.projected.mesh->canonical(batch.tet[t]);
   for (; uncertain != 0; uncertain &= uncertain - 1) {
-    const int lane = __builtin_ctzll(uncertain);
+    const int lane = __builtin_ctz(uncertain);
     const double px = corner_x + lane % block_width + 0.5, py = corner_y + lane / block_width + 0.5;
-    for (int e = 0; e < 6; ++e) {
-      if (std::abs(edges[e][lane]) > 1) continue;
-      bool on_edge = false;
-      const int sign = edge_sign(view.projected.vertices[corners[edge_from[e]]],
-                                 view.projected.vertices[corners[edge_to[e]]], px, py, &on_edge);
-      const unsigned edge_on = batch.edge_on(t) >> edge_faces[e][0] | batch.edge_on(t) >> edge_faces[e][1];
-      if (on_edge && (edge_on & 1) == 0 && std::find(roles.outline, roles.outline + 4, e) != roles.outline + 4)
-        touching |= std::uint64_t{1} << lane;
-      ++counts.exact_sign_tests;
-      edges[e][lane] = static_cast<float>(2 * ((batch.flipped(t) >> e & 1) != 0 ? -sign : sign));
-    }
+    if (settle_pixel(view, batch, t, px, py, edges[0] + lane, lanes, counts)) touching |= std::uint64_t{1} << lane;
   }
   return touching;
 }
@@ -198,12 +119,8 @@ struct CellRaster {
         c.scalar = hn::ConvertTo(
             df, choose([&](int k) HWY_ATTR { return hn::Add(steps[k].scalar, hn::Set(d, scalar[roles.face[k]])); }));
     } else {
-      const VF w = hn::ConvertTo(
-          df, choose([&](int k) HWY_ATTR { return hn::Add(steps[k].weight, hn::Set(d, weight[roles.face[k]])); }));
-      // One Newton step makes the estimate (11 to 14 bits) right to float rounding.
-      const VF estimate = hn::ApproximateReciprocal(w);
-      const VF inverse =
-          hn::Mul(hn::Mul(estimate, hn::NegMulAdd(w, estimate, hn::Set(df, 2.0f))), hn::Set(df, CellBatch::weight_one));
+      const VF inverse = inverse_weight(
+          choose([&](int k) HWY_ATTR { return hn::Add(steps[k].weight, hn::Set(d, weight[roles.face[k]])); }));
       const VI behind = hn::NearestInt(hn::Mul(hn::ConvertTo(df, z), inverse));
       c.depth = hn::Add(behind, choose([&](int k) HWY_ATTR { return hn::Set(d, batch.depth_c[t][roles.face[k]]); }));
       if constexpr (!per_cell) {
@@ -274,10 +191,7 @@ struct CellRaster {
         if (HWY_UNLIKELY(!hn::AllFalse(df, uncertain))) {
           alignas(64) float edges[6][lanes];
           for (int e = 0; e < 6; ++e) hn::Store(edge(e, x, y), df, edges[e]);
-          std::uint8_t bits[8] = {0};
-          hn::StoreMaskBits(df, uncertain, bits);
-          touching = settle(view, batch, t, roles, bits[0] | static_cast<std::uint64_t>(bits[1]) << 8, square.x0 + bx,
-                            square.y0 + by, edges, counts);
+          touching = settle(view, batch, t, lane_bits(uncertain), square.x0 + bx, square.y0 + by, edges, counts);
           least = hn::Load(df, edges[roles.outline[0]]);
           for (int k = 1; k < (three ? 3 : 4); ++k) least = hn::Min(least, hn::Load(df, edges[roles.outline[k]]));
           for (int k = 0; k < (three ? 3 : 2); ++k) inner[k] = hn::Load(df, edges[roles.inner[k]]);
@@ -327,13 +241,6 @@ struct CellRaster {
 template <bool perspective, bool per_cell>
 void rasterize_cells(const LatticeView& view, const CellBatch& batch, const PixelRect& rect, const PixelRect& square,
                      const OpenPixels& open, SegmentStream& out, RasterCounts& counts) {
-  // Cells of one shape after the other, so that branches go the same way.
-  unsigned shapes[2] = {0, 0};
-  for (int t = 0; t < batch.size; ++t) {
-    const Roles& roles = role_table.roles[batch.front_faces(t)];
-    const unsigned takes = roles.valid && batch.x0[t] < batch.x1[t] && batch.y0[t] < batch.y1[t];
-    shapes[roles.three] |= takes << t;
-  }
   const std::uint32_t all = static_cast<std::uint32_t>((std::uint64_t{1} << rect.width()) - 1) << (rect.x0 - square.x0);
   bool all_open = true;
   for (int y = rect.y0 - square.y0; y < rect.y1 - square.y0; ++y) all_open = all_open && open[y] == all;
@@ -343,10 +250,27 @@ void rasterize_cells(const LatticeView& view, const CellBatch& batch, const Pixe
     const std::uint64_t columns = (std::uint64_t{1} << batch.x1[t]) - (std::uint64_t{1} << batch.x0[t]);
     return (takes & columns) == 0;
   };
+  unsigned shapes[2] = {0, 0}, small = 0;
+  using Small = SmallCells<perspective, per_cell>;
+  for (int t = 0; t < batch.size; ++t) {
+    const Roles& roles = role_table.roles[batch.front_faces(t)];
+    const int width = batch.x1[t] - batch.x0[t], height = batch.y1[t] - batch.y0[t];
+    const unsigned takes = roles.valid && width > 0 && height > 0 && (all_open || !shut(t));
+    shapes[roles.three] |= takes << t;
+    small |= static_cast<unsigned>(width <= Small::most_side && height <= Small::most_side) << t;
+  }
+  small &= (shapes[0] | shapes[1]) & ~batch.irregular;
+  for (int from = 0; from < batch.size; from += lanes) {
+    const unsigned here = small >> from & ((1u << lanes) - 1);
+    if (__builtin_popcount(here) * 3 < lanes)
+      small &= ~(here << from);  // few would leave most lanes empty
+    else
+      Small(view, batch, from, here).run(rect, square, out, counts);
+  }
+  // Cells of one shape after the other, so that branches go the same way.
   for (const int three : {0, 1})
-    for (unsigned cells = shapes[three] & ~batch.irregular; cells != 0; cells &= cells - 1) {
+    for (unsigned cells = shapes[three] & ~(batch.irregular | small); cells != 0; cells &= cells - 1) {
       const int t = __builtin_ctz(cells);
-      if (!all_open && shut(t)) continue;
       CellRaster<perspective, per_cell> raster{view, batch, t, role_table.roles[batch.front_faces(t)], {}, {}, {}, {}};
       if (three == 1)
         raster.template run<true>(rect, square, out, counts);
