@@ -254,18 +254,15 @@ void rasterize_cells(const LatticeView& view, const CellBatch& batch, const Pixe
   using Small = SmallCells<perspective, per_cell>;
   for (int t = 0; t < batch.size; ++t) {
     const Roles& roles = role_table.roles[batch.front_faces(t)];
-    const int width = batch.x1[t] - batch.x0[t], height = batch.y1[t] - batch.y0[t];
-    const unsigned takes = roles.valid && width > 0 && height > 0 && (all_open || !shut(t));
+    const unsigned takes =
+        roles.valid && batch.x0[t] < batch.x1[t] && batch.y0[t] < batch.y1[t] && (all_open || !shut(t));
     shapes[roles.three] |= takes << t;
-    small |= static_cast<unsigned>(width <= Small::most_side && height <= Small::most_side) << t;
   }
-  small &= (shapes[0] | shapes[1]) & ~batch.irregular;
   for (int from = 0; from < batch.size; from += lanes) {
-    const unsigned here = small >> from & ((1u << lanes) - 1);
-    if (__builtin_popcount(here) * 3 < lanes)
-      small &= ~(here << from);  // few would leave most lanes empty
-    else
-      Small(view, batch, from, here).run(rect, square, out, counts);
+    const unsigned regular = (shapes[0] | shapes[1]) & ~batch.irregular;
+    const unsigned here = Small::worth_while(batch, from, regular >> from & ((1u << lanes) - 1));
+    if (here != 0) Small(view, batch, from, here).run(rect, square, out, counts);
+    small |= here << from;
   }
   // Cells of one shape after the other, so that branches go the same way.
   for (const int three : {0, 1})

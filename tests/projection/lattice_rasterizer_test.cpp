@@ -56,8 +56,9 @@ struct Scene {
   std::vector<LatticeVertex> lattice_vertices;
 };
 
-/// All segments, the picture rasterized in rectangles of `tile` pixels a side, a power of two up to 32.
-Rays rasterized(const Scene& scene, int tile, RasterCounts* counts_out = nullptr) {
+/// All segments, the picture rasterized in rectangles of `tile` pixels a side, a power of two up to 32. If cells are
+/// rasterized together, segments do not say of which they are.
+Rays rasterized(const Scene& scene, int tile, RasterCounts* counts_out = nullptr, std::size_t together = 1) {
   const LatticeView view = scene.view();
   OpenPixels open;
   open.fill(~0u);
@@ -68,10 +69,13 @@ Rays rasterized(const Scene& scene, int tile, RasterCounts* counts_out = nullptr
   for (int y = 0; y < scene.size.height; y += tile)
     for (int x = 0; x < scene.size.width; x += tile) {
       const PixelRect rect{x, y, std::min(x + tile, scene.size.width), std::min(y + tile, scene.size.height)};
-      for (std::uint32_t t = 0; t < scene.prepared.tet_count(); ++t) {
-        const TileEntry entry{0, t};
+      std::vector<TileEntry> entries(scene.prepared.tet_count());
+      for (std::uint32_t t = 0; t < entries.size(); ++t) entries[t] = {0, t};
+      for (std::size_t from = 0; from < entries.size(); from += together) {
+        const auto cells = std::span(entries).subspan(from, std::min(together, entries.size() - from));
+        const std::uint32_t t = together == 1 ? cells.front().tet : 0;
         stream.size = 0;
-        rasterize_lattice(view, {&entry, 1}, {}, rect, open, scratch, stream, counts);
+        rasterize_lattice(view, cells, {}, rect, open, scratch, stream, counts);
         for (std::size_t i = 0; i < stream.size; ++i) {
           const int px = x + stream.pixel[i] % rect.width(), py = y + stream.pixel[i] / rect.width();
           rays[static_cast<std::size_t>(py) * scene.size.width + px].push_back(
@@ -187,6 +191,34 @@ TEST(LatticeRasterizer, NeighboursShareTheBitsOfTheirFace) {
       EXPECT_GT(junctions, 5000u);
       EXPECT_LT(irregular, junctions / 100);
     }
+  });
+}
+
+/// One cell goes through blocks of its pixels, many of a few pixels go side by side: the same segments either way.
+TEST(LatticeRasterizer, CellsTogetherGiveWhatEachGivesAlone) {
+  scene::TetMesh by_cell = datasets::cube(8, 0.25);
+  by_cell.association = scene::Association::cell;
+  by_cell.scalars.resize(by_cell.tets.size());
+  for (std::size_t t = 0; t < by_cell.scalars.size(); ++t) by_cell.scalars[t] = std::sin(static_cast<double>(t));
+  const scene::TetMesh meshes[] = {datasets::cube(8, 0.25), datasets::cube(8, 0), by_cell};
+  tests::for_each_instruction_set([&](const char* name) {
+    SCOPED_TRACE(name);
+    for (const scene::TetMesh& mesh : meshes)
+      for (const scene::Camera& camera :
+           {oblique(), perspective({3.1, 2.3, 4.2}, 35), perspective({0.1, 0.2, 0.1}, 90), aligned(8, 24)})
+        for (const int side : {24, 64}) {
+          const Scene scene(mesh, camera, {side, side});
+          RasterCounts alone_counts, together_counts;
+          Rays alone = rasterized(scene, 32, &alone_counts);
+          for (auto& ray : alone) {
+            for (Segment& s : ray) s.tet = 0;
+            std::sort(ray.begin(), ray.end());
+          }
+          EXPECT_EQ(rasterized(scene, 32, &together_counts, 16), alone) << side;
+          EXPECT_EQ(rasterized(scene, 32, nullptr, 5), alone) << side;
+          // Exact signs are asked for where they decide, not for all pixels on an edge's line.
+          EXPECT_EQ(together_counts.exact_sign_tests, alone_counts.exact_sign_tests);
+        }
   });
 }
 
