@@ -42,8 +42,9 @@ using OpenPixels = std::array<std::uint32_t, SegmentWindows::side>;
 /// The `planes` rasterizer on the integer lattice: cells to ray segments for the pixels of `rect`, which lies in one
 /// square of 32 x 32 pixels aligned to multiples of 32. Appends to `out`.
 ///
-/// Sixteen cells are set up at once, a cell a lane, in double precision; then a cell at a time is rasterized, a pixel a
-/// lane, in blocks of 4 x 4 pixels (AVX-512), 4 x 2 or 2 x 2:
+/// Sixteen cells are set up at once, a cell a lane, in double precision; then each is rasterized, a pixel a lane, in
+/// blocks of 4 x 4 pixels (AVX-512), 4 x 2 or 2 x 2, or, where the batch's cells are so small that this is faster, all
+/// together, a cell a lane (lattice_small-inl.h). Either way:
 ///   - Six edge functions E in float tell which pixels are hit, and through which faces. Seen from the eye a cell has
 ///     two front and two back faces, or one and three; the silhouette's edges decide on the hit, the one or three inner
 ///     edges on the face. Each E is scaled so that its rounding error is below 1: |E| > 1 is certain. Lanes that are
