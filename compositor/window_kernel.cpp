@@ -141,11 +141,11 @@ struct LightRows {
   static constexpr std::size_t most = 32, numbers = most * most_lanes;
   alignas(64) float alpha[numbers], optical_depth[numbers], red[numbers], green[numbers], blue[numbers];
   alignas(64) std::int32_t back[numbers];
-  bool lit[most];  ///< some lane of the row has light or depth
   // Segments that take more than one piece, until there are enough to fill the lanes.
-  std::size_t waiting = 0;
   alignas(64) float length[numbers + most_lanes], scalar_front[numbers + most_lanes], scalar_back[numbers + most_lanes];
   alignas(64) std::int32_t place[numbers + most_lanes];
+  std::size_t waiting = 0;
+  bool lit[most];  ///< some lane of the row has light or depth
 
   HWY_INLINE void put(const Light& light, std::size_t at) {
     const DF d;

@@ -48,8 +48,9 @@ HWY_NOINLINE std::uint64_t settle(const LatticeView& view, const CellBatch& batc
   std::uint64_t touching = 0;
   for (; uncertain != 0; uncertain &= uncertain - 1) {
     const int lane = __builtin_ctz(uncertain);
-    const double px = corner_x + lane % block_width + 0.5, py = corner_y + lane / block_width + 0.5;
-    if (settle_pixel(view, batch, t, px, py, edges[0] + lane, lanes, counts)) touching |= std::uint64_t{1} << lane;
+    const int x = corner_x + lane % block_width, y = corner_y + lane / block_width;
+    if (settle_pixel(view, batch, t, x + 0.5, y + 0.5, edges[0] + lane, lanes, counts))
+      touching |= std::uint64_t{1} << lane;
   }
   return touching;
 }
