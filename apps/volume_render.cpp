@@ -15,6 +15,7 @@
 #include "apps/verify.hpp"
 #include "apps/volume_input.hpp"
 #include "apps/volume_report.hpp"
+#include "frame/deep_rows.hpp"
 #include "frame/sort_first.hpp"
 #include "io/chrome_trace.hpp"
 #include "reference/grid_reference.hpp"
@@ -48,7 +49,15 @@ void refuse_mesh_options(const RenderOptions& options) {
   const auto refuse = [](const char* option) {
     throw scene::bad_input(fmt::format("{}: is for meshes, and the input is a volume; leave it out", option));
   };
-  if (options.deep) throw scene::bad_input("deep picture: volumes give none yet; name an .exr, .png or .pfm");
+  if (options.deep && !promised(options.volume_settings))
+    throw scene::bad_input(
+        fmt::format("deep picture: --integrator {} gives a step other light than its parts; use auto or "
+                    "exact",
+                    method_word(options.volume_settings.method)));
+  if (options.deep && options.volume_settings.shading)
+    throw scene::bad_input("deep picture: it is not shaded; leave --shade out");
+  if (options.deep && options.show_balance)
+    throw scene::bad_input("deep picture: --show balance draws none; name an .exr, .png or .pfm");
   if (options.settings.rasterizer != frame::Rasterizer::planes) refuse("--rasterizer");
   if (options.mesh.smooth) refuse("--smooth");
   if (options.mesh.max_volume) refuse("--max-volume");
@@ -162,17 +171,27 @@ class VolumeRun {
                                     static_cast<std::size_t>(frame.number));
       if (finished) record.frame_ms.push_back(finished->frame_ms);
     }
+    std::optional<scene::DeepImage> deep;
+    if (options_.deep) {
+      const scene::TraceScope scope(trace(), "project");
+      deep = frame::deep_rows(transport_, *file_.source, record.camera, frame.size, loaded_.function,
+                              {options_.settings.deep_accuracy, options_.volume_settings.emission,
+                               options_.volume_settings.threads, options_.volume_settings.memory_bytes},
+                              static_cast<std::int32_t>(frame.number));
+      if (deep) record.deep_samples = deep->samples.size();
+    }
     if (finished) {
       const scene::TraceScope scope(trace(), "write");
-      write(*finished, frame, record.camera);
+      write(*finished, deep ? *deep : scene::DeepImage{}, frame, record.camera);
     }
     if (trace() != nullptr) recording_.add_frame(frame.number, frame_begin);
     ++done_, ++rendered_;
     if (finished) say(frame, *finished, std::move(record));
   }
 
-  void write(const frame::FinishedVolumeFrame& finished, const Frame& frame, const scene::Camera& camera) const {
-    if (!options_.show_balance) return write_pictures(finished.image, {}, frame, options_);
+  void write(const frame::FinishedVolumeFrame& finished, const scene::DeepImage& deep, const Frame& frame,
+             const scene::Camera& camera) const {
+    if (!options_.show_balance) return write_pictures(finished.image, deep, frame, options_);
     scene::Image shown = finished.image;
     draw_bricks(shown, camera, file_.source->geometry(), renderer_->visible_bricks(loaded_.function), finished.split);
     const scene::Image cost = cost_picture(finished.cost, frame.size, finished.split);

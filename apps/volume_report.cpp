@@ -109,6 +109,7 @@ Json volume_frame_json(const RenderOptions& options, const Frame& frame, const V
                       {"bytes_resident", s.bytes_resident},
                       {"peak_bytes", s.peak_bytes},
                       {"blank_samples", s.blank_samples}};
+  if (record->deep_samples > 0) json["counters"]["deep_samples"] = record->deep_samples;
   json["instruction_set"] = s.instruction_set;
   json["balance"] = balance_json(options, *record);
   if (record->verification) json["verify"] = verification_json(*record->verification);

@@ -19,7 +19,8 @@ namespace tessera::apps {
 struct VolumeFrameRecord {
   scene::Camera camera;
   volume::RenderStatistics statistics;
-  std::vector<double> frame_ms;  ///< one a repetition
+  std::uint64_t deep_samples = 0;  ///< of the deep picture, if one was asked for
+  std::vector<double> frame_ms;    ///< one a repetition
   std::optional<Verification> verification;
   volume::ImageSplit split;
   std::vector<std::uint64_t> samples;  ///< of each rank

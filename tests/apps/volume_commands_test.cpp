@@ -80,6 +80,8 @@ TEST(VolumeCommands, FaultsOfVolumesAreOneLineAndLeaveNothing) {
       {{vti, "--smooth"}, "--smooth"},
       {{vti, "--integrator", "sampled:3"}, "sampled:3"},
       {{vti, "--step", "2"}, "--step"},
+      {{vti, "-o", folder / "a.deep.exr", "--shade"}, "--shade"},
+      {{vti, "-o", folder / "a.deep.exr", "--integrator", "sampled"}, "sampled"},
       {{vti, "--field", "heat"}, "heat"},
       {{mesh, "--shade"}, "--shade"},
       {{folder / "absent.nii.gz"}, "no such file"},

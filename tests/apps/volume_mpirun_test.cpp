@@ -73,6 +73,15 @@ TEST_F(VolumeMpirun, TheReportAndTheTraceHaveEveryRanksPart) {
   EXPECT_EQ(ranks, (std::set<int>{0, 1, 2}));
 }
 
+TEST_F(VolumeMpirun, DeepPicturesHaveTheBytesOfOneProcess) {
+  ASSERT_EQ(tessera(render(folder_ / "one_%d.deep.exr", {"--orbit", "2", "-o", folder_ / "one_%d.pfm"})).status, 0);
+  const Outcome three =
+      mpirun(3, render(folder_ / "three_%d.deep.exr", {"--orbit", "2", "-o", folder_ / "three_%d.pfm"}));
+  ASSERT_EQ(three.status, 0) << three.err;
+  for (const char* end : {"_0.deep.exr", "_1.deep.exr", "_1.pfm"})
+    EXPECT_EQ(contents(folder_ / (std::string("three") + end)), contents(folder_ / (std::string("one") + end))) << end;
+}
+
 TEST_F(VolumeMpirun, WeightsGiveAProcessMoreOfTheWork) {
   ASSERT_EQ(mpirun(2, render(folder_ / "a.exr", {"--balance-weights", "3,1", "--report", folder_ / "r.json"})).status,
             0);

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+
+#include "compositor/transport.hpp"
+#include "volume/deep_grid.hpp"
+
+namespace tessera::frame {
+
+/// The deep picture of a volume by all ranks of a job: each makes a band of as many rows, rank 0 puts them one below
+/// the other. The picture on rank 0, nothing elsewhere; the same bits for any number of ranks. Collective; on channel
+/// `tiles`, and begins when all ranks are done with what was on it. Throws this rank's error, which the caller gives to
+/// transport.fail().
+std::optional<scene::DeepImage> deep_rows(compositor::Transport& transport, const scene::SampleSource& source,
+                                          const scene::Camera& camera, scene::ImageSize size,
+                                          const scene::TransferFunction& function, const volume::DeepSettings& settings,
+                                          std::int32_t number);
+
+}  // namespace tessera::frame
