@@ -83,9 +83,10 @@ double extent_cells(const std::string* extent) {
 }
 
 /// The pieces of a .pvti are images of their own, and as many cells as it has at least: VTK leaves zeros where it has
-/// none.
-void require_image_pieces(const std::filesystem::path& file) {
+/// none. The Direction of the first piece that has one, which VTK 9.1 leaves out of the .pvti and passes over.
+std::optional<std::array<double, 9>> require_image_pieces(const std::filesystem::path& file) {
   const MappedFile mapped(file);
+  std::optional<std::array<double, 9>> direction;
   double whole = 0, in_pieces = 0;
   each_xml_element(mapped.text(), file.string(), [&](const XmlElement& element) {
     if (element.name == "PImageData") whole = extent_cells(element.find("WholeExtent"));
@@ -100,9 +101,17 @@ void require_image_pieces(const std::filesystem::path& file) {
       throw scene::bad_input(
           fmt::format("{}: it is a piece of {} and no .vti; write them anew", piece.string(), file.string()));
     require_xml_end(piece);
+    const std::size_t at = beginning.find(" Direction=\"");
+    if (direction || at == std::string::npos) return;
+    std::istringstream words(beginning.substr(at + 12, 400));
+    std::array<double, 9> numbers{};
+    for (double& number : numbers)
+      if (!(words >> number)) throw damaged(piece, "its Direction is not nine numbers");
+    direction = numbers;
   });
   if (in_pieces < whole)
     throw damaged(file, fmt::format("its pieces have {:.0f} of its {:.0f} cells", in_pieces, whole));
+  return direction;
 }
 
 vtkSmartPointer<vtkXMLReader> xml_reader_of(VtkGridKind kind) {
@@ -115,8 +124,9 @@ vtkSmartPointer<vtkDataSet> read_vtk_volume_data(const std::filesystem::path& fi
                                                  std::vector<std::string>& notes) {
   const std::string source = file.string();
   const bool xml = kind != VtkGridKind::legacy;
+  std::optional<std::array<double, 9>> direction;
   if (xml) {
-    if (kind == VtkGridKind::image_pieces) require_image_pieces(file);
+    if (kind == VtkGridKind::image_pieces) direction = require_image_pieces(file);
     check_vtk_xml(file);
     require_xml_end(file);
   } else {
@@ -137,6 +147,7 @@ vtkSmartPointer<vtkDataSet> read_vtk_volume_data(const std::filesystem::path& fi
   });
   if (!data) throw scene::bad_input(fmt::format("{}: nothing can be read; write it anew", source));
   if (!warning.empty()) notes.push_back("VTK warns: " + warning);
+  if (auto* image = vtkImageData::SafeDownCast(data); image && direction) image->SetDirectionMatrix(direction->data());
   return data;
 }
 

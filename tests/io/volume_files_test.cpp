@@ -303,7 +303,7 @@ TEST_F(VolumeFiles, ImagesInPiecesAreOneAndGapsOrHugeExtentsAreRefused) {
   const auto piece = [](const std::string& extent, const std::string& numbers) {
     return "<?xml version=\"1.0\"?><VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\"><ImageData "
            "WholeExtent=\"" +
-           extent + "\" Origin=\"1 2 3\" Spacing=\"2 3 4\"><Piece Extent=\"" + extent +
+           extent + "\" Origin=\"1 2 3\" Spacing=\"2 3 4\" Direction=\"0 -1 0 1 0 0 0 0 1\"><Piece Extent=\"" + extent +
            "\"><PointData Scalars=\"c\"><DataArray type=\"Float32\" Name=\"c\" format=\"ascii\">" + numbers +
            "</DataArray></PointData></Piece></ImageData></VTKFile>";
   };
@@ -322,6 +322,7 @@ TEST_F(VolumeFiles, ImagesInPiecesAreOneAndGapsOrHugeExtentsAreRefused) {
   const VolumeFile volume = open_volume(folder.write("p.pvti", whole("0 2 0 1 0 1", second)));
   EXPECT_EQ(all_samples(*volume.source), counting<double>(12));
   EXPECT_EQ(volume.source->geometry().origin, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(volume.source->geometry().direction[0], glm::dvec3(0, 1, 0));  // the pieces', which VTK's reader loses
   expect_refused(folder.write("gap.pvti", whole("0 2 0 1 0 1", "")), "1 of its 2 cells");
   expect_refused(folder.write("huge.pvti", whole("0 1000 0 1000 0 1000", second)), "cells");
   expect_refused(folder.write("gone.pvti", whole("0 2 0 1 0 1", "<Piece Extent=\"1 2 0 1 0 1\" Source=\"no.vti\"/>")),
