@@ -211,9 +211,13 @@ class PacketCast {
           kind = Kind::empty;
           continue;
         }
-        find_line(mirrored_, window, place, chunk_.block.pitch, n, n - begin, lines, crossings_);
+        // A gather reads where every lane is: only those that cross this slab are sure to be in the block.
+        MirroredLanes gathered = mirrored_;
+        if (std::is_same_v<Window, GatherWindow>) gathered.live = here(n);
+        const MirroredLanes& found = std::is_same_v<Window, GatherWindow> ? gathered : mirrored_;
+        find_line(found, window, place, chunk_.block.pitch, n, n - begin, lines, crossings_);
         if (n + 1 == end || kind_of(n + 1) != Kind::lines || frame_.some_clear)
-          find_back(mirrored_, window, place, chunk_.block.pitch, n, n - begin, lines);
+          find_back(found, window, place, chunk_.block.pitch, n, n - begin, lines);
       }
     }
     kinds[end - begin] = Kind::empty;

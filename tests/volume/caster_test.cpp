@@ -239,6 +239,24 @@ TEST(VolumeCaster, ARegionHasThePixelsOfTheWhole) {
     }
 }
 
+// Packets many voxels wide take their samples from memory.
+TEST(VolumeCaster, PacketsManyVoxelsWideAreWithin1e5) {
+  const Volume v = make_volume({56, 56, 48}, Field::smooth);
+  for (const char* const from : {"oblique", "perspective"}) {
+    const scene::Camera camera = view(from);
+    const scene::ImageSize coarse{8, 7};
+    const tests::DoubleCaster caster{v.grid.geometry, [&](auto i, auto j, auto k) { return v.at(i, j, k); },
+                                     smooth_function()};
+    const scene::Image image = volume::Renderer(*v.source, exact()).render(camera, coarse, smooth_function());
+    for (int y = 0; y < coarse.height; ++y)
+      for (int x = 0; x < coarse.width; ++x) {
+        const auto pixel = caster.cast(camera, coarse, x + 0.5, y + 0.5);
+        for (int c = 0; c < 4; ++c)
+          EXPECT_NEAR(image.rgba[4 * image.index(x, y) + static_cast<std::size_t>(c)], pixel.rgba[c], 1e-5);
+      }
+  }
+}
+
 TEST(VolumeCaster, InvisibleBricksAreNotLoaded) {
   Volume v = make_volume({65, 65, 65}, Field::smooth);
   for (std::size_t n = 0; n < v.values.size(); ++n) v.values[n] = n % 65 > 40 ? 0.9f : 0.1f;
