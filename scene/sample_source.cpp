@@ -1,6 +1,8 @@
 #include "scene/sample_source.hpp"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
@@ -134,6 +136,18 @@ MemorySource::MemorySource(Grid grid, std::span<const std::byte> bytes, std::sha
 
 std::uint64_t MemorySource::bytes_read() const { return bytes_read_.load(std::memory_order_relaxed); }
 
+namespace {
+
+/// Threads that read meanwhile get their pages anew.
+void drop_pages(std::span<const std::byte> mapped) {
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  const auto first = (reinterpret_cast<std::uintptr_t>(mapped.data()) + page - 1) / page * page;
+  const auto last = reinterpret_cast<std::uintptr_t>(mapped.data() + mapped.size()) / page * page;
+  if (last > first) madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
+}
+
+}  // namespace
+
 void MemorySource::read_samples(const SampleBox& box, const SampleLayout& layout, std::byte* destination) const {
   const GridIndex n = geometry().samples();
   const std::size_t to_size = size_of(layout.type), number = size_of(choice_.type);
@@ -156,7 +170,12 @@ void MemorySource::read_samples(const SampleBox& box, const SampleLayout& layout
                    to + i * static_cast<std::int64_t>(to_size));
       });
     }
-  if (from_file_) bytes_read_.fetch_add(static_cast<std::uint64_t>(box.count() * tuple), std::memory_order_relaxed);
+  if (!from_file_) return;
+  const auto read = static_cast<std::uint64_t>(box.count() * tuple);
+  const std::uint64_t before = bytes_read_.fetch_add(read, std::memory_order_relaxed);
+  // Pages of a mapped file count as this process's until they are given back; the system keeps them as it can.
+  constexpr std::uint64_t kept = 8 << 20;
+  if (before / kept != (before + read) / kept) drop_pages(bytes_);
 }
 
 ValueRange value_range(const SampleSource& source) {
