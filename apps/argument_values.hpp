@@ -5,6 +5,7 @@
 #include <string>
 
 #include "scene/camera.hpp"
+#include "scene/mechanisms.hpp"
 #include "scene/optical_model.hpp"
 
 /// Words of the command line to values. Every function throws scene::Error(bad_input, "--OPTION: ...") that says what
@@ -21,6 +22,15 @@ std::uint64_t parse_bytes(const std::string& option, const std::string& text);
 /// `exact`, `sampled:N` with N from 1 to 4096, `preintegrated` or `preintegrated:N` with N from 8 to 512, `partial`, or
 /// `auto`; `accuracy` goes into the result.
 scene::Integrator parse_integrator(const std::string& option, const std::string& text, double accuracy);
+
+struct WithoutWords {
+  scene::Mechanisms use;
+  bool merging = true;  ///< of touching segments before they are sent
+};
+
+/// What is to be left out of culling, skipping, termination, lattice and merging, with commas between; nothing if
+/// empty.
+WithoutWords parse_without(const std::string& option, const std::string& text);
 
 /// `R,G,B` as linear light, each >= 0, or a name: black, white, gray (linear 0.2158, what sRGB shows half way), red,
 /// green, blue.

@@ -147,6 +147,17 @@ std::vector<ChartMethod> mesh_methods(const ChartScene& scene) {
   plain(planes, IntegratorKind::partial, "partial");
   sampled(scanline, 4);
   table(scanline, 128);
+  const auto without = [&](const char* family, const std::string& word, scene::Mechanisms use) {
+    add(planes, family, word, {.kind = IntegratorKind::exact, .terminates = use.termination},
+        fmt::format("--integrator exact --without {}", use.lattice ? "termination" : "lattice"));
+    methods.back().make = [s = settings(planes, {.kind = IntegratorKind::exact, .terminates = use.termination}),
+                           use](const ChartScene& all) mutable {
+      s.use = use;
+      return std::make_unique<LocalRenderer<frame::Renderer>>(all, *all.mesh, s);
+    };
+  };
+  without("exact in double", "exact in double", {.lattice = false});
+  without("exact, no termination", "exact, no termination", {.termination = false});
   for (const int n : {2, 8}) sampled(planes, n);
   plain(scanline, IntegratorKind::exact, "exact");
   table(planes, 32), table(planes, 64);
@@ -189,8 +200,9 @@ std::vector<ChartMethod> mesh_methods(const ChartScene& scene) {
 std::vector<ChartMethod> volume_methods(const ChartScene& scene) {
   std::vector<ChartMethod> methods;
   const auto add = [&](const char* family, const std::string& name, const std::string& options, volume::Method method,
-                       double number) {
+                       double number, bool terminates = true) {
     volume::RenderSettings s;
+    s.use.termination = terminates;
     s.method = method;
     (method == volume::Method::automatic ? s.accuracy : s.step) = number;
     s.emission = scene.emission;
@@ -214,6 +226,8 @@ std::vector<ChartMethod> volume_methods(const ChartScene& scene) {
   for (const double accuracy : {1e-4, 1e-2, 1e-3, 1e-5}) automatic(accuracy);
   stepped(1);
   add("exact", "exact", "--integrator exact", volume::Method::exact, 1);
+  add("no termination", "auto 0.0001, no termination", "--accuracy 0.0001 --without termination",
+      volume::Method::automatic, 1e-4, false);
   for (const double step : {2.0, 0.5, 4.0, 0.25, 0.125}) stepped(step);
   methods.push_back({"slices (GL)", "slices (GL)", "--renderer slice", nullptr, "the slice renderer is not built in"});
   return methods;

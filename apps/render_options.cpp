@@ -156,6 +156,11 @@ void add_render_options(CLI::App& command, RenderWords& words) {
   command.add_flag("--half", words.half, ".exr with 16-bit floats");
   command.add_option("--png-bits", words.png_bits, "default: 8")->type_name("8|16");
 
+  command
+      .add_option(
+          "--without", words.without,
+          "leave out what saves work, to see what it is worth: culling, skipping, termination, lattice, merging")
+      ->type_name("WORD,...");
   command.add_flag("--resume", words.resume, "skip frames whose pictures exist");
   command.add_option("--repeat", words.repeat, "render each frame K times and print frame_ms median and min")
       ->type_name("K");
@@ -196,6 +201,10 @@ RenderOptions render_options(const RenderWords& words) {
   // The caster knows no rectilinear lattice yet; as cells they are rendered all the same.
   options.is_volume = is_volume_input(words) && !io::is_rectilinear(words.input);
   options.settings = render_settings(words, options.is_volume);
+  const WithoutWords without = parse_without("--without", words.without);
+  options.without = words.without;
+  options.settings.use = without.use;
+  options.settings.integrator.terminates = without.use.termination;
   if (options.is_volume) {
     options.volume = volume_options(words);
     options.volume_settings = volume_settings(words, options.settings);
@@ -218,7 +227,10 @@ RenderOptions render_options(const RenderWords& words) {
                                  !options.compositing_on.backends.empty()))
     // The paper's do not touch; deep samples are cut within segments; a device that only got runs had nothing to do.
     options.exchange = frame::Exchange::segments;
-  if (words.exchange == "segments") options.exchange = frame::Exchange::segments;
+  if (words.exchange == "segments" || !without.merging) options.exchange = frame::Exchange::segments;
+  if (words.exchange == "runs" && !without.merging)
+    throw scene::bad_input(
+        "--without merging: is --exchange segments, but runs were asked for; leave one of the two out");
   check_word("--partition", words.partition, {"curve", "file", "random"});
   if (words.partition == "file") options.partition.kind = projection::PartitionKind::file;
   if (words.partition == "random") options.partition.kind = projection::PartitionKind::random;

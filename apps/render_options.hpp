@@ -43,6 +43,7 @@ struct RenderOptions {
   scene::ProjectionKind projection = scene::ProjectionKind::orthographic;  ///< of the view that frames the mesh
 
   frame::RenderSettings settings;
+  std::string without;  ///< the words of --without, as given
   io::ImageFileOptions image;
   bool deep = false;  ///< an output is a deep picture
 
@@ -70,6 +71,7 @@ struct RenderWords {
   std::string camera, orbit, size, projection;
   std::string integrator = "auto", accuracy, deep_accuracy, emission = "absorption", rasterizer = "planes";
   std::string backend, compositor, framebuffer, egl_device;
+  std::string without;
   std::string threads, tile_size, memory, background, png_bits = "8", repeat, verify, report, timing;
   std::string dims, type, spacing, origin, endian, skip, step, brick_size, cache, preload;
   std::string balance, balance_resolution, balance_weights, show;

@@ -98,6 +98,7 @@ Json method_json(const RenderOptions& options) {
   const bool fragment = on.gl.method == compositor::GlMethod::fragment;
   json["compositor"] = on.backends.empty() ? "cpu" : fragment ? "gl-fragment" : "gl-compute";
   if (!on.backends.empty() && fragment) json["framebuffer"] = on.gl.half ? "half" : "float";
+  if (!options.without.empty()) json["without"] = options.without;
   json["blend"] = options.display_blend ? "display" : "linear";
   json["threads"] = settings.threads;  // 0: all cores
   json["tile_size"] = settings.tile_size;

@@ -106,6 +106,7 @@ bool is_volume_input(const RenderWords& words) {
 
 volume::RenderSettings volume_settings(const RenderWords& words, const frame::RenderSettings& common) {
   volume::RenderSettings settings;
+  settings.use = common.use;
   const std::string& method = words.integrator;
   if (method == "auto")
     settings.method = volume::Method::automatic;

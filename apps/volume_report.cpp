@@ -77,6 +77,7 @@ Json volume_method_json(const RenderOptions& options, int ranks) {
   json["emission"] = s.emission == scene::Emission::absorption ? "absorption" : "independent";
   json["shade"] = s.shading.has_value();
   json["backend"] = "cpu";
+  if (!options.without.empty()) json["without"] = options.without;
   json["blend"] = options.display_blend ? "display" : "linear";
   json["threads"] = s.threads;
   json["brick_size"] = s.brick_size;

@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
-"""What the default skips, and what that saves: a table a data set, from the program's own counters.
+"""What the default skips, and what each mechanism that skips it saves: a table a data set, from the program's own counters.
 
-    bench/needed.py --data FOLDER [--tessera build/release/apps/tessera] [--document docs/ACCURACY.md]
+    bench/needed.py --data FOLDER [--tessera build/release/apps/tessera] [--only NAME,...] [--document docs/ACCURACY.md]
 
-Each data set once with its default transfer function and once with a sparse one (the upper fifth of the field's range
-shows). Cells and bricks that the function makes invisible are counted by the run; what skipping them is worth is
-measured by the same picture with a function that is almost clear there (1e-9 of the extinction) instead of clear.
-Early termination: the same picture at --accuracy 1e-2 and 1e-5. Exchange: bytes of runs beside raw segments, two ranks,
-where mpirun is. Times are the fastest of three frames.
+Each data set with its default transfer function, with a sparse one (the upper fifth of the field's range shows) and
+with an opaque one (50 times the default's extinction), and each time without one of the mechanisms that count there
+(`tessera render --without`). Times are the fastest of three frames, of two runs of the default, one before and one
+after the others. Bytes: of runs beside raw segments (`--without merging`), two ranks, where mpirun is.
 """
 import argparse
 import json
@@ -44,45 +43,45 @@ def run(args, folder, words, ranks=0, repeat=3):
     return everything, frame["counters"], min(frame["frame_ms"])
 
 
-def sparse(low, high, unit, clear):
+def sparse(low, high, unit):
     at = lambda t: low + (high - low) * t
-    kappa = 2.0 / unit
-    rest = 1e-9 * kappa if not clear else 0.0
-    knots = [(at(0), 0.2, 0.4, 0.9, rest), (at(0.8), 0.2, 0.4, 0.9, rest), (at(0.85), 0.9, 0.5, 0.1, kappa), (at(1), 1, 0.9, 0.8, kappa)]
+    knots = [(at(0), 0.2, 0.4, 0.9, 0.0), (at(0.8), 0.2, 0.4, 0.9, 0.0), (at(0.85), 0.9, 0.5, 0.1, 2 / unit), (at(1), 1, 0.9, 0.8, 2 / unit)]
     return "".join(" ".join(repr(float(x)) for x in k) + "\n" for k in knots)
 
 
 def measure(args, name, words, folder):
+    """{"volume", "counters" of the default, FUNCTION: {"default" or MECHANISM: (counters, ms)}, "bytes": (runs, segments)}"""
     words = [str(args.data / w) if not w.startswith("--") else w for w in words]
-    everything, counters, ms = run(args, folder, words)
+    everything, counters, _ = run(args, folder, words, repeat=1)
     part = everything.get("mesh") or everything["volume"]
-    low, high = part["field"]["range"]
-    unit = everything["transfer_function"]["unit_distance"]["value"]
-    out = {"name": name, "volume": "volume" in everything, "default": (counters, ms)}
-    for clear in (True, False):
-        tf = folder / "sparse.txt"
-        tf.write_text(sparse(low, high, unit, clear))
-        _, c, t = run(args, folder, [*words, "--transfer-function", str(tf)])
-        out["sparse" if clear else "not skipped"] = (c, t)
-    dense = ["--opacity-scale", "50"]
-    out["opaque 1e-2"] = run(args, folder, [*words, *dense, "--accuracy", "1e-2"])[1:]
-    out["opaque 1e-5"] = run(args, folder, [*words, *dense, "--accuracy", "1e-5"])[1:]
-    if shutil.which("mpirun") and not out["volume"]:
-        for exchange in ("runs", "segments"):
-            out[exchange] = run(args, folder, [*words, "--exchange", exchange], ranks=2)[1].get("exchange_bytes", 0)
+    is_volume = "volume" in everything
+    (folder / "sparse.txt").write_text(sparse(*part["field"]["range"], everything["transfer_function"]["unit_distance"]["value"]))
+    fewer = ["culling", "skipping"] if is_volume else ["culling"]
+    plan = {"default": ([], fewer + ([] if is_volume else ["lattice"])),
+            "sparse": (["--transfer-function", str(folder / "sparse.txt")], fewer),
+            "opaque": (["--opacity-scale", "50"], ["termination"])}
+    out = {"name": name, "volume": is_volume, "counters": counters}
+    for function, (more, mechanisms) in plan.items():
+        first = run(args, folder, [*words, *more])
+        out[function] = {m: run(args, folder, [*words, *more, "--without", m])[1:] for m in mechanisms}
+        again = run(args, folder, [*words, *more])
+        out[function]["default"] = (again[1], min(first[2], again[2]))
+    if shutil.which("mpirun") and not is_volume:
+        out["bytes"] = [run(args, folder, [*words, *more], ranks=2)[1].get("exchange_bytes", 0) for more in ([], ["--without", "merging"])]
     return out
 
 
 def lines_of(results):
-    lines = ["| data set | cells or bricks | invisible: default / sparse | sparse, ms: skipped / not | opaque, ms: 1e-2 / 1e-5 | "
-             "exchanged, MB: runs / segments |", "|---|---|---|---|---|---|"]
+    lines = ["| data set | of | left out by culling: default / sparse | culling, ms with / without: default; sparse | skipping, ms: default; sparse | "
+             "termination, ms: opaque | lattice, ms: default | merging, MB sent with / without |", "|---|---|---|---|---|---|---|---|"]
     for r in results:
-        c, s = r["default"][0], r["sparse"][0]
-        total, skipped = ("bricks_total", "bricks_invisible") if r["volume"] else ("tets_total", "tets_invisible")
-        share = lambda x: f"{100 * x[skipped] / max(x[total], 1):.0f} %"
-        sent = f"{r['runs'] / 1e6:.1f} / {r['segments'] / 1e6:.1f}" if "runs" in r else "-"
-        lines.append(f"| {r['name']} | {c[total]} | {share(c)} / {share(s)} | {r['sparse'][1]:.0f} / {r['not skipped'][1]:.0f} | "
-                     f"{r['opaque 1e-2'][1]:.0f} / {r['opaque 1e-5'][1]:.0f} | {sent} |")
+        total, gone = ("bricks_total", "bricks_invisible") if r["volume"] else ("tets_total", "tets_invisible")
+        share = lambda function: f"{100 * r[function]['default'][0][gone] / max(r['counters'][total], 1):.0f} %"
+        both = lambda function, m: f"{r[function]['default'][1]:.0f} / {r[function][m][1]:.0f}" if m in r[function] else ""
+        pair = lambda m: "; ".join(both(f, m) for f in ("default", "sparse")) if m in r["sparse"] else "-"
+        sent = f"{r['bytes'][0] / 1e6:.1f} / {r['bytes'][1] / 1e6:.1f}" if "bytes" in r else "-"
+        lines.append(f"| {r['name']} | {r['counters'][total]} {'bricks' if r['volume'] else 'tets'} | {share('default')} / {share('sparse')} | {pair('culling')} | "
+                     f"{pair('skipping')} | {both('opaque', 'termination')} | {both('default', 'lattice') or '-'} | {sent} |")
     return lines
 
 

@@ -38,6 +38,7 @@ SegmentIntegrator::SegmentIntegrator(const scene::TransferFunction& function, co
       termination_error_ = std::min(0.25 * integrator.accuracy, 1e-2);
       break;
   }
+  if (!integrator.terminates) termination_error_ = 0;
 }
 
 void SegmentIntegrator::integrate(SegmentBatch& batch) const {

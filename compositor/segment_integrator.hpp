@@ -37,6 +37,7 @@ class SegmentIntegrator {
   [[nodiscard]] int samples() const { return samples_; }
 
   /// What a ray may leave out behind nearly opaque matter: largest error in linear RGBA by early termination.
+  /// 0: nothing, no pixel is ever closed.
   [[nodiscard]] double termination_error() const { return termination_error_; }
 
  private:

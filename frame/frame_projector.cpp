@@ -156,7 +156,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   std::optional<projection::TileLists> lists;
   {
     const scene::TraceScope timing(settings_.trace, "cull", task.frame);
-    lists.emplace(projected, grid, *task.function, independent, settings_.trace, &list_buffers_);
+    lists.emplace(projected, grid, *task.function, independent, settings_.trace, &list_buffers_, settings_.use.culling);
   }
   if (task.announce) {
     std::vector<bool> has_cells(grid.count());

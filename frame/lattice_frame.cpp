@@ -37,7 +37,8 @@ std::optional<projection::Lattice> lattice_of(const projection::PixelSpace& spac
   using projection::Lattice;
   const bool exact = settings.integrator.kind == scene::IntegratorKind::exact ||
                      settings.integrator.kind == scene::IntegratorKind::automatic;
-  if (settings.rasterizer != Rasterizer::planes || !exact || box.empty() || !projection::lattice_available())
+  if (!settings.use.lattice || settings.rasterizer != Rasterizer::planes || !exact || box.empty() ||
+      !projection::lattice_available())
     return std::nullopt;
   const auto [near, far] = depth_range(space, box);
   if (!(near <= far) || !std::isfinite(far - near)) return std::nullopt;

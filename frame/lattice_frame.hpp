@@ -15,7 +15,7 @@ namespace tessera::frame {
 /// same one. None where the lattice is not good enough, and double precision has to do:
 ///   - the mesh's depth times the largest extinction is above 2000: 16 steps, 1e-8 of the depth, could show;
 ///   - the transfer function changes so fast between two knots that the rounding of scalars could show by 2e-5;
-///   - the integrator samples, or the rasterizer is not `planes`;
+///   - it is switched off, the integrator samples, or the rasterizer is not `planes`;
 ///   - nothing is in front of the eye, or the processor has no lanes.
 std::optional<projection::Lattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
                                               const std::array<double, 2>& scalar_range,

@@ -7,6 +7,7 @@
 #include "scene/camera.hpp"
 #include "scene/deep_image.hpp"
 #include "scene/image.hpp"
+#include "scene/mechanisms.hpp"
 #include "scene/optical_model.hpp"
 #include "scene/tet_mesh.hpp"
 #include "scene/trace.hpp"
@@ -20,13 +21,14 @@ enum class Rasterizer {
   scanline  ///< [JCN07] 4.1-4.2 as printed: float32, no tie rule, segments ordered by z_back alone; orthographic only
 };
 
-/// What a frame is made with. None of it but the rasterizer, integrator, emission and accuracy changes a bit of the
-/// picture.
+/// What a frame is made with. None of it but the rasterizer, integrator, emission, accuracy and `use` changes a bit of
+/// the picture.
 struct RenderSettings {
   Rasterizer rasterizer = Rasterizer::planes;
   scene::Integrator integrator;
   scene::Emission emission = scene::Emission::absorption;
   double deep_accuracy = 1e-3;              ///< of a deep picture, cut anywhere: largest error in linear RGBA
+  scene::Mechanisms use;                    ///< what saves work
   bool bounded = true;                      ///< false: composited on a device whose error is only reported
   int threads = 0;                          ///< 0: all cores
   int tile_size = 32;                       ///< pixels a side, 1..1024

@@ -18,6 +18,8 @@ class ClearIntervals {
     double low, high;  ///< both inside; may be infinite
   };
 
+  /// None: everything shows.
+  ClearIntervals() = default;
   ClearIntervals(const scene::TransferFunction& function, bool emits_without_extinction);
 
   /// Those that have a value in common with [low, high], ascending.

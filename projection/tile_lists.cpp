@@ -85,7 +85,7 @@ void TileLists::for_each_tile(std::size_t tet, Visit visit) const {
 
 TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
                      const scene::TransferFunction& transfer_function, bool emits_without_extinction,
-                     scene::Trace* trace, TileListBuffers* buffers)
+                     scene::Trace* trace, TileListBuffers* buffers, bool cull_invisible)
     : projected_(&projected),
       trace_(trace),
       grid_(grid),
@@ -108,7 +108,8 @@ TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
                        depth_origin_, buffers_->vertices.data() + range.begin());
   });
 
-  const ClearIntervals clear(transfer_function, emits_without_extinction);
+  const ClearIntervals clear =
+      cull_invisible ? ClearIntervals(transfer_function, emits_without_extinction) : ClearIntervals();
   const std::size_t blocks = projected_tets_.size();
   runs_.resize(run_count(blocks, grid.count()));
   for (std::size_t r = 0; r < runs_.size(); ++r) {

@@ -51,8 +51,10 @@ class TileLists {
  public:
   /// First pass: culls and counts. Work runs in the caller's task arena (oneTBB); `trace`, if any, gets spans `cull`
   /// and `bin` of the threads that help. `buffers`, if any, must outlive this object and serve no other meanwhile.
+  /// Without `cull_invisible` cells of which the transfer function shows nothing are listed like others.
   TileLists(const ProjectedMesh& projected, const TileGrid& grid, const scene::TransferFunction& transfer_function,
-            bool emits_without_extinction, scene::Trace* trace = nullptr, TileListBuffers* buffers = nullptr);
+            bool emits_without_extinction, scene::Trace* trace = nullptr, TileListBuffers* buffers = nullptr,
+            bool cull_invisible = true);
   TileLists(const TileLists&) = delete;
   TileLists& operator=(const TileLists&) = delete;
 

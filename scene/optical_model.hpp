@@ -22,6 +22,7 @@ struct Integrator {
   int samples = 0;         ///< sampled only, >= 1
   double accuracy = 1e-4;  ///< automatic only: largest error in linear RGBA
   int table_size = 128;    ///< preintegrated only, 8 to 512
+  bool terminates = true;  ///< rays end where what is left is below the accuracy; false: they never do
 };
 
 }  // namespace tessera::scene

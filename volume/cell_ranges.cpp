@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -170,17 +171,27 @@ std::vector<std::uint8_t> visible_cells(const CellRanges& ranges, const composit
   return visible;
 }
 
+namespace {
+
+/// The cells, first to last along each axis, that hold voxels of a brick.
+std::array<scene::GridIndex, 2> cells_of(const BrickLayout& layout, std::size_t brick) {
+  const scene::GridIndex place = layout.place(brick);
+  std::array<scene::GridIndex, 2> cells;
+  for (std::size_t a = 0; a < 3; ++a) {
+    cells[0][a] = place[a] * layout.size / CellRanges::side;
+    cells[1][a] = (std::min((place[a] + 1) * layout.size, layout.voxels[a]) - 1) / CellRanges::side;
+  }
+  return cells;
+}
+
+}  // namespace
+
 std::vector<std::uint8_t> visible_bricks(const CellRanges& ranges, const std::vector<std::uint8_t>& visible,
                                          const BrickLayout& layout) {
   std::vector<std::uint8_t> shown(layout.count(), 0);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, layout.count(), 256), [&](const auto& some) {
     for (std::size_t brick = some.begin(); brick != some.end(); ++brick) {
-      const scene::GridIndex place = layout.place(brick);
-      scene::GridIndex first, last;
-      for (std::size_t a = 0; a < 3; ++a) {
-        first[a] = place[a] * layout.size / CellRanges::side;
-        last[a] = (std::min((place[a] + 1) * layout.size, layout.voxels[a]) - 1) / CellRanges::side;
-      }
+      const auto [first, last] = cells_of(layout, brick);
       for (std::int64_t c = first[2]; c <= last[2]; ++c)
         for (std::int64_t b = first[1]; b <= last[1]; ++b)
           for (std::int64_t a = first[0]; a <= last[0]; ++a)
@@ -188,6 +199,19 @@ std::vector<std::uint8_t> visible_bricks(const CellRanges& ranges, const std::ve
     }
   });
   return shown;
+}
+
+void show_more(const CellRanges& ranges, const BrickLayout& layout, bool of_invisible_bricks, bool of_visible_bricks,
+               std::vector<std::uint8_t>& visible) {
+  const std::vector<std::uint8_t> shown = visible_bricks(ranges, visible, layout);
+  for (std::size_t brick = 0; brick < shown.size(); ++brick) {
+    if (!(shown[brick] != 0 ? of_visible_bricks : of_invisible_bricks)) continue;
+    const auto [first, last] = cells_of(layout, brick);
+    for (std::int64_t c = first[2]; c <= last[2]; ++c)
+      for (std::int64_t b = first[1]; b <= last[1]; ++b)
+        for (std::int64_t a = first[0]; a <= last[0]; ++a)
+          visible[static_cast<std::size_t>(a + ranges.cells[0] * (b + ranges.cells[1] * c))] = 1;
+  }
 }
 
 }  // namespace tessera::volume

@@ -39,4 +39,9 @@ bool any_clear(const CellRanges& ranges, const compositor::LaneTable& table);
 std::vector<std::uint8_t> visible_bricks(const CellRanges& ranges, const std::vector<std::uint8_t>& visible,
                                          const BrickLayout& layout);
 
+/// Takes more cells for visible than are, to see what leaving them out is worth: those of bricks without a visible one,
+/// or the other cells of bricks with one. A cell may lie in several bricks and counts with each.
+void show_more(const CellRanges& ranges, const BrickLayout& layout, bool of_invisible_bricks, bool of_visible_bricks,
+               std::vector<std::uint8_t>& visible);
+
 }  // namespace tessera::volume

@@ -146,6 +146,7 @@ struct Renderer::State {
 
   /// A ray that lets less through is done.
   [[nodiscard]] float least_transmittance(const scene::TransferFunction& function) const {
+    if (!settings.use.termination) return 0;
     if (settings.method == Method::sampled || settings.method == Method::preintegrated) return 1e-6f;
     double brightest = function.max_color();
     if (settings.emission == scene::Emission::independent) {
@@ -239,6 +240,8 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
       // A step between two values may show what neither of them shows, so pre-integration needs the true ones.
       visible = settings.method == Method::preintegrated ? std::vector<std::uint8_t>(ranges.count(), 1)
                                                          : visible_cells(ranges, table);
+      if (!settings.use.culling || !settings.use.skipping)
+        show_more(ranges, bricks.layout(), !settings.use.culling, !settings.use.skipping, visible);
       result.brick_visible = volume::visible_bricks(ranges, visible, bricks.layout());
     }
     FrameView frame{};

@@ -10,6 +10,7 @@
 
 #include "scene/camera.hpp"
 #include "scene/image.hpp"
+#include "scene/mechanisms.hpp"
 #include "scene/optical_model.hpp"
 #include "scene/sample_source.hpp"
 #include "scene/trace.hpp"
@@ -55,6 +56,7 @@ struct RenderSettings {
   std::uint64_t memory_bytes = 4ull << 30;  ///< budget of the bricks in memory
   CachePolicy cache = CachePolicy::lru;
   int preload_limit = 0;  ///< proximity: bricks near the frustum loaded ahead between frames, at most; asynchronously
+  scene::Mechanisms use;  ///< what saves work
   scene::Trace* trace = nullptr;
 };
 

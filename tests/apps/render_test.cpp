@@ -219,5 +219,54 @@ TEST(Render, ProgressIsALineThatGoesAway) {
   EXPECT_TRUE(run.err.ends_with("\x1b[K"));
 }
 
+/// Each mechanism that saves work says in the counters that it was left out, and the picture stays within the accuracy.
+TEST(Render, WithoutAnyOfItsMechanismsThePictureIsTheSame) {
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  const std::string function = folder.file("peaks.txt", "0 .1 .2 .9 0\n.4 .1 .2 .9 0\n.5 .9 .6 .1 40\n1 1 .2 .1 90\n");
+  const auto render = [&](const std::string& without) {
+    std::vector<std::string> words = {"render",
+                                      mesh,
+                                      "-o",
+                                      folder / "a.pfm",
+                                      "--transfer-function",
+                                      function,
+                                      "--report",
+                                      folder / "r.json",
+                                      "--size",
+                                      "64x64",
+                                      "--verify",
+                                      "2000"};
+    if (!without.empty()) words.insert(words.end(), {"--without", without});
+    const auto run = tessera(words);
+    EXPECT_EQ(run.status, 0) << without << run.out << run.err;
+    return nlohmann::json::parse(contents(folder / "r.json"));
+  };
+  const auto all = render("");
+  const auto counter = [](const nlohmann::json& report, const char* name) {
+    return report["frames"][0]["counters"][name].get<std::uint64_t>();
+  };
+  EXPECT_FALSE(all["method"].contains("without"));
+  EXPECT_GT(counter(all, "tets_invisible"), 0u);
+  EXPECT_EQ(all["frames"][0]["arithmetic"], "lattice");
+
+  const auto culling = render("culling");
+  EXPECT_EQ(counter(culling, "tets_invisible"), 0u);
+  EXPECT_GT(counter(culling, "segments"), counter(all, "segments"));
+  EXPECT_EQ(culling["method"]["without"], "culling");
+  const auto lattice = render("lattice");
+  EXPECT_EQ(lattice["frames"][0]["arithmetic"], "double");
+  const auto termination = render("termination");
+  EXPECT_LE(termination["frames"][0]["verify"]["max_error"], all["frames"][0]["verify"]["max_error"]);
+  render("culling,skipping,termination,lattice,merging");
+
+  for (const char* words : {"foo", "culling,", ",culling", "culling,,lattice"}) {
+    const auto run = tessera({"render", mesh, "-o", folder / "a.pfm", "--without", words});
+    EXPECT_EQ(run.status, 2) << words;
+    EXPECT_EQ(run.error_lines(), 1u) << run.err;
+  }
+  EXPECT_EQ(tessera({"render", mesh, "-o", folder / "a.pfm", "--exchange", "runs", "--without", "merging"}).status, 2);
+}
+
 }  // namespace
 }  // namespace tessera::apps

@@ -44,6 +44,35 @@ TEST(VolumeCommands, BumpsInsideAVoxelAreSeenThroughASteepFunction) {
   EXPECT_EQ(run.status, 0) << run.out << run.err;
 }
 
+TEST(VolumeCommands, WithoutAnyOfItsMechanismsThePictureIsTheSame) {
+  const Folder folder;
+  const std::string volume = folder / "a.vti";
+  ASSERT_EQ(tessera({"generate", "ripples", volume, "n=48", "bits=8", "--quiet"}).status, 0);
+  const std::string function =
+      folder.file("high.txt", "0 .1 .2 .9 0\n237 .1 .2 .9 0\n242 .9 .6 .1 30\n255 1 .2 .1 90\n");
+  const auto render = [&](const std::string& without) {
+    std::vector<std::string> words = {
+        "render", volume,         "-o", folder / "a.pfm", "--transfer-function", function,   "--size",
+        "48x48",  "--brick-size", "16", "--report",       folder / "r.json",     "--verify", "2000"};
+    if (!without.empty()) words.insert(words.end(), {"--without", without});
+    const auto run = tessera(words);
+    EXPECT_EQ(run.status, 0) << without << run.out << run.err;
+    return nlohmann::json::parse(contents(folder / "r.json"))["frames"][0]["counters"];
+  };
+  const auto all = render("");
+  EXPECT_GT(all["bricks_invisible"], 0);
+  const auto culling = render("culling");
+  EXPECT_EQ(culling["bricks_invisible"], 0);
+  const auto skipping = render("skipping");
+  EXPECT_EQ(skipping["bricks_invisible"], all["bricks_invisible"]);
+  const auto both = render("culling,skipping");
+  EXPECT_GT(both["voxels_visited"], all["voxels_visited"]);
+  EXPECT_EQ(both["bricks_invisible"], 0);
+  const auto termination = render("termination");
+  EXPECT_GE(termination["voxels_visited"], all["voxels_visited"]);
+  render("culling,skipping,termination,lattice,merging");
+}
+
 TEST(VolumeCommands, EveryFormatThatConvertWritesGivesTheSamePicture) {
   const Folder folder;
   const std::string original = ripples(folder, "a.vti");
