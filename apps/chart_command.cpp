@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "apps/argument_values.hpp"
@@ -83,6 +84,7 @@ std::vector<ChartPoint> measure(const ChartScene& scene, const Truth& truth, Clo
                                 int repeat, bool quiet) {
   const auto methods = chart_methods(scene);
   std::vector<ChartPoint> points;
+  std::map<std::string, double> slowest;  // frame of a family, ms
   auto waiting = static_cast<double>(
       std::count_if(methods.begin(), methods.end(), [](const ChartMethod& m) { return m.left_out.empty(); }));
   for (const ChartMethod& method : methods) {
@@ -93,7 +95,10 @@ std::vector<ChartPoint> measure(const ChartScene& scene, const Truth& truth, Clo
       const double left = budget - seconds_since(begin);
       const double share = left / waiting--;
       const auto start = Clock::now();
-      if (left <= 0) point.left_out = "the budget was spent; raise --budget-seconds";
+      // What is left of a family is its finer settings, which take longer still.
+      const auto before = slowest.find(method.family);
+      if (left <= 0 || (before != slowest.end() && before->second > 1000 * left))
+        point.left_out = "the budget was spent; raise --budget-seconds";
       if (point.left_out.empty()) {
         try {
           const auto renderer = method.make(scene);
@@ -101,6 +106,7 @@ std::vector<ChartPoint> measure(const ChartScene& scene, const Truth& truth, Clo
           for (int i = 0; i < repeat; ++i) {
             auto [image, ms] = renderer->frame();
             point.frame_ms.push_back(ms);
+            slowest[method.family] = std::max(slowest[method.family], ms);
             if (i == 0) point.error = chart_error(image, truth.pixels, truth.values);
             if (seconds_since(start) + ms / 1000 > share) break;
           }

@@ -155,6 +155,7 @@ class Chart {
           return place.x0 < t.x1 && t.x0 < place.x1 && place.y0 < t.y1 && t.y0 < place.y1;
         });
         if (!free || place.x0 < left || place.x1 > width) continue;
+        canvas.rectangle(place.x0 - 1, place.y0 + 1, wide + 2, size + 1, 0xffffff);  // lines do not run through words
         canvas.text(place.x0, at_y + dy, words, size, 0, bold ? 0x222222 : 0x888888);
         taken.push_back(place);
         return;
