@@ -271,9 +271,11 @@ void chart(const RenderWords& words, const ChartWords& chart) {
       "transfer function are made before a method's first frame, in prepare_ms of the JSON\n",
       truth.whole_image ? "every pixel" : "a random sample of the pixels: the image's largest may be larger");
   Json fastest = Json::array();
-  // What needs mpirun is on the chart, but no setting for this process.
+  // What needs mpirun, or leaves out what saves work, is on the chart, but no setting to recommend.
   std::vector<ChartPoint> alone = points;
-  std::erase_if(alone, [](const ChartPoint& p) { return p.options.starts_with("mpirun"); });
+  std::erase_if(alone, [](const ChartPoint& p) {
+    return p.options.starts_with("mpirun") || p.options.find("--without") != std::string::npos;
+  });
   for (const double bound : bounds) {
     const ChartPoint* best = fastest_within(alone, bound);
     Json entry = {{"bound", bound}};
