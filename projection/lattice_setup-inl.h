@@ -155,8 +155,7 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
     y[i] = hn::Sub(y[i], number(square_y + CellBatch::center + 0.5));
     nearest = hn::Min(nearest, z[i]), farthest = hn::Max(farthest, z[i]);
   }
-  irregular =
-      hn::Or(irregular, hn::Or(hn::Lt(nearest, number(bounds.near)), hn::Gt(farthest, number(bounds.far))));
+  irregular = hn::Or(irregular, hn::Or(hn::Lt(nearest, number(bounds.near)), hn::Gt(farthest, number(bounds.far))));
   if constexpr (perspective) {
     const V w_most = hn::Max(hn::Max(w[0], w[1]), hn::Max(w[2], w[3]));
     const V w_least = hn::Min(hn::Min(w[0], w[1]), hn::Min(w[2], w[3]));
