@@ -99,13 +99,13 @@ def main():
                 for method in METHODS:
                     picture, report = folder / f"{method[1]}.pfm", folder / "report.json"
                     last = number == args.rounds - 1
-                    done = run([args.tessera, "render", path, "-o", picture, *words, *method, "--threads", args.threads,
-                                "--repeat", args.repeat, "--report", report, *(["--verify", args.verify] if last else [])])
+                    run([args.tessera, "render", path, "-o", picture, *words, *method, "--threads", args.threads,
+                         "--repeat", args.repeat, "--report", report, *(["--verify", args.verify] if last else [])])
                     times[method] += json.loads(report.read_text())["frames"][0]["frame_ms"]
-                    reports[method] = (json.loads(report.read_text()), done.stderr)
+                    reports[method] = json.loads(report.read_text())
                 if args.no_vtk:
                     continue
-                scene = reports[METHODS[0]][0]
+                scene = reports[METHODS[0]]
                 if number == 0:
                     run([args.tessera, "convert", path, folder / "samples.vti", "--quiet"])
                 done = run(["xvfb-run", "-a", "/usr/bin/python3", __file__, "--peer", folder / "samples.vti",
@@ -115,9 +115,10 @@ def main():
                 vtk += frames
             for method in METHODS:
                 least, median = min(times[method]), statistics.median(times[method])
-                report, text = reports[method]
+                report = reports[method]
                 voxels = report["frames"][0]["counters"]["voxels_visited"]
-                error = next((l.split("max ")[1].split()[0] for l in text.splitlines() if l.startswith("verify")), "-")
+                verified = report["frames"][0].get("verify")
+                error = f"{verified['max_error']:.1e}" if verified else "-"
                 ratio = f"{min(vtk) / least:.1f}" if vtk else "-"
                 rows.append(f"| {name} | `{' '.join(method)}` | {least:.0f} ({median:.0f}) | {ratio} | {error} | "
                             f"{1e6 * least * args.threads / voxels:.1f} |")
