@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "scene/error.hpp"
+#include "scene/sample_source.hpp"
 
 namespace tessera::io {
 namespace {
@@ -69,36 +70,10 @@ double double_of(const std::byte* at, bool swapped) {
 
 std::vector<std::byte> samples_of_text(std::string_view text, std::uint64_t count, scene::SampleType type,
                                        const std::string& source) {
-  using scene::SampleType;
   // A digit and a blank each.
   if (count > text.size() / 2 + 1) throw too_few(source, text.size() / 2, count, "numbers");
   std::vector<std::byte> out(count * scene::size_of(type));
-  switch (type) {
-    case SampleType::int8:
-      parse_samples<std::int8_t>(text, count, out, source);
-      break;
-    case SampleType::uint8:
-      parse_samples<std::uint8_t>(text, count, out, source);
-      break;
-    case SampleType::int16:
-      parse_samples<std::int16_t>(text, count, out, source);
-      break;
-    case SampleType::uint16:
-      parse_samples<std::uint16_t>(text, count, out, source);
-      break;
-    case SampleType::int32:
-      parse_samples<std::int32_t>(text, count, out, source);
-      break;
-    case SampleType::uint32:
-      parse_samples<std::uint32_t>(text, count, out, source);
-      break;
-    case SampleType::float32:
-      parse_samples<float>(text, count, out, source);
-      break;
-    case SampleType::float64:
-      parse_samples<double>(text, count, out, source);
-      break;
-  }
+  scene::with_sample_type(type, [&](auto sample) { parse_samples<decltype(sample)>(text, count, out, source); });
   return out;
 }
 

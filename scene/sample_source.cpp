@@ -22,29 +22,6 @@ T loaded(const std::byte* at, bool swapped) {
   return std::bit_cast<T>(bytes);
 }
 
-/// Calls `use` with a number of the type.
-template <class Use>
-void with_type(SampleType type, const Use& use) {
-  switch (type) {
-    case SampleType::int8:
-      return use(std::int8_t{});
-    case SampleType::uint8:
-      return use(std::uint8_t{});
-    case SampleType::int16:
-      return use(std::int16_t{});
-    case SampleType::uint16:
-      return use(std::uint16_t{});
-    case SampleType::int32:
-      return use(std::int32_t{});
-    case SampleType::uint32:
-      return use(std::uint32_t{});
-    case SampleType::float32:
-      return use(float{});
-    case SampleType::float64:
-      return use(double{});
-  }
-}
-
 template <class From, class To>
 void convert(const std::byte* source, std::int64_t stride, bool swapped, std::int64_t count, std::byte* destination) {
   const std::int64_t step = stride * static_cast<std::int64_t>(sizeof(From));
@@ -78,7 +55,7 @@ void write_as(SampleType type, double value, std::byte* destination) {
 
 void convert_samples(const std::byte* source, SampleType from, std::int64_t stride, bool swapped, std::int64_t count,
                      std::byte* destination, SampleType to) {
-  with_type(from, [&](auto number) {
+  with_sample_type(from, [&](auto number) {
     using From = decltype(number);
     if (to == from && stride == 1 && !swapped)
       std::memcpy(destination, source, static_cast<std::size_t>(count) * sizeof(From));
@@ -164,7 +141,7 @@ void MemorySource::read_samples(const SampleBox& box, const SampleLayout& layout
                         swapped_, count, to, layout.type);
         continue;
       }
-      with_type(choice_.type, [&](auto type) {
+      with_sample_type(choice_.type, [&](auto type) {
         for (std::int64_t i = 0; i < count; ++i)
           write_as(layout.type, tuple_length<decltype(type)>(from + i * tuple, choice_.components, swapped_),
                    to + i * static_cast<std::int64_t>(to_size));

@@ -125,6 +125,29 @@ class MemorySource final : public SampleSource {
 /// Range and blanks of a whole volume: its known_range(), or by reading all of it once, a few MiB at a time.
 ValueRange value_range(const SampleSource& source);
 
+/// Calls `use` with a zero of the C++ type that `type` stores.
+template <class Use>
+void with_sample_type(SampleType type, const Use& use) {
+  switch (type) {
+    case SampleType::int8:
+      return use(std::int8_t{});
+    case SampleType::uint8:
+      return use(std::uint8_t{});
+    case SampleType::int16:
+      return use(std::int16_t{});
+    case SampleType::uint16:
+      return use(std::uint16_t{});
+    case SampleType::int32:
+      return use(std::int32_t{});
+    case SampleType::uint32:
+      return use(std::uint32_t{});
+    case SampleType::float32:
+      return use(float{});
+    case SampleType::float64:
+      return use(double{});
+  }
+}
+
 template <class T>
 constexpr SampleType sample_type_of() {
   if constexpr (std::is_same_v<T, std::int8_t>) return SampleType::int8;
