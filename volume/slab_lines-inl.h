@@ -4,14 +4,12 @@
 //           axis whose plane a ray crosses first in the slab (at u_1), q the other (at u_2; 1: not crossed). A lane
 //           meets at most eight lattice points a slice, numbered by their places along p and q from the voxel it
 //           enters: 00 10 01 11 there, 20 21 behind p's plane, 12 22 behind q's.
-// Field     Inside a voxel it is a cubic of u; half its second derivative in the middle of a stretch, tau, times e^2 /
-// 6
-//           is what the stretch's mean lies below the middle of its ends (Simpson's rule, which cubics obey exactly),
-//           e being the stretch's share of the slab. So the slab's mean follows from its values at planes and crossings
-//           and three taus. tau = b_p b_q D_pq + b_p D_pk + b_q D_qk, products of differences and slopes.
+// Field     Inside a voxel it is a cubic of u; half its second derivative in the middle of a stretch, tau, times
+//           e^2 / 6 is what the stretch's mean lies below the middle of its ends (Simpson's rule, which cubics obey
+//           exactly), e being the stretch's share of the slab. So the slab's mean follows from its values at planes and
+//           crossings and three taus. tau = b_p b_q D_pq + b_p D_pk + b_q D_qk, products of differences and slopes.
 // Line      The field is the line between the slab's ends and a rest: at the crossings d_1 and d_2, and between them
-// the
-//           cubics' bumps, at most e^2 |tau| / 4 of the even part and e^3 b_p b_q |D_pqk| / 4 of the odd (Bezier).
+//           the cubics' bumps, at most e^2 |tau| / 4 of the even part and e^3 b_p b_q |D_pqk| / 4 of the odd (Bezier).
 
 #if defined(TESSERA_VOLUME_SLAB_LINES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_SLAB_LINES_INL_H_
@@ -104,26 +102,48 @@ struct WindowPlace {
   bool inner;
 };
 
-/// The field of slab n of the chunk into place m of `lines`; if `last`, the field at its back plane, too.
+/// The voxels that lanes are in at plane n of the chunk, and where in them.
+struct VoxelAt {
+  VF i, j;    ///< mirrored axes
+  VF fx, fy;  ///< from its corner, 0 to 1
+
+  HWY_INLINE VoxelAt(const MirroredLanes& lanes, const WindowPlace& place, int n) {
+    const VF k = HN::Set(DF(), static_cast<float>(n));
+    const VF x = HN::MulAdd(k, lanes.bx, lanes.x), y = HN::MulAdd(k, lanes.by, lanes.y);
+    i = HN::Floor(x), j = HN::Floor(y);
+    if (HWY_UNLIKELY(!place.inner)) {
+      i = HN::Min(HN::Max(i, lanes.i_least), lanes.i_most);
+      j = HN::Min(HN::Max(j, lanes.j_least), lanes.j_most);
+    }
+    fx = HN::Sub(x, i), fy = HN::Sub(y, j);
+  }
+  /// Their element of the window: i + columns j.
+  template <class Window>
+  HWY_INLINE VI element(const MirroredLanes& lanes, const WindowPlace& place, std::ptrdiff_t pitch) const {
+    const DF d;
+    constexpr bool gathers = std::is_same_v<Window, GatherWindow>;
+    const VF at = HN::Add(HN::MulAdd(HN::Set(d, static_cast<float>(gathers ? pitch : Window::columns)),
+                                     HN::MulAdd(lanes.sign_j, j, lanes.j), HN::MulAdd(lanes.sign_i, i, lanes.i)),
+                          HN::Set(d, place.origin));
+    return HN::ConvertTo(DI(), at);
+  }
+};
+
+/// The field of slab n of the chunk into place m of `lines`, but for its back plane. `pitch` elements of a slice lie
+/// between rows; `voxels` counts, lane by lane, the voxels that live lanes visit.
 template <class Window>
 HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, const WindowPlace& place,
                           std::ptrdiff_t pitch, int n, int m, SlabLines& lines, VF& voxels) {
   const DF d;
   const DI di;
   const VF one = HN::Set(d, 1.0f), half = HN::Set(d, 0.5f);
-  const VF k = HN::Set(d, static_cast<float>(n));
-  const VF x = HN::MulAdd(k, lanes.bx, lanes.x), y = HN::MulAdd(k, lanes.by, lanes.y);
-  VF i = HN::Floor(x), j = HN::Floor(y);
-  if (HWY_UNLIKELY(!place.inner)) {
-    i = HN::Min(HN::Max(i, lanes.i_least), lanes.i_most);
-    j = HN::Min(HN::Max(j, lanes.j_least), lanes.j_most);
-  }
-  const VF fx = HN::Sub(x, i), fy = HN::Sub(y, j);
+  const VoxelAt in(lanes, place, n);
+  const VF fx = in.fx, fy = in.fy;
   VF u_i = HN::Min(HN::Mul(HN::Sub(one, fx), lanes.per_bx), one),
      u_j = HN::Min(HN::Mul(HN::Sub(one, fy), lanes.per_by), one);
   if (HWY_UNLIKELY(!place.inner)) {
-    u_i = HN::IfThenElse(HN::Eq(i, lanes.i_most), one, u_i);
-    u_j = HN::IfThenElse(HN::Eq(j, lanes.j_most), one, u_j);
+    u_i = HN::IfThenElse(HN::Eq(in.i, lanes.i_most), one, u_i);
+    u_j = HN::IfThenElse(HN::Eq(in.j, lanes.j_most), one, u_j);
   }
   const VF u_1 = HN::Min(u_i, u_j), u_2 = HN::Max(u_i, u_j);
   const MF i_first = HN::Lt(u_i, u_j), cross_1 = HN::Lt(u_1, one), cross_2 = HN::Lt(u_2, one);
@@ -132,15 +152,11 @@ HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, cons
   voxels =
       HN::Add(HN::Add(voxels, voxel), HN::Add(HN::IfThenElseZero(cross_1, voxel), HN::IfThenElseZero(cross_2, voxel)));
 
-  // Elements of the window: i + columns j.
   constexpr bool gathers = std::is_same_v<Window, GatherWindow>;
-  const VF in_window = HN::Add(HN::MulAdd(HN::Set(d, static_cast<float>(gathers ? pitch : Window::columns)),
-                                          HN::MulAdd(lanes.sign_j, j, lanes.j), HN::MulAdd(lanes.sign_i, i, lanes.i)),
-                               HN::Set(d, place.origin));
   const auto if_int = [&](MF mask, VI v) HWY_ATTR { return HN::IfThenElseZero(HN::RebindMask(di, mask), v); };
   VI step_p = HN::IfThenElse(HN::RebindMask(di, i_first), lanes.step_i, lanes.step_j),
      step_q = HN::IfThenElse(HN::RebindMask(di, i_first), lanes.step_j, lanes.step_i);
-  VI at_00 = HN::ConvertTo(di, in_window);
+  VI at_00 = in.element<Window>(lanes, place, pitch);
   // Lanes that are not there may be anywhere.
   if (gathers) step_p = if_int(lanes.live, step_p), step_q = if_int(lanes.live, step_q);
   if (gathers) at_00 = if_int(lanes.live, at_00);
@@ -229,22 +245,13 @@ HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, cons
 template <class Window>
 HWY_INLINE void find_back(const MirroredLanes& lanes, const Window& window, const WindowPlace& place,
                           std::ptrdiff_t pitch, int n, int m, SlabLines& lines) {
-  const DF d;
   const DI di;
-  const VF k = HN::Set(d, static_cast<float>(n + 1));
-  const VF x = HN::MulAdd(k, lanes.bx, lanes.x), y = HN::MulAdd(k, lanes.by, lanes.y);
-  VF i = HN::Floor(x), j = HN::Floor(y);
-  if (HWY_UNLIKELY(!place.inner)) {
-    i = HN::Min(HN::Max(i, lanes.i_least), lanes.i_most);
-    j = HN::Min(HN::Max(j, lanes.j_least), lanes.j_most);
-  }
-  const VF fx = HN::Sub(x, i), fy = HN::Sub(y, j);
+  const VoxelAt in(lanes, place, n + 1);
+  const VF fx = in.fx, fy = in.fy;
   constexpr bool gathers = std::is_same_v<Window, GatherWindow>;
-  const VF at = HN::Add(HN::MulAdd(HN::Set(d, static_cast<float>(gathers ? pitch : Window::columns)),
-                                   HN::MulAdd(lanes.sign_j, j, lanes.j), HN::MulAdd(lanes.sign_i, i, lanes.i)),
-                        HN::Set(d, place.origin));
   const auto kept = [&](VI v) HWY_ATTR { return gathers ? HN::IfThenElseZero(HN::RebindMask(di, lanes.live), v) : v; };
-  const VI at_00 = kept(HN::ConvertTo(di, at)), step_i = kept(lanes.step_i), step_j = kept(lanes.step_j);
+  const VI at_00 = kept(in.element<Window>(lanes, place, pitch)), step_i = kept(lanes.step_i),
+           step_j = kept(lanes.step_j);
   const VI at_10 = HN::Add(at_00, step_i);
   const VF b_00 = window.back(at_00), b_10 = window.back(at_10), b_01 = window.back(HN::Add(at_00, step_j)),
            b_11 = window.back(HN::Add(at_10, step_j));
