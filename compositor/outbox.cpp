@@ -8,7 +8,7 @@
 namespace tessera::compositor {
 namespace {
 
-constexpr std::size_t message_bytes = 64 << 10;
+constexpr std::size_t message_bytes = 256 << 10;
 
 }  // namespace
 

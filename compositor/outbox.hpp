@@ -14,7 +14,7 @@
 namespace tessera::compositor {
 
 /// A projector's side of the exchange: takes parts of tiles from many threads and sends them to the tiles' compositors,
-/// in tile order, in messages of about 64 KiB, while projection goes on.
+/// in tile order, in messages of about 256 KiB, while projection goes on.
 ///
 /// Flow control. A compositor gives every projector a window of bytes. It gives bytes back once the tile they belong to
 /// is its first unfinished one, or finished; so what a projector sends ahead of the others is at most the window, and a

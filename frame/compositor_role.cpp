@@ -6,6 +6,8 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <utility>
+#include <vector>
 
 #include "compositor/frame_collector.hpp"
 #include "compositor/gl_merger.hpp"
@@ -65,6 +67,7 @@ class CompositorLoop {
       : run_(run),
         budget_(exchange_budget(run.settings)),
         trace_(run.settings.compositing),
+        credit_(run.settings.roles.projectors.size()),
         workers_(worker_count(run), [&](const std::exception& error) { fail(error); }) {
     const auto& ranks = run.settings.roles.compositors;
     self_ = static_cast<int>(std::find(ranks.begin(), ranks.end(), run.transport.rank()) - ranks.begin());
@@ -86,7 +89,10 @@ class CompositorLoop {
   /// The next message; an empty one now and then, as the last frame may finish without one.
   compositor::Message next() {
     auto message = run_.transport.receive(Channel::fragments, std::chrono::milliseconds(5));
-    return message ? std::move(*message) : compositor::Message{-1, {}};
+    if (message) return std::move(*message);
+    const std::lock_guard lock(mutex_);
+    for (std::size_t p = 0; p < credit_.size(); ++p) pay_out(p);
+    return {-1, {}};
   }
 
   void fail(const std::exception& error) {
@@ -155,12 +161,19 @@ class CompositorLoop {
     settle();
   }
 
+  /// Credit goes back in few messages, each of which wakes threads at both ends: when it is an eighth of what the
+  /// projector may have on its way, or nothing else comes.
   void give_back(int projector, std::uint64_t bytes) {
-    if (bytes == 0) return;
+    const auto p = static_cast<std::size_t>(projector);
+    credit_[p] += bytes;
+    if (credit_[p] > budget_.window / 8) pay_out(p);
+  }
+
+  void pay_out(std::size_t projector) {
+    if (credit_[projector] == 0) return;
     compositor::Bytes message;
-    compositor::append(message, bytes);
-    run_.transport.send(run_.settings.roles.projectors[static_cast<std::size_t>(projector)], Channel::credit,
-                        std::move(message));
+    compositor::append(message, std::exchange(credit_[projector], 0));
+    run_.transport.send(run_.settings.roles.projectors[projector], Channel::credit, std::move(message));
   }
 
   /// Ends finished frames and pays what is due of the first unfinished one.
@@ -233,8 +246,9 @@ class CompositorLoop {
   ExchangeBudget budget_;
   scene::Trace* trace_;
   int self_;
-  std::mutex mutex_;  // guards the frames, their collectors and merges
+  std::mutex mutex_;  // guards the frames, their collectors and merges, and credit
   std::map<std::uint32_t, std::unique_ptr<Frame>> frames_;
+  std::vector<std::uint64_t> credit_;  // by projector, bytes to give back
   std::atomic<std::size_t> frames_finished_ = 0;
   WorkerThreads workers_;  // last: its threads use all of the above
 };
