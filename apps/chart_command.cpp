@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -80,47 +81,76 @@ Truth truth_of(const ChartScene& scene, double seconds, std::optional<int> asked
   return truth;
 }
 
-std::vector<ChartPoint> measure(const ChartScene& scene, const Truth& truth, Clock::time_point begin, double budget,
-                                int repeat, bool quiet) {
-  const auto methods = chart_methods(scene);
+/// What a method takes, before it is tried: by the last of its family, else by the last of the first family.
+class CostGuess {
+ public:
+  [[nodiscard]] double seconds(const ChartMethod& method) const {
+    const auto known = families_.find(method.family);
+    if (known != families_.end()) return method.cost * known->second;
+    return families_.empty() ? 0 : method.cost * families_.at(first_);
+  }
+  void learn(const ChartMethod& method, double seconds) {
+    if (families_.empty()) first_ = method.family;
+    families_[method.family] = seconds / method.cost;
+  }
+
+ private:
+  std::map<std::string, double> families_;  ///< preparation and one frame, over `cost`
+  std::string first_;
+};
+
+constexpr auto no_room = "no room in the budget";
+
+struct Measured {
   std::vector<ChartPoint> points;
-  std::map<std::string, double> slowest;  // frame of a family, ms
+  double missing_seconds = 0;  ///< what one frame each of the methods without room would take
+};
+
+/// The first method is measured in any case.
+Measured measure(const ChartScene& scene, const Truth& truth, Clock::time_point begin, double budget, int repeat,
+                 bool quiet) {
+  const auto methods = chart_methods(scene);
+  Measured out;
+  CostGuess guess;
   auto waiting = static_cast<double>(
       std::count_if(methods.begin(), methods.end(), [](const ChartMethod& m) { return m.left_out.empty(); }));
   for (const ChartMethod& method : methods) {
     ChartPoint point;
     point.family = method.family, point.name = method.name, point.options = method.options;
     point.left_out = method.left_out;
+    const double left = budget - seconds_since(begin);
+    double share = 0;
     if (point.left_out.empty()) {
-      const double left = budget - seconds_since(begin);
-      const double share = left / waiting--;
+      share = left / waiting--;
+      if (guess.seconds(method) > 0 && guess.seconds(method) > left) {
+        point.left_out = no_room;
+        out.missing_seconds += guess.seconds(method);
+      }
+    }
+    if (point.left_out.empty()) {
       const auto start = Clock::now();
-      // What is left of a family is its finer settings, which take longer still.
-      const auto before = slowest.find(method.family);
-      if (left <= 0 || (before != slowest.end() && before->second > 1000 * left))
-        point.left_out = "the budget was spent; raise --budget-seconds";
-      if (point.left_out.empty()) {
-        try {
-          const auto renderer = method.make(scene);
-          point.prepare_ms = 1000 * seconds_since(start);
-          for (int i = 0; i < repeat; ++i) {
-            auto [image, ms] = renderer->frame();
-            point.frame_ms.push_back(ms);
-            slowest[method.family] = std::max(slowest[method.family], ms);
-            if (i == 0) point.error = chart_error(image, truth.pixels, truth.values);
-            if (seconds_since(start) + ms / 1000 > share) break;
+      try {
+        const auto renderer = method.make(scene);
+        point.prepare_ms = 1000 * seconds_since(start);
+        for (int i = 0; i < repeat; ++i) {
+          auto [image, ms] = renderer->frame();
+          point.frame_ms.push_back(ms);
+          if (i == 0) {
+            guess.learn(method, seconds_since(start));
+            point.error = chart_error(image, truth.pixels, truth.values);
           }
-        } catch (const scene::Error& error) {
-          point.left_out = error.what();
-          point.frame_ms.clear();
+          if (seconds_since(start) + ms / 1000 > share) break;
         }
+      } catch (const scene::Error& error) {
+        point.left_out = error.what();
+        point.frame_ms.clear();
       }
       if (!quiet && point.measured())
         fmt::print(stderr, "{}: {:.4g} ms, max {:.3g}\n", point.name, point.median_ms(), point.error.max);
     }
-    points.push_back(std::move(point));
+    out.points.push_back(std::move(point));
   }
-  return points;
+  return out;
 }
 
 std::string error_words(double error) { return error == 0 ? "0" : fmt::format("{:.2e}", error); }
@@ -138,8 +168,14 @@ void print_table(const std::vector<ChartPoint>& points) {
     fmt::print("{} {:<{}}  {:>9.4g} {:>9.4g} {:>9.4g}  {:>8}  {:>8}  {:>8}  {:>7.3g}%\n", p->on_front ? "*" : " ",
                p->name, widest, p->median_ms(), p->min_ms(), p->max_ms(), error_words(p->error.max),
                error_words(p->error.rms), error_words(p->error.p999), 100 * p->error.visible_share);
-  for (const ChartPoint& p : points)
-    if (!p.left_out.empty()) fmt::print("  {:<{}}  left out: {}\n", p.name, widest, p.left_out);
+  std::string crowded;
+  for (const ChartPoint& p : points) {
+    if (p.left_out == no_room)
+      crowded += fmt::format("{}{}", crowded.empty() ? "" : ", ", p.name);
+    else if (!p.left_out.empty())
+      fmt::print("  {:<{}}  left out: {}\n", p.name, widest, p.left_out);
+  }
+  if (!crowded.empty()) fmt::print("  {}: {}\n", no_room, crowded);
 }
 
 Json point_json(const ChartPoint& p) {
@@ -199,7 +235,7 @@ void add_chart_options(CLI::App& command, RenderWords& words, ChartWords& chart)
   command.add_option("--emission", words.emission, "source term")->type_name("absorption|independent");
   command.add_option("--threads", words.threads, "threads (default: all cores)")->type_name("T");
   command.add_option("--memory", words.memory, "budget of frame buffers or bricks")->type_name("SIZE");
-  command.add_option("--budget-seconds", chart.budget, "time for all of it (default 60)")->type_name("S");
+  command.add_option("--budget-seconds", chart.budget, "time for all of it but reading (default 60)")->type_name("S");
   command.add_option("--repeat", chart.repeat, "frames a method, if the budget allows (default 5)")->type_name("K");
   command.add_option("--pixels", chart.pixels, "random pixels that errors are taken over (default: what fits)")
       ->type_name("N");
@@ -252,8 +288,12 @@ void chart(const RenderWords& words, const ChartWords& chart) {
   report["transfer_function"] = transfer_function_json(loaded);
   report["view"] = view_json(scene.camera, scene.size);
 
-  const Truth truth = truth_of(scene, std::max(0.0, (budget - seconds_since(begin)) / 3), pixels);
-  auto points = measure(scene, truth, begin, budget, repeat, options.quiet);
+  // Reading is what any use of the data takes, and no choice of the chart's.
+  const double reading = seconds_since(begin);
+  const auto read = Clock::now();
+  const Truth truth = truth_of(scene, budget / 3, pixels);
+  Measured measured = measure(scene, truth, read, budget, repeat, options.quiet);
+  auto& points = measured.points;
   for (const auto& file : chart.peers)
     for (ChartPoint& peer : read_peers(file, scene.size, truth.pixels, truth.values)) points.push_back(std::move(peer));
   mark_front(points);
@@ -261,8 +301,8 @@ void chart(const RenderWords& words, const ChartWords& chart) {
   const std::string what =
       fmt::format("{}, {}x{}, {}", options.input.filename().string(), scene.size.width, scene.size.height,
                   truth.whole_image ? "every pixel" : fmt::format("{} random pixels", truth.pixels.size()));
-  const std::string where = fmt::format("{}, {}, {:.0f} s", transfer_function_line(loaded),
-                                        projection::instruction_set(), seconds_since(begin));
+  const std::string where = fmt::format("{}, {}, {:.0f} s and {:.0f} s for reading", transfer_function_line(loaded),
+                                        projection::instruction_set(), seconds_since(read), reading);
   fmt::print("{}; {}\n", what, where);
   print_table(points);
   fmt::print(
@@ -270,6 +310,9 @@ void chart(const RenderWords& words, const ChartWords& chart) {
       "visible: share of these pixels above Delta E 2000 of 1, over black; * none is faster and nearer; tables of the\n"
       "transfer function are made before a method's first frame, in prepare_ms of the JSON\n",
       truth.whole_image ? "every pixel" : "a random sample of the pixels: the image's largest may be larger");
+  if (measured.missing_seconds > 0)
+    fmt::print("--budget-seconds {:.0f} would, by a rough guess, have room for all\n",
+               std::ceil(1.1 * (seconds_since(read) + measured.missing_seconds)));
   Json fastest = Json::array();
   // What needs mpirun, or leaves out what saves work, is on the chart, but no setting to recommend.
   std::vector<ChartPoint> alone = points;
@@ -291,7 +334,8 @@ void chart(const RenderWords& words, const ChartWords& chart) {
   }
   report["pixels"] = {{"count", truth.pixels.size()}, {"whole_image", truth.whole_image}, {"seconds", truth.seconds}};
   report["instruction_set"] = projection::instruction_set();
-  report["seconds"] = seconds_since(begin);
+  report["seconds"] = seconds_since(read);
+  report["reading_seconds"] = reading;
   report["methods"] = Json::array();
   for (const ChartPoint& p : points) report["methods"].push_back(point_json(p));
   report["fastest"] = fastest;

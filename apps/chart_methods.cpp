@@ -115,6 +115,10 @@ std::vector<ChartMethod> mesh_methods(const ChartScene& scene) {
     const std::string prefix = planes ? "planes" : "scanline";
     ChartMethod method{fmt::format("{}, {}", prefix, family), fmt::format("{} {}", prefix, word),
                        planes ? options : "--rasterizer scanline " + options, nullptr, ""};
+    // What does not go by the lattice takes about three times as long (docs/ACCURACY.md), more the more it samples.
+    const bool fast =
+        planes && (integrator.kind == IntegratorKind::automatic || integrator.kind == IntegratorKind::exact);
+    method.cost = fast ? 1 : integrator.kind == IntegratorKind::sampled ? 3 + integrator.samples / 4.0 : 4;
     if (!planes && !orthographic) method.left_out = "scanline takes orthographic views only";
     if (integrator.kind == IntegratorKind::partial && scene.emission == scene::Emission::independent)
       method.left_out = "partial knows emission by absorption only";
@@ -150,6 +154,7 @@ std::vector<ChartMethod> mesh_methods(const ChartScene& scene) {
   const auto without = [&](const char* family, const std::string& word, scene::Mechanisms use) {
     add(planes, family, word, {.kind = IntegratorKind::exact, .terminates = use.termination},
         fmt::format("--integrator exact --without {}", use.lattice ? "termination" : "lattice"));
+    if (!use.lattice) methods.back().cost = 3;
     methods.back().make = [s = settings(planes, {.kind = IntegratorKind::exact, .terminates = use.termination}),
                            use](const ChartScene& all) mutable {
       s.use = use;
@@ -168,7 +173,7 @@ std::vector<ChartMethod> mesh_methods(const ChartScene& scene) {
                        [s = settings(planes, {}), exchange = exchange](const ChartScene& all) {
                          return std::make_unique<RanksRenderer>(all, s, exchange, 2, frame::CompositingSettings());
                        },
-                       ""});
+                       "", 2.5});
   for (const int n : {1, 2, 8}) sampled(scanline, n);
   for (const int n : {16, 32}) sampled(planes, n);
   const auto device = [&](const std::string& options, compositor::GlMethod method, bool half,
@@ -187,7 +192,7 @@ std::vector<ChartMethod> mesh_methods(const ChartScene& scene) {
                        [s = settings(planes, integrator), on](const ChartScene& all) {
                          return std::make_unique<RanksRenderer>(all, s, frame::Exchange::segments, 1, on);
                        },
-                       ""});
+                       "", 30});
   };
   using compositor::GlMethod;
   const scene::Integrator four{.kind = IntegratorKind::sampled, .samples = 4};
@@ -200,7 +205,7 @@ std::vector<ChartMethod> mesh_methods(const ChartScene& scene) {
 std::vector<ChartMethod> volume_methods(const ChartScene& scene) {
   std::vector<ChartMethod> methods;
   const auto add = [&](const char* family, const std::string& name, const std::string& options, volume::Method method,
-                       double number, bool terminates = true) {
+                       double number, double cost, bool terminates = true) {
     volume::RenderSettings s;
     s.use.termination = terminates;
     s.method = method;
@@ -211,25 +216,26 @@ std::vector<ChartMethod> volume_methods(const ChartScene& scene) {
     methods.push_back(
         {family, name, options,
          [s](const ChartScene& all) { return std::make_unique<LocalRenderer<volume::Renderer>>(all, *all.volume, s); },
-         ""});
+         "", cost});
   };
   const auto automatic = [&](double accuracy) {
     add("auto", fmt::format("auto {:g}", accuracy), fmt::format("--accuracy {:g}", accuracy), volume::Method::automatic,
-        accuracy);
+        accuracy, 1);
   };
   const auto stepped = [&](double step) {
     add("sampled", fmt::format("sampled, step {:g}", step), fmt::format("--integrator sampled --step {:g}", step),
-        volume::Method::sampled, step);
+        volume::Method::sampled, step, 1.5 / step);
     add("preintegrated", fmt::format("preintegrated, step {:g}", step),
-        fmt::format("--integrator preintegrated --step {:g}", step), volume::Method::preintegrated, step);
+        fmt::format("--integrator preintegrated --step {:g}", step), volume::Method::preintegrated, step, 3 / step);
   };
   for (const double accuracy : {1e-4, 1e-2, 1e-3, 1e-5}) automatic(accuracy);
   stepped(1);
-  add("exact", "exact", "--integrator exact", volume::Method::exact, 1);
+  add("exact", "exact", "--integrator exact", volume::Method::exact, 1, 1.5);
   add("no termination", "auto 0.0001, no termination", "--accuracy 0.0001 --without termination",
-      volume::Method::automatic, 1e-4, false);
+      volume::Method::automatic, 1e-4, 1.5, false);
   for (const double step : {2.0, 0.5, 4.0, 0.25, 0.125}) stepped(step);
-  methods.push_back({"slices (GL)", "slices (GL)", "--renderer slice", nullptr, "the slice renderer is not built in"});
+  methods.push_back(
+      {"slices (GL)", "slices (GL)", "--renderer slice", nullptr, "the slice renderer is not built in", 1});
   return methods;
 }
 

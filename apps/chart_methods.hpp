@@ -41,6 +41,7 @@ struct ChartMethod {
   std::string options;  ///< that make `tessera render` do it
   std::function<std::unique_ptr<ChartRenderer>(const ChartScene&)> make;
   std::string left_out;  ///< why it cannot be had here; empty: it can
+  double cost = 1;       ///< its time over the first method's, roughly: whether to try it is decided by that
 };
 
 /// The most telling first, so that a short budget leaves out refinements.

@@ -107,7 +107,7 @@ def measure(args, folder):
             for method, words in methods.items():
                 if args.methods and method.split()[0].split(",")[0] not in args.methods.split(","):
                     continue
-                results = []
+                results, begin = [], time.monotonic()
                 for value in values:
                     if isinstance(made[value], str):
                         result = {"failed": made[value]}
@@ -128,7 +128,8 @@ def measure(args, folder):
                         r["command"] = " ".join(w.replace(str(folder), "FOLDER") for w in r["command"][1:])
                 stress["methods"][method] = {"results": results, "above_1e-3": worse, "fails": failed}
                 worst = max((r.get("error", math.inf) for r in results), default=0)
-                print(f"{name:24s} {method:28s} worst {worst:9.2e}  above 1e-3: {worse}  fails: {failed}", flush=True)
+                print(f"{name:24s} {method:28s} worst {worst:9.2e}  above 1e-3: {worse}  fails: {failed}  "
+                      f"{time.monotonic() - begin:.0f} s", flush=True)
             out.append(stress)
     rows = []
     if not args.only or any(w in "partitions" for w in args.only.split(",")):

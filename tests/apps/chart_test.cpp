@@ -139,6 +139,19 @@ TEST(Chart, AVolumeAndAPeersPictureShareOneChart) {
   EXPECT_NE(wrong.err.find("is 16x12, the chart 8x8"), std::string::npos);
 }
 
+TEST(Chart, ABudgetForNothingStillMeasuresTheDefaultAndNamesTheRest) {
+  const Folder folder;
+  const Outcome run = tessera({"chart", folder.cube(), "--size", "24x20", "--budget-seconds", "1e-9", "--quiet",
+                               "--json", folder / "c.json", "--figure", folder / "c.svg"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto methods = parsed(folder / "c.json")["methods"];
+  EXPECT_EQ(methods[0]["options"], "--accuracy 0.0001");
+  EXPECT_EQ(methods[0]["frame_ms"].size(), 1u);
+  for (std::size_t n = 1; n < methods.size(); ++n) EXPECT_TRUE(methods[n].contains("left_out")) << methods[n]["name"];
+  EXPECT_NE(run.out.find("no room in the budget: planes auto 0.01"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("fastest within 0.0001: planes auto 0.0001"), std::string::npos) << run.out;
+}
+
 TEST(Chart, WhatCannotBeIsRefusedBeforeTheWork) {
   const Folder folder;
   EXPECT_EQ(tessera({"chart", folder.cube(), "--figure", folder / "c.pdf", "--quiet"}).status, 2);
