@@ -12,8 +12,14 @@ namespace {
 
 constexpr double most_optical_depth = 2000;
 constexpr double most_error = 2e-5;  // of a pixel, from scalars' rounding
-// Along a ray on which the scalar is constant, an error of extinction shows in proportion to the ray's optical depth,
-// but what is deeper than this is dark: only rays at the foot of a very steep ramp could show more.
+// Extinction wrong by at most D where the scalar is in a piece of the function changes light and opacity by at most
+// D int T dt over what the ray spends there, times the most that can lie behind. Transmittance T falls by exp(-sigma t)
+// at least, sigma being the piece's least extinction, so with x_i for piece i's integral sum x_i <= L and
+// sum sigma_i x_i <= 1: where D_i <= E (1 / L + sigma_i) / 2 for all pieces they change it by E together, at most.
+double seen_length(double length, double least_extinction) {
+  return std::min(length, 2 / (1 / length + least_extinction));
+}
+// What is deeper than this is dark: only rays at the foot of a very steep ramp could show more.
 constexpr double most_change_of_depth = 64;
 constexpr double margin = 1.001;  // keeps rounding and the planes' error inside the lattice
 
@@ -60,6 +66,9 @@ std::optional<projection::Lattice> lattice_of(const projection::PixelSpace& spac
       std::max({high - lattice.scalar_origin, lattice.scalar_origin - low, 1e-12 * std::abs(lattice.scalar_origin)});
   if (!std::isfinite(reach)) return std::nullopt;
   lattice.scalar_unit = Lattice::unit_for(margin * reach);
+  const double length = far - near;
+  const bool independent = settings.emission == scene::Emission::independent;
+  const double brightest = std::max(1.0, function.max_color() * (independent ? length : 1));
   for (std::size_t i = 1; i < knots.size(); ++i) {
     const scene::Knot &a = knots[i - 1], &b = knots[i];
     if (a.value == b.value || b.value < low || a.value > high) continue;
@@ -68,9 +77,10 @@ std::optional<projection::Lattice> lattice_of(const projection::PixelSpace& spac
         std::max(std::abs(a.value - lattice.scalar_origin), std::abs(b.value - lattice.scalar_origin));
     const double scalar_error = std::max(16 * lattice.scalar_unit, std::min(reached, reach) * 0x1p-24);
     const glm::dvec3 color = glm::abs(b.color - a.color);
-    const double optical_depth = std::abs(b.extinction - a.extinction) * (far - near);
-    const double most_change = std::max({color.x, color.y, color.z, std::min(optical_depth, most_change_of_depth)});
-    if (most_change * scalar_error > most_error * (b.value - a.value)) return std::nullopt;
+    const double seen = seen_length(length, std::min(a.extinction, b.extinction));
+    const double depth = std::min(std::abs(b.extinction - a.extinction) * seen, most_change_of_depth) * brightest;
+    const double most_color = std::max({color.x, color.y, color.z}) * (independent ? seen : 1);
+    if (std::max(most_color, depth) * scalar_error > most_error * (b.value - a.value)) return std::nullopt;
   }
   return lattice;
 }

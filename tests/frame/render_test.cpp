@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "datasets/boxes.hpp"
 #include "datasets/kuhn.hpp"
 #include "frame/leaning_stack.hpp"
+#include "projection/lattice_rasterizer.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
 
@@ -236,6 +238,33 @@ TEST(Render, AnEyeFarAwayHoldsNoMoreSegmentsAlive) {
     return statistics.max_segments_alive;
   };
   EXPECT_LE(alive(1e9), 2 * alive(5));
+}
+
+TEST(Render, ScalarsRoundedAlikeAllAlongARayStayWithinTheBound) {
+  // A field that is constant but for two corners, in the middle of pieces in which colour and extinction change as fast
+  // as they may: every segment is wrong by the same.
+  const ImageSize size{24, 24};
+  for (const scene::Emission emission : {scene::Emission::absorption, scene::Emission::independent})
+    for (const double least : {0.0, 1.4, 200.0}) {
+      std::vector<scene::Knot> knots;
+      for (int i = 0; i < 256; ++i)
+        knots.push_back({i / 255.0, glm::dvec3(i % 2, 0.5, 1 - i % 2), least + (i % 2) * (1 + least / 4)});
+      const TransferFunction function(knots);
+      RenderSettings settings = exact();
+      settings.emission = emission;
+      for (const double value : {0.0013, 0.3333, 0.9017}) {
+        scene::TetMesh mesh = datasets::cube(6, 0.2);
+        std::fill(mesh.scalars.begin(), mesh.scalars.end(), value);
+        mesh.scalars.front() = 0, mesh.scalars.back() = 1;
+        FrameStatistics statistics;
+        const Image image = Renderer(mesh, settings).render(oblique(), size, function, &statistics);
+        if (emission == scene::Emission::absorption) {
+          EXPECT_EQ(statistics.on_lattice, projection::lattice_available() && least > 0) << least;
+        }
+        const reference::Reference reference(mesh, oblique(), size, function, emission);
+        EXPECT_LT(reference::judge(image, reference, 2e-5).max_error, 2e-5) << least << " " << value;
+      }
+    }
 }
 
 TEST(Render, RefusesWhatCannotBe) {
