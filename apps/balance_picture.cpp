@@ -81,7 +81,7 @@ void draw_bricks(scene::Image& image, const scene::Camera& camera, const scene::
     for (int corner = 0; corner < 8; ++corner)
       for (int axis = 0; axis < 3; ++axis) {
         if ((corner >> axis & 1) != 0) continue;
-        const auto at = [&](int c) {
+        const auto at = [&, &low = low, &high = high](int c) {
           return space.project(scene::world_of_index(
               geometry, {(c & 1) != 0 ? high.x : low.x, (c & 2) != 0 ? high.y : low.y, (c & 4) != 0 ? high.z : low.z}));
         };

@@ -177,7 +177,8 @@ class MpiTransport::Engine {
       try {
         post();
         complete();
-        came = take() | deliver();
+        came = take();
+        came = deliver() || came;
       } catch (const scene::Error& error) {
         fail(error);
         give_up(error);  // MPI itself is broken: no words will reach anyone

@@ -157,7 +157,7 @@ std::vector<FieldSummary> summarize_fields(std::span<const std::vector<FieldTall
   std::vector<bool> any;
   for (const auto& part : parts)
     for (const auto& [more, any_finite] : part) {
-      auto s = std::find_if(summaries.begin(), summaries.end(), [&](const FieldSummary& known) {
+      auto s = std::find_if(summaries.begin(), summaries.end(), [&more = more](const FieldSummary& known) {
         return known.name == more.name && known.association == more.association;
       });
       if (s == summaries.end()) {

@@ -220,15 +220,13 @@ class SmallCells {
 
   /// table[front faces], 16 numbers.
   HWY_INLINE static VI by_front(const std::int32_t* table, VI front) {
-    const I d;
     if constexpr (lanes == 16)
-      return hn::TableLookupLanes(hn::Load(d, table), hn::IndicesFromVec(d, front));
+      return hn::TableLookupLanes(hn::Load(I(), table), hn::IndicesFromVec(I(), front));
     else
-      return hn::GatherIndex(d, table, front);
+      return hn::GatherIndex(I(), table, front);
   }
   template <int slot>
   HWY_INLINE void take_edge(VI front) {
-    const I d;
     const F df;
     const VI which = by_front(small_order.edge[slot], front);
     VF start = hn::Zero(df), x = start, y = start;
