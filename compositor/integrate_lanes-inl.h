@@ -265,16 +265,13 @@ HWY_NOINLINE Progress go_far(const Lookup& table, Walk walk, Progress so_far) {
 }  // namespace lanes
 
 /// integrate_lanes() for segments that lie in one interval and are at most step_depth thick, which most are: straight
-/// on, the same bits. `more`: the active lanes whose segment is not so, and whose light is not the answer.
-/// Lanes that are not active may hold any finite numbers, and get zeros.
+/// on, the same bits. `interval`: table.locate(front, back >= front). `more`: the lanes with a length whose segment is
+/// not so, and whose light is not the answer. Lanes without a length may hold any finite numbers, and get zeros.
 template <TableForm form>
-HWY_INLINE Light integrate_simple(const Lookup<form>& table, VF length, VF front, VF back, MF active, MF& more) {
+HWY_INLINE Light integrate_simple(const Lookup<form>& table, VI interval, VF length, VF front, VF back, MF& more) {
   const DF d;
-  const VF zero = HN::Zero(d);
-  active = HN::And(active, HN::Gt(length, zero));
-  length = HN::IfThenElseZero(active, HN::Min(length, HN::Set(d, lanes::most_length)));
-  const MF up = HN::Ge(back, front);
-  const VI interval = table.locate(front, up);
+  const MF active = HN::Gt(length, HN::Zero(d)), up = HN::Ge(back, front);
+  length = HN::Min(length, HN::Set(d, lanes::most_length));
   const auto index = table.index(interval, active);
   const VF knot = table.far_edge(interval, index, HN::IfThenElseZero(HN::RebindMask(DI(), up), HN::Set(DI(), 1)));
   const VF end = HN::IfThenElse(up, HN::Min(knot, back), HN::Max(knot, back));

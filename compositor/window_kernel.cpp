@@ -141,12 +141,20 @@ struct LightRows {
   static constexpr std::size_t most = 32, numbers = most * most_lanes;
   alignas(64) float alpha[numbers], optical_depth[numbers], red[numbers], green[numbers], blue[numbers];
   alignas(64) std::int32_t back[numbers];
-  // Segments that take more than one piece, until there are enough to fill the lanes.
+  alignas(64) std::int32_t interval[numbers];
+  // The block's segments; behind the row that is worked on, those of more than one piece, until they fill the lanes.
   alignas(64) float length[numbers + most_lanes], scalar_front[numbers + most_lanes], scalar_back[numbers + most_lanes];
   alignas(64) std::int32_t place[numbers + most_lanes];
   std::size_t waiting = 0;
   bool lit[most];  ///< some lane of the row has light or depth
 
+  HWY_INLINE void put_segment(VF l, const Fields& s, VI scalar_interval, std::size_t at) {
+    const DF d;
+    const DI di;
+    HN::Store(l, d, length + at);
+    HN::Store(s.scalar_front, d, scalar_front + at), HN::Store(s.scalar_back, d, scalar_back + at);
+    HN::Store(s.back, di, back + at), HN::Store(scalar_interval, di, interval + at);
+  }
   HWY_INLINE void put(const Light& light, std::size_t at) {
     const DF d;
     HN::Store(light.alpha, d, alpha + at), HN::Store(light.optical_depth, d, optical_depth + at);
@@ -254,6 +262,7 @@ class PixelGroup {
     const VF length_per_step = HN::Load(df, &state_.length_per_step[pixel_]), zero = HN::Zero(df);
     const auto open = HN::Lt(HN::Load(d, &state_.open[pixel_]), HN::Zero(d));
     const VI end = HN::Set(d, final_step);
+    // In two passes, each of chains short enough for a processor to work on several rows at once.
     for (std::size_t row = from; row < to; ++row) {
       const VI front = HN::LoadU(d, state_.keys.data() + row * lanes);
       const auto is_final = HN::Lt(front, end);
@@ -261,18 +270,23 @@ class PixelGroup {
         to = row;
         break;
       }
-      const std::size_t at = (row - from) * lanes;
       const Fields s = load_fields(list_, state_.slots.data() + row * lanes);
-      HN::Store(s.back, d, light_.back + at);
       const VF length = HN::Mul(HN::ConvertTo(df, HN::Sub(s.back, front)), length_per_step);
+      light_.put_segment(HN::IfThenElseZero(HN::RebindMask(df, HN::And(is_final, open)), length), s,
+                         table_.locate(s.scalar_front, HN::Ge(s.scalar_back, s.scalar_front)), (row - from) * lanes);
+    }
+    for (std::size_t row = from; row < to; ++row) {
+      const std::size_t at = (row - from) * lanes;
+      const VF length = HN::Load(df, light_.length + at), scalar_front = HN::Load(df, light_.scalar_front + at),
+               scalar_back = HN::Load(df, light_.scalar_back + at);
       MF more;
-      const Light light = integrate_simple(table_, length, s.scalar_front, s.scalar_back,
-                                           HN::RebindMask(df, HN::And(is_final, open)), more);
+      const Light light = integrate_simple(table_, HN::Load(d, light_.interval + at), length, scalar_front,
+                                           scalar_back, more);
       light_.put(light, at);
       MF lit = HN::Or(more, HN::Gt(light.optical_depth, zero));
       if (table_.independent) lit = HN::Or(lit, HN::Gt(HN::Add(light.red, HN::Add(light.green, light.blue)), zero));
       light_.lit[row - from] = !HN::AllFalse(df, lit);
-      if (!HN::AllFalse(df, more)) light_.defer(more, at, length, s.scalar_front, s.scalar_back);
+      if (!HN::AllFalse(df, more)) light_.defer(more, at, length, scalar_front, scalar_back);
     }
     light_.integrate_waiting(table_);
     return to;
