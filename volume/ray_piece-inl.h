@@ -15,7 +15,7 @@
 //           and its products with the odd and even part leave |c'| (k l)^2 (|p_3| / 120 + k l |b| / 90).
 //           Where that exceeds the tolerance the stretch is halved: the bound falls to an eighth at least.
 // Knots     A stretch that leaves its interval is cut where the cubic crosses the knot: between extrema it is monotone,
-//           Newton's method, kept in its bracket, finds the place.
+//           Newton's method, kept in its bracket, finds the place, near a touch only to 3e-4 (docs/STABILITY.md).
 
 #if defined(TESSERA_VOLUME_RAY_PIECE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_RAY_PIECE_INL_H_

@@ -11,7 +11,7 @@ if any did. Needs Python's standard library alone.
 
 With `--times` the pictures are `--larger` times as wide and high, and `auto` is compared with the fastest single method
 that keeps the accuracy in 400 random pixels. Cases of less than 50 ms are left out. The two are rendered in turn, five
-times three frames each: a case is slow if `auto` takes more than 1.1 times as long by the fastest frames of all and by
+times three frames each (one from 300 ms on): a case is slow if `auto` takes more than 1.1 times as long by the fastest frames of all and by
 the median of the rounds, so that another program's bursts decide nothing.
 """
 import argparse
@@ -91,7 +91,7 @@ MESH = [["--integrator", w] for w in ("exact", "sampled:1", "sampled:2", "sample
 GRID = [["--integrator", "exact"]] + [["--integrator", m, "--step", s] for m in ("sampled", "preintegrated") for s in ("2", "1", "0.5", "0.25")]
 
 
-def timed(command, folder, repeat=3):
+def timed(command, folder, repeat):
     """The frames' times in ms; none if there is no picture."""
     done = subprocess.run([*command, "--repeat", str(repeat)], capture_output=True, text=True, timeout=600)
     return json.loads((folder / "r.json").read_text())["frames"][0]["frame_ms"] if done.returncode == 0 else []
@@ -109,21 +109,22 @@ def time_case(tessera, seed, number, folder, args):
     verify = command.index("--verify")
     del command[verify:verify + 2]
     at = command.index("--accuracy")
-    auto = timed(command, folder)
+    auto = timed(command, folder, 2)
     if not auto or min(auto) < 50:
         return None
+    repeat = 3 if min(auto) < 300 else 1
     # Only what is faster needs to be judged, the fastest first.
     rivals = []
     for method in GRID if words.split()[0] in ("ripples", "checker") else MESH:
         other = [*command[:at], *method, *command[at + 2:]]
-        rivals.append((min(timed(other, folder), default=math.inf), other, method))
+        rivals.append((min(timed(other, folder, repeat), default=math.inf), other, method))
     faster = sorted(r for r in rivals if r[0] < min(auto))
     best = next((r for r in faster if error_of(r[1], folder) <= accuracy), None)
     if best is None:
         return 1.0, f"{words}, accuracy {accuracy:.2g}: auto {min(auto):.0f} ms, best auto"
     rounds = []
     for _ in range(5):  # in turn, so that whatever else the machine does falls on both
-        rounds.append((min(timed(command, folder)), min(timed(best[1], folder))))
+        rounds.append((min(timed(command, folder, repeat)), min(timed(best[1], folder, repeat))))
     mine, other = (min(times) for times in zip(*rounds))
     return min(mine / other, statistics.median(a / b for a, b in rounds)), (
         f"{words}, accuracy {accuracy:.2g}: auto {mine:.0f} ms, best {' '.join(best[2])} {other:.0f} ms")

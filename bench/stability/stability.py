@@ -2,14 +2,15 @@
 """Turns one parameter after the other until a method breaks.
 
     bench/stability/stability.py [--tessera build/release/apps/tessera] [--only WORD,...] [--methods WORD,...] [--reduced]
-        [--large] [--json FILE] [--document docs/STABILITY.md] [--figure docs/images/stability.svg]
+        [--large] [--json FILE [--resume]] [--document docs/STABILITY.md] [--figure docs/images/stability.svg]
 
 Each picture is judged by `--verify` against the double-precision reference of that very scene. For every method: the
 first value at which its error passes 1e-3, and the first at which it fails outright (no picture, NaN, a crash). Partitions
 over MPI are compared with one process (partitions.py). Ends with status 1 if the default breaks its promise anywhere: 1e-4,
 but for excused pixels, which may be 1e-4 of all that were looked at. `--reduced`: the first and last value of each
 stress, the default method alone; what the tests run. `--large`: pictures of 16384 x 16384 too (6 GB, minutes). Needs
-Python's standard library alone.
+Python's standard library alone. `--resume`: what `--json FILE` already holds is not run again, and all of it goes into the
+document; so a run that was interrupted, or one stress that changed (taken out of FILE), needs no whole run.
 """
 import argparse
 import json
@@ -33,9 +34,17 @@ GRID = {"default": [], "exact": ["--integrator", "exact"],
         "sampled, 10": ["--integrator", "sampled", "--step", "10"],
         "preintegrated, 0.5": ["--integrator", "preintegrated", "--step", "0.5"]}
 BAD = 1e-3
-# The stress and value at which more of the default's pixels are excused than may be, as docs/STABILITY.md says; an error
-# that is not excused is known nowhere.
+# The stress and value at which more of the default's pixels are excused than may be: rays that all but touch a step's
+# surface, where float's rounding shows by its square root (docs/STABILITY.md, Known breaks).
 KNOWN = {("opaque beside empty", "1")}
+
+
+def shows(picture):
+    """Whether there is anything in a .pfm; None of one that is too large to look through."""
+    if picture.stat().st_size > 1e8:
+        return None
+    body = picture.read_bytes().split(b"\n", 3)[3]
+    return any(body)
 
 
 class Runner:
@@ -51,9 +60,9 @@ class Runner:
                    "--verify", scene["verify"], "--report", report, "--quiet", "--threads", self.threads]
         command = [str(w) for w in command]
         try:
-            done = subprocess.run(command, capture_output=True, text=True, timeout=300)
-        except subprocess.TimeoutExpired:
-            return {"failed": "no picture within 300 s", "command": command}
+            done = subprocess.run(command, capture_output=True, text=True, timeout=scene.get("seconds", 300))
+        except subprocess.TimeoutExpired as late:
+            return {"failed": f"no picture within {late.timeout:g} s", "command": command}
         if done.returncode not in (0, 4):
             return {"failed": done.stderr.strip().split("\n")[-1] or f"status {done.returncode}", "status": done.returncode,
                     "command": command}
@@ -64,7 +73,7 @@ class Runner:
         bound = verify.get("bound")
         return {"error": verify["max_error_not_excused"] if bound else error, "met": verify["met"], "excused": verify["excused"],
                 "pixels": verify["pixels"], "bound": bound, "ms": min(judged["frame_ms"]),
-                "arithmetic": judged.get("arithmetic"), "command": command}
+                "arithmetic": judged.get("arithmetic"), "shows": shows(self.folder / "picture.pfm"), "command": command}
 
 
 def value_words(v):
@@ -78,16 +87,39 @@ def verdicts(results):
     return worse, failed
 
 
+def words_of(method):
+    """A cell of the tables."""
+    results = method["results"]
+    errors = [r.get("error", math.inf) for r in results]
+    worst = max((e for e, r in zip(errors, results) if "failed" not in r), default=0)
+    if method["fails"] is not None and all("failed" in r for r in results):
+        return "**refuses all**"
+    if method["above_1e-3"] is None:
+        words = f"passes, {worst:.0e}"
+    elif method["above_1e-3"] == results[0]["value"] and "failed" not in results[0]:
+        # No doing of the parameter, or not of it alone.
+        words = f"{worst:.0e} throughout" if worst < 2 * errors[0] else f"{errors[0]:.0e} from the start, worst {worst:.0e}"
+    else:
+        words = f"**> 1e-3 at {method['above_1e-3']}**, worst {worst:.0e}"
+    return words + (f", **fails at {method['fails']}**" if method["fails"] is not None else "")
+
+
 def measure(args, folder):
     runner = Runner(args.tessera, folder, args.threads)
     maker = scenes.Maker(folder, runner.generate)
     out, broken, start = [], [], time.monotonic()
+    before = json.loads(args.json.read_text()) if args.resume and args.json.exists() else {"stresses": [], "partitions": []}
+    earlier = {(s["kind"], s["name"]): s for s in before["stresses"]}
     kinds = [("mesh", scenes.mesh_stresses(maker) + (scenes.large_stresses(maker) if args.large else []), MESH),
              ("grid", scenes.volume_stresses(maker), GRID), ("printed", scenes.printed_stresses(maker), scenes.PRINTED)]
     for kind, stresses, methods in kinds:
         if args.reduced and kind == "printed":
             continue
         for name, parameter, values, make in stresses:
+            if (kind, name) in earlier:
+                out.append(earlier[kind, name])
+                broken += default_broken(out[-1])
+                continue
             if args.only and not any(w in name for w in args.only.split(",")):
                 continue
             if args.seconds and time.monotonic() - start > args.seconds:
@@ -117,9 +149,6 @@ def measure(args, folder):
                         result = runner.render(made[value], words)
                     result["value"] = value_words(value)
                     results.append(result)
-                    bound = result.get("bound")
-                    if method == "default" and ("failed" in result or not result["error"] <= bound):
-                        broken.append((name, value_words(value), result))
                 if not results:
                     continue
                 worse, failed = verdicts(results)
@@ -131,13 +160,25 @@ def measure(args, folder):
                 print(f"{name:24s} {method:28s} worst {worst:9.2e}  above 1e-3: {worse}  fails: {failed}  "
                       f"{time.monotonic() - begin:.0f} s", flush=True)
             out.append(stress)
-    rows = []
-    if not args.only or any(w in "partitions" for w in args.only.split(",")):
+            broken += default_broken(stress)
+            save(args, out, before["partitions"])
+    rows = before["partitions"]
+    if not rows and (not args.only or any(w in "partitions" for w in args.only.split(","))):
         rows = [] if args.reduced else partitions.measure(args.tessera, maker, folder)
     for row in rows:
         if not partitions.kept(row):
             broken.append(("partition", row["partition"], {"failed": json.dumps(row)}))
     return out, rows, broken
+
+
+def default_broken(stress):
+    return [(stress["name"], r["value"], r) for r in stress["methods"].get("default", {"results": []})["results"]
+            if "failed" in r or not r["error"] <= r["bound"]]
+
+
+def save(args, stresses, rows):
+    if args.json:
+        args.json.write_text(json.dumps({"stresses": stresses, "partitions": rows}, indent=1))
 
 
 def too_many_excused(stresses):
@@ -164,29 +205,14 @@ def document(path, stresses, rows, figure):
         lines += [f"### {title}", "", "| stress, parameter | values | " + " | ".join(methods) + " |",
                   "|---|---|" + "---|" * len(methods)]
         for s in mine:
-            cells = []
-            for m in methods:
-                r = s["methods"].get(m)
-                if r is None:
-                    cells.append("")
-                    continue
-                worst = max((x.get("error", 0) for x in r["results"]), default=0)
-                words = "passes" if r["above_1e-3"] is None else f"**> 1e-3 at {r['above_1e-3']}**"
-                if r["fails"] is not None:
-                    words += f", **fails at {r['fails']}**"
-                cells.append(f"{words}, {worst:.0e}")
+            cells = [words_of(s["methods"][m]) if m in s["methods"] else "" for m in methods]
             lines.append(f"| {s['name']}: {s['parameter']} | {s['values'][0]} to {s['values'][-1]} | " + " | ".join(cells) + " |")
         lines.append("")
     printed = [s for s in stresses if s["kind"] == "printed"]
     if printed:
         lines += ["### The printed methods' own limits", "", "| limit, parameter | values | what becomes of them |", "|---|---|---|"]
         for s in printed:
-            words = []
-            for m, d in s["methods"].items():
-                worst = max((x.get("error", 0) for x in d["results"]), default=0)
-                said = "passes" if d["above_1e-3"] is None else f"**> 1e-3 at {d['above_1e-3']}**"
-                said += f", **fails at {d['fails']}**" if d["fails"] is not None else ""
-                words.append(f"{m}: {said}, {worst:.0e}")
+            words = [f"{m}: {words_of(d)}" for m, d in s["methods"].items()]
             lines.append(f"| {s['name']}: {s['parameter']} | {s['values'][0]} to {s['values'][-1]} | " + "; ".join(words) + " |")
         lines.append("")
     if rows:
@@ -209,43 +235,55 @@ def document(path, stresses, rows, figure):
     path.write_text(text[:begin] + "\n".join(lines) + "\n" + text[end:])
 
 
-COLORS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f"]
+COLORS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#000000"]
+
+
+def chart(s, x0, y0, width, height, color):
+    """One stress, its plot's upper left corner at (x0, y0)."""
+    low, high = -9, 1
+    y = lambda e: y0 + height * (high - min(max(math.log10(max(e, 1e-300)), low), high)) / (high - low)
+    out = [f'<text x="{x0}" y="{y0 - 5}" font-size="10.5">{s["name"]}</text>']
+    for power in (-9, -6, -3, 0):
+        at = y(10.0 ** power)
+        out.append(f'<line x1="{x0}" x2="{x0 + width}" y1="{at:.1f}" y2="{at:.1f}" stroke="{"#bbb" if power == -3 else "#e4e4e4"}"/>'
+                   f'<text x="{x0 - 3}" y="{at + 3:.1f}" text-anchor="end">1e{power}</text>')
+    count = len(s["values"])
+    x = lambda i: x0 + width * (i + 0.5) / count
+    for i, value in enumerate(s["values"]):
+        if i in (0, count - 1) or (count <= 4 and max(map(len, s["values"])) < 8):
+            out.append(f'<text x="{x(i):.1f}" y="{y0 + height + 11}" text-anchor="middle">{value}</text>')
+    out.append(f'<text x="{x0 + width / 2}" y="{y0 + height + 23}" text-anchor="middle" fill="#777">{s["parameter"]}</text>')
+    for m, d in reversed(list(s["methods"].items())):
+        place = {v: i for i, v in enumerate(s["values"])}
+        points = [(x(place[r["value"]]), y(r["error"])) for r in d["results"] if "error" in r]
+        out.append(f'<polyline fill="none" stroke="{color[m]}" stroke-width="{2.2 if m == "default" else 1.1}" points="' +
+                   " ".join(f"{a:.1f},{b:.1f}" for a, b in points) + '"/>')
+        out += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="1.8" fill="{color[m]}"/>' for a, b in points]
+        out += [f'<text x="{x(place[r["value"]]):.1f}" y="{y0 + 6}" text-anchor="middle" font-weight="bold" fill="{color[m]}">x</text>'
+                for r in d["results"] if "failed" in r]
+    return out
 
 
 def figure(path, stresses):
-    """Small charts: error (logarithmic) by the parameter's values, in their order; a cross on top is a failure."""
-    columns, w, h, low, high = 4, 235, 150, -9, 1
-    rows = (len(stresses) + columns - 1) // columns
-    methods = list(dict.fromkeys(m for s in stresses for m in s["methods"]))
-    color = {m: COLORS[i % len(COLORS)] for i, m in enumerate(methods)}
-    out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{columns * w + 20}" height="{rows * h + 60}" '
-           'font-family="sans-serif" font-size="9"><rect width="100%" height="100%" fill="white"/>']
-    for i, m in enumerate(methods):
-        out.append(f'<rect x="{20 + 175 * (i % 5)}" y="{8 + 16 * (i // 5)}" width="10" height="10" fill="{color[m]}"/>'
-                   f'<text x="{34 + 175 * (i % 5)}" y="{17 + 16 * (i // 5)}" font-size="11">{m}</text>')
-    for n, s in enumerate(stresses):
-        x0, y0 = 20 + (n % columns) * w + 26, 50 + (n // columns) * h + 14
-        width, height = w - 44, h - 52
-        y = lambda e: y0 + height * (high - min(max(math.log10(max(e, 1e-300)), low), high)) / (high - low)
-        out.append(f'<text x="{x0}" y="{y0 - 5}" font-size="10.5">{s["name"]}</text>')
-        for power in (-9, -6, -3, 0):
-            at = y(10.0 ** power)
-            out.append(f'<line x1="{x0}" x2="{x0 + width}" y1="{at:.1f}" y2="{at:.1f}" stroke="{"#bbb" if power == -3 else "#e4e4e4"}"/>'
-                       f'<text x="{x0 - 3}" y="{at + 3:.1f}" text-anchor="end">1e{power}</text>')
-        count = len(s["values"])
-        x = lambda i: x0 + width * (i + 0.5) / count
-        for i, value in enumerate(s["values"]):
-            if i in (0, count - 1) or count <= 4:
-                out.append(f'<text x="{x(i):.1f}" y="{y0 + height + 11}" text-anchor="middle">{value}</text>')
-        out.append(f'<text x="{x0 + width / 2}" y="{y0 + height + 23}" text-anchor="middle" fill="#777">{s["parameter"]}</text>')
-        for m, d in reversed(list(s["methods"].items())):
-            points = [(x(i), y(r["error"])) for i, r in enumerate(d["results"]) if "error" in r]
-            out.append(f'<polyline fill="none" stroke="{color[m]}" stroke-width="{2.2 if m == "default" else 1.1}" points="' +
-                       " ".join(f"{a:.1f},{b:.1f}" for a, b in points) + '"/>')
-            out += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="1.8" fill="{color[m]}"/>' for a, b in points]
-            out += [f'<text x="{x(i):.1f}" y="{y0 + 6}" text-anchor="middle" font-weight="bold" fill="{color[m]}">x</text>'
-                    for i, r in enumerate(d["results"]) if "failed" in r]
-    path.write_text("\n".join(out + ["</svg>\n"]))
+    """Small charts: error (logarithmic, 1e-9 and below at the foot) by the parameter's values, in their order; a cross on
+    top is a failure. Colours are of their section."""
+    columns, w, h, top, out = 4, 235, 150, 10, []
+    for kind, title in (("mesh", "Meshes"), ("grid", "Regular grids"), ("printed", "The printed methods' own limits")):
+        mine = [s for s in stresses if s["kind"] == kind]
+        if not mine:
+            continue
+        methods = list(dict.fromkeys(m for s in mine for m in s["methods"]))
+        color = {m: COLORS[i % len(COLORS)] for i, m in enumerate(methods)}
+        out.append(f'<text x="20" y="{top + 14}" font-size="14" font-weight="bold">{title}</text>')
+        for i, m in enumerate(methods):
+            x0, y0 = 20 + 235 * (i % 4), top + 24 + 16 * (i // 4)
+            out.append(f'<rect x="{x0}" y="{y0}" width="10" height="10" fill="{color[m]}"/><text x="{x0 + 14}" y="{y0 + 9}" font-size="11">{m}</text>')
+        top += 24 + 16 * ((len(methods) + 3) // 4) + 10
+        for n, s in enumerate(mine):
+            out += chart(s, 46 + (n % columns) * w, top + (n // columns) * h + 14, w - 44, h - 52, color)
+        top += h * ((len(mine) + columns - 1) // columns) + 10
+    path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" width="{columns * w + 20}" height="{top}" font-family="sans-serif" '
+                    'font-size="9"><rect width="100%" height="100%" fill="white"/>' + "\n".join(out + ["</svg>\n"]))
 
 
 def main():
@@ -258,6 +296,7 @@ def main():
     parser.add_argument("--reduced", action="store_true")
     parser.add_argument("--large", action="store_true", help="pictures of 16384 x 16384 too")
     parser.add_argument("--json", type=pathlib.Path)
+    parser.add_argument("--resume", action="store_true", help="keep what --json holds")
     parser.add_argument("--document", type=pathlib.Path)
     parser.add_argument("--figure", type=pathlib.Path)
     args = parser.parse_args()
@@ -266,8 +305,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         start = time.monotonic()
         stresses, rows, broken = measure(args, pathlib.Path(folder))
-    if args.json:
-        args.json.write_text(json.dumps({"stresses": stresses, "partitions": rows}, indent=1))
+    save(args, stresses, rows)
     if args.figure:
         figure(args.figure, stresses)
     if args.document:
@@ -275,6 +313,10 @@ def main():
     for name, value, result in broken:
         print(f"default BROKEN: {name} at {value}: {result.get('failed', result.get('error'))}\n    {result.get('command', '')}")
     excused, pixels, known = too_many_excused(stresses)
+    for s in stresses:
+        empty = [r["value"] for r in s["methods"].get("default", {"results": []})["results"] if r.get("shows") is False]
+        if empty:
+            print(f"nothing to see: {s['name']} at {', '.join(empty)}")
     for words in known:
         print(f"known: {words}")
     print(f"{len(stresses)} stresses and {len(rows)} partitions in {time.monotonic() - start:.0f} s, default broken in "
