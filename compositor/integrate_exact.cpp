@@ -77,10 +77,12 @@ HWY_INLINE V lookup(const std::vector<double>& table, VI interval) {
 }
 
 template <bool in_register>
-void exact(const PiecewiseTable& table, scene::Emission emission, SegmentBatch& batch) {
+void exact(const PiecewiseTable& table, scene::Emission emission, const ExactPieces& pieces, SegmentBatch& batch) {
   const D d;
   const DI di;
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0), half = hn::Set(d, 0.5);
+  const V most_depth = hn::Set(d, pieces.optical_depth), twice_most_depth = hn::Set(d, 2 * pieces.optical_depth);
+  const V least_transmittance = hn::Set(d, pieces.transmittance);
   const auto lanes = static_cast<std::size_t>(hn::Lanes(d));
   const auto step_up = hn::Set(di, 1), step_down = hn::Set(di, -1);
   const bool emits_by_extinction = emission == scene::Emission::absorption;
@@ -118,13 +120,13 @@ void exact(const PiecewiseTable& table, scene::Emission emission, SegmentBatch& 
       V kappa0, kappa1;
       channel(0, kappa0, kappa1);
       V depth = hn::Mul(piece, hn::Mul(half, hn::Add(kappa0, kappa1)));
-      const auto thick = hn::Gt(depth, one);
+      const auto thick = hn::Gt(depth, most_depth);
       if (!hn::AllFalse(d, thick)) {
-        // Shorten to the first optical depth: the root u of q(u) = 1, in the form without cancellation.
+        // Shorten to the first `most_depth`: the root u of q(u) = that, in the form without cancellation.
         const V linear = hn::Mul(kappa0, piece);
         const V root = hn::Sqrt(hn::Max(
-            zero, hn::MulAdd(linear, linear, hn::Mul(hn::Set(d, 2.0), hn::Mul(hn::Sub(kappa1, kappa0), piece)))));
-        const V u = hn::IfThenElse(thick, hn::Min(one, hn::Div(hn::Set(d, 2.0), hn::Add(linear, root))), one);
+            zero, hn::MulAdd(linear, linear, hn::Mul(twice_most_depth, hn::Mul(hn::Sub(kappa1, kappa0), piece)))));
+        const V u = hn::IfThenElse(thick, hn::Min(one, hn::Div(twice_most_depth, hn::Add(linear, root))), one);
         piece = hn::Mul(piece, u);
         kappa1 = hn::IfThenElse(thick, hn::MulAdd(hn::Sub(kappa1, kappa0), u, kappa0), kappa1);
         target = hn::IfThenElse(thick, hn::MulAdd(hn::Sub(target, scalar), u, scalar), target);
@@ -177,7 +179,7 @@ void exact(const PiecewiseTable& table, scene::Emission emission, SegmentBatch& 
       transmittance = hn::IfThenElse(active, hn::Mul(transmittance, through), transmittance);
       left = hn::Sub(left, piece);
       scalar = target;
-      active = hn::AndNot(hn::Or(last, hn::Lt(transmittance, hn::Set(d, 1e-10))), active);
+      active = hn::AndNot(hn::Or(last, hn::Lt(transmittance, least_transmittance)), active);
       const auto on = hn::RebindMask(di, hn::AndNot(thick, active));
       interval = hn::Add(interval, hn::IfThenElseZero(on, hn::IfThenElse(hn::RebindMask(di, up), step_up, step_down)));
     }
@@ -189,11 +191,12 @@ void exact(const PiecewiseTable& table, scene::Emission emission, SegmentBatch& 
   }
 }
 
-void exact_on_lanes(const PiecewiseTable& table, scene::Emission emission, SegmentBatch& batch) {
+void exact_on_lanes(const PiecewiseTable& table, scene::Emission emission, SegmentBatch& batch,
+                    const ExactPieces& pieces) {
   if (table.knot_count + 1 <= hn::Lanes(D()))
-    exact<true>(table, emission, batch);
+    exact<true>(table, emission, pieces, batch);
   else
-    exact<false>(table, emission, batch);
+    exact<false>(table, emission, pieces, batch);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -203,8 +206,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tessera::compositor {
 HWY_EXPORT(exact_on_lanes);
-void integrate_exact(const PiecewiseTable& table, scene::Emission emission, SegmentBatch& batch) {
-  HWY_DYNAMIC_DISPATCH(exact_on_lanes)(table, emission, batch);
+void integrate_exact(const PiecewiseTable& table, scene::Emission emission, SegmentBatch& batch,
+                     const ExactPieces& pieces) {
+  HWY_DYNAMIC_DISPATCH(exact_on_lanes)(table, emission, batch, pieces);
 }
 }  // namespace tessera::compositor
 #endif  // HWY_ONCE

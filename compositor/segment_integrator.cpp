@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "scene/error.hpp"
 
@@ -34,11 +35,21 @@ SegmentIntegrator::SegmentIntegrator(const scene::TransferFunction& function, co
     case scene::IntegratorKind::automatic:
       if (!(integrator.accuracy > 0))
         throw scene::bad_input(fmt::format("--accuracy {}: it must be positive", integrator.accuracy));
-      // The exact form meets every accuracy; only what lies behind opaque matter depends on it so far.
       termination_error_ = std::min(0.25 * integrator.accuracy, 1e-2);
+      if (emission == scene::Emission::absorption)
+        pieces_ = ExactPieces::within(std::min(integrator.accuracy, 4e-2), function.max_color());
       break;
   }
   if (!integrator.terminates) termination_error_ = 0;
+}
+
+ExactPieces ExactPieces::within(double accuracy, double max_color) {
+  const double share = accuracy / (64 * std::max(1.0, max_color));
+  ExactPieces pieces;
+  for (const auto& [optical_depth, error] : {std::pair{2, 4e-8}, {3, 5e-7}, {4, 3e-6}, {6, 3e-5}})
+    if (error <= share) pieces.optical_depth = optical_depth;
+  pieces.transmittance = std::max(pieces.transmittance, share);
+  return pieces;
 }
 
 void SegmentIntegrator::integrate(SegmentBatch& batch) const {
@@ -50,7 +61,7 @@ void SegmentIntegrator::integrate(SegmentBatch& batch) const {
   else if (psi_)
     integrate_partial(table_, *psi_, batch);
   else
-    integrate_exact(table_, emission_, batch);
+    integrate_exact(table_, emission_, batch, pieces_);
 }
 
 std::optional<double> SegmentIntegrator::first_visible(double front, double back) const {

@@ -14,6 +14,27 @@
 
 namespace tessera::compositor {
 
+/// `exact`: a segment is cut where its scalar crosses a knot, and pieces of more than one optical depth are cut again.
+/// Over a piece extinction and colour are linear in the position u, so the optical depth is a quadratic q(u) and, by
+/// parts,
+///   int kappa c exp(-q) = c_0 (1 - M) + c_1 (M - T),  M = int_0^1 exp(-q(u)) du,  T = exp(-q(1)).
+/// One integral serves all three colours; where the colour is constant it drops out. M has no closed form without erf
+/// or Dawson's function and their cancellations; Gauss-Legendre needs 3 points below an optical depth of 0.05 and 6 up
+/// to 1: with q' and q'' at most twice the optical depth, the error terms f^(2n)(xi) (n!)^4 / ((2n+1) ((2n)!)^3) are
+/// below 1e-8. Pieces end where the transmittance falls below 1e-10.
+///
+/// `auto` may cut pieces longer and end them sooner (absorption alone, where light is bounded by opacity):
+///   - With q' >= 0, q = D (w u + (1 - w) u^2) with w in [0, 2]: six points err by at most e(D), the largest over w,
+///     6e-10, 4e-8, 5e-7, 3e-6, 3e-5 times 1 - exp(-D) for D = 1, 2, 3, 4, 6. What rays gather along their way of
+///     1 - exp(-D) is at most 1, so that all pieces of a ray err by that number times the largest colour.
+///   - Behind transmittance t there is light of at most t times the largest colour, and opacity of at most t.
+/// Each may take a 64th of the accuracy.
+struct ExactPieces {
+  double optical_depth = 1;      ///< of a piece, at most
+  double transmittance = 1e-10;  ///< of a segment, from which on the rest is left out
+  [[nodiscard]] static ExactPieces within(double accuracy, double max_color);
+};
+
 /// Light and optical depth of ray segments: the volume rendering integral over each (Max, "Optical Models for Direct
 /// Volume Rendering", 1995), for a transfer function that is piecewise linear in the scalar.
 class SegmentIntegrator {
@@ -45,6 +66,7 @@ class SegmentIntegrator {
   scene::Emission emission_;
   scene::Trace* trace_;
   int samples_ = 0;  ///< 0: not sampled
+  ExactPieces pieces_;
   // At most one of them; none and no samples: exact.
   std::shared_ptr<const SegmentTable> segments_;
   std::shared_ptr<const PsiTable> psi_;
@@ -55,15 +77,9 @@ class SegmentIntegrator {
 /// its product with the transmittance to the error it may make. With independent emission light grows with the length.
 double opacity_weight(double max_color, double longest_ray, scene::Emission emission);
 
-/// `exact`: a segment is cut where its scalar crosses a knot, and pieces of more than one optical depth are cut again.
-/// Over a piece extinction and colour are linear in the position u, so the optical depth is a quadratic q(u) and, by
-/// parts,
-///   int kappa c exp(-q) = c_0 (1 - M) + c_1 (M - T),  M = int_0^1 exp(-q(u)) du,  T = exp(-q(1)).
-/// One integral serves all three colours; where the colour is constant it drops out. M has no closed form without erf
-/// or Dawson's function and their cancellations; Gauss-Legendre needs 3 points below an optical depth of 0.05 and 6 up
-/// to 1: with q' and q'' at most twice the optical depth, the error terms f^(2n)(xi) (n!)^4 / ((2n+1) ((2n)!)^3) are
-/// below 1e-8. Pieces end where the transmittance falls below 1e-10.
-void integrate_exact(const PiecewiseTable& table, scene::Emission emission, SegmentBatch& batch);
+/// `exact`, and `auto` with pieces of its own.
+void integrate_exact(const PiecewiseTable& table, scene::Emission emission, SegmentBatch& batch,
+                     const ExactPieces& pieces = {});
 
 /// `sampled:Ns`: Ns samples at the middles of Ns equal steps of length / Ns, each step homogeneous (Juliachs et al.
 /// 2007, 4.3, where the printed dx = 1 / Ns is read as l / Ns, as its own remark on null elements needs).

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "scene/error.hpp"
 #include "support/instruction_sets.hpp"
@@ -118,6 +119,32 @@ TEST(SegmentIntegrator, AgreesWithBruteForceOnEveryInstructionSet) {
           }
         }
   });
+}
+
+TEST(SegmentIntegrator, AutoMakesLongerPiecesWithinItsShareOfTheAccuracy) {
+  std::mt19937 random(29);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (const double extinction : {1.0, 30.0, 1e3, 1e5})
+    for (const int knots : {2, 6, 40}) {
+      const TransferFunction f = random_function(random, knots, extinction, true);
+      for (int ray = 0; ray < 50; ++ray) {
+        std::vector<Segment> segments(8);
+        for (Segment& s : segments) s = {uniform(random) * uniform(random), uniform(random), uniform(random)};
+        const auto seen = [&](const Integrator& integrator) {
+          double light = 0, through = 1;
+          for (const Light& s : integrated(f, segments, Emission::absorption, integrator))
+            light += through * s.r, through *= std::exp(-s.optical_depth);
+          return std::pair(light, through);
+        };
+        const auto [light, through] = seen({IntegratorKind::exact, 0, 0});
+        for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5}) {
+          const auto fast = seen({.kind = IntegratorKind::automatic, .accuracy = accuracy});
+          // A 64th each for longer pieces and for what is left out; `exact` itself errs by 2e-8.
+          EXPECT_NEAR(fast.first, light, accuracy / 32 + 2e-8) << extinction << " " << knots << " " << accuracy;
+          EXPECT_NEAR(fast.second, through, accuracy / 32 + 2e-8) << extinction << " " << knots << " " << accuracy;
+        }
+      }
+    }
 }
 
 TEST(SegmentIntegrator, CuttingASegmentChangesNothing) {
