@@ -49,7 +49,13 @@ void add_volume_options(CLI::App& command, RenderWords& words) {
 void add_volume_render_options(CLI::App& command, RenderWords& words) {
   command.add_option("--step", words.step, "volumes: length of a step of sampled and preintegrated (default 0.5)")
       ->type_name("VOXELS");
-  command.add_flag("--shade", words.shade, "volumes: Blinn-Phong with a light beside the camera");
+  command.add_flag("--shade", words.shade, "volumes: Blinn-Phong with a light at the camera, or --light");
+  command
+      .add_option(
+          "--light", words.light,
+          "volumes, --shade: towards the light; to the right, up and towards the eye, or along the world's axes "
+          "(default 0,0,1)")
+      ->type_name("[world:]X,Y,Z");
   command.add_option("--brick-size", words.brick_size, "volumes: voxels a side of a brick (default 32)")
       ->type_name("VOXELS");
   command.add_option("--cache", words.cache, "volumes: which brick goes first when memory is full (default lru)")
@@ -134,6 +140,15 @@ volume::RenderSettings volume_settings(const RenderWords& words, const frame::Re
     settings.step = parse_positive("--step", words.step);
   }
   if (words.shade) settings.shading.emplace();
+  if (!words.light.empty()) {
+    if (!words.shade) throw scene::bad_input("--light: has no effect without --shade; add it, or leave --light out");
+    constexpr std::string_view world = "world:";
+    settings.shading->camera_light = !words.light.starts_with(world);
+    settings.shading->to_light =
+        vector("--light", words.light.substr(settings.shading->camera_light ? 0 : world.size()), false);
+    if (settings.shading->to_light == glm::dvec3(0))
+      throw scene::bad_input("--light: 0,0,0 is no direction; say which way the light lies");
+  }
   if (!words.brick_size.empty()) settings.brick_size = parse_count("--brick-size", words.brick_size, 2, 1 << 20);
   if (words.cache == "proximity")
     settings.cache = volume::CachePolicy::proximity;
@@ -195,6 +210,7 @@ void refuse_mesh_words(const RenderWords& words) {
 void refuse_volume_options(const RenderWords& words) {
   const std::pair<const char*, bool> given[] = {{"--step", !words.step.empty()},
                                                 {"--shade", words.shade},
+                                                {"--light", !words.light.empty()},
                                                 {"--brick-size", !words.brick_size.empty()},
                                                 {"--cache", !words.cache.empty()},
                                                 {"--preload", !words.preload.empty()},

@@ -36,7 +36,8 @@ std::optional<double> promised(const volume::RenderSettings& settings) {
 Verification verified(const scene::Image& image, const scene::SampleSource& source, const scene::Camera& camera,
                       const scene::TransferFunction& function, const RenderOptions& options) {
   constexpr std::uint64_t seed = 1;
-  const reference::GridReference reference(source, camera, image.size, function, options.volume_settings.emission);
+  const reference::GridReference reference(source, camera, image.size, function, options.volume_settings.emission,
+                                           options.volume_settings.shading);
   const auto pixels = reference::random_pixels(image.size, static_cast<std::size_t>(options.verify), seed);
   Verification verification;
   verification.bound = promised(options.volume_settings);
@@ -63,8 +64,6 @@ void refuse_mesh_options(const RenderOptions& options) {
   if (options.mesh.max_volume) refuse("--max-volume");
   if (options.mesh.time_step) refuse("--time-step");
   if (!options.mesh.plot3d_q.empty()) refuse("--q");
-  if (options.verify > 0 && options.volume_settings.shading)
-    throw scene::bad_input("--verify: the reference does not shade; leave --shade out");
 }
 
 /// With --show balance every picture has its cost map beside it.

@@ -76,6 +76,9 @@ Json volume_method_json(const RenderOptions& options, int ranks) {
   if (takes_steps(s.method)) json["step"] = s.step;
   json["emission"] = s.emission == scene::Emission::absorption ? "absorption" : "independent";
   json["shade"] = s.shading.has_value();
+  if (s.shading)
+    json["light"] = {{"frame", s.shading->camera_light ? "camera" : "world"},
+                     {"direction", {s.shading->to_light.x, s.shading->to_light.y, s.shading->to_light.z}}};
   json["backend"] = "cpu";
   if (!options.without.empty()) json["without"] = options.without;
   json["blend"] = options.display_blend ? "display" : "linear";

@@ -59,7 +59,7 @@ double GridIntegral::opacity() const { return -std::expm1(-optical_depth_); }
 
 bool GridIntegral::opaque() const { return optical_depth_ > depth_of_nothing; }
 
-void GridIntegral::add(double length, const Cubic& scalar, double depth_front, double depth_back) {
+void GridIntegral::add(double length, const Cubic& scalar, double depth_front, double depth_back, const Light& light) {
   if (!(length > 0)) return;
   std::vector<double> ends = {0};
   for (const double u : turning_points(scalar)) ends.push_back(u);
@@ -73,11 +73,11 @@ void GridIntegral::add(double length, const Cubic& scalar, double depth_front, d
   }
   std::sort(cuts.begin(), cuts.end());
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
-    if (cuts[i + 1] > cuts[i]) add_piece(length, scalar, cuts[i], cuts[i + 1], depth_front, depth_back);
+    if (cuts[i + 1] > cuts[i]) add_piece(length, scalar, cuts[i], cuts[i + 1], depth_front, depth_back, light);
 }
 
 void GridIntegral::add_piece(double length, const Cubic& scalar, double u0, double u1, double depth_front,
-                             double depth_back) {
+                             double depth_back, const Light& light) {
   // The knots on either side of the piece; a value on a step belongs to the step's upper knot.
   const double within = scalar.at((u0 + u1) / 2);
   std::size_t above = 0;
@@ -90,8 +90,11 @@ void GridIntegral::add_piece(double length, const Cubic& scalar, double u0, doub
     return linear_of(at_low - slope * low.value, slope, scalar);
   };
   const Cubic extinction = along(low.extinction, high.extinction);
-  const std::array<Cubic, 3> color = {along(low.color.x, high.color.x), along(low.color.y, high.color.y),
-                                      along(low.color.z, high.color.z)};
+  const auto lit = [&](double at_low, double at_high) {
+    return along(light.own * at_low + light.white, light.own * at_high + light.white);
+  };
+  const std::array<Cubic, 3> color = {lit(low.color.x, high.color.x), lit(low.color.y, high.color.y),
+                                      lit(low.color.z, high.color.z)};
   if (low.extinction > 0 || high.extinction > 0)
     if (std::isinf(first_visible_depth_)) first_visible_depth_ = depth_front + (depth_back - depth_front) * u0;
   add_color(length, u0, u1, 0, extinction, color, 0);

@@ -28,8 +28,16 @@ class GridIntegral {
   /// The knots must outlive the integral.
   GridIntegral(std::span<const scene::Knot> knots, scene::Emission emission) : knots_(knots), emission_(emission) {}
 
-  /// The next stretch: its world length, the scalar over u in [0, 1], the planar depths at its ends.
-  void add(double length, const Cubic& scalar, double depth_front, double depth_back);
+  /// What shading makes of colour c over a stretch: own * c + white.
+  struct Light {
+    double own = 1, white = 0;
+  };
+
+  /// The next stretch: its world length, the scalar over u in [0, 1], the planar depths at its ends, its light.
+  void add(double length, const Cubic& scalar, double depth_front, double depth_back, const Light& light);
+  void add(double length, const Cubic& scalar, double depth_front, double depth_back) {
+    add(length, scalar, depth_front, depth_back, Light());
+  }
 
   [[nodiscard]] std::array<double, 3> color() const { return color_; }  ///< linear RGB, premultiplied
   [[nodiscard]] double opacity() const;
@@ -39,7 +47,8 @@ class GridIntegral {
 
  private:
   /// A piece u0 to u1 of a stretch in which the transfer function is linear.
-  void add_piece(double length, const Cubic& scalar, double u0, double u1, double depth_front, double depth_back);
+  void add_piece(double length, const Cubic& scalar, double u0, double u1, double depth_front, double depth_back,
+                 const Light& light);
   /// Colour of [u0, u1], which lies `before` of optical depth behind the piece's front.
   void add_color(double length, double u0, double u1, double before, const Cubic& extinction,
                  const std::array<Cubic, 3>& color, int depth);

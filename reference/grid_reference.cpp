@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/glm.hpp>
 #include <optional>
 
-#include "reference/grid_integral.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::reference {
@@ -29,14 +29,53 @@ Cubic mixed(const Cubic& p, const Cubic& q, double a, double b) {
 }  // namespace
 
 GridReference::GridReference(const scene::SampleSource& source, const scene::Camera& camera, scene::ImageSize size,
-                             const scene::TransferFunction& transfer_function, scene::Emission emission)
+                             const scene::TransferFunction& transfer_function, scene::Emission emission,
+                             const std::optional<scene::Shading>& shading)
     : source_(&source),
       size_((scene::validate(camera), scene::validate(size), size)),
       knots_(transfer_function.knots().begin(), transfer_function.knots().end()),
       emission_(emission),
       view_(camera, size),
-      to_local_(scene::world_to_local(source.geometry())) {
+      to_local_(scene::world_to_local(source.geometry())),
+      shading_(shading) {
   if (knots_.empty()) throw scene::bad_input("transfer function: it has no knot; give one or more");
+  if (!shading_) return;
+  if (emission_ != scene::Emission::absorption)
+    throw scene::bad_input("shading needs emission in proportion to extinction");
+  if (!(glm::length(shading_->to_light) > 0)) throw scene::bad_input("the direction to the light has no length");
+  to_light_ = glm::normalize(shading_->to_light);
+  if (shading_->camera_light) {
+    const glm::dvec3 forward = glm::normalize(camera.focal_point - camera.position),
+                     right = glm::normalize(glm::cross(forward, camera.view_up));
+    to_light_ = right * to_light_.x + glm::cross(right, forward) * to_light_.y - forward * to_light_.z;
+  }
+}
+
+GridIntegral::Light GridReference::light(const std::array<double, 8>& corners, const glm::dvec3& place,
+                                         const glm::dvec3& side, const glm::dvec3& step_world) const {
+  constexpr double nothing = 1e-12;
+  glm::dvec3 gradient(0);  // local
+  double largest = 0;
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    glm::dvec3 weight, slope;
+    for (int a = 0; a < 3; ++a) {
+      const bool far = (corner >> a & 1) != 0;
+      weight[a] = far ? place[a] : 1 - place[a];
+      slope[a] = (far ? 1 : -1) / side[a];
+    }
+    const double v = corners[corner] - corners[0];
+    gradient +=
+        v * glm::dvec3(slope.x * weight.y * weight.z, weight.x * slope.y * weight.z, weight.x * weight.y * slope.z);
+    largest = std::max(largest, std::abs(corners[corner]));
+  }
+  const double least_side = std::min({side.x, side.y, side.z});
+  if (!(glm::length(gradient) * least_side > nothing * largest)) return {};
+  const glm::dvec3 normal = glm::normalize(glm::transpose(to_local_) * gradient), to_eye = -glm::normalize(step_world);
+  const glm::dvec3 half = to_light_ + to_eye;
+  const double n_l = std::abs(glm::dot(normal, to_light_));
+  // A light straight behind has no halfway vector.
+  const double n_h = glm::length(half) > nothing ? std::abs(glm::dot(normal, glm::normalize(half))) : 0;
+  return {shading_->ambient + shading_->diffuse * n_l, shading_->specular * std::pow(n_h, shading_->shininess)};
 }
 
 std::int64_t GridReference::voxel_along(std::size_t axis, double local) const {
@@ -130,6 +169,19 @@ Pixel GridReference::pixel(double x, double y) const {
       continue;
     std::array<Cubic, 8> field;
     for (std::size_t i = 0; i < count; ++i) field[i].c[0] = grid.value(samples[i]);
+    GridIntegral::Light lit;
+    if (count == 8 && shading_) {
+      std::array<double, 8> corners{};
+      for (std::size_t i = 0; i < 8; ++i) corners[i] = field[i].c[0];
+      glm::dvec3 place, side;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const int axis = static_cast<int>(a);
+        const double low = g.lattice(a, box.low[a]);
+        side[axis] = g.lattice(a, box.low[a] + 1) - low;
+        place[axis] = (middle[axis] - low) / side[axis];
+      }
+      lit = light(corners, place, side, g.direction * ray.step);
+    }
     if (count == 8) {
       for (std::size_t a = 0; a < 3; ++a) {  // i first: neighbours in the box's order
         const int axis = static_cast<int>(a);
@@ -141,7 +193,7 @@ Pixel GridReference::pixel(double x, double y) const {
       }
     }
     const double length = (z1 - z0) * length_per_depth;
-    integral.add(length, field[0], z0, z1);
+    integral.add(length, field[0], z0, z1, lit);
     pixel.length += length;
     ++pixel.segments;
   }

@@ -48,7 +48,7 @@ double voxel_side_of(const scene::GridGeometry& geometry) {
   return std::cbrt(volume);
 }
 
-ShadingView shading_view(const Shading& s, const scene::Camera& camera, const scene::GridGeometry& geometry,
+ShadingView shading_view(const scene::Shading& s, const scene::Camera& camera, const scene::GridGeometry& geometry,
                          double voxel_side) {
   ShadingView view{s.ambient, s.diffuse, s.specular, s.shininess, voxel_side, {}, {}, {}};
   const scene::ViewBasis basis = scene::view_basis(camera);

@@ -13,6 +13,7 @@
 #include "scene/mechanisms.hpp"
 #include "scene/optical_model.hpp"
 #include "scene/sample_source.hpp"
+#include "scene/shading.hpp"
 #include "scene/trace.hpp"
 #include "scene/transfer_function.hpp"
 
@@ -35,23 +36,14 @@ enum class CachePolicy {
 /// How much memory a brick at the volume's high end takes ([Mol08] Table 6.2).
 enum class EdgeBricks { variable, fixed };
 
-/// Blinn-Phong, two-sided. The normal is the gradient of the trilinear field, taken in the middle of every stretch of a
-/// ray inside a voxel and kept over it. c becomes c * (ambient + diffuse |n.l|) + specular |n.h|^shininess; where the
-/// gradient is zero, and in cell data, it stays as it is. With exact and automatic, absorption only.
-struct Shading {
-  double ambient = 0.2, diffuse = 0.8, specular = 0.2, shininess = 32;
-  glm::dvec3 to_light{0, 0, 1};  ///< towards the light; any length but zero
-  bool camera_light = true;      ///< `to_light` in the camera's frame (right, up, towards the eye), else in the world's
-};
-
 struct RenderSettings {
   Method method = Method::automatic;
   double accuracy = 1e-4;  ///< automatic only: largest error in linear RGBA
   double step = 0.5;       ///< sampled, preintegrated: in voxels (cube root of a mean voxel's volume), > 0
   scene::Emission emission = scene::Emission::absorption;
-  std::optional<Shading> shading;
-  int threads = 0;      ///< 0: all cores
-  int brick_size = 32;  ///< voxels a side, 2 or more; bricks share their border samples
+  std::optional<scene::Shading> shading;  ///< with exact and automatic, emission in proportion to absorption
+  int threads = 0;                        ///< 0: all cores
+  int brick_size = 32;                    ///< voxels a side, 2 or more; bricks share their border samples
   EdgeBricks edge_bricks = EdgeBricks::variable;
   std::uint64_t memory_bytes = 4ull << 30;  ///< budget of the bricks in memory
   CachePolicy cache = CachePolicy::lru;

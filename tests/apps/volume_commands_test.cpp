@@ -33,6 +33,22 @@ TEST(VolumeCommands, AVolumeRendersVerifiedWithinWhatIsPromised) {
     }
 }
 
+TEST(VolumeCommands, AShadedPictureIsVerifiedToo) {
+  const Folder folder;
+  const std::string volume = ripples(folder, "a.vti");
+  std::string pictures;
+  for (const char* light : {"0,0,1", "0.5,1,0.7", "world:0.5,1,0.7"}) {
+    const Outcome run = tessera({"render", volume, "-o", folder / "a.pfm", "--size", "60x50", "--shade", "--light",
+                                 light, "--verify", "3000", "--report", folder / "r.json"});
+    EXPECT_EQ(run.status, 0) << light << run.out << run.err;
+    const auto report = nlohmann::json::parse(contents(folder / "r.json"));
+    EXPECT_LT(report["frames"][0]["verify"]["max_error"], 1e-4) << light;
+    EXPECT_EQ(report["method"]["light"]["frame"], std::string(light).starts_with("world") ? "world" : "camera");
+    EXPECT_NE(contents(folder / "a.pfm"), pictures) << light;
+    pictures = contents(folder / "a.pfm");
+  }
+}
+
 /// Along the diagonal of a voxel whose corners alternate the field is an odd cubic: where it is in the middle, and at
 /// both ends, says nothing of what it reaches between.
 TEST(VolumeCommands, BumpsInsideAVoxelAreSeenThroughASteepFunction) {
@@ -110,6 +126,9 @@ TEST(VolumeCommands, FaultsOfVolumesAreOneLineAndLeaveNothing) {
       {{vti, "--integrator", "sampled:3"}, "sampled:3"},
       {{vti, "--step", "2"}, "--step"},
       {{vti, "-o", folder / "a.deep.exr", "--shade"}, "--shade"},
+      {{vti, "--light", "0,0,1"}, "--shade"},
+      {{vti, "--shade", "--light", "0,0,0"}, "0,0,0"},
+      {{vti, "--shade", "--light", "eye:0,0,1"}, "--light"},
       {{vti, "-o", folder / "a.deep.exr", "--integrator", "sampled"}, "sampled"},
       {{vti, "--field", "heat"}, "heat"},
       {{mesh, "--shade"}, "--shade"},

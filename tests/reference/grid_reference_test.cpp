@@ -143,6 +143,86 @@ TEST(GridReference, OneVoxelOfEightValuesIsTheSumOfVeryManySamples) {
   }
 }
 
+/// Blinn-Phong as its paper has it, for a normal: what the field's colour is multiplied by, and the white added.
+std::array<double, 2> blinn_phong(const glm::dvec3& normal, const glm::dvec3& to_light, const glm::dvec3& to_eye,
+                                  const scene::Shading& s) {
+  const double angle = std::acos(std::min(1.0, std::abs(glm::dot(normal, glm::normalize(to_light + to_eye)))));
+  return {s.ambient + s.diffuse * std::abs(glm::dot(normal, to_light)),
+          s.specular * std::pow(std::cos(angle), s.shininess)};
+}
+
+TEST(GridReference, AShadedVoxelHasTheLightOfItsGradientInTheMiddleOfTheRay) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> any(-1, 1.2);
+  const glm::dvec3 sides{1, 2, 0.5};
+  scene::Grid grid;
+  grid.geometry = lattice({2, 2, 2}, {0, 0, 0}, sides);
+  std::vector<double> v(8);
+  for (double& x : v) x = any(random);
+  const auto field = [&](const glm::dvec3& p_world) {
+    const glm::dvec3 p = p_world / sides;
+    const auto mix = [](double a, double b, double u) { return a + (b - a) * u; };
+    return mix(mix(mix(v[0], v[1], p.x), mix(v[2], v[3], p.x), p.y),
+               mix(mix(v[4], v[5], p.x), mix(v[6], v[7], p.x), p.y), p.z);
+  };
+  const Source source = MemorySource::of(grid, v);
+  for (const ProjectionKind projection : {ProjectionKind::orthographic, ProjectionKind::perspective})
+    for (const bool camera_light : {true, false}) {
+      const scene::Camera camera = looking({2, 3, 2.5}, {0.5, 1, 0.25}, projection, 0.9);
+      const scene::Shading s{0.1, 0.7, 0.5, 11, {0.3, -0.4, 0.8}, camera_light};
+      const GridReference plain(*source, camera, window, bumpy), shaded(*source, camera, window, bumpy, {}, s);
+      const View view(camera, window);
+      const scene::ViewBasis basis = scene::view_basis(camera);
+      glm::dvec3 light = glm::normalize(s.to_light);
+      if (camera_light) light = basis.right * light.x + basis.up * light.y - basis.forward * light.z;
+      int met = 0;
+      for (const PixelIndex p : all_pixels(window)) {
+        const double x = p.x + 0.5, y = p.y + 0.5;
+        const Pixel a = plain.pixel(x, y), b = shaded.pixel(x, y);
+        if (!(a.length > 0)) continue;
+        const View::Ray ray = view.ray(x, y);
+        double enter = 0, leave = 1e9;
+        for (int axis = 0; axis < 3; ++axis) {
+          const double one = -ray.origin[axis] / ray.step[axis],
+                       other = (sides[axis] - ray.origin[axis]) / ray.step[axis];
+          enter = std::max(enter, std::min(one, other)), leave = std::min(leave, std::max(one, other));
+        }
+        const glm::dvec3 middle = ray.origin + ray.step * ((enter + leave) / 2);
+        glm::dvec3 gradient;  // the field is linear along each axis
+        for (int axis = 0; axis < 3; ++axis) {
+          glm::dvec3 step(0);
+          step[axis] = 0.1;
+          gradient[axis] = (field(middle + step) - field(middle - step)) / 0.2;
+        }
+        const auto [own, white] = blinn_phong(glm::normalize(gradient), light, -glm::normalize(ray.step), s);
+        EXPECT_NEAR(b.r, own * a.r + white * a.a, 1e-10);
+        EXPECT_NEAR(b.g, own * a.g + white * a.a, 1e-10);
+        EXPECT_NEAR(b.b, own * a.b + white * a.a, 1e-10);
+        EXPECT_NEAR(b.a, a.a, rounding);
+        ++met;
+      }
+      EXPECT_GT(met, 20);
+    }
+}
+
+TEST(GridReference, WhereThereIsNoGradientNothingIsShaded) {
+  const scene::Camera camera = looking({2, 3, 2.5}, {0, 0, 0}, ProjectionKind::orthographic, 1.6);
+  const Source flat = sampled(lattice({4, 4, 4}, {-1, -1, -1}, {1, 1, 1}), [](auto&) { return 1e6 + 0.1; });
+  scene::GridGeometry cells = lattice({4, 4, 4}, {-1, -1, -1}, {1, 1, 1});
+  cells.association = Association::cell;
+  const Source constant = sampled(cells, wave);
+  for (const Source* source : {&flat, &constant}) {
+    const GridReference plain(**source, camera, window, bumpy),
+        shaded(**source, camera, window, bumpy, {}, scene::Shading());
+    for (const PixelIndex p : all_pixels(window))
+      expect_equal(shaded.pixel(p.x + 0.5, p.y + 0.5), plain.pixel(p.x + 0.5, p.y + 0.5), 0);
+  }
+  scene::Shading dark;
+  dark.to_light = glm::dvec3(0);
+  EXPECT_THROW(GridReference(*flat, camera, window, bumpy, {}, dark), scene::Error);
+  EXPECT_THROW(GridReference(*flat, camera, window, bumpy, Emission::independent, scene::Shading()), scene::Error);
+}
+
 TEST(GridReference, RectilinearTurnedAndScaledGridsOfOneFieldAgree) {
   const scene::GridGeometry plain = lattice({7, 5, 6}, {-1, -1, -1}, {1, 1, 1});
   const Source source = sampled(plain, wave);

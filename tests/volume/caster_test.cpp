@@ -345,7 +345,7 @@ TEST(VolumeCaster, ShadingOfALinearFieldFollowsBlinnAndPhong) {
     for (const bool camera_light : {true, false}) {
       volume::RenderSettings s = exact();
       const scene::Image plain = render(v, view(name), smooth_function(), s);
-      s.shading = volume::Shading{0.3, 0.6, 0.4, 9, {0.4, -0.3, 0.8}, camera_light};
+      s.shading = scene::Shading{0.3, 0.6, 0.4, 9, {0.4, -0.3, 0.8}, camera_light};
       const scene::Image shaded = render(v, view(name), smooth_function(), s);
       const scene::Camera camera = view(name);
       const scene::ViewBasis basis = scene::view_basis(camera);
