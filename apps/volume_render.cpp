@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "apps/balance_picture.hpp"
+#include "apps/brick_memory.hpp"
 #include "apps/distributed_render.hpp"
 #include "apps/frame_list.hpp"
 #include "apps/mesh_input.hpp"
@@ -152,6 +153,7 @@ class VolumeRun {
     const scene::TraceScope scope(trace(), "prepare");
     volume::RenderSettings settings = options_.volume_settings;
     settings.trace = trace();
+    settings.memory_bytes = brick_memory(settings.memory_bytes, resident_, frame.size, settings.threads);
     renderer_.emplace(*file_.source, settings);
   }
 
@@ -260,6 +262,7 @@ class VolumeRun {
   std::optional<scene::Box> box_;  ///< of the first step; none until something is read
   io::LoadedTransferFunction loaded_;
   std::optional<volume::Renderer> renderer_;
+  const std::uint64_t resident_ = resident_bytes();
 
   Json frame_reports_ = Json::array();
   std::size_t done_ = 0, rendered_ = 0;

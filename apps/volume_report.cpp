@@ -124,8 +124,8 @@ std::string volume_run_line(const RenderOptions& options, const io::VolumeFile& 
                             const io::LoadedTransferFunction& loaded, const std::vector<Frame>& frames,
                             const Frame& first, const VolumeFrameRecord& record) {
   const volume::RenderStatistics& s = record.statistics;
-  std::string line = fmt::format("{}: {}; field {} ({}) {:.6g} to {:.6g}; {}; view {}, {}x{}", options.input.string(),
-                                 samples_line(file), file.source->grid().field_name,
+  std::string line = fmt::format("{}: {}; field {} ({}) {:.6g} to {:.6g}; {}; view {}, {}x{}",
+                                 first.mesh.files.front().string(), samples_line(file), file.source->grid().field_name,
                                  file.source->geometry().association == scene::Association::point ? "point" : "cell",
                                  file.range.low, file.range.high, transfer_function_line(loaded),
                                  view_line(record.camera), first.size.width, first.size.height);

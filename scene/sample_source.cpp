@@ -123,6 +123,13 @@ void drop_pages(std::span<const std::byte> mapped) {
   if (last > first) madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
 }
 
+/// Bytes of a mapped file that count as this process's once rows of `row` bytes, `stride` apart, have been read: the
+/// system maps pages by sixteen.
+std::uint64_t mapped_bytes(std::int64_t rows, std::int64_t row, std::int64_t stride) {
+  constexpr std::int64_t around = 16 * 4096;
+  return static_cast<std::uint64_t>(stride < around ? (rows - 1) * stride + row + around : rows * (row + around));
+}
+
 }  // namespace
 
 void MemorySource::read_samples(const SampleBox& box, const SampleLayout& layout, std::byte* destination) const {
@@ -148,11 +155,15 @@ void MemorySource::read_samples(const SampleBox& box, const SampleLayout& layout
       });
     }
   if (!from_file_) return;
-  const auto read = static_cast<std::uint64_t>(box.count() * tuple);
-  const std::uint64_t before = bytes_read_.fetch_add(read, std::memory_order_relaxed);
+  bytes_read_.fetch_add(static_cast<std::uint64_t>(box.count() * tuple), std::memory_order_relaxed);
   // Pages of a mapped file count as this process's until they are given back; the system keeps them as it can.
   constexpr std::uint64_t kept = 8 << 20;
-  if (before / kept != (before + read) / kept) drop_pages(bytes_);
+  const bool whole = count == n[0] && box.extent(1) == n[1];
+  const std::uint64_t mapped =
+      whole ? mapped_bytes(1, box.count() * tuple, 0)
+            : static_cast<std::uint64_t>(box.extent(2)) * mapped_bytes(box.extent(1), count * tuple, n[0] * tuple);
+  const std::uint64_t before = bytes_mapped_.fetch_add(mapped, std::memory_order_relaxed);
+  if (before / kept != (before + mapped) / kept) drop_pages(bytes_);
 }
 
 ValueRange value_range(const SampleSource& source) {

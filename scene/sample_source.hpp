@@ -119,7 +119,7 @@ class MemorySource final : public SampleSource {
   std::shared_ptr<const void> owner_;
   ComponentChoice choice_;
   bool swapped_, from_file_;
-  mutable std::atomic<std::uint64_t> bytes_read_ = 0;
+  mutable std::atomic<std::uint64_t> bytes_read_ = 0, bytes_mapped_ = 0;
 };
 
 /// Range and blanks of a whole volume: its known_range(), or by reading all of it once, a few MiB at a time.

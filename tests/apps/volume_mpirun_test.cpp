@@ -101,6 +101,26 @@ TEST_F(VolumeMpirun, ResumeMakesOnlyWhatIsMissing) {
   EXPECT_EQ(std::filesystem::last_write_time(folder_ / "f_3.pfm"), untouched);
 }
 
+TEST_F(VolumeMpirun, ASeriesBrokenOffAndResumedHasTheBytesOfOneRun) {
+  ASSERT_EQ(tessera({"generate", "ripples", folder_ / "w.nrrd", "n=18", "--quiet"}).status, 0);
+  const std::string path = folder_.file(
+      "path.json",
+      R"([{"position":[4,3,5],"focal_point":[0,0,0],"view_angle":30},{"position":[1,3,5],"focal_point":[0,0,0],"view_angle":30}])");
+  const auto film = [&](const std::string& name) {
+    return render(folder_ / name, {folder_ / "w.nrrd", "--camera", path, "--resume"});
+  };
+  ASSERT_EQ(mpirun(3, film("whole_%d.exr")).status, 0);
+  // As a run that ended within its second time step leaves it: pictures appear whole or not at all.
+  for (const char* number : {"0", "1", "2"})
+    std::filesystem::copy_file(folder_ / "whole_" + number + ".exr", folder_ / "part_" + number + ".exr");
+  std::filesystem::remove(volume_);  // no step is read whose pictures are all there, but for the first's defaults
+  ASSERT_NE(mpirun(2, film("part_%d.exr")).status, 0);
+  ASSERT_EQ(tessera({"generate", "ripples", volume_, "n=24", "--quiet"}).status, 0);
+  ASSERT_EQ(mpirun(2, film("part_%d.exr")).status, 0);
+  for (const char* number : {"0", "1", "2", "3"})
+    EXPECT_EQ(contents(folder_ / "part_" + number + ".exr"), contents(folder_ / "whole_" + number + ".exr")) << number;
+}
+
 TEST_F(VolumeMpirun, ShowBalanceDrawsBricksAndTheCostMap) {
   ASSERT_EQ(mpirun(2, render(folder_ / "a.png", {"--show", "balance", "--brick-size", "8"})).status, 0);
   ASSERT_EQ(tessera(render(folder_ / "b.png")).status, 0);
