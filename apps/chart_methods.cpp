@@ -223,6 +223,7 @@ std::vector<ChartMethod> volume_methods(const ChartScene& scene) {
         accuracy, 1);
   };
   const auto stepped = [&](double step) {
+    if (scene.volume->geometry().rectilinear()) return;
     add("sampled", fmt::format("sampled, step {:g}", step), fmt::format("--integrator sampled --step {:g}", step),
         volume::Method::sampled, step, 1.5 / step);
     add("preintegrated", fmt::format("preintegrated, step {:g}", step),

@@ -198,8 +198,7 @@ RenderOptions render_options(const RenderWords& words) {
     if (words.projection == "perspective") options.projection = scene::ProjectionKind::perspective;
   }
 
-  // The caster knows no rectilinear lattice yet; as cells they are rendered all the same.
-  options.is_volume = is_volume_input(words) && !io::is_rectilinear(words.input);
+  options.is_volume = is_volume_input(words);
   options.settings = render_settings(words, options.is_volume);
   const WithoutWords without = parse_without("--without", words.without);
   options.without = words.without;

@@ -194,14 +194,6 @@ bool is_volume(const std::filesystem::path& file) {
   return is_volume_file(file);  // a damaged one is told as what it was meant to be
 }
 
-bool is_rectilinear(const std::filesystem::path& file) {
-  std::error_code unknown;
-  if (!std::filesystem::is_regular_file(file, unknown) || std::filesystem::file_size(file, unknown) == 0) return false;
-  const std::string beginning = read_beginning(file, 4096);
-  return looks_like_vtk_grid(beginning) && (beginning.find("\"RectilinearGrid\"") != std::string::npos ||
-                                            beginning.find("RECTILINEAR_GRID") != std::string::npos);
-}
-
 void require_volume(const std::filesystem::path& file) {
   require_file(file);
   if (!is_volume(file))

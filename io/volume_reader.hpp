@@ -40,9 +40,6 @@ struct VolumeFile {
 /// and a name may be wrong; by its name where it is not there or is .raw.
 bool is_volume(const std::filesystem::path& file);
 
-/// Whether it begins as VTK's rectilinear grid, which read_mesh takes too.
-bool is_rectilinear(const std::filesystem::path& file);
-
 /// Throws Error(bad_input) if the file is not there, or is a mesh. Does not read its samples.
 void require_volume(const std::filesystem::path& file);
 

@@ -20,6 +20,7 @@
 #include "volume/cost_map.hpp"
 #include "volume/frame_view.hpp"
 #include "volume/tile_caster.hpp"
+#include "volume/voxel_cast.hpp"
 
 namespace tessera::volume {
 namespace {
@@ -128,7 +129,23 @@ PixelRegion within(scene::ImageSize size, const std::optional<PixelRegion>& regi
 struct Cast {
   std::vector<std::uint8_t> brick_visible;
   TileCounts counts;
+  std::uint64_t blocks_read = 0, block_bytes = 0;  ///< rectilinear grids
 };
+
+/// Pixels of a map, each with its ray's planes of the lattice.
+CostMap cost_of_planes(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,
+                       double resolution, const std::optional<PixelRegion>& region) {
+  CostMap map;
+  map.resolution = resolution;
+  map.size = map_size(image, resolution);
+  map.region = region.value_or(PixelRegion{0, 0, map.size.width, map.size.height});
+  const VoxelRays rays(camera, image, geometry);
+  for (int y = map.region.y0; y < map.region.y1; ++y)
+    for (int x = map.region.x0; x < map.region.x1; ++x)
+      map.cost.push_back(static_cast<std::uint32_t>(
+          64 * std::min(1e7, planes_crossed(rays.ray((x + 0.5) / resolution, (y + 0.5) / resolution), geometry))));
+  return map;
+}
 
 }  // namespace
 
@@ -159,6 +176,8 @@ struct Renderer::State {
 
   void cast(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
             const PixelRegion& wanted, WorkTally* tally, scene::Image* image, Cast& result);
+  void cast_rectilinear(const scene::Camera& camera, const scene::TransferFunction& function, const PixelRegion& wanted,
+                        scene::Image& image, Cast& result) const;
 
   /// Bricks near the view, while the picture is gathered and written; the next frame ends it.
   void begin_preload(std::vector<std::uint8_t> wanted) {
@@ -187,10 +206,10 @@ struct Renderer::State {
 
 Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& settings) {
   check(settings);
-  if (source.geometry().rectilinear())
-    throw scene::bad_input("rectilinear coordinates are not rendered yet; resample the volume");
-  if (settings.shading && settings.method != Method::exact && settings.method != Method::automatic)
-    throw scene::bad_input("shading needs the exact or auto method");
+  const bool in_steps = settings.method == Method::sampled || settings.method == Method::preintegrated;
+  if (source.geometry().rectilinear() && in_steps)
+    throw scene::bad_input("a rectilinear grid is not rendered in steps; use --integrator auto or exact");
+  if (settings.shading && in_steps) throw scene::bad_input("shading needs the exact or auto method");
   if (settings.shading && settings.emission == scene::Emission::independent)
     throw scene::bad_input("shading needs emission in proportion to extinction");
   if (settings.shading && !(glm::length(settings.shading->to_light) > 0))
@@ -306,6 +325,26 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
   });
 }
 
+void Renderer::State::cast_rectilinear(const scene::Camera& camera, const scene::TransferFunction& function,
+                                       const PixelRegion& wanted, scene::Image& image, Cast& result) const {
+  const compositor::LaneTable table = table_of(function);
+  tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    std::vector<std::uint8_t> visible = visible_cells(ranges, table);
+    show_more(ranges, bricks.layout(), !settings.use.culling, !settings.use.skipping, visible);
+    result.brick_visible = volume::visible_bricks(ranges, visible, bricks.layout());
+    const scene::TraceScope scope(settings.trace, "project");
+    const double tolerance = settings.method == Method::exact ? 2e-9 : accuracy() / 1024;
+    const VoxelCastCounts counts = cast_voxel_by_voxel(
+        source, camera, function,
+        {{settings.emission, tolerance, static_cast<double>(least_transmittance(function)), visible}, settings.shading},
+        wanted, image);
+    result.counts.rays = counts.rays, result.counts.voxels_visited = counts.voxels;
+    result.counts.samples = counts.lines;
+    result.blocks_read = counts.blocks_read, result.block_bytes = counts.bytes_read;
+  });
+}
+
 scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size,
                               const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
                               std::optional<PixelRegion> region) {
@@ -322,10 +361,14 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
     state.bricks.set_distances(cone_distances(camera, size, wanted, state.source.geometry(), state.bricks.layout()));
   scene::Image image(size);
   Cast cast;
-  state.cast(camera, size, transfer_function, wanted, nullptr, &image, cast);
+  const bool rectilinear = state.source.geometry().rectilinear();
+  if (rectilinear)
+    state.cast_rectilinear(camera, transfer_function, wanted, image, cast);
+  else
+    state.cast(camera, size, transfer_function, wanted, nullptr, &image, cast);
   const BrickCache::Counts after = state.bricks.counts();
   state.counts_before = after;
-  if (near_ones && settings.preload_limit > 0) state.begin_preload(cast.brick_visible);
+  if (near_ones && settings.preload_limit > 0 && !rectilinear) state.begin_preload(cast.brick_visible);
   if (statistics != nullptr) {
     RenderStatistics s;
     s.rays = cast.counts.rays, s.voxels_visited = cast.counts.voxels_visited, s.samples = cast.counts.samples;
@@ -335,6 +378,7 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
     s.brick_hits = after.hits - before.hits, s.bricks_loaded = after.loads - before.loads;
     s.bricks_evicted = after.evictions - before.evictions, s.bytes_loaded = after.bytes_loaded - before.bytes_loaded;
     s.bytes_resident = after.bytes, s.peak_bytes = after.peak_bytes;
+    if (rectilinear) s.bricks_loaded = cast.blocks_read, s.bytes_loaded = cast.block_bytes;
     s.blank_samples = state.ranges.range.blanks;
     const std::int64_t sets = hwy::SupportedTargets() & HWY_TARGETS;
     s.instruction_set = hwy::TargetName(sets & -sets);
@@ -348,6 +392,7 @@ void Renderer::look(const scene::Camera& camera, scene::ImageSize size,
                     std::optional<PixelRegion> region) {
   scene::validate(camera);
   scene::validate(size);
+  if (state_->source.geometry().rectilinear()) return;
   Cast unused;
   state_->cast(camera, size, transfer_function, within(size, region), &tally, nullptr, unused);
 }
@@ -357,6 +402,7 @@ CostMap Renderer::cost_map(const scene::Camera& camera, scene::ImageSize size,
                            std::optional<PixelRegion> region, const WorkRates* learned) const {
   const State& state = *state_;
   const scene::GridGeometry& geometry = state.source.geometry();
+  if (geometry.rectilinear()) return cost_of_planes(camera, size, geometry, resolution, region);
   const std::vector<std::uint8_t> visible = visible_cells(state.ranges, state.table_of(transfer_function));
   const bool by_voxels = state.settings.method == Method::automatic || state.settings.method == Method::exact;
   CostMap map;

@@ -97,9 +97,23 @@ TEST(VolumeCommands, EveryFormatThatConvertWritesGivesTheSamePicture) {
     ASSERT_EQ(tessera({"convert", original, folder / name, "--block", "8", "--quiet"}).status, 0);
     const Outcome run = tessera({"render", folder / name, "-o", folder / "b.pfm", "--size", "40x40", "--quiet"});
     EXPECT_EQ(run.status, 0) << run.err;
-    if (std::string(name) == "b.vtr") continue;  // rendered as cells
+    if (std::string(name) == "b.vtr") continue;  // cast voxel by voxel: below
     EXPECT_EQ(contents(folder / "b.pfm"), contents(folder / "a.pfm")) << name;
   }
+}
+
+TEST(VolumeCommands, RectilinearGridsAreVolumesToo) {
+  const Folder folder;
+  ASSERT_EQ(tessera({"convert", ripples(folder, "a.vti"), folder / "a.vtr", "--quiet"}).status, 0);
+  const Outcome run = tessera({"render", folder / "a.vtr", "-o", folder / "a.exr", "-o", folder / "a.deep.exr",
+                               "--size", "40x40", "--verify", "1000", "--report", folder / "r.json"});
+  EXPECT_EQ(run.status, 0) << run.out << run.err;
+  const auto report = nlohmann::json::parse(contents(folder / "r.json"));
+  EXPECT_TRUE(report["volume"]["rectilinear"]);
+  EXPECT_LT(report["frames"][0]["verify"]["max_error"], 1e-5);
+  const Outcome stepped = tessera({"render", folder / "a.vtr", "-o", folder / "b.exr", "--integrator", "sampled"});
+  EXPECT_EQ(stepped.status, 2);
+  EXPECT_EQ(stepped.error_lines(), 1u) << stepped.err;
 }
 
 TEST(VolumeCommands, InfoSaysWhatAVolumeHolds) {

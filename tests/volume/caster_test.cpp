@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 
 #include <algorithm>
 #include <cmath>
@@ -374,6 +375,41 @@ TEST(VolumeCaster, ShadingOfALinearFieldFollowsBlinnAndPhong) {
       // 1e-5.
       EXPECT_LT(worst, 3e-5) << name << ' ' << camera_light;
     }
+}
+
+TEST(BrickCache, TheLastBrickOf2048CubedIsFound) {
+  // Eight gibibytes of address space, of which a few pages are ever touched.
+  constexpr std::int64_t side = 2048;
+  constexpr auto bytes = static_cast<std::size_t>(side * side * side);
+  void* const memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (memory == MAP_FAILED) GTEST_SKIP() << "this system gives no 8 GiB of addresses";
+  const std::shared_ptr<std::byte> owner(static_cast<std::byte*>(memory), [](std::byte* p) { munmap(p, bytes); });
+  const auto at = [&](std::int64_t i, std::int64_t j, std::int64_t k) -> std::byte& {
+    return owner.get()[i + side * (j + side * k)];
+  };
+  at(2047, 2047, 2047) = std::byte{201};
+  at(2040, 2047, 2046) = std::byte{202};
+  at(0, 0, 2047) = std::byte{203};
+  scene::Grid grid;
+  grid.geometry.points = {side, side, side};
+  grid.type = scene::SampleType::uint8;
+  const scene::MemorySource source(grid, {owner.get(), bytes}, owner, "large");
+  const volume::BrickLayout layout(source.geometry(), 32, volume::EdgeBricks::variable);
+  ASSERT_EQ(layout.count(), 64u * 64u * 64u);
+  volume::BrickCache cache(source, layout, 1 << 20, volume::CachePolicy::lru);
+  const auto sample = [&](std::int64_t i, std::int64_t j, std::int64_t k) {
+    const auto brick = static_cast<std::size_t>(i / 32 + 64 * (j / 32 + 64 * (k / 32)));
+    const scene::SampleBox box = layout.box(layout.place(brick));
+    const scene::GridIndex room = layout.room(layout.place(brick));
+    const std::byte* const values = cache.acquire(brick, nullptr);
+    const std::byte value = values[i - box.low[0] + room[0] * (j - box.low[1] + room[1] * (k - box.low[2]))];
+    cache.release(brick);
+    return static_cast<int>(value);
+  };
+  EXPECT_EQ(sample(2046, 2046, 2046), 0);
+  EXPECT_EQ(sample(2047, 2047, 2047), 201);
+  EXPECT_EQ(sample(2040, 2047, 2046), 202);
+  EXPECT_EQ(sample(0, 0, 2047), 203);
 }
 
 TEST(BrickCache, ProximityThrowsOutTheFarthestAndLoadsTheNearestAhead) {

@@ -1,0 +1,188 @@
+#include "volume/voxel_cast.hpp"
+
+#include <tbb/blocked_range2d.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <limits>
+#include <memory>
+
+#include "compositor/segment_batch.hpp"
+#include "compositor/segment_integrator.hpp"
+
+namespace tessera::volume {
+namespace {
+
+/// What shading makes of a colour c: own * c + white.
+struct VoxelLight {
+  double own = 1, white = 0;
+};
+
+/// Light and material in the world.
+class VoxelShading {
+ public:
+  VoxelShading(const scene::Shading& shading, const scene::Camera& camera, const scene::GridGeometry& geometry)
+      : shading_(shading),
+        direction_(geometry.direction),
+        to_world_gradient_(glm::transpose(scene::world_to_local(geometry))),
+        to_light_(glm::normalize(shading.to_light)) {
+    if (!shading.camera_light) return;
+    const scene::ViewBasis basis = scene::view_basis(camera);
+    to_light_ = basis.right * to_light_.x + basis.up * to_light_.y - basis.forward * to_light_.z;
+  }
+
+  [[nodiscard]] VoxelLight light(const VoxelStretch& s, const glm::dvec3& step) const {
+    const glm::dvec3 p = s.front + s.rise * 0.5;
+    const std::array<double, 8>& v = s.corner;
+    const auto between = [](double a, double b, double c, double d, double x, double y) {
+      return (a * (1 - x) + b * x) * (1 - y) + (c * (1 - x) + d * x) * y;
+    };
+    const glm::dvec3 slope(between(v[1] - v[0], v[3] - v[2], v[5] - v[4], v[7] - v[6], p.y, p.z),
+                           between(v[2] - v[0], v[3] - v[1], v[6] - v[4], v[7] - v[5], p.x, p.z),
+                           between(v[4] - v[0], v[5] - v[1], v[6] - v[2], v[7] - v[3], p.x, p.y));
+    const glm::dvec3 gradient = to_world_gradient_ * (slope / s.side);
+    const double steepness = glm::length(gradient);
+    if (!(steepness > 0)) return {};
+    const glm::dvec3 normal = gradient / steepness, half = to_light_ - glm::normalize(direction_ * step);
+    const double width = glm::length(half), n_h = width > 1e-12 ? std::abs(glm::dot(normal, half)) / width : 0;
+    return {shading_.ambient + shading_.diffuse * std::abs(glm::dot(normal, to_light_)),
+            shading_.specular * std::pow(n_h, shading_.shininess)};
+  }
+
+ private:
+  scene::Shading shading_;
+  glm::dmat3 direction_, to_world_gradient_;
+  glm::dvec3 to_light_;
+};
+
+/// One thread's way of making pixels.
+class VoxelPixels final : public WalkSink {
+ public:
+  VoxelPixels(const scene::SampleSource& source, const scene::Camera& camera, const scene::TransferFunction& function,
+              const VoxelCastSettings& settings)
+      : integrator_(function, {.kind = scene::IntegratorKind::exact}, settings.walk.emission),
+        walk_(source, function, settings.walk) {
+    if (settings.shading && source.geometry().association == scene::Association::point)
+      shading_.emplace(*settings.shading, camera, source.geometry());
+    batch_.reserve(together);
+    lights_.resize(together);
+    places_.resize(together);
+  }
+
+  void cast(const VoxelRay& ray, float* rgba, float& depth) {
+    if (!(ray.begin < ray.end)) return;
+    ++counts_.rays;
+    ray_ = &ray;
+    red_ = green_ = blue_ = optical_depth_ = 0;
+    transmittance_ = 1;
+    first_ = std::numeric_limits<double>::infinity();
+    batch_.size = 0;
+    walk_.walk(ray, *this);
+    put();
+    const auto channel = [](double v) { return static_cast<float>(std::max(0.0, v)); };
+    rgba[0] = channel(red_), rgba[1] = channel(green_), rgba[2] = channel(blue_);
+    rgba[3] = channel(-std::expm1(-optical_depth_));
+    if (rgba[3] > 0) depth = static_cast<float>(first_);
+  }
+
+  void enter(const VoxelStretch& stretch) override {
+    if (shading_) light_ = shading_->light(stretch, ray_->step);
+  }
+  void line(double z0, double z1, double s_0, double s_1) override {
+    if (batch_.size == together) put();
+    const std::size_t n = batch_.size++;
+    batch_.length[n] = (z1 - z0) * ray_->length_per_depth;
+    batch_.scalar_front[n] = s_0, batch_.scalar_back[n] = s_1;
+    lights_[n] = light_, places_[n] = {z0, z1};
+  }
+  [[nodiscard]] double transmittance() const override { return transmittance_; }
+
+  [[nodiscard]] VoxelCastCounts counts() const {
+    VoxelCastCounts counts = counts_;
+    counts.voxels = walk_.counts().voxels;
+    counts.blocks_read = walk_.counts().blocks_read, counts.bytes_read = walk_.counts().bytes_read;
+    return counts;
+  }
+
+ private:
+  static constexpr std::size_t together = 64;
+
+  /// Integrates the lines that have come and puts them behind what there is.
+  void put() {
+    integrator_.integrate(batch_);
+    for (std::size_t n = 0; n < batch_.size; ++n) {
+      const VoxelLight& light = lights_[n];
+      const double white = light.white > 0 ? -light.white * std::expm1(-batch_.optical_depth[n]) : 0;
+      red_ += transmittance_ * (light.own * batch_.red[n] + white);
+      green_ += transmittance_ * (light.own * batch_.green[n] + white);
+      blue_ += transmittance_ * (light.own * batch_.blue[n] + white);
+      optical_depth_ += batch_.optical_depth[n];
+      transmittance_ *= batch_.transmittance[n];
+      if (std::isinf(first_) && batch_.optical_depth[n] > 0)
+        if (const auto u = integrator_.first_visible(batch_.scalar_front[n], batch_.scalar_back[n]))
+          first_ = places_[n][0] + (places_[n][1] - places_[n][0]) * *u;
+    }
+    counts_.lines += batch_.size;
+    batch_.size = 0;
+  }
+
+  compositor::SegmentIntegrator integrator_;
+  std::optional<VoxelShading> shading_;
+  VoxelWalk walk_;
+  compositor::SegmentBatch batch_;
+  std::vector<VoxelLight> lights_;
+  std::vector<std::array<double, 2>> places_;
+  const VoxelRay* ray_ = nullptr;
+  VoxelLight light_;
+  double red_ = 0, green_ = 0, blue_ = 0, optical_depth_ = 0, transmittance_ = 1, first_ = 0;
+  VoxelCastCounts counts_;
+};
+
+}  // namespace
+
+VoxelCastCounts cast_voxel_by_voxel(const scene::SampleSource& source, const scene::Camera& camera,
+                                    const scene::TransferFunction& function, const VoxelCastSettings& settings,
+                                    const PixelRegion& region, scene::Image& image) {
+  const VoxelRays rays(camera, image.size, source.geometry());
+  tbb::enumerable_thread_specific<std::unique_ptr<VoxelPixels>> pixels(
+      [&] { return std::make_unique<VoxelPixels>(source, camera, function, settings); });
+  constexpr int side = 32;
+  if (region.x0 < region.x1 && region.y0 < region.y1)
+    tbb::parallel_for(tbb::blocked_range2d<int>(region.y0, region.y1, side, region.x0, region.x1, side),
+                      [&](const auto& tile) {
+                        VoxelPixels& mine = *pixels.local();
+                        for (int y = tile.rows().begin(); y != tile.rows().end(); ++y)
+                          for (int x = tile.cols().begin(); x != tile.cols().end(); ++x) {
+                            const std::size_t n = image.index(x, y);
+                            mine.cast(rays.ray(x + 0.5, y + 0.5), &image.rgba[4 * n], image.depth[n]);
+                          }
+                      });
+  VoxelCastCounts sum;
+  for (const auto& mine : pixels) {
+    const VoxelCastCounts c = mine->counts();
+    sum.rays += c.rays, sum.voxels += c.voxels, sum.lines += c.lines;
+    sum.blocks_read += c.blocks_read, sum.bytes_read += c.bytes_read;
+  }
+  return sum;
+}
+
+double planes_crossed(const VoxelRay& ray, const scene::GridGeometry& geometry) {
+  if (!(ray.begin < ray.end)) return 0;
+  double planes = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int axis = static_cast<int>(a);
+    const auto index = [&](double z) {
+      const double local = ray.origin[axis] + z * ray.step[axis];
+      const auto& list = geometry.coordinates[a];
+      return list.empty() ? local / geometry.spacing[axis]
+                          : static_cast<double>(std::lower_bound(list.begin(), list.end(), local) - list.begin());
+    };
+    planes += std::abs(index(ray.end) - index(ray.begin));
+  }
+  return planes;
+}
+
+}  // namespace tessera::volume

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "scene/camera.hpp"
+#include "scene/optical_model.hpp"
+#include "scene/sample_source.hpp"
+#include "scene/transfer_function.hpp"
+
+namespace tessera::volume {
+
+/// A view ray in a grid's local frame: at planar depth z it is at origin + z * step, and in the volume and in view
+/// between `begin` and `end` (empty if begin >= end).
+struct VoxelRay {
+  glm::dvec3 origin, step;
+  double length_per_depth, begin, end;
+};
+
+/// The rays of a picture; any lattice.
+class VoxelRays {
+ public:
+  /// A valid camera and size.
+  VoxelRays(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry);
+
+  /// Through pixel coordinates (x, y), pixel (i, j) having its centre at (i + 0.5, j + 0.5).
+  [[nodiscard]] VoxelRay ray(double x, double y) const;
+
+ private:
+  scene::Camera camera_;
+  const scene::GridGeometry& geometry_;
+  scene::ViewBasis basis_;
+  glm::dmat3 to_local_;
+  bool perspective_;
+  double width_, height_, pixel_;
+};
+
+/// A ray's stretch in one voxel, planar depths z0 to z1. `corner` a + 2 b + 4 c is the value at the voxel's corner
+/// (a, b, c), all the same for cell data; the ray is at `front` of the unit cube at z0, and at front + rise at z1.
+struct VoxelStretch {
+  double z0, z1;
+  std::array<double, 8> corner;
+  glm::dvec3 front, rise, side;  ///< side: of the voxel, world units along the grid's axes
+};
+
+/// What a walk finds, front to back.
+class WalkSink {
+ public:
+  virtual ~WalkSink() = default;
+  /// The ray has come to a voxel of which something shows.
+  virtual void enter(const VoxelStretch& stretch) = 0;
+  /// In it the scalar is a line from s_0 to s_1 between planar depths z0 and z1, in one interval of the transfer
+  /// function.
+  virtual void line(double z0, double z1, double s_0, double s_1) = 0;
+  /// At most what is let through so far; below `least` the walk ends.
+  [[nodiscard]] virtual double transmittance() const = 0;
+};
+
+struct WalkSettings {
+  scene::Emission emission = scene::Emission::absorption;
+  double tolerance = 2e-9;  ///< linear RGBA, a stretch taken for a line
+  double least = 0;         ///< transmittance at which the walk ends
+  /// One byte for each cell of 8^3 voxels (cell_ranges.hpp): whether something of it shows; empty: all may.
+  std::span<const std::uint8_t> visible = {};
+};
+
+/// Goes along rays from voxel to voxel in double precision, one thread's way: regular and rectilinear grids, point and
+/// cell data. The cubic of the trilinear field is cut where it turns and at the knots of the transfer function, and
+/// into stretches so short that a line through its mean gives their light to the tolerance (ray_piece-inl.h has the
+/// bound).
+///
+/// Samples are read in blocks of 16^3 voxels, 256 of which are kept: 10 MB.
+class VoxelWalk {
+ public:
+  VoxelWalk(const scene::SampleSource& source, const scene::TransferFunction& function, const WalkSettings& settings);
+
+  void walk(const VoxelRay& ray, WalkSink& sink);
+
+  /// Since it was made.
+  struct Counts {
+    std::uint64_t voxels = 0, blocks_read = 0, bytes_read = 0;
+  };
+  [[nodiscard]] const Counts& counts() const { return counts_; }
+
+ private:
+  struct Block {
+    scene::GridIndex place{-1, -1, -1};
+    scene::SampleBox box;
+    std::vector<double> values;
+  };
+  struct FieldCubic;
+
+  std::array<double, 8> corners(const scene::GridIndex& voxel);
+  void fill(Block& block, const scene::GridIndex& place);
+  void cross(const VoxelRay& ray, const scene::GridIndex& voxel, double z0, double z1, WalkSink& sink);
+  [[nodiscard]] double next_knot(double s, double crossed, bool up) const;
+  void add_smooth(const FieldCubic& field, double u0, double u1, double length, double z0, double z1, int halvings,
+                  WalkSink& sink) const;
+  [[nodiscard]] bool shows(double low, double high) const;
+  [[nodiscard]] std::int64_t voxel_along(std::size_t axis, double local) const;
+
+  const scene::SampleSource& source_;
+  const scene::GridGeometry& geometry_;
+  WalkSettings settings_;
+  scene::GridIndex samples_, cells_;
+  std::int64_t shared_;
+  std::vector<Block> blocks_;
+  std::vector<scene::Knot> knots_;
+  bool independent_;
+  double last_knot_ = 0;
+  Counts counts_;
+};
+
+}  // namespace tessera::volume
