@@ -1,0 +1,64 @@
+// Any bytes in a file of any volume format of our own reading (NRRD, NIfTI, MetaImage, bricks, by what they begin with)
+// are a volume whose samples can be read and lie in its range, or are refused in one line.
+#include <unistd.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "fuzz_check.hpp"
+#include "io/volume_formats.hpp"
+#include "io/volume_reader.hpp"
+
+namespace tessera::io {
+
+// VTK's readers are not fuzzed here.
+VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions& /*options*/) {
+  throw damaged(file, "it is VTK's");
+}
+bool looks_like_vtk_grid(std::string_view /*beginning*/) { return false; }
+
+}  // namespace tessera::io
+
+namespace {
+
+/// Readers take files. The name's end counts where the beginning says nothing.
+class FuzzFile {
+ public:
+  FuzzFile() {
+    const std::filesystem::path memory = "/dev/shm";
+    const auto folder = std::filesystem::exists(memory) ? memory : std::filesystem::temp_directory_path();
+    path = folder / ("tessera_fuzz_" + std::to_string(getpid()) + ".nii");
+  }
+  ~FuzzFile() { std::filesystem::remove(path); }
+  void write(const std::uint8_t* data, std::size_t size) const {
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+  }
+  std::filesystem::path path;
+};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace tessera;
+  static const FuzzFile file;
+  file.write(data, size);
+  test::parse_or_refuse([&] {
+    const io::VolumeFile volume = io::open_volume(file.path, {});
+    const scene::SampleBox all = volume.source->geometry().all_samples();
+    test::require(all.count() > 0 && all.count() <= 64 * static_cast<std::int64_t>(size + 64));
+    std::vector<double> values(static_cast<std::size_t>(all.count()));
+    volume.source->read(all, std::span<double>(values));
+    // A brick file may say that its range is wider than it is.
+    for (const double v : values)
+      if (const double value = volume.source->grid().value(v); std::isfinite(v) && std::isfinite(value))
+        test::require(volume.format.find("rick") != std::string::npos ||
+                      (value >= volume.range.low && value <= volume.range.high));
+  });
+  return 0;
+}
