@@ -280,8 +280,8 @@ class PixelGroup {
       const VF length = HN::Load(df, light_.length + at), scalar_front = HN::Load(df, light_.scalar_front + at),
                scalar_back = HN::Load(df, light_.scalar_back + at);
       MF more;
-      const Light light = integrate_simple(table_, HN::Load(d, light_.interval + at), length, scalar_front,
-                                           scalar_back, more);
+      const Light light =
+          integrate_simple(table_, HN::Load(d, light_.interval + at), length, scalar_front, scalar_back, more);
       light_.put(light, at);
       MF lit = HN::Or(more, HN::Gt(light.optical_depth, zero));
       if (table_.independent) lit = HN::Or(lit, HN::Gt(HN::Add(light.red, HN::Add(light.green, light.blue)), zero));
