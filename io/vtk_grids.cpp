@@ -182,6 +182,33 @@ void set_vtk_coordinates(vtkDataArray* array, int axis, const std::filesystem::p
   g.coordinates[a] = std::move(c);
 }
 
+/// Half a last place, relative, of what stored coordinates.
+double rounding_of(vtkDataArray& array) {
+  if (array.GetDataType() == VTK_FLOAT) return 0x1p-24;
+  return array.GetDataType() == VTK_DOUBLE ? 0x1p-53 : 0;
+}
+
+/// Makes a rectilinear grid regular whose coordinates are even but for their rounding: many writers know no other kind,
+/// and regular grids are cast much faster.
+void make_regular_if_even(vtkRectilinearGrid& grid, scene::GridGeometry& g) {
+  vtkDataArray* const arrays[] = {grid.GetXCoordinates(), grid.GetYCoordinates(), grid.GetZCoordinates()};
+  glm::dvec3 first(0), spacing(1);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::vector<double>& c = g.coordinates[a];
+    if (c.size() < 2 || !(c.back() > c.front())) return;
+    const double step = (c.back() - c.front()) / static_cast<double>(c.size() - 1);
+    // Both ends are rounded, the sums and products of writer and reader by a few places of a double more.
+    const double rounding = 2 * rounding_of(*arrays[a]) + 0x1p-50;
+    const double most = std::min(rounding * std::max(std::abs(c.front()), std::abs(c.back())), 1e-3 * step);
+    for (std::size_t i = 0; i < c.size(); ++i)
+      if (!(std::abs(c[i] - (c.front() + step * static_cast<double>(i))) <= most)) return;
+    first[static_cast<int>(a)] = c.front(), spacing[static_cast<int>(a)] = step;
+  }
+  g.origin += g.direction * first;
+  g.spacing = spacing;
+  g.coordinates = {};
+}
+
 scene::GridGeometry vtk_geometry_of(vtkDataSet& data, const std::filesystem::path& file) {
   scene::GridGeometry g;
   int dims[3] = {0, 0, 0};
@@ -195,6 +222,7 @@ scene::GridGeometry vtk_geometry_of(vtkDataSet& data, const std::filesystem::pat
     set_vtk_coordinates(grid->GetXCoordinates(), 0, file, g);
     set_vtk_coordinates(grid->GetYCoordinates(), 1, file, g);
     set_vtk_coordinates(grid->GetZCoordinates(), 2, file, g);
+    make_regular_if_even(*grid, g);
   } else {
     throw scene::bad_input(fmt::format("{}: it holds {}, no regular or rectilinear grid; give a volume", file.string(),
                                        data.GetClassName()));

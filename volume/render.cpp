@@ -334,10 +334,10 @@ void Renderer::State::cast_rectilinear(const scene::Camera& camera, const scene:
     show_more(ranges, bricks.layout(), !settings.use.culling, !settings.use.skipping, visible);
     result.brick_visible = volume::visible_bricks(ranges, visible, bricks.layout());
     const scene::TraceScope scope(settings.trace, "project");
-    const double tolerance = settings.method == Method::exact ? 2e-9 : accuracy() / 1024;
     const VoxelCastCounts counts = cast_voxel_by_voxel(
         source, camera, function,
-        {{settings.emission, tolerance, static_cast<double>(least_transmittance(function)), visible}, settings.shading},
+        {{settings.emission, WalkSettings().tolerance, static_cast<double>(least_transmittance(function)), visible},
+         settings.shading},
         wanted, image);
     result.counts.rays = counts.rays, result.counts.voxels_visited = counts.voxels;
     result.counts.samples = counts.lines;

@@ -413,6 +413,47 @@ TEST_F(VolumeFiles, ABrickFileKeepsGeometryScaleAndRangesAndReadsAnyBox) {
   }
 }
 
+TEST_F(VolumeFiles, RectilinearCoordinatesThatAreEvenButForRoundingMakeARegularGrid) {
+  const auto geometry = [&](const std::string& type, const std::string& axis) {
+    const std::string array = "<DataArray type=\"" + type + "\" format=\"ascii\">" + axis + "</DataArray>";
+    folder.write(
+        "a.vtr",
+        "<VTKFile type=\"RectilinearGrid\" version=\"1.0\" byte_order=\"LittleEndian\">"
+        "<RectilinearGrid WholeExtent=\"0 3 0 3 0 3\"><Piece Extent=\"0 3 0 3 0 3\"><PointData>"
+        "<DataArray type=\"UInt8\" Name=\"f\" format=\"ascii\">" +
+            [] {
+              std::string samples;
+              for (int i = 0; i < 64; ++i) samples += std::to_string(i) + " ";
+              return samples;
+            }() +
+            "</DataArray></PointData><Coordinates>" + array + array + array +
+            "</Coordinates></Piece></RectilinearGrid></VTKFile>");
+    return open_volume(folder / "a.vtr").source->geometry();
+  };
+  for (const char* type : {"Float32", "Float64", "Int32"}) {
+    const bool whole = std::string(type) == "Int32";
+    const scene::GridGeometry even = geometry(type, whole ? "5 8 11 14" : "-0.7 -0.6 -0.5 -0.4");
+    EXPECT_FALSE(even.rectilinear()) << type;
+    const double first = whole ? 5 : -0.7, last = whole ? 14 : -0.4,
+                 place = std::string(type) == "Float32" ? 5e-8 : 1e-15;
+    for (int a = 0; a < 3; ++a) {
+      EXPECT_NEAR(scene::world_of_index(even, {0, 0, 0})[a], first, place) << type;
+      EXPECT_NEAR(scene::world_of_index(even, {3, 3, 3})[a], last, place) << type;
+    }
+    // Turned over.
+    const scene::GridGeometry falling = geometry(type, whole ? "14 11 8 5" : "-0.4 -0.5 -0.6 -0.7");
+    EXPECT_FALSE(falling.rectilinear()) << type;
+    EXPECT_NEAR(scene::world_of_index(falling, {0, 0, 0}).x, last, place) << type;
+    EXPECT_NEAR(scene::world_of_index(falling, {3, 0, 0}).x, first, place) << type;
+  }
+  // Off by more than their type rounds.
+  EXPECT_TRUE(geometry("Float32", "-0.7 -0.6 -0.500001 -0.4").rectilinear());
+  EXPECT_TRUE(geometry("Float64", "-0.7 -0.6 -0.50000001 -0.4").rectilinear());
+  EXPECT_TRUE(geometry("Int32", "5 8 12 14").rectilinear());
+  // So far from zero that rounding is much of a step.
+  EXPECT_TRUE(geometry("Float32", "1e6 1000000.125 1000000.1875 1000000.375").rectilinear());
+}
+
 TEST_F(VolumeFiles, FormatsRefuseWhatTheyCannotSay) {
   scene::Grid grid = wavy_grid();
   grid.geometry.coordinates[1] = counting<double>(10);
