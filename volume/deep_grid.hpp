@@ -25,7 +25,8 @@ struct DeepSettings {
 ///           stretches so short that a line through its mean gives their light to 2e-9 (ray_piece-inl.h has the bound);
 ///           from there on it is as with meshes: compositor/deep_pieces.hpp, deep_fragments.hpp.
 /// Flat      the samples flattened are the volume's picture to 1e-5, and within --accuracy of the caster's.
-/// Cost      about twenty times the caster's. Samples are read in blocks of 16^3 voxels, 256 of them kept a thread: 10 MB.
+/// Cost      about twenty times the caster's. Samples are read in blocks of 16^3 voxels, 256 of them kept a thread: 10
+/// MB.
 ///
 /// Throws Error(bad_input) for an accuracy out of range, Error(system_failure) if memory does not hold the samples.
 scene::DeepImage deep_image(const scene::SampleSource& source, const scene::Camera& camera, scene::ImageSize size,
