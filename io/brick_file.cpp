@@ -15,6 +15,7 @@
 #include "io/field_choice.hpp"
 #include "io/input_file.hpp"
 #include "io/json_text.hpp"
+#include "io/text_file.hpp"
 #include "io/volume_formats.hpp"
 #include "scene/error.hpp"
 
@@ -227,7 +228,7 @@ BrickHeader parse_brick_header(const std::string& text, const std::filesystem::p
         g.direction[column][row] = direction.at(static_cast<std::size_t>(3 * column + row));
     g.coordinates = json.at("coordinates").get<std::array<std::vector<double>, 3>>();
     const auto type = parse_sample_type(json.at("type").get<std::string>());
-    if (!type) throw damaged(file, fmt::format("its type is '{}'", json.at("type").get<std::string>()));
+    if (!type) throw damaged(file, fmt::format("its type is {}", quote(json.at("type").get<std::string>())));
     header.grid.type = *type;
     header.grid.scale = json.at("scale");
     header.grid.shift = json.at("shift");

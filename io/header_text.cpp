@@ -4,6 +4,7 @@
 
 #include <charconv>
 
+#include "io/text_file.hpp"
 #include "io/volume_formats.hpp"
 
 namespace tessera::io {
@@ -48,8 +49,7 @@ std::vector<double> header_numbers(std::string_view text, std::size_t count, con
     numbers.push_back(value);
   }
   if (numbers.size() != count || header_words_of(text).size() != count)
-    throw damaged(file,
-                  fmt::format("{} is '{}', not {} number{}", what, text.substr(0, 60), count, count > 1 ? "s" : ""));
+    throw damaged(file, fmt::format("{} is {}, not {} number{}", what, quote(text), count, count > 1 ? "s" : ""));
   return numbers;
 }
 
@@ -57,8 +57,7 @@ std::int64_t header_count(std::string_view text, std::int64_t low, std::int64_t 
                           const char* what) {
   std::int64_t value = 0;
   if (!header_parsed(trimmed(text), value) || value < low || value > high)
-    throw damaged(file,
-                  fmt::format("{} is '{}', not a whole number from {} to {}", what, text.substr(0, 40), low, high));
+    throw damaged(file, fmt::format("{} is {}, not a whole number from {} to {}", what, quote(text), low, high));
   return value;
 }
 
@@ -72,8 +71,7 @@ std::vector<std::int64_t> header_count_list(std::string_view text, const std::fi
 
 scene::GridIndex header_counts(std::string_view text, const std::filesystem::path& file, const char* what) {
   const auto counts = header_count_list(text, file, what);
-  if (counts.size() != 3)
-    throw damaged(file, fmt::format("{} is '{}', not three whole numbers", what, text.substr(0, 60)));
+  if (counts.size() != 3) throw damaged(file, fmt::format("{} is {}, not three whole numbers", what, quote(text)));
   return {counts[0], counts[1], counts[2]};
 }
 

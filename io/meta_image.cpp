@@ -9,6 +9,7 @@
 
 #include "io/header_text.hpp"
 #include "io/input_file.hpp"
+#include "io/text_file.hpp"
 #include "io/volume_formats.hpp"
 
 namespace tessera::io {
@@ -49,7 +50,7 @@ MetaHeader parse_meta_header(std::string_view text, const std::filesystem::path&
     const std::size_t equals = line.find('=');
     if (trimmed(line).empty()) continue;
     if (equals == std::string_view::npos)
-      throw damaged(file, fmt::format("'{}' is no line 'Key = value' of its header", trimmed(line).substr(0, 40)));
+      throw damaged(file, fmt::format("{} is no line 'Key = value' of its header", quote(trimmed(line))));
     const std::string key(trimmed(line.substr(0, equals)));
     header.values[key] = std::string(trimmed(line.substr(equals + 1)));
     if (key == "ElementDataFile") return header;
@@ -79,11 +80,12 @@ StoredVolume read_meta_image_header(const std::filesystem::path& file) {
   };
 
   if (const auto* object = header.find({"ObjectType"}); object && *object != "Image")
-    throw scene::bad_input(fmt::format("{}: it holds a '{}', not an image; give a volume", file.string(), *object));
+    throw scene::bad_input(
+        fmt::format("{}: it holds a {}, not an image; give a volume", file.string(), quote(*object)));
   const auto* dimensions = header.find({"NDims"});
   if (!dimensions) throw damaged(file, "its header has no NDims");
-  if (*dimensions != "3")
-    throw scene::bad_input(fmt::format("{}: it has {} dimensions; a volume has three", file.string(), *dimensions));
+  if (const auto count = header_count(*dimensions, 1, 99, file, "NDims"); count != 3)
+    throw scene::bad_input(fmt::format("{}: it has {} dimensions; a volume has three", file.string(), count));
   const auto* size = header.find({"DimSize"});
   if (!size) throw damaged(file, "its header has no DimSize");
   volume.grid.geometry.points = header_counts(*size, file, "DimSize");
@@ -96,9 +98,9 @@ StoredVolume read_meta_image_header(const std::filesystem::path& file) {
       std::find_if(element_types.begin(), element_types.end(), [&](const ElementType& t) { return word == t.name; });
   if (known == element_types.end())
     throw scene::bad_input(
-        fmt::format("{}: its ElementType '{}' is none that is read; write MET_UCHAR, MET_SHORT, "
+        fmt::format("{}: its ElementType {} is none that is read; write MET_UCHAR, MET_SHORT, "
                     "MET_USHORT, MET_INT, MET_FLOAT or MET_DOUBLE",
-                    file.string(), *type));
+                    file.string(), quote(*type)));
   volume.number = known->type;
   volume.wide = known->wide;
   if (const auto* channels = header.find({"ElementNumberOfChannels"}))

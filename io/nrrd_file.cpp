@@ -11,6 +11,7 @@
 #include "io/header_text.hpp"
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
+#include "io/text_file.hpp"
 #include "io/volume_formats.hpp"
 
 namespace tessera::io {
@@ -86,7 +87,7 @@ NrrdFields parse_fields(std::string_view text, const std::filesystem::path& file
     const std::size_t colon = line.find(':');
     if (line.front() == '#') continue;
     if (colon == std::string_view::npos)
-      throw damaged(file, fmt::format("'{}' is no line 'field: value' of its header", line.substr(0, 40)));
+      throw damaged(file, fmt::format("{} is no line 'field: value' of its header", quote(line)));
     if (line.substr(colon).starts_with(":=")) continue;  // a key of the user's
     std::string name = lower_words(line.substr(0, colon));
     std::erase(name, ' ');
@@ -114,7 +115,7 @@ std::vector<std::optional<glm::dvec3>> space_vectors_of(std::string_view text, c
     }
     const std::size_t close = text.find(')');
     if (text.front() != '(' || close == std::string_view::npos)
-      throw damaged(file, fmt::format("space directions hold '{}', no vector", text.substr(0, 40)));
+      throw damaged(file, fmt::format("space directions hold {}, no vector", quote(text)));
     const auto v = header_numbers(text.substr(0, close + 1), 3, file, "a space direction");
     vectors.emplace_back(glm::dvec3(v[0], v[1], v[2]));
     text = trimmed(text.substr(close + 1));
@@ -200,8 +201,8 @@ StoredVolume read_nrrd_header(const std::filesystem::path& file) {
   else if (std::ranges::count(nrrd_uint64_names, type) > 0)
     volume.wide = StoredVolume::Wide::uint64;
   else if (known == nrrd_type_names.end())
-    throw scene::bad_input(fmt::format("{}: its type '{}' is none that is read; write integers, float or double",
-                                       file.string(), type.substr(0, 40)));
+    throw scene::bad_input(fmt::format("{}: its type {} is none that is read; write integers, float or double",
+                                       file.string(), quote(type)));
   volume.number = volume.wide == StoredVolume::Wide::no ? known->type : SampleType::float64;
   const std::string encoding = lower_words(required_field(fields, "encoding", file));
   volume.compressed = encoding == "gzip" || encoding == "gz";
@@ -210,8 +211,8 @@ StoredVolume read_nrrd_header(const std::filesystem::path& file) {
   else if (encoding == "hex")
     volume.coding = StoredVolume::Coding::hex;
   else if (!volume.compressed && encoding != "raw")
-    throw scene::bad_input(fmt::format("{}: its encoding '{}' is not read; write raw, gzip, ascii or hex",
-                                       file.string(), encoding.substr(0, 40)));
+    throw scene::bad_input(
+        fmt::format("{}: its encoding {} is not read; write raw, gzip, ascii or hex", file.string(), quote(encoding)));
   const auto* endian = fields.find("endian");
   if (!endian && scene::size_of(volume.number) > 1 && volume.coding != StoredVolume::Coding::text)
     throw damaged(file, "its header has no field 'endian'");

@@ -8,6 +8,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "io/text_file.hpp"
 #include "scene/error.hpp"
 #include "scene/sample_source.hpp"
 
@@ -43,8 +44,8 @@ void parse_samples(std::string_view text, std::uint64_t count, std::span<std::by
              value <= static_cast<double>(std::numeric_limits<T>::max());
     if (!good)
       throw scene::bad_input(fmt::format(
-          "{}: sample {} is '{}', no number of its type; the file is damaged or of another type, write it anew", source,
-          n, std::string_view(at, std::min<std::size_t>(static_cast<std::size_t>(end - at), 20))));
+          "{}: sample {} is {}, no number of its type; the file is damaged or of another type, write it anew", source,
+          n, quote({at, std::min<std::size_t>(static_cast<std::size_t>(end - at), 20)})));
     const T sample = static_cast<T>(value);
     std::memcpy(out.data() + n * sizeof(T), &sample, sizeof(T));
     at = stop;
@@ -86,8 +87,8 @@ std::vector<std::byte> bytes_of_hex(std::string_view text, std::uint64_t count, 
     if (at == std::string_view::npos) throw too_few(source, n / 2, count, "bytes");
     const int digit = digit_of(text[at++]);
     if (digit < 0)
-      throw scene::bad_input(fmt::format("{}: its samples hold '{}', no hexadecimal digit; write it anew", source,
-                                         text.substr(at - 1, 10)));
+      throw scene::bad_input(fmt::format("{}: its samples hold {}, no hexadecimal digit; write it anew", source,
+                                         quote(text.substr(at - 1, 10))));
     std::byte& byte = out[static_cast<std::size_t>(n / 2)];
     byte = static_cast<std::byte>((std::to_integer<int>(byte) << 4) | digit);
   }
