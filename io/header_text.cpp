@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <system_error>
 
 #include "io/text_file.hpp"
 #include "io/volume_formats.hpp"
+#include "scene/error.hpp"
 
 namespace tessera::io {
 namespace {
@@ -73,6 +76,16 @@ scene::GridIndex header_counts(std::string_view text, const std::filesystem::pat
   const auto counts = header_count_list(text, file, what);
   if (counts.size() != 3) throw damaged(file, fmt::format("{} is {}, not three whole numbers", what, quote(text)));
   return {counts[0], counts[1], counts[2]};
+}
+
+std::filesystem::path header_path(std::string_view text, const std::filesystem::path& file, const char* what) {
+  const bool is_name = std::none_of(text.begin(), text.end(), [](char c) { return c >= 0 && c < 0x20; });
+  std::error_code failed;
+  std::filesystem::path path = file.parent_path() / text;
+  if (!is_name || !std::filesystem::exists(path, failed))
+    throw scene::bad_input(fmt::format("{}: {} is {}, and there is no such file; put the file it names there",
+                                       file.string(), what, quote(text)));
+  return path;
 }
 
 }  // namespace tessera::io

@@ -28,4 +28,7 @@ std::vector<std::int64_t> header_count_list(std::string_view text, const std::fi
 /// Exactly three of them.
 scene::GridIndex header_counts(std::string_view text, const std::filesystem::path& file, const char* what);
 
+/// The file of samples that a header names, beside it or by an absolute path. It is there.
+std::filesystem::path header_path(std::string_view text, const std::filesystem::path& file, const char* what);
+
 }  // namespace tessera::io

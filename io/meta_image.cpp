@@ -143,7 +143,7 @@ StoredVolume read_meta_image_header(const std::filesystem::path& file) {
   if (payload.starts_with("LIST") || payload.find('%') != std::string::npos)
     throw scene::bad_input(fmt::format("{}: its slices are in several files; write one", file.string()));
   const bool local = payload == "LOCAL" || payload == "Local" || payload == "local";
-  volume.payload = local ? file : file.parent_path() / payload;
+  volume.payload = local ? file : header_path(payload, file, "ElementDataFile");
   volume.offset = local ? header.end : 0;
   if (const auto* value = header.find({"HeaderSize"}); value && !local) {
     if (*value == "-1" && volume.coding == StoredVolume::Coding::text)

@@ -224,7 +224,7 @@ StoredVolume read_nrrd_header(const std::filesystem::path& file) {
   if (const auto* detached = fields.find("datafile")) {
     if (detached->starts_with("LIST") || detached->find('%') != std::string::npos)
       throw scene::bad_input(fmt::format("{}: its slices are in several files; write one", file.string()));
-    volume.payload = file.parent_path() / *detached;
+    volume.payload = header_path(*detached, file, "data file");
     volume.offset = 0;
   }
   if (const auto* lines = fields.find("lineskip"))
