@@ -104,6 +104,7 @@ Json volume_frame_json(const RenderOptions& options, const Frame& frame, const V
   json["counters"] = {{"rays", s.rays},
                       {"voxels_visited", s.voxels_visited},
                       {"samples", s.samples},
+                      {"pixels_in_double_precision", s.pixels_again},
                       {"bricks_total", s.bricks_total},
                       {"bricks_invisible", s.bricks_invisible},
                       {"brick_hits", s.brick_hits},

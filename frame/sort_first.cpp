@@ -27,11 +27,11 @@ using volume::PixelRegion;
 struct RegionHeader {
   std::uint64_t frame;
   PixelRegion region;
-  std::uint64_t rays, voxels_visited, samples, bricks_total, bricks_invisible, brick_hits, bricks_loaded,
+  std::uint64_t rays, voxels_visited, samples, pixels_again, bricks_total, bricks_invisible, brick_hits, bricks_loaded,
       bricks_evicted, bytes_loaded, bytes_resident, peak_bytes, blank_samples;
   double cpu_seconds;
 };
-static_assert(sizeof(RegionHeader) == 16 * 8);
+static_assert(sizeof(RegionHeader) == 17 * 8);
 
 template <class T>
 void append(Bytes& bytes, std::span<const T> values) {
@@ -130,6 +130,7 @@ class SortFirst::State {
                         statistics.rays,
                         statistics.voxels_visited,
                         statistics.samples,
+                        statistics.pixels_again,
                         statistics.bricks_total,
                         statistics.bricks_invisible,
                         statistics.brick_hits,
@@ -294,6 +295,7 @@ class SortFirst::State {
     }
     volume::RenderStatistics& s = finished.statistics;
     s.rays += header.rays, s.voxels_visited += header.voxels_visited, s.samples += header.samples;
+    s.pixels_again += header.pixels_again;
     s.brick_hits += header.brick_hits, s.bricks_loaded += header.bricks_loaded;
     s.bricks_evicted += header.bricks_evicted, s.bytes_loaded += header.bytes_loaded;
     s.bytes_resident += header.bytes_resident, s.peak_bytes += header.peak_bytes;

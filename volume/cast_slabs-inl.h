@@ -114,7 +114,7 @@ class PacketCast {
   }
 
   Progress progress_;
-  FirstLight first_;
+  RayNotes notes_;
 
   HWY_INLINE void run(const Reach& reach) {
     const DF d;
@@ -298,16 +298,16 @@ class PacketCast {
     CL::lanes::add_piece<false>(current_.uniform(), 0, HN::Add(s_0, shift), HN::Add(s_1, shift), span, length,
                                 progress_);
     counts_.samples += live_count_;
-    if (HWY_UNLIKELY(!HN::AllTrue(d, first_.seen)))
-      note_first_light(progress_, HN::Set(d, static_cast<float>(n)), first_);
+    if (HWY_UNLIKELY(!HN::AllTrue(d, notes_.seen)))
+      note_first_light(progress_, HN::Set(d, static_cast<float>(n)), notes_);
   }
 
   /// A slab that crosses knots, or is rough.
   HWY_NOINLINE void add_slowly(const SlabLines& lines, const Line& line, int m, int n, MF live, VF length) {
     const MF apart = cast_mixed(frame_, lookup_, line, live, HN::Set(DF(), static_cast<float>(n)), length, current_,
-                                progress_, first_, counts_);
+                                progress_, notes_, counts_);
     if (HN::AllFalse(DF(), apart)) return;
-    cast_stretches(frame_, lookup_, lanes_.length, lines, m, n, apart, progress_, first_, counts_);
+    cast_stretches(frame_, lookup_, lanes_.length, lines, m, n, apart, progress_, notes_, counts_);
   }
 
   /// A slab in which lanes begin or end, cell data, shaded.
@@ -322,7 +322,7 @@ class PacketCast {
       counts_.voxels_visited += HN::CountTrue(d, HN::Gt(stretch.end, stretch.begin));
     if (cell_data || frame_.shading != nullptr) {
       cast_voxels<cell_data>(frame_, chunk_.axes, lookup_, lanes_, path, window,
-                             uniform ? &current_.uniform() : nullptr, HN::Gt(path.to, path.from), progress_, first_,
+                             uniform ? &current_.uniform() : nullptr, HN::Gt(path.to, path.from), progress_, notes_,
                              counts_);
       return;
     }
@@ -330,9 +330,9 @@ class PacketCast {
       const MF there = HN::Gt(path.to, path.from);
       const VF length = HN::IfThenElseZero(there, HN::Mul(lanes_.length, HN::Sub(path.to, path.from)));
       const MF apart = cast_mixed(frame_, lookup_, part_line(lanes_, path, window), there, HN::Add(path.from, path.k),
-                                  length, current_, progress_, first_, counts_);
+                                  length, current_, progress_, notes_, counts_);
       if (!HN::AllFalse(d, apart))
-        cast_voxels<false>(frame_, chunk_.axes, lookup_, lanes_, path, window, nullptr, apart, progress_, first_,
+        cast_voxels<false>(frame_, chunk_.axes, lookup_, lanes_, path, window, nullptr, apart, progress_, notes_,
                            counts_);
     }
   }
@@ -366,7 +366,7 @@ HWY_NOINLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int r
   PacketCast<cell_data, Window, Lookup> cast(chunk, lookup, slabs, lanes, before, current, counts);
   const VF alpha_before = HN::LoadU(d, rays.alpha + ray);
   const MF seen_before = HN::Gt(alpha_before, HN::Zero(d));
-  cast.first_ = {HN::Set(d, -1.0f), seen_before};
+  cast.notes_ = {HN::Set(d, -1.0f), seen_before, HN::Zero(d)};
   cast.run(reach);
 
   const Progress& progress = cast.progress_;
@@ -377,10 +377,11 @@ HWY_NOINLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int r
   add(rays.green, progress.green);
   add(rays.blue, progress.blue);
   HN::StoreU(HN::Mul(before, progress.transmittance), d, rays.transmittance + ray);
-  if (!HN::AllFalse(d, HN::AndNot(seen_before, cast.first_.seen))) {
+  HN::StoreU(HN::Max(HN::LoadU(d, rays.touched + ray), HN::Mul(before, cast.notes_.touched)), d, rays.touched + ray);
+  if (!HN::AllFalse(d, HN::AndNot(seen_before, cast.notes_.seen))) {
     const auto first_k = static_cast<double>(chunk.first_k);
     HWY_ALIGN float place[most];
-    HN::Store(HN::IfThenElse(seen_before, HN::Set(d, -1.0f), cast.first_.place), d, place);
+    HN::Store(HN::IfThenElse(seen_before, HN::Set(d, -1.0f), cast.notes_.first), d, place);
     for (std::size_t l = 0; l < lane_count; ++l)
       if (place[l] >= 0) rays.first_k[static_cast<std::size_t>(ray) + l] = first_k + static_cast<double>(place[l]);
   }

@@ -36,11 +36,16 @@ class CurrentInterval {
     set(n);
     return window.all_in(low_, high_);
   }
-  /// Whether [low, high] lies in the current interval, in the lanes that are live.
+  /// Whether [low, high] lies in the current interval, and for certain if that ends at a step, in the lanes that are
+  /// live.
   [[nodiscard]] HWY_INLINE bool around(VF low, VF high, MF live) const {
     const DF d;
-    const MF inside = HN::And(HN::Ge(low, HN::Set(d, low_)), HN::Lt(high, HN::Set(d, high_)));
-    return HN::AllFalse(d, HN::AndNot(inside, live));
+    const MF below = HN::Lt(high, HN::Set(d, guarded_high_));
+    if (HWY_LIKELY(HN::AllFalse(d, HN::AndNot(HN::And(HN::Ge(low, HN::Set(d, guarded_low_)), below), live))))
+      return true;
+    // A plateau at a step is on its side to the bit.
+    const MF inside = HN::And(HN::Or(HN::Eq(low, HN::Set(d, low_)), HN::Ge(low, HN::Set(d, guarded_low_))), below);
+    return guarded_low_ != low_ && HN::AllFalse(d, HN::AndNot(inside, live));
   }
   /// Makes interval n the current one.
   HWY_INLINE void move_to(std::size_t n) {
@@ -54,6 +59,11 @@ class CurrentInterval {
     interval_ = n;
     low_ = table_.column(LaneTable::edge)[n];
     high_ = table_.column(LaneTable::edge)[n + 1];
+    guarded_low_ = low_, guarded_high_ = high_;
+    if (frame_.steps != nullptr) {
+      if (frame_.steps->weight[n] > 0) guarded_low_ += frame_.steps->noise;
+      if (frame_.steps->weight[n + 1] > 0) guarded_high_ -= frame_.steps->noise;
+    }
     clear_ = true;
     for (int c = 0; c < LaneTable::column_count; ++c) {
       uniform_.row[c] = table_.column(c)[n];
@@ -76,6 +86,7 @@ class CurrentInterval {
   const FrameView& frame_;
   std::size_t interval_ = 0;
   float low_, high_;
+  float guarded_low_, guarded_high_;  ///< further in by the field's noise where the interval ends at a step
   bool clear_ = false;
   UniformLookup uniform_;
 };

@@ -15,7 +15,7 @@
 //           and its products with the odd and even part leave |c'| (k l)^2 (|p_3| / 120 + k l |b| / 90).
 //           Where that exceeds the tolerance the stretch is halved: the bound falls to an eighth at least.
 // Knots     A stretch that leaves its interval is cut where the cubic crosses the knot: between extrema it is monotone,
-//           Newton's method, kept in its bracket, finds the place, near a touch only to 3e-4 (docs/STABILITY.md).
+//           Newton's method, kept in its bracket, finds the place, near a touch only to 3e-4 (touched_steps.hpp).
 
 #if defined(TESSERA_VOLUME_RAY_PIECE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_RAY_PIECE_INL_H_
@@ -29,6 +29,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volume/frame_view.hpp"
 #include "volume/windows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -44,17 +45,18 @@ struct Piece {
   VF s_0, s_mid, s_1, p_3, length, begin, extent;
 };
 
-/// Where light begins along each ray, in slabs from the chunk's first; NaN until then.
-struct FirstLight {
-  VF place;
-  MF seen;
+/// What is noted of each ray on its way.
+struct RayNotes {
+  VF first;    ///< where light begins, in slabs from the chunk's first
+  MF seen;     ///< whether it has
+  VF touched;  ///< the largest error of a touch (touched_steps.hpp), as seen from the chunk's front
 };
 
-HWY_INLINE void note_first_light(const Progress& progress, VF place, FirstLight& first) {
+HWY_INLINE void note_first_light(const Progress& progress, VF place, RayNotes& notes) {
   const DF d;
-  const MF now = HN::AndNot(first.seen, HN::Gt(progress.alpha, HN::Zero(d)));
-  first.place = HN::IfThenElse(now, place, first.place);
-  first.seen = HN::Or(first.seen, now);
+  const MF now = HN::AndNot(notes.seen, HN::Gt(progress.alpha, HN::Zero(d)));
+  notes.first = HN::IfThenElse(now, place, notes.first);
+  notes.seen = HN::Or(notes.seen, now);
 }
 
 /// The transfer function where all lanes are in one interval.
@@ -162,13 +164,37 @@ HWY_INLINE VF extinction_at(const Lookup& table, typename Lookup::Index index, V
   return HN::Add(half, half);
 }
 
+/// The error of light and opacity where lanes cannot tell on which side of a step the cubic is near v: at `s`, an end
+/// of an interval, a turn, or a crossing (`crosses`). Field and place are in doubt by noise / |slope|, or where the
+/// cubic is level by the root of 2 noise / |its second derivative|.
+template <class Lookup>
+HWY_INLINE VF error_of_touch(const Lookup& table, typename Lookup::Index index, VI interval, const TouchedSteps& steps,
+                             const Cubic& c, VF v, VF s, MF crosses, VF length) {
+  const DF d;
+  const VF zero = HN::Zero(d), noise = HN::Set(d, steps.noise);
+  const VI below = HN::Zero(DI()), above = HN::Set(DI(), 1);
+  const VF from_low = HN::Abs(HN::Sub(s, table.far_edge(interval, index, below))),
+           from_high = HN::Abs(HN::Sub(table.far_edge(interval, index, above), s));
+  const MF to_high = HN::Lt(from_high, from_low);
+  const VF away = HN::IfThenElse(to_high, from_high, from_low);
+  // What is at a knot to the bit, and does not cross it, is a plateau of samples with that value.
+  const MF near = HN::And(HN::Lt(away, noise), HN::Or(crosses, HN::Gt(away, zero)));
+  if (HWY_LIKELY(HN::AllFalse(d, near))) return zero;
+  const VI edge = HN::Add(interval, HN::IfThenElseZero(HN::RebindMask(DI(), to_high), above));
+  const VF weight = HN::GatherIndex(d, steps.weight.data(), HN::IfThenElseZero(HN::RebindMask(DI(), near), edge));
+  const VF bend = HN::Abs(HN::MulAdd(HN::Mul(HN::Set(d, 6.0f), c.p_3), v, HN::Add(c.p_2, c.p_2)));
+  const VF slope = HN::Max(HN::Abs(c.slope(v)), HN::Sqrt(HN::Mul(HN::Add(noise, noise), bend)));
+  const VF share = HN::Min(HN::Div(noise, HN::Max(slope, HN::Set(d, 1e-30f))), HN::Set(d, 1.0f));
+  return HN::IfThenElseZero(near, HN::Min(HN::Mul(share, HN::Mul(weight, length)), HN::Set(d, steps.most)));
+}
+
 /// A stretch is halved no more often; 4096 of an optical depth of 1e4 are still thin.
 constexpr int most_halvings = 12;
 
 /// Stretches that cross knots, are rough, or whose lanes are in different intervals. NaN samples are blank.
 template <class Lookup>
-HWY_NOINLINE void add_any(const Lookup& table, float tolerance, float largest_color, const Piece& piece,
-                          Progress& progress, FirstLight& first, std::uint64_t& pieces) {
+HWY_NOINLINE void add_any(const Lookup& table, const FrameView& frame, const Piece& piece, Progress& progress,
+                          RayNotes& notes, std::uint64_t& pieces) {
   const DF d;
   const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f), half = HN::Set(d, 0.5f);
   MF active = HN::And(HN::Gt(piece.length, zero), HN::Eq(piece.s_mid, piece.s_mid));
@@ -189,8 +215,8 @@ HWY_NOINLINE void add_any(const Lookup& table, float tolerance, float largest_co
   if (!HN::AllFalse(d, HN::And(active, HN::And(HN::Lt(least, zero), HN::Gt(most, zero)))))
     find_extrema(c, turn_1, turn_2);
 
-  const VF per_tolerance = HN::Set(d, 1 / tolerance);
-  VF v = zero, s = s_0;
+  const VF per_tolerance = HN::Set(d, 1 / frame.piece_tolerance);
+  VF v = zero, s = s_0, touch = zero;
   // Each round ends at a knot, an extremum, a halving or the stretch's end; knots are few but for wild functions.
   for (int round = 0; round < 4096; ++round) {
     const VF turn = HN::IfThenElse(HN::Lt(v, turn_1), turn_1, HN::IfThenElse(HN::Lt(v, turn_2), turn_2, one));
@@ -215,7 +241,7 @@ HWY_NOINLINE void add_any(const Lookup& table, float tolerance, float largest_co
     bounds.product = HN::Mul(HN::Set(d, 0.1f), HN::Mul(slope, color_slope));
     if (table.independent) bounds.product = zero;
     bounds.product = HN::Mul(bounds.product, per_tolerance);
-    bounds.shadow = HN::Mul(HN::Mul(HN::Mul(slope, slope), HN::Set(d, 0.03f * largest_color)), per_tolerance);
+    bounds.shadow = HN::Mul(HN::Mul(HN::Mul(slope, slope), HN::Set(d, 0.03f * frame.largest_color)), per_tolerance);
     // What is dimmed already needs no care: behind 14 optical depths any of it is right.
     const VF seen = HN::Mul(per_tolerance, HN::Mul(color_slope, progress.transmittance));
     VF extent, m, length;
@@ -236,12 +262,17 @@ HWY_NOINLINE void add_any(const Lookup& table, float tolerance, float largest_co
     }
     pieces += HN::CountTrue(d, active);
     CL::lanes::add_piece<false>(table, index, HN::Add(s, m), HN::Add(s_end, m), HN::Sub(s_end, s), length, progress);
-    note_first_light(progress, HN::MulAdd(v, piece.extent, piece.begin), first);
+    note_first_light(progress, HN::MulAdd(v, piece.extent, piece.begin), notes);
+    if (frame.steps != nullptr)
+      touch = HN::Max(touch, HN::IfThenElseZero(active, error_of_touch(table, index, interval, *frame.steps, c, end,
+                                                                       s_end, crosses, piece.length)));
     v = HN::IfThenElse(active, end, v);
     s = HN::IfThenElse(active, s_end, s);
     active = HN::And(active, HN::Lt(v, one));
-    if (HN::AllFalse(d, active)) return;
+    if (HN::AllFalse(d, active)) break;
   }
+  // What lies in front dims it, and so does a step that is crossed for long.
+  notes.touched = HN::Max(notes.touched, HN::Mul(touch, progress.transmittance));
 }
 
 }  // namespace HWY_NAMESPACE

@@ -49,6 +49,13 @@ double voxel_side_of(const scene::GridGeometry& geometry) {
   return std::cbrt(volume);
 }
 
+/// World units: no ray goes further in one voxel of a regular grid.
+double longest_in_voxel(const scene::GridGeometry& geometry) {
+  double sides = 0;
+  for (int a = 0; a < 3; ++a) sides += glm::length(geometry.direction[a]) * std::abs(geometry.spacing[a]);
+  return sides;
+}
+
 ShadingView shading_view(const scene::Shading& s, const scene::Camera& camera, const scene::GridGeometry& geometry,
                          double voxel_side) {
   ShadingView view{s.ambient, s.diffuse, s.specular, s.shininess, voxel_side, {}, {}, {}};
@@ -130,6 +137,7 @@ struct Cast {
   std::vector<std::uint8_t> brick_visible;
   TileCounts counts;
   std::uint64_t blocks_read = 0, block_bytes = 0;  ///< rectilinear grids
+  std::uint64_t pixels_again = 0;                  ///< in double precision
 };
 
 /// Pixels of a map, each with its ray's planes of the lattice.
@@ -178,6 +186,9 @@ struct Renderer::State {
             const PixelRegion& wanted, WorkTally* tally, scene::Image* image, Cast& result);
   void cast_rectilinear(const scene::Camera& camera, const scene::TransferFunction& function, const PixelRegion& wanted,
                         scene::Image& image, Cast& result) const;
+  void cast_again(const scene::Camera& camera, const scene::TransferFunction& function,
+                  const std::vector<std::uint8_t>& visible, const std::vector<std::array<int, 2>>& pixels,
+                  scene::Image& image, Cast& result) const;
 
   /// Bricks near the view, while the picture is gathered and written; the next frame ends it.
   void begin_preload(std::vector<std::uint8_t> wanted) {
@@ -279,6 +290,14 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
     frame.least_transmittance = least_transmittance(transfer_function);
     frame.piece_tolerance = static_cast<float>(accuracy() / 64);
     frame.largest_color = static_cast<float>(std::max(1e-30, transfer_function.max_color()));
+    TouchedSteps steps;
+    if (frame.step == 0 && !frame.cell_data && tally == nullptr) {
+      // Half of what may be wrong: rounding at a touch is mostly less than the bound that is taken for it.
+      frame.touch_tolerance = static_cast<float>(std::max(accuracy(), 1e-5) / 2);
+      steps = TouchedSteps(table, ranges, frame.largest_color, frame.touch_tolerance,
+                           longest_in_voxel(source.geometry()) / length_unit);
+      if (!steps.weight.empty()) frame.steps = &steps;
+    }
     frame.tally = tally;
     // A thousand packets or more, whatever the picture's size.
     const double tiles_in_picture = static_cast<double>(size.width) * size.height / (TileRays::side * TileRays::side);
@@ -317,12 +336,30 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
             cast_tile(frame, tiles[n].first, tiles[n].second, wanted, *memories.local(), image, tile_counts.local());
         },
         tbb::auto_partitioner());
+    std::vector<std::array<int, 2>> touching;
+    for (const auto& memory : memories)
+      touching.insert(touching.end(), memory->touching.begin(), memory->touching.end());
+    if (!touching.empty()) cast_again(camera, transfer_function, visible, touching, *image, result);
     for (const TileCounts& c : tile_counts) {
       result.counts.rays += c.rays;
       result.counts.voxels_visited += c.voxels_visited;
       result.counts.samples += c.samples;
     }
   });
+}
+
+/// Pixels whose rays touch steps (touched_steps.hpp).
+void Renderer::State::cast_again(const scene::Camera& camera, const scene::TransferFunction& function,
+                                 const std::vector<std::uint8_t>& visible,
+                                 const std::vector<std::array<int, 2>>& pixels, scene::Image& image,
+                                 Cast& result) const {
+  const scene::TraceScope scope(settings.trace, "project");
+  cast_voxel_by_voxel(
+      source, camera, function,
+      {{settings.emission, WalkSettings().tolerance, static_cast<double>(least_transmittance(function)), visible},
+       settings.shading},
+      pixels, image);
+  result.pixels_again = pixels.size();
 }
 
 void Renderer::State::cast_rectilinear(const scene::Camera& camera, const scene::TransferFunction& function,
@@ -379,6 +416,7 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
     s.bricks_evicted = after.evictions - before.evictions, s.bytes_loaded = after.bytes_loaded - before.bytes_loaded;
     s.bytes_resident = after.bytes, s.peak_bytes = after.peak_bytes;
     if (rectilinear) s.bricks_loaded = cast.blocks_read, s.bytes_loaded = cast.block_bytes;
+    s.pixels_again = cast.pixels_again;
     s.blank_samples = state.ranges.range.blanks;
     const std::int64_t sets = hwy::SupportedTargets() & HWY_TARGETS;
     s.instruction_set = hwy::TargetName(sets & -sets);

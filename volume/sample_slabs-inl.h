@@ -149,7 +149,7 @@ HWY_INLINE void sample_lanes(const ChunkView& chunk, const Lookup& lookup, const
   VF light[3] = {HN::LoadU(d, rays.red + ray), HN::LoadU(d, rays.green + ray), HN::LoadU(d, rays.blue + ray)};
   VF carried = HN::LoadU(d, rays.carried + ray);
   const VF least = HN::Set(d, frame.least_transmittance);
-  FirstLight first{HN::Set(d, -1.0f), HN::Gt(alpha, zero)};
+  RayNotes notes{HN::Set(d, -1.0f), HN::Gt(alpha, zero), zero};
   for (std::int64_t m = 0; m < longest; ++m) {
     const VF number = HN::Set(d, static_cast<float>(m));
     const MF active = HN::And(HN::Lt(number, step_count), HN::Ge(through, least));
@@ -199,9 +199,9 @@ HWY_INLINE void sample_lanes(const ChunkView& chunk, const Lookup& lookup, const
     const VF hidden = HN::Mul(through, HN::Sub(one, HN::Exp(d, HN::Neg(depth))));
     alpha = HN::Add(alpha, hidden);
     through = HN::Sub(through, hidden);
-    const MF now = HN::AndNot(first.seen, HN::Gt(alpha, zero));
-    first.place = HN::IfThenElse(now, k, first.place);
-    first.seen = HN::Or(first.seen, now);
+    const MF now = HN::AndNot(notes.seen, HN::Gt(alpha, zero));
+    notes.first = HN::IfThenElse(now, k, notes.first);
+    notes.seen = HN::Or(notes.seen, now);
   }
   HN::StoreU(through, d, rays.transmittance + ray);
   HN::StoreU(alpha, d, rays.alpha + ray);
@@ -210,7 +210,7 @@ HWY_INLINE void sample_lanes(const ChunkView& chunk, const Lookup& lookup, const
   HN::StoreU(light[2], d, rays.blue + ray);
   HN::StoreU(carried, d, rays.carried + ray);
   HWY_ALIGN float place[most];
-  HN::Store(first.place, d, place);
+  HN::Store(notes.first, d, place);
   for (std::size_t l = 0; l < HN::Lanes(d); ++l) {
     double& first_k = rays.first_k[static_cast<std::size_t>(ray) + l];
     if (std::isnan(first_k) && rays.alpha[static_cast<std::size_t>(ray) + l] > 0)

@@ -1,5 +1,6 @@
 #include "volume/voxel_cast.hpp"
 
+#include <tbb/blocked_range.h>
 #include <tbb/blocked_range2d.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -141,32 +142,60 @@ class VoxelPixels final : public WalkSink {
   VoxelCastCounts counts_;
 };
 
+/// Pixels of a picture by several threads.
+class VoxelCaster {
+ public:
+  VoxelCaster(const scene::SampleSource& source, const scene::Camera& camera, const scene::TransferFunction& function,
+              const VoxelCastSettings& settings, scene::Image& image)
+      : rays_(camera, image.size, source.geometry()), image_(image), pixels_([&source, &camera, &function, &settings] {
+          return std::make_unique<VoxelPixels>(source, camera, function, settings);
+        }) {}
+
+  void cast(int x, int y) {
+    const std::size_t n = image_.index(x, y);
+    pixels_.local()->cast(rays_.ray(x + 0.5, y + 0.5), &image_.rgba[4 * n], image_.depth[n]);
+  }
+
+  [[nodiscard]] VoxelCastCounts counts() const {
+    VoxelCastCounts sum;
+    for (const auto& mine : pixels_) {
+      const VoxelCastCounts c = mine->counts();
+      sum.rays += c.rays, sum.voxels += c.voxels, sum.lines += c.lines;
+      sum.blocks_read += c.blocks_read, sum.bytes_read += c.bytes_read;
+    }
+    return sum;
+  }
+
+ private:
+  VoxelRays rays_;
+  scene::Image& image_;
+  tbb::enumerable_thread_specific<std::unique_ptr<VoxelPixels>> pixels_;
+};
+
 }  // namespace
 
 VoxelCastCounts cast_voxel_by_voxel(const scene::SampleSource& source, const scene::Camera& camera,
                                     const scene::TransferFunction& function, const VoxelCastSettings& settings,
                                     const PixelRegion& region, scene::Image& image) {
-  const VoxelRays rays(camera, image.size, source.geometry());
-  tbb::enumerable_thread_specific<std::unique_ptr<VoxelPixels>> pixels(
-      [&] { return std::make_unique<VoxelPixels>(source, camera, function, settings); });
+  VoxelCaster caster(source, camera, function, settings, image);
   constexpr int side = 32;
   if (region.x0 < region.x1 && region.y0 < region.y1)
     tbb::parallel_for(tbb::blocked_range2d<int>(region.y0, region.y1, side, region.x0, region.x1, side),
                       [&](const auto& tile) {
-                        VoxelPixels& mine = *pixels.local();
                         for (int y = tile.rows().begin(); y != tile.rows().end(); ++y)
-                          for (int x = tile.cols().begin(); x != tile.cols().end(); ++x) {
-                            const std::size_t n = image.index(x, y);
-                            mine.cast(rays.ray(x + 0.5, y + 0.5), &image.rgba[4 * n], image.depth[n]);
-                          }
+                          for (int x = tile.cols().begin(); x != tile.cols().end(); ++x) caster.cast(x, y);
                       });
-  VoxelCastCounts sum;
-  for (const auto& mine : pixels) {
-    const VoxelCastCounts c = mine->counts();
-    sum.rays += c.rays, sum.voxels += c.voxels, sum.lines += c.lines;
-    sum.blocks_read += c.blocks_read, sum.bytes_read += c.bytes_read;
-  }
-  return sum;
+  return caster.counts();
+}
+
+VoxelCastCounts cast_voxel_by_voxel(const scene::SampleSource& source, const scene::Camera& camera,
+                                    const scene::TransferFunction& function, const VoxelCastSettings& settings,
+                                    std::span<const std::array<int, 2>> pixels, scene::Image& image) {
+  VoxelCaster caster(source, camera, function, settings, image);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), 16), [&](const auto& some) {
+    for (std::size_t n = some.begin(); n != some.end(); ++n) caster.cast(pixels[n][0], pixels[n][1]);
+  });
+  return caster.counts();
 }
 
 double planes_crossed(const VoxelRay& ray, const scene::GridGeometry& geometry) {

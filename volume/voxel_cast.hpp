@@ -1,6 +1,6 @@
 #pragma once
 
-#include <functional>
+#include <array>
 #include <optional>
 #include <span>
 
@@ -15,8 +15,9 @@
 
 namespace tessera::volume {
 
-/// Pictures of rectilinear grids, whose rays are not straight in index space, so that the caster's lanes are of no use:
-/// pixel by pixel along a VoxelWalk, each line integrated exactly in double precision.
+/// Pictures of rectilinear grids, whose rays are not straight in index space, so that the caster's lanes are of no use,
+/// and pixels that float lanes leave in doubt (touched_steps.hpp): pixel by pixel along a VoxelWalk, each line
+/// integrated exactly in double precision.
 ///
 /// Error   below 1e-5, whatever the spacings; what the walk may leave out (WalkSettings::tolerance, least) comes on
 /// top. Bits    of a pixel depend on nothing but itself.
@@ -33,6 +34,11 @@ struct VoxelCastCounts {
 VoxelCastCounts cast_voxel_by_voxel(const scene::SampleSource& source, const scene::Camera& camera,
                                     const scene::TransferFunction& function, const VoxelCastSettings& settings,
                                     const PixelRegion& region, scene::Image& image);
+
+/// Casts the pixels (x, y) of a list anew, in place of what `image` has there.
+VoxelCastCounts cast_voxel_by_voxel(const scene::SampleSource& source, const scene::Camera& camera,
+                                    const scene::TransferFunction& function, const VoxelCastSettings& settings,
+                                    std::span<const std::array<int, 2>> pixels, scene::Image& image);
 
 /// Planes of the lattice that a ray crosses, at most: what the cast of its pixel costs where everything shows.
 double planes_crossed(const VoxelRay& ray, const scene::GridGeometry& geometry);

@@ -70,7 +70,7 @@ struct VoxelField {
 template <bool cell_data, class Window, class Lookup>
 HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const Lookup& lookup, const Lanes& lanes,
                               const SlabPath& path, const Window& window, const UniformLookup* uniform, MF wanted,
-                              Progress& progress, FirstLight& first, TileCounts& counts) {
+                              Progress& progress, RayNotes& notes, TileCounts& counts) {
   const DF d;
   const VF half = HN::Set(d, 0.5f), zero = HN::Zero(d), one = HN::Set(d, 1.0f);
   const bool lit_part = frame.shading != nullptr && !cell_data;
@@ -109,14 +109,17 @@ HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const
     Progress& target = lit_part ? part : progress;
     if (uniform != nullptr && HWY_LIKELY(add_uniform<cell_data>(*uniform, piece, target))) {
       counts.samples += voxels;
-      if (HWY_UNLIKELY(!HN::AllTrue(d, first.seen))) note_first_light(target, piece.begin, first);
+      if (HWY_UNLIKELY(!HN::AllTrue(d, notes.seen))) note_first_light(target, piece.begin, notes);
     } else {
-      add_any(lookup, frame.piece_tolerance, frame.largest_color, piece, target, first, counts.samples);
+      const VF through = lit_part ? progress.transmittance : one, touched = notes.touched;
+      notes.touched = zero;
+      add_any(lookup, frame, piece, target, notes, counts.samples);
+      notes.touched = HN::Max(touched, HN::Mul(through, notes.touched));
     }
     if (lit_part) {
       put_behind(part, lit, progress);
       // Within the stretch light is measured from its own front.
-      note_first_light(progress, piece.begin, first);
+      note_first_light(progress, piece.begin, notes);
     }
   }
 }
@@ -184,7 +187,7 @@ HWY_INLINE Line part_line(const Lanes& lanes, const SlabPath& path, const Window
 /// lane.
 template <class Lookup>
 HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, VF slab_length, const SlabLines& lines,
-                                 int m, int n, MF wanted, Progress& progress, FirstLight& first, TileCounts& counts) {
+                                 int m, int n, MF wanted, Progress& progress, RayNotes& notes, TileCounts& counts) {
   const DF d;
   const VF half = HN::Set(d, 0.5f), zero = HN::Zero(d), one = HN::Set(d, 1.0f);
   const VF u_1 = lines.u_1[m], u_2 = lines.u_2[m], s_end = lines.s[m + 1];
@@ -205,7 +208,7 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
     p.begin = HN::Add(place[k], HN::Set(d, static_cast<float>(n)));
   }
 #if HWY_TARGET <= HWY_AVX3
-  if (HN::AllTrue(d, HN::Or(first.seen, HN::Not(wanted)))) {
+  if (HN::AllTrue(d, HN::Or(notes.seen, HN::Not(wanted)))) {
     constexpr std::size_t lanes_each = HN::MaxLanes(DF()), most = 4 * lanes_each;
     HWY_ALIGN float s_0[most], s_mid[most], s_1[most], p_3[most], length[most];
     std::size_t begin[4] = {0, 0, 0, 0};
@@ -217,7 +220,7 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
       keep(pieces[k].s_0, s_0), keep(pieces[k].s_mid, s_mid), keep(pieces[k].s_1, s_1);
       keep(pieces[k].p_3, p_3), keep(pieces[k].length, length);
     }
-    HWY_ALIGN float light[6][most];
+    HWY_ALIGN float light[7][most];
     for (std::size_t n_0 = 0; n_0 < begin[3]; n_0 += lanes_each) {
       const MF used = HN::FirstN(d, begin[3] - n_0);
       const Piece piece{HN::Load(d, s_0 + n_0),
@@ -228,10 +231,11 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
                         zero,
                         zero};
       Progress part{zero, one, zero, zero, zero, zero};
-      FirstLight seen{zero, HN::Eq(zero, zero)};
-      add_any(lookup, frame.piece_tolerance, frame.largest_color, piece, part, seen, counts.samples);
-      const VF parts[6] = {part.alpha, part.transmittance, part.optical_depth, part.red, part.green, part.blue};
-      for (int c = 0; c < 6; ++c) HN::Store(parts[c], d, light[c] + n_0);
+      RayNotes here{zero, HN::Eq(zero, zero), zero};
+      add_any(lookup, frame, piece, part, here, counts.samples);
+      const VF parts[7] = {part.alpha, part.transmittance, part.optical_depth, part.red,
+                           part.green, part.blue,          here.touched};
+      for (int c = 0; c < 7; ++c) HN::Store(parts[c], d, light[c] + n_0);
     }
     for (std::size_t k = 0; k < 3; ++k) {
       const auto part = [&](int c)
@@ -244,12 +248,12 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
       progress.red = HN::MulAdd(through, part(3), progress.red);
       progress.green = HN::MulAdd(through, part(4), progress.green);
       progress.blue = HN::MulAdd(through, part(5), progress.blue);
+      notes.touched = HN::Max(notes.touched, HN::Mul(through, part(6)));
     }
     return;
   }
 #endif
-  for (const Piece& piece : pieces)
-    add_any(lookup, frame.piece_tolerance, frame.largest_color, piece, progress, first, counts.samples);
+  for (const Piece& piece : pieces) add_any(lookup, frame, piece, progress, notes, counts.samples);
 }
 
 /// A slab, or the part of it that counts, whose lanes are in several intervals, or cross knots: adds the lanes that may
@@ -257,7 +261,7 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
 /// first.
 template <class Lookup>
 HWY_NOINLINE MF cast_mixed(const FrameView& frame, const Lookup& lookup, const Line& line, MF there, VF begin,
-                           VF length, CurrentInterval& current, Progress& progress, FirstLight& first,
+                           VF length, CurrentInterval& current, Progress& progress, RayNotes& notes,
                            TileCounts& counts) {
   const DF d;
   const VF zero = HN::Zero(d);
@@ -280,14 +284,20 @@ HWY_NOINLINE MF cast_mixed(const FrameView& frame, const Lookup& lookup, const L
   const VF dimming = HN::Mul(HN::Mul(length, extinction), lookup.independent ? length : HN::Mul(length, extinction));
   const VF dimmed =
       HN::Mul(HN::Mul(dimming, color_slope), HN::Mul(line.rho, HN::Set(d, 1 / (9 * frame.piece_tolerance))));
-  const MF together =
+  MF together =
       HN::And(HN::And(there, HN::Lt(high, edge)), HN::Le(HN::MulAdd(spread, scale, dimmed), HN::Set(d, 1.0f)));
+  if (frame.steps != nullptr) {
+    // What may touch a step is looked at as a cubic.
+    const VF noise = HN::Set(d, frame.steps->noise), low_edge = lookup.far_edge(interval, index, HN::Zero(DI()));
+    const MF above = HN::Or(HN::Ge(HN::Sub(low, low_edge), noise), HN::Eq(low, low_edge));
+    together = HN::And(together, HN::And(above, HN::Ge(HN::Sub(edge, high), noise)));
+  }
   if (!HN::AllFalse(d, together)) {
     const auto kept = [&](VF v) HWY_ATTR { return HN::IfThenElseZero(together, v); };
     CL::lanes::add_piece<false>(lookup, index, kept(HN::Add(line.s_0, line.shift)), kept(HN::Add(line.s_1, line.shift)),
                                 kept(line.span), kept(length), progress);
     counts.samples += HN::CountTrue(d, together);
-    note_first_light(progress, begin, first);
+    note_first_light(progress, begin, notes);
   }
   return HN::AndNot(together, there);
 }
