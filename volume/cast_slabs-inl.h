@@ -300,6 +300,9 @@ class PacketCast {
     counts_.samples += live_count_;
     if (HWY_UNLIKELY(!HN::AllTrue(d, notes_.seen)))
       note_first_light(progress_, HN::Set(d, static_cast<float>(n)), notes_);
+    if (HWY_UNLIKELY(current_.uniform().ramp > 0))
+      notes_.doubt =
+          HN::MulAdd(HN::Mul(length, HN::Set(d, current_.uniform().ramp)), progress_.transmittance, notes_.doubt);
   }
 
   /// A slab that crosses knots, or is rough.
@@ -377,7 +380,7 @@ HWY_NOINLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int r
   add(rays.green, progress.green);
   add(rays.blue, progress.blue);
   HN::StoreU(HN::Mul(before, progress.transmittance), d, rays.transmittance + ray);
-  HN::StoreU(HN::Max(HN::LoadU(d, rays.touched + ray), HN::Mul(before, cast.notes_.touched)), d, rays.touched + ray);
+  add(rays.doubt, cast.notes_.doubt);
   if (!HN::AllFalse(d, HN::AndNot(seen_before, cast.notes_.seen))) {
     const auto first_k = static_cast<double>(chunk.first_k);
     HWY_ALIGN float place[most];

@@ -60,9 +60,12 @@ class CurrentInterval {
     low_ = table_.column(LaneTable::edge)[n];
     high_ = table_.column(LaneTable::edge)[n + 1];
     guarded_low_ = low_, guarded_high_ = high_;
-    if (frame_.steps != nullptr) {
-      if (frame_.steps->weight[n] > 0) guarded_low_ += frame_.steps->noise;
-      if (frame_.steps->weight[n + 1] > 0) guarded_high_ -= frame_.steps->noise;
+    uniform_.ramp = 0;
+    if (frame_.doubt != nullptr) {
+      const LaneDoubt& doubt = *frame_.doubt;
+      if (!doubt.step.empty() && doubt.step[n] > 0) guarded_low_ += doubt.noise;
+      if (!doubt.step.empty() && doubt.step[n + 1] > 0) guarded_high_ -= doubt.noise;
+      if (!doubt.ramp.empty()) uniform_.ramp = doubt.ramp[n];
     }
     clear_ = true;
     for (int c = 0; c < LaneTable::column_count; ++c) {

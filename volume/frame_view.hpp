@@ -10,10 +10,10 @@
 #include "scene/grid.hpp"
 #include "volume/brick_cache.hpp"
 #include "volume/cell_ranges.hpp"
+#include "volume/lane_doubt.hpp"
 #include "volume/learned_work.hpp"
 #include "volume/preintegrated_table.hpp"
 #include "volume/render.hpp"
-#include "volume/touched_steps.hpp"
 
 namespace tessera::volume {
 
@@ -56,8 +56,8 @@ struct FrameView {
   float least_transmittance;  ///< a ray that lets less through is done
   float piece_tolerance;      ///< largest error of one piece of a ray, linear RGBA
   float largest_color;
-  const TouchedSteps* steps = nullptr;                ///< null: no step is worth a second look
-  float touch_tolerance = 0;                          ///< a ray that may err more at one touch is cast again
+  const LaneDoubt* doubt = nullptr;                   ///< null: none that matters
+  float doubt_tolerance = 0;                          ///< a ray that may err more is cast again
   double step = 0;                                    ///< sampled, preintegrated: length in the table's unit; else 0
   const PreintegratedTable* preintegrated = nullptr;  ///< null: sampled
   const ShadingView* shading = nullptr;               ///< null: none

@@ -15,7 +15,7 @@
 //           and its products with the odd and even part leave |c'| (k l)^2 (|p_3| / 120 + k l |b| / 90).
 //           Where that exceeds the tolerance the stretch is halved: the bound falls to an eighth at least.
 // Knots     A stretch that leaves its interval is cut where the cubic crosses the knot: between extrema it is monotone,
-//           Newton's method, kept in its bracket, finds the place, near a touch only to 3e-4 (touched_steps.hpp).
+//           Newton's method, kept in its bracket, finds the place, near a touch only to 3e-4 (lane_doubt.hpp).
 
 #if defined(TESSERA_VOLUME_RAY_PIECE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_RAY_PIECE_INL_H_
@@ -47,9 +47,9 @@ struct Piece {
 
 /// What is noted of each ray on its way.
 struct RayNotes {
-  VF first;    ///< where light begins, in slabs from the chunk's first
-  MF seen;     ///< whether it has
-  VF touched;  ///< the largest error of a touch (touched_steps.hpp), as seen from the chunk's front
+  VF first;  ///< where light begins, in slabs from the chunk's first
+  MF seen;   ///< whether it has
+  VF doubt;  ///< errors that may be (lane_doubt.hpp), as seen from the chunk's front
 };
 
 HWY_INLINE void note_first_light(const Progress& progress, VF place, RayNotes& notes) {
@@ -65,6 +65,7 @@ struct UniformLookup {
   float row[LaneTable::column_count];
   bool independent, has_clear = false;
   float product_bound, shadow_bound;  ///< 0.1 |k' c'| and 0.03 |k'|^2 c
+  float ramp;                         ///< LaneDoubt::ramp
   float dimming_bound, extinction;    ///< |c'| k^2 (independent emission: |c'| k) and k, at most in the interval
   HWY_INLINE VF at(int column, Index) const { return HN::Set(DF(), row[column]); }
 };
@@ -164,14 +165,21 @@ HWY_INLINE VF extinction_at(const Lookup& table, typename Lookup::Index index, V
   return HN::Add(half, half);
 }
 
+/// The error of light and opacity per unit of length in intervals of the transfer function.
+HWY_INLINE VF error_of_ramp(VI interval, MF wanted, const LaneDoubt& doubt) {
+  const DF d;
+  if (doubt.ramp.empty()) return HN::Zero(d);
+  return HN::GatherIndex(d, doubt.ramp.data(), HN::IfThenElseZero(HN::RebindMask(DI(), wanted), interval));
+}
+
 /// The error of light and opacity where lanes cannot tell on which side of a step the cubic is near v: at `s`, an end
 /// of an interval, a turn, or a crossing (`crosses`). Field and place are in doubt by noise / |slope|, or where the
 /// cubic is level by the root of 2 noise / |its second derivative|.
 template <class Lookup>
-HWY_INLINE VF error_of_touch(const Lookup& table, typename Lookup::Index index, VI interval, const TouchedSteps& steps,
+HWY_INLINE VF error_of_touch(const Lookup& table, typename Lookup::Index index, VI interval, const LaneDoubt& doubt,
                              const Cubic& c, VF v, VF s, MF crosses, VF length) {
   const DF d;
-  const VF zero = HN::Zero(d), noise = HN::Set(d, steps.noise);
+  const VF zero = HN::Zero(d), noise = HN::Set(d, doubt.noise);
   const VI below = HN::Zero(DI()), above = HN::Set(DI(), 1);
   const VF from_low = HN::Abs(HN::Sub(s, table.far_edge(interval, index, below))),
            from_high = HN::Abs(HN::Sub(table.far_edge(interval, index, above), s));
@@ -181,11 +189,11 @@ HWY_INLINE VF error_of_touch(const Lookup& table, typename Lookup::Index index, 
   const MF near = HN::And(HN::Lt(away, noise), HN::Or(crosses, HN::Gt(away, zero)));
   if (HWY_LIKELY(HN::AllFalse(d, near))) return zero;
   const VI edge = HN::Add(interval, HN::IfThenElseZero(HN::RebindMask(DI(), to_high), above));
-  const VF weight = HN::GatherIndex(d, steps.weight.data(), HN::IfThenElseZero(HN::RebindMask(DI(), near), edge));
+  const VF weight = HN::GatherIndex(d, doubt.step.data(), HN::IfThenElseZero(HN::RebindMask(DI(), near), edge));
   const VF bend = HN::Abs(HN::MulAdd(HN::Mul(HN::Set(d, 6.0f), c.p_3), v, HN::Add(c.p_2, c.p_2)));
   const VF slope = HN::Max(HN::Abs(c.slope(v)), HN::Sqrt(HN::Mul(HN::Add(noise, noise), bend)));
   const VF share = HN::Min(HN::Div(noise, HN::Max(slope, HN::Set(d, 1e-30f))), HN::Set(d, 1.0f));
-  return HN::IfThenElseZero(near, HN::Min(HN::Mul(share, HN::Mul(weight, length)), HN::Set(d, steps.most)));
+  return HN::IfThenElseZero(near, HN::Min(HN::Mul(share, HN::Mul(weight, length)), HN::Set(d, doubt.most)));
 }
 
 /// A stretch is halved no more often; 4096 of an optical depth of 1e4 are still thin.
@@ -216,7 +224,7 @@ HWY_NOINLINE void add_any(const Lookup& table, const FrameView& frame, const Pie
     find_extrema(c, turn_1, turn_2);
 
   const VF per_tolerance = HN::Set(d, 1 / frame.piece_tolerance);
-  VF v = zero, s = s_0, touch = zero;
+  VF v = zero, s = s_0, doubt = zero;
   // Each round ends at a knot, an extremum, a halving or the stretch's end; knots are few but for wild functions.
   for (int round = 0; round < 4096; ++round) {
     const VF turn = HN::IfThenElse(HN::Lt(v, turn_1), turn_1, HN::IfThenElse(HN::Lt(v, turn_2), turn_2, one));
@@ -263,16 +271,19 @@ HWY_NOINLINE void add_any(const Lookup& table, const FrameView& frame, const Pie
     pieces += HN::CountTrue(d, active);
     CL::lanes::add_piece<false>(table, index, HN::Add(s, m), HN::Add(s_end, m), HN::Sub(s_end, s), length, progress);
     note_first_light(progress, HN::MulAdd(v, piece.extent, piece.begin), notes);
-    if (frame.steps != nullptr)
-      touch = HN::Max(touch, HN::IfThenElseZero(active, error_of_touch(table, index, interval, *frame.steps, c, end,
-                                                                       s_end, crosses, piece.length)));
+    if (HWY_UNLIKELY(frame.doubt != nullptr)) {
+      if (!frame.doubt->step.empty())
+        doubt = HN::Add(doubt, HN::IfThenElseZero(active, error_of_touch(table, index, interval, *frame.doubt, c, end,
+                                                                         s_end, crosses, piece.length)));
+      doubt = HN::MulAdd(length, error_of_ramp(interval, active, *frame.doubt), doubt);
+    }
     v = HN::IfThenElse(active, end, v);
     s = HN::IfThenElse(active, s_end, s);
     active = HN::And(active, HN::Lt(v, one));
     if (HN::AllFalse(d, active)) break;
   }
   // What lies in front dims it, and so does a step that is crossed for long.
-  notes.touched = HN::Max(notes.touched, HN::Mul(touch, progress.transmittance));
+  notes.doubt = HN::MulAdd(doubt, progress.transmittance, notes.doubt);
 }
 
 }  // namespace HWY_NAMESPACE

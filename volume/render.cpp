@@ -290,13 +290,12 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
     frame.least_transmittance = least_transmittance(transfer_function);
     frame.piece_tolerance = static_cast<float>(accuracy() / 64);
     frame.largest_color = static_cast<float>(std::max(1e-30, transfer_function.max_color()));
-    TouchedSteps steps;
+    LaneDoubt doubt;
     if (frame.step == 0 && !frame.cell_data && tally == nullptr) {
-      // Half of what may be wrong: rounding at a touch is mostly less than the bound that is taken for it.
-      frame.touch_tolerance = static_cast<float>(std::max(accuracy(), 1e-5) / 2);
-      steps = TouchedSteps(table, ranges, frame.largest_color, frame.touch_tolerance,
-                           longest_in_voxel(source.geometry()) / length_unit);
-      if (!steps.weight.empty()) frame.steps = &steps;
+      frame.doubt_tolerance = static_cast<float>(std::max(accuracy(), 1e-5) / 2);
+      doubt = LaneDoubt(table, ranges, frame.largest_color, frame.doubt_tolerance,
+                        longest_in_voxel(source.geometry()) / length_unit);
+      if (doubt.any()) frame.doubt = &doubt;
     }
     frame.tally = tally;
     // A thousand packets or more, whatever the picture's size.
@@ -336,10 +335,10 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
             cast_tile(frame, tiles[n].first, tiles[n].second, wanted, *memories.local(), image, tile_counts.local());
         },
         tbb::auto_partitioner());
-    std::vector<std::array<int, 2>> touching;
+    std::vector<std::array<int, 2>> doubtful;
     for (const auto& memory : memories)
-      touching.insert(touching.end(), memory->touching.begin(), memory->touching.end());
-    if (!touching.empty()) cast_again(camera, transfer_function, visible, touching, *image, result);
+      doubtful.insert(doubtful.end(), memory->doubtful.begin(), memory->doubtful.end());
+    if (!doubtful.empty()) cast_again(camera, transfer_function, visible, doubtful, *image, result);
     for (const TileCounts& c : tile_counts) {
       result.counts.rays += c.rays;
       result.counts.voxels_visited += c.voxels_visited;
@@ -348,7 +347,7 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
   });
 }
 
-/// Pixels whose rays touch steps (touched_steps.hpp).
+/// Pixels of which float lanes are not sure.
 void Renderer::State::cast_again(const scene::Camera& camera, const scene::TransferFunction& function,
                                  const std::vector<std::uint8_t>& visible,
                                  const std::vector<std::array<int, 2>>& pixels, scene::Image& image,

@@ -15,11 +15,11 @@ struct TileMemory {
   TileRays rays;
   SlabBlock block;
   std::vector<float> row;
-  std::vector<std::array<int, 2>> touching;  ///< pixels (x, y) that are to be cast again, in double precision
+  std::vector<std::array<int, 2>> doubtful;  ///< pixels (x, y) that are to be cast again, in double precision
 };
 
 /// Casts the rays of the tile whose first pixel is (x0, y0), multiples of 32, and writes those of its pixels that lie
-/// in `region`, or notes them in `touching` (touched_steps.hpp); a look (FrameView::tally) casts a few packets and
+/// in `region`, or notes them in `doubtful` (lane_doubt.hpp); a look (FrameView::tally) casts a few packets and
 /// needs no image. Early ends, skipped space and order of sums depend on the frame alone.
 void cast_tile(const FrameView& frame, int x0, int y0, const PixelRegion& region, TileMemory& memory,
                scene::Image* image, TileCounts& counts);

@@ -23,7 +23,7 @@ struct TileRays {
   // Light gathered so far, and the k at which it began; NaN until then.
   alignas(64) float alpha[count], transmittance[count], red[count], green[count], blue[count];
   alignas(64) double first_k[count];
-  alignas(64) float touched[count];  ///< largest error where a ray all but touches a step, linear RGBA
+  alignas(64) float doubt[count];    ///< errors that may be (lane_doubt.hpp), linear RGBA
   alignas(64) float carried[count];  ///< preintegrated: the field at the last step's end
 
   static constexpr int pixel_x(int ray) {

@@ -16,7 +16,7 @@
 namespace tessera::volume {
 
 /// Pictures of rectilinear grids, whose rays are not straight in index space, so that the caster's lanes are of no use,
-/// and pixels that float lanes leave in doubt (touched_steps.hpp): pixel by pixel along a VoxelWalk, each line
+/// and pixels that float lanes leave in doubt (lane_doubt.hpp): pixel by pixel along a VoxelWalk, each line
 /// integrated exactly in double precision.
 ///
 /// Error   below 1e-5, whatever the spacings; what the walk may leave out (WalkSettings::tolerance, least) comes on

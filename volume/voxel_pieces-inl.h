@@ -110,11 +110,13 @@ HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const
     if (uniform != nullptr && HWY_LIKELY(add_uniform<cell_data>(*uniform, piece, target))) {
       counts.samples += voxels;
       if (HWY_UNLIKELY(!HN::AllTrue(d, notes.seen))) note_first_light(target, piece.begin, notes);
+      if (HWY_UNLIKELY(uniform->ramp > 0))
+        notes.doubt = HN::MulAdd(HN::Mul(piece.length, HN::Set(d, uniform->ramp)), progress.transmittance, notes.doubt);
     } else {
-      const VF through = lit_part ? progress.transmittance : one, touched = notes.touched;
-      notes.touched = zero;
+      const VF through = lit_part ? progress.transmittance : one, before = notes.doubt;
+      notes.doubt = zero;
       add_any(lookup, frame, piece, target, notes, counts.samples);
-      notes.touched = HN::Max(touched, HN::Mul(through, notes.touched));
+      notes.doubt = HN::MulAdd(through, notes.doubt, before);
     }
     if (lit_part) {
       put_behind(part, lit, progress);
@@ -234,7 +236,7 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
       RayNotes here{zero, HN::Eq(zero, zero), zero};
       add_any(lookup, frame, piece, part, here, counts.samples);
       const VF parts[7] = {part.alpha, part.transmittance, part.optical_depth, part.red,
-                           part.green, part.blue,          here.touched};
+                           part.green, part.blue,          here.doubt};
       for (int c = 0; c < 7; ++c) HN::Store(parts[c], d, light[c] + n_0);
     }
     for (std::size_t k = 0; k < 3; ++k) {
@@ -248,7 +250,7 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
       progress.red = HN::MulAdd(through, part(3), progress.red);
       progress.green = HN::MulAdd(through, part(4), progress.green);
       progress.blue = HN::MulAdd(through, part(5), progress.blue);
-      notes.touched = HN::Max(notes.touched, HN::Mul(through, part(6)));
+      notes.doubt = HN::MulAdd(through, part(6), notes.doubt);
     }
     return;
   }
@@ -286,9 +288,9 @@ HWY_NOINLINE MF cast_mixed(const FrameView& frame, const Lookup& lookup, const L
       HN::Mul(HN::Mul(dimming, color_slope), HN::Mul(line.rho, HN::Set(d, 1 / (9 * frame.piece_tolerance))));
   MF together =
       HN::And(HN::And(there, HN::Lt(high, edge)), HN::Le(HN::MulAdd(spread, scale, dimmed), HN::Set(d, 1.0f)));
-  if (frame.steps != nullptr) {
+  if (frame.doubt != nullptr && !frame.doubt->step.empty()) {
     // What may touch a step is looked at as a cubic.
-    const VF noise = HN::Set(d, frame.steps->noise), low_edge = lookup.far_edge(interval, index, HN::Zero(DI()));
+    const VF noise = HN::Set(d, frame.doubt->noise), low_edge = lookup.far_edge(interval, index, HN::Zero(DI()));
     const MF above = HN::Or(HN::Ge(HN::Sub(low, low_edge), noise), HN::Eq(low, low_edge));
     together = HN::And(together, HN::And(above, HN::Ge(HN::Sub(edge, high), noise)));
   }
@@ -298,6 +300,9 @@ HWY_NOINLINE MF cast_mixed(const FrameView& frame, const Lookup& lookup, const L
                                 kept(line.span), kept(length), progress);
     counts.samples += HN::CountTrue(d, together);
     note_first_light(progress, begin, notes);
+    if (frame.doubt != nullptr)
+      notes.doubt = HN::MulAdd(HN::Mul(kept(length), error_of_ramp(interval, there, *frame.doubt)),
+                               progress.transmittance, notes.doubt);
   }
   return HN::AndNot(together, there);
 }

@@ -250,6 +250,8 @@ void VoxelWalk::add_smooth(const FieldCubic& p, double u0, double u1, double len
       static_cast<std::size_t>(std::upper_bound(knots_.begin(), knots_.end(), middle,
                                                 [](double v, const scene::Knot& knot) { return v < knot.value; }) -
                                knots_.begin());
+  // The line that stands for the stretch is its chord, moved to the mean.
+  const double shift = p.mean(u0, u1) - (s_0 + s_1) / 2;
   double low = -std::numeric_limits<double>::infinity(), high = -low, kappa = 0;
   if (above > 0) low = knots_[above - 1].value, kappa = knots_[above - 1].extinction;
   if (above < knots_.size()) high = knots_[above].value, kappa = std::max(kappa, knots_[above].extinction);
@@ -262,7 +264,11 @@ void VoxelWalk::add_smooth(const FieldCubic& p, double u0, double u1, double len
     const double l = e * length, span = std::abs(s_1 - s_0), even = std::abs(middle - (s_0 + s_1) / 2);
     const double odd = std::abs(p.c[3]) * e * e * e, rho = even + odd / 4;
     const double tau = kappa * l, weight = independent_ ? l : tau;
-    const double error = l * rho * (rho + 0.3 * span) * (0.1 * slope * color_slope + 0.03 * slope * slope * color * l) +
+    // Beyond the interval's ends, which lines are kept in, goes what the move takes there.
+    const double cut = std::max({0.0, low - std::min(s_0, s_1) - shift, std::max(s_0, s_1) + shift - high});
+    const double cut_error = l * cut * (slope * std::max(1.0, color) + (independent_ ? 1 : kappa) * color_slope);
+    const double error = cut_error +
+                         l * rho * (rho + 0.3 * span) * (0.1 * slope * color_slope + 0.03 * slope * slope * color * l) +
                          color_slope * weight * tau * (odd / 120 + tau * even / 90);
     if (error * sink.transmittance() > settings_.tolerance) {
       add_smooth(p, u0, (u0 + u1) / 2, length, z0, z1, halvings + 1, sink);
@@ -270,8 +276,7 @@ void VoxelWalk::add_smooth(const FieldCubic& p, double u0, double u1, double len
       return;
     }
   }
-  // The chord, moved to the mean; kept in the interval, which a step ends.
-  const double shift = p.mean(u0, u1) - (s_0 + s_1) / 2, below_high = std::nextafter(high, low);
+  const double below_high = std::nextafter(high, low);
   const auto kept = [&](double s) { return std::clamp(s + shift, low, below_high); };
   const auto depth = [&](double u) { return u == 0 ? z0 : u == 1 ? z1 : z0 + (z1 - z0) * u; };
   sink.line(depth(u0), depth(u1), kept(s_0), kept(s_1));

@@ -87,6 +87,27 @@ TEST(Rectilinear, PicturesKeepTheirPromiseHoweverUnequalTheSpacings) {
       }
 }
 
+/// Where the field turns just inside a steep interval, the line that stands for it would reach beyond the interval's
+/// end; cut off there and nothing more, errors were up to 2.6e-5 here.
+TEST(Rectilinear, PeaksAHundredthOfTheRangeWideKeepThePromise) {
+  std::vector<scene::Knot> knots;
+  for (int n = 0; n < 12; ++n)
+    for (const auto& [at, extinction] : {std::pair(0.0, 0.0), {0.004, 40.0}, {0.012, 40.0}, {0.016, 0.0}})
+      knots.push_back({0.04 + 0.08 * n + at, {0.5 + 0.5 * std::sin(n), 0.4, 0.9 - 0.05 * n}, extinction});
+  const scene::TransferFunction peaks(knots);
+  for (const double ratio : {1.0, 30.0})
+    for (const bool smooth : {true, false}) {
+      const auto source = graded(ratio, scene::Association::point, smooth);
+      volume::RenderSettings s;
+      s.method = volume::Method::exact;
+      const scene::Camera camera = view(false, {1.9, 1.3, 2.6});
+      const scene::Image image = volume::Renderer(*source, s).render(camera, size, peaks);
+      const reference::GridReference truth(*source, camera, size, peaks, s.emission);
+      const auto judged = reference::judge(image, truth, 1e-5, reference::random_pixels(size, 1500, 7));
+      EXPECT_LE(judged.max_error, 1e-5) << ratio << ' ' << smooth << ", excused " << judged.excused;
+    }
+}
+
 TEST(Rectilinear, EqualSpacingsGiveTheRegularGridsPicture) {
   const auto listed = graded(1, scene::Association::point, true);
   scene::Grid plain = listed->grid();
