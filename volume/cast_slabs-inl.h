@@ -288,9 +288,44 @@ class PacketCast {
         add_uniform_line(a.s_0, a.s_1, a.span, a.shift, length, n);
         return 1;
       }
+      if (!table.independent && add_bent_line(lines, a, m, live, length, spread, dimmed, n)) return 1;
     }
     add_slowly(lines, a, m, n, live, length);
     return 1;
+  }
+
+  /// A slab too rough for a line: a line, and what the field's bend adds to it to first order in the slab's optical
+  /// depth. False, and nothing added, if what is left may be too much. Where extinction k and colour c are linear in
+  /// the field, light is more by k' c' times the product of its rests, and less by c' k^2 times their covariance with
+  /// the way, as the front dims the back.
+  HWY_INLINE bool add_bent_line(const SlabLines& lines, const Line& line, int m, MF live, VF length, VF spread,
+                                VF dimmed, int n) {
+    const DF d;
+    const UniformLookup& table = current_.uniform();
+    const Bend found = bend_of(lines, m, line);
+    const auto kept = [&](VF v) HWY_ATTR { return HN::IfThenElseZero(live, v); };
+    const VF product = kept(found.product), covariance = kept(found.covariance), odd = kept(found.odd);
+    const VF depth = HN::Mul(length, HN::Set(d, table.extinction)), span = HN::Abs(line.span);
+    const VF beside_odd = HN::MulAdd(HN::Set(d, 0.5f), span, HN::MulAdd(HN::Set(d, 2.0f), line.rho, odd));
+    const VF next_order =
+        HN::MulAdd(HN::Mul(line.rho, HN::Set(d, 1 / 9.0f)), HN::Add(span, line.rho), HN::Abs(product));
+    const VF products = HN::Mul(HN::Mul(length, HN::Set(d, 10 * table.product_bound)),
+                                HN::MulAdd(odd, beside_odd, HN::Mul(depth, next_order)));
+    const VF shadows = HN::Mul(HN::Mul(length, HN::Set(d, table.shadow_bound)), spread);
+    if (!HN::AllFalse(d, HN::Gt(HN::MulAdd(dimmed, depth, HN::Add(products, shadows)), HN::Set(d, 1.0f)))) return false;
+    const float slope = 2 * table.row[LaneTable::half_extinction_slope];
+    const VF middle =
+        HN::MulAdd(HN::Set(d, 0.5f), line.span, HN::Sub(line.s_0, HN::Set(d, table.row[LaneTable::base])));
+    const VF here =
+        HN::Mul(length, HN::MulAdd(HN::Set(d, slope), middle, HN::Set(d, 2 * table.row[LaneTable::half_extinction])));
+    const VF more =
+        HN::NegMulAdd(HN::Mul(here, here), covariance, HN::Mul(HN::Mul(length, HN::Set(d, slope)), product));
+    const VF seen = HN::Mul(progress_.transmittance, more);
+    progress_.red = HN::MulAdd(seen, HN::Set(d, table.row[LaneTable::red_slope]), progress_.red);
+    progress_.green = HN::MulAdd(seen, HN::Set(d, table.row[LaneTable::green_slope]), progress_.green);
+    progress_.blue = HN::MulAdd(seen, HN::Set(d, table.row[LaneTable::blue_slope]), progress_.blue);
+    add_uniform_line(line.s_0, line.s_1, line.span, line.shift, length, n);
+    return true;
   }
 
   HWY_INLINE void add_uniform_line(VF s_0, VF s_1, VF span, VF shift, VF length, int n) {

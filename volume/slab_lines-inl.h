@@ -95,6 +95,46 @@ HWY_INLINE Line line_of(const SlabLines& lines, int n) {
   return line;
 }
 
+/// How a slab's field goes along with itself and with the way, but for the odd parts of its cubics: with r the rest
+/// above the line (kinks and the cubics' even parts), m its mean, and u from 0 to 1,
+///   product     of two functions linear in the field: the integral of the field's square less that of (line + m)'s,
+///   covariance  of r and u;  odd  bound of what is left out.
+struct Bend {
+  VF product, covariance, odd;
+};
+
+HWY_INLINE Bend bend_of(const SlabLines& lines, int n, const Line& line) {
+  const DF d;
+  const auto number = [](double v) HWY_ATTR { return HN::Set(DF(), static_cast<float>(v)); };
+  const VF zero = HN::Zero(d), one = number(1), half = number(0.5);
+  const VF u[4] = {zero, lines.u_1[n], lines.u_2[n], one};
+  const auto kink = [&](VF at, VF f) HWY_ATTR {
+    return HN::IfThenElseZero(HN::Lt(at, one), HN::Sub(f, HN::MulAdd(at, line.span, line.s_0)));
+  };
+  const VF r[4] = {zero, kink(u[1], lines.f_1[n]), kink(u[2], lines.f_2[n]), zero};
+  VF mean = zero, square = zero, moment = zero, odd = zero;
+  for (int k = 0; k < 3; ++k) {
+    // A chord from p to q and a parabola on it, of height b.
+    const VF p = r[k], q = r[k + 1], b = HN::Mul(number(-0.25), lines.even[k][n]);
+    const VF e = HN::Sub(u[k + 1], u[k]), middle = HN::Mul(half, HN::Add(u[k], u[k + 1])), sum = HN::Add(p, q);
+    const VF area = HN::MulAdd(half, sum, HN::Mul(number(2 / 3.0), b));
+    mean = HN::MulAdd(e, area, mean);
+    const VF chords = HN::MulAdd(sum, sum, HN::Neg(HN::Mul(p, q)));
+    square = HN::MulAdd(
+        e,
+        HN::MulAdd(number(1 / 3.0), chords, HN::Mul(b, HN::MulAdd(number(2 / 3.0), sum, HN::Mul(number(8 / 15.0), b)))),
+        square);
+    moment = HN::MulAdd(e, HN::MulAdd(middle, area, HN::Mul(HN::Mul(number(1 / 12.0), e), HN::Sub(q, p))), moment);
+    odd = HN::Max(odd, HN::Abs(lines.odd[k][n]));
+  }
+  Bend bend;
+  bend.covariance = HN::NegMulAdd(half, mean, moment);
+  bend.product =
+      HN::MulAdd(HN::Add(line.span, line.span), bend.covariance, HN::Max(zero, HN::NegMulAdd(mean, mean, square)));
+  bend.odd = HN::Mul(number(0.0482), odd);  // v (v - 1/2) (v - 1) is at most 1 / (12 sqrt 3)
+  return bend;
+}
+
 /// Where a slab's window begins, and whether all voxels that may be met have neighbours in the volume.
 struct WindowPlace {
   const float *front, *back;
