@@ -5,6 +5,7 @@
 #include <memory>
 #include <new>
 #include <type_traits>
+#include <utility>
 
 #ifdef __linux__
 #include <sys/mman.h>
@@ -12,8 +13,9 @@
 
 namespace tessera::projection {
 
-/// An array of millions of numbers that are written before they are read: not set to zero, kept over frames, and on
-/// huge pages where the system lends them on advice (faults of 4 KiB cost as much as filling the array does).
+/// An array of many numbers that are written before they are read: not set to zero, kept over frames, and on huge pages
+/// where the system lends them on advice, from half of one on. (Faults of 4 KiB cost as much as filling the array does,
+/// and a processor remembers where a hundred pages are, for stores sixteen.)
 template <class T>
 class LargeArray {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
@@ -25,12 +27,19 @@ class LargeArray {
     if (size <= capacity_ && size >= capacity_ / 2) return;
     elements_.reset();
     capacity_ = 0;
-    const std::size_t bytes = size * sizeof(T);
-    elements_.reset(static_cast<T*>(::operator new(bytes, std::align_val_t(alignment))));
+    elements_ = room_for(size);
     capacity_ = size;
-#ifdef __linux__
-    if (bytes >= alignment) madvise(elements_.get(), bytes / alignment * alignment, MADV_HUGEPAGE);
-#endif
+  }
+
+  /// As reset(), but keeps what is in the first elements.
+  void grow(std::size_t size) {
+    if (size > capacity_) {
+      auto grown = room_for(size);
+      std::copy_n(elements_.get(), size_, grown.get());
+      elements_ = std::move(grown);
+      capacity_ = size;
+    }
+    size_ = size;
   }
 
   /// No elements; their room stays.
@@ -44,11 +53,24 @@ class LargeArray {
   const T& operator[](std::size_t i) const { return elements_.get()[i]; }
 
  private:
-  static constexpr std::size_t alignment = std::size_t{1} << 21;
+  static constexpr std::size_t page = std::size_t{1} << 21, line = 64;
   struct Free {
+    std::size_t alignment = line;
     void operator()(T* p) const { ::operator delete(p, std::align_val_t(alignment)); }
   };
-  std::unique_ptr<T, Free> elements_;
+  using Room = std::unique_ptr<T, Free>;
+
+  static Room room_for(std::size_t size) {
+    std::size_t bytes = size * sizeof(T), alignment = line;
+    if (bytes >= page / 2) bytes = (bytes + page - 1) / page * page, alignment = page;
+    Room room(static_cast<T*>(::operator new(bytes, std::align_val_t(alignment))), Free{alignment});
+#ifdef __linux__
+    if (alignment == page) madvise(room.get(), bytes, MADV_HUGEPAGE);
+#endif
+    return room;
+  }
+
+  Room elements_;
   std::size_t size_ = 0, capacity_ = 0;
 };
 

@@ -1,5 +1,7 @@
 #include "projection/segment_windows.hpp"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "projection/segment_windows.cpp"
 #include <hwy/foreach_target.h>
@@ -30,6 +32,10 @@ std::size_t deal(const SegmentStream& s, std::size_t from, std::size_t capacity,
                           hn::BitCast(d, hn::LoadU(df, s.scalar_back.data() + i)), d,
                           reinterpret_cast<std::int32_t*>(records));
     const std::size_t end = s.size - i < lanes ? s.size - i : lanes;
+    for (std::size_t k = 0; k < lanes; ++k) {
+      const auto pixel = static_cast<std::size_t>(s.pixel[i + 3 * lanes + k]);
+      __builtin_prefetch(&lists[counts[pixel] * stride + pixel], 1);
+    }
     for (std::size_t k = 0; k < end; ++k) {
       const auto pixel = static_cast<std::size_t>(s.pixel[i + k]);
       const std::uint32_t count = counts[pixel];
@@ -68,7 +74,11 @@ void SegmentWindows::grow() {
 
 void SegmentWindows::fit() {
   const std::size_t elements = capacity_ * stride() + pixel_padding;
-  if (segments_.size() < elements) segments_.resize(elements);
+  const std::size_t before = segments_.size();
+  if (before >= elements) return;
+  segments_.grow(elements);
+  // Lanes read lists' unused elements, which have to be numbers.
+  std::fill(segments_.data() + before, segments_.data() + elements, LatticeSegment{});
 }
 
 }  // namespace tessera::projection

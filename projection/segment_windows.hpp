@@ -5,6 +5,8 @@
 #include <numeric>
 #include <vector>
 
+#include "projection/large_array.hpp"
+
 namespace tessera::projection {
 
 /// A ray segment on the lattice: depths in its steps, scalars in its scalar steps as floats.
@@ -77,13 +79,13 @@ class SegmentWindows {
   [[nodiscard]] std::uint64_t total() const {
     return std::accumulate(counts_.begin(), counts_.begin() + static_cast<std::ptrdiff_t>(pixels_), std::uint64_t{0});
   }
-  [[nodiscard]] std::size_t bytes() const { return segments_.capacity() * sizeof(LatticeSegment); }
+  [[nodiscard]] std::size_t bytes() const { return segments_.bytes(); }
 
  private:
   void fit();
 
   std::size_t pixels_ = 0, capacity_ = 0;
-  std::vector<LatticeSegment> segments_;
+  LargeArray<LatticeSegment> segments_;
   std::vector<std::uint32_t> counts_;
 };
 
