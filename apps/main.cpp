@@ -24,6 +24,7 @@
 #include "apps/volume_input.hpp"
 #include "apps/volume_options.hpp"
 #include "compositor/instruction_sets.hpp"
+#include "io/time_series.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::apps {
@@ -128,13 +129,16 @@ ExitCode run(int argc, char** argv, Job& job) {
   if (*render_command) return render(render_options(words), transport);
   if (!job.is_first()) return ExitCode::complete;  // the other commands are for one process
   if (*info_command) {
-    if (check && is_volume_input(words))
+    if (check && is_volume_input(words)) {
+      io::require_input(words.input);
       throw scene::bad_input("--check: is for meshes, and the input is a volume; leave it out");
+    }
     if (is_volume_input(words))
       volume_info(words.input, volume_options(words), as_json);
     else
       info(words.input, mesh_options(words), as_json, check);
   }
+  if (*convert_command) io::require_input(words.input);
   if (*convert_command && is_volume_input(words) && !to_mesh(words.input, mesh_output))
     convert_volume(words.input, mesh_output, volume_options(words), parse_count("--block", block, 8, 1024),
                    words.quiet);

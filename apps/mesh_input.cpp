@@ -18,7 +18,7 @@ MeshSummary summary_of(const io::MeshFile& description, const scene::MeshFacts& 
 }
 
 io::MeshFile read_input(const std::filesystem::path& input, const io::MeshOptions& options) {
-  if (io::is_volume_file(input))
+  if (io::is_volume_file(input) && !io::is_mesh_file(input))
     throw scene::bad_input(fmt::format(
         "{}: is a regular grid by its name, no mesh; give a mesh, or write .vti, .nrrd or .bricks", input.string()));
   if (io::is_time_series(input))

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "apps/argument_values.hpp"
+#include "io/time_series.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::apps {
@@ -203,8 +204,10 @@ void refuse_mesh_words(const RenderWords& words) {
                                                 {"--seed", !words.seed.empty()},
                                                 {"--tile-size", !words.tile_size.empty()}};
   for (const auto& [option, is_given] : given)
-    if (is_given)
+    if (is_given) {
+      io::require_input(words.input);  // one that is not there is neither
       throw scene::bad_input(fmt::format("{}: is for meshes, and the input is a volume; leave it out", option));
+    }
 }
 
 void refuse_volume_options(const RenderWords& words) {
@@ -219,8 +222,10 @@ void refuse_volume_options(const RenderWords& words) {
                                                 {"--balance-weights", !words.balance_weights.empty()},
                                                 {"--show", !words.show.empty()}};
   for (const auto& [option, is_given] : given)
-    if (is_given)
+    if (is_given) {
+      io::require_input(words.input);  // one that is not there is neither
       throw scene::bad_input(fmt::format("{}: is for volumes, and the input is a mesh; leave it out", option));
+    }
 }
 
 }  // namespace tessera::apps

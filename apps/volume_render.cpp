@@ -19,6 +19,7 @@
 #include "frame/deep_rows.hpp"
 #include "frame/sort_first.hpp"
 #include "io/chrome_trace.hpp"
+#include "io/time_series.hpp"
 #include "reference/grid_reference.hpp"
 
 namespace tessera::apps {
@@ -48,7 +49,8 @@ Verification verified(const scene::Image& image, const scene::SampleSource& sour
 }
 
 void refuse_mesh_options(const RenderOptions& options) {
-  const auto refuse = [](const char* option) {
+  const auto refuse = [&](const char* option) {
+    io::require_input(options.input);
     throw scene::bad_input(fmt::format("{}: is for meshes, and the input is a volume; leave it out", option));
   };
   if (options.deep && !promised(options.volume_settings))

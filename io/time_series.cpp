@@ -127,6 +127,13 @@ bool is_time_series(const std::filesystem::path& input) {
   return pattern_of(input.filename().string()).has_value() && !std::filesystem::exists(input, absent);
 }
 
+void require_input(const std::filesystem::path& input) {
+  if (is_time_series(input))
+    read_time_series(input);
+  else
+    require_file(input);
+}
+
 std::vector<TimeStep> read_time_series(const std::filesystem::path& input) {
   if (is_pvd(input)) return read_pvd(input);
   const auto pattern = pattern_of(input.filename().string());

@@ -15,6 +15,10 @@ struct TimeStep {
 /// Whether the name stands for several meshes: a .pvd, or a file name with `%d` or `%04d` that is not a file itself.
 bool is_time_series(const std::filesystem::path& input);
 
+/// Throws Error(bad_input) unless the input is there: a file, or of a time series at least one step. For what must not
+/// be said of a file that is not there, such as that it is a mesh.
+void require_input(const std::filesystem::path& input);
+
 /// The steps of a film in the order of time; not all of their files need exist.
 ///
 /// .pvd (ParaView's): <VTKFile type="Collection"> with <DataSet timestep= part= file=>; relative paths are against the

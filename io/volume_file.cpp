@@ -8,7 +8,7 @@
 namespace tessera::io {
 
 bool is_volume_file(const std::filesystem::path& file) {
-  constexpr std::array<std::string_view, 10> endings = {".vti",  ".pvti", ".mhd",    ".mha", ".nrrd",
+  constexpr std::array<std::string_view, 11> endings = {".vti",  ".pvti", ".vtr",    ".mhd", ".mha",   ".nrrd",
                                                         ".nhdr", ".nii",  ".nii.gz", ".raw", ".bricks"};
   std::string name = file.filename().string();
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) {

@@ -156,6 +156,12 @@ TEST(VolumeCommands, FaultsOfVolumesAreOneLineAndLeaveNothing) {
       {{vti, "--field", "heat"}, "heat"},
       {{mesh, "--shade"}, "--shade"},
       {{folder / "absent.nii.gz"}, "no such file"},
+      {{folder / "absent.vtr", "--shade"}, "no such file"},
+      {{folder / "absent.vtk", "--shade"}, "no such file"},
+      {{folder / "absent.vti", "--smooth"}, "no such file"},
+      {{folder / "absent.vti", "--projectors", "1"}, "no such file"},
+      {{folder / "absent_%d.vtk", "--shade"}, "no file has such a name"},
+      {{folder / "absent_%d.vtr", "--shade"}, "no file has such a name"},
       {{folder / ""}, ""}};
   for (const auto& [arguments, words] : faults) {
     std::vector<std::string> all = {"render"};
@@ -166,6 +172,14 @@ TEST(VolumeCommands, FaultsOfVolumesAreOneLineAndLeaveNothing) {
     EXPECT_EQ(run.status, 2) << run.err;
     EXPECT_EQ(run.error_lines(), 1u) << run.err;
     EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
+  }
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"info", folder / "absent.vti", "--check"},
+        std::vector<std::string>{"convert", folder / "absent.vtk", folder / "b.vti"}}) {
+    const Outcome run = tessera(arguments);
+    EXPECT_EQ(run.status, 2) << run.err;
+    EXPECT_EQ(run.error_lines(), 1u) << run.err;
+    EXPECT_NE(run.err.find("no such file"), std::string::npos) << run.err;
   }
   EXPECT_EQ(folder.names(), before);
 }

@@ -83,6 +83,9 @@ TEST_F(VolumeFiles, MeshOrVolumeIsToldByContentNotByName) {
   EXPECT_FALSE(is_volume(folder.write("b.vtu", "<?xml?><VTKFile type=\"UnstructuredGrid\">")));
   EXPECT_TRUE(is_volume(folder / "absent.nii.gz"));
   EXPECT_FALSE(is_volume(folder / "absent.vtu"));
+  EXPECT_TRUE(is_volume(folder / "absent.VTR"));
+  EXPECT_TRUE(is_volume(folder.write("damaged.vtr", "nothing")));
+  EXPECT_FALSE(is_volume(folder.write("b.vtr", "<?xml?><VTKFile type=\"UnstructuredGrid\">")));
   EXPECT_TRUE(is_volume(folder.write("x.raw", "abc")));
 }
 
