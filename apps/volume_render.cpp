@@ -17,6 +17,7 @@
 #include "apps/volume_input.hpp"
 #include "apps/volume_report.hpp"
 #include "frame/deep_rows.hpp"
+#include "frame/scan_together.hpp"
 #include "frame/sort_first.hpp"
 #include "io/chrome_trace.hpp"
 #include "io/time_series.hpp"
@@ -138,10 +139,16 @@ class VolumeRun {
   void open(const Frame& frame) {
     renderer_.reset();
     file_ = {};
+    const std::filesystem::path& path = frame.mesh.files.front();
     {
       const scene::TraceScope scope(trace(), "read");
-      file_ = io::open_volume(frame.mesh.files.front(), options_.volume);
+      file_ = io::open_unscanned_volume(path, options_.volume);
     }
+    {
+      const scene::TraceScope scope(trace(), "prepare");
+      ranges_.emplace(frame::scan_together(transport_, *file_.source, options_.volume_settings.threads));
+    }
+    io::set_range(file_, path, ranges_->range);
     step_ = frame.step;
     if (box_) return;
     box_ = scene::bounds(file_.source->geometry());
@@ -156,7 +163,7 @@ class VolumeRun {
     volume::RenderSettings settings = options_.volume_settings;
     settings.trace = trace();
     settings.memory_bytes = brick_memory(settings.memory_bytes, resident_, frame.size, settings.threads);
-    renderer_.emplace(*file_.source, settings);
+    renderer_.emplace(*file_.source, settings, std::move(*ranges_));
   }
 
   void make(const Frame& frame) {
@@ -263,6 +270,7 @@ class VolumeRun {
   std::size_t step_ = 0;           ///< of file_
   std::optional<scene::Box> box_;  ///< of the first step; none until something is read
   io::LoadedTransferFunction loaded_;
+  std::optional<volume::CellRanges> ranges_;  ///< of file_, until its renderer takes them
   std::optional<volume::Renderer> renderer_;
   const std::uint64_t resident_ = resident_bytes();
 

@@ -15,7 +15,7 @@ namespace tessera::compositor {
 /// What a message is about. Each channel is a queue of its own, so that the readers of one never see another's.
 enum class Channel : std::uint8_t {
   agreement,  ///< facts that all ranks share: small, collective
-  mesh,       ///< parts of a mesh between readers and projectors
+  mesh,       ///< parts of a mesh between readers and projectors; ranges of a volume's cells between all ranks
   fragments,  ///< projector to compositor: ray segments or runs of tiles
   credit,     ///< compositor to projector: room for more
   tiles,      ///< compositor to the first compositor: finished tiles

@@ -283,7 +283,6 @@ VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& o
   field.nan_count = header.range.blanks;
   result.fields.push_back(field);
   choose_field(options.field, result.fields, file.string());  // refuses any other
-  result.range = header.range;
   result.source = std::make_unique<BrickSource>(std::move(header.grid), file, header.side, header.range,
                                                 std::move(ranges), before + length + count * sizeof(BlockRange));
   return result;

@@ -82,6 +82,12 @@ std::uint64_t bytes_needed(const StoredVolume& volume, const std::string& source
   return needed;
 }
 
+void list_range(const scene::ValueRange& range, FieldSummary& field) {
+  field.low = range.empty() ? 0 : range.low;
+  field.high = range.empty() ? 0 : range.high;
+  field.nan_count = range.blanks;
+}
+
 /// Fields, choice and source of one array of samples.
 VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const std::string& source) {
   const std::uint64_t needed = bytes_needed(volume, source);
@@ -126,12 +132,9 @@ VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const 
         volume.swapped, payload.from_file);
   };
   result.source = source_with(choice.component);
-  result.range = scene::value_range(*result.source);
-  const bool other = volume.components > 1 && choice.component != magnitude && volume.grid.shift == 0;
-  const scene::ValueRange listed = other ? scene::value_range(*source_with(magnitude)) : result.range;
-  field.low = listed.empty() ? 0 : listed.low;
-  field.high = listed.empty() ? 0 : listed.high;
-  field.nan_count = listed.blanks;
+  field.low = 1, field.high = 0;  // the source's
+  if (volume.components > 1 && choice.component != magnitude && volume.grid.shift == 0)
+    list_range(scene::value_range(*source_with(magnitude)), field);
   result.fields.push_back(std::move(field));
   return result;
 }
@@ -140,11 +143,8 @@ VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const 
 VolumeFile open_described(const std::filesystem::path& file, VolumeKind kind, const VolumeOptions& options,
                           const std::string& source) {
   switch (kind) {
-    case VolumeKind::vtk: {
-      VolumeFile result = read_vtk_grid(file, options);
-      result.range = scene::value_range(*result.source);
-      return result;
-    }
+    case VolumeKind::vtk:
+      return read_vtk_grid(file, options);
     case VolumeKind::bricks:
       return open_bricks(file, options);
     case VolumeKind::meta_image:
@@ -204,7 +204,7 @@ void require_volume(const std::filesystem::path& file) {
         fmt::format("{}: it is no volume as the first step is one; give volumes only", file.string()));
 }
 
-VolumeFile open_volume(const std::filesystem::path& file, const VolumeOptions& options) {
+VolumeFile open_unscanned_volume(const std::filesystem::path& file, const VolumeOptions& options) {
   const std::string source = file.string();
   require_file(file);
   return with_clean_errors(source, [&] {
@@ -216,16 +216,26 @@ VolumeFile open_volume(const std::filesystem::path& file, const VolumeOptions& o
           fmt::format("{}: --dims, --type, --spacing, --origin, --endian and --skip are for .raw files; this one says "
                       "them itself",
                       source));
-    VolumeFile result =
-        raw ? open_stored(describe_raw(file, options), options, source) : open_described(file, kind, options, source);
-    if (result.range.empty())
-      throw scene::bad_input(fmt::format("{}: none of its {} samples is a finite number; choose another field", source,
-                                         result.source->geometry().all_samples().count()));
-    if (result.range.blanks > 0)
-      result.notes.push_back(
-          fmt::format("{} samples are NaN, infinite or hidden: their voxels are blank", result.range.blanks));
-    return result;
+    return raw ? open_stored(describe_raw(file, options), options, source)
+               : open_described(file, kind, options, source);
   });
+}
+
+void set_range(VolumeFile& volume, const std::filesystem::path& file, const scene::ValueRange& range) {
+  volume.range = range;
+  if (range.empty())
+    throw scene::bad_input(fmt::format("{}: none of its {} samples is a finite number; choose another field",
+                                       file.string(), volume.source->geometry().all_samples().count()));
+  for (FieldSummary& field : volume.fields)
+    if (field.low > field.high) list_range(range, field);
+  if (range.blanks > 0)
+    volume.notes.push_back(fmt::format("{} samples are NaN, infinite or hidden: their voxels are blank", range.blanks));
+}
+
+VolumeFile open_volume(const std::filesystem::path& file, const VolumeOptions& options) {
+  VolumeFile volume = open_unscanned_volume(file, options);
+  with_clean_errors(file.string(), [&] { set_range(volume, file, scene::value_range(*volume.source)); });
+  return volume;
 }
 
 }  // namespace tessera::io

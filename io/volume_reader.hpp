@@ -30,9 +30,9 @@ struct VolumeOptions {
 /// A volume whose samples wait in the file, or in memory where they had to be decompressed.
 struct VolumeFile {
   std::unique_ptr<scene::SampleSource> source;
-  scene::ValueRange range;  ///< of the chosen field, and its blanks
-  std::vector<FieldSummary> fields;
-  std::vector<std::string> notes;  ///< one line each: what was chosen or applied, or odd about the file
+  scene::ValueRange range;           ///< of the chosen field, and its blanks; empty until set_range()
+  std::vector<FieldSummary> fields;  ///< low > high: not known until set_range()
+  std::vector<std::string> notes;    ///< one line each: what was chosen or applied, or odd about the file
   std::string format;
 };
 
@@ -59,6 +59,14 @@ void require_volume(const std::filesystem::path& file);
 /// missing, truncated, malformed or flat file, for four or more dimensions, for an encoding or type not known, for an
 /// unknown field, or if no sample is finite.
 VolumeFile open_volume(const std::filesystem::path& file, const VolumeOptions& options = {});
+
+/// The same without its range and what follows from that, for those who scan the samples themselves and then call
+/// set_range(). Vectors of which a component is chosen are read nevertheless: they are listed by their lengths.
+VolumeFile open_unscanned_volume(const std::filesystem::path& file, const VolumeOptions& options = {});
+
+/// Enters the range of all samples, and what follows from it into fields and notes. Throws Error(bad_input) if none is
+/// finite.
+void set_range(VolumeFile& volume, const std::filesystem::path& file, const scene::ValueRange& range);
 
 /// Name of a type on the command line and in .raw names: uint8, int16, float32, ... (float and double too).
 std::optional<scene::SampleType> parse_sample_type(const std::string& text);

@@ -38,6 +38,10 @@ std::size_t size_of(SampleType type) { return type_sizes[static_cast<std::size_t
 const char* name_of(SampleType type) { return type_names[static_cast<std::size_t>(type)]; }
 bool is_float(SampleType type) { return type == SampleType::float32 || type == SampleType::float64; }
 
+bool fits_float(SampleType type) {
+  return type != SampleType::int32 && type != SampleType::uint32 && type != SampleType::float64;
+}
+
 glm::dvec3 world_of_index(const GridGeometry& geometry, const glm::dvec3& index) {
   glm::dvec3 local;
   for (int axis = 0; axis < 3; ++axis) local[axis] = local_of_index(geometry, axis, index[axis]);

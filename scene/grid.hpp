@@ -21,6 +21,8 @@ std::size_t size_of(SampleType type);
 /// "uint8", "float32", ...
 const char* name_of(SampleType type);
 bool is_float(SampleType type);
+/// Whether single precision holds every number of the type.
+bool fits_float(SampleType type);
 
 /// Numbers along the axes i, j, k; i is the fastest in memory and in files.
 using GridIndex = std::array<std::int64_t, 3>;

@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "scene/error.hpp"
 
@@ -166,15 +167,16 @@ void MemorySource::read_samples(const SampleBox& box, const SampleLayout& layout
   if (before / kept != (before + mapped) / kept) drop_pages(bytes_);
 }
 
-ValueRange value_range(const SampleSource& source) {
+namespace {
+
+template <class T>
+ValueRange range_by_reading(const SampleSource& source) {
   const Grid& grid = source.grid();
   const SampleBox all = grid.geometry.all_samples();
-  if (const auto known = source.known_range(all)) return *known;
-
   constexpr std::int64_t most = 1 << 18;  // samples at once: 2 MiB of doubles
   ValueRange range;
-  std::vector<double> values;
-  double low = range.low, high = range.high;
+  std::vector<T> values;
+  T low = std::numeric_limits<T>::infinity(), high = -low;
   const std::int64_t rows = std::clamp<std::int64_t>(most / all.high[0], 1, all.high[1]);
   const std::int64_t slices =
       rows < all.high[1] ? 1 : std::clamp<std::int64_t>(most / (all.high[0] * rows), 1, all.high[2]);
@@ -182,8 +184,8 @@ ValueRange value_range(const SampleSource& source) {
     for (std::int64_t j = 0; j < all.high[1]; j += rows) {
       const SampleBox box{{0, j, k}, {all.high[0], std::min(j + rows, all.high[1]), std::min(k + slices, all.high[2])}};
       values.resize(static_cast<std::size_t>(box.count()));
-      source.read(box, std::span<double>(values));
-      for (const double v : values) {
+      source.read(box, std::span<T>(values));
+      for (const T v : values) {
         if (!std::isfinite(v)) {
           ++range.blanks;
           continue;
@@ -193,11 +195,19 @@ ValueRange value_range(const SampleSource& source) {
       }
     }
   if (low <= high) {
-    const double a = grid.value(low), b = grid.value(high);
+    const double a = grid.value(static_cast<double>(low)), b = grid.value(static_cast<double>(high));
     range.low = std::min(a, b);
     range.high = std::max(a, b);
   }
   return range;
+}
+
+}  // namespace
+
+ValueRange value_range(const SampleSource& source) {
+  if (const auto known = source.known_range(source.geometry().all_samples())) return *known;
+  // In the precision that samples are held in: magnitudes of floats are floats.
+  return fits_float(source.grid().type) ? range_by_reading<float>(source) : range_by_reading<double>(source);
 }
 
 }  // namespace tessera::scene

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <utility>
 
 namespace tessera::volume {
 namespace {
@@ -25,11 +26,18 @@ float rounded_up(double x) {
   return static_cast<double>(f) < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
 }
 
-/// Ranges of raw samples, and what a block adds to the whole volume's.
+/// What a block adds to the scan of all.
+struct BlockTotals {
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+  std::uint64_t blanks = 0;
+};
+
+/// Voxels from the first to those 64 on, or to the scan's last.
 template <class T>
-void scan_block(const scene::SampleSource& source, const scene::GridIndex& first_voxel, CellRanges& ranges,
-                double& lowest, double& highest, std::uint64_t& blanks) {
-  const scene::GridIndex samples = source.geometry().samples(), voxels = source.geometry().voxels();
+BlockTotals scan_block(const scene::SampleSource& source, const scene::GridIndex& first_voxel, CellScan& scan) {
+  const scene::GridIndex samples = source.geometry().samples(), cells = cells_along(source.geometry());
+  scene::GridIndex voxels = source.geometry().voxels();
+  voxels[2] = std::min(voxels[2], scan.last * CellRanges::side);
   const std::int64_t shared = source.geometry().association == scene::Association::point ? 1 : 0;
   scene::SampleBox box;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -40,7 +48,7 @@ void scan_block(const scene::SampleSource& source, const scene::GridIndex& first
   source.read(box, std::span<T>(values));
   const std::int64_t width = box.extent(0), height = box.extent(1);
   constexpr std::int64_t side = CellRanges::side;
-  lowest = std::numeric_limits<double>::infinity(), highest = -lowest, blanks = 0;
+  BlockTotals totals;
   for (std::int64_t c = box.low[2] / side; c * side < box.high[2] - shared; ++c)
     for (std::int64_t b = box.low[1] / side; b * side < box.high[1] - shared; ++b)
       for (std::int64_t a = box.low[0] / side; a * side < box.high[0] - shared; ++a) {
@@ -68,56 +76,62 @@ void scan_block(const scene::SampleSource& source, const scene::GridIndex& first
             for (std::int64_t i = 0; i < count; ++i)
               if (!(std::abs(row[i]) <= std::numeric_limits<T>::max()) && owned(a * side + i, a, 0) && owned(j, b, 1) &&
                   owned(k, c, 2))
-                ++blanks;
+                ++totals.blanks;
           }
-        const auto cell = static_cast<std::size_t>(a + ranges.cells[0] * (b + ranges.cells[1] * c));
-        ranges.low[cell] = rounded_down(static_cast<double>(low));
-        ranges.high[cell] = rounded_up(static_cast<double>(high));
-        lowest = std::min(lowest, static_cast<double>(low));
-        highest = std::max(highest, static_cast<double>(high));
+        const auto cell = static_cast<std::size_t>(a + cells[0] * (b + cells[1] * (c - scan.first)));
+        scan.low[cell] = rounded_down(static_cast<double>(low));
+        scan.high[cell] = rounded_up(static_cast<double>(high));
+        totals.lowest = std::min(totals.lowest, static_cast<double>(low));
+        totals.highest = std::max(totals.highest, static_cast<double>(high));
       }
-}
-
-/// Whether single precision holds every sample.
-bool fits_float(scene::SampleType type) {
-  return type != scene::SampleType::int32 && type != scene::SampleType::uint32 && type != scene::SampleType::float64;
+  return totals;
 }
 
 }  // namespace
 
-CellRanges::CellRanges(const scene::SampleSource& source, int threads) {
-  const scene::GridIndex voxels = source.geometry().voxels();
-  scene::GridIndex blocks;
-  for (std::size_t a = 0; a < 3; ++a) {
-    cells[a] = (voxels[a] + side - 1) / side;
-    blocks[a] = (voxels[a] + block_side - 1) / block_side;
-  }
-  low.resize(static_cast<std::size_t>(cells[0] * cells[1] * cells[2]));
-  high.resize(low.size());
-  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+scene::GridIndex cells_along(const scene::GridGeometry& geometry) {
+  scene::GridIndex cells = geometry.voxels();
+  for (std::int64_t& count : cells) count = (count + CellRanges::side - 1) / CellRanges::side;
+  return cells;
+}
+
+CellScan scan_cells(const scene::SampleSource& source, std::int64_t first, std::int64_t last, int threads) {
+  const scene::GridIndex voxels = source.geometry().voxels(), cells = cells_along(source.geometry());
+  CellScan scan;
+  scan.first = first, scan.last = last;
+  scan.low.resize(static_cast<std::size_t>(cells[0] * cells[1] * (last - first)));
+  scan.high.resize(scan.low.size());
+  constexpr std::int64_t layers = block_side / CellRanges::side;  // of cells in a block
+  const scene::GridIndex blocks{(voxels[0] + block_side - 1) / block_side, (voxels[1] + block_side - 1) / block_side,
+                                (last - first + layers - 1) / layers};
   std::mutex mutex;
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
   arena.execute([&] {
     tbb::parallel_for(std::int64_t{0}, blocks[0] * blocks[1] * blocks[2], [&](std::int64_t n) {
-      const scene::GridIndex first{n % blocks[0] * block_side, n / blocks[0] % blocks[1] * block_side,
-                                   n / blocks[0] / blocks[1] * block_side};
-      double block_low, block_high;
-      std::uint64_t blanks;
-      if (fits_float(source.grid().type))
-        scan_block<float>(source, first, *this, block_low, block_high, blanks);
-      else
-        scan_block<double>(source, first, *this, block_low, block_high, blanks);
+      const scene::GridIndex first_voxel{n % blocks[0] * block_side, n / blocks[0] % blocks[1] * block_side,
+                                         n / blocks[0] / blocks[1] * block_side + first * CellRanges::side};
+      const BlockTotals totals = scene::fits_float(source.grid().type) ? scan_block<float>(source, first_voxel, scan)
+                                                                       : scan_block<double>(source, first_voxel, scan);
       const std::lock_guard lock(mutex);
-      lowest = std::min(lowest, block_low);
-      highest = std::max(highest, block_high);
-      range.blanks += blanks;
+      scan.lowest = std::min(scan.lowest, totals.lowest);
+      scan.highest = std::max(scan.highest, totals.highest);
+      scan.blanks += totals.blanks;
     });
   });
-  if (lowest <= highest) {
-    range.low = std::min(source.grid().value(lowest), source.grid().value(highest));
-    range.high = std::max(source.grid().value(lowest), source.grid().value(highest));
+  return scan;
+}
+
+CellRanges::CellRanges(const scene::SampleSource& source, int threads)
+    : CellRanges(source.grid(), scan_cells(source, 0, cells_along(source.geometry())[2], threads)) {}
+
+CellRanges::CellRanges(const scene::Grid& grid, CellScan whole)
+    : cells(cells_along(grid.geometry)), low(std::move(whole.low)), high(std::move(whole.high)) {
+  range.blanks = whole.blanks;
+  if (whole.lowest <= whole.highest) {
+    range.low = std::min(grid.value(whole.lowest), grid.value(whole.highest));
+    range.high = std::max(grid.value(whole.lowest), grid.value(whole.highest));
   }
-  lanes = LaneSamples(source.grid(), range);
+  lanes = LaneSamples(grid, range);
   for (std::size_t cell = 0; cell < low.size(); ++cell) {
     if (low[cell] > high[cell]) continue;
     const float a = lanes.lane(low[cell]), b = lanes.lane(high[cell]);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "compositor/lane_table.hpp"
@@ -10,6 +11,23 @@
 
 namespace tessera::volume {
 
+/// Smallest and largest sample in cells of 8^3 voxels, as stored: what a scan of a volume, or of a part of it, finds. A
+/// part is whole layers of cells along k, so that several processes may share a scan.
+///
+/// Cells   cell (a, b, c) is number a + cells[0] * (b + cells[1] * (c - first)).
+struct CellScan {
+  std::int64_t first = 0, last = 0;  ///< layers first <= c < last
+  std::vector<float> low, high;      ///< of each cell, rounded outwards; low > high: all are blank
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;  ///< of all its samples
+  std::uint64_t blanks = 0;  ///< in cells whose lowest corner they are, or in the last ones: all parts add up
+};
+
+/// Cells of 8^3 voxels along each axis.
+scene::GridIndex cells_along(const scene::GridGeometry& geometry);
+
+/// Reads the samples of layers first <= c < last once, in boxes of 64^3 voxels and the samples they share with others.
+CellScan scan_cells(const scene::SampleSource& source, std::int64_t first, std::int64_t last, int threads);
+
 /// Smallest and largest lane scalar in every block of 8^3 voxels: what empty space is skipped by, for any brick size.
 ///
 /// Cells   cell (a, b, c) is number a + cells[0] * (b + cells[1] * c); its voxels are 8a <= i < 8a + 8 and so on. Point
@@ -18,7 +36,9 @@ namespace tessera::volume {
 struct CellRanges {
   static constexpr std::int64_t side = 8;
 
-  /// Reads all samples once, in boxes of 64^3 voxels. `lanes` follows from the range of the whole volume.
+  /// Of a scan of all layers. `lanes` follows from the range of the whole volume.
+  CellRanges(const scene::Grid& grid, CellScan whole);
+  /// Reads all samples.
   CellRanges(const scene::SampleSource& source, int threads);
 
   [[nodiscard]] std::size_t count() const { return low.size(); }

@@ -25,7 +25,7 @@
 namespace tessera::volume {
 namespace {
 
-void check(const RenderSettings& settings) {
+void check(const RenderSettings& settings, const scene::GridGeometry& geometry) {
   if (settings.brick_size < 2 || settings.brick_size > 1 << 16)
     throw scene::bad_input(fmt::format("brick size {}; it must be 2 to 65536 voxels", settings.brick_size));
   if (!(settings.accuracy > 0) || !std::isfinite(settings.accuracy))
@@ -35,6 +35,16 @@ void check(const RenderSettings& settings) {
   if (settings.threads < 0) throw scene::bad_input(fmt::format("{} threads; give 0 or more", settings.threads));
   if (settings.preload_limit < 0)
     throw scene::bad_input(fmt::format("preload limit {}; give 0 or more", settings.preload_limit));
+  const bool in_steps = settings.method == Method::sampled || settings.method == Method::preintegrated;
+  if (geometry.rectilinear() && in_steps)
+    throw scene::bad_input("a rectilinear grid is not rendered in steps; use --integrator auto or exact");
+  if (settings.shading && in_steps) throw scene::bad_input("shading needs the exact or auto method");
+  if (settings.shading && settings.emission == scene::Emission::independent)
+    throw scene::bad_input("shading needs emission in proportion to extinction");
+  if (settings.shading && !(glm::length(settings.shading->to_light) > 0))
+    throw scene::bad_input("the direction to the light has no length");
+  if (settings.method == Method::preintegrated && settings.emission == scene::Emission::independent)
+    throw scene::bad_input("pre-integration needs emission in proportion to extinction; use sampled or exact");
 }
 
 /// World units; a power of two near the mean voxel's side.
@@ -158,10 +168,10 @@ CostMap cost_of_planes(const scene::Camera& camera, scene::ImageSize image, cons
 }  // namespace
 
 struct Renderer::State {
-  State(const scene::SampleSource& source_, const RenderSettings& settings_)
+  State(const scene::SampleSource& source_, const RenderSettings& settings_, CellRanges ranges_)
       : source(source_),
         settings(settings_),
-        ranges(source_, settings_.threads),
+        ranges(std::move(ranges_)),
         bricks(source_, BrickLayout(source_.geometry(), settings_.brick_size, settings_.edge_bricks),
                settings_.memory_bytes, settings_.cache) {}
 
@@ -215,19 +225,14 @@ struct Renderer::State {
   std::thread preloading;
 };
 
+Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& settings, CellRanges ranges) {
+  check(settings, source.geometry());
+  state_ = std::make_unique<State>(source, settings, std::move(ranges));
+}
+
 Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& settings) {
-  check(settings);
-  const bool in_steps = settings.method == Method::sampled || settings.method == Method::preintegrated;
-  if (source.geometry().rectilinear() && in_steps)
-    throw scene::bad_input("a rectilinear grid is not rendered in steps; use --integrator auto or exact");
-  if (settings.shading && in_steps) throw scene::bad_input("shading needs the exact or auto method");
-  if (settings.shading && settings.emission == scene::Emission::independent)
-    throw scene::bad_input("shading needs emission in proportion to extinction");
-  if (settings.shading && !(glm::length(settings.shading->to_light) > 0))
-    throw scene::bad_input("the direction to the light has no length");
-  if (settings.method == Method::preintegrated && settings.emission == scene::Emission::independent)
-    throw scene::bad_input("pre-integration needs emission in proportion to extinction; use sampled or exact");
-  state_ = std::make_unique<State>(source, settings);
+  check(settings, source.geometry());
+  state_ = std::make_unique<State>(source, settings, CellRanges(source, settings.threads));
 }
 
 Renderer::~Renderer() = default;

@@ -73,19 +73,22 @@ struct PixelRegion {
 /// Regions that begin and end at multiples of this many pixels share no work with their neighbours.
 inline constexpr int region_grain = 4;
 
+struct CellRanges;
 struct CostMap;
 class WorkTally;
 class WorkRates;
 enum class CostMethod;
 
-/// Casts rays through one volume many times, in one process. The constructor reads all of it once, for the ranges of
-/// values by which empty space is skipped; the source must outlive the renderer.
+/// Casts rays through one volume many times, in one process, by the ranges of values in its cells, by which empty space
+/// is skipped (cell_ranges.hpp). The source must outlive the renderer.
 ///
 /// Bits   on one instruction set the image is the same for any brick size, memory budget, cache policy, thread count
 ///        and region.
 class Renderer {
  public:
-  /// Throws Error(bad_input) for settings out of range.
+  /// Takes ranges that have been found before, of this very source. Throws Error(bad_input) for settings out of range.
+  Renderer(const scene::SampleSource& source, const RenderSettings& settings, CellRanges ranges);
+  /// Reads all samples once, for their ranges.
   Renderer(const scene::SampleSource& source, const RenderSettings& settings);
   ~Renderer();
   Renderer(const Renderer&) = delete;

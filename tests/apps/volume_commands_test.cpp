@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -133,6 +134,28 @@ TEST(VolumeCommands, InfoSaysWhatAVolumeHolds) {
   const auto json = nlohmann::json::parse(tessera({"info", folder / "a.bricks", "--json"}).out);
   EXPECT_EQ(json["bounds"][0], (std::vector<double>{-1, -1, -1}));
   EXPECT_TRUE(json["renders"].contains("view"));
+}
+
+TEST(VolumeCommands, TheReportOfAPictureListsWhatInfoLists) {
+  // Ranges come from two scans, info's and the renderer's, which say the same of blanks, components and lengths.
+  const Folder folder;
+  std::vector<float> numbers;
+  for (int i = 0; i < 3 * 13 * 12 * 11; ++i)
+    numbers.push_back(i % 77 == 5 ? NAN : std::sin(0.3f * static_cast<float>(i)));
+  const std::string bytes(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float));
+  const std::string raw = folder.file("a_39x12x11_float32.raw", bytes);
+  const std::string vectors = folder.file(
+      "b.nrrd", "NRRD0004\ntype: float\ndimension: 4\nsizes: 3 13 12 11\nencoding: raw\nendian: little\n\n" + bytes);
+  for (const auto& [file, field] : std::initializer_list<std::pair<std::string, std::string>>{
+           {raw, "samples"}, {vectors, "samples"}, {vectors, "samples:1"}}) {
+    const Outcome run = tessera({"render", file, "--field", field, "-o", folder / "a.pfm", "--size", "20x20", "--quiet",
+                                 "--report", folder / "r.json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    auto info = nlohmann::json::parse(tessera({"info", file, "--field", field, "--json"}).out);
+    info.erase("renders");
+    EXPECT_GT(info["field"]["blank"], 0);
+    EXPECT_EQ(nlohmann::json::parse(contents(folder / "r.json"))["volume"], info) << field;
+  }
 }
 
 TEST(VolumeCommands, FaultsOfVolumesAreOneLineAndLeaveNothing) {

@@ -141,7 +141,13 @@ TEST_F(VolumeMpirun, FaultsAreOneLineInAllAndLeaveNothing) {
   const Outcome flat = mpirun(2, {"render", folder_.file("x_9x9x9_uint8.raw", "short"), "-o", folder_ / "a.png"});
   EXPECT_EQ(flat.status, 2);
   EXPECT_EQ(own_lines(flat), 1u) << flat.err;
-  EXPECT_EQ(folder_.names(), (std::vector<std::string>{"v.nrrd", "x_9x9x9_uint8.raw"}));
+  // What only all ranks together know.
+  const std::string nothing(std::size_t{4} * 9 * 9 * 40, '\xff');  // NaN
+  const Outcome blank = mpirun(3, {"render", folder_.file("n_9x9x40_float32.raw", nothing), "-o", folder_ / "a.png"});
+  EXPECT_EQ(blank.status, 2);
+  EXPECT_EQ(own_lines(blank), 1u) << blank.err;
+  EXPECT_NE(blank.err.find("none of its 3240 samples"), std::string::npos) << blank.err;
+  EXPECT_EQ(folder_.names(), (std::vector<std::string>{"n_9x9x40_float32.raw", "v.nrrd", "x_9x9x9_uint8.raw"}));
 }
 
 }  // namespace

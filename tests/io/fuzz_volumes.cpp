@@ -54,6 +54,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     test::require(all.count() > 0 && all.count() <= 64 * static_cast<std::int64_t>(size + 64));
     std::vector<double> values(static_cast<std::size_t>(all.count()));
     volume.source->read(all, std::span<double>(values));
+    // Where floats hold the samples, they are floats, magnitudes too.
+    if (scene::fits_float(volume.source->grid().type))
+      for (double& v : values) v = static_cast<double>(static_cast<float>(v));
     // A brick file may say that its range is wider than it is.
     for (const double v : values)
       if (const double value = volume.source->grid().value(v); std::isfinite(v) && std::isfinite(value))

@@ -1,0 +1,90 @@
+#include "frame/scan_together.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <mutex>
+#include <random>
+#include <string>
+
+#include "compositor/loopback_transport.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::frame {
+namespace {
+
+/// Noise, 45 voxels or 6 layers of cells high, with blanks. Counts what is read of it; layers from `broken` on cannot
+/// be.
+class NoiseSource final : public scene::SampleSource {
+ public:
+  explicit NoiseSource(std::int64_t broken = 1000) : SampleSource(noise_grid(), "noise"), broken_(broken) {
+    std::mt19937 random(11);
+    values_.resize(static_cast<std::size_t>(geometry().all_samples().count()));
+    for (float& v : values_) v = random() % 40 == 0 ? NAN : static_cast<float>(random()) * 0x1p-30f - 1;
+    whole_ = scene::MemorySource::of(grid(), values_);
+  }
+  [[nodiscard]] std::int64_t samples_read() const { return samples_read_; }
+
+ private:
+  static scene::Grid noise_grid() {
+    scene::Grid grid;
+    grid.geometry.points = {30, 12, 46};
+    return grid;
+  }
+  void read_samples(const scene::SampleBox& box, const scene::SampleLayout& layout, std::byte* to) const override {
+    if (box.high[2] > broken_)
+      throw scene::Error(scene::ExitCode::system_failure, "noise: it cannot be read; write it anew");
+    samples_read_ += box.count();
+    whole_->read(box, layout, {to, static_cast<std::size_t>(box.count()) * scene::size_of(layout.type)});
+  }
+
+  std::int64_t broken_;
+  std::vector<float> values_;
+  std::unique_ptr<scene::MemorySource> whole_;
+  mutable std::atomic<std::int64_t> samples_read_ = 0;
+};
+
+TEST(ScanTogether, EveryRankHasTheRangesOfOneProcessAndHasReadItsShareOnly) {
+  const NoiseSource alone;
+  const volume::CellRanges expected(alone, 1);
+  const std::int64_t layer = 30 * 12;  // samples
+  for (const int ranks : {1, 2, 3, 6, 9}) {
+    std::mutex mutex;
+    int done = 0;
+    compositor::run_ranks(ranks, [&](compositor::Transport& transport) {
+      // Twice in a row, as of a series whose second step is asked for: the two may not mix.
+      for (int time = 0; time < 2; ++time) {
+        const NoiseSource source;
+        const volume::CellRanges ranges = scan_together(transport, source, 1);
+        const std::lock_guard lock(mutex);
+        ++done;
+        EXPECT_EQ(ranges.cells, expected.cells);
+        EXPECT_EQ(ranges.low, expected.low) << ranks;
+        EXPECT_EQ(ranges.high, expected.high) << ranks;
+        EXPECT_EQ(ranges.range, expected.range);
+        EXPECT_EQ(ranges.lanes.factor, expected.lanes.factor);
+        EXPECT_EQ(ranges.lanes.term, expected.lanes.term);
+        // Layers of cells at most one more than others have, each of 8 voxels, and the samples above the last.
+        EXPECT_LE(source.samples_read(), ((6 + ranks - 1) / ranks * 8 + 1) * layer) << ranks;
+      }
+    });
+    EXPECT_EQ(done, 2 * ranks);
+  }
+}
+
+TEST(ScanTogether, WhatOneRankCannotReadEndsTheRunForAllWithItsWords) {
+  try {
+    compositor::run_ranks(3, [&](compositor::Transport& transport) {
+      const NoiseSource source(40);  // in the last rank's share
+      scan_together(transport, source, 1);
+      ADD_FAILURE() << "rank " << transport.rank() << " went on";
+    });
+    FAIL() << "no error";
+  } catch (const scene::Error& error) {
+    EXPECT_EQ(error.code(), scene::ExitCode::system_failure);
+    EXPECT_EQ(std::string(error.what()), "noise: it cannot be read; write it anew");
+  }
+}
+
+}  // namespace
+}  // namespace tessera::frame
