@@ -121,4 +121,17 @@ std::string Folder::cube() const {
   return *this / "cube.vtu";
 }
 
+std::string Folder::rectilinear() const {
+  std::string axis, samples;
+  for (int i = 0; i < 12; ++i) axis += std::to_string(0.1 * i + 0.01 * i * i) + " ";
+  for (int i = 0; i < 12 * 12 * 12; ++i) samples += std::to_string(i * i * 7 % 101) + " ";
+  const std::string coordinates = "<DataArray type=\"Float64\" format=\"ascii\">" + axis + "</DataArray>";
+  return file("a.vtr",
+              "<VTKFile type=\"RectilinearGrid\" version=\"1.0\" byte_order=\"LittleEndian\">"
+              "<RectilinearGrid WholeExtent=\"0 11 0 11 0 11\"><Piece Extent=\"0 11 0 11 0 11\"><PointData>"
+              "<DataArray type=\"Float32\" Name=\"f\" format=\"ascii\">" +
+                  samples + "</DataArray></PointData><Coordinates>" + coordinates + coordinates + coordinates +
+                  "</Coordinates></Piece></RectilinearGrid></VTKFile>");
+}
+
 }  // namespace tessera::apps

@@ -37,6 +37,8 @@ class Folder {
   [[nodiscard]] std::string file(const std::string& name, const std::string& text) const;
   /// A small generated mesh in it: 4^3 voxels of six tets.
   [[nodiscard]] std::string cube() const;
+  /// A small rectilinear grid in it, a.vtr: 12^3 points, spacings that grow along each axis.
+  [[nodiscard]] std::string rectilinear() const;
 
  private:
   std::filesystem::path path_;

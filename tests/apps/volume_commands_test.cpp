@@ -104,24 +104,15 @@ TEST(VolumeCommands, EveryFormatThatConvertWritesGivesTheSamePicture) {
 
 TEST(VolumeCommands, RectilinearGridsAreVolumesToo) {
   const Folder folder;
-  std::string axis, samples;
-  for (int i = 0; i < 12; ++i) axis += std::to_string(0.1 * i + 0.01 * i * i) + " ";
-  for (int i = 0; i < 12 * 12 * 12; ++i) samples += std::to_string(i * i * 7 % 101) + " ";
-  const std::string coordinates = "<DataArray type=\"Float64\" format=\"ascii\">" + axis + "</DataArray>";
-  std::ofstream(folder / "a.vtr")
-      << "<VTKFile type=\"RectilinearGrid\" version=\"1.0\" byte_order=\"LittleEndian\">"
-         "<RectilinearGrid WholeExtent=\"0 11 0 11 0 11\"><Piece Extent=\"0 11 0 11 0 11\"><PointData>"
-         "<DataArray type=\"Float32\" Name=\"f\" format=\"ascii\">"
-      << samples << "</DataArray></PointData><Coordinates>" << coordinates << coordinates << coordinates
-      << "</Coordinates></Piece></RectilinearGrid></VTKFile>";
-  const Outcome run = tessera({"render", folder / "a.vtr", "-o", folder / "a.exr", "-o", folder / "a.deep.exr",
-                               "--size", "40x40", "--verify", "1000", "--report", folder / "r.json"});
+  const std::string grid = folder.rectilinear();
+  const Outcome run = tessera({"render", grid, "-o", folder / "a.exr", "-o", folder / "a.deep.exr", "--size", "40x40",
+                               "--verify", "1000", "--report", folder / "r.json"});
   EXPECT_EQ(run.status, 0) << run.out << run.err;
   const auto report = nlohmann::json::parse(contents(folder / "r.json"));
   EXPECT_TRUE(report["volume"]["rectilinear"]);
   // 1e-5 of the lines, and what rays that end at a transmittance of a quarter of 1e-4 leave out.
   EXPECT_LT(report["frames"][0]["verify"]["max_error"], 3.5e-5);
-  const Outcome stepped = tessera({"render", folder / "a.vtr", "-o", folder / "b.exr", "--integrator", "sampled"});
+  const Outcome stepped = tessera({"render", grid, "-o", folder / "b.exr", "--integrator", "sampled"});
   EXPECT_EQ(stepped.status, 2);
   EXPECT_EQ(stepped.error_lines(), 1u) << stepped.err;
 }

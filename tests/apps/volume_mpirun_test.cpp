@@ -49,6 +49,28 @@ TEST_F(VolumeMpirun, AnyNumberOfProcessesGivesTheBytesOfOne) {
   }
 }
 
+TEST_F(VolumeMpirun, RectilinearGridsHaveTheBytesOfOneProcessToo) {
+  const std::string grid = folder_.rectilinear();
+  const auto film = [&](const std::string& name) {
+    return std::vector<std::string>{"render",    grid,
+                                    "-o",        folder_ / (name + "_%d.exr"),
+                                    "-o",        folder_ / (name + "_%d.deep.exr"),
+                                    "--orbit",   "2",
+                                    "--size",    "70x50",
+                                    "--threads", "1",
+                                    "--quiet"};
+  };
+  ASSERT_EQ(tessera(film("one")).status, 0);
+  EXPECT_NE(contents(folder_ / "one_0.exr"), contents(folder_ / "one_1.exr"));
+  for (const int ranks : {2, 3, 6}) {
+    const Outcome outcome = mpirun(ranks, film("ranks"));
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    for (const char* end : {"_0.exr", "_1.exr", "_0.deep.exr", "_1.deep.exr"})
+      EXPECT_EQ(contents(folder_ / (std::string("ranks") + end)), contents(folder_ / (std::string("one") + end)))
+          << ranks << end;
+  }
+}
+
 TEST_F(VolumeMpirun, TheReportAndTheTraceHaveEveryRanksPart) {
   const Outcome outcome = mpirun(3, render(folder_ / "a.exr", {"--verify", "300", "--report", folder_ / "r.json",
                                                                "--timing", folder_ / "t.json"}));
