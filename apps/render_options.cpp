@@ -58,9 +58,9 @@ io::ImageFileOptions image_options(const RenderWords& words) {
 
 void add_mesh_options(CLI::App& command, RenderWords& words) {
   command
-      .add_option(
-          "INPUT", words.input,
-          "mesh: .vtu .pvtu .vtk .ex2 .xyz .ele .tets .stl ...; volume: .vti .vtr .vtk .mhd .nrrd .nii .nii.gz .raw")
+      .add_option("INPUT", words.input,
+                  "mesh: .vtu .pvtu .vtk .ex2 .xyz .ele .tets .stl ...; volume: .vti .pvti .vtr .pvtr .vtk .mhd .nrrd "
+                  ".nii .nii.gz .raw")
       ->required();
   command
       .add_option("--field", words.field, "scalar: NAME, NAME:mag, NAME:x; with point: or cell: before it if needed")

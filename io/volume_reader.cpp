@@ -191,8 +191,8 @@ bool is_volume(const std::filesystem::path& file) {
     return is_volume_file(file);
   if (lower_extension(file) == ".raw") return true;
   if (volume_kind_of(file) != VolumeKind::none) return true;
-  // A damaged one is told as what it was meant to be. .vtr is among the meshes' names too: VTK XML of another kind is
-  // one.
+  // A damaged one is told as what it was meant to be. .vtr and .pvtr are among the meshes' names too: VTK XML of
+  // another kind is one.
   if (is_mesh_file(file) && read_beginning(file, 4096).find("<VTKFile") != std::string::npos) return false;
   return is_volume_file(file);
 }

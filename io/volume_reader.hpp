@@ -45,9 +45,9 @@ void require_volume(const std::filesystem::path& file);
 
 /// Opens a volume.
 ///
-///   .vti .pvti .vtr, .vtk of structured points or a rectilinear grid: by VTK, all of it in memory. Extent, origin,
-///   spacing
-///       and direction apply. A curvilinear .vtk is a mesh. 64-bit integers become doubles. Hidden samples are blank.
+///   .vti .pvti .vtr .pvtr, .vtk of structured points or a rectilinear grid: by VTK, all of it in memory. Extent,
+///       origin, spacing and direction apply; pieces have to fill the whole and to agree on its coordinates. A
+///       curvilinear .vtk is a mesh. 64-bit integers become doubles. Hidden samples are blank.
 ///   .mhd .mha: origin, spacing, orientation, slope and offset apply; raw (mapped), compressed or text.
 ///   .nrrd .nhdr: space origin and directions, else axis minimums and spacings; raw (mapped), gzip, ascii or hex. A
 ///       first axis of components is allowed; content "old min" and the measurement frame mean nothing here.

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 #include <vtkCellData.h>
 #include <vtkDataObject.h>
+#include <vtkDataSet.h>
 #include <vtkDataSetReader.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkSmartPointer.h>
-#include <vtkXMLPRectilinearGridReader.h>
 #include <vtkXMLPStructuredGridReader.h>
 #include <vtkXMLRectilinearGridReader.h>
 #include <vtkXMLStructuredGridReader.h>
@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 
+#include "io/grid_pieces.hpp"
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
 #include "io/mesh_formats.hpp"
@@ -59,7 +60,6 @@ vtkSmartPointer<vtkXMLReader> make_xml_reader(const std::string& type) {
   if (type == "StructuredGrid") reader = vtkXMLStructuredGridReader::New();
   if (type == "PStructuredGrid") reader = vtkXMLPStructuredGridReader::New();
   if (type == "RectilinearGrid") reader = vtkXMLRectilinearGridReader::New();
-  if (type == "PRectilinearGrid") reader = vtkXMLPRectilinearGridReader::New();
   return vtkSmartPointer<vtkXMLReader>::Take(reader);
 }
 
@@ -116,7 +116,11 @@ MeshBlocks read_vtk_xml(const std::filesystem::path& file) {
   if (type == parallel_type) return read_pvtu_pieces(file, pvtu_pieces(file));
   check_vtk_xml(file);
   MeshBlocks result = named_format(*kind, extension);
-  const auto data = read_xml(source, type, result.notes);
+  vtkSmartPointer<vtkDataObject> data;
+  if (type == "PRectilinearGrid")
+    data = read_grid_pieces(file, false, result.notes);
+  else
+    data = read_xml(source, type, result.notes);
   result.blocks = blocks_from_vtk(*data, source, result.notes);
   return result;
 }

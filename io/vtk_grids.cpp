@@ -11,22 +11,20 @@
 #include <vtkSmartPointer.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkXMLImageDataReader.h>
-#include <vtkXMLPImageDataReader.h>
 #include <vtkXMLRectilinearGridReader.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "io/field_choice.hpp"
+#include "io/grid_pieces.hpp"
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
 #include "io/volume_formats.hpp"
 #include "io/vtk_blocks.hpp"
 #include "io/vtk_checks.hpp"
 #include "io/vtk_session.hpp"
-#include "io/xml_elements.hpp"
 
 namespace tessera::io {
 namespace {
@@ -60,85 +58,35 @@ std::optional<SampleType> stored_vtk_type(vtkDataArray& array) {
   }
 }
 
-enum class VtkGridKind { legacy, image, image_pieces, rectilinear };
+enum class VtkGridKind { legacy, image, image_pieces, rectilinear, rectilinear_pieces };
 
-/// VTK fills what a file that is cut short lacks with zeros, and says nothing.
-void require_xml_end(const std::filesystem::path& file) {
-  const MappedFile mapped(file);
-  const std::string_view text = mapped.text();
-  if (text.substr(text.size() - std::min<std::size_t>(text.size(), 1024)).find("</VTKFile") == std::string_view::npos)
-    throw damaged(file, "it does not end with </VTKFile>");
-}
-
-/// Cells of "i0 i1 j0 j1 k0 k1"; an extent that is none has none.
-double extent_cells(const std::string* extent) {
-  std::istringstream words(extent ? *extent : std::string());
-  double cells = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    double low = 0, high = 0;
-    if (!(words >> low >> high)) return 0;
-    cells *= std::max(0.0, high - low);
-  }
-  return cells;
-}
-
-/// The pieces of a .pvti are images of their own, and as many cells as it has at least: VTK leaves zeros where it has
-/// none. The Direction of the first piece that has one, which VTK 9.1 leaves out of the .pvti and passes over.
-std::optional<std::array<double, 9>> require_image_pieces(const std::filesystem::path& file) {
-  const MappedFile mapped(file);
-  std::optional<std::array<double, 9>> direction;
-  double whole = 0, in_pieces = 0;
-  each_xml_element(mapped.text(), file.string(), [&](const XmlElement& element) {
-    if (element.name == "PImageData") whole = extent_cells(element.find("WholeExtent"));
-    if (element.name != "Piece") return;
-    in_pieces += extent_cells(element.find("Extent"));
-    const std::string* name = element.find("Source");
-    if (!name) throw damaged(file, "a piece has no Source");
-    const std::filesystem::path piece = file.parent_path() / *name;
-    require_file(piece);
-    const std::string beginning = read_beginning(piece, 4096);
-    if (beginning.find("\"ImageData\"") == std::string::npos)
-      throw scene::bad_input(
-          fmt::format("{}: it is a piece of {} and no .vti; write them anew", piece.string(), file.string()));
-    require_xml_end(piece);
-    const std::size_t at = beginning.find(" Direction=\"");
-    if (direction || at == std::string::npos) return;
-    std::istringstream words(beginning.substr(at + 12, 400));
-    std::array<double, 9> numbers{};
-    for (double& number : numbers)
-      if (!(words >> number)) throw damaged(piece, "its Direction is not nine numbers");
-    direction = numbers;
-  });
-  if (in_pieces < whole)
-    throw damaged(file, fmt::format("its pieces have {:.0f} of its {:.0f} cells", in_pieces, whole));
-  return direction;
-}
-
-vtkSmartPointer<vtkXMLReader> xml_reader_of(VtkGridKind kind) {
-  if (kind == VtkGridKind::image) return vtkSmartPointer<vtkXMLImageDataReader>::New();
-  if (kind == VtkGridKind::image_pieces) return vtkSmartPointer<vtkXMLPImageDataReader>::New();
-  return vtkSmartPointer<vtkXMLRectilinearGridReader>::New();
+vtkSmartPointer<vtkDataSet> read_xml_grid(const std::string& source, VtkGridKind kind) {
+  vtkSmartPointer<vtkXMLReader> reader;
+  if (kind == VtkGridKind::image)
+    reader = vtkSmartPointer<vtkXMLImageDataReader>::New();
+  else
+    reader = vtkSmartPointer<vtkXMLRectilinearGridReader>::New();
+  reader->SetFileName(source.c_str());
+  reader->Update();
+  return vtkDataSet::SafeDownCast(reader->GetOutputDataObject(0));
 }
 
 vtkSmartPointer<vtkDataSet> read_vtk_volume_data(const std::filesystem::path& file, VtkGridKind kind,
                                                  std::vector<std::string>& notes) {
   const std::string source = file.string();
   const bool xml = kind != VtkGridKind::legacy;
-  std::optional<std::array<double, 9>> direction;
   if (xml) {
-    if (kind == VtkGridKind::image_pieces) direction = require_image_pieces(file);
     check_vtk_xml(file);
     require_xml_end(file);
+    if (kind == VtkGridKind::image_pieces || kind == VtkGridKind::rectilinear_pieces)
+      return read_grid_pieces(file, kind == VtkGridKind::image_pieces, notes);
   } else {
     check_vtk_legacy(MappedFile(file).text(), source);
   }
   vtkSmartPointer<vtkDataSet> data;
   const std::string warning = with_quiet_vtk(source, "the file is truncated or damaged, write it anew", [&] {
     if (xml) {
-      const auto reader = xml_reader_of(kind);
-      reader->SetFileName(source.c_str());
-      reader->Update();
-      data = vtkDataSet::SafeDownCast(reader->GetOutputDataObject(0));
+      data = read_xml_grid(source, kind);
       return;
     }
     vtkNew<vtkDataSetReader> reader;
@@ -147,7 +95,6 @@ vtkSmartPointer<vtkDataSet> read_vtk_volume_data(const std::filesystem::path& fi
   });
   if (!data) throw scene::bad_input(fmt::format("{}: nothing can be read; write it anew", source));
   if (!warning.empty()) notes.push_back("VTK warns: " + warning);
-  if (auto* image = vtkImageData::SafeDownCast(data); image && direction) image->SetDirectionMatrix(direction->data());
   return data;
 }
 
@@ -180,12 +127,6 @@ void set_vtk_coordinates(vtkDataArray* array, int axis, const std::filesystem::p
     g.direction[axis] = -g.direction[axis];
   }
   g.coordinates[a] = std::move(c);
-}
-
-/// Half a last place, relative, of what stored coordinates.
-double rounding_of(vtkDataArray& array) {
-  if (array.GetDataType() == VTK_FLOAT) return 0x1p-24;
-  return array.GetDataType() == VTK_DOUBLE ? 0x1p-53 : 0;
 }
 
 /// Makes a rectilinear grid regular whose coordinates are even but for their rounding: many writers know no other kind,
@@ -280,6 +221,27 @@ std::unique_ptr<scene::MemorySource> vtk_source_of(vtkDataSet& data, const Field
 
 }  // namespace
 
+bool has_quoted(std::string_view text, std::string_view word) {
+  for (std::size_t at = text.find(word, 1); at != std::string_view::npos; at = text.find(word, at + 1)) {
+    const std::size_t end = at + word.size();
+    const char quote = text[at - 1];
+    if (end < text.size() && (quote == '"' || quote == '\'') && text[end] == quote) return true;
+  }
+  return false;
+}
+
+void require_xml_end(const std::filesystem::path& file) {
+  const MappedFile mapped(file);
+  const std::string_view text = mapped.text();
+  if (text.substr(text.size() - std::min<std::size_t>(text.size(), 1024)).find("</VTKFile") == std::string_view::npos)
+    throw damaged(file, "it does not end with </VTKFile>");
+}
+
+double rounding_of(vtkDataArray& array) {
+  if (array.GetDataType() == VTK_FLOAT) return 0x1p-24;
+  return array.GetDataType() == VTK_DOUBLE ? 0x1p-53 : 0;
+}
+
 bool looks_like_vtk_grid(std::string_view beginning) {
   if (beginning.starts_with("# vtk DataFile")) {
     const std::size_t at = beginning.find("DATASET");
@@ -292,18 +254,18 @@ bool looks_like_vtk_grid(std::string_view beginning) {
   const std::size_t element = beginning.find("<VTKFile");
   if (element == std::string_view::npos) return false;
   const std::string_view tag = beginning.substr(element, beginning.find('>', element) - element);
-  return tag.find("\"ImageData\"") != std::string_view::npos ||
-         tag.find("\"RectilinearGrid\"") != std::string_view::npos ||
-         tag.find("\"PImageData\"") != std::string_view::npos;
+  return has_quoted(tag, "ImageData") || has_quoted(tag, "PImageData") || has_quoted(tag, "RectilinearGrid") ||
+         has_quoted(tag, "PRectilinearGrid");
 }
 
 VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions& options) {
   const std::string source = file.string(), beginning = read_beginning(file, 4096);
   const bool xml = !beginning.starts_with("# vtk DataFile");
-  const VtkGridKind kind = !xml                                                    ? VtkGridKind::legacy
-                           : beginning.find("\"PImageData\"") != std::string::npos ? VtkGridKind::image_pieces
-                           : beginning.find("\"ImageData\"") != std::string::npos  ? VtkGridKind::image
-                                                                                   : VtkGridKind::rectilinear;
+  const VtkGridKind kind = !xml                                        ? VtkGridKind::legacy
+                           : has_quoted(beginning, "PImageData")       ? VtkGridKind::image_pieces
+                           : has_quoted(beginning, "PRectilinearGrid") ? VtkGridKind::rectilinear_pieces
+                           : has_quoted(beginning, "ImageData")        ? VtkGridKind::image
+                                                                       : VtkGridKind::rectilinear;
   VolumeFile result;
   const auto data = read_vtk_volume_data(file, kind, result.notes);
   scene::Grid grid;

@@ -149,7 +149,7 @@ class XmlCheck {
 void check_vtk_xml(const std::filesystem::path& file) {
   const std::string source = file.string();
   std::vector<std::filesystem::path> pieces;
-  double image_cells = 0, most_values = 0;
+  double grid_cells = 0, most_values = 0;
   {
     const MappedFile mapped(file);
     const XmlCheck check(mapped.text(), source);
@@ -158,7 +158,8 @@ void check_vtk_xml(const std::filesystem::path& file) {
       if (const auto name = attribute(tag, "Source"))
         pieces.push_back(file.parent_path() / std::filesystem::path(*name));
     });
-    check.each_tag("PImageData", [&](std::string_view tag) { image_cells = XmlCheck::cells_of(tag, "WholeExtent"); });
+    for (const char* grid : {"PImageData", "PRectilinearGrid"})
+      check.each_tag(grid, [&](std::string_view tag) { grid_cells = XmlCheck::cells_of(tag, "WholeExtent"); });
   }
   for (const std::filesystem::path& piece : pieces) {
     // A piece is no parallel file: one level, so that a file that names itself ends here.
@@ -173,11 +174,11 @@ void check_vtk_xml(const std::filesystem::path& file) {
     check.check();
     most_values += static_cast<double>(check.most_values());
   }
-  if (image_cells > 8 * most_values)
+  if (grid_cells > 8 * most_values)
     throw scene::bad_input(
         fmt::format("{}: its WholeExtent has {:.3g} cells, its {} pieces cannot hold them; the file "
                     "is damaged, write it anew",
-                    source, image_cells, pieces.size()));
+                    source, grid_cells, pieces.size()));
 }
 
 }  // namespace tessera::io

@@ -467,18 +467,49 @@ def vtk_image(values, origin=(0, 0, 0), spacing=(1, 1, 1), direction=EYE, cell=N
     return image
 
 
+def even_grid(values, origin, spacing, cell=None):
+    """A rectilinear grid whose coordinates are even, so that the plain copy may say them."""
+    grid = vtk.vtkRectilinearGrid()
+    grid.SetExtent(0, SHAPE[2] - 1, 0, SHAPE[1] - 1, 0, SHAPE[0] - 1)
+    for a, axis in enumerate("XYZ"):
+        getattr(grid, f"Set{axis}Coordinates")(numpy_to_vtk(origin[a] + spacing[a] * np.arange(SHAPE[2 - a]), deep=True))
+    for data, numbers in ((grid.GetPointData(), values), (grid.GetCellData(), cell)):
+        if numbers is not None:
+            array = numpy_to_vtk(np.ascontiguousarray(numbers).ravel(), deep=True)
+            array.SetName("a field")
+            data.SetScalars(array)
+    return grid
+
+
+def part_of(grid, low, high):
+    """The slab of points low to high along k."""
+    part = grid.NewInstance()
+    part.ShallowCopy(grid)
+    part.Crop([0, SHAPE[2] - 1, 0, SHAPE[1] - 1, low, high])
+    return part
+
+
+def parallel_file(word, parts):
+    """A .pvti or .pvtr of these files and extents."""
+    kind = {"vti": "PImageData", "vtr": "PRectilinearGrid"}[word]
+    place = ' Origin="1.5 -2 3" Spacing="0.5 1 2"' if word == "vti" else ""
+    pieces = "".join(f'<Piece Extent="{extent}" Source="{name}"/>' for name, extent in parts.items())
+    return (f'<VTKFile type="{kind}" version="0.1" byte_order="LittleEndian"><{kind} WholeExtent="0 4 0 5 0 6" '
+            f'GhostLevel="0"{place}><PPointData/>{pieces}</{kind}></VTKFile>')
+
+
 def add_vtk(t):
     geometry = dict(origin=(1.5, -2, 3), spacing=(0.5, 1, 2), direction=TURN)
+    line = dict(origin=(1.5, -2, 3), spacing=(0.5, 1, 2))
     codes = ["i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", "f4", "f8"]
-    writer = vtk.vtkXMLImageDataWriter()
-
     def write(image, name, mode="appended", packed="zlib", **more):
+        # A new one each time: VTK 9.1's writes raw bytes between tags after it has appended raw bytes once.
+        writer = more.get("writer", vtk.vtkXMLImageDataWriter)()
         writer.SetInputData(image)
         writer.SetFileName(str(t.path(name)))
         {"ascii": writer.SetDataModeToAscii, "binary": writer.SetDataModeToBinary}.get(mode, writer.SetDataModeToAppended)()
         {"none": writer.SetCompressorTypeToNone, "lz4": writer.SetCompressorTypeToLZ4,
          "lzma": writer.SetCompressorTypeToLZMA}.get(packed, writer.SetCompressorTypeToZLib)()
-        # What is not appended would be raw bytes between tags.
         writer.SetEncodeAppendedData(mode != "appended" or more.get("base64", True))
         writer.SetHeaderTypeToUInt64() if more.get("wide") else writer.SetHeaderTypeToUInt32()
         writer.SetNumberOfPieces(more.get("pieces", 1))
@@ -524,6 +555,31 @@ def add_vtk(t):
         parallel.Write()
         parts = sorted(p.name for p in t.folder.glob(f"pvti_{pieces}_*.vti"))
         t.add(f"pvti_{pieces}.pvti", None, v, files=parts, **geometry)
+    # Pieces of their own extents, which VTK's parallel writers make of a pipeline that can be asked for parts only.
+    v, c = field("f4"), field("i2")[:-1, :-1, :-1]
+    for word, grid in (("vti", vtk_image(v, cell=c, **geometry)), ("vtr", even_grid(v, cell=c, **line))):
+        parts = {}
+        for number, (low, high) in enumerate(((0, 2), (2, 3), (3, 6))):
+            name = f"p{word}_parts_{number}.{word}"
+            write(part_of(grid, low, high), name, ("ascii", "binary", "appended")[number],
+                  **({} if word == "vti" else dict(writer=vtk.vtkXMLRectilinearGridWriter)))
+            parts[name] = f"0 4 0 5 {low} {high}"
+        for name, words, values, cell in (("point", "point:a field", v, False), ("cell", "cell:a field", c, True)):
+            t.add(f"p{word}_parts_{name}.p{word}", parallel_file(word, parts), values, cell=cell,
+                  words=["--field", words], files=list(parts), **(geometry if word == "vti" else line))
+    names = list(parts)
+    for name, changed in (("gap", {n: parts[n] for n in names[:2]}), ("twice", {names[0]: parts[names[0]]}),
+                          ("gone", {**parts, "gone.vtr": "0 4 0 5 0 6"}), ("self", {**parts, "pvtr_self.pvtr": "0 4 0 5 0 6"}),
+                          ("claims", {**parts, names[1]: "0 4 0 5 0 6"}), ("beyond", {**parts, names[1]: "0 9 0 5 2 3"}),
+                          ("words", {**parts, names[1]: "0 4 0 five"})):
+        t.refuse(f"pvtr_{name}.pvtr", parallel_file("vtr", changed))
+    for name, other in (("moved", even_grid(v, cell=c, **dict(line, origin=(1.5, -2, 3.25)))),
+                        ("type", even_grid(v.astype("f8"), cell=c, **line)),
+                        ("arrays", even_grid(v, **line))):
+        write(part_of(other, 2, 3), f"bad_{name}.vtr", "ascii", writer=vtk.vtkXMLRectilinearGridWriter)
+        t.refuse(f"pvtr_{name}.pvtr", parallel_file("vtr", {names[0]: parts[names[0]], f"bad_{name}.vtr": parts[names[1]],
+                                                            names[2]: parts[names[2]]}), f"bad_{name}.vtr")
+    t.refuse("pvtr_large.pvtr", parallel_file("vtr", parts).replace("0 4 0 5 0 6", "0 1500 0 1500 0 1500"))
     nan = field("f4")
     nan[1, 2, 3] = np.nan
     write(vtk_image(nan), "vti_nan.vti")

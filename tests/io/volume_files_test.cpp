@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <glm/geometric.hpp>
 #include <random>
+#include <tuple>
 
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
@@ -330,7 +331,84 @@ TEST_F(VolumeFiles, ImagesInPiecesAreOneAndGapsOrHugeExtentsAreRefused) {
   expect_refused(folder.write("huge.pvti", whole("0 1000 0 1000 0 1000", second)), "cells");
   expect_refused(folder.write("gone.pvti", whole("0 2 0 1 0 1", "<Piece Extent=\"1 2 0 1 0 1\" Source=\"no.vti\"/>")),
                  "no such file");
+  const std::string numbers = "1 2 4 5 7 8 10 11", extent = "1 2 0 1 0 1";
+  const std::tuple<const char*, std::string, const char*> wrong[] = {
+      {"few", piece(extent, "1 2 4"), "few.vti: "},
+      {"cut", piece(extent, numbers).substr(0, 300), "cut.vti: "},
+      {"elsewhere", piece("5 6 0 1 0 1", numbers), "elsewhere.vti: its points are 5 6"},
+      {"name", piece(extent, numbers), "array 'c' is missing"},
+      {"type", piece(extent, numbers), "array 'c' is double x 1"},
+      {"components", piece(extent, numbers + " " + numbers), "array 'c' is float x 2"}};
+  for (auto [name, text, words] : wrong) {
+    SCOPED_TRACE(name);
+    const auto replace = [&, &text = text](const std::string& old, const std::string& by) {
+      for (std::size_t at = text.find(old); at != std::string::npos; at = text.find(old, at + by.size()))
+        text.replace(at, old.size(), by);
+    };
+    if (name == std::string("name")) replace("\"c\"", "\"d\"");
+    if (name == std::string("type")) replace("Float32", "Float64");
+    if (name == std::string("components")) replace("Name=\"c\"", "Name=\"c\" NumberOfComponents=\"2\"");
+    folder.write(name + std::string(".vti"), text);
+    expect_refused(
+        folder.write(name + std::string(".pvti"),
+                     whole("0 2 0 1 0 1", "<Piece Extent=\"1 2 0 1 0 1\" Source=\"" + std::string(name) + ".vti\"/>")),
+        words);
+  }
   expect_refused(folder.write("huge.vti", piece("0 1500 0 1500 0 1500", "1 2")), "cannot hold");
+}
+
+TEST_F(VolumeFiles, RectilinearGridsInPiecesAreOneVolumeAndBadPiecesAreNamed) {
+  const std::string head = "<?xml version=\"1.0\"?><VTKFile version=\"1.0\" byte_order=\"LittleEndian\" type=\"";
+  const auto piece = [&](const std::string& extent, const std::string& x, const std::string& numbers) {
+    const auto array = [](const std::string& type, const std::string& name, const std::string& values) {
+      return "<DataArray type=\"" + type + "\" Name=\"" + name + "\" format=\"ascii\">" + values + "</DataArray>";
+    };
+    return head + "RectilinearGrid\"><RectilinearGrid WholeExtent=\"" + extent + "\"><Piece Extent=\"" + extent +
+           "\"><PointData Scalars=\"c\">" + array("Float32", "c", numbers) + "</PointData><Coordinates>" +
+           array("Float64", "x", x) + array("Float64", "y", "0 2") + array("Float64", "z", "-1 1") +
+           "</Coordinates></Piece></RectilinearGrid></VTKFile>";
+  };
+  const std::string left = "0 1 0 1 0 1", right = "1 3 0 1 0 1", all = "0 3 0 1 0 1";
+  const std::string right_numbers = "1 2 3 5 6 7 9 10 11 13 14 15";
+  folder.write("p0.vtr", piece(left, "0.1 1", "0 1 4 5 8 9 12 13"));
+  folder.write("p1.vtr", piece(right, "1 3 9", right_numbers));
+  const auto part = [](const std::string& extent, const std::string& file) {
+    return "<Piece Extent=\"" + extent + "\" Source=\"" + file + "\"/>";
+  };
+  const auto whole = [&](const std::string& extent, const std::string& pieces) {
+    return head + "PRectilinearGrid\"><PRectilinearGrid WholeExtent=\"" + extent +
+           "\" GhostLevel=\"0\"><PPointData Scalars=\"c\"><PDataArray type=\"Float32\" Name=\"c\"/></PPointData>"
+           "<PCoordinates><PDataArray type=\"Float64\" Name=\"x\"/><PDataArray type=\"Float64\" Name=\"y\"/>"
+           "<PDataArray type=\"Float64\" Name=\"z\"/></PCoordinates>" +
+           pieces + "</PRectilinearGrid></VTKFile>";
+  };
+  const std::string first = part(left, "p0.vtr");
+  const auto file = folder.write("p.pvtr", whole(all, first + part(right, "p1.vtr")));
+  EXPECT_TRUE(is_volume(file));
+  const VolumeFile volume = open_volume(file);
+  EXPECT_EQ(all_samples(*volume.source), counting<double>(16));
+  EXPECT_EQ(volume.source->geometry().coordinates[0], (std::vector<double>{0.1, 1, 3, 9}));
+  EXPECT_EQ(volume.source->geometry().points, (GridIndex{4, 2, 2}));
+  EXPECT_EQ(read_mesh(file).counts.cells_read, 3u);  // and the mesh of cells that it is for convert
+
+  const auto with = [&](const std::string& name) { return whole(all, first + part(right, name)); };
+  expect_refused(folder.write("gap.pvtr", whole(all, first)), "1 of its 3 cells");
+  expect_refused(folder.write("twice.pvtr", whole(all, first + first + first)), "1 of its 3 cells");
+  expect_refused(folder.write("gone.pvtr", with("no.vtr")), "no.vtr: there is no such file");
+  expect_refused(folder.write("mesh.pvtr", with("p.pvtr")), "p.pvtr: it is a piece of");
+  expect_refused(folder.write("huge.pvtr", whole("0 1500 0 1500 0 1500", first)), "cannot hold them");
+  expect_refused(folder.write("claims.pvtr", whole(all, first + part(all, "p1.vtr"))), "p1.vtr: its points are 1 3");
+  folder.write("cut.vtr", piece(right, "1 3 9", right_numbers).substr(0, 300));
+  expect_refused(folder.write("cut.pvtr", with("cut.vtr")), "cut.vtr");
+  folder.write("moved.vtr", piece(right, "1.5 3 9", right_numbers));
+  expect_refused(folder.write("moved.pvtr", with("moved.vtr")), "point 1 along x is at 1");
+  folder.write("few.vtr", piece(right, "1 3 9", "1 2 3"));
+  expect_refused(folder.write("few.pvtr", with("few.vtr")), "few.vtr: ");
+  folder.write("short.vtr", piece(right, "1 3", right_numbers));
+  expect_refused(folder.write("short.pvtr", with("short.vtr")), "short.vtr: ");
+  std::string other = piece(right, "1 3 9", right_numbers);
+  folder.write("other.vtr", other.replace(other.find("Name=\"c\""), 8, "Name=\"d\""));
+  expect_refused(folder.write("other.pvtr", with("other.vtr")), "array 'c' is missing");
 }
 
 TEST_F(VolumeFiles, RectilinearCoordinatesThatFallAreTurnedOver) {

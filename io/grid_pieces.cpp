@@ -1,0 +1,345 @@
+#include "io/grid_pieces.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <vtkAbstractArray.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkDataSetAttributes.h>
+#include <vtkImageData.h>
+#include <vtkMatrix3x3.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkRectilinearGrid.h>
+#include <vtkXMLImageDataReader.h>
+#include <vtkXMLRectilinearGridReader.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <sstream>
+
+#include "io/input_file.hpp"
+#include "io/mapped_file.hpp"
+#include "io/volume_formats.hpp"
+#include "io/vtk_session.hpp"
+#include "io/xml_elements.hpp"
+
+namespace tessera::io {
+namespace {
+
+/// Points, first and last along each axis; between them are the cells.
+using Extent = std::array<int, 6>;
+
+struct Piece {
+  std::filesystem::path file;
+  Extent extent;  ///< as the parallel file says
+};
+
+/// What a parallel file says.
+struct WholeGrid {
+  Extent extent{};
+  std::array<double, 3> origin{0, 0, 0}, spacing{1, 1, 1};  ///< images
+  std::vector<Piece> pieces;                                ///< those that have cells
+};
+
+/// Numbers of an attribute; none if there are fewer.
+template <class T, std::size_t count>
+std::optional<std::array<T, count>> numbers_of(const std::string& text) {
+  std::istringstream words(text);
+  std::array<T, count> numbers{};
+  for (T& number : numbers)
+    if (!(words >> number)) return std::nullopt;
+  return numbers;
+}
+
+bool holds(const Extent& extent, const Extent& part) {
+  for (std::size_t a = 0; a < 3; ++a)
+    if (part[2 * a] < extent[2 * a] || part[2 * a + 1] > extent[2 * a + 1]) return false;
+  return true;
+}
+
+double cells_in(const Extent& extent) {
+  double cells = 1;
+  for (std::size_t a = 0; a < 3; ++a)
+    cells *= std::max(0.0, static_cast<double>(extent[2 * a + 1]) - static_cast<double>(extent[2 * a]));
+  return cells;
+}
+
+/// Cells that lie in a piece, however the pieces overlap.
+double cells_covered(std::span<const Piece> pieces) {
+  // The boxes between all planes at which pieces begin or end: few, as pieces lie in rows.
+  std::array<std::vector<int>, 3> planes;
+  double boxes = 1, sum = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (const Piece& piece : pieces) planes[a].insert(planes[a].end(), {piece.extent[2 * a], piece.extent[2 * a + 1]});
+    std::sort(planes[a].begin(), planes[a].end());
+    planes[a].erase(std::unique(planes[a].begin(), planes[a].end()), planes[a].end());
+    boxes *= static_cast<double>(planes[a].size());
+  }
+  for (const Piece& piece : pieces) sum += cells_in(piece.extent);
+  if (boxes * static_cast<double>(pieces.size()) > 1e9) return sum;  // thousands of pieces in no rows: by their sizes
+  double covered = 0;
+  for (std::size_t k = 1; k < planes[2].size(); ++k)
+    for (std::size_t j = 1; j < planes[1].size(); ++j)
+      for (std::size_t i = 1; i < planes[0].size(); ++i) {
+        const Extent box{planes[0][i - 1], planes[0][i],     planes[1][j - 1],
+                         planes[1][j],     planes[2][k - 1], planes[2][k]};
+        if (std::any_of(pieces.begin(), pieces.end(), [&](const Piece& piece) { return holds(piece.extent, box); }))
+          covered += cells_in(box);
+      }
+  return covered;
+}
+
+/// Reads the parallel file alone.
+WholeGrid read_whole(const std::filesystem::path& file, bool images) {
+  const MappedFile mapped(file);
+  WholeGrid whole;
+  const auto extent_of = [&](const XmlElement& element, const char* name) {
+    const std::string* text = element.find(name);
+    const auto extent = text ? numbers_of<int, 6>(*text) : std::nullopt;
+    if (!extent) throw damaged(file, fmt::format("<{}> has no {} of six whole numbers", element.name, name));
+    return *extent;
+  };
+  const auto set_vector = [&](const XmlElement& element, const char* name, std::array<double, 3>& vector) {
+    const std::string* text = element.find(name);
+    if (!text) return;
+    const auto numbers = numbers_of<double, 3>(*text);
+    if (!numbers) throw damaged(file, fmt::format("its {} is not three numbers", name));
+    vector = *numbers;
+  };
+  each_xml_element(mapped.text(), file.string(), [&](const XmlElement& element) {
+    if (element.name == (images ? "PImageData" : "PRectilinearGrid")) {
+      whole.extent = extent_of(element, "WholeExtent");
+      set_vector(element, "Origin", whole.origin);
+      set_vector(element, "Spacing", whole.spacing);
+    }
+    if (element.name != "Piece") return;
+    const std::string* name = element.find("Source");
+    if (!name) throw damaged(file, "a piece has no Source");
+    const Piece piece{file.parent_path() / *name, extent_of(element, "Extent")};
+    if (cells_in(piece.extent) == 0) return;
+    if (!holds(whole.extent, piece.extent))
+      throw damaged(file, fmt::format("a piece has the points {}, the whole has {}", fmt::join(piece.extent, " "),
+                                      fmt::join(whole.extent, " ")));
+    whole.pieces.push_back(piece);
+  });
+  const double cells = cells_in(whole.extent), covered = cells_covered(whole.pieces);
+  if (cells == 0) throw scene::bad_input(fmt::format("{}: it is flat or empty; give a volume", file.string()));
+  if (covered < cells) throw damaged(file, fmt::format("its pieces have {:.0f} of its {:.0f} cells", covered, cells));
+  return whole;
+}
+
+vtkSmartPointer<vtkDataSet> read_piece(const std::filesystem::path& piece, const std::filesystem::path& file,
+                                       bool images, std::vector<std::string>& notes) {
+  const std::string source = piece.string();
+  const char* const kind = images ? "ImageData" : "RectilinearGrid";
+  if (!has_quoted(read_beginning(piece, 4096), kind))
+    throw scene::bad_input(fmt::format("{}: it is a piece of {} and no {}; write them anew", source, file.string(),
+                                       images ? ".vti" : ".vtr"));
+  require_xml_end(piece);
+  vtkSmartPointer<vtkDataSet> data;
+  const std::string warning = with_quiet_vtk(source, "the file is truncated or damaged, write it anew", [&] {
+    vtkSmartPointer<vtkXMLReader> reader;
+    if (images)
+      reader = vtkSmartPointer<vtkXMLImageDataReader>::New();
+    else
+      reader = vtkSmartPointer<vtkXMLRectilinearGridReader>::New();
+    reader->SetFileName(source.c_str());
+    reader->Update();
+    data = vtkDataSet::SafeDownCast(reader->GetOutputDataObject(0));
+  });
+  if (!data) throw scene::bad_input(fmt::format("{}: nothing can be read; write it anew", source));
+  const std::string note = "VTK warns: " + warning;
+  if (!warning.empty() && std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+  return data;
+}
+
+Extent extent_of(vtkDataSet& data) {
+  Extent extent;
+  if (auto* image = vtkImageData::SafeDownCast(&data))
+    image->GetExtent(extent.data());
+  else
+    vtkRectilinearGrid::SafeDownCast(&data)->GetExtent(extent.data());
+  return extent;
+}
+
+/// Tuples of a box of points, or of cells, which end one earlier.
+class TupleBox {
+ public:
+  TupleBox(const Extent& extent, bool points) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      first_[a] = extent[2 * a];
+      count_[a] = vtkIdType{extent[2 * a + 1]} - extent[2 * a] + (points ? 1 : 0);
+    }
+  }
+  [[nodiscard]] vtkIdType total() const { return count_[0] * count_[1] * count_[2]; }
+
+  /// Copies the tuples of this box from an array that has those of `from` to one that has those of `to`.
+  void copy(vtkAbstractArray& from_array, const TupleBox& from, vtkAbstractArray& to_array, const TupleBox& to) const {
+    for (vtkIdType k = 0; k < count_[2]; ++k)
+      for (vtkIdType j = 0; j < count_[1]; ++j)
+        to_array.InsertTuples(to.row(first_, j, k), count_[0], from.row(first_, j, k), &from_array);
+  }
+
+ private:
+  [[nodiscard]] vtkIdType row(const std::array<vtkIdType, 3>& first, vtkIdType j, vtkIdType k) const {
+    return ((first[2] + k - first_[2]) * count_[1] + first[1] + j - first_[1]) * count_[0] + first[0] - first_[0];
+  }
+  std::array<vtkIdType, 3> first_, count_;
+};
+
+std::string words_of(vtkAbstractArray& array) {
+  return fmt::format("{} x {}", array.GetDataTypeAsString(), array.GetNumberOfComponents());
+}
+
+/// Arrays as the first piece has them, with room for the whole.
+void make_arrays(vtkDataSetAttributes& first, vtkIdType tuples, vtkDataSetAttributes& whole) {
+  for (int n = 0; n < first.GetNumberOfArrays(); ++n) {
+    vtkAbstractArray& like = *first.GetAbstractArray(n);
+    if (like.GetName() == nullptr) continue;
+    const auto array = vtkSmartPointer<vtkAbstractArray>::Take(like.NewInstance());
+    array->SetName(like.GetName());
+    array->SetNumberOfComponents(like.GetNumberOfComponents());
+    array->SetNumberOfTuples(tuples);
+    whole.AddArray(array);
+  }
+  for (int kind = 0; kind < vtkDataSetAttributes::NUM_ATTRIBUTES; ++kind)
+    if (vtkAbstractArray* active = first.GetAbstractAttribute(kind); active != nullptr && active->GetName() != nullptr)
+      whole.SetActiveAttribute(active->GetName(), kind);
+}
+
+/// Whether all coordinates are finite too. VTK takes missing ones for zeros.
+bool rises_or_falls(vtkDataArray& coordinates) {
+  bool rises = true, falls = true;
+  for (vtkIdType i = 0; i < coordinates.GetNumberOfTuples(); ++i) {
+    const double x = coordinates.GetComponent(i, 0), before = i > 0 ? coordinates.GetComponent(i - 1, 0) : x;
+    if (!std::isfinite(x)) return false;
+    rises = rises && (i == 0 || x > before), falls = falls && (i == 0 || x < before);
+  }
+  return rises || falls;
+}
+
+/// The pieces' samples and coordinates, one after the other.
+class Assembly {
+ public:
+  Assembly(const std::filesystem::path& file, const WholeGrid& whole, bool images) : file_(file), whole_(whole) {
+    Extent extent = whole_.extent;  // VTK's setters take no constants
+    if (images) {
+      vtkNew<vtkImageData> image;
+      image->SetExtent(extent.data());
+      image->SetOrigin(whole_.origin.data());
+      image->SetSpacing(whole_.spacing.data());
+      grid_ = image;
+    } else {
+      vtkNew<vtkRectilinearGrid> rectilinear;
+      rectilinear->SetExtent(extent.data());
+      grid_ = rectilinear;
+    }
+  }
+
+  void add(vtkDataSet& data, const Piece& piece) {
+    const Extent held = extent_of(data);
+    if (!holds(held, piece.extent))
+      throw scene::bad_input(fmt::format("{}: its points are {}, of which {} says that they are {}; write them anew",
+                                         piece.file.string(), fmt::join(held, " "), file_.string(),
+                                         fmt::join(piece.extent, " ")));
+    for (const bool points : {true, false}) {
+      auto& from = points ? static_cast<vtkDataSetAttributes&>(*data.GetPointData()) : *data.GetCellData();
+      auto& to = points ? static_cast<vtkDataSetAttributes&>(*grid_->GetPointData()) : *grid_->GetCellData();
+      const TupleBox whole(whole_.extent, points), in_piece(held, points);
+      if (is_first_) make_arrays(from, whole.total(), to);
+      for (int n = 0; n < to.GetNumberOfArrays(); ++n) {
+        vtkAbstractArray& array = *to.GetAbstractArray(n);
+        vtkAbstractArray* const own = from.GetAbstractArray(array.GetName());
+        const std::string found = own ? words_of(*own) : "missing", wanted = words_of(array);
+        if (found != wanted)
+          throw scene::bad_input(
+              fmt::format("{}: its array '{}' is {}, another piece of {} has it as {}; write them "
+                          "anew",
+                          piece.file.string(), array.GetName(), found, file_.string(), wanted));
+        if (own->GetNumberOfTuples() != in_piece.total())
+          throw damaged(piece.file, fmt::format("its array '{}' has {} numbers for {} places", array.GetName(),
+                                                own->GetNumberOfTuples(), in_piece.total()));
+        TupleBox(piece.extent, points).copy(*own, in_piece, array, whole);
+      }
+    }
+    if (auto* image = vtkImageData::SafeDownCast(&data))
+      take_direction(*image);
+    else
+      take_coordinates(*vtkRectilinearGrid::SafeDownCast(&data), held, piece);
+    is_first_ = false;
+  }
+
+  [[nodiscard]] vtkSmartPointer<vtkDataSet> finished() {
+    if (auto* rectilinear = vtkRectilinearGrid::SafeDownCast(grid_)) {
+      rectilinear->SetXCoordinates(coordinates_[0]);
+      rectilinear->SetYCoordinates(coordinates_[1]);
+      rectilinear->SetZCoordinates(coordinates_[2]);
+    }
+    return grid_;
+  }
+
+ private:
+  void take_direction(vtkImageData& piece) {
+    auto& image = *vtkImageData::SafeDownCast(grid_);
+    if (image.GetDirectionMatrix()->IsIdentity()) image.SetDirectionMatrix(piece.GetDirectionMatrix());
+  }
+
+  void take_coordinates(vtkRectilinearGrid& data, const Extent& held, const Piece& piece) {
+    const std::array<vtkDataArray*, 3> own{data.GetXCoordinates(), data.GetYCoordinates(), data.GetZCoordinates()};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const int points = held[2 * a + 1] - held[2 * a] + 1;
+      if (!own[a] || own[a]->GetNumberOfTuples() != points || own[a]->GetNumberOfComponents() != 1)
+        throw damaged(piece.file, fmt::format("it has {} coordinates along {} for {} points",
+                                              own[a] ? own[a]->GetNumberOfTuples() : 0, "xyz"[a], points));
+      if (!rises_or_falls(*own[a]))
+        throw damaged(piece.file, fmt::format("its coordinates along {} neither rise nor fall throughout", "xyz"[a]));
+      if (is_first_) {
+        const int first = whole_.extent[2 * a], last = whole_.extent[2 * a + 1];
+        coordinates_[a] = vtkSmartPointer<vtkDataArray>::Take(own[a]->NewInstance());
+        coordinates_[a]->SetNumberOfTuples(vtkIdType{last} - first + 1);
+        known_[a].resize(static_cast<std::size_t>(last - first + 1));
+      }
+      for (int i = piece.extent[2 * a]; i <= piece.extent[2 * a + 1]; ++i) {
+        const int at = i - whole_.extent[2 * a];
+        const double x = own[a]->GetComponent(i - held[2 * a], 0);
+        if (!known_[a][static_cast<std::size_t>(at)]) {
+          known_[a][static_cast<std::size_t>(at)] = true;
+          coordinates_[a]->SetComponent(at, 0, x);
+          continue;
+        }
+        const double before = coordinates_[a]->GetComponent(at, 0);
+        // Each was rounded once or twice on its way from one grid.
+        const double most = 4 * std::max(rounding_of(*own[a]), rounding_of(*coordinates_[a])) * std::abs(before);
+        if (!(std::abs(x - before) <= most))
+          throw scene::bad_input(
+              fmt::format("{}: its point {} along {} is at {:.9g}, another piece of {} has it at {:.9g}; write them "
+                          "anew",
+                          piece.file.string(), i, "xyz"[a], x, file_.string(), before));
+      }
+    }
+  }
+
+  const std::filesystem::path& file_;
+  const WholeGrid& whole_;
+  bool is_first_ = true;
+  vtkSmartPointer<vtkDataSet> grid_;
+  std::array<vtkSmartPointer<vtkDataArray>, 3> coordinates_;
+  std::array<std::vector<bool>, 3> known_;  ///< which of the coordinates a piece has given
+};
+
+}  // namespace
+
+vtkSmartPointer<vtkDataSet> read_grid_pieces(const std::filesystem::path& file, bool images,
+                                             std::vector<std::string>& notes) {
+  const WholeGrid whole = read_whole(file, images);
+  Assembly assembly(file, whole, images);
+  for (const Piece& piece : whole.pieces) assembly.add(*read_piece(piece.file, file, images, notes), piece);
+  return assembly.finished();
+}
+
+}  // namespace tessera::io
