@@ -13,6 +13,7 @@
 #include <vtkPoints.h>
 #include <vtkRectilinearGrid.h>
 #include <vtkStructuredGrid.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLRectilinearGridReader.h>
 #include <vtkXMLStructuredGridReader.h>
@@ -290,6 +291,10 @@ class Assembly {
   }
 
   [[nodiscard]] vtkSmartPointer<vtkDataSet> finished() {
+    // What a piece marks as another's is here once, and nobody else's.
+    for (vtkUnsignedCharArray* ghosts : {grid_->GetPointGhostArray(), grid_->GetCellGhostArray()})
+      for (vtkIdType n = 0; ghosts != nullptr && n < ghosts->GetNumberOfTuples(); ++n)
+        ghosts->SetValue(n, static_cast<unsigned char>(ghosts->GetValue(n) & ~1));
     if (auto* rectilinear = vtkRectilinearGrid::SafeDownCast(grid_)) {
       rectilinear->SetXCoordinates(coordinates_[0]);
       rectilinear->SetYCoordinates(coordinates_[1]);

@@ -116,6 +116,20 @@ TEST_F(VtkFiles, CurvilinearGridsInPiecesAreOneAndBadPiecesAreNamed) {
     EXPECT_EQ(mesh.mesh.positions[p].x, static_cast<double>(p % 3));
     EXPECT_EQ(mesh.mesh.scalars[p], static_cast<double>(p));
   }
+  // A ghost cell of one piece is the other's, and of the whole.
+  std::string ghosts = piece(1, "Float32", values);
+  ghosts.insert(ghosts.find("<Points>"),
+                "<CellData><DataArray type=\"UInt8\" Name=\"vtkGhostType\" "
+                "format=\"ascii\">1</DataArray></CellData>");
+  std::string plain = piece(0, "Float32", "0 1 3 4 6 7 9 10");
+  write("first.vts", plain.insert(plain.find("<Points>"),
+                                  "<CellData><DataArray type=\"UInt8\" Name=\"vtkGhostType\" "
+                                  "format=\"ascii\">0</DataArray></CellData>"));
+  write("ghosts.vts", ghosts);
+  const MeshFile overlapping = read_mesh(write("ghosts.pvts", whole("ghosts.vts")));
+  EXPECT_EQ(overlapping.counts.cells_read, 2u);
+  EXPECT_EQ(overlapping.counts.cells_ghost, 0u);
+  write("first.vts", piece(0, "Float32", "0 1 3 4 6 7 9 10"));
   write("few.vts", piece(1, "Float32", "1 2"));
   write("type.vts", piece(1, "Float64", values));
   write("points.vts", piece(1, "Float32", values, 1));
