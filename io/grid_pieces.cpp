@@ -10,9 +10,13 @@
 #include <vtkMatrix3x3.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkPoints.h>
 #include <vtkRectilinearGrid.h>
+#include <vtkStructuredGrid.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkXMLImageDataReader.h>
 #include <vtkXMLRectilinearGridReader.h>
+#include <vtkXMLStructuredGridReader.h>
 
 #include <algorithm>
 #include <array>
@@ -30,6 +34,22 @@
 
 namespace tessera::io {
 namespace {
+
+/// What the kinds of grids are called.
+struct KindWords {
+  const char *whole, *piece, *extension;
+};
+KindWords words_of(GridKind kind) {
+  switch (kind) {
+    case GridKind::image:
+      return {"PImageData", "ImageData", ".vti"};
+    case GridKind::rectilinear:
+      return {"PRectilinearGrid", "RectilinearGrid", ".vtr"};
+    case GridKind::structured:
+      break;
+  }
+  return {"PStructuredGrid", "StructuredGrid", ".vts"};
+}
 
 /// Points, first and last along each axis; between them are the cells.
 using Extent = std::array<int, 6>;
@@ -95,7 +115,7 @@ double cells_covered(std::span<const Piece> pieces) {
 }
 
 /// Reads the parallel file alone.
-WholeGrid read_whole(const std::filesystem::path& file, bool images) {
+WholeGrid read_whole(const std::filesystem::path& file, GridKind kind) {
   const MappedFile mapped(file);
   WholeGrid whole;
   const auto extent_of = [&](const XmlElement& element, const char* name) {
@@ -112,7 +132,7 @@ WholeGrid read_whole(const std::filesystem::path& file, bool images) {
     vector = *numbers;
   };
   each_xml_element(mapped.text(), file.string(), [&](const XmlElement& element) {
-    if (element.name == (images ? "PImageData" : "PRectilinearGrid")) {
+    if (element.name == words_of(kind).whole) {
       whole.extent = extent_of(element, "WholeExtent");
       set_vector(element, "Origin", whole.origin);
       set_vector(element, "Spacing", whole.spacing);
@@ -128,26 +148,28 @@ WholeGrid read_whole(const std::filesystem::path& file, bool images) {
     whole.pieces.push_back(piece);
   });
   const double cells = cells_in(whole.extent), covered = cells_covered(whole.pieces);
-  if (cells == 0) throw scene::bad_input(fmt::format("{}: it is flat or empty; give a volume", file.string()));
+  if (cells == 0)
+    throw scene::bad_input(fmt::format("{}: it has no cells, being flat or empty; give a volume", file.string()));
   if (covered < cells) throw damaged(file, fmt::format("its pieces have {:.0f} of its {:.0f} cells", covered, cells));
   return whole;
 }
 
+vtkSmartPointer<vtkXMLReader> reader_of(GridKind kind) {
+  if (kind == GridKind::image) return vtkSmartPointer<vtkXMLImageDataReader>::New();
+  if (kind == GridKind::rectilinear) return vtkSmartPointer<vtkXMLRectilinearGridReader>::New();
+  return vtkSmartPointer<vtkXMLStructuredGridReader>::New();
+}
+
 vtkSmartPointer<vtkDataSet> read_piece(const std::filesystem::path& piece, const std::filesystem::path& file,
-                                       bool images, std::vector<std::string>& notes) {
+                                       GridKind kind, std::vector<std::string>& notes) {
   const std::string source = piece.string();
-  const char* const kind = images ? "ImageData" : "RectilinearGrid";
-  if (!has_quoted(read_beginning(piece, 4096), kind))
+  if (!has_quoted(read_beginning(piece, 4096), words_of(kind).piece))
     throw scene::bad_input(fmt::format("{}: it is a piece of {} and no {}; write them anew", source, file.string(),
-                                       images ? ".vti" : ".vtr"));
+                                       words_of(kind).extension));
   require_xml_end(piece);
   vtkSmartPointer<vtkDataSet> data;
   const std::string warning = with_quiet_vtk(source, "the file is truncated or damaged, write it anew", [&] {
-    vtkSmartPointer<vtkXMLReader> reader;
-    if (images)
-      reader = vtkSmartPointer<vtkXMLImageDataReader>::New();
-    else
-      reader = vtkSmartPointer<vtkXMLRectilinearGridReader>::New();
+    const vtkSmartPointer<vtkXMLReader> reader = reader_of(kind);
     reader->SetFileName(source.c_str());
     reader->Update();
     data = vtkDataSet::SafeDownCast(reader->GetOutputDataObject(0));
@@ -159,11 +181,10 @@ vtkSmartPointer<vtkDataSet> read_piece(const std::filesystem::path& piece, const
 }
 
 Extent extent_of(vtkDataSet& data) {
-  Extent extent;
-  if (auto* image = vtkImageData::SafeDownCast(&data))
-    image->GetExtent(extent.data());
-  else
-    vtkRectilinearGrid::SafeDownCast(&data)->GetExtent(extent.data());
+  Extent extent{};
+  if (auto* image = vtkImageData::SafeDownCast(&data)) image->GetExtent(extent.data());
+  if (auto* grid = vtkRectilinearGrid::SafeDownCast(&data)) grid->GetExtent(extent.data());
+  if (auto* grid = vtkStructuredGrid::SafeDownCast(&data)) grid->GetExtent(extent.data());
   return extent;
 }
 
@@ -226,18 +247,22 @@ bool rises_or_falls(vtkDataArray& coordinates) {
 /// The pieces' samples and coordinates, one after the other.
 class Assembly {
  public:
-  Assembly(const std::filesystem::path& file, const WholeGrid& whole, bool images) : file_(file), whole_(whole) {
+  Assembly(const std::filesystem::path& file, const WholeGrid& whole, GridKind kind) : file_(file), whole_(whole) {
     Extent extent = whole_.extent;  // VTK's setters take no constants
-    if (images) {
+    if (kind == GridKind::image) {
       vtkNew<vtkImageData> image;
       image->SetExtent(extent.data());
       image->SetOrigin(whole_.origin.data());
       image->SetSpacing(whole_.spacing.data());
       grid_ = image;
-    } else {
+    } else if (kind == GridKind::rectilinear) {
       vtkNew<vtkRectilinearGrid> rectilinear;
       rectilinear->SetExtent(extent.data());
       grid_ = rectilinear;
+    } else {
+      vtkNew<vtkStructuredGrid> structured;
+      structured->SetExtent(extent.data());
+      grid_ = structured;
     }
   }
 
@@ -255,26 +280,21 @@ class Assembly {
       for (int n = 0; n < to.GetNumberOfArrays(); ++n) {
         vtkAbstractArray& array = *to.GetAbstractArray(n);
         vtkAbstractArray* const own = from.GetAbstractArray(array.GetName());
-        const std::string found = own ? words_of(*own) : "missing", wanted = words_of(array);
-        if (found != wanted)
-          throw scene::bad_input(
-              fmt::format("{}: its array '{}' is {}, another piece of {} has it as {}; write them "
-                          "anew",
-                          piece.file.string(), array.GetName(), found, file_.string(), wanted));
-        if (own->GetNumberOfTuples() != in_piece.total())
-          throw damaged(piece.file, fmt::format("its array '{}' has {} numbers for {} places", array.GetName(),
-                                                own->GetNumberOfTuples(), in_piece.total()));
+        require_alike(own, array, fmt::format("array '{}'", array.GetName()), in_piece, piece);
         TupleBox(piece.extent, points).copy(*own, in_piece, array, whole);
       }
     }
-    if (auto* image = vtkImageData::SafeDownCast(&data))
-      take_direction(*image);
-    else
-      take_coordinates(*vtkRectilinearGrid::SafeDownCast(&data), held, piece);
+    if (auto* image = vtkImageData::SafeDownCast(&data)) take_direction(*image);
+    if (auto* rectilinear = vtkRectilinearGrid::SafeDownCast(&data)) take_coordinates(*rectilinear, held, piece);
+    if (auto* structured = vtkStructuredGrid::SafeDownCast(&data)) take_points(*structured, held, piece);
     is_first_ = false;
   }
 
   [[nodiscard]] vtkSmartPointer<vtkDataSet> finished() {
+    // What a piece marks as another's is here once, and nobody else's.
+    for (vtkUnsignedCharArray* ghosts : {grid_->GetPointGhostArray(), grid_->GetCellGhostArray()})
+      for (vtkIdType n = 0; ghosts != nullptr && n < ghosts->GetNumberOfTuples(); ++n)
+        ghosts->SetValue(n, static_cast<unsigned char>(ghosts->GetValue(n) & ~1));
     if (auto* rectilinear = vtkRectilinearGrid::SafeDownCast(grid_)) {
       rectilinear->SetXCoordinates(coordinates_[0]);
       rectilinear->SetYCoordinates(coordinates_[1]);
@@ -284,6 +304,34 @@ class Assembly {
   }
 
  private:
+  /// Of one type and as many components as what the first piece has, and with all its tuples.
+  void require_alike(vtkAbstractArray* own, vtkAbstractArray& first, const std::string& name, const TupleBox& in_piece,
+                     const Piece& piece) const {
+    const std::string found = own ? words_of(*own) : "missing", wanted = words_of(first);
+    if (found != wanted)
+      throw scene::bad_input(fmt::format("{}: its {} is {}, another piece of {} has it as {}; write them anew",
+                                         piece.file.string(), name, found, file_.string(), wanted));
+    if (own->GetNumberOfTuples() != in_piece.total())
+      throw damaged(piece.file, fmt::format("its {} has {} numbers for {} places", name, own->GetNumberOfTuples(),
+                                            in_piece.total()));
+  }
+
+  void take_points(vtkStructuredGrid& data, const Extent& held, const Piece& piece) {
+    auto& structured = *vtkStructuredGrid::SafeDownCast(grid_);
+    vtkDataArray* const own = data.GetPoints() ? data.GetPoints()->GetData() : nullptr;
+    if (!own) throw damaged(piece.file, "it has no points");
+    const TupleBox whole(whole_.extent, true), in_piece(held, true);
+    if (is_first_) {
+      vtkNew<vtkPoints> points;
+      points->SetDataType(own->GetDataType());
+      points->SetNumberOfPoints(whole.total());
+      structured.SetPoints(points);
+    }
+    vtkDataArray& points = *structured.GetPoints()->GetData();
+    require_alike(own, points, "list of points", in_piece, piece);
+    TupleBox(piece.extent, true).copy(*own, in_piece, points, whole);
+  }
+
   void take_direction(vtkImageData& piece) {
     auto& image = *vtkImageData::SafeDownCast(grid_);
     if (image.GetDirectionMatrix()->IsIdentity()) image.SetDirectionMatrix(piece.GetDirectionMatrix());
@@ -334,11 +382,11 @@ class Assembly {
 
 }  // namespace
 
-vtkSmartPointer<vtkDataSet> read_grid_pieces(const std::filesystem::path& file, bool images,
+vtkSmartPointer<vtkDataSet> read_grid_pieces(const std::filesystem::path& file, GridKind kind,
                                              std::vector<std::string>& notes) {
-  const WholeGrid whole = read_whole(file, images);
-  Assembly assembly(file, whole, images);
-  for (const Piece& piece : whole.pieces) assembly.add(*read_piece(piece.file, file, images, notes), piece);
+  const WholeGrid whole = read_whole(file, kind);
+  Assembly assembly(file, whole, kind);
+  for (const Piece& piece : whole.pieces) assembly.add(*read_piece(piece.file, file, kind, notes), piece);
   return assembly.finished();
 }
 

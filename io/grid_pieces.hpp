@@ -10,17 +10,19 @@ class vtkDataSet;
 
 namespace tessera::io {
 
-/// A grid in pieces (.pvti: `images`; .pvtr), put together: a vtkImageData or vtkRectilinearGrid with the arrays that
-/// the pieces have, each of which is read by itself, so that faults name it. VTK's own readers of grids in pieces leave
-/// zeros where there is no piece, take the bytes of one type for another, and fail by a null pointer if a piece is
-/// damaged.
+enum class GridKind { image, rectilinear, structured };
+
+/// A grid in pieces (.pvti, .pvtr, .pvts), put together: a vtkImageData, vtkRectilinearGrid or vtkStructuredGrid with
+/// the arrays that the pieces have, each of which is read by itself, so that faults name it. VTK's own readers of grids
+/// in pieces leave zeros where there is no piece, take the bytes of one type for another, and fail by a null pointer if
+/// a piece is damaged.
 ///
 /// Pieces may overlap (ghost levels, or planes of points that they share); the last one's samples hold. Origin and
 /// spacing are the parallel file's; the direction, which VTK 9.1 leaves out there, is the first piece's that has one.
 /// Throws Error(bad_input) in one line if the pieces do not fill the whole, or one is missing, damaged, of another
 /// kind, smaller than the whole says, or has other arrays or coordinates than the ones before. The counts in the files
 /// have been checked before (check_vtk_xml).
-vtkSmartPointer<vtkDataSet> read_grid_pieces(const std::filesystem::path& file, bool images,
+vtkSmartPointer<vtkDataSet> read_grid_pieces(const std::filesystem::path& file, GridKind kind,
                                              std::vector<std::string>& notes);
 
 }  // namespace tessera::io

@@ -6,7 +6,6 @@
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkSmartPointer.h>
-#include <vtkXMLPStructuredGridReader.h>
 #include <vtkXMLRectilinearGridReader.h>
 #include <vtkXMLStructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
@@ -58,7 +57,6 @@ vtkSmartPointer<vtkXMLReader> make_xml_reader(const std::string& type) {
   vtkXMLReader* reader = nullptr;
   if (type == "UnstructuredGrid") reader = vtkXMLUnstructuredGridReader::New();
   if (type == "StructuredGrid") reader = vtkXMLStructuredGridReader::New();
-  if (type == "PStructuredGrid") reader = vtkXMLPStructuredGridReader::New();
   if (type == "RectilinearGrid") reader = vtkXMLRectilinearGridReader::New();
   return vtkSmartPointer<vtkXMLReader>::Take(reader);
 }
@@ -118,7 +116,9 @@ MeshBlocks read_vtk_xml(const std::filesystem::path& file) {
   MeshBlocks result = named_format(*kind, extension);
   vtkSmartPointer<vtkDataObject> data;
   if (type == "PRectilinearGrid")
-    data = read_grid_pieces(file, false, result.notes);
+    data = read_grid_pieces(file, GridKind::rectilinear, result.notes);
+  else if (type == "PStructuredGrid")
+    data = read_grid_pieces(file, GridKind::structured, result.notes);
   else
     data = read_xml(source, type, result.notes);
   result.blocks = blocks_from_vtk(*data, source, result.notes);

@@ -79,7 +79,7 @@ vtkSmartPointer<vtkDataSet> read_vtk_volume_data(const std::filesystem::path& fi
     check_vtk_xml(file);
     require_xml_end(file);
     if (kind == VtkGridKind::image_pieces || kind == VtkGridKind::rectilinear_pieces)
-      return read_grid_pieces(file, kind == VtkGridKind::image_pieces, notes);
+      return read_grid_pieces(file, kind == VtkGridKind::image_pieces ? GridKind::image : GridKind::rectilinear, notes);
   } else {
     check_vtk_legacy(MappedFile(file).text(), source);
   }

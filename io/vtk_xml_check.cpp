@@ -158,7 +158,7 @@ void check_vtk_xml(const std::filesystem::path& file) {
       if (const auto name = attribute(tag, "Source"))
         pieces.push_back(file.parent_path() / std::filesystem::path(*name));
     });
-    for (const char* grid : {"PImageData", "PRectilinearGrid"})
+    for (const char* grid : {"PImageData", "PRectilinearGrid", "PStructuredGrid"})
       check.each_tag(grid, [&](std::string_view tag) { grid_cells = XmlCheck::cells_of(tag, "WholeExtent"); });
   }
   for (const std::filesystem::path& piece : pieces) {

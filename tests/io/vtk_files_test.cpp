@@ -86,6 +86,64 @@ TEST_F(VtkFiles, PiecesOfAPvtuAgreeOnTheFacesBetweenThem) {
   EXPECT_NE(message_of([&] { read_mesh(file); }), "") << "a missing piece went unnoticed";
 }
 
+TEST_F(VtkFiles, CurvilinearGridsInPiecesAreOneAndBadPiecesAreNamed) {
+  const std::string head = "<VTKFile version=\"1.0\" byte_order=\"LittleEndian\" type=\"";
+  const auto piece = [&](int first, const std::string& type, const std::string& values, int along = 2) {
+    const std::string extent = fmt::format("\"{} {} 0 1 0 1\"", first, first + 1);
+    std::string points;
+    for (int n = 0; n < 4 * along; ++n)
+      points += fmt::format("{} {} {} ", first + n % along, n / along % 2, n / along / 2);
+    return head + "StructuredGrid\"><StructuredGrid WholeExtent=" + extent + "><Piece Extent=" + extent +
+           "><PointData><DataArray Name=\"c\" format=\"ascii\" type=\"" + type + "\">" + values +
+           "</DataArray></PointData><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">" +
+           points + "</DataArray></Points></Piece></StructuredGrid></VTKFile>";
+  };
+  const auto whole = [&](const std::string& second) {
+    return head +
+           "PStructuredGrid\"><PStructuredGrid WholeExtent=\"0 2 0 1 0 1\" GhostLevel=\"0\"><PPointData><PDataArray "
+           "type=\"Float32\" Name=\"c\"/></PPointData><PPoints><PDataArray type=\"Float32\" "
+           "NumberOfComponents=\"3\"/></PPoints><Piece Extent=\"0 1 0 1 0 1\" Source=\"first.vts\"/>" +
+           (second.empty() ? second : "<Piece Extent=\"1 2 0 1 0 1\" Source=\"" + second + "\"/>") +
+           "</PStructuredGrid></VTKFile>";
+  };
+  const std::string values = "1 2 4 5 7 8 10 11";
+  write("first.vts", piece(0, "Float32", "0 1 3 4 6 7 9 10"));
+  write("good.vts", piece(1, "Float32", values));
+  const MeshFile mesh = read_mesh(write("good.pvts", whole("good.vts")));
+  EXPECT_EQ(mesh.counts.cells_read, 2u);
+  ASSERT_EQ(mesh.mesh.positions.size(), 12u);
+  for (std::size_t p = 0; p < 12; ++p) {
+    EXPECT_EQ(mesh.mesh.positions[p].x, static_cast<double>(p % 3));
+    EXPECT_EQ(mesh.mesh.scalars[p], static_cast<double>(p));
+  }
+  // A ghost cell of one piece is the other's, and of the whole.
+  std::string ghosts = piece(1, "Float32", values);
+  ghosts.insert(ghosts.find("<Points>"),
+                "<CellData><DataArray type=\"UInt8\" Name=\"vtkGhostType\" "
+                "format=\"ascii\">1</DataArray></CellData>");
+  std::string plain = piece(0, "Float32", "0 1 3 4 6 7 9 10");
+  write("first.vts", plain.insert(plain.find("<Points>"),
+                                  "<CellData><DataArray type=\"UInt8\" Name=\"vtkGhostType\" "
+                                  "format=\"ascii\">0</DataArray></CellData>"));
+  write("ghosts.vts", ghosts);
+  const MeshFile overlapping = read_mesh(write("ghosts.pvts", whole("ghosts.vts")));
+  EXPECT_EQ(overlapping.counts.cells_read, 2u);
+  EXPECT_EQ(overlapping.counts.cells_ghost, 0u);
+  write("first.vts", piece(0, "Float32", "0 1 3 4 6 7 9 10"));
+  write("few.vts", piece(1, "Float32", "1 2"));
+  write("type.vts", piece(1, "Float64", values));
+  write("points.vts", piece(1, "Float32", values, 1));
+  const std::pair<const char*, const char*> wrong[] = {{"few.vts", "few.vts: "},
+                                                       {"type.vts", "type.vts: its array 'c' is double x 1"},
+                                                       {"points.vts", "points.vts: "},
+                                                       {"gone.vts", "gone.vts: there is no such file"},
+                                                       {"", "1 of its 2 cells"}};
+  for (const auto& [second, words] : wrong) {
+    const std::string message = message_of([&, &second = second] { read_mesh(write("bad.pvts", whole(second))); });
+    EXPECT_NE(message.find(words), std::string::npos) << second << ": " << message;
+  }
+}
+
 TEST_F(VtkFiles, StructuredAndRectilinearGridsAreReadAsCells) {
   std::string points, f;
   for (int k = 0; k < 3; ++k)
