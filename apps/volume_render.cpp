@@ -162,7 +162,8 @@ class VolumeRun {
     const scene::TraceScope scope(trace(), "prepare");
     volume::RenderSettings settings = options_.volume_settings;
     settings.trace = trace();
-    settings.memory_bytes = brick_memory(settings.memory_bytes, resident_, frame.size, settings.threads);
+    settings.memory_bytes =
+        brick_memory(settings.memory_bytes, resident_ + ranges_->bytes(), frame.size, settings.threads);
     renderer_.emplace(*file_.source, settings, std::move(*ranges_));
   }
 

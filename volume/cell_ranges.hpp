@@ -42,6 +42,8 @@ struct CellRanges {
   CellRanges(const scene::SampleSource& source, int threads);
 
   [[nodiscard]] std::size_t count() const { return low.size(); }
+  /// Of memory, with what each frame keeps of which cells are visible.
+  [[nodiscard]] std::size_t bytes() const { return count() * (2 * sizeof(float) + 1); }
 
   scene::GridIndex cells{0, 0, 0};
   std::vector<float> low, high;
