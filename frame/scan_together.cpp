@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cstring>
 #include <span>
-#include <type_traits>
 #include <utility>
 
+#include "frame/message_values.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::frame {
@@ -30,36 +30,19 @@ static_assert(sizeof(ScanTotals) == 24);
 
 constexpr std::uint64_t cells_a_message = 1 << 24;  // 128 MiB, of the 1 GiB that a message may have
 
-template <class T>
-void append(Bytes& bytes, std::span<const T> values) {
-  const auto raw = std::as_bytes(values);
-  bytes.insert(bytes.end(), raw.begin(), raw.end());
-}
-
-template <class T>
-T first_of(const Bytes& bytes) {
-  static_assert(std::is_trivially_copyable_v<T>);
-  T value{};
-  if (bytes.size() < sizeof value)
-    throw scene::Error(scene::ExitCode::system_failure,
-                       "exchange: a message is shorter than it says; all ranks must run the same program");
-  std::memcpy(&value, bytes.data(), sizeof value);
-  return value;
-}
-
 Bytes cells_of(const volume::CellScan& scan, std::uint64_t first_of_scan, std::uint64_t first, std::uint64_t count) {
   Bytes bytes;
   const CellsHeader header{first_of_scan + first, count};
   bytes.reserve(sizeof header + 2 * count * sizeof(float));
-  append(bytes, std::span(&header, 1));
-  append(bytes, std::span(scan.low).subspan(first, count));
-  append(bytes, std::span(scan.high).subspan(first, count));
+  append_values(bytes, std::span(&header, 1));
+  append_values(bytes, std::span(scan.low).subspan(first, count));
+  append_values(bytes, std::span(scan.high).subspan(first, count));
   return bytes;
 }
 
 /// Returns how many cells these are.
 std::uint64_t place(const Bytes& bytes, volume::CellScan& whole) {
-  const auto header = first_of<CellsHeader>(bytes);
+  const auto header = ValueReader(bytes).take<CellsHeader>();
   const std::uint64_t size = header.count * sizeof(float);
   if (header.count > cells_a_message || header.first > whole.low.size() ||
       header.count > whole.low.size() - header.first || bytes.size() != sizeof header + 2 * size)
@@ -98,9 +81,9 @@ volume::CellRanges scan_together(compositor::Transport& transport, const scene::
   // Also the end of the exchange: no rank is in the next one while another still waits for cells of this one.
   const ScanTotals totals{own.lowest, own.highest, own.blanks};
   Bytes bytes;
-  append(bytes, std::span(&totals, 1));
+  append_values(bytes, std::span(&totals, 1));
   for (const Bytes& of_rank : compositor::gather_all(transport, std::move(bytes))) {
-    const auto part = first_of<ScanTotals>(of_rank);
+    const auto part = ValueReader(of_rank).take<ScanTotals>();
     whole.lowest = std::min(whole.lowest, part.lowest);
     whole.highest = std::max(whole.highest, part.highest);
     whole.blanks += part.blanks;

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <ctime>
 #include <optional>
 #include <utility>
 
+#include "frame/message_values.hpp"
 #include "frame/reduce.hpp"
 #include "scene/error.hpp"
 #include "volume/learned_work.hpp"
@@ -32,35 +32,6 @@ struct RegionHeader {
   double cpu_seconds;
 };
 static_assert(sizeof(RegionHeader) == 17 * 8);
-
-template <class T>
-void append(Bytes& bytes, std::span<const T> values) {
-  const auto raw = std::as_bytes(values);
-  bytes.insert(bytes.end(), raw.begin(), raw.end());
-}
-
-/// Takes values off the front of a rank's message.
-class Reader {
- public:
-  explicit Reader(std::span<const std::byte> bytes) : left_(bytes) {}
-  template <class T>
-  void take(std::span<T> values) {
-    if (values.size_bytes() > left_.size())
-      throw scene::Error(scene::ExitCode::system_failure,
-                         "exchange: a message is shorter than it says; all ranks must run the same program");
-    if (!values.empty()) std::memcpy(values.data(), left_.data(), values.size_bytes());
-    left_ = left_.subspan(values.size_bytes());
-  }
-  template <class T>
-  T take() {
-    T value;
-    take(std::span(&value, 1));
-    return value;
-  }
-
- private:
-  std::span<const std::byte> left_;
-};
 
 double process_cpu_seconds() {
   timespec t{};
@@ -210,11 +181,11 @@ class SortFirst::State {
 
   std::vector<volume::RowSums> gather_rows(const volume::RowSums& own) {
     Bytes bytes;
-    append(bytes, std::span(&own.region, 1));
-    append(bytes, std::span<const std::uint64_t>(own.rows));
+    append_values(bytes, std::span(&own.region, 1));
+    append_values(bytes, std::span<const std::uint64_t>(own.rows));
     std::vector<volume::RowSums> all;
     for (const Bytes& of_rank : compositor::gather_all(transport_, std::move(bytes))) {
-      Reader reader(of_rank);
+      ValueReader reader(of_rank);
       volume::RowSums& part = all.emplace_back();
       part.region = reader.take<PixelRegion>();
       part.rows.resize((of_rank.size() - sizeof(PixelRegion)) / sizeof(std::uint64_t));
@@ -225,11 +196,11 @@ class SortFirst::State {
 
   std::vector<volume::ColumnSums> gather_columns(const volume::ColumnSums& own) {
     Bytes bytes;
-    append(bytes, std::span(&own.region, 1));
-    for (const auto& columns : own.columns) append(bytes, std::span<const std::uint64_t>(columns));
+    append_values(bytes, std::span(&own.region, 1));
+    for (const auto& columns : own.columns) append_values(bytes, std::span<const std::uint64_t>(columns));
     std::vector<volume::ColumnSums> all;
     for (const Bytes& of_rank : compositor::gather_all(transport_, std::move(bytes))) {
-      Reader reader(of_rank);
+      ValueReader reader(of_rank);
       volume::ColumnSums& part = all.emplace_back();
       part.region = reader.take<PixelRegion>();
       part.columns.resize(own.columns.size());
@@ -243,10 +214,10 @@ class SortFirst::State {
 
   void share_times(double cpu) {
     Bytes bytes;
-    append(bytes, std::span<const double>(&cpu, 1));
+    append_values(bytes, std::span<const double>(&cpu, 1));
     times_.clear();
     for (const Bytes& of_rank : compositor::gather_all(transport_, std::move(bytes)))
-      times_.push_back(Reader(of_rank).take<double>());
+      times_.push_back(ValueReader(of_rank).take<double>());
   }
 
   /// The times of the last frame, each spread over its rectangle.
@@ -271,17 +242,17 @@ class SortFirst::State {
   void send(const RegionHeader& header, const scene::Image& image) {
     Bytes bytes;
     const PixelRegion& r = header.region;
-    append(bytes, std::span(&header, 1));
+    append_values(bytes, std::span(&header, 1));
     for (int y = r.y0; y < r.y1; ++y) {
       const auto width = static_cast<std::size_t>(r.x1 - r.x0);
-      append(bytes, std::span(image.rgba).subspan(4 * image.index(r.x0, y), 4 * width));
-      append(bytes, std::span(image.depth).subspan(image.index(r.x0, y), width));
+      append_values(bytes, std::span(image.rgba).subspan(4 * image.index(r.x0, y), 4 * width));
+      append_values(bytes, std::span(image.depth).subspan(image.index(r.x0, y), width));
     }
     transport_.send(0, Channel::tiles, std::move(bytes), static_cast<std::int32_t>(header.frame));
   }
 
   void place(const compositor::Message& message, FinishedVolumeFrame& finished) {
-    Reader reader(message.bytes);
+    ValueReader reader(message.bytes);
     const auto header = reader.take<RegionHeader>();
     const PixelRegion& r = header.region;
     const scene::ImageSize size = finished.image.size;
