@@ -34,8 +34,6 @@ GRID = {"default": [], "exact": ["--integrator", "exact"],
         "sampled, 10": ["--integrator", "sampled", "--step", "10"],
         "preintegrated, 0.5": ["--integrator", "preintegrated", "--step", "0.5"]}
 BAD = 1e-3
-# Stresses and values at which more of the default's pixels are excused than may be: none is known.
-KNOWN = set()
 
 
 def shows(picture):
@@ -180,16 +178,14 @@ def save(args, stresses, rows):
         args.json.write_text(json.dumps({"stresses": stresses, "partitions": rows}, indent=1))
 
 
-def too_many_excused(stresses):
-    """(excused, pixels) of the default where that is not known; the known places' words."""
-    excused, pixels, known = 0, 0, []
+def excused_of(stresses):
+    """(excused, pixels) of the default."""
+    excused, pixels = 0, 0
     for s in stresses:
         for r in s["methods"].get("default", {"results": []})["results"]:
-            if (s["name"], r["value"]) in KNOWN:
-                known.append(f"{s['name']} at {r['value']}: {r.get('excused')} of {r.get('pixels')} pixels excused")
-            elif "pixels" in r:
+            if "pixels" in r:
                 excused, pixels = excused + r["excused"], pixels + r["pixels"]
-    return excused, pixels, known
+    return excused, pixels
 
 
 def document(path, stresses, rows, figure):
@@ -311,13 +307,11 @@ def main():
         document(args.document, stresses, rows, args.figure)
     for name, value, result in broken:
         print(f"default BROKEN: {name} at {value}: {result.get('failed', result.get('error'))}\n    {result.get('command', '')}")
-    excused, pixels, known = too_many_excused(stresses)
+    excused, pixels = excused_of(stresses)
     for s in stresses:
         empty = [r["value"] for r in s["methods"].get("default", {"results": []})["results"] if r.get("shows") is False]
         if empty:
             print(f"nothing to see: {s['name']} at {', '.join(empty)}")
-    for words in known:
-        print(f"known: {words}")
     print(f"{len(stresses)} stresses and {len(rows)} partitions in {time.monotonic() - start:.0f} s, default broken in "
           f"{len(broken)} places; {excused} of {pixels} pixels excused")
     # Three standard deviations of a share of 1e-4.
