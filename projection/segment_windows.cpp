@@ -32,8 +32,10 @@ std::size_t deal(const SegmentStream& s, std::size_t from, std::size_t capacity,
                           hn::BitCast(d, hn::LoadU(df, s.scalar_back.data() + i)), d,
                           reinterpret_cast<std::int32_t*>(records));
     const std::size_t end = s.size - i < lanes ? s.size - i : lanes;
-    for (std::size_t k = 0; k < lanes; ++k) {
-      const auto pixel = static_cast<std::size_t>(s.pixel[i + 3 * lanes + k]);
+    // The lines that segments 48 ahead go to, or thereabouts, as their lists may grow until then.
+    const std::size_t ahead = i + 4 * lanes < s.size ? i + 4 * lanes : s.size;
+    for (std::size_t n = i + 3 * lanes; n < ahead; ++n) {
+      const auto pixel = static_cast<std::size_t>(s.pixel[n]);
       __builtin_prefetch(&lists[counts[pixel] * stride + pixel], 1);
     }
     for (std::size_t k = 0; k < end; ++k) {
