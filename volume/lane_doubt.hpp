@@ -10,10 +10,9 @@ namespace tessera::volume {
 /// Where float lanes cannot tell a ray's light to the accuracy asked: rays of which that may be are cast again in
 /// double precision (voxel_cast.hpp).
 ///
-/// Steps   a ray that all but touches the surface of a step of the transfer function sees it for a length whose error
-/// is
-///         the square root of the field's: where that is level + a (u - u0)^2, rounding of 1e-7 makes or moves
-///         crossings by 3e-4. Lanes add up what such places may err (ray_piece-inl.h).
+/// Steps   a ray that all but touches the surface of a step of the transfer function sees it for a length whose
+///         error is the square root of the field's: where that is level + a (u - u0)^2, rounding of 1e-7 makes or
+///         moves crossings by 3e-4. Lanes add up what such places may err (ray_piece-inl.h).
 /// Ramps   where the function is steep, the field's error shows for as long as a ray stays there.
 struct LaneDoubt {
   /// By edge of the table (LaneTable::edge), as long as a row of it: the light and opacity, per unit of length, that

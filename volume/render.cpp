@@ -12,6 +12,7 @@
 #include <bit>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <span>
 #include <thread>
 #include <utility>
 
@@ -190,6 +191,12 @@ struct Renderer::State {
     }
     return static_cast<float>(std::min(0.25, accuracy() / 4 / std::max(1.0, brightest)));
   }
+  /// Of a cast in double precision; `visible` must outlive it.
+  [[nodiscard]] VoxelCastSettings voxel_settings(const scene::TransferFunction& function,
+                                                 std::span<const std::uint8_t> visible) const {
+    return {{settings.emission, WalkSettings().tolerance, static_cast<double>(least_transmittance(function)), visible},
+            settings.shading};
+  }
   [[nodiscard]] double accuracy() const { return settings.method == Method::exact ? 2e-6 : settings.accuracy; }
 
   void cast(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
@@ -358,11 +365,7 @@ void Renderer::State::cast_again(const scene::Camera& camera, const scene::Trans
                                  const std::vector<std::array<int, 2>>& pixels, scene::Image& image,
                                  Cast& result) const {
   const scene::TraceScope scope(settings.trace, "project");
-  cast_voxel_by_voxel(
-      source, camera, function,
-      {{settings.emission, WalkSettings().tolerance, static_cast<double>(least_transmittance(function)), visible},
-       settings.shading},
-      pixels, image);
+  cast_voxel_by_voxel(source, camera, function, voxel_settings(function, visible), pixels, image);
   result.pixels_again = pixels.size();
 }
 
@@ -375,11 +378,8 @@ void Renderer::State::cast_rectilinear(const scene::Camera& camera, const scene:
     show_more(ranges, bricks.layout(), !settings.use.culling, !settings.use.skipping, visible);
     result.brick_visible = volume::visible_bricks(ranges, visible, bricks.layout());
     const scene::TraceScope scope(settings.trace, "project");
-    const VoxelCastCounts counts = cast_voxel_by_voxel(
-        source, camera, function,
-        {{settings.emission, WalkSettings().tolerance, static_cast<double>(least_transmittance(function)), visible},
-         settings.shading},
-        wanted, image);
+    const VoxelCastCounts counts =
+        cast_voxel_by_voxel(source, camera, function, voxel_settings(function, visible), wanted, image);
     result.counts.rays = counts.rays, result.counts.voxels_visited = counts.voxels;
     result.counts.samples = counts.lines;
     result.blocks_read = counts.blocks_read, result.block_bytes = counts.bytes_read;
