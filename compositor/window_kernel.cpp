@@ -9,8 +9,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "compositor/integrate_lanes-inl.h"
-#include "projection/pack_lanes-inl.h"
+#include "compositor/window_light-inl.h"
 #include "sorting/sort_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -23,38 +22,6 @@ std::uint64_t composite_windows(const WindowRules&, projection::SegmentWindows&,
   return 0;
 }
 #else
-using DD = HN::ScalableTag<double>;
-using VD = HN::Vec<DD>;
-using HalfF = HN::Half<DF>;
-constexpr std::int32_t no_key = 0x7fffffff;
-static_assert(no_key == WindowState::not_yet);
-
-/// Lane values in double: two vectors.
-struct Doubles {
-  VD low, high;
-};
-HWY_INLINE Doubles load(const double* from) {
-  const DD d;
-  return {HN::Load(d, from), HN::Load(d, from + HN::Lanes(d))};
-}
-HWY_INLINE void store(Doubles v, double* to) {
-  const DD d;
-  HN::Store(v.low, d, to);
-  HN::Store(v.high, d, to + HN::Lanes(d));
-}
-HWY_INLINE Doubles promote(VF v) {
-  const DD d;
-  const HalfF half;
-  return {HN::PromoteTo(d, HN::LowerHalf(half, v)), HN::PromoteTo(d, HN::UpperHalf(half, v))};
-}
-HWY_INLINE VF demote(Doubles v) {
-  const HalfF half;
-  return HN::Combine(DF(), HN::DemoteTo(half, v.high), HN::DemoteTo(half, v.low));
-}
-HWY_INLINE Doubles multiply_add(Doubles a, Doubles b, Doubles c) {
-  return {HN::MulAdd(a.low, b.low, c.low), HN::MulAdd(a.high, b.high, c.high)};
-}
-
 /// Order of segments with one front.
 HWY_INLINE bool level_before(const projection::LatticeSegment& a, const projection::LatticeSegment& b) {
   if (a.back != b.back) return a.back < b.back;
@@ -102,8 +69,6 @@ struct Fields {
   VI front, back;
   VF scalar_front, scalar_back;
 };
-constexpr std::size_t most_lanes = HN::MaxLanes(DI());
-
 HWY_INLINE Fields transposed(VI v0, VI v1, VI v2, VI v3) {
   const DI d;
   const HN::RepartitionToWide<DI> wide;
@@ -135,60 +100,6 @@ HWY_INLINE Fields load_fields(const projection::LatticeSegment* list, const std:
   return transposed(load_every_fourth<most_lanes>(list, slots, 0), load_every_fourth<most_lanes>(list, slots, 1),
                     load_every_fourth<most_lanes>(list, slots, 2), load_every_fourth<most_lanes>(list, slots, 3));
 }
-
-/// What a block of rows, a segment of every pixel in each, sends to the eye: numbers [row * lanes + lane].
-struct LightRows {
-  static constexpr std::size_t most = 32, numbers = most * most_lanes;
-  alignas(64) float alpha[numbers], optical_depth[numbers], red[numbers], green[numbers], blue[numbers];
-  alignas(64) std::int32_t back[numbers];
-  alignas(64) std::int32_t interval[numbers];
-  // The block's segments; behind the row that is worked on, those of more than one piece, until they fill the lanes.
-  alignas(64) float length[numbers + most_lanes], scalar_front[numbers + most_lanes], scalar_back[numbers + most_lanes];
-  alignas(64) std::int32_t place[numbers + most_lanes];
-  std::size_t waiting = 0;
-  bool lit[most];  ///< some lane of the row has light or depth
-
-  HWY_INLINE void put_segment(VF l, const Fields& s, VI scalar_interval, std::size_t at) {
-    const DF d;
-    const DI di;
-    HN::Store(l, d, length + at);
-    HN::Store(s.scalar_front, d, scalar_front + at), HN::Store(s.scalar_back, d, scalar_back + at);
-    HN::Store(s.back, di, back + at), HN::Store(scalar_interval, di, interval + at);
-  }
-  HWY_INLINE void put(const Light& light, std::size_t at) {
-    const DF d;
-    HN::Store(light.alpha, d, alpha + at), HN::Store(light.optical_depth, d, optical_depth + at);
-    HN::Store(light.red, d, red + at), HN::Store(light.green, d, green + at), HN::Store(light.blue, d, blue + at);
-  }
-  HWY_INLINE void defer(MF more, std::size_t at, VF l, VF front, VF back_scalar) {
-    const DF d;
-    const DI di;
-    const projection::HWY_NAMESPACE::LanePacker pack(HN::RebindMask(di, more));
-    HN::StoreU(pack(l), d, length + waiting);
-    HN::StoreU(pack(front), d, scalar_front + waiting);
-    HN::StoreU(pack(back_scalar), d, scalar_back + waiting);
-    HN::StoreU(pack(HN::Iota(di, static_cast<std::int32_t>(at))), di, place + waiting);
-    waiting += pack.count();
-  }
-  template <TableForm form>
-  HWY_INLINE void integrate_waiting(const Lookup<form>& table) {
-    const DF d;
-    alignas(64) float now[5][most_lanes];
-    for (std::size_t i = 0; i < waiting; i += HN::Lanes(d)) {
-      const std::size_t here = std::min(HN::Lanes(d), waiting - i);
-      const Light light = integrate_lanes(table, HN::Load(d, length + i), HN::Load(d, scalar_front + i),
-                                          HN::Load(d, scalar_back + i), HN::FirstN(d, here));
-      HN::Store(light.alpha, d, now[0]), HN::Store(light.optical_depth, d, now[1]);
-      HN::Store(light.red, d, now[2]), HN::Store(light.green, d, now[3]), HN::Store(light.blue, d, now[4]);
-      for (std::size_t k = 0; k < here; ++k) {
-        const auto at = static_cast<std::size_t>(place[i + k]);
-        alpha[at] = now[0][k], optical_depth[at] = now[1][k];
-        red[at] = now[2][k], green[at] = now[3][k], blue[at] = now[4][k];
-      }
-    }
-    waiting = 0;
-  }
-};
 
 /// The pixels [pixel, pixel + lanes) of a square.
 template <TableForm form>
@@ -259,12 +170,12 @@ class PixelGroup {
     const DI d;
     const DF df;
     const std::size_t lanes = HN::Lanes(d);
-    const VF length_per_step = HN::Load(df, &state_.length_per_step[pixel_]), zero = HN::Zero(df);
+    const VF length_per_step = HN::Load(df, &state_.length_per_step[pixel_]);
     const auto open = HN::Lt(HN::Load(d, &state_.open[pixel_]), HN::Zero(d));
-    const VI end = HN::Set(d, final_step);
+    const VI end = HN::Set(d, final_step), none = HN::Set(d, no_key);
     // In two passes, each of chains short enough for a processor to work on several rows at once.
     for (std::size_t row = from; row < to; ++row) {
-      const VI front = HN::LoadU(d, state_.keys.data() + row * lanes);
+      const VI front = HN::LoadU(d, keys(row));
       const auto is_final = HN::Lt(front, end);
       if (HN::AllFalse(d, is_final)) {
         to = row;
@@ -272,23 +183,12 @@ class PixelGroup {
       }
       const Fields s = load_fields(list_, state_.slots.data() + row * lanes);
       const VF length = HN::Mul(HN::ConvertTo(df, HN::Sub(s.back, front)), length_per_step);
-      light_.put_segment(HN::IfThenElseZero(HN::RebindMask(df, HN::And(is_final, open)), length), s,
+      const auto takes = HN::And(is_final, open);
+      light_.put_segment(HN::IfThenElseZero(HN::RebindMask(df, takes), length), HN::IfThenElse(takes, front, none),
+                         s.back, s.scalar_front, s.scalar_back,
                          table_.locate(s.scalar_front, HN::Ge(s.scalar_back, s.scalar_front)), (row - from) * lanes);
     }
-    for (std::size_t row = from; row < to; ++row) {
-      const std::size_t at = (row - from) * lanes;
-      const VF length = HN::Load(df, light_.length + at), scalar_front = HN::Load(df, light_.scalar_front + at),
-               scalar_back = HN::Load(df, light_.scalar_back + at);
-      MF more;
-      const Light light =
-          integrate_simple(table_, HN::Load(d, light_.interval + at), length, scalar_front, scalar_back, more);
-      light_.put(light, at);
-      MF lit = HN::Or(more, HN::Gt(light.optical_depth, zero));
-      if (table_.independent) lit = HN::Or(lit, HN::Gt(HN::Add(light.red, HN::Add(light.green, light.blue)), zero));
-      light_.lit[row - from] = !HN::AllFalse(df, lit);
-      if (!HN::AllFalse(df, more)) light_.defer(more, at, length, scalar_front, scalar_back);
-    }
-    light_.integrate_waiting(table_);
+    light_.integrate(table_, to - from);
     return to;
   }
 
@@ -302,195 +202,13 @@ class PixelGroup {
       to = integrate(from, most, final_step);
       for (std::size_t row = from; row < to; ++row)
         done = HN::Sub(done, HN::VecFromMask(d, HN::Lt(HN::LoadU(d, keys(row)), end)));
-      const bool open = !rules.runs                     ? add_rows(from, to, rules)
-                        : rules.least_transmittance > 0 ? add_runs<true>(from, to, end, rules)
-                                                        : add_runs<false>(from, to, end, rules);
-      if (to < most || !open) break;
+      if (!GroupLight(state_, light_, pixel_, table_.independent).add(to - from, rules) || to < most) break;
     }
     return keep_rest(done);
   }
 
  private:
-  HWY_INLINE static Doubles dimmed(Doubles transmittance, Doubles alpha) {
-    return {HN::NegMulAdd(transmittance.low, alpha.low, transmittance.low),
-            HN::NegMulAdd(transmittance.high, alpha.high, transmittance.high)};
-  }
   HWY_INLINE const std::int32_t* keys(std::size_t row) const { return state_.keys.data() + row * HN::Lanes(DI()); }
-
-  /// The rows' light into a picture's pixels. Returns whether some pixel stays open.
-  HWY_INLINE bool add_rows(std::size_t from, std::size_t to, const WindowRules& rules) {
-    const DI d;
-    const DF df;
-    const DD dd;
-    const HalfF half;
-    const std::size_t p = pixel_, lanes = HN::Lanes(d), half_lanes = HN::Lanes(half);
-    Doubles red = load(&state_.red[p]), green = load(&state_.green[p]), blue = load(&state_.blue[p]);
-    Doubles transmittance = load(&state_.transmittance[p]);
-    const VD least = HN::Set(dd, rules.least_transmittance);
-    const auto is_open = [&](std::size_t half_of) HWY_ATTR {
-      const HN::Rebind<std::int32_t, DD> di32;
-      return HN::Lt(HN::PromoteTo(dd, HN::LoadU(di32, &state_.open[p + half_of])), HN::Zero(dd));
-    };
-    // A pixel that closes takes no more: it has no weight.
-    auto open_low = is_open(0), open_high = is_open(half_lanes);
-    for (std::size_t row = from; row < to; ++row) {
-      if (!light_.lit[row - from]) continue;
-      const std::size_t at = (row - from) * lanes;
-      const VD weight_low = HN::IfThenElseZero(open_low, transmittance.low);
-      const VD weight_high = HN::IfThenElseZero(open_high, transmittance.high);
-      const auto low = [&](const float* v) HWY_ATTR { return HN::PromoteTo(dd, HN::Load(half, v + at)); };
-      const auto high = [&](const float* v) HWY_ATTR { return HN::PromoteTo(dd, HN::Load(half, v + at + half_lanes)); };
-      const auto add = [&](Doubles& sum, const float* v) HWY_ATTR {
-        sum = {HN::MulAdd(weight_low, low(v), sum.low), HN::MulAdd(weight_high, high(v), sum.high)};
-      };
-      add(red, light_.red), add(green, light_.green), add(blue, light_.blue);
-      transmittance = {HN::NegMulAdd(weight_low, low(light_.alpha), transmittance.low),
-                       HN::NegMulAdd(weight_high, high(light_.alpha), transmittance.high)};
-      // After each segment, not each window: where a ray ends must not depend on how its segments were cut.
-      open_low = HN::And(open_low, HN::Ge(transmittance.low, least));
-      open_high = HN::And(open_high, HN::Ge(transmittance.high, least));
-    }
-    store(red, &state_.red[p]), store(green, &state_.green[p]), store(blue, &state_.blue[p]);
-    store(transmittance, &state_.transmittance[p]);
-    note_first(from, to);
-    const VF closed =
-        demote({HN::IfThenElseZero(open_low, HN::Set(dd, -1)), HN::IfThenElseZero(open_high, HN::Set(dd, -1))});
-    const VI open = HN::ConvertTo(d, closed);
-    HN::Store(open, d, &state_.open[p]);
-    return !HN::AllTrue(df, HN::Ge(closed, HN::Zero(df)));
-  }
-
-  /// Where lanes that have shown nothing yet begin to. (Lanes closed by a row show what it has: it is theirs.)
-  HWY_INLINE void note_first(std::size_t from, std::size_t to) {
-    const DI d;
-    const DF df;
-    auto unseen = HN::Eq(HN::Load(d, &state_.first_back[pixel_]), HN::Set(d, no_key));
-    for (std::size_t row = from; row < to && !HN::AllFalse(d, unseen); ++row) {
-      if (!light_.lit[row - from]) continue;
-      const VF depth = HN::Load(df, light_.optical_depth + (row - from) * HN::Lanes(d));
-      const auto appears = HN::And(unseen, HN::RebindMask(d, HN::Gt(depth, HN::Zero(df))));
-      if (HN::AllFalse(d, appears)) continue;
-      keep_first(appears, row);
-      unseen = HN::AndNot(appears, unseen);
-    }
-  }
-
-  /// The same in runs, a lane's run in registers while it goes on. Returns whether some pixel stays open; that may
-  /// change only where `closes`.
-  template <bool closes>
-  HWY_INLINE bool add_runs(std::size_t from, std::size_t to, VI end, const WindowRules& rules) {
-    const DI d;
-    const DF df;
-    const std::size_t lanes = HN::Lanes(d);
-    const std::size_t p = pixel_;
-    const VI none = HN::Set(d, no_key), zero = HN::Zero(d);
-    const VF least_transmittance = HN::Set(df, static_cast<float>(rules.least_transmittance));
-    VI open = HN::Load(d, &state_.open[p]);
-    Doubles ray = load(&state_.ray_transmittance[p]);
-    VI run_back, several;
-    HN::Mask<DI> seen;
-    const auto resume = [&]() HWY_ATTR {
-      load_light();
-      run_back = HN::Load(d, &state_.back[p]), several = HN::Load(d, &state_.several[p]);
-      seen = HN::Ne(HN::Load(d, &state_.first_back[p]), none);
-    };
-    const auto save = [&]() HWY_ATTR {
-      store_light();
-      HN::Store(run_back, d, &state_.back[p]), HN::Store(several, d, &state_.several[p]);
-    };
-    resume();
-    for (std::size_t row = from; row < to; ++row) {
-      const VI front = HN::LoadU(d, keys(row));
-      const auto takes = HN::And(HN::Lt(front, end), HN::Lt(open, zero));
-      const std::size_t at = (row - from) * lanes;
-      // Lanes that took nothing from the start have no light; lanes that have closed since have.
-      const auto number = [&](const float* numbers) HWY_ATTR {
-        const VF all = HN::Load(df, numbers + at);
-        return closes ? HN::IfThenElseZero(HN::RebindMask(df, takes), all) : all;
-      };
-      const VF depth = number(light_.optical_depth);
-      const auto absorbs = HN::RebindMask(d, HN::Gt(depth, HN::Zero(df)));
-      // Runs end where the next segment does not touch.
-      const auto in_run = HN::And(takes, HN::Ne(run_back, none));
-      auto ends = HN::And(in_run, HN::Gt(HN::Abs(HN::Sub(front, run_back)), HN::Set(d, touching_steps)));
-      if (table_.independent) {
-        // Light without extinction does not share a run with what absorbs behind it either: a run's front is where
-        // absorption begins.
-        const auto clear = HN::RebindMask(d, HN::Le(demote(optical_depth_), HN::Zero(df)));
-        ends = HN::Or(ends, HN::And(HN::And(in_run, absorbs), HN::And(seen, clear)));
-      }
-      if (HWY_UNLIKELY(!HN::AllFalse(d, ends))) {
-        save();
-        end_runs(ends);
-        resume();
-      }
-      // All that take one are in a run up to its back. Irregular cells' depths are a few steps off: a run does not go
-      // back.
-      const VI back = HN::Load(d, light_.back + at);
-      const VI on = HN::IfThenElse(HN::Eq(run_back, none), back, HN::Max(run_back, back));
-      run_back = HN::IfThenElse(takes, on, run_back);
-      if (!light_.lit[row - from]) continue;
-
-      const VF red = number(light_.red), green = number(light_.green), blue = number(light_.blue);
-      auto shows = absorbs;
-      if (table_.independent) {
-        // A run begins where it shows, if only by light.
-        const VF colors = HN::Add(HN::Abs(red), HN::Add(HN::Abs(green), HN::Abs(blue)));
-        shows = HN::Or(shows, HN::RebindMask(d, HN::Gt(colors, HN::Zero(df))));
-      }
-      several = HN::Or(several, HN::VecFromMask(d, HN::And(shows, seen)));
-      const auto appears = HN::AndNot(seen, shows);
-      if (!HN::AllFalse(d, appears)) keep_first(appears, row);
-      seen = HN::Or(seen, appears);
-      red_ = multiply_add(transmittance_, promote(red), red_);
-      green_ = multiply_add(transmittance_, promote(green), green_);
-      blue_ = multiply_add(transmittance_, promote(blue), blue_);
-      const Doubles depths = promote(depth), alphas = promote(number(light_.alpha));
-      optical_depth_ = {HN::Add(optical_depth_.low, depths.low), HN::Add(optical_depth_.high, depths.high)};
-      transmittance_ = dimmed(transmittance_, alphas);
-      if constexpr (closes) {
-        ray = dimmed(ray, alphas);
-        open = HN::And(open, HN::VecFromMask(d, HN::RebindMask(d, HN::Ge(demote(ray), least_transmittance))));
-      }
-    }
-    save();
-    if constexpr (!closes) return true;
-    store(ray, &state_.ray_transmittance[p]);
-    HN::Store(open, d, &state_.open[p]);
-    return !HN::AllFalse(d, HN::Lt(open, zero));
-  }
-
-  HWY_NOINLINE void end_runs(HN::Mask<DI> lanes) {
-    std::uint8_t bits[8] = {0};
-    HN::StoreMaskBits(DI(), lanes, bits);
-    for (std::uint64_t left = bits[0] | static_cast<std::uint64_t>(bits[1]) << 8; left != 0; left &= left - 1)
-      state_.end_run(pixel_ + static_cast<std::size_t>(__builtin_ctzll(left)));
-  }
-
-  HWY_INLINE void load_light() {
-    const std::size_t p = pixel_;
-    red_ = load(&state_.red[p]), green_ = load(&state_.green[p]), blue_ = load(&state_.blue[p]);
-    optical_depth_ = load(&state_.optical_depth[p]), transmittance_ = load(&state_.transmittance[p]);
-  }
-  HWY_INLINE void store_light() {
-    const std::size_t p = pixel_;
-    store(red_, &state_.red[p]), store(green_, &state_.green[p]), store(blue_, &state_.blue[p]);
-    store(optical_depth_, &state_.optical_depth[p]), store(transmittance_, &state_.transmittance[p]);
-  }
-
-  /// Notes the row's segments as those in which lanes begin to show.
-  HWY_NOINLINE void keep_first(HN::Mask<DI> appears, std::size_t row) {
-    const std::size_t lanes = HN::Lanes(DI());
-    std::uint8_t bits[8] = {0};
-    HN::StoreMaskBits(DI(), appears, bits);
-    for (std::uint64_t left = bits[0] | static_cast<std::uint64_t>(bits[1]) << 8; left != 0; left &= left - 1) {
-      const auto lane = static_cast<std::size_t>(__builtin_ctzll(left));
-      const projection::LatticeSegment& s = segment_at(list_ + lane, state_.slots[row * lanes + lane]);
-      const std::size_t p = pixel_ + lane;
-      state_.first_front[p] = s.front, state_.first_back[p] = s.back;
-      state_.first_scalar_front[p] = s.scalar_front, state_.first_scalar_back[p] = s.scalar_back;
-    }
-  }
 
   /// Leaves in the windows what was not final, in order. Returns how many segments are gone.
   HWY_INLINE std::uint64_t keep_rest(VI done) {
@@ -525,7 +243,6 @@ class PixelGroup {
   LightRows& light_;
   std::size_t pixel_;
   projection::LatticeSegment* list_;
-  Doubles red_, green_, blue_, optical_depth_, transmittance_;
 };
 
 template <TableForm form>

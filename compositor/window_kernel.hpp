@@ -32,7 +32,7 @@ struct WindowState {
   alignas(64) std::array<float, pixels> first_scalar_front, first_scalar_back;
 
   // Runs only.
-  alignas(64) std::array<double, pixels> ray_transmittance;  ///< of all runs so far
+  alignas(64) std::array<double, pixels> ray_transmittance;  ///< of the runs before this one
   alignas(64) std::array<std::int32_t, pixels> back;         ///< where the run ends; not_yet: no run
   alignas(64) std::array<std::int32_t, pixels> several;      ///< -1: more than one of its segments shows
   /// A run that shows and has ended.

@@ -36,6 +36,7 @@ void WindowState::end_run(std::size_t p) {
                      green[p],
                      blue[p],
                      optical_depth[p]});
+  ray_transmittance[p] *= transmittance[p];
   red[p] = green[p] = blue[p] = optical_depth[p] = 0;
   transmittance[p] = 1;
   several[p] = 0;

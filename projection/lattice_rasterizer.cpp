@@ -1,6 +1,7 @@
 #include "projection/lattice_rasterizer.hpp"
 
 #include <algorithm>
+#include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "projection/lattice_rasterizer.cpp"
@@ -19,9 +20,6 @@ bool available() { return HWY_TARGET != HWY_SCALAR; }
 void rasterize(const LatticeView&, std::span<const TileEntry>, std::span<const TileEntry>, const PixelRect&,
                const OpenPixels&, LatticeScratch&, SegmentStream&, RasterCounts&) {}
 #else
-using D4 = hn::FixedTag<std::int32_t, 4>;
-using V4 = hn::Vec<D4>;
-
 // A block of pixels is a vector of lanes: 4 x 4, 4 x 2 or 2 x 2.
 constexpr int block_width = lanes >= 8 ? 4 : 2, block_height = lanes / block_width;
 static_assert(block_width * block_height == lanes);
@@ -29,17 +27,81 @@ static_assert(block_width * block_height == lanes);
 HWY_INLINE VI lane_column() { return hn::And(hn::Iota(I(), 0), hn::Set(I(), block_width - 1)); }
 HWY_INLINE VI lane_row() { return hn::ShiftRight < block_width == 4 ? 2 : 1 > (hn::Iota(I(), 0)); }
 
-/// x * column + y * row for every lane, given x, 2 x, y and 2 y: by adding bits, as a 32-bit multiplication costs ten
-/// times an addition.
-HWY_INLINE VI block_steps(std::int32_t x, std::int32_t x2, std::int32_t y, std::int32_t y2) {
+HWY_INLINE VI add_if(hn::Mask<I> mask, VI sum, VI more) {
+#if HWY_TARGET <= HWY_AVX3
+  return VI{_mm512_mask_add_epi32(sum.raw, mask.raw, sum.raw, more.raw)};
+#else
+  return hn::Add(sum, hn::IfThenElseZero(mask, more));
+#endif
+}
+
+/// start + x * column + y * row for every lane: by adding bits, as a 32-bit multiplication costs ten times an addition.
+HWY_INLINE VI over_block(VI start, VI x, VI y) {
   const I d;
   const auto bit = [&](VI number, int b) HWY_ATTR { return hn::Ne(hn::And(number, hn::Set(d, b)), hn::Zero(d)); };
   const VI column = lane_column(), row = lane_row();
-  VI sum = hn::IfThenElseZero(bit(column, 1), hn::Set(d, x));
-  if constexpr (block_width == 4) sum = hn::IfThenElse(bit(column, 2), hn::Add(sum, hn::Set(d, x2)), sum);
-  sum = hn::IfThenElse(bit(row, 1), hn::Add(sum, hn::Set(d, y)), sum);
-  if constexpr (block_height == 4) sum = hn::IfThenElse(bit(row, 2), hn::Add(sum, hn::Set(d, y2)), sum);
+  VI sum = add_if(bit(column, 1), start, x);
+  if constexpr (block_width == 4) sum = add_if(bit(column, 2), sum, hn::ShiftLeft<1>(x));
+  sum = add_if(bit(row, 1), sum, y);
+  if constexpr (block_height == 4) sum = add_if(bit(row, 2), sum, hn::ShiftLeft<1>(y));
   return sum;
+}
+
+/// Lays blocks over the batch's cells, all cells at once. Blocks that would reach out of the rectangle move inwards: what
+/// is not the cell's its edges tell. Only in the narrowest of rectangles does that not help; those are `clipped`.
+template <bool perspective, bool per_cell>
+HWY_INLINE void lay_blocks(const PixelRect& rect, const PixelRect& square, CellBatch& batch) {
+  const I d;
+  const F df;
+  constexpr int log_width = block_width == 4 ? 2 : 1, log_height = block_height == 4 ? 2 : 1;
+  const auto number = [](int n) HWY_ATTR { return hn::Set(I(), n); };
+  const VI right = number(rect.x1 - square.x0), bottom = number(rect.y1 - square.y0);
+  const VI first_x = number(rect.x0 - square.x0), first_y = number(rect.y0 - square.y0);
+  const VI width = number(rect.width()), center = number(CellBatch::center), one = number(1);
+  for (int t = 0; t < CellBatch::most; t += lanes) {
+    const VI x0 = hn::Load(d, batch.x0 + t), y0 = hn::Load(d, batch.y0 + t);
+    const VI columns = hn::ShiftRight<log_width>(
+        hn::Add(hn::Sub(hn::Load(d, batch.x1 + t), x0), number(block_width - 1)));
+    const VI rows = hn::ShiftRight<log_height>(
+        hn::Add(hn::Sub(hn::Load(d, batch.y1 + t), y0), number(block_height - 1)));
+    const VI across = hn::ShiftLeft<log_width>(columns), down = hn::ShiftLeft<log_height>(rows);
+    const VI left = hn::Max(first_x, hn::Min(x0, hn::Sub(right, across)));
+    const VI top = hn::Max(first_y, hn::Min(y0, hn::Sub(bottom, down)));
+    const auto clipped = hn::Or(hn::Gt(hn::Add(left, across), right), hn::Gt(hn::Add(top, down), bottom));
+    const VI blocks = hn::Mul(columns, rows), last_column = hn::Sub(columns, one);
+    hn::Store(left, d, batch.left + t), hn::Store(top, d, batch.top + t);
+    hn::Store(columns, d, batch.columns + t), hn::Store(blocks, d, batch.blocks + t);
+    hn::Store(hn::VecFromMask(d, clipped), d, batch.clipped + t);
+    hn::Store(hn::Add(hn::Mul(hn::Sub(top, first_y), width), hn::Sub(left, first_x)), d, batch.pixel + t);
+    hn::Store(hn::Sub(number(block_height * rect.width()), hn::ShiftLeft<log_width>(last_column)), d,
+              batch.pixel_wrap + t);
+    // A sign is certain beyond 1 (2^-22 of the largest value); each step, and each step's step, rounds a quarter of that.
+    hn::Store(hn::MulAdd(hn::ConvertTo(df, blocks), hn::Set(df, 0.5f), hn::Set(df, 2.0f)), df, batch.doubtful + t);
+
+    const VI x = hn::Sub(left, center), y = hn::Sub(top, center);
+    const VF xf = hn::ConvertTo(df, x), yf = hn::ConvertTo(df, y), back = hn::ConvertTo(df, last_column);
+    for (int e = 0; e < 6; ++e) {
+      const VF along_x = hn::Load(df, batch.edge_x[e] + t), along_y = hn::Load(df, batch.edge_y[e] + t);
+      const VF step = hn::Mul(along_x, hn::Set(df, block_width));
+      hn::Store(hn::MulAdd(along_x, xf, hn::MulAdd(along_y, yf, hn::Load(df, batch.edge[e] + t))), df,
+                batch.block_edge[e] + t);
+      hn::Store(step, df, batch.edge_step[e][0] + t);
+      hn::Store(hn::NegMulAdd(step, back, hn::Mul(along_y, hn::Set(df, block_height))), df, batch.edge_step[e][1] + t);
+    }
+    const auto lay = [&](CellBatch::FacePlanes& planes) HWY_ATTR {
+      for (int f = 0; f < 4; ++f) {
+        const VI along_x = hn::Load(d, planes.x[f] + t), along_y = hn::Load(d, planes.y[f] + t);
+        const VI step = hn::ShiftLeft<log_width>(along_x);
+        hn::Store(hn::Add(hn::Load(d, planes.start[f] + t), hn::Add(hn::Mul(along_x, x), hn::Mul(along_y, y))), d,
+                  planes.block[f] + t);
+        hn::Store(step, d, planes.step[f][0] + t);
+        hn::Store(hn::Sub(hn::ShiftLeft<log_height>(along_y), hn::Mul(step, last_column)), d, planes.step[f][1] + t);
+      }
+    };
+    lay(batch.depth);
+    if constexpr (!per_cell) lay(batch.scalar);
+    if constexpr (perspective) lay(batch.weight);
+  }
 }
 
 /// settle_pixel() for the lanes of a block. Returns those whose ray touches.
@@ -55,16 +117,8 @@ HWY_NOINLINE std::uint64_t settle(const LatticeView& view, const CellBatch& batc
   return touching;
 }
 
-/// Depth (steps) and scalar where the lanes' rays pass one side of the cell.
-struct Crossing {
-  VI depth;
-  VF scalar;
-};
-
-/// The planes of one face over the block, advanced from block to block.
-struct FaceSteps {
-  VI depth, scalar, weight;
-};
+/// How a cell looks: two faces against two, or one against three.
+enum class Shape { two, one_in, one_behind };
 
 template <bool perspective, bool per_cell>
 struct CellRaster {
@@ -72,27 +126,27 @@ struct CellRaster {
   const CellBatch& batch;
   int t;
   const Roles& roles;
-  FaceSteps steps[4];
-  // The planes at the block's first pixel, of faces 0 to 3.
-  alignas(16) std::int32_t depth[4], scalar[4], weight[4];
 
-  /// The steps of one quantity's four planes.
-  template <class Put>
-  HWY_INLINE void prepare(const std::int32_t* x, const std::int32_t* y, Put put) {
-    const D4 d4;
-    alignas(16) std::int32_t x2[4], y2[4];
-    hn::Store(hn::ShiftLeft<1>(hn::Load(d4, x)), d4, x2), hn::Store(hn::ShiftLeft<1>(hn::Load(d4, y)), d4, y2);
+  /// A quantity's planes over the block, of the faces in the order of their roles.
+  struct Planes {
+    VI face[4];
+    const std::int32_t* step[4];
+  };
+  Planes depth, scalar, weight;
+
+  HWY_INLINE void start(const CellBatch::FacePlanes& all, Planes& planes) const {
+    const I d;
     for (int k = 0; k < 4; ++k) {
       const int f = roles.face[k];
-      put(k, block_steps(x[f], x2[f], y[f], y2[f]));
+      planes.face[k] =
+          over_block(hn::Set(d, all.block[f][t]), hn::Set(d, all.x[f][t]), hn::Set(d, all.y[f][t]));
+      planes.step[k] = &all.step[f][0][t];
     }
   }
-  HWY_INLINE void prepare() {
-    prepare(batch.depth_x[t], batch.depth_y[t], [&](int k, VI v) HWY_ATTR { steps[k].depth = v; });
-    if constexpr (!per_cell)
-      prepare(batch.scalar_x[t], batch.scalar_y[t], [&](int k, VI v) HWY_ATTR { steps[k].scalar = v; });
-    if constexpr (perspective)
-      prepare(batch.weight_x[t], batch.weight_y[t], [&](int k, VI v) HWY_ATTR { steps[k].weight = v; });
+  HWY_INLINE static void go_on(int wraps, Planes& planes) {
+    const I d;
+    for (int k = 0; k < 4; ++k)
+      planes.face[k] = hn::Add(planes.face[k], hn::Set(d, planes.step[k][wraps * CellBatch::most]));
   }
 
   /// One plane of the face that a lane's ray passes.
@@ -111,136 +165,138 @@ struct CellRaster {
   HWY_INLINE Crossing crossing(Choose choose, VF cell_scalar) const {
     const I d;
     const F df;
-    const VI z = choose([&](int k) HWY_ATTR { return hn::Add(steps[k].depth, hn::Set(d, depth[roles.face[k]])); });
+    const VI z = choose([&](int k) HWY_ATTR { return depth.face[k]; });
     Crossing c;
     c.scalar = cell_scalar;
     if constexpr (!perspective) {
       c.depth = z;
       if constexpr (!per_cell)
-        c.scalar = hn::ConvertTo(
-            df, choose([&](int k) HWY_ATTR { return hn::Add(steps[k].scalar, hn::Set(d, scalar[roles.face[k]])); }));
+        c.scalar = hn::ConvertTo(df, choose([&](int k) HWY_ATTR { return scalar.face[k]; }));
     } else {
-      const VF inverse = inverse_weight(
-          choose([&](int k) HWY_ATTR { return hn::Add(steps[k].weight, hn::Set(d, weight[roles.face[k]])); }));
+      const VF inverse = inverse_weight(choose([&](int k) HWY_ATTR { return weight.face[k]; }));
       const VI behind = hn::NearestInt(hn::Mul(hn::ConvertTo(df, z), inverse));
-      c.depth = hn::Add(behind, choose([&](int k) HWY_ATTR { return hn::Set(d, batch.depth_c[t][roles.face[k]]); }));
+      c.depth = hn::Add(behind, choose([&](int k) HWY_ATTR { return hn::Set(d, batch.depth_c[roles.face[k]][t]); }));
       if constexpr (!per_cell) {
-        const VI s =
-            choose([&](int k) HWY_ATTR { return hn::Add(steps[k].scalar, hn::Set(d, scalar[roles.face[k]])); });
+        const VI s = choose([&](int k) HWY_ATTR { return scalar.face[k]; });
         const VF s_c = hn::BitCast(
-            df, choose([&](int k) HWY_ATTR { return hn::BitCast(d, hn::Set(df, batch.scalar_c[t][roles.face[k]])); }));
+            df, choose([&](int k) HWY_ATTR { return hn::BitCast(d, hn::Set(df, batch.scalar_c[roles.face[k]][t])); }));
         c.scalar = hn::MulAdd(hn::ConvertTo(df, s), inverse, s_c);
       }
     }
     return c;
   }
 
-  template <bool three>
+  template <Shape shape>
   HWY_INLINE void run(const PixelRect& rect, const PixelRect& square, SegmentStream& out, RasterCounts& counts) {
     const I d;
     const F df;
+    constexpr bool three = shape != Shape::two;
+    constexpr int outlines = three ? 3 : 4, inners = 6 - outlines;
+    start(batch.depth, depth);
+    if constexpr (!per_cell) start(batch.scalar, scalar);
+    if constexpr (perspective) start(batch.weight, weight);
+    const int columns = batch.columns[t], x0 = batch.left[t], y0 = batch.top[t];
+    const bool clipped = batch.clipped[t] != 0;
+    const int right = rect.x1 - square.x0, bottom = rect.y1 - square.y0;
     const VI column = lane_column(), row = lane_row();
-    const VF zero = hn::Zero(df), one = hn::Set(df, 1.0f), minus_one = hn::Set(df, -1.0f);
+    const VF zero = hn::Zero(df), minus_one = hn::Set(df, -1.0f), doubtful = hn::Set(df, batch.doubtful[t]);
     const VF cell_scalar = hn::Set(df, per_cell ? batch.cell_scalar[t] : 0.0f);
-    const int x0 = batch.x0[t], x1 = batch.x1[t], y0 = batch.y0[t], y1 = batch.y1[t];
-    prepare();
-    const VI right = hn::Set(d, x1), bottom = hn::Set(d, y1);
-    const auto edge = [&](int e, VF x, VF y) HWY_ATTR {
+    const auto edge_at = [&](int e, const float* start, VF x, VF y) HWY_ATTR {
       return hn::MulAdd(hn::Set(df, batch.edge_x[e][t]), x,
-                        hn::MulAdd(hn::Set(df, batch.edge_y[e][t]), y, hn::Set(df, batch.edge[e][t])));
+                        hn::MulAdd(hn::Set(df, batch.edge_y[e][t]), y, hn::Set(df, start[t])));
     };
-    const VI first_pixel =
-        hn::Set(d, (rect.y0 - square.y0) * rect.width() + (rect.x0 - square.x0));  // of the square, in the rectangle
-    const D4 d4;
-    constexpr int log_width = block_width == 4 ? 2 : 1;
-    const V4 depth_advance = hn::ShiftLeft<log_width>(hn::Load(d4, batch.depth_x[t]));
-    V4 scalar_advance = depth_advance, weight_advance = depth_advance;
-    if constexpr (!per_cell) scalar_advance = hn::ShiftLeft<log_width>(hn::Load(d4, batch.scalar_x[t]));
-    if constexpr (perspective) weight_advance = hn::ShiftLeft<log_width>(hn::Load(d4, batch.weight_x[t]));
-    for (int by = y0; by < y1; by += block_height) {
-      const VI py = hn::Add(row, hn::Set(d, by));
-      const VF y = hn::ConvertTo(df, hn::Sub(py, hn::Set(d, CellBatch::center)));
-      const auto in_rows = hn::Lt(py, bottom);
-      const VI row_start = hn::Sub(hn::Mul(py, hn::Set(d, rect.width())), first_pixel);
-      V4 block_depth = at(batch.depth[t], batch.depth_x[t], batch.depth_y[t], x0, by), block_scalar = block_depth,
-         block_weight = block_depth;
-      if constexpr (!per_cell) block_scalar = at(batch.scalar[t], batch.scalar_x[t], batch.scalar_y[t], x0, by);
-      if constexpr (perspective) block_weight = at(batch.weight[t], batch.weight_x[t], batch.weight_y[t], x0, by);
-      const auto advance = [&]() HWY_ATTR {
-        block_depth = hn::Add(block_depth, depth_advance);
-        if constexpr (!per_cell) block_scalar = hn::Add(block_scalar, scalar_advance);
-        if constexpr (perspective) block_weight = hn::Add(block_weight, weight_advance);
-      };
-      for (int bx = x0; bx < x1; bx += block_width, advance()) {
-        const VI px = hn::Add(column, hn::Set(d, bx));
-        const VF x = hn::ConvertTo(df, hn::Sub(px, hn::Set(d, CellBatch::center)));
-        VF outline[4];
-        for (int k = 0; k < (three ? 3 : 4); ++k) outline[k] = edge(roles.outline[k], x, y);
-        VF least = hn::Min(hn::Min(outline[0], outline[1]), outline[2]);
-        if constexpr (!three) least = hn::Min(least, outline[3]);
-        const auto in_box = hn::RebindMask(df, hn::And(in_rows, hn::Lt(px, right)));
-        const MF possible = hn::And(in_box, hn::Gt(least, minus_one));
-        if (hn::AllFalse(df, possible)) continue;
+    VF edge[outlines + inners];
+    const float* edge_step[outlines + inners];
+    for (int k = 0; k < outlines + inners; ++k) {
+      const int e = k < outlines ? roles.outline[k] : roles.inner[k - outlines];
+      edge[k] = edge_at(e, batch.block_edge[e], hn::ConvertTo(df, column), hn::ConvertTo(df, row));
+      edge_step[k] = &batch.edge_step[e][0][t];
+    }
+    const std::int32_t pixel_step[2] = {block_width, batch.pixel_wrap[t]};
+    VI pixel = hn::Add(hn::Add(hn::Mul(row, hn::Set(d, rect.width())), column), hn::Set(d, batch.pixel[t]));
 
-        VF inner[3];
-        for (int k = 0; k < (three ? 3 : 2); ++k) inner[k] = edge(roles.inner[k], x, y);
-        VF sure = hn::Min(hn::Min(hn::Abs(inner[0]), hn::Abs(inner[1])), least);
-        if constexpr (three) sure = hn::Min(sure, hn::Abs(inner[2]));
-        MF hit = possible;
-        std::uint64_t touching = 0;
-        const MF uncertain = hn::And(possible, hn::Le(sure, one));
-        if (HWY_UNLIKELY(!hn::AllFalse(df, uncertain))) {
-          alignas(64) float edges[6][lanes];
-          for (int e = 0; e < 6; ++e) hn::Store(edge(e, x, y), df, edges[e]);
-          touching = settle(view, batch, t, lane_bits(uncertain), square.x0 + bx, square.y0 + by, edges, counts);
-          least = hn::Load(df, edges[roles.outline[0]]);
-          for (int k = 1; k < (three ? 3 : 4); ++k) least = hn::Min(least, hn::Load(df, edges[roles.outline[k]]));
-          for (int k = 0; k < (three ? 3 : 2); ++k) inner[k] = hn::Load(df, edges[roles.inner[k]]);
-          hit = hn::And(possible, hn::Gt(least, zero));
-        }
-        hn::Store(block_depth, d4, depth);
-        if constexpr (!per_cell) hn::Store(block_scalar, d4, scalar);
-        if constexpr (perspective) hn::Store(block_weight, d4, weight);
-        Crossing first, second;
-        if constexpr (three) {
-          const MF is0 = hn::And(hn::Gt(inner[0], zero), hn::Gt(inner[1], zero)), is1 = hn::Gt(inner[2], zero);
-          first = crossing([&](auto plane) HWY_ATTR { return plane(0); }, cell_scalar);
-          second = crossing([&](auto plane) HWY_ATTR { return choose3(is0, is1, plane); }, cell_scalar);
-        } else {
-          const MF is0 = hn::Gt(inner[0], zero), is2 = hn::Gt(inner[1], zero);
-          first = crossing([&](auto plane) HWY_ATTR { return choose2(is0, plane, 0, 1); }, cell_scalar);
-          second = crossing([&](auto plane) HWY_ATTR { return choose2(is2, plane, 2, 3); }, cell_scalar);
-        }
-        if (HWY_UNLIKELY(touching != 0)) {
-          const std::uint8_t bits[8] = {static_cast<std::uint8_t>(touching), static_cast<std::uint8_t>(touching >> 8)};
-          second.depth = hn::IfThenElse(hn::LoadMaskBits(d, bits), first.depth, second.depth);
-        }
-        const VF scalar_front = three && roles.single_behind ? second.scalar : first.scalar;
-        const VF scalar_back = three && roles.single_behind ? first.scalar : second.scalar;
-        const VI pixel = hn::Add(row_start, px);
-        const auto hit_int = hn::RebindMask(d, hit);
-        // Packed in registers and stored as whole vectors: a compressing store is slower on several processors.
-        const LanePacker pack(hit_int);
-        hn::StoreU(pack(pixel), d, out.pixel.data() + out.size);
-        hn::StoreU(pack(hn::Min(first.depth, second.depth)), d, out.front.data() + out.size);
-        hn::StoreU(pack(hn::Max(first.depth, second.depth)), d, out.back.data() + out.size);
-        hn::StoreU(pack(scalar_front), df, out.scalar_front.data() + out.size);
-        hn::StoreU(pack(scalar_back), df, out.scalar_back.data() + out.size);
-        out.size += pack.count();
+    // Block after block, row by row, in one loop. (How many blocks a row has is hard to predict, and to be wrong costs as
+    // much as a block.)
+    int left = columns;
+    for (int block = 0, count = batch.blocks[t]; block < count; ++block) {
+      VF least = hn::Min(hn::Min(edge[0], edge[1]), edge[2]);
+      if constexpr (!three) least = hn::Min(least, edge[3]);
+      VF inner[3] = {zero, zero, zero}, sure = least;
+      for (int k = 0; k < inners; ++k) {
+        inner[k] = edge[outlines + k];
+        sure = hn::Min(sure, hn::Abs(inner[k]));
       }
+      MF hit = hn::Gt(least, zero);
+      if (HWY_UNLIKELY(clipped)) hit = hn::And(hit, in_rectangle(x0, y0, block, columns, right, bottom));
+      std::uint64_t touching = 0;
+      // Surely in, or surely out whatever the others say.
+      if (HWY_UNLIKELY(!hn::AllFalse(df, hn::And(hn::Le(sure, doubtful), hn::Ge(least, hn::Neg(doubtful)))))) {
+        const int bx = x0 + block % columns * block_width, by = y0 + block / columns * block_height;
+        const VF x = hn::ConvertTo(df, hn::Add(column, hn::Set(d, bx - CellBatch::center)));
+        const VF y = hn::ConvertTo(df, hn::Add(row, hn::Set(d, by - CellBatch::center)));
+        alignas(64) float edges[6][lanes];
+        for (int e = 0; e < 6; ++e) hn::Store(edge_at(e, batch.edge[e], x, y), df, edges[e]);
+        const auto load = [&](int e) HWY_ATTR { return hn::Load(df, edges[e]); };
+        const auto outline = [&]() HWY_ATTR {
+          const VF three_edges = hn::Min(hn::Min(load(roles.outline[0]), load(roles.outline[1])), load(roles.outline[2]));
+          return three ? three_edges : hn::Min(three_edges, load(roles.outline[3]));
+        };
+        MF possible = hn::Gt(outline(), minus_one);
+        if (clipped) possible = hn::And(possible, in_rectangle(x0, y0, block, columns, right, bottom));
+        VF doubt = outline();
+        for (int k = 0; k < inners; ++k) doubt = hn::Min(doubt, hn::Abs(load(roles.inner[k])));
+        const MF uncertain = hn::And(possible, hn::Le(doubt, hn::Set(df, 1.0f)));
+        if (!hn::AllFalse(df, uncertain))
+          touching = settle(view, batch, t, lane_bits(uncertain), square.x0 + bx, square.y0 + by, edges, counts);
+        hit = hn::And(possible, hn::Gt(outline(), zero));
+        for (int k = 0; k < inners; ++k) inner[k] = load(roles.inner[k]);
+      }
+      const MF is0 = three ? hn::And(hn::Gt(inner[0], zero), hn::Gt(inner[1], zero)) : hn::Gt(inner[0], zero);
+      const MF is1 = hn::Gt(inner[three ? 2 : 1], zero);
+      // Of two against two the first side are the front faces, of one against three it is the one.
+      const auto first_side = [&](auto plane) HWY_ATTR {
+        if constexpr (three)
+          return plane(0);
+        else
+          return choose2(is0, plane, 0, 1);
+      };
+      const auto second_side = [&](auto plane) HWY_ATTR {
+        if constexpr (three)
+          return choose3(is0, is1, plane);
+        else
+          return choose2(is1, plane, 2, 3);
+      };
+      const Crossing first = crossing(first_side, cell_scalar);
+      Crossing second = crossing(second_side, cell_scalar);
+      if (HWY_UNLIKELY(touching != 0)) {
+        const std::uint8_t bits[8] = {static_cast<std::uint8_t>(touching), static_cast<std::uint8_t>(touching >> 8)};
+        second.depth = hn::IfThenElse(hn::LoadMaskBits(d, bits), first.depth, second.depth);
+      }
+      constexpr bool swapped = shape == Shape::one_behind;
+      append(hit, pixel, hn::Min(first.depth, second.depth), hn::Max(first.depth, second.depth),
+             swapped ? second.scalar : first.scalar, swapped ? first.scalar : second.scalar, out);
+      const int wraps = static_cast<int>(--left == 0);
+      left += columns & -wraps;
+      for (int k = 0; k < outlines + inners; ++k)
+        edge[k] = hn::Add(edge[k], hn::Set(df, edge_step[k][wraps * CellBatch::most]));
+      pixel = hn::Add(pixel, hn::Set(d, pixel_step[wraps]));
+      go_on(wraps, depth);
+      if constexpr (!per_cell) go_on(wraps, scalar);
+      if constexpr (perspective) go_on(wraps, weight);
     }
   }
 
-  /// The planes of faces 0 to 3 at a pixel of the square.
-  HWY_INLINE static V4 at(const std::int32_t* start, const std::int32_t* x, const std::int32_t* y, int px, int py) {
-    const D4 d4;
-    return hn::Add(hn::Load(d4, start), hn::Add(hn::Mul(hn::Load(d4, x), hn::Set(d4, px - CellBatch::center)),
-                                                hn::Mul(hn::Load(d4, y), hn::Set(d4, py - CellBatch::center))));
+  /// The lanes of a block that lie in the rectangle.
+  HWY_NOINLINE static MF in_rectangle(int x0, int y0, int block, int columns, int right, int bottom) {
+    const I d;
+    const VI x = hn::Add(lane_column(), hn::Set(d, x0 + block % columns * block_width));
+    const VI y = hn::Add(lane_row(), hn::Set(d, y0 + block / columns * block_height));
+    return hn::RebindMask(F(), hn::And(hn::Lt(x, hn::Set(d, right)), hn::Lt(y, hn::Set(d, bottom))));
   }
 };
 
 template <bool perspective, bool per_cell>
-void rasterize_cells(const LatticeView& view, const CellBatch& batch, const PixelRect& rect, const PixelRect& square,
+void rasterize_cells(const LatticeView& view, CellBatch& batch, const PixelRect& rect, const PixelRect& square,
                      const OpenPixels& open, SegmentStream& out, RasterCounts& counts) {
   const std::uint32_t all = static_cast<std::uint32_t>((std::uint64_t{1} << rect.width()) - 1) << (rect.x0 - square.x0);
   bool all_open = true;
@@ -251,30 +307,34 @@ void rasterize_cells(const LatticeView& view, const CellBatch& batch, const Pixe
     const std::uint64_t columns = (std::uint64_t{1} << batch.x1[t]) - (std::uint64_t{1} << batch.x0[t]);
     return (takes & columns) == 0;
   };
-  unsigned shapes[2] = {0, 0}, small = 0;
+  unsigned shapes[3] = {0, 0, 0}, small = 0;
   using Small = SmallCells<perspective, per_cell>;
   for (int t = 0; t < batch.size; ++t) {
     const Roles& roles = role_table.roles[batch.front_faces(t)];
     const unsigned takes =
         roles.valid && batch.x0[t] < batch.x1[t] && batch.y0[t] < batch.y1[t] && (all_open || !shut(t));
-    shapes[roles.three] |= takes << t;
+    shapes[roles.three + roles.single_behind] |= takes << t;
   }
   for (int from = 0; from < batch.size; from += lanes) {
-    const unsigned regular = (shapes[0] | shapes[1]) & ~batch.irregular;
+    const unsigned regular = (shapes[0] | shapes[1] | shapes[2]) & ~batch.irregular;
     const unsigned here = Small::worth_while(batch, from, regular >> from & ((1u << lanes) - 1));
     if (here != 0) Small(view, batch, from, here).run(rect, square, out, counts);
     small |= here << from;
   }
   // Cells of one shape after the other, so that branches go the same way.
-  for (const int three : {0, 1})
-    for (unsigned cells = shapes[three] & ~(batch.irregular | small); cells != 0; cells &= cells - 1) {
+  if (((shapes[0] | shapes[1] | shapes[2]) & ~(batch.irregular | small)) == 0) return;
+  lay_blocks<perspective, per_cell>(rect, square, batch);
+  const auto run = [&](auto shape) HWY_ATTR {
+    for (unsigned cells = shapes[static_cast<int>(shape())] & ~(batch.irregular | small); cells != 0;
+         cells &= cells - 1) {
       const int t = __builtin_ctz(cells);
-      CellRaster<perspective, per_cell> raster{view, batch, t, role_table.roles[batch.front_faces(t)], {}, {}, {}, {}};
-      if (three == 1)
-        raster.template run<true>(rect, square, out, counts);
-      else
-        raster.template run<false>(rect, square, out, counts);
+      CellRaster<perspective, per_cell> raster{view, batch, t, role_table.roles[batch.front_faces(t)], {}, {}, {}};
+      raster.template run<shape()>(rect, square, out, counts);
     }
+  };
+  run(std::integral_constant<Shape, Shape::two>());
+  run(std::integral_constant<Shape, Shape::one_in>());
+  run(std::integral_constant<Shape, Shape::one_behind>());
 }
 
 /// An irregular cell, from double precision to the lattice.

@@ -39,6 +39,12 @@ constexpr bool edge_inward[6] = {true, false, true, true, false, true};
 struct CellBatch {
   static constexpr int most = 16, center = 16;
   static constexpr float weight_one = 0x1p30f;
+  /// A quantity on faces 0 to 3: steps from pixel to pixel, and at the centre; lay_blocks() adds where blocks begin and
+  /// how they go on.
+  struct FacePlanes {
+    alignas(64) std::int32_t start[4][most], x[4][most], y[4][most];
+    alignas(64) std::int32_t block[4][most], step[4][2][most];
+  };
 
   int size;
   unsigned irregular;  ///< bit t: left to the double-precision rasterizer
@@ -49,12 +55,17 @@ struct CellBatch {
   alignas(64) float edge[6][most], edge_x[6][most], edge_y[6][most];
   // Planes of faces 0 to 3: depth (perspective: depth behind corner c, times weight), scalar likewise, and weight (w of
   // the nearest corner / w, times 2^30).
-  alignas(64) std::int32_t depth[most][4], depth_x[most][4], depth_y[most][4];
-  alignas(64) std::int32_t scalar[most][4], scalar_x[most][4], scalar_y[most][4];
-  alignas(64) std::int32_t weight[most][4], weight_x[most][4], weight_y[most][4];
-  alignas(64) std::int32_t depth_c[most][4];
-  alignas(64) float scalar_c[most][4];
+  FacePlanes depth, scalar, weight;
+  alignas(64) std::int32_t depth_c[4][most];
+  alignas(64) float scalar_c[4][most];
   alignas(64) float cell_scalar[most];
+
+  // How blocks of pixels go over the cell, see lay_blocks(): the first one's corner, how many in a row and in all, and
+  // what is added from each to the next, [1] after the last of a row.
+  alignas(64) std::int32_t left[most], top[most], columns[most], blocks[most], clipped[most];
+  alignas(64) std::int32_t pixel[most], pixel_wrap[most];  ///< the corner's pixel in the rectangle
+  alignas(64) float doubtful[most];                        ///< no sign is certain below: steps round
+  alignas(64) float block_edge[6][most], edge_step[6][2][most];
 
   /// Bit f: a front face. Of an irregular cell it says nothing.
   [[nodiscard]] unsigned front_faces(int t) const { return bits[t] & 15; }
@@ -91,20 +102,12 @@ HWY_INLINE Plane plane_of(const FaceShape& s, V qa, V qb, V qc) {
   return p;
 }
 
-template <class Select>
-HWY_INLINE void store_planes(const Plane (&planes)[4], Select select, std::int32_t (*out)[4]) {
+/// Those of face f, of the cells from `from` on.
+HWY_INLINE void store_plane(const Plane& plane, int f, int from, CellBatch::FacePlanes& out) {
   const hn::Rebind<std::int32_t, D> d;
-  hn::StoreInterleaved4(wrapped(select(planes[0])), wrapped(select(planes[1])), wrapped(select(planes[2])),
-                        wrapped(select(planes[3])), d, &out[0][0]);
-}
-HWY_INLINE void store_planes(const Plane (&planes)[4], std::int32_t (*start)[4], std::int32_t (*x)[4],
-                             std::int32_t (*y)[4]) {
-  store_planes(
-      planes, [](const Plane& p) HWY_ATTR { return p.start; }, start);
-  store_planes(
-      planes, [](const Plane& p) HWY_ATTR { return p.x; }, x);
-  store_planes(
-      planes, [](const Plane& p) HWY_ATTR { return p.y; }, y);
+  hn::StoreU(wrapped(plane.start), d, out.start[f] + from);
+  hn::StoreU(wrapped(plane.x), d, out.x[f] + from);
+  hn::StoreU(wrapped(plane.y), d, out.y[f] + from);
 }
 
 HWY_INLINE unsigned bits_of(M mask) {
@@ -125,12 +128,94 @@ struct DepthBounds {
   }
 };
 
+/// Whether the faces may be seen edge-on.
+HWY_INLINE M thin_face(const FaceShape& n, V area) {
+  const V span = hn::Add(hn::Add(hn::Abs(n.x1), hn::Abs(n.y1)), hn::Add(hn::Abs(n.x2), hn::Abs(n.y2)));
+  return hn::Le(hn::Abs(area), hn::Mul(span, hn::Set(D(), 0x1p-9)));
+}
+
+/// Which faces are front faces, and the edge functions. `thin`: some face may be edge-on, which few are.
+template <bool perspective, bool thin>
+HWY_INLINE void set_up_sides(FaceShape (&shape)[4], const V (&area)[4], M upright, const V (&x)[4], const V (&y)[4],
+                             int from, M& irregular, CellBatch& batch) {
+  const D d;
+  const hn::RebindToUnsigned<D> du64;
+  const hn::Rebind<std::uint32_t, D> du32;
+  const hn::Rebind<float, D> df;
+  const auto number = [](double v) HWY_ATTR { return hn::Set(D(), v); };
+  const V zero = hn::Zero(d), one = number(1);
+  const M none = hn::Lt(zero, zero);
+  M is_zero[4] = {none, none, none, none}, front[4];
+  // What is true of a cell, a bit each: front faces from bit 0, edge-on faces from 8, flipped edges from 16.
+  auto bits = hn::Zero(du64);
+  const auto add_bit = [&](M mask, int bit) HWY_ATTR {
+    bits = hn::Or(bits, hn::IfThenElseZero(hn::RebindMask(du64, mask), hn::Set(du64, std::uint64_t{1} << bit)));
+  };
+  for (int f = 0; f < 4; ++f) {
+    FaceShape& n = shape[f];
+    if constexpr (thin) {
+      // Edge-on for certain: orthographic coordinates and their differences are exact, and the products are zeros or
+      // have the same factors, as where two corners coincide or all line up along an axis.
+      if constexpr (!perspective) {
+        const auto both_zero = [&](V p, V q) HWY_ATTR { return hn::And(hn::Eq(p, zero), hn::Eq(q, zero)); };
+        is_zero[f] = hn::Or(hn::Or(both_zero(n.x1, n.x2), both_zero(n.y1, n.y2)),
+                            hn::Or(hn::Or(both_zero(n.x1, n.y1), both_zero(n.x2, n.y2)),
+                                   hn::And(hn::Eq(n.x1, n.x2), hn::Eq(n.y1, n.y2))));
+      }
+      irregular = hn::Or(irregular, hn::AndNot(is_zero[f], thin_face(n, area[f])));
+      n.inverse_area = hn::IfThenZeroElse(is_zero[f], hn::Div(one, hn::IfThenElse(is_zero[f], one, area[f])));
+    } else {
+      n.inverse_area = hn::Div(one, area[f]);
+    }
+    const M positive = face_outward[f] ? hn::Gt(area[f], zero) : hn::Lt(area[f], zero);
+    front[f] = hn::Not(hn::Xor(positive, upright));
+  }
+  if constexpr (thin) {
+    // Edge-on faces, which no ray passes, fill up the sides: the first counts as a front face, others as back faces.
+    M seen_zero = none;
+    for (int f = 0; f < 4; ++f) {
+      front[f] = hn::Or(hn::AndNot(is_zero[f], front[f]), hn::And(is_zero[f], hn::Not(seen_zero)));
+      seen_zero = hn::Or(seen_zero, is_zero[f]);
+      add_bit(is_zero[f], 8 + f);
+    }
+  }
+  for (int f = 0; f < 4; ++f) add_bit(front[f], f);
+
+  // Edge functions over the largest rounding error of the six; 2^-23 would do, the rest is margin.
+  V start[6], along_x[6], along_y[6], error = number(1e-290);
+  for (int e = 0; e < 6; ++e) {
+    const int a = edge_from[e], b = edge_to[e];
+    start[e] = hn::MulSub(x[a], y[b], hn::Mul(x[b], y[a]));
+    along_x[e] = hn::Sub(y[a], y[b]), along_y[e] = hn::Sub(x[b], x[a]);
+    const V reached = hn::Add(hn::Abs(along_x[e]), hn::Abs(along_y[e]));
+    error = hn::Max(error, hn::MulAdd(reached, number(17), hn::Abs(start[e])));
+  }
+  const V scale = hn::Div(number(0x1p22), error);
+  for (int e = 0; e < 6; ++e) {
+    const M inward = edge_inward[e] ? upright : hn::Not(upright);
+    const M flip = hn::Xor(inward, front[edge_faces[e][0]]);
+    add_bit(flip, 16 + e);
+    const V signed_scale = hn::IfThenElse(flip, hn::Neg(scale), scale);
+    V scaled = hn::Mul(start[e], signed_scale);
+    if constexpr (thin) {
+      // An edge without sides lies between two edge-on faces; it never decides.
+      const M without_sides = hn::And(hn::Eq(along_x[e], zero), hn::Eq(along_y[e], zero));
+      scaled = hn::IfThenElse(without_sides, number(4), scaled);
+    }
+    hn::StoreU(hn::DemoteTo(df, scaled), df, batch.edge[e] + from);
+    hn::StoreU(hn::DemoteTo(df, hn::Mul(along_x[e], signed_scale)), df, batch.edge_x[e] + from);
+    hn::StoreU(hn::DemoteTo(df, hn::Mul(along_y[e], signed_scale)), df, batch.edge_y[e] + from);
+  }
+  hn::StoreU(hn::TruncateTo(du32, bits), du32, batch.bits + from);
+}
+
 /// One vector of cells: the first of them is cell `from` of the batch. `cell_scalar` is read of cell data only.
 template <bool perspective>
 HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds, const LatticeVertex (*corner)[8],
                              const double* cell_scalar, const PixelRect& rect, int square_x, int square_y, int from,
                              CellBatch& batch) {
   const D d;
+  const hn::Rebind<float, D> df;
   const hn::Rebind<std::int32_t, D> di32;
   const hn::RebindToUnsigned<D> du64;
   const hn::Rebind<std::uint32_t, D> du32;
@@ -182,28 +267,17 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
               batch.y1);
 
   // Faces: area, which side of the cell, planes.
-  M is_zero[4], positive[4];
+  M thin = hn::Lt(zero, zero);
   FaceShape shape[4];
+  V area[4];
   for (int f = 0; f < 4; ++f) {
     const int a = face_corners[f][0], b = face_corners[f][1], c = face_corners[f][2];
     FaceShape& n = shape[f];
     n.ax = x[a], n.ay = y[a];
     n.x1 = hn::Sub(x[b], x[a]), n.y1 = hn::Sub(y[b], y[a]);
     n.x2 = hn::Sub(x[c], x[a]), n.y2 = hn::Sub(y[c], y[a]);
-    const V area = hn::Sub(hn::Mul(n.x1, n.y2), hn::Mul(n.x2, n.y1));
-    const V span = hn::Add(hn::Add(hn::Abs(n.x1), hn::Abs(n.y1)), hn::Add(hn::Abs(n.x2), hn::Abs(n.y2)));
-    // Edge-on for certain: orthographic coordinates and their differences are exact, and the products are zeros or have
-    // the same factors, as where two corners coincide or all line up along an axis.
-    is_zero[f] = hn::Lt(zero, zero);
-    if constexpr (!perspective) {
-      const auto both_zero = [&](V p, V q) HWY_ATTR { return hn::And(hn::Eq(p, zero), hn::Eq(q, zero)); };
-      is_zero[f] = hn::Or(hn::Or(both_zero(n.x1, n.x2), both_zero(n.y1, n.y2)),
-                          hn::Or(hn::Or(both_zero(n.x1, n.y1), both_zero(n.x2, n.y2)),
-                                 hn::And(hn::Eq(n.x1, n.x2), hn::Eq(n.y1, n.y2))));
-    }
-    irregular = hn::Or(irregular, hn::And(hn::Le(hn::Abs(area), hn::Mul(span, number(0x1p-9))), hn::Not(is_zero[f])));
-    n.inverse_area = hn::IfThenZeroElse(is_zero[f], hn::Div(one, hn::IfThenElse(is_zero[f], one, area)));
-    positive[f] = hn::Gt(face_outward[f] ? area : hn::Neg(area), zero);
+    area[f] = hn::Sub(hn::Mul(n.x1, n.y2), hn::Mul(n.x2, n.y1));
+    thin = hn::Or(thin, thin_face(n, area[f]));
   }
   // The cell's volume has the sign of a front face's outward area: order grows with depth, and is linear on faces.
   const V z1 = hn::Sub(order[1], order[0]), z2 = hn::Sub(order[2], order[0]), z3 = hn::Sub(order[3], order[0]);
@@ -212,86 +286,39 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
       hn::MulAdd(z1, hn::MulSub(X2, Y3, hn::Mul(X3, Y2)),
                  hn::MulAdd(z2, hn::MulSub(X3, Y1, hn::Mul(X1, Y3)), hn::Mul(z3, hn::MulSub(X1, Y2, hn::Mul(X2, Y1)))));
   const M upright = hn::Ge(volume, zero);
-  // Edge-on faces, which no ray passes, fill up the sides: the first counts as a front face, others as back faces.
-  M seen_zero = hn::Lt(zero, zero);
-  M front[4];
-  // What is true of a cell, a bit each: front faces from bit 0, edge-on faces from 8, flipped edges from 16.
-  auto bits = hn::Zero(du64);
-  const auto add_bit = [&](M mask, int bit) HWY_ATTR {
-    bits = hn::Or(bits, hn::IfThenElseZero(hn::RebindMask(du64, mask), hn::Set(du64, std::uint64_t{1} << bit)));
-  };
-  for (int f = 0; f < 4; ++f) {
-    const M facing = hn::Not(hn::Xor(positive[f], upright));
-    front[f] = hn::Or(hn::AndNot(is_zero[f], facing), hn::And(is_zero[f], hn::Not(seen_zero)));
-    seen_zero = hn::Or(seen_zero, is_zero[f]);
-    add_bit(front[f], f), add_bit(is_zero[f], 8 + f);
-  }
+  if (HWY_UNLIKELY(!hn::AllFalse(d, thin)))
+    set_up_sides<perspective, true>(shape, area, upright, x, y, from, irregular, batch);
+  else
+    set_up_sides<perspective, false>(shape, area, upright, x, y, from, irregular, batch);
 
-  // Edge functions over the largest rounding error of the six; 2^-23 would do, the rest is margin.
-  const hn::Rebind<float, D> df;
-  V start[6], along_x[6], along_y[6], error = number(1e-290);
-  for (int e = 0; e < 6; ++e) {
-    const int a = edge_from[e], b = edge_to[e];
-    start[e] = hn::MulSub(x[a], y[b], hn::Mul(x[b], y[a]));
-    along_x[e] = hn::Sub(y[a], y[b]), along_y[e] = hn::Sub(x[b], x[a]);
-    const V reached = hn::Add(hn::Abs(along_x[e]), hn::Abs(along_y[e]));
-    error = hn::Max(error, hn::MulAdd(reached, number(17), hn::Abs(start[e])));
-  }
-  const V scale = hn::Div(number(0x1p22), error);
-  for (int e = 0; e < 6; ++e) {
-    const M without_sides = hn::And(hn::Eq(along_x[e], zero), hn::Eq(along_y[e], zero));
-    const M inward = edge_inward[e] ? upright : hn::Not(upright);
-    const M flip = hn::Xor(inward, front[edge_faces[e][0]]);
-    add_bit(flip, 16 + e);
-    const V signed_scale = hn::IfThenElse(flip, hn::Neg(scale), scale);
-    // An edge without sides lies between two edge-on faces; it never decides.
-    const V scaled = hn::IfThenElse(without_sides, number(4), hn::Mul(start[e], signed_scale));
-    hn::StoreU(hn::DemoteTo(df, scaled), df, batch.edge[e] + from);
-    hn::StoreU(hn::DemoteTo(df, hn::Mul(along_x[e], signed_scale)), df, batch.edge_x[e] + from);
-    hn::StoreU(hn::DemoteTo(df, hn::Mul(along_y[e], signed_scale)), df, batch.edge_y[e] + from);
-  }
-
-  Plane planes[4];
   const bool per_cell = view.projected.mesh->mesh().association == scene::Association::cell;
   if constexpr (!perspective) {
-    for (int f = 0; f < 4; ++f)
-      planes[f] = plane_of(shape[f], z[face_corners[f][0]], z[face_corners[f][1]], z[face_corners[f][2]]);
-    store_planes(planes, batch.depth + from, batch.depth_x + from, batch.depth_y + from);
-    if (!per_cell) {
+    const auto planes = [&](const V(&q)[4], CellBatch::FacePlanes& out) HWY_ATTR {
       for (int f = 0; f < 4; ++f)
-        planes[f] = plane_of(shape[f], s[face_corners[f][0]], s[face_corners[f][1]], s[face_corners[f][2]]);
-      store_planes(planes, batch.scalar + from, batch.scalar_x + from, batch.scalar_y + from);
-    }
+        store_plane(plane_of(shape[f], q[face_corners[f][0]], q[face_corners[f][1]], q[face_corners[f][2]]), f, from,
+                    out);
+    };
+    planes(z, batch.depth);
+    if (!per_cell) planes(s, batch.scalar);
   } else {
-    V weights[4][3];
     for (int f = 0; f < 4; ++f) {
       const V wa = w[face_corners[f][0]], wb = w[face_corners[f][1]], wc = w[face_corners[f][2]];
-      const V most = hn::Max(wa, hn::Max(wb, wc));
-      weights[f][0] = hn::Div(wa, most), weights[f][1] = hn::Div(wb, most), weights[f][2] = hn::Div(wc, most);
-      const V full = number(CellBatch::weight_one);
-      planes[f] =
-          plane_of(shape[f], hn::Mul(weights[f][0], full), hn::Mul(weights[f][1], full), hn::Mul(weights[f][2], full));
-    }
-    store_planes(planes, batch.weight + from, batch.weight_x + from, batch.weight_y + from);
-    const auto relative = [&](const V(&q)[4], int f) HWY_ATTR {
-      const V qc = hn::Round(q[face_corners[f][2]]);
-      return plane_of(shape[f], hn::Mul(weights[f][0], hn::Sub(q[face_corners[f][0]], qc)),
-                      hn::Mul(weights[f][1], hn::Sub(q[face_corners[f][1]], qc)),
-                      hn::Mul(weights[f][2], hn::Sub(q[face_corners[f][2]], qc)));
-    };
-    for (int f = 0; f < 4; ++f) planes[f] = relative(z, f);
-    store_planes(planes, batch.depth + from, batch.depth_x + from, batch.depth_y + from);
-    hn::Vec<hn::Rebind<std::int32_t, D>> corner_depth[4];
-    for (int f = 0; f < 4; ++f) corner_depth[f] = wrapped(z[face_corners[f][2]]);
-    hn::StoreInterleaved4(corner_depth[0], corner_depth[1], corner_depth[2], corner_depth[3], di32,
-                          &batch.depth_c[from][0]);
-    if (!per_cell) {
-      for (int f = 0; f < 4; ++f) planes[f] = relative(s, f);
-      store_planes(planes, batch.scalar + from, batch.scalar_x + from, batch.scalar_y + from);
-      hn::Vec<hn::Rebind<float, D>> corner_value[4];
-      for (int f = 0; f < 4; ++f) corner_value[f] = hn::DemoteTo(df, hn::Round(s[face_corners[f][2]]));
-      hn::StoreInterleaved4(corner_value[0], corner_value[1], corner_value[2], corner_value[3], df,
-                            &batch.scalar_c[from][0]);
+      const V most = hn::Max(wa, hn::Max(wb, wc)), full = number(CellBatch::weight_one);
+      const V weight[3] = {hn::Div(wa, most), hn::Div(wb, most), hn::Div(wc, most)};
+      store_plane(plane_of(shape[f], hn::Mul(weight[0], full), hn::Mul(weight[1], full), hn::Mul(weight[2], full)), f,
+                  from, batch.weight);
+      const auto relative = [&](const V(&q)[4], V qc) HWY_ATTR {
+        return plane_of(shape[f], hn::Mul(weight[0], hn::Sub(q[face_corners[f][0]], qc)),
+                        hn::Mul(weight[1], hn::Sub(q[face_corners[f][1]], qc)),
+                        hn::Mul(weight[2], hn::Sub(q[face_corners[f][2]], qc)));
+      };
+      const V depth_c = hn::Round(z[face_corners[f][2]]);
+      store_plane(relative(z, depth_c), f, from, batch.depth);
+      hn::StoreU(wrapped(depth_c), di32, batch.depth_c[f] + from);
+      if (per_cell) continue;
+      const V scalar_c = hn::Round(s[face_corners[f][2]]);
+      store_plane(relative(s, scalar_c), f, from, batch.scalar);
+      hn::StoreU(hn::DemoteTo(df, scalar_c), df, batch.scalar_c[f] + from);
     }
   }
   if (per_cell) {
@@ -300,7 +327,6 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
     hn::StoreU(hn::DemoteTo(df, hn::Round(scalar)), df, batch.cell_scalar + from);
   }
 
-  hn::StoreU(hn::TruncateTo(du32, bits), du32, batch.bits + from);
   batch.irregular |= bits_of(irregular) << from;
 }
 

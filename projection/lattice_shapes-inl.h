@@ -27,6 +27,26 @@ using VI = hn::Vec<I>;
 using MF = hn::Mask<F>;
 constexpr int lanes = static_cast<int>(hn::MaxLanes(F()));
 
+/// Depth (steps) and scalar where the lanes' rays pass one side of the cell.
+struct Crossing {
+  VI depth;
+  VF scalar;
+};
+
+/// Appends the lanes of `hit`. Packed in registers and stored as whole vectors: a compressing store is slower on several
+/// processors.
+HWY_INLINE void append(MF hit, VI pixel, VI front, VI back, VF scalar_front, VF scalar_back, SegmentStream& out) {
+  const I d;
+  const F df;
+  const LanePacker pack(hn::RebindMask(d, hit));
+  hn::StoreU(pack(pixel), d, out.pixel.data() + out.size);
+  hn::StoreU(pack(front), d, out.front.data() + out.size);
+  hn::StoreU(pack(back), d, out.back.data() + out.size);
+  hn::StoreU(pack(scalar_front), df, out.scalar_front.data() + out.size);
+  hn::StoreU(pack(scalar_back), df, out.scalar_back.data() + out.size);
+  out.size += pack.count();
+}
+
 /// Which edges and faces play which part, by the set of front faces (bit f of the index).
 struct Roles {
   std::uint8_t valid;          ///< some pixel can be hit

@@ -94,30 +94,24 @@ class SmallCells {
     take_edge<3>(front), take_edge<4>(front), take_edge<5>(front);
     VI face[4];
     for (int k = 0; k < 4; ++k) face[k] = by_front(small_order.face[k], front);
-    const auto take = [&](const std::int32_t(&all)[CellBatch::most][4], VI* to) HWY_ATTR {
+    const auto take = [&](const std::int32_t(*all)[CellBatch::most], Planes& to) HWY_ATTR {
       VI f[4];
-      hn::LoadInterleaved4(d, &all[from][0], f[0], f[1], f[2], f[3]);
+      for (int i = 0; i < 4; ++i) f[i] = hn::Load(d, all[i] + from);
       for (int k = 0; k < 4; ++k) {
         VI v = f[0];
         for (int i = 1; i < 4; ++i) v = hn::IfThenElse(hn::Eq(face[k], hn::Set(d, i)), f[i], v);
-        to[k] = v;
+        to.face[k] = v;
       }
     };
-    take(batch.depth, depth_.face), take(batch.depth_x, depth_x_.face), take(batch.depth_y, depth_y_.face);
-    if constexpr (!per_cell)
-      take(batch.scalar, scalar_.face), take(batch.scalar_x, scalar_x_.face), take(batch.scalar_y, scalar_y_.face);
+    const auto take_planes = [&](const CellBatch::FacePlanes& all, Planes& start, Planes& x, Planes& y) HWY_ATTR {
+      take(all.start, start), take(all.x, x), take(all.y, y);
+    };
+    take_planes(batch.depth, depth_, depth_x_, depth_y_);
+    if constexpr (!per_cell) take_planes(batch.scalar, scalar_, scalar_x_, scalar_y_);
     if constexpr (perspective) {
-      take(batch.weight, weight_.face), take(batch.weight_x, weight_x_.face), take(batch.weight_y, weight_y_.face);
-      take(batch.depth_c, depth_c_.face);
-      if constexpr (!per_cell) {
-        VF s[4];
-        hn::LoadInterleaved4(df, &batch.scalar_c[from][0], s[0], s[1], s[2], s[3]);
-        for (int k = 0; k < 4; ++k) {
-          VF v = s[0];
-          for (int i = 1; i < 4; ++i) v = hn::IfThenElse(hn::RebindMask(df, hn::Eq(face[k], hn::Set(d, i))), s[i], v);
-          scalar_c_.face[k] = hn::BitCast(d, v);
-        }
-      }
+      take_planes(batch.weight, weight_, weight_x_, weight_y_);
+      take(batch.depth_c, depth_c_);
+      if constexpr (!per_cell) take(reinterpret_cast<const std::int32_t(*)[CellBatch::most]>(batch.scalar_c), scalar_c_);
     }
   }
 
@@ -185,14 +179,9 @@ class SmallCells {
           if (HWY_UNLIKELY(!hn::AllFalse(df, touching)))
             second.depth = hn::IfThenElse(hn::RebindMask(d, touching), first.depth, second.depth);
           const MF behind = is(single_behind_);
-          const LanePacker pack(hn::RebindMask(d, hit));
-          const VI pixel = hn::Add(first_pixel, hn::Set(d, r * rect.width() + c));
-          hn::StoreU(pack(pixel), d, out.pixel.data() + out.size);
-          hn::StoreU(pack(hn::Min(first.depth, second.depth)), d, out.front.data() + out.size);
-          hn::StoreU(pack(hn::Max(first.depth, second.depth)), d, out.back.data() + out.size);
-          hn::StoreU(pack(hn::IfThenElse(behind, second.scalar, first.scalar)), df, out.scalar_front.data() + out.size);
-          hn::StoreU(pack(hn::IfThenElse(behind, first.scalar, second.scalar)), df, out.scalar_back.data() + out.size);
-          out.size += pack.count();
+          append(hit, hn::Add(first_pixel, hn::Set(d, r * rect.width() + c)), hn::Min(first.depth, second.depth),
+                 hn::Max(first.depth, second.depth), hn::IfThenElse(behind, second.scalar, first.scalar),
+                 hn::IfThenElse(behind, first.scalar, second.scalar), out);
         }
         x = hn::Add(x, one);
         advance(depth_x_, depth);
@@ -213,11 +202,6 @@ class SmallCells {
   struct Planes {
     VI face[4];
   };
-  struct Crossing {
-    VI depth;
-    VF scalar;
-  };
-
   /// table[front faces], 16 numbers.
   HWY_INLINE static VI by_front(const std::int32_t* table, VI front) {
     if constexpr (lanes == 16)

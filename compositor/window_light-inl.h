@@ -1,0 +1,343 @@
+// The light of windows' rows on its way into pixels, or runs; included once per instruction set (Highway's include guard
+// idiom).
+
+#if defined(TESSERA_COMPOSITOR_WINDOW_LIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_COMPOSITOR_WINDOW_LIGHT_INL_H_
+#undef TESSERA_COMPOSITOR_WINDOW_LIGHT_INL_H_
+#else
+#define TESSERA_COMPOSITOR_WINDOW_LIGHT_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+
+#include "compositor/integrate_lanes-inl.h"
+#include "compositor/window_kernel.hpp"
+#include "projection/pack_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+#if HWY_TARGET != HWY_SCALAR
+namespace tessera::compositor {
+namespace HWY_NAMESPACE {
+
+using DD = HN::ScalableTag<double>;
+using VD = HN::Vec<DD>;
+using HalfF = HN::Half<DF>;
+constexpr std::int32_t no_key = WindowState::not_yet;  // behind all keys
+constexpr std::size_t most_lanes = HN::MaxLanes(DI());
+
+/// Lane values in double: two vectors.
+struct Doubles {
+  VD low, high;
+};
+HWY_INLINE Doubles load(const double* from) {
+  const DD d;
+  return {HN::Load(d, from), HN::Load(d, from + HN::Lanes(d))};
+}
+HWY_INLINE void store(Doubles v, double* to) {
+  const DD d;
+  HN::Store(v.low, d, to);
+  HN::Store(v.high, d, to + HN::Lanes(d));
+}
+HWY_INLINE Doubles load(const float* from) {
+  const DD d;
+  const HalfF half;
+  return {HN::PromoteTo(d, HN::Load(half, from)), HN::PromoteTo(d, HN::Load(half, from + HN::Lanes(half)))};
+}
+HWY_INLINE VF demote(Doubles v) {
+  const HalfF half;
+  return HN::Combine(DF(), HN::DemoteTo(half, v.high), HN::DemoteTo(half, v.low));
+}
+
+/// What a block of rows, a segment of every pixel in each, sends to the eye: numbers [row * lanes + lane].
+struct LightRows {
+  static constexpr std::size_t most = 32, numbers = most * most_lanes;
+  alignas(64) float alpha[numbers], optical_depth[numbers], red[numbers], green[numbers], blue[numbers];
+  /// Of the segment, in lattice steps; front is no_key where the row has none that counts.
+  alignas(64) std::int32_t front[numbers], back[numbers];
+  alignas(64) std::int32_t interval[numbers];
+  alignas(64) float length[numbers], scalar_front[numbers], scalar_back[numbers];
+  // Segments of more than one piece, until they fill the lanes.
+  struct Waiting {
+    alignas(64) float length[numbers + most_lanes], front[numbers + most_lanes], back[numbers + most_lanes];
+    alignas(64) std::int32_t place[numbers + most_lanes];
+  } wait;
+  std::size_t waiting = 0;
+  bool lit[most];  ///< some lane of the row has light or depth
+
+  HWY_INLINE void put_segment(VF l, VI from, VI to, VF scalar_from, VF scalar_to, VI scalar_interval, std::size_t at) {
+    const DF d;
+    const DI di;
+    HN::Store(l, d, length + at);
+    HN::Store(scalar_from, d, scalar_front + at), HN::Store(scalar_to, d, scalar_back + at);
+    HN::Store(from, di, front + at), HN::Store(to, di, back + at), HN::Store(scalar_interval, di, interval + at);
+  }
+  HWY_INLINE void put(const Light& light, std::size_t at) {
+    const DF d;
+    HN::Store(light.alpha, d, alpha + at), HN::Store(light.optical_depth, d, optical_depth + at);
+    HN::Store(light.red, d, red + at), HN::Store(light.green, d, green + at), HN::Store(light.blue, d, blue + at);
+  }
+  HWY_INLINE void defer(MF more, std::size_t at, VF l, VF from, VF to) {
+    const DF d;
+    const DI di;
+    const projection::HWY_NAMESPACE::LanePacker pack(HN::RebindMask(di, more));
+    HN::StoreU(pack(l), d, wait.length + waiting);
+    HN::StoreU(pack(from), d, wait.front + waiting);
+    HN::StoreU(pack(to), d, wait.back + waiting);
+    HN::StoreU(pack(HN::Iota(di, static_cast<std::int32_t>(at))), di, wait.place + waiting);
+    waiting += pack.count();
+  }
+  template <TableForm form>
+  HWY_INLINE void integrate_waiting(const Lookup<form>& table) {
+    const DF d;
+    alignas(64) float now[5][most_lanes];
+    for (std::size_t i = 0; i < waiting; i += HN::Lanes(d)) {
+      const std::size_t here = std::min(HN::Lanes(d), waiting - i);
+      const Light light = integrate_lanes(table, HN::Load(d, wait.length + i), HN::Load(d, wait.front + i),
+                                          HN::Load(d, wait.back + i), HN::FirstN(d, here));
+      HN::Store(light.alpha, d, now[0]), HN::Store(light.optical_depth, d, now[1]);
+      HN::Store(light.red, d, now[2]), HN::Store(light.green, d, now[3]), HN::Store(light.blue, d, now[4]);
+      for (std::size_t k = 0; k < here; ++k) {
+        const auto at = static_cast<std::size_t>(wait.place[i + k]);
+        alpha[at] = now[0][k], optical_depth[at] = now[1][k];
+        red[at] = now[2][k], green[at] = now[3][k], blue[at] = now[4][k];
+      }
+    }
+    waiting = 0;
+  }
+
+  /// The light of the first `count` rows' segments.
+  template <TableForm form>
+  HWY_INLINE void integrate(const Lookup<form>& table, std::size_t count) {
+    const DI d;
+    const DF df;
+    const std::size_t lanes = HN::Lanes(d);
+    for (std::size_t row = 0; row < count; ++row) {
+      const std::size_t at = row * lanes;
+      const VF l = HN::Load(df, length + at), from = HN::Load(df, scalar_front + at),
+               to = HN::Load(df, scalar_back + at);
+      MF more;
+      const Light light = integrate_simple(table, HN::Load(d, interval + at), l, from, to, more);
+      put(light, at);
+      MF shows = HN::Or(more, HN::Gt(light.optical_depth, HN::Zero(df)));
+      if (table.independent)
+        shows = HN::Or(shows, HN::Gt(HN::Add(light.red, HN::Add(light.green, light.blue)), HN::Zero(df)));
+      lit[row] = !HN::AllFalse(df, shows);
+      if (!HN::AllFalse(df, more)) defer(more, at, l, from, to);
+    }
+    integrate_waiting(table);
+  }
+};
+
+/// Adds rows of light to the rays of the pixels [pixel, pixel + lanes) of a square.
+class GroupLight {
+ public:
+  HWY_INLINE GroupLight(WindowState& state, LightRows& light, std::size_t pixel, bool independent)
+      : state_(state), light_(light), pixel_(pixel), independent_(independent) {}
+
+  /// The first `count` rows. Returns whether some pixel stays open.
+  HWY_INLINE bool add(std::size_t count, const WindowRules& rules) {
+    if (!rules.runs) return add_to_picture(count, rules);
+    return rules.least_transmittance > 0 ? add_to_runs<true>(count, rules) : add_to_runs<false>(count, rules);
+  }
+
+ private:
+  HWY_INLINE bool add_to_picture(std::size_t count, const WindowRules& rules) {
+    const DF df;
+    const DD dd;
+    const std::size_t p = pixel_;
+    Doubles red = load(&state_.red[p]), green = load(&state_.green[p]), blue = load(&state_.blue[p]);
+    Doubles transmittance = load(&state_.transmittance[p]);
+    const VD least = HN::Set(dd, rules.least_transmittance);
+    // A pixel that closes takes no more: it has no weight.
+    Open open = load_open();
+    for (std::size_t row = 0; row < count; ++row) {
+      if (!light_.lit[row]) continue;
+      const std::size_t at = row * HN::Lanes(df);
+      const Doubles weight{HN::IfThenElseZero(open.low, transmittance.low),
+                           HN::IfThenElseZero(open.high, transmittance.high)};
+      add(weight, light_.red + at, red), add(weight, light_.green + at, green), add(weight, light_.blue + at, blue);
+      take(weight, light_.alpha + at, transmittance);
+      // After each segment, not each window: where a ray ends must not depend on how its segments were cut.
+      open.low = HN::And(open.low, HN::Ge(transmittance.low, least));
+      open.high = HN::And(open.high, HN::Ge(transmittance.high, least));
+    }
+    store(red, &state_.red[p]), store(green, &state_.green[p]), store(blue, &state_.blue[p]);
+    store(transmittance, &state_.transmittance[p]);
+    note_first(count);
+    const VI open_lanes = store_open(open);
+    return !HN::AllFalse(DI(), HN::Lt(open_lanes, HN::Zero(DI())));
+  }
+
+  /// Where lanes that have shown nothing yet begin to. (Lanes closed by a row show what it has: it is theirs.)
+  HWY_INLINE void note_first(std::size_t count) {
+    const DI d;
+    const DF df;
+    auto unseen = HN::Eq(HN::Load(d, &state_.first_back[pixel_]), HN::Set(d, no_key));
+    for (std::size_t row = 0; row < count && !HN::AllFalse(d, unseen); ++row) {
+      if (!light_.lit[row]) continue;
+      const VF depth = HN::Load(df, light_.optical_depth + row * HN::Lanes(d));
+      const auto appears = HN::And(unseen, HN::RebindMask(d, HN::Gt(depth, HN::Zero(df))));
+      if (HN::AllFalse(d, appears)) continue;
+      keep_first(appears, row);
+      unseen = HN::AndNot(appears, unseen);
+    }
+  }
+
+  /// The same in runs, a lane's run in registers while it goes on. Whether some pixel stays open may change only where
+  /// `closes`.
+  template <bool closes>
+  HWY_INLINE bool add_to_runs(std::size_t count, const WindowRules& rules) {
+    const DI d;
+    const DF df;
+    const DD dd;
+    const std::size_t p = pixel_;
+    const VI none = HN::Set(d, no_key), no_run = HN::Set(d, -no_key), zero = HN::Zero(d);
+    Doubles red, green, blue, optical_depth, transmittance, least;
+    VI run_back;  // no_run: no run
+    HN::Mask<DI> seen, several;
+    const auto resume = [&]() HWY_ATTR {
+      red = load(&state_.red[p]), green = load(&state_.green[p]), blue = load(&state_.blue[p]);
+      optical_depth = load(&state_.optical_depth[p]), transmittance = load(&state_.transmittance[p]);
+      if constexpr (closes) {
+        // Of the run, behind the runs before it.
+        const Doubles before = load(&state_.ray_transmittance[p]);
+        const VD most = HN::Set(dd, rules.least_transmittance);
+        least = {HN::Div(most, before.low), HN::Div(most, before.high)};
+      }
+      run_back = HN::Load(d, &state_.back[p]);
+      run_back = HN::IfThenElse(HN::Eq(run_back, none), no_run, run_back);
+      several = HN::Ne(HN::Load(d, &state_.several[p]), zero);
+      seen = HN::Ne(HN::Load(d, &state_.first_back[p]), none);
+    };
+    const auto save = [&]() HWY_ATTR {
+      store(red, &state_.red[p]), store(green, &state_.green[p]), store(blue, &state_.blue[p]);
+      store(optical_depth, &state_.optical_depth[p]), store(transmittance, &state_.transmittance[p]);
+      HN::Store(HN::IfThenElse(HN::Eq(run_back, no_run), none, run_back), d, &state_.back[p]);
+      HN::Store(HN::VecFromMask(d, several), d, &state_.several[p]);
+    };
+    Open open = load_open();
+    auto open_lanes = HN::Lt(HN::Load(d, &state_.open[p]), zero);
+    resume();
+    for (std::size_t row = 0; row < count; ++row) {
+      const std::size_t at = row * HN::Lanes(d);
+      const VI front = HN::Load(d, light_.front + at);
+      const auto takes = HN::And(HN::Ne(front, none), open_lanes);
+      const auto absorbs =
+          HN::And(takes, HN::RebindMask(d, HN::Gt(HN::Load(df, light_.optical_depth + at), HN::Zero(df))));
+      // Runs end where the next segment does not touch.
+      const auto in_run = HN::And(takes, HN::Ne(run_back, no_run));
+      auto ends = HN::And(in_run, HN::Gt(HN::Abs(HN::Sub(front, run_back)), HN::Set(d, touching_steps)));
+      if (independent_) {
+        // Light without extinction does not share a run with what absorbs behind it either: a run's front is where
+        // absorption begins.
+        const auto clear = HN::RebindMask(d, HN::Le(demote(optical_depth), HN::Zero(df)));
+        ends = HN::Or(ends, HN::And(HN::And(in_run, absorbs), HN::And(seen, clear)));
+      }
+      if (HWY_UNLIKELY(!HN::AllFalse(d, ends))) {
+        save();
+        end_runs(ends);
+        resume();
+      }
+      // All that take one are in a run up to its back. Irregular cells' depths are a few steps off: a run does not go
+      // back.
+      run_back = HN::IfThenElse(takes, HN::Max(run_back, HN::Load(d, light_.back + at)), run_back);
+      if (!light_.lit[row]) continue;
+
+      auto shows = absorbs;
+      if (independent_) {
+        // A run begins where it shows, if only by light.
+        const auto color = [&](const float* c) HWY_ATTR { return HN::Abs(HN::Load(df, c + at)); };
+        const VF colors = HN::Add(color(light_.red), HN::Add(color(light_.green), color(light_.blue)));
+        shows = HN::Or(shows, HN::And(takes, HN::RebindMask(d, HN::Gt(colors, HN::Zero(df)))));
+      }
+      several = HN::Or(several, HN::And(shows, seen));
+      const auto appears = HN::AndNot(seen, shows);
+      if (!HN::AllFalse(d, appears)) keep_first(appears, row);
+      seen = HN::Or(seen, appears);
+      // Lanes that took nothing from the start have no light; lanes that have closed since have.
+      Doubles weight = transmittance, one{HN::Set(dd, 1.0), HN::Set(dd, 1.0)};
+      if constexpr (closes) {
+        weight = {HN::IfThenElseZero(open.low, weight.low), HN::IfThenElseZero(open.high, weight.high)};
+        one = {HN::IfThenElseZero(open.low, one.low), HN::IfThenElseZero(open.high, one.high)};
+      }
+      add(weight, light_.red + at, red), add(weight, light_.green + at, green), add(weight, light_.blue + at, blue);
+      add(one, light_.optical_depth + at, optical_depth);
+      take(weight, light_.alpha + at, transmittance);
+      if constexpr (closes) {
+        const auto dark_low = HN::AndNot(HN::Ge(transmittance.low, least.low), open.low);
+        const auto dark_high = HN::AndNot(HN::Ge(transmittance.high, least.high), open.high);
+        if (HWY_UNLIKELY(!HN::AllFalse(dd, HN::Or(dark_low, dark_high)))) {
+          open = {HN::AndNot(dark_low, open.low), HN::AndNot(dark_high, open.high)};
+          open_lanes = HN::Lt(store_open(open), zero);
+        }
+      }
+    }
+    save();
+    return !HN::AllFalse(d, open_lanes);
+  }
+
+  HWY_NOINLINE void end_runs(HN::Mask<DI> lanes) {
+    std::uint8_t bits[8] = {0};
+    HN::StoreMaskBits(DI(), lanes, bits);
+    for (std::uint64_t left = bits[0] | static_cast<std::uint64_t>(bits[1]) << 8; left != 0; left &= left - 1)
+      state_.end_run(pixel_ + static_cast<std::size_t>(__builtin_ctzll(left)));
+  }
+
+  /// Notes the row's segments as those in which lanes begin to show.
+  HWY_NOINLINE void keep_first(HN::Mask<DI> appears, std::size_t row) {
+    const DI d;
+    const DF df;
+    const std::size_t at = row * HN::Lanes(d), p = pixel_;
+    HN::BlendedStore(HN::Load(d, light_.front + at), appears, d, &state_.first_front[p]);
+    HN::BlendedStore(HN::Load(d, light_.back + at), appears, d, &state_.first_back[p]);
+    const auto scalars = HN::RebindMask(df, appears);
+    HN::BlendedStore(HN::Load(df, light_.scalar_front + at), scalars, df, &state_.first_scalar_front[p]);
+    HN::BlendedStore(HN::Load(df, light_.scalar_back + at), scalars, df, &state_.first_scalar_back[p]);
+  }
+
+  using HalfMask = HN::Mask<DD>;
+  struct Open {
+    HalfMask low, high;
+  };
+  HWY_INLINE Open load_open() const {
+    const HN::Rebind<std::int32_t, DD> di32;
+    const DD dd;
+    const auto half = [&](std::size_t from) HWY_ATTR {
+      return HN::Lt(HN::PromoteTo(dd, HN::LoadU(di32, &state_.open[pixel_ + from])), HN::Zero(dd));
+    };
+    return {half(0), half(HN::Lanes(dd))};
+  }
+  /// Returns what is stored: -1 or 0.
+  HWY_INLINE VI store_open(const Open& open) {
+    const DI d;
+    const VD yes = HN::Set(DD(), -1);
+    const VI lanes =
+        HN::ConvertTo(d, demote({HN::IfThenElseZero(open.low, yes), HN::IfThenElseZero(open.high, yes)}));
+    HN::Store(lanes, d, &state_.open[pixel_]);
+    return lanes;
+  }
+  /// sum += weight * v, transmittance -= weight * alpha.
+  HWY_INLINE static void add(Doubles weight, const float* v, Doubles& sum) {
+    const Doubles x = load(v);
+    sum = {HN::MulAdd(weight.low, x.low, sum.low), HN::MulAdd(weight.high, x.high, sum.high)};
+  }
+  HWY_INLINE static void take(Doubles weight, const float* alpha, Doubles& transmittance) {
+    const Doubles x = load(alpha);
+    transmittance = {HN::NegMulAdd(weight.low, x.low, transmittance.low),
+                     HN::NegMulAdd(weight.high, x.high, transmittance.high)};
+  }
+
+  WindowState& state_;
+  LightRows& light_;
+  std::size_t pixel_;
+  bool independent_;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::compositor
+#endif  // HWY_SCALAR
+HWY_AFTER_NAMESPACE();
+
+#endif
