@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
 namespace tessera::compositor {
@@ -37,30 +38,28 @@ TileSender::TileSender(Transport& transport, int assembler, std::uint32_t frame)
 
 void TileSender::send(std::uint32_t tile, const MergedTile& merged) {
   const std::lock_guard lock(mutex_);
-  append(body_, std::uint64_t{tile});
+  if (message_.empty()) message_.resize(sizeof(TilesHeader));  // flush() fills it in
+  append(message_, std::uint64_t{tile});
   const auto append_all = [&](const auto& values) {
     const auto bytes = std::as_bytes(std::span(values));
-    body_.insert(body_.end(), bytes.begin(), bytes.end());
+    message_.insert(message_.end(), bytes.begin(), bytes.end());
   };
   append_all(merged.image.rgba);
   append_all(merged.image.depth);
-  append(body_, std::uint64_t{merged.deep_samples.size()});
+  append(message_, std::uint64_t{merged.deep_samples.size()});
   if (!merged.deep_samples.empty()) {
     append_all(merged.deep_counts);
     append_all(merged.deep_samples);
   }
   ++tiles_;
-  if (body_.size() >= message_bytes) flush();
+  if (message_.size() >= message_bytes) flush();
 }
 
 void TileSender::flush() {
   if (tiles_ == 0) return;
-  Bytes message;
-  message.reserve(sizeof(TilesHeader) + body_.size());
-  append(message, TilesHeader{.frame = frame_, .tiles = std::exchange(tiles_, 0)});
-  message.insert(message.end(), body_.begin(), body_.end());
-  body_.clear();
-  transport_.send(assembler_, Channel::tiles, std::move(message), static_cast<std::int32_t>(frame_));
+  const TilesHeader header{.frame = frame_, .tiles = std::exchange(tiles_, 0)};
+  std::memcpy(message_.data(), &header, sizeof header);
+  transport_.send(assembler_, Channel::tiles, std::exchange(message_, {}), static_cast<std::int32_t>(frame_));
 }
 
 void TileSender::end(const FrameEnd& sums) {

@@ -46,7 +46,7 @@ class TileSender {
   std::uint32_t frame_;
   std::mutex mutex_;
   std::uint32_t tiles_ = 0;
-  Bytes body_;
+  Bytes message_;
 };
 
 /// A picture that has all its tiles.

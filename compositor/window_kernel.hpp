@@ -51,6 +51,8 @@ struct WindowState {
 
   /// Empty rays for the pixels of `rect`, all open.
   void start(const projection::PixelRect& rect, const projection::PixelSpace& space);
+  /// The run that a pixel is in, one that shows.
+  [[nodiscard]] Run run(std::size_t pixel) const;
   /// Ends a pixel's run, if it is in one that shows.
   void end_run(std::size_t pixel);
   /// Which pixels of `rect` are open, as the rasterizer asks. Returns how many.

@@ -50,6 +50,42 @@ void WindowRuns::end_runs() {
   write_ended();
 }
 
+void WindowRuns::finish() {
+  if (!state_.ended.empty()) {
+    end_runs();
+    return;
+  }
+  // Mostly each ray ends its first run here: straight from the state then.
+  const projection::PixelRect& rect = writer_.rect();
+  Bytes& out = writer_.records();
+  out.reserve(out.size() + static_cast<std::size_t>(rect.area()) * (sizeof(RunsHeader) + sizeof(LatticeRun)));
+  std::uint64_t runs = 0;
+  std::size_t p = 0;
+  for (int y = rect.y0; y < rect.y1; ++y) {
+    const std::uint32_t row = writer_.tile_pixel(p);
+    for (std::uint32_t x = 0; x < static_cast<std::uint32_t>(rect.width()); ++x, ++p) {
+      if (state_.first_back[p] == WindowState::not_yet) continue;
+      const WindowState::Run run = state_.run(p);
+      append(out, RunsHeader{row + x, static_cast<std::uint16_t>(run.several), static_cast<std::uint16_t>(!run.several)});
+      append_run(out, run);
+      ++runs;
+    }
+  }
+  writer_.count(runs);
+}
+
+void WindowRuns::append_run(Bytes& out, const WindowState::Run& run) const {
+  if (!run.several) {
+    append(out, run.first);
+    return;
+  }
+  const double front = first_visible_depth(scene_.lattice, run.first, *scene_.integrator);
+  append(out,
+         LatticeRun{scene_.lattice.depth_step(front), run.back, static_cast<float>(run.red),
+                    static_cast<float>(run.green), static_cast<float>(run.blue),
+                    static_cast<float>(std::min(run.optical_depth, double{std::numeric_limits<float>::max()}))});
+}
+
 void WindowRuns::write_ended() {
   std::vector<WindowState::Run>& ended = state_.ended;
   if (ended.empty()) return;
@@ -64,14 +100,7 @@ void WindowRuns::write_ended() {
     const auto segments = std::partition(first, last, [](const WindowState::Run& run) { return run.several; });
     append(out, RunsHeader{writer_.tile_pixel(first->pixel), static_cast<std::uint16_t>(segments - first),
                            static_cast<std::uint16_t>(last - segments)});
-    for (auto run = first; run != segments; ++run) {
-      const double front = first_visible_depth(scene_.lattice, run->first, *scene_.integrator);
-      append(out,
-             LatticeRun{scene_.lattice.depth_step(front), run->back, static_cast<float>(run->red),
-                        static_cast<float>(run->green), static_cast<float>(run->blue),
-                        static_cast<float>(std::min(run->optical_depth, double{std::numeric_limits<float>::max()}))});
-    }
-    for (auto run = segments; run != last; ++run) append(out, run->first);
+    for (auto run = first; run != last; ++run) append_run(out, *run);
     writer_.count(static_cast<std::uint64_t>(last - first));
     first = last;
   }

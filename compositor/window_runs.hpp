@@ -25,11 +25,12 @@ class WindowRuns final : public WindowSink {
   bool take_unordered(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) override;
   [[nodiscard]] const projection::OpenPixels& open() const override { return open_; }
   [[nodiscard]] bool any_open() const override { return open_count_ > 0; }
-  void finish() override { end_runs(); }
+  void finish() override;
   [[nodiscard]] std::uint64_t segments() const override { return segments_; }
 
  private:
   void end_runs();
+  void append_run(Bytes& out, const WindowState::Run& run) const;
   void cut(std::int64_t final_step);
   void write_ended();
 

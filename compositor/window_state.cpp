@@ -26,16 +26,19 @@ void WindowState::start(const projection::PixelRect& rect, const projection::Pix
     }
 }
 
+WindowState::Run WindowState::run(std::size_t p) const {
+  return {static_cast<std::uint32_t>(p),
+          back[p],
+          several[p] != 0,
+          {first_front[p], first_back[p], first_scalar_front[p], first_scalar_back[p]},
+          red[p],
+          green[p],
+          blue[p],
+          optical_depth[p]};
+}
+
 void WindowState::end_run(std::size_t p) {
-  if (first_back[p] != not_yet)
-    ended.push_back({static_cast<std::uint32_t>(p),
-                     back[p],
-                     several[p] != 0,
-                     {first_front[p], first_back[p], first_scalar_front[p], first_scalar_back[p]},
-                     red[p],
-                     green[p],
-                     blue[p],
-                     optical_depth[p]});
+  if (first_back[p] != not_yet) ended.push_back(run(p));
   ray_transmittance[p] *= transmittance[p];
   red[p] = green[p] = blue[p] = optical_depth[p] = 0;
   transmittance[p] = 1;
