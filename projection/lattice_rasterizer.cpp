@@ -20,32 +20,19 @@ bool available() { return HWY_TARGET != HWY_SCALAR; }
 void rasterize(const LatticeView&, std::span<const TileEntry>, std::span<const TileEntry>, const PixelRect&,
                const OpenPixels&, LatticeScratch&, SegmentStream&, RasterCounts&) {}
 #else
-// A block of pixels is a vector of lanes: 4 x 4, 4 x 2 or 2 x 2.
-constexpr int block_width = lanes >= 8 ? 4 : 2, block_height = lanes / block_width;
-static_assert(block_width * block_height == lanes);
-
-HWY_INLINE VI lane_column() { return hn::And(hn::Iota(I(), 0), hn::Set(I(), block_width - 1)); }
-HWY_INLINE VI lane_row() { return hn::ShiftRight < block_width == 4 ? 2 : 1 > (hn::Iota(I(), 0)); }
-
-HWY_INLINE VI add_if(hn::Mask<I> mask, VI sum, VI more) {
-#if HWY_TARGET <= HWY_AVX3
-  return VI{_mm512_mask_add_epi32(sum.raw, mask.raw, sum.raw, more.raw)};
-#else
-  return hn::Add(sum, hn::IfThenElseZero(mask, more));
-#endif
+/// A block of pixels is a vector of lanes: as good as square, or half as high and twice as wide, or the other way round,
+/// whichever takes the fewest to cover a cell's box.
+struct BlockShape {
+  std::int32_t width, height;
+  alignas(64) std::int32_t column[lanes], row[lanes];
+};
+constexpr BlockShape block_of(int width) {
+  BlockShape shape{width, lanes / width, {}, {}};
+  for (int lane = 0; lane < lanes; ++lane) shape.column[lane] = lane % width, shape.row[lane] = lane / width;
+  return shape;
 }
-
-/// start + x * column + y * row for every lane: by adding bits, as a 32-bit multiplication costs ten times an addition.
-HWY_INLINE VI over_block(VI start, VI x, VI y) {
-  const I d;
-  const auto bit = [&](VI number, int b) HWY_ATTR { return hn::Ne(hn::And(number, hn::Set(d, b)), hn::Zero(d)); };
-  const VI column = lane_column(), row = lane_row();
-  VI sum = add_if(bit(column, 1), start, x);
-  if constexpr (block_width == 4) sum = add_if(bit(column, 2), sum, hn::ShiftLeft<1>(x));
-  sum = add_if(bit(row, 1), sum, y);
-  if constexpr (block_height == 4) sum = add_if(bit(row, 2), sum, hn::ShiftLeft<1>(y));
-  return sum;
-}
+constexpr int usual_width = lanes >= 8 ? 4 : 2;
+constexpr BlockShape block_shapes[] = {block_of(usual_width), block_of(2 * usual_width), block_of(usual_width / 2)};
 
 /// Lays blocks over the batch's cells, all cells at once. Blocks that would reach out of the rectangle move inwards: what
 /// is not the cell's its edges tell. Only in the narrowest of rectangles does that not help; those are `clipped`.
@@ -53,49 +40,60 @@ template <bool perspective, bool per_cell>
 HWY_INLINE void lay_blocks(const PixelRect& rect, const PixelRect& square, CellBatch& batch) {
   const I d;
   const F df;
-  constexpr int log_width = block_width == 4 ? 2 : 1, log_height = block_height == 4 ? 2 : 1;
   const auto number = [](int n) HWY_ATTR { return hn::Set(I(), n); };
   const VI right = number(rect.x1 - square.x0), bottom = number(rect.y1 - square.y0);
   const VI first_x = number(rect.x0 - square.x0), first_y = number(rect.y0 - square.y0);
   const VI width = number(rect.width()), center = number(CellBatch::center), one = number(1);
   for (int t = 0; t < CellBatch::most; t += lanes) {
     const VI x0 = hn::Load(d, batch.x0 + t), y0 = hn::Load(d, batch.y0 + t);
-    const VI columns = hn::ShiftRight<log_width>(
-        hn::Add(hn::Sub(hn::Load(d, batch.x1 + t), x0), number(block_width - 1)));
-    const VI rows = hn::ShiftRight<log_height>(
-        hn::Add(hn::Sub(hn::Load(d, batch.y1 + t), y0), number(block_height - 1)));
-    const VI across = hn::ShiftLeft<log_width>(columns), down = hn::ShiftLeft<log_height>(rows);
+    const VI box_width = hn::Sub(hn::Load(d, batch.x1 + t), x0), box_height = hn::Sub(hn::Load(d, batch.y1 + t), y0);
+    VI shape = hn::Zero(d), columns = shape, rows = shape, blocks = number(0x7fffffff);
+    VI block_width = shape, block_height = shape;
+    for (int i = 0; i < 3; ++i) {
+      const BlockShape& of = block_shapes[i];
+      const auto blocks_over = [&](VI box, int side) HWY_ATTR {
+        return hn::ShiftRightSame(hn::Add(box, number(side - 1)), __builtin_ctz(static_cast<unsigned>(side)));
+      };
+      const VI across = blocks_over(box_width, of.width), down = blocks_over(box_height, of.height);
+      const VI count = hn::Mul(across, down);
+      const auto fewer = hn::Lt(count, blocks);
+      blocks = hn::IfThenElse(fewer, count, blocks), shape = hn::IfThenElse(fewer, number(i), shape);
+      columns = hn::IfThenElse(fewer, across, columns), rows = hn::IfThenElse(fewer, down, rows);
+      block_width = hn::IfThenElse(fewer, number(of.width), block_width);
+      block_height = hn::IfThenElse(fewer, number(of.height), block_height);
+    }
+    const VI across = hn::Mul(columns, block_width), down = hn::Mul(rows, block_height);
     const VI left = hn::Max(first_x, hn::Min(x0, hn::Sub(right, across)));
     const VI top = hn::Max(first_y, hn::Min(y0, hn::Sub(bottom, down)));
     const auto clipped = hn::Or(hn::Gt(hn::Add(left, across), right), hn::Gt(hn::Add(top, down), bottom));
-    const VI blocks = hn::Mul(columns, rows), last_column = hn::Sub(columns, one);
+    const VI last_column = hn::Sub(columns, one), last_pixel = hn::Mul(last_column, block_width);
+    hn::Store(shape, d, batch.shape + t);
     hn::Store(left, d, batch.left + t), hn::Store(top, d, batch.top + t);
     hn::Store(columns, d, batch.columns + t), hn::Store(blocks, d, batch.blocks + t);
     hn::Store(hn::VecFromMask(d, clipped), d, batch.clipped + t);
     hn::Store(hn::Add(hn::Mul(hn::Sub(top, first_y), width), hn::Sub(left, first_x)), d, batch.pixel + t);
-    hn::Store(hn::Sub(number(block_height * rect.width()), hn::ShiftLeft<log_width>(last_column)), d,
-              batch.pixel_wrap + t);
+    hn::Store(block_width, d, batch.pixel_step[0] + t);
+    hn::Store(hn::Sub(hn::Mul(block_height, width), last_pixel), d, batch.pixel_step[1] + t);
     // A sign is certain beyond 1 (2^-22 of the largest value); each step, and each step's step, rounds a quarter of that.
     hn::Store(hn::MulAdd(hn::ConvertTo(df, blocks), hn::Set(df, 0.5f), hn::Set(df, 2.0f)), df, batch.doubtful + t);
 
     const VI x = hn::Sub(left, center), y = hn::Sub(top, center);
-    const VF xf = hn::ConvertTo(df, x), yf = hn::ConvertTo(df, y), back = hn::ConvertTo(df, last_column);
+    const VF xf = hn::ConvertTo(df, x), yf = hn::ConvertTo(df, y), back = hn::ConvertTo(df, last_pixel);
+    const VF across_f = hn::ConvertTo(df, block_width), down_f = hn::ConvertTo(df, block_height);
     for (int e = 0; e < 6; ++e) {
       const VF along_x = hn::Load(df, batch.edge_x[e] + t), along_y = hn::Load(df, batch.edge_y[e] + t);
-      const VF step = hn::Mul(along_x, hn::Set(df, block_width));
       hn::Store(hn::MulAdd(along_x, xf, hn::MulAdd(along_y, yf, hn::Load(df, batch.edge[e] + t))), df,
                 batch.block_edge[e] + t);
-      hn::Store(step, df, batch.edge_step[e][0] + t);
-      hn::Store(hn::NegMulAdd(step, back, hn::Mul(along_y, hn::Set(df, block_height))), df, batch.edge_step[e][1] + t);
+      hn::Store(hn::Mul(along_x, across_f), df, batch.edge_step[e][0] + t);
+      hn::Store(hn::NegMulAdd(along_x, back, hn::Mul(along_y, down_f)), df, batch.edge_step[e][1] + t);
     }
     const auto lay = [&](CellBatch::FacePlanes& planes) HWY_ATTR {
       for (int f = 0; f < 4; ++f) {
         const VI along_x = hn::Load(d, planes.x[f] + t), along_y = hn::Load(d, planes.y[f] + t);
-        const VI step = hn::ShiftLeft<log_width>(along_x);
         hn::Store(hn::Add(hn::Load(d, planes.start[f] + t), hn::Add(hn::Mul(along_x, x), hn::Mul(along_y, y))), d,
                   planes.block[f] + t);
-        hn::Store(step, d, planes.step[f][0] + t);
-        hn::Store(hn::Sub(hn::ShiftLeft<log_height>(along_y), hn::Mul(step, last_column)), d, planes.step[f][1] + t);
+        hn::Store(hn::Mul(along_x, block_width), d, planes.step[f][0] + t);
+        hn::Store(hn::Sub(hn::Mul(along_y, block_height), hn::Mul(along_x, last_pixel)), d, planes.step[f][1] + t);
       }
     };
     lay(batch.depth);
@@ -106,11 +104,11 @@ HWY_INLINE void lay_blocks(const PixelRect& rect, const PixelRect& square, CellB
 
 /// settle_pixel() for the lanes of a block. Returns those whose ray touches.
 HWY_NOINLINE std::uint64_t settle(const LatticeView& view, const CellBatch& batch, int t, unsigned uncertain,
-                                  int corner_x, int corner_y, float (*edges)[lanes], RasterCounts& counts) {
+                                  const BlockShape& shape, int corner_x, int corner_y, float (*edges)[lanes], RasterCounts& counts) {
   std::uint64_t touching = 0;
   for (; uncertain != 0; uncertain &= uncertain - 1) {
     const int lane = __builtin_ctz(uncertain);
-    const int x = corner_x + lane % block_width, y = corner_y + lane / block_width;
+    const int x = corner_x + shape.column[lane], y = corner_y + shape.row[lane];
     if (settle_pixel(view, batch, t, x + 0.5, y + 0.5, edges[0] + lane, lanes, counts))
       touching |= std::uint64_t{1} << lane;
   }
@@ -134,12 +132,12 @@ struct CellRaster {
   };
   Planes depth, scalar, weight;
 
-  HWY_INLINE void start(const CellBatch::FacePlanes& all, Planes& planes) const {
+  HWY_INLINE void start(const CellBatch::FacePlanes& all, VI column, VI row, Planes& planes) const {
     const I d;
     for (int k = 0; k < 4; ++k) {
       const int f = roles.face[k];
-      planes.face[k] =
-          over_block(hn::Set(d, all.block[f][t]), hn::Set(d, all.x[f][t]), hn::Set(d, all.y[f][t]));
+      planes.face[k] = hn::Add(hn::Set(d, all.block[f][t]), hn::Add(hn::Mul(column, hn::Set(d, all.x[f][t])),
+                                                                    hn::Mul(row, hn::Set(d, all.y[f][t]))));
       planes.step[k] = &all.step[f][0][t];
     }
   }
@@ -192,19 +190,20 @@ struct CellRaster {
     const F df;
     constexpr bool three = shape != Shape::two;
     constexpr int outlines = three ? 3 : 4, inners = 6 - outlines;
-    start(batch.depth, depth);
-    if constexpr (!per_cell) start(batch.scalar, scalar);
-    if constexpr (perspective) start(batch.weight, weight);
     const int columns = batch.columns[t], x0 = batch.left[t], y0 = batch.top[t];
     const bool clipped = batch.clipped[t] != 0;
     const int right = rect.x1 - square.x0, bottom = rect.y1 - square.y0;
-    const VI column = lane_column(), row = lane_row();
+    const BlockShape& block_shape = block_shapes[batch.shape[t]];
+    const VI column = hn::Load(d, block_shape.column), row = hn::Load(d, block_shape.row);
     const VF zero = hn::Zero(df), minus_one = hn::Set(df, -1.0f), doubtful = hn::Set(df, batch.doubtful[t]);
     const VF cell_scalar = hn::Set(df, per_cell ? batch.cell_scalar[t] : 0.0f);
     const auto edge_at = [&](int e, const float* start, VF x, VF y) HWY_ATTR {
       return hn::MulAdd(hn::Set(df, batch.edge_x[e][t]), x,
                         hn::MulAdd(hn::Set(df, batch.edge_y[e][t]), y, hn::Set(df, start[t])));
     };
+    start(batch.depth, column, row, depth);
+    if constexpr (!per_cell) start(batch.scalar, column, row, scalar);
+    if constexpr (perspective) start(batch.weight, column, row, weight);
     VF edge[outlines + inners];
     const float* edge_step[outlines + inners];
     for (int k = 0; k < outlines + inners; ++k) {
@@ -212,7 +211,6 @@ struct CellRaster {
       edge[k] = edge_at(e, batch.block_edge[e], hn::ConvertTo(df, column), hn::ConvertTo(df, row));
       edge_step[k] = &batch.edge_step[e][0][t];
     }
-    const std::int32_t pixel_step[2] = {block_width, batch.pixel_wrap[t]};
     VI pixel = hn::Add(hn::Add(hn::Mul(row, hn::Set(d, rect.width())), column), hn::Set(d, batch.pixel[t]));
 
     // Block after block, row by row, in one loop. (How many blocks a row has is hard to predict, and to be wrong costs as
@@ -227,11 +225,11 @@ struct CellRaster {
         sure = hn::Min(sure, hn::Abs(inner[k]));
       }
       MF hit = hn::Gt(least, zero);
-      if (HWY_UNLIKELY(clipped)) hit = hn::And(hit, in_rectangle(x0, y0, block, columns, right, bottom));
+      if (HWY_UNLIKELY(clipped)) hit = hn::And(hit, in_rectangle(block_shape, x0, y0, block, columns, right, bottom));
       std::uint64_t touching = 0;
       // Surely in, or surely out whatever the others say.
       if (HWY_UNLIKELY(!hn::AllFalse(df, hn::And(hn::Le(sure, doubtful), hn::Ge(least, hn::Neg(doubtful)))))) {
-        const int bx = x0 + block % columns * block_width, by = y0 + block / columns * block_height;
+        const int bx = x0 + block % columns * block_shape.width, by = y0 + block / columns * block_shape.height;
         const VF x = hn::ConvertTo(df, hn::Add(column, hn::Set(d, bx - CellBatch::center)));
         const VF y = hn::ConvertTo(df, hn::Add(row, hn::Set(d, by - CellBatch::center)));
         alignas(64) float edges[6][lanes];
@@ -242,12 +240,12 @@ struct CellRaster {
           return three ? three_edges : hn::Min(three_edges, load(roles.outline[3]));
         };
         MF possible = hn::Gt(outline(), minus_one);
-        if (clipped) possible = hn::And(possible, in_rectangle(x0, y0, block, columns, right, bottom));
+        if (clipped) possible = hn::And(possible, in_rectangle(block_shape, x0, y0, block, columns, right, bottom));
         VF doubt = outline();
         for (int k = 0; k < inners; ++k) doubt = hn::Min(doubt, hn::Abs(load(roles.inner[k])));
         const MF uncertain = hn::And(possible, hn::Le(doubt, hn::Set(df, 1.0f)));
         if (!hn::AllFalse(df, uncertain))
-          touching = settle(view, batch, t, lane_bits(uncertain), square.x0 + bx, square.y0 + by, edges, counts);
+          touching = settle(view, batch, t, lane_bits(uncertain), block_shape, square.x0 + bx, square.y0 + by, edges, counts);
         hit = hn::And(possible, hn::Gt(outline(), zero));
         for (int k = 0; k < inners; ++k) inner[k] = load(roles.inner[k]);
       }
@@ -279,7 +277,7 @@ struct CellRaster {
       left += columns & -wraps;
       for (int k = 0; k < outlines + inners; ++k)
         edge[k] = hn::Add(edge[k], hn::Set(df, edge_step[k][wraps * CellBatch::most]));
-      pixel = hn::Add(pixel, hn::Set(d, pixel_step[wraps]));
+      pixel = hn::Add(pixel, hn::Set(d, batch.pixel_step[wraps][t]));
       go_on(wraps, depth);
       if constexpr (!per_cell) go_on(wraps, scalar);
       if constexpr (perspective) go_on(wraps, weight);
@@ -287,10 +285,11 @@ struct CellRaster {
   }
 
   /// The lanes of a block that lie in the rectangle.
-  HWY_NOINLINE static MF in_rectangle(int x0, int y0, int block, int columns, int right, int bottom) {
+  HWY_NOINLINE static MF in_rectangle(const BlockShape& shape, int x0, int y0, int block, int columns, int right,
+                                      int bottom) {
     const I d;
-    const VI x = hn::Add(lane_column(), hn::Set(d, x0 + block % columns * block_width));
-    const VI y = hn::Add(lane_row(), hn::Set(d, y0 + block / columns * block_height));
+    const VI x = hn::Add(hn::Load(d, shape.column), hn::Set(d, x0 + block % columns * shape.width));
+    const VI y = hn::Add(hn::Load(d, shape.row), hn::Set(d, y0 + block / columns * shape.height));
     return hn::RebindMask(F(), hn::And(hn::Lt(x, hn::Set(d, right)), hn::Lt(y, hn::Set(d, bottom))));
   }
 };
