@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -77,26 +76,32 @@ class RunMerger final : public TileMerger {
       };
       return key(runs_[a]) < key(runs_[b]);
     };
-    deal_to_pixels();
+    chain_by_pixel();
     for (std::size_t pixel = 0; pixel < pixels_.size(); ++pixel) {
-      const auto first = order_.begin() + first_of_[pixel], last = order_.begin() + first_of_[pixel + 1];
-      if (last - first > 1) std::sort(first, last, before);
-      for (auto i = first; i != last && runs_[*i].front < final_depth; ++i) composite(runs_[*i], pixels_[pixel]);
+      const std::uint32_t first = first_of_[pixel];
+      if (first == none) continue;
+      order_.clear();
+      for (std::uint32_t i = first; i != none; i = next_[i]) order_.push_back(i);
+      if (order_.size() > 1) std::sort(order_.begin(), order_.end(), before);
+      for (auto i = order_.begin(); i != order_.end() && runs_[*i].front < final_depth; ++i)
+        composite(runs_[*i], pixels_[pixel]);
     }
-    std::erase_if(runs_, [&](const RunRecord& run) { return run.front < final_depth; });
+    if (final_depth == std::numeric_limits<double>::infinity())
+      runs_.clear();
+    else
+      std::erase_if(runs_, [&](const RunRecord& run) { return run.front < final_depth; });
   }
 
   MergedTile finish() override { return {image_of(pixels_, {rect_.width(), rect_.height()}), {}, {}}; }
 
  private:
-  /// Numbers of runs, pixel by pixel: those of pixel p are order_[first_of_[p]] up to order_[first_of_[p + 1]].
-  void deal_to_pixels() {
-    first_of_.assign(pixels_.size() + 1, 0);
-    for (const RunRecord& run : runs_) ++first_of_[run.pixel + 1];
-    std::partial_sum(first_of_.begin(), first_of_.end(), first_of_.begin());
-    order_.resize(runs_.size());
-    next_.assign(first_of_.begin(), first_of_.end());
-    for (std::size_t i = 0; i < runs_.size(); ++i) order_[next_[runs_[i].pixel]++] = static_cast<std::uint32_t>(i);
+  static constexpr std::uint32_t none = 0xffffffff;
+
+  /// Numbers of runs, pixel by pixel: those of pixel p are i = first_of_[p], next_[i] and so on, up to `none`.
+  void chain_by_pixel() {
+    first_of_.assign(pixels_.size(), none);
+    next_.resize(runs_.size());
+    for (std::uint32_t i = 0; i < runs_.size(); ++i) next_[i] = std::exchange(first_of_[runs_[i].pixel], i);
   }
 
   /// Runs of one segment, with the bits that their projector would have found.

@@ -83,7 +83,10 @@ void Outbox::begin_frame(std::uint32_t frame, const TileMap& map, const std::vec
 
 void Outbox::write(Lane& lane, const TilePart& part) {
   const std::size_t before = lane.batch.size();
-  if (lane.batch.empty()) append(lane.batch, MessageHeader{.kind = MessageKind::parts, .frame = frame_});
+  if (lane.batch.empty()) {
+    lane.batch.reserve(message_bytes + part.records.size() + sizeof(MessageHeader) + sizeof(PartHeader));
+    append(lane.batch, MessageHeader{.kind = MessageKind::parts, .frame = frame_});
+  }
   append(lane.batch, PartHeader{part.tile, part.kind, static_cast<std::uint8_t>(part.last ? 1 : 0), 0,
                                 part.records.size(), part.final_depth, part.fragments});
   lane.batch.insert(lane.batch.end(), part.records.begin(), part.records.end());
