@@ -115,11 +115,30 @@ class Lookup<TableForm::one_vector> {
   using Index = HN::Vec<DI>;
   explicit HWY_INLINE Lookup(const LaneTable& table)
       : independent(table.emission == scene::Emission::independent), has_clear(table.has_clear), landmarks_(table) {
-    for (int c = 0; c < LaneTable::column_count; ++c) rows_[c] = HN::LoadU(DF(), table.column(c));
+    const DF d;
+    const DI di;
+    for (int c = 0; c < LaneTable::column_count; ++c) rows_[c] = HN::LoadU(d, table.column(c));
+    // A grid of few cells, no two knots in one, goes into registers too: half the work of comparing knot by knot.
+    const std::size_t lanes = HN::Lanes(di), cells = table.knots_before.size();
+    in_registers_ = cells <= 2 * lanes && table.largest_step <= 1;
+    if (!in_registers_) return;
+    HWY_ALIGN std::int32_t before[2 * HN::MaxLanes(DI())] = {};
+    std::copy(table.knots_before.begin(), table.knots_before.end(), before);
+    low_cells_ = HN::BitCast(d, HN::Load(di, before)), high_cells_ = HN::BitCast(d, HN::Load(di, before + lanes));
+    grid_origin_ = HN::Set(d, table.grid_origin), grid_scale_ = HN::Set(d, table.grid_scale);
+    last_cell_ = HN::Set(d, table.last_cell);
   }
   HWY_INLINE VI locate(VF s, MF up) const {
-    s = past(s, up);
-    return search(landmarks_.passed(s), landmarks_.first_step, s,
+    const DF d;
+    const DI di;
+    const VF passing = past(s, up);
+    if (HWY_LIKELY(in_registers_)) {
+      const VF place = HN::Mul(HN::Sub(s, grid_origin_), grid_scale_);
+      const VI cell = HN::ConvertTo(di, HN::Min(HN::Max(place, HN::Zero(d)), last_cell_));
+      const VI before = HN::BitCast(di, two_table_lookup(low_cells_, high_cells_, cell));
+      return count_if(HN::Lt(at(LaneTable::edge, HN::Add(before, HN::Set(di, 1))), passing), before);
+    }
+    return search(landmarks_.passed(passing), landmarks_.first_step, passing,
                   [&](VI i) HWY_ATTR { return at(LaneTable::edge, i); });
   }
   HWY_INLINE Index index(VI interval, MF) const { return interval; }
@@ -133,6 +152,9 @@ class Lookup<TableForm::one_vector> {
  private:
   Landmarks landmarks_;
   VF rows_[LaneTable::column_count];
+  bool in_registers_;
+  VF low_cells_, high_cells_;  ///< numbers of knots in lower cells, as bits
+  VF grid_origin_, grid_scale_, last_cell_;
 };
 
 template <>

@@ -27,8 +27,8 @@ inline scene::Image image_of(const std::vector<MergedPixel>& pixels, scene::Imag
     image.rgba[4 * i + 2] = static_cast<float>(pixel.blue);
     // What transmittance lacks to 1 is right to 1e-13 from here on, at a fraction of the time.
     constexpr double thick = 1e-3;
-    image.rgba[4 * i + 3] = static_cast<float>(pixel.optical_depth > thick ? 1 - pixel.transmittance
-                                                                           : -std::expm1(-pixel.optical_depth));
+    image.rgba[4 * i + 3] =
+        static_cast<float>(pixel.optical_depth > thick ? 1 - pixel.transmittance : -std::expm1(-pixel.optical_depth));
     image.depth[i] = static_cast<float>(pixel.first_depth);
   }
   return image;

@@ -1,5 +1,5 @@
-// The light of windows' rows on its way into pixels, or runs; included once per instruction set (Highway's include guard
-// idiom).
+// The light of windows' rows on its way into pixels, or runs; included once per instruction set (Highway's include
+// guard idiom).
 
 #if defined(TESSERA_COMPOSITOR_WINDOW_LIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_COMPOSITOR_WINDOW_LIGHT_INL_H_
@@ -313,8 +313,7 @@ class GroupLight {
   HWY_INLINE VI store_open(const Open& open) {
     const DI d;
     const VD yes = HN::Set(DD(), -1);
-    const VI lanes =
-        HN::ConvertTo(d, demote({HN::IfThenElseZero(open.low, yes), HN::IfThenElseZero(open.high, yes)}));
+    const VI lanes = HN::ConvertTo(d, demote({HN::IfThenElseZero(open.low, yes), HN::IfThenElseZero(open.high, yes)}));
     HN::Store(lanes, d, &state_.open[pixel_]);
     return lanes;
   }

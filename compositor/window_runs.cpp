@@ -66,7 +66,8 @@ void WindowRuns::finish() {
     for (std::uint32_t x = 0; x < static_cast<std::uint32_t>(rect.width()); ++x, ++p) {
       if (state_.first_back[p] == WindowState::not_yet) continue;
       const WindowState::Run run = state_.run(p);
-      append(out, RunsHeader{row + x, static_cast<std::uint16_t>(run.several), static_cast<std::uint16_t>(!run.several)});
+      append(out,
+             RunsHeader{row + x, static_cast<std::uint16_t>(run.several), static_cast<std::uint16_t>(!run.several)});
       append_run(out, run);
       ++runs;
     }
@@ -80,10 +81,9 @@ void WindowRuns::append_run(Bytes& out, const WindowState::Run& run) const {
     return;
   }
   const double front = first_visible_depth(scene_.lattice, run.first, *scene_.integrator);
-  append(out,
-         LatticeRun{scene_.lattice.depth_step(front), run.back, static_cast<float>(run.red),
-                    static_cast<float>(run.green), static_cast<float>(run.blue),
-                    static_cast<float>(std::min(run.optical_depth, double{std::numeric_limits<float>::max()}))});
+  append(out, LatticeRun{scene_.lattice.depth_step(front), run.back, static_cast<float>(run.red),
+                         static_cast<float>(run.green), static_cast<float>(run.blue),
+                         static_cast<float>(std::min(run.optical_depth, double{std::numeric_limits<float>::max()}))});
 }
 
 void WindowRuns::write_ended() {

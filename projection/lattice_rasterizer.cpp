@@ -20,8 +20,8 @@ bool available() { return HWY_TARGET != HWY_SCALAR; }
 void rasterize(const LatticeView&, std::span<const TileEntry>, std::span<const TileEntry>, const PixelRect&,
                const OpenPixels&, LatticeScratch&, SegmentStream&, RasterCounts&) {}
 #else
-/// A block of pixels is a vector of lanes: as good as square, or half as high and twice as wide, or the other way round,
-/// whichever takes the fewest to cover a cell's box.
+/// A block of pixels is a vector of lanes: as good as square, or half as high and twice as wide, or the other way
+/// round, whichever takes the fewest to cover a cell's box.
 struct BlockShape {
   std::int32_t width, height;
   alignas(64) std::int32_t column[lanes], row[lanes];
@@ -34,8 +34,8 @@ constexpr BlockShape block_of(int width) {
 constexpr int usual_width = lanes >= 8 ? 4 : 2;
 constexpr BlockShape block_shapes[] = {block_of(usual_width), block_of(2 * usual_width), block_of(usual_width / 2)};
 
-/// Lays blocks over the batch's cells, all cells at once. Blocks that would reach out of the rectangle move inwards: what
-/// is not the cell's its edges tell. Only in the narrowest of rectangles does that not help; those are `clipped`.
+/// Lays blocks over the batch's cells, all cells at once. Blocks that would reach out of the rectangle move inwards:
+/// what is not the cell's its edges tell. Only in the narrowest of rectangles does that not help; those are `clipped`.
 template <bool perspective, bool per_cell>
 HWY_INLINE void lay_blocks(const PixelRect& rect, const PixelRect& square, CellBatch& batch) {
   const I d;
@@ -74,8 +74,9 @@ HWY_INLINE void lay_blocks(const PixelRect& rect, const PixelRect& square, CellB
     hn::Store(hn::Add(hn::Mul(hn::Sub(top, first_y), width), hn::Sub(left, first_x)), d, batch.pixel + t);
     hn::Store(block_width, d, batch.pixel_step[0] + t);
     hn::Store(hn::Sub(hn::Mul(block_height, width), last_pixel), d, batch.pixel_step[1] + t);
-    // A sign is certain beyond 1 (2^-22 of the largest value); each step, and each step's step, rounds a quarter of that.
-    hn::Store(hn::MulAdd(hn::ConvertTo(df, blocks), hn::Set(df, 0.5f), hn::Set(df, 2.0f)), df, batch.doubtful + t);
+    // A sign is certain beyond 1 (2^-22 of the largest value). To sum rounds a quarter of that each time, as to make
+    // the step did; beside a narrow rectangle, whose blocks reach out of it, values are up to 1.4 times as large.
+    hn::Store(hn::MulAdd(hn::ConvertTo(df, blocks), hn::Set(df, 0.75f), hn::Set(df, 2.0f)), df, batch.doubtful + t);
 
     const VI x = hn::Sub(left, center), y = hn::Sub(top, center);
     const VF xf = hn::ConvertTo(df, x), yf = hn::ConvertTo(df, y), back = hn::ConvertTo(df, last_pixel);
@@ -104,7 +105,8 @@ HWY_INLINE void lay_blocks(const PixelRect& rect, const PixelRect& square, CellB
 
 /// settle_pixel() for the lanes of a block. Returns those whose ray touches.
 HWY_NOINLINE std::uint64_t settle(const LatticeView& view, const CellBatch& batch, int t, unsigned uncertain,
-                                  const BlockShape& shape, int corner_x, int corner_y, float (*edges)[lanes], RasterCounts& counts) {
+                                  const BlockShape& shape, int corner_x, int corner_y, float (*edges)[lanes],
+                                  RasterCounts& counts) {
   std::uint64_t touching = 0;
   for (; uncertain != 0; uncertain &= uncertain - 1) {
     const int lane = __builtin_ctz(uncertain);
@@ -168,8 +170,7 @@ struct CellRaster {
     c.scalar = cell_scalar;
     if constexpr (!perspective) {
       c.depth = z;
-      if constexpr (!per_cell)
-        c.scalar = hn::ConvertTo(df, choose([&](int k) HWY_ATTR { return scalar.face[k]; }));
+      if constexpr (!per_cell) c.scalar = hn::ConvertTo(df, choose([&](int k) HWY_ATTR { return scalar.face[k]; }));
     } else {
       const VF inverse = inverse_weight(choose([&](int k) HWY_ATTR { return weight.face[k]; }));
       const VI behind = hn::NearestInt(hn::Mul(hn::ConvertTo(df, z), inverse));
@@ -213,8 +214,8 @@ struct CellRaster {
     }
     VI pixel = hn::Add(hn::Add(hn::Mul(row, hn::Set(d, rect.width())), column), hn::Set(d, batch.pixel[t]));
 
-    // Block after block, row by row, in one loop. (How many blocks a row has is hard to predict, and to be wrong costs as
-    // much as a block.)
+    // Block after block, row by row, in one loop. (How many blocks a row has is hard to predict, and to be wrong costs
+    // as much as a block.)
     int left = columns;
     for (int block = 0, count = batch.blocks[t]; block < count; ++block) {
       VF least = hn::Min(hn::Min(edge[0], edge[1]), edge[2]);
@@ -236,7 +237,8 @@ struct CellRaster {
         for (int e = 0; e < 6; ++e) hn::Store(edge_at(e, batch.edge[e], x, y), df, edges[e]);
         const auto load = [&](int e) HWY_ATTR { return hn::Load(df, edges[e]); };
         const auto outline = [&]() HWY_ATTR {
-          const VF three_edges = hn::Min(hn::Min(load(roles.outline[0]), load(roles.outline[1])), load(roles.outline[2]));
+          const VF three_edges =
+              hn::Min(hn::Min(load(roles.outline[0]), load(roles.outline[1])), load(roles.outline[2]));
           return three ? three_edges : hn::Min(three_edges, load(roles.outline[3]));
         };
         MF possible = hn::Gt(outline(), minus_one);
@@ -245,7 +247,8 @@ struct CellRaster {
         for (int k = 0; k < inners; ++k) doubt = hn::Min(doubt, hn::Abs(load(roles.inner[k])));
         const MF uncertain = hn::And(possible, hn::Le(doubt, hn::Set(df, 1.0f)));
         if (!hn::AllFalse(df, uncertain))
-          touching = settle(view, batch, t, lane_bits(uncertain), block_shape, square.x0 + bx, square.y0 + by, edges, counts);
+          touching =
+              settle(view, batch, t, lane_bits(uncertain), block_shape, square.x0 + bx, square.y0 + by, edges, counts);
         hit = hn::And(possible, hn::Gt(outline(), zero));
         for (int k = 0; k < inners; ++k) inner[k] = load(roles.inner[k]);
       }

@@ -43,13 +43,15 @@ using OpenPixels = std::array<std::uint32_t, SegmentWindows::side>;
 /// square of 32 x 32 pixels aligned to multiples of 32. Appends to `out`.
 ///
 /// Sixteen cells are set up at once, a cell a lane, in double precision; then each is rasterized, a pixel a lane, in
-/// blocks of 4 x 4 pixels (AVX-512), 4 x 2 or 2 x 2, or, where the batch's cells are so small that this is faster, all
-/// together, a cell a lane (lattice_small-inl.h). Either way:
+/// blocks of 4 x 4, 8 x 2 or 2 x 8 pixels (AVX-512; else of half or a quarter as many), whichever takes the fewest, or,
+/// where the batch's cells are so small that this is faster, all together, a cell a lane (lattice_small-inl.h). Blocks
+/// too are laid over all sixteen cells at once: what a cell costs is what its blocks cost, each an addition to all that
+/// the one before it had. Either way:
 ///   - Six edge functions E in float tell which pixels are hit, and through which faces. Seen from the eye a cell has
 ///     two front and two back faces, or one and three; the silhouette's edges decide on the hit, the one or three inner
-///     edges on the face. Each E is scaled so that its rounding error is below 1: |E| > 1 is certain. Lanes that are
-///     not (30 in a million segments on cube 64) get the exact sign with the tie rule (edge_sign.hpp), so hits are
-///     those of rasterize_planes.
+///     edges on the face. Each E is scaled so that its rounding error is below 1: |E| > 1 is certain (of a sum over n
+///     blocks, |E| > 2 + 3 n / 4, below which E is computed again). Lanes that are not (30 in a million segments on
+///     cube 64) get the exact sign with the tie rule (edge_sign.hpp), so hits are those of rasterize_planes.
 ///   - Depth and scalar of a face are planes over the square's pixels, in integers: start, step in x, step in y. No
 ///     rounding depends on block or lane, so neighbours compute the same bits for their common face. A gradient
 ///     is rounded to a whole step a pixel: at most 16 steps of error within the square.

@@ -64,7 +64,7 @@ struct CellBatch {
   // what is added from each to the next, [1] after the last of a row.
   alignas(64) std::int32_t left[most], top[most], columns[most], blocks[most], shape[most], clipped[most];
   alignas(64) std::int32_t pixel[most], pixel_step[2][most];  ///< the corner's pixel in the rectangle
-  alignas(64) float doubtful[most];                        ///< no sign is certain below: steps round
+  alignas(64) float doubtful[most];                           ///< no sign is certain below: steps round
   alignas(64) float block_edge[6][most], edge_step[6][2][most];
 
   /// Bit f: a front face. Of an irregular cell it says nothing.

@@ -33,8 +33,8 @@ struct Crossing {
   VF scalar;
 };
 
-/// Appends the lanes of `hit`. Packed in registers and stored as whole vectors: a compressing store is slower on several
-/// processors.
+/// Appends the lanes of `hit`. Packed in registers and stored as whole vectors: a compressing store is slower on
+/// several processors.
 HWY_INLINE void append(MF hit, VI pixel, VI front, VI back, VF scalar_front, VF scalar_back, SegmentStream& out) {
   const I d;
   const F df;

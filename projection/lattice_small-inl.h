@@ -103,15 +103,15 @@ class SmallCells {
         to.face[k] = v;
       }
     };
-    const auto take_planes = [&](const CellBatch::FacePlanes& all, Planes& start, Planes& x, Planes& y) HWY_ATTR {
-      take(all.start, start), take(all.x, x), take(all.y, y);
-    };
+    const auto take_planes = [&](const CellBatch::FacePlanes& all, Planes& start, Planes& x, Planes& y)
+                                 HWY_ATTR { take(all.start, start), take(all.x, x), take(all.y, y); };
     take_planes(batch.depth, depth_, depth_x_, depth_y_);
     if constexpr (!per_cell) take_planes(batch.scalar, scalar_, scalar_x_, scalar_y_);
     if constexpr (perspective) {
       take_planes(batch.weight, weight_, weight_x_, weight_y_);
       take(batch.depth_c, depth_c_);
-      if constexpr (!per_cell) take(reinterpret_cast<const std::int32_t(*)[CellBatch::most]>(batch.scalar_c), scalar_c_);
+      if constexpr (!per_cell)
+        take(reinterpret_cast<const std::int32_t(*)[CellBatch::most]>(batch.scalar_c), scalar_c_);
     }
   }
 
