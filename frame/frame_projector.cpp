@@ -39,6 +39,17 @@ void check_scanline(const projection::ProjectedMesh& projected, const projection
         "planes");
 }
 
+/// Optical depth of a ray as long as `length` that meets all of the function's scalars equally often.
+double usual_optical_depth(const scene::TransferFunction& function, double length) {
+  const auto knots = function.knots();
+  double sum = 0;
+  for (std::size_t i = 1; i < knots.size(); ++i)
+    sum += (knots[i].value - knots[i - 1].value) * (knots[i].extinction + knots[i - 1].extinction) / 2;
+  const double span = knots.back().value - knots.front().value;
+  return length * (span > 0 ? sum / span : knots.front().extinction);
+}
+constexpr double opaque_depth = 40;  // of which a ray that ends at a transmittance of 1e-3 sees a sixth
+
 /// One thread's part in a frame: tiles, one after the other.
 class TileWorker {
  public:
@@ -171,8 +182,13 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
       std::max<std::uint64_t>(segment_budget(settings_, held, 1) / 4 / sizeof(projection::TileEntry), 1);
   const std::uint64_t budget = segment_budget(settings_, held, threads) / 4 * 3;
 
-  const TileContext context{&projected,      lists->depth_origin(), budget,
-                            settings_.trace, settings_.rasterizer,  longest_edge};
+  const TileContext context{&projected,
+                            lists->depth_origin(),
+                            budget,
+                            settings_.trace,
+                            settings_.rasterizer,
+                            longest_edge,
+                            usual_optical_depth(*task.function, diagonal_) > opaque_depth};
   tbb::enumerable_thread_specific<std::unique_ptr<TileWorker>> workers([&]() -> std::unique_ptr<TileWorker> {
     if (task.lattice == nullptr) return std::make_unique<DoubleWorker>(context, task.make_sink());
     const projection::LatticeView view{

@@ -11,7 +11,8 @@
 namespace tessera::frame {
 namespace {
 
-constexpr std::size_t first_capacity = 32;  // segments a pixel: 1 MiB of windows, the largest the networks sort
+constexpr std::size_t first_capacity = 32;         // segments a pixel: 1 MiB of windows, the largest the networks sort
+constexpr std::size_t capacity_where_opaque = 16;  // rays end soon: the less is behind them
 constexpr std::size_t cells_at_once = 16;
 // Where one list is full, lists of fewer quarters than this wait: what is sorted should be final, not short.
 constexpr std::size_t fullness = 3;
@@ -59,7 +60,7 @@ std::int64_t LatticeTileRenderer::step_before(float near_depth) const {
 bool LatticeTileRenderer::try_render(const projection::PixelRect& rect, std::span<const projection::TileEntry> entries,
                                      compositor::WindowSink& sink) {
   scene::TraceLaps laps(context_.trace);
-  windows_.reset(static_cast<std::size_t>(rect.area()), first_capacity);
+  windows_.reset(static_cast<std::size_t>(rect.area()), context_.opaque ? capacity_where_opaque : first_capacity);
   sink.start(rect);
   for (std::size_t from = 0; from < entries.size() && sink.any_open(); from += cells_at_once) {
     const auto cells = entries.subspan(from, std::min(cells_at_once, entries.size() - from));

@@ -23,6 +23,7 @@ struct TileContext {
   scene::Trace* trace;
   Rasterizer rasterizer = Rasterizer::planes;
   float longest_edge = 1;  ///< scanline: of the whole data set
+  bool opaque = false;     ///< a usual ray ends in a fraction of the mesh's depth
 };
 
 /// Sums over the tiles that one renderer made.
