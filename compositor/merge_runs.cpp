@@ -111,8 +111,8 @@ class RunMerger final : public TileMerger {
     batch_.size = single_.size();
     for (std::size_t i = 0; i < single_.size(); ++i) {
       const auto& [pixel, segment] = single_[i];
-      const double x = rect_.x0 + static_cast<int>(pixel) % rect_.width() + 0.5,
-                   y = rect_.y0 + static_cast<int>(pixel) / rect_.width() + 0.5;
+      const int column = static_cast<int>(pixel) % rect_.width(), row = static_cast<int>(pixel) / rect_.width();
+      const double x = rect_.x0 + column + 0.5, y = rect_.y0 + row + 0.5;
       batch_.length[i] =
           static_cast<float>(segment.back - segment.front) * static_cast<float>(context_.space->length_per_depth(x, y));
       batch_.scalar_front[i] = segment.scalar_front;

@@ -23,11 +23,11 @@ void rasterize(const LatticeView&, std::span<const TileEntry>, std::span<const T
 /// A block of pixels is a vector of lanes: as good as square, or half as high and twice as wide, or the other way
 /// round, whichever takes the fewest to cover a cell's box.
 struct BlockShape {
-  std::int32_t width, height;
   alignas(64) std::int32_t column[lanes], row[lanes];
+  std::int32_t width, height;
 };
 constexpr BlockShape block_of(int width) {
-  BlockShape shape{width, lanes / width, {}, {}};
+  BlockShape shape{{}, {}, width, lanes / width};
   for (int lane = 0; lane < lanes; ++lane) shape.column[lane] = lane % width, shape.row[lane] = lane / width;
   return shape;
 }
