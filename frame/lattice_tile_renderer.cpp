@@ -11,7 +11,7 @@
 namespace tessera::frame {
 namespace {
 
-constexpr std::size_t first_capacity = 32;         // segments a pixel: 1 MiB of windows, the largest the networks sort
+constexpr std::size_t first_capacity = 32;         // segments a pixel: half a MiB of windows
 constexpr std::size_t capacity_where_opaque = 16;  // rays end soon: the less is behind them
 constexpr std::size_t cells_at_once = 16;
 // Where one list is full, lists of fewer quarters than this wait: what is sorted should be final, not short.

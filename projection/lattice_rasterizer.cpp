@@ -228,7 +228,7 @@ struct CellRaster {
       MF hit = hn::Gt(least, zero);
       if (HWY_UNLIKELY(clipped)) hit = hn::And(hit, in_rectangle(block_shape, x0, y0, block, columns, right, bottom));
       std::uint64_t touching = 0;
-      // Surely in, or surely out whatever the others say.
+      // Lanes that are neither surely in nor surely out are looked at again.
       if (HWY_UNLIKELY(!hn::AllFalse(df, hn::And(hn::Le(sure, doubtful), hn::Ge(least, hn::Neg(doubtful)))))) {
         const int bx = x0 + block % columns * block_shape.width, by = y0 + block / columns * block_shape.height;
         const VF x = hn::ConvertTo(df, hn::Add(column, hn::Set(d, bx - CellBatch::center)));
