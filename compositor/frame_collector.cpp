@@ -69,7 +69,7 @@ double FrameCollector::add(int projector, TilePart part) {
   part.projector = projector;
   if (part.last) ++to.ended;
   to.bytes += part.records.size();
-  if (!part.records.empty()) to.parts.push_back(std::move(part));
+  if (part.records.size() > 0) to.parts.push_back(std::move(part));
   return start;
 }
 

@@ -29,6 +29,12 @@ std::uint32_t ordered(float x) {
   return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;
 }
 
+/// As gl_fallback.cpp and the shaders take it; of what is opaque enough that it does not matter.
+float optical_depth_of(float opacity) {
+  constexpr double deepest = 60;
+  return static_cast<float>(std::min(-std::log1p(-double{opacity}), deepest));
+}
+
 /// A scalar in the table's units: as lane_scalar() has it where the transfer function has knots, so that a value at a
 /// step stays there; beyond, where rounding to whole units would do no good, as it is.
 float device_scalar(double value, const projection::Lattice& units) {
@@ -54,7 +60,7 @@ class GlMerger final : public TileMerger {
 
   void add(const TilePart& part) override {
     reserve(fragments_.size() + part.fragments);
-    RecordReader reader(part.records);
+    RecordReader reader(part.records.bytes());
     while (!reader.empty()) switch (part.kind) {
         case RecordKind::lattice: {
           const auto header = reader.take<LatticeHeader>();
@@ -70,9 +76,9 @@ class GlMerger final : public TileMerger {
             const auto run = reader.take<LatticeRun>();
             push({double(run.front),
                   double(run.back),
-                  {run.red, run.green, run.blue, run.optical_depth},
+                  {run.red, run.green, run.blue, optical_depth_of(run.opacity)},
                   header.pixel,
-                  ordered(run.optical_depth),
+                  ordered(run.opacity),
                   0});
           }
           for (int i = 0; i < header.segments; ++i) add(header.pixel, reader.take<projection::LatticeSegment>());
@@ -83,9 +89,9 @@ class GlMerger final : public TileMerger {
           check(part, run.pixel);
           push({run.front,
                 run.front + run.thickness,
-                {run.red, run.green, run.blue, run.optical_depth},
+                {run.red, run.green, run.blue, optical_depth_of(run.opacity)},
                 run.pixel,
-                ordered(run.optical_depth)});
+                ordered(run.opacity)});
           break;
         }
         case RecordKind::chains:
@@ -297,14 +303,9 @@ class GlMerger final : public TileMerger {
   /// All of the light lies behind what the pixel has.
   void add_light(const GlLight& light, const Fragment* first, MergedPixel& pixel) const {
     if (!pixel.open) return;
-    if (pixel.optical_depth == 0 && first != nullptr && std::isinf(pixel.first_depth))
-      pixel.first_depth = visible_depth(*first);
-    pixel.red += pixel.transmittance * double{light.red};
-    pixel.green += pixel.transmittance * double{light.green};
-    pixel.blue += pixel.transmittance * double{light.blue};
-    pixel.optical_depth += double{light.optical_depth};
-    pixel.transmittance = std::exp(-pixel.optical_depth);
-    pixel.open = pixel.transmittance * weight_ >= context_.integrator->termination_error();
+    if (first != nullptr && std::isinf(pixel.first_depth)) pixel.first_depth = visible_depth(*first);
+    pixel.add(light.red, light.green, light.blue, -std::expm1(-double{light.optical_depth}));
+    pixel.open = (1 - pixel.opacity) * weight_ >= context_.integrator->termination_error();
   }
 
   [[nodiscard]] double visible_depth(const Fragment& f) const {

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -24,17 +23,17 @@ class RunMerger final : public TileMerger {
         rect_(rect),
         weight_(opacity_weight(context.max_color, context.longest_ray, context.emission)),
         termination_error_(context.integrator->termination_error()),
-        pixels_(static_cast<std::size_t>(rect.area())) {}
+        first_of_(static_cast<std::size_t>(rect.area()), none) {}
 
   void add(const TilePart& part) override {
-    if ((runs_.size() + part.fragments) * sizeof(RunRecord) > budget_)
+    if ((runs_.size() + part.fragments) * sizeof(Run) > budget_)
       throw scene::Error(scene::ExitCode::system_failure,
                          fmt::format("the tile at pixel {},{} holds {} runs at once, beyond the memory budget; raise "
                                      "--memory or make --tile-size smaller",
                                      rect_.x0, rect_.y0, runs_.size() + part.fragments));
-    RecordReader reader(part.records);
+    RecordReader reader(part.records.bytes());
     const auto check = [&](std::uint32_t pixel) {
-      if (pixel < pixels_.size()) return;
+      if (pixel < first_of_.size()) return;
       throw scene::Error(
           scene::ExitCode::system_failure,
           fmt::format("exchange: the runs of tile {} are malformed; all ranks must run the same program", part.tile));
@@ -43,7 +42,7 @@ class RunMerger final : public TileMerger {
       while (!reader.empty()) {
         const auto run = reader.take<RunRecord>();
         check(run.pixel);
-        runs_.push_back(run);
+        push(run.pixel, {run.front, run.thickness, run.red, run.green, run.blue, run.opacity});
       }
       return;
     }
@@ -58,8 +57,8 @@ class RunMerger final : public TileMerger {
       for (int i = 0; i < header.runs; ++i) {
         const auto run = reader.take<LatticeRun>();
         const double front = lattice.depth(run.front);
-        runs_.push_back({front, static_cast<float>(lattice.depth(run.back) - front), run.red, run.green, run.blue,
-                         run.optical_depth, header.pixel});
+        push(header.pixel,
+             {front, static_cast<float>(lattice.depth(run.back) - front), run.red, run.green, run.blue, run.opacity});
       }
       for (int i = 0; i < header.segments; ++i)
         single_.push_back({header.pixel, reader.take<projection::LatticeSegment>()});
@@ -68,40 +67,63 @@ class RunMerger final : public TileMerger {
   }
 
   void advance(double final_depth) override {
-    if (runs_.empty()) return;
-    // By all a run holds: equal runs are interchangeable, so the order of arrival shows nowhere.
-    const auto before = [&](std::uint32_t a, std::uint32_t b) {
-      const auto key = [](const RunRecord& run) {
-        return std::tie(run.front, run.thickness, run.optical_depth, run.red, run.green, run.blue);
-      };
-      return key(runs_[a]) < key(runs_[b]);
-    };
-    chain_by_pixel();
-    for (std::size_t pixel = 0; pixel < pixels_.size(); ++pixel) {
-      const std::uint32_t first = first_of_[pixel];
-      if (first == none) continue;
-      order_.clear();
-      for (std::uint32_t i = first; i != none; i = next_[i]) order_.push_back(i);
-      if (order_.size() > 1) std::sort(order_.begin(), order_.end(), before);
-      for (auto i = order_.begin(); i != order_.end() && runs_[*i].front < final_depth; ++i)
-        composite(runs_[*i], pixels_[pixel]);
+    const bool all = final_depth == std::numeric_limits<double>::infinity();
+    if (runs_.empty() && !all) return;
+    if (pixels_.empty() && !all) pixels_.resize(first_of_.size());
+    if (all) image_ = scene::Image({rect_.width(), rect_.height()});
+    std::vector<Run> runs = std::exchange(runs_, {});
+    for (std::size_t p = 0; p < first_of_.size(); ++p) {
+      const std::uint32_t first = std::exchange(first_of_[p], none);
+      if (first == none && (!all || pixels_.empty())) continue;
+      MergedPixel pixel = pixels_.empty() ? MergedPixel{} : pixels_[p];
+      const auto composited = composite(runs, first, final_depth, pixel);
+      for (auto left = composited; left != order_.end(); ++left) push(static_cast<std::uint32_t>(p), **left);
+      if (all)
+        pixel.write(image_, p);
+      else
+        pixels_[p] = pixel;
     }
-    if (final_depth == std::numeric_limits<double>::infinity())
-      runs_.clear();
-    else
-      std::erase_if(runs_, [&](const RunRecord& run) { return run.front < final_depth; });
   }
 
-  MergedTile finish() override { return {image_of(pixels_, {rect_.width(), rect_.height()}), {}, {}}; }
+  MergedTile finish() override { return {std::move(image_), {}, {}}; }
 
  private:
   static constexpr std::uint32_t none = 0xffffffff;
 
-  /// Numbers of runs, pixel by pixel: those of pixel p are i = first_of_[p], next_[i] and so on, up to `none`.
-  void chain_by_pixel() {
-    first_of_.assign(pixels_.size(), none);
-    next_.resize(runs_.size());
-    for (std::uint32_t i = 0; i < runs_.size(); ++i) next_[i] = std::exchange(first_of_[runs_[i].pixel], i);
+  /// RunRecord, and the number of the one of its pixel that came before it.
+  struct Run {
+    double front;
+    float thickness, red, green, blue, opacity;
+    std::uint32_t next = none;
+  };
+
+  void push(std::uint32_t pixel, Run run) {
+    run.next = std::exchange(first_of_[pixel], static_cast<std::uint32_t>(runs_.size()));
+    runs_.push_back(run);
+  }
+
+  /// A pixel's runs before `final_depth`, front to back. Leaves all of them ordered; returns the first that is not.
+  std::vector<const Run*>::const_iterator composite(const std::vector<Run>& runs, std::uint32_t first,
+                                                    double final_depth, MergedPixel& pixel) {
+    order_.clear();
+    for (std::uint32_t i = first; i != none; i = runs[i].next) order_.push_back(&runs[i]);
+    // By all a run holds: equal runs are interchangeable, so the order of arrival shows nowhere.
+    const auto before = [](const Run* a, const Run* b) {
+      const auto key = [](const Run& run) {
+        return std::tie(run.front, run.thickness, run.opacity, run.red, run.green, run.blue);
+      };
+      return key(*a) < key(*b);
+    };
+    if (order_.size() > 1) std::sort(order_.begin(), order_.end(), before);
+    auto at = order_.cbegin();
+    for (; at != order_.cend() && (*at)->front < final_depth; ++at) {
+      const Run& run = **at;
+      if (!pixel.open) continue;
+      if (run.opacity > 0) pixel.first_depth = std::min(pixel.first_depth, run.front);
+      pixel.add(run.red, run.green, run.blue, run.opacity);
+      pixel.open = (1 - pixel.opacity) * weight_ >= termination_error_;
+    }
+    return at;
   }
 
   /// Runs of one segment, with the bits that their projector would have found.
@@ -122,29 +144,20 @@ class RunMerger final : public TileMerger {
     for (std::size_t i = 0; i < single_.size(); ++i) {
       const auto& [pixel, segment] = single_[i];
       const double front = first_visible_depth(*context_.lattice, segment, *context_.integrator);
-      runs_.push_back({front, static_cast<float>(context_.lattice->depth(segment.back) - front), batch_.red[i],
-                       batch_.green[i], batch_.blue[i], batch_.optical_depth[i], pixel});
+      push(pixel, {front, static_cast<float>(context_.lattice->depth(segment.back) - front), batch_.red[i],
+                   batch_.green[i], batch_.blue[i], batch_.alpha[i]});
     }
-  }
-
-  void composite(const RunRecord& run, MergedPixel& pixel) const {
-    if (!pixel.open) return;
-    if (pixel.optical_depth == 0 && run.optical_depth > 0) pixel.first_depth = run.front;
-    pixel.red += pixel.transmittance * double{run.red};
-    pixel.green += pixel.transmittance * double{run.green};
-    pixel.blue += pixel.transmittance * double{run.blue};
-    pixel.optical_depth += double{run.optical_depth};
-    pixel.transmittance *= std::exp(-double{run.optical_depth});
-    pixel.open = pixel.transmittance * weight_ >= termination_error_;
   }
 
   MergeContext context_;
   std::uint64_t budget_;
   projection::PixelRect rect_;
   double weight_, termination_error_;
-  std::vector<MergedPixel> pixels_;
-  std::vector<RunRecord> runs_;
-  std::vector<std::uint32_t> order_, first_of_, next_;
+  std::vector<MergedPixel> pixels_;      ///< once something was composited before the last
+  std::vector<std::uint32_t> first_of_;  ///< by pixel: its last run that came, which has the others' numbers
+  std::vector<Run> runs_;
+  std::vector<const Run*> order_;  ///< one pixel's
+  scene::Image image_;
   struct Single {
     std::uint32_t pixel;
     projection::LatticeSegment segment;

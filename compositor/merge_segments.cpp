@@ -38,7 +38,7 @@ class SegmentMerger : public TileMerger {
   void add(const TilePart& part) override {
     const bool cell_data = part.kind == RecordKind::chains_of_cells;
     reserve(segments_.size + part.fragments);
-    RecordReader reader(part.records);
+    RecordReader reader(part.records.bytes());
     while (!reader.empty()) {
       const auto chain = reader.take<ChainHeader>();
       check_room(part.tile, chain.pixel, chain.links);
@@ -123,7 +123,7 @@ class TupleMerger final : public SegmentMerger {
 
   void add(const TilePart& part) override {
     reserve(segments().size + part.fragments);
-    RecordReader reader(part.records);
+    RecordReader reader(part.records.bytes());
     while (!reader.empty()) {
       const auto record = reader.take<TupleRecord>();
       check_room(part.tile, record.pixel, 1);

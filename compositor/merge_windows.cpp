@@ -32,7 +32,7 @@ class WindowMerger final : public TileMerger {
   }
 
   void add(const TilePart& part) override {
-    RecordReader reader(part.records);
+    RecordReader reader(part.records.bytes());
     while (!reader.empty()) {
       const auto header = reader.take<LatticeHeader>();
       if (header.pixel >= places_.size())

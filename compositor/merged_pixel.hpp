@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -9,28 +8,32 @@
 namespace tessera::compositor {
 
 /// A pixel of a tile while fragments that are final are composited into it, front to back: premultiplied linear RGB,
-/// and where it begins to show, in planar depth (world units). Optical depth and transmittance are both kept: 1 - 1e-8
-/// would lose its opacity, and exp() of every sum its time.
+/// and where it begins to show, in planar depth (world units).
 struct MergedPixel {
-  double red = 0, green = 0, blue = 0, transmittance = 1, optical_depth = 0;
+  double red = 0, green = 0, blue = 0, opacity = 0;
   double first_depth = std::numeric_limits<double>::infinity();
   bool open = true;  ///< false: what lies behind would not show
+
+  /// Light of this opacity behind what the pixel has.
+  void add(double r, double g, double b, double its_opacity) {
+    const double weight = 1 - opacity;
+    red += weight * r, green += weight * g, blue += weight * b;
+    opacity += weight * its_opacity;
+  }
+
+  void write(scene::Image& image, std::size_t at) const {
+    image.rgba[4 * at + 0] = static_cast<float>(red);
+    image.rgba[4 * at + 1] = static_cast<float>(green);
+    image.rgba[4 * at + 2] = static_cast<float>(blue);
+    image.rgba[4 * at + 3] = static_cast<float>(opacity);
+    image.depth[at] = static_cast<float>(first_depth);
+  }
 };
 
 /// The picture of a tile of that size, row by row.
 inline scene::Image image_of(const std::vector<MergedPixel>& pixels, scene::ImageSize size) {
   scene::Image image(size);
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const MergedPixel& pixel = pixels[i];
-    image.rgba[4 * i + 0] = static_cast<float>(pixel.red);
-    image.rgba[4 * i + 1] = static_cast<float>(pixel.green);
-    image.rgba[4 * i + 2] = static_cast<float>(pixel.blue);
-    // What transmittance lacks to 1 is right to 1e-13 from here on, at a fraction of the time.
-    constexpr double thick = 1e-3;
-    image.rgba[4 * i + 3] =
-        static_cast<float>(pixel.optical_depth > thick ? 1 - pixel.transmittance : -std::expm1(-pixel.optical_depth));
-    image.depth[i] = static_cast<float>(pixel.first_depth);
-  }
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].write(image, i);
   return image;
 }
 

@@ -29,7 +29,12 @@ constexpr int clear_tag = 103;    // rank 0 to all: nothing more will come from 
 
 // Naps of the engine between two looks at MPI: a look costs 20 to 30 us of a core that projects or composites. They
 // double while nothing comes; messages on their way need looks to get on.
-constexpr microseconds shortest_nap{100}, longest_nap{2000}, longest_nap_moving{500};
+struct Naps {
+  microseconds shortest, longest_moving, longest;
+};
+constexpr Naps idle_naps{microseconds(100), microseconds(500), microseconds(2000)};
+// While the rank's cores project, a look in time for the next part of the frame is soon enough.
+constexpr Naps working_naps{microseconds(2000), microseconds(2000), microseconds(5000)};
 
 Bytes error_bytes(const scene::Error& error) {
   const std::string words = error.what();
@@ -103,6 +108,14 @@ class MpiTransport::Engine {
     return mailboxes.error();
   }
 
+  void set_working(bool working) {
+    {
+      const std::lock_guard lock(mutex_);
+      working_ = working;
+    }
+    if (!working) changed_.notify_all();
+  }
+
   /// What was sent before is on the old faces when this returns.
   void trace_to(scene::Trace* projecting, scene::Trace* compositing) {
     std::unique_lock lock(mutex_);
@@ -171,7 +184,7 @@ class MpiTransport::Engine {
     changed_.notify_all();
     if (start_error_) return;
 
-    microseconds nap = shortest_nap;
+    microseconds nap = idle_naps.shortest;
     while (!all_clear_) {
       bool came = false;
       try {
@@ -187,8 +200,9 @@ class MpiTransport::Engine {
       settle_end();
       if (all_clear_) break;
       const bool moving = !pending_.empty() || !arriving_.empty();
-      nap = came ? shortest_nap : std::min(2 * nap, moving ? longest_nap_moving : longest_nap);
       std::unique_lock lock(mutex_);
+      const Naps& naps = working_ ? working_naps : idle_naps;
+      nap = came ? naps.shortest : std::clamp(2 * nap, naps.shortest, moving ? naps.longest_moving : naps.longest);
       if (queue_.empty()) changed_.wait_for(lock, nap);
     }
     while (!pending_.empty()) complete();
@@ -356,7 +370,7 @@ class MpiTransport::Engine {
   scene::Trace *projecting_ = nullptr, *compositing_ = nullptr;  // changed while nothing is being posted
   std::deque<Outgoing> queue_;
   std::optional<scene::Error> own_fault_, start_error_;
-  bool started_ = false, finishing_ = false, fault_told_ = false;
+  bool started_ = false, finishing_ = false, fault_told_ = false, working_ = false;
 
   // The engine's thread alone.
   std::list<Outgoing> pending_;
@@ -382,6 +396,7 @@ std::optional<Message> MpiTransport::receive(Channel channel, std::chrono::milli
   return engine_->mailboxes.receive(channel, timeout);
 }
 void MpiTransport::fail(const scene::Error& error) { engine_->fail(error); }
+void MpiTransport::set_working(bool working) { engine_->set_working(working); }
 void MpiTransport::check() const { engine_->mailboxes.check(); }
 void MpiTransport::trace_to(scene::Trace* projecting, scene::Trace* compositing) {
   engine_->trace_to(projecting, compositing);

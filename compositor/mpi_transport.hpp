@@ -15,7 +15,8 @@ bool launched_by_mpi();
 ///
 /// One thread of this object makes all MPI calls, so MPI_THREAD_FUNNELED is enough, and it always takes what arrives:
 /// no send waits for the other side to look, and a rank that waits sleeps instead of spinning. It looks for messages
-/// every 20 microseconds while some move and every half millisecond after a while without any.
+/// every 100 microseconds after one came, down to every 2 milliseconds while none does; set_working() makes that 2
+/// to 5.
 ///
 /// Faults: a rank that fails tells rank 0, which decides on the first one it hears of and tells all. A rank that cannot
 /// end in an orderly way within `patience` after that (it hangs in a read, or its peers are gone) speaks and
@@ -44,6 +45,7 @@ class MpiTransport final : public Transport {
   std::optional<Message> receive(Channel channel, std::chrono::milliseconds timeout) override;
   void fail(const scene::Error& error) override;
   void check() const override;
+  void set_working(bool working) override;
   void trace_to(scene::Trace* projecting, scene::Trace* compositing) override;
   [[nodiscard]] Traffic sent(Channel channel) const override;
 

@@ -89,7 +89,8 @@ void Outbox::write(Lane& lane, const TilePart& part) {
   }
   append(lane.batch, PartHeader{part.tile, part.kind, static_cast<std::uint8_t>(part.last ? 1 : 0), 0,
                                 part.records.size(), part.final_depth, part.fragments});
-  lane.batch.insert(lane.batch.end(), part.records.begin(), part.records.end());
+  const std::span<const std::byte> records = part.records.bytes();
+  lane.batch.insert(lane.batch.end(), records.begin(), records.end());
   lane.waiting += lane.batch.size() - before;
   fragments_ += part.fragments;
   if (lane.batch.size() >= message_bytes) seal(lane);
@@ -158,10 +159,12 @@ void Outbox::put(TilePart part) {
   if (!must_wait(tile)) return;
   for (Lane& each : lanes_) seal(each);  // who waits keeps nothing back that others may wait for
   const scene::TraceScope timing(settings_.trace, "wait", static_cast<std::int32_t>(frame_));
+  if (threads_waiting_++ == 0) transport_.set_working(false);
   while (must_wait(tile)) {
     changed_.wait_for(lock, std::chrono::milliseconds(50));
     transport_.check();
   }
+  if (--threads_waiting_ == 0) transport_.set_working(true);
 }
 
 void Outbox::end_frame(FrameEnd sums) {

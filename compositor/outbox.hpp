@@ -77,6 +77,7 @@ class Outbox {
   std::vector<Lane> lanes_;
   std::map<std::uint32_t, Tile> early_;  ///< tiles that are not first on their lane
   std::uint64_t early_bytes_ = 0;
+  int threads_waiting_ = 0;
   std::deque<std::uint32_t> unfinished_;  ///< of the frame, in order
   std::vector<bool> finished_;
   const TileMap* map_ = nullptr;

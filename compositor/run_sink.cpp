@@ -1,6 +1,6 @@
 #include "compositor/run_sink.hpp"
 
-#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace tessera::compositor {
@@ -52,11 +52,9 @@ void RunSink::integrate(const projection::RaySegments& segments, const sorting::
 void RunSink::close(std::size_t pixel) {
   Run& run = runs_[pixel];
   if (run.begun && run.visible()) {
-    append(records(),
-           RunRecord{run.front, static_cast<float>(run.back - run.front), static_cast<float>(run.red),
-                     static_cast<float>(run.green), static_cast<float>(run.blue),
-                     static_cast<float>(std::min(run.optical_depth, double{std::numeric_limits<float>::max()})),
-                     tile_pixel(pixel)});
+    append(records(), RunRecord{run.front, static_cast<float>(run.back - run.front), static_cast<float>(run.red),
+                                static_cast<float>(run.green), static_cast<float>(run.blue),
+                                static_cast<float>(-std::expm1(-run.optical_depth)), tile_pixel(pixel)});
     count(1);
     bytes_since_cut_ += sizeof(RunRecord);
   }

@@ -65,6 +65,9 @@ class Transport {
   /// Throws the run's error if there is one: for long loops that neither send nor receive.
   virtual void check() const = 0;
 
+  /// Whether this rank's cores have other work than messages now: then they are looked for less often. Not at first.
+  virtual void set_working(bool /*working*/) {}
+
   /// Where spans of `send` go from now on: fragments and meshes to the projector's face, tiles to the compositor's.
   /// Null: nowhere. The faces must outlive the transport or be taken back.
   virtual void trace_to(scene::Trace* projecting, scene::Trace* compositing) = 0;

@@ -164,16 +164,24 @@ class PixelGroup {
     return most;
   }
 
-  /// The light of the rows [from, to) before `final_step`, in pixels that are open. Returns where it ended: behind the
-  /// last row with a final segment.
-  HWY_INLINE std::size_t integrate(std::size_t from, std::size_t to, std::int32_t final_step) {
+  /// Loads the segments of the rows [from, to) before `final_step`, in pixels that are open; of runs it notes where
+  /// they end. Returns where it ended: behind the last row with a final segment.
+  template <bool runs>
+  HWY_INLINE std::size_t load(std::size_t from, std::size_t to, std::int32_t final_step) {
     const DI d;
     const DF df;
     const std::size_t lanes = HN::Lanes(d);
     const VF length_per_step = HN::Load(df, &state_.length_per_step[pixel_]);
     const auto open = HN::Lt(HN::Load(d, &state_.open[pixel_]), HN::Zero(d));
     const VI end = HN::Set(d, final_step), none = HN::Set(d, no_key);
-    // In two passes, each of chains short enough for a processor to work on several rows at once.
+    VI run_back = none;
+    VI widest = HN::Zero(d);
+    if constexpr (runs) {
+      // A lane in no run begins one in the first of these rows, or takes nothing from any: its list has no holes.
+      run_back = HN::Load(d, &state_.back[pixel_]);
+      const VI first = HN::LoadU(d, keys(from));
+      run_back = HN::IfThenElse(HN::And(open, HN::And(HN::Eq(run_back, none), HN::Lt(first, end))), first, run_back);
+    }
     for (std::size_t row = from; row < to; ++row) {
       const VI front = HN::LoadU(d, keys(row));
       const auto is_final = HN::Lt(front, end);
@@ -187,8 +195,16 @@ class PixelGroup {
       light_.put_segment(HN::IfThenElseZero(HN::RebindMask(df, takes), length), HN::IfThenElse(takes, front, none),
                          s.back, s.scalar_front, s.scalar_back,
                          table_.locate(s.scalar_front, HN::Ge(s.scalar_back, s.scalar_front)), (row - from) * lanes);
+      if constexpr (runs) {
+        widest = HN::Max(widest, HN::Abs(HN::IfThenElseZero(takes, HN::Sub(front, run_back))));
+        // Irregular cells' depths are a few steps off: a run does not go back.
+        run_back = HN::IfThenElse(takes, HN::Max(run_back, s.back), run_back);
+      }
     }
-    light_.integrate(table_, to - from);
+    if constexpr (runs) {
+      HN::Store(run_back, d, light_.run_back);
+      light_.touching = HN::AllFalse(d, HN::Gt(widest, HN::Set(d, touching_steps)));
+    }
     return to;
   }
 
@@ -199,7 +215,9 @@ class PixelGroup {
     VI done = HN::Zero(d);
     for (std::size_t from = 0, to; from < rows; from = to) {
       const std::size_t most = std::min(rows, from + LightRows::most);
-      to = integrate(from, most, final_step);
+      // In three passes, each of chains short enough for a processor to work on several rows at once.
+      to = rules.runs ? load<true>(from, most, final_step) : load<false>(from, most, final_step);
+      light_.integrate(table_, to - from);
       for (std::size_t row = from; row < to; ++row)
         done = HN::Sub(done, HN::VecFromMask(d, HN::Lt(HN::LoadU(d, keys(row)), end)));
       if (!GroupLight(state_, light_, pixel_, table_.independent).add(to - from, rules) || to < most) break;

@@ -24,7 +24,6 @@ struct WindowState {
   static constexpr std::int32_t not_yet = 0x7fffffff;
 
   alignas(64) std::array<double, pixels> red, green, blue, transmittance;
-  alignas(64) std::array<double, pixels> optical_depth;   ///< runs only: a picture's opacity is 1 - transmittance
   alignas(64) std::array<float, pixels> length_per_step;  ///< world units, in the lattice's unit of depth
   alignas(64) std::array<std::int32_t, pixels> open;      ///< -1 or 0: takes nothing any more
   /// The run's first segment with optical depth (or light); first_back is not_yet before there is one.
@@ -41,7 +40,7 @@ struct WindowState {
     std::int32_t back;
     bool several;                      ///< false: nothing but `first` shows
     projection::LatticeSegment first;  ///< the segment in which it begins to show
-    double red, green, blue, optical_depth;
+    double red, green, blue, opacity;
   };
   std::vector<Run> ended;
 

@@ -49,6 +49,11 @@ HWY_INLINE VF demote(Doubles v) {
   const HalfF half;
   return HN::Combine(DF(), HN::DemoteTo(half, v.high), HN::DemoteTo(half, v.low));
 }
+/// -1 where the mask is set, else 0.
+HWY_INLINE VI lanes_of(HN::Mask<DD> low, HN::Mask<DD> high) {
+  const VD yes = HN::Set(DD(), -1);
+  return HN::ConvertTo(DI(), demote({HN::IfThenElseZero(low, yes), HN::IfThenElseZero(high, yes)}));
+}
 
 /// What a block of rows, a segment of every pixel in each, sends to the eye: numbers [row * lanes + lane].
 struct LightRows {
@@ -65,6 +70,9 @@ struct LightRows {
   } wait;
   std::size_t waiting = 0;
   bool lit[most];  ///< some lane of the row has light or depth
+  // Runs: where each lane's ends behind the rows (no_key: in none), and whether none ends between them.
+  alignas(64) std::int32_t run_back[most_lanes];
+  bool touching;
 
   HWY_INLINE void put_segment(VF l, VI from, VI to, VF scalar_from, VF scalar_to, VI scalar_interval, std::size_t at) {
     const DF d;
@@ -138,18 +146,24 @@ class GroupLight {
 
   /// The first `count` rows. Returns whether some pixel stays open.
   HWY_INLINE bool add(std::size_t count, const WindowRules& rules) {
-    if (!rules.runs) return add_to_picture(count, rules);
+    if (!rules.runs) return add_touching<false>(count, rules);
+    // Mostly no run ends between the rows: then they are a picture's. Light without extinction ends runs, too.
+    if (light_.touching && !independent_) return add_touching<true>(count, rules);
     return rules.least_transmittance > 0 ? add_to_runs<true>(count, rules) : add_to_runs<false>(count, rules);
   }
 
  private:
-  HWY_INLINE bool add_to_picture(std::size_t count, const WindowRules& rules) {
+  /// Rows that go on with what each pixel has: with the whole picture, or with its run.
+  template <bool runs>
+  HWY_INLINE bool add_touching(std::size_t count, const WindowRules& rules) {
     const DF df;
     const DD dd;
     const std::size_t p = pixel_;
     Doubles red = load(&state_.red[p]), green = load(&state_.green[p]), blue = load(&state_.blue[p]);
     Doubles transmittance = load(&state_.transmittance[p]);
-    const VD least = HN::Set(dd, rules.least_transmittance);
+    const Doubles least = runs
+                              ? least_of_runs(rules)
+                              : Doubles{HN::Set(dd, rules.least_transmittance), HN::Set(dd, rules.least_transmittance)};
     // A pixel that closes takes no more: it has no weight.
     Open open = load_open();
     for (std::size_t row = 0; row < count; ++row) {
@@ -160,29 +174,47 @@ class GroupLight {
       add(weight, light_.red + at, red), add(weight, light_.green + at, green), add(weight, light_.blue + at, blue);
       take(weight, light_.alpha + at, transmittance);
       // After each segment, not each window: where a ray ends must not depend on how its segments were cut.
-      open.low = HN::And(open.low, HN::Ge(transmittance.low, least));
-      open.high = HN::And(open.high, HN::Ge(transmittance.high, least));
+      open.low = HN::And(open.low, HN::Ge(transmittance.low, least.low));
+      open.high = HN::And(open.high, HN::Ge(transmittance.high, least.high));
     }
     store(red, &state_.red[p]), store(green, &state_.green[p]), store(blue, &state_.blue[p]);
     store(transmittance, &state_.transmittance[p]);
-    note_first(count);
+    note_first<runs>(count);
+    if constexpr (runs) HN::Store(HN::Load(DI(), light_.run_back), DI(), &state_.back[p]);
     const VI open_lanes = store_open(open);
     return !HN::AllFalse(DI(), HN::Lt(open_lanes, HN::Zero(DI())));
   }
 
-  /// Where lanes that have shown nothing yet begin to. (Lanes closed by a row show what it has: it is theirs.)
+  /// Where lanes that have shown nothing yet begin to, and, of runs, whether more than that segment shows. (Lanes
+  /// closed by a row show what it has: it is theirs.)
+  template <bool runs>
   HWY_INLINE void note_first(std::size_t count) {
     const DI d;
     const DF df;
     auto unseen = HN::Eq(HN::Load(d, &state_.first_back[pixel_]), HN::Set(d, no_key));
-    for (std::size_t row = 0; row < count && !HN::AllFalse(d, unseen); ++row) {
+    auto single = unseen;
+    if constexpr (runs) single = HN::Eq(HN::Load(d, &state_.several[pixel_]), HN::Zero(d));
+    for (std::size_t row = 0; row < count && !HN::AllFalse(d, single); ++row) {
       if (!light_.lit[row]) continue;
       const VF depth = HN::Load(df, light_.optical_depth + row * HN::Lanes(d));
-      const auto appears = HN::And(unseen, HN::RebindMask(d, HN::Gt(depth, HN::Zero(df))));
+      const auto shows = HN::RebindMask(d, HN::Gt(depth, HN::Zero(df)));
+      const auto appears = HN::And(unseen, shows);
+      if constexpr (runs) single = HN::AndNot(HN::AndNot(unseen, shows), single);
       if (HN::AllFalse(d, appears)) continue;
       keep_first(appears, row);
       unseen = HN::AndNot(appears, unseen);
+      if constexpr (!runs) single = unseen;
     }
+    if constexpr (runs) HN::Store(HN::VecFromMask(d, HN::Not(single)), d, &state_.several[pixel_]);
+  }
+
+  /// What the lanes' runs must let through to stay open, behind the runs before them.
+  HWY_INLINE Doubles least_of_runs(const WindowRules& rules) const {
+    const DD d;
+    if (rules.least_transmittance == 0) return {HN::Zero(d), HN::Zero(d)};
+    const Doubles before = load(&state_.ray_transmittance[pixel_]);
+    const VD most = HN::Set(d, rules.least_transmittance);
+    return {HN::Div(most, before.low), HN::Div(most, before.high)};
   }
 
   /// The same in runs, a lane's run in registers while it goes on. Whether some pixel stays open may change only where
@@ -194,18 +226,13 @@ class GroupLight {
     const DD dd;
     const std::size_t p = pixel_;
     const VI none = HN::Set(d, no_key), no_run = HN::Set(d, -no_key), zero = HN::Zero(d);
-    Doubles red, green, blue, optical_depth, transmittance, least;
+    Doubles red, green, blue, transmittance, least;
     VI run_back;  // no_run: no run
     HN::Mask<DI> seen, several;
     const auto resume = [&]() HWY_ATTR {
       red = load(&state_.red[p]), green = load(&state_.green[p]), blue = load(&state_.blue[p]);
-      optical_depth = load(&state_.optical_depth[p]), transmittance = load(&state_.transmittance[p]);
-      if constexpr (closes) {
-        // Of the run, behind the runs before it.
-        const Doubles before = load(&state_.ray_transmittance[p]);
-        const VD most = HN::Set(dd, rules.least_transmittance);
-        least = {HN::Div(most, before.low), HN::Div(most, before.high)};
-      }
+      transmittance = load(&state_.transmittance[p]);
+      if constexpr (closes) least = least_of_runs(rules);
       run_back = HN::Load(d, &state_.back[p]);
       run_back = HN::IfThenElse(HN::Eq(run_back, none), no_run, run_back);
       several = HN::Ne(HN::Load(d, &state_.several[p]), zero);
@@ -213,7 +240,7 @@ class GroupLight {
     };
     const auto save = [&]() HWY_ATTR {
       store(red, &state_.red[p]), store(green, &state_.green[p]), store(blue, &state_.blue[p]);
-      store(optical_depth, &state_.optical_depth[p]), store(transmittance, &state_.transmittance[p]);
+      store(transmittance, &state_.transmittance[p]);
       HN::Store(HN::IfThenElse(HN::Eq(run_back, no_run), none, run_back), d, &state_.back[p]);
       HN::Store(HN::VecFromMask(d, several), d, &state_.several[p]);
     };
@@ -232,7 +259,8 @@ class GroupLight {
       if (independent_) {
         // Light without extinction does not share a run with what absorbs behind it either: a run's front is where
         // absorption begins.
-        const auto clear = HN::RebindMask(d, HN::Le(demote(optical_depth), HN::Zero(df)));
+        const VD one = HN::Set(dd, 1);
+        const auto clear = HN::Ne(lanes_of(HN::Ge(transmittance.low, one), HN::Ge(transmittance.high, one)), zero);
         ends = HN::Or(ends, HN::And(HN::And(in_run, absorbs), HN::And(seen, clear)));
       }
       if (HWY_UNLIKELY(!HN::AllFalse(d, ends))) {
@@ -257,13 +285,10 @@ class GroupLight {
       if (!HN::AllFalse(d, appears)) keep_first(appears, row);
       seen = HN::Or(seen, appears);
       // Lanes that took nothing from the start have no light; lanes that have closed since have.
-      Doubles weight = transmittance, one{HN::Set(dd, 1.0), HN::Set(dd, 1.0)};
-      if constexpr (closes) {
+      Doubles weight = transmittance;
+      if constexpr (closes)
         weight = {HN::IfThenElseZero(open.low, weight.low), HN::IfThenElseZero(open.high, weight.high)};
-        one = {HN::IfThenElseZero(open.low, one.low), HN::IfThenElseZero(open.high, one.high)};
-      }
       add(weight, light_.red + at, red), add(weight, light_.green + at, green), add(weight, light_.blue + at, blue);
-      add(one, light_.optical_depth + at, optical_depth);
       take(weight, light_.alpha + at, transmittance);
       if constexpr (closes) {
         const auto dark_low = HN::AndNot(HN::Ge(transmittance.low, least.low), open.low);
@@ -312,8 +337,7 @@ class GroupLight {
   /// Returns what is stored: -1 or 0.
   HWY_INLINE VI store_open(const Open& open) {
     const DI d;
-    const VD yes = HN::Set(DD(), -1);
-    const VI lanes = HN::ConvertTo(d, demote({HN::IfThenElseZero(open.low, yes), HN::IfThenElseZero(open.high, yes)}));
+    const VI lanes = lanes_of(open.low, open.high);
     HN::Store(lanes, d, &state_.open[pixel_]);
     return lanes;
   }

@@ -82,8 +82,7 @@ void WindowRuns::append_run(Bytes& out, const WindowState::Run& run) const {
   }
   const double front = first_visible_depth(scene_.lattice, run.first, *scene_.integrator);
   append(out, LatticeRun{scene_.lattice.depth_step(front), run.back, static_cast<float>(run.red),
-                         static_cast<float>(run.green), static_cast<float>(run.blue),
-                         static_cast<float>(std::min(run.optical_depth, double{std::numeric_limits<float>::max()}))});
+                         static_cast<float>(run.green), static_cast<float>(run.blue), static_cast<float>(run.opacity)});
 }
 
 void WindowRuns::write_ended() {

@@ -9,7 +9,7 @@ constexpr int side = projection::SegmentWindows::side;
 }
 
 void WindowState::start(const projection::PixelRect& rect, const projection::PixelSpace& space) {
-  for (auto* a : {&red, &green, &blue, &optical_depth}) a->fill(0);
+  for (auto* a : {&red, &green, &blue}) a->fill(0);
   transmittance.fill(1);
   ray_transmittance.fill(1);
   open.fill(0);
@@ -34,13 +34,13 @@ WindowState::Run WindowState::run(std::size_t p) const {
           red[p],
           green[p],
           blue[p],
-          optical_depth[p]};
+          1 - transmittance[p]};
 }
 
 void WindowState::end_run(std::size_t p) {
   if (first_back[p] != not_yet) ended.push_back(run(p));
   ray_transmittance[p] *= transmittance[p];
-  red[p] = green[p] = blue[p] = optical_depth[p] = 0;
+  red[p] = green[p] = blue[p] = 0;
   transmittance[p] = 1;
   several[p] = 0;
   first_back[p] = back[p] = not_yet;

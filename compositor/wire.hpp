@@ -3,14 +3,16 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <span>
+#include <utility>
 
 #include "compositor/transport.hpp"
 #include "projection/lattice.hpp"
 #include "projection/segment_tuple.hpp"
 #include "projection/segment_windows.hpp"
 
-/// What travels from projectors to compositors, byte by byte. Little endian, no padding, version 3.
+/// What travels from projectors to compositors, byte by byte. Little endian, no padding, version 4.
 ///
 ///   message    MessageHeader, then by its kind
 ///     begin    FrameBegin, then one bit a tile of the receiver in its order, lowest bit first: 1 where parts will come
@@ -37,7 +39,7 @@ namespace tessera::compositor {
 static_assert(std::endian::native == std::endian::little, "the wire is little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 3;
+inline constexpr std::uint16_t wire_version = 4;
 
 enum class MessageKind : std::uint16_t { begin = 1, parts = 2, end = 3 };
 enum class RecordKind : std::uint8_t {
@@ -83,7 +85,7 @@ struct RunRecord {
   double front;            ///< planar depth where extinction first becomes positive (or light, if there is none)
   float thickness;         ///< back - front
   float red, green, blue;  ///< linear light that leaves the front, not attenuated by what lies before it
-  float optical_depth;     ///< not transmittance: 1 - 1e-8 would be 1
+  float opacity;           ///< not transmittance: 1 - 1e-8 would be 1
   std::uint32_t pixel;     ///< row by row in the tile
 };
 static_assert(sizeof(RunRecord) == 32);
@@ -117,7 +119,7 @@ static_assert(sizeof(RunsHeader) == 8);
 /// RunRecord with its depths in steps of the lattice.
 struct LatticeRun {
   std::int32_t front, back;
-  float red, green, blue, optical_depth;
+  float red, green, blue, opacity;
 };
 static_assert(sizeof(LatticeRun) == 24);
 
@@ -172,6 +174,22 @@ class RecordReader {
 /// A message's header, checked. Throws Error(system_failure) naming ranks and versions.
 MessageHeader take_header(RecordReader& reader, int from, int self);
 
+/// Records that nobody changes: in memory of their own, or in that of the message they came in.
+class Records {
+ public:
+  Records() = default;
+  Records(Bytes bytes)  // NOLINT(google-explicit-constructor): records are bytes
+      : memory_(std::make_shared<const Bytes>(std::move(bytes))), bytes_(*memory_) {}
+  Records(std::shared_ptr<const Bytes> message, std::span<const std::byte> bytes)
+      : memory_(std::move(message)), bytes_(bytes) {}
+  [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
+  [[nodiscard]] std::size_t size() const { return bytes_.size(); }
+
+ private:
+  std::shared_ptr<const Bytes> memory_;
+  std::span<const std::byte> bytes_;
+};
+
 /// One projector's fragments of a tile, or some of them.
 struct TilePart {
   std::uint32_t tile = 0;
@@ -179,7 +197,7 @@ struct TilePart {
   bool last = false;
   double final_depth = 0;
   std::uint64_t fragments = 0;
-  Bytes records;
+  Records records;
   int projector = 0;       ///< at the compositor: whose part, 0 .. N-1
   double start_depth = 0;  ///< at the compositor: the projector's part before this one was complete to here
 };

@@ -81,14 +81,14 @@ class CompositorLoop {
       }();
       if (message.bytes.empty()) continue;
       const std::lock_guard lock(mutex_);
-      accept(message);
+      accept(message.from, std::make_shared<const compositor::Bytes>(std::move(message.bytes)));
     }
   }
 
  private:
   /// The next message; an empty one now and then, as the last frame may finish without one.
   compositor::Message next() {
-    auto message = run_.transport.receive(Channel::fragments, std::chrono::milliseconds(5));
+    auto message = run_.transport.receive(Channel::fragments, std::chrono::milliseconds(20));
     if (message) return std::move(*message);
     const std::lock_guard lock(mutex_);
     for (std::size_t p = 0; p < credit_.size(); ++p) pay_out(p);
@@ -117,18 +117,18 @@ class CompositorLoop {
     return *at;
   }
 
-  void accept(const compositor::Message& message) {
-    compositor::RecordReader reader(message.bytes);
-    const auto header = compositor::take_header(reader, message.from, run_.transport.rank());
+  /// Parts stay in their message's memory.
+  void accept(int from, const std::shared_ptr<const compositor::Bytes>& message) {
+    compositor::RecordReader reader(*message);
+    const auto header = compositor::take_header(reader, from, run_.transport.rank());
     // What a rank sends to itself does not move.
-    const bool moved = message.from != run_.transport.rank();
+    const bool moved = from != run_.transport.rank();
     const scene::TraceScope timing(trace_, "receive", static_cast<std::int32_t>(header.frame),
-                                   moved ? message.bytes.size() : 0, moved ? 1 : 0);
+                                   moved ? message->size() : 0, moved ? 1 : 0);
     const auto& projectors = run_.settings.roles.projectors;
-    const auto projector =
-        static_cast<int>(std::find(projectors.begin(), projectors.end(), message.from) - projectors.begin());
+    const auto projector = static_cast<int>(std::find(projectors.begin(), projectors.end(), from) - projectors.begin());
     Frame& to = frame(header.frame);
-    std::uint64_t credit = message.bytes.size();
+    std::uint64_t credit = message->size();
     switch (header.kind) {
       case compositor::MessageKind::begin: {
         const auto begin = reader.take<compositor::FrameBegin>();
@@ -144,9 +144,8 @@ class CompositorLoop {
         while (!reader.empty()) {
           const auto part = reader.take<compositor::PartHeader>();
           const auto records = reader.take_bytes(part.bytes);
-          const double start =
-              to.collector.add(projector, {part.tile, part.kind, part.last != 0, part.final_depth, part.fragments,
-                                           compositor::Bytes(records.begin(), records.end())});
+          const double start = to.collector.add(projector, {part.tile, part.kind, part.last != 0, part.final_depth,
+                                                            part.fragments, compositor::Records(message, records)});
           to.collector.owe(projector, part.tile, start, part.bytes);
           credit -= part.bytes;
           to.merges.try_emplace(part.tile);

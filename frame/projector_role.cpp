@@ -108,7 +108,9 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
                           .longest_edge = mesh.longest_edge,
                           .lattice = lattice.value_or(projection::Lattice{})});
     };
+    run.transport.set_working(true);
     const FrameStatistics statistics = loaded.projector().project(task);
+    run.transport.set_working(false);
     outbox.end_frame(counts_of(statistics));
     if (render.trace != nullptr) render.trace->add_frame(number, start_us);
   }
