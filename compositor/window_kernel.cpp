@@ -239,6 +239,7 @@ class PixelGroup {
     const VI left = HN::IfThenElseZero(open, HN::Sub(count, done));
     HN::StoreU(left, d, reinterpret_cast<std::int32_t*>(counts));
     const auto most = static_cast<std::size_t>(HN::GetLane(HN::MaxOfLanes(d, left)));
+    state_.rest_rows[pixel_ / lanes] = static_cast<std::int32_t>(most);
     const auto gone = static_cast<std::uint64_t>(HN::GetLane(HN::SumOfLanes(d, HN::Sub(count, left))));
     if (most == 0) return gone;
     // As many of each lane, so that no branch depends on one: what is not a lane's own is behind its list's end.
@@ -270,10 +271,12 @@ std::uint64_t composite_form(const WindowRules& rules, projection::SegmentWindow
   std::uint64_t done = 0;
   LightRows light;
   const DI d;
-  const VI few = HN::Set(d, at_least - 1);
+  const auto full = static_cast<std::int32_t>(windows.capacity());
   for (std::size_t pixel = 0; pixel < windows.pixels(); pixel += HN::Lanes(d)) {
     const VI count = HN::LoadU(d, reinterpret_cast<const std::int32_t*>(windows.counts() + pixel));
-    if (HN::AllFalse(d, HN::Gt(count, few))) continue;
+    const std::int32_t worthwhile =
+        at_least == 1 ? 1 : std::max(at_least, std::min(2 * state.rest_rows[pixel / HN::Lanes(d)], full));
+    if (HN::AllFalse(d, HN::Gt(count, HN::Set(d, worthwhile - 1)))) continue;
     PixelGroup<form> group(lookup, windows, pixel, state, light);
     const std::size_t rows = group.sort();
     laps.lap("sort");

@@ -44,6 +44,9 @@ struct WindowState {
   };
   std::vector<Run> ended;
 
+  /// By group of as many pixels as a vector has lanes: rows that the last compositing left, as they were not final.
+  std::array<std::int32_t, pixels / 4> rest_rows;
+
   // Working memory.
   std::vector<std::int32_t> keys, slots;  ///< rows of lanes, one list's length of them
   std::vector<projection::LatticeSegment> rest;
@@ -75,7 +78,8 @@ constexpr std::int32_t touching_steps = 64;
 
 /// Sorts, integrates and composites, in each pixel's order, all segments of the windows whose front lies before
 /// `final_step`, and removes them, 16 pixels at a time, a pixel a lane; groups of pixels none of which has `at_least`
-/// segments wait. Returns how many segments are gone, those left out behind opaque ones included.
+/// segments wait, unless that is 1, and so do groups without full lists that have less than twice what was not final
+/// the last time. Returns how many segments are gone, those left out behind opaque ones included.
 ///
 /// Order: front, back, then the scalars, so that what is equal is interchangeable, and no process, partition or thread
 /// shows in a pixel's bits. In a mesh whose cells do not overlap only segments of length zero are level.

@@ -17,6 +17,7 @@ void WindowState::start(const projection::PixelRect& rect, const projection::Pix
   back.fill(not_yet);
   several.fill(0);
   length_per_step.fill(0);
+  rest_rows.fill(0);
   ended.clear();
   std::size_t p = 0;
   for (int y = rect.y0; y < rect.y1; ++y)

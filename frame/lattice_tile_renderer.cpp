@@ -14,8 +14,12 @@ namespace {
 constexpr std::size_t first_capacity = 32;         // segments a pixel: half a MiB of windows
 constexpr std::size_t capacity_where_opaque = 16;  // rays end soon: the less is behind them
 constexpr std::size_t cells_at_once = 16;
-// Where one list is full, lists of fewer quarters than this wait: what is sorted should be final, not short.
-constexpr std::size_t fullness = 3;
+// Where one list is full, lists of fewer than this part of the first capacity wait: what is sorted should be final.
+constexpr double fullness = 0.75;
+// Cells that lie slanting to the rays are in front long before their segments are. Where more than this part of a list
+// waits for that it is sorted again and again: there is more room then, as long as that stays in the cache.
+constexpr double rest_worth_growing = 0.25;
+constexpr std::size_t roomy = 256;
 // Computed depths may lie this many steps before the cell's nearest vertex (planes: 16, irregular cells: rounding).
 constexpr std::int64_t depth_error = 64;
 
@@ -60,7 +64,9 @@ std::int64_t LatticeTileRenderer::step_before(float near_depth) const {
 bool LatticeTileRenderer::try_render(const projection::PixelRect& rect, std::span<const projection::TileEntry> entries,
                                      compositor::WindowSink& sink) {
   scene::TraceLaps laps(context_.trace);
-  windows_.reset(static_cast<std::size_t>(rect.area()), context_.opaque ? capacity_where_opaque : first_capacity);
+  const std::size_t capacity = context_.opaque ? capacity_where_opaque : first_capacity;
+  const auto at_least = static_cast<std::size_t>(fullness * static_cast<double>(capacity));
+  windows_.reset(static_cast<std::size_t>(rect.area()), capacity);
   sink.start(rect);
   for (std::size_t from = 0; from < entries.size() && sink.any_open(); from += cells_at_once) {
     const auto cells = entries.subspan(from, std::min(cells_at_once, entries.size() - from));
@@ -71,12 +77,15 @@ bool LatticeTileRenderer::try_render(const projection::PixelRect& rect, std::spa
       counts_.max_segments_alive = std::max(counts_.max_segments_alive, windows_.total());
       laps.lap("project");
       // What lies before these cells is final.
-      sink.take(windows_, step_before(cells.front().near_depth), fullness * windows_.capacity() / 4, laps);
-      if (windows_.count(static_cast<std::size_t>(stream_.pixel[dealt])) < windows_.capacity()) continue;
+      sink.take(windows_, step_before(cells.front().near_depth), at_least, laps);
+      const std::size_t left = windows_.count(static_cast<std::size_t>(stream_.pixel[dealt]));
+      const double part = static_cast<double>(left) / static_cast<double>(windows_.capacity());
+      if (part < 1 && (part <= rest_worth_growing || windows_.capacity() >= roomy)) continue;
       if (windows_.bytes_after_growth() <= std::min<std::uint64_t>(context_.budget_bytes, windows_.most_bytes)) {
         windows_.grow();
         continue;
       }
+      if (part < 1) continue;
       if (!sink.take_unordered(windows_, step_before(cells.front().near_depth), laps)) return false;
       ++counts_.tiles_split;
     }
