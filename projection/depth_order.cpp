@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "projection/depth_order.cpp"
@@ -20,33 +21,37 @@ HWY_INLINE std::uint64_t key_of(const TileEntry& e) {
   return static_cast<std::uint64_t>(bits ^ ((0u - (bits >> 31)) | 0x80000000u)) << 32 | e.tet;
 }
 
-/// Least significant byte first, over the bytes in which keys differ at all. Entries in tet order, as TileLists makes
+/// Least significant digit first, over the digits in which keys differ at all. Entries in tet order, as TileLists makes
 /// them, need no passes over tets: each pass keeps the order of what it finds equal.
 HWY_NOINLINE void radix_sort(TileEntry* entries, TileEntry* other, std::size_t n) {
-  std::uint64_t differ = 0;
-  const std::uint64_t first = key_of(entries[0]);
+  constexpr int digit_bits = 11, digits_of_a_half = 3;  // three passes take less than four of bytes
+  constexpr std::uint32_t values = 1u << digit_bits;
   bool by_tet = true;
-  for (std::size_t i = 0; i < n; ++i) {
-    differ |= key_of(entries[i]) ^ first;
-    by_tet &= i == 0 || entries[i - 1].tet <= entries[i].tet;
-  }
+  for (std::size_t i = 1; i < n; ++i) by_tet &= entries[i - 1].tet <= entries[i].tet;
   TileEntry *from = entries, *to = other;
-  for (int shift = by_tet ? 32 : 0; shift < 64; shift += 8) {
-    if ((differ >> shift & 255) == 0) continue;
-    std::uint32_t next[256] = {}, sum = 0;
-    for (std::size_t i = 0; i < n; ++i) ++next[key_of(from[i]) >> shift & 255];
-    for (std::uint32_t& start : next) {
-      const std::uint32_t count = start;
-      start = sum;
-      sum += count;
+  for (int half = by_tet ? 1 : 0; half < 2; ++half) {
+    const auto digit_of = [half](const TileEntry& e, int digit) {
+      return static_cast<std::uint32_t>(key_of(e) >> 32 * half) >> digit * digit_bits & (values - 1);
+    };
+    std::uint32_t next[digits_of_a_half][values] = {};
+    for (std::size_t i = 0; i < n; ++i)
+      for (int digit = 0; digit < digits_of_a_half; ++digit) ++next[digit][digit_of(entries[i], digit)];
+    for (int digit = 0; digit < digits_of_a_half; ++digit) {
+      if (next[digit][digit_of(entries[0], digit)] == n) continue;
+      std::uint32_t sum = 0;
+      for (std::uint32_t& start : next[digit]) {
+        const std::uint32_t count = start;
+        start = sum;
+        sum += count;
+      }
+      for (std::size_t i = 0; i < n; ++i) to[next[digit][digit_of(from[i], digit)]++] = from[i];
+      std::swap(from, to);
     }
-    for (std::size_t i = 0; i < n; ++i) to[next[key_of(from[i]) >> shift & 255]++] = from[i];
-    TileEntry* const swap = from;
-    from = to;
-    to = swap;
+    if (from != entries) {
+      std::copy_n(from, n, entries);
+      std::swap(from, to);
+    }
   }
-  if (from != entries)
-    for (std::size_t i = 0; i < n; ++i) entries[i] = from[i];
 }
 
 HWY_INLINE bool before(const TileEntry& a, const TileEntry& b) {
