@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <vector>
 
 #include "datasets/boxes.hpp"
 #include "datasets/kuhn.hpp"
@@ -178,6 +179,33 @@ TEST(Render, AStackOfTwentyThousandThinCellsIsRightInBoundedMemory) {
   EXPECT_GT(statistics.tiles_split, 0u);
   EXPECT_LE(statistics.peak_buffer_bytes, settings.memory_bytes);
   EXPECT_TRUE(same_bits(tight, roomy));
+}
+
+TEST(Render, OpaqueMatterIsRightAndTheSameInAnyTilesAndThreads) {
+  const scene::TetMesh mesh = datasets::cube(20, 0.2);
+  const ImageSize size{40, 40};
+  const TransferFunction clear = six_knots();
+  std::vector<scene::Knot> knots(clear.knots().begin(), clear.knots().end());
+  for (scene::Knot& knot : knots) knot.extinction = 40 * knot.extinction + 20;  // 3.5 units of it let nothing through
+  const TransferFunction function(knots);
+  const reference::Reference reference(mesh, oblique(), size, function);
+  for (const double accuracy : {0.0, 1e-4}) {
+    RenderSettings settings = exact();
+    if (accuracy > 0) {
+      settings.integrator.kind = scene::IntegratorKind::automatic;
+      settings.integrator.accuracy = accuracy;
+    }
+    FrameStatistics statistics;
+    const Image image = Renderer(mesh, settings).render(oblique(), size, function, &statistics);
+    EXPECT_TRUE(statistics.on_lattice);
+    const double bound = accuracy > 0 ? accuracy : 2e-5;
+    EXPECT_LT(reference::judge(image, reference, bound).max_error, bound);
+    for (const int tile : {1, 7, 16}) {
+      settings.tile_size = tile;
+      settings.threads = tile % 3 + 1;
+      EXPECT_TRUE(same_bits(Renderer(mesh, settings).render(oblique(), size, function), image)) << "tile " << tile;
+    }
+  }
 }
 
 TEST(Render, AMeshWithoutCellsIsABlankPicture) {
