@@ -119,11 +119,11 @@ class Lookup<TableForm::one_vector> {
     const DI di;
     for (int c = 0; c < LaneTable::column_count; ++c) rows_[c] = HN::LoadU(d, table.column(c));
     // A grid of few cells, no two knots in one, goes into registers too: half the work of comparing knot by knot.
-    const std::size_t lanes = HN::Lanes(di), cells = table.grid_cells;
+    const std::size_t lanes = HN::Lanes(di), cells = table.knots_before.size();
     in_registers_ = cells <= 2 * lanes && table.largest_step <= 1;
     if (!in_registers_) return;
     HWY_ALIGN std::int32_t before[2 * HN::MaxLanes(DI())] = {};
-    std::copy_n(table.knots_before.begin(), cells, before);
+    std::copy(table.knots_before.begin(), table.knots_before.end(), before);
     low_cells_ = HN::BitCast(d, HN::Load(di, before)), high_cells_ = HN::BitCast(d, HN::Load(di, before + lanes));
     grid_origin_ = HN::Set(d, table.grid_origin), grid_scale_ = HN::Set(d, table.grid_scale);
     last_cell_ = HN::Set(d, table.last_cell);
@@ -185,8 +185,9 @@ class Lookup<TableForm::two_vectors> {
   VF low_[LaneTable::column_count], high_[LaneTable::column_count];
 };
 
-/// Neighbouring lanes are mostly in neighbouring intervals: a window of two vectors around one lane's interval then
-/// holds them all, and two loads and a permute take the place of a gather. It is the same number either way.
+/// Neighbouring lanes are mostly in neighbouring intervals: a window of two vectors around the first active lane's
+/// interval then holds them all, and two loads and a permute take the place of a gather. It is the same number either
+/// way.
 template <>
 class Lookup<TableForm::many> {
  public:
@@ -202,21 +203,8 @@ class Lookup<TableForm::many> {
     const DI di;
     const VF place = HN::Mul(HN::Sub(s, HN::Set(d, table_.grid_origin)), HN::Set(d, table_.grid_scale));
     const VI cell = HN::ConvertTo(di, HN::Min(HN::Max(place, HN::Zero(d)), HN::Set(d, table_.last_cell)));
-    const Window cells(cell, 0);
-    const std::int32_t* const knots_before = table_.knots_before.data();
-    VI before;
-    if (HWY_LIKELY(cells.holds_all))
-      before = HN::BitCast(di, cells.look_up(reinterpret_cast<const float*>(knots_before), cells.place));
-    else
-      before = HN::GatherIndex(di, knots_before, cell);
-    const float* const edges = table_.column(LaneTable::edge);
-    const std::size_t first_step = table_.largest_step;
-    const Window knots(before, 2 * first_step);
-    if (HWY_LIKELY(knots.holds_all))
-      return HN::Add(
-          search(knots.place, first_step, past(s, up), [&](VI i) HWY_ATTR { return knots.look_up(edges, i); }),
-          HN::Set(di, knots.start));
-    return search(before, first_step, past(s, up), [&](VI i) HWY_ATTR { return HN::GatherIndex(d, edges, i); });
+    return search(HN::GatherIndex(di, table_.knots_before.data(), cell), table_.largest_step, past(s, up),
+                  [&](VI i) HWY_ATTR { return HN::GatherIndex(DF(), table_.column(LaneTable::edge), i); });
   }
   HWY_INLINE Index index(VI interval, MF active) const {
     const DF d;
@@ -246,26 +234,6 @@ class Lookup<TableForm::many> {
   bool independent, has_clear;
 
  private:
-  /// Two vectors of a row around what lane 0 looks up.
-  struct Window {
-    /// Whether it holds all lanes' `index` and the `further` elements behind each.
-    HWY_INLINE Window(VI index, std::size_t further) {
-      const DI di;
-      const auto lanes = static_cast<std::int32_t>(HN::Lanes(di));
-      start = std::max(0, HN::GetLane(index) - lanes);
-      place = HN::Sub(index, HN::Set(di, start));
-      const VI last = HN::Set(di, 2 * lanes - 1 - static_cast<std::int32_t>(further));
-      holds_all = HN::AllFalse(di, HN::Or(HN::Lt(place, HN::Zero(di)), HN::Gt(place, last)));
-    }
-    HWY_INLINE VF look_up(const float* row, VI at) const {
-      const DF d;
-      return two_table_lookup(HN::LoadU(d, row + start), HN::LoadU(d, row + start + HN::Lanes(d)), at);
-    }
-    VI place;
-    std::int32_t start;
-    bool holds_all;
-  };
-
   HWY_INLINE VF look_up(int column, const Index& i, VI interval, VI in_window) const {
     const DF d;
     const float* const row = table_.column(column);

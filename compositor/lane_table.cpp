@@ -84,12 +84,12 @@ LaneTable::LaneTable(const scene::TransferFunction& function, double scalar_orig
 
   // About four cells a knot: evenly spread knots then have a cell of their own.
   const float* const knots = edges + 1;
-  grid_cells = std::bit_ceil(4 * knot_count);
+  const std::size_t cells = std::bit_ceil(4 * knot_count);
   const float width = knots[knot_count - 1] - knots[0];
   grid_origin = knots[0];
-  grid_scale = width > 0 ? static_cast<float>(grid_cells) / width : 0.0f;
-  last_cell = static_cast<float>(grid_cells - 1);
-  std::vector<std::size_t> in_cell(grid_cells, 0);
+  grid_scale = width > 0 ? static_cast<float>(cells) / width : 0.0f;
+  last_cell = static_cast<float>(cells - 1);
+  std::vector<std::size_t> in_cell(cells, 0);
   for (std::size_t i = 0; i < knot_count; ++i)
     ++in_cell[static_cast<std::size_t>(std::clamp((knots[i] - grid_origin) * grid_scale, 0.0f, last_cell))];
   std::size_t before = 0;
@@ -97,7 +97,6 @@ LaneTable::LaneTable(const scene::TransferFunction& function, double scalar_orig
     knots_before.push_back(static_cast<std::int32_t>(before));
     before += n;
   }
-  knots_before.resize(grid_cells + padding, static_cast<std::int32_t>(before));
   largest_step = std::bit_floor(*std::max_element(in_cell.begin(), in_cell.end()));
 }
 

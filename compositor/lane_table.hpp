@@ -60,8 +60,7 @@ struct LaneTable {
   // Many knots: a uniform grid over the knots' range leads to a scalar's interval. Cell j of grid_cells covers the
   // scalars for which truncating (s - grid_origin) * grid_scale, clamped to the grid, gives j.
   float grid_origin = 0, grid_scale = 0, last_cell = 0;
-  std::size_t grid_cells = 0;
-  std::vector<std::int32_t> knots_before;  ///< knots in lower cells, and padding
+  std::vector<std::int32_t> knots_before;  ///< knots in lower cells
   std::size_t largest_step = 0;            ///< first step of a binary search within a cell, a power of two
 };
 
