@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <utility>
 
 #include "compositor/gl_kernel.hpp"
@@ -145,9 +144,7 @@ class FragmentKernel final : public GlKernel {
       const std::size_t x = list.pixel % width, y = list.pixel / width - top;
       const float* color = &colors[4 * (y * row + x)];
       GlLight light{color[0], color[1], color[2], 0, GlLight::no_fragment, {}};
-      // Opacity 1 is all that a float, or a half, says of what is deeper.
-      constexpr double deepest = 60;
-      light.optical_depth = static_cast<float>(std::min(-std::log1p(-std::min(double{color[3]}, 1.0)), deepest));
+      light.optical_depth = optical_depth_of(color[3]);
       const float first = firsts[y * row + x];
       if (first > 0) light.first = list.begin + static_cast<std::uint32_t>(first) - 1;
       lights.push_back(light);

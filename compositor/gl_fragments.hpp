@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -24,6 +26,12 @@ struct GlFragments {
   /// optical depth}.
   std::vector<std::array<float, 4>> values;
 };
+
+/// The optical depth of an opacity in 0 .. 1. Opacity 1 is all that a float, or a half, says of what is deeper.
+inline float optical_depth_of(float opacity) {
+  constexpr double deepest = 60;
+  return static_cast<float>(std::min(-std::log1p(-std::min(double{opacity}, 1.0)), deepest));
+}
 
 /// What the device makes of a list.
 struct GlLight {

@@ -29,12 +29,6 @@ std::uint32_t ordered(float x) {
   return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;
 }
 
-/// As gl_fallback.cpp and the shaders take it; of what is opaque enough that it does not matter.
-float optical_depth_of(float opacity) {
-  constexpr double deepest = 60;
-  return static_cast<float>(std::min(-std::log1p(-double{opacity}), deepest));
-}
-
 /// A scalar in the table's units: as lane_scalar() has it where the transfer function has knots, so that a value at a
 /// step stays there; beyond, where rounding to whole units would do no good, as it is.
 float device_scalar(double value, const projection::Lattice& units) {

@@ -39,8 +39,8 @@ TileSender::TileSender(Transport& transport, int assembler, std::uint32_t frame)
 void TileSender::send(std::uint32_t tile, const MergedTile& merged) {
   const std::lock_guard lock(mutex_);
   if (message_.empty()) {
-    message_.reserve(message_bytes + (64 << 10));
-    message_.resize(sizeof(TilesHeader));  // flush() fills it in
+    message_.reserve(message_bytes + (64 << 10));  // and the tile that goes beyond
+    message_.resize(sizeof(TilesHeader));          // flush() fills it in
   }
   append(message_, std::uint64_t{tile});
   const auto append_all = [&](const auto& values) {

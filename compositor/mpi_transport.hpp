@@ -15,8 +15,8 @@ bool launched_by_mpi();
 ///
 /// One thread of this object makes all MPI calls, so MPI_THREAD_FUNNELED is enough, and it always takes what arrives:
 /// no send waits for the other side to look, and a rank that waits sleeps instead of spinning. It looks for messages
-/// every 100 microseconds after one came, down to every 2 milliseconds while none does; set_working() makes that 2
-/// to 5.
+/// whenever it sends, 100 microseconds after one came, and then ever less often, down to every 2 milliseconds;
+/// set_working(true) makes that every 2 to 5 milliseconds.
 ///
 /// Faults: a rank that fails tells rank 0, which decides on the first one it hears of and tells all. A rank that cannot
 /// end in an orderly way within `patience` after that (it hangs in a read, or its peers are gone) speaks and

@@ -80,12 +80,13 @@ bool LatticeTileRenderer::try_render(const projection::PixelRect& rect, std::spa
       sink.take(windows_, step_before(cells.front().near_depth), at_least, laps);
       const std::size_t left = windows_.count(static_cast<std::size_t>(stream_.pixel[dealt]));
       const double part = static_cast<double>(left) / static_cast<double>(windows_.capacity());
-      if (part < 1 && (part <= rest_worth_growing || windows_.capacity() >= roomy)) continue;
+      const bool full = left == windows_.capacity(), crowded = part > rest_worth_growing && windows_.capacity() < roomy;
+      if (!full && !crowded) continue;
       if (windows_.bytes_after_growth() <= std::min<std::uint64_t>(context_.budget_bytes, windows_.most_bytes)) {
         windows_.grow();
         continue;
       }
-      if (part < 1) continue;
+      if (!full) continue;
       if (!sink.take_unordered(windows_, step_before(cells.front().near_depth), laps)) return false;
       ++counts_.tiles_split;
     }
