@@ -22,8 +22,8 @@ std::uint64_t composite_windows(const WindowRules&, projection::SegmentWindows&,
   return 0;
 }
 #else
-/// Order of segments with one front.
-HWY_INLINE bool level_before(const projection::LatticeSegment& a, const projection::LatticeSegment& b) {
+HWY_INLINE bool before(const projection::LatticeSegment& a, const projection::LatticeSegment& b) {
+  if (a.front != b.front) return a.front < b.front;
   if (a.back != b.back) return a.back < b.back;
   if (a.scalar_front != b.scalar_front) return a.scalar_front < b.scalar_front;
   return a.scalar_back < b.scalar_back;
@@ -34,15 +34,13 @@ HWY_INLINE const projection::LatticeSegment& segment_at(const projection::Lattic
   return *reinterpret_cast<const projection::LatticeSegment*>(reinterpret_cast<const char*>(list) + slot);
 }
 
-/// Puts equal keys in order, which the network does not.
+/// Puts in order what the network left nearly so: keys do not tell all of a segment, nor always all of its depth.
 HWY_NOINLINE void settle_ties(const projection::LatticeSegment* list, std::size_t count, std::size_t lanes,
-                              std::int32_t* keys, std::int32_t* slots) {
+                              std::int32_t* slots) {
   for (std::size_t i = 1; i < count; ++i) {
-    const std::int32_t key = keys[i * lanes], slot = slots[i * lanes];
+    const std::int32_t slot = slots[i * lanes];
     std::size_t hole = i;
-    for (; hole > 0 && keys[(hole - 1) * lanes] == key &&
-           level_before(segment_at(list, slot), segment_at(list, slots[(hole - 1) * lanes]));
-         --hole)
+    for (; hole > 0 && before(segment_at(list, slot), segment_at(list, slots[(hole - 1) * lanes])); --hole)
       slots[hole * lanes] = slots[(hole - 1) * lanes];
     slots[hole * lanes] = slot;
   }
@@ -50,17 +48,12 @@ HWY_NOINLINE void settle_ties(const projection::LatticeSegment* list, std::size_
 
 /// Lists longer than the networks: one lane after the other.
 HWY_NOINLINE void sort_long(const projection::LatticeSegment* list, std::size_t stride, std::size_t count,
-                            std::size_t lanes, std::int32_t* keys, std::int32_t* slots) {
+                            std::size_t lanes, std::int32_t* slots) {
   std::vector<std::int32_t> order(count);
   for (std::size_t i = 0; i < count; ++i) order[i] = static_cast<std::int32_t>(i * stride * sizeof *list);
-  std::sort(order.begin(), order.end(), [&](std::int32_t i, std::int32_t j) {
-    const projection::LatticeSegment &a = segment_at(list, i), &b = segment_at(list, j);
-    return a.front != b.front ? a.front < b.front : level_before(a, b);
-  });
-  for (std::size_t i = 0; i < count; ++i) {
-    keys[i * lanes] = segment_at(list, order[i]).front;
-    slots[i * lanes] = order[i];
-  }
+  std::sort(order.begin(), order.end(),
+            [&](std::int32_t i, std::int32_t j) { return before(segment_at(list, i), segment_at(list, j)); });
+  for (std::size_t i = 0; i < count; ++i) slots[i * lanes] = order[i];
 }
 
 /// One field of four segments a lane each, in lanes 4 j + i of vector i: transposed in registers, which takes a quarter
@@ -114,52 +107,62 @@ class PixelGroup {
         pixel_(pixel),
         list_(windows.segments() + pixel) {}
 
-  /// Brings keys and slots in order. Returns the number of rows: the longest list's length.
+  /// Brings slots in order. Returns the number of rows: the longest list's length.
   HWY_INLINE std::size_t sort() {
+    namespace sorter = sorting::HWY_NAMESPACE;
     const DI d;
     const std::size_t lanes = HN::Lanes(d);
     const std::uint32_t* counts = windows_.counts() + pixel_;
-    const VI count = HN::LoadU(d, reinterpret_cast<const std::int32_t*>(counts));
+    const VI count = this->count();
     const auto most = static_cast<std::size_t>(HN::GetLane(HN::MaxOfLanes(d, count)));
-    const std::size_t chunks = (most + sorting::HWY_NAMESPACE::sort_chunk - 1) / sorting::HWY_NAMESPACE::sort_chunk;
-    const std::size_t rows = chunks * sorting::HWY_NAMESPACE::sort_chunk;
+    const std::size_t chunks = (most + sorter::sort_chunk - 1) / sorter::sort_chunk;
+    const std::size_t rows = chunks * sorter::sort_chunk;
     if (state_.keys.size() < rows * lanes) state_.keys.resize(rows * lanes), state_.slots.resize(rows * lanes);
-    std::int32_t *keys = state_.keys.data(), *slots = state_.slots.data();
-    for (std::size_t row = 0; row < rows; ++row) {
-      const auto here = HN::Lt(HN::Set(d, static_cast<std::int32_t>(row)), count);
-      VI key = HN::Set(d, no_key);
-      const std::size_t slot = row * windows_.stride();
-      if (row < most) {
-        const auto quarter = [&](std::size_t q) HWY_ATTR {
-          return HN::LoadU(d, reinterpret_cast<const std::int32_t*>(list_ + slot + q * lanes / 4));
-        };
-        const VI low = HN::ConcatEven(d, quarter(1), quarter(0)), high = HN::ConcatEven(d, quarter(3), quarter(2));
-        key = HN::IfThenElse(here, HN::ConcatEven(d, high, low), key);
-      }
-      HN::StoreU(key, d, keys + row * lanes);
-      HN::StoreU(HN::IfThenElseZero(here, HN::Set(d, static_cast<std::int32_t>(slot * sizeof *list_))), d,
-                 slots + row * lanes);
-    }
-    if (chunks <= static_cast<std::size_t>(sorting::HWY_NAMESPACE::most_sort_chunks)) {
-      sorting::HWY_NAMESPACE::sort_lanes(keys, slots, static_cast<int>(chunks));
-      auto ties = HN::Lt(count, HN::Zero(d));
-      VI key = HN::LoadU(d, keys);
-      for (std::size_t row = 1; row < most; ++row) {
-        const VI next = HN::LoadU(d, keys + row * lanes);
-        ties = HN::Or(ties, HN::And(HN::Eq(key, next), HN::Ne(next, HN::Set(d, no_key))));
-        key = next;
-      }
-      if (!HN::AllFalse(d, ties)) {
-        std::uint8_t bits[8] = {0};
-        HN::StoreMaskBits(d, ties, bits);
-        for (std::uint64_t left = bits[0] | static_cast<std::uint64_t>(bits[1]) << 8; left != 0; left &= left - 1) {
-          const auto lane = static_cast<std::size_t>(__builtin_ctzll(left));
-          settle_ties(list_ + lane, counts[lane], lanes, keys + lane, slots + lane);
-        }
-      }
-    } else {
+    std::int32_t* slots = state_.slots.data();
+    if (chunks > static_cast<std::size_t>(sorter::most_sort_chunks)) {
       for (std::size_t lane = 0; lane < lanes; ++lane)
-        sort_long(list_ + lane, windows_.stride(), counts[lane], lanes, keys + lane, slots + lane);
+        sort_long(list_ + lane, windows_.stride(), counts[lane], lanes, slots + lane);
+      return most;
+    }
+
+    VI nearest = HN::Set(d, no_key), farthest = HN::Set(d, -no_key);
+    for (std::size_t row = 0; row < most; ++row) {
+      const std::size_t first = row * windows_.stride();
+      const auto quarter = [&](std::size_t q) HWY_ATTR {
+        return HN::LoadU(d, reinterpret_cast<const std::int32_t*>(list_ + first + q * lanes / 4));
+      };
+      const VI low = HN::ConcatEven(d, quarter(1), quarter(0)), high = HN::ConcatEven(d, quarter(3), quarter(2));
+      const VI front = HN::ConcatEven(d, high, low);
+      const auto here = has(row, count);
+      nearest = HN::Min(nearest, HN::IfThenElse(here, front, nearest));
+      farthest = HN::Max(farthest, HN::IfThenElse(here, front, farthest));
+      // Fronts for now; what is beyond a list's end is not used.
+      HN::StoreU(front, d, slots + row * lanes);
+    }
+    const sorter::PackedKeys packed(nearest, farthest, rows);
+    float* keys = state_.keys.data();
+    for (std::size_t row = 0; row < rows; ++row) {
+      VI key = packed.behind_all(row);
+      if (row < most) key = HN::IfThenElse(has(row, count), packed.pack(HN::LoadU(d, slots + row * lanes), row), key);
+      HN::StoreU(HN::BitCast(DF(), key), DF(), keys + row * lanes);
+    }
+    sorter::sort_lanes(keys, static_cast<int>(chunks));
+    const VI stride = HN::Set(d, static_cast<std::int32_t>(windows_.stride() * sizeof *list_));
+    auto ties = HN::Lt(count, HN::Zero(d));
+    VI before = HN::Zero(d);
+    for (std::size_t row = 0; row < most; ++row) {
+      const VI key = HN::BitCast(d, HN::LoadU(DF(), keys + row * lanes));
+      HN::StoreU(HN::Mul(packed.row(key), stride), d, slots + row * lanes);
+      ties = HN::Or(ties, packed.level(before, key));
+      before = key;
+    }
+    if (!HN::AllFalse(d, ties)) {
+      std::uint8_t bits[8] = {0};
+      HN::StoreMaskBits(d, ties, bits);
+      for (std::uint64_t left = bits[0] | static_cast<std::uint64_t>(bits[1]) << 8; left != 0; left &= left - 1) {
+        const auto lane = static_cast<std::size_t>(__builtin_ctzll(left));
+        settle_ties(list_ + lane, counts[lane], lanes, slots + lane);
+      }
     }
     return most;
   }
@@ -176,26 +179,25 @@ class PixelGroup {
     const VI end = HN::Set(d, final_step), none = HN::Set(d, no_key);
     VI run_back = none;
     VI widest = HN::Zero(d);
-    if constexpr (runs) {
-      // A lane in no run begins one in the first of these rows, or takes nothing from any: its list has no holes.
-      run_back = HN::Load(d, &state_.back[pixel_]);
-      const VI first = HN::LoadU(d, keys(from));
-      run_back = HN::IfThenElse(HN::And(open, HN::And(HN::Eq(run_back, none), HN::Lt(first, end))), first, run_back);
-    }
+    const VI count = this->count();
+    if constexpr (runs) run_back = HN::Load(d, &state_.back[pixel_]);
     for (std::size_t row = from; row < to; ++row) {
-      const VI front = HN::LoadU(d, keys(row));
-      const auto is_final = HN::Lt(front, end);
+      const Fields s = load_fields(list_, state_.slots.data() + row * lanes);
+      const VI front = s.front;
+      const auto is_final = HN::And(HN::Lt(front, end), has(row, count));
       if (HN::AllFalse(d, is_final)) {
         to = row;
         break;
       }
-      const Fields s = load_fields(list_, state_.slots.data() + row * lanes);
+      done_ = HN::Sub(done_, HN::VecFromMask(d, is_final));
       const VF length = HN::Mul(HN::ConvertTo(df, HN::Sub(s.back, front)), length_per_step);
       const auto takes = HN::And(is_final, open);
       light_.put_segment(HN::IfThenElseZero(HN::RebindMask(df, takes), length), HN::IfThenElse(takes, front, none),
                          s.back, s.scalar_front, s.scalar_back,
                          table_.locate(s.scalar_front, HN::Ge(s.scalar_back, s.scalar_front)), (row - from) * lanes);
       if constexpr (runs) {
+        // A lane in no run begins one in the first of these rows, or takes nothing from any: its list has no holes.
+        if (row == from) run_back = HN::IfThenElse(HN::And(takes, HN::Eq(run_back, none)), front, run_back);
         widest = HN::Max(widest, HN::Abs(HN::IfThenElseZero(takes, HN::Sub(front, run_back))));
         // Irregular cells' depths are a few steps off: a run does not go back.
         run_back = HN::IfThenElse(takes, HN::Max(run_back, s.back), run_back);
@@ -210,33 +212,35 @@ class PixelGroup {
 
   /// Composites what lies before `final_step`; returns how many segments are done with.
   HWY_INLINE std::uint64_t composite(std::size_t rows, std::int32_t final_step, const WindowRules& rules) {
-    const DI d;
-    const VI end = HN::Set(d, final_step);
-    VI done = HN::Zero(d);
+    done_ = HN::Zero(DI());
     for (std::size_t from = 0, to; from < rows; from = to) {
       const std::size_t most = std::min(rows, from + LightRows::most);
       // In three passes, each of chains short enough for a processor to work on several rows at once.
       to = rules.runs ? load<true>(from, most, final_step) : load<false>(from, most, final_step);
       light_.integrate(table_, to - from);
-      for (std::size_t row = from; row < to; ++row)
-        done = HN::Sub(done, HN::VecFromMask(d, HN::Lt(HN::LoadU(d, keys(row)), end)));
       if (!GroupLight(state_, light_, pixel_, table_.independent).add(to - from, rules) || to < most) break;
     }
-    return keep_rest(done);
+    return keep_rest(rows);
   }
 
  private:
-  HWY_INLINE const std::int32_t* keys(std::size_t row) const { return state_.keys.data() + row * HN::Lanes(DI()); }
+  HWY_INLINE VI count() const {
+    return HN::LoadU(DI(), reinterpret_cast<const std::int32_t*>(windows_.counts() + pixel_));
+  }
+  /// Lanes whose lists have this row.
+  static HWY_INLINE HN::Mask<DI> has(std::size_t row, VI count) {
+    return HN::Lt(HN::Set(DI(), static_cast<std::int32_t>(row)), count);
+  }
 
-  /// Leaves in the windows what was not final, in order. Returns how many segments are gone.
-  HWY_INLINE std::uint64_t keep_rest(VI done) {
+  /// Leaves in the windows what of the sorted rows was not final, in order. Returns how many segments are gone.
+  HWY_INLINE std::uint64_t keep_rest(std::size_t rows) {
     const DI d;
     // Lanes beyond the last pixel share their memory with other lists.
     const std::size_t lanes = HN::Lanes(d), own = std::min(lanes, windows_.pixels() - pixel_);
     std::uint32_t* counts = windows_.counts() + pixel_;
-    const VI count = HN::LoadU(d, reinterpret_cast<const std::int32_t*>(counts));
+    const VI count = this->count();
     const auto open = HN::Lt(HN::Load(d, &state_.open[pixel_]), HN::Zero(d));
-    const VI left = HN::IfThenElseZero(open, HN::Sub(count, done));
+    const VI left = HN::IfThenElseZero(open, HN::Sub(count, done_));
     HN::StoreU(left, d, reinterpret_cast<std::int32_t*>(counts));
     const auto most = static_cast<std::size_t>(HN::GetLane(HN::MaxOfLanes(d, left)));
     state_.rest_rows[pixel_ / lanes] = static_cast<std::int32_t>(most);
@@ -244,12 +248,11 @@ class PixelGroup {
     if (most == 0) return gone;
     // As many of each lane, so that no branch depends on one: what is not a lane's own is behind its list's end.
     alignas(64) std::int32_t first[most_lanes];
-    HN::Store(done, d, first);
+    HN::Store(done_, d, first);
     if (state_.rest.size() < most * lanes) state_.rest.resize(most * lanes);
-    const std::size_t last = state_.slots.size() / lanes - 1;
     for (std::size_t k = 0; k < most; ++k)
       for (std::size_t lane = 0; lane < own; ++lane) {
-        const std::size_t row = std::min(static_cast<std::size_t>(first[lane]) + k, last);
+        const std::size_t row = std::min(static_cast<std::size_t>(first[lane]) + k, rows - 1);
         state_.rest[k * lanes + lane] = segment_at(list_ + lane, state_.slots[row * lanes + lane]);
       }
     for (std::size_t k = 0; k < most; ++k) std::copy_n(&state_.rest[k * lanes], own, list_ + k * windows_.stride());
@@ -262,6 +265,7 @@ class PixelGroup {
   LightRows& light_;
   std::size_t pixel_;
   projection::LatticeSegment* list_;
+  VI done_ = HN::Zero(DI());  ///< segments of each lane that were final
 };
 
 template <TableForm form>

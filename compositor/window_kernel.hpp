@@ -48,7 +48,8 @@ struct WindowState {
   std::array<std::int32_t, pixels / 4> rest_rows;
 
   // Working memory.
-  std::vector<std::int32_t> keys, slots;  ///< rows of lanes, one list's length of them
+  std::vector<float> keys;          ///< rows of lanes, one list's length of them
+  std::vector<std::int32_t> slots;  ///< of the same
   std::vector<projection::LatticeSegment> rest;
 
   /// Empty rays for the pixels of `rect`, all open.

@@ -10,6 +10,9 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 
@@ -18,11 +21,57 @@ namespace tessera::sorting {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using SortTag = hn::ScalableTag<std::int32_t>;
+using SortTag = hn::ScalableTag<float>;
 using SortVec = hn::Vec<SortTag>;
+using KeyTag = hn::RebindToSigned<SortTag>;
+using KeyVec = hn::Vec<KeyTag>;
 
-/// A row is one vector of keys and one of slots: element r of every lane's list.
+/// A row is one vector of keys: element r of every lane's list.
 constexpr int sort_chunk = 16;
+
+/// Beyond this many chunks a merge of n log^2 n exchanges loses to sorting lane after lane.
+constexpr int most_sort_chunks = 64;
+
+/// Depth and place in the list in one number, so that an exchange is a minimum and a maximum: the depth behind the
+/// lane's nearest above, as many bits of it as there is room for, the row below. Keys are the bits of positive normal
+/// floats, whose order is the same and which processors compare on more ports than integers.
+class PackedKeys {
+ public:
+  /// For depths from `nearest` to `farthest` (by lane; a lane that is empty: nearest > farthest) in `rows` rows, at
+  /// most most_sort_chunks * sort_chunk.
+  HWY_INLINE PackedKeys(KeyVec nearest, KeyVec farthest, std::size_t rows) : nearest_(nearest) {
+    const KeyTag d;
+    const hn::RebindToUnsigned<KeyTag> bits;
+    const KeyVec range = hn::IfThenZeroElse(hn::Lt(farthest, nearest), hn::Sub(farthest, nearest));
+    const auto range_bits = static_cast<int>(std::bit_width(hn::GetLane(hn::MaxOfLanes(bits, hn::BitCast(bits, range)))));
+    const auto row_bits = static_cast<int>(std::bit_width(rows - 1));
+    up_ = std::min(row_bits, key_bits - range_bits);
+    row_mask_ = hn::Set(d, (1 << row_bits) - 1);
+  }
+  HWY_INLINE KeyVec pack(KeyVec depth, std::size_t row) const {
+    const KeyTag d;
+    const hn::RebindToUnsigned<KeyTag> bits;
+    const auto behind = hn::BitCast(bits, hn::Sub(depth, nearest_));
+    const auto shifted = up_ >= 0 ? hn::ShiftLeftSame(behind, up_) : hn::ShiftRightSame(behind, -up_);
+    const KeyVec number = hn::Set(d, static_cast<std::int32_t>(row));
+    return hn::Add(hn::Or(hn::AndNot(row_mask_, hn::BitCast(d, shifted)), number), hn::Set(d, least_normal));
+  }
+  /// A key behind all others, for rows beyond a list's end.
+  static HWY_INLINE KeyVec behind_all(std::size_t row) {
+    return hn::Set(KeyTag(), most_key + static_cast<std::int32_t>(row * sort_chunk * most_sort_chunks));
+  }
+  /// The row that a key was packed with; of keys behind all others, any.
+  HWY_INLINE KeyVec row(KeyVec key) const { return hn::And(key, row_mask_); }
+  /// Whether the keys do not tell which depth is nearer.
+  HWY_INLINE hn::Mask<KeyTag> level(KeyVec a, KeyVec b) const { return hn::Lt(hn::Xor(a, b), hn::Add(row_mask_, hn::Set(KeyTag(), 1))); }
+
+ private:
+  static constexpr int key_bits = 30;
+  static constexpr std::int32_t least_normal = 0x00800000, most_key = least_normal + (1 << key_bits);
+
+  KeyVec nearest_, row_mask_;
+  int up_;
+};
 
 /// The comparators of a network, in order.
 template <int size>
@@ -56,77 +105,61 @@ inline constexpr auto sort_network = odd_even_merge_sort();
 inline constexpr auto merge_network = bitonic_merge();
 static_assert(sort_network.count == 63 && merge_network.count == 32);
 
-HWY_INLINE void exchange(SortVec& key_a, SortVec& slot_a, SortVec& key_b, SortVec& slot_b) {
-  const auto swapped = hn::Lt(key_b, key_a);
-  const SortVec low = hn::Min(key_a, key_b), high = hn::Max(key_a, key_b);
-  const SortVec slot_low = hn::IfThenElse(swapped, slot_b, slot_a);
-  slot_b = hn::IfThenElse(swapped, slot_a, slot_b);
-  slot_a = slot_low;
-  key_a = low, key_b = high;
+HWY_INLINE void exchange(SortVec& a, SortVec& b) {
+  const SortVec low = hn::Min(a, b);
+  b = hn::Max(a, b);
+  a = low;
 }
 
 template <const auto& network, int... step>
-HWY_INLINE void run_network(SortVec (&key)[sort_chunk], SortVec (&slot)[sort_chunk],
-                            std::integer_sequence<int, step...>) {
-  (exchange(key[network.low[step]], slot[network.low[step]], key[network.high[step]], slot[network.high[step]]), ...);
+HWY_INLINE void run_network(SortVec (&key)[sort_chunk], std::integer_sequence<int, step...>) {
+  (exchange(key[network.low[step]], key[network.high[step]]), ...);
 }
 
 /// Runs a network on 16 rows, in registers.
 template <const auto& network>
-HWY_INLINE void run_on_rows(std::int32_t* keys, std::int32_t* slots) {
+HWY_INLINE void run_on_rows(float* keys) {
   const SortTag d;
   const std::size_t lanes = hn::Lanes(d);
-  SortVec key[sort_chunk], slot[sort_chunk];
-  for (int i = 0; i < sort_chunk; ++i) {
-    key[i] = hn::LoadU(d, keys + static_cast<std::size_t>(i) * lanes);
-    slot[i] = hn::LoadU(d, slots + static_cast<std::size_t>(i) * lanes);
-  }
-  run_network<network>(key, slot, std::make_integer_sequence<int, network.count>());
-  for (int i = 0; i < sort_chunk; ++i) {
-    hn::StoreU(key[i], d, keys + static_cast<std::size_t>(i) * lanes);
-    hn::StoreU(slot[i], d, slots + static_cast<std::size_t>(i) * lanes);
-  }
+  SortVec key[sort_chunk];
+  for (int i = 0; i < sort_chunk; ++i) key[i] = hn::LoadU(d, keys + static_cast<std::size_t>(i) * lanes);
+  run_network<network>(key, std::make_integer_sequence<int, network.count>());
+  for (int i = 0; i < sort_chunk; ++i) hn::StoreU(key[i], d, keys + static_cast<std::size_t>(i) * lanes);
 }
 
 /// Exchanges row `low` + i with row `high` + i (reversed: `high` - i), i < rows.
 template <bool reversed>
-HWY_INLINE void exchange_rows(std::int32_t* keys, std::int32_t* slots, int low, int high, int rows) {
+HWY_INLINE void exchange_rows(float* keys, int low, int high, int rows) {
   const SortTag d;
   const auto lanes = static_cast<int>(hn::Lanes(d));
   for (int i = 0; i < rows; ++i) {
-    const int a = (low + i) * lanes, b = (reversed ? high - i : high + i) * lanes;
-    SortVec key_a = hn::LoadU(d, keys + a), slot_a = hn::LoadU(d, slots + a);
-    SortVec key_b = hn::LoadU(d, keys + b), slot_b = hn::LoadU(d, slots + b);
-    exchange(key_a, slot_a, key_b, slot_b);
-    hn::StoreU(key_a, d, keys + a), hn::StoreU(slot_a, d, slots + a);
-    hn::StoreU(key_b, d, keys + b), hn::StoreU(slot_b, d, slots + b);
+    float *a = keys + (low + i) * lanes, *b = keys + (reversed ? high - i : high + i) * lanes;
+    SortVec key_a = hn::LoadU(d, a), key_b = hn::LoadU(d, b);
+    exchange(key_a, key_b);
+    hn::StoreU(key_a, d, a), hn::StoreU(key_b, d, b);
   }
 }
 
-/// Beyond this many chunks a merge of n log^2 n exchanges loses to sorting lane after lane.
-constexpr int most_sort_chunks = 64;
-
-/// Sorts every lane's keys, ascending, and takes the slots along: `chunks` (1 to most_sort_chunks) times 16 rows; lists
-/// that are shorter are filled up with the largest key. Not stable. Sorting 16 rows takes 63 exchanges of 5
-/// instructions for all lanes, so about one instruction an element; each doubling adds two thirds of that and more.
+/// Sorts every lane's keys, ascending: `chunks` (1 to most_sort_chunks) times 16 rows; lists that are shorter are
+/// filled up with largest keys. Not stable. Sorting 16 rows takes 63 exchanges of two instructions for all lanes, so
+/// about half an instruction an element; each doubling adds two thirds of that and more.
 ///
 /// Runs of 16 rows are merged by Batcher's bitonic sorter in the form in which all comparisons point one way: rows
 /// beyond the last would hold largest keys, so that what would meet them stays.
-HWY_INLINE void sort_lanes(std::int32_t* keys, std::int32_t* slots, int chunks) {
+HWY_INLINE void sort_lanes(float* keys, int chunks) {
   const auto row = static_cast<std::size_t>(hn::Lanes(SortTag()));
   const auto at = [&](int chunk) { return static_cast<std::size_t>(chunk * sort_chunk) * row; };
-  for (int c = 0; c < chunks; ++c) run_on_rows<sort_network>(keys + at(c), slots + at(c));
+  for (int c = 0; c < chunks; ++c) run_on_rows<sort_network>(keys + at(c));
   for (int run = 1; run < chunks; run *= 2) {
     for (int low = 0; low + run < chunks; low += 2 * run) {
       const int end = chunks < low + 2 * run ? chunks : low + 2 * run, high_chunks = end - low - run;
-      exchange_rows<true>(keys, slots, (low + run - high_chunks) * sort_chunk, end * sort_chunk - 1,
-                          high_chunks * sort_chunk);
+      exchange_rows<true>(keys, (low + run - high_chunks) * sort_chunk, end * sort_chunk - 1, high_chunks * sort_chunk);
       for (int stride = run / 2; stride >= 1; stride /= 2)
         for (int c = low; c + stride < end; c += 2 * stride) {
           const int met = end - c - stride < stride ? end - c - stride : stride;
-          exchange_rows<false>(keys, slots, c * sort_chunk, (c + stride) * sort_chunk, met * sort_chunk);
+          exchange_rows<false>(keys, c * sort_chunk, (c + stride) * sort_chunk, met * sort_chunk);
         }
-      for (int c = low; c < end; ++c) run_on_rows<merge_network>(keys + at(c), slots + at(c));
+      for (int c = low; c < end; ++c) run_on_rows<merge_network>(keys + at(c));
     }
   }
 }
