@@ -22,6 +22,7 @@ std::uint64_t composite_windows(const WindowRules&, projection::SegmentWindows&,
   return 0;
 }
 #else
+/// Order of one pixel's segments.
 HWY_INLINE bool before(const projection::LatticeSegment& a, const projection::LatticeSegment& b) {
   if (a.front != b.front) return a.front < b.front;
   if (a.back != b.back) return a.back < b.back;

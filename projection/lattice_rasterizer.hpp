@@ -42,21 +42,28 @@ using OpenPixels = std::array<std::uint32_t, SegmentWindows::side>;
 /// The `planes` rasterizer on the integer lattice: cells to ray segments for the pixels of `rect`, which lies in one
 /// square of 32 x 32 pixels aligned to multiples of 32. Appends to `out`.
 ///
-/// Sixteen cells are set up at once, a cell a lane, in double precision; then each is rasterized, a pixel a lane, in
-/// blocks of 4 x 4, 8 x 2 or 2 x 8 pixels (AVX-512; else of half or a quarter as many), whichever takes the fewest, or,
-/// where the batch's cells are so small that this is faster, all together, a cell a lane (lattice_small-inl.h). Blocks
-/// too are laid over all sixteen cells at once: what a cell costs is what its blocks cost, each an addition to all that
-/// the one before it had. Either way:
-///   - Six edge functions E in float tell which pixels are hit, and through which faces. Seen from the eye a cell has
-///     two front and two back faces, or one and three; the silhouette's edges decide on the hit, the one or three inner
-///     edges on the face. Each E is scaled so that its rounding error is below 1: |E| > 1 is certain (of a sum over n
-///     blocks, |E| > 2 + 3 n / 4, below which E is computed again). Lanes that are not (30 in a million segments on
-///     cube 64) get the exact sign with the tie rule (edge_sign.hpp), so hits are those of rasterize_planes.
-///   - Depth and scalar of a face are planes over the square's pixels, in integers: start, step in x, step in y. No
-///     rounding depends on block or lane, so neighbours compute the same bits for their common face. A gradient
-///     is rounded to a whole step a pixel: at most 16 steps of error within the square.
-///   - Under perspective 1/depth and its products are the planes; a quotient of two gives what lies behind a vertex of
-///     the face, so precision is relative to the face.
+/// Sixteen cells are set up at once, a cell a lane, in double precision. Then, in two steps:
+///   1. Which pixels does each cover (lattice_cover-inl.h)? The edges of its outline alone tell: four additions a
+///   vector
+///      of pixels, in blocks of 4 x 4, 8 x 2 or 2 x 8 (AVX-512; else of half or a quarter as many), whichever takes the
+///      fewest; cells of a few pixels (AVX-512) go through theirs all together, a cell a lane. Of such vectors a fifth
+///      to a half are hits. These are packed: cell, column and row in one number each.
+///   2. Where do their rays pass (lattice_cross-inl.h)? A hit a lane, no lane idle. With AVX-512 sixteen hits are of
+///      any of the sixteen cells, whose numbers then are one vector each, from which lanes take theirs by permuting;
+///      with fewer lanes all are of one cell.
+/// (To do both at once, as a block of pixels with all its planes, takes 125 micro-operations for the 6 hits of 16
+/// pixels that cube 64 has on average; now a block takes 33 and sixteen hits 105.)
+///
+/// Six edge functions E in float tell what is hit, and through which faces. Seen from the eye a cell has two front and
+/// two back faces, or one and three; the silhouette's edges decide on the hit, the one or three inner edges on the
+/// face. Each E is scaled so that its rounding error is below 1: |E| > 1 is certain (of a sum over n blocks, |E| > 2 +
+/// 3 n / 4). Hits that are not (30 in a million segments on cube 64) get the exact sign with the tie rule
+/// (edge_sign.hpp), so hits are those of rasterize_planes.
+///
+/// Depth and scalar of a face are planes over the square's pixels, in integers: start, step in x, step in y. No
+/// rounding depends on block or lane, so neighbours compute the same bits for their common face. A gradient is rounded
+/// to a whole step a pixel: at most 16 steps of error within the square. Under perspective 1/depth and its products are
+/// the planes; a quotient of two gives what lies behind a vertex of the face, so precision is relative to the face.
 /// Measured on cube 64 (31 pixels a cell): bench/RESULTS.md.
 ///
 /// Irregular cells go through rasterize_planes: those that cross the eye plane or the clipping range, have a corner

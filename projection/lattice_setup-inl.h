@@ -39,11 +39,9 @@ constexpr bool edge_inward[6] = {true, false, true, true, false, true};
 struct CellBatch {
   static constexpr int most = 16, center = 16;
   static constexpr float weight_one = 0x1p30f;
-  /// A quantity on faces 0 to 3: steps from pixel to pixel, and at the centre; lay_blocks() adds where blocks begin and
-  /// how they go on.
+  /// A quantity on faces 0 to 3: steps from pixel to pixel, and at the centre.
   struct FacePlanes {
     alignas(64) std::int32_t start[4][most], x[4][most], y[4][most];
-    alignas(64) std::int32_t block[4][most], step[4][2][most];
   };
 
   int size;
@@ -59,13 +57,6 @@ struct CellBatch {
   alignas(64) std::int32_t depth_c[4][most];
   alignas(64) float scalar_c[4][most];
   alignas(64) float cell_scalar[most];
-
-  // How blocks of pixels go over the cell, see lay_blocks(): the first one's corner, how many in a row and in all, and
-  // what is added from each to the next, [1] after the last of a row.
-  alignas(64) std::int32_t left[most], top[most], columns[most], blocks[most], shape[most], clipped[most];
-  alignas(64) std::int32_t pixel[most], pixel_step[2][most];  ///< the corner's pixel in the rectangle
-  alignas(64) float doubtful[most];                           ///< no sign is certain below: steps round
-  alignas(64) float block_edge[6][most], edge_step[6][2][most];
 
   /// Bit f: a front face. Of an irregular cell it says nothing.
   [[nodiscard]] unsigned front_faces(int t) const { return bits[t] & 15; }

@@ -1,5 +1,5 @@
-// What the lattice rasterizer's two forms share: types, the parts that a cell's edges and faces play, the exact sign of
-// an edge function. Included once per instruction set (Highway's include guard idiom).
+// What the lattice rasterizer's steps share: types, the parts that a cell's edges and faces play, the exact sign of an
+// edge function. Included once per instruction set (Highway's include guard idiom).
 
 #if defined(TESSERA_PROJECTION_LATTICE_SHAPES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_PROJECTION_LATTICE_SHAPES_INL_H_

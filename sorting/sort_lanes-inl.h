@@ -37,13 +37,14 @@ constexpr int most_sort_chunks = 64;
 /// floats, whose order is the same and which processors compare on more ports than integers.
 class PackedKeys {
  public:
-  /// For depths from `nearest` to `farthest` (by lane; a lane that is empty: nearest > farthest) in `rows` rows, at
-  /// most most_sort_chunks * sort_chunk.
+  /// For depths from `nearest` to `farthest` (by lane, 32-bit steps; a lane that is empty: nearest > farthest) in
+  /// `rows` rows, at most most_sort_chunks * sort_chunk.
   HWY_INLINE PackedKeys(KeyVec nearest, KeyVec farthest, std::size_t rows) : nearest_(nearest) {
     const KeyTag d;
     const hn::RebindToUnsigned<KeyTag> bits;
     const KeyVec range = hn::IfThenZeroElse(hn::Lt(farthest, nearest), hn::Sub(farthest, nearest));
-    const auto range_bits = static_cast<int>(std::bit_width(hn::GetLane(hn::MaxOfLanes(bits, hn::BitCast(bits, range)))));
+    const auto range_bits =
+        static_cast<int>(std::bit_width(hn::GetLane(hn::MaxOfLanes(bits, hn::BitCast(bits, range)))));
     const auto row_bits = static_cast<int>(std::bit_width(rows - 1));
     up_ = std::min(row_bits, key_bits - range_bits);
     row_mask_ = hn::Set(d, (1 << row_bits) - 1);
@@ -63,7 +64,9 @@ class PackedKeys {
   /// The row that a key was packed with; of keys behind all others, any.
   HWY_INLINE KeyVec row(KeyVec key) const { return hn::And(key, row_mask_); }
   /// Whether the keys do not tell which depth is nearer.
-  HWY_INLINE hn::Mask<KeyTag> level(KeyVec a, KeyVec b) const { return hn::Lt(hn::Xor(a, b), hn::Add(row_mask_, hn::Set(KeyTag(), 1))); }
+  HWY_INLINE hn::Mask<KeyTag> level(KeyVec a, KeyVec b) const {
+    return hn::Lt(hn::Xor(a, b), hn::Add(row_mask_, hn::Set(KeyTag(), 1)));
+  }
 
  private:
   static constexpr int key_bits = 30;

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <limits>
 #include <random>
+#include <utility>
 #include <vector>
 
 #undef HWY_TARGET_INCLUDE
@@ -16,12 +17,46 @@ namespace tessera::sorting {
 namespace HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
-std::size_t sort_rows(std::int32_t*, std::int32_t*, int) { return 0; }
+std::size_t sort_rows(float*, int) { return 0; }
+std::size_t pack_and_sort(std::int32_t*, const std::int32_t*, std::int32_t*, std::int32_t*, std::size_t) { return 0; }
 #else
 /// Returns the number of lanes.
-std::size_t sort_rows(std::int32_t* keys, std::int32_t* slots, int chunks) {
-  sort_lanes(keys, slots, chunks);
+std::size_t sort_rows(float* keys, int chunks) {
+  sort_lanes(keys, chunks);
   return hn::Lanes(SortTag());
+}
+
+/// Sorts `rows` rows of depths, of which lane i has counts[i], as windows do: places[] are the rows in their order, and
+/// level[row] has bits set in lanes where that row's key does not differ from the one before.
+std::size_t pack_and_sort(std::int32_t* depths, const std::int32_t* counts, std::int32_t* places, std::int32_t* level,
+                          std::size_t rows) {
+  const KeyTag d;
+  const std::size_t lanes = hn::Lanes(d);
+  const KeyVec count = hn::LoadU(d, counts);
+  const auto has = [&](std::size_t row)
+                       HWY_ATTR { return hn::Lt(hn::Set(KeyTag(), static_cast<std::int32_t>(row)), count); };
+  KeyVec nearest = hn::Set(d, 0x7fffffff), farthest = hn::Set(d, -0x7fffffff);
+  for (std::size_t row = 0; row < rows; ++row) {
+    const KeyVec depth = hn::LoadU(d, depths + row * lanes);
+    nearest = hn::Min(nearest, hn::IfThenElse(has(row), depth, nearest));
+    farthest = hn::Max(farthest, hn::IfThenElse(has(row), depth, farthest));
+  }
+  const PackedKeys packed(nearest, farthest, rows);
+  std::vector<float> keys(rows * lanes);
+  for (std::size_t row = 0; row < rows; ++row) {
+    const KeyVec depth = hn::LoadU(d, depths + row * lanes);
+    const KeyVec key = hn::IfThenElse(has(row), packed.pack(depth, row), packed.behind_all(row));
+    hn::StoreU(hn::BitCast(SortTag(), key), SortTag(), &keys[row * lanes]);
+  }
+  sort_lanes(keys.data(), static_cast<int>(rows) / sort_chunk);
+  KeyVec before = hn::Zero(d);
+  for (std::size_t row = 0; row < rows; ++row) {
+    const KeyVec key = hn::BitCast(d, hn::LoadU(SortTag(), &keys[row * lanes]));
+    hn::StoreU(packed.row(key), d, places + row * lanes);
+    hn::StoreU(hn::VecFromMask(d, packed.level(before, key)), d, level + row * lanes);
+    before = key;
+  }
+  return lanes;
 }
 #endif
 
@@ -36,48 +71,44 @@ HWY_AFTER_NAMESPACE();
 
 namespace tessera::sorting {
 HWY_EXPORT(sort_rows);
+HWY_EXPORT(pack_and_sort);
 namespace {
 
 constexpr std::size_t most_lanes = 16, chunk_rows = 16;
 
 std::size_t lane_count() {
-  std::vector<std::int32_t> keys(16 * most_lanes), slots(16 * most_lanes);
-  return HWY_DYNAMIC_DISPATCH(sort_rows)(keys.data(), slots.data(), 1);
+  std::vector<float> keys(chunk_rows * most_lanes);
+  return HWY_DYNAMIC_DISPATCH(sort_rows)(keys.data(), 1);
 }
 
-/// Sorts `keys` (row by row, `lanes` a row) with their own numbers as slots and checks every lane.
-void expect_sorted(const std::vector<std::int32_t>& keys, int chunks, std::size_t lanes) {
-  std::vector<std::int32_t> sorted = keys, slots(keys.size());
+/// Sorts `keys` (row by row, `lanes` a row) and checks every lane against std::sort.
+void expect_sorted(std::vector<float> keys, int chunks, std::size_t lanes) {
+  const std::vector<float> before = keys;
   const std::size_t rows = keys.size() / lanes;
-  for (std::size_t i = 0; i < slots.size(); ++i) slots[i] = static_cast<std::int32_t>(i / lanes);
-  HWY_DYNAMIC_DISPATCH(sort_rows)(sorted.data(), slots.data(), chunks);
+  HWY_DYNAMIC_DISPATCH(sort_rows)(keys.data(), chunks);
   for (std::size_t lane = 0; lane < lanes; ++lane) {
-    std::vector<bool> seen(rows);
+    std::vector<float> sorted, expected;
     for (std::size_t row = 0; row < rows; ++row) {
-      const auto slot = static_cast<std::size_t>(slots[row * lanes + lane]);
-      ASSERT_LT(slot, rows);
-      ASSERT_FALSE(seen[slot]);  // a permutation of the lane
-      seen[slot] = true;
-      ASSERT_EQ(sorted[row * lanes + lane], keys[slot * lanes + lane]);  // that took its keys along
-      if (row > 0) {
-        ASSERT_LE(sorted[(row - 1) * lanes + lane], sorted[row * lanes + lane]);
-      }
+      sorted.push_back(keys[row * lanes + lane]);
+      expected.push_back(before[row * lanes + lane]);
     }
+    std::sort(expected.begin(), expected.end());
+    ASSERT_EQ(sorted, expected);
   }
 }
 
-TEST(SortLanes, SortsEveryLaneAndTakesSlotsAlongForAllLengths) {
+TEST(SortLanes, SortsEveryLaneForAllLengths) {
   tests::for_each_instruction_set([](const char* name) {
     SCOPED_TRACE(name);
     const std::size_t lanes = lane_count();
     if (lanes == 0) return;  // scalars: the lattice is not used there
     std::mt19937 random(3);
     for (const int chunks : {1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 31, 64})
-      for (const std::int32_t range : {1, 3, 40, std::numeric_limits<std::int32_t>::max()})
+      for (const int range : {1, 3, 40, 1 << 20})
         for (int repeat = 0; repeat < 1 + 50 / chunks; ++repeat) {
-          std::uniform_int_distribution<std::int32_t> key(-range, range);
-          std::vector<std::int32_t> keys(static_cast<std::size_t>(chunks) * chunk_rows * lanes);
-          std::generate(keys.begin(), keys.end(), [&] { return key(random); });
+          std::uniform_int_distribution<int> key(1, range);
+          std::vector<float> keys(static_cast<std::size_t>(chunks) * chunk_rows * lanes);
+          std::generate(keys.begin(), keys.end(), [&] { return static_cast<float>(key(random)); });
           expect_sorted(keys, chunks, lanes);
         }
   });
@@ -89,12 +120,55 @@ TEST(SortLanes, TheNetworkOfSixteenSortsAllZeroOneSequences) {
   const std::size_t lanes = lane_count();
   if (lanes == 0) GTEST_SKIP() << "no lanes on this processor";
   for (std::uint32_t first = 0; first < 1u << 16; first += static_cast<std::uint32_t>(lanes)) {
-    std::vector<std::int32_t> keys(16 * lanes);
+    std::vector<float> keys(16 * lanes);
     for (std::size_t row = 0; row < 16; ++row)
       for (std::size_t lane = 0; lane < lanes; ++lane)
-        keys[row * lanes + lane] = static_cast<std::int32_t>((first + lane) >> row & 1);
+        keys[row * lanes + lane] = static_cast<float>((first + lane) >> row & 1);
     expect_sorted(keys, 1, lanes);
   }
+}
+
+/// Depths as far apart as 32 bits hold leave no room for the row: keys drop their lowest bits then, and must say so.
+TEST(PackedKeys, OrderDepthsOrSayThatTheyDoNot) {
+  tests::for_each_instruction_set([](const char* name) {
+    SCOPED_TRACE(name);
+    const std::size_t lanes = lane_count();
+    if (lanes == 0) return;
+    std::mt19937 random(7);
+    const std::int32_t least = std::numeric_limits<std::int32_t>::min(), most = 0x7ffffffe;
+    for (const std::size_t rows : {16, 32, 256, 1024})
+      for (const auto& [low, high] : {std::pair{0, 0}, std::pair{-3, 3}, std::pair{-1000000, 1000000},
+                                      std::pair{0, most}, std::pair{least, most}, std::pair{most - 9, most}}) {
+        SCOPED_TRACE(testing::Message() << rows << " rows from " << low << " to " << high);
+        std::vector<std::int32_t> depths(rows * lanes), places(rows * lanes), level(rows * lanes), counts(lanes);
+        for (std::int32_t& depth : depths) depth = std::uniform_int_distribution<std::int32_t>(low, high)(random);
+        for (std::size_t lane = 0; lane < lanes; ++lane) counts[lane] = static_cast<std::int32_t>(lane * rows / lanes);
+        counts.back() = static_cast<std::int32_t>(rows);
+        HWY_DYNAMIC_DISPATCH(pack_and_sort)(depths.data(), counts.data(), places.data(), level.data(), rows);
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+          const auto count = static_cast<std::size_t>(counts[lane]);
+          std::vector<bool> seen(rows);
+          for (std::size_t row = 0; row < rows; ++row) {
+            const auto place = static_cast<std::size_t>(places[row * lanes + lane]);
+            ASSERT_LT(place, rows);  // a place to read from, behind the end too
+            if (row >= count) continue;
+            ASSERT_LT(place, count);
+            ASSERT_FALSE(seen[place]);
+            seen[place] = true;
+            if (row == 0) continue;
+            const std::int32_t before =
+                depths[static_cast<std::size_t>(places[(row - 1) * lanes + lane]) * lanes + lane];
+            const std::int32_t here = depths[place * lanes + lane];
+            const bool is_level = level[row * lanes + lane] != 0;
+            ASSERT_TRUE(before < here || is_level) << before << " " << here;
+            // Up to 2^20 apart nothing is dropped: only what is equal is level.
+            if (std::int64_t{high} - low < 1 << 20) {
+              ASSERT_EQ(is_level, before == here);
+            }
+          }
+        }
+      }
+  });
 }
 
 }  // namespace

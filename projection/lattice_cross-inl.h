@@ -1,0 +1,296 @@
+// Where rays pass a cell: the segments of a queue of hits, a hit a lane, whichever cell it is of; included once per
+// instruction set (Highway's include guard idiom).
+
+#if defined(TESSERA_PROJECTION_LATTICE_CROSS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_PROJECTION_LATTICE_CROSS_INL_H_
+#undef TESSERA_PROJECTION_LATTICE_CROSS_INL_H_
+#else
+#define TESSERA_PROJECTION_LATTICE_CROSS_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include "projection/lattice_parts-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+#if HWY_TARGET != HWY_SCALAR
+namespace tessera::projection {
+namespace HWY_NAMESPACE {
+
+using MI = hn::Mask<I>;
+
+/// Of pairs of 16 bits, signed: low times low plus high times high. Two products in full would take four times as long.
+HWY_INLINE VI products(VI a, VI b) {
+#if HWY_TARGET <= HWY_AVX3
+  return VI{_mm512_madd_epi16(a.raw, b.raw)};
+#elif HWY_TARGET <= HWY_AVX2
+  return VI{_mm256_madd_epi16(a.raw, b.raw)};
+#else
+  return VI{_mm_madd_epi16(a.raw, b.raw)};
+#endif
+}
+
+#if HWY_TARGET <= HWY_AVX3
+/// What lanes ask of their hits' cells: whichever each is of. Sixteen numbers are one vector, and two take one permute.
+template <bool two, bool with_three>
+class AnyCell {
+ public:
+  static constexpr bool may_be_two = two, may_be_three = with_three;
+  HWY_INLINE AnyCell(const CellParts& parts, VI hit)
+      : parts_(parts), cell_(hn::And(hit, hn::Set(I(), CellBatch::most - 1))) {}
+  HWY_INLINE MI three() const { return among(parts_.three); }
+  HWY_INLINE MI behind() const { return among(parts_.behind); }
+  template <class T>
+  HWY_INLINE hn::Vec<hn::ScalableTag<T>> number(const T* numbers) const {
+    const hn::ScalableTag<T> d;
+    return hn::TableLookupLanes(hn::Load(d, numbers), hn::IndicesFromVec(d, cell_));
+  }
+  /// To choose the second of two numbers.
+  using Choice = VI;
+  HWY_INLINE Choice choice(MI second) const {
+    return hn::Or(cell_, hn::IfThenElseZero(second, hn::Set(I(), CellBatch::most)));
+  }
+  HWY_INLINE VI number(const std::int32_t* first, const std::int32_t* second, Choice choice) const {
+    return VI{_mm512_permutex2var_epi32(hn::Load(I(), first).raw, choice.raw, hn::Load(I(), second).raw)};
+  }
+
+ private:
+  HWY_INLINE MI among(unsigned cells) const {
+    const I d;
+    return hn::TestBit(hn::Set(d, static_cast<std::int32_t>(cells)), hn::Shl(hn::Set(d, 1), cell_));
+  }
+
+  const CellParts& parts_;
+  VI cell_;
+};
+#endif
+
+/// The same where all hits are of one cell.
+template <bool is_three>
+class OneCell {
+ public:
+  static constexpr bool may_be_two = !is_three, may_be_three = is_three;
+  HWY_INLINE OneCell(const CellParts& parts, int t) : parts_(parts), t_(t) {}
+  HWY_INLINE MI behind() const {
+    const I d;
+    return hn::Lt(hn::Set(d, -static_cast<std::int32_t>(parts_.behind >> t_ & 1)), hn::Zero(d));
+  }
+  template <class T>
+  HWY_INLINE hn::Vec<hn::ScalableTag<T>> number(const T* numbers) const {
+    return hn::Set(hn::ScalableTag<T>(), numbers[t_]);
+  }
+  using Choice = MI;
+  HWY_INLINE Choice choice(MI second) const { return second; }
+  HWY_INLINE VI number(const std::int32_t* first, const std::int32_t* second, Choice choice) const {
+    return hn::IfThenElse(choice, number(second), number(first));
+  }
+
+ private:
+  const CellParts& parts_;
+  int t_;
+};
+
+template <bool perspective, bool per_cell>
+class HitCrossing {
+ public:
+  HWY_INLINE HitCrossing(const LatticeView& view, const CellBatch& batch, const CellParts& parts, const PixelRect& rect,
+                         const PixelRect& square, SegmentStream& out, RasterCounts& counts)
+      : view_(view), batch_(batch), parts_(parts), rect_(rect), square_(square), out_(out), counts_(counts) {}
+
+  /// Whether hits of several cells are crossed together: where lanes find their cells' numbers by permuting.
+  static constexpr bool together = lanes == CellBatch::most;
+
+#if HWY_TARGET <= HWY_AVX3
+  /// As many hits as fill lanes; the rest stays. The cells: all may be of two faces against two, or of one against
+  /// three.
+  template <bool two, bool three>
+  HWY_INLINE void drain(HitQueue& queue) {
+    const I d;
+    std::size_t i = 0;
+    for (; i + lanes <= queue.size; i += lanes)
+      cross(queue.hit + i, lanes, AnyCell<two, three>(parts_, hn::Load(d, queue.hit + i)));
+    hn::Store(hn::Load(d, queue.hit + i), d, queue.hit);
+    queue.size -= i;
+  }
+  template <bool two, bool three>
+  HWY_INLINE void finish(HitQueue& queue) {
+    drain<two, three>(queue);
+    if (queue.size > 0) cross(queue.hit, queue.size, AnyCell<two, three>(parts_, hn::Load(I(), queue.hit)));
+    queue.size = 0;
+  }
+  /// What a cell has added: waits for others.
+  HWY_INLINE void drain_cell(HitQueue& queue, int t) {
+    if (queue.size < HitQueue::worth_draining) return;
+    if ((parts_.three >> t & 1) != 0)
+      drain<false, true>(queue);
+    else
+      drain<true, false>(queue);
+  }
+#else
+  HWY_INLINE void drain_cell(HitQueue& queue, int t) {
+    if ((parts_.three >> t & 1) != 0)
+      drain_all(queue, OneCell<true>(parts_, t));
+    else
+      drain_all(queue, OneCell<false>(parts_, t));
+  }
+  template <bool two, bool three>
+  HWY_INLINE void finish(HitQueue&) {}
+#endif
+
+ private:
+#if HWY_TARGET > HWY_AVX3
+  template <class Cell>
+  HWY_INLINE void drain_all(HitQueue& queue, const Cell& cell) {
+    for (std::size_t i = 0; i < queue.size; i += lanes)
+      cross(queue.hit + i, std::min<std::size_t>(lanes, queue.size - i), cell);
+    queue.size = 0;
+  }
+#endif
+
+  template <class Cells>
+  HWY_INLINE void cross(const std::int32_t* hits, std::size_t count, const Cells& cells) {
+    const I d;
+    const F df;
+    const auto number = [](int n) HWY_ATTR { return hn::Set(I(), n); };
+    const VI hit = hn::LoadU(d, hits);
+    const VI column = hn::And(hn::ShiftRight<Hit::column_bit>(hit), number(SegmentWindows::side - 1));
+    const VI row = hn::And(hn::ShiftRight<Hit::row_bit>(hit), number(SegmentWindows::side - 1));
+    const VI x = hn::Sub(column, number(CellBatch::center)), y = hn::Sub(row, number(CellBatch::center));
+    const VI place = hn::Or(hn::And(x, number(0xffff)), hn::ShiftLeft<16>(y));
+    const VF xf = hn::ConvertTo(df, x), yf = hn::ConvertTo(df, y), zero = hn::Zero(df);
+    VF inner[3] = {zero, zero, zero}, sure = hn::Set(df, 2.0f);
+    for (int k = Cells::may_be_three ? 0 : 1; k < 3; ++k) {
+      const CellParts::Edge& edge = parts_.inner[k];
+      inner[k] = hn::MulAdd(cells.number(edge.x), xf, hn::MulAdd(cells.number(edge.y), yf, cells.number(edge.start)));
+      sure = hn::Min(sure, hn::Abs(inner[k]));
+    }
+    MF hits_cell = hn::FirstN(df, count), touching = hn::Lt(xf, xf);
+    const MF flagged = hn::RebindMask(df, hn::Ne(hn::And(hit, number(Hit::doubtful)), hn::Zero(d)));
+    const MF doubtful = hn::And(hits_cell, hn::Or(hn::Le(sure, hn::Set(df, 1.0f)), flagged));
+    bool all_hit = true;
+    if (HWY_UNLIKELY(!hn::AllFalse(df, doubtful))) {
+      Doubt doubt{{inner[0], inner[1], inner[2]}, hits_cell, touching};  // what settle() changes lies in memory
+      settle(lane_bits(doubtful), hits, doubt);
+      for (int k = 0; k < 3; ++k) inner[k] = doubt.inner[k];
+      hits_cell = doubt.hits_cell, touching = doubt.touching;
+      all_hit = false;
+    }
+
+    // Of one face against three the first side is the one face; of the three it is the one on whose side of its edges
+    // with the others the ray passes.
+    const auto last = cells.choice(hn::RebindMask(d, hn::Le(inner[2], zero)));
+    const auto first_side = [&](const auto& number_of) HWY_ATTR {
+      if constexpr (!Cells::may_be_two) {
+        return cells.number(number_of(0));
+      } else {
+        auto second_of_two = hn::RebindMask(d, hn::Le(inner[1], zero));
+        if constexpr (Cells::may_be_three) second_of_two = hn::AndNot(cells.three(), second_of_two);
+        return cells.number(number_of(0), number_of(1), cells.choice(second_of_two));
+      }
+    };
+    const auto second_side = [&](const auto& number_of) HWY_ATTR {
+      const VI others = cells.number(number_of(2), number_of(3), last);
+      if constexpr (!Cells::may_be_three) return others;
+      const MF first_of_three = hn::And(hn::Gt(inner[0], zero), hn::Gt(inner[1], zero));
+      return hn::IfThenElse(hn::RebindMask(d, first_of_three), cells.number(number_of(1)), others);
+    };
+    const auto crossing = [&](const auto& side) HWY_ATTR {
+      const auto at_pixel = [&](const CellParts::Planes& planes) HWY_ATTR {
+        const VI start = side([&](int k) { return planes[k].start; });
+        const VI low = side([&](int k) { return planes[k].low; }), high = side([&](int k) { return planes[k].high; });
+        return hn::Add(hn::Add(start, products(low, place)), hn::ShiftLeft<16>(products(high, place)));
+      };
+      Crossing c;
+      c.depth = at_pixel(parts_.depth);
+      if constexpr (per_cell)
+        c.scalar = cells.number(batch_.cell_scalar);
+      else
+        c.scalar = hn::ConvertTo(df, at_pixel(parts_.scalar));
+      if constexpr (perspective) {
+        const VF inverse = inverse_weight(at_pixel(parts_.weight));
+        const auto numbers_of = [&](const std::int32_t(*all)[CellBatch::most])
+                                    HWY_ATTR { return side([&](int k) { return all[k]; }); };
+        c.depth = hn::Add(hn::NearestInt(hn::Mul(hn::ConvertTo(df, c.depth), inverse)), numbers_of(parts_.depth_c));
+        if constexpr (!per_cell) c.scalar = hn::MulAdd(c.scalar, inverse, hn::BitCast(df, numbers_of(parts_.scalar_c)));
+      }
+      return c;
+    };
+    const Crossing first = crossing(first_side);
+    Crossing second = crossing(second_side);
+    const int center_x = square_.x0 + CellBatch::center - rect_.x0,
+              center_y = square_.y0 + CellBatch::center - rect_.y0;
+    const VI pixel =
+        hn::Add(products(place, number(rect_.width() << 16 | 1)), number(center_y * rect_.width() + center_x));
+    // Nothing lies between the sides where a ray touches.
+    if (HWY_UNLIKELY(!all_hit)) second.depth = hn::IfThenElse(hn::RebindMask(d, touching), first.depth, second.depth);
+    const VI front = hn::Min(first.depth, second.depth), back = hn::Max(first.depth, second.depth);
+    const MF swapped = hn::RebindMask(df, cells.behind());
+    const VF scalar_front = hn::IfThenElse(swapped, second.scalar, first.scalar);
+    const VF scalar_back = hn::IfThenElse(swapped, first.scalar, second.scalar);
+    if (HWY_UNLIKELY(!all_hit)) {
+      append(hits_cell, pixel, front, back, scalar_front, scalar_back, out_);
+      return;
+    }
+    hn::StoreU(pixel, d, out_.pixel.data() + out_.size);
+    hn::StoreU(front, d, out_.front.data() + out_.size);
+    hn::StoreU(back, d, out_.back.data() + out_.size);
+    hn::StoreU(scalar_front, df, out_.scalar_front.data() + out_.size);
+    hn::StoreU(scalar_back, df, out_.scalar_back.data() + out_.size);
+    out_.size += count;
+  }
+
+  struct Doubt {
+    VF inner[3];
+    MF hits_cell, touching;
+  };
+  /// Exact signs for the doubtful lanes.
+  HWY_NOINLINE void settle(unsigned doubtful, const std::int32_t* hits, Doubt& doubt) {
+    const F df;
+    VF(&inner)[3] = doubt.inner;
+    MF &hits_cell = doubt.hits_cell, &touching = doubt.touching;
+    alignas(64) float inners[3][lanes], hit[lanes], touches[lanes] = {};
+    for (int k = 0; k < 3; ++k) hn::Store(inner[k], df, inners[k]);
+    hn::Store(hn::IfThenElseZero(hits_cell, hn::Set(df, 1.0f)), df, hit);
+    for (; doubtful != 0; doubtful &= doubtful - 1) {
+      const int lane = __builtin_ctz(doubtful), t = hits[lane] & (CellBatch::most - 1);
+      const int column = hits[lane] >> Hit::column_bit & (SegmentWindows::side - 1);
+      const int row = hits[lane] >> Hit::row_bit & (SegmentWindows::side - 1);
+      const auto x = static_cast<float>(column - CellBatch::center), y = static_cast<float>(row - CellBatch::center);
+      const Roles& roles = role_table.roles[batch_.front_faces(t)];
+      float edge[6];
+      bool certain = true;
+      for (int e = 0; e < 6; ++e) {
+        edge[e] = batch_.edge_x[e][t] * x + (batch_.edge_y[e][t] * y + batch_.edge[e][t]);
+        certain = certain && std::abs(edge[e]) > 1;
+      }
+      const auto outline = [&] {
+        return std::min(
+            {edge[roles.outline[0]], edge[roles.outline[1]], edge[roles.outline[2]], edge[roles.outline[3]]});
+      };
+      if (outline() > -1 && !certain)
+        touches[lane] = static_cast<float>(
+            settle_pixel(view_, batch_, t, square_.x0 + column + 0.5, square_.y0 + row + 0.5, edge, 1, counts_));
+      hit[lane] = outline() > 0 ? 1.0f : 0.0f;
+      if (roles.three != 0) inners[0][lane] = edge[roles.inner[0]];
+      inners[1][lane] = edge[roles.three != 0 ? roles.inner[1] : roles.inner[0]];
+      inners[2][lane] = edge[roles.three != 0 ? roles.inner[2] : roles.inner[1]];
+    }
+    for (int k = 0; k < 3; ++k) inner[k] = hn::Load(df, inners[k]);
+    hits_cell = hn::Gt(hn::Load(df, hit), hn::Zero(df));
+    touching = hn::Gt(hn::Load(df, touches), hn::Zero(df));
+  }
+
+  const LatticeView& view_;
+  const CellBatch& batch_;
+  const CellParts& parts_;
+  const PixelRect &rect_, &square_;
+  SegmentStream& out_;
+  RasterCounts& counts_;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::projection
+#endif  // HWY_SCALAR
+HWY_AFTER_NAMESPACE();
+
+#endif
