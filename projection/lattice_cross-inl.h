@@ -25,8 +25,11 @@ HWY_INLINE VI products(VI a, VI b) {
   return VI{_mm512_madd_epi16(a.raw, b.raw)};
 #elif HWY_TARGET <= HWY_AVX2
   return VI{_mm256_madd_epi16(a.raw, b.raw)};
-#else
+#elif HWY_TARGET <= HWY_SSSE3
   return VI{_mm_madd_epi16(a.raw, b.raw)};
+#else
+  const auto low = [](VI v) HWY_ATTR { return hn::ShiftRight<16>(hn::ShiftLeft<16>(v)); };
+  return hn::Add(hn::Mul(low(a), low(b)), hn::Mul(hn::ShiftRight<16>(a), hn::ShiftRight<16>(b)));
 #endif
 }
 
@@ -95,7 +98,15 @@ class HitCrossing {
  public:
   HWY_INLINE HitCrossing(const LatticeView& view, const CellBatch& batch, const CellParts& parts, const PixelRect& rect,
                          const PixelRect& square, SegmentStream& out, RasterCounts& counts)
-      : view_(view), batch_(batch), parts_(parts), rect_(rect), square_(square), out_(out), counts_(counts) {}
+      : view_(view),
+        batch_(batch),
+        parts_(parts),
+        square_(square),
+        out_(out),
+        counts_(counts),
+        pixel_step_(hn::Set(I(), rect.width() << 16 | 1)),
+        center_pixel_(hn::Set(
+            I(), (square.y0 + CellBatch::center - rect.y0) * rect.width() + square.x0 + CellBatch::center - rect.x0)) {}
 
   /// Whether hits of several cells are crossed together: where lanes find their cells' numbers by permuting.
   static constexpr bool together = lanes == CellBatch::most;
@@ -217,10 +228,7 @@ class HitCrossing {
     };
     const Crossing first = crossing(first_side);
     Crossing second = crossing(second_side);
-    const int center_x = square_.x0 + CellBatch::center - rect_.x0,
-              center_y = square_.y0 + CellBatch::center - rect_.y0;
-    const VI pixel =
-        hn::Add(products(place, number(rect_.width() << 16 | 1)), number(center_y * rect_.width() + center_x));
+    const VI pixel = hn::Add(products(place, pixel_step_), center_pixel_);
     // Nothing lies between the sides where a ray touches.
     if (HWY_UNLIKELY(!all_hit)) second.depth = hn::IfThenElse(hn::RebindMask(d, touching), first.depth, second.depth);
     const VI front = hn::Min(first.depth, second.depth), back = hn::Max(first.depth, second.depth);
@@ -231,12 +239,14 @@ class HitCrossing {
       append(hits_cell, pixel, front, back, scalar_front, scalar_back, out_);
       return;
     }
-    hn::StoreU(pixel, d, out_.pixel.data() + out_.size);
-    hn::StoreU(front, d, out_.front.data() + out_.size);
-    hn::StoreU(back, d, out_.back.data() + out_.size);
-    hn::StoreU(scalar_front, df, out_.scalar_front.data() + out_.size);
-    hn::StoreU(scalar_back, df, out_.scalar_back.data() + out_.size);
-    out_.size += count;
+    // Read before the first store, which might be to any of them as far as a compiler can tell.
+    const std::size_t at = out_.size;
+    std::int32_t *const pixels = out_.pixel.data(), *const fronts = out_.front.data(), *const backs = out_.back.data();
+    float *const scalar_fronts = out_.scalar_front.data(), *const scalar_backs = out_.scalar_back.data();
+    hn::StoreU(pixel, d, pixels + at);
+    hn::StoreU(front, d, fronts + at), hn::StoreU(back, d, backs + at);
+    hn::StoreU(scalar_front, df, scalar_fronts + at), hn::StoreU(scalar_back, df, scalar_backs + at);
+    out_.size = at + count;
   }
 
   struct Doubt {
@@ -283,9 +293,10 @@ class HitCrossing {
   const LatticeView& view_;
   const CellBatch& batch_;
   const CellParts& parts_;
-  const PixelRect &rect_, &square_;
+  const PixelRect& square_;
   SegmentStream& out_;
   RasterCounts& counts_;
+  VI pixel_step_, center_pixel_;  ///< a row's pixels and one in 16 bits each; of column and row 0
 };
 
 }  // namespace HWY_NAMESPACE
