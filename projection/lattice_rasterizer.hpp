@@ -51,8 +51,9 @@ using OpenPixels = std::array<std::uint32_t, SegmentWindows::side>;
 ///   2. Where do their rays pass (lattice_cross-inl.h)? A hit a lane, no lane idle. With AVX-512 sixteen hits are of
 ///      any of the sixteen cells, whose numbers then are one vector each, from which lanes take theirs by permuting;
 ///      with fewer lanes all are of one cell.
-/// (To do both at once, as a block of pixels with all its planes, takes 125 micro-operations for the 6 hits of 16
-/// pixels that cube 64 has on average; now a block takes 33 and sixteen hits 105.)
+/// (Both at once, a block of pixels with all its planes, took 97 instructions for the 6 hits of 16 pixels that cube 64
+/// has on average, and not much less time before a cell's first block; now a block takes 29, and sixteen hits 138 to
+/// 163.)
 ///
 /// Six edge functions E in float tell what is hit, and through which faces. Seen from the eye a cell has two front and
 /// two back faces, or one and three; the silhouette's edges decide on the hit, the one or three inner edges on the
