@@ -112,8 +112,7 @@ class HitCrossing {
   static constexpr bool together = lanes == CellBatch::most;
 
 #if HWY_TARGET <= HWY_AVX3
-  /// As many hits as fill lanes; the rest stays. The cells: all may be of two faces against two, or of one against
-  /// three.
+  /// As many hits as fill lanes; the rest stays. `two`, `three`: the shapes that their cells may have.
   template <bool two, bool three>
   HWY_INLINE void drain(HitQueue& queue) {
     const I d;
