@@ -57,7 +57,7 @@ struct LaneTable {
   std::size_t stride;       ///< of `rows`
   std::vector<float> rows;  ///< column_count rows
 
-  // Many knots: a uniform grid over the knots' range leads to a scalar's interval. Cell j of grid_cells covers the
+  // Many knots: a uniform grid over the knots' range leads to a scalar's interval. Cell j covers the
   // scalars for which truncating (s - grid_origin) * grid_scale, clamped to the grid, gives j.
   float grid_origin = 0, grid_scale = 0, last_cell = 0;
   std::vector<std::int32_t> knots_before;  ///< knots in lower cells

@@ -10,8 +10,6 @@
 
 #include <hwy/highway.h>
 
-#include <cstddef>
-
 #include "projection/lattice_parts-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -50,20 +48,20 @@ HWY_INLINE std::size_t push_hits(VF least, MF among, VI hits, HitQueue& queue, s
   return size + pack.count();
 }
 
-/// Cells of a few pixels: the lanes' cells together go through their candidate pixels, row by row, each from its own
-/// corner.
+/// Cells of a few pixels, where a batch's are as many as lanes: all together go through their candidate pixels, row by
+/// row, each from its own corner.
 struct SmallCells {
   // Cycles, roughly as measured with AVX-512: of blocks, and of a step of all lanes here.
   static constexpr int block_cost = 8, cell_cost = 45, step_cost = 9, start_cost = 60;
 
-  /// Those of `cells` (a bit each, from the batch's cell `from` on) that are faster this way: up to some size, if the
+  /// Those of `cells` (a bit each) that are faster this way: up to some size, if the
   /// most candidate pixels of them all cost less than their blocks.
-  HWY_INLINE static unsigned worth_while(const CellBatch& batch, int from, unsigned cells) {
+  HWY_INLINE static unsigned worth_while(const CellBatch& batch, unsigned cells) {
     const I d;
     const std::uint8_t bits[8] = {static_cast<std::uint8_t>(cells), static_cast<std::uint8_t>(cells >> 8)};
     const auto takes = hn::LoadMaskBits(d, bits);
-    const VI width = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.x1 + from), hn::Load(d, batch.x0 + from)));
-    const VI height = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.y1 + from), hn::Load(d, batch.y0 + from)));
+    const VI width = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.x1), hn::Load(d, batch.x0)));
+    const VI height = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.y1), hn::Load(d, batch.y0)));
     const VI side = hn::Max(width, height), three = hn::Set(d, 3);
     const VI blocks = hn::Mul(hn::ShiftRight<2>(hn::Add(width, three)), hn::ShiftRight<2>(hn::Add(height, three)));
     const VI cost = hn::IfThenElseZero(takes, hn::Add(hn::Mul(blocks, hn::Set(d, block_cost)), hn::Set(d, cell_cost)));
@@ -77,21 +75,19 @@ struct SmallCells {
     return 0;
   }
 
-  /// The lanes are the batch's cells from, from + 1...; those of `cells` (a bit each) are covered. drain() makes room
-  /// in the queue.
+  /// Covers `cells` (a bit each). drain() makes room in the queue.
   template <class Drain>
-  HWY_INLINE static void cover(const CellBatch& batch, const CellParts& parts, int from, unsigned cells,
-                               HitQueue& queue, const Drain& drain) {
+  HWY_INLINE static void cover(const CellBatch& batch, const CellParts& parts, unsigned cells, HitQueue& queue,
+                               const Drain& drain) {
     const I d;
     const F df;
     const std::uint8_t bits[8] = {static_cast<std::uint8_t>(cells), static_cast<std::uint8_t>(cells >> 8)};
     const auto takes = hn::LoadMaskBits(d, bits);
-    const VI x0 = hn::Load(d, batch.x0 + from), y0 = hn::Load(d, batch.y0 + from);
-    const VI width = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.x1 + from), x0));
-    const VI height = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.y1 + from), y0));
+    const VI x0 = hn::Load(d, batch.x0), y0 = hn::Load(d, batch.y0);
+    const VI width = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.x1), x0));
+    const VI height = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.y1), y0));
     const int rows = hn::GetLane(hn::MaxOfLanes(d, height));
-    VI row_hits =
-        hn::Or(hn::Iota(d, from), hn::Or(hn::ShiftLeft<Hit::column_bit>(x0), hn::ShiftLeft<Hit::row_bit>(y0)));
+    VI row_hits = hn::Or(hn::Iota(d, 0), hn::Or(hn::ShiftLeft<Hit::column_bit>(x0), hn::ShiftLeft<Hit::row_bit>(y0)));
     const VF one = hn::Set(df, 1.0f), center = hn::Set(df, static_cast<float>(CellBatch::center));
     const VF first_x = hn::Sub(hn::ConvertTo(df, x0), center);
     VF y = hn::Sub(hn::ConvertTo(df, y0), center);
@@ -100,14 +96,13 @@ struct SmallCells {
       const int columns = hn::GetLane(hn::MaxOfLanes(d, row_width));
       VF row_edge[4];
       for (int k = 0; k < 4; ++k)
-        row_edge[k] =
-            hn::MulAdd(hn::Load(df, parts.outline[k].y + from), y, hn::Load(df, parts.outline[k].start + from));
+        row_edge[k] = hn::MulAdd(hn::Load(df, parts.outline[k].y), y, hn::Load(df, parts.outline[k].start));
       VF x = first_x;
       VI hits = row_hits;
       std::size_t size = queue.size;
       for (int c = 0; c < columns; ++c) {
         VF edge[4];
-        for (int k = 0; k < 4; ++k) edge[k] = hn::MulAdd(hn::Load(df, parts.outline[k].x + from), x, row_edge[k]);
+        for (int k = 0; k < 4; ++k) edge[k] = hn::MulAdd(hn::Load(df, parts.outline[k].x), x, row_edge[k]);
         const VF least = hn::Min(hn::Min(edge[0], edge[1]), hn::Min(edge[2], edge[3]));
         size = push_hits(least, hn::RebindMask(df, hn::Gt(row_width, hn::Set(d, c))), hits, queue, size);
         x = hn::Add(x, one);
@@ -230,14 +225,11 @@ class CellBlocks {
   alignas(64) float edge_[4][CellBatch::most], edge_step_[4][2 * CellBatch::most];
 };
 
-/// What is worked on in turns. Loads wait for stores to addresses that differ by multiples of 4 KiB, so blocks lie
-/// where the queue's usual part does not: its first 2 KiB.
-struct alignas(4096) CoverScratch {
+/// Working memory of rasterizing a batch.
+struct CoverScratch {
   HitQueue hits;
   CellBlocks blocks;
 };
-static_assert(offsetof(CoverScratch, blocks) % 4096 >= HitQueue::worth_draining * sizeof(std::int32_t) + 128 &&
-              offsetof(CoverScratch, blocks) % 4096 + sizeof(CellBlocks) <= 4096);
 
 }  // namespace HWY_NAMESPACE
 }  // namespace tessera::projection

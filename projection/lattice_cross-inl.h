@@ -19,7 +19,7 @@ namespace HWY_NAMESPACE {
 
 using MI = hn::Mask<I>;
 
-/// Of pairs of 16 bits, signed: low times low plus high times high. Two products in full would take four times as long.
+/// Of pairs of 16 bits, signed: low times low plus high times high, in one instruction.
 HWY_INLINE VI products(VI a, VI b) {
 #if HWY_TARGET <= HWY_AVX3
   return VI{_mm512_madd_epi16(a.raw, b.raw)};
@@ -93,6 +93,7 @@ class OneCell {
   int t_;
 };
 
+/// Turns hits into segments, which it appends to `out`.
 template <bool perspective, bool per_cell>
 class HitCrossing {
  public:
@@ -122,6 +123,7 @@ class HitCrossing {
     hn::Store(hn::Load(d, queue.hit + i), d, queue.hit);
     queue.size -= i;
   }
+  /// The rest too.
   template <bool two, bool three>
   HWY_INLINE void finish(HitQueue& queue) {
     drain<two, three>(queue);

@@ -96,6 +96,7 @@ class PartOrder {
     return bits(hn::And(is(part_table.valid), hn::And(columns, rows)));
   }
 
+  /// Sets all the rest that such a view of such a mesh uses.
   template <bool perspective, bool per_cell>
   HWY_INLINE void order() const {
     edges<0>(), edges<1>(), edges<2>(), edges<3>();
@@ -179,8 +180,9 @@ struct Hit {
   static constexpr int column_bit = 4, row_bit = 9;
   static constexpr std::int32_t doubtful = 1 << 15;
 };
+/// Hits that wait to be crossed.
 struct HitQueue {
-  static constexpr std::size_t worth_draining = 448;
+  static constexpr std::size_t worth_draining = 512;
   static constexpr std::size_t most = worth_draining + SegmentWindows::most_pixels;  ///< with what one cell adds
 
   std::size_t size = 0;

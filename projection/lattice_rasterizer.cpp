@@ -1,7 +1,6 @@
 #include "projection/lattice_rasterizer.hpp"
 
 #include <algorithm>
-#include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "projection/lattice_rasterizer.cpp"
@@ -49,9 +48,9 @@ void rasterize_cells(const LatticeView& view, CellBatch& batch, const PixelRect&
   using Crossing = HitCrossing<perspective, per_cell>;
   Crossing crossing(view, batch, parts, rect, square, out, counts);
   if constexpr (Crossing::together) {
-    const unsigned small = SmallCells::worth_while(batch, 0, cells);
+    const unsigned small = SmallCells::worth_while(batch, cells);
     if (small != 0) {
-      SmallCells::cover(batch, parts, 0, small, hits, [&]() HWY_ATTR { crossing.template drain<true, true>(hits); });
+      SmallCells::cover(batch, parts, small, hits, [&]() HWY_ATTR { crossing.template drain<true, true>(hits); });
       crossing.template finish<true, true>(hits);
     }
     cells &= ~small;

@@ -34,7 +34,7 @@ constexpr int most_sort_chunks = 64;
 
 /// Depth and place in the list in one number, so that an exchange is a minimum and a maximum: the depth behind the
 /// lane's nearest above, as many bits of it as there is room for, the row below. Keys are the bits of positive normal
-/// floats, whose order is the same and which processors compare on more ports than integers.
+/// floats, whose order is the same.
 class PackedKeys {
  public:
   /// For depths from `nearest` to `farthest` (by lane, 32-bit steps; a lane that is empty: nearest > farthest) in
