@@ -149,7 +149,7 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
 
 DistributedMesh read_distributed(Transport& transport, std::span<const std::filesystem::path> files,
                                  const io::MeshOptions& options, const projection::Partition& partition,
-                                 std::span<const int> projectors, scene::Trace* trace) {
+                                 std::span<const int> projectors, int threads, scene::Trace* trace) {
   DistributedMesh result;
   if (transport.size() == 1) {
     {
@@ -160,7 +160,7 @@ DistributedMesh read_distributed(Transport& transport, std::span<const std::file
     result.description.mesh = {};
     result.description.mesh.field_name = result.part.mesh.field_name;
     result.description.mesh.association = result.part.mesh.association;
-    result.facts = scene::facts_of(result.part.mesh);
+    result.facts = scene::facts_of(result.part.mesh, threads);
     return result;
   }
   try {
@@ -174,7 +174,7 @@ DistributedMesh read_distributed(Transport& transport, std::span<const std::file
       result = in_parts[0] != std::byte{0} ? read_parts(transport, files.front(), options, projectors)
                                            : read_whole(transport, files, options, projectors);
     }
-    result.facts = frame::agree_facts(transport, result.part.mesh);
+    result.facts = frame::agree_facts(transport, result.part.mesh, threads);
     result.part = frame::redistribute(transport, std::move(result.part), result.facts, partition, projectors, trace);
   } catch (const scene::Error& error) {
     transport.fail(error);

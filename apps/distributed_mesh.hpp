@@ -30,6 +30,6 @@ struct DistributedMesh {
 /// transport.fail()ed and thrown on all.
 DistributedMesh read_distributed(compositor::Transport& transport, std::span<const std::filesystem::path> files,
                                  const io::MeshOptions& options, const projection::Partition& partition,
-                                 std::span<const int> projectors, scene::Trace* trace);
+                                 std::span<const int> projectors, int threads, scene::Trace* trace);
 
 }  // namespace tessera::apps

@@ -135,7 +135,7 @@ void RankRun::render() {
 
   // Of a time series the first step, which gives transfer function and view, even if none of its frames is to be made.
   DistributedMesh mesh = read_distributed(transport_, frames_.front().mesh.files, options_.mesh, options_.partition,
-                                          roles_.projectors, trace);
+                                          roles_.projectors, options_.settings.threads, trace);
   later_options_ = options_of_later_steps(options_.mesh, mesh.description);
   const MeshSummary summary = summary_of(mesh.description, mesh.facts);
   tets_ = summary.facts.tets;
@@ -180,9 +180,10 @@ void RankRun::render() {
         if (first.step != 0) {
           mesh = {};  // the last one's memory before the next one's
           mesh = read_distributed(transport_, first.mesh.files, later_options_, options_.partition, roles_.projectors,
-                                  trace);
+                                  options_.settings.threads, trace);
         }
         const float edge = longest_edge(mesh.part.mesh);
+        frame::order_corners(mesh.part.mesh, settings.render);
         return frame::ProjectorMesh{std::make_shared<scene::TetMesh>(std::move(mesh.part.mesh)),
                                     std::move(mesh.part.global_tet),
                                     diagonal(mesh.facts.box),

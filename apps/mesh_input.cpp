@@ -10,7 +10,9 @@
 
 namespace tessera::apps {
 
-MeshSummary summary_of(const io::MeshFile& file) { return summary_of(file, scene::facts_of(file.mesh)); }
+MeshSummary summary_of(const io::MeshFile& file, int threads) {
+  return summary_of(file, scene::facts_of(file.mesh, threads));
+}
 
 MeshSummary summary_of(const io::MeshFile& description, const scene::MeshFacts& facts) {
   return {description.counts, description.fields,          description.notes,

@@ -80,7 +80,9 @@ class Run {
       file_ = read(frame, later_options_);
       step_ = frame.step;
     }
-    if (!renderer_) renderer_.emplace(file_.mesh, settings_);
+    if (renderer_) return;
+    frame::order_corners(file_.mesh, settings_);
+    renderer_.emplace(file_.mesh, settings_);
   }
 
   const RenderOptions& options_;
@@ -88,7 +90,7 @@ class Run {
   io::MeshFile file_;
   std::size_t step_ = 0;  ///< of file_
   io::MeshOptions later_options_ = options_of_later_steps(options_.mesh, file_);
-  MeshSummary summary_ = summary_of(file_);
+  MeshSummary summary_ = summary_of(file_, options_.settings.threads);
   io::LoadedTransferFunction loaded_ = transfer_function_of(summary_.facts, options_);
   frame::RenderSettings settings_ = options_.settings;
   std::optional<frame::Renderer> renderer_;

@@ -111,6 +111,12 @@ std::uint64_t segment_budget(const RenderSettings& settings, std::uint64_t held,
 
 }  // namespace
 
+void order_corners(scene::TetMesh& mesh, const RenderSettings& settings) {
+  const scene::TraceScope timing(settings.trace, "prepare");
+  const int threads = std::min(cores_or(checked(settings).threads), tbb::info::default_concurrency());
+  tbb::task_arena(threads).execute([&] { projection::order_corners(mesh); });
+}
+
 FrameProjector::FrameProjector(const scene::TetMesh& mesh, const RenderSettings& settings)
     : settings_(checked(settings)),
       parallelism_(tbb::global_control::max_allowed_parallelism,
@@ -119,9 +125,9 @@ FrameProjector::FrameProjector(const scene::TetMesh& mesh, const RenderSettings&
       prepared_(arena_.execute([&] {
         const scene::TraceScope timing(settings.trace, "prepare");
         return projection::PreparedMesh(mesh);
-      })) {
-  const scene::Box box = scene::bounds(mesh);
-  diagonal_ = box.empty() ? 0 : glm::length(box.high - box.low);
+      })),
+      box_(scene::bounds(mesh, settings.threads)) {
+  diagonal_ = box_.empty() ? 0 : glm::length(box_.high - box_.low);
   if (settings.rasterizer == Rasterizer::scanline)
     longest_edge_ = arena_.execute([&] { return projection::longest_edge(mesh); });
 }

@@ -43,6 +43,8 @@ class FrameProjector {
   /// Fills all of the statistics but the names. Throws Error(bad_input) for a view that the rasterizer cannot do.
   FrameStatistics project(const Task& task);
 
+  /// The mesh's scene::bounds().
+  [[nodiscard]] const scene::Box& box() const { return box_; }
   /// Length of the diagonal of the mesh's box, world units: no ray inside is longer.
   [[nodiscard]] double diagonal() const { return diagonal_; }
 
@@ -55,6 +57,7 @@ class FrameProjector {
   tbb::global_control parallelism_;  ///< more threads than cores, where asked for, without oneTBB's warning
   tbb::task_arena arena_;
   projection::PreparedMesh prepared_;
+  scene::Box box_;
   double diagonal_ = 0;
   float longest_edge_ = 0;  ///< scanline only
   std::vector<projection::PixelVertex> vertices_;

@@ -75,12 +75,13 @@ std::vector<std::uint32_t> parts_of_tets(Transport& transport, const MeshPart& l
 
 }  // namespace
 
-scene::MeshFacts agree_facts(Transport& transport, const scene::TetMesh& part) {
-  if (transport.size() == 1) return scene::facts_of(part);
-  scene::MeshFacts own{bounds(part), scalar_range(part), 0, part.tets.size(), part.association}, facts;
+scene::MeshFacts agree_facts(Transport& transport, const scene::TetMesh& part, int threads) {
+  if (transport.size() == 1) return scene::facts_of(part, threads);
+  scene::MeshFacts own{bounds(part, threads), scalar_range(part, threads), 0, part.tets.size(), part.association},
+      facts;
   for (const auto& other : gather_values(transport, own)) facts = joined(facts, other);
   scene::VolumeSum volume = 0;
-  for (const auto other : gather_values(transport, volume_sum(part, facts.box))) volume += other;
+  for (const auto other : gather_values(transport, volume_sum(part, facts.box, threads))) volume += other;
   facts.mean_thickness = mean_thickness(facts.box, volume);
   return facts;
 }

@@ -32,7 +32,7 @@ void check_deep(const RenderSettings& settings, const scene::TransferFunction& f
 
 struct Renderer::State {
   State(const scene::TetMesh& mesh, const RenderSettings& s)
-      : settings(s), projector(mesh, s), box(scene::bounds(mesh)), scalar_range(scene::scalar_range(mesh)) {}
+      : settings(s), projector(mesh, s), scalar_range(scene::scalar_range(mesh, s.threads)) {}
 
   /// The integrator of this function. Its tables are kept for as long as the function stays.
   const compositor::SegmentIntegrator& integrator(const scene::TransferFunction& f) {
@@ -45,7 +45,6 @@ struct Renderer::State {
 
   RenderSettings settings;
   FrameProjector projector;
-  scene::Box box;
   std::array<double, 2> scalar_range;
   scene::TransferFunction function;
   std::optional<compositor::SegmentIntegrator> kept;
@@ -85,7 +84,8 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
                                                settings.deep_accuracy, *collector));
   };
   const std::optional<projection::Lattice> lattice =
-      collector ? std::nullopt : lattice_of(space, state_->box, state_->scalar_range, transfer_function, settings);
+      collector ? std::nullopt
+                : lattice_of(space, state_->projector.box(), state_->scalar_range, transfer_function, settings);
   std::optional<compositor::LaneTable> table;
   if (lattice) {
     table.emplace(transfer_function, lattice->scalar_origin, lattice->scalar_unit, lattice->depth_unit,

@@ -128,7 +128,7 @@ HWY_INLINE M thin_face(const FaceShape& n, V area) {
 /// Which faces are front faces, and the edge functions. `thin`: some face may be edge-on, which few are.
 template <bool perspective, bool thin>
 HWY_INLINE void set_up_sides(FaceShape (&shape)[4], const V (&area)[4], M upright, const V (&x)[4], const V (&y)[4],
-                             int from, M& irregular, CellBatch& batch) {
+                             V span, int from, M& irregular, CellBatch& batch) {
   const D d;
   const hn::RebindToUnsigned<D> du64;
   const hn::Rebind<std::uint32_t, D> du32;
@@ -178,10 +178,9 @@ HWY_INLINE void set_up_sides(FaceShape (&shape)[4], const V (&area)[4], M uprigh
     const int a = edge_from[e], b = edge_to[e];
     start[e] = hn::MulSub(x[a], y[b], hn::Mul(x[b], y[a]));
     along_x[e] = hn::Sub(y[a], y[b]), along_y[e] = hn::Sub(x[b], x[a]);
-    const V reached = hn::Add(hn::Abs(along_x[e]), hn::Abs(along_y[e]));
-    error = hn::Max(error, hn::MulAdd(reached, number(17), hn::Abs(start[e])));
+    error = hn::Max(error, hn::Abs(start[e]));
   }
-  const V scale = hn::Div(number(0x1p22), error);
+  const V scale = hn::Div(number(0x1p22), hn::MulAdd(span, number(CellBatch::center + 1), error));
   for (int e = 0; e < 6; ++e) {
     const M inward = edge_inward[e] ? upright : hn::Not(upright);
     const M flip = hn::Xor(inward, front[edge_faces[e][0]]);
@@ -200,9 +199,22 @@ HWY_INLINE void set_up_sides(FaceShape (&shape)[4], const V (&area)[4], M uprigh
   hn::StoreU(hn::TruncateTo(du32, bits), du32, batch.bits + from);
 }
 
+/// `count` numbers: of vertices first, first + 2, first + 4... the first two or the second two (`pair` 0 or 1). Beside
+/// those of the vertices between them, lanes are but to be interleaved to have a vertex each.
+template <std::size_t count, class Vertex>
+HWY_INLINE auto load_every_second(const Vertex& vertex, int first, int pair) {
+  if constexpr (count == 2) {
+    return hn::LoadU(hn::FixedTag<double, 2>(), reinterpret_cast<const double*>(vertex(first)) + 2 * pair);
+  } else {
+    const auto low = load_every_second<count / 2>(vertex, first, pair);
+    const auto high = load_every_second<count / 2>(vertex, first + static_cast<int>(count / 2), pair);
+    return hn::Combine(hn::FixedTag<double, count>(), high, low);
+  }
+}
+
 /// One vector of cells: the first of them is cell `from` of the batch. `cell_scalar` is read of cell data only.
 template <bool perspective>
-HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds, const LatticeVertex (*corner)[8],
+HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds, const scene::Tet* const* tets,
                              const double* cell_scalar, const PixelRect& rect, int square_x, int square_y, int from,
                              CellBatch& batch) {
   const D d;
@@ -212,13 +224,18 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
   const hn::Rebind<std::uint32_t, D> du32;
   const auto number = [](double v) HWY_ATTR { return hn::Set(D(), v); };
   const V zero = hn::Zero(d), one = number(1);
+  const LatticeVertex* const vertices = view.vertices.data();
   V x[4], y[4], z[4], s[4], w[4], order[4];
   M irregular = hn::Lt(zero, zero);
   V nearest = number(HUGE_VAL), farthest = number(-HUGE_VAL);
   for (int i = 0; i < 4; ++i) {
-    V steps;
-    hn::LoadInterleaved4(d, reinterpret_cast<const double*>(corner[i]), x[i], y[i], w[i], steps);
-    const auto both = hn::BitCast(du64, steps);
+    const auto vertex = [&](int lane) HWY_ATTR { return &vertices[(*tets[lane])[static_cast<std::size_t>(i)]]; };
+    const auto even = [&](int pair) HWY_ATTR { return load_every_second<hn::MaxLanes(D())>(vertex, 0, pair); };
+    const auto odd = [&](int pair) HWY_ATTR { return load_every_second<hn::MaxLanes(D())>(vertex, 1, pair); };
+    const V xy_even = even(0), xy_odd = odd(0), rest_even = even(1), rest_odd = odd(1);
+    x[i] = hn::InterleaveLower(d, xy_even, xy_odd), y[i] = hn::InterleaveUpper(d, xy_even, xy_odd);
+    w[i] = hn::InterleaveLower(d, rest_even, rest_odd);
+    const auto both = hn::BitCast(du64, hn::InterleaveUpper(d, rest_even, rest_odd));
     z[i] = hn::PromoteTo(d, hn::BitCast(di32, hn::TruncateTo(du32, both)));
     s[i] = hn::PromoteTo(d, hn::BitCast(di32, hn::TruncateTo(du32, hn::ShiftRight<32>(both))));
     if constexpr (perspective) {
@@ -257,6 +274,8 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
   store_bound(hn::Add(hn::Floor(hn::Add(y_high, slack)), hn::Add(center, one)), rect.y0 - square_y, rect.y1 - square_y,
               batch.y1);
 
+  const V span = hn::Add(hn::Sub(x_high, x_low), hn::Sub(y_high, y_low));
+
   // Faces: area, which side of the cell, planes.
   M thin = hn::Lt(zero, zero);
   FaceShape shape[4];
@@ -278,9 +297,9 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
                  hn::MulAdd(z2, hn::MulSub(X3, Y1, hn::Mul(X1, Y3)), hn::Mul(z3, hn::MulSub(X1, Y2, hn::Mul(X2, Y1)))));
   const M upright = hn::Ge(volume, zero);
   if (HWY_UNLIKELY(!hn::AllFalse(d, thin)))
-    set_up_sides<perspective, true>(shape, area, upright, x, y, from, irregular, batch);
+    set_up_sides<perspective, true>(shape, area, upright, x, y, span, from, irregular, batch);
   else
-    set_up_sides<perspective, false>(shape, area, upright, x, y, from, irregular, batch);
+    set_up_sides<perspective, false>(shape, area, upright, x, y, span, from, irregular, batch);
 
   const bool per_cell = view.projected.mesh->mesh().association == scene::Association::cell;
   if constexpr (!perspective) {
@@ -324,16 +343,15 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
 /// Lists name cells all over the mesh: fetch the next batches' corner indices, and their vertices, while this batch is
 /// worked on. `ahead` begins with the next batch.
 HWY_INLINE void prefetch_cells(const LatticeView& view, std::span<const TileEntry> ahead) {
-  const PreparedMesh& prepared = *view.projected.mesh;
-  const scene::TetMesh& mesh = prepared.mesh();
+  const std::span<const scene::Tet> tets = view.projected.mesh->tets();
+  const scene::TetMesh& mesh = view.projected.mesh->mesh();
   const bool per_cell = mesh.association == scene::Association::cell;
   const std::size_t near = std::min<std::size_t>(ahead.size(), CellBatch::most);
   for (std::size_t i = 0; i < near; ++i)
-    for (const std::uint32_t v : mesh.tets[ahead[i].tet]) __builtin_prefetch(&view.vertices[v]);
+    for (const std::uint32_t v : tets[ahead[i].tet]) __builtin_prefetch(&view.vertices[v]);
   const std::size_t far = std::min<std::size_t>(ahead.size(), 3 * CellBatch::most);
   for (std::size_t i = 2 * CellBatch::most; i < far; ++i) {
-    __builtin_prefetch(&mesh.tets[ahead[i].tet]);
-    prepared.prefetch(ahead[i].tet);
+    __builtin_prefetch(&tets[ahead[i].tet]);
     if (per_cell) __builtin_prefetch(&mesh.scalars[ahead[i].tet]);
   }
 }
@@ -347,21 +365,20 @@ HWY_INLINE void set_up_cells(const LatticeView& view, std::span<const TileEntry>
   const bool per_cell = prepared.mesh().association == scene::Association::cell;
   const DepthBounds bounds(view);
   const auto lanes = static_cast<int>(hn::Lanes(D()));
-  const LatticeVertex* const vertices = view.vertices.data();
+  const std::span<const scene::Tet> tets = prepared.tets();
   batch.size = static_cast<int>(cells.size());
   batch.irregular = 0;
   for (int from = 0; from < batch.size; from += lanes) {
-    alignas(64) LatticeVertex corner[4][8];
+    const scene::Tet* corners[8];
     double cell_scalar[8];
     for (int lane = 0; lane < lanes; ++lane) {
       const int t = std::min(from + lane, batch.size - 1);
       const std::uint32_t tet = cells[static_cast<std::size_t>(t)].tet;
       batch.tet[from + lane] = tet;
-      const scene::Tet corners = prepared.canonical(tet);
-      for (int i = 0; i < 4; ++i) corner[i][lane] = vertices[corners[i]];
+      corners[lane] = &tets[tet];
       if (per_cell) cell_scalar[lane] = prepared.mesh().scalars[tet];
     }
-    set_up_lanes<perspective>(view, bounds, corner, cell_scalar, rect, square_x, square_y, from, batch);
+    set_up_lanes<perspective>(view, bounds, corners, cell_scalar, rect, square_x, square_y, from, batch);
   }
   batch.irregular &= (1u << batch.size) - 1;
 }

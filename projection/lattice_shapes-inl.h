@@ -107,7 +107,7 @@ constexpr RoleTable role_table = make_role_table();
 /// two faces that it passes: it is in the cell for no way at all, which rounded planes would not say.
 inline bool settle_pixel(const LatticeView& view, const CellBatch& batch, int t, double px, double py, float* edges,
                          int stride, RasterCounts& counts) {
-  const scene::Tet corners = view.projected.mesh->canonical(batch.tet[t]);
+  const scene::Tet& corners = view.projected.mesh->tets()[batch.tet[t]];
   const Roles& roles = role_table.roles[batch.front_faces(t)];
   bool touching = false;
   for (int e = 0; e < 6; ++e) {

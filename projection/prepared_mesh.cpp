@@ -4,31 +4,64 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <tuple>
 
 #include "scene/error.hpp"
 
 namespace tessera::projection {
+namespace {
 
-PreparedMesh::PreparedMesh(const scene::TetMesh& mesh) : mesh_(&mesh), permutation_(mesh.tets.size()) {
-  if (mesh.tets.size() > std::numeric_limits<std::uint32_t>::max())
-    throw scene::bad_input("mesh: more than 4294967295 tets in one process; split it into pieces");
-  const auto before = [&](std::uint32_t a, std::uint32_t b) {
-    const glm::dvec3 &p = mesh.positions[a], &q = mesh.positions[b];
+constexpr std::size_t tets_a_task = 4096;
+
+/// Canonical order of corners; equal positions by index.
+class CornerOrder {
+ public:
+  explicit CornerOrder(const scene::TetMesh& mesh) : positions_(mesh.positions) {}
+  bool operator()(std::uint32_t a, std::uint32_t b) const {
+    const glm::dvec3 &p = positions_[a], &q = positions_[b];
     return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
-  };
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.tets.size(), 4096), [&](const auto& range) {
+  }
+
+ private:
+  std::span<const glm::dvec3> positions_;
+};
+
+void order(std::span<scene::Tet> tets, const CornerOrder& before) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tets.size(), tets_a_task), [&](const auto& range) {
     for (std::size_t t = range.begin(); t != range.end(); ++t) {
-      const scene::Tet& tet = mesh.tets[t];
-      std::array<std::uint8_t, 4> corner{0, 1, 2, 3};
-      const auto order = [&](int i, int j) {
-        if (before(tet[corner[j]], tet[corner[i]])) std::swap(corner[i], corner[j]);
+      scene::Tet& tet = tets[t];
+      const auto exchange = [&](int i, int j) {
+        if (before(tet[j], tet[i])) std::swap(tet[i], tet[j]);
       };
-      order(0, 1), order(2, 3), order(0, 2), order(1, 3), order(1, 2);
-      permutation_[t] = static_cast<std::uint8_t>(corner[0] | (corner[1] << 2) | (corner[2] << 4) | (corner[3] << 6));
+      exchange(0, 1), exchange(2, 3), exchange(0, 2), exchange(1, 3), exchange(1, 2);
     }
   });
+}
+
+bool ordered(std::span<const scene::Tet> tets, const CornerOrder& before) {
+  std::atomic<bool> all = true;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tets.size(), tets_a_task), [&](const auto& range) {
+    for (std::size_t t = range.begin(); t != range.end() && all.load(std::memory_order_relaxed); ++t)
+      if (!std::is_sorted(tets[t].begin(), tets[t].end(), before)) all.store(false, std::memory_order_relaxed);
+  });
+  return all;
+}
+
+}  // namespace
+
+void order_corners(scene::TetMesh& mesh) { order(mesh.tets, CornerOrder(mesh)); }
+
+PreparedMesh::PreparedMesh(const scene::TetMesh& mesh) : mesh_(&mesh), tets_(mesh.tets) {
+  if (mesh.tets.size() > std::numeric_limits<std::uint32_t>::max())
+    throw scene::bad_input("mesh: more than 4294967295 tets in one process; split it into pieces");
+  const CornerOrder before(mesh);
+  if (!ordered(mesh.tets, before)) {
+    ordered_ = mesh.tets;
+    order(ordered_, before);
+    tets_ = ordered_;
+  }
   block_bounds_.resize((mesh.tets.size() + block_tets - 1) / block_tets);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, block_bounds_.size(), 64), [&](const auto& range) {
     for (std::size_t b = range.begin(); b != range.end(); ++b) {

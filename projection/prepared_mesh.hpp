@@ -2,34 +2,32 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "scene/tet_mesh.hpp"
 
 namespace tessera::projection {
 
-/// A mesh with what the projection needs and no view changes.
-///
-/// Canonical order: a tet's vertices are visited in lexicographic order of their positions (x, then y, then z). A face
+/// Puts every tet's corners in canonical order, the lexicographic order of their positions (x, then y, then z). A face
 /// shared by two cells is then computed from the same three points in the same order, to the same bits, whatever
 /// indices and orientation its cells use; coincident vertices at a seam included.
+void order_corners(scene::TetMesh& mesh);
+
+/// A mesh with what the projection needs and no view changes.
 class PreparedMesh {
  public:
-  /// The mesh must outlive this object. Throws Error(bad_input) beyond 2^32 - 1 tets: split such a mesh over processes.
+  /// The mesh must outlive this object. Where order_corners() has not been called for it, its tets are copied, which
+  /// takes 16 bytes each. Throws Error(bad_input) beyond 2^32 - 1 tets: split such a mesh over processes.
   explicit PreparedMesh(const scene::TetMesh& mesh);
+  PreparedMesh(PreparedMesh&&) = default;
+  PreparedMesh& operator=(PreparedMesh&&) = default;
 
   [[nodiscard]] const scene::TetMesh& mesh() const { return *mesh_; }
   [[nodiscard]] std::size_t tet_count() const { return mesh_->tets.size(); }
 
-  /// The four vertex indices of a tet in canonical order.
-  [[nodiscard]] scene::Tet canonical(std::size_t tet) const {
-    const scene::Tet& t = mesh_->tets[tet];
-    const std::uint8_t p = permutation_[tet];
-    return {t[p & 3], t[(p >> 2) & 3], t[(p >> 4) & 3], t[(p >> 6) & 3]};
-  }
-
-  /// Asks for what canonical() will read beside the tet.
-  void prefetch(std::size_t tet) const { __builtin_prefetch(&permutation_[tet]); }
+  /// The tets, their corners in canonical order.
+  [[nodiscard]] std::span<const scene::Tet> tets() const { return tets_; }
 
   /// Smallest and largest scalar in a tet.
   [[nodiscard]] std::array<double, 2> scalar_bounds(std::size_t tet) const;
@@ -44,7 +42,8 @@ class PreparedMesh {
 
  private:
   const scene::TetMesh* mesh_;
-  std::vector<std::uint8_t> permutation_;  ///< four 2-bit corner numbers a tet
+  std::vector<scene::Tet> ordered_;  ///< a copy, where the mesh's own are in another order
+  std::span<const scene::Tet> tets_;
   std::vector<std::array<double, 2>> block_bounds_;
   bool scalars_are_floats_ = false;
 };

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+
+#include "scene/sum_over_tets.hpp"
 
 namespace tessera::scene {
 namespace {
@@ -18,9 +21,9 @@ double longest_side(const Box& box) {
 
 }  // namespace
 
-MeshFacts facts_of(const TetMesh& mesh) {
-  MeshFacts facts{bounds(mesh), scalar_range(mesh), 0, mesh.tets.size(), mesh.association};
-  facts.mean_thickness = mean_thickness(facts.box, volume_sum(mesh, facts.box));
+MeshFacts facts_of(const TetMesh& mesh, int threads) {
+  MeshFacts facts{bounds(mesh, threads), scalar_range(mesh, threads), 0, mesh.tets.size(), mesh.association};
+  facts.mean_thickness = mean_thickness(facts.box, volume_sum(mesh, facts.box, threads));
   return facts;
 }
 
@@ -34,11 +37,10 @@ MeshFacts joined(const MeshFacts& a, const MeshFacts& b) {
           a.association};
 }
 
-VolumeSum volume_sum(const TetMesh& mesh, const Box& box) {
+VolumeSum volume_sum(const TetMesh& mesh, const Box& box, int threads) {
   const double longest = longest_side(box);
   if (!(longest > 0)) return 0;
-  VolumeSum sum = 0;
-  for (const Tet& tet : mesh.tets) {
+  const auto volume_of = [&](const Tet& tet) {
     const glm::dvec3 &a = mesh.positions[tet[0]], &b = mesh.positions[tet[1]], &c = mesh.positions[tet[2]],
                      &d = mesh.positions[tet[3]];
     // In units of the longest side, so that scenes of 1e-150 or 1e150 neither underflow nor overflow.
@@ -48,9 +50,14 @@ VolumeSum volume_sum(const TetMesh& mesh, const Box& box) {
     const double upper = volume * 0x1p62;
     const auto whole = static_cast<std::int64_t>(upper);
     const auto rest = static_cast<std::int64_t>((upper - static_cast<double>(whole)) * 0x1p38);
-    sum += (static_cast<VolumeSum>(whole) << 38) + rest;
-  }
-  return sum;
+    return (static_cast<VolumeSum>(whole) << 38) + rest;
+  };
+  const auto of = [&](std::size_t first, std::size_t last) {
+    VolumeSum sum = 0;
+    for (std::size_t t = first; t < last; ++t) sum += volume_of(mesh.tets[t]);
+    return sum;
+  };
+  return sum_over_tets(mesh.tets.size(), threads, VolumeSum{0}, of, std::plus<>());
 }
 
 double mean_thickness(const Box& box, VolumeSum volume) {

@@ -8,16 +8,19 @@
 
 #include "scene/error.hpp"
 #include "scene/mesh_facts.hpp"
+#include "scene/sum_over_tets.hpp"
 
 namespace tessera::scene {
 
-Box bounds(const TetMesh& mesh) {
-  Box box;
-  for (const Tet& tet : mesh.tets)
-    for (const std::uint32_t v : tet) {
-      box.low = glm::min(box.low, mesh.positions[v]);
-      box.high = glm::max(box.high, mesh.positions[v]);
-    }
+Box bounds(const TetMesh& mesh, int threads) {
+  const auto join = [](const Box& a, const Box& b) { return Box{glm::min(a.low, b.low), glm::max(a.high, b.high)}; };
+  const auto of = [&](std::size_t first, std::size_t last) {
+    Box box;
+    for (std::size_t t = first; t < last; ++t)
+      for (const std::uint32_t v : mesh.tets[t]) box = join(box, {mesh.positions[v], mesh.positions[v]});
+    return box;
+  };
+  const Box box = sum_over_tets(mesh.tets.size(), threads, Box(), of, join);
   // -0 becomes 0: which of the two is found depends on the order.
   return {box.low + 0.0, box.high + 0.0};
 }
@@ -27,19 +30,23 @@ double mean_thickness(const TetMesh& mesh) {
   return mean_thickness(box, volume_sum(mesh, box));
 }
 
-std::array<double, 2> scalar_range(const TetMesh& mesh) {
+std::array<double, 2> scalar_range(const TetMesh& mesh, int threads) {
   if (mesh.tets.empty()) return {0, 0};
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  const auto include = [&](double s) {
-    low = std::min(low, s);
-    high = std::max(high, s);
+  using Range = std::array<double, 2>;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const auto join = [](const Range& a, const Range& b) { return Range{std::min(a[0], b[0]), std::max(a[1], b[1])}; };
+  const auto of = [&](std::size_t first, std::size_t last) {
+    Range range{infinity, -infinity};
+    const auto include = [&](double s) { range = join(range, {s, s}); };
+    for (std::size_t t = first; t < last; ++t) {
+      if (mesh.association == Association::cell)
+        include(mesh.scalars[t]);
+      else
+        for (const std::uint32_t v : mesh.tets[t]) include(mesh.scalars[v]);
+    }
+    return range;
   };
-  if (mesh.association == Association::cell) {
-    for (const double s : mesh.scalars) include(s);
-  } else {
-    for (const Tet& tet : mesh.tets)
-      for (const std::uint32_t v : tet) include(mesh.scalars[v]);
-  }
+  const auto [low, high] = sum_over_tets(mesh.tets.size(), threads, Range{infinity, -infinity}, of, join);
   return {low + 0.0, high + 0.0};  // -0 becomes 0, as in bounds()
 }
 

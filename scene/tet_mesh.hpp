@@ -41,8 +41,8 @@ struct TetMesh {
   }
 };
 
-/// Box of the vertices that tets use. Empty if there are no tets.
-Box bounds(const TetMesh& mesh);
+/// Box of the vertices that tets use. Empty if there are no tets. `threads`, here and below: 0 is all cores.
+Box bounds(const TetMesh& mesh, int threads = 1);
 
 /// Volume of the tets over the largest face of their box: how much matter a ray meets on average that crosses the box
 /// the short way. World units; the length that default extinctions refer to, as it sees plates, shells and scattered
@@ -51,7 +51,7 @@ Box bounds(const TetMesh& mesh);
 double mean_thickness(const TetMesh& mesh);
 
 /// Smallest and largest scalar that tets use; {0, 0} if there are no tets.
-std::array<double, 2> scalar_range(const TetMesh& mesh);
+std::array<double, 2> scalar_range(const TetMesh& mesh, int threads = 1);
 
 /// Some tets of a mesh, in the order given, with the vertices that they use in the mesh's order.
 TetMesh subset(const TetMesh& mesh, std::span<const std::uint32_t> tets);

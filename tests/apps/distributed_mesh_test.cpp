@@ -34,7 +34,7 @@ std::vector<DistributedMesh> read_on(int ranks, const std::filesystem::path& fil
   std::vector<DistributedMesh> result(static_cast<std::size_t>(ranks));
   compositor::run_ranks(ranks, [&](Transport& transport) {
     result[static_cast<std::size_t>(transport.rank())] =
-        read_distributed(transport, std::span(&file, 1), options, {kind, 1}, projectors, nullptr);
+        read_distributed(transport, std::span(&file, 1), options, {kind, 1}, projectors, 1, nullptr);
   });
   return result;
 }

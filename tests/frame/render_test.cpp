@@ -46,6 +46,16 @@ RenderSettings exact() {
 
 bool same_bits(const Image& a, const Image& b) { return a.rgba == b.rgba && a.depth == b.depth; }
 
+TEST(Render, GivesTheSameBitsWithCornersOrderedBeforehand) {
+  const scene::TetMesh mesh = datasets::cube(12, 0.2);
+  scene::TetMesh ordered = mesh;
+  order_corners(ordered, exact());
+  ASSERT_NE(ordered.tets, mesh.tets);
+  const ImageSize size{97, 61};
+  EXPECT_TRUE(same_bits(Renderer(ordered, exact()).render(oblique(), size, six_knots()),
+                        Renderer(mesh, exact()).render(oblique(), size, six_knots())));
+}
+
 TEST(Render, GivesTheSameBitsForAnyThreadsTilesAndMemory) {
   const scene::TetMesh mesh = datasets::cube(12, 0.2);
   for (const bool eye_inside : {false, true}) {

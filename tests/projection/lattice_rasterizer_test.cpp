@@ -90,7 +90,7 @@ Rays rasterized(const Scene& scene, int tile, RasterCounts* counts_out = nullptr
 
 /// Whether a face of the cell is so close to edge-on that double precision takes the cell over.
 bool edge_on(const Scene& scene, std::uint32_t tet) {
-  const scene::Tet corners = scene.prepared.canonical(tet);
+  const scene::Tet& corners = scene.prepared.tets()[tet];
   for (const auto& face : {std::array{0, 1, 2}, std::array{0, 1, 3}, std::array{0, 2, 3}, std::array{1, 2, 3}}) {
     std::array<glm::dvec2, 3> p;
     for (int i = 0; i < 3; ++i) {

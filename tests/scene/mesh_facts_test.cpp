@@ -65,6 +65,17 @@ TEST(MeshFacts, NeitherOrderNorPartsChangeABit) {
   }
 }
 
+TEST(MeshFacts, ThreadsChangeNoBit) {
+  TetMesh mesh = scattered(50000, 6);  // several tasks
+  for (const Association association : {Association::point, Association::cell}) {
+    mesh.association = association;
+    if (association == Association::cell) mesh.scalars.assign(mesh.tets.size(), 0.5), mesh.scalars[40000] = -3;
+    const MeshFacts alone = facts_of(mesh);
+    for (const int threads : {0, 2, 3}) expect_same_bits(facts_of(mesh, threads), alone);
+  }
+  EXPECT_EQ(facts_of(mesh, 2).scalar_range, (std::array<double, 2>{-3, 0.5}));
+}
+
 TEST(MeshFacts, TheVolumeIsTheSumOfTheTets) {
   const TetMesh mesh = scattered(2000, 4);
   const Box box = bounds(mesh);
