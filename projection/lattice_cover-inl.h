@@ -10,6 +10,8 @@
 
 #include <hwy/highway.h>
 
+#include <bit>
+
 #include "projection/lattice_parts-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -48,46 +50,48 @@ HWY_INLINE std::size_t push_hits(VF least, MF among, VI hits, HitQueue& queue, s
   return size + pack.count();
 }
 
-/// Cells of a few pixels, where a batch's are as many as lanes: all together go through their candidate pixels, row by
-/// row, each from its own corner.
+/// Cells of a few pixels: as many of a batch as lanes, those from `from` on, go through their candidate pixels
+/// together, row by row, each from its own corner.
 struct SmallCells {
   // Cycles, roughly as measured with AVX-512: of blocks, and of a step of all lanes here.
   static constexpr int block_cost = 8, cell_cost = 45, step_cost = 9, start_cost = 60;
 
-  /// Those of `cells` (a bit each) that are faster this way: up to some size, if the
-  /// most candidate pixels of them all cost less than their blocks.
-  HWY_INLINE static unsigned worth_while(const CellBatch& batch, unsigned cells) {
+  /// Those of `cells` (a bit each of the batch) that are faster this way: up to some size, if the most candidate pixels
+  /// of them all cost less than their blocks.
+  HWY_INLINE static unsigned worth_while(const CellBatch& batch, unsigned cells, int from) {
     const I d;
-    const std::uint8_t bits[8] = {static_cast<std::uint8_t>(cells), static_cast<std::uint8_t>(cells >> 8)};
-    const auto takes = hn::LoadMaskBits(d, bits);
-    const VI width = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.x1), hn::Load(d, batch.x0)));
-    const VI height = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.y1), hn::Load(d, batch.y0)));
-    const VI side = hn::Max(width, height), three = hn::Set(d, 3);
-    const VI blocks = hn::Mul(hn::ShiftRight<2>(hn::Add(width, three)), hn::ShiftRight<2>(hn::Add(height, three)));
+    const auto takes = mask_of(cells, from);
+    const VI width = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.x1 + from), hn::Load(d, batch.x0 + from)));
+    const VI height = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.y1 + from), hn::Load(d, batch.y0 + from)));
+    const VI side = hn::Max(width, height);
+    constexpr int across = usual_width, down = lanes / usual_width;
+    const VI blocks =
+        hn::Mul(hn::ShiftRight<std::countr_zero(unsigned{across})>(hn::Add(width, hn::Set(d, across - 1))),
+                hn::ShiftRight<std::countr_zero(unsigned{down})>(hn::Add(height, hn::Set(d, down - 1))));
     const VI cost = hn::IfThenElseZero(takes, hn::Add(hn::Mul(blocks, hn::Set(d, block_cost)), hn::Set(d, cell_cost)));
     for (const int most_side : {16, 10, 6}) {
       const auto small = hn::Lt(side, hn::Set(d, most_side + 1));
       const int candidates = hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElseZero(small, width))) *
                              hn::GetLane(hn::MaxOfLanes(d, hn::IfThenElseZero(small, height)));
       if (candidates * step_cost + start_cost < hn::GetLane(hn::SumOfLanes(d, hn::IfThenElseZero(small, cost))))
-        return cells & lane_bits(hn::RebindMask(F(), small));
+        return cells & lane_bits(hn::RebindMask(F(), small)) << from;
     }
     return 0;
   }
 
-  /// Covers `cells` (a bit each). drain() makes room in the queue.
+  /// Covers `cells` (a bit each of the batch). drain() makes room in the queue.
   template <class Drain>
-  HWY_INLINE static void cover(const CellBatch& batch, const CellParts& parts, unsigned cells, HitQueue& queue,
-                               const Drain& drain) {
+  HWY_INLINE static void cover(const CellBatch& batch, const CellParts& parts, unsigned cells, int from,
+                               HitQueue& queue, const Drain& drain) {
     const I d;
     const F df;
-    const std::uint8_t bits[8] = {static_cast<std::uint8_t>(cells), static_cast<std::uint8_t>(cells >> 8)};
-    const auto takes = hn::LoadMaskBits(d, bits);
-    const VI x0 = hn::Load(d, batch.x0), y0 = hn::Load(d, batch.y0);
-    const VI width = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.x1), x0));
-    const VI height = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.y1), y0));
+    const auto takes = mask_of(cells, from);
+    const VI x0 = hn::Load(d, batch.x0 + from), y0 = hn::Load(d, batch.y0 + from);
+    const VI width = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.x1 + from), x0));
+    const VI height = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.y1 + from), y0));
     const int rows = hn::GetLane(hn::MaxOfLanes(d, height));
-    VI row_hits = hn::Or(hn::Iota(d, 0), hn::Or(hn::ShiftLeft<Hit::column_bit>(x0), hn::ShiftLeft<Hit::row_bit>(y0)));
+    VI row_hits =
+        hn::Or(hn::Iota(d, from), hn::Or(hn::ShiftLeft<Hit::column_bit>(x0), hn::ShiftLeft<Hit::row_bit>(y0)));
     const VF one = hn::Set(df, 1.0f), center = hn::Set(df, static_cast<float>(CellBatch::center));
     const VF first_x = hn::Sub(hn::ConvertTo(df, x0), center);
     VF y = hn::Sub(hn::ConvertTo(df, y0), center);
@@ -96,13 +100,14 @@ struct SmallCells {
       const int columns = hn::GetLane(hn::MaxOfLanes(d, row_width));
       VF row_edge[4];
       for (int k = 0; k < 4; ++k)
-        row_edge[k] = hn::MulAdd(hn::Load(df, parts.outline[k].y), y, hn::Load(df, parts.outline[k].start));
+        row_edge[k] =
+            hn::MulAdd(hn::Load(df, parts.outline[k].y + from), y, hn::Load(df, parts.outline[k].start + from));
       VF x = first_x;
       VI hits = row_hits;
       std::size_t size = queue.size;
       for (int c = 0; c < columns; ++c) {
         VF edge[4];
-        for (int k = 0; k < 4; ++k) edge[k] = hn::MulAdd(hn::Load(df, parts.outline[k].x), x, row_edge[k]);
+        for (int k = 0; k < 4; ++k) edge[k] = hn::MulAdd(hn::Load(df, parts.outline[k].x + from), x, row_edge[k]);
         const VF least = hn::Min(hn::Min(edge[0], edge[1]), hn::Min(edge[2], edge[3]));
         size = push_hits(least, hn::RebindMask(df, hn::Gt(row_width, hn::Set(d, c))), hits, queue, size);
         x = hn::Add(x, one);
@@ -113,6 +118,13 @@ struct SmallCells {
       y = hn::Add(y, one);
       row_hits = hn::Add(row_hits, hn::Set(d, 1 << Hit::row_bit));
     }
+  }
+
+ private:
+  HWY_INLINE static hn::Mask<I> mask_of(unsigned cells, int from) {
+    cells >>= from;
+    const std::uint8_t bits[8] = {static_cast<std::uint8_t>(cells), static_cast<std::uint8_t>(cells >> 8)};
+    return hn::LoadMaskBits(I(), bits);
   }
 };
 

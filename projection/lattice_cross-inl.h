@@ -33,22 +33,24 @@ HWY_INLINE VI products(VI a, VI b) {
 #endif
 }
 
-#if HWY_TARGET <= HWY_AVX3
-/// What lanes ask of their hits' cells: whichever each is of. Sixteen numbers are one vector, and two take one permute.
+#if HWY_TARGET <= HWY_AVX2
+/// What lanes ask of their hits' cells: whichever each is of, of as many as there are lanes, from `from` on. Their
+/// numbers are one vector to permute from; with AVX-512 one permute takes the one or the other of two.
 template <bool two, bool with_three>
 class AnyCell {
  public:
   static constexpr bool may_be_two = two, may_be_three = with_three;
-  HWY_INLINE AnyCell(const CellParts& parts, VI hit)
-      : parts_(parts), cell_(hn::And(hit, hn::Set(I(), CellBatch::most - 1))) {}
+  HWY_INLINE AnyCell(const CellParts& parts, int from, VI hit)
+      : parts_(parts), from_(from), cell_(hn::And(hit, hn::Set(I(), lanes - 1))) {}
   HWY_INLINE MI three() const { return among(parts_.three); }
   HWY_INLINE MI behind() const { return among(parts_.behind); }
   template <class T>
   HWY_INLINE hn::Vec<hn::ScalableTag<T>> number(const T* numbers) const {
     const hn::ScalableTag<T> d;
-    return hn::TableLookupLanes(hn::Load(d, numbers), hn::IndicesFromVec(d, cell_));
+    return hn::TableLookupLanes(hn::Load(d, numbers + from_), hn::IndicesFromVec(d, cell_));
   }
   /// To choose the second of two numbers.
+#if HWY_TARGET <= HWY_AVX3
   using Choice = VI;
   HWY_INLINE Choice choice(MI second) const {
     return hn::Or(cell_, hn::IfThenElseZero(second, hn::Set(I(), CellBatch::most)));
@@ -56,14 +58,22 @@ class AnyCell {
   HWY_INLINE VI number(const std::int32_t* first, const std::int32_t* second, Choice choice) const {
     return VI{_mm512_permutex2var_epi32(hn::Load(I(), first).raw, choice.raw, hn::Load(I(), second).raw)};
   }
+#else
+  using Choice = MI;
+  HWY_INLINE Choice choice(MI second) const { return second; }
+  HWY_INLINE VI number(const std::int32_t* first, const std::int32_t* second, Choice choice) const {
+    return hn::IfThenElse(choice, number(second), number(first));
+  }
+#endif
 
  private:
   HWY_INLINE MI among(unsigned cells) const {
     const I d;
-    return hn::TestBit(hn::Set(d, static_cast<std::int32_t>(cells)), hn::Shl(hn::Set(d, 1), cell_));
+    return hn::TestBit(hn::Set(d, static_cast<std::int32_t>(cells >> from_)), hn::Shl(hn::Set(d, 1), cell_));
   }
 
   const CellParts& parts_;
+  int from_;
   VI cell_;
 };
 #endif
@@ -109,34 +119,44 @@ class HitCrossing {
         center_pixel_(hn::Set(
             I(), (square.y0 + CellBatch::center - rect.y0) * rect.width() + square.x0 + CellBatch::center - rect.x0)) {}
 
-  /// Whether hits of several cells are crossed together: where lanes find their cells' numbers by permuting.
-  static constexpr bool together = lanes == CellBatch::most;
+  /// Whether hits of as many cells as lanes can be crossed together: where lanes find their cells' numbers by
+  /// permuting.
+  static constexpr bool together = lanes >= 8;
+  /// Whether those are all cells of a batch.
+  static constexpr bool all_together = lanes == CellBatch::most;
 
-#if HWY_TARGET <= HWY_AVX3
-  /// As many hits as fill lanes; the rest stays. `two`, `three`: the shapes that their cells may have.
+#if HWY_TARGET <= HWY_AVX2
+  /// As many hits of the cells from `from` on as fill lanes; the rest stays. `two`, `three`: the shapes that their
+  /// cells may have.
   template <bool two, bool three>
-  HWY_INLINE void drain(HitQueue& queue) {
+  HWY_INLINE void drain(HitQueue& queue, int from) {
     const I d;
     std::size_t i = 0;
     for (; i + lanes <= queue.size; i += lanes)
-      cross(queue.hit + i, lanes, AnyCell<two, three>(parts_, hn::Load(d, queue.hit + i)));
+      cross(queue.hit + i, lanes, AnyCell<two, three>(parts_, from, hn::Load(d, queue.hit + i)));
     hn::Store(hn::Load(d, queue.hit + i), d, queue.hit);
     queue.size -= i;
   }
   /// The rest too.
   template <bool two, bool three>
-  HWY_INLINE void finish(HitQueue& queue) {
-    drain<two, three>(queue);
-    if (queue.size > 0) cross(queue.hit, queue.size, AnyCell<two, three>(parts_, hn::Load(I(), queue.hit)));
+  HWY_INLINE void finish(HitQueue& queue, int from) {
+    drain<two, three>(queue, from);
+    if (queue.size > 0) cross(queue.hit, queue.size, AnyCell<two, three>(parts_, from, hn::Load(I(), queue.hit)));
     queue.size = 0;
   }
-  /// What a cell has added: waits for others.
+#endif
+  /// What a cell has added; where they are crossed all together it waits for others, up to finish_cells().
+#if HWY_TARGET <= HWY_AVX3
   HWY_INLINE void drain_cell(HitQueue& queue, int t) {
     if (queue.size < HitQueue::worth_draining) return;
     if ((parts_.three >> t & 1) != 0)
-      drain<false, true>(queue);
+      drain<false, true>(queue, 0);
     else
-      drain<true, false>(queue);
+      drain<true, false>(queue, 0);
+  }
+  template <bool two, bool three>
+  HWY_INLINE void finish_cells(HitQueue& queue) {
+    finish<two, three>(queue, 0);
   }
 #else
   HWY_INLINE void drain_cell(HitQueue& queue, int t) {
@@ -146,7 +166,7 @@ class HitCrossing {
       drain_all(queue, OneCell<false>(parts_, t));
   }
   template <bool two, bool three>
-  HWY_INLINE void finish(HitQueue&) {}
+  HWY_INLINE void finish_cells(HitQueue&) {}
 #endif
 
  private:

@@ -48,12 +48,14 @@ void rasterize_cells(const LatticeView& view, CellBatch& batch, const PixelRect&
   using Crossing = HitCrossing<perspective, per_cell>;
   Crossing crossing(view, batch, parts, rect, square, out, counts);
   if constexpr (Crossing::together) {
-    const unsigned small = SmallCells::worth_while(batch, cells);
-    if (small != 0) {
-      SmallCells::cover(batch, parts, small, hits, [&]() HWY_ATTR { crossing.template drain<true, true>(hits); });
-      crossing.template finish<true, true>(hits);
+    for (int from = 0; from < batch.size; from += lanes) {
+      const unsigned small = SmallCells::worth_while(batch, cells, from);
+      if (small == 0) continue;
+      SmallCells::cover(batch, parts, small, from, hits,
+                        [&]() HWY_ATTR { crossing.template drain<true, true>(hits, from); });
+      crossing.template finish<true, true>(hits, from);
+      cells &= ~small;
     }
-    cells &= ~small;
   }
   if (cells == 0) return;
   scratch.blocks.lay(batch, parts, rect, square);
@@ -66,9 +68,9 @@ void rasterize_cells(const LatticeView& view, CellBatch& batch, const PixelRect&
     }
   };
   cover(cells & ~parts.three);
-  crossing.template finish<true, false>(hits);
+  crossing.template finish_cells<true, false>(hits);
   cover(cells & parts.three);
-  crossing.template finish<false, true>(hits);
+  crossing.template finish_cells<false, true>(hits);
 }
 
 /// An irregular cell, from double precision to the lattice.
