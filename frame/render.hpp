@@ -59,8 +59,8 @@ struct FrameStatistics {
   std::string composited_on;       ///< CompositingDevice::name, of all compositors; empty in a single process
 };
 
-/// projection::order_corners() on the threads of `settings`: of a mesh that has been through it a renderer keeps no copy
-/// of the tets, 16 bytes each. Pictures are the same with and without.
+/// projection::order_corners() on the threads of `settings`: of a mesh that has been through it a renderer keeps no
+/// copy of the tets, 16 bytes each. Pictures are the same with and without.
 void order_corners(scene::TetMesh& mesh, const RenderSettings& settings);
 
 /// Renders one tetrahedral mesh many times in one process. Preparation that does not depend on view or transfer
