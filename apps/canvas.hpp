@@ -7,7 +7,7 @@
 #include <string>
 
 extern "C" {
-typedef struct _cairo cairo_t;
+typedef struct _cairo cairo_t;  // NOLINT(bugprone-reserved-identifier, modernize-use-using): theirs
 }
 
 namespace tessera::apps {

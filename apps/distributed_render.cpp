@@ -103,7 +103,7 @@ class RankRun {
   }
 
   void render();
-  void take(frame::FinishedFrame finished);
+  void take(const frame::FinishedFrame& finished);
   Verification verify_frame(const Frame& frame, const scene::Image& image, const scene::Camera& camera);
 
   const RenderOptions& options_;
@@ -191,7 +191,7 @@ void RankRun::render() {
                                     mesh.facts.scalar_range,
                                     edge};
       },
-      [&](frame::FinishedFrame finished) { take(std::move(finished)); });
+      [&](const frame::FinishedFrame& finished) { take(finished); });
   for (; writes_ && next_to_report_ < frames_.size(); ++next_to_report_) output_.skip(frames_[next_to_report_]);
 }
 
@@ -207,7 +207,7 @@ Verification RankRun::verify_frame(const Frame& frame, const scene::Image& image
 }
 
 /// On the writing rank, for every repetition of every frame in order.
-void RankRun::take(frame::FinishedFrame finished) {
+void RankRun::take(const frame::FinishedFrame& finished) {
   const std::size_t at = job_frames_[finished.frame];
   frame_ms_.push_back(finished.frame_ms);
   if (finished.frame + 1 < jobs_.size() && job_frames_[finished.frame + 1] == at) return;

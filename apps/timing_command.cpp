@@ -19,6 +19,7 @@ void timing(const std::vector<std::filesystem::path>& traces, const std::filesys
       if (!output.empty()) check_output_file(output, trace);
 
   std::vector<RunTime> runs;
+  runs.reserve(traces.size());
   for (const auto& trace : traces) runs.push_back(break_down(io::read_chrome_trace(trace), trace.string()));
 
   for (const RunTime& run : runs) fmt::print("{}\n", breakdown_text(run));

@@ -50,6 +50,7 @@ Transport& LoopbackNetwork::rank(int rank) { return *ranks_.at(static_cast<std::
 void run_ranks(int ranks, const std::function<void(Transport&)>& work) {
   LoopbackNetwork network(ranks);
   std::vector<std::thread> threads;
+  threads.reserve(static_cast<std::size_t>(ranks));
   for (int rank = 0; rank < ranks; ++rank)
     threads.emplace_back([&, rank] {
       Transport& transport = network.rank(rank);

@@ -258,14 +258,18 @@ ClearFloats clear_floats(const ClearIntervals::Interval& interval, bool exact) {
           std::isinf(interval.high) ? high : std::nextafter(high, -infinity), low, high};
 }
 
+namespace {
+int tiles(int pixels, int tile_size) { return (pixels + tile_size - 1) / tile_size; }
+}  // namespace
+
 CullView::CullView(double near_depth, double far_depth, double depth_origin, scene::ImageSize image, int tile_size)
     : width(static_cast<float>(image.width)),
       height(static_cast<float>(image.height)),
       inverse_tile_size(1.0f / static_cast<float>(tile_size)),
-      columns(static_cast<float>((image.width + tile_size - 1) / tile_size)) {
+      columns(static_cast<float>(tiles(image.width, tile_size))) {
   constexpr double most = 1e37;
   const double to_near = near_depth - depth_origin, to_far = far_depth - depth_origin;
-  const double rows = (image.height + tile_size - 1) / tile_size;
+  const double rows = tiles(image.height, tile_size);
   nothing_sure = !(std::abs(depth_origin) < most && std::abs(near_depth) < most &&
                    (std::abs(far_depth) < most || std::isinf(far_depth))) ||
                  static_cast<double>(columns) * rows > static_cast<double>(most_places);

@@ -38,7 +38,7 @@ struct CurveKey {
   std::uint64_t place;  ///< curve_place of its centroid
   std::uint64_t tet;    ///< index in the whole mesh
 
-  auto operator<=>(const CurveKey&) const = default;
+  auto operator<=>(const CurveKey&) const = default;  // NOLINT(modernize-use-nullptr): there is none
 };
 
 /// Where a point lies along the Hilbert curve through the cube over the box's longest side, in 2^21 steps an axis:

@@ -118,10 +118,11 @@ namespace {
 
 /// Threads that read meanwhile get their pages anew.
 void drop_pages(std::span<const std::byte> mapped) {
-  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
-  const auto first = (reinterpret_cast<std::uintptr_t>(mapped.data()) + page - 1) / page * page;
-  const auto last = reinterpret_cast<std::uintptr_t>(mapped.data() + mapped.size()) / page * page;
-  if (last > first) madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  const std::size_t before = (page - reinterpret_cast<std::uintptr_t>(mapped.data()) % page) % page;
+  if (mapped.size() < before + page) return;
+  const auto pages = mapped.subspan(before, (mapped.size() - before) / page * page);
+  madvise(const_cast<std::byte*>(pages.data()), pages.size(), MADV_DONTNEED);
 }
 
 /// Bytes of a mapped file that count as this process's once rows of `row` bytes, `stride` apart, have been read: the

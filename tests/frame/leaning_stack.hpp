@@ -19,7 +19,7 @@ inline scene::TetMesh leaning_stack(int layers) {
     const double z = 1.5 + 1.0 * layer / layers;
     for (const double x : {0.0, side})
       for (const double y : {0.0, side}) {
-        mesh.positions.push_back({x, y, z + lean * x / side});
+        mesh.positions.emplace_back(x, y, z + lean * x / side);
         mesh.scalars.push_back(0.5 + 0.5 * std::sin(0.01 * layer));
       }
   }

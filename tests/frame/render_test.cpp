@@ -285,6 +285,7 @@ TEST(Render, ScalarsRoundedAlikeAllAlongARayStayWithinTheBound) {
   for (const scene::Emission emission : {scene::Emission::absorption, scene::Emission::independent})
     for (const double least : {0.0, 1.4, 200.0}) {
       std::vector<scene::Knot> knots;
+      knots.reserve(256);
       for (int i = 0; i < 256; ++i)
         knots.push_back({i / 255.0, glm::dvec3(i % 2, 0.5, 1 - i % 2), least + (i % 2) * (1 + least / 4)});
       const TransferFunction function(knots);
