@@ -277,7 +277,8 @@ void chart(const RenderWords& words, const ChartWords& chart) {
     report["volume"] = volume_json(options.input, volume);
   } else {
     mesh = read_input(frame.mesh.files, options.mesh);
-    const MeshSummary summary = summary_of(mesh);
+    const MeshSummary summary = summary_of(mesh, options.settings.threads);
+    frame::order_corners(mesh.mesh, options.settings);
     facts = summary.facts;
     scene.mesh = &mesh.mesh;
     report["mesh"] = mesh_json(options.input, summary);

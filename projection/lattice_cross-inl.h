@@ -122,8 +122,6 @@ class HitCrossing {
   /// Whether hits of as many cells as lanes can be crossed together: where lanes find their cells' numbers by
   /// permuting.
   static constexpr bool together = lanes >= 8;
-  /// Whether those are all cells of a batch.
-  static constexpr bool all_together = lanes == CellBatch::most;
 
 #if HWY_TARGET <= HWY_AVX2
   /// As many hits of the cells from `from` on as fill lanes; the rest stays. `two`, `three`: the shapes that their

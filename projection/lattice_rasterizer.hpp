@@ -45,9 +45,9 @@ using OpenPixels = std::array<std::uint32_t, SegmentWindows::side>;
 /// Sixteen cells are set up at once, a cell a lane, in double precision. Then, in two steps:
 ///   1. Which pixels does each cover (lattice_cover-inl.h)? The edges of its outline alone tell: four additions for a
 ///      vector of pixels, in blocks of 4 x 4, 8 x 2 or 2 x 8 (AVX-512; else of half or a quarter as many), whichever
-///      takes the fewest; cells of a few pixels (AVX-512, AVX2) go through theirs all together, a cell a lane. Less than
-///      half of such vectors are hits (of blocks 43 % on cube 32, 40 on cube 64). These are packed: cell, column and row
-///      in one number each.
+///      takes the fewest; cells of a few pixels (AVX-512, AVX2) go through theirs all together, a cell a lane. Less
+///      than half of such vectors are hits (of blocks 43 % on cube 32, 40 on cube 64). These are packed: cell, column
+///      and row in one number each.
 ///   2. Where do their rays pass (lattice_cross-inl.h)? A hit a lane. With AVX-512 sixteen hits are of any of the
 ///      sixteen cells, whose numbers then are one vector each, from which lanes take theirs by permuting; so are eight
 ///      of eight cells of a few pixels with AVX2. Else all are of one cell.
