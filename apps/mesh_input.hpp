@@ -15,6 +15,7 @@ struct MeshSummary {
   std::string format, field_name;
   scene::MeshFacts facts;
 };
+/// `threads`: 0 is all cores.
 MeshSummary summary_of(const io::MeshFile& file, int threads = 0);
 /// Where the file's mesh is in parts, with the facts of the whole.
 MeshSummary summary_of(const io::MeshFile& description, const scene::MeshFacts& facts);

@@ -172,7 +172,8 @@ HWY_INLINE void set_up_sides(FaceShape (&shape)[4], const V (&area)[4], M uprigh
   }
   for (int f = 0; f < 4; ++f) add_bit(front[f], f);
 
-  // Edge functions over the largest rounding error of the six; 2^-23 would do, the rest is margin.
+  // Edge functions over a bound of the six rounding errors, from the largest start and the box; 2^-23 would do, the
+  // rest is margin.
   V start[6], along_x[6], along_y[6], error = number(1e-290);
   for (int e = 0; e < 6; ++e) {
     const int a = edge_from[e], b = edge_to[e];
