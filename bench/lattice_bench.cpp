@@ -62,7 +62,9 @@ struct Frame {
     lists->fill(0, grid.count());
     projection::DepthOrderScratch scratch;
     for (std::size_t tile = 0; tile < grid.count(); ++tile) {
-      projection::order_by_depth(lists->tile(tile), scratch);
+      const projection::DepthOrder order = projection::order_by_depth(lists->tile(tile), scratch);
+      ordered.emplace_back(order.entries.begin(), order.entries.end());
+      slack.push_back(order.slack);
       entries += lists->entry_count(tile);
     }
     view = {projected, lattice_vertices, lattice, false};
@@ -78,6 +80,8 @@ struct Frame {
   projection::Lattice lattice{};
   projection::LatticeView view{};
   std::unique_ptr<projection::TileLists> lists;
+  std::vector<std::vector<projection::TileEntry>> ordered;  ///< of each tile
+  std::vector<double> slack;
   std::size_t entries = 0;
 };
 
@@ -100,7 +104,7 @@ void run_tiles(Frame& f, Stages& stages) {
   projection::OpenPixels open;
   scene::TraceLaps laps(nullptr);
   for (std::size_t tile = 0; tile < f.grid.count(); ++tile) {
-    const std::span<const projection::TileEntry> entries = f.lists->tile(tile);
+    const std::span<const projection::TileEntry> entries = f.ordered[tile];
     const projection::PixelRect rect = f.grid.rect(tile);
     windows.reset(static_cast<std::size_t>(rect.area()), 32);
     state->start(rect, f.space);
@@ -119,7 +123,7 @@ void run_tiles(Frame& f, Stages& stages) {
       auto start = Clock::now();
       rasterize_lattice(f.view, cells, entries.subspan(from + cells.size()), rect, open, scratch, stream, counts);
       stages.rasterize += seconds_since(start);
-      const double near = f.lists->depth_origin() + cells.front().near_depth - f.lattice.depth_origin;
+      const double near = f.lists->depth_origin() + cells.front().near_depth - f.slack[tile] - f.lattice.depth_origin;
       const auto before = static_cast<std::int64_t>(std::floor(near / f.lattice.depth_unit)) - 64;
       for (std::size_t dealt = 0; dealt < stream.size;) {
         start = Clock::now();

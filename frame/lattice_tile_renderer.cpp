@@ -27,21 +27,22 @@ constexpr std::int64_t depth_error = 64;
 
 void LatticeTileRenderer::render(const projection::PixelRect& rect, std::span<projection::TileEntry> entries,
                                  compositor::WindowSink& sink) {
+  projection::DepthOrder order;
   {
     const scene::TraceScope timing(context_.trace, "bin");
-    projection::order_by_depth(entries, depth_order_);
+    order = projection::order_by_depth(entries, depth_order_);
   }
   constexpr int side = projection::SegmentWindows::side;
   for (int y = rect.y0; y < rect.y1; y = (y & ~(side - 1)) + side)
     for (int x = rect.x0; x < rect.x1; x = (x & ~(side - 1)) + side)
       render_square({x, y, std::min(rect.x1, (x & ~(side - 1)) + side), std::min(rect.y1, (y & ~(side - 1)) + side)},
-                    entries, sink);
+                    order, sink);
 }
 
-void LatticeTileRenderer::render_square(const projection::PixelRect& rect,
-                                        std::span<const projection::TileEntry> entries, compositor::WindowSink& sink) {
+void LatticeTileRenderer::render_square(const projection::PixelRect& rect, const projection::DepthOrder& order,
+                                        compositor::WindowSink& sink) {
   if (rect.empty()) return;
-  if (try_render(rect, entries, sink)) return;
+  if (try_render(rect, order, sink)) return;
   if (rect.area() == 1)
     throw scene::Error(
         scene::ExitCode::system_failure,
@@ -53,16 +54,17 @@ void LatticeTileRenderer::render_square(const projection::PixelRect& rect,
   for (const projection::PixelRect& quarter :
        {projection::PixelRect{rect.x0, rect.y0, x, y}, projection::PixelRect{x, rect.y0, rect.x1, y},
         projection::PixelRect{rect.x0, y, x, rect.y1}, projection::PixelRect{x, y, rect.x1, rect.y1}})
-    render_square(quarter, entries, sink);
+    render_square(quarter, order, sink);
 }
 
-std::int64_t LatticeTileRenderer::step_before(float near_depth) const {
+std::int64_t LatticeTileRenderer::step_before(double near_depth) const {
   const double steps = (context_.depth_origin + near_depth - view_.lattice.depth_origin) / view_.lattice.depth_unit;
   return static_cast<std::int64_t>(std::floor(std::clamp(steps, -0x1p32, 0x1p32))) - depth_error;
 }
 
-bool LatticeTileRenderer::try_render(const projection::PixelRect& rect, std::span<const projection::TileEntry> entries,
+bool LatticeTileRenderer::try_render(const projection::PixelRect& rect, const projection::DepthOrder& order,
                                      compositor::WindowSink& sink) {
+  const std::span<const projection::TileEntry> entries = order.entries;
   scene::TraceLaps laps(context_.trace);
   const std::size_t capacity = context_.opaque ? capacity_where_opaque : first_capacity;
   const auto at_least = static_cast<std::size_t>(fullness * static_cast<double>(capacity));
@@ -77,7 +79,7 @@ bool LatticeTileRenderer::try_render(const projection::PixelRect& rect, std::spa
       counts_.max_segments_alive = std::max(counts_.max_segments_alive, windows_.total());
       laps.lap("project");
       // What lies before these cells is final.
-      sink.take(windows_, step_before(cells.front().near_depth), at_least, laps);
+      sink.take(windows_, step_before(order.nearest_from(from)), at_least, laps);
       const std::size_t left = windows_.count(static_cast<std::size_t>(stream_.pixel[dealt]));
       const double part = static_cast<double>(left) / static_cast<double>(windows_.capacity());
       const bool full = left == windows_.capacity(), crowded = part > rest_worth_growing && windows_.capacity() < roomy;
@@ -87,7 +89,7 @@ bool LatticeTileRenderer::try_render(const projection::PixelRect& rect, std::spa
         continue;
       }
       if (!full) continue;
-      if (!sink.take_unordered(windows_, step_before(cells.front().near_depth), laps)) return false;
+      if (!sink.take_unordered(windows_, step_before(order.nearest_from(from)), laps)) return false;
       ++counts_.tiles_split;
     }
     counts_.peak_bytes = std::max<std::uint64_t>(counts_.peak_bytes, windows_.bytes() + stream_.bytes());

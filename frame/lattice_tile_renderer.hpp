@@ -22,19 +22,18 @@ class LatticeTileRenderer {
   LatticeTileRenderer(const TileContext& context, const projection::LatticeView& view)
       : context_(context), view_(view) {}
 
-  /// Gives `sink` the pixels of `rect` from `entries`, which it sorts. Throws Error(system_failure) if one pixel alone
-  /// has more segments that overlap in depth than the budget holds.
+  /// Gives `sink` the pixels of `rect` from `entries`, whose order is lost. Throws Error(system_failure) if one pixel
+  /// alone has more segments that overlap in depth than the budget holds.
   void render(const projection::PixelRect& rect, std::span<projection::TileEntry> entries,
               compositor::WindowSink& sink);
 
   [[nodiscard]] const TileCounts& counts() const { return counts_; }
 
  private:
-  void render_square(const projection::PixelRect& rect, std::span<const projection::TileEntry> entries,
+  void render_square(const projection::PixelRect& rect, const projection::DepthOrder& order,
                      compositor::WindowSink& sink);
-  bool try_render(const projection::PixelRect& rect, std::span<const projection::TileEntry> entries,
-                  compositor::WindowSink& sink);
-  [[nodiscard]] std::int64_t step_before(float near_depth) const;
+  bool try_render(const projection::PixelRect& rect, const projection::DepthOrder& order, compositor::WindowSink& sink);
+  [[nodiscard]] std::int64_t step_before(double near_depth) const;
 
   TileContext context_;
   projection::LatticeView view_;

@@ -17,18 +17,19 @@ constexpr std::size_t comfortable_segments = 8192;
 
 void TileRenderer::render(const projection::PixelRect& rect, std::span<projection::TileEntry> entries,
                           compositor::TileSink& sink) {
+  projection::DepthOrder order;
   {
     const scene::TraceScope timing(context_.trace, "bin");
-    projection::order_by_depth(entries, depth_order_);
+    order = projection::order_by_depth(entries, depth_order_);
   }
-  render_sorted(rect, entries, sink);
+  render_sorted(rect, order, sink);
 }
 
-void TileRenderer::render_sorted(const projection::PixelRect& rect, std::span<const projection::TileEntry> entries,
+void TileRenderer::render_sorted(const projection::PixelRect& rect, const projection::DepthOrder& order,
                                  compositor::TileSink& sink) {
   if (rect.empty()) return;
   const TileCounts before = counts_;
-  if (try_render(rect, entries, sink)) {
+  if (try_render(rect, order, sink)) {
     const scene::TraceScope timing(context_.trace, "composite");
     sink.finish();
     return;
@@ -45,7 +46,7 @@ void TileRenderer::render_sorted(const projection::PixelRect& rect, std::span<co
   for (const projection::PixelRect& quarter :
        {projection::PixelRect{rect.x0, rect.y0, x, y}, projection::PixelRect{x, rect.y0, rect.x1, y},
         projection::PixelRect{rect.x0, y, x, rect.y1}, projection::PixelRect{x, y, rect.x1, rect.y1}})
-    render_sorted(quarter, entries, sink);
+    render_sorted(quarter, order, sink);
 }
 
 bool TileRenderer::reserve(std::size_t segments) {
@@ -57,8 +58,9 @@ bool TileRenderer::reserve(std::size_t segments) {
   return true;
 }
 
-bool TileRenderer::try_render(const projection::PixelRect& rect, std::span<const projection::TileEntry> entries,
+bool TileRenderer::try_render(const projection::PixelRect& rect, const projection::DepthOrder& order,
                               compositor::TileSink& sink) {
+  const std::span<const projection::TileEntry> entries = order.entries;
   const auto area = static_cast<std::size_t>(rect.area());
   segments_.size = 0;
   // Room for at least two segments a pixel: the rasterizer wants space for one more on every pixel before it takes a
@@ -72,7 +74,7 @@ bool TileRenderer::try_render(const projection::PixelRect& rect, std::span<const
       const scene::TraceScope timing(context_.trace, "project");
       next += rasterize(entries.subspan(next), rect);
     }
-    double final_depth = next < entries.size() ? context_.depth_origin + entries[next].near_depth
+    double final_depth = next < entries.size() ? context_.depth_origin + order.nearest_from(next)
                                                : std::numeric_limits<double>::infinity();
     // Its depths are floats, rounded the same way and not before their cell's nearest vertex.
     if (context_.rasterizer == Rasterizer::scanline) final_depth = static_cast<float>(final_depth);

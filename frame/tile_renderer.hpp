@@ -44,8 +44,8 @@ class TileRenderer {
  public:
   explicit TileRenderer(const TileContext& context) : context_(context) {}
 
-  /// Gives `sink` the pixels of `rect` from `entries`, which it sorts. Throws Error(system_failure) if one pixel alone
-  /// has more segments that overlap in depth than the budget holds.
+  /// Gives `sink` the pixels of `rect` from `entries`, whose order is lost. Throws Error(system_failure) if one pixel
+  /// alone has more segments that overlap in depth than the budget holds.
   void render(const projection::PixelRect& rect, std::span<projection::TileEntry> entries, compositor::TileSink& sink);
 
   [[nodiscard]] const TileCounts& counts() const { return counts_; }
@@ -61,10 +61,9 @@ class TileRenderer {
       projection::RaySegments::bytes_each + sorting::PixelLists::bytes_each + compositor::SegmentBatch::bytes_each;
 
  private:
-  void render_sorted(const projection::PixelRect& rect, std::span<const projection::TileEntry> entries,
+  void render_sorted(const projection::PixelRect& rect, const projection::DepthOrder& order,
                      compositor::TileSink& sink);
-  bool try_render(const projection::PixelRect& rect, std::span<const projection::TileEntry> entries,
-                  compositor::TileSink& sink);
+  bool try_render(const projection::PixelRect& rect, const projection::DepthOrder& order, compositor::TileSink& sink);
   void flush(std::size_t pixel_count, double final_depth, compositor::TileSink& sink);
   bool reserve(std::size_t segments);
   std::size_t rasterize(std::span<const projection::TileEntry> entries, const projection::PixelRect& rect);

@@ -21,6 +21,10 @@ HWY_INLINE std::uint64_t key_of(const TileEntry& e) {
   return static_cast<std::uint64_t>(bits ^ ((0u - (bits >> 31)) | 0x80000000u)) << 32 | e.tet;
 }
 
+// Entries that share a step with one, on average, beyond which a list is put in order for certain: more would make
+// segments wait in their windows.
+constexpr std::uint64_t crowd = 512;
+
 /// Least significant digit first, over the digits in which keys differ at all. Entries in tet order, as TileLists makes
 /// them, need no passes over tets: each pass keeps the order of what it finds equal.
 HWY_NOINLINE void radix_sort(TileEntry* entries, TileEntry* other, std::size_t n) {
@@ -54,22 +58,20 @@ HWY_NOINLINE void radix_sort(TileEntry* entries, TileEntry* other, std::size_t n
   }
 }
 
-HWY_INLINE bool before(const TileEntry& a, const TileEntry& b) {
-  return a.near_depth < b.near_depth || (a.near_depth == b.near_depth && a.tet < b.tet);
-}
-
-/// Moves entry i to its place among those before it, which are in order. Returns by how many places.
-HWY_INLINE std::size_t insert(TileEntry* entries, std::size_t i) {
-  const TileEntry moving = entries[i];
-  std::size_t hole = i;
-  for (; hole > 0 && before(moving, entries[hole - 1]); --hole) entries[hole] = entries[hole - 1];
-  entries[hole] = moving;
-  return i - hole;
+/// The few entries of a short list.
+HWY_INLINE void insertion_sort(TileEntry* entries, std::size_t n) {
+  for (std::size_t i = 1; i < n; ++i) {
+    const TileEntry moving = entries[i];
+    std::size_t hole = i;
+    for (; hole > 0 && moving.near_depth < entries[hole - 1].near_depth; --hole) entries[hole] = entries[hole - 1];
+    entries[hole] = moving;
+  }
 }
 
 #if HWY_TARGET == HWY_SCALAR
-void order(TileEntry* entries, TileEntry* other, std::uint32_t*, std::size_t n) {
+DepthOrder order(TileEntry* entries, TileEntry* other, std::uint32_t*, std::size_t n) {
   if (n > 0) radix_sort(entries, other, n);
+  return {{entries, n}, 0};
 }
 #else
 // An entry is two lanes: its depth in the even one, its tet in the odd one.
@@ -79,51 +81,19 @@ static_assert(sizeof(TileEntry) == 8);
 
 HWY_INLINE const float* lanes_of(const TileEntry* entries) { return reinterpret_cast<const float*>(entries); }
 
-HWY_INLINE unsigned bits_of(hn::Mask<D> mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(D(), mask, bytes);
-  return bytes[0] | bytes[1] << 8;
-}
-
-/// Insertion sort of what is nearly in order. False, with the entries in some order, after `most_moves`.
-HWY_INLINE bool insertion_sort(TileEntry* entries, std::size_t n, std::size_t most_moves) {
-  const D d;
-  const hn::RebindToUnsigned<D> du;
-  const std::size_t step = hn::Lanes(d) / 2;
-  std::size_t moves = 0;
-  for (std::size_t i = 1; i < n;) {
-    if (i + step <= n) {
-      const V previous = hn::LoadU(d, lanes_of(entries + i - 1)), here = hn::LoadU(d, lanes_of(entries + i));
-      // Depths compare in even bits, tets in odd ones.
-      const unsigned deeper = bits_of(hn::Lt(previous, here)), level = bits_of(hn::Eq(previous, here));
-      const unsigned later = bits_of(hn::RebindMask(d, hn::Lt(hn::BitCast(du, previous), hn::BitCast(du, here))));
-      const unsigned mask = ~(deeper | (level & later >> 1)) & (step == 8 ? 0x5555u : (1u << 2 * step) / 3);
-      if (HWY_LIKELY(mask == 0)) {
-        i += step;
-        continue;
-      }
-      i += static_cast<std::size_t>(std::countr_zero(mask)) / 2;
-    }
-    // Its successors may be out of place only now.
-    for (std::size_t by = 1; by != 0 && i < n; ++i) moves += by = insert(entries, i);
-    if (moves > most_moves) return false;
-  }
-  return true;
-}
-
-void order(TileEntry* entries, TileEntry* other, std::uint32_t* steps, std::size_t n) {
+DepthOrder order(TileEntry* entries, TileEntry* other, std::uint32_t* steps, std::size_t n) {
   constexpr std::size_t short_list = 24;  // no more compares than the passes below cost
   if (n <= short_list) {
-    for (std::size_t i = 1; i < n; ++i) insert(entries, i);
-    return;
+    insertion_sort(entries, n);
+    return {{entries, n}, 0};
   }
   const D d;
   const hn::RebindToSigned<D> di;
-  const std::size_t step = hn::Lanes(d) / 2;
+  const std::size_t lanes = hn::Lanes(d) / 2;
   const V first = hn::Set(d, entries[0].near_depth);
   V low = first, high = first;
   std::size_t i = 0;
-  for (; i + step <= n; i += step) {
+  for (; i + lanes <= n; i += lanes) {
     const V depth = hn::OddEven(first, hn::LoadU(d, lanes_of(entries + i)));
     low = hn::Min(low, depth);
     high = hn::Max(high, depth);
@@ -134,44 +104,43 @@ void order(TileEntry* entries, TileEntry* other, std::uint32_t* steps, std::size
     most = entries[i].near_depth > most ? entries[i].near_depth : most;
   }
 
-  // Four bits more than it takes to number the entries leave one in thirty out of place.
-  const int wanted = std::bit_width(n) + 4, bits = wanted < 16 ? wanted : 16, low_bits = bits / 2;
-  const std::uint32_t low_mask = (1u << low_bits) - 1;
-  const float scale = static_cast<float>((1 << bits) - 1) / (most - least);
-  if (!(scale > 0 && scale < HUGE_VALF)) return radix_sort(entries, other, n);
+  constexpr std::size_t most_steps = 4096;
+  const std::size_t step_count = std::min(std::bit_ceil(n / 2), most_steps);
+  const float scale = static_cast<float>(step_count - 1) / (most - least);
+  if (!(scale > 0 && scale < HUGE_VALF)) {
+    radix_sort(entries, other, n);
+    return {{entries, n}, 0};
+  }
   // Rounding is monotonic, so steps are in order as depths are.
-  for (i = 0; i + 2 * step <= n; i += 2 * step) {
+  for (i = 0; i + 2 * lanes <= n; i += 2 * lanes) {
     const auto step_of = [&](V v) HWY_ATTR {
       return hn::ConvertTo(di, hn::Mul(hn::Sub(v, hn::Set(d, least)), hn::Set(d, scale)));
     };
     const auto a = step_of(hn::LoadU(d, lanes_of(entries + i)));
-    const auto b = step_of(hn::LoadU(d, lanes_of(entries + i + step)));
+    const auto b = step_of(hn::LoadU(d, lanes_of(entries + i + lanes)));
     hn::StoreU(hn::ConcatEven(di, b, a), di, reinterpret_cast<std::int32_t*>(steps + i));
   }
-  const auto step_at = [least, scale](const TileEntry& e) {
-    return static_cast<std::uint32_t>(static_cast<std::int32_t>((e.near_depth - least) * scale));
-  };
-  for (; i < n; ++i) steps[i] = step_at(entries[i]);
+  for (; i < n; ++i)
+    steps[i] = static_cast<std::uint32_t>(static_cast<std::int32_t>((entries[i].near_depth - least) * scale));
 
-  std::uint32_t low_next[256] = {}, high_next[256] = {}, low_sum = 0, high_sum = 0;
-  double crowding = 0;
-  for (i = 0; i < n; ++i) {
-    ++low_next[steps[i] & low_mask];
-    ++high_next[steps[i] >> low_bits];
+  std::uint32_t next[most_steps];
+  std::fill_n(next, step_count, 0u);
+  for (i = 0; i < n; ++i) ++next[steps[i]];
+  std::uint32_t sum = 0;
+  std::uint64_t company = 0;
+  for (std::size_t step = 0; step < step_count; ++step) {
+    const std::uint32_t count = next[step];
+    next[step] = sum;
+    sum += count;
+    company += std::uint64_t{count} * count;
   }
-  for (int digit = 0; digit < 256; ++digit) {
-    const std::uint32_t low_count = low_next[digit], high_count = high_next[digit];
-    low_next[digit] = low_sum;
-    high_next[digit] = high_sum;
-    low_sum += low_count;
-    high_sum += high_count;
-    crowding += static_cast<double>(high_count) * high_count;
+  if (company > n * crowd) {
+    radix_sort(entries, other, n);
+    return {{entries, n}, 0};
   }
-  // Entries on one step, two by two, if a high digit spreads what it has over its steps: as many moves, twice.
-  if (crowding > static_cast<double>(n) * 8 * (low_mask + 1)) return radix_sort(entries, other, n);
-  for (i = 0; i < n; ++i) other[low_next[steps[i] & low_mask]++] = entries[i];
-  for (i = 0; i < n; ++i) entries[high_next[step_at(other[i]) >> low_bits]++] = other[i];
-  if (!insertion_sort(entries, n, 4 * n)) radix_sort(entries, other, n);
+  for (i = 0; i < n; ++i) other[next[steps[i]]++] = entries[i];
+  // A step and what rounding may add: places are below 2^12, to 2^-23 of themselves.
+  return {{other, n}, 1.01 / static_cast<double>(scale)};
 }
 #endif  // HWY_TARGET == HWY_SCALAR
 
@@ -183,12 +152,12 @@ HWY_AFTER_NAMESPACE();
 namespace tessera::projection {
 HWY_EXPORT(order);
 
-void order_by_depth(std::span<TileEntry> entries, DepthOrderScratch& scratch) {
+DepthOrder order_by_depth(std::span<TileEntry> entries, DepthOrderScratch& scratch) {
   if (scratch.entries.size() < entries.size()) {
     scratch.entries.resize(entries.size());
     scratch.steps.resize(entries.size());
   }
-  HWY_DYNAMIC_DISPATCH(order)(entries.data(), scratch.entries.data(), scratch.steps.data(), entries.size());
+  return HWY_DYNAMIC_DISPATCH(order)(entries.data(), scratch.entries.data(), scratch.steps.data(), entries.size());
 }
 
 }  // namespace tessera::projection

@@ -19,14 +19,29 @@ bool before(const TileEntry& a, const TileEntry& b) {
   return std::tie(a.near_depth, a.tet) < std::tie(b.near_depth, b.tet);
 }
 
-/// The same entries as std::sort has them, equal depths by tet.
-void expect_ordered(std::vector<TileEntry> entries, DepthOrderScratch& scratch, const std::string& what) {
+/// The same entries, none nearer than one before it by more than the slack.
+double expect_ordered(std::vector<TileEntry> entries, DepthOrderScratch& scratch, const std::string& what) {
   std::vector<TileEntry> expected = entries;
+  const DepthOrder order = order_by_depth(entries, scratch);
+  EXPECT_EQ(order.entries.size(), expected.size()) << what;
+  double farthest = -HUGE_VAL;
+  std::size_t too_near = 0;
+  for (std::size_t i = 0; i < order.entries.size(); ++i) {
+    farthest = std::max<double>(farthest, order.entries[i].near_depth);
+    too_near += order.entries[i].near_depth < farthest - order.slack ? 1 : 0;
+    EXPECT_EQ(order.nearest_from(i), order.entries[i].near_depth - order.slack);
+  }
+  EXPECT_EQ(too_near, 0) << what << ", " << expected.size() << " entries";
+
+  std::vector<TileEntry> ordered(order.entries.begin(), order.entries.end());
   std::sort(expected.begin(), expected.end(), before);
-  order_by_depth(entries, scratch);
-  for (std::size_t i = 0; i < entries.size(); ++i)
-    ASSERT_TRUE(entries[i].near_depth == expected[i].near_depth && entries[i].tet == expected[i].tet)
-        << what << ", " << entries.size() << " entries, entry " << i;
+  std::sort(ordered.begin(), ordered.end(), before);
+  const auto same = [](const TileEntry& a, const TileEntry& b) {
+    return a.near_depth == b.near_depth && a.tet == b.tet;
+  };
+  EXPECT_TRUE(std::equal(ordered.begin(), ordered.end(), expected.begin(), expected.end(), same))
+      << what << ", " << expected.size() << " entries";
+  return order.slack;
 }
 
 constexpr std::uint32_t seed = 3;
@@ -51,7 +66,7 @@ std::map<std::string, std::function<float(std::size_t)>> depths(std::mt19937& ra
                                                                 : unit(); }}};
 }
 
-TEST(DepthOrder, OrdersByDepthThenTetWhateverTheDepths) {
+TEST(DepthOrder, NoEntryIsNearerThanOneBeforeItByMoreThanTheSlack) {
   tests::for_each_instruction_set([](const char* name) {
     std::mt19937 random(seed);
     DepthOrderScratch scratch;
@@ -67,12 +82,35 @@ TEST(DepthOrder, OrdersByDepthThenTetWhateverTheDepths) {
   });
 }
 
-TEST(DepthOrder, OfRepeatedTetsAnyOrderWillDo) {
-  std::vector<TileEntry> entries(100, TileEntry{1, 5});
-  entries[50] = {0, 9};
+TEST(DepthOrder, SlackIsShort) {
+  tests::for_each_instruction_set([](const char* name) {
+    std::mt19937 random(seed);
+    DepthOrderScratch scratch;
+    auto of = depths(random);
+    for (const std::size_t n : {25, 1000, 5003, 20000}) {
+      const auto slack = [&](const std::string& what) {
+        std::vector<TileEntry> entries;
+        for (std::size_t i = 0; i < n; ++i) entries.push_back({of[what](i), static_cast<std::uint32_t>(i)});
+        return expect_ordered(entries, scratch, std::string(name) + ", " + what);
+      };
+      // A step for every second entry, with which share's rounding and a power of two, and no more than 4096 of them.
+      EXPECT_LE(slack("even"), 1.02 / std::min(static_cast<double>(n) / 2 - 1, 4095.0)) << name;
+      // Crowds are put in order for certain.
+      if (n < 5003) continue;
+      for (const char* what : {"one value", "one far outlier", "two far apart crowds", "every size"})
+        EXPECT_EQ(slack(what), 0) << name << ", " << what << ", " << n;
+    }
+  });
+}
+
+TEST(DepthOrder, CrowdsAreInOrderOfTetsTooWhereTheyWereNot) {
+  std::mt19937 random(seed);
+  std::vector<TileEntry> entries;
+  for (std::uint32_t i = 0; i < 5000; ++i) entries.push_back({i == 7 ? 1e30f : static_cast<float>(i % 3), i});
+  std::shuffle(entries.begin(), entries.end(), random);
   DepthOrderScratch scratch;
-  order_by_depth(entries, scratch);
-  EXPECT_TRUE(std::is_sorted(entries.begin(), entries.end(), before));
+  const DepthOrder order = order_by_depth(entries, scratch);
+  EXPECT_TRUE(std::is_sorted(order.entries.begin(), order.entries.end(), before));
 }
 
 }  // namespace
