@@ -27,6 +27,11 @@ scene::Integrator chosen_integrator(const RenderWords& words) {
   return integrator;
 }
 
+/// 0: all cores.
+int thread_count(const RenderWords& words) {
+  return words.threads.empty() ? 0 : parse_count("--threads", words.threads, 1, 1024);
+}
+
 frame::RenderSettings render_settings(const RenderWords& words, bool for_volume) {
   check_word("--emission", words.emission, {"absorption", "independent"});
   check_word("--rasterizer", words.rasterizer, {"planes", "scanline"});
@@ -35,7 +40,7 @@ frame::RenderSettings render_settings(const RenderWords& words, bool for_volume)
   if (words.rasterizer == "scanline") settings.rasterizer = frame::Rasterizer::scanline;
   if (words.emission == "independent") settings.emission = scene::Emission::independent;
   if (!words.deep_accuracy.empty()) settings.deep_accuracy = parse_positive("--deep-accuracy", words.deep_accuracy);
-  if (!words.threads.empty()) settings.threads = parse_count("--threads", words.threads, 1, 1024);
+  settings.threads = thread_count(words);
   if (!words.tile_size.empty()) settings.tile_size = parse_count("--tile-size", words.tile_size, 1, 1024);
   if (!words.memory.empty()) settings.memory_bytes = parse_bytes("--memory", words.memory);
   return settings;
@@ -82,6 +87,7 @@ io::MeshOptions mesh_options(const RenderWords& words) {
   if (!words.max_volume.empty()) mesh.max_volume = parse_positive("--max-volume", words.max_volume);
   if (!words.time_step.empty())
     mesh.time_step = static_cast<std::size_t>(parse_count("--time-step", words.time_step, 0, no_limit));
+  mesh.threads = thread_count(words);
   return mesh;
 }
 

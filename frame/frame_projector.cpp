@@ -14,6 +14,7 @@
 #include "frame/lattice_tile_renderer.hpp"
 #include "frame/tile_renderer.hpp"
 #include "scene/error.hpp"
+#include "scene/threads.hpp"
 
 namespace tessera::frame {
 namespace {
@@ -113,8 +114,7 @@ std::uint64_t segment_budget(const RenderSettings& settings, std::uint64_t held,
 
 void order_corners(scene::TetMesh& mesh, const RenderSettings& settings) {
   const scene::TraceScope timing(settings.trace, "prepare");
-  const int threads = std::min(cores_or(checked(settings).threads), tbb::info::default_concurrency());
-  tbb::task_arena(threads).execute([&] { projection::order_corners(mesh); });
+  tbb::task_arena(scene::threads_for(checked(settings).threads)).execute([&] { projection::order_corners(mesh); });
 }
 
 FrameProjector::FrameProjector(const scene::TetMesh& mesh, const RenderSettings& settings)

@@ -1,17 +1,20 @@
 #include "io/mesh_assembly.hpp"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <glm/geometric.hpp>
+#include <atomic>
 #include <limits>
 #include <numeric>
 
-#include "io/cell_split.hpp"
+#include "io/block_tets.hpp"
 #include "io/field_choice.hpp"
 #include "scene/error.hpp"
+#include "scene/threads.hpp"
 
 namespace tessera::io {
 namespace {
@@ -19,24 +22,18 @@ namespace {
 using scene::Association;
 using scene::Tet;
 
-// vtkDataSetAttributes.h: CellGhostTypes and PointGhostTypes.
-constexpr std::uint8_t duplicate_cell = 1, refined_cell = 8, hidden_cell = 32, hidden_point = 2;
-
-bool finite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
-
 /// Turns blocks into one mesh, a block at a time.
 class Assembly {
  public:
   Assembly(AssembledBlocks& result, std::span<const FieldSummary> fields, const FieldChoice& choice,
-           const std::string& source)
+           const std::string& source, int threads)
       : notes_(result.notes),
         mesh_(result.mesh),
         counts_(result.counts),
         fields_(fields),
         choice_(choice),
-        source_(source) {
-    for (int type = 0; type < 256; ++type) shapes_[type] = cell_shape(static_cast<std::uint8_t>(type));
-  }
+        source_(source),
+        threads_(threads) {}
 
   void reserve(std::size_t points, std::size_t tets) {
     if (points > std::numeric_limits<std::uint32_t>::max())
@@ -63,9 +60,10 @@ class Assembly {
     first_point_ = static_cast<std::uint32_t>(first_point);
     read_values(block);
 
-    const std::size_t cells = block.cell_count();
-    for (std::size_t c = 0; c < cells; ++c) add_cell(block, c);
-    counts_.cells_read += cells;
+    cells_before_ = counts_.cells_read;
+    const bool point = choice_.association == Association::point;
+    add_cells(BlockCells(block, points_, std::span(values_).subspan(point ? first_point : 0), choice_.association,
+                         block.source.empty() ? source_ : block.source));
     block = {};
   }
 
@@ -74,10 +72,7 @@ class Assembly {
     if (choice_.association == Association::point) mesh_.scalars = std::move(values_);
     mesh_.association = choice_.association;
     mesh_.field_name = choice_.label;
-    std::vector<bool> used(mesh_.positions.size());
-    for (const Tet& tet : mesh_.tets)
-      for (const std::uint32_t v : tet) used[v] = true;
-    counts_.points_unused = static_cast<std::uint64_t>(std::count(used.begin(), used.end(), false));
+    counts_.points_unused = unused_points();
   }
 
  private:
@@ -113,96 +108,84 @@ class Assembly {
     field->read(choice_.component, 0, std::span(values_).subspan(first, n));
   }
 
-  void add_cell(const CellBlock& block, std::size_t c) {
-    const bool all_tets = block.types.empty();
-    const CellShape& shape = shapes_[all_tets ? 10 : block.types[c]];
-    const std::size_t begin = all_tets ? 4 * c : block.offsets[c];
-    const std::size_t nodes = all_tets ? 4 : block.offsets[c + 1] - begin;
-    if (shape.kind == CellKind::not_volumetric) {
-      ++counts_.cells_not_volumetric;
+  /// Appends, in the order of the cells, what threads make of some of them at a time.
+  void add_cells(const BlockCells& cells) {
+    constexpr std::size_t cells_a_task = 16384;
+    const std::size_t count = cells.count();
+    if (count <= cells_a_task) {
+      BlockTets tets;
+      cells.split(0, count, tets);
+      append(tets);
       return;
     }
-    if (shape.kind == CellKind::unsupported)
-      throw scene::bad_input(
-          fmt::format("{}: {} is a {}, which is not rendered; split such cells into tetrahedra "
-                      "first (ParaView: Tetrahedralize)",
-                      source_of(block), place(block, c), cell_type_name(block.types[c])));
-    if (shape.nodes ? nodes != static_cast<std::size_t>(shape.nodes) : nodes < static_cast<std::size_t>(shape.corners))
-      throw scene::bad_input(fmt::format(
-          "{}: {} is a {} with {} nodes, it has to have {}; mend the cell types", source_of(block), place(block, c),
-          cell_type_name(all_tets ? 10 : block.types[c]), nodes, shape.nodes ? shape.nodes : shape.corners));
-    const std::uint8_t ghost = block.cell_ghost.empty() ? 0 : block.cell_ghost[c];
-    if (ghost & duplicate_cell) {
-      ++counts_.cells_ghost;
-      return;
-    }
-    const std::span<const std::uint32_t> corner(block.connectivity.data() + begin,
-                                                static_cast<std::size_t>(shape.corners));
-    if ((ghost & (hidden_cell | refined_cell)) || hides_a_point(block, corner)) {
-      ++counts_.cells_hidden;
-      return;
-    }
-    if (!is_finite(corner, c)) {
-      ++counts_.cells_nan;
-      return;
-    }
-    if (shape.higher_order) ++counts_.cells_quadratic;
-    cell_tets_.clear();
-    split_cell(shape.kind, corner, points_, cell_tets_);
-    keep_tets(c);
-  }
-
-  void keep_tets(std::size_t c) {
-    const std::uint64_t cell = counts_.cells_read + c;
-    double positive = 0, negative = 0;
-    for (const Tet& tet : cell_tets_) {
-      const glm::dvec3 a = points_[tet[0]], b = points_[tet[1]], p = points_[tet[2]], q = points_[tet[3]];
-      // A tet with two corners at one place is flat, two of its faces are the same triangle and the other two have no
-      // area: leaving it out puts its two neighbours face to face.
-      if (a == b || a == p || a == q || b == p || b == q || p == q) {
-        ++counts_.tets_collapsed;
-        continue;
+    const int at_once = scene::threads_for(threads_);
+    const auto in_flight = static_cast<std::size_t>(2 * at_once);
+    std::vector<BlockTets> results(in_flight);
+    std::size_t next = 0;
+    // A result is used again when as many as there are have begun since: it has been appended by then.
+    const auto begin = [&](tbb::flow_control& flow) {
+      if (next * cells_a_task >= count) flow.stop();
+      return next++;
+    };
+    const auto split = [&](std::size_t task) {
+      BlockTets& tets = results[task % in_flight];
+      try {
+        const std::size_t first = task * cells_a_task;
+        cells.split(first, std::min(count, first + cells_a_task), tets);
+      } catch (...) {
+        tets.error = std::current_exception();  // of several the first cell's is told, whichever thread was faster
       }
-      const double volume = glm::dot(glm::cross(b - a, p - a), q - a);
-      (volume > 0 ? positive : negative) += std::abs(volume);
-      push(tet, cell);
-    }
-    if (positive + negative == 0) ++counts_.cells_zero_volume;
-    if (std::min(positive, negative) > 1e-9 * (positive + negative)) ++counts_.cells_tangled;
-  }
-
-  void push(const Tet& tet, std::uint64_t cell) {
-    if (mesh_.original_cell.empty() && cell != mesh_.tets.size()) {  // from here on, tet and cell numbers differ
-      mesh_.original_cell.reserve(mesh_.tets.capacity());
-      mesh_.original_cell.resize(mesh_.tets.size());
-      std::iota(mesh_.original_cell.begin(), mesh_.original_cell.end(), std::uint64_t{0});
-      numbered_ = true;
-    }
-    if (numbered_) mesh_.original_cell.push_back(cell);
-    if (choice_.association == Association::cell) mesh_.scalars.push_back(values_[cell - counts_.cells_read]);
-    mesh_.tets.push_back({tet[0] + first_point_, tet[1] + first_point_, tet[2] + first_point_, tet[3] + first_point_});
-  }
-
-  static bool hides_a_point(const CellBlock& block, std::span<const std::uint32_t> corner) {
-    return !block.point_ghost.empty() && std::any_of(corner.begin(), corner.end(), [&](std::uint32_t v) {
-      return block.point_ghost[v] & hidden_point;
+      return task;
+    };
+    const auto append_next = [&](std::size_t task) {
+      const BlockTets& tets = results[task % in_flight];
+      if (tets.error) std::rethrow_exception(tets.error);
+      append(tets);
+    };
+    using tbb::filter_mode;
+    tbb::task_arena(at_once).execute([&] {
+      tbb::parallel_pipeline(in_flight,
+                             tbb::make_filter<void, std::size_t>(filter_mode::serial_in_order, begin) &
+                                 tbb::make_filter<std::size_t, std::size_t>(filter_mode::parallel, split) &
+                                 tbb::make_filter<std::size_t, void>(filter_mode::serial_in_order, append_next));
     });
   }
 
-  bool is_finite(std::span<const std::uint32_t> corner, std::size_t c) const {
-    const bool point = choice_.association == Association::point;
-    if (!point && !std::isfinite(values_[c])) return false;
-    return std::all_of(corner.begin(), corner.end(), [&](std::uint32_t v) {
-      return finite(points_[v]) && (!point || std::isfinite(values_[first_point_ + v]));
+  void append(const BlockTets& made) {
+    counts_ += made.counts;
+    for (std::size_t t = 0; t < made.tets.size() && !numbered_; ++t)
+      if (cells_before_ + made.cells[t] != mesh_.tets.size() + t) number_cells();
+    if (numbered_)
+      for (const std::uint64_t cell : made.cells) mesh_.original_cell.push_back(cells_before_ + cell);
+    if (choice_.association == Association::cell)
+      for (const std::uint64_t cell : made.cells) mesh_.scalars.push_back(values_[cell]);
+    for (const Tet& t : made.tets)
+      mesh_.tets.push_back({t[0] + first_point_, t[1] + first_point_, t[2] + first_point_, t[3] + first_point_});
+  }
+
+  /// From here on, tet and cell numbers differ.
+  void number_cells() {
+    mesh_.original_cell.reserve(mesh_.tets.capacity());
+    mesh_.original_cell.resize(mesh_.tets.size());
+    std::iota(mesh_.original_cell.begin(), mesh_.original_cell.end(), std::uint64_t{0});
+    numbered_ = true;
+  }
+
+  /// Points that no tet uses.
+  std::uint64_t unused_points() {
+    std::vector<std::uint8_t> used(mesh_.positions.size());
+    const auto mark = [&](std::size_t first, std::size_t last) {
+      for (std::size_t t = first; t < last; ++t)
+        for (const std::uint32_t v : mesh_.tets[t]) {
+          std::atomic_ref<std::uint8_t> mark_of(used[v]);
+          if (mark_of.load(std::memory_order_relaxed) == 0) mark_of.store(1, std::memory_order_relaxed);
+        }
+    };
+    tbb::task_arena(scene::threads_for(threads_)).execute([&] {
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh_.tets.size(), 65536),
+                        [&](const auto& range) { mark(range.begin(), range.end()); });
     });
-  }
-
-  static std::string place(const CellBlock& block, std::size_t c) {
-    return block.name.empty() ? fmt::format("cell {}", c) : fmt::format("block '{}', cell {}", block.name, c);
-  }
-
-  [[nodiscard]] const std::string& source_of(const CellBlock& block) const {
-    return block.source.empty() ? source_ : block.source;
+    return static_cast<std::uint64_t>(std::count(used.begin(), used.end(), 0));
   }
 
   std::vector<std::string>& notes_;
@@ -211,20 +194,20 @@ class Assembly {
   std::span<const FieldSummary> fields_;
   const FieldChoice& choice_;
   const std::string& source_;
-  std::array<CellShape, 256> shapes_;
+  int threads_;
   std::span<const glm::dvec3> points_;  ///< of the block at hand
   std::uint32_t first_point_ = 0;
-  std::vector<double> values_;  ///< of all points so far, or of the block's cells
-  std::vector<Tet> cell_tets_;
+  std::uint64_t cells_before_ = 0;  ///< of the blocks before
+  std::vector<double> values_;      ///< of all points so far, or of the block's cells
   bool numbered_ = false;
 };
 
 }  // namespace
 
 AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const FieldSummary> fields,
-                                const FieldChoice& choice, const std::string& source) {
+                                const FieldChoice& choice, const std::string& source, int threads) {
   AssembledBlocks result;
-  Assembly assembly(result, fields, choice, source);
+  Assembly assembly(result, fields, choice, source, threads);
   std::size_t points = 0, tets = 0;
   for (const CellBlock& block : blocks) {
     points += block.positions.size();
@@ -261,7 +244,7 @@ MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options
   const FieldChoice choice = choose_field(options.field, file.fields, source);
   file.notes = choice.notes;
 
-  AssembledBlocks assembled = assemble_blocks(std::move(blocks), file.fields, choice, source);
+  AssembledBlocks assembled = assemble_blocks(std::move(blocks), file.fields, choice, source, options.threads);
   file.mesh = std::move(assembled.mesh);
   file.counts = assembled.counts;
   const auto add = [&](const std::vector<std::string>& notes) {

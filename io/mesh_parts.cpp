@@ -95,7 +95,8 @@ MeshFilePart MeshPartReading::finish(std::span<const std::vector<FieldTally>> ta
     part.fields = summarize_fields(tallies_of_all);
     const FieldChoice choice = choose_field(state_->options.field, part.fields, source);
     part.choice_notes = choice.notes;
-    AssembledBlocks assembled = assemble_blocks(std::move(state_->blocks.blocks), part.fields, choice, source);
+    AssembledBlocks assembled =
+        assemble_blocks(std::move(state_->blocks.blocks), part.fields, choice, source, state_->options.threads);
     part.mesh = std::move(assembled.mesh);
     part.summary.counts = assembled.counts;
     part.summary.cell_notes = std::move(assembled.notes);

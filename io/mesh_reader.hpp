@@ -21,6 +21,7 @@ struct MeshOptions {
   std::filesystem::path plot3d_q;          ///< PLOT3D solution file; empty: found beside the grid file by its name
   std::optional<double> max_volume;        ///< surfaces only: largest tet TetGen makes, world units cubed
   std::optional<std::size_t> time_step{};  ///< Exodus: step counted from 0; default the last one
+  int threads = 1;                         ///< that make tets of cells; 0: all cores
 };
 
 /// What became of the file's cells and points. A cell is counted as read, then in at most one of ghost, hidden, nan,

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <tbb/blocked_range.h>
-#include <tbb/info.h>
 #include <tbb/parallel_reduce.h>
 #include <tbb/task_arena.h>
 
-#include <algorithm>
 #include <cstddef>
+
+#include "scene/threads.hpp"
 
 namespace tessera::scene {
 
@@ -15,8 +15,7 @@ namespace tessera::scene {
 template <class T, class Of, class Join>
 T sum_over_tets(std::size_t tets, int threads, const T& nothing, const Of& of, const Join& join) {
   constexpr std::size_t tets_a_task = 16384;
-  const int cores = tbb::info::default_concurrency();
-  const int at_once = threads > 0 ? std::min(threads, cores) : cores;
+  const int at_once = threads_for(threads);
   if (at_once == 1 || tets <= tets_a_task) return of(std::size_t{0}, tets);
   return tbb::task_arena(at_once).execute([&] {
     return tbb::parallel_reduce(

@@ -174,6 +174,69 @@ TEST(MeshAssembly, BlocksFollowEachOtherAndALackingFieldBlanksItsBlock) {
   EXPECT_NE(file.notes.back().find("block 'shell' lacks the field 'p'"), std::string::npos);
 }
 
+/// Every seventh cell a ghost, every eleventh of NaN, every thirteenth a wedge's corners on the points of two tets.
+CellBlock many_cells(std::size_t n) {
+  CellBlock block = with_types(row_of_tets(n));
+  block.cell_ghost.assign(n, 0);
+  std::vector<double> values(n);
+  std::vector<std::uint32_t> connectivity;
+  for (std::size_t c = 0; c < n; ++c) {
+    block.cell_ghost[c] = c % 7 == 6 ? 1 : 0;
+    values[c] = c % 11 == 10 ? nan : static_cast<double>(c);
+    const bool wedge = c % 13 == 12;
+    block.types[c] = wedge ? 13 : 10;
+    const auto first = static_cast<std::uint32_t>(4 * c);
+    if (wedge)
+      for (const std::uint32_t v : {first, first + 1, first + 2, first - 4, first - 3, first - 2})
+        connectivity.push_back(v);
+    else
+      for (std::uint32_t k = 0; k < 4; ++k) connectivity.push_back(first + k);
+    block.offsets[c + 1] = connectivity.size();
+  }
+  block.connectivity = std::move(connectivity);
+  block.fields = {field_of_values("c", "double", Association::cell, 1, std::move(values))};
+  return block;
+}
+
+TEST(MeshAssembly, ThreadsMakeTheSameMesh) {
+  constexpr std::size_t n = 150'001;
+  MeshOptions options;
+  const auto assemble_with = [&](int threads) {
+    options.threads = threads;
+    return assemble_mesh({many_cells(n), many_cells(n / 2), many_cells(20)}, options, "mesh");
+  };
+  const MeshFile one = assemble_with(1);
+  std::size_t tets = 0, t = 0;
+  std::uint64_t cell = 0;
+  for (const std::size_t cells : {n, n / 2, std::size_t{20}})
+    for (std::size_t c = 0; c < cells; ++c, ++cell) {
+      if (c % 7 == 6 || c % 11 == 10) continue;
+      const std::size_t made = c % 13 == 12 ? 3 : 1;
+      tets += made;
+      for (; t < tets; ++t) {
+        ASSERT_EQ(one.mesh.original_cell[t], cell) << t;
+        ASSERT_EQ(one.mesh.scalars[t], static_cast<double>(c)) << t;
+      }
+    }
+  EXPECT_EQ(one.mesh.tets.size(), tets);
+  for (const int threads : {2, 0}) {
+    const MeshFile several = assemble_with(threads);
+    EXPECT_EQ(several.mesh.tets, one.mesh.tets);
+    EXPECT_EQ(several.mesh.original_cell, one.mesh.original_cell);
+    EXPECT_EQ(several.mesh.scalars, one.mesh.scalars);
+    EXPECT_EQ(several.counts, one.counts);
+  }
+}
+
+TEST(MeshAssembly, OfSeveralBadCellsTheFirstIsToldWhicheverThreadFindsIt) {
+  CellBlock block = many_cells(200'000);
+  for (const std::size_t c : {150'000, 90'001, 90'000}) block.types[c] = 42;
+  MeshOptions options;
+  for (options.threads = 0; options.threads < 3; ++options.threads)
+    EXPECT_NE(message_of([&] { assemble_mesh({block}, options, "mesh"); }).find("cell 90000 is a polyhedron"),
+              std::string::npos);
+}
+
 TEST(MeshAssembly, MinusZeroAndZeroAreOnePlace) {
   CellBlock block = row_of_tets(1);
   block.positions[0] = {-0.0, -0.0, -0.0};

@@ -1,0 +1,115 @@
+#include "io/block_tets.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+using scene::Tet;
+
+// vtkDataSetAttributes.h: CellGhostTypes and PointGhostTypes.
+constexpr std::uint8_t duplicate_cell = 1, refined_cell = 8, hidden_cell = 32, hidden_point = 2;
+constexpr std::uint8_t tetra = 10;  // VTK's cell type number
+
+bool finite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+}  // namespace
+
+BlockCells::BlockCells(const CellBlock& block, std::span<const glm::dvec3> points, std::span<const double> values,
+                       scene::Association association, const std::string& source)
+    : block_(block), points_(points), values_(values), association_(association), source_(source) {
+  for (std::size_t type = 0; type < shapes_.size(); ++type) shapes_[type] = cell_shape(static_cast<std::uint8_t>(type));
+}
+
+void BlockCells::split(std::size_t first, std::size_t last, BlockTets& out) const {
+  out.tets.clear(), out.cells.clear();
+  out.counts = {};
+  out.error = nullptr;
+  std::vector<Tet> cell_tets;
+  for (std::size_t c = first; c < last; ++c) split_cell(c, cell_tets, out);
+  out.counts.cells_read = last - first;
+}
+
+void BlockCells::split_cell(std::size_t c, std::vector<Tet>& cell_tets, BlockTets& out) const {
+  const bool all_tets = block_.types.empty();
+  const std::uint8_t type = all_tets ? tetra : block_.types[c];
+  const CellShape& shape = shapes_[type];
+  const std::size_t begin = all_tets ? 4 * c : block_.offsets[c];
+  const std::size_t nodes = all_tets ? 4 : block_.offsets[c + 1] - begin;
+  if (shape.kind == CellKind::not_volumetric) {
+    ++out.counts.cells_not_volumetric;
+    return;
+  }
+  if (shape.kind == CellKind::unsupported)
+    throw scene::bad_input(
+        fmt::format("{}: {} is a {}, which is not rendered; split such cells into tetrahedra "
+                    "first (ParaView: Tetrahedralize)",
+                    source_, place(c), cell_type_name(type)));
+  if (shape.nodes ? nodes != static_cast<std::size_t>(shape.nodes) : nodes < static_cast<std::size_t>(shape.corners))
+    throw scene::bad_input(fmt::format("{}: {} is a {} with {} nodes, it has to have {}; mend the cell types", source_,
+                                       place(c), cell_type_name(type), nodes,
+                                       shape.nodes ? shape.nodes : shape.corners));
+  const std::uint8_t ghost = block_.cell_ghost.empty() ? 0 : block_.cell_ghost[c];
+  if (ghost & duplicate_cell) {
+    ++out.counts.cells_ghost;
+    return;
+  }
+  const std::span<const std::uint32_t> corner(block_.connectivity.data() + begin,
+                                              static_cast<std::size_t>(shape.corners));
+  if ((ghost & (hidden_cell | refined_cell)) || hides_a_point(corner)) {
+    ++out.counts.cells_hidden;
+    return;
+  }
+  if (!is_finite(corner, c)) {
+    ++out.counts.cells_nan;
+    return;
+  }
+  if (shape.higher_order) ++out.counts.cells_quadratic;
+  cell_tets.clear();
+  io::split_cell(shape.kind, corner, points_, cell_tets);
+  keep_tets(c, cell_tets, out);
+}
+
+void BlockCells::keep_tets(std::size_t c, std::span<const Tet> cell_tets, BlockTets& out) const {
+  double positive = 0, negative = 0;
+  for (const Tet& tet : cell_tets) {
+    const glm::dvec3 a = points_[tet[0]], b = points_[tet[1]], p = points_[tet[2]], q = points_[tet[3]];
+    // A tet with two corners at one place is flat, two of its faces are the same triangle and the other two have no
+    // area: leaving it out puts its two neighbours face to face.
+    if (a == b || a == p || a == q || b == p || b == q || p == q) {
+      ++out.counts.tets_collapsed;
+      continue;
+    }
+    const double volume = glm::dot(glm::cross(b - a, p - a), q - a);
+    (volume > 0 ? positive : negative) += std::abs(volume);
+    out.tets.push_back(tet);
+    out.cells.push_back(c);
+  }
+  if (positive + negative == 0) ++out.counts.cells_zero_volume;
+  if (std::min(positive, negative) > 1e-9 * (positive + negative)) ++out.counts.cells_tangled;
+}
+
+bool BlockCells::hides_a_point(std::span<const std::uint32_t> corner) const {
+  return !block_.point_ghost.empty() && std::any_of(corner.begin(), corner.end(), [&](std::uint32_t v) {
+    return block_.point_ghost[v] & hidden_point;
+  });
+}
+
+bool BlockCells::is_finite(std::span<const std::uint32_t> corner, std::size_t c) const {
+  const bool point = association_ == scene::Association::point;
+  if (!point && !std::isfinite(values_[c])) return false;
+  return std::all_of(corner.begin(), corner.end(),
+                     [&](std::uint32_t v) { return finite(points_[v]) && (!point || std::isfinite(values_[v])); });
+}
+
+std::string BlockCells::place(std::size_t c) const {
+  return block_.name.empty() ? fmt::format("cell {}", c) : fmt::format("block '{}', cell {}", block_.name, c);
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <exception>
+#include <glm/vec3.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/cell_block.hpp"
+#include "io/cell_split.hpp"
+#include "io/mesh_reader.hpp"
+
+namespace tessera::io {
+
+/// What some of a block's cells become.
+struct BlockTets {
+  std::vector<scene::Tet> tets;      ///< corners in the block's points
+  std::vector<std::uint64_t> cells;  ///< of each tet, counted in the block
+  MeshCounts counts;                 ///< but of points, and of tets made
+  std::exception_ptr error;
+};
+
+/// The cells of a block: which are kept, and what tets they are split into. Threads may ask for different ones at once.
+class BlockCells {
+ public:
+  /// `points` and `values` are those of the block, the latter of its points or cells by `association`; `source` is for
+  /// messages. All outlive this.
+  BlockCells(const CellBlock& block, std::span<const glm::dvec3> points, std::span<const double> values,
+             scene::Association association, const std::string& source);
+
+  [[nodiscard]] std::size_t count() const { return block_.cell_count(); }
+
+  /// Splits the cells [first, last); what was in `out` is gone. Throws Error(bad_input) for a cell that cannot be
+  /// split.
+  void split(std::size_t first, std::size_t last, BlockTets& out) const;
+
+ private:
+  void split_cell(std::size_t c, std::vector<scene::Tet>& cell_tets, BlockTets& out) const;
+  void keep_tets(std::size_t c, std::span<const scene::Tet> cell_tets, BlockTets& out) const;
+  [[nodiscard]] bool hides_a_point(std::span<const std::uint32_t> corner) const;
+  [[nodiscard]] bool is_finite(std::span<const std::uint32_t> corner, std::size_t c) const;
+  [[nodiscard]] std::string place(std::size_t c) const;
+
+  const CellBlock& block_;
+  std::span<const glm::dvec3> points_;
+  std::span<const double> values_;
+  scene::Association association_;
+  const std::string& source_;
+  std::array<CellShape, 256> shapes_;
+};
+
+}  // namespace tessera::io
