@@ -40,8 +40,7 @@ void BlockCells::split_cell(std::size_t c, std::vector<Tet>& cell_tets, BlockTet
   const bool all_tets = block_.types.empty();
   const std::uint8_t type = all_tets ? tetra : block_.types[c];
   const CellShape& shape = shapes_[type];
-  const std::size_t begin = all_tets ? 4 * c : block_.offsets[c];
-  const std::size_t nodes = all_tets ? 4 : block_.offsets[c + 1] - begin;
+  const std::size_t nodes = all_tets ? 4 : block_.offsets[c + 1] - block_.offsets[c];
   if (shape.kind == CellKind::not_volumetric) {
     ++out.counts.cells_not_volumetric;
     return;
@@ -60,8 +59,8 @@ void BlockCells::split_cell(std::size_t c, std::vector<Tet>& cell_tets, BlockTet
     ++out.counts.cells_ghost;
     return;
   }
-  const std::span<const std::uint32_t> corner(block_.connectivity.data() + begin,
-                                              static_cast<std::size_t>(shape.corners));
+  const std::uint32_t* const first = all_tets ? block_.tets[c].data() : &block_.connectivity[block_.offsets[c]];
+  const std::span<const std::uint32_t> corner(first, static_cast<std::size_t>(shape.corners));
   if ((ghost & (hidden_cell | refined_cell)) || hides_a_point(corner)) {
     ++out.counts.cells_hidden;
     return;

@@ -34,7 +34,7 @@ BlockField field_of_values(std::string name, std::string type, scene::Associatio
 /// Part of a mesh as a file gives it, before splitting: one block of an Exodus or PLOT3D file, or all of the others.
 ///
 /// Shape   cell c has type types[c] (VTK's cell type number) and points connectivity[offsets[c]] up to
-///         connectivity[offsets[c + 1]]. If `types` is empty, all cells are tetrahedra and `offsets` is empty too.
+///         connectivity[offsets[c + 1]]. Where all cells are tetrahedra they may be `tets`, and the other three empty.
 ///         Ghost arrays hold vtkGhostType bits for each point or cell, or are empty.
 /// Holds   the reader has checked that offsets do not decrease and end at connectivity.size(), and that every index is
 ///         < positions.size(). Positions and fields may hold NaN.
@@ -45,10 +45,11 @@ struct CellBlock {
   std::vector<std::uint8_t> types;
   std::vector<std::uint64_t> offsets;
   std::vector<std::uint32_t> connectivity;
+  std::vector<scene::Tet> tets;
   std::vector<std::uint8_t> point_ghost, cell_ghost;
   std::vector<BlockField> fields;
 
-  [[nodiscard]] std::size_t cell_count() const { return types.empty() ? connectivity.size() / 4 : types.size(); }
+  [[nodiscard]] std::size_t cell_count() const { return types.empty() ? tets.size() : types.size(); }
 };
 
 }  // namespace tessera::io

@@ -61,9 +61,12 @@ class Assembly {
     read_values(block);
 
     cells_before_ = counts_.cells_read;
+    block_tets_ = &block.tets;
+    as_given_ = 0;
     const bool point = choice_.association == Association::point;
     add_cells(BlockCells(block, points_, std::span(values_).subspan(point ? first_point : 0), choice_.association,
                          block.source.empty() ? source_ : block.source));
+    if (block_tets_ != nullptr) take_tets();
     block = {};
   }
 
@@ -153,13 +156,40 @@ class Assembly {
 
   void append(const BlockTets& made) {
     counts_ += made.counts;
-    for (std::size_t t = 0; t < made.tets.size() && !numbered_; ++t)
-      if (cells_before_ + made.cells[t] != mesh_.tets.size() + t) number_cells();
+    if (block_tets_ != nullptr) {
+      // Mostly all tets of a block stay, and then they need not be copied.
+      if (made.tets.size() == made.counts.cells_read && !block_tets_->empty()) {
+        as_given_ += made.tets.size();
+        return;
+      }
+      append_given();
+    }
+    append(made.tets, [&](std::size_t t) { return made.cells[t]; });
+  }
+
+  /// The block's tets so far, all of which have stayed.
+  void append_given() {
+    mesh_.tets.reserve(mesh_.tets.size() + block_tets_->size());
+    append(std::span(*block_tets_).first(as_given_), [](std::size_t t) { return t; });
+    block_tets_ = nullptr;
+  }
+
+  /// All of a block's tets.
+  void take_tets() {
+    if (!mesh_.tets.empty() || first_point_ > 0 || cells_before_ > 0) return append_given();
+    mesh_.tets = std::move(*block_tets_);
+    if (choice_.association == Association::cell) mesh_.scalars = values_;
+  }
+
+  template <class CellOf>
+  void append(std::span<const Tet> tets, const CellOf& cell_of) {
+    for (std::size_t t = 0; t < tets.size() && !numbered_; ++t)
+      if (cells_before_ + cell_of(t) != mesh_.tets.size() + t) number_cells();
     if (numbered_)
-      for (const std::uint64_t cell : made.cells) mesh_.original_cell.push_back(cells_before_ + cell);
+      for (std::size_t t = 0; t < tets.size(); ++t) mesh_.original_cell.push_back(cells_before_ + cell_of(t));
     if (choice_.association == Association::cell)
-      for (const std::uint64_t cell : made.cells) mesh_.scalars.push_back(values_[cell]);
-    for (const Tet& t : made.tets)
+      for (std::size_t t = 0; t < tets.size(); ++t) mesh_.scalars.push_back(values_[cell_of(t)]);
+    for (const Tet& t : tets)
       mesh_.tets.push_back({t[0] + first_point_, t[1] + first_point_, t[2] + first_point_, t[3] + first_point_});
   }
 
@@ -197,8 +227,10 @@ class Assembly {
   int threads_;
   std::span<const glm::dvec3> points_;  ///< of the block at hand
   std::uint32_t first_point_ = 0;
-  std::uint64_t cells_before_ = 0;  ///< of the blocks before
-  std::vector<double> values_;      ///< of all points so far, or of the block's cells
+  std::uint64_t cells_before_ = 0;          ///< of the blocks before
+  std::vector<Tet>* block_tets_ = nullptr;  ///< of the block at hand, while those looked at are all to stay
+  std::size_t as_given_ = 0;                ///< how many those are; they are not in the mesh yet
+  std::vector<double> values_;              ///< of all points so far, or of the block's cells
   bool numbered_ = false;
 };
 
@@ -211,9 +243,9 @@ AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const F
   std::size_t points = 0, tets = 0;
   for (const CellBlock& block : blocks) {
     points += block.positions.size();
-    tets += block.types.empty() ? block.cell_count() : 0;
+    tets += block.tets.size();
   }
-  assembly.reserve(blocks.size() > 1 ? points : 0, tets);
+  if (blocks.size() > 1) assembly.reserve(points, tets);
   for (CellBlock& block : blocks) assembly.add(block);
   assembly.finish();
   return result;

@@ -85,8 +85,7 @@ MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& opt
 MeshBlocks blocks_of_tets(scene::TetMesh mesh) {
   CellBlock block;
   block.positions = std::move(mesh.positions);
-  block.connectivity.reserve(4 * mesh.tets.size());
-  for (const scene::Tet& tet : mesh.tets) block.connectivity.insert(block.connectivity.end(), tet.begin(), tet.end());
+  block.tets = std::move(mesh.tets);
   block.fields.push_back(field_of_values("scalar", "float", scene::Association::point, 1, std::move(mesh.scalars)));
   MeshBlocks result;
   result.format = "raw tetrahedra (.tets)";

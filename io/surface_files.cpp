@@ -132,7 +132,8 @@ MeshBlocks read_surface(const std::filesystem::path& file, std::optional<double>
   block.fields.push_back(field_of_values("depth", "double", scene::Association::point, 1, depth_below_surface(filled)));
   result.notes.emplace_back("field 'depth' is the distance to the surface, world units");
   block.positions = std::move(filled.points);
-  block.connectivity = std::move(filled.tets);
+  block.tets.resize(filled.tets.size() / 4);
+  for (std::size_t k = 0; k < filled.tets.size(); ++k) block.tets[k / 4][k % 4] = filled.tets[k];
   result.blocks.push_back(std::move(block));
   return result;
 }

@@ -165,13 +165,14 @@ CellBlock parse_node_ele(std::string_view node, std::string_view ele, const std:
   if (attributes < 0 || attributes > 1000) in.fail(fmt::format("{} attributes a tet are not possible", attributes));
   const auto nodes_each = static_cast<std::size_t>(corners);
   CellBlock block;
-  block.connectivity.reserve(nodes_each * n);
+  nodes_each == 4 ? block.tets.resize(n) : block.connectivity.resize(nodes_each * n);
   std::vector<std::vector<double>> cell_values(static_cast<std::size_t>(attributes));
   for (std::size_t t = 0; t < n; ++t) {
     in.need_line("a tet");
     in.need<std::int64_t>("the tet's number");
     for (std::size_t k = 0; k < nodes_each; ++k)
-      block.connectivity.push_back(point_index(in, in.need<std::int64_t>("a corner"), nodes));
+      (nodes_each == 4 ? block.tets[t][k] : block.connectivity[nodes_each * t + k]) =
+          point_index(in, in.need<std::int64_t>("a corner"), nodes);
     for (std::vector<double>& values : cell_values) values.push_back(in.need<double>("an attribute"));
   }
   if (nodes_each == 10) {

@@ -79,12 +79,12 @@ scene::TetMesh parse_tets(std::span<const std::byte> bytes, const std::string& s
   mesh.field_name = "scalar";
   mesh.positions.resize(file.vertices);
   mesh.scalars.resize(file.vertices);
-  mesh.tets.resize(file.tets);
+  mesh.tets.reserve(file.tets);
   for (std::uint64_t v = 0; v < file.vertices; ++v) {
     mesh.positions[v] = file.position(v);
     mesh.scalars[v] = file.scalar_of(v);
   }
-  for (std::uint64_t t = 0; t < file.tets; ++t) mesh.tets[t] = file.tet(t, source);
+  for (std::uint64_t t = 0; t < file.tets; ++t) mesh.tets.push_back(file.tet(t, source));
   return mesh;
 }
 

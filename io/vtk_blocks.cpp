@@ -115,7 +115,7 @@ void copy_cells(std::span<const Index> offsets, std::span<const Index> connectiv
     all_tets = all_tets && block.types[c] == 10 && offsets[c + 1] - offsets[c] == 4;
   }
   const auto used = static_cast<std::size_t>(offsets[cells]);
-  block.connectivity.resize(used);
+  all_tets ? block.tets.resize(cells) : block.connectivity.resize(used);
   const auto points = static_cast<std::int64_t>(block.positions.size());
   for (std::size_t k = 0; k < used; ++k) {
     const auto v = static_cast<std::int64_t>(connectivity[k]);
@@ -126,7 +126,7 @@ void copy_cells(std::span<const Index> offsets, std::span<const Index> connectiv
                       "one mesh",
                       where, cell, v, points));
     }
-    block.connectivity[k] = static_cast<std::uint32_t>(v);
+    (all_tets ? block.tets[k / 4][k % 4] : block.connectivity[k]) = static_cast<std::uint32_t>(v);
   }
   if (all_tets) {
     block.types = {};

@@ -14,6 +14,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   test::parse_or_refuse([&] {
     const io::CellBlock block = io::parse_node_ele(first, second, "f.node", "f.ele");
     for (const std::uint32_t v : block.connectivity) test::require(v < block.positions.size());
+    for (const scene::Tet& tet : block.tets)
+      for (const std::uint32_t v : tet) test::require(v < block.positions.size());
   });
   for (const bool smesh : {false, true})
     test::parse_or_refuse([&] {

@@ -19,8 +19,9 @@ CellBlock row_of_tets(std::size_t n) {
   std::vector<double> point, cell;
   for (std::size_t c = 0; c < n; ++c) {
     const glm::dvec3 o(2.0 * static_cast<double>(c), 0, 0);
+    const auto first = static_cast<std::uint32_t>(4 * c);
+    block.tets.push_back({first, first + 1, first + 2, first + 3});
     for (const glm::dvec3& p : {o, o + glm::dvec3(1, 0, 0), o + glm::dvec3(0, 1, 0), o + glm::dvec3(0, 0, 1)}) {
-      block.connectivity.push_back(static_cast<std::uint32_t>(block.positions.size()));
       block.positions.push_back(p);
       point.push_back(static_cast<double>(c));
     }
@@ -41,7 +42,9 @@ MeshFile assemble(const CellBlock& block, const std::string& field = "p") {
 
 /// The tets as cells of type 10 with offsets, so that others can be added.
 CellBlock with_types(CellBlock block) {
-  block.types.assign(block.connectivity.size() / 4, 10);
+  block.types.assign(block.tets.size(), 10);
+  for (const scene::Tet& tet : block.tets) block.connectivity.insert(block.connectivity.end(), tet.begin(), tet.end());
+  block.tets.clear();
   for (std::size_t c = 0; c <= block.types.size(); ++c) block.offsets.push_back(4 * c);
   return block;
 }
@@ -110,7 +113,7 @@ TEST(MeshAssembly, FlatCellsAreKeptAndCounted) {
 
 TEST(MeshAssembly, TetsWithTwoCornersAtOnePlaceAreNotMade) {
   CellBlock block = row_of_tets(3);
-  block.connectivity[5] = block.connectivity[4];  // a repeated index
+  block.tets[1][1] = block.tets[1][0];            // a repeated index
   block.positions[8] = block.positions[9] + 0.0;  // another point at the same place
   const MeshFile file = assemble(block);
   EXPECT_EQ(file.counts.tets_collapsed, 2u);
@@ -120,7 +123,7 @@ TEST(MeshAssembly, TetsWithTwoCornersAtOnePlaceAreNotMade) {
 
 TEST(MeshAssembly, EitherHandednessIsKept) {
   CellBlock block = row_of_tets(2);
-  std::swap(block.connectivity[0], block.connectivity[1]);
+  std::swap(block.tets[0][0], block.tets[0][1]);
   const MeshFile file = assemble(block);
   EXPECT_EQ(file.mesh.tets.size(), 2u);
   EXPECT_EQ(file.counts.cells_zero_volume + file.counts.cells_tangled, 0u);
@@ -140,6 +143,7 @@ TEST(MeshAssembly, FacesAndLinesAreSkippedAndCounted) {
 
 TEST(MeshAssembly, QuadraticCellsUseTheirCorners) {
   CellBlock block = row_of_tets(3);  // twelve points: enough for a ten-node tet
+  block.tets.clear();
   block.types = {24};
   block.connectivity = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
   block.offsets = {0, 10};
@@ -228,6 +232,34 @@ TEST(MeshAssembly, ThreadsMakeTheSameMesh) {
   }
 }
 
+TEST(MeshAssembly, TetsAreAsCellsOfTheirTypeWhicheverAreDropped) {
+  constexpr std::size_t n = 40'000;
+  for (const char* field : {"p", "c"})
+    for (const int threads : {1, 2}) {
+      MeshOptions options;
+      options.field = field, options.threads = threads;
+      for (const std::size_t dropped : {n, std::size_t{0}, std::size_t{20'000}, n - 1}) {
+        CellBlock some = row_of_tets(n);
+        some.cell_ghost.assign(n, 0);
+        if (dropped < n) some.cell_ghost[dropped] = 1;
+        for (const std::size_t before : {std::size_t{0}, std::size_t{3}}) {
+          const auto blocks = [&](const CellBlock& block) {
+            return before > 0 ? std::vector<CellBlock>{row_of_tets(before), block, row_of_tets(2)}
+                              : std::vector<CellBlock>{block};
+          };
+          const MeshFile tets = assemble_mesh(blocks(some), options, "mesh");
+          const MeshFile cells = assemble_mesh(blocks(with_types(some)), options, "mesh");
+          scene::validate(tets.mesh, "mesh");
+          EXPECT_EQ(tets.mesh.tets.size(), n - (dropped < n ? 1 : 0) + (before > 0 ? before + 2 : 0));
+          EXPECT_EQ(tets.mesh.tets, cells.mesh.tets);
+          EXPECT_EQ(tets.mesh.scalars, cells.mesh.scalars);
+          EXPECT_EQ(tets.mesh.original_cell, cells.mesh.original_cell);
+          EXPECT_EQ(tets.counts, cells.counts);
+        }
+      }
+    }
+}
+
 TEST(MeshAssembly, OfSeveralBadCellsTheFirstIsToldWhicheverThreadFindsIt) {
   CellBlock block = many_cells(200'000);
   for (const std::size_t c : {150'000, 90'001, 90'000}) block.types[c] = 42;
@@ -249,10 +281,10 @@ CellBlock two_tets(bool own_points) {
   const glm::dvec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0), up(0, 0, 1), down(0, 0, -3);
   if (own_points) {
     block.positions = {a, b, c, up, b, a, c, down};
-    block.connectivity = {0, 1, 2, 3, 4, 5, 6, 7};
+    block.tets = {{0, 1, 2, 3}, {4, 5, 6, 7}};
   } else {
     block.positions = {a, b, c, up, down};
-    block.connectivity = {0, 1, 2, 3, 1, 0, 2, 4};
+    block.tets = {{0, 1, 2, 3}, {1, 0, 2, 4}};
   }
   block.fields.push_back(field_of_values("c", "double", Association::cell, 1, {4, 8}));
   return block;

@@ -57,7 +57,9 @@ std::string vtu_text(const CellBlock& block) {
   for (const glm::dvec3& p : block.positions) xyz.insert(xyz.end(), {p.x, p.y, p.z});
   std::vector<std::uint8_t> types = block.types;
   std::vector<std::uint64_t> ends(block.offsets.begin() + (block.offsets.empty() ? 0 : 1), block.offsets.end());
+  std::vector<std::uint32_t> corners = block.connectivity;
   if (types.empty()) {
+    for (const scene::Tet& tet : block.tets) corners.insert(corners.end(), tet.begin(), tet.end());
     types.assign(block.cell_count(), 10);
     for (std::size_t c = 1; c <= block.cell_count(); ++c) ends.push_back(4 * c);
   }
@@ -68,7 +70,7 @@ std::string vtu_text(const CellBlock& block) {
          fields_text(block, scene::Association::point, block.point_ghost) + "</PointData><CellData>\n" +
          fields_text(block, scene::Association::cell, block.cell_ghost) + "</CellData>\n<Points>\n" +
          data_array("Points", "Float64", 3, xyz) + "</Points>\n<Cells>\n" +
-         data_array("connectivity", "Int64", 1, block.connectivity) + data_array("offsets", "Int64", 1, ends) +
+         data_array("connectivity", "Int64", 1, corners) + data_array("offsets", "Int64", 1, ends) +
          data_array("types", "UInt8", 1, types) + "</Cells></Piece></UnstructuredGrid></VTKFile>\n";
 }
 
