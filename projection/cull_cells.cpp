@@ -206,6 +206,8 @@ CulledBlock cull(const CullView& view, const CullVertex* vertices, const scene::
     const auto more_rows = hn::ConvertTo(di, hn::Sub(row1, row0));
     const auto place = hn::Or(first, hn::Or(hn::ShiftLeft<24>(more_columns), hn::ShiftLeft<28>(more_rows)));
     const auto wide = hn::Gt(hn::Max(more_columns, more_rows), hn::Set(di, largest_place_span));
+    const auto one_tile = hn::Eq(hn::Or(more_columns, more_rows), hn::Zero(di));
+    block.in_one_tile |= (projected & bits_of(hn::RebindMask(d, one_tile))) << t;
     hn::StoreU(hn::IfThenElse(wide, hn::Set(di, static_cast<std::int32_t>(wide_place)), place), di,
                reinterpret_cast<std::int32_t*>(places + t));
     hn::StoreU(hn::Max(depth_low, hn::Set(d, view.near_low)), d, near_depths + t);

@@ -64,6 +64,7 @@ constexpr std::size_t most_places = std::size_t{1} << 24;
 struct CulledBlock {
   std::uint64_t projected = 0, invisible = 0, outside_view = 0, between_pixels = 0;
   std::uint64_t unsure = 0;
+  std::uint64_t in_one_tile = 0;  ///< of those projected; beside the above
 };
 
 constexpr std::size_t cull_block_cells = 64;

@@ -15,47 +15,37 @@ namespace tessera::projection {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Entries as they are compared, but in bytes: a negative float's bits fall as it rises, a positive one's rise with it.
-HWY_INLINE std::uint64_t key_of(const TileEntry& e) {
-  const auto bits = std::bit_cast<std::uint32_t>(e.near_depth + 0.0f);  // -0 and 0 are one depth
-  return static_cast<std::uint64_t>(bits ^ ((0u - (bits >> 31)) | 0x80000000u)) << 32 | e.tet;
+/// The depth in bits that compare as it does: a negative float's bits fall as it rises, a positive one's rise with it.
+HWY_INLINE std::uint32_t key_of(const TileEntry& e) {
+  const auto bits = std::bit_cast<std::uint32_t>(e.near_depth);
+  return bits ^ ((0u - (bits >> 31)) | 0x80000000u);
 }
 
 // Entries that share a step with one, on average, beyond which a list is put in order for certain: more would make
 // segments wait in their windows.
 constexpr std::uint64_t crowd = 512;
 
-/// Least significant digit first, over the digits in which keys differ at all. Entries in tet order, as TileLists makes
-/// them, need no passes over tets: each pass keeps the order of what it finds equal.
+/// Least significant digit first, over the digits in which keys differ at all.
 HWY_NOINLINE void radix_sort(TileEntry* entries, TileEntry* other, std::size_t n) {
-  constexpr int digit_bits = 11, digits_of_a_half = 3;  // three passes take less than four of bytes
+  constexpr int digit_bits = 11, digits = 3;  // three passes take less than four of bytes
   constexpr std::uint32_t values = 1u << digit_bits;
-  bool by_tet = true;
-  for (std::size_t i = 1; i < n; ++i) by_tet &= entries[i - 1].tet <= entries[i].tet;
+  const auto digit_of = [](const TileEntry& e, int digit) { return key_of(e) >> digit * digit_bits & (values - 1); };
+  std::uint32_t next[digits][values] = {};
+  for (std::size_t i = 0; i < n; ++i)
+    for (int digit = 0; digit < digits; ++digit) ++next[digit][digit_of(entries[i], digit)];
   TileEntry *from = entries, *to = other;
-  for (int half = by_tet ? 1 : 0; half < 2; ++half) {
-    const auto digit_of = [half](const TileEntry& e, int digit) {
-      return static_cast<std::uint32_t>(key_of(e) >> 32 * half) >> digit * digit_bits & (values - 1);
-    };
-    std::uint32_t next[digits_of_a_half][values] = {};
-    for (std::size_t i = 0; i < n; ++i)
-      for (int digit = 0; digit < digits_of_a_half; ++digit) ++next[digit][digit_of(entries[i], digit)];
-    for (int digit = 0; digit < digits_of_a_half; ++digit) {
-      if (next[digit][digit_of(entries[0], digit)] == n) continue;
-      std::uint32_t sum = 0;
-      for (std::uint32_t& start : next[digit]) {
-        const std::uint32_t count = start;
-        start = sum;
-        sum += count;
-      }
-      for (std::size_t i = 0; i < n; ++i) to[next[digit][digit_of(from[i], digit)]++] = from[i];
-      std::swap(from, to);
+  for (int digit = 0; digit < digits; ++digit) {
+    if (next[digit][digit_of(entries[0], digit)] == n) continue;
+    std::uint32_t sum = 0;
+    for (std::uint32_t& start : next[digit]) {
+      const std::uint32_t count = start;
+      start = sum;
+      sum += count;
     }
-    if (from != entries) {
-      std::copy_n(from, n, entries);
-      std::swap(from, to);
-    }
+    for (std::size_t i = 0; i < n; ++i) to[next[digit][digit_of(from[i], digit)]++] = from[i];
+    std::swap(from, to);
   }
+  if (from != entries) std::copy_n(from, n, entries);
 }
 
 /// The few entries of a short list.

@@ -31,7 +31,7 @@ struct DepthOrder {
 /// one counting pass puts in order; entries of one step stay as they were. What a renderer asks of the order is a depth
 /// before which nothing comes any more, and one step is short beside the cells whose segments wait for that. Where
 /// depths crowd into few steps, as when an outlier far away pushes them there, a radix sort puts them in order for
-/// certain: three counting passes, six if tets do not rise.
+/// certain, in three counting passes.
 DepthOrder order_by_depth(std::span<TileEntry> entries, DepthOrderScratch& scratch);
 
 }  // namespace tessera::projection

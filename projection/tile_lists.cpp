@@ -59,11 +59,17 @@ PixelRect TileGrid::rect(std::size_t tile) const {
           std::min((row + 1) * tile_size, image.height)};
 }
 
+/// visit(first + i) for every bit i of `bits`.
+template <class Visit>
+void for_each_of(std::uint64_t bits, std::size_t first, Visit visit) {
+  for (; bits != 0; bits &= bits - 1) visit(first + static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
 /// Of a projected tet.
 template <class Visit>
 void TileLists::for_each_tile(std::size_t tet, Visit visit) const {
   const std::uint32_t place = buffers_->places[tet];
-  const auto columns = static_cast<std::size_t>(grid_.columns());
+  const std::size_t columns = columns_;
   if (place < wide_place) {
     const std::size_t first = place & 0xffffff, right = place >> 24 & 15, down = place >> 28;
     for (std::size_t row = 0; row <= down; ++row)
@@ -89,10 +95,12 @@ TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
     : projected_(&projected),
       trace_(trace),
       grid_(grid),
+      columns_(static_cast<std::size_t>(grid.columns())),
       buffers_(buffers != nullptr ? buffers : &own_),
       depth_origin_(nearest_depth(projected)),
       view_(projected.near_depth, projected.far_depth, depth_origin_, grid.image, grid.tile_size),
       projected_tets_(projected.mesh->block_count()),
+      in_one_tile_(projected_tets_.size()),
       tile_counts_(grid.count(), 0) {
   const scene::TetMesh& mesh = projected.mesh->mesh();
   buffers_->vertices.reset(projected.vertices.size());
@@ -142,6 +150,7 @@ void TileLists::cull(Run& run, const ClearIntervals& clear) {
   const bool per_cell = mesh.association == scene::Association::cell;
   CullCounts& counts = run.culled;
   run.tiles.assign(grid_.count(), 0);
+  std::uint32_t* const tiles = run.tiles.data();
   std::vector<ClearFloats> clear_here;
   for (std::size_t block = run.first_block; block < run.last_block; ++block) {
     const std::size_t first = block * cull_block_cells;
@@ -162,18 +171,16 @@ void TileLists::cull(Run& run, const ClearIntervals& clear) {
     counts.between_pixels += static_cast<std::uint64_t>(std::popcount(culled.between_pixels));
     for (std::uint64_t unsure = culled.unsure; unsure != 0; unsure &= unsure - 1) {
       const auto cell = static_cast<std::size_t>(std::countr_zero(unsure));
-      if (cull_exactly(first + cell, clear, counts)) culled.projected |= std::uint64_t{1} << cell;
+      if (!cull_exactly(first + cell, clear, counts)) continue;
+      culled.projected |= std::uint64_t{1} << cell;
+      if (buffers_->places[first + cell] < most_places) culled.in_one_tile |= std::uint64_t{1} << cell;
     }
     counts.projected += static_cast<std::uint64_t>(std::popcount(culled.projected));
     projected_tets_[block] = culled.projected;
-    for (std::uint64_t left = culled.projected; left != 0; left &= left - 1) {
-      const std::size_t tet = first + static_cast<std::size_t>(std::countr_zero(left));
-      const std::uint32_t place = buffers_->places[tet];
-      if (place < most_places)
-        ++run.tiles[place];
-      else
-        for_each_tile(tet, [&](std::size_t tile) { ++run.tiles[tile]; });
-    }
+    in_one_tile_[block] = culled.in_one_tile;
+    for_each_of(culled.in_one_tile, first, [&](std::size_t tet) { ++tiles[buffers_->places[tet]]; });
+    for_each_of(culled.projected & ~culled.in_one_tile, first,
+                [&](std::size_t tet) { for_each_tile(tet, [&](std::size_t tile) { ++tiles[tile]; }); });
   }
 }
 
@@ -234,20 +241,17 @@ void TileLists::fill(std::size_t r, std::size_t first, std::size_t last) {
   if (!any) return;
   TileEntry* const entries = buffers_->entries.data();
   const std::size_t tiles = last - first;
-  for (std::size_t block = run.first_block; block < run.last_block; ++block)
-    for (std::uint64_t left = projected_tets_[block]; left != 0; left &= left - 1) {
-      const std::size_t tet = block * cull_block_cells + static_cast<std::size_t>(std::countr_zero(left));
-      const TileEntry entry{buffers_->near_depths[tet], static_cast<std::uint32_t>(tet)};
-      const std::uint32_t place = buffers_->places[tet];
-      // Tiles before the band wrap to large numbers.
-      if (place < most_places) {
-        if (place - first < tiles) entries[next[place - first]++] = entry;
-      } else {
-        for_each_tile(tet, [&](std::size_t tile) {
-          if (tile - first < tiles) entries[next[tile - first]++] = entry;
-        });
-      }
-    }
+  const auto add = [&](std::size_t tet, std::size_t tile) {
+    // Tiles before the band wrap to large numbers.
+    if (tile - first < tiles)
+      entries[next[tile - first]++] = {buffers_->near_depths[tet], static_cast<std::uint32_t>(tet)};
+  };
+  for (std::size_t block = run.first_block; block < run.last_block; ++block) {
+    const std::size_t first_tet = block * cull_block_cells;
+    for_each_of(in_one_tile_[block], first_tet, [&](std::size_t tet) { add(tet, buffers_->places[tet]); });
+    for_each_of(projected_tets_[block] & ~in_one_tile_[block], first_tet,
+                [&](std::size_t tet) { for_each_tile(tet, [&](std::size_t tile) { add(tet, tile); }); });
+  }
 }
 
 std::span<TileEntry> TileLists::tile(std::size_t tile) {
@@ -257,7 +261,7 @@ std::span<TileEntry> TileLists::tile(std::size_t tile) {
 
 std::size_t TileLists::bytes() const {
   return buffers_->vertices.bytes() + buffers_->places.bytes() + buffers_->near_depths.bytes() +
-         buffers_->entries.bytes() + projected_tets_.capacity() * sizeof(std::uint64_t) +
+         buffers_->entries.bytes() + (projected_tets_.capacity() + in_one_tile_.capacity()) * sizeof(std::uint64_t) +
          runs_.size() * grid_.count() * sizeof(std::uint32_t) +
          (tile_counts_.capacity() + offsets_.capacity()) * sizeof(std::uint64_t);
 }

@@ -43,10 +43,12 @@ struct TileListBuffers {
 
 /// The cells of each tile, for one view and transfer function.
 ///
-/// Two passes, count and fill, so that lists have their final size at once and stand in tet order whatever the threads
-/// do. Both go over the tets in runs of blocks of 64; each run counts its entries of every tile, and fills them where
-/// the runs before it end. A block without visible scalars costs nothing, in either pass. 8 bytes a tet hold what
-/// the first pass found, beside 16 a vertex; the lists, 8 bytes an entry, are filled for a band of tiles at a time.
+/// Two passes, count and fill, so that lists have their final size at once and are the same whatever the threads
+/// do: in the order of the tets' blocks, of each block those in one tile first (which is told from the others by a bit,
+/// not a branch). Both go over the tets in runs of blocks of 64; each run counts its entries of every tile, and fills
+/// them where the runs before it end. A block without visible scalars costs nothing, in either pass. 8 bytes a tet hold
+/// what the first pass found, beside 16 a vertex; the lists, 8 bytes an entry, are filled for a band of tiles at a
+/// time.
 class TileLists {
  public:
   /// First pass: culls and counts. Work runs in the caller's task arena (oneTBB); `trace`, if any, gets spans `cull`
@@ -70,7 +72,7 @@ class TileLists {
   /// Second pass: makes the lists of tiles [first, last).
   void fill(std::size_t first, std::size_t last);
 
-  /// A tile of the last fill, in tet order; the caller may reorder it.
+  /// A tile of the last fill; the caller may reorder it.
   [[nodiscard]] std::span<TileEntry> tile(std::size_t tile);
 
   /// Bytes held now.
@@ -91,6 +93,7 @@ class TileLists {
   const ProjectedMesh* projected_;
   scene::Trace* trace_;
   TileGrid grid_;
+  std::size_t columns_;
   TileListBuffers own_;
   TileListBuffers* buffers_;
   double depth_origin_;
@@ -98,6 +101,7 @@ class TileLists {
   CullCounts counts_;
   std::vector<Run> runs_;
   std::vector<std::uint64_t> projected_tets_;  ///< a bit a tet
+  std::vector<std::uint64_t> in_one_tile_;     ///< the same, of those projected
   std::vector<std::uint64_t> tile_counts_;     ///< one a tile
   std::size_t first_ = 0;                      ///< of the last fill
   std::vector<std::uint64_t> offsets_;         ///< one a tile of the last fill, and the end

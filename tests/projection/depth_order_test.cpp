@@ -103,15 +103,5 @@ TEST(DepthOrder, SlackIsShort) {
   });
 }
 
-TEST(DepthOrder, CrowdsAreInOrderOfTetsTooWhereTheyWereNot) {
-  std::mt19937 random(seed);
-  std::vector<TileEntry> entries;
-  for (std::uint32_t i = 0; i < 5000; ++i) entries.push_back({i == 7 ? 1e30f : static_cast<float>(i % 3), i});
-  std::shuffle(entries.begin(), entries.end(), random);
-  DepthOrderScratch scratch;
-  const DepthOrder order = order_by_depth(entries, scratch);
-  EXPECT_TRUE(std::is_sorted(order.entries.begin(), order.entries.end(), before));
-}
-
 }  // namespace
 }  // namespace tessera::projection
