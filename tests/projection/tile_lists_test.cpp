@@ -211,8 +211,13 @@ void expect_lists(const scene::TetMesh& mesh, const View& view, const scene::Tra
     lists.fill(0, grid.count());
     for (std::size_t tile = 0; tile < grid.count(); ++tile) {
       ASSERT_EQ(lists.entry_count(tile), expected.tiles[tile].size()) << where << ", tile " << tile;
+      const std::span<TileEntry> entries = lists.tile(tile);
+      // In the order of blocks, of whose tets those in one tile come first.
+      const auto by_block = [](const TileEntry& a, const TileEntry& b) { return a.tet / 64 < b.tet / 64; };
+      EXPECT_TRUE(std::is_sorted(entries.begin(), entries.end(), by_block)) << where << ", tile " << tile;
+      std::sort(entries.begin(), entries.end(), [](const TileEntry& a, const TileEntry& b) { return a.tet < b.tet; });
       for (std::size_t i = 0; i < expected.tiles[tile].size(); ++i) {
-        const TileEntry& entry = lists.tile(tile)[i];
+        const TileEntry& entry = entries[i];
         ASSERT_EQ(entry.tet, expected.tiles[tile][i]) << where << ", tile " << tile;
         double nearest = HUGE_VAL;
         for (const auto v : mesh.tets[entry.tet]) nearest = std::min(nearest, vertices[v].depth);
