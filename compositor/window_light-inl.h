@@ -63,11 +63,8 @@ struct LightRows {
   alignas(64) std::int32_t front[numbers], back[numbers];
   alignas(64) std::int32_t interval[numbers];
   alignas(64) float length[numbers], scalar_front[numbers], scalar_back[numbers];
-  // Segments of more than one piece, until they fill the lanes.
-  struct Waiting {
-    alignas(64) float length[numbers + most_lanes], front[numbers + most_lanes], back[numbers + most_lanes];
-    alignas(64) std::int32_t place[numbers + most_lanes];
-  } wait;
+  // Where segments of more than one piece are, until they fill the lanes.
+  alignas(64) std::int32_t waiting_at[numbers + most_lanes];
   std::size_t waiting = 0;
   bool lit[most];  ///< some lane of the row has light or depth
   // Runs: where each lane's ends behind the rows (no_key: in none), and whether none ends between them.
@@ -86,30 +83,30 @@ struct LightRows {
     HN::Store(light.alpha, d, alpha + at), HN::Store(light.optical_depth, d, optical_depth + at);
     HN::Store(light.red, d, red + at), HN::Store(light.green, d, green + at), HN::Store(light.blue, d, blue + at);
   }
-  HWY_INLINE void defer(MF more, std::size_t at, VF l, VF from, VF to) {
-    const DF d;
-    const DI di;
-    const projection::HWY_NAMESPACE::LanePacker pack(HN::RebindMask(di, more));
-    HN::StoreU(pack(l), d, wait.length + waiting);
-    HN::StoreU(pack(from), d, wait.front + waiting);
-    HN::StoreU(pack(to), d, wait.back + waiting);
-    HN::StoreU(pack(HN::Iota(di, static_cast<std::int32_t>(at))), di, wait.place + waiting);
+  HWY_INLINE void defer(MF more, VI places) {
+    const DI d;
+    const projection::HWY_NAMESPACE::LanePacker pack(HN::RebindMask(d, more));
+    HN::StoreU(pack(places), d, waiting_at + waiting);
     waiting += pack.count();
   }
   template <TableForm form>
   HWY_INLINE void integrate_waiting(const Lookup<form>& table) {
     const DF d;
+    const DI di;
     alignas(64) float now[5][most_lanes];
+    HN::StoreU(HN::Zero(di), di, waiting_at + waiting);  // lanes beyond the last read some place, too
     for (std::size_t i = 0; i < waiting; i += HN::Lanes(d)) {
       const std::size_t here = std::min(HN::Lanes(d), waiting - i);
-      const Light light = integrate_lanes(table, HN::Load(d, wait.length + i), HN::Load(d, wait.front + i),
-                                          HN::Load(d, wait.back + i), HN::FirstN(d, here));
+      const VI at = HN::Load(di, waiting_at + i);
+      const Light light =
+          integrate_lanes(table, HN::GatherIndex(d, length, at), HN::GatherIndex(d, scalar_front, at),
+                          HN::GatherIndex(d, scalar_back, at), HN::FirstN(d, here));
       HN::Store(light.alpha, d, now[0]), HN::Store(light.optical_depth, d, now[1]);
       HN::Store(light.red, d, now[2]), HN::Store(light.green, d, now[3]), HN::Store(light.blue, d, now[4]);
       for (std::size_t k = 0; k < here; ++k) {
-        const auto at = static_cast<std::size_t>(wait.place[i + k]);
-        alpha[at] = now[0][k], optical_depth[at] = now[1][k];
-        red[at] = now[2][k], green[at] = now[3][k], blue[at] = now[4][k];
+        const auto to = static_cast<std::size_t>(waiting_at[i + k]);
+        alpha[to] = now[0][k], optical_depth[to] = now[1][k];
+        red[to] = now[2][k], green[to] = now[3][k], blue[to] = now[4][k];
       }
     }
     waiting = 0;
@@ -121,6 +118,7 @@ struct LightRows {
     const DI d;
     const DF df;
     const std::size_t lanes = HN::Lanes(d);
+    VI places = HN::Iota(d, 0);
     for (std::size_t row = 0; row < count; ++row) {
       const std::size_t at = row * lanes;
       const VF l = HN::Load(df, length + at), from = HN::Load(df, scalar_front + at),
@@ -132,7 +130,8 @@ struct LightRows {
       if (table.independent)
         shows = HN::Or(shows, HN::Gt(HN::Add(light.red, HN::Add(light.green, light.blue)), HN::Zero(df)));
       lit[row] = !HN::AllFalse(df, shows);
-      if (!HN::AllFalse(df, more)) defer(more, at, l, from, to);
+      if (!HN::AllFalse(df, more)) defer(more, places);
+      places = HN::Add(places, HN::Set(d, static_cast<std::int32_t>(lanes)));
     }
     integrate_waiting(table);
   }
