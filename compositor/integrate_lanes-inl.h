@@ -215,13 +215,13 @@ HWY_INLINE void add_piece(const Lookup& table, const typename Lookup::Index& ind
 /// A segment's way from one knot to the next.
 struct Walk {
   MF active, up;
-  VI interval, to_far_edge;  ///< the latter 1 going up, 0 going down
+  VI interval;
   VF scalar, back, length_per_scalar;
 
   /// The knot ahead or the segment's end, whichever comes first.
   template <class Lookup>
   HWY_INLINE VF target(const Lookup& table, const typename Lookup::Index& index) const {
-    const VF knot = table.far_edge(interval, index, to_far_edge);
+    const VF knot = table.edge(interval, index, up);
     return HN::IfThenElse(up, HN::Min(knot, back), HN::Max(knot, back));
   }
 
@@ -230,7 +230,7 @@ struct Walk {
   HWY_INLINE void go_on(const Lookup& table, int most, Progress& so_far) {
     const DF d;
     const DI di;
-    const VI step = HN::Sub(HN::Add(to_far_edge, to_far_edge), HN::Set(di, 1));
+    const VI step = HN::IfThenElse(HN::RebindMask(di, up), HN::Set(di, 1), HN::Set(di, -1));
     for (int pieces = 0; pieces < most; ++pieces) {
       interval = HN::Add(interval, HN::IfThenElseZero(HN::RebindMask(di, active), step));
       const auto index = table.index(interval, active);
@@ -267,13 +267,13 @@ HWY_NOINLINE Progress go_far(const Lookup& table, Walk walk, Progress so_far) {
 /// integrate_lanes() for segments that lie in one interval and are at most step_depth thick, which most are: straight
 /// on, the same bits. `interval`: table.locate(front, back >= front). `more`: the lanes with a length whose segment is
 /// not so, and whose light is not the answer. Lanes without a length may hold any finite numbers, and get zeros.
-template <TableForm form>
+template <bool independent, TableForm form>
 HWY_INLINE Light integrate_simple(const Lookup<form>& table, VI interval, VF length, VF front, VF back, MF& more) {
   const DF d;
   const MF active = HN::Gt(length, HN::Zero(d)), up = HN::Ge(back, front);
   length = HN::Min(length, HN::Set(d, lanes::most_length));
   const auto index = table.index(interval, active);
-  const VF knot = table.far_edge(interval, index, HN::IfThenElseZero(HN::RebindMask(DI(), up), HN::Set(DI(), 1)));
+  const VF knot = table.edge(interval, index, up);
   const VF end = HN::IfThenElse(up, HN::Min(knot, back), HN::Max(knot, back));
   const VF start = table.at(LaneTable::half_extinction, index),
            slope = table.at(LaneTable::half_extinction_slope, index);
@@ -283,7 +283,7 @@ HWY_INLINE Light integrate_simple(const Lookup<form>& table, VI interval, VF len
                              HN::Mul(HN::MulAdd(slope, to, start), length), from, HN::Sub(back, front), length};
   const VF depth = HN::Add(whole.depth_front, whole.depth_back);
   more = HN::And(active, HN::Or(HN::Ne(end, back), HN::Gt(depth, HN::Set(d, lanes::step_depth))));
-  const lanes::StretchLight light = lanes::stretch_light(whole, table.independent);
+  const lanes::StretchLight light = lanes::stretch_light(whole, independent);
   const auto color = [&](int c) HWY_ATTR {
     return HN::MulAdd(table.at(c + 1, index), light.moment, HN::Mul(table.at(c, index), light.weight));
   };
@@ -304,7 +304,6 @@ HWY_INLINE Light integrate_lanes(const Lookup<form>& table, VF length, VF front,
 
   lanes::Walk walk;
   walk.up = HN::Ge(back, front);
-  walk.to_far_edge = HN::IfThenElseZero(HN::RebindMask(DI(), walk.up), HN::Set(DI(), 1));
   walk.interval = table.locate(front, walk.up);
   walk.back = back;
   const auto index = table.index(walk.interval, active);

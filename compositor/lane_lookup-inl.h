@@ -50,7 +50,7 @@ HWY_INLINE VF two_table_lookup(VF low, VF high, VI i) {
 /// Numbers of intervals by lane. Every form offers:
 ///   locate(s, up)   the interval in which a ray at s goes on: the knots at or below s where `up`, else those below s;
 ///   index(i, active) makes intervals ready for look-ups, of which those of active lanes must be right;
-///   at(column, index), and far_edge(i, index, up) where the ray leaves interval i: its upper edge where `up` is 1.
+///   at(column, index), and edge(i, index, upper) where intervals end: their upper edges where `upper` is 1 or true.
 template <TableForm form>
 class Lookup;
 
@@ -131,13 +131,14 @@ class Lookup<TableForm::one_vector> {
   HWY_INLINE VI locate(VF s, MF up) const {
     const DF d;
     const DI di;
-    const VF passing = past(s, up);
     if (HWY_LIKELY(in_registers_)) {
       const VF place = HN::Mul(HN::Sub(s, grid_origin_), grid_scale_);
       const VI cell = HN::ConvertTo(di, HN::Min(HN::Max(place, HN::Zero(d)), last_cell_));
       const VI before = HN::BitCast(di, two_table_lookup(low_cells_, high_cells_, cell));
-      return count_if(HN::Lt(at(LaneTable::edge, HN::Add(before, HN::Set(di, 1))), passing), before);
+      const VF next = at(LaneTable::edge, HN::Add(before, HN::Set(di, 1)));
+      return count_if(HN::Or(HN::Lt(next, s), HN::And(up, HN::Eq(next, s))), before);
     }
+    const VF passing = past(s, up);
     return search(landmarks_.passed(passing), landmarks_.first_step, passing,
                   [&](VI i) HWY_ATTR { return at(LaneTable::edge, i); });
   }
@@ -145,7 +146,8 @@ class Lookup<TableForm::one_vector> {
   HWY_INLINE VF at(int column, const Index& i) const {
     return HN::TableLookupLanes(rows_[column], HN::IndicesFromVec(DF(), i));
   }
-  HWY_INLINE VF far_edge(VI, const Index& i, VI up) const { return at(LaneTable::edge, HN::Add(i, up)); }
+  HWY_INLINE VF edge(VI, const Index& i, VI upper) const { return at(LaneTable::edge, HN::Add(i, upper)); }
+  HWY_INLINE VF edge(VI, const Index& i, MF upper) const { return at(LaneTable::edge, count_if(upper, i)); }
 
   bool independent, has_clear;
 
@@ -176,7 +178,8 @@ class Lookup<TableForm::two_vectors> {
   }
   HWY_INLINE Index index(VI interval, MF) const { return interval; }
   HWY_INLINE VF at(int column, const Index& i) const { return two_table_lookup(low_[column], high_[column], i); }
-  HWY_INLINE VF far_edge(VI, const Index& i, VI up) const { return at(LaneTable::edge, HN::Add(i, up)); }
+  HWY_INLINE VF edge(VI, const Index& i, VI upper) const { return at(LaneTable::edge, HN::Add(i, upper)); }
+  HWY_INLINE VF edge(VI, const Index& i, MF upper) const { return at(LaneTable::edge, count_if(upper, i)); }
 
   bool independent, has_clear;
 
@@ -227,8 +230,11 @@ class Lookup<TableForm::many> {
     return index;
   }
   HWY_INLINE VF at(int column, const Index& i) const { return look_up(column, i, i.interval, i.in_window); }
-  HWY_INLINE VF far_edge(VI interval, const Index& i, VI up) const {
-    return look_up(LaneTable::edge, i, HN::Add(interval, up), HN::Add(i.in_window, up));
+  HWY_INLINE VF edge(VI interval, const Index& i, VI upper) const {
+    return look_up(LaneTable::edge, i, HN::Add(interval, upper), HN::Add(i.in_window, upper));
+  }
+  HWY_INLINE VF edge(VI interval, const Index& i, MF upper) const {
+    return look_up(LaneTable::edge, i, count_if(upper, interval), count_if(upper, i.in_window));
   }
 
   bool independent, has_clear;

@@ -115,6 +115,13 @@ struct LightRows {
   /// The light of the first `count` rows' segments.
   template <TableForm form>
   HWY_INLINE void integrate(const Lookup<form>& table, std::size_t count) {
+    table.independent ? integrate_rows<true>(table, count) : integrate_rows<false>(table, count);
+    integrate_waiting(table);
+  }
+
+ private:
+  template <bool independent, TableForm form>
+  HWY_INLINE void integrate_rows(const Lookup<form>& table, std::size_t count) {
     const DI d;
     const DF df;
     const std::size_t lanes = HN::Lanes(d);
@@ -124,16 +131,15 @@ struct LightRows {
       const VF l = HN::Load(df, length + at), from = HN::Load(df, scalar_front + at),
                to = HN::Load(df, scalar_back + at);
       MF more;
-      const Light light = integrate_simple(table, HN::Load(d, interval + at), l, from, to, more);
+      const Light light = integrate_simple<independent>(table, HN::Load(d, interval + at), l, from, to, more);
       put(light, at);
       MF shows = HN::Or(more, HN::Gt(light.optical_depth, HN::Zero(df)));
-      if (table.independent)
+      if constexpr (independent)
         shows = HN::Or(shows, HN::Gt(HN::Add(light.red, HN::Add(light.green, light.blue)), HN::Zero(df)));
       lit[row] = !HN::AllFalse(df, shows);
       if (!HN::AllFalse(df, more)) defer(more, places);
       places = HN::Add(places, HN::Set(d, static_cast<std::int32_t>(lanes)));
     }
-    integrate_waiting(table);
   }
 };
 

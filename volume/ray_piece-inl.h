@@ -181,8 +181,8 @@ HWY_INLINE VF error_of_touch(const Lookup& table, typename Lookup::Index index, 
   const DF d;
   const VF zero = HN::Zero(d), noise = HN::Set(d, doubt.noise);
   const VI below = HN::Zero(DI()), above = HN::Set(DI(), 1);
-  const VF from_low = HN::Abs(HN::Sub(s, table.far_edge(interval, index, below))),
-           from_high = HN::Abs(HN::Sub(table.far_edge(interval, index, above), s));
+  const VF from_low = HN::Abs(HN::Sub(s, table.edge(interval, index, below))),
+           from_high = HN::Abs(HN::Sub(table.edge(interval, index, above), s));
   const MF to_high = HN::Lt(from_high, from_low);
   const VF away = HN::IfThenElse(to_high, from_high, from_low);
   // What is at a knot to the bit, and does not cross it, is a plateau of samples with that value.
@@ -233,7 +233,7 @@ HWY_NOINLINE void add_any(const Lookup& table, const FrameView& frame, const Pie
     const VI to_far_edge = HN::IfThenElseZero(HN::RebindMask(DI(), up), HN::Set(DI(), 1));
     const VI interval = table.locate(s, up);
     const auto index = table.index(interval, active);
-    const VF knot = table.far_edge(interval, index, to_far_edge);
+    const VF knot = table.edge(interval, index, to_far_edge);
     const MF crosses = HN::And(active, HN::Or(HN::And(up, HN::Lt(knot, s_turn)), HN::AndNot(up, HN::Gt(knot, s_turn))));
     VF end = turn, s_end = s_turn;
     if (!HN::AllFalse(d, crosses)) {

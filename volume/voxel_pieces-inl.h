@@ -273,7 +273,7 @@ HWY_NOINLINE MF cast_mixed(const FrameView& frame, const Lookup& lookup, const L
   const auto index = lookup.index(interval, there);
   current.move_to(static_cast<std::size_t>(
       HN::GetLane(HN::MaxOfLanes(DI(), HN::IfThenElseZero(HN::RebindMask(DI(), there), interval)))));
-  const VF edge = lookup.far_edge(interval, index, HN::Set(DI(), 1));
+  const VF edge = lookup.edge(interval, index, HN::Set(DI(), 1));
   const VF kappa_slope = HN::Abs(
       HN::Add(lookup.at(LaneTable::half_extinction_slope, index), lookup.at(LaneTable::half_extinction_slope, index)));
   const VF color_slope = HN::Max(
@@ -290,7 +290,7 @@ HWY_NOINLINE MF cast_mixed(const FrameView& frame, const Lookup& lookup, const L
       HN::And(HN::And(there, HN::Lt(high, edge)), HN::Le(HN::MulAdd(spread, scale, dimmed), HN::Set(d, 1.0f)));
   if (frame.doubt != nullptr && !frame.doubt->step.empty()) {
     // What may touch a step is looked at as a cubic.
-    const VF noise = HN::Set(d, frame.doubt->noise), low_edge = lookup.far_edge(interval, index, HN::Zero(DI()));
+    const VF noise = HN::Set(d, frame.doubt->noise), low_edge = lookup.edge(interval, index, HN::Zero(DI()));
     const MF above = HN::Or(HN::Ge(HN::Sub(low, low_edge), noise), HN::Eq(low, low_edge));
     together = HN::And(together, HN::And(above, HN::Ge(HN::Sub(edge, high), noise)));
   }
