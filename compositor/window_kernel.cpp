@@ -127,8 +127,9 @@ class PixelGroup {
     }
 
     VI nearest = HN::Set(d, no_key), farthest = HN::Set(d, -no_key);
+    const std::size_t step = windows_.stride();
     for (std::size_t row = 0; row < most; ++row) {
-      const std::size_t first = row * windows_.stride();
+      const std::size_t first = row * step;
       const auto quarter = [&](std::size_t q) HWY_ATTR {
         return HN::LoadU(d, reinterpret_cast<const std::int32_t*>(list_ + first + q * lanes / 4));
       };
@@ -148,7 +149,7 @@ class PixelGroup {
       HN::StoreU(HN::BitCast(DF(), key), DF(), keys + row * lanes);
     }
     sorter::sort_lanes(keys, static_cast<int>(chunks));
-    const VI stride = HN::Set(d, static_cast<std::int32_t>(windows_.stride() * sizeof *list_));
+    const VI stride = HN::Set(d, static_cast<std::int32_t>(step * sizeof *list_));
     auto ties = HN::Lt(count, HN::Zero(d));
     VI before = HN::Zero(d);
     for (std::size_t row = 0; row < most; ++row) {

@@ -98,9 +98,8 @@ struct LightRows {
     for (std::size_t i = 0; i < waiting; i += HN::Lanes(d)) {
       const std::size_t here = std::min(HN::Lanes(d), waiting - i);
       const VI at = HN::Load(di, waiting_at + i);
-      const Light light =
-          integrate_lanes(table, HN::GatherIndex(d, length, at), HN::GatherIndex(d, scalar_front, at),
-                          HN::GatherIndex(d, scalar_back, at), HN::FirstN(d, here));
+      const Light light = integrate_lanes(table, HN::GatherIndex(d, length, at), HN::GatherIndex(d, scalar_front, at),
+                                          HN::GatherIndex(d, scalar_back, at), HN::FirstN(d, here));
       HN::Store(light.alpha, d, now[0]), HN::Store(light.optical_depth, d, now[1]);
       HN::Store(light.red, d, now[2]), HN::Store(light.green, d, now[3]), HN::Store(light.blue, d, now[4]);
       for (std::size_t k = 0; k < here; ++k) {

@@ -33,17 +33,44 @@ HWY_INLINE VI products(VI a, VI b) {
 #endif
 }
 
+/// Pairs of 16 bits, added.
+HWY_INLINE VI add_pairs(VI a, VI b) {
+  const hn::Repartition<std::int16_t, I> pairs;
+  return hn::BitCast(I(), hn::Add(hn::BitCast(pairs, a), hn::BitCast(pairs, b)));
+}
+
+/// The lesser of |a| and |b|.
+HWY_INLINE VF least_magnitude(VF a, VF b) {
+#if HWY_TARGET <= HWY_AVX3
+  constexpr int least_absolute = 2, sign_cleared = 2 << 2;
+  return VF{_mm512_range_ps(a.raw, b.raw, least_absolute | sign_cleared)};
+#else
+  return hn::Min(hn::Abs(a), hn::Abs(b));
+#endif
+}
+
 #if HWY_TARGET <= HWY_AVX2
+/// What is true of some of as many cells as there are lanes, for lanes to ask.
+struct CellFlags {
+  VI three, behind;
+  HWY_INLINE CellFlags(const CellParts& parts, int from)
+      : three(hn::Set(I(), static_cast<std::int32_t>(parts.three >> from))),
+        behind(hn::Set(I(), static_cast<std::int32_t>(parts.behind >> from))) {}
+};
+
 /// What lanes ask of their hits' cells: whichever each is of, of as many as there are lanes, from `from` on. Their
 /// numbers are one vector to permute from; with AVX-512 one permute takes the one or the other of two.
 template <bool two, bool with_three>
 class AnyCell {
  public:
   static constexpr bool may_be_two = two, may_be_three = with_three;
-  HWY_INLINE AnyCell(const CellParts& parts, int from, VI hit)
-      : parts_(parts), from_(from), cell_(hn::And(hit, hn::Set(I(), lanes - 1))) {}
-  HWY_INLINE MI three() const { return among(parts_.three); }
-  HWY_INLINE MI behind() const { return among(parts_.behind); }
+  HWY_INLINE AnyCell(const CellFlags& flags, int from, VI hit)
+      : flags_(flags),
+        from_(from),
+        cell_(hn::And(hit, hn::Set(I(), lanes - 1))),
+        bit_(hn::Shl(hn::Set(I(), 1), cell_)) {}
+  HWY_INLINE MI three() const { return hn::TestBit(flags_.three, bit_); }
+  HWY_INLINE MI behind() const { return hn::TestBit(flags_.behind, bit_); }
   template <class T>
   HWY_INLINE hn::Vec<hn::ScalableTag<T>> number(const T* numbers) const {
     const hn::ScalableTag<T> d;
@@ -53,7 +80,7 @@ class AnyCell {
 #if HWY_TARGET <= HWY_AVX3
   using Choice = VI;
   HWY_INLINE Choice choice(MI second) const {
-    return hn::Or(cell_, hn::IfThenElseZero(second, hn::Set(I(), CellBatch::most)));
+    return VI{_mm512_mask_or_epi32(cell_.raw, second.raw, cell_.raw, _mm512_set1_epi32(CellBatch::most))};
   }
   HWY_INLINE VI number(const std::int32_t* first, const std::int32_t* second, Choice choice) const {
     return VI{_mm512_permutex2var_epi32(hn::Load(I(), first).raw, choice.raw, hn::Load(I(), second).raw)};
@@ -67,14 +94,9 @@ class AnyCell {
 #endif
 
  private:
-  HWY_INLINE MI among(unsigned cells) const {
-    const I d;
-    return hn::TestBit(hn::Set(d, static_cast<std::int32_t>(cells >> from_)), hn::Shl(hn::Set(d, 1), cell_));
-  }
-
-  const CellParts& parts_;
+  const CellFlags& flags_;
   int from_;
-  VI cell_;
+  VI cell_, bit_;
 };
 #endif
 
@@ -129,9 +151,10 @@ class HitCrossing {
   template <bool two, bool three>
   HWY_INLINE void drain(HitQueue& queue, int from) {
     const I d;
+    const CellFlags flags(parts_, from);
     std::size_t i = 0;
     for (; i + lanes <= queue.size; i += lanes)
-      cross(queue.hit + i, lanes, AnyCell<two, three>(parts_, from, hn::Load(d, queue.hit + i)));
+      cross(queue.hit + i, lanes, AnyCell<two, three>(flags, from, hn::Load(d, queue.hit + i)));
     hn::Store(hn::Load(d, queue.hit + i), d, queue.hit);
     queue.size -= i;
   }
@@ -139,7 +162,8 @@ class HitCrossing {
   template <bool two, bool three>
   HWY_INLINE void finish(HitQueue& queue, int from) {
     drain<two, three>(queue, from);
-    if (queue.size > 0) cross(queue.hit, queue.size, AnyCell<two, three>(parts_, from, hn::Load(I(), queue.hit)));
+    const CellFlags flags(parts_, from);
+    if (queue.size > 0) cross(queue.hit, queue.size, AnyCell<two, three>(flags, from, hn::Load(I(), queue.hit)));
     queue.size = 0;
   }
 #endif
@@ -183,46 +207,51 @@ class HitCrossing {
     const F df;
     const auto number = [](int n) HWY_ATTR { return hn::Set(I(), n); };
     const VI hit = hn::LoadU(d, hits);
-    const VI column = hn::And(hn::ShiftRight<Hit::column_bit>(hit), number(SegmentWindows::side - 1));
-    const VI row = hn::And(hn::ShiftRight<Hit::row_bit>(hit), number(SegmentWindows::side - 1));
-    const VI x = hn::Sub(column, number(CellBatch::center)), y = hn::Sub(row, number(CellBatch::center));
-    const VI place = hn::Or(hn::And(x, number(0xffff)), hn::ShiftLeft<16>(y));
-    const VF xf = hn::ConvertTo(df, x), yf = hn::ConvertTo(df, y), zero = hn::Zero(df);
-    VF inner[3] = {zero, zero, zero}, sure = hn::Set(df, 2.0f);
-    for (int k = Cells::may_be_three ? 0 : 1; k < 3; ++k) {
-      const CellParts::Edge& edge = parts_.inner[k];
-      inner[k] = hn::MulAdd(cells.number(edge.x), xf, hn::MulAdd(cells.number(edge.y), yf, cells.number(edge.start)));
-      sure = hn::Min(sure, hn::Abs(inner[k]));
+    constexpr std::int32_t side_pair = (SegmentWindows::side - 1) * 0x10001;
+    constexpr std::int32_t minus_center_pair = -CellBatch::center * 0x10000 | (-CellBatch::center & 0xffff);
+    // Column and row from the centre, 16 bits each.
+    const VI place =
+        add_pairs(hn::And(hn::ShiftRight<Hit::column_bit>(hit), number(side_pair)), number(minus_center_pair));
+    const VF xf = hn::ConvertTo(df, hn::ShiftRight<16>(hn::ShiftLeft<16>(place)));
+    const VF yf = hn::ConvertTo(df, hn::ShiftRight<16>(place)), zero = hn::Zero(df);
+    const auto inner_at = [&](const CellParts::Edge& edge) HWY_ATTR {
+      return hn::MulAdd(cells.number(edge.x), xf, hn::MulAdd(cells.number(edge.y), yf, cells.number(edge.start)));
+    };
+    VF inner0 = zero, inner1 = inner_at(parts_.inner[1]), inner2 = inner_at(parts_.inner[2]);
+    VF sure = least_magnitude(inner1, inner2);
+    if constexpr (Cells::may_be_three) {
+      inner0 = inner_at(parts_.inner[0]);
+      sure = least_magnitude(sure, inner0);
     }
-    MF hits_cell = hn::FirstN(df, count), touching = hn::Lt(xf, xf);
-    const MF flagged = hn::RebindMask(df, hn::Ne(hn::And(hit, number(Hit::doubtful)), hn::Zero(d)));
+    MF hits_cell = hn::FirstN(df, count), touching = hits_cell;
+    const MF flagged = hn::RebindMask(df, hn::TestBit(hit, number(Hit::doubtful)));
     const MF doubtful = hn::And(hits_cell, hn::Or(hn::Le(sure, hn::Set(df, 1.0f)), flagged));
     bool all_hit = true;
     if (HWY_UNLIKELY(!hn::AllFalse(df, doubtful))) {
-      Doubt doubt{{inner[0], inner[1], inner[2]}, hits_cell, touching};  // what settle() changes lies in memory
+      Doubt doubt{{inner0, inner1, inner2}, hits_cell, touching};  // what settle() changes lies in memory
       settle(lane_bits(doubtful), hits, doubt);
-      for (int k = 0; k < 3; ++k) inner[k] = doubt.inner[k];
+      inner0 = doubt.inner[0], inner1 = doubt.inner[1], inner2 = doubt.inner[2];
       hits_cell = doubt.hits_cell, touching = doubt.touching;
       all_hit = false;
     }
 
     // Of one face against three the first side is the one face; of the three it is the one on whose side of its edges
     // with the others the ray passes.
-    const auto last = cells.choice(hn::RebindMask(d, hn::Le(inner[2], zero)));
+    const auto last = cells.choice(hn::RebindMask(d, hn::Le(inner2, zero)));
+    MI second_of_two = hn::RebindMask(d, hn::Le(inner1, zero));
+    if constexpr (Cells::may_be_three && Cells::may_be_two) second_of_two = hn::AndNot(cells.three(), second_of_two);
+    const auto first_choice = cells.choice(second_of_two);
     const auto first_side = [&](const auto& number_of) HWY_ATTR {
-      if constexpr (!Cells::may_be_two) {
+      if constexpr (!Cells::may_be_two)
         return cells.number(number_of(0));
-      } else {
-        auto second_of_two = hn::RebindMask(d, hn::Le(inner[1], zero));
-        if constexpr (Cells::may_be_three) second_of_two = hn::AndNot(cells.three(), second_of_two);
-        return cells.number(number_of(0), number_of(1), cells.choice(second_of_two));
-      }
+      else
+        return cells.number(number_of(0), number_of(1), first_choice);
     };
+    const MI first_of_three = hn::RebindMask(d, hn::And(hn::Gt(inner0, zero), hn::Gt(inner1, zero)));
     const auto second_side = [&](const auto& number_of) HWY_ATTR {
       const VI others = cells.number(number_of(2), number_of(3), last);
       if constexpr (!Cells::may_be_three) return others;
-      const MF first_of_three = hn::And(hn::Gt(inner[0], zero), hn::Gt(inner[1], zero));
-      return hn::IfThenElse(hn::RebindMask(d, first_of_three), cells.number(number_of(1)), others);
+      return hn::IfThenElse(first_of_three, cells.number(number_of(1)), others);
     };
     const auto crossing = [&](const auto& side) HWY_ATTR {
       const auto at_pixel = [&](const CellParts::Planes& planes) HWY_ATTR {

@@ -174,10 +174,10 @@ class PartOrder {
   CellParts& parts_;
 };
 
-/// Pixels that rays of a batch's cells may hit, a number each: the cell, and column and row in the square. `doubtful`
-/// marks those at an edge of the outline, where float does not tell.
+/// Pixels that rays of a batch's cells may hit, a number each: the cell, and column and row in the square, 16 bits
+/// apart as in CellParts. `doubtful` marks those at an edge of the outline, where float does not tell.
 struct Hit {
-  static constexpr int column_bit = 4, row_bit = 9;
+  static constexpr int column_bit = 4, row_bit = column_bit + 16;
   static constexpr std::int32_t doubtful = 1 << 15;
 };
 /// Hits that wait to be crossed.
