@@ -39,14 +39,25 @@ constexpr BlockShape block_shapes[] = {block_of(usual_width), block_of(2 * usual
 constexpr int most_blocks = SegmentWindows::most_pixels / lanes;
 constexpr float outline_doubt = 2.0f + 0.75f * static_cast<float>(most_blocks);
 
+/// first, first + 1... (Iota() of what is no constant goes through memory, lane by lane.)
+HWY_INLINE VI numbers_from(int first) { return hn::Add(hn::Iota(I(), 0), hn::Set(I(), first)); }
+
 /// Puts the lanes that are hit, or may be, behind `size` hits; returns how many there are then.
 HWY_INLINE std::size_t push_hits(VF least, MF among, VI hits, HitQueue& queue, std::size_t size) {
   const F df;
   const I d;
-  const MF near = hn::And(among, hn::Gt(least, hn::Set(df, -outline_doubt)));
-  const auto doubtful = hn::RebindMask(d, hn::Le(least, hn::Set(df, outline_doubt)));
+  const VF bound = hn::Set(df, outline_doubt), minus_bound = hn::Set(df, -outline_doubt);
+  const VI mark = hn::Set(d, Hit::doubtful);
+#if HWY_TARGET <= HWY_AVX3
+  const MF near{_mm512_mask_cmp_ps_mask(among.raw, least.raw, minus_bound.raw, _CMP_GT_OQ)};
+  const MF doubtful = hn::Le(least, bound);
+  hits = VI{_mm512_mask_or_epi32(hits.raw, doubtful.raw, hits.raw, mark.raw)};
+#else
+  const MF near = hn::And(among, hn::Gt(least, minus_bound));
+  hits = hn::Or(hits, hn::IfThenElseZero(hn::RebindMask(d, hn::Le(least, bound)), mark));
+#endif
   const LanePacker pack(hn::RebindMask(d, near));
-  hn::StoreU(pack(hn::Or(hits, hn::IfThenElseZero(doubtful, hn::Set(d, Hit::doubtful)))), d, queue.hit + size);
+  hn::StoreU(pack(hits), d, queue.hit + size);
   return size + pack.count();
 }
 
@@ -91,7 +102,7 @@ struct SmallCells {
     const VI height = hn::IfThenElseZero(takes, hn::Sub(hn::Load(d, batch.y1 + from), y0));
     const int rows = hn::GetLane(hn::MaxOfLanes(d, height));
     VI row_hits =
-        hn::Or(hn::Iota(d, from), hn::Or(hn::ShiftLeft<Hit::column_bit>(x0), hn::ShiftLeft<Hit::row_bit>(y0)));
+        hn::Or(numbers_from(from), hn::Or(hn::ShiftLeft<Hit::column_bit>(x0), hn::ShiftLeft<Hit::row_bit>(y0)));
     const VF one = hn::Set(df, 1.0f), center = hn::Set(df, static_cast<float>(CellBatch::center));
     const VF first_x = hn::Sub(hn::ConvertTo(df, x0), center);
     VF y = hn::Sub(hn::ConvertTo(df, y0), center);
@@ -103,14 +114,15 @@ struct SmallCells {
         row_edge[k] =
             hn::MulAdd(hn::Load(df, parts.outline[k].y + from), y, hn::Load(df, parts.outline[k].start + from));
       VF x = first_x;
-      VI hits = row_hits;
+      VI hits = row_hits, column = hn::Zero(d);
       std::size_t size = queue.size;
       for (int c = 0; c < columns; ++c) {
         VF edge[4];
         for (int k = 0; k < 4; ++k) edge[k] = hn::MulAdd(hn::Load(df, parts.outline[k].x + from), x, row_edge[k]);
         const VF least = hn::Min(hn::Min(edge[0], edge[1]), hn::Min(edge[2], edge[3]));
-        size = push_hits(least, hn::RebindMask(df, hn::Gt(row_width, hn::Set(d, c))), hits, queue, size);
+        size = push_hits(least, hn::RebindMask(df, hn::Gt(row_width, column)), hits, queue, size);
         x = hn::Add(x, one);
+        column = hn::Add(column, hn::Set(d, 1));
         hits = hn::Add(hits, hn::Set(d, 1 << Hit::column_bit));
       }
       queue.size = size;
@@ -168,7 +180,7 @@ class CellBlocks {
       hn::Store(left, d, left_ + t), hn::Store(top, d, top_ + t);
       hn::Store(columns, d, columns_ + t), hn::Store(blocks, d, blocks_ + t);
       hn::Store(hn::VecFromMask(d, clipped), d, clipped_ + t);
-      hn::Store(hn::Or(hn::Iota(d, t), hn::Or(hn::ShiftLeft<Hit::column_bit>(left), hn::ShiftLeft<Hit::row_bit>(top))),
+      hn::Store(hn::Or(numbers_from(t), hn::Or(hn::ShiftLeft<Hit::column_bit>(left), hn::ShiftLeft<Hit::row_bit>(top))),
                 d, first_hit_ + t);
       hn::Store(hn::ShiftLeft<Hit::column_bit>(block_width), d, hit_step_ + t);
       hn::Store(hn::Sub(hn::ShiftLeft<Hit::row_bit>(block_height), hn::ShiftLeft<Hit::column_bit>(last_pixel)), d,
