@@ -191,7 +191,7 @@ class PixelGroup {
         to = row;
         break;
       }
-      done_ = HN::Sub(done_, HN::VecFromMask(d, is_final));
+      done_ = count_if(HN::RebindMask(df, is_final), done_);
       const VF length = HN::Mul(HN::ConvertTo(df, HN::Sub(s.back, front)), length_per_step);
       const auto takes = HN::And(is_final, open);
       light_.put_segment(HN::IfThenElseZero(HN::RebindMask(df, takes), length), HN::IfThenElse(takes, front, none),
