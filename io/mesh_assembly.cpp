@@ -122,7 +122,7 @@ class Assembly {
       return;
     }
     const int at_once = scene::threads_for(threads_);
-    const auto in_flight = static_cast<std::size_t>(2 * at_once);
+    const auto in_flight = 2 * static_cast<std::size_t>(at_once);
     std::vector<BlockTets> results(in_flight);
     std::size_t next = 0;
     // A result is used again when as many as there are have begun since: it has been appended by then.

@@ -52,7 +52,7 @@ void read_array(vtkDataArray& array, int component, std::size_t first, std::span
   }
   std::vector<double> tuple(static_cast<std::size_t>(components));  // bit arrays, structure-of-arrays storage
   for (std::size_t k = 0; k < out.size(); ++k) {
-    array.GetTuple(static_cast<vtkIdType>(first + k), tuple.data());
+    array.GetTuple(static_cast<vtkIdType>(first) + static_cast<vtkIdType>(k), tuple.data());
     out[k] =
         component == magnitude ? tuple_length(tuple.data(), components) : tuple[static_cast<std::size_t>(component)];
   }
