@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <tbb/info.h>
 
 #include <algorithm>
 #include <limits>
@@ -16,18 +15,17 @@
 #include "frame/distributed_roles.hpp"
 #include "frame/worker_threads.hpp"
 #include "projection/planes_rasterizer.hpp"
+#include "scene/threads.hpp"
 
 namespace tessera::frame {
 namespace {
 
 using compositor::Channel;
 
-int thread_count(int asked) { return asked > 0 ? asked : tbb::info::default_concurrency(); }
-
 /// Workers that feed a device wait for it with a tile each: a few more keep tiles in flight.
 int worker_count(const DistributedRun& run) {
   constexpr int tiles_in_flight = 6;
-  return thread_count(run.settings.render.threads) + (run.device.device != nullptr ? tiles_in_flight : 0);
+  return scene::threads_or_cores(run.settings.render.threads) + (run.device.device != nullptr ? tiles_in_flight : 0);
 }
 
 /// A frame at its compositor.

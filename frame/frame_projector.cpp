@@ -19,8 +19,6 @@
 namespace tessera::frame {
 namespace {
 
-int cores_or(int asked) { return asked > 0 ? asked : tbb::info::default_concurrency(); }
-
 const RenderSettings& checked(const RenderSettings& settings) {
   if (settings.threads < 0 || settings.threads > 4096)
     throw scene::bad_input(fmt::format("--threads {}: it must be 0 (all cores) to 4096", settings.threads));
@@ -120,8 +118,9 @@ void order_corners(scene::TetMesh& mesh, const RenderSettings& settings) {
 FrameProjector::FrameProjector(const scene::TetMesh& mesh, const RenderSettings& settings)
     : settings_(checked(settings)),
       parallelism_(tbb::global_control::max_allowed_parallelism,
-                   static_cast<std::size_t>(std::max(cores_or(settings.threads), tbb::info::default_concurrency()))),
-      arena_(cores_or(settings.threads)),
+                   static_cast<std::size_t>(
+                       std::max(scene::threads_or_cores(settings.threads), tbb::info::default_concurrency()))),
+      arena_(scene::threads_or_cores(settings.threads)),
       prepared_(arena_.execute([&] {
         const scene::TraceScope timing(settings.trace, "prepare");
         return projection::PreparedMesh(mesh);

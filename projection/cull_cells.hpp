@@ -60,11 +60,11 @@ constexpr std::uint32_t wide_place = 0xff000000u;
 constexpr int largest_place_span = 14;
 constexpr std::size_t most_places = std::size_t{1} << 24;
 
-/// What became of 64 cells, a bit each: at most one of these.
+/// What became of 64 cells, a bit each: at most one of the first five.
 struct CulledBlock {
   std::uint64_t projected = 0, invisible = 0, outside_view = 0, between_pixels = 0;
   std::uint64_t unsure = 0;
-  std::uint64_t in_one_tile = 0;  ///< of those projected; beside the above
+  std::uint64_t in_one_tile = 0;  ///< projected, and the box meets one tile alone: the place is its number
 };
 
 constexpr std::size_t cull_block_cells = 64;

@@ -26,7 +26,7 @@ HWY_INLINE std::uint32_t key_of(const TileEntry& e) {
 constexpr std::uint64_t crowd = 512;
 
 /// Least significant digit first, over the digits in which keys differ at all.
-HWY_NOINLINE void radix_sort(TileEntry* entries, TileEntry* other, std::size_t n) {
+HWY_NOINLINE DepthOrder radix_sort(TileEntry* entries, TileEntry* other, std::size_t n) {
   constexpr int digit_bits = 11, digits = 3;  // three passes take less than four of bytes
   constexpr std::uint32_t values = 1u << digit_bits;
   const auto digit_of = [](const TileEntry& e, int digit) { return key_of(e) >> digit * digit_bits & (values - 1); };
@@ -45,7 +45,7 @@ HWY_NOINLINE void radix_sort(TileEntry* entries, TileEntry* other, std::size_t n
     for (std::size_t i = 0; i < n; ++i) to[next[digit][digit_of(from[i], digit)]++] = from[i];
     std::swap(from, to);
   }
-  if (from != entries) std::copy_n(from, n, entries);
+  return {{from, n}, 0};
 }
 
 /// The few entries of a short list.
@@ -60,8 +60,7 @@ HWY_INLINE void insertion_sort(TileEntry* entries, std::size_t n) {
 
 #if HWY_TARGET == HWY_SCALAR
 DepthOrder order(TileEntry* entries, TileEntry* other, std::uint32_t*, std::size_t n) {
-  if (n > 0) radix_sort(entries, other, n);
-  return {{entries, n}, 0};
+  return n > 0 ? radix_sort(entries, other, n) : DepthOrder{};
 }
 #else
 // An entry is two lanes: its depth in the even one, its tet in the odd one.
@@ -97,10 +96,7 @@ DepthOrder order(TileEntry* entries, TileEntry* other, std::uint32_t* steps, std
   constexpr std::size_t most_steps = 4096;
   const std::size_t step_count = std::min(std::bit_ceil(n / 2), most_steps);
   const float scale = static_cast<float>(step_count - 1) / (most - least);
-  if (!(scale > 0 && scale < HUGE_VALF)) {
-    radix_sort(entries, other, n);
-    return {{entries, n}, 0};
-  }
+  if (!(scale > 0 && scale < HUGE_VALF)) return radix_sort(entries, other, n);
   // Rounding is monotonic, so steps are in order as depths are.
   for (i = 0; i + 2 * lanes <= n; i += 2 * lanes) {
     const auto step_of = [&](V v) HWY_ATTR {
@@ -124,10 +120,7 @@ DepthOrder order(TileEntry* entries, TileEntry* other, std::uint32_t* steps, std
     sum += count;
     company += std::uint64_t{count} * count;
   }
-  if (company > n * crowd) {
-    radix_sort(entries, other, n);
-    return {{entries, n}, 0};
-  }
+  if (company > n * crowd) return radix_sort(entries, other, n);
   for (i = 0; i < n; ++i) other[next[steps[i]]++] = entries[i];
   // A step and what rounding may add: places are below 2^12, to 2^-23 of themselves.
   return {{other, n}, 1.01 / static_cast<double>(scale)};

@@ -52,8 +52,8 @@ using OpenPixels = std::array<std::uint32_t, SegmentWindows::side>;
 ///      sixteen cells, whose numbers then are one vector each, from which lanes take theirs by permuting; so are eight
 ///      of eight cells of a few pixels with AVX2. Else all are of one cell.
 /// (Both at once, a block of pixels with all its planes, took 97 instructions for the 6 hits of 16 pixels that cube 64
-/// has on average, and not much less time before a cell's first block; now a block takes 29, and sixteen hits at most
-/// 138.)
+/// has on average, and not much less time before a cell's first block; now a block takes 29, and sixteen hits of small
+/// cells 138.)
 ///
 /// Six edge functions E in float tell what is hit, and through which faces. Seen from the eye a cell has two front and
 /// two back faces, or one and three; the silhouette's edges decide on the hit, the one or three inner edges on the

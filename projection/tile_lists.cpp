@@ -50,6 +50,12 @@ std::size_t run_count(std::size_t blocks, std::size_t tiles) {
   return std::clamp<std::size_t>(std::min(8 * threads, blocks), 1, most);
 }
 
+/// visit(first + i) for every bit i of `bits`.
+template <class Visit>
+void for_each_of(std::uint64_t bits, std::size_t first, Visit visit) {
+  for (; bits != 0; bits &= bits - 1) visit(first + static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
 }  // namespace
 
 PixelRect TileGrid::rect(std::size_t tile) const {
@@ -57,12 +63,6 @@ PixelRect TileGrid::rect(std::size_t tile) const {
   const int row = static_cast<int>(tile / static_cast<std::size_t>(columns()));
   return {column * tile_size, row * tile_size, std::min((column + 1) * tile_size, image.width),
           std::min((row + 1) * tile_size, image.height)};
-}
-
-/// visit(first + i) for every bit i of `bits`.
-template <class Visit>
-void for_each_of(std::uint64_t bits, std::size_t first, Visit visit) {
-  for (; bits != 0; bits &= bits - 1) visit(first + static_cast<std::size_t>(std::countr_zero(bits)));
 }
 
 /// Of a projected tet.

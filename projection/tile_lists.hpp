@@ -93,7 +93,7 @@ class TileLists {
   const ProjectedMesh* projected_;
   scene::Trace* trace_;
   TileGrid grid_;
-  std::size_t columns_;
+  std::size_t columns_;  ///< of the grid, which would divide for them tet by tet
   TileListBuffers own_;
   TileListBuffers* buffers_;
   double depth_origin_;

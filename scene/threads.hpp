@@ -6,10 +6,10 @@
 
 namespace tessera::scene {
 
-/// Threads for work that no more of them than cores speeds up, where `asked` are asked for (0: all cores).
-inline int threads_for(int asked) {
-  const int cores = tbb::info::default_concurrency();
-  return asked > 0 ? std::min(asked, cores) : cores;
-}
+/// The number of threads that `asked` asks for: 0 is all cores.
+inline int threads_or_cores(int asked) { return asked > 0 ? asked : tbb::info::default_concurrency(); }
+
+/// The same for work that no more threads than cores speed up.
+inline int threads_for(int asked) { return std::min(threads_or_cores(asked), tbb::info::default_concurrency()); }
 
 }  // namespace tessera::scene

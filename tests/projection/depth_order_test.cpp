@@ -93,7 +93,7 @@ TEST(DepthOrder, SlackIsShort) {
         for (std::size_t i = 0; i < n; ++i) entries.push_back({of[what](i), static_cast<std::uint32_t>(i)});
         return expect_ordered(entries, scratch, std::string(name) + ", " + what);
       };
-      // A step for every second entry, with which share's rounding and a power of two, and no more than 4096 of them.
+      // At least a step for every second entry, up to 4096 of them; the rest is the slack's margin for rounding.
       EXPECT_LE(slack("even"), 1.02 / std::min(static_cast<double>(n) / 2 - 1, 4095.0)) << name;
       // Crowds are put in order for certain.
       if (n < 5003) continue;
