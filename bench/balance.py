@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""How evenly processes share the picture of a volume: over a turn and a zoom, with 0, 2 and 4 frames left out between
-those that are rendered, for each --balance ([Mol08] chapter 4).
+"""How evenly processes share the image of a volume: over a turn and a zoom, with 0, 2 and 4 frames left out between
+those that are rendered, for each --balance (Moloney, Ray Coherence in Parallel Volume Rendering, 2008, chapter 4).
 
     bench/balance.py --tessera build/release/apps/tessera [--processes 6] [--size 512x512] [--volume FILE] [--animations turn,zoom]
         [--transfer-function FILE] [--results bench/RESULTS.md]
 
-Prints a table: (largest - least) / mean of the samples (pieces) that processes counted, worst and mean over frames, and
-the mean of the same for CPU time. The first frame, in which nothing is known yet, is named apart.
+Prints (largest - least) / mean of the samples (pieces) that processes counted, worst and mean over frames, and the mean
+of the same for CPU time. The first frame, in which nothing is known yet, is named apart. A row a measurement goes to
+standard output, a row an animation and method to the results file.
 """
 import argparse
 import json
@@ -17,9 +18,11 @@ import subprocess
 import sys
 import tempfile
 
+import results_file
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-BEGIN, END = "<!-- balance.py begin -->", "<!-- balance.py end -->"
 METHODS = ("accurate", "backface", "splatting", "previous", "even")
+LEFT_OUT = (0, 2, 4)
 
 
 def run(words):
@@ -59,8 +62,8 @@ def main():
     parser.add_argument("--animations", default="turn,zoom")
     parser.add_argument("--results", type=pathlib.Path)
     args = parser.parse_args()
-    lines = ["| animation | balance | left out | first frame | worst after | mean after | CPU time, mean |",
-             "|---|---|---|---|---|---|---|"]
+    load_before, figures = os.getloadavg()[0], {}
+    print("| animation | balance | left out | first frame | worst after | mean after | CPU time, mean |\n|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         volume = args.volume or folder / "ripples.nrrd"
@@ -70,7 +73,7 @@ def main():
                                          text=True, check=True).stdout)
         for kind in args.animations.split(","):
             path = list(views(kind, info["bounds"], args.frames))
-            for left_out in (0, 2, 4):
+            for left_out in LEFT_OUT:
                 for method in args.methods.split(","):
                     (folder / "path.json").write_text(json.dumps(path[::left_out + 1]))
                     run(["mpirun", "--oversubscribe", "-n", args.processes, args.tessera, "render", volume, "-o",
@@ -81,16 +84,18 @@ def main():
                     samples = [100 * f["samples_deviation"] for f in frames]
                     cpu = [100 * f["cpu_deviation"] for f in frames[1:]]
                     later = samples[1:]
-                    lines.append(f"| {kind} | {method} | {left_out} | {samples[0]:.1f} % | {max(later):.1f} % | "
-                                 f"{sum(later) / len(later):.1f} % | {sum(cpu) / len(cpu):.1f} % |")
-                    print(lines[-1], flush=True)
-    table = "\n".join(lines)
-    print("\n" + table)
+                    row = samples[0], max(later), sum(later) / len(later), sum(cpu) / len(cpu)
+                    figures.setdefault((kind, method), []).append(row)
+                    print(f"| {kind} | {method} | {left_out} | " + " | ".join(f"{x:.1f} %" for x in row) + " |", flush=True)
+    table = ["| animation | balance | first frame | worst after | mean after | CPU time, mean |", "|---" * 6 + "|"]
+    for (kind, method), rows in figures.items():
+        first, *others = zip(*rows)  # the first frame is the same, however many are left out after it
+        table.append(f"| {kind} | {method} | {first[0]:.1f} % | " + " | ".join(" / ".join(f"{x:.1f}" for x in o) + " %" for o in others) + " |")
+    print("\n".join(["", *table]))
     if args.results:
-        text = args.results.read_text()
-        what = f"`bench/{pathlib.Path(__file__).name} {' '.join(sys.argv[1:])}`"
-        begin, end = text.index(BEGIN) + len(BEGIN), text.index(END)
-        args.results.write_text(f"{text[:begin]}\n\n{what}\n\n{table}\n\n{text[end:]}")
+        caption = (f"{results_file.made(load_before)} `{results_file.command('balance.py')}`: (largest - least) / mean of the samples that "
+                   f"{args.processes} processes counted, with {' / '.join(map(str, LEFT_OUT))} frames left out; the same of their CPU time")
+        results_file.put(args.results, "balance.py", caption, table)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Stage times of the compositors on one mesh in one run: CPU, gl-compute, gl-fragment.
 
-Every compositor renders the same picture from the same ray segments; stages are self times of its trace (device stages
+Every compositor renders the same image from the same ray segments; stages are self times of its trace (device stages
 by the device's own clock, CPU stages summed over threads and divided by them). Prints a markdown table.
 """
 import argparse
@@ -10,6 +10,8 @@ import json
 import os
 import subprocess
 import tempfile
+
+import results_file
 
 
 def self_times(trace):
@@ -57,6 +59,7 @@ def main():
             ("gl-fragment, float",
              ["--compositor", "gl-fragment", "--framebuffer", "float", "--backend", arguments.backend]),
         ]
+        print(f"{results_file.made(os.getloadavg()[0])}\n`{results_file.command('gl_stages.py')}`\n")
         print("| compositor | frame [ms] | sort [ms] | integrate [ms] | composite [ms] | sort passes |")
         print("|---|---|---|---|---|---|")
         for name, options in cases:

@@ -12,12 +12,15 @@ llvm-mca says is bound by its instructions. Needs perf, binutils and llvm-mca; a
 """
 import argparse
 import collections
+import os
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
+
+import results_file
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
@@ -98,8 +101,10 @@ def main():
     argv = sys.argv[1:]
     more = argv[argv.index("--") + 1:] if "--" in argv else []
     args = parser.parse_args(argv[:argv.index("--")] if "--" in argv else argv)
+    load_before = os.getloadavg()[0]
     with tempfile.TemporaryDirectory() as folder:
         places, total = sample(args, more, pathlib.Path(folder))
+    print(f"{results_file.made(load_before)}\n`{results_file.command('loops.py')}`\n")
     print("| loop | samples | instructions | of 512 bits or masks | cycles by ports |\n|---|---|---|---|---|")
     for line in output("nm", "-C", "-S", "--defined-only", args.tessera).splitlines():
         part = line.split(None, 3)

@@ -12,18 +12,17 @@ speed changes from minute to minute. The section between the script's marks in t
 replaced; what stands outside is kept.
 """
 import argparse
-import datetime
 import json
 import os
 import pathlib
-import re
 import statistics
 import subprocess
 import sys
 
+import results_file
+
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent
-BEGIN, END = "<!-- targets.py begin -->", "<!-- targets.py end -->"
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 BOX = """ply
 format ascii 1.0
@@ -210,24 +209,16 @@ def modes(b):
     segments = p["counters"]["segments"] / base["counters"]["segments"]
     b.row("cube 64, perspective, ns a segment against orthographic", "<= 1.25x",
           f"{p['quartile'] / base['quartile'] / segments:.2f}x, {error(p)}")
-    for count, f in zip(counts, mapped):
-        b.row(f"cube 64, {count} knots against 6", "-", f"{ratio(f, base)}, {error(f)}")
+    b.row(f"cube 64, {' / '.join(map(str, counts))} knots against 6", "-",
+          "; ".join(f"{ratio(f, base)}, {error(f)}" for f in mapped))
 
 
 def write(args, b, load):
-    cpu = next((l.split(":", 1)[1].strip() for l in open("/proc/cpuinfo") if l.startswith("model name")), "?")
-    commit = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], capture_output=True, text=True)
-    words = re.sub(r"(--(?:tessera|work|data|json) )\S*/", r"\1", " ".join(sys.argv[1:]))
-    text = [BEGIN, "", f"{datetime.date.today().isoformat()}, commit {commit.stdout.strip()}: {cpu}, {os.cpu_count()} cores, "
-            f"load average before {load:.1f}, after {os.getloadavg()[0]:.1f}.", "", f"`bench/targets.py {words}`", "",
-            "| what | wanted | reached |", "|---|---|---|"]
-    text += [f"| {r['what']} | {r['wanted']} | {r['reached']} |" for r in b.rows] + ["", END]
+    table = ["| what | wanted | reached |", "|---|---|---|"] + [f"| {r['what']} | {r['wanted']} | {r['reached']} |" for r in b.rows]
     if args.json:
         args.json.write_text(json.dumps(b.rows, indent=1) + "\n")
     if args.results:
-        old = args.results.read_text() if args.results.exists() else f"# Speed figures\n\n{BEGIN}\n{END}\n"
-        before, rest = old.split(BEGIN, 1) if BEGIN in old else (old + "\n", END + "\n")
-        args.results.write_text(before + "\n".join(text) + rest.split(END, 1)[1])
+        results_file.put(args.results, "targets.py", f"{results_file.made(load)} `{results_file.command('targets.py')}`", table)
 
 
 def main():

@@ -7,7 +7,7 @@
 Makes `tessera generate cube` meshes, renders each with the integrators `exact` and `auto` and with VTK's full and
 partial pre-integration (bench/peers/vtk_raycast.py under xvfb-run), and writes a table of times, ratios and errors.
 Errors: Tessera's against the double-precision reference at `--verify` random pixels; VTK's against Tessera's `exact`
-picture, all pixels, linear RGB. `--no-vtk` leaves VTK out. The results file gets a section of its own, replaced by the
+image, all pixels, linear RGB. `--no-vtk` leaves VTK out. The results file gets a section of its own, replaced by the
 next run; what stands outside its marks is kept.
 """
 import argparse
@@ -22,9 +22,10 @@ import subprocess
 import sys
 import tempfile
 
+import results_file
+
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent
-BEGIN, END = "<!-- tets.py begin -->", "<!-- tets.py end -->"
 
 
 def run(command, **options):
@@ -36,8 +37,8 @@ def run(command, **options):
 
 def machine(tessera):
     """What a figure means nothing without."""
-    cpu = next((l.split(":", 1)[1].strip() for l in open("/proc/cpuinfo") if l.startswith("model name")), "unknown CPU")
-    facts = {"cpu": cpu, "cores": os.cpu_count(), "date": datetime.date.today().isoformat()}
+    cpu, cores = results_file.processor()
+    facts = {"cpu": cpu, "cores": cores, "date": datetime.date.today().isoformat(), "commit": results_file.commit()}
     for folder in tessera.resolve().parents:
         cache = folder / "CMakeCache.txt"
         if not cache.exists():
@@ -48,8 +49,6 @@ def machine(tessera):
         flags = f"{entries.get('CMAKE_CXX_FLAGS', '')} {entries.get('CMAKE_CXX_FLAGS_' + build.upper(), '')}".split()
         facts |= {"compiler": compiler, "build": build, "flags": " ".join(flags)}
         break
-    commit = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], capture_output=True, text=True)
-    facts["commit"] = commit.stdout.strip() or "unknown"
     return facts
 
 
@@ -83,27 +82,25 @@ def vtk_errors(args, vtk, exact):
 
 
 def table(runs):
-    lines = ["| mesh | renderer | frame median (min) [ms] | VTK full / this | max error | RMS error |",
-             "|---|---|---|---|---|---|"]
+    """A row a mesh, a cell a renderer: median (least) of its frames, how many times as long as the first, errors."""
+    names = [r["renderer"] for r in runs[0]["renderers"]]
+    lines = ["| mesh | " + " | ".join(names) + " |", "|---" * (len(names) + 1) + "|"]
     for mesh in runs:
-        base = next((r for r in mesh["renderers"] if "full" in r["renderer"]), None)
+        base, cells = statistics.median(mesh["renderers"][0]["frame_ms"]), []
         for r in mesh["renderers"]:
             median, least = statistics.median(r["frame_ms"]), min(r["frame_ms"])
-            ratio = f"{statistics.median(base['frame_ms']) / median:.1f}" if base else "-"
-            lines.append(f"| {mesh['mesh']}, {mesh['tets']:,} tets | {r['renderer']} | {median:.0f} ({least:.0f}) | {ratio} "
-                         f"| {r['max_error']:.1e} | {r['rms_error']:.1e} |")
+            times = "" if r is mesh["renderers"][0] else f"{median / base:.1f}x, "
+            cells.append(f"{median:.0f} ({least:.0f}), {times}{results_file.error(r['max_error'])}, {results_file.error(r['rms_error'])}")
+        lines.append(f"| {mesh['mesh']}, {1e-6 * mesh['tets']:.2f} M tets | " + " | ".join(cells) + " |")
     return lines
 
 
 def write_results(path, results):
     m = results["machine"]
-    text = [BEGIN, "", f"{m['date']}, commit {m['commit']}: {m['cpu']}, {m['cores']} cores, load average before the run "
-            f"{results['load_before']:.1f} and after {results['load_after']:.1f}. {m.get('compiler', '')}, "
-            f"{m.get('build', '')} ({m.get('flags', '')}), kernels {results['instruction_set']}, all cores.", "",
-            f"`{results['command']}`", ""] + table(results["runs"]) + ["", END]
-    old = path.read_text() if path.exists() else f"# Speed figures\n\n{BEGIN}\n{END}\n"
-    before, rest = old.split(BEGIN, 1) if BEGIN in old else (old + "\n", END + "\n")
-    path.write_text(before + "\n".join(text) + rest.split(END, 1)[1])
+    caption = (f"{results_file.made(results['load_before'])} {m.get('compiler', '')}, {m.get('build', '')} ({m.get('flags', '')}), "
+               f"kernels {results['instruction_set']}, all cores. `{results['command']}`: frame, median (least) [ms]; "
+               "times the first renderer's median; maximum and RMS error")
+    results_file.put(path, "tets.py", caption, table(results["runs"]))
 
 
 def main():
@@ -123,7 +120,7 @@ def main():
     if not args.no_vtk and not shutil.which("xvfb-run"):
         sys.exit("tets.py: xvfb-run is missing; install xvfb and python3-vtk9, or give --no-vtk")
 
-    results = {"command": " ".join(["bench/tets.py"] + sys.argv[1:]), "machine": machine(args.tessera),
+    results = {"command": results_file.command("tets.py"), "machine": machine(args.tessera),
                "load_before": os.getloadavg()[0], "runs": []}
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)

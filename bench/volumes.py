@@ -8,15 +8,15 @@ Makes `tessera generate ripples n=256` in float and 8-bit samples (view and tran
 FOLDER of --data may hold heptane.nii.gz and LIDC2.vti, which get their default view and a function that shows the top
 of their range alone. Rounds go through all renderers in turn, so that all see the same machine; a time is the least of
 all rounds' frames, the median beside it. Errors: Tessera's against the double-precision reference at --verify random
-pixels, VTK's against Tessera's `exact` picture, all pixels, linear RGB. VTK (python3-vtk9, under xvfb-run) takes steps
-of one voxel. The results file gets a section of its own, replaced by the next run.
+pixels, VTK's against Tessera's `exact` image, all pixels, linear RGB. VTK (python3-vtk9, under xvfb-run) takes steps
+of one voxel. A row a measurement goes to standard output; the results file gets a row a volume, in a section of its own,
+replaced by the next run.
 
 With --mechanisms, instead: what culling of bricks, skipping of empty space and early termination save at the default
 accuracy (each left out by `--without`, and all of them), and what `--shade` costs, with the functions as they are and 50
 times as opaque. CPU time of all threads is the least of the rounds' last frames: other work on the machine counts little. No VTK.
 """
 import argparse
-import datetime
 import json
 import os
 import pathlib
@@ -25,9 +25,9 @@ import subprocess
 import sys
 import tempfile
 
+import results_file
+
 HERE = pathlib.Path(__file__).resolve().parent
-BEGIN, END = "<!-- volumes.py begin -->", "<!-- volumes.py end -->"
-MECHANISMS_BEGIN, MECHANISMS_END = "<!-- volumes.py mechanisms begin -->", "<!-- volumes.py mechanisms end -->"
 METHODS = [("--accuracy", "1e-3"), ("--accuracy", "1e-4"), ("--accuracy", "1e-5"), ("--integrator", "exact")]
 VARIATIONS = [(), ("--without", "culling"), ("--without", "skipping"), ("--without", "culling,skipping"), ("--without", "termination"),
               ("--without", "culling,skipping,termination"), ("--shade",)]
@@ -80,8 +80,10 @@ def volumes(args, folder):
 
 
 def mechanisms(args, folder):
-    """Lines of a table: every variation of every volume, in turn, so that all see the same machine."""
+    """Lines of a table, one a volume; every variation in turn, so that all see the same machine. Prints a line each."""
     rows = []
+    print("| volume | mechanisms | CPU, least [ms] | of the default | voxels visited [millions] | pieces [millions] | bricks to load | "
+          "max error |\n|---|---|---|---|---|---|---|---|", flush=True)
     scenes = [(name + more, path, [*words, *opacity]) for name, path, words in volumes(args, folder)
               for more, opacity in (("", []), (", opaque", ["--opacity-scale", "50"]))]
     for name, path, words in scenes:
@@ -96,29 +98,26 @@ def mechanisms(args, folder):
                 cpu[variation].append(frame["balance"]["processes"][0]["cpu_ms"])
                 counters[variation] = frame["counters"]
                 errors[variation] = frame.get("verify", {}).get("max_error")
-        for variation in VARIATIONS:
-            c = counters[variation]
-            rows.append(f"| {name} | {'`' + ' '.join(variation) + '`' if variation else 'all, unshaded'} | {min(cpu[variation]):.0f} | "
-                        f"{min(cpu[variation]) / min(cpu[()]):.2f} | {1e-6 * c['voxels_visited']:.1f} | "
-                        f"{1e-6 * c['samples']:.1f} | {c['bricks_total'] - c['bricks_invisible']} of {c['bricks_total']} | "
-                        f"{errors[variation]:.1e} |")
-        print("\n".join(rows[-len(VARIATIONS):]), flush=True)
-    return [f"`bench/volumes.py --mechanisms --rounds {args.rounds} --repeat {args.repeat} --threads {args.threads}`", "",
-            "| volume | mechanisms | CPU, least [ms] | of the default | voxels visited [millions] | pieces [millions] | "
-            "bricks to load | max error |", "|---|---|---|---|---|---|---|---|", *rows]
+        least = {v: min(cpu[v]) for v in VARIATIONS}
+        loads = {v: f"{c['bricks_total'] - c['bricks_invisible']} of {c['bricks_total']}" for v, c in counters.items()}
+        for v in VARIATIONS:
+            print(f"| {name} | {'`' + ' '.join(v) + '`' if v else 'all, unshaded'} | {least[v]:.0f} | {least[v] / least[()]:.2f} | "
+                  f"{1e-6 * counters[v]['voxels_visited']:.1f} | {1e-6 * counters[v]['samples']:.1f} | {loads[v]} | {errors[v]:.1e} |", flush=True)
+        shown = [(), ("--without", "termination"), ("--shade",)]  # culling and skipping change no count but that of bricks
+        ratios = " | ".join(f"{least[v] / least[()]:.2f}" for v in VARIATIONS[1:])
+        millions = lambda x: f"{1e-6 * x:.1f}" if x < 1e8 else f"{1e-6 * x:.0f}"
+        count = lambda key: " / ".join(millions(counters[v][key]) for v in shown)
+        rows.append(f"| {name} | {least[()]:.0f} | {ratios} | {count('voxels_visited')} | {count('samples')} | {loads[()]} | "
+                    f"{' / '.join(results_file.error(errors[v]) for v in shown)} |")
+    return ["| volume | CPU [ms] | culling | skipping | both | termination | all three | `--shade` | voxels [M] | pieces [M] | bricks | "
+            "max error |", "|---" * 12 + "|", *rows]
 
 
-def put(results, begin, end, lines):
-    """The section between two marks, printed, and in the results file if one is given."""
-    section = "\n".join([begin, "", *lines, "", end])
-    if results:
-        text = results.read_text()
-        if begin in text:
-            text = text[:text.index(begin)] + section + text[text.index(end) + len(end):]
-        else:
-            text = text.rstrip() + "\n\n" + section + "\n"
-        results.write_text(text)
-    print(section)
+def finish(args, load_before, name, table, what):
+    """Prints the table for the results, and writes it there if a file is given."""
+    print("\n".join(["", *table]))
+    if args.results:
+        results_file.put(args.results, name, f"{results_file.made(load_before)} `{results_file.command('volumes.py')}`: {what}", table)
 
 
 def main():
@@ -141,12 +140,14 @@ def main():
     args.tessera = args.tessera.resolve()
 
     load_before = os.getloadavg()[0]
-    when = lambda: f"{datetime.date.today()}: load average before {load_before:.1f}, after {os.getloadavg()[0]:.1f}. "
     if args.mechanisms:
         with tempfile.TemporaryDirectory() as scratch:
-            lines = mechanisms(args, pathlib.Path(scratch))
-        return put(args.results, MECHANISMS_BEGIN, MECHANISMS_END, [when() + lines[0], *lines[1:]])
+            table = mechanisms(args, pathlib.Path(scratch))
+        return finish(args, load_before, "volumes.py mechanisms", table,
+                      "CPU time of the default, accuracy 1e-4; as a ratio to it, CPU time without each mechanism, and with shading; voxels "
+                      "visited, pieces integrated and maximum error: default / without termination / shaded; bricks to load")
     rows = []
+    print("| volume | method | frame, least (median) [ms] | VTK / this | max error | ns a voxel visited |\n|---|---|---|---|---|---|", flush=True)
     with tempfile.TemporaryDirectory() as scratch:
         folder = pathlib.Path(scratch)
         for name, path, words in volumes(args, folder):
@@ -170,23 +171,27 @@ def main():
                             args.threads, max(2, args.repeat // 2), folder / "exact.pfm"])
                 frames, difference = json.loads(done.stdout.splitlines()[-1])
                 vtk += frames
+            cells = []
             for method in METHODS:
                 least, median = min(times[method]), statistics.median(times[method])
                 report = reports[method]
                 voxels = report["frames"][0]["counters"]["voxels_visited"]
                 verified = report["frames"][0].get("verify")
-                error = f"{verified['max_error']:.1e}" if verified else "-"
+                error = results_file.error(verified["max_error"]) if verified else "-"
                 ratio = f"{min(vtk) / least:.1f}" if vtk else "-"
-                rows.append(f"| {name} | `{' '.join(method)}` | {least:.0f} ({median:.0f}) | {ratio} | {error} | "
-                            f"{1e6 * least * args.threads / voxels:.1f} |")
+                each = 1e6 * least * args.threads / voxels
+                print(f"| {name} | `{' '.join(method)}` | {least:.0f} ({median:.0f}) | {ratio} | {error} | {each:.1f} |", flush=True)
+                cells.append(f"{least:.0f} ({median:.0f}), {ratio}x, {error}" if vtk else f"{least:.0f} ({median:.0f}), {error}")
+                if method == ("--accuracy", "1e-4"):
+                    default_each = each
             if vtk:
-                rows.append(f"| {name} | VTK fixed point, one-voxel steps | {min(vtk):.0f} ({statistics.median(vtk):.0f}) | 1.0 | "
-                            f"{difference:.1e} | - |")
-            print("\n".join(rows), flush=True)
-    head = [when() + f"`bench/volumes.py --rounds {args.rounds} --repeat {args.repeat} --threads {args.threads}`", "",
-            "| volume | method | frame, least (median) [ms] | VTK / this | max error | ns a voxel visited |",
-            "|---|---|---|---|---|---|"]
-    put(args.results, BEGIN, END, [*head, *rows])
+                cells.append(f"{min(vtk):.0f} ({statistics.median(vtk):.0f}), {results_file.error(difference)}")
+                print(f"| {name} | VTK fixed point, one-voxel steps | {cells[-1].replace(', ', ' | 1.0 | ')} | - |", flush=True)
+            rows.append(f"| {name} | " + " | ".join(cells) + f" | {default_each:.1f} |")
+    heads = ["volume", *(f"`{' '.join(m)}`" for m in METHODS), *([] if args.no_vtk else ["VTK fixed point"]), "ns a voxel, 1e-4"]
+    finish(args, load_before, "volumes.py", ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|", *rows],
+           "frame, least (median) [ms]; how many times as long VTK takes, by the least, in steps of one voxel; maximum error; ns a voxel visited "
+           "at accuracy 1e-4, in proportion to time for the others")
 
 
 if __name__ == "__main__":

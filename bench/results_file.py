@@ -1,0 +1,57 @@
+"""Sections of bench/RESULTS.md: a table, and what it means nothing without.
+
+A section lies between two marks, `<!-- NAME begin -->` and `<!-- NAME end -->`, and is replaced whole by the next run of
+the script it is named after; what stands outside the marks is kept. A section that is new goes to the end of the file.
+"""
+import datetime
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import textwrap
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+WIDTH = 160  # columns of a line of Markdown
+
+
+def commit():
+    done = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty"], capture_output=True, text=True)
+    return done.stdout.strip() or "unknown"
+
+
+def processor():
+    """The processor's name and how many cores it has."""
+    names = (line.split(":", 1)[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name"))
+    return next(names, "unknown CPU"), os.cpu_count()
+
+
+def made(load_before):
+    """Date, commit, machine, and the load average before and after."""
+    name, cores = processor()
+    return (f"{datetime.date.today().isoformat()}, commit {commit()}: {name}, {cores} cores, load average {load_before:.1f} before, "
+            f"{os.getloadavg()[0]:.1f} after.")
+
+
+def command(script):
+    """The command line of this run, without the folders of absolute paths: they are one machine's."""
+    words = [re.sub(r"(^|=)/.*/", r"\1", word) for word in sys.argv[1:]]
+    return " ".join([f"bench/{script}", *words])
+
+
+def error(x):
+    """1.2e-7: two digits, no more columns than they need."""
+    return f"{x:.1e}".replace("e-0", "e-")
+
+
+def put(path, name, caption, table):
+    """Writes the section NAME: a paragraph, and the lines of a table."""
+    begin, end = f"<!-- {name} begin -->", f"<!-- {name} end -->"
+    paragraph = textwrap.fill(caption, WIDTH, break_long_words=False, break_on_hyphens=False)
+    section = "\n".join([begin, paragraph, "", *table, end])
+    text = path.read_text() if path.exists() else "# Results\n"
+    if begin in text:
+        before, rest = text.split(begin, 1)
+        path.write_text(before + section + rest.split(end, 1)[1])
+    else:
+        path.write_text(text.rstrip() + "\n\n" + section + "\n")
