@@ -12,7 +12,12 @@ namespace tessera::frame {
 namespace {
 
 constexpr double most_optical_depth = 2000;
-constexpr double most_error = 2e-5;  // of a pixel, from scalars' rounding
+constexpr double promised_of_exact = 2e-5, least_visible = 2e-5;  // of a pixel
+/// What scalars' rounding may change a pixel by.
+double most_error_of(const scene::Integrator& integrator) {
+  const bool automatic = integrator.kind == scene::IntegratorKind::automatic;
+  return std::min(least_visible, 0.5 * (automatic ? integrator.accuracy : promised_of_exact));
+}
 // Extinction wrong by at most D where the scalar is in a piece of the function changes light and opacity by at most
 // D int T dt over what the ray spends there, times the most that can lie behind. Transmittance T falls by exp(-sigma t)
 // at least, sigma being the piece's least extinction, so with x_i for piece i's integral sum x_i <= L and
@@ -73,6 +78,7 @@ std::optional<projection::Lattice> lattice_of(const projection::PixelSpace& spac
   lattice.scalar_unit = Lattice::unit_for(margin * reach);
   const double length = std::min(longest, glm::length(box.high - box.low));
   const bool independent = settings.emission == scene::Emission::independent;
+  const double most_error = most_error_of(settings.integrator);
   const double brightest = std::max(1.0, function.max_color() * (independent ? length : 1));
   for (std::size_t i = 1; i < knots.size(); ++i) {
     const scene::Knot &a = knots[i - 1], &b = knots[i];

@@ -14,8 +14,8 @@ namespace {
 
 static_assert(PreparedMesh::block_tets == 64);  // a word of bits
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// What all of a ray's crossings together may change a pixel by, at most.
-constexpr double tolerance = 3e-6;
+/// What all of a ray's crossings together may change a pixel by.
+constexpr double tolerance = 5e-6;
 /// Where a segment crosses a step is right to this part of its length in float lanes, and under perspective.
 constexpr double relative_error = 0x1p-22;
 
@@ -57,9 +57,9 @@ class Rule {
   }
 
  private:
-  // Gradients rounded to a step of the lattice, over 16 pixels in two directions, and the corner itself.
-  static constexpr double planes_error = 17;
-  static constexpr double float_error = 0x1p-24, double_error = 0x1p-51;
+  // Gradients rounded to a step of the lattice, over 16 pixels in two directions, and the corner itself; then a float's
+  // last place. Two standard deviations of either are less than half of that.
+  static constexpr double planes_error = 17, float_error = 0x1p-24, usual_part = 0.5, double_error = 0x1p-51;
 
   static bool level(double low, double high) { return low == high; }
 
@@ -77,7 +77,7 @@ class Rule {
             ? planes_error * lattice_->scalar_unit + std::abs(step.value - lattice_->scalar_origin) * float_error
             : std::max({std::abs(low), std::abs(high), std::abs(step.value)}) * double_error;
     if (step.value < low - error || step.value > high + error) return false;
-    if (step.contrast * longest_ray_ * error > tolerance * (high - low)) return true;
+    if (step.contrast * longest_ray_ * (usual_part * error) > tolerance * (high - low)) return true;
     if (lattice_ == nullptr || step.contrast * longest_ray_ * relative_error <= tolerance) return false;
     double longest = 0;
     for (std::size_t i = 1; i < 4; ++i)

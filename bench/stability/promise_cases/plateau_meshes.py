@@ -1,6 +1,6 @@
 """Meshes whose field lies within some last places of a step's value over whole regions: saturated fields (tanh, volume of
-fluid), noise of the last places round a step, point and cell data, 32-bit and 64-bit; one step or several, up and down, in
-the middle of the range or at its ends; any view."""
+fluid), noise of the last places round a step, point and cell data, 32-bit and 64-bit; one step or several, up and down, some
+last places apart, in the middle of the range or at its ends; any view."""
 import math
 
 from . import files
@@ -55,8 +55,12 @@ def knots_with_steps(r, steps, low, high):
     for value, count in values:
         if count == 1 and (value in taken or any(abs(value - s) < 1e-3 * (high - low) for s in steps)):
             continue
-        same = optics()
-        knots += [(value, *same)] if count == 1 else [(value, *optics()), (value, *optics())]
+        if count == 1:
+            knots.append((value, *optics()))
+            continue
+        # Between two steps some last places apart the function is flat: a ramp has no more values there than they.
+        near = knots and value - knots[-1][0] < 1e-6 * (high - low)
+        knots += [(value, *(knots[-1][1:] if near else optics())), (value, *optics())]
     return knots
 
 
