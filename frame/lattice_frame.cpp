@@ -12,11 +12,11 @@ namespace tessera::frame {
 namespace {
 
 constexpr double most_optical_depth = 2000;
-constexpr double promised_of_exact = 2e-5, least_visible = 2e-5;  // of a pixel
-/// What scalars' rounding may change a pixel by.
+constexpr double promised_of_exact = 2e-5, always_enough = 2e-5;  // of a pixel
+/// What scalars' rounding may change a pixel by: most of what was promised, the rest is for depths and integrals.
 double most_error_of(const scene::Integrator& integrator) {
   const bool automatic = integrator.kind == scene::IntegratorKind::automatic;
-  return std::min(least_visible, 0.5 * (automatic ? integrator.accuracy : promised_of_exact));
+  return std::min(always_enough, 0.75 * (automatic ? integrator.accuracy : promised_of_exact));
 }
 // Extinction wrong by at most D where the scalar is in a piece of the function changes light and opacity by at most
 // D int T dt over what the ray spends there, times the most that can lie behind. Transmittance T falls by exp(-sigma t)

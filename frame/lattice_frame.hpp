@@ -16,8 +16,8 @@ namespace tessera::frame {
 /// same one. None where the lattice is not good enough, and double precision has to do:
 ///   - the mesh's depth times the largest extinction is above 2000: 16 steps, 1e-8 of the depth, could show. Under
 ///     perspective a ray is longer than the depth that it goes through: as long as the longest of the picture counts;
-///   - the transfer function changes so fast between two knots that the rounding of scalars could show by 2e-5, or half
-///     of what was promised;
+///   - the transfer function changes so fast between two knots that the rounding of scalars could show by 2e-5, or by
+///     three quarters of what was promised;
 ///   - two steps of the function lie so close together that the lattice takes them for one;
 ///   - it is switched off, the integrator samples, or the rasterizer is not `planes`;
 ///   - nothing is in front of the eye, or the processor has no lanes.
