@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
+#include "frame/lattice_frame.hpp"
 #include "frame/lattice_tile_renderer.hpp"
 #include "frame/tile_renderer.hpp"
 #include "scene/error.hpp"
@@ -169,6 +170,18 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   const projection::TileGrid& grid = task.grid;
   if (task.lattice != nullptr) place_on_lattice(*task.lattice, space.perspective());
 
+  const double longest_ray = task.longest_ray > 0 ? task.longest_ray : diagonal_;
+  // Sampling promises nothing that steps could break.
+  const bool exact =
+      settings_.rasterizer == Rasterizer::planes && (settings_.integrator.kind == scene::IntegratorKind::exact ||
+                                                     settings_.integrator.kind == scene::IntegratorKind::automatic);
+  std::vector<projection::Step> steps;
+  projection::CellsAtSteps at_steps;
+  if (exact) {
+    const scene::TraceScope timing(settings_.trace, "cull", task.frame);
+    steps = projection::steps_of(*task.function, settings_.emission, longest_ray);
+    at_steps = projection::CellsAtSteps(prepared_, steps, longest_ray, task.lattice);
+  }
   std::optional<projection::TileLists> lists;
   {
     const scene::TraceScope timing(settings_.trace, "cull", task.frame);
@@ -193,11 +206,19 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
                             settings_.trace,
                             settings_.rasterizer,
                             longest_edge,
-                            usual_optical_depth(*task.function, diagonal_) > opaque_depth};
+                            usual_optical_depth(*task.function, diagonal_) > opaque_depth,
+                            steps,
+                            at_steps.empty() ? nullptr : &at_steps};
   tbb::enumerable_thread_specific<std::unique_ptr<TileWorker>> workers([&]() -> std::unique_ptr<TileWorker> {
     if (task.lattice == nullptr) return std::make_unique<DoubleWorker>(context, task.make_sink());
     const projection::LatticeView view{
-        projected, {lattice_vertices_.data(), lattice_vertices_.size()}, *task.lattice, space.perspective()};
+        projected,
+        {lattice_vertices_.data(), lattice_vertices_.size()},
+        *task.lattice,
+        space.perspective(),
+        depth_limits_of(space, *task.lattice, *task.function, settings_.emission, longest_ray),
+        steps,
+        context.at_steps};
     return std::make_unique<LatticeWorker>(context, view, task.make_window_sink());
   });
   std::uint64_t most_list_bytes = 0;

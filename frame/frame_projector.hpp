@@ -30,6 +30,7 @@ class FrameProjector {
     const scene::TransferFunction* function;
     std::int32_t frame = -1;       ///< for the trace
     float longest_edge = 0;        ///< scanline: of the whole data set, world units; 0: of this mesh
+    double longest_ray = 0;        ///< bounds a ray's world length in the whole mesh; 0: diagonal()
     std::uint64_t kept_bytes = 0;  ///< of the memory budget, for what becomes of the segments
     /// A sink for one thread; tiles go to it one after the other, and each thread takes tiles in ascending order.
     std::function<std::unique_ptr<compositor::TileSink>()> make_sink;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
 
 #include "projection/lattice_rasterizer.hpp"
@@ -11,7 +12,12 @@ namespace tessera::frame {
 namespace {
 
 constexpr double most_optical_depth = 2000;
-constexpr double most_error = 2e-5;  // of a pixel, from scalars' rounding
+constexpr double promised_of_exact = 2e-5, always_enough = 2e-5;  // of a pixel
+/// What scalars' rounding may change a pixel by: most of what was promised, the rest is for depths and integrals.
+double most_error_of(const scene::Integrator& integrator) {
+  const bool automatic = integrator.kind == scene::IntegratorKind::automatic;
+  return std::min(always_enough, 0.75 * (automatic ? integrator.accuracy : promised_of_exact));
+}
 // Extinction wrong by at most D where the scalar is in a piece of the function changes light and opacity by at most
 // D int T dt over what the ray spends there, times the most that can lie behind. Transmittance T falls by exp(-sigma t)
 // at least, sigma being the piece's least extinction, so with x_i for piece i's integral sum x_i <= L and
@@ -35,6 +41,9 @@ std::array<double, 2> depth_range(const projection::PixelSpace& space, const sce
   return {std::max(low, space.near_depth()), std::min(high, space.far_depth())};
 }
 
+/// The most world length per planar depth of any ray of the picture.
+double most_length_per_depth(const projection::PixelSpace& space) { return space.length_per_depth(0, 0); }
+
 }  // namespace
 
 std::optional<projection::Lattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
@@ -56,7 +65,8 @@ std::optional<projection::Lattice> lattice_of(const projection::PixelSpace& spac
   const double half_depth = (far - near) / 2;
   if (half_depth < 1e-6 * std::abs(far)) return std::nullopt;
   lattice.depth_unit = Lattice::unit_for(margin * half_depth);
-  if (function.max_extinction() * (far - near) > most_optical_depth) return std::nullopt;
+  const double longest = (far - near) * most_length_per_depth(space);
+  if (function.max_extinction() * longest > most_optical_depth) return std::nullopt;
 
   const auto knots = function.knots();
   const auto [low, high] = scalar_range;
@@ -66,12 +76,15 @@ std::optional<projection::Lattice> lattice_of(const projection::PixelSpace& spac
       std::max({high - lattice.scalar_origin, lattice.scalar_origin - low, 1e-12 * std::abs(lattice.scalar_origin)});
   if (!std::isfinite(reach)) return std::nullopt;
   lattice.scalar_unit = Lattice::unit_for(margin * reach);
-  const double length = far - near;
+  const double length = std::min(longest, glm::length(box.high - box.low));
   const bool independent = settings.emission == scene::Emission::independent;
+  const double most_error = most_error_of(settings.integrator);
   const double brightest = std::max(1.0, function.max_color() * (independent ? length : 1));
   for (std::size_t i = 1; i < knots.size(); ++i) {
     const scene::Knot &a = knots[i - 1], &b = knots[i];
     if (a.value == b.value || b.value < low || a.value > high) continue;
+    const auto on_lanes = [&](double v) { return static_cast<float>(lattice.scalar_step(v)); };
+    if (on_lanes(a.value) == on_lanes(b.value)) return std::nullopt;
     // A scalar is known to 16 steps (gradients over a square) or half a float's last place.
     const double reached =
         std::max(std::abs(a.value - lattice.scalar_origin), std::abs(b.value - lattice.scalar_origin));
@@ -83,6 +96,15 @@ std::optional<projection::Lattice> lattice_of(const projection::PixelSpace& spac
     if (std::max(most_color, depth) * scalar_error > most_error * (b.value - a.value)) return std::nullopt;
   }
   return lattice;
+}
+
+projection::DepthLimits depth_limits_of(const projection::PixelSpace& space, const projection::Lattice& lattice,
+                                        const scene::TransferFunction& function, scene::Emission emission,
+                                        double longest_ray) {
+  const bool independent = emission == scene::Emission::independent;
+  const double brightest = std::max(1.0, function.max_color() * (independent ? longest_ray : 1));
+  const double light_per_length = function.max_extinction() * brightest + (independent ? function.max_color() : 0);
+  return {light_per_length * most_length_per_depth(space) * lattice.depth_unit, space.perspective()};
 }
 
 }  // namespace tessera::frame

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "frame/render.hpp"
+#include "projection/depth_limits.hpp"
 #include "projection/lattice.hpp"
 #include "projection/pixel_space.hpp"
 #include "scene/camera.hpp"
@@ -13,12 +14,21 @@ namespace tessera::frame {
 
 /// The integer lattice of a frame, from the whole mesh's box and scalar range alone, so that all processes have the
 /// same one. None where the lattice is not good enough, and double precision has to do:
-///   - the mesh's depth times the largest extinction is above 2000: 16 steps, 1e-8 of the depth, could show;
-///   - the transfer function changes so fast between two knots that the rounding of scalars could show by 2e-5;
+///   - the mesh's depth times the largest extinction is above 2000: 16 steps, 1e-8 of the depth, could show. Under
+///     perspective a ray is longer than the depth that it goes through: as long as the longest of the picture counts;
+///   - the transfer function changes so fast between two knots that the rounding of scalars could show by 2e-5, or by
+///     three quarters of what was promised;
+///   - two steps of the function lie so close together that the lattice takes them for one;
 ///   - it is switched off, the integrator samples, or the rasterizer is not `planes`;
 ///   - nothing is in front of the eye, or the processor has no lanes.
 std::optional<projection::Lattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
                                               const std::array<double, 2>& scalar_range,
                                               const scene::TransferFunction& function, const RenderSettings& settings);
+
+/// Which single cells need double precision on that lattice. `longest_ray` bounds a ray's length in the whole mesh,
+/// world units.
+projection::DepthLimits depth_limits_of(const projection::PixelSpace& space, const projection::Lattice& lattice,
+                                        const scene::TransferFunction& function, scene::Emission emission,
+                                        double longest_ray);
 
 }  // namespace tessera::frame

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <glm/geometric.hpp>
 #include <memory>
 #include <optional>
 
@@ -71,6 +72,7 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
     task.function = &run.function;
     task.frame = number;
     task.longest_edge = mesh.longest_edge;
+    task.longest_ray = mesh.box.empty() ? 0 : glm::length(mesh.box.high - mesh.box.low);
     const compositor::TileMap map(task.grid.count(), static_cast<int>(settings.roles.compositors.size()),
                                   settings.tile_seed);
     const auto deliver = [&](compositor::TilePart part) {

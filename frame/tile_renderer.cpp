@@ -13,6 +13,17 @@ namespace {
 /// A buffer of this many segments and its companions stay in a core's second-level cache.
 constexpr std::size_t comfortable_segments = 8192;
 
+/// There must be room.
+void append(const projection::RaySegments& from, projection::RaySegments& to) {
+  const auto copy = [&](const auto& source, auto& target) {
+    std::copy_n(source.begin(), from.size, target.begin() + static_cast<std::ptrdiff_t>(to.size));
+  };
+  copy(from.pixel_and_tet, to.pixel_and_tet);
+  copy(from.front, to.front), copy(from.back, to.back);
+  copy(from.scalar_front, to.scalar_front), copy(from.scalar_back, to.scalar_back);
+  to.size += from.size;
+}
+
 }  // namespace
 
 void TileRenderer::render(const projection::PixelRect& rect, std::span<projection::TileEntry> entries,
@@ -62,11 +73,13 @@ bool TileRenderer::try_render(const projection::PixelRect& rect, const projectio
                               compositor::TileSink& sink) {
   const std::span<const projection::TileEntry> entries = order.entries;
   const auto area = static_cast<std::size_t>(rect.area());
+  // What a cell may add.
+  const std::size_t most = area * (context_.at_steps != nullptr ? context_.at_steps->most_pieces() : 1);
   segments_.size = 0;
   // Room for at least two segments a pixel: the rasterizer wants space for one more on every pixel before it takes a
   // cell.
   if (!reserve(
-          std::max<std::size_t>(2 * area, std::min(comfortable_segments, context_.budget_bytes / bytes_a_segment))))
+          std::max<std::size_t>(2 * most, std::min(comfortable_segments, context_.budget_bytes / bytes_a_segment))))
     return false;
   sink.start(rect);
   for (std::size_t next = 0; next < entries.size();) {
@@ -80,9 +93,9 @@ bool TileRenderer::try_render(const projection::PixelRect& rect, const projectio
     if (context_.rasterizer == Rasterizer::scanline) final_depth = static_cast<float>(final_depth);
     flush(area, final_depth, sink);
     if (sink.open_count() == 0) break;
-    const bool wants_room = next < entries.size() && segments_.size + area > segments_.capacity() / 2;
-    if (wants_room && !reserve(std::max(2 * segments_.capacity(), 2 * (segments_.size + area))) &&
-        segments_.size + area > segments_.capacity()) {
+    const bool wants_room = next < entries.size() && segments_.size + most > segments_.capacity() / 2;
+    if (wants_room && !reserve(std::max(2 * segments_.capacity(), 2 * (segments_.size + most))) &&
+        segments_.size + most > segments_.capacity()) {
       lists_.sort(segments_, area, key());
       if (!sink.take_unordered(segments_, lists_, final_depth)) return false;
       counts_.segments += segments_.size;
@@ -96,7 +109,27 @@ std::size_t TileRenderer::rasterize(std::span<const projection::TileEntry> entri
   if (context_.rasterizer == Rasterizer::scanline)
     return projection::rasterize_scanline(*context_.projected, context_.longest_edge, entries, rect, scanline_,
                                           segments_, counts_.raster);
+  if (context_.at_steps != nullptr) return rasterize_at_steps(entries, rect);
   return projection::rasterize_planes(*context_.projected, entries, rect, segments_, counts_.raster);
+}
+
+std::size_t TileRenderer::rasterize_at_steps(std::span<const projection::TileEntry> entries,
+                                             const projection::PixelRect& rect) {
+  const std::size_t most = static_cast<std::size_t>(rect.area()) * context_.at_steps->most_pieces();
+  const auto needs_care = [&](const projection::TileEntry& e) { return context_.at_steps->contain(e.tet); };
+  std::size_t taken = 0;
+  while (taken < entries.size()) {
+    const auto rest = entries.subspan(taken);
+    const auto others = static_cast<std::size_t>(std::find_if(rest.begin(), rest.end(), needs_care) - rest.begin());
+    const std::size_t done =
+        projection::rasterize_planes(*context_.projected, rest.first(others), rect, segments_, counts_.raster);
+    taken += done;
+    if (done < others || taken == entries.size() || segments_.size + most > segments_.capacity()) break;
+    const projection::RaySegments& pieces =
+        splitter_.rasterize(*context_.projected, context_.steps, entries[taken++], rect, counts_.raster);
+    append(pieces, segments_);
+  }
+  return taken;
 }
 
 void TileRenderer::flush(std::size_t pixel_count, double final_depth, compositor::TileSink& sink) {

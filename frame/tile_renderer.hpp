@@ -10,6 +10,7 @@
 #include "projection/planes_rasterizer.hpp"
 #include "projection/ray_segments.hpp"
 #include "projection/scanline_rasterizer.hpp"
+#include "projection/steps.hpp"
 #include "scene/trace.hpp"
 #include "sorting/pixel_lists.hpp"
 
@@ -22,8 +23,10 @@ struct TileContext {
   std::uint64_t budget_bytes;  ///< for this renderer's buffers
   scene::Trace* trace;
   Rasterizer rasterizer = Rasterizer::planes;
-  float longest_edge = 1;  ///< scanline: of the whole data set
-  bool opaque = false;     ///< a usual ray ends in a fraction of the mesh's depth
+  float longest_edge = 1;                              ///< scanline: of the whole data set
+  bool opaque = false;                                 ///< a usual ray ends in a fraction of the mesh's depth
+  std::span<const projection::Step> steps{};           ///< of the transfer function
+  const projection::CellsAtSteps* at_steps = nullptr;  ///< whose segments are cut there; null: none
 };
 
 /// Sums over the tiles that one renderer made.
@@ -67,11 +70,13 @@ class TileRenderer {
   void flush(std::size_t pixel_count, double final_depth, compositor::TileSink& sink);
   bool reserve(std::size_t segments);
   std::size_t rasterize(std::span<const projection::TileEntry> entries, const projection::PixelRect& rect);
+  std::size_t rasterize_at_steps(std::span<const projection::TileEntry> entries, const projection::PixelRect& rect);
 
   TileContext context_;
   projection::DepthOrderScratch depth_order_;
   projection::RaySegments segments_;
   projection::ScanlineBuffers scanline_;
+  projection::SplitRasterizer splitter_;
   sorting::PixelLists lists_;
   TileCounts counts_;
 };

@@ -76,17 +76,15 @@ void rasterize_cells(const LatticeView& view, CellBatch& batch, const PixelRect&
 /// An irregular cell, from double precision to the lattice.
 HWY_NOINLINE void rasterize_irregular(const LatticeView& view, const TileEntry& entry, const PixelRect& rect,
                                       LatticeScratch& scratch, SegmentStream& out, RasterCounts& counts) {
-  RaySegments& s = scratch.segments;
-  const auto area = static_cast<std::size_t>(rect.area());
-  if (s.capacity() < area) s.reserve(area);
-  s.size = 0;
-  rasterize_planes(view.projected, {&entry, 1}, rect, s, counts);
+  const RaySegments& s = scratch.splitter.rasterize(view.projected, view.steps, entry, rect, counts);
+  out.reserve(out.size + s.size);
   for (std::size_t i = 0; i < s.size; ++i) {
     out.pixel[out.size] = static_cast<std::int32_t>(s.pixel(i));
     out.front[out.size] = view.lattice.depth_step(s.front[i]);
     out.back[out.size] = view.lattice.depth_step(s.back[i]);
-    out.scalar_front[out.size] = static_cast<float>(view.lattice.scalar_step(s.scalar_front[i]));
-    out.scalar_back[out.size] = static_cast<float>(view.lattice.scalar_step(s.scalar_back[i]));
+    const LatticeScalars scalars = lattice_scalars(s.scalar_front[i], s.scalar_back[i], view.steps, view.lattice);
+    out.scalar_front[out.size] = scalars.front;
+    out.scalar_back[out.size] = scalars.back;
     ++out.size;
   }
 }
@@ -100,7 +98,6 @@ void rasterize(const LatticeView& view, std::span<const TileEntry> entries, std:
   CoverScratch cover_scratch;
   for (std::size_t from = 0; from < entries.size(); from += CellBatch::most) {
     const auto cells = entries.subspan(from, std::min<std::size_t>(CellBatch::most, entries.size() - from));
-    out.reserve(out.size + cells.size() * static_cast<std::size_t>(rect.area()));
     if (from == 0) prefetch_cells(view, ahead);
     if (view.perspective)
       set_up_cells<true>(view, cells, rect, batch);
@@ -108,6 +105,7 @@ void rasterize(const LatticeView& view, std::span<const TileEntry> entries, std:
       set_up_cells<false>(view, cells, rect, batch);
     for (unsigned irregular = batch.irregular; irregular != 0; irregular &= irregular - 1)
       rasterize_irregular(view, cells[static_cast<std::size_t>(__builtin_ctz(irregular))], rect, scratch, out, counts);
+    out.reserve(out.size + cells.size() * static_cast<std::size_t>(rect.area()));
     if (view.perspective)
       per_cell ? rasterize_cells<true, true>(view, batch, rect, square, open, cover_scratch, out, counts)
                : rasterize_cells<true, false>(view, batch, rect, square, open, cover_scratch, out, counts);

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <span>
 
+#include "projection/depth_limits.hpp"
 #include "projection/lattice.hpp"
 #include "projection/planes_rasterizer.hpp"
 #include "projection/ray_segments.hpp"
 #include "projection/segment_windows.hpp"
+#include "projection/steps.hpp"
 
 namespace tessera::projection {
 
@@ -29,11 +31,14 @@ struct LatticeView {
   std::span<const LatticeVertex> vertices;  ///< of all vertices of `projected`
   Lattice lattice;
   bool perspective;
+  DepthLimits depth_limits{};
+  std::span<const Step> steps{};           ///< of the transfer function
+  const CellsAtSteps* at_steps = nullptr;  ///< which of them need care; null: none
 };
 
 /// Working memory of one thread.
 struct LatticeScratch {
-  RaySegments segments;  ///< of irregular cells, from the double-precision rasterizer
+  SplitRasterizer splitter;  ///< of irregular cells, in double precision
 };
 
 /// Bit x of rows[y]: pixel (x, y) of the square still takes segments.
@@ -69,8 +74,9 @@ using OpenPixels = std::array<std::uint32_t, SegmentWindows::side>;
 ///
 /// Irregular cells go through rasterize_planes: those that cross the eye plane or the clipping range, have a corner
 /// within a 16th of the others' distance of the eye, have a face edge-on to 2^-9 of a pixel (but for orthographic views
-/// of faces that are so for certain), or reach over 2^14 pixels. Their depths differ from their neighbours' by a few
-/// steps.
+/// of faces that are so for certain), or reach over 2^14 pixels; and those that need more than planes of integers and
+/// float quotients give: DepthLimits says which are too thin, CellsAtSteps where steps of the transfer function are
+/// too near. Their depths differ from their neighbours' by a few steps, and no segment of them crosses a step.
 ///
 /// Cells behind closed pixels alone are skipped; single closed pixels still get segments. `ahead` are the entries that
 /// will come next: their numbers are fetched meanwhile.

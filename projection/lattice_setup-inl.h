@@ -119,6 +119,27 @@ struct DepthBounds {
   }
 };
 
+/// Of cells that are deeper than DepthLimits::least_extent: those that are too thin for their rounding (DepthLimits).
+template <bool perspective>
+HWY_NOINLINE M rounded_visibly(const LatticeView& view, V extent, V volume, V twice_area, V w_product) {
+  const auto number = [](double v) HWY_ATTR { return hn::Set(D(), v); };
+  const DepthLimits& limits = view.depth_limits;
+  // The longest way through the cell: a third of it times the area that the cell covers is the volume.
+  V chord = hn::Div(hn::Abs(volume), hn::Mul(twice_area, number(0.5)));
+  if constexpr (perspective)  // `volume` is of inverse depths there
+    chord = hn::Div(chord, hn::Mul(w_product, number(view.lattice.depth_unit)));
+  const V light = number(limits.light_per_step);
+  const V error = hn::Mul(light, hn::MulAdd(extent, number(perspective ? DepthLimits::usual_quotient_error : 0),
+                                            number(DepthLimits::usual_plane_error)));
+  M thin = hn::And(
+      hn::Gt(error, number(DepthLimits::least_error)),
+      hn::Not(hn::Le(hn::Mul(error, error), hn::Mul(number(DepthLimits::most_error_squared), hn::Mul(light, chord)))));
+  if constexpr (perspective)
+    thin = hn::Or(thin, hn::Gt(hn::Mul(light, hn::Mul(extent, number(DepthLimits::most_quotient_error))),
+                               number(DepthLimits::most_error)));
+  return thin;
+}
+
 /// Whether the faces may be seen edge-on.
 HWY_INLINE M thin_face(const FaceShape& n, V area) {
   const V span = hn::Add(hn::Add(hn::Abs(n.x1), hn::Abs(n.y1)), hn::Add(hn::Abs(n.x2), hn::Abs(n.y2)));
@@ -297,6 +318,17 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
       hn::MulAdd(z1, hn::MulSub(X2, Y3, hn::Mul(X3, Y2)),
                  hn::MulAdd(z2, hn::MulSub(X3, Y1, hn::Mul(X1, Y3)), hn::Mul(z3, hn::MulSub(X1, Y2, hn::Mul(X2, Y1)))));
   const M upright = hn::Ge(volume, zero);
+  const V extent = hn::Sub(farthest, nearest);
+  const M deep = hn::Gt(extent, number(view.depth_limits.least_extent));
+  if (HWY_UNLIKELY(!hn::AllFalse(d, deep))) {
+    const V twice_area =
+        hn::Add(hn::Add(hn::Abs(area[0]), hn::Abs(area[1])), hn::Add(hn::Abs(area[2]), hn::Abs(area[3])));
+    const V w_most = hn::Max(hn::Max(w[0], w[1]), hn::Max(w[2], w[3]));
+    const V w_least = hn::Min(hn::Min(w[0], w[1]), hn::Min(w[2], w[3]));
+    irregular =
+        hn::Or(irregular,
+               hn::And(deep, rounded_visibly<perspective>(view, extent, volume, twice_area, hn::Mul(w_most, w_least))));
+  }
   if (HWY_UNLIKELY(!hn::AllFalse(d, thin)))
     set_up_sides<perspective, true>(shape, area, upright, x, y, span, from, irregular, batch);
   else
@@ -367,6 +399,7 @@ HWY_INLINE void set_up_cells(const LatticeView& view, std::span<const TileEntry>
   const DepthBounds bounds(view);
   const auto lanes = static_cast<int>(hn::Lanes(D()));
   const std::span<const scene::Tet> tets = prepared.tets();
+  const CellsAtSteps* const at_steps = view.at_steps;
   batch.size = static_cast<int>(cells.size());
   batch.irregular = 0;
   for (int from = 0; from < batch.size; from += lanes) {
@@ -376,6 +409,7 @@ HWY_INLINE void set_up_cells(const LatticeView& view, std::span<const TileEntry>
       const int t = std::min(from + lane, batch.size - 1);
       const std::uint32_t tet = cells[static_cast<std::size_t>(t)].tet;
       batch.tet[from + lane] = tet;
+      if (at_steps != nullptr && at_steps->contain(tet)) batch.irregular |= 1u << t;
       corners[lane] = &tets[tet];
       if (per_cell) cell_scalar[lane] = prepared.mesh().scalars[tet];
     }

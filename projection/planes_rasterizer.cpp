@@ -65,7 +65,7 @@ HWY_INLINE Cell set_up(const ProjectedMesh& projected, std::uint32_t tet, const 
   const scene::Tet& corners = projected.mesh->tets()[tet];
   for (int i = 0; i < 4; ++i) cell.corner[i] = projected.vertices[corners[i]];
   const bool per_cell = mesh.association == scene::Association::cell;
-  for (int i = 0; i < 4; ++i) cell.scalar[i] = mesh.scalars[per_cell ? tet : corners[i]];
+  for (int i = 0; i < 4; ++i) cell.scalar[i] = mesh.scalars[per_cell ? tet : corners[i]] - projected.scalar_origin;
   cell.box = footprint({cell.corner[0], cell.corner[1], cell.corner[2], cell.corner[3]}, rect);
   if (cell.box.empty()) return cell;
   for (bool& p : cell.pierceable) p = true;

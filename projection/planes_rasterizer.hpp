@@ -23,6 +23,7 @@ struct ProjectedMesh {
   const PreparedMesh* mesh;
   std::span<const PixelVertex> vertices;
   double near_depth, far_depth;  ///< the clipping range in planar depth
+  double scalar_origin = 0;      ///< segments' scalars are counted from this
 };
 
 /// What happened on the way.

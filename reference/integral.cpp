@@ -19,15 +19,14 @@ constexpr std::array<Node, 4> nodes{{{0.1834346424956498, 0.3626837833783620},
                                      {0.7966664774136267, 0.2223810344533745},
                                      {0.9602898564975363, 0.1012285362903763}}};
 
-bool value_less(double value, const scene::Knot& knot) { return value < knot.value; }
-
 double mixed(double a, double b, double u) { return a + (b - a) * u; }
 
 }  // namespace
 
 double Integral::opacity() const { return -std::expm1(-optical_depth_); }
 
-Integral::Optics Integral::optics(double s, double within) const {
+Integral::Optics Integral::optics(double s, double within, double origin) const {
+  const auto value_less = [origin](double value, const scene::Knot& knot) { return value < knot.value - origin; };
   const auto of = [](const scene::Knot& k) { return Optics{k.extinction, {k.color.x, k.color.y, k.color.z}}; };
   // The last knot at or below `within`: the upper one of a step.
   const auto above =
@@ -35,29 +34,31 @@ Integral::Optics Integral::optics(double s, double within) const {
   if (above == 0) return of(knots_.front());
   if (above == knots_.size()) return of(knots_.back());
   const Optics low = of(knots_[above - 1]), high = of(knots_[above]);
-  const double v0 = knots_[above - 1].value, v1 = knots_[above].value;
+  const double v0 = knots_[above - 1].value - origin, v1 = knots_[above].value - origin;
   const double u = std::clamp((s - v0) / (v1 - v0), 0.0, 1.0);
   Optics between{mixed(low.extinction, high.extinction, u), {}};
   for (int i = 0; i < 3; ++i) between.color[i] = mixed(low.color[i], high.color[i], u);
   return between;
 }
 
-void Integral::add(double length, double scalar_front, double scalar_back, double depth_front, double depth_back) {
+void Integral::add(double length, double scalar_front, double scalar_back, double depth_front, double depth_back,
+                   double origin) {
   if (!(length > 0)) return;
+  const auto value_less = [origin](double value, const scene::Knot& knot) { return value < knot.value - origin; };
 
   // Places on the segment, 0 to 1, where the scalar passes a knot.
   std::vector<double> cuts{0, 1};
   const auto [low, high] = std::minmax(scalar_front, scalar_back);
   for (auto knot = std::upper_bound(knots_.begin(), knots_.end(), low, value_less);
-       knot != knots_.end() && knot->value < high; ++knot)
-    cuts.push_back((knot->value - scalar_front) / (scalar_back - scalar_front));
+       knot != knots_.end() && knot->value - origin < high; ++knot)
+    cuts.push_back((knot->value - origin - scalar_front) / (scalar_back - scalar_front));
   std::sort(cuts.begin(), cuts.end());
 
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
     if (!(cuts[i + 1] > cuts[i])) continue;
     const double s0 = mixed(scalar_front, scalar_back, cuts[i]), s1 = mixed(scalar_front, scalar_back, cuts[i + 1]);
     const double middle = low == high ? low : mixed(scalar_front, scalar_back, (cuts[i] + cuts[i + 1]) / 2);
-    const Optics a = optics(s0, middle), b = optics(s1, middle);
+    const Optics a = optics(s0, middle, origin), b = optics(s1, middle, origin);
     if (std::isinf(first_visible_depth_) && (a.extinction > 0 || b.extinction > 0))
       first_visible_depth_ = mixed(depth_front, depth_back, cuts[i]);
     add_linear(length * (cuts[i + 1] - cuts[i]), a, b);

@@ -23,8 +23,10 @@ class Integral {
   Integral(std::span<const scene::Knot> knots, scene::Emission emission) : knots_(knots), emission_(emission) {}
 
   /// The next segment: its world length and the scalars at its ends, and the planar depths there. A scalar constant
-  /// along the segment and exactly on a step of the transfer function takes the step's upper knot.
-  void add(double length, double scalar_front, double scalar_back, double depth_front, double depth_back);
+  /// along the segment and exactly on a step of the transfer function takes the step's upper knot. Scalars are counted
+  /// from `origin`, so that they may be nearer to a knot than numbers of their size tell apart.
+  void add(double length, double scalar_front, double scalar_back, double depth_front, double depth_back,
+           double origin = 0);
 
   [[nodiscard]] std::array<double, 3> color() const { return color_; }  ///< linear RGB, premultiplied
   [[nodiscard]] double opacity() const;                                 ///< A = 1 - T, without cancellation
@@ -39,7 +41,7 @@ class Integral {
     std::array<double, 3> color;
   };
   /// The transfer function at `s`, by the straight line between the two knots that have `within` between them.
-  [[nodiscard]] Optics optics(double s, double within) const;
+  [[nodiscard]] Optics optics(double s, double within, double origin) const;
   /// A stretch on which extinction and colour go linearly from `a` to `b`.
   void add_linear(double length, const Optics& a, const Optics& b);
 

@@ -71,20 +71,23 @@ bool edge_on(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
 
 struct Hit {
   double depth, scalar;
+  double change;  ///< scalar less `from`
 };
 
 /// Weights need not be normalised, only not negative; the results lie between the corners' by construction.
-Hit weighted(const std::array<const Corner*, 3>& corners, const std::array<long double, 3>& weights) {
+Hit weighted(const std::array<const Corner*, 3>& corners, const std::array<long double, 3>& weights, double from) {
   const long double sum = weights[0] + weights[1] + weights[2];
-  long double depth = 0, scalar = 0;
+  long double depth = 0, scalar = 0, change = 0;
   for (int i = 0; i < 3; ++i) {
     const long double share = sum > 0 ? weights[i] / sum : 1.0L / 3;
     depth += share * corners[i]->vertex.depth;
     scalar += share * corners[i]->scalar;
+    change += share * (static_cast<long double>(corners[i]->scalar) - from);
   }
   const auto [d0, d1] = std::minmax({corners[0]->vertex.depth, corners[1]->vertex.depth, corners[2]->vertex.depth});
   const auto [s0, s1] = std::minmax({corners[0]->scalar, corners[1]->scalar, corners[2]->scalar});
-  return {std::clamp(static_cast<double>(depth), d0, d1), std::clamp(static_cast<double>(scalar), s0, s1)};
+  return {std::clamp(static_cast<double>(depth), d0, d1), std::clamp(static_cast<double>(scalar), s0, s1),
+          std::clamp(static_cast<double>(change), s0 - from, s1 - from)};
 }
 
 /// The scalar at an eye that lies on the cell's surface: the volumes that the eye spans with the four faces are its
@@ -119,24 +122,31 @@ std::optional<Stretch> intersect(const std::array<Corner, 4>& corners, double x,
     if (sign == 0 || e[b][c].sign != sign || -e[a][c].sign != sign) continue;
     if (edge_on(corners[a].vertex.homogeneous, corners[b].vertex.homogeneous, corners[c].vertex.homogeneous)) continue;
     if (count == 2) return std::nullopt;  // cannot be: a line enters and leaves a tetrahedron once
-    hits[count++] = weighted({&corners[a], &corners[b], &corners[c]},
-                             {std::abs(e[b][c].value), std::abs(e[a][c].value), std::abs(e[a][b].value)});
+    hits[count++] =
+        weighted({&corners[a], &corners[b], &corners[c]},
+                 {std::abs(e[b][c].value), std::abs(e[a][c].value), std::abs(e[a][b].value)}, corners[0].scalar);
   }
   if (count == 0) return std::nullopt;
-  if (count == 1) hits[1] = {0, scalar_at_eye(corners)};
+  if (count == 1) {
+    const double scalar = scalar_at_eye(corners);
+    hits[1] = {0, scalar, scalar - corners[0].scalar};
+  }
   if (hits[0].depth > hits[1].depth) std::swap(hits[0], hits[1]);
-  return Stretch{hits[0].depth, hits[1].depth, hits[0].scalar, hits[1].scalar};
+  return Stretch{hits[0].depth,     hits[1].depth,  hits[0].scalar, hits[1].scalar,
+                 corners[0].scalar, hits[0].change, hits[1].change};
 }
 
 std::optional<Stretch> clipped(const Stretch& stretch, double nearest, double farthest) {
   if (!(nearest < farthest) || !(stretch.back > nearest) || !(stretch.front < farthest)) return std::nullopt;
-  const auto scalar_at = [&](double depth) {
+  const auto change_at = [&](double depth) {
     const double share = (depth - stretch.front) / (stretch.back - stretch.front);
-    return stretch.scalar_front + share * (stretch.scalar_back - stretch.scalar_front);
+    return stretch.change_front + share * (stretch.change_back - stretch.change_front);
   };
   Stretch kept = stretch;
-  if (stretch.front < nearest) kept.front = nearest, kept.scalar_front = scalar_at(nearest);
-  if (stretch.back > farthest) kept.back = farthest, kept.scalar_back = scalar_at(farthest);
+  if (stretch.front < nearest) kept.front = nearest, kept.change_front = change_at(nearest);
+  if (stretch.back > farthest) kept.back = farthest, kept.change_back = change_at(farthest);
+  if (stretch.front < nearest) kept.scalar_front = stretch.corner_scalar + kept.change_front;
+  if (stretch.back > farthest) kept.scalar_back = stretch.corner_scalar + kept.change_back;
   return kept;
 }
 

@@ -13,10 +13,13 @@ struct Corner {
   double scalar;
 };
 
-/// The stretch of a line inside a tetrahedron: planar depths front <= back and the scalars there.
+/// The stretch of a line inside a tetrahedron: planar depths front <= back and the scalars there. These are kept as
+/// differences to the scalar of one corner besides: a sum would round away how far a scalar is from a step of the
+/// transfer function that it all but equals, and on which side.
 struct Stretch {
   double front, back;
   double scalar_front, scalar_back;
+  double corner_scalar, change_front, change_back;
 };
 
 /// Where the line (not only the half in front of the eye) through pixel coordinates (x, y) passes through a

@@ -90,14 +90,15 @@ void Reference::trace(std::size_t tet, const std::array<Corner, 4>& corners, dou
   const std::optional<Stretch> seen = clipped(*inside, view_.nearest(), view_.farthest());
   if (!seen) return;
   const double length = (seen->back - seen->front) * view_.length_per_depth(x, y);
-  segments.push_back({seen->front, seen->back, length, seen->scalar_front, seen->scalar_back, tet});
+  segments.push_back({seen->front, seen->back, length, seen->scalar_front, seen->scalar_back, seen->corner_scalar,
+                      seen->change_front, seen->change_back, tet});
 }
 
 Pixel Reference::shaded(std::span<const RaySegment> segments) const {
   Integral integral(knots_, emission_);
   Pixel pixel;
   for (const RaySegment& s : segments) {
-    integral.add(s.length, s.scalar_front, s.scalar_back, s.front, s.back);
+    integral.add(s.length, s.change_front, s.change_back, s.front, s.back, s.corner_scalar);
     pixel.length += s.length;
   }
   std::tie(pixel.r, pixel.g, pixel.b) = std::tuple_cat(integral.color());

@@ -21,6 +21,7 @@ struct RaySegment {
   double front, back;  ///< planar depth: world units along the view direction from the camera's position
   double length;       ///< world length along the ray; zero in a flat cell
   double scalar_front, scalar_back;
+  double corner_scalar, change_front, change_back;  ///< the same scalars as in Stretch
   std::size_t tet;
 };
 

@@ -190,6 +190,23 @@ def mesh_stresses(m):
         return scene(m.generated("tet"), *tf(), "--camera",
                      m.camera(f"zoom-{pixels:g}", (0.25, 0.2, 5), (0.25, 0.2, 0), scale=32 / pixels))
 
+    def plateau(places):
+        """A saturated field: half of the mesh lies at a step's value, or up to so many last places of a float below it."""
+        points, cells, scalars = m.loaded(m.generated("cube", ".tets", n=6))
+        values = [1 - int(3 * hashed(i)) * places * 2.0 ** -24 if p[0] + 0.3 * p[1] > 0 else 0.9 * s
+                  for i, (p, s) in enumerate(zip(points, scalars))]
+        knots = [*KNOTS[:-1], (1.0, 0.1, 0.3, 0.9, 0.1), (1.0, 1.0, 0.9, 0.3, 3.0)]
+        return scene(m.tets(f"plateau-{places:g}", points, cells, values), "--transfer-function", m.function("plateau", knots))
+
+    def lengthwise(thickness):
+        """A wide view along a dense sheet beside the eye: depth is its length, rays at the edge go through its thickness."""
+        low, high = (-2.0, -thickness, -2.1), (2.0, 0.0, -0.12)
+        points = [tuple(h if i >> a & 1 else l for a, (l, h) in enumerate(zip(low, high))) for i in range(8)]
+        cells = [(0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7)]
+        path = m.tets(f"sheet-{thickness:g}", points, cells, [0.55 + 0.05 * (i & 1) for i in range(8)])
+        return scene(path, "--transfer-function", m.function("sheet", scaled(KNOTS, extinction=300)), "--camera",
+                     m.camera(f"sheet-{thickness:g}", (0.031, 1.73, 0), (0.031, 1.73, -1), angle=140))
+
     across = lambda size: seen_across(m, size)
     plain = lambda *args, **more: scene(cube(), *tf(), *args, **more)
     return [
@@ -206,6 +223,8 @@ def mesh_stresses(m):
         ("extinction", "times world size", [0.0] + powers(-12, 12, 4), lambda v: with_knots(f"k-{v:g}", scaled(KNOTS, extinction=v))),
         ("knots", "number", [2, 6, 14, 15, 30, 100, 1000, 4096], lambda v: with_knots(f"knots-{v}", random_knots(v))),
         ("steps", "number", [1, 7, 50, 300], lambda v: with_knots(f"steps-{v}", steps(v))),
+        ("plateau at a step", "last places of a float between neighbours", [1e6, 1e4, 256, 16, 1, 0], plateau),
+        ("sheet seen lengthwise", "thickness", powers(-1, -6, -1), lengthwise),
         ("oscillations", "over the range", [1, 10, 100, 1000], lambda v: with_knots(f"osc-{v}", oscillating(v))),
         ("field range", "largest value", [0.0] + powers(-30, 30, 10), field),
         ("field far from zero", "offset over range", powers(0, 7), offset_field),

@@ -11,6 +11,7 @@
 #include "datasets/modify.hpp"
 #include "datasets/shapes.hpp"
 #include "frame/leaning_stack.hpp"
+#include "frame/plateaus.hpp"
 #include "projection/segment_tuple.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
@@ -153,6 +154,31 @@ TEST_P(AnyShape, SegmentsGiveTheBitsOfASingleProcessAndRunsAlmost) {
         }
     }
   }
+}
+
+TEST(Distributed, SegmentsOfAPlateauAtAStepGiveTheBitsOfASingleProcess) {
+  const ImageSize size{61, 43};
+  for (const int places : {1, 256})
+    for (const bool lattice : {true, false}) {
+      // In double precision only the last places of doubles need care.
+      const scene::TetMesh mesh = plateau(1, places, lattice ? LastPlace::of_float : LastPlace::of_double, false, 11);
+      RenderSettings alone = exact();
+      alone.use.lattice = lattice;
+      for (const Camera& camera : {oblique(), inside()}) {
+        const Image expected = Renderer(mesh, alone).render(camera, size, step_at(1, true));
+        for (const Exchange exchange : {Exchange::segments, Exchange::runs}) {
+          DistributedSettings settings;
+          settings.render = alone;
+          settings.exchange = exchange;
+          const auto frames = render(datasets::parts(mesh, 2, datasets::Partition::interleaved, 5), {2, 2, 2}, settings,
+                                     {{camera, size}}, step_at(1, true));
+          if (exchange == Exchange::segments)
+            EXPECT_TRUE(same_bits(frames.front().image, expected)) << places << (lattice ? " on the lattice" : "");
+          else
+            EXPECT_LT(difference(frames.front().image, expected), 2e-6);
+        }
+      }
+    }
 }
 
 TEST(Distributed, TuplesOfTheScanlineRasterizerGiveItsPictureOfASingleProcess) {

@@ -283,7 +283,7 @@ TEST(Render, ScalarsRoundedAlikeAllAlongARayStayWithinTheBound) {
   // as they may: every segment is wrong by the same.
   const ImageSize size{24, 24};
   for (const scene::Emission emission : {scene::Emission::absorption, scene::Emission::independent})
-    for (const double least : {0.0, 1.4, 200.0}) {
+    for (const double least : {0.0, 2.4, 200.0}) {
       std::vector<scene::Knot> knots;
       knots.reserve(256);
       for (int i = 0; i < 256; ++i)

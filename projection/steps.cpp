@@ -1,0 +1,233 @@
+#include "projection/steps.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+
+namespace tessera::projection {
+namespace {
+
+static_assert(PreparedMesh::block_tets == 64);  // a word of bits
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// What all of a ray's crossings together may change a pixel by.
+constexpr double tolerance = 5e-6;
+/// Where a segment crosses a step is right to this part of its length in float lanes, and under perspective.
+constexpr double relative_error = 0x1p-22;
+
+constexpr auto value_above = [](double value, const Step& step) { return value < step.value; };
+
+/// The number of steps at or below `value`.
+std::size_t steps_passed(std::span<const Step> steps, double value) {
+  return static_cast<std::size_t>(std::upper_bound(steps.begin(), steps.end(), value, value_above) - steps.begin());
+}
+
+/// Which cells, asked one by one.
+class Rule {
+ public:
+  Rule(const PreparedMesh& prepared, std::span<const Step> steps, double longest_ray, const Lattice* lattice)
+      : prepared_(prepared), mesh_(prepared.mesh()), steps_(steps), longest_ray_(longest_ray), lattice_(lattice) {
+    double most = 0;
+    if (lattice == nullptr)
+      for (const Step& step : steps) most = std::max(most, std::abs(step.value));
+    most_error_ = lattice != nullptr ? (planes_error + Lattice::limit * float_error) * lattice->scalar_unit
+                                     : 2 * most * double_error;
+  }
+
+  /// The number of pieces that the cell may have in a pixel; 0 if lattice or double precision do as they are.
+  [[nodiscard]] std::size_t pieces(std::size_t tet) const {
+    const auto [low, high] = prepared_.scalar_bounds(tet);
+    for (std::size_t i = steps_passed(steps_, low - most_error_); i < steps_.size(); ++i) {
+      if (steps_[i].value > high + most_error_) break;
+      if (level(low, high) ? rounded_across(steps_[i], low) : inexact(steps_[i], low, high, tet))
+        return 1 + steps_passed(steps_, high) - steps_passed(steps_, low);
+    }
+    return 0;
+  }
+
+  /// Whether pieces() is 0 for all cells of a block.
+  [[nodiscard]] bool spares(std::size_t block) const {
+    const auto [low, high] = prepared_.block_scalar_bounds(block);
+    const std::size_t next = steps_passed(steps_, low - most_error_);
+    return next == steps_.size() || steps_[next].value > high + most_error_;
+  }
+
+ private:
+  // Gradients rounded to a step of the lattice, over 16 pixels in two directions, and the corner itself; then a float's
+  // last place. Two standard deviations of either are less than half of that.
+  static constexpr double planes_error = 17, float_error = 0x1p-24, usual_part = 0.5, double_error = 0x1p-51;
+
+  static bool level(double low, double high) { return low == high; }
+
+  /// A face of one scalar keeps it: only the scalar's own rounding can change its side.
+  [[nodiscard]] bool rounded_across(const Step& step, double scalar) const {
+    if (lattice_ == nullptr) return false;
+    const auto on_lanes = [&](double v) { return static_cast<float>(lattice_->scalar_step(v)); };
+    return (scalar >= step.value) != (on_lanes(scalar) >= on_lanes(step.value));
+  }
+
+  [[nodiscard]] bool inexact(const Step& step, double low, double high, std::size_t tet) const {
+    const scene::Tet& corners = prepared_.tets()[tet];
+    const double error =
+        lattice_ != nullptr
+            ? planes_error * lattice_->scalar_unit + std::abs(step.value - lattice_->scalar_origin) * float_error
+            : std::max({std::abs(low), std::abs(high), std::abs(step.value)}) * double_error;
+    if (step.value < low - error || step.value > high + error) return false;
+    if (step.contrast * longest_ray_ * (usual_part * error) > tolerance * (high - low)) return true;
+    if (lattice_ == nullptr || step.contrast * longest_ray_ * relative_error <= tolerance) return false;
+    double longest = 0;
+    for (std::size_t i = 1; i < 4; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        longest = std::max(longest, glm::length(mesh_.positions[corners[i]] - mesh_.positions[corners[j]]));
+    return step.contrast * longest * relative_error > tolerance;
+  }
+
+  const PreparedMesh& prepared_;
+  const scene::TetMesh& mesh_;
+  std::span<const Step> steps_;
+  double longest_ray_;
+  const Lattice* lattice_;
+  double most_error_;  ///< of any scalar near a step
+};
+
+}  // namespace
+
+std::vector<Step> steps_of(const scene::TransferFunction& function, scene::Emission emission, double longest_ray) {
+  std::vector<Step> steps;
+  const auto knots = function.knots();
+  const bool independent = emission == scene::Emission::independent;
+  const double brightest = std::max(1.0, function.max_color() * (independent ? longest_ray : 1));
+  for (std::size_t i = 1; i < knots.size(); ++i) {
+    const scene::Knot &below = knots[i - 1], &above = knots[i];
+    if (below.value != above.value) continue;
+    const glm::dvec3 light =
+        independent ? above.color - below.color : above.color * above.extinction - below.color * below.extinction;
+    const glm::dvec3 change = glm::abs(light);
+    steps.push_back({above.value, std::abs(above.extinction - below.extinction) * brightest +
+                                      std::max({change.x, change.y, change.z})});
+  }
+  return steps;
+}
+
+CellsAtSteps::CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> steps, double longest_ray,
+                           const Lattice* lattice) {
+  const std::size_t count = prepared.tets().size();
+  if (steps.empty() || count == 0) return;
+  if (lattice == nullptr && prepared.mesh().association == scene::Association::cell) return;
+  const Rule rule(prepared, steps, longest_ray, lattice);
+  bits_.assign((count + 63) / 64, 0);
+  struct Most {
+    std::size_t pieces = 0;
+  };
+  const Most most = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, bits_.size(), 64), Most{},
+      [&](const auto& words, Most so_far) {
+        for (std::size_t word = words.begin(); word < words.end(); ++word) {
+          if (rule.spares(word)) continue;
+          for (std::size_t tet = 64 * word; tet < std::min(count, 64 * word + 64); ++tet) {
+            const std::size_t pieces = rule.pieces(tet);
+            if (pieces == 0) continue;
+            bits_[word] |= std::uint64_t{1} << tet % 64;
+            so_far.pieces = std::max(so_far.pieces, pieces);
+          }
+        }
+        return so_far;
+      },
+      [](Most a, Most b) { return Most{std::max(a.pieces, b.pieces)}; });
+  if (most.pieces == 0) bits_ = {};
+  most_pieces_ = std::max<std::size_t>(most.pieces, 1);
+}
+
+const RaySegments& SplitRasterizer::rasterize(const ProjectedMesh& projected, std::span<const Step> steps,
+                                              const TileEntry& entry, const PixelRect& rect, RasterCounts& counts) {
+  const auto area = static_cast<std::size_t>(rect.area());
+  if (whole_.capacity() < area) whole_.reserve(area);
+  whole_.size = 0;
+  const std::array<double, 2> bounds = projected.mesh->scalar_bounds(entry.tet);
+  const double low = bounds[0], high = bounds[1];
+  if (!(low < high) || steps.empty()) {  // one scalar, which nothing rounds
+    rasterize_planes(projected, {&entry, 1}, rect, whole_, counts);
+    return whole_;
+  }
+  // Those inside the cell's range and one to either side.
+  const std::size_t above_low = steps_passed(steps, low), above_high = steps_passed(steps, high);
+  const std::size_t first = above_low - (above_low > 0 ? 1 : 0);
+  const auto near = steps.subspan(first, std::min(steps.size(), above_high + 1) - first);
+  const auto distance = [&](const Step& s) { return std::max({0.0, low - s.value, s.value - high}); };
+  const double origin = std::min_element(near.begin(), near.end(), [&](const Step& a, const Step& b) {
+                          return distance(a) < distance(b);
+                        })->value;
+
+  ProjectedMesh relative = projected;
+  relative.scalar_origin = origin;
+  rasterize_planes(relative, {&entry, 1}, rect, whole_, counts);
+  const std::size_t most = whole_.size * (near.size() + 1);
+  if (pieces_.capacity() < most) pieces_.reserve(most);
+  pieces_.size = 0;
+  for (std::size_t i = 0; i < whole_.size; ++i) {
+    whole_.scalar_front[i] = std::clamp(whole_.scalar_front[i], low - origin, high - origin);
+    whole_.scalar_back[i] = std::clamp(whole_.scalar_back[i], low - origin, high - origin);
+    split(i, near, origin);
+  }
+  return pieces_;
+}
+
+void SplitRasterizer::split(std::size_t segment, std::span<const Step> steps, double origin) {
+  const double front = whole_.front[segment], back = whole_.back[segment];
+  const double from = whole_.scalar_front[segment], to = whole_.scalar_back[segment];
+  // Ends relative to `origin`; no step lies between them.
+  const auto add = [&](double piece_front, double piece_back, double a, double b) {
+    std::size_t passed = 0;
+    while (passed < steps.size() && steps[passed].value - origin <= std::min(a, b)) ++passed;
+    const double low = passed > 0 ? steps[passed - 1].value : -infinity;
+    const double high = passed < steps.size() ? steps[passed].value : infinity;
+    double scalar_front = std::clamp(origin + a, low, high), scalar_back = std::clamp(origin + b, low, high);
+    if (std::min(scalar_front, scalar_back) == high) {
+      if (a <= b) scalar_front = std::nextafter(high, -infinity);
+      if (b <= a) scalar_back = std::nextafter(high, -infinity);
+    }
+    const std::size_t at = pieces_.size++;
+    pieces_.pixel_and_tet[at] = whole_.pixel_and_tet[segment];
+    pieces_.front[at] = piece_front, pieces_.back[at] = piece_back;
+    pieces_.scalar_front[at] = scalar_front, pieces_.scalar_back[at] = scalar_back;
+  };
+  if (!(front < back)) return add(front, back, from, from);
+  double at = front, scalar = from;
+  const auto cut = [&](const Step& step) {
+    const double value = step.value - origin;
+    if (!(std::min(scalar, to) < value && value < std::max(scalar, to))) return;
+    const double depth = std::clamp(front + (back - front) * ((value - from) / (to - from)), at, back);
+    if (at < depth) add(at, depth, scalar, value);
+    at = depth, scalar = value;
+  };
+  if (from < to)
+    for (std::size_t i = 0; i < steps.size(); ++i) cut(steps[i]);
+  else
+    for (std::size_t i = steps.size(); i-- > 0;) cut(steps[i]);
+  if (at < back) add(at, back, scalar, to);
+}
+
+LatticeScalars lattice_scalars(double front, double back, std::span<const Step> steps, const Lattice& lattice) {
+  const auto on_lanes = [&](double v) { return static_cast<float>(lattice.scalar_step(v)); };
+  LatticeScalars s{on_lanes(front), on_lanes(back)};
+  const std::size_t passed = steps_passed(steps, std::min(front, back));
+  if (passed > 0) {
+    const float low = on_lanes(steps[passed - 1].value);
+    s = {std::max(s.front, low), std::max(s.back, low)};
+  }
+  if (passed == steps.size()) return s;
+  const float high = on_lanes(steps[passed].value);
+  s = {std::min(s.front, high), std::min(s.back, high)};
+  if (std::min(s.front, s.back) == high) {
+    const float below = std::min(high - 1, std::nextafter(high, -std::numeric_limits<float>::infinity()));
+    if (front <= back) s.front = below;
+    if (back <= front) s.back = below;
+  }
+  return s;
+}
+
+}  // namespace tessera::projection

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "projection/lattice.hpp"
+#include "projection/planes_rasterizer.hpp"
+#include "scene/optical_model.hpp"
+#include "scene/transfer_function.hpp"
+
+/// Steps of the transfer function. A field may lie within a few last places of a step's value over a whole region, as
+/// saturated fields do (tanh, volume of fluid): there the last places say on which side of the step a ray is, and where
+/// it crosses it.
+namespace tessera::projection {
+
+/// A value at which the transfer function steps. What lies at the value or above is on its upper side.
+struct Step {
+  double value;
+  double contrast;  ///< bounds what a world length taken for the wrong side changes of a pixel
+};
+
+/// The function's steps, ascending. `longest_ray` bounds a ray's world length in the mesh.
+std::vector<Step> steps_of(const scene::TransferFunction& function, scene::Emission emission, double longest_ray);
+
+/// Cells of which rounded scalars would not tell well enough where rays cross a step: the error of a scalar, over the
+/// change of the scalar in the cell, times what the whole ray could change of a pixel if it ran through such cells
+/// alone. Their segments are to be cut at the steps (SplitRasterizer).
+///
+/// A cell's answer depends on its own scalars and corners and on what all processes agree on: its segments have the
+/// same bits wherever it is projected.
+class CellsAtSteps {
+ public:
+  CellsAtSteps() = default;
+  /// `steps` must outlive this object. `lattice`: on which scalars are kept; null: in double precision. Work runs in
+  /// the caller's task arena (oneTBB).
+  CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> steps, double longest_ray, const Lattice* lattice);
+
+  [[nodiscard]] bool contain(std::uint32_t tet) const {
+    return !bits_.empty() && (bits_[tet / 64] >> tet % 64 & 1) != 0;
+  }
+  [[nodiscard]] bool empty() const { return bits_.empty(); }
+  /// Bounds the segments that one of these cells has in a pixel.
+  [[nodiscard]] std::size_t most_pieces() const { return most_pieces_; }
+
+ private:
+  std::vector<std::uint64_t> bits_;  ///< one a tet; empty if there are none
+  std::size_t most_pieces_ = 1;
+};
+
+/// Rasterizes single cells with their segments cut where they cross steps: no segment has a step's value between its
+/// ends, and one that is below a step has an end below its value. Scalars are interpolated as differences to the
+/// nearest step, so that those which differ from it by a double's last place are as good as any.
+class SplitRasterizer {
+ public:
+  /// As rasterize_planes() of this cell alone, for all of `rect`. The segments stay until the next call.
+  const RaySegments& rasterize(const ProjectedMesh& projected, std::span<const Step> steps, const TileEntry& entry,
+                               const PixelRect& rect, RasterCounts& counts);
+
+ private:
+  void split(std::size_t segment, std::span<const Step> steps, double origin);
+
+  RaySegments whole_, pieces_;
+};
+
+/// Ends of a SplitRasterizer's segment in the lattice's steps, as floats, on the sides of all steps that they are on.
+struct LatticeScalars {
+  float front, back;
+};
+LatticeScalars lattice_scalars(double front, double back, std::span<const Step> steps, const Lattice& lattice);
+
+}  // namespace tessera::projection
