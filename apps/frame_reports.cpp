@@ -10,7 +10,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// A file name need not be UTF-8; JSON must. Without `indent`, on one line.
-std::string text_of(const Json& json, int indent) { return json.dump(indent, ' ', false, Json::error_handler_t::replace); }
+std::string text_of(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
 
 constexpr int indent = 2;
 

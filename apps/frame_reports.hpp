@@ -6,8 +6,8 @@
 
 namespace tessera::apps {
 
-/// What a run's report says of each frame, kept until the end as one piece of text. Trees of JSON are many small pieces:
-/// three to four times the memory, and between them a long film's heap cannot give back what a frame took.
+/// What a run's report says of each frame, kept until the end as one piece of text. Trees of JSON are many small
+/// pieces: three to four times the memory, and between them a long film's heap cannot give back what a frame took.
 class FrameReports {
  public:
   /// Not `kept`: no report is asked for, and nothing is.

@@ -38,10 +38,10 @@ class Job {
   std::unique_ptr<compositor::MpiTransport> mpi_;
 };
 
-/// Lets ranks that are ended from outside say so, in one line of all, and end with status 3. The launcher ends all ranks
-/// at once, as it does when one has died: then the first that is ended on rank 0's machine speaks. A rank that anybody
-/// else ends (SIGTERM) ends the run for all, see ended_from_outside(). A launcher that dies takes its ranks with it.
-/// Collective; for jobs of several ranks (Linux).
+/// Lets ranks that are ended from outside say so, in one line of all, and end with status 3. The launcher ends all
+/// ranks at once, as it does when one has died: then the first that is ended on rank 0's machine speaks. A rank that
+/// anybody else ends (SIGTERM) ends the run for all, see ended_from_outside(). A launcher that dies takes its ranks
+/// with it. Collective; for jobs of several ranks (Linux).
 void speak_when_ended(compositor::Transport& transport);
 
 /// The run's error, once this rank got SIGTERM from somebody else than its launcher.

@@ -57,8 +57,7 @@ void check_outputs(const RenderOptions& options, const std::vector<Frame>& frame
       // Asking the file system once a folder and length of name is enough, but for names that exist.
       std::error_code unknown;
       const std::string kind = fmt::format("{}{}", output.filename().native().size(), output.extension().string());
-      if (folders.insert(output.parent_path() / kind).second ||
-          std::filesystem::exists(output, unknown) || unknown)
+      if (folders.insert(output.parent_path() / kind).second || std::filesystem::exists(output, unknown) || unknown)
         io::check_image_path(output);
     }
   }

@@ -12,8 +12,9 @@ namespace tessera::apps {
 
 void add_stall_options(CLI::App& command, StallWords& words) {
   command
-      .add_option("--stall-timeout", words.timeout,
-                  "under mpirun: a rank that has been silent for so long is said to be stopped; 0: never (default: 120)")
+      .add_option(
+          "--stall-timeout", words.timeout,
+          "under mpirun: a rank that has been silent for so long is said to be stopped; 0: never (default: 120)")
       ->type_name("SECONDS");
   command.add_option("--on-stall", words.on_stall, "under mpirun: wait for such a rank (default), or end the run")
       ->type_name("wait|abort");

@@ -83,9 +83,10 @@ void Heartbeats::notice(const StallWatch::Notice& notice, std::vector<Outgoing>&
     return;
   }
   if (settings_.say)
-    settings_.say(fmt::format("{} has been silent for {:.3g} s: its process is stopped or its machine hangs; waiting "
-                              "for it (--on-stall abort ends the run)",
-                              name, seconds(notice.silent)));
+    settings_.say(
+        fmt::format("{} has been silent for {:.3g} s: its process is stopped or its machine hangs; waiting "
+                    "for it (--on-stall abort ends the run)",
+                    name, seconds(notice.silent)));
 }
 
 }  // namespace tessera::compositor

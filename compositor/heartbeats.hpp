@@ -15,7 +15,8 @@ namespace tessera::compositor {
 struct StallSettings {
   std::chrono::milliseconds timeout = std::chrono::seconds(120);  ///< of silence, more than 0
   bool ends_run = false;  ///< by an error that names the rank; else it is waited for
-  /// Tells the user of a rank that is waited for, and of its return; from a thread of the transport's own. May be empty.
+  /// Tells the user of a rank that is waited for, and of its return; from a thread of the transport's own. May be
+  /// empty.
   std::function<void(const std::string& words)> say;
 };
 

@@ -41,6 +41,9 @@ constexpr Naps idle_naps{microseconds(100), microseconds(500), microseconds(2000
 // While the rank's cores project, a look in time for the next part of the frame is soon enough.
 constexpr Naps working_naps{microseconds(2000), microseconds(2000), microseconds(5000)};
 
+/// For the others to hear of the error that a stalled rank is; at most the transport's patience.
+constexpr auto stall_grace = std::chrono::seconds(1);
+
 Bytes error_bytes(const scene::Error& error) {
   const std::string words = error.what();
   Bytes bytes(1 + words.size());
@@ -347,7 +350,7 @@ class MpiTransport::Engine {
     if (!heartbeats_) return;
     for (auto& message : heartbeats_->turn(Clock::now())) enqueue({message.to, beat_tag, std::move(message.bytes)});
     if (!heartbeats_->lost() || mailboxes.failed()) return;
-    lost_ = heartbeats_->lost()->rank;
+    lost_at_ = Clock::now();
     if (rank == 0) return decide(heartbeats_->lost()->error);
     // Rank 0 itself: this rank decides in its place.
     for (int other = 1; other < size; ++other)
@@ -385,7 +388,12 @@ class MpiTransport::Engine {
   void settle_end() {
     {
       const std::lock_guard lock(mutex_);
-      if (!finishing_ || !queue_.empty() || !pending_.empty() || (own_fault_ && !mailboxes.failed())) return;
+      if (!finishing_) return;
+      // A stalled rank takes nothing and will not say that it is done, and MPI cannot end without it: once the others
+      // have had the time to hear of the error, this rank speaks and leaves the rest to the launcher.
+      if (lost_at_ && ((rank == 0 && ranks_done_ >= size - 2) || Clock::now() > *lost_at_ + stall_grace))
+        give_up(*mailboxes.error());
+      if (!queue_.empty() || !pending_.empty() || (own_fault_ && !mailboxes.failed())) return;
     }
     if (!done_told_) {
       done_told_ = true;
@@ -394,8 +402,6 @@ class MpiTransport::Engine {
       else
         enqueue({0, done_tag, {}});
     }
-    // A stalled rank will not say that it is done, and MPI cannot end without it.
-    if (lost_ && (rank != 0 || ranks_done_ >= size - 1)) give_up(*mailboxes.error());
     if (rank == 0 && ranks_done_ == size) {
       if (mailboxes.failed()) hooks_.speak(*mailboxes.error());
       for (int other = 1; other < size; ++other) enqueue({other, clear_tag, {}});
@@ -420,7 +426,7 @@ class MpiTransport::Engine {
   std::list<Outgoing> pending_;
   std::deque<Incoming> arriving_;
   std::optional<Heartbeats> heartbeats_;
-  std::optional<int> lost_;  ///< the rank whose silence ended the run
+  std::optional<Clock::time_point> lost_at_;  ///< when this rank ended the run for another's silence
   std::optional<scene::Error> asked_to_end_;
   std::optional<Clock::time_point> deadline_;
   int ranks_done_ = 0;

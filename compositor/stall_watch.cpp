@@ -14,8 +14,8 @@ void StallWatch::heard(int rank) {
 }
 
 void StallWatch::told(int rank) {
-  if (const auto at = ranks_.find(rank); at != ranks_.end() && at->second.next_notice == timeout_)
-    at->second.next_notice *= 2;
+  if (const auto at = ranks_.find(rank); at != ranks_.end())
+    at->second.next_notice = std::max(at->second.next_notice, 2 * at->second.silent + timeout_ / 4);
 }
 
 std::vector<StallWatch::Notice> StallWatch::look(Clock::time_point now) {

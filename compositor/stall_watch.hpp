@@ -26,7 +26,7 @@ class StallWatch {
 
   /// A message of that rank came. Ranks that are not watched are ignored.
   void heard(int rank);
-  /// Somebody else has told of this rank's silence, and will of its return: the next notice is that of twice the time.
+  /// Somebody else has told of this rank's silence, and will of its return. The next notice is a little after theirs.
   void told(int rank);
   /// What there is to say since the last look.
   std::vector<Notice> look(Clock::time_point now);

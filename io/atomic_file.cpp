@@ -9,7 +9,6 @@
 #include <cerrno>
 #include <system_error>
 
-
 namespace tessera::io {
 namespace {
 

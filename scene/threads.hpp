@@ -11,8 +11,7 @@ namespace tessera::scene {
 /// cores, unless a tbb::global_control of the caller's says otherwise. oneTBB warns on stderr of an arena that asks for
 /// more, and no work here gains by more threads than cores.
 inline int threads_for(int asked) {
-  const auto most =
-      static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+  const auto most = static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
   return std::min(asked > 0 ? asked : tbb::info::default_concurrency(), most);
 }
 

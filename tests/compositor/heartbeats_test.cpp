@@ -163,7 +163,8 @@ TEST(Heartbeats, RandomStopsAreNoticedIfTheyAreLongAndOnlyThen) {
     SimulatedJob job(ranks, false, seed, milliseconds(std::uniform_int_distribution<int>(0, 80)(random)));
     job.run(milliseconds(std::uniform_int_distribution<int>(0, 9000)(random)));
     const int stopped = std::uniform_int_distribution<int>(0, ranks - 1)(random);
-    // In timeouts. Between a stop and the last word before it lies up to an eighth, a delay and a rank's quarters of a second.
+    // In timeouts. Between a stop and the last word before it lies up to an eighth, a delay and a rank's quarters of a
+    // second.
     const double length = std::uniform_real_distribution<double>(0, 1.9)(random);
     job.stop(stopped);
     job.run(milliseconds(static_cast<int>(length * 8000)));
