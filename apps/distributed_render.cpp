@@ -178,6 +178,7 @@ void RankRun::render() {
       [&](std::size_t m) {
         const Frame& first = frames_[meshes_[m]];
         if (first.step != 0) {
+          require_still_there(first);
           mesh = {};  // the last one's memory before the next one's
           mesh = read_distributed(transport_, first.mesh.files, later_options_, options_.partition, roles_.projectors,
                                   options_.settings.threads, trace);

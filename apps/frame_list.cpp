@@ -120,6 +120,17 @@ std::vector<Frame> list_frames(const RenderOptions& options) {
   return frames;
 }
 
+void require_still_there(const Frame& frame) {
+  if (frame.step == 0) return;
+  for (const auto& file : frame.mesh.files) {
+    std::error_code unreadable;  // then reading says why
+    if (!std::filesystem::exists(file, unreadable) && !unreadable)
+      throw scene::Error(
+          scene::ExitCode::system_failure,
+          fmt::format("{}: was there when the run began and is gone; bring it back and use --resume", file.string()));
+  }
+}
+
 scene::Camera view_of(const Frame& frame, const scene::Box& box, scene::ProjectionKind default_projection) {
   const auto camera =
       frame.camera ? *frame.camera : scene::frame_box(box, frame.size, default_projection, frame.turn.has_value());

@@ -29,6 +29,10 @@ struct Frame {
 /// an orbit is asked of several views, or for what io::read_cameras refuses.
 std::vector<Frame> list_frames(const RenderOptions& options);
 
+/// Of a series' later steps, before they are read: throws scene::Error(system_failure) if a file that list_frames() saw
+/// is gone.
+void require_still_there(const Frame& frame);
+
 /// Whether the run's input is a time series, be it of one step.
 bool is_series(const RenderOptions& options);
 

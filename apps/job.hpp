@@ -10,6 +10,7 @@
 namespace tessera::compositor {
 class LoopbackNetwork;
 class MpiTransport;
+struct StallSettings;
 }  // namespace tessera::compositor
 
 namespace tessera::apps {
@@ -22,6 +23,8 @@ class Job {
   ~Job();
 
   [[nodiscard]] compositor::Transport& transport();
+  /// Looks for ranks that have stopped from now on. Every rank calls this.
+  void watch_stalls(const compositor::StallSettings& settings);
   /// Rank 0, which speaks for all.
   [[nodiscard]] bool is_first() { return transport().rank() == 0; }
 
@@ -35,10 +38,14 @@ class Job {
   std::unique_ptr<compositor::MpiTransport> mpi_;
 };
 
-/// Lets a rank that its launcher ends from outside, as it does when another rank has died, say so: the lowest rank that
-/// is left on its machine writes one line, and all end with status 3. A launcher that dies takes its ranks with it
-/// (Linux). Collective; for jobs of several ranks.
+/// Lets ranks that are ended from outside say so, in one line of all, and end with status 3. The launcher ends all
+/// ranks at once, as it does when one has died: then the first that is ended on rank 0's machine speaks. A rank that
+/// anybody else ends (SIGTERM) ends the run for all, see ended_from_outside(). A launcher that dies takes its ranks
+/// with it. Collective; for jobs of several ranks (Linux).
 void speak_when_ended(compositor::Transport& transport);
+
+/// The run's error, once this rank got SIGTERM from somebody else than its launcher.
+std::optional<scene::Error> ended_from_outside();
 
 /// From now on a launcher that ends this rank only hurries it: other ranks may have ended already, with the status that
 /// all will have.

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <sys/prctl.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -6,68 +7,83 @@
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
-#include <cstring>
-#include <ctime>
+#include <fstream>
+#include <iterator>
+#include <string>
 #include <string_view>
 
 #include "apps/job.hpp"
-#include "compositor/wire.hpp"
+#include "apps/one_line.hpp"
 
-// What a signal handler may touch: plain memory filled before the handler is installed, and system calls.
+// What a signal handler may touch: plain memory filled before the handler is installed, lock-free atomics, and system
+// calls.
 namespace tessera::apps {
 namespace {
 
-struct Neighbour {
-  std::array<char, 64> host{};
-  pid_t process = 0;
-};
+bool speaks_for_the_lost = true;  ///< on the first rank's machine
+std::array<pid_t, 2> launchers{};
+int rank_of_run = 0, size_of_run = 1;
+std::atomic<bool> is_ending = false, asked_to_end = false;
 
-constexpr std::size_t most_ranks = 4096;
-std::array<pid_t, most_ranks> lower_ranks;  // processes of lower ranks on this machine
-std::atomic<std::size_t> lower_rank_count = 0;
-
-std::atomic<bool> is_ending = false;
-
-extern "C" void on_termination(int signal) {
+extern "C" void on_termination(int signal, siginfo_t* from, void* /*context*/) {
   if (is_ending && signal == SIGTERM) {
     const itimerval soon{{0, 0}, {1, 0}};
     setitimer(ITIMER_REAL, &soon, nullptr);
     return;
   }
-  bool speaks = !is_ending;  // else somebody has said what there is to say
-  for (std::size_t i = 0; i < lower_rank_count; ++i)
-    if (kill(lower_ranks[i], 0) == 0) speaks = false;
-  if (speaks) {
+  // The launcher ends all ranks and waits for none. Anybody else may have meant this one alone, which then ends the run
+  // in the orderly way; whoever asks twice is in a hurry.
+  const bool from_launcher = from->si_pid == launchers[0] || from->si_pid == launchers[1];
+  if (signal == SIGTERM && !from_launcher && !asked_to_end.exchange(true)) return;
+  if (!is_ending && speaks_for_the_lost && may_speak()) {
     constexpr std::string_view words =
         "tessera: the run was ended from outside or has lost a rank (the launcher says which); finished pictures stay, "
         "and the same command with --resume goes on from there\n";
     const ssize_t ignored = write(STDERR_FILENO, words.data(), words.size());
     static_cast<void>(ignored);
-    // Long enough for the others to see that somebody speaks.
-    const timespec moment{0, 300'000'000};
-    nanosleep(&moment, nullptr);
+    hold_one_line();
   }
   _exit(static_cast<int>(scene::ExitCode::system_failure));
+}
+
+pid_t parent_of(pid_t process) {
+  std::ifstream stat(fmt::format("/proc/{}/stat", process));
+  const std::string text(std::istreambuf_iterator<char>(stat), {});
+  // The second field is a name in brackets, which may hold anything; after it come state and parent.
+  const std::size_t name_end = text.rfind(')');
+  if (name_end == std::string::npos || name_end + 4 > text.size()) return 0;
+  return static_cast<pid_t>(std::atoi(text.c_str() + name_end + 4));
+}
+
+/// Who may send SIGTERM to all ranks at once: the parent, and where that is a script which the launcher started, the
+/// launcher. It puts what it starts into a process group of its own.
+std::array<pid_t, 2> find_launchers() {
+  const pid_t group = getpgrp();
+  pid_t outside = getppid();
+  while (outside > 1 && getpgid(outside) == group) outside = parent_of(outside);
+  return {getppid(), outside};
 }
 
 }  // namespace
 
 void speak_when_ended(compositor::Transport& transport) {
-  Neighbour self;
-  gethostname(self.host.data(), self.host.size() - 1);
-  self.process = getpid();
-  compositor::Bytes mine;
-  compositor::append(mine, self);
-  const auto all = compositor::gather_all(transport, std::move(mine));
-  for (int rank = 0; rank < transport.rank(); ++rank) {
-    const auto other = compositor::RecordReader(all[static_cast<std::size_t>(rank)]).take<Neighbour>();
-    if (other.host == self.host && lower_rank_count < most_ranks) lower_ranks[lower_rank_count++] = other.process;
-  }
+  rank_of_run = transport.rank(), size_of_run = transport.size();
+  speaks_for_the_lost = share_one_line(transport);
+  launchers = find_launchers();
   struct sigaction action {};
-  action.sa_handler = on_termination;
+  action.sa_sigaction = on_termination;
+  action.sa_flags = SA_SIGINFO;
   sigaction(SIGTERM, &action, nullptr);
   sigaction(SIGALRM, &action, nullptr);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
+}
+
+std::optional<scene::Error> ended_from_outside() {
+  if (!asked_to_end) return std::nullopt;
+  return scene::Error(scene::ExitCode::system_failure,
+                      fmt::format("the run was ended from outside (rank {} of {} got SIGTERM); finished pictures stay, "
+                                  "and the same command with --resume goes on from there",
+                                  rank_of_run, size_of_run));
 }
 
 void expect_end() { is_ending = true; }

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -18,26 +20,34 @@
 #include "apps/generate_command.hpp"
 #include "apps/info_command.hpp"
 #include "apps/job.hpp"
+#include "apps/one_line.hpp"
 #include "apps/render_command.hpp"
 #include "apps/render_options.hpp"
+#include "apps/stall_options.hpp"
 #include "apps/timing_command.hpp"
 #include "apps/volume_input.hpp"
 #include "apps/volume_options.hpp"
 #include "compositor/instruction_sets.hpp"
+#include "io/atomic_file.hpp"
 #include "io/time_series.hpp"
 #include "scene/error.hpp"
+#include "scene/start_thread.hpp"
 
 namespace tessera::apps {
 namespace {
 
 using scene::ExitCode;
 
-/// One line whatever the message holds: file names may contain line breaks, and libraries' messages do.
+/// One line whatever the message holds: file names may contain line breaks, and libraries' messages do. Nothing if the
+/// run's line has been said.
 int fail(ExitCode code, std::string_view message) {
+  if (!may_speak()) return static_cast<int>(code);
   std::string line = "tessera: ";
   for (const char c : message) line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
   while (line.ends_with(' ')) line.pop_back();
   fmt::print(stderr, "{}\n", line);
+  std::fflush(stderr);
+  hold_one_line();
   return static_cast<int>(code);
 }
 
@@ -60,8 +70,10 @@ ExitCode run(int argc, char** argv, Job& job) {
   app.require_subcommand(1);
 
   RenderWords words;
+  StallWords stall_words;
   auto* render_command = app.add_subcommand("render", "Render a mesh or a volume to pictures");
   add_render_options(*render_command, words);
+  add_stall_options(*render_command, stall_words);
 
   bool as_json = false;
   auto* info_command = app.add_subcommand("info", "Say what a mesh or volume holds and how it would be rendered");
@@ -126,7 +138,11 @@ ExitCode run(int argc, char** argv, Job& job) {
     throw scene::bad_input(fmt::format("arguments: {}; see {}", error.what(), help));
   }
 
-  if (*render_command) return render(render_options(words), transport);
+  if (*render_command) {
+    const RenderOptions options = render_options(words);
+    if (const auto stalls = stall_settings(stall_words, words.quiet)) job.watch_stalls(*stalls);
+    return render(options, transport);
+  }
   if (!job.is_first()) return ExitCode::complete;  // the other commands are for one process
   if (*info_command) {
     if (check && is_volume_input(words)) {
@@ -163,22 +179,35 @@ using tessera::scene::ExitCode;
 Error as_error() {
   try {
     throw;
+  } catch (const tessera::io::OutputFault& fault) {
+    return fault.since_changed();  // every command has looked at its outputs before it began
   } catch (const Error& error) {
     return error;
   } catch (const std::bad_alloc&) {
     return {ExitCode::system_failure,
             "memory: this run needs more than there is; make --size smaller or use a machine with more"};
   } catch (const std::exception& error) {
+    if (const auto of_threads = tessera::scene::thread_fault(error)) return *of_threads;
     return {ExitCode::system_failure, fmt::format("unexpected: {}; please report", error.what())};
   } catch (...) {
     return {ExitCode::system_failure, "unexpected: unknown exception; please report"};
   }
 }
 
+/// An exception that nobody caught: on a thread of oneTBB's, say, which cannot start another.
+[[noreturn]] void on_terminate() {
+  static std::atomic<bool> again = false;
+  if (std::current_exception() == nullptr || again.exchange(true)) std::abort();
+  const Error error = as_error();
+  tessera::apps::fail(error.code(), error.what());
+  std::_Exit(static_cast<int>(error.code()));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   using tessera::apps::fail;
+  std::set_terminate(on_terminate);
   std::optional<tessera::apps::Job> job;
   try {
     job.emplace([](const Error& error) { fail(error.code(), error.what()); });

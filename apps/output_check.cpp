@@ -33,7 +33,7 @@ void check_fits_memory(scene::ImageSize size) {
 
 void check_output_file(const std::filesystem::path& output, const std::filesystem::path& input) {
   check_not_input(output, input);
-  const io::AtomicFile probe(output);  // never committed: leaves no trace
+  io::check_writable(output);
 }
 
 void check_outputs(const RenderOptions& options, const std::vector<Frame>& frames) {
@@ -54,17 +54,17 @@ void check_outputs(const RenderOptions& options, const std::vector<Frame>& frame
       check_new(output);
       for (const auto& file : frame.mesh.files) check_not_input(output, file);
       if (frame.finished) continue;
-      // Asking the file system once a folder is enough, but for names that exist.
+      // Asking the file system once a folder and length of name is enough, but for names that exist.
       std::error_code unknown;
-      if (folders.insert(output.parent_path() / output.extension()).second ||
-          std::filesystem::exists(output, unknown) || unknown)
+      const std::string kind = fmt::format("{}{}", output.filename().native().size(), output.extension().string());
+      if (folders.insert(output.parent_path() / kind).second || std::filesystem::exists(output, unknown) || unknown)
         io::check_image_path(output);
     }
   }
   for (const auto& output : {options.report, options.timing})
     if (!output.empty()) {
       check_new(output);
-      const io::AtomicFile probe(output);
+      io::check_writable(output);
     }
 }
 

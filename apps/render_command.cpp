@@ -75,6 +75,7 @@ class Run {
   /// Makes the frame's step the one at hand. The last one's memory goes before the next one's comes.
   void hold(const Frame& frame) {
     if (frame.step != step_) {
+      require_still_there(frame);
       renderer_.reset();
       file_ = {};
       file_ = read(frame, later_options_);

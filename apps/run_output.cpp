@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <thread>
 
 #include "io/atomic_file.hpp"
 #include "io/image_deep_exr.hpp"
+#include "scene/threads.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -35,7 +35,7 @@ RunOutput::RunOutput(const RenderOptions& options, const std::vector<Frame>& fra
       frames_(frames),
       progress_(options.progress, frames.size()),
       report_{{"program", "tessera"}, {"version", TESSERA_VERSION}, {"method", method_json(options)}},
-      frame_reports_(Json::array()) {}
+      frame_reports_(!options.report.empty()) {}
 
 void RunOutput::describe(MeshSummary mesh, io::LoadedTransferFunction transfer_function) {
   mesh_ = std::move(mesh);
@@ -43,12 +43,12 @@ void RunOutput::describe(MeshSummary mesh, io::LoadedTransferFunction transfer_f
 }
 
 void RunOutput::skip(const Frame& frame) {
-  frame_reports_.push_back(frame_json(frame, nullptr));
+  if (frame_reports_.kept()) frame_reports_.add(frame_json(frame, nullptr));
   progress_.update(++done_, rendered_);
 }
 
 void RunOutput::add(const Frame& frame, const FrameRecord& record) {
-  frame_reports_.push_back(frame_json(frame, &record));
+  if (frame_reports_.kept()) frame_reports_.add(frame_json(frame, &record));
   if (rendered_ == 0 && !options_.quiet) {
     progress_.clear();
     fmt::print(stderr, "{}\n", run_line(options_, *mesh_, *transfer_function_, frames_, frame, record));
@@ -74,18 +74,21 @@ scene::ExitCode RunOutput::finish() {
     fmt::print(stderr, "{}: all {} frames are there already, nothing rendered\n", options_.input.string(),
                frames_.size());
   }
-  report_["frames"] = frame_reports_;
-  if (!options_.report.empty()) write_json(report_, options_.report);
+  if (!options_.report.empty()) frame_reports_.write(report_, options_.report);
   return met_ ? scene::ExitCode::complete : scene::ExitCode::accuracy_not_met;
 }
 
 void write_pictures(const scene::Image& image, const scene::DeepImage& deep, const Frame& frame,
                     const RenderOptions& options) {
-  for (const auto& output : frame.outputs) {
-    if (io::is_deep_name(output))
-      io::write_deep_exr(deep, output);
-    else
-      io::write_image(image, output, options.image);
+  try {
+    for (const auto& output : frame.outputs) {
+      if (io::is_deep_name(output))
+        io::write_deep_exr(deep, output);
+      else
+        io::write_image(image, output, options.image);
+    }
+  } catch (const io::OutputFault& fault) {
+    throw fault.since_changed();
   }
 }
 
@@ -98,8 +101,7 @@ io::TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const F
   traced.frames = static_cast<int>(rendered) * std::max(options.repeat, 1);
   traced.width = frame.size.width;
   traced.height = frame.size.height;
-  traced.threads =
-      options.settings.threads > 0 ? options.settings.threads : static_cast<int>(std::thread::hardware_concurrency());
+  traced.threads = scene::threads_for(options.settings.threads);
   traced.rasterizer = method.value("rasterizer", "planes");
   traced.integrator = method.at("integrator");
   return traced;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "apps/frame_list.hpp"
+#include "apps/frame_reports.hpp"
 #include "apps/mesh_input.hpp"
 #include "apps/progress.hpp"
 #include "apps/report.hpp"
@@ -39,12 +40,14 @@ class RunOutput {
   Progress progress_;
   std::optional<MeshSummary> mesh_;
   std::optional<io::LoadedTransferFunction> transfer_function_;
-  nlohmann::ordered_json report_, frame_reports_;
+  nlohmann::ordered_json report_;
+  FrameReports frame_reports_;
   bool met_ = true;
   std::size_t done_ = 0, rendered_ = 0;
 };
 
-/// Writes a frame's pictures, deep ones from `deep`.
+/// Writes a frame's pictures, deep ones from `deep`. Throws scene::Error(system_failure) if that cannot be done any
+/// more, as check_outputs() found it could.
 void write_pictures(const scene::Image& image, const scene::DeepImage& deep, const Frame& frame,
                     const RenderOptions& options);
 

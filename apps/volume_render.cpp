@@ -10,6 +10,7 @@
 #include "apps/brick_memory.hpp"
 #include "apps/distributed_render.hpp"
 #include "apps/frame_list.hpp"
+#include "apps/frame_reports.hpp"
 #include "apps/mesh_input.hpp"
 #include "apps/output_check.hpp"
 #include "apps/run_output.hpp"
@@ -132,11 +133,12 @@ class VolumeRun {
   void skip(const Frame& frame) {
     ++done_;
     if (!speaks_) return;
-    frame_reports_.push_back(volume_frame_json(options_, frame, nullptr));
+    if (frame_reports_.kept()) frame_reports_.add(volume_frame_json(options_, frame, nullptr));
     progress_.update(done_, rendered_);
   }
 
   void open(const Frame& frame) {
+    require_still_there(frame);
     renderer_.reset();
     file_ = {};
     const std::filesystem::path& path = frame.mesh.files.front();
@@ -206,8 +208,12 @@ class VolumeRun {
     scene::Image shown = finished.image;
     draw_bricks(shown, camera, file_.source->geometry(), renderer_->visible_bricks(loaded_.function), finished.split);
     const scene::Image cost = cost_picture(finished.cost, frame.size, finished.split);
-    for (std::size_t i = 0; i < frame.outputs.size(); ++i)
-      io::write_image(2 * i < frame.outputs.size() ? shown : cost, frame.outputs[i], options_.image);
+    Frame of_volume = frame, of_cost = frame;
+    const auto half = static_cast<std::ptrdiff_t>(frame.outputs.size() / 2);
+    of_volume.outputs.erase(of_volume.outputs.begin() + half, of_volume.outputs.end());
+    of_cost.outputs.erase(of_cost.outputs.begin(), of_cost.outputs.begin() + half);
+    write_pictures(shown, deep, of_volume, options_);
+    write_pictures(cost, deep, of_cost, options_);
   }
 
   /// On rank 0.
@@ -220,7 +226,7 @@ class VolumeRun {
       const scene::TraceScope scope(trace(), "verify");
       record.verification = verified(finished.image, *file_.source, record.camera, loaded_.function, options_);
     }
-    frame_reports_.push_back(volume_frame_json(options_, frame, &record));
+    if (frame_reports_.kept()) frame_reports_.add(volume_frame_json(options_, frame, &record));
     progress_.clear();
     if (rendered_ == 1 && !options_.quiet)
       fmt::print(stderr, "{}\n", volume_run_line(options_, file_, loaded_, frames_, frame, record));
@@ -254,8 +260,7 @@ class VolumeRun {
       fmt::print(stderr, "{}: all {} frames are there already, nothing rendered\n", options_.input.string(),
                  frames_.size());
     }
-    report["frames"] = frame_reports_;
-    if (!options_.report.empty()) write_json(report, options_.report);
+    if (!options_.report.empty()) frame_reports_.write(report, options_.report);
     return met_ ? scene::ExitCode::complete : scene::ExitCode::accuracy_not_met;
   }
 
@@ -275,7 +280,7 @@ class VolumeRun {
   std::optional<volume::Renderer> renderer_;
   const std::uint64_t resident_ = resident_bytes();
 
-  Json frame_reports_ = Json::array();
+  FrameReports frame_reports_{!options_.report.empty()};
   std::size_t done_ = 0, rendered_ = 0;
   bool met_ = true;
 };

@@ -10,13 +10,14 @@
 
 #include "compositor/gl_kernel.hpp"
 #include "scene/error.hpp"
+#include "scene/start_thread.hpp"
 
 namespace tessera::compositor {
 
 class GlCompositor::Worker {
  public:
   Worker(gl::Platform platform, const GlSettings& settings, scene::Trace* trace)
-      : settings_(settings), trace_(trace), thread_([this, platform] { live(platform); }) {}
+      : settings_(settings), trace_(trace), thread_(scene::start_thread([this, platform] { live(platform); })) {}
   ~Worker() {
     {
       const std::lock_guard lock(mutex_);

@@ -7,7 +7,7 @@ bool launched_by_mpi() { return false; }
 
 class MpiTransport::Engine {};
 
-MpiTransport::MpiTransport(Speak, std::function<void()>, std::chrono::milliseconds) {
+MpiTransport::MpiTransport(Hooks, std::chrono::milliseconds) {
   throw scene::Error(scene::ExitCode::system_failure, "MPI: this program was built without it (TESSERA_MPI=OFF)");
 }
 MpiTransport::~MpiTransport() = default;
@@ -19,6 +19,8 @@ void MpiTransport::send(int, Channel, Bytes, std::int32_t) {}
 std::optional<Message> MpiTransport::receive(Channel, std::chrono::milliseconds) { return std::nullopt; }
 void MpiTransport::fail(const scene::Error&) {}
 void MpiTransport::check() const {}
+void MpiTransport::set_working(bool) {}
+void MpiTransport::watch_stalls(const StallSettings&) {}
 void MpiTransport::trace_to(scene::Trace*, scene::Trace*) {}
 Transport::Traffic MpiTransport::sent(Channel) const { return {}; }
 

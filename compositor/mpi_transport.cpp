@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 #include <mpi.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstdlib>
@@ -13,7 +15,9 @@
 #include <mutex>
 #include <thread>
 
+#include "compositor/heartbeats.hpp"
 #include "compositor/mailboxes.hpp"
+#include "scene/start_thread.hpp"
 
 namespace tessera::compositor {
 namespace {
@@ -26,6 +30,7 @@ constexpr int fault_tag = 100;    // a rank to rank 0: I have failed (code, word
 constexpr int verdict_tag = 101;  // rank 0 to all: the run's error (code, words)
 constexpr int done_tag = 102;     // a rank to rank 0: nothing more will come from me
 constexpr int clear_tag = 103;    // rank 0 to all: nothing more will come from anyone
+constexpr int beat_tag = 104;     // heartbeats.hpp
 
 // Naps of the engine between two looks at MPI: a look costs 20 to 30 us of a core that projects or composites. They
 // double while nothing comes; messages on their way need looks to get on.
@@ -36,12 +41,21 @@ constexpr Naps idle_naps{microseconds(100), microseconds(500), microseconds(2000
 // While the rank's cores project, a look in time for the next part of the frame is soon enough.
 constexpr Naps working_naps{microseconds(2000), microseconds(2000), microseconds(5000)};
 
+/// For the others to hear of the error that a stalled rank is; at most the transport's patience.
+constexpr auto stall_grace = std::chrono::seconds(1);
+
 Bytes error_bytes(const scene::Error& error) {
   const std::string words = error.what();
   Bytes bytes(1 + words.size());
   bytes[0] = static_cast<std::byte>(error.code());
   std::memcpy(bytes.data() + 1, words.data(), words.size());
   return bytes;
+}
+
+std::string process_name() {
+  std::array<char, 256> host{};
+  gethostname(host.data(), host.size() - 1);
+  return fmt::format("process {} on {}", getpid(), host.data());
 }
 
 scene::Error error_from(const Bytes& bytes) {
@@ -61,8 +75,8 @@ bool launched_by_mpi() {
 /// The thread that speaks MPI, and what it shares with the others.
 class MpiTransport::Engine {
  public:
-  Engine(Speak speak, std::function<void()> on_fault, std::chrono::milliseconds patience)
-      : speak_(std::move(speak)), on_fault_(std::move(on_fault)), patience_(patience), thread_([this] { run(); }) {
+  Engine(Hooks hooks, std::chrono::milliseconds patience)
+      : hooks_(std::move(hooks)), patience_(patience), thread_(scene::start_thread([this] { run(); })) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return started_; });
     if (start_error_) {
@@ -114,6 +128,11 @@ class MpiTransport::Engine {
       working_ = working;
     }
     if (!working) changed_.notify_all();
+  }
+
+  void watch_stalls(const StallSettings& settings) {
+    const std::lock_guard lock(mutex_);
+    stalls_ = settings;
   }
 
   /// What was sent before is on the old faces when this returns.
@@ -196,6 +215,7 @@ class MpiTransport::Engine {
         fail(error);
         give_up(error);  // MPI itself is broken: no words will reach anyone
       }
+      look_for_stalls();
       settle_faults();
       settle_end();
       if (all_clear_) break;
@@ -282,7 +302,11 @@ class MpiTransport::Engine {
       int here = 0;
       checked(MPI_Test(&first.request, &here, MPI_STATUS_IGNORE), "receive");
       if (here == 0) break;
+      if (heartbeats_ && first.tag != beat_tag) heartbeats_->heard(first.from);
       switch (first.tag) {
+        case beat_tag:
+          if (heartbeats_) heartbeats_->take(first.from, first.bytes);
+          break;
         case fault_tag:
           decide(error_from(first.bytes));
           break;
@@ -312,12 +336,31 @@ class MpiTransport::Engine {
   }
 
   void conclude(const scene::Error& error) {
-    if (!mailboxes.failed()) on_fault_();
+    if (!mailboxes.failed() && hooks_.on_fault) hooks_.on_fault();
     mailboxes.fail(error);
     if (!deadline_) deadline_ = Clock::now() + patience_;
   }
 
+  void look_for_stalls() {
+    {
+      const std::lock_guard lock(mutex_);
+      if (stalls_ && size > 1) heartbeats_.emplace(rank, size, *stalls_, process_name(), Clock::now());
+      stalls_.reset();
+    }
+    if (!heartbeats_) return;
+    for (auto& message : heartbeats_->turn(Clock::now())) enqueue({message.to, beat_tag, std::move(message.bytes)});
+    if (!heartbeats_->lost() || mailboxes.failed()) return;
+    lost_at_ = Clock::now();
+    if (rank == 0) return decide(heartbeats_->lost()->error);
+    // Rank 0 itself: this rank decides in its place.
+    for (int other = 1; other < size; ++other)
+      if (other != rank) enqueue({other, verdict_tag, error_bytes(heartbeats_->lost()->error)});
+    conclude(heartbeats_->lost()->error);
+  }
+
   void settle_faults() {
+    if (!asked_to_end_ && hooks_.asked_to_end)
+      if ((asked_to_end_ = hooks_.asked_to_end())) fail(*asked_to_end_);
     std::optional<scene::Error> fault;
     {
       const std::lock_guard lock(mutex_);
@@ -337,7 +380,7 @@ class MpiTransport::Engine {
   }
 
   [[noreturn]] void give_up(const scene::Error& error) {
-    speak_(error);
+    hooks_.speak(error);
     std::_Exit(static_cast<int>(error.code()));
   }
 
@@ -345,7 +388,12 @@ class MpiTransport::Engine {
   void settle_end() {
     {
       const std::lock_guard lock(mutex_);
-      if (!finishing_ || !queue_.empty() || !pending_.empty() || (own_fault_ && !mailboxes.failed())) return;
+      if (!finishing_) return;
+      // A stalled rank takes nothing and will not say that it is done, and MPI cannot end without it: once the others
+      // have had the time to hear of the error, this rank speaks and leaves the rest to the launcher.
+      if (lost_at_ && ((rank == 0 && ranks_done_ >= size - 2) || Clock::now() > *lost_at_ + stall_grace))
+        give_up(*mailboxes.error());
+      if (!queue_.empty() || !pending_.empty() || (own_fault_ && !mailboxes.failed())) return;
     }
     if (!done_told_) {
       done_told_ = true;
@@ -355,15 +403,14 @@ class MpiTransport::Engine {
         enqueue({0, done_tag, {}});
     }
     if (rank == 0 && ranks_done_ == size) {
-      if (mailboxes.failed()) speak_(*mailboxes.error());
+      if (mailboxes.failed()) hooks_.speak(*mailboxes.error());
       for (int other = 1; other < size; ++other) enqueue({other, clear_tag, {}});
       post();
       all_clear_ = true;
     }
   }
 
-  Speak speak_;
-  std::function<void()> on_fault_;
+  Hooks hooks_;
   std::chrono::milliseconds patience_;
 
   std::mutex mutex_;  // guards what follows
@@ -372,11 +419,15 @@ class MpiTransport::Engine {
   scene::Trace *projecting_ = nullptr, *compositing_ = nullptr;  // changed while nothing is being posted
   std::deque<Outgoing> queue_;
   std::optional<scene::Error> own_fault_, start_error_;
+  std::optional<StallSettings> stalls_;  ///< until the engine has begun to watch
   bool started_ = false, finishing_ = false, fault_told_ = false, working_ = false;
 
   // The engine's thread alone.
   std::list<Outgoing> pending_;
   std::deque<Incoming> arriving_;
+  std::optional<Heartbeats> heartbeats_;
+  std::optional<Clock::time_point> lost_at_;  ///< when this rank ended the run for another's silence
+  std::optional<scene::Error> asked_to_end_;
   std::optional<Clock::time_point> deadline_;
   int ranks_done_ = 0;
   bool done_told_ = false, all_clear_ = false;
@@ -384,8 +435,8 @@ class MpiTransport::Engine {
   std::thread thread_;  // last: it uses all of the above
 };
 
-MpiTransport::MpiTransport(Speak speak, std::function<void()> on_fault, std::chrono::milliseconds patience)
-    : engine_(std::make_unique<Engine>(std::move(speak), std::move(on_fault), patience)) {}
+MpiTransport::MpiTransport(Hooks hooks, std::chrono::milliseconds patience)
+    : engine_(std::make_unique<Engine>(std::move(hooks), patience)) {}
 MpiTransport::~MpiTransport() = default;
 
 std::optional<scene::Error> MpiTransport::finish() { return engine_->finish(); }
@@ -399,6 +450,7 @@ std::optional<Message> MpiTransport::receive(Channel channel, std::chrono::milli
 }
 void MpiTransport::fail(const scene::Error& error) { engine_->fail(error); }
 void MpiTransport::set_working(bool working) { engine_->set_working(working); }
+void MpiTransport::watch_stalls(const StallSettings& settings) { engine_->watch_stalls(settings); }
 void MpiTransport::check() const { engine_->mailboxes.check(); }
 void MpiTransport::trace_to(scene::Trace* projecting, scene::Trace* compositing) {
   engine_->trace_to(projecting, compositing);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "compositor/heartbeats.hpp"
 #include "compositor/transport.hpp"
 
 namespace tessera::compositor {
@@ -20,18 +21,29 @@ bool launched_by_mpi();
 ///
 /// Faults: a rank that fails tells rank 0, which decides on the first one it hears of and tells all. A rank that cannot
 /// end in an orderly way within `patience` after that (it hangs in a read, or its peers are gone) speaks and
-/// ends the process. The death of a process is the launcher's to notice: it ends the other ranks by SIGTERM.
+/// ends the process. The death of a process is the launcher's to notice: it ends the other ranks by SIGTERM. A process
+/// that stands still is noticed by heartbeats (watch_stalls(), heartbeats.hpp).
 class MpiTransport final : public Transport {
  public:
   using Speak = std::function<void(const scene::Error& error)>;
 
-  /// Starts MPI. Throws Error(system_failure) if that fails. `speak` tells the user of the run's error, from any
-  /// thread: on rank 0 before any rank can end, because a launcher ends all ranks as soon as one ends with an error; on
-  /// others as a last resort.
-  /// `on_fault` is called once on every rank as soon as it knows of the error: from then on the launcher may end it.
-  MpiTransport(Speak speak, std::function<void()> on_fault,
-               std::chrono::milliseconds patience = std::chrono::seconds(5));
+  /// What the transport asks of its process.
+  struct Hooks {
+    /// Tells the user of the run's error, from any thread: on rank 0 before any rank can end, because a launcher ends
+    /// all ranks as soon as one ends with an error; on others as a last resort.
+    Speak speak;
+    /// Called once on every rank as soon as it knows of the error: from then on the launcher may end it.
+    std::function<void()> on_fault;
+    /// The error, if somebody wants this rank to end. Looked at every few milliseconds; may be empty.
+    std::function<std::optional<scene::Error>()> asked_to_end;
+  };
+
+  /// Starts MPI. Throws Error(system_failure) if that fails.
+  explicit MpiTransport(Hooks hooks, std::chrono::milliseconds patience = std::chrono::seconds(5));
   ~MpiTransport() override;
+
+  /// Looks for stalled ranks from now on. Every rank calls this, with the same settings but for `say`.
+  void watch_stalls(const StallSettings& settings);
 
   /// The end of every rank's part, after its last send and receive, after an error too: waits until all ranks are here
   /// and shuts MPI down. Returns the run's error if there is one.

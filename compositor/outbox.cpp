@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "compositor/image_assembly.hpp"
+#include "scene/start_thread.hpp"
 
 namespace tessera::compositor {
 namespace {
@@ -17,7 +18,7 @@ Outbox::Outbox(Transport& transport, Settings settings) : transport_(transport),
     lanes_.emplace_back();
     lanes_.back().rank = rank;
   }
-  credit_thread_ = std::thread([this] { take_credit(); });
+  credit_thread_ = scene::start_thread([this] { take_credit(); });
 }
 
 Outbox::~Outbox() {

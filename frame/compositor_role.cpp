@@ -13,6 +13,7 @@
 #include "compositor/image_assembly.hpp"
 #include "compositor/tile_merger.hpp"
 #include "frame/distributed_roles.hpp"
+#include "frame/run_error.hpp"
 #include "frame/worker_threads.hpp"
 #include "projection/planes_rasterizer.hpp"
 #include "scene/threads.hpp"
@@ -25,7 +26,7 @@ using compositor::Channel;
 /// Workers that feed a device wait for it with a tile each: a few more keep tiles in flight.
 int worker_count(const DistributedRun& run) {
   constexpr int tiles_in_flight = 6;
-  return scene::threads_or_cores(run.settings.render.threads) + (run.device.device != nullptr ? tiles_in_flight : 0);
+  return scene::threads_for(run.settings.render.threads) + (run.device.device != nullptr ? tiles_in_flight : 0);
 }
 
 /// A frame at its compositor.
@@ -66,7 +67,8 @@ class CompositorLoop {
         budget_(exchange_budget(run.settings)),
         trace_(run.settings.compositing),
         credit_(run.settings.roles.projectors.size()),
-        workers_(worker_count(run), [&](const std::exception& error) { fail(error); }) {
+        workers_(worker_count(run),
+                 [&](const std::exception& fault) { run_.transport.fail(run_error(run_.transport, fault)); }) {
     const auto& ranks = run.settings.roles.compositors;
     self_ = static_cast<int>(std::find(ranks.begin(), ranks.end(), run.transport.rank()) - ranks.begin());
   }
@@ -91,15 +93,6 @@ class CompositorLoop {
     const std::lock_guard lock(mutex_);
     for (std::size_t p = 0; p < credit_.size(); ++p) pay_out(p);
     return {-1, {}};
-  }
-
-  void fail(const std::exception& error) {
-    const auto* known = dynamic_cast<const scene::Error*>(&error);
-    run_.transport.fail(known != nullptr
-                            ? *known
-                            : scene::Error(scene::ExitCode::system_failure,
-                                           fmt::format("rank {} of {}: unexpected: {}; please report",
-                                                       run_.transport.rank(), run_.transport.size(), error.what())));
   }
 
   Frame& frame(std::uint32_t number) {

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "frame/distributed_roles.hpp"
+#include "frame/run_error.hpp"
 #include "scene/error.hpp"
+#include "scene/start_thread.hpp"
 
 namespace tessera::frame {
 
@@ -94,20 +96,16 @@ void render_distributed(compositor::Transport& transport, const DistributedSetti
   const auto guarded = [&](const std::function<void()>& part) {
     try {
       part();
-    } catch (const scene::Error& error) {
-      transport.fail(error);
-    } catch (const std::bad_alloc&) {
-      transport.fail({scene::ExitCode::system_failure,
-                      fmt::format("rank {} of {}: needs more memory than there is; use more ranks, or lower --memory",
-                                  self, transport.size())});
-    } catch (const std::exception& error) {
-      transport.fail({scene::ExitCode::system_failure, fmt::format("rank {} of {}: unexpected: {}; please report", self,
-                                                                   transport.size(), error.what())});
+    } catch (const std::exception& fault) {
+      transport.fail(run_error(transport, fault));
     }
   };
   std::vector<std::thread> threads;
-  for (std::size_t i = 1; i < parts.size(); ++i) threads.emplace_back([&, i] { guarded(parts[i]); });
-  if (!parts.empty()) guarded(parts.front());  // projection, where there is one, on the calling thread
+  guarded([&] {
+    for (std::size_t i = 1; i < parts.size(); ++i)
+      threads.push_back(scene::start_thread([&, i] { guarded(parts[i]); }));
+    parts.front()();  // projection, where there is one, on the calling thread
+  });
   for (auto& thread : threads) thread.join();
   transport.check();
 }

@@ -118,10 +118,7 @@ void order_corners(scene::TetMesh& mesh, const RenderSettings& settings) {
 
 FrameProjector::FrameProjector(const scene::TetMesh& mesh, const RenderSettings& settings)
     : settings_(checked(settings)),
-      parallelism_(tbb::global_control::max_allowed_parallelism,
-                   static_cast<std::size_t>(
-                       std::max(scene::threads_or_cores(settings.threads), tbb::info::default_concurrency()))),
-      arena_(scene::threads_or_cores(settings.threads)),
+      arena_(scene::threads_for(settings.threads)),
       prepared_(arena_.execute([&] {
         const scene::TraceScope timing(settings.trace, "prepare");
         return projection::PreparedMesh(mesh);

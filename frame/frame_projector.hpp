@@ -1,6 +1,5 @@
 #pragma once
 
-#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include <functional>
@@ -55,7 +54,6 @@ class FrameProjector {
   void place_on_lattice(const projection::Lattice& lattice, bool perspective);
 
   RenderSettings settings_;
-  tbb::global_control parallelism_;  ///< more threads than cores, where asked for, without oneTBB's warning
   tbb::task_arena arena_;
   projection::PreparedMesh prepared_;
   scene::Box box_;

@@ -1,13 +1,22 @@
 #include "frame/worker_threads.hpp"
 
+#include "scene/start_thread.hpp"
+
 namespace tessera::frame {
 
 WorkerThreads::WorkerThreads(int count, std::function<void(const std::exception&)> on_error)
     : on_error_(std::move(on_error)) {
-  for (int i = 0; i < count; ++i) threads_.emplace_back([this] { work(); });
+  try {
+    for (int i = 0; i < count; ++i) threads_.push_back(scene::start_thread([this] { work(); }));
+  } catch (...) {  // no destructor will end those that have begun
+    end();
+    throw;
+  }
 }
 
-WorkerThreads::~WorkerThreads() {
+WorkerThreads::~WorkerThreads() { end(); }
+
+void WorkerThreads::end() {
   {
     const std::lock_guard lock(mutex_);
     ending_ = true;

@@ -14,7 +14,8 @@ namespace tessera::frame {
 /// of oneTBB's workers while it waits for what these threads do.
 class WorkerThreads {
  public:
-  /// `on_error` is called from the failing thread with a task's exception; later tasks still run.
+  /// `on_error` is called from the failing thread with a task's exception; later tasks still run. Throws
+  /// Error(system_failure) if the system does not give so many threads.
   WorkerThreads(int count, std::function<void(const std::exception&)> on_error);
   /// Drops tasks that have not begun and waits for those that have.
   ~WorkerThreads();
@@ -25,6 +26,7 @@ class WorkerThreads {
 
  private:
   void work();
+  void end();
 
   std::function<void(const std::exception&)> on_error_;
   std::mutex mutex_;

@@ -1,7 +1,8 @@
 #include "gl/timer.hpp"
 
 #include <algorithm>
-#include <thread>
+
+#include "scene/start_thread.hpp"
 
 namespace tessera::gl {
 
@@ -9,7 +10,7 @@ StageTimer::StageTimer(const Context& context, scene::Trace* trace) : context_(&
   if (trace_ == nullptr) return;
   // Rows are threads: the device has the number of one that does nothing else, and lives as long, as a number may go to
   // the next thread.
-  row_thread_ = std::thread([this] {
+  row_thread_ = scene::start_thread([this] {
     row_ = trace_->thread_number();
     numbered_.release();
     ended_.acquire();

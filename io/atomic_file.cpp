@@ -9,8 +9,6 @@
 #include <cerrno>
 #include <system_error>
 
-#include "scene/error.hpp"
-
 namespace tessera::io {
 namespace {
 
@@ -42,20 +40,35 @@ bool user_can_mend(int error_number) {
 
 }  // namespace
 
+scene::Error OutputFault::since_changed() const {
+  if (code() == scene::ExitCode::system_failure) return *this;
+  return {scene::ExitCode::system_failure,
+          fault_ + "; it could be written when the run began, see what has removed or closed the folder since"};
+}
+
+void check_writable(const fs::path& target) {
+  try {
+    const AtomicFile probe(target);  // never committed: leaves no trace
+  } catch (const OutputFault& fault) {
+    throw scene::Error(fault.code(), fault.what());
+  }
+}
+
 AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
   if (target_.filename().empty()) fail(EISDIR, "cannot be written");
   struct stat present {};
   if (::stat(target_.c_str(), &present) == 0) {
     if (S_ISDIR(present.st_mode)) fail(EISDIR, "cannot be written");
     if (!S_ISREG(present.st_mode))
-      throw scene::bad_input(
-          fmt::format("{}: is not a regular file; outputs are replaced as a whole, name a file", target_.string()));
+      throw OutputFault(scene::ExitCode::bad_input, fmt::format("{}: is not a regular file", target_.string()),
+                        "outputs are replaced as a whole, name a file");
   } else if (errno != ENOENT) {
     fail(errno, "cannot be written");
   }
   descriptor_ = ::open(folder_of(target_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
   // EISDIR and EOPNOTSUPP are how kernels and file systems without O_TMPFILE say so; any other failure will show again.
   if (descriptor_ < 0) open_named();
+  begun_ = true;
 }
 
 void AtomicFile::open_named() {
@@ -148,9 +161,11 @@ void AtomicFile::fail(int error_number, const char* doing) const {
     default:
       break;
   }
-  throw scene::Error(
+  const OutputFault fault(
       user_can_mend(error_number) ? scene::ExitCode::bad_input : scene::ExitCode::system_failure,
-      fmt::format("{}: {}: {}; {}", target_.string(), doing, std::generic_category().message(error_number), remedy));
+      fmt::format("{}: {}: {}", target_.string(), doing, std::generic_category().message(error_number)), remedy);
+  if (begun_ && user_can_mend(error_number)) throw fault.since_changed();
+  throw fault;
 }
 
 }  // namespace tessera::io

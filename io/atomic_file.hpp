@@ -3,17 +3,38 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
+#include "scene/error.hpp"
+
 namespace tessera::io {
+
+/// An output cannot be written. Whose fault it is depends on when: Error(bad_input) where the user can mend it (no such
+/// folder, no permission, the target is a folder or device), as long as nothing has been begun; who has found before
+/// that it could be written calls since_changed().
+class OutputFault : public scene::Error {
+ public:
+  OutputFault(scene::ExitCode code, const std::string& fault, const std::string& remedy)
+      : Error(code, fault + "; " + remedy), fault_(fault) {}
+  /// The same as Error(system_failure): something has removed or closed the folder since.
+  [[nodiscard]] scene::Error since_changed() const;
+
+ private:
+  std::string fault_;
+};
+
+/// Before a run: begins such a file as AtomicFile is, and leaves it. Throws a plain Error, which is not OutputFault, so
+/// that a run's own faults can be told from those that were there before it.
+void check_writable(const std::filesystem::path& target);
 
 /// An output file that appears whole, by rename, or not at all.
 ///
 /// Writing goes to a nameless file in the target's folder (O_TMPFILE), so that even a killed process leaves nothing;
 /// where the file system has no such thing, to `.tessera-PID-N.part` beside the target, removed by the destructor.
-/// Only commit() makes the target appear, or replaces it, after fsync. Throws Error(bad_input) where the user can mend
-/// it (no such folder, no permission, the target is a folder or device), Error(system_failure) for a full or failing
-/// disk; the messages name the target.
+/// Only commit() makes the target appear, or replaces it, after fsync. Throws OutputFault: bad_input only from the
+/// constructor, system_failure for a full or failing disk and for whatever happens after the constructor. The messages
+/// name the target.
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path target);
@@ -39,6 +60,7 @@ class AtomicFile {
 
   std::filesystem::path target_, part_;  ///< part_ empty while nameless
   int descriptor_ = -1;
+  bool begun_ = false;
   std::uint64_t position_ = 0;
 };
 

@@ -106,7 +106,7 @@ scene::Image read_image(const std::filesystem::path& file) {
 void check_image_path(const std::filesystem::path& file) {
   if (format_of(file) == Format::unknown) throw unknown_extension(file);
   // The only test that holds for every file system and user: begin such a file, and leave it.
-  const AtomicFile probe(file);
+  check_writable(file);
 }
 
 }  // namespace tessera::io

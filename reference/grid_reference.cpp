@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "scene/error.hpp"
+#include "scene/threads.hpp"
 
 namespace tessera::reference {
 namespace {
@@ -205,7 +206,7 @@ Pixel GridReference::pixel(double x, double y) const {
 
 std::vector<Pixel> GridReference::pixels(std::span<const PixelIndex> wanted, int threads) const {
   std::vector<Pixel> result(wanted.size());
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(scene::threads_for(threads));
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, wanted.size(),
                       [&](std::size_t i) { result[i] = pixel(wanted[i].x + 0.5, wanted[i].y + 0.5); });

@@ -13,6 +13,7 @@
 
 #include "reference/integral.hpp"
 #include "scene/error.hpp"
+#include "scene/threads.hpp"
 
 namespace tessera::reference {
 namespace {
@@ -156,7 +157,7 @@ std::vector<Pixel> Reference::pixels(std::span<const PixelIndex> wanted, int thr
     }
   };
 
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(scene::threads_for(threads));
   arena.execute([&] {
     const std::size_t passes = (order.size() + pixels_per_pass - 1) / pixels_per_pass;
     tbb::parallel_for(std::size_t{0}, passes, [&](std::size_t i) {

@@ -1,15 +1,18 @@
 #pragma once
 
+#include <tbb/global_control.h>
 #include <tbb/info.h>
 
 #include <algorithm>
 
 namespace tessera::scene {
 
-/// The number of threads that `asked` asks for: 0 is all cores.
-inline int threads_or_cores(int asked) { return asked > 0 ? asked : tbb::info::default_concurrency(); }
-
-/// The same for work that no more threads than cores speed up.
-inline int threads_for(int asked) { return std::min(threads_or_cores(asked), tbb::info::default_concurrency()); }
+/// How many threads work gets that asks for so many; 0 asks for all cores. No more than oneTBB gives this process: its
+/// cores, unless a tbb::global_control of the caller's says otherwise. oneTBB warns on stderr of an arena that asks for
+/// more, and no work here gains by more threads than cores.
+inline int threads_for(int asked) {
+  const auto most = static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+  return std::min(asked > 0 ? asked : tbb::info::default_concurrency(), most);
+}
 
 }  // namespace tessera::scene

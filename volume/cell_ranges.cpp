@@ -11,6 +11,8 @@
 #include <mutex>
 #include <utility>
 
+#include "scene/threads.hpp"
+
 namespace tessera::volume {
 namespace {
 
@@ -105,7 +107,7 @@ CellScan scan_cells(const scene::SampleSource& source, std::int64_t first, std::
   const scene::GridIndex blocks{(voxels[0] + block_side - 1) / block_side, (voxels[1] + block_side - 1) / block_side,
                                 (last - first + layers - 1) / layers};
   std::mutex mutex;
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(scene::threads_for(threads));
   arena.execute([&] {
     tbb::parallel_for(std::int64_t{0}, blocks[0] * blocks[1] * blocks[2], [&](std::int64_t n) {
       const scene::GridIndex first_voxel{n % blocks[0] * block_side, n / blocks[0] % blocks[1] * block_side,

@@ -17,6 +17,7 @@
 #include "compositor/segment_batch.hpp"
 #include "compositor/segment_integrator.hpp"
 #include "scene/error.hpp"
+#include "scene/threads.hpp"
 #include "volume/voxel_walk.hpp"
 
 namespace tessera::volume {
@@ -90,7 +91,7 @@ scene::DeepImage deep_image(const scene::SampleSource& source, const scene::Came
     throw scene::bad_input(fmt::format("--deep-accuracy {}: it must be 1e-6 to 1", settings.accuracy));
   const VoxelRays rays(camera, size, source.geometry());
   compositor::DeepCollector collector(size, settings.memory_bytes / 2);
-  tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(scene::threads_for(settings.threads));
   arena.execute([&] {
     tbb::enumerable_thread_specific<std::unique_ptr<DeepPixels>> pixels(
         [&] { return std::make_unique<DeepPixels>(source, function, settings); });

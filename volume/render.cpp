@@ -17,6 +17,8 @@
 #include <utility>
 
 #include "scene/error.hpp"
+#include "scene/start_thread.hpp"
+#include "scene/threads.hpp"
 #include "volume/cell_ranges.hpp"
 #include "volume/cost_map.hpp"
 #include "volume/frame_view.hpp"
@@ -210,7 +212,7 @@ struct Renderer::State {
   /// Bricks near the view, while the picture is gathered and written; the next frame ends it.
   void begin_preload(std::vector<std::uint8_t> wanted) {
     stop_preload = false;
-    preloading = std::thread([this, wanted = std::move(wanted)] {
+    preloading = scene::start_thread([this, wanted = std::move(wanted)] {
       const scene::TraceScope scope(settings.trace, "prepare");
       bricks.preload(settings.preload_limit, wanted, stop_preload, settings.trace);
     });
@@ -275,7 +277,7 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
   const PixelRays rays(camera, size, source.geometry());
   const compositor::LaneTable table = table_of(transfer_function);
   std::vector<std::uint8_t> visible;
-  tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(scene::threads_for(settings.threads));
   arena.execute([&] {
     {
       const scene::TraceScope scope(settings.trace, "cull");
@@ -372,7 +374,7 @@ void Renderer::State::cast_again(const scene::Camera& camera, const scene::Trans
 void Renderer::State::cast_rectilinear(const scene::Camera& camera, const scene::TransferFunction& function,
                                        const PixelRegion& wanted, scene::Image& image, Cast& result) const {
   const compositor::LaneTable table = table_of(function);
-  tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(scene::threads_for(settings.threads));
   arena.execute([&] {
     std::vector<std::uint8_t> visible = visible_cells(ranges, table);
     show_more(ranges, bricks.layout(), !settings.use.culling, !settings.use.skipping, visible);
@@ -448,7 +450,7 @@ CostMap Renderer::cost_map(const scene::Camera& camera, scene::ImageSize size,
   const std::vector<std::uint8_t> visible = visible_cells(state.ranges, state.table_of(transfer_function));
   const bool by_voxels = state.settings.method == Method::automatic || state.settings.method == Method::exact;
   CostMap map;
-  tbb::task_arena arena(state.settings.threads > 0 ? state.settings.threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(scene::threads_for(state.settings.threads));
   arena.execute([&] {
     map = volume::cost_map(camera, size, geometry, {state.ranges.cells, visible},
                            {method, resolution, by_voxels, learned, state.length_unit,

@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <csignal>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 namespace tessera::apps {
 namespace {
@@ -32,29 +34,85 @@ std::string contents(const std::string& file) {
 
 namespace {
 
-Outcome run(const std::vector<std::string>& command, const std::filesystem::path& standard_output) {
+pid_t start(const std::vector<std::string>& command, const std::filesystem::path& standard_output,
+            const std::filesystem::path& standard_error) {
   std::vector<char*> words;
   for (const auto& word : command) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
-  const Folder folder;
-  const std::string err = folder / "err";
   const pid_t child = fork();
   if (child == 0) {
     redirect("/dev/null", O_RDONLY, STDIN_FILENO);
     redirect(standard_output.c_str(), O_WRONLY | O_CREAT, STDOUT_FILENO);
-    redirect(err.c_str(), O_WRONLY | O_CREAT, STDERR_FILENO);
+    redirect(standard_error.c_str(), O_WRONLY | O_CREAT, STDERR_FILENO);
     execvp(words.front(), words.data());
     _exit(127);
   }
+  return child;
+}
+
+int status_of(pid_t child) {
   int status = 0;
   waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+Outcome run(const std::vector<std::string>& command, const std::filesystem::path& standard_output) {
+  const Folder folder;
   Outcome outcome;
-  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  outcome.err = contents(err);
+  outcome.status = status_of(start(command, standard_output, folder / "err"));
+  outcome.err = contents(folder / "err");
   return outcome;
 }
 
+/// Words of a file of /proc, which end in zeros.
+std::vector<std::string> words_of(const std::filesystem::path& file) {
+  std::vector<std::string> words;
+  std::istringstream text(contents(file));
+  for (std::string word; std::getline(text, word, '\0');) words.push_back(word);
+  return words;
+}
+
 }  // namespace
+
+Running::Running(const std::vector<std::string>& command)
+    : process_(start(command, folder_ / "out", folder_ / "err")) {}
+
+Running::~Running() {
+  if (process_ <= 0) return;
+  kill(process_, SIGKILL);
+  waitpid(process_, nullptr, 0);
+}
+
+Outcome Running::wait() {
+  Outcome outcome;
+  outcome.status = status_of(std::exchange(process_, -1));
+  outcome.out = contents(folder_ / "out");
+  outcome.err = contents(folder_ / "err");
+  return outcome;
+}
+
+bool Running::runs() const {
+  siginfo_t state{};
+  return process_ > 0 && waitid(P_PID, static_cast<id_t>(process_), &state, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+         state.si_pid == 0;
+}
+
+std::map<int, pid_t> ranks_with(const std::string& word) {
+  std::map<int, pid_t> ranks;
+  std::error_code gone;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc", gone)) {
+    const std::string name = entry.path().filename();
+    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+    const auto command = words_of(entry.path() / "cmdline");
+    if (command.empty() || command.front() != TESSERA_PROGRAM ||
+        std::none_of(command.begin(), command.end(), [&](const auto& w) { return w.find(word) != std::string::npos; }))
+      continue;
+    for (const std::string& variable : words_of(entry.path() / "environ"))
+      for (const std::string known : {"OMPI_COMM_WORLD_RANK=", "PMI_RANK="})
+        if (variable.starts_with(known)) ranks[std::stoi(variable.substr(known.size()))] = std::stoi(name);
+  }
+  return ranks;
+}
 
 Outcome tessera_to(const std::filesystem::path& standard_output, const std::vector<std::string>& arguments) {
   std::vector<std::string> command{TESSERA_PROGRAM};
@@ -67,7 +125,7 @@ bool has_mpirun() {
   return run({"mpirun", "--version"}, folder / "out").status == 0;
 }
 
-Outcome mpirun(int ranks, const std::vector<std::string>& arguments) {
+std::vector<std::string> mpirun_command(int ranks, const std::vector<std::string>& arguments) {
   // As root and on fewer cores than ranks, as in a container; Open MPI's own leaks are not ours to report.
   std::vector<std::string> command{"env",
                                    "OMPI_ALLOW_RUN_AS_ROOT=1",
@@ -79,10 +137,11 @@ Outcome mpirun(int ranks, const std::vector<std::string>& arguments) {
                                    std::to_string(ranks),
                                    TESSERA_PROGRAM};
   command.insert(command.end(), arguments.begin(), arguments.end());
-  const Folder folder;
-  Outcome outcome = run(command, folder / "out");
-  outcome.out = contents(folder / "out");
-  return outcome;
+  return command;
+}
+
+Outcome mpirun(int ranks, const std::vector<std::string>& arguments) {
+  return Running(mpirun_command(ranks, arguments)).wait();
 }
 
 Outcome tessera(const std::vector<std::string>& arguments) {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -21,6 +24,10 @@ Outcome tessera_to(const std::filesystem::path& standard_output, const std::vect
 /// The same on several ranks. For tests that have asked has_mpirun().
 bool has_mpirun();
 Outcome mpirun(int ranks, const std::vector<std::string>& arguments);
+/// The words of that command line.
+std::vector<std::string> mpirun_command(int ranks, const std::vector<std::string>& arguments);
+/// Processes of the ranks that now run with `word` in their arguments, by rank.
+std::map<int, pid_t> ranks_with(const std::string& word);
 
 /// A folder of one test's own, removed at its end.
 class Folder {
@@ -45,5 +52,23 @@ class Folder {
 };
 
 std::string contents(const std::string& file);
+
+/// A command that runs while a test does something to it. Killed at the end unless it has been waited for.
+class Running {
+ public:
+  explicit Running(const std::vector<std::string>& command);
+  ~Running();
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+  [[nodiscard]] pid_t process() const { return process_; }
+  [[nodiscard]] bool runs() const;
+  /// Its end.
+  Outcome wait();
+
+ private:
+  const Folder folder_;
+  pid_t process_;
+};
 
 }  // namespace tessera::apps

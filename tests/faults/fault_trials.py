@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Breaks runs under mpirun on purpose and checks how they end.
 
-    fault_trials.py --tessera PROGRAM [--trials N] [--seed S] [--ranks R]
+    fault_trials.py --tessera PROGRAM [--trials N] [--seed S] [--ranks R] [--volume] [--only KIND,...]
 
-Each trial renders a short film on R ranks and breaks it: a rank is killed at a random time, mpirun is told to end or is
-killed itself, the disk is full (a small tmpfs, where this user may mount one), or one rank's piece of the mesh is
-damaged. Checked after each: the run is over within 10 s of the fault; no process of it is left; one line of ours says
-what happened; the status is what it should be; the folder holds whole pictures only, each with the bytes of an
-undisturbed run. Every fourth trial then runs the same command with --resume, which must complete the film.
+Each trial renders a short film on R ranks and breaks it: a rank is killed or told to end at a random time, mpirun is
+told to end or is killed itself, a rank is stopped and goes on or does not, the folder of the pictures is moved away, the
+disk is full (a small tmpfs, where this user may mount one), or one rank's piece of the mesh is damaged. Checked after
+each: the run is over within 10 s of the fault; no process of it is left; one line of ours says what happened; the status
+is what it should be; the folder holds whole pictures only, each with the bytes of an undisturbed run. Every fourth trial
+then runs the same command with --resume, which must complete the film. --volume films a volume.
 
 Prints a line a trial and a table of the stages that were reached. Exit status 1 if any check failed.
 """
@@ -46,13 +47,17 @@ def processes_of(token):
 class Film:
     """The command that every trial runs, and what it gives when nobody disturbs it."""
 
-    def __init__(self, tessera, ranks, root):
+    def __init__(self, tessera, ranks, root, volume=False):
         self.tessera, self.ranks, self.root = str(tessera), ranks, root
         self.frames = 24
-        self.mesh = root / "mesh.pvtu"
-        whole = root / "mesh.vtu"
-        self.run_tool("generate", "cube", whole, "n=20")
-        self.run_tool("convert", whole, self.mesh, "--pieces", "4")
+        self.volume = volume
+        self.mesh = root / ("volume.nrrd" if volume else "mesh.pvtu")
+        if volume:
+            self.run_tool("generate", "ripples", self.mesh, "n=64")
+        else:
+            whole = root / "mesh.vtu"
+            self.run_tool("generate", "cube", whole, "n=20")
+            self.run_tool("convert", whole, self.mesh, "--pieces", "4")
         self.reference = root / "reference"
         self.reference.mkdir()
         trace = root / "trace.json"
@@ -74,7 +79,7 @@ class Film:
     def command(self, folder, mesh):
         return ["mpirun", "--oversubscribe", "-n", str(self.ranks), self.tessera, "render", str(mesh), "-o",
                 str(folder / "frame_%03d.pfm"), "--size", "200x200", "--orbit", str(self.frames), "--threads", "1",
-                "--exchange", "segments", "--quiet"]
+                "--quiet", *([] if self.volume else ["--exchange", "segments"])]
 
     def random_time(self, source):
         """When to break the run: at any time, or while some stage is under way, each as likely, however short it is."""
@@ -95,6 +100,17 @@ class Film:
 def environment():
     return dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
                 ASAN_OPTIONS="detect_leaks=0")  # Open MPI's own leaks
+
+
+def send(pid, number):
+    try:
+        os.kill(pid, number)
+    except ProcessLookupError:
+        pass
+
+
+def pictures_of(folder):
+    return list(folder.iterdir()) if folder.exists() else []
 
 
 def check_folder(film, folder, problems):
@@ -125,23 +141,34 @@ def trial(film, kind, random_source, number):
         victim = random_source.choice(sorted(pieces.glob("mesh_*.vtu")))
         victim.write_bytes(victim.read_bytes()[: random_source.randrange(100, victim.stat().st_size)])
 
-    run = subprocess.Popen(film.command(folder, mesh), env=environment(), stdout=subprocess.PIPE,
-                           stderr=subprocess.PIPE, text=True)
-    delay = film.random_time(random_source) if kind in ("kill", "end", "launcher") else 0
+    words = {"pause": ["--stall-timeout", "0.5"], "stall": ["--stall-timeout", "0.5", "--on-stall", "abort"]}
+    command = film.command(folder, mesh) + words.get(kind, [])
+    if kind == "pause":
+        command.remove("--quiet")
+    run = subprocess.Popen(command, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    timed = kind in ("kill", "end", "launcher", "term", "pause", "stall", "folder")
+    delay = film.random_time(random_source) if timed else 0
+    moved = film.root / f"moved_{number}"
+    victim = paused_for = None
     fault_at = time.monotonic()
     if delay:
         time.sleep(delay)
         fault_at = time.monotonic()
-        if kind == "kill":
+        if kind in ("kill", "term", "pause", "stall"):
             ranks = [pid for pid, words in processes_of(token) if words[0] == film.tessera.encode()]
             if ranks:
-                try:
-                    os.kill(random_source.choice(ranks), signal.SIGKILL)
-                except ProcessLookupError:
-                    pass
+                victim = random_source.choice(ranks)
+                paused_for = random_source.uniform(0.8, 2.0) if kind == "pause" else 0
+                send(victim, {"kill": signal.SIGKILL, "term": signal.SIGTERM}.get(kind, signal.SIGSTOP))
+                time.sleep(paused_for)
+                if kind == "pause":
+                    send(victim, signal.SIGCONT)
+        elif kind == "folder":
+            folder.rename(moved)
         elif run.poll() is None:
             run.send_signal(signal.SIGTERM if kind == "end" else signal.SIGKILL)
-    limit = PATIENCE if delay else PATIENCE + 3 * film.seconds  # a fault from the beginning: the run itself counts
+    # A fault from the beginning, or a run that goes on after it: the run itself counts.
+    limit = PATIENCE + (0 if delay and kind != "pause" else 3 * film.seconds)
     try:
         _, errors = run.communicate(timeout=limit)
     except subprocess.TimeoutExpired:
@@ -151,6 +178,12 @@ def trial(film, kind, random_source, number):
         _, errors = run.communicate()
     while processes_of(token) and time.monotonic() < fault_at + limit:
         time.sleep(0.05)
+    # A rank that is stopped before MPI has started cannot be missed by anyone: not a fault of ours.
+    if kind == "stall" and problems and run.returncode not in (0, 3) and not pictures_of(folder):
+        problems.clear()
+        victim = None
+    if moved.exists():
+        moved.rename(folder)
     if left := processes_of(token):
         problems.append(f"{len(left)} processes left")
         for pid, _ in left:
@@ -158,11 +191,15 @@ def trial(film, kind, random_source, number):
 
     lines = [line for line in errors.splitlines() if line.startswith("tessera: ")]
     finished = run.returncode == 0 and len(list(folder.iterdir())) == film.frames
+    began = bool(pictures_of(folder))  # else MPI may not have started when it broke
     if not finished:
         # A rank that dies before it could say anything leaves that to mpirun.
-        if len(lines) > 1 or (kind in ("disk", "piece") and len(lines) != 1):
+        speaks = kind in ("disk", "piece") or (kind in ("term", "stall", "folder") and began)
+        if len(lines) > 1 or (speaks and len(lines) != 1):
             problems.append(f"{len(lines)} lines of ours: {lines}")
-        wanted = {"kill": {137, 3}, "end": {143, 3, 1}, "launcher": {-9}, "disk": {3}, "piece": {2}}[kind]
+        wanted = {"kill": {137, 3}, "end": {143, 3, 1}, "launcher": {-9}, "disk": {3}, "piece": {2}, "pause": {0},
+                  "term": {3} if began else {3, 143, 1}, "stall": {3} if began else {3, -9, 137, 143, 1},
+                  "folder": {3} if began else {3, 2}}[kind]
         if run.returncode not in wanted:
             problems.append(f"status {run.returncode}, not {sorted(wanted)}")
     elif kind in ("disk", "piece"):
@@ -187,6 +224,8 @@ def main():
     arguments.add_argument("--trials", type=int, default=20)
     arguments.add_argument("--ranks", type=int, default=4)
     arguments.add_argument("--seed", type=int, default=1)
+    arguments.add_argument("--volume", action="store_true")
+    arguments.add_argument("--only", default="", metavar="KIND,...")
     options = arguments.parse_args()
     if shutil.which("mpirun") is None:
         print("skipped: there is no mpirun")
@@ -195,10 +234,14 @@ def main():
     root = Path(tempfile.mkdtemp(prefix="tessera_faults_"))
     failures, kinds, stages = 0, collections.Counter(), collections.Counter()
     try:
-        film = Film(options.tessera.resolve(), options.ranks, root)
+        film = Film(options.tessera.resolve(), options.ranks, root, options.volume)
         print(f"seed {options.seed}, {options.ranks} ranks, {film.seconds:.1f} s undisturbed")
         for number in range(options.trials):
-            kind = ("kill", "kill", "kill", "piece", "kill", "end", "kill", "disk", "kill", "launcher")[number % 10]
+            kinds_of = [kind for kind in options.only.split(",") if kind] or [
+                "kill", "term", "stall", "piece", "pause", "end", "kill", "disk", "folder", "launcher"]
+            kind = kinds_of[number % len(kinds_of)]
+            if options.volume and kind == "piece":
+                kind = "term"
             kind, reached, problems = trial(film, kind, source, number)
             if problems == ["skipped"]:
                 print(f"trial {number}: {kind} skipped")

@@ -1,0 +1,53 @@
+#include "apps/frame_reports.hpp"
+
+#include <string_view>
+
+#include "io/atomic_file.hpp"
+
+namespace tessera::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A file name need not be UTF-8; JSON must. Without `indent`, on one line.
+std::string text_of(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+constexpr int indent = 2;
+
+std::string indented(const std::string& text, std::size_t by) {
+  const std::string space(by, ' ');
+  std::string result = space;
+  for (const char c : text) {
+    result += c;
+    if (c == '\n') result += space;
+  }
+  return result;
+}
+
+}  // namespace
+
+void FrameReports::add(const Json& frame) {
+  if (!kept_) return;
+  frames_ += text_of(frame, -1) + '\n';
+}
+
+void FrameReports::write(const Json& report, const std::filesystem::path& path) const {
+  io::AtomicFile file(path);
+  std::string head = text_of(report, indent);
+  head.resize(head.size() - 2);  // the newline and the bracket that end it
+  file.write(head);
+  file.write(",\n  \"frames\": [");
+  for (std::size_t at = 0; at < frames_.size();) {
+    const std::size_t end = frames_.find('\n', at);
+    file.write(at == 0 ? "\n" : ",\n");
+    const std::string_view frame = std::string_view(frames_).substr(at, end - at);
+    file.write(indented(text_of(Json::parse(frame), indent), 4));
+    at = end + 1;
+  }
+  file.write(frames_.empty() ? "]\n}\n" : "\n  ]\n}\n");
+  file.commit();
+}
+
+}  // namespace tessera::apps

@@ -1,0 +1,116 @@
+#include "apps/one_line.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <ctime>
+#include <random>
+
+#include "compositor/wire.hpp"
+
+namespace tessera::apps {
+namespace {
+
+/// Memory that all ranks of a machine share.
+struct Spoken {
+  std::uint64_t key = 0;  ///< of the rank whose memory this is
+  std::atomic<bool> done = false;
+};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+struct Neighbour {
+  std::array<char, 64> host{};
+  pid_t process = 0;
+  int memory = -1;  ///< its descriptor of a Spoken
+  std::uint64_t key = 0;
+};
+
+Spoken own_spoken;
+Spoken* spoken = &own_spoken;
+
+/// An abstract socket's name, which one process at a time may hold. Length 0: none.
+sockaddr_un name{};
+socklen_t name_length = 0;
+
+Spoken* map_spoken(int memory) {
+  if (memory < 0) return nullptr;
+  void* at = mmap(nullptr, sizeof(Spoken), PROT_READ | PROT_WRITE, MAP_SHARED, memory, 0);
+  return at == MAP_FAILED ? nullptr : static_cast<Spoken*>(at);
+}
+
+/// A Spoken that others can open while this process lives. Without one each rank speaks for itself.
+Spoken* make_spoken(Neighbour& self) {
+  self.memory = memfd_create("tessera", MFD_CLOEXEC);
+  if (self.memory < 0 || ftruncate(self.memory, sizeof(Spoken)) != 0) return nullptr;
+  Spoken* shared = map_spoken(self.memory);
+  if (shared == nullptr) return nullptr;
+  std::random_device source;
+  self.key = (std::uint64_t{source()} << 32) | source();
+  shared->key = self.key;
+  return shared;
+}
+
+Spoken* open_spoken(const Neighbour& of) {
+  const int memory = open(fmt::format("/proc/{}/fd/{}", of.process, of.memory).c_str(), O_RDWR | O_CLOEXEC);
+  Spoken* shared = map_spoken(memory);
+  if (memory >= 0) close(memory);
+  // Processes of another container may bear the same number.
+  return shared != nullptr && shared->key == of.key ? shared : nullptr;
+}
+
+}  // namespace
+
+bool may_speak() {
+  if (spoken->done.exchange(true)) return false;
+  if (name_length == 0) return true;
+  const int holder = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);  // for as long as this process lives
+  return holder < 0 || bind(holder, reinterpret_cast<const sockaddr*>(&name), name_length) == 0;
+}
+
+void name_one_line() {
+  // The first byte of an abstract name is 0.
+  const std::string text = fmt::format("tessera {} of {}", getuid(), getppid());
+  name.sun_family = AF_UNIX;
+  std::copy(text.begin(), text.end(), name.sun_path + 1);
+  name_length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + text.size());
+}
+
+void hold_one_line() {
+  if (name_length == 0) return;
+  const timespec moment{0, 300'000'000};
+  nanosleep(&moment, nullptr);
+}
+
+bool share_one_line(compositor::Transport& transport) {
+  Neighbour self;
+  gethostname(self.host.data(), self.host.size() - 1);
+  self.process = getpid();
+  Spoken* shared = make_spoken(self);
+  compositor::Bytes mine;
+  compositor::append(mine, self);
+  const auto all = compositor::gather_all(transport, std::move(mine));
+  bool with_first = true;
+  for (std::size_t rank = 0; rank < all.size(); ++rank) {
+    const auto other = compositor::RecordReader(all[rank]).take<Neighbour>();
+    if (rank == 0) with_first = other.host == self.host;
+    if (other.host != self.host) continue;
+    Spoken* others = other.process != self.process && other.key != 0 ? open_spoken(other) : nullptr;
+    if (others != nullptr) shared = others;
+    break;  // the lowest rank's serves all
+  }
+  if (shared != nullptr) {
+    spoken = shared;
+    name_length = 0;
+  }
+  return with_first;
+}
+
+}  // namespace tessera::apps

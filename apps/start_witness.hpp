@@ -1,0 +1,23 @@
+#pragma once
+
+#include <sys/types.h>
+
+namespace tessera::apps {
+
+/// A child process that lives while MPI starts. MPI ends a process that it cannot start, by _exit() with words of its
+/// own; then the child says what the user can do, in the run's line. Without a second process nobody is left to.
+class StartWitness {
+ public:
+  /// Before MPI starts and before there are threads. Does nothing if the system gives no process.
+  StartWitness();
+  /// This process goes on: the child ends without a word.
+  ~StartWitness();
+  StartWitness(const StartWitness&) = delete;
+  StartWitness& operator=(const StartWitness&) = delete;
+
+ private:
+  pid_t child_ = -1;
+  int to_child_ = -1;
+};
+
+}  // namespace tessera::apps
