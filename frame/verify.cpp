@@ -54,19 +54,22 @@ SuspicionMap suspicion_of(std::span<const float> doubts, double tolerance) {
   return map;
 }
 
-/// Suspects per pixel that is judged that are cast once more: rays in double precision cost a fifth of the reference's.
-constexpr std::size_t cast_per_pixel = 3;
-
 /// Casts the likeliest suspects of a grid's picture once more, voxel by voxel in double precision. How far each comes
 /// out otherwise is the best estimate of its error there is.
 SuspicionMap second_opinion(const scene::Image& image, const scene::SampleSource& source, const scene::Camera& camera,
                             const scene::TransferFunction& function, const volume::RenderSettings& settings,
                             const reference::Suspects& suspects, std::size_t count) {
   std::vector<std::array<int, 2>> pixels;
-  for (const reference::ChosenPixel& p : reference::by_turns(suspects, cast_per_pixel * count))
-    pixels.push_back({p.at.x, p.at.y});
+  for (const reference::ChosenPixel& p : reference::by_turns(suspects, count)) pixels.push_back({p.at.x, p.at.y});
+  // Neighbours share what they read.
+  std::sort(pixels.begin(), pixels.end(), [](const auto& a, const auto& b) {
+    const auto place = [](const auto& p) { return std::array{p[1] / 32, p[0] / 32, p[1], p[0]}; };
+    return place(a) < place(b);
+  });
   scene::Image again(image.size);
-  const volume::VoxelCastSettings cast{{.emission = settings.emission}, settings.shading};
+  // What is looked for is as large as the bound.
+  const double bound = promised_error(settings).value_or(1e-4);
+  const volume::VoxelCastSettings cast{{settings.emission, bound / 1000, bound / 64}, settings.shading};
   tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
   arena.execute([&] { volume::cast_voxel_by_voxel(source, camera, function, cast, pixels, again); });
   SuspicionMap map(image.depth.size(), 0.0f);

@@ -16,10 +16,10 @@
 namespace tessera::reference {
 namespace {
 
-constexpr std::int64_t side = 8, most_blocks = 16384;
+constexpr std::int64_t side = 8, most_blocks = 8192;
 constexpr double nothing = 1e-12;
-/// Pixels of a voxel that are marked: one for so many, up to so many.
-constexpr double pixels_per_mark = 16, most_marks = 16;
+/// Pixels of a voxel that are marked: one for so many, up to so many. Borders may be small.
+constexpr double pixels_per_mark = 16, border_pixels_per_mark = 4, most_marks = 16;
 /// Along a ray, of a voxel's size: what is less far behind the first visible sample is not hidden.
 constexpr double skin = 4;
 
@@ -94,6 +94,10 @@ class GridSuspects {
         if ((n >> a & 1) == 0) raise_ties(corner(n), corner(n | 1 << a), image_.size, edge_, found_.tie);
     const glm::dmat3 to_local = scene::world_to_local(geometry_);
     const double far = farthest();
+    // All orthographic rays have one direction, most often along no plane.
+    const glm::dvec3 direction = to_local * view_.ray(0, 0).step;
+    const auto strays = [&](std::size_t a) { return std::abs(direction[static_cast<int>(a)]) * far / voxel(a); };
+    if (!view_.perspective() && std::min({strays(0), strays(1), strays(2)}) > tying_distance) return;
     tbb::parallel_for(0, image_.size.height, [&](int y) {
       for (int x = 0; x < image_.size.width; ++x) {
         const View::Ray ray = view_.ray(x + 0.5, y + 0.5);
@@ -114,15 +118,11 @@ class GridSuspects {
   }
   [[nodiscard]] std::int64_t all_blocks() const { return blocks_[0] * blocks_[1] * blocks_[2]; }
 
-  /// World units: a voxel's diagonal, of the mean voxel.
-  [[nodiscard]] double longest() const {
-    double square = 0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double extent = geometry_.lattice(a, voxels_[a]) - geometry_.lattice(a, 0);
-      square += std::pow(extent / static_cast<double>(voxels_[a]), 2);
-    }
-    return std::sqrt(square);
+  /// World units: a mean voxel's side along an axis, and its diagonal.
+  [[nodiscard]] double voxel(std::size_t a) const {
+    return (geometry_.lattice(a, voxels_[a]) - geometry_.lattice(a, 0)) / static_cast<double>(voxels_[a]);
   }
+  [[nodiscard]] double longest() const { return std::hypot(voxel(0), voxel(1), voxel(2)); }
 
   [[nodiscard]] double farthest() const {
     double far = 0;
@@ -137,8 +137,7 @@ class GridSuspects {
 
   /// A ray that runs along the planes of an axis, near one of them.
   void raise_planes(int x, int y, std::size_t a, double origin, double step, double far) {
-    const double voxel = (geometry_.lattice(a, voxels_[a]) - geometry_.lattice(a, 0)) / static_cast<double>(voxels_[a]);
-    const double along = std::abs(step) * far / voxel;  // voxels that the ray strays from the plane
+    const double along = std::abs(step) * far / voxel(a);  // voxels that the ray strays from the plane
     if (!(along < tying_distance)) return;
     std::int64_t low = 0, high = voxels_[a];
     while (high - low > 1) {
@@ -146,7 +145,8 @@ class GridSuspects {
       (geometry_.lattice(a, middle) <= origin ? low : high) = middle;
     }
     const double away =
-        std::min(std::abs(origin - geometry_.lattice(a, low)), std::abs(origin - geometry_.lattice(a, high))) / voxel;
+        std::min(std::abs(origin - geometry_.lattice(a, low)), std::abs(origin - geometry_.lattice(a, high))) /
+        voxel(a);
     if (!(away <= tying_distance)) return;
     const std::size_t pixel = image_.index(x, y);
     raise(found_.tie[pixel], nearness(std::max(away, along)) * (edge_[pixel] + 1e-6f));
@@ -196,7 +196,8 @@ class GridSuspects {
       const ProjectedVertex q = view_.project(scene::world_of_index(geometry_, low + within + glm::dvec3(0.5)));
       const double across =
           2 * std::hypot(q.homogeneous.x / q.homogeneous.z - x, q.homogeneous.y / q.homogeneous.z - y);
-      marks = static_cast<int>(std::clamp(across * across / pixels_per_mark, 1.0, most_marks));
+      marks = static_cast<int>(
+          std::clamp(across * across / (by_border > 0 ? border_pixels_per_mark : pixels_per_mark), 1.0, most_marks));
     }
   }
 

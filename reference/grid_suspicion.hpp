@@ -13,7 +13,7 @@ namespace tessera::reference {
 ///
 /// Noise   the field is taken as rounded to 2^-23 of its range: 32-bit floats.
 /// Hidden  what lies well behind the first visible sample of an opaque pixel counts for little.
-/// Cost    a pass over the samples, in blocks of 8^3 voxels; of more than 16,384 blocks that many, evenly spread.
+/// Cost    a pass over the samples, in blocks of 8^3 voxels; of more than 8,192 blocks that many, evenly spread.
 struct GridSuspicion {
   SuspicionMap step;    ///< error of light that the field's rounding may make in one voxel, at some pixels of it
   SuspicionMap border;  ///< light of voxels that have blank and other samples, or lie beside blank ones

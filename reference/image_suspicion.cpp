@@ -45,21 +45,38 @@ class Picture {
     return largest;
   }
 
-  /// How far the pixel is from the cubic through its four neighbours along a line; the least of four directions, so
-  /// that it is small along a straight edge.
-  [[nodiscard]] float misfit(int x, int y) const {
+  struct Misfit {
+    float least = 0;  ///< of the directions
+    float alike = 0;  ///< how alike they are: mean over spread
+  };
+
+  /// How far the pixel is from the cubic through its four neighbours along a line, of four directions: along a straight
+  /// edge the least is small; at a single pixel that is off all are alike.
+  [[nodiscard]] Misfit misfit(int x, int y, float noise) const {
     constexpr std::array<std::array<int, 2>, 4> directions{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
-    float least = std::numeric_limits<float>::infinity();
+    std::array<Colour, 4> off{};
+    std::size_t count = 0;
+    Misfit misfit{std::numeric_limits<float>::infinity(), 0};
     for (const auto& [i, j] : directions) {
       if (!has(x - 2 * i, y - 2 * j) || !has(x + 2 * i, y + 2 * j)) continue;
       const Colour a = at(x - 2 * i, y - 2 * j), b = at(x - i, y - j), here = at(x, y), c = at(x + i, y + j),
                    d = at(x + 2 * i, y + 2 * j);
       float largest = 0;
-      for (std::size_t n = 0; n < 4; ++n)
-        largest = std::max(largest, std::abs(here[n] - (4 * (b[n] + c[n]) - (a[n] + d[n])) / 6));
-      least = std::min(least, largest);
+      for (std::size_t n = 0; n < 4; ++n) {
+        off[count][n] = here[n] - (4 * (b[n] + c[n]) - (a[n] + d[n])) / 6;
+        largest = std::max(largest, std::abs(off[count][n]));
+      }
+      ++count;
+      misfit.least = std::min(misfit.least, largest);
     }
-    return std::isfinite(least) ? least : 0;
+    if (!std::isfinite(misfit.least)) return {};
+    for (std::size_t n = 0; n < 4 && count > 1; ++n) {
+      float mean = 0, spread = 0;
+      for (std::size_t i = 0; i < count; ++i) mean += off[i][n] / static_cast<float>(count);
+      for (std::size_t i = 0; i < count; ++i) spread = std::max(spread, std::abs(off[i][n] - mean));
+      misfit.alike = std::max(misfit.alike, std::abs(mean) / (spread + noise));
+    }
+    return misfit;
   }
 
   /// Jump across one side of a 4x4 block beyond what the slopes on both sides lead up to, mean over the side. The side
@@ -137,7 +154,7 @@ ImageSuspicion suspect(const scene::Image& image, double least, int threads) {
   const auto floor = static_cast<float>(least);
   ImageSuspicion result;
   for (SuspicionMap* map : {&result.edge, &result.outlier, &result.block}) map->assign(pixels, 0.0f);
-  SuspicionMap misfit(pixels);
+  SuspicionMap misfit(pixels), alike(pixels);
   const auto for_all = [&](int step, const auto& score) {
     tbb::parallel_for(0, (picture.height() + step - 1) / step, [&](int row) {
       for (int x = 0; x < picture.width(); x += step) score(x, row * step);
@@ -146,12 +163,17 @@ ImageSuspicion suspect(const scene::Image& image, double least, int threads) {
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
   arena.execute([&] {
     for_all(1, [&](int x, int y) {
-      result.edge[picture.index(x, y)] = picture.edge(x, y);
-      misfit[picture.index(x, y)] = picture.misfit(x, y);
+      const float edge = picture.edge(x, y);
+      if (!(edge > floor)) return;
+      result.edge[picture.index(x, y)] = edge;
+      const Picture::Misfit off = picture.misfit(x, y, floor / 4);
+      misfit[picture.index(x, y)] = off.least;
+      alike[picture.index(x, y)] = off.alike;
     });
     for_all(1, [&](int x, int y) {
       if (misfit[picture.index(x, y)] > floor)
-        result.outlier[picture.index(x, y)] = standing_out(misfit, picture, x, y, floor);
+        result.outlier[picture.index(x, y)] =
+            standing_out(misfit, picture, x, y, floor) * (1 + alike[picture.index(x, y)] * alike[picture.index(x, y)]);
     });
     for_all(4, [&](int x, int y) {
       const float score = picture.block(x, y);

@@ -9,12 +9,12 @@ namespace tessera::reference {
 /// finite has a score beyond all others.
 struct ImageSuspicion {
   SuspicionMap edge;     ///< largest difference to one of the eight neighbours
-  SuspicionMap outlier;  ///< over the same of the pixels around: see Suspicion
+  SuspicionMap outlier;  ///< misfit over that of the pixels around, more where it is a single pixel's: see Suspicion
   SuspicionMap block;  ///< jump across the border of its 4x4 block (second largest of four sides), at one of 16 pixels
   SuspicionMap plateau;  ///< number of pixels in the middle of 3x3 of its very colour, at one of them for each colour
 };
 
-/// `least`: differences that do not matter, of outliers and blocks. `threads` 0: all cores.
+/// `least`: differences that do not matter. `threads` 0: all cores.
 ImageSuspicion suspect(const scene::Image& image, double least, int threads = 0);
 
 }  // namespace tessera::reference

@@ -14,7 +14,8 @@ namespace tessera::reference {
 /// Noise   scalars and depths are taken as rounded to 2^-30 of their range over the mesh. A renderer that rounds more
 /// or
 ///         less has the same order of suspects.
-/// Cost    a pass over the tets, and over each edge's pixels.
+/// Cost    a pass over the tets and over their edges' pixels; of more than 262,144 tets that many, evenly spread, and
+///         the edges of 65,536.
 struct MeshSuspicion {
   SuspicionMap step;   ///< error of light that the scalars' rounding may make in one cell, at some pixels of it
   SuspicionMap tie;    ///< nearness of an edge to the pixel's centre (1e-3 pixel at most), times the picture's contrast

@@ -26,9 +26,12 @@ struct Ranked {
 /// The `most` pixels of the highest keys, in order.
 std::vector<std::size_t> highest(std::vector<Ranked> pixels, std::size_t most) {
   most = std::min(most, pixels.size());
-  std::partial_sort(
-      pixels.begin(), pixels.begin() + static_cast<std::ptrdiff_t>(most), pixels.end(),
-      [](const Ranked& a, const Ranked& b) { return a.key != b.key ? a.key > b.key : a.pixel < b.pixel; });
+  const auto before = [](const Ranked& a, const Ranked& b) {
+    return a.key != b.key ? a.key > b.key : a.pixel < b.pixel;
+  };
+  const auto end = pixels.begin() + static_cast<std::ptrdiff_t>(most);
+  std::nth_element(pixels.begin(), end, pixels.end(), before);
+  std::sort(pixels.begin(), end, before);
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < most; ++i) order.push_back(pixels[i].pixel);
   return order;
@@ -72,8 +75,9 @@ std::vector<PixelIndex> ranked(const SuspicionMap& map, scene::ImageSize size, s
     by_score.push_back({score * (1 + 1e-6 * hashed(i, 1)), i});  // equal ones in no order
     by_draw.push_back({std::log(1 - hashed(i, 2)) / std::sqrt(std::sqrt(score)), i});
   }
-  std::vector<std::size_t> strongest = highest(std::move(by_score), 16 * most);
-  spread(strongest, size.width);
+  const std::vector<std::size_t> strongest = highest(std::move(by_score), 16 * most);
+  std::vector<std::size_t> scattered = strongest;
+  spread(scattered, size.width);
   const std::vector<std::size_t> drawn = highest(std::move(by_draw), most);
   std::vector<PixelIndex> order;
   std::unordered_set<std::size_t> taken;
@@ -83,10 +87,12 @@ std::vector<PixelIndex> ranked(const SuspicionMap& map, scene::ImageSize size, s
     const auto i = static_cast<std::ptrdiff_t>(from[next++]);
     order.push_back({static_cast<int>(i % size.width), static_cast<int>(i / size.width)});
   };
-  for (std::size_t next_strong = 0, next_drawn = 0;
-       order.size() < most && (next_strong < strongest.size() || next_drawn < drawn.size());) {
-    take(strongest, next_strong);
-    if (order.size() < most) take(drawn, next_drawn);
+  const std::array<const std::vector<std::size_t>*, 3> lists{&strongest, &scattered, &drawn};
+  std::array<std::size_t, 3> next{};
+  for (std::size_t before = most; order.size() < most && order.size() != before;) {
+    before = order.size();
+    for (std::size_t n = 0; n < lists.size(); ++n)
+      if (order.size() < most) take(*lists[n], next[n]);
   }
   return order;
 }

@@ -39,8 +39,8 @@ void raise(float& score, float to);
 /// A number in [0, 1) that depends on `n` and `salt` alone.
 double hashed(std::uint64_t n, std::uint64_t salt);
 
-/// A map's pixels in the order they are to be looked at, `most` at most: by turns the most suspicious one, first of all
-/// one of each 8x8 pixels, and one drawn at random, high scores more often. Repeatable.
+/// A map's pixels in the order they are to be looked at, `most` at most: by turns the most suspicious one, the most
+/// suspicious one of another 8x8 pixels, and one drawn at random, high scores more often. Repeatable.
 std::vector<PixelIndex> ranked(const SuspicionMap& map, scene::ImageSize size, std::size_t most);
 
 /// Pixels to look at for each Suspicion, best first.
