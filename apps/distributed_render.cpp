@@ -9,9 +9,9 @@
 #include "apps/frame_list.hpp"
 #include "apps/output_check.hpp"
 #include "apps/run_output.hpp"
-#include "apps/verify.hpp"
 #include "compositor/wire.hpp"
 #include "frame/distributed.hpp"
+#include "frame/verify.hpp"
 #include "projection/segment_tuple.hpp"
 #include "scene/trace.hpp"
 
@@ -104,7 +104,7 @@ class RankRun {
 
   void render();
   void take(const frame::FinishedFrame& finished);
-  Verification verify_frame(const Frame& frame, const scene::Image& image, const scene::Camera& camera);
+  reference::Verification verify_frame(const Frame& frame, const scene::Image& image, const scene::Camera& camera);
 
   const RenderOptions& options_;
   RenderOptions quiet_ = options_;
@@ -196,7 +196,8 @@ void RankRun::render() {
   for (; writes_ && next_to_report_ < frames_.size(); ++next_to_report_) output_.skip(frames_[next_to_report_]);
 }
 
-Verification RankRun::verify_frame(const Frame& frame, const scene::Image& image, const scene::Camera& camera) {
+reference::Verification RankRun::verify_frame(const Frame& frame, const scene::Image& image,
+                                              const scene::Camera& camera) {
   const scene::TraceScope scope(options_.timing.empty() ? nullptr : &compositing_, "verify");
   // The reference looks at every cell, so this rank alone reads all of them.
   if (!whole_mesh_ || whole_step_ != frame.step) {
@@ -204,7 +205,8 @@ Verification RankRun::verify_frame(const Frame& frame, const scene::Image& image
     whole_mesh_ = read_input(frame.mesh.files, frame.step == 0 ? options_.mesh : later_options_);
     whole_step_ = frame.step;
   }
-  return verify(image, whole_mesh_->mesh, camera, loaded_.function, options_.settings, options_.verify);
+  return frame::verify(image, whole_mesh_->mesh, camera, loaded_.function, options_.settings,
+                       static_cast<std::size_t>(options_.verify));
 }
 
 /// On the writing rank, for every repetition of every frame in order.

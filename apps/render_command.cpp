@@ -10,8 +10,8 @@
 #include "apps/mesh_input.hpp"
 #include "apps/output_check.hpp"
 #include "apps/run_output.hpp"
-#include "apps/verify.hpp"
 #include "apps/volume_render.hpp"
+#include "frame/verify.hpp"
 #include "io/chrome_trace.hpp"
 #include "scene/trace.hpp"
 
@@ -60,8 +60,8 @@ class Run {
     end_frame();
     if (options_.verify > 0) {
       const scene::TraceScope scope(trace_, "verify");
-      record.verification =
-          verify(image, file_.mesh, record.camera, loaded_.function, options_.settings, options_.verify);
+      record.verification = frame::verify(image, file_.mesh, record.camera, loaded_.function, options_.settings,
+                                          static_cast<std::size_t>(options_.verify));
     }
     return record;
   }

@@ -140,22 +140,6 @@ Json frame_json(const Frame& frame, const FrameRecord* record) {
   return json;
 }
 
-Json verification_json(const Verification& verification) {
-  const auto& judgement = verification.judgement;
-  Json json = {{"pixels", judgement.pixels_checked},
-               {"max_error", judgement.max_error},
-               {"rms_error", judgement.rms_error},
-               {"max_error_not_excused", judgement.max_error_not_excused},
-               {"worst_pixel", {judgement.worst_x, judgement.worst_y}},
-               {"worst_value", judgement.worst_value},
-               {"worst_reference", judgement.worst_reference},
-               {"over_bound", judgement.over_bound},
-               {"excused", judgement.excused},
-               {"met", verification.met()}};
-  if (verification.bound) json["bound"] = *verification.bound;
-  return json;
-}
-
 std::string cells_line(const io::MeshCounts& counts) {
   const std::uint64_t dropped =
       counts.cells_ghost + counts.cells_hidden + counts.cells_nan + counts.cells_not_volumetric;

@@ -19,7 +19,7 @@ struct FrameRecord {
   scene::Camera camera;
   frame::FrameStatistics statistics;
   std::vector<double> frame_ms;  ///< one a repetition
-  std::optional<Verification> verification;
+  std::optional<reference::Verification> verification;
 };
 
 /// File, format, cells, points, bounds, chosen field, all fields, notes.
@@ -36,9 +36,6 @@ nlohmann::ordered_json method_json(const RenderOptions& options);
 
 /// A frame's number, pictures, view, times, counters and verification; without a record, that it was skipped.
 nlohmann::ordered_json frame_json(const Frame& frame, const FrameRecord* record);
-
-/// The report's "verify".
-nlohmann::ordered_json verification_json(const Verification& verification);
 
 /// `18 kept of 20: 1 ghost and 1 NaN dropped`
 std::string cells_line(const io::MeshCounts& counts);

@@ -2,56 +2,59 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <limits>
-
-#include "reference/reference.hpp"
-
 namespace tessera::apps {
+namespace {
 
-std::optional<double> promised_error(const frame::RenderSettings& settings) {
-  if (settings.rasterizer == frame::Rasterizer::scanline || !settings.bounded) return std::nullopt;
-  const scene::Integrator& integrator = settings.integrator;
-  switch (integrator.kind) {
-    case scene::IntegratorKind::exact:
-      return 2e-5;
-    case scene::IntegratorKind::automatic:
-      return integrator.accuracy;
-    case scene::IntegratorKind::sampled:
-    case scene::IntegratorKind::preintegrated:
-    case scene::IntegratorKind::partial:
-      break;
-  }
-  return std::nullopt;
+using Json = nlohmann::ordered_json;
+using reference::Suspicion;
+
+const char* reason(const std::optional<Suspicion>& why) { return why ? reference::name_of(*why) : "random"; }
+
+Json tally_json(const reference::Tally& tally) {
+  return {{"pixels", tally.pixels},
+          {"max_error", tally.max_error},
+          {"over_bound", tally.over_bound},
+          {"excused", tally.excused}};
 }
 
-bool Verification::met() const {
-  if (!std::isfinite(judgement.max_error)) return false;
-  return !bound || judgement.passed;
-}
+}  // namespace
 
-Verification verify(const scene::Image& image, const scene::TetMesh& mesh, const scene::Camera& camera,
-                    const scene::TransferFunction& transfer_function, const frame::RenderSettings& settings,
-                    int count) {
-  constexpr std::uint64_t seed = 1;
-  const reference::Reference reference(mesh, camera, image.size, transfer_function, settings.emission);
-  const auto pixels = reference::random_pixels(image.size, static_cast<std::size_t>(count), seed);
-  Verification verification;
-  verification.bound = promised_error(settings);
-  // Without a bound no pixel is over it, so none is looked at for an excuse.
-  const double bound = verification.bound.value_or(std::numeric_limits<double>::infinity());
-  verification.judgement = reference::judge(image, reference, bound, pixels, settings.threads);
-  return verification;
-}
-
-std::string verification_line(const Verification& verification, int frame_number) {
+std::string verification_line(const reference::Verification& verification, int frame_number) {
   const auto& judgement = verification.judgement;
   const auto verdict = verification.bound
                            ? fmt::format("bound {:.3g} {}", *verification.bound, verification.met() ? "met" : "NOT met")
                            : std::string("no bound promised");
-  return fmt::format("verify frame {}: {} pixels, max {:.3g} rms {:.3g}, worst at ({}, {}), {} excused; {}",
-                     frame_number, judgement.pixels_checked, judgement.max_error, judgement.rms_error,
-                     judgement.worst_x, judgement.worst_y, judgement.excused, verdict);
+  std::string line = fmt::format("verify frame {}: {} pixels, max {:.3g} rms {:.3g}, worst at ({}, {}), {} excused; {}",
+                                 frame_number, judgement.pixels_checked, judgement.max_error, judgement.rms_error,
+                                 judgement.worst_x, judgement.worst_y, judgement.excused, verdict);
+  line += fmt::format("; worst: {}; chosen: {} random", reason(verification.worst), verification.random.pixels);
+  for (std::size_t kind = 0; kind < reference::suspicions; ++kind)
+    if (const std::size_t pixels = verification.chosen[kind].pixels; pixels > 0)
+      line += fmt::format(", {} {}", pixels, reference::name_of(static_cast<Suspicion>(kind)));
+  return line;
+}
+
+Json verification_json(const reference::Verification& verification) {
+  const auto& judgement = verification.judgement;
+  Json json = {{"pixels", judgement.pixels_checked},
+               {"max_error", judgement.max_error},
+               {"rms_error", judgement.rms_error},
+               {"max_error_not_excused", judgement.max_error_not_excused},
+               {"worst_pixel", {judgement.worst_x, judgement.worst_y}},
+               {"worst_value", judgement.worst_value},
+               {"worst_reference", judgement.worst_reference},
+               {"worst_chosen", reason(verification.worst)},
+               {"over_bound", judgement.over_bound},
+               {"excused", judgement.excused},
+               {"met", verification.met()},
+               {"random", tally_json(verification.random)}};
+  Json chosen = Json::object();
+  for (std::size_t kind = 0; kind < reference::suspicions; ++kind)
+    if (verification.chosen[kind].pixels > 0)
+      chosen[reference::name_of(static_cast<Suspicion>(kind))] = tally_json(verification.chosen[kind]);
+  json["chosen"] = std::move(chosen);
+  if (verification.bound) json["bound"] = *verification.bound;
+  return json;
 }
 
 }  // namespace tessera::apps

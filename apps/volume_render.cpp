@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "apps/balance_picture.hpp"
@@ -20,9 +19,9 @@
 #include "frame/deep_rows.hpp"
 #include "frame/scan_together.hpp"
 #include "frame/sort_first.hpp"
+#include "frame/verify.hpp"
 #include "io/chrome_trace.hpp"
 #include "io/time_series.hpp"
-#include "reference/grid_reference.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -30,32 +29,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 using compositor::Bytes;
 
-/// The largest error that is promised, in linear RGBA; none where steps decide it.
-std::optional<double> promised(const volume::RenderSettings& settings) {
-  if (settings.method == volume::Method::automatic) return settings.accuracy;
-  if (settings.method == volume::Method::exact) return 1e-5;
-  return std::nullopt;
-}
-
-Verification verified(const scene::Image& image, const scene::SampleSource& source, const scene::Camera& camera,
-                      const scene::TransferFunction& function, const RenderOptions& options) {
-  constexpr std::uint64_t seed = 1;
-  const reference::GridReference reference(source, camera, image.size, function, options.volume_settings.emission,
-                                           options.volume_settings.shading);
-  const auto pixels = reference::random_pixels(image.size, static_cast<std::size_t>(options.verify), seed);
-  Verification verification;
-  verification.bound = promised(options.volume_settings);
-  const double bound = verification.bound.value_or(std::numeric_limits<double>::infinity());
-  verification.judgement = reference::judge(image, reference, bound, pixels, options.volume_settings.threads);
-  return verification;
-}
-
 void refuse_mesh_options(const RenderOptions& options) {
   const auto refuse = [&](const char* option) {
     io::require_input(options.input);
     throw scene::bad_input(fmt::format("{}: is for meshes, and the input is a volume; leave it out", option));
   };
-  if (options.deep && !promised(options.volume_settings))
+  if (options.deep && !frame::promised_error(options.volume_settings))
     throw scene::bad_input(
         fmt::format("deep picture: --integrator {} gives a step other light than its parts; use auto or "
                     "exact",
@@ -117,6 +96,7 @@ class VolumeRun {
   [[nodiscard]] frame::SortFirstSettings balance() {
     frame::SortFirstSettings settings = options_.balance;
     settings.keep_cost = options_.show_balance;
+    settings.keep_doubts = options_.verify > 0;
     settings.trace = trace();
     return settings;
   }
@@ -224,7 +204,9 @@ class VolumeRun {
     record.cpu_seconds = finished.cpu_seconds;
     if (options_.verify > 0) {
       const scene::TraceScope scope(trace(), "verify");
-      record.verification = verified(finished.image, *file_.source, record.camera, loaded_.function, options_);
+      record.verification =
+          frame::verify(finished.image, *file_.source, record.camera, loaded_.function, options_.volume_settings,
+                        finished.doubts, static_cast<std::size_t>(options_.verify));
     }
     if (frame_reports_.kept()) frame_reports_.add(volume_frame_json(options_, frame, &record));
     progress_.clear();

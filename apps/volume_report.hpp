@@ -21,7 +21,7 @@ struct VolumeFrameRecord {
   volume::RenderStatistics statistics;
   std::uint64_t deep_samples = 0;  ///< of the deep picture, if one was asked for
   std::vector<double> frame_ms;    ///< one a repetition
-  std::optional<Verification> verification;
+  std::optional<reference::Verification> verification;
   volume::ImageSplit split;
   std::vector<std::uint64_t> samples;  ///< of each rank
   std::vector<double> cpu_seconds;     ///< of each rank

@@ -91,7 +91,9 @@ class SortFirst::State {
     const PixelRegion mine = split.region(transport_.rank());
     const double cpu_before = process_cpu_seconds();
     volume::RenderStatistics statistics;
-    scene::Image image = renderer.render(job.camera, job.size, function, &statistics, mine);
+    std::vector<float> doubts;
+    scene::Image image =
+        renderer.render(job.camera, job.size, function, &statistics, mine, settings_.keep_doubts ? &doubts : nullptr);
     const double cpu = process_cpu_seconds() - cpu_before;
     if (settings_.balance == Balance::previous) share_times(cpu);
     last_split_ = split;
@@ -113,12 +115,13 @@ class SortFirst::State {
                         statistics.blank_samples,
                         cpu};
     if (transport_.rank() != 0) {
-      send(header, image);
+      send(header, image, doubts);
       return std::nullopt;
     }
     FinishedVolumeFrame finished;
     finished.frame = number;
     finished.image = std::move(image);
+    finished.doubts = std::move(doubts);
     finished.statistics = statistics;
     finished.split = split;
     finished.cost = std::move(cost_);
@@ -239,7 +242,7 @@ class SortFirst::State {
     return map;
   }
 
-  void send(const RegionHeader& header, const scene::Image& image) {
+  void send(const RegionHeader& header, const scene::Image& image, const std::vector<float>& doubts) {
     Bytes bytes;
     const PixelRegion& r = header.region;
     append_values(bytes, std::span(&header, 1));
@@ -247,6 +250,7 @@ class SortFirst::State {
       const auto width = static_cast<std::size_t>(r.x1 - r.x0);
       append_values(bytes, std::span(image.rgba).subspan(4 * image.index(r.x0, y), 4 * width));
       append_values(bytes, std::span(image.depth).subspan(image.index(r.x0, y), width));
+      if (!doubts.empty()) append_values(bytes, std::span(doubts).subspan(image.index(r.x0, y), width));
     }
     transport_.send(0, Channel::tiles, std::move(bytes), static_cast<std::int32_t>(header.frame));
   }
@@ -263,6 +267,8 @@ class SortFirst::State {
       const auto width = static_cast<std::size_t>(r.x1 - r.x0);
       reader.take(std::span(finished.image.rgba).subspan(4 * finished.image.index(r.x0, y), 4 * width));
       reader.take(std::span(finished.image.depth).subspan(finished.image.index(r.x0, y), width));
+      if (!finished.doubts.empty())
+        reader.take(std::span(finished.doubts).subspan(finished.image.index(r.x0, y), width));
     }
     volume::RenderStatistics& s = finished.statistics;
     s.rays += header.rays, s.voxels_visited += header.voxels_visited, s.samples += header.samples;

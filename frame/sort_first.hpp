@@ -27,6 +27,7 @@ struct SortFirstSettings {
   double resolution = 0.5;      ///< of the cost map, map pixels an image pixel along each axis
   std::vector<double> weights;  ///< how much of the work each rank should get; empty: equal
   bool keep_cost = false;       ///< rank 0 finds the cost of the whole picture too, to be shown
+  bool keep_doubts = false;     ///< rank 0 gets each pixel's doubt (volume::Renderer::render) too; alike on all ranks
   scene::Trace* trace = nullptr;
 };
 
@@ -45,6 +46,7 @@ struct FinishedVolumeFrame {
   std::vector<double> cpu_seconds;     ///< of each rank's rendering, all its threads
   double frame_ms;                     ///< from when all ranks were ready to the picture in memory, split included
   volume::CostMap cost;                ///< of the whole picture, if SortFirstSettings::keep_cost
+  std::vector<float> doubts;           ///< by pixel, if SortFirstSettings::keep_doubts
 };
 
 /// Renders pictures of volumes with all ranks of `transport` (sort first): each casts the rays of one rectangle through

@@ -1,6 +1,8 @@
 #include "reference/judge.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -63,8 +65,8 @@ bool excusable(const std::array<float, 4>& value, const RayReference& reference,
 
 }  // namespace
 
-Judgement judge(const scene::Image& image, const RayReference& reference, double bound,
-                std::span<const PixelIndex> pixels, int threads) {
+std::vector<PixelJudgement> judge_each(const scene::Image& image, const RayReference& reference, double bound,
+                                       std::span<const PixelIndex> pixels, int threads, std::size_t most_examined) {
   const scene::ImageSize size = reference.size();
   if (image.size != size)
     throw scene::bad_input(fmt::format("judge: the image is {}x{}, its reference {}x{}; render both at one size",
@@ -73,48 +75,66 @@ Judgement judge(const scene::Image& image, const RayReference& reference, double
     if (p.x < 0 || p.y < 0 || p.x >= size.width || p.y >= size.height)
       throw scene::bad_input(
           fmt::format("judge: pixel ({}, {}) lies outside the {}x{} image", p.x, p.y, size.width, size.height));
-  std::vector<PixelIndex> everywhere;
-  if (pixels.empty()) {
-    everywhere = all_pixels(size);
-    pixels = everywhere;
+  const std::vector<Pixel> truths = reference.pixels(pixels, threads);
+  std::vector<PixelJudgement> judged(pixels.size());
+  std::vector<std::size_t> over_bound;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    PixelJudgement& pixel = judged[i];
+    pixel.value = rgba(image, pixels[i]), pixel.truth = rgba(truths[i]);
+    pixel.error = largest_difference(pixel.value, pixel.truth);
+    pixel.over_bound = pixel.error > bound;
+    if (pixel.over_bound) over_bound.push_back(i);
   }
 
-  const std::vector<Pixel> truths = reference.pixels(pixels, threads);
+  constexpr std::size_t enough = 100, together = 64;
+  over_bound.resize(std::min(over_bound.size(), most_examined));
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  std::size_t without_excuse = 0;
+  for (std::size_t begin = 0; begin < over_bound.size() && without_excuse < enough; begin += together) {
+    const std::size_t end = std::min(begin + together, over_bound.size());
+    arena.execute([&] {
+      tbb::parallel_for(begin, end, [&](std::size_t n) {
+        PixelJudgement& pixel = judged[over_bound[n]];
+        pixel.excused = excusable(pixel.value, reference, pixels[over_bound[n]], bound);
+      });
+    });
+    for (std::size_t n = begin; n < end; ++n) without_excuse += judged[over_bound[n]].excused ? 0 : 1;
+  }
+  return judged;
+}
+
+std::size_t most_excused(std::size_t pixels, bool sample) {
+  const double share = excusable_share * static_cast<double>(pixels);
+  return static_cast<std::size_t>(sample ? share + 3 * std::sqrt(share) : share);
+}
+
+Judgement judge(const scene::Image& image, const RayReference& reference, double bound,
+                std::span<const PixelIndex> pixels, int threads) {
+  std::vector<PixelIndex> everywhere;
+  if (pixels.empty()) {
+    everywhere = all_pixels(reference.size());
+    pixels = everywhere;
+  }
+  const std::size_t most = most_excused(pixels.size(), pixels.size() < image.depth.size());
   Judgement judgement;
   judgement.pixels_checked = pixels.size();
   double sum_of_squares = 0;
-  std::vector<std::size_t> over_bound;
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const std::array<double, 4> truth = rgba(truths[i]);
-    const std::array<float, 4> value = rgba(image, pixels[i]);
-    const double error = largest_difference(value, truth);
-    for (int c = 0; c < 4; ++c) sum_of_squares += (value[c] - truth[c]) * (value[c] - truth[c]);
-    if (i == 0 || error > judgement.max_error) {
-      judgement.max_error = error;
+  const std::vector<PixelJudgement> judged = judge_each(image, reference, bound, pixels, threads, most + 100);
+  for (std::size_t i = 0; i < judged.size(); ++i) {
+    const PixelJudgement& pixel = judged[i];
+    for (std::size_t c = 0; c < 4; ++c)
+      sum_of_squares += (pixel.value[c] - pixel.truth[c]) * (pixel.value[c] - pixel.truth[c]);
+    if (i == 0 || pixel.error > judgement.max_error) {
+      judgement.max_error = pixel.error;
       judgement.worst_x = pixels[i].x, judgement.worst_y = pixels[i].y;
-      judgement.worst_value = value, judgement.worst_reference = truth;
+      judgement.worst_value = pixel.value, judgement.worst_reference = pixel.truth;
     }
-    if (error > bound)
-      over_bound.push_back(i);
-    else
-      judgement.max_error_not_excused = std::max(judgement.max_error_not_excused, error);
+    judgement.over_bound += pixel.over_bound ? 1 : 0;
+    judgement.excused += pixel.excused ? 1 : 0;
+    if (!pixel.excused) judgement.max_error_not_excused = std::max(judgement.max_error_not_excused, pixel.error);
   }
-  judgement.rms_error = std::sqrt(sum_of_squares / (4 * static_cast<double>(pixels.size())));
-
-  const double share = excusable_share * static_cast<double>(pixels.size());
-  const bool sample = pixels.size() < image.depth.size();
-  const auto most_excused = static_cast<std::size_t>(sample ? share + 3 * std::sqrt(share) : share);
-  judgement.over_bound = over_bound.size();
-  for (std::size_t n = 0; n < over_bound.size(); ++n) {
-    const PixelIndex at = pixels[over_bound[n]];
-    const std::array<float, 4> value = rgba(image, at);
-    if (n < most_excused + 100 && excusable(value, reference, at, bound))
-      ++judgement.excused;
-    else
-      judgement.max_error_not_excused =
-          std::max(judgement.max_error_not_excused, largest_difference(value, rgba(truths[over_bound[n]])));
-  }
-  judgement.passed = judgement.over_bound == judgement.excused && judgement.excused <= most_excused;
+  judgement.rms_error = std::sqrt(sum_of_squares / (4 * static_cast<double>(judged.size())));
+  judgement.passed = judgement.over_bound == judgement.excused && judgement.excused <= most;
   return judgement;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "reference/ray_reference.hpp"
 #include "reference/reference.hpp"  // what most who judge need
@@ -23,6 +24,24 @@ struct Judgement {
   std::size_t excused = 0;     ///< those of them that are excused, see judge()
   bool passed = false;         ///< every pixel over the bound is excused, and not too many are
 };
+
+/// What is found of one pixel.
+struct PixelJudgement {
+  double error = 0;  ///< largest of its channels
+  std::array<float, 4> value{};
+  std::array<double, 4> truth{};
+  bool over_bound = false, excused = false;
+};
+
+/// Compares pixels of an image with the reference, one by one. Of those over the bound no more than `most_examined` are
+/// examined for an excuse, and no more once a hundred have none; the others count as not excused. Throws what judge()
+/// throws.
+std::vector<PixelJudgement> judge_each(const scene::Image& image, const RayReference& reference, double bound,
+                                       std::span<const PixelIndex> pixels, int threads, std::size_t most_examined);
+
+/// How many excused pixels a picture may have, or a sample of so many of its pixels taken at random: 1e-4 of them, and
+/// in a sample three standard deviations more.
+std::size_t most_excused(std::size_t pixels, bool sample);
 
 /// Compares an image with the reference in `pixels`, or everywhere if there are none named.
 ///

@@ -155,7 +155,7 @@ HWY_INLINE std::uint64_t looked_at(int tile_x, int tile_y, int count) {
 }
 
 void cast_tile_here(const FrameView& frame, int x0, int y0, const PixelRegion& region, TileMemory& memory,
-                    scene::Image* image, TileCounts& counts) {
+                    scene::Image* image, TileCounts& counts, float* doubts) {
   TileRays& rays = memory.rays;
   for (int r = 0; r < TileRays::count; ++r) {
     rays.alpha[r] = rays.red[r] = rays.green[r] = rays.blue[r] = 0;
@@ -183,6 +183,7 @@ void cast_tile_here(const FrameView& frame, int x0, int y0, const PixelRegion& r
       const int x = x0 + TileRays::pixel_x(r), y = y0 + TileRays::pixel_y(r);
       if (x < region.x0 || x >= region.x1 || y < region.y0 || y >= region.y1 || !(rays.k_in[r] < rays.k_out[r]))
         continue;
+      if (doubts != nullptr) doubts[image->index(x, y)] = rays.doubt[r];
       if (rays.doubt[r] > frame.doubt_tolerance) {
         memory.doubtful.push_back({x, y});
         continue;
@@ -205,8 +206,8 @@ HWY_AFTER_NAMESPACE();
 namespace tessera::volume {
 HWY_EXPORT(cast_tile_here);
 void cast_tile(const FrameView& frame, int x0, int y0, const PixelRegion& region, TileMemory& memory,
-               scene::Image* image, TileCounts& counts) {
-  HWY_DYNAMIC_DISPATCH(cast_tile_here)(frame, x0, y0, region, memory, image, counts);
+               scene::Image* image, TileCounts& counts, float* doubts) {
+  HWY_DYNAMIC_DISPATCH(cast_tile_here)(frame, x0, y0, region, memory, image, counts, doubts);
 }
 }  // namespace tessera::volume
 #endif  // HWY_ONCE

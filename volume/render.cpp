@@ -202,7 +202,7 @@ struct Renderer::State {
   [[nodiscard]] double accuracy() const { return settings.method == Method::exact ? 2e-6 : settings.accuracy; }
 
   void cast(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
-            const PixelRegion& wanted, WorkTally* tally, scene::Image* image, Cast& result);
+            const PixelRegion& wanted, WorkTally* tally, scene::Image* image, float* doubts, Cast& result);
   void cast_rectilinear(const scene::Camera& camera, const scene::TransferFunction& function, const PixelRegion& wanted,
                         scene::Image& image, Cast& result) const;
   void cast_again(const scene::Camera& camera, const scene::TransferFunction& function,
@@ -273,7 +273,7 @@ std::vector<std::array<glm::dvec3, 2>> Renderer::visible_bricks(
 /// The rays of the pixels `wanted`: an image, or a tally.
 void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
                            const scene::TransferFunction& transfer_function, const PixelRegion& wanted,
-                           WorkTally* tally, scene::Image* image, Cast& result) {
+                           WorkTally* tally, scene::Image* image, float* doubts, Cast& result) {
   const PixelRays rays(camera, size, source.geometry());
   const compositor::LaneTable table = table_of(transfer_function);
   std::vector<std::uint8_t> visible;
@@ -346,7 +346,8 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
         [&](const auto& some) {
           const scene::TraceScope scope(settings.trace, tally == nullptr ? "project" : "partition");
           for (std::size_t n = some.begin(); n != some.end(); ++n)
-            cast_tile(frame, tiles[n].first, tiles[n].second, wanted, *memories.local(), image, tile_counts.local());
+            cast_tile(frame, tiles[n].first, tiles[n].second, wanted, *memories.local(), image, tile_counts.local(),
+                      doubts);
         },
         tbb::auto_partitioner());
     std::vector<std::array<int, 2>> doubtful;
@@ -390,7 +391,7 @@ void Renderer::State::cast_rectilinear(const scene::Camera& camera, const scene:
 
 scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size,
                               const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
-                              std::optional<PixelRegion> region) {
+                              std::optional<PixelRegion> region, std::vector<float>* doubts) {
   scene::validate(camera);
   scene::validate(size);
   State& state = *state_;
@@ -403,12 +404,14 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   if (near_ones)
     state.bricks.set_distances(cone_distances(camera, size, wanted, state.source.geometry(), state.bricks.layout()));
   scene::Image image(size);
+  if (doubts != nullptr) doubts->assign(image.depth.size(), 0.0f);
   Cast cast;
   const bool rectilinear = state.source.geometry().rectilinear();
   if (rectilinear)
     state.cast_rectilinear(camera, transfer_function, wanted, image, cast);
   else
-    state.cast(camera, size, transfer_function, wanted, nullptr, &image, cast);
+    state.cast(camera, size, transfer_function, wanted, nullptr, &image, doubts == nullptr ? nullptr : doubts->data(),
+               cast);
   const BrickCache::Counts after = state.bricks.counts();
   state.counts_before = after;
   if (near_ones && settings.preload_limit > 0 && !rectilinear) state.begin_preload(cast.brick_visible);
@@ -438,7 +441,7 @@ void Renderer::look(const scene::Camera& camera, scene::ImageSize size,
   scene::validate(size);
   if (state_->source.geometry().rectilinear()) return;
   Cast unused;
-  state_->cast(camera, size, transfer_function, within(size, region), &tally, nullptr, unused);
+  state_->cast(camera, size, transfer_function, within(size, region), &tally, nullptr, nullptr, unused);
 }
 
 CostMap Renderer::cost_map(const scene::Camera& camera, scene::ImageSize size,

@@ -96,10 +96,12 @@ class Renderer {
 
   /// The composited image in memory; only the pixels of `region` if there is one, the others stay empty. Throws
   /// Error(bad_input) for an invalid camera or size; Error(system_failure) if the budget does not hold the bricks that
-  /// the threads need at one time.
+  /// the threads need at one time. `doubts` gets, by pixel, what float lanes may err there in linear RGBA, so far as
+  /// they add it up (lane_doubt.hpp); above half the accuracy asked a pixel was cast again in double precision. Zero
+  /// where no ray was cast, and all over rectilinear grids.
   scene::Image render(const scene::Camera& camera, scene::ImageSize size,
                       const scene::TransferFunction& transfer_function, RenderStatistics* statistics = nullptr,
-                      std::optional<PixelRegion> region = std::nullopt);
+                      std::optional<PixelRegion> region = std::nullopt, std::vector<float>* doubts = nullptr);
 
   /// Casts every 32nd ray of the picture (more of a small one), or of a region of it, and counts where in the volume
   /// the work was (learned_work.hpp); makes no light. As render() otherwise.

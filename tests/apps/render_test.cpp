@@ -76,7 +76,9 @@ TEST(Render, VerifyMeetsItsBoundAndReportsPixels) {
     const auto run = tessera({"render", folder.cube(), "-o", folder / "a.pfm", "--size", "40x40", "--integrator",
                               integrator, "--verify", "200"});
     EXPECT_EQ(run.status, 0) << run.err;
-    EXPECT_TRUE(std::regex_search(run.out, std::regex("verify frame 0: 200 pixels, max .* rms .* worst at")))
+    EXPECT_TRUE(std::regex_search(
+        run.out, std::regex("verify frame 0: 200 pixels, max .* rms .* worst at .* excused; "
+                            "(bound .* met|no bound promised); worst: [a-z]+; chosen: [0-9]+ random, ")))
         << run.out;
   }
 }
@@ -168,7 +170,14 @@ TEST(Render, ReportAndTimingAreJsonThatSaysWhatHappened) {
   const auto& frame = report.at("frames").at(0);
   EXPECT_EQ(frame.at("counters").at("tets_total"), 384);
   EXPECT_GT(frame.at("counters").at("segments"), 384);
-  EXPECT_EQ(frame.at("verify").at("pixels"), 50);
+  const auto& verify = frame.at("verify");
+  EXPECT_EQ(verify.at("pixels"), 50);
+  int pixels = verify.at("random").at("pixels").get<int>();
+  EXPECT_GE(pixels, 17);
+  for (const auto& tally : verify.at("chosen")) pixels += tally.at("pixels").get<int>();
+  EXPECT_EQ(pixels, 50);
+  EXPECT_TRUE(verify.at("worst_chosen") == "random" ||
+              verify.at("chosen").contains(verify.at("worst_chosen").get<std::string>()));
   EXPECT_EQ(frame.at("view").at("size"), (nlohmann::json{30, 20}));
 
   const auto trace = nlohmann::json::parse(contents(folder / "trace.json"));
@@ -236,7 +245,7 @@ TEST(Render, WithoutAnyOfItsMechanismsThePictureIsTheSame) {
                                       "--size",
                                       "64x64",
                                       "--verify",
-                                      "2000"};
+                                      "4096"};
     if (!without.empty()) words.insert(words.end(), {"--without", without});
     const auto run = tessera(words);
     EXPECT_EQ(run.status, 0) << without << run.out << run.err;

@@ -1,0 +1,191 @@
+#include "reference/image_suspicion.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace tessera::reference {
+namespace {
+
+using Colour = std::array<float, 4>;
+constexpr float broken = 1e30f;  // of pixels that are not finite
+
+class Picture {
+ public:
+  explicit Picture(const scene::Image& image) : image_(image) {}
+
+  [[nodiscard]] bool has(int x, int y) const { return x >= 0 && y >= 0 && x < width() && y < height(); }
+  [[nodiscard]] int width() const { return image_.size.width; }
+  [[nodiscard]] int height() const { return image_.size.height; }
+  [[nodiscard]] std::size_t index(int x, int y) const { return image_.index(x, y); }
+  [[nodiscard]] Colour at(int x, int y) const {
+    const float* const p = &image_.rgba[4 * image_.index(x, y)];
+    return {p[0], p[1], p[2], p[3]};
+  }
+
+  /// Largest difference to a neighbour.
+  [[nodiscard]] float edge(int x, int y) const {
+    const Colour here = at(x, y);
+    float largest = 0;
+    for (const float c : here)
+      if (!std::isfinite(c)) return broken;
+    for (int j = -1; j <= 1; ++j)
+      for (int i = -1; i <= 1; ++i) {
+        if (!has(x + i, y + j)) continue;
+        const Colour there = at(x + i, y + j);
+        for (std::size_t c = 0; c < 4; ++c)
+          if (const float d = std::abs(here[c] - there[c]); d > largest) largest = d;
+      }
+    return largest;
+  }
+
+  struct Misfit {
+    float least = 0;  ///< of the directions
+    float alike = 0;  ///< how alike they are: mean over spread
+  };
+
+  /// How far the pixel is from the cubic through its four neighbours along a line, of four directions: along a straight
+  /// edge the least is small; at a single pixel that is off all are alike.
+  [[nodiscard]] Misfit misfit(int x, int y, float noise) const {
+    constexpr std::array<std::array<int, 2>, 4> directions{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
+    std::array<Colour, 4> off{};
+    std::size_t count = 0;
+    Misfit misfit{std::numeric_limits<float>::infinity(), 0};
+    for (const auto& [i, j] : directions) {
+      if (!has(x - 2 * i, y - 2 * j) || !has(x + 2 * i, y + 2 * j)) continue;
+      const Colour a = at(x - 2 * i, y - 2 * j), b = at(x - i, y - j), here = at(x, y), c = at(x + i, y + j),
+                   d = at(x + 2 * i, y + 2 * j);
+      float largest = 0;
+      for (std::size_t n = 0; n < 4; ++n) {
+        off[count][n] = here[n] - (4 * (b[n] + c[n]) - (a[n] + d[n])) / 6;
+        largest = std::max(largest, std::abs(off[count][n]));
+      }
+      ++count;
+      misfit.least = std::min(misfit.least, largest);
+    }
+    if (!std::isfinite(misfit.least)) return {};
+    for (std::size_t n = 0; n < 4 && count > 1; ++n) {
+      float mean = 0, spread = 0;
+      for (std::size_t i = 0; i < count; ++i) mean += off[i][n] / static_cast<float>(count);
+      for (std::size_t i = 0; i < count; ++i) spread = std::max(spread, std::abs(off[i][n] - mean));
+      misfit.alike = std::max(misfit.alike, std::abs(mean) / (spread + noise));
+    }
+    return misfit;
+  }
+
+  /// Jump across one side of a 4x4 block beyond what the slopes on both sides lead up to, mean over the side. The side
+  /// begins at (x, y), goes along (along_x, along_y), and has the block's pixels towards (in_x, in_y).
+  [[nodiscard]] float jump(int x, int y, int along_x, int along_y, int in_x, int in_y) const {
+    Colour sum{};
+    for (int n = 0; n < 4; ++n) {
+      const int px = x + n * along_x, py = y + n * along_y;
+      if (!has(px - 2 * in_x, py - 2 * in_y) || !has(px + in_x, py + in_y)) return 0;
+      const Colour a = at(px - 2 * in_x, py - 2 * in_y), b = at(px - in_x, py - in_y), c = at(px, py),
+                   d = at(px + in_x, py + in_y);
+      for (std::size_t i = 0; i < 4; ++i) sum[i] += (c[i] - b[i] - (d[i] - c[i] + b[i] - a[i]) / 2) / 4;
+    }
+    float largest = 0;
+    for (const float s : sum) largest = std::max(largest, std::abs(s));
+    return largest;
+  }
+
+  /// Of the block whose first pixel is (x, y).
+  [[nodiscard]] float block(int x, int y) const {
+    std::array<float, 4> sides{jump(x, y, 0, 1, 1, 0), jump(x + 3, y, 0, 1, -1, 0), jump(x, y, 1, 0, 0, 1),
+                               jump(x, y + 3, 1, 0, 0, -1)};
+    std::sort(sides.begin(), sides.end());
+    return sides[2];
+  }
+
+ private:
+  const scene::Image& image_;
+};
+
+/// A misfit over the median of those on a ring that it does not reach: matter is rough in one place and smooth in
+/// another.
+float standing_out(const SuspicionMap& misfit, const Picture& picture, int x, int y, float least) {
+  constexpr int reach = 4, step = 2;
+  std::array<float, 16> ring{};
+  std::size_t count = 0;
+  for (int j = -reach; j <= reach; j += step)
+    for (int i = -reach; i <= reach; i += step)
+      if (std::max(std::abs(i), std::abs(j)) == reach && picture.has(x + i, y + j))
+        ring[count++] = misfit[picture.index(x + i, y + j)];
+  std::nth_element(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(count / 2),
+                   ring.begin() + static_cast<std::ptrdiff_t>(count));
+  return misfit[picture.index(x, y)] / (least + (count == 0 ? 0 : ring[count / 2]));
+}
+
+/// A pixel of each colour that 3x3 pixels have and more.
+SuspicionMap plateaus(const Picture& picture) {
+  struct Plateau {
+    float pixels = 0;
+    std::size_t at = 0;
+    double hash = 2;
+  };
+  std::map<std::array<std::uint32_t, 4>, Plateau> plateaus;
+  for (int y = 1; y + 1 < picture.height(); ++y)
+    for (int x = 1; x + 1 < picture.width(); ++x) {
+      const Colour here = picture.at(x, y);
+      bool flat = true;
+      for (int n = 0; n < 9 && flat; ++n) flat = picture.at(x - 1 + n % 3, y - 1 + n / 3) == here;
+      if (!flat) continue;
+      Plateau& plateau = plateaus[std::bit_cast<std::array<std::uint32_t, 4>>(here)];
+      ++plateau.pixels;
+      const std::size_t at = picture.index(x, y);
+      if (const double hash = hashed(at, 4); hash < plateau.hash) plateau.at = at, plateau.hash = hash;
+    }
+  SuspicionMap map(static_cast<std::size_t>(picture.width()) * static_cast<std::size_t>(picture.height()), 0.0f);
+  for (const auto& [colour, plateau] : plateaus) map[plateau.at] = plateau.pixels;
+  return map;
+}
+
+}  // namespace
+
+ImageSuspicion suspect(const scene::Image& image, double least, int threads) {
+  const Picture picture(image);
+  const std::size_t pixels = image.depth.size();
+  const auto floor = static_cast<float>(least);
+  ImageSuspicion result;
+  for (SuspicionMap* map : {&result.edge, &result.outlier, &result.block}) map->assign(pixels, 0.0f);
+  SuspicionMap misfit(pixels), alike(pixels);
+  const auto for_all = [&](int step, const auto& score) {
+    tbb::parallel_for(0, (picture.height() + step - 1) / step, [&](int row) {
+      for (int x = 0; x < picture.width(); x += step) score(x, row * step);
+    });
+  };
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    for_all(1, [&](int x, int y) {
+      const float edge = picture.edge(x, y);
+      if (!(edge > floor)) return;
+      result.edge[picture.index(x, y)] = edge;
+      const Picture::Misfit off = picture.misfit(x, y, floor / 4);
+      misfit[picture.index(x, y)] = off.least;
+      alike[picture.index(x, y)] = off.alike;
+    });
+    for_all(1, [&](int x, int y) {
+      if (misfit[picture.index(x, y)] > floor)
+        result.outlier[picture.index(x, y)] =
+            standing_out(misfit, picture, x, y, floor) * (1 + alike[picture.index(x, y)] * alike[picture.index(x, y)]);
+    });
+    for_all(4, [&](int x, int y) {
+      const float score = picture.block(x, y);
+      if (!(score > floor)) return;
+      const double hash = hashed(picture.index(x, y), 5);
+      const int n = static_cast<int>(16 * hash);
+      result.block[picture.index(std::min(x + n % 4, picture.width() - 1), std::min(y + n / 4, picture.height() - 1))] =
+          score;
+    });
+    result.plateau = plateaus(picture);
+  });
+  return result;
+}
+
+}  // namespace tessera::reference

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "scene/optical_model.hpp"
+#include "scene/transfer_function.hpp"
+
+namespace tessera::reference {
+
+/// How much light hangs on a rounding of the field, in a cell: what mesh_suspicion.hpp and grid_suspicion.hpp ask of a
+/// transfer function. Estimates to rank pixels by, no bounds.
+class LightError {
+ public:
+  /// `noise`: of the field, as a renderer may round it; > 0.
+  LightError(const scene::TransferFunction& function, scene::Emission emission, double noise);
+
+  /// Error of light or opacity per unit of length, in a cell with these values at its corners. At a step it is the jump
+  /// times the share of the cell that may be on the wrong side: of rounding against the cell's span, or of the corners
+  /// that lie on the step itself. On a ramp it is the slope times the noise.
+  [[nodiscard]] double per_length(std::span<const double> corners) const;
+  /// At most that, of any cell with values in [low, high].
+  [[nodiscard]] double most_per_length(double low, double high) const;
+
+  /// Largest extinction (independent emission: colour too) of values in [low, high].
+  [[nodiscard]] double densest(double low, double high) const;
+
+ private:
+  struct Step {
+    double value, jump;
+  };
+  struct Ramp {
+    double low, high, slope;
+  };
+  [[nodiscard]] double steepest(double low, double high) const;
+  [[nodiscard]] double matter(const scene::Knot& knot) const;
+
+  std::vector<scene::Knot> knots_;
+  std::vector<Step> steps_;  ///< by value
+  std::vector<Ramp> ramps_;  ///< by value, those with a slope
+  scene::Emission emission_;
+  double noise_, largest_jump_ = 0, largest_slope_ = 0, densest_ = 0;
+};
+
+}  // namespace tessera::reference
