@@ -330,14 +330,14 @@ class PacketCast {
 
   HWY_INLINE void add_uniform_line(VF s_0, VF s_1, VF span, VF shift, VF length, int n) {
     const DF d;
+    const VF before = progress_.transmittance;
     CL::lanes::add_piece<false>(current_.uniform(), 0, HN::Add(s_0, shift), HN::Add(s_1, shift), span, length,
                                 progress_);
     counts_.samples += live_count_;
     if (HWY_UNLIKELY(!HN::AllTrue(d, notes_.seen)))
       note_first_light(progress_, HN::Set(d, static_cast<float>(n)), notes_);
     if (HWY_UNLIKELY(current_.uniform().ramp > 0))
-      notes_.doubt =
-          HN::MulAdd(HN::Mul(length, HN::Set(d, current_.uniform().ramp)), progress_.transmittance, notes_.doubt);
+      note_ramps(current_.uniform(), length, before, progress_.transmittance, notes_);
   }
 
   /// A slab that crosses knots, or is rough.
@@ -358,6 +358,7 @@ class PacketCast {
     const SlabPath path = path_of(lanes_, n, slabs_.i_window[n], slabs_.j_window[n]);
     for (const Stretch& stretch : path.stretches)
       counts_.voxels_visited += HN::CountTrue(d, HN::Gt(stretch.end, stretch.begin));
+    const VF before = progress_.transmittance, light[3] = {progress_.red, progress_.green, progress_.blue};
     if (cell_data || frame_.shading != nullptr) {
       cast_voxels<cell_data>(frame_, chunk_.axes, lookup_, lanes_, path, window,
                              uniform ? &current_.uniform() : nullptr, HN::Gt(path.to, path.from), progress_, notes_,
@@ -367,11 +368,14 @@ class PacketCast {
     if constexpr (!cell_data) {
       const MF there = HN::Gt(path.to, path.from);
       const VF length = HN::IfThenElseZero(there, HN::Mul(lanes_.length, HN::Sub(path.to, path.from)));
-      const MF apart = cast_mixed(frame_, lookup_, part_line(lanes_, path, window), there, HN::Add(path.from, path.k),
+      const Line line = part_line(lanes_, path, window);
+      const MF apart = cast_mixed(frame_, lookup_, line, there, HN::Add(path.from, path.k),
                                   length, current_, progress_, notes_, counts_);
       if (!HN::AllFalse(d, apart))
         cast_voxels<false>(frame_, chunk_.axes, lookup_, lanes_, path, window, nullptr, apart, progress_, notes_,
                            counts_);
+      if (HWY_UNLIKELY(frame_.doubt != nullptr && frame_.doubt->ends))
+        note_ends(*frame_.doubt, lookup_, line, path, there, lanes_.length, before, light, progress_, notes_);
     }
   }
 
@@ -404,7 +408,7 @@ HWY_NOINLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int r
   PacketCast<cell_data, Window, Lookup> cast(chunk, lookup, slabs, lanes, before, current, counts);
   const VF alpha_before = HN::LoadU(d, rays.alpha + ray);
   const MF seen_before = HN::Gt(alpha_before, HN::Zero(d));
-  cast.notes_ = {HN::Set(d, -1.0f), seen_before, HN::Zero(d)};
+  cast.notes_ = {HN::Set(d, -1.0f), seen_before, HN::Zero(d), HN::Zero(d)};
   cast.run(reach);
 
   const Progress& progress = cast.progress_;
@@ -416,6 +420,8 @@ HWY_NOINLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int r
   add(rays.blue, progress.blue);
   HN::StoreU(HN::Mul(before, progress.transmittance), d, rays.transmittance + ray);
   add(rays.doubt, cast.notes_.doubt);
+  const VF rough = HN::Mul(HN::Mul(before, before), cast.notes_.rough);
+  HN::StoreU(HN::Add(rough, HN::LoadU(d, rays.rough + ray)), d, rays.rough + ray);
   if (!HN::AllFalse(d, HN::AndNot(seen_before, cast.notes_.seen))) {
     const auto first_k = static_cast<double>(chunk.first_k);
     HWY_ALIGN float place[most];

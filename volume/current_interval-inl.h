@@ -60,12 +60,14 @@ class CurrentInterval {
     low_ = table_.column(LaneTable::edge)[n];
     high_ = table_.column(LaneTable::edge)[n + 1];
     guarded_low_ = low_, guarded_high_ = high_;
-    uniform_.ramp = 0;
+    uniform_.ramp = uniform_.ramp_steady = uniform_.ramp_color = 0;
     if (frame_.doubt != nullptr) {
       const LaneDoubt& doubt = *frame_.doubt;
       if (!doubt.step.empty() && doubt.step[n] > 0) guarded_low_ += doubt.noise;
       if (!doubt.step.empty() && doubt.step[n + 1] > 0) guarded_high_ -= doubt.noise;
-      if (!doubt.ramp.empty()) uniform_.ramp = doubt.ramp[n];
+      if (!doubt.ramp.empty() && doubt.ramp[n] > 0)
+        uniform_.ramp = doubt.ramp[n], uniform_.ramp_steady = doubt.ramp_steady[n],
+        uniform_.ramp_color = doubt.ramp_color[n];
     }
     clear_ = true;
     for (int c = 0; c < LaneTable::column_count; ++c) {

@@ -184,12 +184,13 @@ struct Renderer::State {
   [[nodiscard]] float least_transmittance(const scene::TransferFunction& function) const {
     if (!settings.use.termination) return 0;
     if (settings.method == Method::sampled || settings.method == Method::preintegrated) return 1e-6f;
-    double brightest = function.max_color();
-    if (settings.emission == scene::Emission::independent) {
-      const scene::Box box = scene::bounds(source.geometry());
-      brightest *= glm::length(box.high - box.low);
-    }
-    return static_cast<float>(std::min(0.25, accuracy() / 4 / std::max(1.0, brightest)));
+    return static_cast<float>(std::min(0.25, accuracy() / 4 / std::max(1.0, brightest(function))));
+  }
+  /// Light that may come along a ray.
+  [[nodiscard]] double brightest(const scene::TransferFunction& function) const {
+    if (settings.emission != scene::Emission::independent) return function.max_color();
+    const scene::Box box = scene::bounds(source.geometry());
+    return function.max_color() * glm::length(box.high - box.low);
   }
   /// Of a cast in double precision; `visible` must outlive it.
   [[nodiscard]] VoxelCastSettings voxel_settings(const scene::TransferFunction& function,
@@ -303,10 +304,11 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
     frame.piece_tolerance = static_cast<float>(accuracy() / 64);
     frame.largest_color = static_cast<float>(std::max(1e-30, transfer_function.max_color()));
     LaneDoubt doubt;
-    if (frame.step == 0 && !frame.cell_data && tally == nullptr) {
+    if (settings.method != Method::sampled && settings.method != Method::preintegrated && tally == nullptr) {
       frame.doubt_tolerance = static_cast<float>(std::max(accuracy(), 1e-5) / 2);
-      doubt = LaneDoubt(table, ranges, frame.largest_color, frame.doubt_tolerance,
-                        longest_in_voxel(source.geometry()) / length_unit);
+      doubt = LaneDoubt(transfer_function, table, ranges,
+                        {frame.cell_data, frame.largest_color, brightest(transfer_function), frame.doubt_tolerance,
+                         longest_in_voxel(source.geometry()) / length_unit});
       if (doubt.any()) frame.doubt = &doubt;
     }
     frame.tally = tally;
