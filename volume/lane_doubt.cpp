@@ -56,11 +56,12 @@ std::vector<double> knots_moved(const scene::TransferFunction& function, const L
   const float* const edges = table.column(LaneTable::edge);
   std::vector<double> moved(table.stride, 0.0);
   for (const scene::Knot& knot : function.knots()) {
-    const float rounded = compositor::lane_scalar(knot.value, ranges.lanes.origin, ranges.lanes.unit);
-    const auto e = static_cast<std::size_t>(std::lower_bound(edges, edges + table.knot_count + 1, rounded) - edges);
     const double exact = (knot.value - ranges.lanes.origin) / ranges.lanes.unit;
-    if (e <= table.knot_count && edges[e] == rounded && std::abs(exact) < 0x1p30)
-      moved[e] = std::max(moved[e], std::abs(rounded - exact));
+    const auto at = std::lower_bound(table.edge_values.begin() + 1, table.edge_values.end(), knot.value,
+                                     [](const std::array<double, 2>& values, double v) { return values[1] < v; });
+    const auto e = static_cast<std::size_t>(at - table.edge_values.begin());
+    if (e <= table.knot_count && (*at)[0] <= knot.value && std::abs(exact) < 0x1p30)
+      moved[e] = std::max(moved[e], std::abs(edges[e] - exact));
   }
   return moved;
 }
@@ -72,13 +73,15 @@ LaneDoubt::LaneDoubt(const scene::TransferFunction& function, const LaneTable& t
     : brightest(bounded(std::max(1.0, settings.brightest))), matters(bounded(settings.least / 64)) {
   find_noise(ranges, settings.cell_data);
   most = table.emission != scene::Emission::independent ? bounded(std::max(1.0, settings.largest_color)) : 1e18f;
-  if (!settings.cell_data) find_steps(table, settings);
+  find_sharp_edges(table, ranges.lanes);
+  find_steps(table, settings);
   find_ramps(table, knots_moved(function, table, ranges), settings);
   const bool independent = table.emission == scene::Emission::independent;
   double densest = 0;
   for (std::size_t n = 0; n <= table.knot_count; ++n)
     for (const double s : {table.column(LaneTable::edge)[n], table.column(LaneTable::edge)[n + 1]})
-      if (std::isfinite(s)) densest = std::max(densest, difference(matter_at(table, n, s), {}, independent, settings.brightest));
+      if (std::isfinite(s))
+        densest = std::max(densest, difference(matter_at(table, n, s), {}, independent, settings.brightest));
   // Places of ends are off by 1e-6 of a voxel.
   ends = 4e-6 * densest * settings.longest > settings.least;
 }
@@ -95,6 +98,11 @@ void LaneDoubt::find_noise(const CellRanges& ranges, bool cell_data) {
   noise = bounded(cell_data ? 0x1p-25 * reach : 0x1p-23 * reach + 5e-7 * steepest);
 }
 
+void LaneDoubt::find_sharp_edges(const LaneTable& table, const LaneSamples& lanes) {
+  sharp.assign(table.stride, 0);
+  for (std::size_t e = 1; e <= table.knot_count; ++e) sharp[e] = lanes.exact && table.is_step[e] != 0;
+}
+
 void LaneDoubt::find_steps(const LaneTable& table, const DoubtSettings& settings) {
   const float* const edges = table.column(LaneTable::edge);
   const bool independent = table.emission == scene::Emission::independent;
@@ -107,6 +115,8 @@ void LaneDoubt::find_steps(const LaneTable& table, const DoubtSettings& settings
     while (above < table.knot_count && edges[above + 1] < edges[e] + noise) ++above;
     const Matter a = matter_at(table, below, edges[e] - (below < e - 1 ? noise : 0.0f)),
                  b = matter_at(table, above, edges[e] + (above > e ? noise : 0.0f));
+    // Cell data is all samples.
+    if (settings.cell_data && sharp[e] != 0) continue;
     step[e] = bounded(difference(a, b, independent, settings.brightest));
     const Matter &dense = a.extinction > b.extinction ? a : b, &thin = a.extinction > b.extinction ? b : a;
     step_extinction[e] = bounded(dense.extinction - thin.extinction);
@@ -125,8 +135,9 @@ void LaneDoubt::find_ramps(const LaneTable& table, const std::vector<double>& mo
     each->assign(table.stride, 0.0f);
   for (std::size_t e = 1; e < table.knot_count; ++e) {
     const Matter a = matter_at(table, e, edges[e]), b = matter_at(table, e, edges[e + 1]);
-    const double width = static_cast<double>(edges[e + 1]) - edges[e], all = difference(a, b, independent, settings.brightest),
-                 share = std::min(1.0, noise / width), steady = std::max(moved[e], moved[e + 1]) / width;
+    const double width = static_cast<double>(edges[e + 1]) - edges[e],
+                 all = difference(a, b, independent, settings.brightest), share = std::min(1.0, noise / width),
+                 steady = std::max(moved[e], moved[e + 1]) / width;
     ramp[e] = bounded(share * all);
     ramp_steady[e] = bounded(std::min(1.0, share / 16 + steady) * all);
     ramp_extinction[e] = bounded(std::min(1.0, share + steady) * std::abs(b.extinction - a.extinction));

@@ -36,17 +36,20 @@ struct LaneDoubt {
   std::vector<float> step;
   /// Of the edges where `step` is not 0: difference of extinction, colour of the denser side, and the light that
   /// differs beside.
+  /// By edge: whether lanes and edge are exact, so that where all of a voxel's samples are on one side of the edge, or
+  /// on it, so is the field: it is never beyond its samples.
+  std::vector<std::uint8_t> sharp;
   std::vector<float> step_extinction, step_red, step_green, step_blue, step_light;
   /// By interval of the table: error of light and opacity per unit of length that a voxel's rounding makes, and of it
   /// what adds up; 0 and empty as above.
   std::vector<float> ramp, ramp_steady;
   /// Of the intervals where `ramp` is not 0: error of extinction, and of colour.
   std::vector<float> ramp_extinction, ramp_color;
-  bool ends = false;        ///< whether matter is so dense that ends matter
-  float most = 1;           ///< error of light or opacity that one place can make
-  float brightest = 1;      ///< light or opacity that is behind a place at most
-  float noise = 0;          ///< of the field in float lanes, lane scalars
-  float matters = 0;        ///< what a voxel may err before it is looked at closely
+  bool ends = false;    ///< whether matter is so dense that ends matter
+  float most = 1;       ///< error of light or opacity that one place can make
+  float brightest = 1;  ///< light or opacity that is behind a place at most
+  float noise = 0;      ///< of the field in float lanes, lane scalars
+  float matters = 0;    ///< what a voxel may err before it is looked at closely
 
   LaneDoubt() = default;
   LaneDoubt(const scene::TransferFunction& function, const compositor::LaneTable& table, const CellRanges& ranges,
@@ -56,6 +59,7 @@ struct LaneDoubt {
 
  private:
   void find_noise(const CellRanges& ranges, bool cell_data);
+  void find_sharp_edges(const compositor::LaneTable& table, const LaneSamples& lanes);
   void find_steps(const compositor::LaneTable& table, const DoubtSettings& settings);
   void find_ramps(const compositor::LaneTable& table, const std::vector<double>& moved, const DoubtSettings& settings);
 };

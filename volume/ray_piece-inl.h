@@ -65,9 +65,9 @@ struct UniformLookup {
   using Index = int;
   float row[LaneTable::column_count];
   bool independent, has_clear = false;
-  float product_bound, shadow_bound;  ///< 0.1 |k' c'| and 0.03 |k'|^2 c
+  float product_bound, shadow_bound;    ///< 0.1 |k' c'| and 0.03 |k'|^2 c
   float ramp, ramp_steady, ramp_color;  ///< LaneDoubt's
-  float dimming_bound, extinction;    ///< |c'| k^2 (independent emission: |c'| k) and k, at most in the interval
+  float dimming_bound, extinction;      ///< |c'| k^2 (independent emission: |c'| k) and k, at most in the interval
   HWY_INLINE VF at(int column, Index) const { return HN::Set(DF(), row[column]); }
 };
 
@@ -174,7 +174,8 @@ HWY_INLINE VF extinction_at(const Lookup& table, typename Lookup::Index index, V
 /// A row of LaneDoubt at intervals or edges of the lanes that are wanted; zero elsewhere.
 HWY_INLINE VF doubt_row(const std::vector<float>& row, VI at, MF wanted) {
   const DF d;
-  return HN::IfThenElseZero(wanted, HN::GatherIndex(d, row.data(), HN::IfThenElseZero(HN::RebindMask(DI(), wanted), at)));
+  return HN::IfThenElseZero(wanted,
+                            HN::GatherIndex(d, row.data(), HN::IfThenElseZero(HN::RebindMask(DI(), wanted), at)));
 }
 
 /// Notes what a stretch errs by the ramps of its intervals. Of an opaque one the colour's error is seen at its front.
@@ -203,20 +204,19 @@ struct Touch {
   VF length;
 };
 
-/// Near v: at `s`, an end of an interval, a turn, or a crossing (`crosses`). Field and place are in doubt by
-/// noise / |slope|, or where the cubic is level by the root of 2 noise / |its second derivative|. False if nowhere.
+/// Near v: at `s`, the stretch's beginning, an end of an interval, a turn, or a crossing. Field and place are in doubt
+/// by noise / |slope|, or where the cubic is level by the root of 2 noise / |its second derivative|. False if nowhere.
 template <class Lookup>
 HWY_INLINE bool touches(const Lookup& table, typename Lookup::Index index, VI interval, MF active,
-                        const LaneDoubt& doubt, const Cubic& c, VF v, VF s, MF crosses, VF length, Touch& touch) {
+                        const LaneDoubt& doubt, const Cubic& c, VF v, VF s, VF length, Touch& touch) {
   const DF d;
-  const VF zero = HN::Zero(d), noise = HN::Set(d, doubt.noise);
+  const VF noise = HN::Set(d, doubt.noise);
   const VI below = HN::Zero(DI()), above = HN::Set(DI(), 1);
   const VF from_low = HN::Abs(HN::Sub(s, table.edge(interval, index, below))),
            from_high = HN::Abs(HN::Sub(table.edge(interval, index, above), s));
   const MF to_high = HN::Lt(from_high, from_low);
   const VF away = HN::IfThenElse(to_high, from_high, from_low);
-  // What is at a knot to the bit, and does not cross it, is a plateau of samples with that value.
-  touch.near = HN::And(active, HN::And(HN::Lt(away, noise), HN::Or(crosses, HN::Gt(away, zero))));
+  touch.near = HN::And(active, HN::Lt(away, noise));
   if (HWY_LIKELY(HN::AllFalse(d, touch.near))) return false;
   touch.edge = HN::Add(interval, HN::IfThenElseZero(HN::RebindMask(DI(), to_high), above));
   const VF bend = HN::Abs(HN::MulAdd(HN::Mul(HN::Set(d, 6.0f), c.p_3), v, HN::Add(c.p_2, c.p_2)));
@@ -267,30 +267,39 @@ HWY_INLINE void colors_at(const Lookup& table, typename Lookup::Index index, VF 
                                               table.at(LaneTable::red + 2 * c, index));
 }
 
-/// Adds what a piece that ends at a step, or nearly, and lies on a ramp errs. `before`: what got through to it.
+/// Adds what a step may err that the cubic is at v on, or nearly.
 template <bool closely, class Lookup>
-HWY_NOINLINE void add_doubt(const Lookup& table, typename Lookup::Index index, VI interval, MF active,
-                            const LaneDoubt& doubt, const Cubic& c, VF end, VF s_end, MF crosses, VF length,
-                            VF stretch_length, VF before, const Progress& progress, StretchDoubt& sum,
-                            Excess& excess) {
+HWY_INLINE void add_step_doubt(const Lookup& table, typename Lookup::Index index, VI interval, MF active,
+                               const LaneDoubt& doubt, const Cubic& c, VF v, VF s, VF stretch_length,
+                               const Progress& progress, StretchDoubt& sum, Excess& excess) {
   const DF d;
   const VF most_depth = HN::Set(d, 1e3f), behind = progress.transmittance;
   Touch touch;
-  if (!doubt.step.empty() &&
-      touches(table, index, interval, active, doubt, c, end, s_end, crosses, stretch_length, touch)) {
-    const auto row = [&](const std::vector<float>& of) HWY_ATTR { return doubt_row(of, touch.edge, touch.near); };
-    const VF weight = row(doubt.step);
-    if (!closely) {
-      const VF error = HN::Min(HN::Mul(touch.length, weight), HN::Set(d, doubt.most));
-      sum.steps = HN::MulAdd(error, behind, sum.steps);
-    } else {
-      const VF length_there = HN::IfThenElseZero(HN::Gt(weight, HN::Zero(d)), touch.length);
-      const VF w = HN::Min(HN::Mul(length_there, row(doubt.step_extinction)), most_depth);
-      const VF color[3] = {row(doubt.step_red), row(doubt.step_green), row(doubt.step_blue)};
-      excess.add(w, behind, color, progress);
-      excess.beside = HN::MulAdd(HN::Mul(length_there, row(doubt.step_light)), behind, excess.beside);
-    }
+  if (!touches(table, index, interval, active, doubt, c, v, s, stretch_length, touch)) return;
+  const auto row = [&](const std::vector<float>& of) HWY_ATTR { return doubt_row(of, touch.edge, touch.near); };
+  const VF weight = row(doubt.step);
+  if (!closely) {
+    const VF error = HN::Min(HN::Mul(touch.length, weight), HN::Set(d, doubt.most));
+    sum.steps = HN::MulAdd(error, behind, sum.steps);
+  } else {
+    const VF length_there = HN::IfThenElseZero(HN::Gt(weight, HN::Zero(d)), touch.length);
+    const VF w = HN::Min(HN::Mul(length_there, row(doubt.step_extinction)), most_depth);
+    const VF color[3] = {row(doubt.step_red), row(doubt.step_green), row(doubt.step_blue)};
+    excess.add(w, behind, color, progress);
+    excess.beside = HN::MulAdd(HN::Mul(length_there, row(doubt.step_light)), behind, excess.beside);
   }
+}
+
+/// Adds what a piece that ends at a step, or nearly, and lies on a ramp errs. `before`: what got through to it.
+template <bool closely, class Lookup>
+HWY_NOINLINE void add_doubt(const Lookup& table, typename Lookup::Index index, VI interval, MF active,
+                            const LaneDoubt& doubt, const Cubic& c, VF end, VF s_end, VF length, VF stretch_length,
+                            VF before, const Progress& progress, StretchDoubt& sum, Excess& excess) {
+  const DF d;
+  const VF most_depth = HN::Set(d, 1e3f), behind = progress.transmittance;
+  if (!doubt.step.empty())
+    add_step_doubt<closely>(table, index, interval, active, doubt, c, end, s_end, stretch_length, progress, sum,
+                            excess);
   if (doubt.ramp.empty()) return;
   const VF ramp = doubt_row(doubt.ramp, interval, active);
   if (HN::AllFalse(d, HN::Gt(ramp, HN::Zero(d)))) return;
@@ -384,8 +393,8 @@ HWY_NOINLINE StretchDoubt walk_cubic(const Lookup& table, const FrameView& frame
       if (HN::AllFalse(d, rough)) break;
       if (HWY_UNLIKELY(halvings == most_halvings)) {
         // What is left is noted as it is seen.
-        const VF error = HN::Mul(roughness(length, m, cubed, HN::Sub(s_end, s), bounds),
-                                 HN::Set(d, frame.piece_tolerance));
+        const VF error =
+            HN::Mul(roughness(length, m, cubed, HN::Sub(s_end, s), bounds), HN::Set(d, frame.piece_tolerance));
         doubt.left = HN::MulAdd(HN::IfThenElseZero(rough, HN::Min(error, one)), progress.transmittance, doubt.left);
         break;
       }
@@ -393,12 +402,15 @@ HWY_NOINLINE StretchDoubt walk_cubic(const Lookup& table, const FrameView& frame
       s_end = HN::IfThenElse(rough, middle, s_end);
     }
     pieces += HN::CountTrue(d, active);
+    if (HWY_UNLIKELY(round == 0 && frame.doubt != nullptr && !frame.doubt->step.empty()))
+      add_step_doubt<closely>(table, index, interval, active, *frame.doubt, c, v, s, piece.length, progress, doubt,
+                              excess);
     const VF before = progress.transmittance;
     CL::lanes::add_piece<false>(table, index, HN::Add(s, m), HN::Add(s_end, m), HN::Sub(s_end, s), length, progress);
     note_first_light(progress, HN::MulAdd(v, piece.extent, piece.begin), notes);
     if (HWY_UNLIKELY(frame.doubt != nullptr))
-      add_doubt<closely>(table, index, interval, active, *frame.doubt, c, end, s_end, crosses, length, piece.length,
-                         before, progress, doubt, excess);
+      add_doubt<closely>(table, index, interval, active, *frame.doubt, c, end, s_end, length, piece.length, before,
+                         progress, doubt, excess);
     v = HN::IfThenElse(active, end, v);
     s = HN::IfThenElse(active, s_end, s);
     active = HN::And(active, HN::Lt(v, one));

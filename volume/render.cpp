@@ -176,8 +176,13 @@ struct Renderer::State {
         bricks(source_, BrickLayout(source_.geometry(), settings_.brick_size, settings_.edge_bricks),
                settings_.memory_bytes, settings_.cache) {}
 
+  [[nodiscard]] bool in_steps() const {
+    return settings.method == Method::sampled || settings.method == Method::preintegrated;
+  }
   [[nodiscard]] compositor::LaneTable table_of(const scene::TransferFunction& function) const {
-    return {function, ranges.lanes.origin, ranges.lanes.unit, length_unit, settings.emission};
+    return {function,          ranges.lanes.origin,
+            ranges.lanes.unit, length_unit,
+            settings.emission, in_steps() ? compositor::StepRounding::nearest : compositor::StepRounding::up};
   }
 
   /// A ray that lets less through is done.
@@ -311,6 +316,8 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
                          longest_in_voxel(source.geometry()) / length_unit});
       if (doubt.any()) frame.doubt = &doubt;
     }
+    frame.lanes = ranges.lanes;
+    frame.lanes.whole = in_steps() || !table.has_steps;
     frame.tally = tally;
     // A thousand packets or more, whatever the picture's size.
     const double tiles_in_picture = static_cast<double>(size.width) * size.height / (TileRays::side * TileRays::side);
