@@ -94,8 +94,9 @@ void LaneDoubt::find_noise(const CellRanges& ranges, bool cell_data) {
     reach = std::max({reach, std::abs(low), std::abs(high)});
     steepest = std::max(steepest, high - low);
   }
-  // Two roundings of the field itself, and places of 5e-7 voxel (packet_lanes-inl.h); cell data: of the sample.
-  noise = bounded(cell_data ? 0x1p-25 * reach : 0x1p-23 * reach + 5e-7 * steepest);
+  // Two roundings of the field itself, and places of 5e-7 voxel (packet_lanes-inl.h); cell data: of the sample, and of
+  // an edge.
+  noise = bounded(cell_data ? (ranges.lanes.exact ? 0x1p-25 : 0x1p-22) * reach : 0x1p-23 * reach + 5e-7 * steepest);
 }
 
 void LaneDoubt::find_sharp_edges(const LaneTable& table, const LaneSamples& lanes) {

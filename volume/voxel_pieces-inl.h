@@ -293,6 +293,12 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
     p.p_3 = lines.odd[k][m];
     p.length = HN::IfThenElseZero(there[k], HN::Mul(p.extent, slab_length));
     p.begin = HN::Add(place[k], HN::Set(d, static_cast<float>(n)));
+    // A voxel that is whole, but whose end is taken from one that is blank, as rounding has the ray pass an edge of
+    // both on different sides.
+    const VF shape = HN::Add(lines.even[k][m], lines.odd[k][m]);
+    const MF torn = HN::AndNot(HN::Eq(p.s_mid, p.s_mid), HN::And(there[k], HN::Eq(shape, shape)));
+    if (HWY_UNLIKELY(!HN::AllFalse(d, torn)))
+      notes.doubt = HN::Add(notes.doubt, HN::IfThenElseZero(torn, HN::Set(d, 1e9f)));
   }
 #if HWY_TARGET <= HWY_AVX3
   if (HN::AllTrue(d, HN::Or(notes.seen, HN::Not(wanted)))) {
