@@ -369,8 +369,8 @@ class PacketCast {
       const MF there = HN::Gt(path.to, path.from);
       const VF length = HN::IfThenElseZero(there, HN::Mul(lanes_.length, HN::Sub(path.to, path.from)));
       const Line line = part_line(lanes_, path, window);
-      const MF apart = cast_mixed(frame_, lookup_, line, there, HN::Add(path.from, path.k),
-                                  length, current_, progress_, notes_, counts_);
+      const MF apart = cast_mixed(frame_, lookup_, line, there, HN::Add(path.from, path.k), length, current_, progress_,
+                                  notes_, counts_);
       if (!HN::AllFalse(d, apart))
         cast_voxels<false>(frame_, chunk_.axes, lookup_, lanes_, path, window, nullptr, apart, progress_, notes_,
                            counts_);

@@ -78,7 +78,8 @@ LaneDoubt::LaneDoubt(const scene::TransferFunction& function, const LaneTable& t
   double densest = 0;
   for (std::size_t n = 0; n <= table.knot_count; ++n)
     for (const double s : {table.column(LaneTable::edge)[n], table.column(LaneTable::edge)[n + 1]})
-      if (std::isfinite(s)) densest = std::max(densest, difference(matter_at(table, n, s), {}, independent, settings.brightest));
+      if (std::isfinite(s))
+        densest = std::max(densest, difference(matter_at(table, n, s), {}, independent, settings.brightest));
   // Places of ends are off by 1e-6 of a voxel.
   ends = 4e-6 * densest * settings.longest > settings.least;
 }
@@ -125,14 +126,15 @@ void LaneDoubt::find_ramps(const LaneTable& table, const std::vector<double>& mo
     each->assign(table.stride, 0.0f);
   for (std::size_t e = 1; e < table.knot_count; ++e) {
     const Matter a = matter_at(table, e, edges[e]), b = matter_at(table, e, edges[e + 1]);
-    const double width = static_cast<double>(edges[e + 1]) - edges[e], all = difference(a, b, independent, settings.brightest),
-                 share = std::min(1.0, noise / width), steady = std::max(moved[e], moved[e + 1]) / width;
+    const double width = static_cast<double>(edges[e + 1]) - edges[e],
+                 all = difference(a, b, independent, settings.brightest), share = std::min(1.0, noise / 8 / width),
+                 steady = std::max(moved[e], moved[e + 1]) / width;
     ramp[e] = bounded(share * all);
-    ramp_steady[e] = bounded(std::min(1.0, share / 16 + steady) * all);
+    ramp_steady[e] = bounded(std::min(1.0, share / 2 + steady) * all);
     ramp_extinction[e] = bounded(std::min(1.0, share + steady) * std::abs(b.extinction - a.extinction));
     ramp_color[e] = bounded(std::min(1.0, share + steady) * color_difference(a, 1, b, 1));
   }
-  ramp = those_above(settings.least / settings.longest / 16, std::move(ramp));
+  ramp = those_above(settings.least / settings.longest / 128, std::move(ramp));
 }
 
 }  // namespace tessera::volume

@@ -27,7 +27,8 @@ struct DoubtSettings {
 ///         error is the square root of the field's: where that is level + a (u - u0)^2, rounding of 1e-7 makes or
 ///         moves crossings by 3e-4.
 /// Ramps   where the function is steep, the field's error shows for as long as a ray stays there. Roundings of places
-///         and field differ from voxel to voxel: their squares add up, and a sixteenth of what they may be is alike.
+///         and field differ from voxel to voxel: an eighth of what they may be adds up as squares do, and a sixteenth
+///         is alike (measured over random grids and where peaks are narrow, docs/ACCURACY.md).
 ///         Those of the knots are the same at each crossing.
 /// Ends    where a ray enters or leaves dense matter at a plane of the volume, of cell data or of the view.
 struct LaneDoubt {
@@ -42,11 +43,11 @@ struct LaneDoubt {
   std::vector<float> ramp, ramp_steady;
   /// Of the intervals where `ramp` is not 0: error of extinction, and of colour.
   std::vector<float> ramp_extinction, ramp_color;
-  bool ends = false;        ///< whether matter is so dense that ends matter
-  float most = 1;           ///< error of light or opacity that one place can make
-  float brightest = 1;      ///< light or opacity that is behind a place at most
-  float noise = 0;          ///< of the field in float lanes, lane scalars
-  float matters = 0;        ///< what a voxel may err before it is looked at closely
+  bool ends = false;    ///< whether matter is so dense that ends matter
+  float most = 1;       ///< error of light or opacity that one place can make
+  float brightest = 1;  ///< light or opacity that is behind a place at most
+  float noise = 0;      ///< of the field in float lanes, lane scalars
+  float matters = 0;    ///< what a voxel may err before it is looked at closely
 
   LaneDoubt() = default;
   LaneDoubt(const scene::TransferFunction& function, const compositor::LaneTable& table, const CellRanges& ranges,

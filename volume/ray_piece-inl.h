@@ -65,9 +65,9 @@ struct UniformLookup {
   using Index = int;
   float row[LaneTable::column_count];
   bool independent, has_clear = false;
-  float product_bound, shadow_bound;  ///< 0.1 |k' c'| and 0.03 |k'|^2 c
+  float product_bound, shadow_bound;    ///< 0.1 |k' c'| and 0.03 |k'|^2 c
   float ramp, ramp_steady, ramp_color;  ///< LaneDoubt's
-  float dimming_bound, extinction;    ///< |c'| k^2 (independent emission: |c'| k) and k, at most in the interval
+  float dimming_bound, extinction;      ///< |c'| k^2 (independent emission: |c'| k) and k, at most in the interval
   HWY_INLINE VF at(int column, Index) const { return HN::Set(DF(), row[column]); }
 };
 
@@ -174,7 +174,8 @@ HWY_INLINE VF extinction_at(const Lookup& table, typename Lookup::Index index, V
 /// A row of LaneDoubt at intervals or edges of the lanes that are wanted; zero elsewhere.
 HWY_INLINE VF doubt_row(const std::vector<float>& row, VI at, MF wanted) {
   const DF d;
-  return HN::IfThenElseZero(wanted, HN::GatherIndex(d, row.data(), HN::IfThenElseZero(HN::RebindMask(DI(), wanted), at)));
+  return HN::IfThenElseZero(wanted,
+                            HN::GatherIndex(d, row.data(), HN::IfThenElseZero(HN::RebindMask(DI(), wanted), at)));
 }
 
 /// Notes what a stretch errs by the ramps of its intervals. Of an opaque one the colour's error is seen at its front.
@@ -271,8 +272,7 @@ HWY_INLINE void colors_at(const Lookup& table, typename Lookup::Index index, VF 
 template <bool closely, class Lookup>
 HWY_NOINLINE void add_doubt(const Lookup& table, typename Lookup::Index index, VI interval, MF active,
                             const LaneDoubt& doubt, const Cubic& c, VF end, VF s_end, MF crosses, VF length,
-                            VF stretch_length, VF before, const Progress& progress, StretchDoubt& sum,
-                            Excess& excess) {
+                            VF stretch_length, VF before, const Progress& progress, StretchDoubt& sum, Excess& excess) {
   const DF d;
   const VF most_depth = HN::Set(d, 1e3f), behind = progress.transmittance;
   Touch touch;
@@ -384,8 +384,8 @@ HWY_NOINLINE StretchDoubt walk_cubic(const Lookup& table, const FrameView& frame
       if (HN::AllFalse(d, rough)) break;
       if (HWY_UNLIKELY(halvings == most_halvings)) {
         // What is left is noted as it is seen.
-        const VF error = HN::Mul(roughness(length, m, cubed, HN::Sub(s_end, s), bounds),
-                                 HN::Set(d, frame.piece_tolerance));
+        const VF error =
+            HN::Mul(roughness(length, m, cubed, HN::Sub(s_end, s), bounds), HN::Set(d, frame.piece_tolerance));
         doubt.left = HN::MulAdd(HN::IfThenElseZero(rough, HN::Min(error, one)), progress.transmittance, doubt.left);
         break;
       }

@@ -88,16 +88,16 @@ HWY_NOINLINE void note_ends(const LaneDoubt& doubt, const Lookup& lookup, const 
     const VF sums[3] = {progress.red, progress.green, progress.blue};
     VF differs = zero, sent = zero;
     for (int c = 0; c < 3; ++c) {
-      const VF color = HN::MulAdd(lookup.at(LaneTable::red_slope + 2 * c, index), from,
-                                  lookup.at(LaneTable::red + 2 * c, index));
+      const VF color =
+          HN::MulAdd(lookup.at(LaneTable::red_slope + 2 * c, index), from, lookup.at(LaneTable::red + 2 * c, index));
       const VF own = HN::Sub(sums[c], light[c]);
       differs = HN::Max(differs, lookup.independent ? own : HN::Abs(HN::NegMulAdd(color, dimmed, own)));
       if (lookup.independent) sent = HN::Max(sent, color);
     }
     if (!front) differs = zero;
     const VF seen = front ? before : behind;
-    const VF error = HN::MulAdd(extinction_at(lookup, index, scalar), HN::MulAdd(behind, brightest, differs),
-                                HN::Mul(sent, seen));
+    const VF error =
+        HN::MulAdd(extinction_at(lookup, index, scalar), HN::MulAdd(behind, brightest, differs), HN::Mul(sent, seen));
     const VF noted = HN::Min(HN::Mul(error, off), HN::Mul(seen, HN::Set(d, doubt.most)));
     notes.doubt = HN::Add(notes.doubt, HN::IfThenElseZero(HN::And(good, ends), noted));
   };
@@ -123,8 +123,8 @@ HWY_NOINLINE void note_planes(const LaneDoubt& doubt, const Lookup& lookup, cons
       const VF noise = HN::Mul(HN::Add(HN::Abs(place), one), HN::Set(d, 0x1p-24f));
       return HN::IfThenElseZero(crossed, HN::Mul(noise, HN::Abs(per_slope)));
     };
-    const VF crossing = HN::Add(of(path.x, lanes.per_bx, HN::Ne(i, stretch.i)),
-                                of(path.y, lanes.per_by, HN::Ne(j, stretch.j)));
+    const VF crossing =
+        HN::Add(of(path.x, lanes.per_bx, HN::Ne(i, stretch.i)), of(path.y, lanes.per_by, HN::Ne(j, stretch.j)));
     return HN::Min(HN::Add(place_noise(path.k), crossing), one);
   };
   const VF front = n == 0 ? place_noise(path.k) : off(path.stretches[n - 1].i, path.stretches[n - 1].j),
