@@ -137,14 +137,14 @@ void LaneDoubt::find_ramps(const LaneTable& table, const std::vector<double>& mo
   for (std::size_t e = 1; e < table.knot_count; ++e) {
     const Matter a = matter_at(table, e, edges[e]), b = matter_at(table, e, edges[e + 1]);
     const double width = static_cast<double>(edges[e + 1]) - edges[e],
-                 all = difference(a, b, independent, settings.brightest), share = std::min(1.0, noise / width),
+                 all = difference(a, b, independent, settings.brightest), share = std::min(1.0, noise / 8 / width),
                  steady = std::max(moved[e], moved[e + 1]) / width;
     ramp[e] = bounded(share * all);
-    ramp_steady[e] = bounded(std::min(1.0, share / 16 + steady) * all);
+    ramp_steady[e] = bounded(std::min(1.0, share / 2 + steady) * all);
     ramp_extinction[e] = bounded(std::min(1.0, share + steady) * std::abs(b.extinction - a.extinction));
     ramp_color[e] = bounded(std::min(1.0, share + steady) * color_difference(a, 1, b, 1));
   }
-  ramp = those_above(settings.least / settings.longest / 16, std::move(ramp));
+  ramp = those_above(settings.least / settings.longest / 128, std::move(ramp));
 }
 
 }  // namespace tessera::volume

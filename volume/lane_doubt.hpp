@@ -27,7 +27,8 @@ struct DoubtSettings {
 ///         error is the square root of the field's: where that is level + a (u - u0)^2, rounding of 1e-7 makes or
 ///         moves crossings by 3e-4.
 /// Ramps   where the function is steep, the field's error shows for as long as a ray stays there. Roundings of places
-///         and field differ from voxel to voxel: their squares add up, and a sixteenth of what they may be is alike.
+///         and field differ from voxel to voxel: an eighth of what they may be adds up as squares do, and a sixteenth
+///         is alike (measured over random grids and where peaks are narrow, docs/ACCURACY.md).
 ///         Those of the knots are the same at each crossing.
 /// Ends    where a ray enters or leaves dense matter at a plane of the volume, of cell data or of the view.
 struct LaneDoubt {
