@@ -248,7 +248,8 @@ class PacketCast {
     Line a = line_of(lines, m);
     if (two && plain) {
       const Line b = line_of(lines, m + 1);
-      const VF r = HN::Max(a.rho, b.rho);
+      // Not a number where either slab's field is not, which Max alone may leave out.
+      const VF r = HN::MulAdd(HN::Zero(d), HN::Add(a.rho, b.rho), HN::Max(a.rho, b.rho));
       const VF low = HN::Sub(HN::Min(HN::Min(a.s_0, a.s_1), b.s_1), r),
                high = HN::Add(HN::Max(HN::Max(a.s_0, a.s_1), b.s_1), r);
       if (HWY_LIKELY(current_.around(low, high, mirrored_.live))) {
@@ -264,9 +265,7 @@ class PacketCast {
             HN::MulAdd(length, dimmed,
                        HN::Mul(length, HN::MulAdd(HN::Set(d, 10 * table.product_bound), even,
                                                   HN::Mul(HN::Mul(length, HN::Set(d, table.shadow_bound)), any))));
-        // Not a number where either slab's field is not: Max may have left that out of r.
-        const VF blanks = HN::Mul(HN::Zero(d), HN::Add(a.rho, b.rho));
-        if (HN::AllTrue(d, HN::Le(HN::Add(blanks, error), HN::Set(d, 1.0f)))) {
+        if (HN::AllTrue(d, HN::Le(error, HN::Set(d, 1.0f)))) {
           const VF shift = HN::Mul(half, HN::Add(tent, HN::Add(a.shift, b.shift)));
           add_uniform_line(a.s_0, b.s_1, span, shift, length, n);
           return 2;
