@@ -19,22 +19,44 @@ double channel_of(const scene::Knot& knot, int channel) {
 struct Place {
   double position;
   scene::Knot below, above;
+  std::array<double, 2> values;
+  bool several = false;
 };
 
-std::vector<Place> places_of(const scene::TransferFunction& function, double origin, double unit) {
+/// The least float that is not below (value - origin) / unit.
+double lane_at_or_above(double value, double origin, double unit) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const double difference = value - origin, back = difference - value;
+  const double rest = (value - (difference - back)) - (origin + back);  // Knuth's two-sum: what rounding left out
+  const double exact = difference / unit;
+  const auto below = [&](float f) { return f < exact || (f == exact && rest > 0); };
+  auto f = static_cast<float>(exact);
+  while (below(f)) f = std::nextafter(f, infinity);
+  while (!below(std::nextafter(f, -infinity))) f = std::nextafter(f, -infinity);
+  return f;
+}
+
+std::vector<Place> places_of(const scene::TransferFunction& function, double origin, double unit, StepRounding steps) {
   std::vector<Place> places;
   const auto add = [&](double position, const scene::Knot& knot) {
     if (places.empty() || places.back().position < position)
-      places.push_back({position, knot, knot});
+      places.push_back({position, knot, knot, {knot.value, knot.value}});
     else
-      places.back().above = knot;
+      places.back().above = knot, places.back().values[1] = knot.value, places.back().several = true;
   };
   const auto knots = function.knots();
   const auto position = [&](const scene::Knot& knot) { return (knot.value - origin) / unit; };
   // Knots out of reach: the function's value at the end of the range stands for them.
   if (position(knots.front()) < -scalar_limit) add(-scalar_limit, function.evaluate(origin - scalar_limit * unit));
-  for (const scene::Knot& knot : knots)
-    if (std::abs(position(knot)) <= scalar_limit) add(lane_scalar(knot.value, origin, unit), knot);
+  for (std::size_t i = 0; i < knots.size(); ++i) {
+    const scene::Knot& knot = knots[i];
+    if (std::abs(position(knot)) > scalar_limit) continue;
+    const bool step =
+        (i > 0 && knots[i - 1].value == knot.value) || (i + 1 < knots.size() && knots[i + 1].value == knot.value);
+    add(step && steps == StepRounding::up ? lane_at_or_above(knot.value, origin, unit)
+                                          : lane_scalar(knot.value, origin, unit),
+        knot);
+  }
   if (position(knots.back()) > scalar_limit) add(scalar_limit, function.evaluate(origin + scalar_limit * unit));
   return places;
 }
@@ -49,17 +71,22 @@ float lane_scalar(double value, double scalar_origin, double scalar_unit) {
 }
 
 LaneTable::LaneTable(const scene::TransferFunction& function, double scalar_origin, double scalar_unit,
-                     double length_unit, scene::Emission emission_)
+                     double length_unit, scene::Emission emission_, StepRounding steps)
     : emission(emission_), has_clear(false) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
-  const std::vector<Place> places = places_of(function, scalar_origin, scalar_unit);
+  const std::vector<Place> places = places_of(function, scalar_origin, scalar_unit, steps);
   knot_count = places.size();
   stride = knot_count + 2 + padding;
   rows.assign(column_count * stride, 0.0f);
   float* const edges = &rows[edge * stride];
   std::fill(edges, edges + stride, infinity);
   edges[0] = -infinity;
-  for (std::size_t i = 0; i < knot_count; ++i) edges[i + 1] = static_cast<float>(places[i].position);
+  edge_values.resize(knot_count + 1), is_step.assign(stride, 0);
+  for (std::size_t i = 0; i < knot_count; ++i) {
+    edges[i + 1] = static_cast<float>(places[i].position);
+    const auto& [least, largest] = edge_values[i + 1] = places[i].values;
+    is_step[i + 1] = places[i].several && least == largest;
+  }
 
   for (std::size_t i = 0; i <= knot_count; ++i) {
     const Place &first = places[i == 0 ? 0 : i - 1], &second = places[i == knot_count ? i - 1 : i];
@@ -81,6 +108,9 @@ LaneTable::LaneTable(const scene::TransferFunction& function, double scalar_orig
           width > 0 ? static_cast<float>((end - start) / width) : 0.0f;
     }
   }
+
+  const auto knots_of = function.knots();
+  for (std::size_t i = 1; i < knots_of.size(); ++i) has_steps = has_steps || knots_of[i].value == knots_of[i - 1].value;
 
   // About four cells a knot: evenly spread knots then have a cell of their own.
   const float* const knots = edges + 1;

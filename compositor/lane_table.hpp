@@ -14,6 +14,12 @@ namespace tessera::compositor {
 /// knots go through this one rounding, so that data that equal a step's value stay equal to it.
 float lane_scalar(double value, double scalar_origin, double scalar_unit);
 
+/// Where the knots of a step go, of which the data may hold the very value.
+enum class StepRounding {
+  nearest,  ///< as all knots
+  up        ///< to the next float at or above: what floats hold exactly stays on its side of the step
+};
+
 /// A transfer function laid out for float lanes (integrate_lanes-inl.h).
 ///
 /// Intervals  the K distinct positions of its knots make K + 1, on each of which extinction and colour are linear.
@@ -47,7 +53,7 @@ struct LaneTable {
 
   /// `scalar_unit` and `length_unit` are powers of two.
   LaneTable(const scene::TransferFunction& function, double scalar_origin, double scalar_unit, double length_unit,
-            scene::Emission emission);
+            scene::Emission emission, StepRounding steps = StepRounding::nearest);
 
   [[nodiscard]] const float* column(int c) const { return rows.data() + static_cast<std::size_t>(c) * stride; }
 
@@ -56,6 +62,11 @@ struct LaneTable {
   bool has_clear;           ///< an interval neither absorbs nor emits
   std::size_t stride;       ///< of `rows`
   std::vector<float> rows;  ///< column_count rows
+  /// By edge, 1 to K: least and largest value of the knots that lie there once rounded.
+  std::vector<std::array<double, 2>> edge_values;
+  /// By edge, 1 to K: whether a step of the function, and nothing else, lies there.
+  std::vector<std::uint8_t> is_step;
+  bool has_steps = false;  ///< whether any of the function's knots make a step
 
   // Many knots: a uniform grid over the knots' range leads to a scalar's interval. Cell j covers the
   // scalars for which truncating (s - grid_origin) * grid_scale, clamped to the grid, gives j.

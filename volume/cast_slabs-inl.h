@@ -105,7 +105,8 @@ class PacketCast {
         mirrored_(lanes, std::is_same_v<Window, GatherWindow> ? static_cast<int>(chunk.block.pitch) : Window::columns),
         current_(current),
         counts_(counts),
-        before_(before) {
+        before_(before),
+        has_steps_(chunk.frame.doubt != nullptr && !chunk.frame.doubt->step.empty()) {
     const DF d;
     const VF zero = HN::Zero(d);
     progress_ = {zero, HN::Set(d, 1.0f), zero, zero, zero, zero};
@@ -247,7 +248,8 @@ class PacketCast {
     Line a = line_of(lines, m);
     if (two && plain) {
       const Line b = line_of(lines, m + 1);
-      const VF r = HN::Max(a.rho, b.rho);
+      // Not a number where either slab's field is not, which Max alone may leave out.
+      const VF r = HN::MulAdd(HN::Zero(d), HN::Add(a.rho, b.rho), HN::Max(a.rho, b.rho));
       const VF low = HN::Sub(HN::Min(HN::Min(a.s_0, a.s_1), b.s_1), r),
                high = HN::Add(HN::Max(HN::Max(a.s_0, a.s_1), b.s_1), r);
       if (HWY_LIKELY(current_.around(low, high, mirrored_.live))) {
@@ -263,7 +265,7 @@ class PacketCast {
             HN::MulAdd(length, dimmed,
                        HN::Mul(length, HN::MulAdd(HN::Set(d, 10 * table.product_bound), even,
                                                   HN::Mul(HN::Mul(length, HN::Set(d, table.shadow_bound)), any))));
-        if (HN::AllFalse(d, HN::Gt(error, HN::Set(d, 1.0f)))) {
+        if (HN::AllTrue(d, HN::Le(error, HN::Set(d, 1.0f)))) {
           const VF shift = HN::Mul(half, HN::Add(tent, HN::Add(a.shift, b.shift)));
           add_uniform_line(a.s_0, b.s_1, span, shift, length, n);
           return 2;
@@ -278,7 +280,7 @@ class PacketCast {
       length = HN::IfThenElseZero(live, length);
     }
     const VF low = HN::Sub(HN::Min(a.s_0, a.s_1), a.rho), high = HN::Add(HN::Max(a.s_0, a.s_1), a.rho);
-    const bool uniform = current_.around(low, high, live);
+    const bool uniform = current_.around(low, high, live) || (has_steps_ && on_one_side(n));
     if (HWY_LIKELY(uniform)) {
       if (current_.clear()) return 1;
       const VF spread = HN::Mul(HN::Mul(length, a.rho), HN::MulAdd(HN::Abs(a.span), HN::Set(d, 0.25f), a.rho));
@@ -292,6 +294,26 @@ class PacketCast {
     }
     add_slowly(lines, a, m, n, live, length);
     return 1;
+  }
+
+  /// Whether all samples that lanes may meet in slab n are in one interval for certain, which then is the current one:
+  /// then the field is, too, though its rounding may be beyond a step that it is near, or on.
+  HWY_NOINLINE bool on_one_side(int n) {
+    const auto all_held = [&] {
+      const int corner = cell_data ? 0 : 1;
+      for (int slice = n; slice <= n + corner; ++slice)
+        for (int j = slabs_.j_first[n]; j <= slabs_.j_last[n] + corner; ++j) {
+          const float* const row = chunk_.block.at(slice, slabs_.i_first[n], j);
+          for (int i = 0; i <= slabs_.i_last[n] + corner - slabs_.i_first[n]; ++i)
+            if (!current_.holds(row[i])) return false;
+        }
+      return true;
+    };
+    if (all_held()) return true;
+    const float some = *chunk_.block.at(n, slabs_.i_first[n], slabs_.j_first[n]);
+    if (!(some == some)) return false;
+    current_.move_to(current_.interval_of(some));
+    return all_held();
   }
 
   /// A slab too rough for a line: a line, and what the field's bend adds to it to first order in the slab's optical
@@ -330,14 +352,14 @@ class PacketCast {
 
   HWY_INLINE void add_uniform_line(VF s_0, VF s_1, VF span, VF shift, VF length, int n) {
     const DF d;
+    const VF before = progress_.transmittance;
     CL::lanes::add_piece<false>(current_.uniform(), 0, HN::Add(s_0, shift), HN::Add(s_1, shift), span, length,
                                 progress_);
     counts_.samples += live_count_;
     if (HWY_UNLIKELY(!HN::AllTrue(d, notes_.seen)))
       note_first_light(progress_, HN::Set(d, static_cast<float>(n)), notes_);
     if (HWY_UNLIKELY(current_.uniform().ramp > 0))
-      notes_.doubt =
-          HN::MulAdd(HN::Mul(length, HN::Set(d, current_.uniform().ramp)), progress_.transmittance, notes_.doubt);
+      note_ramps(current_.uniform(), length, before, progress_.transmittance, notes_);
   }
 
   /// A slab that crosses knots, or is rough.
@@ -353,11 +375,13 @@ class PacketCast {
     const DF d;
     const WindowPlace place = place_of(n);
     const Window window(place.front, place.back, chunk_.block.pitch);
-    const bool uniform = current_.holds(window, *place.front);
+    const bool uniform =
+        current_.holds(window, *place.front) || (has_steps_ && std::is_same_v<Window, GatherWindow> && on_one_side(n));
     if (uniform && current_.clear()) return;
     const SlabPath path = path_of(lanes_, n, slabs_.i_window[n], slabs_.j_window[n]);
     for (const Stretch& stretch : path.stretches)
       counts_.voxels_visited += HN::CountTrue(d, HN::Gt(stretch.end, stretch.begin));
+    const VF before = progress_.transmittance, light[3] = {progress_.red, progress_.green, progress_.blue};
     if (cell_data || frame_.shading != nullptr) {
       cast_voxels<cell_data>(frame_, chunk_.axes, lookup_, lanes_, path, window,
                              uniform ? &current_.uniform() : nullptr, HN::Gt(path.to, path.from), progress_, notes_,
@@ -367,11 +391,16 @@ class PacketCast {
     if constexpr (!cell_data) {
       const MF there = HN::Gt(path.to, path.from);
       const VF length = HN::IfThenElseZero(there, HN::Mul(lanes_.length, HN::Sub(path.to, path.from)));
-      const MF apart = cast_mixed(frame_, lookup_, part_line(lanes_, path, window), there, HN::Add(path.from, path.k),
-                                  length, current_, progress_, notes_, counts_);
+      const Line line = part_line(lanes_, path, window);
+      MF apart = there;
+      if (!(uniform && has_steps_))
+        apart = cast_mixed(frame_, lookup_, line, there, HN::Add(path.from, path.k), length, current_, progress_,
+                           notes_, counts_);
       if (!HN::AllFalse(d, apart))
-        cast_voxels<false>(frame_, chunk_.axes, lookup_, lanes_, path, window, nullptr, apart, progress_, notes_,
-                           counts_);
+        cast_voxels<false>(frame_, chunk_.axes, lookup_, lanes_, path, window,
+                           uniform && has_steps_ ? &current_.uniform() : nullptr, apart, progress_, notes_, counts_);
+      if (HWY_UNLIKELY(frame_.doubt != nullptr && frame_.doubt->ends))
+        note_ends(*frame_.doubt, lookup_, line, path, there, lanes_.length, before, light, progress_, notes_);
     }
   }
 
@@ -383,7 +412,8 @@ class PacketCast {
   MirroredLanes mirrored_;
   CurrentInterval& current_;
   TileCounts& counts_;
-  VF before_;  ///< transmittance up to the chunk
+  VF before_;       ///< transmittance up to the chunk
+  bool has_steps_;  ///< of the transfer function, that matter
   VF crossings_;
   float plain_from_, plain_to_;
   bool all_live_;
@@ -404,7 +434,7 @@ HWY_NOINLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int r
   PacketCast<cell_data, Window, Lookup> cast(chunk, lookup, slabs, lanes, before, current, counts);
   const VF alpha_before = HN::LoadU(d, rays.alpha + ray);
   const MF seen_before = HN::Gt(alpha_before, HN::Zero(d));
-  cast.notes_ = {HN::Set(d, -1.0f), seen_before, HN::Zero(d)};
+  cast.notes_ = {HN::Set(d, -1.0f), seen_before, HN::Zero(d), HN::Zero(d)};
   cast.run(reach);
 
   const Progress& progress = cast.progress_;
@@ -416,6 +446,8 @@ HWY_NOINLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int r
   add(rays.blue, progress.blue);
   HN::StoreU(HN::Mul(before, progress.transmittance), d, rays.transmittance + ray);
   add(rays.doubt, cast.notes_.doubt);
+  const VF rough = HN::Mul(HN::Mul(before, before), cast.notes_.rough);
+  HN::StoreU(HN::Add(rough, HN::LoadU(d, rays.rough + ray)), d, rays.rough + ray);
   if (!HN::AllFalse(d, HN::AndNot(seen_before, cast.notes_.seen))) {
     const auto first_k = static_cast<double>(chunk.first_k);
     HWY_ALIGN float place[most];
@@ -428,13 +460,14 @@ HWY_NOINLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int r
 template <bool cell_data, CL::TableForm form>
 HWY_NOINLINE void cast_chunk_as(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
   const CL::Lookup<form> lookup(*chunk.frame.table);
-  CurrentInterval current(*chunk.frame.table, chunk.frame);
   const int voxels_i = static_cast<int>(chunk.frame.voxels[static_cast<std::size_t>(chunk.axes.i)]),
             voxels_j = static_cast<int>(chunk.frame.voxels[static_cast<std::size_t>(chunk.axes.j)]);
   for (int packet = 0; packet < TileRays::packets; ++packet) {
     const Reach& reach = chunk.reach[packet];
     if (!reach.any) continue;
     PacketSlabs slabs(reach, voxels_i, voxels_j);
+    // Of this packet alone: what others find must not change its bits.
+    CurrentInterval current(*chunk.frame.table, chunk.frame);
     const auto cast = [&]<class Window>() HWY_ATTR {
       slabs.template place_windows<Window>(chunk.block, chunk.slabs);
       for (int lane = 0; lane < TileRays::packet_rays; lane += static_cast<int>(HN::Lanes(DF())))

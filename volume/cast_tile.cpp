@@ -160,7 +160,7 @@ void cast_tile_here(const FrameView& frame, int x0, int y0, const PixelRegion& r
   for (int r = 0; r < TileRays::count; ++r) {
     rays.alpha[r] = rays.red[r] = rays.green[r] = rays.blue[r] = 0;
     rays.transmittance[r] = 1;
-    rays.doubt[r] = 0;
+    rays.doubt[r] = rays.rough[r] = 0;
     rays.carried[r] = std::numeric_limits<float>::quiet_NaN();
     rays.first_k[r] = std::numeric_limits<double>::quiet_NaN();
   }
@@ -183,8 +183,9 @@ void cast_tile_here(const FrameView& frame, int x0, int y0, const PixelRegion& r
       const int x = x0 + TileRays::pixel_x(r), y = y0 + TileRays::pixel_y(r);
       if (x < region.x0 || x >= region.x1 || y < region.y0 || y >= region.y1 || !(rays.k_in[r] < rays.k_out[r]))
         continue;
-      if (doubts != nullptr) doubts[image->index(x, y)] = rays.doubt[r];
-      if (rays.doubt[r] > frame.doubt_tolerance) {
+      const float doubt = rays.doubt[r] + std::sqrt(rays.rough[r]);
+      if (doubts != nullptr) doubts[image->index(x, y)] = doubt;
+      if (!(doubt <= frame.doubt_tolerance)) {
         memory.doubtful.push_back({x, y});
         continue;
       }

@@ -177,12 +177,16 @@ bool any_clear(const CellRanges& ranges, const compositor::LaneTable& table) {
 
 std::vector<std::uint8_t> visible_cells(const CellRanges& ranges, const compositor::LaneTable& table) {
   const std::vector<std::size_t> shown_before = shown_intervals(table);
-  const auto interval = [&](float s) { return interval_of(table, s); };
+  // Rounding may have moved values across a knot that something is shown beyond: two places of a float, and a unit.
+  const auto interval = [&](float s, float away) {
+    return interval_of(table,
+                       !table.has_steps || ranges.lanes.whole_numbers ? s : s + away * (std::abs(s) * 0x1p-22f + 1));
+  };
   std::vector<std::uint8_t> visible(ranges.count(), 0);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, ranges.count(), 4096), [&](const auto& some) {
     for (std::size_t cell = some.begin(); cell != some.end(); ++cell)
       if (ranges.low[cell] <= ranges.high[cell])
-        visible[cell] = shown_before[interval(ranges.high[cell]) + 1] > shown_before[interval(ranges.low[cell])];
+        visible[cell] = shown_before[interval(ranges.high[cell], 1) + 1] > shown_before[interval(ranges.low[cell], -1)];
   });
   return visible;
 }

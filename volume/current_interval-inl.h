@@ -26,27 +26,29 @@ class CurrentInterval {
     uniform_.independent = table.emission == scene::Emission::independent;
     set(0);
   }
-  /// Whether all samples of the window are in one interval, which then is the current one.
+  /// Whether all samples of the window are in one interval, for certain, which then is the current one.
   template <class Window>
   HWY_INLINE bool holds(const Window& window, float some_sample) {
-    if (window.all_in(low_, high_)) return true;
-    const float* const knots = table_.column(LaneTable::edge) + 1;
-    const auto n = static_cast<std::size_t>(std::upper_bound(knots, knots + table_.knot_count, some_sample) - knots);
+    if (window.all_in(held_low_, held_high_)) return true;
+    const std::size_t n = interval_of(some_sample);
     if (n == interval_) return false;
     set(n);
-    return window.all_in(low_, high_);
+    return window.all_in(held_low_, held_high_);
+  }
+  /// The interval of a lane scalar.
+  [[nodiscard]] HWY_INLINE std::size_t interval_of(float s) const {
+    const float* const knots = table_.column(LaneTable::edge) + 1;
+    return static_cast<std::size_t>(std::upper_bound(knots, knots + table_.knot_count, s) - knots);
   }
   /// Whether [low, high] lies in the current interval, and for certain if that ends at a step, in the lanes that are
   /// live.
   [[nodiscard]] HWY_INLINE bool around(VF low, VF high, MF live) const {
     const DF d;
     const MF below = HN::Lt(high, HN::Set(d, guarded_high_));
-    if (HWY_LIKELY(HN::AllFalse(d, HN::AndNot(HN::And(HN::Ge(low, HN::Set(d, guarded_low_)), below), live))))
-      return true;
-    // A plateau at a step is on its side to the bit.
-    const MF inside = HN::And(HN::Or(HN::Eq(low, HN::Set(d, low_)), HN::Ge(low, HN::Set(d, guarded_low_))), below);
-    return guarded_low_ != low_ && HN::AllFalse(d, HN::AndNot(inside, live));
+    return HN::AllFalse(d, HN::AndNot(HN::And(HN::Ge(low, HN::Set(d, guarded_low_)), below), live));
   }
+  /// Whether a sample lies in the current interval for certain.
+  [[nodiscard]] HWY_INLINE bool holds(float s) const { return held_low_ <= s && s < held_high_; }
   /// Makes interval n the current one.
   HWY_INLINE void move_to(std::size_t n) {
     if (n != interval_) set(n);
@@ -59,13 +61,18 @@ class CurrentInterval {
     interval_ = n;
     low_ = table_.column(LaneTable::edge)[n];
     high_ = table_.column(LaneTable::edge)[n + 1];
-    guarded_low_ = low_, guarded_high_ = high_;
-    uniform_.ramp = 0;
+    guarded_low_ = held_low_ = low_, guarded_high_ = held_high_ = high_;
+    uniform_.ramp = uniform_.ramp_steady = uniform_.ramp_color = 0;
     if (frame_.doubt != nullptr) {
       const LaneDoubt& doubt = *frame_.doubt;
       if (!doubt.step.empty() && doubt.step[n] > 0) guarded_low_ += doubt.noise;
       if (!doubt.step.empty() && doubt.step[n + 1] > 0) guarded_high_ -= doubt.noise;
-      if (!doubt.ramp.empty()) uniform_.ramp = doubt.ramp[n];
+      // Samples that lanes hold exactly are on their side of a step, and so is the field where they all are.
+      if (doubt.sharp[n] == 0) held_low_ = guarded_low_;
+      if (doubt.sharp[n + 1] == 0) held_high_ = guarded_high_;
+      if (!doubt.ramp.empty() && doubt.ramp[n] > 0)
+        uniform_.ramp = doubt.ramp[n], uniform_.ramp_steady = doubt.ramp_steady[n],
+        uniform_.ramp_color = doubt.ramp_color[n];
     }
     clear_ = true;
     for (int c = 0; c < LaneTable::column_count; ++c) {
@@ -90,6 +97,7 @@ class CurrentInterval {
   std::size_t interval_ = 0;
   float low_, high_;
   float guarded_low_, guarded_high_;  ///< further in by the field's noise where the interval ends at a step
+  float held_low_, held_high_;        ///< the same, but for steps that samples are on one side of for certain
   bool clear_ = false;
   UniformLookup uniform_;
 };

@@ -13,6 +13,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <limits>
 #include <type_traits>
 
 #include "volume/frame_view.hpp"
@@ -68,7 +69,8 @@ HWY_INLINE void convert(const T* from, std::int64_t count, std::int64_t readable
       const auto vector_at = [&](std::int64_t at) HWY_ATTR {
         if constexpr (std::is_same_v<T, float>) {
           const auto sample = HN::LoadU(df, from + at);
-          return HN::Add(HN::Round(HN::Mul(sample, scale)), HN::Sub(sample, sample));
+          const auto lane = HN::Mul(sample, scale);
+          return HN::Add(lanes.whole ? HN::Round(lane) : lane, HN::Sub(sample, sample));
         } else {
           const HN::RebindToSigned<decltype(df)> di;
           const auto sample = HN::ConvertTo(df, HN::PromoteTo(di, HN::LoadU(HN::Rebind<T, decltype(df)>(), from + at)));
@@ -92,7 +94,7 @@ HWY_INLINE void convert(const T* from, std::int64_t count, std::int64_t readable
   const auto n = static_cast<std::int64_t>(HN::Lanes(d));
   const auto some = [&](const T* p, float* out) HWY_ATTR {
     const auto sample = load_doubles(p);
-    const auto lane = HN::Round(HN::MulAdd(sample, factor, term));
+    const auto exact = HN::MulAdd(sample, factor, term), lane = lanes.whole ? HN::Round(exact) : exact;
     // inf - inf and NaN - NaN are NaN, x - x is 0: blanks become NaN.
     HN::StoreU(HN::DemoteTo(DFH(), HN::Add(lane, HN::Sub(sample, sample))), DFH(), out);
   };
@@ -256,8 +258,12 @@ HWY_INLINE void fill_block(const FrameView& frame, const RayAxes& axes, std::int
     for (std::int64_t z = low[2]; z <= high[2]; ++z)
       for (std::int64_t y = low[1]; y <= high[1]; ++y)
         for (std::int64_t a = cell_of(0, low[0]); a <= last_cell; ++a) {
+          // Where blanks lie between two hidden cells what is between their values may show: there all is blank.
           const float hidden =
-              frame.ranges->low[static_cast<std::size_t>(a + cells[0] * (cell_of(1, y) + cells[1] * cell_of(2, z)))];
+              frame.ranges->range.blanks > 0
+                  ? std::numeric_limits<float>::quiet_NaN()
+                  : frame.ranges
+                        ->low[static_cast<std::size_t>(a + cells[0] * (cell_of(1, y) + cells[1] * cell_of(2, z)))];
           const std::int64_t x0 = std::max(low[0], a * side),
                              x1 = a == last_cell ? high[0] : std::min(high[0], a * side + side - 1);
           target.row(y, z, x0, x1, [&](std::int64_t xa, std::int64_t xb, float* to) HWY_ATTR {
@@ -296,7 +302,7 @@ HWY_INLINE void fill_block(const FrameView& frame, const RayAxes& axes, std::int
             target.rows_in(
                 from, to, [&](std::int64_t x, std::int64_t y, std::int64_t z, std::int64_t count, float* out) HWY_ATTR {
                   const std::int64_t at = ((z - box.low[2]) * room[1] + (y - box.low[1])) * room[0] + (x - box.low[0]);
-                  convert(brick + at, count, in_brick - at, frame.ranges->lanes, out);
+                  convert(brick + at, count, in_brick - at, frame.lanes, out);
                 });
           });
           frame.bricks->release(layout.number(place));
@@ -324,11 +330,11 @@ HWY_INLINE void fill_block(const FrameView& frame, const RayAxes& axes, std::int
               const std::int64_t row_start = ((z - box.low[2]) * room[1] + (y - box.low[1])) * room[0] - box.low[0];
               if (axes.k != 0) {
                 target.row(y, z, x, end, [&](std::int64_t xa, std::int64_t xb, float* out) HWY_ATTR {
-                  convert_any(bytes, type, row_start + xa, xb - xa + 1, in_brick, frame.ranges->lanes, out);
+                  convert_any(bytes, type, row_start + xa, xb - xa + 1, in_brick, frame.lanes, out);
                 });
               } else {
                 row_memory.resize(static_cast<std::size_t>(end - x + 1));
-                convert_any(bytes, type, row_start + x, end - x + 1, in_brick, frame.ranges->lanes, row_memory.data());
+                convert_any(bytes, type, row_start + x, end - x + 1, in_brick, frame.lanes, row_memory.data());
                 target.row(y, z, x, end, [&](std::int64_t xa, std::int64_t, float* out) HWY_ATTR {
                   *out = row_memory[static_cast<std::size_t>(xa - x)];
                 });

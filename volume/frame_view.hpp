@@ -45,6 +45,7 @@ struct FrameView {
   const PixelRays* rays;
   const compositor::LaneTable* table;
   const CellRanges* ranges;
+  LaneSamples lanes;                  ///< of samples: `ranges->lanes`, which keeps fractions where steps ask for them
   const std::uint8_t* visible;        ///< by cell of `ranges`
   bool some_hidden;                   ///< whether some cell is not visible
   bool some_clear;                    ///< whether the transfer function shows nothing of some value in the volume

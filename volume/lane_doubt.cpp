@@ -9,24 +9,33 @@ namespace {
 
 using compositor::LaneTable;
 
-/// Extinction and what it sends per unit of length, in one interval of the table.
-std::array<double, 4> matter_at(const LaneTable& table, std::size_t interval, double s) {
+/// What one interval of the table has at a scalar.
+struct Matter {
+  double extinction = 0;
+  std::array<double, 3> color{};
+};
+
+Matter matter_at(const LaneTable& table, std::size_t interval, double s) {
   const auto channel = [&](int c) {
     const double start = table.column(c)[interval], slope = table.column(c + 1)[interval];
     return slope == 0 ? start : start + slope * (s - table.column(LaneTable::base)[interval]);
   };
-  const double extinction = 2 * channel(LaneTable::half_extinction);
-  const double light = table.emission == scene::Emission::independent ? 1 : extinction;
-  return {extinction, light * channel(LaneTable::red), light * channel(LaneTable::green),
-          light * channel(LaneTable::blue)};
+  return {2 * channel(LaneTable::half_extinction),
+          {channel(LaneTable::red), channel(LaneTable::green), channel(LaneTable::blue)}};
+}
+
+/// Largest difference of two colours, each times a factor.
+double color_difference(const Matter& a, double times_a, const Matter& b, double times_b) {
+  double most = 0;
+  for (std::size_t c = 0; c < 3; ++c) most = std::max(most, std::abs(times_a * a.color[c] - times_b * b.color[c]));
+  return most;
 }
 
 /// Light and opacity, per unit of length, in which two of them differ.
-double difference(const std::array<double, 4>& a, const std::array<double, 4>& b, double largest_color) {
-  double light = 0;
-  for (std::size_t c = 1; c < 4; ++c) light = std::max(light, std::abs(a[c] - b[c]));
-  const double opacity = std::abs(a[0] - b[0]);
-  return std::min(1e18, std::max(opacity, light + opacity * largest_color));
+double difference(const Matter& a, const Matter& b, bool independent, double brightest) {
+  const double light = color_difference(a, independent ? 1 : a.extinction, b, independent ? 1 : b.extinction);
+  const double opacity = std::abs(a.extinction - b.extinction);
+  return std::min(1e18, std::max(opacity, light + opacity * brightest));
 }
 
 /// Of numbers, those that matter; none if none does.
@@ -39,10 +48,45 @@ std::vector<float> those_above(double least, std::vector<float> numbers) {
   return any ? numbers : std::vector<float>();
 }
 
+float bounded(double x) { return static_cast<float>(std::min(x, 1e18)); }
+
+/// By edge of the table: how far rounding moved its knots, lane scalars.
+std::vector<double> knots_moved(const scene::TransferFunction& function, const LaneTable& table,
+                                const CellRanges& ranges) {
+  const float* const edges = table.column(LaneTable::edge);
+  std::vector<double> moved(table.stride, 0.0);
+  for (const scene::Knot& knot : function.knots()) {
+    const double exact = (knot.value - ranges.lanes.origin) / ranges.lanes.unit;
+    const auto at = std::lower_bound(table.edge_values.begin() + 1, table.edge_values.end(), knot.value,
+                                     [](const std::array<double, 2>& values, double v) { return values[1] < v; });
+    const auto e = static_cast<std::size_t>(at - table.edge_values.begin());
+    if (e <= table.knot_count && (*at)[0] <= knot.value && std::abs(exact) < 0x1p30)
+      moved[e] = std::max(moved[e], std::abs(edges[e] - exact));
+  }
+  return moved;
+}
+
 }  // namespace
 
-LaneDoubt::LaneDoubt(const LaneTable& table, const CellRanges& ranges, double largest_color, double least,
-                     double longest) {
+LaneDoubt::LaneDoubt(const scene::TransferFunction& function, const LaneTable& table, const CellRanges& ranges,
+                     const DoubtSettings& settings)
+    : brightest(bounded(std::max(1.0, settings.brightest))), matters(bounded(settings.least / 64)) {
+  find_noise(ranges, settings.cell_data);
+  most = table.emission != scene::Emission::independent ? bounded(std::max(1.0, settings.largest_color)) : 1e18f;
+  find_sharp_edges(table, ranges.lanes);
+  find_steps(table, settings);
+  find_ramps(table, knots_moved(function, table, ranges), settings);
+  const bool independent = table.emission == scene::Emission::independent;
+  double densest = 0;
+  for (std::size_t n = 0; n <= table.knot_count; ++n)
+    for (const double s : {table.column(LaneTable::edge)[n], table.column(LaneTable::edge)[n + 1]})
+      if (std::isfinite(s))
+        densest = std::max(densest, difference(matter_at(table, n, s), {}, independent, settings.brightest));
+  // Places of ends are off by 1e-6 of a voxel.
+  ends = 4e-6 * densest * settings.longest > settings.least;
+}
+
+void LaneDoubt::find_noise(const CellRanges& ranges, bool cell_data) {
   double reach = 0, steepest = 0;
   for (std::size_t n = 0; n < ranges.count(); ++n) {
     const double low = ranges.low[n], high = ranges.high[n];
@@ -50,33 +94,57 @@ LaneDoubt::LaneDoubt(const LaneTable& table, const CellRanges& ranges, double la
     reach = std::max({reach, std::abs(low), std::abs(high)});
     steepest = std::max(steepest, high - low);
   }
-  // Two roundings of the field itself, and places of 5e-7 voxel (packet_lanes-inl.h).
-  noise = static_cast<float>(0x1p-23 * reach + 5e-7 * steepest);
-  if (table.emission != scene::Emission::independent)
-    most = static_cast<float>(std::max(1.0, largest_color));
-  else
-    most = 1e18f;
+  // Two roundings of the field itself, and places of 5e-7 voxel (packet_lanes-inl.h); cell data: of the sample, and of
+  // an edge.
+  noise = bounded(cell_data ? (ranges.lanes.exact ? 0x1p-25 : 0x1p-22) * reach : 0x1p-23 * reach + 5e-7 * steepest);
+}
 
+void LaneDoubt::find_sharp_edges(const LaneTable& table, const LaneSamples& lanes) {
+  sharp.assign(table.stride, 0);
+  for (std::size_t e = 1; e <= table.knot_count; ++e) sharp[e] = lanes.exact && table.is_step[e] != 0;
+}
+
+void LaneDoubt::find_steps(const LaneTable& table, const DoubtSettings& settings) {
   const float* const edges = table.column(LaneTable::edge);
-  step.assign(table.stride, 0.0f), ramp.assign(table.stride, 0.0f);
+  const bool independent = table.emission == scene::Emission::independent;
+  for (std::vector<float>* each : {&step, &step_extinction, &step_red, &step_green, &step_blue, &step_light})
+    each->assign(table.stride, 0.0f);
   for (std::size_t e = 1; e <= table.knot_count; ++e) {
     // Knots closer than the noise are one step.
     std::size_t below = e - 1, above = e;
     while (below > 0 && edges[below] > edges[e] - noise) --below;
     while (above < table.knot_count && edges[above + 1] < edges[e] + noise) ++above;
-    step[e] =
-        static_cast<float>(difference(matter_at(table, below, edges[e] - (below < e - 1 ? noise : 0.0f)),
-                                      matter_at(table, above, edges[e] + (above > e ? noise : 0.0f)), largest_color));
-    if (e == table.knot_count) continue;
-    // Over many voxels roundings mostly cancel; of the noise, which bounds them, a sixteenth is left (measured where
-    // peaks are narrow, docs/ACCURACY.md).
-    const double width = static_cast<double>(edges[e + 1]) - edges[e];
-    ramp[e] =
-        static_cast<float>(std::min(1.0, noise / 16 / width) *
-                           difference(matter_at(table, e, edges[e]), matter_at(table, e, edges[e + 1]), largest_color));
+    const Matter a = matter_at(table, below, edges[e] - (below < e - 1 ? noise : 0.0f)),
+                 b = matter_at(table, above, edges[e] + (above > e ? noise : 0.0f));
+    // Cell data is all samples.
+    if (settings.cell_data && sharp[e] != 0) continue;
+    step[e] = bounded(difference(a, b, independent, settings.brightest));
+    const Matter &dense = a.extinction > b.extinction ? a : b, &thin = a.extinction > b.extinction ? b : a;
+    step_extinction[e] = bounded(dense.extinction - thin.extinction);
+    step_light[e] = bounded((independent ? 1 : thin.extinction) * color_difference(dense, 1, thin, 1));
+    if (independent) continue;
+    step_red[e] = bounded(dense.color[0]), step_green[e] = bounded(dense.color[1]);
+    step_blue[e] = bounded(dense.color[2]);
   }
-  step = those_above(least / longest, std::move(step));
-  ramp = those_above(least / longest / 256, std::move(ramp));
+  step = those_above(settings.least / settings.longest, std::move(step));
+}
+
+void LaneDoubt::find_ramps(const LaneTable& table, const std::vector<double>& moved, const DoubtSettings& settings) {
+  const float* const edges = table.column(LaneTable::edge);
+  const bool independent = table.emission == scene::Emission::independent;
+  for (std::vector<float>* each : {&ramp, &ramp_steady, &ramp_extinction, &ramp_color})
+    each->assign(table.stride, 0.0f);
+  for (std::size_t e = 1; e < table.knot_count; ++e) {
+    const Matter a = matter_at(table, e, edges[e]), b = matter_at(table, e, edges[e + 1]);
+    const double width = static_cast<double>(edges[e + 1]) - edges[e],
+                 all = difference(a, b, independent, settings.brightest), share = std::min(1.0, noise / 8 / width),
+                 steady = std::max(moved[e], moved[e + 1]) / width;
+    ramp[e] = bounded(share * all);
+    ramp_steady[e] = bounded(std::min(1.0, share / 2 + steady) * all);
+    ramp_extinction[e] = bounded(std::min(1.0, share + steady) * std::abs(b.extinction - a.extinction));
+    ramp_color[e] = bounded(std::min(1.0, share + steady) * color_difference(a, 1, b, 1));
+  }
+  ramp = those_above(settings.least / settings.longest / 128, std::move(ramp));
 }
 
 }  // namespace tessera::volume

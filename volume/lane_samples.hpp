@@ -12,11 +12,18 @@ namespace tessera::volume {
 ///
 /// Unit    2^-29 of the largest distance between the origin and a value: products of few differences stay finite.
 /// Origin  zero, if the range holds or nearly holds it, so that float samples keep their bits; else the range's middle.
+/// One     value only: it is the origin, and its last place many units, so that all but the nearest knots are out of
+///         reach, where the function's values beside it stand for them.
+/// Exact   a lane is (value - origin) / unit without rounding: its side of a step is the value's. Of floats only where
+///         they keep what is less than a unit (`whole` is off).
 /// Blank   a sample that is not finite gives NaN.
 struct LaneSamples {
   double origin = 0, unit = 1;
   double factor = 1, term = 0;
-  bool scales_floats = true;  ///< the factor is a power of two that floats hold, the term zero
+  bool scales_floats = true;   ///< the factor is a power of two that floats hold, the term zero
+  bool whole = true;           ///< lanes are rounded to whole numbers
+  bool exact = false;          ///< see above
+  bool whole_numbers = false;  ///< lanes are exact and whole whatever `whole` says
 
   LaneSamples() = default;
   LaneSamples(const scene::Grid& grid, const scene::ValueRange& range) {
@@ -24,16 +31,33 @@ struct LaneSamples {
     const double width = range.high - range.low;
     if (range.low > width || range.high < -width) origin = 0.5 * (range.low + range.high);
     const double reach = std::max(std::abs(range.low - origin), std::abs(range.high - origin));
-    unit = reach > 0 ? std::ldexp(1.0, std::max(std::ilogb(reach) + 1 - 29, -1000)) : 1.0;
-    factor = grid.scale / unit;
-    term = (grid.shift - origin) / unit;
+    if (reach > 0) {
+      unit = std::ldexp(1.0, std::max(std::ilogb(reach) + 1 - 29, -1000));
+      factor = grid.scale / unit;
+      term = (grid.shift - origin) / unit;
+    } else {
+      unit = origin == 0 ? std::ldexp(1.0, -1000) : std::ldexp(1.0, std::max(std::ilogb(origin) - 52 - 27, -1000));
+      factor = term = 0;
+    }
     int exponent = 0;
     scales_floats = term == 0 && std::frexp(factor, &exponent) == 0.5 && std::abs(exponent) < 120;
+    exact = !(reach > 0) || is_exact(grid, std::max(std::abs(range.low), std::abs(range.high)));
+    whole_numbers = exact && (!(reach > 0) || !scene::is_float(grid.type) || origin != 0);
   }
 
   [[nodiscard]] float lane(double sample) const {
     if (!std::isfinite(sample)) return NAN;
-    return static_cast<float>(std::nearbyint(std::fma(factor, sample, term)));
+    const double lane = std::fma(factor, sample, term);
+    return static_cast<float>(whole ? std::nearbyint(lane) : lane);
+  }
+
+ private:
+  /// Whether floats hold all lanes: floats as they stand, and whole numbers of at most 23 bits. (Floats about a middle
+  /// are multiples of 2^-24 of it.)
+  static bool is_exact(const scene::Grid& grid, double largest) {
+    if (grid.type == scene::SampleType::float32) return grid.scale == 1 && grid.shift == 0;
+    return !scene::is_float(grid.type) && grid.scale == std::nearbyint(grid.scale) &&
+           grid.shift == std::nearbyint(grid.shift) && std::abs(grid.shift) < 0x1p23 && largest < 0x1p23;
   }
 };
 

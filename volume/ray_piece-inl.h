@@ -50,6 +50,7 @@ struct RayNotes {
   VF first;  ///< where light begins, in slabs from the chunk's first
   MF seen;   ///< whether it has
   VF doubt;  ///< errors that may be (lane_doubt.hpp), as seen from the chunk's front
+  VF rough;  ///< squares of those that roundings make, each its own
 };
 
 HWY_INLINE void note_first_light(const Progress& progress, VF place, RayNotes& notes) {
@@ -64,9 +65,9 @@ struct UniformLookup {
   using Index = int;
   float row[LaneTable::column_count];
   bool independent, has_clear = false;
-  float product_bound, shadow_bound;  ///< 0.1 |k' c'| and 0.03 |k'|^2 c
-  float ramp;                         ///< LaneDoubt::ramp
-  float dimming_bound, extinction;    ///< |c'| k^2 (independent emission: |c'| k) and k, at most in the interval
+  float product_bound, shadow_bound;    ///< 0.1 |k' c'| and 0.03 |k'|^2 c
+  float ramp, ramp_steady, ramp_color;  ///< LaneDoubt's
+  float dimming_bound, extinction;      ///< |c'| k^2 (independent emission: |c'| k) and k, at most in the interval
   HWY_INLINE VF at(int column, Index) const { return HN::Set(DF(), row[column]); }
 };
 
@@ -75,8 +76,8 @@ struct RoughnessBounds {
   VF product, shadow, dimming, extinction;
 };
 
-/// Whether a stretch errs more than the tolerance; see Error above.
-HWY_INLINE MF too_rough(VF length, VF m, VF p_3, VF span, const RoughnessBounds& bounds) {
+/// What a stretch errs, of the tolerance; see Error above.
+HWY_INLINE VF roughness(VF length, VF m, VF p_3, VF span, const RoughnessBounds& bounds) {
   const DF d;
   const VF odd = HN::Abs(p_3), even = HN::Abs(m);
   const VF rho = HN::MulAdd(odd, HN::Set(d, 0.25f), HN::Mul(even, HN::Set(d, 1.5f)));
@@ -85,7 +86,12 @@ HWY_INLINE MF too_rough(VF length, VF m, VF p_3, VF span, const RoughnessBounds&
   const VF depth = HN::Mul(length, bounds.extinction);
   const VF dimmed = HN::MulAdd(odd, HN::Set(d, 1 / 120.0f), HN::Mul(HN::Mul(even, depth), HN::Set(d, 1 / 60.0f)));
   const VF error = HN::MulAdd(HN::Mul(rho, spread), scale, HN::Mul(HN::Mul(length, bounds.dimming), dimmed));
-  return HN::Gt(HN::Mul(length, error), HN::Set(d, 1.0f));
+  return HN::Mul(length, error);
+}
+
+/// Whether a stretch errs more than the tolerance.
+HWY_INLINE MF too_rough(VF length, VF m, VF p_3, VF span, const RoughnessBounds& bounds) {
+  return HN::Gt(roughness(length, m, p_3, span, bounds), HN::Set(DF(), 1.0f));
 }
 
 /// Adds the stretches if they are smooth enough; false, and nothing added, if not.
@@ -165,48 +171,168 @@ HWY_INLINE VF extinction_at(const Lookup& table, typename Lookup::Index index, V
   return HN::Add(half, half);
 }
 
-/// The error of light and opacity per unit of length in intervals of the transfer function.
-HWY_INLINE VF error_of_ramp(VI interval, MF wanted, const LaneDoubt& doubt) {
+/// A row of LaneDoubt at intervals or edges of the lanes that are wanted; zero elsewhere.
+HWY_INLINE VF doubt_row(const std::vector<float>& row, VI at, MF wanted) {
   const DF d;
-  if (doubt.ramp.empty()) return HN::Zero(d);
-  return HN::GatherIndex(d, doubt.ramp.data(), HN::IfThenElseZero(HN::RebindMask(DI(), wanted), interval));
+  return HN::IfThenElseZero(wanted,
+                            HN::GatherIndex(d, row.data(), HN::IfThenElseZero(HN::RebindMask(DI(), wanted), at)));
 }
 
-/// The error of light and opacity where lanes cannot tell on which side of a step the cubic is near v: at `s`, an end
-/// of an interval, a turn, or a crossing (`crosses`). Field and place are in doubt by noise / |slope|, or where the
-/// cubic is level by the root of 2 noise / |its second derivative|.
-template <class Lookup>
-HWY_INLINE VF error_of_touch(const Lookup& table, typename Lookup::Index index, VI interval, const LaneDoubt& doubt,
-                             const Cubic& c, VF v, VF s, MF crosses, VF length) {
+/// Notes what a stretch errs by the ramps of its intervals. Of an opaque one the colour's error is seen at its front.
+HWY_INLINE void note_ramps(VI interval, MF wanted, VF length, const LaneDoubt& doubt, VF before, VF behind,
+                           RayNotes& notes) {
+  if (doubt.ramp.empty()) return;
+  const VF through = HN::Mul(length, behind);
+  const VF color = HN::Mul(HN::Sub(before, behind), doubt_row(doubt.ramp_color, interval, wanted));
+  const VF error = HN::Max(HN::Mul(through, doubt_row(doubt.ramp, interval, wanted)), color);
+  notes.rough = HN::MulAdd(error, error, notes.rough);
+  notes.doubt = HN::MulAdd(through, doubt_row(doubt.ramp_steady, interval, wanted), notes.doubt);
+}
+HWY_INLINE void note_ramps(const UniformLookup& table, VF length, VF before, VF behind, RayNotes& notes) {
   const DF d;
-  const VF zero = HN::Zero(d), noise = HN::Set(d, doubt.noise);
+  const VF through = HN::Mul(length, behind);
+  const VF color = HN::Mul(HN::Sub(before, behind), HN::Set(d, table.ramp_color));
+  const VF error = HN::Max(HN::Mul(through, HN::Set(d, table.ramp)), color);
+  notes.rough = HN::MulAdd(error, error, notes.rough);
+  notes.doubt = HN::MulAdd(through, HN::Set(d, table.ramp_steady), notes.doubt);
+}
+
+/// Where lanes cannot tell on which side of a step the cubic is: for how long, and the steps' edges.
+struct Touch {
+  MF near;
+  VI edge;
+  VF length;
+};
+
+/// Near v: at `s`, the stretch's beginning, an end of an interval, a turn, or a crossing. Field and place are in doubt
+/// by noise / |slope|, or where the cubic is level by the root of 2 noise / |its second derivative|. False if nowhere.
+template <class Lookup>
+HWY_INLINE bool touches(const Lookup& table, typename Lookup::Index index, VI interval, MF active,
+                        const LaneDoubt& doubt, const Cubic& c, VF v, VF s, VF length, Touch& touch) {
+  const DF d;
+  const VF noise = HN::Set(d, doubt.noise);
   const VI below = HN::Zero(DI()), above = HN::Set(DI(), 1);
   const VF from_low = HN::Abs(HN::Sub(s, table.edge(interval, index, below))),
            from_high = HN::Abs(HN::Sub(table.edge(interval, index, above), s));
   const MF to_high = HN::Lt(from_high, from_low);
   const VF away = HN::IfThenElse(to_high, from_high, from_low);
-  // What is at a knot to the bit, and does not cross it, is a plateau of samples with that value.
-  const MF near = HN::And(HN::Lt(away, noise), HN::Or(crosses, HN::Gt(away, zero)));
-  if (HWY_LIKELY(HN::AllFalse(d, near))) return zero;
-  const VI edge = HN::Add(interval, HN::IfThenElseZero(HN::RebindMask(DI(), to_high), above));
-  const VF weight = HN::GatherIndex(d, doubt.step.data(), HN::IfThenElseZero(HN::RebindMask(DI(), near), edge));
+  touch.near = HN::And(active, HN::Lt(away, noise));
+  if (HWY_LIKELY(HN::AllFalse(d, touch.near))) return false;
+  touch.edge = HN::Add(interval, HN::IfThenElseZero(HN::RebindMask(DI(), to_high), above));
   const VF bend = HN::Abs(HN::MulAdd(HN::Mul(HN::Set(d, 6.0f), c.p_3), v, HN::Add(c.p_2, c.p_2)));
   const VF slope = HN::Max(HN::Abs(c.slope(v)), HN::Sqrt(HN::Mul(HN::Add(noise, noise), bend)));
   const VF share = HN::Min(HN::Div(noise, HN::Max(slope, HN::Set(d, 1e-30f))), HN::Set(d, 1.0f));
-  return HN::IfThenElseZero(near, HN::Min(HN::Mul(share, HN::Mul(weight, length)), HN::Set(d, doubt.most)));
+  touch.length = HN::IfThenElseZero(touch.near, HN::Mul(share, length));
+  return true;
+}
+
+/// What a stretch may err, as seen from where its light is measured.
+struct StretchDoubt {
+  VF steps, ramps, steady;
+  VF left;  ///< by pieces that were not made small enough
+};
+
+/// Optical depths w that are too much or too few at places to which T gets through, of a medium of colour c, where what
+/// lies in front sends L: with a = T c + L and all the stretch's light E they change it by less than the sum of
+/// w |a - E|, and that is less than the root of (sum of w) (sum of w |a - E|^2) by Cauchy and Schwarz.
+struct Excess {
+  VF depth, ramps, red, green, blue, square;  ///< sums of w, of those of ramps, of w a and of w |a|^2
+  VF beside;                                  ///< light that differs whatever lies behind
+
+  HWY_INLINE void add(VF w, VF through, const VF (&color)[3], const Progress& progress) {
+    const VF a[3] = {HN::MulAdd(through, color[0], progress.red), HN::MulAdd(through, color[1], progress.green),
+                     HN::MulAdd(through, color[2], progress.blue)};
+    depth = HN::Add(depth, w);
+    red = HN::MulAdd(w, a[0], red), green = HN::MulAdd(w, a[1], green), blue = HN::MulAdd(w, a[2], blue);
+    square = HN::MulAdd(w, HN::MulAdd(a[0], a[0], HN::MulAdd(a[1], a[1], HN::Mul(a[2], a[2]))), square);
+  }
+  /// Of the whole stretch.
+  HWY_INLINE VF error(const Progress& e, const LaneDoubt& doubt) const {
+    const DF d;
+    const VF across = HN::MulAdd(red, e.red, HN::MulAdd(green, e.green, HN::Mul(blue, e.blue)));
+    const VF light = HN::MulAdd(e.red, e.red, HN::MulAdd(e.green, e.green, HN::Mul(e.blue, e.blue)));
+    const VF squares = HN::MulAdd(depth, light, HN::NegMulAdd(HN::Set(d, 2.0f), across, square));
+    const VF inside = HN::Sqrt(HN::Mul(depth, HN::Max(HN::Zero(d), squares)));
+    const VF behind = HN::Mul(HN::Mul(depth, e.transmittance), HN::Set(d, doubt.brightest));
+    return HN::Add(HN::Add(inside, behind), beside);
+  }
+};
+
+template <class Lookup>
+HWY_INLINE void colors_at(const Lookup& table, typename Lookup::Index index, VF s, VF (&color)[3]) {
+  const VF from = HN::Sub(s, table.at(LaneTable::base, index));
+  for (int c = 0; c < 3; ++c)
+    color[c] = table.independent ? HN::Zero(DF())
+                                 : HN::MulAdd(table.at(LaneTable::red_slope + 2 * c, index), from,
+                                              table.at(LaneTable::red + 2 * c, index));
+}
+
+/// Adds what a step may err that the cubic is at v on, or nearly.
+template <bool closely, class Lookup>
+HWY_INLINE void add_step_doubt(const Lookup& table, typename Lookup::Index index, VI interval, MF active,
+                               const LaneDoubt& doubt, const Cubic& c, VF v, VF s, VF stretch_length,
+                               const Progress& progress, StretchDoubt& sum, Excess& excess) {
+  const DF d;
+  const VF most_depth = HN::Set(d, 1e3f), behind = progress.transmittance;
+  Touch touch;
+  if (!touches(table, index, interval, active, doubt, c, v, s, stretch_length, touch)) return;
+  const auto row = [&](const std::vector<float>& of) HWY_ATTR { return doubt_row(of, touch.edge, touch.near); };
+  const VF weight = row(doubt.step);
+  if (!closely) {
+    const VF error = HN::Min(HN::Mul(touch.length, weight), HN::Set(d, doubt.most));
+    sum.steps = HN::MulAdd(error, behind, sum.steps);
+  } else {
+    const VF length_there = HN::IfThenElseZero(HN::Gt(weight, HN::Zero(d)), touch.length);
+    const VF w = HN::Min(HN::Mul(length_there, row(doubt.step_extinction)), most_depth);
+    const VF color[3] = {row(doubt.step_red), row(doubt.step_green), row(doubt.step_blue)};
+    excess.add(w, behind, color, progress);
+    excess.beside = HN::MulAdd(HN::Mul(length_there, row(doubt.step_light)), behind, excess.beside);
+  }
+}
+
+/// Adds what a piece that ends at a step, or nearly, and lies on a ramp errs. `before`: what got through to it.
+template <bool closely, class Lookup>
+HWY_NOINLINE void add_doubt(const Lookup& table, typename Lookup::Index index, VI interval, MF active,
+                            const LaneDoubt& doubt, const Cubic& c, VF end, VF s_end, VF length, VF stretch_length,
+                            VF before, const Progress& progress, StretchDoubt& sum, Excess& excess) {
+  const DF d;
+  const VF most_depth = HN::Set(d, 1e3f), behind = progress.transmittance;
+  if (!doubt.step.empty())
+    add_step_doubt<closely>(table, index, interval, active, doubt, c, end, s_end, stretch_length, progress, sum,
+                            excess);
+  if (doubt.ramp.empty()) return;
+  const VF ramp = doubt_row(doubt.ramp, interval, active);
+  if (HN::AllFalse(d, HN::Gt(ramp, HN::Zero(d)))) return;
+  if (!closely) {
+    const VF through = HN::Mul(length, before);
+    sum.ramps = HN::MulAdd(through, ramp, sum.ramps);
+    sum.steady = HN::MulAdd(through, doubt_row(doubt.ramp_steady, interval, active), sum.steady);
+  } else {
+    const MF steep = HN::Gt(ramp, HN::Zero(d));
+    const VF w = HN::Min(HN::Mul(length, doubt_row(doubt.ramp_extinction, interval, steep)), most_depth);
+    VF color[3];
+    colors_at(table, index, s_end, color);
+    excess.add(w, behind, color, progress);
+    excess.ramps = HN::Add(excess.ramps, w);
+    const VF seen = table.independent ? HN::Mul(length, before) : HN::Sub(before, behind);
+    excess.beside = HN::MulAdd(seen, doubt_row(doubt.ramp_color, interval, steep), excess.beside);
+  }
 }
 
 /// A stretch is halved no more often; 4096 of an optical depth of 1e4 are still thin.
 constexpr int most_halvings = 12;
 
-/// Stretches that cross knots, are rough, or whose lanes are in different intervals. NaN samples are blank.
-template <class Lookup>
-HWY_NOINLINE void add_any(const Lookup& table, const FrameView& frame, const Piece& piece, Progress& progress,
-                          RayNotes& notes, std::uint64_t& pieces) {
+/// Stretches that cross knots, are rough, or whose lanes are in different intervals, and what they may err: a bound, or
+/// `closely`, where `progress` is that of the stretch alone. NaN samples are blank.
+template <bool closely, class Lookup>
+HWY_NOINLINE StretchDoubt walk_cubic(const Lookup& table, const FrameView& frame, const Piece& piece,
+                                     Progress& progress, RayNotes& notes, std::uint64_t& pieces) {
   const DF d;
   const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f), half = HN::Set(d, 0.5f);
   MF active = HN::And(HN::Gt(piece.length, zero), HN::Eq(piece.s_mid, piece.s_mid));
-  if (HN::AllFalse(d, active)) return;
+  StretchDoubt doubt{zero, zero, zero, zero};
+  Excess excess{zero, zero, zero, zero, zero, zero, zero};
+  if (HN::AllFalse(d, active)) return doubt;
   const VF s_0 = HN::IfThenElseZero(active, piece.s_0), s_mid = HN::IfThenElseZero(active, piece.s_mid),
            s_1 = HN::IfThenElseZero(active, piece.s_1), p_3 = HN::IfThenElseZero(active, piece.p_3);
   Cubic c;
@@ -224,7 +350,7 @@ HWY_NOINLINE void add_any(const Lookup& table, const FrameView& frame, const Pie
     find_extrema(c, turn_1, turn_2);
 
   const VF per_tolerance = HN::Set(d, 1 / frame.piece_tolerance);
-  VF v = zero, s = s_0, doubt = zero;
+  VF v = zero, s = s_0;
   // Each round ends at a knot, an extremum, a halving or the stretch's end; knots are few but for wild functions.
   for (int round = 0; round < 4096; ++round) {
     const VF turn = HN::IfThenElse(HN::Lt(v, turn_1), turn_1, HN::IfThenElse(HN::Lt(v, turn_2), turn_2, one));
@@ -264,26 +390,65 @@ HWY_NOINLINE void add_any(const Lookup& table, const FrameView& frame, const Pie
       bounds.dimming =
           HN::Mul(seen, table.independent ? bounds.extinction : HN::Mul(bounds.extinction, bounds.extinction));
       const MF rough = too_rough(length, m, cubed, HN::Sub(s_end, s), bounds);
-      if (HN::AllFalse(d, rough) || halvings == most_halvings) break;
+      if (HN::AllFalse(d, rough)) break;
+      if (HWY_UNLIKELY(halvings == most_halvings)) {
+        // What is left is noted as it is seen.
+        const VF error =
+            HN::Mul(roughness(length, m, cubed, HN::Sub(s_end, s), bounds), HN::Set(d, frame.piece_tolerance));
+        doubt.left = HN::MulAdd(HN::IfThenElseZero(rough, HN::Min(error, one)), progress.transmittance, doubt.left);
+        break;
+      }
       end = HN::IfThenElse(rough, HN::MulAdd(half, extent, v), end);
       s_end = HN::IfThenElse(rough, middle, s_end);
     }
     pieces += HN::CountTrue(d, active);
+    if (HWY_UNLIKELY(round == 0 && frame.doubt != nullptr && !frame.doubt->step.empty()))
+      add_step_doubt<closely>(table, index, interval, active, *frame.doubt, c, v, s, piece.length, progress, doubt,
+                              excess);
+    const VF before = progress.transmittance;
     CL::lanes::add_piece<false>(table, index, HN::Add(s, m), HN::Add(s_end, m), HN::Sub(s_end, s), length, progress);
     note_first_light(progress, HN::MulAdd(v, piece.extent, piece.begin), notes);
-    if (HWY_UNLIKELY(frame.doubt != nullptr)) {
-      if (!frame.doubt->step.empty())
-        doubt = HN::Add(doubt, HN::IfThenElseZero(active, error_of_touch(table, index, interval, *frame.doubt, c, end,
-                                                                         s_end, crosses, piece.length)));
-      doubt = HN::MulAdd(length, error_of_ramp(interval, active, *frame.doubt), doubt);
-    }
+    if (HWY_UNLIKELY(frame.doubt != nullptr))
+      add_doubt<closely>(table, index, interval, active, *frame.doubt, c, end, s_end, length, piece.length, before,
+                         progress, doubt, excess);
     v = HN::IfThenElse(active, end, v);
     s = HN::IfThenElse(active, s_end, s);
     active = HN::And(active, HN::Lt(v, one));
     if (HN::AllFalse(d, active)) break;
   }
-  // What lies in front dims it, and so does a step that is crossed for long.
-  notes.doubt = HN::MulAdd(doubt, progress.transmittance, notes.doubt);
+  // Rounds that do not do.
+  doubt.left = HN::Add(doubt.left, HN::IfThenElseZero(active, progress.transmittance));
+  if (closely) {
+    const VF error = HN::Min(excess.error(progress, *frame.doubt), HN::Set(d, frame.doubt->most));
+    const VF share = HN::Div(excess.ramps, HN::Max(excess.depth, HN::Set(d, 1e-30f)));
+    doubt.ramps = HN::Mul(error, share);
+    doubt.steps = HN::Sub(error, doubt.ramps);
+  }
+  return doubt;
+}
+
+/// Adds stretches that cross knots, are rough, or whose lanes are in different intervals, and notes what they may err.
+template <class Lookup>
+HWY_INLINE void add_any(const Lookup& table, const FrameView& frame, const Piece& piece, Progress& progress,
+                        RayNotes& notes, std::uint64_t& pieces) {
+  const DF d;
+  const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f), before = progress.transmittance;
+  StretchDoubt doubt = walk_cubic<false>(table, frame, piece, progress, notes, pieces);
+  if (HWY_LIKELY(frame.doubt == nullptr)) return;
+  const MF matters = HN::Gt(HN::Add(doubt.steps, doubt.ramps), HN::Set(d, frame.doubt->matters));
+  if (HWY_UNLIKELY(!HN::AllFalse(d, matters))) {
+    Progress alone{zero, one, zero, zero, zero, zero};
+    RayNotes none{zero, HN::Eq(zero, zero), zero, zero};
+    std::uint64_t again = 0;
+    const StretchDoubt close = walk_cubic<true>(table, frame, piece, alone, none, again);
+    const auto less = [&](VF far, VF near) HWY_ATTR { return HN::Min(far, HN::Mul(before, near)); };
+    const VF ramps = less(doubt.ramps, close.ramps);
+    doubt.steps = HN::Min(HN::Add(doubt.steps, HN::Sub(doubt.ramps, ramps)), HN::Mul(before, close.steps));
+    doubt.steady = HN::Mul(doubt.steady, HN::Div(ramps, HN::Max(doubt.ramps, HN::Set(d, 1e-30f))));
+    doubt.ramps = ramps;
+  }
+  notes.doubt = HN::Add(notes.doubt, HN::Add(doubt.left, HN::Add(doubt.steps, doubt.steady)));
+  notes.rough = HN::MulAdd(doubt.ramps, doubt.ramps, notes.rough);
 }
 
 }  // namespace HWY_NAMESPACE

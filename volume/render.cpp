@@ -178,20 +178,26 @@ struct Renderer::State {
         bricks(source_, BrickLayout(source_.geometry(), settings_.brick_size, settings_.edge_bricks),
                settings_.memory_bytes, settings_.cache) {}
 
+  [[nodiscard]] bool in_steps() const {
+    return settings.method == Method::sampled || settings.method == Method::preintegrated;
+  }
   [[nodiscard]] compositor::LaneTable table_of(const scene::TransferFunction& function) const {
-    return {function, ranges.lanes.origin, ranges.lanes.unit, length_unit, settings.emission};
+    return {function,          ranges.lanes.origin,
+            ranges.lanes.unit, length_unit,
+            settings.emission, in_steps() ? compositor::StepRounding::nearest : compositor::StepRounding::up};
   }
 
   /// A ray that lets less through is done.
   [[nodiscard]] float least_transmittance(const scene::TransferFunction& function) const {
     if (!settings.use.termination) return 0;
     if (settings.method == Method::sampled || settings.method == Method::preintegrated) return 1e-6f;
-    double brightest = function.max_color();
-    if (settings.emission == scene::Emission::independent) {
-      const scene::Box box = scene::bounds(source.geometry());
-      brightest *= glm::length(box.high - box.low);
-    }
-    return static_cast<float>(std::min(0.25, accuracy() / 4 / std::max(1.0, brightest)));
+    return static_cast<float>(std::min(0.25, accuracy() / 4 / std::max(1.0, brightest(function))));
+  }
+  /// Light that may come along a ray.
+  [[nodiscard]] double brightest(const scene::TransferFunction& function) const {
+    if (settings.emission != scene::Emission::independent) return function.max_color();
+    const scene::Box box = scene::bounds(source.geometry());
+    return function.max_color() * glm::length(box.high - box.low);
   }
   /// Of a cast in double precision; `visible` must outlive it.
   [[nodiscard]] VoxelCastSettings voxel_settings(const scene::TransferFunction& function,
@@ -305,12 +311,15 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
     frame.piece_tolerance = static_cast<float>(accuracy() / 64);
     frame.largest_color = static_cast<float>(std::max(1e-30, transfer_function.max_color()));
     LaneDoubt doubt;
-    if (frame.step == 0 && !frame.cell_data && tally == nullptr) {
+    if (settings.method != Method::sampled && settings.method != Method::preintegrated && tally == nullptr) {
       frame.doubt_tolerance = static_cast<float>(std::max(accuracy(), 1e-5) / 2);
-      doubt = LaneDoubt(table, ranges, frame.largest_color, frame.doubt_tolerance,
-                        longest_in_voxel(source.geometry()) / length_unit);
+      doubt = LaneDoubt(transfer_function, table, ranges,
+                        {frame.cell_data, frame.largest_color, brightest(transfer_function), frame.doubt_tolerance,
+                         longest_in_voxel(source.geometry()) / length_unit});
       if (doubt.any()) frame.doubt = &doubt;
     }
+    frame.lanes = ranges.lanes;
+    frame.lanes.whole = in_steps() || !table.has_steps;
     frame.tally = tally;
     // A thousand packets or more, whatever the picture's size.
     const double tiles_in_picture = static_cast<double>(size.width) * size.height / (TileRays::side * TileRays::side);

@@ -149,7 +149,7 @@ HWY_INLINE void sample_lanes(const ChunkView& chunk, const Lookup& lookup, const
   VF light[3] = {HN::LoadU(d, rays.red + ray), HN::LoadU(d, rays.green + ray), HN::LoadU(d, rays.blue + ray)};
   VF carried = HN::LoadU(d, rays.carried + ray);
   const VF least = HN::Set(d, frame.least_transmittance);
-  RayNotes notes{HN::Set(d, -1.0f), HN::Gt(alpha, zero), zero};
+  RayNotes notes{HN::Set(d, -1.0f), HN::Gt(alpha, zero), zero, zero};
   for (std::int64_t m = 0; m < longest; ++m) {
     const VF number = HN::Set(d, static_cast<float>(m));
     const MF active = HN::And(HN::Lt(number, step_count), HN::Ge(through, least));

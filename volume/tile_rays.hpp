@@ -24,6 +24,7 @@ struct TileRays {
   alignas(64) float alpha[count], transmittance[count], red[count], green[count], blue[count];
   alignas(64) double first_k[count];
   alignas(64) float doubt[count];    ///< errors that may be (lane_doubt.hpp), linear RGBA
+  alignas(64) float rough[count];    ///< squares of those that roundings make, each its own
   alignas(64) float carried[count];  ///< preintegrated: the field at the last step's end
 
   static constexpr int pixel_x(int ray) {

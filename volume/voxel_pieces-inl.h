@@ -66,6 +66,86 @@ struct VoxelField {
   }
 };
 
+/// How far off a place in slab n of the chunk may be, slabs: roundings of numbers as large as that.
+HWY_INLINE VF place_noise(VF k) { return HN::Mul(HN::Add(k, HN::Set(DF(), 2.0f)), HN::Set(DF(), 0x1p-24f)); }
+
+/// Notes what a slab errs, point data, as places where rays begin and end in it are rounded: there is too much or too
+/// little of the matter at its front (scalar line.s_0), behind which there is the slab's own light, and of that at its
+/// back. `before` and `light`: what got through, and had been gathered, in front.
+template <class Lookup>
+HWY_NOINLINE void note_ends(const LaneDoubt& doubt, const Lookup& lookup, const Line& line, const SlabPath& path,
+                            MF there, VF slab_length, VF before, const VF (&light)[3], const Progress& progress,
+                            RayNotes& notes) {
+  const DF d;
+  const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f), behind = progress.transmittance;
+  const VF off = HN::Mul(place_noise(path.k), slab_length), brightest = HN::Set(d, doubt.brightest);
+  const MF good = HN::And(there, HN::Eq(line.rho, line.rho));
+  const auto at = [&](VF s, MF ends, bool front) HWY_ATTR {
+    const VF scalar = HN::IfThenElseZero(good, s);
+    const VI interval = lookup.locate(scalar, HN::Eq(zero, zero));
+    const auto index = lookup.index(interval, good);
+    const VF from = HN::Sub(scalar, lookup.at(LaneTable::base, index)), dimmed = HN::Sub(before, behind);
+    const VF sums[3] = {progress.red, progress.green, progress.blue};
+    VF differs = zero, sent = zero;
+    for (int c = 0; c < 3; ++c) {
+      const VF color =
+          HN::MulAdd(lookup.at(LaneTable::red_slope + 2 * c, index), from, lookup.at(LaneTable::red + 2 * c, index));
+      const VF own = HN::Sub(sums[c], light[c]);
+      differs = HN::Max(differs, lookup.independent ? own : HN::Abs(HN::NegMulAdd(color, dimmed, own)));
+      if (lookup.independent) sent = HN::Max(sent, color);
+    }
+    if (!front) differs = zero;
+    const VF seen = front ? before : behind;
+    const VF error =
+        HN::MulAdd(extinction_at(lookup, index, scalar), HN::MulAdd(behind, brightest, differs), HN::Mul(sent, seen));
+    const VF noted = HN::Min(HN::Mul(error, off), HN::Mul(seen, HN::Set(d, doubt.most)));
+    notes.doubt = HN::Add(notes.doubt, HN::IfThenElseZero(HN::And(good, ends), noted));
+  };
+  at(line.s_0, HN::Gt(path.from, zero), true);
+  at(line.s_1, HN::Lt(path.to, one), false);
+}
+
+/// The same for stretch n of cell data, which begins and ends at planes of its voxel: `piece`.
+template <class Lookup>
+HWY_NOINLINE void note_planes(const LaneDoubt& doubt, const Lookup& lookup, const Lanes& lanes, const SlabPath& path,
+                              int n, const Piece& piece, MF there, VF before, const Progress& progress,
+                              RayNotes& notes) {
+  const DF d;
+  const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f), behind = progress.transmittance;
+  const Stretch& stretch = path.stretches[n];
+  const MF good = HN::And(there, HN::Eq(piece.s_0, piece.s_0));
+  const VF scalar = HN::IfThenElseZero(good, piece.s_0);
+  const VI interval = lookup.locate(scalar, HN::Eq(zero, zero));
+  const auto index = lookup.index(interval, good);
+  // A plane of another axis is crossed the less surely the more slowly.
+  const auto off = [&](VF i, VF j) HWY_ATTR {
+    const auto of = [&](VF place, VF per_slope, MF crossed) HWY_ATTR {
+      const VF noise = HN::Mul(HN::Add(HN::Abs(place), one), HN::Set(d, 0x1p-24f));
+      return HN::IfThenElseZero(crossed, HN::Mul(noise, HN::Abs(per_slope)));
+    };
+    const VF crossing =
+        HN::Add(of(path.x, lanes.per_bx, HN::Ne(i, stretch.i)), of(path.y, lanes.per_by, HN::Ne(j, stretch.j)));
+    return HN::Min(HN::Add(place_noise(path.k), crossing), one);
+  };
+  const VF front = n == 0 ? place_noise(path.k) : off(path.stretches[n - 1].i, path.stretches[n - 1].j),
+           back = n == 2 ? place_noise(path.k) : off(path.stretches[n + 1].i, path.stretches[n + 1].j);
+  const VF both = HN::Mul(HN::Add(HN::IfThenElseZero(HN::Gt(stretch.begin, zero), front),
+                                  HN::IfThenElseZero(HN::Lt(stretch.end, one), back)),
+                          lanes.length);
+  const VF extinction = extinction_at(lookup, index, scalar), brightest = HN::Set(d, doubt.brightest);
+  VF error = HN::Mul(HN::Mul(extinction, behind), brightest);
+  if (lookup.independent) {
+    const VF from = HN::Sub(scalar, lookup.at(LaneTable::base, index));
+    VF sent = zero;
+    for (int c = 0; c < 3; ++c)
+      sent = HN::Max(sent, HN::MulAdd(lookup.at(LaneTable::red_slope + 2 * c, index), from,
+                                      lookup.at(LaneTable::red + 2 * c, index)));
+    error = HN::Mul(HN::MulAdd(extinction, brightest, sent), before);
+  }
+  const VF noted = HN::Min(HN::Mul(error, both), HN::Mul(before, HN::Set(d, doubt.most)));
+  notes.doubt = HN::Add(notes.doubt, HN::IfThenElseZero(good, noted));
+}
+
 /// Voxel by voxel, for the lanes that are `wanted`.
 template <bool cell_data, class Window, class Lookup>
 HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const Lookup& lookup, const Lanes& lanes,
@@ -107,17 +187,22 @@ HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const
     }
     Progress part{zero, one, zero, zero, zero, zero};
     Progress& target = lit_part ? part : progress;
+    const VF before = progress.transmittance;
     if (uniform != nullptr && HWY_LIKELY(add_uniform<cell_data>(*uniform, piece, target))) {
       counts.samples += voxels;
       if (HWY_UNLIKELY(!HN::AllTrue(d, notes.seen))) note_first_light(target, piece.begin, notes);
       if (HWY_UNLIKELY(uniform->ramp > 0))
-        notes.doubt = HN::MulAdd(HN::Mul(piece.length, HN::Set(d, uniform->ramp)), progress.transmittance, notes.doubt);
+        note_ramps(*uniform, piece.length, before, HN::Mul(lit_part ? before : one, target.transmittance), notes);
     } else {
-      const VF through = lit_part ? progress.transmittance : one, before = notes.doubt;
-      notes.doubt = zero;
+      const VF through = lit_part ? before : one, doubt = notes.doubt, rough = notes.rough;
+      notes.doubt = notes.rough = zero;
       add_any(lookup, frame, piece, target, notes, counts.samples);
-      notes.doubt = HN::MulAdd(through, notes.doubt, before);
+      notes.doubt = HN::MulAdd(through, notes.doubt, doubt);
+      notes.rough = HN::MulAdd(HN::Mul(through, through), notes.rough, rough);
     }
+    if (cell_data && HWY_UNLIKELY(frame.doubt != nullptr && frame.doubt->ends))
+      note_planes(*frame.doubt, lookup, lanes, path, static_cast<int>(&stretch - path.stretches), piece, there, before,
+                  progress, notes);
     if (lit_part) {
       put_behind(part, lit, progress);
       // Within the stretch light is measured from its own front.
@@ -208,6 +293,12 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
     p.p_3 = lines.odd[k][m];
     p.length = HN::IfThenElseZero(there[k], HN::Mul(p.extent, slab_length));
     p.begin = HN::Add(place[k], HN::Set(d, static_cast<float>(n)));
+    // A voxel that is whole, but whose end is taken from one that is blank, as rounding has the ray pass an edge of
+    // both on different sides.
+    const VF shape = HN::Add(lines.even[k][m], lines.odd[k][m]);
+    const MF torn = HN::AndNot(HN::Eq(p.s_mid, p.s_mid), HN::And(there[k], HN::Eq(shape, shape)));
+    if (HWY_UNLIKELY(!HN::AllFalse(d, torn)))
+      notes.doubt = HN::Add(notes.doubt, HN::IfThenElseZero(torn, HN::Set(d, 1e9f)));
   }
 #if HWY_TARGET <= HWY_AVX3
   if (HN::AllTrue(d, HN::Or(notes.seen, HN::Not(wanted)))) {
@@ -222,7 +313,7 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
       keep(pieces[k].s_0, s_0), keep(pieces[k].s_mid, s_mid), keep(pieces[k].s_1, s_1);
       keep(pieces[k].p_3, p_3), keep(pieces[k].length, length);
     }
-    HWY_ALIGN float light[7][most];
+    HWY_ALIGN float light[8][most];
     for (std::size_t n_0 = 0; n_0 < begin[3]; n_0 += lanes_each) {
       const MF used = HN::FirstN(d, begin[3] - n_0);
       const Piece piece{HN::Load(d, s_0 + n_0),
@@ -233,11 +324,11 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
                         zero,
                         zero};
       Progress part{zero, one, zero, zero, zero, zero};
-      RayNotes here{zero, HN::Eq(zero, zero), zero};
+      RayNotes here{zero, HN::Eq(zero, zero), zero, zero};
       add_any(lookup, frame, piece, part, here, counts.samples);
-      const VF parts[7] = {part.alpha, part.transmittance, part.optical_depth, part.red,
-                           part.green, part.blue,          here.doubt};
-      for (int c = 0; c < 7; ++c) HN::Store(parts[c], d, light[c] + n_0);
+      const VF parts[8] = {part.alpha, part.transmittance, part.optical_depth, part.red,
+                           part.green, part.blue,          here.doubt,         here.rough};
+      for (int c = 0; c < 8; ++c) HN::Store(parts[c], d, light[c] + n_0);
     }
     for (std::size_t k = 0; k < 3; ++k) {
       const auto part = [&](int c)
@@ -251,6 +342,7 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
       progress.green = HN::MulAdd(through, part(4), progress.green);
       progress.blue = HN::MulAdd(through, part(5), progress.blue);
       notes.doubt = HN::MulAdd(through, part(6), notes.doubt);
+      notes.rough = HN::MulAdd(HN::Mul(through, through), part(7), notes.rough);
     }
     return;
   }
@@ -291,18 +383,18 @@ HWY_NOINLINE MF cast_mixed(const FrameView& frame, const Lookup& lookup, const L
   if (frame.doubt != nullptr && !frame.doubt->step.empty()) {
     // What may touch a step is looked at as a cubic.
     const VF noise = HN::Set(d, frame.doubt->noise), low_edge = lookup.edge(interval, index, HN::Zero(DI()));
-    const MF above = HN::Or(HN::Ge(HN::Sub(low, low_edge), noise), HN::Eq(low, low_edge));
+    const MF above = HN::Ge(HN::Sub(low, low_edge), noise);
     together = HN::And(together, HN::And(above, HN::Ge(HN::Sub(edge, high), noise)));
   }
   if (!HN::AllFalse(d, together)) {
     const auto kept = [&](VF v) HWY_ATTR { return HN::IfThenElseZero(together, v); };
+    const VF before = progress.transmittance;
     CL::lanes::add_piece<false>(lookup, index, kept(HN::Add(line.s_0, line.shift)), kept(HN::Add(line.s_1, line.shift)),
                                 kept(line.span), kept(length), progress);
     counts.samples += HN::CountTrue(d, together);
     note_first_light(progress, begin, notes);
     if (frame.doubt != nullptr)
-      notes.doubt = HN::MulAdd(HN::Mul(kept(length), error_of_ramp(interval, there, *frame.doubt)),
-                               progress.transmittance, notes.doubt);
+      note_ramps(interval, together, kept(length), *frame.doubt, before, progress.transmittance, notes);
   }
   return HN::AndNot(together, there);
 }

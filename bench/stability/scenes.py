@@ -324,6 +324,14 @@ def volume_stresses(m):
         knots = [(0.0, 0.1, 0.2, 0.9, 0.0), (0.5, 0.1, 0.2, 0.9, 0.0), (0.5, 0.9, 0.4, 0.1, kappa), (1.0, 0.9, 0.4, 0.1, kappa)]
         return scene(m.generated("checker", ".vti", n=8), *tf(f"opaque-{kappa:g}", knots))
 
+    def steep(depth):
+        rough = lambda i, j, k: 0.5 + 0.3 * math.sin(0.9 * i + 0.4 * k) * math.cos(0.7 * j) + 0.2 * hashed(i + 12 * j + 144 * k)
+        path, words = raw("steep", (12, 12, 12), (1, 1, 1), rough)
+        k = depth / math.hypot(11, 11, 11)
+        knots = [(0.0, 0.1, 0.9, 0.3, 0.0), (0.5, 0.1, 0.9, 0.3, 0.0), (0.5002, 0.9, 0.1, 0.3, k), (0.5005, 0.1, 0.2, 0.9, 0.0),
+                 (0.71, 0.9, 0.9, 0.1, 0.0), (0.71, 0.9, 0.9, 0.1, 0.3 * k), (0.7103, 0.2, 0.1, 0.9, k), (0.7103, 0.9, 0.9, 0.1, 0.0)]
+        return scene(path, *words, *tf(f"steep-{depth:g}", knots), verify=4096)
+
     def offset(ratio):
         path, words = raw("raw-offset", (16, 16, 16), (1, 1, 1), smooth)
         return scene(path, *words, *tf(), "--origin", f"{float(ratio)!r},{float(ratio)!r},{float(ratio)!r}")
@@ -340,6 +348,7 @@ def volume_stresses(m):
         ("knots (grid)", "number", [2, 14, 30, 100, 1000, 4096], lambda v: scene(ripples(), *tf(f"vk-{v}", random_knots(v)))),
         ("oscillations (grid)", "over the range", [1, 10, 100, 1000], lambda v: scene(ripples(), *tf(f"vo-{v}", oscillating(v)))),
         ("extinction (grid)", "times world size", [0.0] + powers(-12, 12, 4), lambda v: scene(ripples(), *tf(f"ve-{v:g}", scaled(KNOTS, extinction=v)))),
+        ("peaks of a thousandth (grid)", "extinction times size", powers(0, 8, 2), steep),
         ("grid far from the origin", "offset over voxel", [0.0] + powers(3, 12, 3), offset),
         ("view angle (grid)", "degrees", [1, 90, 170, 179], angle),
         ("image (grid)", "pixels", ["1x1", "1x777", "777x1", "63x65"], lambda v: scene(ripples(), *tf(), "--camera", seen_across(m, v), size=v)),

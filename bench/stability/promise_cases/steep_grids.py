@@ -1,0 +1,184 @@
+"""Grids under steep transfer functions: narrow peaks, steps, staircases and noise of a few or many knots, extinctions of 1
+to 1e6 times the volume's size, some in thin fog; smooth, noisy, checkered and thin fields of all sample types; point
+and cell data; regular, anisotropic and rectilinear grids; seen from outside and inside, orthographic and perspective,
+some through near planes.
+
+Knots lie at random places: a plateau of samples at a step's very value is another class. Fields vary.
+"""
+import math
+
+from . import files
+
+KINDS = ["Float32", "Float32", "Float64", "UInt8", "UInt8", "UInt16", "Int16"]
+LEVELS = {"UInt8": 255, "UInt16": 65535, "Int16": 30000}
+
+
+def shape(r):
+    """(words, f): a field over [0, 1]^3 with values of about [0, 1]."""
+    kind = r.choice(["waves", "waves", "ball", "noise", "rough", "checker", "sheet", "thread", "ramp"])
+    a, b, c = (r.uniform(0.5, 4) for _ in range(3))
+    p, q = r.uniform(0, 6), r.uniform(0, 6)
+    at = [r.uniform(0.2, 0.8) for _ in range(3)]
+    normal = [r.gauss(0, 1) for _ in range(3)]
+    long = math.sqrt(sum(n * n for n in normal))
+    normal = [n / long for n in normal]
+    across = lambda x: sum(n * (v - o) for n, v, o in zip(normal, x, at))
+    waves = lambda x: 0.5 + 0.25 * (math.sin(a * 3 * x[0] + p) * math.cos(b * 3 * x[1] + q) + math.sin(c * 3 * x[2] + a * x[0]))
+    if kind == "waves":
+        return kind, waves
+    if kind == "ball":
+        return kind, lambda x: math.dist(x, at)
+    if kind == "noise":
+        return kind, lambda x: r.random()
+    if kind == "rough":
+        share = 10 ** r.uniform(-4, -0.7)
+        return kind, lambda x: waves(x) + share * (r.random() - 0.5)
+    if kind == "checker":
+        low, high, spread = r.uniform(0, 0.3), r.uniform(0.7, 1), 10 ** r.uniform(-3, -1)
+        parity = r.choice([17, 5, 2])
+        return kind, lambda x: (high if sum(int(parity * v + 0.01) for v in x) % 2 else low) + spread * r.random()
+    if kind == "sheet":
+        width = r.uniform(0.02, 0.2)
+        return kind, lambda x: math.exp(-(across(x) / width) ** 2) + 1e-3 * waves(x)
+    if kind == "thread":
+        width = r.uniform(0.03, 0.2)
+        return kind, lambda x: math.exp(-((x[0] - at[0]) ** 2 + (x[1] - at[1] - 0.2 * math.sin(6 * x[2])) ** 2) / width ** 2) + 1e-3 * waves(x)
+    return kind, across
+
+
+def colors(r):
+    if r.random() < 0.3:
+        one = [r.random() for _ in range(3)]
+        return lambda: one
+    return lambda: [r.random() for _ in range(3)]
+
+
+def function(r, low, high, size):
+    """(words, knots): with extinctions up to 1 to 1e6 over `size`."""
+    most, fog = 10 ** r.uniform(0, 6) / size, r.choice([0, 0, 10 ** r.uniform(-2, 1) / size])
+    color, span = colors(r), high - low
+    kind = r.choice(["peak", "peak", "peaks", "box", "step", "stairs", "noise", "flank", "mixed"])
+    place = lambda: r.uniform(low + 0.03 * span, high - 0.03 * span)
+    knots = [(low - span, fog)]
+
+    def peak(at):
+        width = span * 10 ** r.uniform(-4.5, -0.7)
+        left, right = at - width * r.uniform(0.2, 1), at + width * r.uniform(0.2, 1)
+        top = most * r.choice([1, 1, 10 ** r.uniform(-3, 0)])
+        return [(left, fog), (at, top), (right, fog)]
+
+    def box(at):
+        width = span * 10 ** r.uniform(-4, -0.5)
+        return [(at, fog), (at, most), (at + width, most * r.random()), (at + width, fog)]
+
+    if kind == "peak":
+        knots += peak(place())
+    elif kind == "peaks":
+        for at in sorted(place() for _ in range(r.randint(2, 12))):
+            made = peak(at)
+            if made[0][0] > knots[-1][0]:
+                knots += made
+    elif kind == "box":
+        knots += box(place())
+    elif kind == "step":
+        at = place()
+        knots += [(at, fog), (at, most)]
+        if r.random() < 0.5:
+            knots += [(high + span, most * r.random())]
+    elif kind == "stairs":
+        level = fog
+        for at in sorted(place() for _ in range(r.randint(2, 10))):
+            up = most * r.random() * r.choice([0, 1, 1e-2, 1e-4])
+            knots += [(at, level), (at, up)]
+            level = up
+    elif kind == "noise":
+        for at in sorted(place() for _ in range(r.choice([2, 4, 16, 60, 250]))):
+            knots.append((at, most * r.random() ** r.choice([1, 8])))
+    elif kind == "flank":
+        at, width = place(), span * 10 ** r.uniform(-4, 0)
+        knots += [(at, fog), (at + width, most)]
+    else:
+        at = place()
+        made = peak(at) + [(max(at + 0.3 * (high - at), at + span), most * 1e-3), (high + 2 * span, most)]
+        knots += made
+    return f"{kind}, extinction x size {most * size:.3g}, fog {fog * size:.3g}", [(v, *color(), e) for v, e in knots]
+
+
+def camera(r, low, high):
+    center = [(a + b) / 2 for a, b in zip(low, high)]
+    size = math.dist(low, high)
+    direction = [r.gauss(0, 1) for _ in range(3)]
+    if r.random() < 0.15:
+        direction = r.choice([[1, 0, 0], [0, 1, 0], [0, 0, -1], [1, 1, 0]])
+    long = math.sqrt(sum(v * v for v in direction))
+    direction = [v / long for v in direction]
+    up = min(([1, 0, 0], [0, 1, 0], [0, 0, 1]), key=lambda u: abs(sum(a * b for a, b in zip(u, direction))))
+    kind = r.choice(["orthographic", "perspective", "inside"])
+    if kind == "inside":
+        eye = [a + (b - a) * r.uniform(0.1, 0.9) for a, b in zip(low, high)]
+        away, angle = size, r.uniform(30, 130)
+    else:
+        away = size * r.uniform(0.8, 4)
+        eye = [c + away * v for c, v in zip(center, direction)]
+        angle = 2 * math.degrees(math.atan(0.5 * size / away)) * 10 ** r.uniform(-1.2, 0.1)
+    focus = [e - away * v for e, v in zip(eye, direction)]
+    line = lambda name, values: f"{name} {' '.join(repr(float(v)) for v in values)}\n"
+    text = line("position", eye) + line("focal_point", focus) + line("view_up", up)
+    text += line("parallel_scale", [size * 10 ** r.uniform(-1.3, -0.25)]) if kind == "orthographic" else line("view_angle", [min(angle, 150)])
+    near = r.random() < 0.25
+    if near:
+        begin = away * r.uniform(0.7, 1.1) if kind != "inside" else size * r.uniform(0, 0.2)
+        text += line("clipping_range", [max(begin, 1e-3 * size), begin + size * r.uniform(0.2, 3)])
+    pixels = f"size {r.randint(16, 48)} {r.randint(16, 48)}\n"
+    return kind + (", near plane" if near else ""), text + pixels
+
+
+def case(r, folder, tessera):
+    kind = r.choice(KINDS)
+    association = r.choice(["point", "point", "point", "cell"])
+    most = r.choice([6, 10, 16, 24])
+    counts = [r.randint(3, most) for _ in range(3)]
+    if r.random() < 0.15:
+        counts[r.randrange(3)] = r.randint(40, 100)
+    cells = [n - 1 for n in counts] if association == "cell" else counts
+    name, f = shape(r)
+    values = [f([(i + 0.5) / cells[0], (j + 0.5) / cells[1], (k + 0.5) / cells[2]])
+              for k in range(cells[2]) for j in range(cells[1]) for i in range(cells[0])]
+    low, high = min(values), max(values)
+    if high - low < 1e-6:
+        values[0], high = low + 1, low + 1
+    values = [(v - low) / (high - low) for v in values]
+    if kind in LEVELS:
+        first, last = sorted(r.sample(range(LEVELS[kind] + 1), 2)) if r.random() < 0.3 else (0, LEVELS[kind])
+        last = max(last, first + 3) if first + 3 <= LEVELS[kind] else last
+        values = [round(first + (last - first) * v) for v in values]
+    else:
+        scale, shift = 10 ** r.uniform(-3, 3), r.choice([0, 0, -0.5, 3])
+        values = [scale * (v + shift) for v in values]
+        if kind == "Float32":
+            values = [files.float32(v) for v in values]
+    low, high = min(values), max(values)
+    spacing = [1.0] * 3 if r.random() < 0.5 else [10 ** r.uniform(-1, 1) for _ in range(3)]
+    rectilinear = r.random() < 0.2
+    if rectilinear:
+        axes = []
+        for n, s in zip(counts, spacing):
+            places = [0.0]
+            for _ in range(n - 1):
+                places.append(places[-1] + s * 10 ** r.uniform(-1, 0.3))
+            axes.append(places)
+        corner = [a[-1] for a in axes]
+        path = files.write_vtr(folder / "grid.vtr", axes, values, association, kind)
+    else:
+        corner = [s * (n - 1) for s, n in zip(spacing, counts)]
+        path = files.write_vti(folder / "grid.vti", counts, values, association, kind, spacing)
+    size = math.dist([0, 0, 0], corner)
+    how, knots = function(r, low, high, size)
+    view, text = camera(r, [0, 0, 0], corner)
+    made = {"input": [path], "function": knots, "camera": text,
+            "words": f"{name} {kind} {association}{' rectilinear' if rectilinear else ''} {counts}, {how}, {view}"}
+    if r.random() < 0.06:
+        made["args"] = ["--emission", "independent"]
+        made["function"] = [(v, *(c / size for c in rgb), e) for v, *rgb, e in knots]
+        made["words"] += ", independent"
+    return made
