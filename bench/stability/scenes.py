@@ -332,6 +332,21 @@ def volume_stresses(m):
                  (0.71, 0.9, 0.9, 0.1, 0.0), (0.71, 0.9, 0.9, 0.1, 0.3 * k), (0.7103, 0.2, 0.1, 0.9, k), (0.7103, 0.9, 0.9, 0.1, 0.0)]
         return scene(path, *words, *tf(f"steep-{depth:g}", knots), verify=4096)
 
+    def blanks(share):
+        holes = lambda i, j, k: math.nan if hashed(i + 24 * j + 576 * k) < share else smooth(i, j, k)
+        path, words = raw(f"blank-{share:g}", (24, 24, 24), (1, 1, 1), holes)
+        return scene(path, *words, *tf("half-clear", [(0.0, 0, 0, 1, 0.0), (0.4, 0, 0, 0, 0.0), (1.0, 1, 1, 1, 0.3)]), verify=4096)
+
+    def constant(distance):
+        path, words = raw("constant", (9, 9, 9), (1, 1, 1), lambda i, j, k: 7.25)
+        return scene(path, *words, *tf(f"beside-{distance:g}", [(7.25 - distance, 1, 0, 0, 0.0), (7.25 + 2 * distance, 0, 0, 1, 0.3)]))
+
+    def saturated(places):
+        step = 1 - places * 2.0 ** -24
+        tanh = lambda i, j, k: 0.5 + 0.5 * math.tanh(0.9 * (math.dist((i, j, k), (11.5, 11.5, 11.5)) - 6))
+        path, words = raw("saturated", (24, 24, 24), (1, 1, 1), tanh)
+        return scene(path, *words, *tf(f"saturated-{places:g}", [(step, 1, 0.2, 0, 0.01), (step, 0, 0.3, 1, 0.2)]), verify=4096)
+
     def offset(ratio):
         path, words = raw("raw-offset", (16, 16, 16), (1, 1, 1), smooth)
         return scene(path, *words, *tf(), "--origin", f"{float(ratio)!r},{float(ratio)!r},{float(ratio)!r}")
@@ -349,6 +364,9 @@ def volume_stresses(m):
         ("oscillations (grid)", "over the range", [1, 10, 100, 1000], lambda v: scene(ripples(), *tf(f"vo-{v}", oscillating(v)))),
         ("extinction (grid)", "times world size", [0.0] + powers(-12, 12, 4), lambda v: scene(ripples(), *tf(f"ve-{v:g}", scaled(KNOTS, extinction=v)))),
         ("peaks of a thousandth (grid)", "extinction times size", powers(0, 8, 2), steep),
+        ("blank samples", "share", [0.0, 0.001, 0.03, 0.3, 0.9], blanks),
+        ("constant grid", "distance of knots", powers(3, -6, -3), constant),
+        ("plateau at a step (grid)", "last places of a float from the step", [1e6, 1e4, 256, 16, 1, 0], saturated),
         ("grid far from the origin", "offset over voxel", [0.0] + powers(3, 12, 3), offset),
         ("view angle (grid)", "degrees", [1, 90, 170, 179], angle),
         ("image (grid)", "pixels", ["1x1", "1x777", "777x1", "63x65"], lambda v: scene(ripples(), *tf(), "--camera", seen_across(m, v), size=v)),
