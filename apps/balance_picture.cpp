@@ -82,10 +82,11 @@ void draw_bricks(scene::Image& image, const scene::Camera& camera, const scene::
       for (int axis = 0; axis < 3; ++axis) {
         if ((corner >> axis & 1) != 0) continue;
         const auto at = [&, &low = low, &high = high](int c) {
-          return space.project(scene::world_of_index(
-              geometry, {(c & 1) != 0 ? high.x : low.x, (c & 2) != 0 ? high.y : low.y, (c & 4) != 0 ? high.z : low.z}));
+          return homogeneous(space.project(scene::world_of_index(
+              geometry,
+              {(c & 1) != 0 ? high.x : low.x, (c & 2) != 0 ? high.y : low.y, (c & 4) != 0 ? high.z : low.z})));
         };
-        projection::PixelVertex a = at(corner), b = at(corner | 1 << axis);
+        projection::HomogeneousVertex a = at(corner), b = at(corner | 1 << axis);
         // Of an edge that reaches behind the eye only what lies before it.
         constexpr double least = 1e-6;
         const double near = least * std::max(std::abs(a.w), std::abs(b.w));

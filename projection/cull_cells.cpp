@@ -33,8 +33,8 @@ double smallest(const PixelVertex* vertices, std::size_t count) {
 
 HWY_INLINE CullVertex cull_vertex(const PixelVertex& v, double scalar, double depth_origin) {
   CullVertex out;
-  out.x = static_cast<float>(v.x / v.w);
-  out.y = static_cast<float>(v.y / v.w);
+  out.x = static_cast<float>(v.w != 0 ? v.x : HUGE_VAL);
+  out.y = static_cast<float>(v.y);
   const double size = (v.depth < 0 ? -v.depth : v.depth) + (depth_origin < 0 ? -depth_origin : depth_origin);
   const double depth = (v.depth - depth_origin) - 4e-16 * size;
   // What rounding to float may add is taken off before.
@@ -71,12 +71,13 @@ void make_vertices(const PixelVertex* vertices, const double* scalars, std::size
   for (; v + lanes <= count; v += lanes) {
     hn::Vec<decltype(dd)> x, y, w, depth;
     hn::LoadInterleaved4(dd, &vertices[v].x, x, y, w, depth);
+    x = hn::IfThenElse(hn::Eq(w, hn::Zero(dd)), hn::Set(dd, HUGE_VAL), x);
     const auto offset =
         hn::Sub(hn::Sub(depth, origin), hn::Mul(hn::Add(hn::Abs(depth), origin_size), hn::Set(dd, 4e-16)));
     const auto lower = hn::Sub(hn::Sub(offset, hn::Mul(hn::Abs(offset), hn::Set(dd, 0x1p-23))), hn::Set(dd, 0x1p-149));
     const auto scalar = scalars != nullptr ? hn::LoadU(dd, scalars + v) : hn::Zero(dd);
-    hn::StoreInterleaved4(hn::DemoteTo(df, hn::Div(x, w)), hn::DemoteTo(df, hn::Div(y, w)),
-                          hn::DemoteTo(df, hn::Min(lower, hn::Set(dd, 3e38))), hn::DemoteTo(df, scalar), df, &out[v].x);
+    hn::StoreInterleaved4(hn::DemoteTo(df, x), hn::DemoteTo(df, y), hn::DemoteTo(df, hn::Min(lower, hn::Set(dd, 3e38))),
+                          hn::DemoteTo(df, scalar), df, &out[v].x);
   }
   for (; v < count; ++v) out[v] = cull_vertex(vertices[v], scalars != nullptr ? scalars[v] : 0, depth_origin);
 }

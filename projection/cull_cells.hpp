@@ -19,7 +19,7 @@ namespace tessera::projection {
 
 /// A vertex as culling sees it.
 struct CullVertex {
-  float x, y;    ///< pixels; meaningless where w <= 0
+  float x, y;    ///< pixels; meaningless where w < 0, x infinite where w = 0
   float depth;   ///< behind the depth origin, never above the exact one
   float scalar;  ///< rounded to nearest; 0 for cell data
 };

@@ -54,7 +54,8 @@ int sign_2x2(double a, double b, double c, double d) {
 
 }  // namespace
 
-int edge_sign(const PixelVertex& a, const PixelVertex& b, double px, double py, bool* on_edge) {
+int edge_sign(const PixelVertex& from, const PixelVertex& to, double px, double py, bool* on_edge) {
+  const HomogeneousVertex a = scaled_to_sign(from), b = scaled_to_sign(to);
   ExactSum sum;
   sum.add_product(a.x, b.y);
   sum.add_product(-a.y, b.x);

@@ -7,10 +7,11 @@ namespace tessera::projection {
 namespace {
 
 /// Whether the half space through the eye beyond one side of the window holds all corners. `coordinate` is
-/// PixelVertex::x or ::y; q = coordinate - side * w is linear in the point, so no division and no sign of w enters.
-bool beyond(const std::array<PixelVertex, 4>& corners, double PixelVertex::*coordinate, double side, double sign) {
+/// x or y; q = coordinate - side * w is linear in the point, so no division and no sign of w enters.
+bool beyond(const std::array<HomogeneousVertex, 4>& corners, double HomogeneousVertex::*coordinate, double side,
+            double sign) {
   return std::all_of(corners.begin(), corners.end(),
-                     [&](const PixelVertex& v) { return sign * (v.*coordinate - side * v.w) > 0; });
+                     [&](const HomogeneousVertex& v) { return sign * (v.*coordinate - side * v.w) > 0; });
 }
 
 /// Pixels [first, last) of [low, high) whose centres lie in the closed interval, widened by far more than rounding.
@@ -27,16 +28,15 @@ std::array<int, 2> covered(double least, double most, int low, int high) {
 PixelRect footprint(const std::array<PixelVertex, 4>& c, const PixelRect& window) {
   const PixelRect nothing{window.x0, window.y0, window.x0, window.y0};
   if (c[0].w > 0 && c[1].w > 0 && c[2].w > 0 && c[3].w > 0) {
-    std::array<double, 4> x, y;
-    for (int i = 0; i < 4; ++i) x[i] = c[i].x / c[i].w, y[i] = c[i].y / c[i].w;
-    const auto [x_low, x_high] = std::minmax({x[0], x[1], x[2], x[3]});
-    const auto [y_low, y_high] = std::minmax({y[0], y[1], y[2], y[3]});
+    const auto [x_low, x_high] = std::minmax({c[0].x, c[1].x, c[2].x, c[3].x});
+    const auto [y_low, y_high] = std::minmax({c[0].y, c[1].y, c[2].y, c[3].y});
     const auto [x0, x1] = covered(x_low, x_high, window.x0, window.x1);
     const auto [y0, y1] = covered(y_low, y_high, window.y0, window.y1);
     return x0 < x1 && y0 < y1 ? PixelRect{x0, y0, x1, y1} : nothing;
   }
-  if (beyond(c, &PixelVertex::x, window.x0, -1) || beyond(c, &PixelVertex::x, window.x1, 1) ||
-      beyond(c, &PixelVertex::y, window.y0, -1) || beyond(c, &PixelVertex::y, window.y1, 1))
+  const std::array h{homogeneous(c[0]), homogeneous(c[1]), homogeneous(c[2]), homogeneous(c[3])};
+  if (beyond(h, &HomogeneousVertex::x, window.x0, -1) || beyond(h, &HomogeneousVertex::x, window.x1, 1) ||
+      beyond(h, &HomogeneousVertex::y, window.y0, -1) || beyond(h, &HomogeneousVertex::y, window.y1, 1))
     return nothing;
   return window;
 }

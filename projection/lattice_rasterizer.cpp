@@ -133,9 +133,7 @@ void make_lattice_vertices(std::span<const PixelVertex> vertices, std::span<cons
     const PixelVertex& v = vertices[i];
     LatticeVertex& to = out[i];
     to = {v.x, v.y, 1, lattice.depth_step(v.depth), scalars.empty() ? 0 : lattice.scalar_step(scalars[i])};
-    if (!perspective) continue;
-    to.inverse_w = v.w > 0 ? 1 / v.w : 0;
-    to.x *= to.inverse_w, to.y *= to.inverse_w;
+    if (perspective) to.inverse_w = v.w > 0 ? 1 / v.w : 0;
   }
 }
 

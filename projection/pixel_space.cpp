@@ -1,7 +1,9 @@
 #include "projection/pixel_space.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
@@ -15,6 +17,26 @@ double on_grid(double pixel) {
   constexpr double cells = 4294967296.0;  // 2^32; beyond 2^20 pixels the rounding changes nothing
   const double scaled = pixel * cells;
   return std::isfinite(scaled) ? std::nearbyint(scaled) / cells : pixel;
+}
+
+/// The power of two at or below a positive number; 0 of a subnormal one.
+double power_of_two(double v) { return std::bit_cast<double>(std::bit_cast<std::uint64_t>(v) & 0x7ff0000000000000u); }
+
+/// The nearest multiple of a power of two, of |v| < 2^51 times it.
+double nearest_multiple(double v, double step) {
+  const double magic = 0x1.8p52 * step;
+  return (v + magic) - magic;
+}
+
+/// (x, y, w) in homogeneous pixel coordinates to a rounded position. As project_lanes.cpp has it.
+PixelVertex perspective_vertex(double x, double y, double depth, double pixels_per_unit) {
+  const double px = x / depth, py = y / depth, reach = std::max(std::abs(px), std::abs(py));
+  if (reach < eye_plane_reach) {
+    const double step = std::max(finest_step, power_of_two(std::max(reach, pixels_per_unit)) * position_precision);
+    return {nearest_multiple(px, step), nearest_multiple(py, step), depth, depth};
+  }
+  const double step = power_of_two(std::max(std::abs(x), std::abs(y))) * direction_precision;
+  return {nearest_multiple(x, step), nearest_multiple(y, step), 0, depth};
 }
 
 }  // namespace
@@ -39,8 +61,8 @@ PixelVertex PixelSpace::project(const glm::dvec3& p_world) const {
   if (!perspective_)
     return {on_grid(half_width + across * pixels_per_unit_), on_grid(half_height - upward * pixels_per_unit_), 1,
             depth};
-  return {half_width * depth + across * pixels_per_unit_, half_height * depth - upward * pixels_per_unit_, depth,
-          depth};
+  return perspective_vertex(half_width * depth + across * pixels_per_unit_,
+                            half_height * depth - upward * pixels_per_unit_, depth, pixels_per_unit_);
 }
 
 void PixelSpace::project(std::span<const glm::dvec3> p_world, std::span<PixelVertex> out) const {

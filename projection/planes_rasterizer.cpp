@@ -33,29 +33,32 @@ constexpr Face faces[4] = {
 
 /// A cell ready for its pixels.
 struct Cell {
-  PixelVertex corner[4];
+  PixelVertex vertex[4];        ///< what decides exactly
+  HomogeneousVertex corner[4];  ///< their homogeneous coordinates, rounded
   double scalar[4];
   /// Added to |E| before it is held against the error bound: infinite for an edge without sides, whose ends project to
   /// one point or that holds the eye. Its two faces are edge-on (pierceable = false), so its sign is not needed, and it
   /// would be uncertain at every pixel.
   double certainty[6];
   bool pierceable[4];
+  bool perspective;
   double error_bound;  ///< of any E at any candidate pixel
   PixelRect box;
 };
 
-// Gaps between exact and computed E: q = X - px * W is rounded once (twice without FMA, when the product px * W is
-// rounded too), E = qx_a * qy_b - qx_b * qy_a twice more.
+// Gaps between exact and computed E: the product X is rounded in perspective, q = X - px * W once (twice without FMA,
+// when the product px * W is rounded too), E = qx_a * qy_b - qx_b * qy_a twice more.
 double error_bound_of(const Cell& cell) {
   constexpr double u = 0x1p-53;
   const double x0 = cell.box.x0, x1 = cell.box.x1, y0 = cell.box.y0, y1 = cell.box.y1;
   double qx = 0, qy = 0, w = 0;
-  for (const PixelVertex& v : cell.corner) {
+  for (const HomogeneousVertex& v : cell.corner) {
     qx = std::max({qx, std::abs(v.x - x0 * v.w), std::abs(v.x - x1 * v.w)});
     qy = std::max({qy, std::abs(v.y - y0 * v.w), std::abs(v.y - y1 * v.w)});
     w = std::max(w, std::abs(v.w));
   }
-  const double error_x = u * (qx + 2 * x1 * w), error_y = u * (qy + 2 * y1 * w);
+  double error_x = u * (qx + 2 * x1 * w), error_y = u * (qy + 2 * y1 * w);
+  if (cell.perspective) error_x += u * (qx + x1 * w), error_y += u * (qy + y1 * w);  // |X| <= |q| + px |W|
   return 4 * (qx * error_y + qy * error_x) + 8 * u * qx * qy;
 }
 
@@ -63,17 +66,18 @@ HWY_INLINE Cell set_up(const ProjectedMesh& projected, std::uint32_t tet, const 
   Cell cell;
   const scene::TetMesh& mesh = projected.mesh->mesh();
   const scene::Tet& corners = projected.mesh->tets()[tet];
-  for (int i = 0; i < 4; ++i) cell.corner[i] = projected.vertices[corners[i]];
+  for (int i = 0; i < 4; ++i) cell.vertex[i] = projected.vertices[corners[i]];
   const bool per_cell = mesh.association == scene::Association::cell;
   for (int i = 0; i < 4; ++i) cell.scalar[i] = mesh.scalars[per_cell ? tet : corners[i]];
-  cell.box = footprint({cell.corner[0], cell.corner[1], cell.corner[2], cell.corner[3]}, rect);
+  cell.box = footprint({cell.vertex[0], cell.vertex[1], cell.vertex[2], cell.vertex[3]}, rect);
   if (cell.box.empty()) return cell;
+  for (int i = 0; i < 4; ++i) cell.corner[i] = homogeneous(cell.vertex[i]);
   for (bool& p : cell.pierceable) p = true;
+  cell.perspective = projected.perspective;
   for (int e = 0; e < 6; ++e) {
-    const PixelVertex &a = cell.corner[edge_from[e]], &b = cell.corner[edge_to[e]];
-    // Without sides: both ends on one line of sight, or the eye on the edge (some w <= 0 then).
-    const bool one_point =
-        (a.w == b.w && a.x == b.x && a.y == b.y) || ((a.w <= 0 || b.w <= 0) && edge_sign(a, b, 0.5, 0.5) == 0);
+    const PixelVertex &a = cell.vertex[edge_from[e]], &b = cell.vertex[edge_to[e]];
+    // Without sides: both ends on one line through the eye, or the eye at an end.
+    const bool one_point = a.w != 0 && b.w != 0 ? a.x == b.x && a.y == b.y : edge_sign(a, b, 0.5, 0.5) == 0;
     cell.certainty[e] = one_point ? HUGE_VAL : 0;
     if (one_point)
       for (int f = 0; f < 4; ++f)
@@ -81,6 +85,15 @@ HWY_INLINE Cell set_up(const ProjectedMesh& projected, std::uint32_t tet, const 
   }
   cell.error_bound = error_bound_of(cell);
   return cell;
+}
+
+/// |E| of an edge that the ray meets, once the ray is shifted by next to nothing: what it grows by. A face with the eye
+/// inside it is met along its plane, where all three E are zero; these are then its weights, and give the eye.
+double magnitude_beside(const PixelVertex& a, const PixelVertex& b) {
+  const HomogeneousVertex p = scaled_to_sign(a), q = scaled_to_sign(b);
+  const double by_x = p.y * q.w - p.w * q.y, by_y = p.w * q.x - p.x * q.w;
+  const double scale = (a.w == 0 ? 1 : std::abs(a.w)) * (b.w == 0 ? 1 : std::abs(b.w));
+  return std::abs(by_x != 0 ? by_x : by_y) * scale * 0x1p-70;
 }
 
 /// Replaces the edge functions of uncertain lanes by values of the exact sign (0 where an edge has no sides).
@@ -91,22 +104,25 @@ HWY_NOINLINE void settle_signs(const Cell& cell, const double* px, const double*
     for (int e = 0; e < 6; ++e) {
       double& value = edges[e][lane];
       if (std::abs(value) > cell.error_bound) continue;
-      const int sign = edge_sign(cell.corner[edge_from[e]], cell.corner[edge_to[e]], px[lane], py[lane]);
+      const PixelVertex &a = cell.vertex[edge_from[e]], &b = cell.vertex[edge_to[e]];
+      bool on_edge = false;
+      const int sign = edge_sign(a, b, px[lane], py[lane], &on_edge);
       ++counts.exact_sign_tests;
       // Within the bound the magnitude is noise. Any magnitude that small is as right; keep it, with the exact sign.
-      const double magnitude = std::max(std::abs(value), cell.error_bound * 0x1p-20);
+      const double magnitude =
+          on_edge && cell.perspective ? magnitude_beside(a, b) : std::max(std::abs(value), cell.error_bound * 0x1p-20);
       value = sign * std::max(magnitude, 1e-290);
     }
   }
 }
 
 /// The scalar at an eye that lies exactly on a vertex or an edge of the cell. Both ends of that edge then lie on one
-/// line through the eye, the origin of homogeneous space, so their coordinates are in one ratio; the largest gives it
-/// best.
+/// line through the eye, on either side of it, the origin of homogeneous space, so their coordinates are in one ratio;
+/// the largest gives it best.
 HWY_NOINLINE double scalar_at_eye(const Cell& cell) {
   for (int e = 0; e < 6; ++e) {
-    const PixelVertex &a = cell.corner[edge_from[e]], &b = cell.corner[edge_to[e]];
-    if (edge_sign(a, b, 0.5, 0.5) != 0) continue;
+    const HomogeneousVertex &a = cell.corner[edge_from[e]], &b = cell.corner[edge_to[e]];
+    if (a.w * b.w > 0 || edge_sign(cell.vertex[edge_from[e]], cell.vertex[edge_to[e]], 0.5, 0.5) != 0) continue;
     double from = a.w, across = a.w - b.w;
     for (const auto& [p, q] : {std::pair{a.x, b.x}, std::pair{a.y, b.y}})
       if (std::abs(p - q) > std::abs(across)) from = p, across = p - q;
@@ -206,9 +222,9 @@ void rasterize_cell(const ProjectedMesh& projected, const Cell& cell, std::uint3
       const auto is_plus = face.outward ? clockwise : counter, is_minus = face.outward ? counter : clockwise;
       // Relative to corner c, so that a face of one scalar or depth keeps it to the bit: a transfer function may step
       // there.
-      const V depth_c = hn::Set(d, cell.corner[face.c].depth), scalar_c = hn::Set(d, cell.scalar[face.c]);
-      const V depth_a = hn::Set(d, cell.corner[face.a].depth - cell.corner[face.c].depth);
-      const V depth_b = hn::Set(d, cell.corner[face.b].depth - cell.corner[face.c].depth);
+      const V depth_c = hn::Set(d, cell.vertex[face.c].depth), scalar_c = hn::Set(d, cell.scalar[face.c]);
+      const V depth_a = hn::Set(d, cell.vertex[face.a].depth - cell.vertex[face.c].depth);
+      const V depth_b = hn::Set(d, cell.vertex[face.b].depth - cell.vertex[face.c].depth);
       const V scalar_a = hn::Set(d, cell.scalar[face.a] - cell.scalar[face.c]);
       const V scalar_b = hn::Set(d, cell.scalar[face.b] - cell.scalar[face.c]);
       const V depth_sum = hn::MulAdd(weight[face.bc], depth_a, hn::Mul(weight[face.ac], depth_b));

@@ -23,6 +23,7 @@ struct ProjectedMesh {
   const PreparedMesh* mesh;
   std::span<const PixelVertex> vertices;
   double near_depth, far_depth;  ///< the clipping range in planar depth
+  bool perspective;
 };
 
 /// What happened on the way.

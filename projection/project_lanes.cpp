@@ -29,6 +29,35 @@ HWY_INLINE V on_grid(V pixel) {
   return hn::IfThenElse(hn::IsFinite(scaled), hn::Mul(hn::Round(scaled), hn::Set(d, 0x1p-32)), pixel);
 }
 
+/// The power of two at or below each, and the nearest multiple of one: as pixel_space.cpp has them.
+HWY_INLINE V power_of_two(V v) {
+  const D d;
+  const hn::RebindToUnsigned<D> du;
+  return hn::And(v, hn::BitCast(d, hn::Set(du, 0x7ff0000000000000u)));
+}
+HWY_INLINE V nearest_multiple(V v, V step) {
+  const V magic = hn::Mul(hn::Set(D(), 0x1.8p52), step);
+  return hn::Sub(hn::Add(v, magic), magic);
+}
+
+/// Rounds positions, or directions, as perspective_vertex() of pixel_space.cpp does.
+HWY_INLINE void round_perspective(V pixels_per_unit, V& x, V& y, V& w) {
+  const D d;
+  const auto number = [](double v) HWY_ATTR { return hn::Set(D(), v); };
+  const auto larger = [](V a, V b) HWY_ATTR { return hn::Max(hn::Abs(a), hn::Abs(b)); };
+  const V px = hn::Div(x, w), py = hn::Div(y, w), reach = larger(px, py);
+  const hn::Mask<D> placed = hn::Lt(reach, number(eye_plane_reach));
+  V step =
+      hn::Max(number(finest_step), hn::Mul(power_of_two(hn::Max(reach, pixels_per_unit)), number(position_precision)));
+  if (HWY_UNLIKELY(!hn::AllTrue(d, placed))) {
+    step = hn::IfThenElse(placed, step, hn::Mul(power_of_two(larger(x, y)), number(direction_precision)));
+    x = hn::IfThenElse(placed, px, x), y = hn::IfThenElse(placed, py, y), w = hn::IfThenElseZero(placed, w);
+  } else {
+    x = px, y = py;
+  }
+  x = nearest_multiple(x, step), y = nearest_multiple(y, step);
+}
+
 std::size_t project_points(const LinearMap& map, const double* points, std::size_t count, PixelVertex* out) {
   const D d;
   const std::size_t lanes = hn::Lanes(d);
@@ -43,12 +72,14 @@ std::size_t project_points(const LinearMap& map, const double* points, std::size
     z = hn::Sub(z, hn::Set(d, map.position[2]));
     const V across = hn::Mul(along(map.right, x, y, z), scale), upward = hn::Mul(along(map.up, x, y, z), scale);
     const V depth = along(map.forward, x, y, z);
-    if (map.perspective)
-      hn::StoreInterleaved4(hn::Add(hn::Mul(half_width, depth), across), hn::Sub(hn::Mul(half_height, depth), upward),
-                            depth, depth, d, &out[i].x);
-    else
+    if (map.perspective) {
+      V px = hn::Add(hn::Mul(half_width, depth), across), py = hn::Sub(hn::Mul(half_height, depth), upward), w = depth;
+      round_perspective(scale, px, py, w);
+      hn::StoreInterleaved4(px, py, w, depth, d, &out[i].x);
+    } else {
       hn::StoreInterleaved4(on_grid(hn::Add(half_width, across)), on_grid(hn::Sub(half_height, upward)),
                             hn::Set(d, 1.0), depth, d, &out[i].x);
+    }
   }
   return i;
 }

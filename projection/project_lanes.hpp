@@ -7,6 +7,11 @@
 
 namespace tessera::projection {
 
+/// How PixelSpace rounds perspective positions (pixel_space.hpp): the finest step, and what a step is of the power of
+/// two at or below a position; from where on a vertex is in the eye plane, and the same for directions there.
+constexpr double finest_step = 0x1p-32, position_precision = 0x1p-46;
+constexpr double eye_plane_reach = 0x1p46, direction_precision = 0x1p-40;
+
 /// What PixelSpace::project computes with, by name.
 struct LinearMap {
   double position[3], right[3], up[3], forward[3];

@@ -200,7 +200,7 @@ bool TileLists::cull_exactly(std::size_t tet, const ClearIntervals& clear, CullC
   if (box.empty()) {
     // Inside the window's span in both directions, yet without a pixel centre?
     const auto inside = [&](const PixelVertex& v) {
-      return v.w > 0 && v.x > 0 && v.x < window.x1 * v.w && v.y > 0 && v.y < window.y1 * v.w;
+      return v.w > 0 && v.x > 0 && v.x < window.x1 && v.y > 0 && v.y < window.y1;
     };
     ++(std::any_of(c.begin(), c.end(), inside) ? counts.between_pixels : counts.outside_view);
     return false;

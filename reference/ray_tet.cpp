@@ -15,7 +15,7 @@ namespace {
 bool on_one_side(const std::array<Corner, 4>& corners, int axis, double at) {
   int left = 0, right = 0;
   for (const Corner& c : corners) {
-    const glm::dvec3& h = c.vertex.homogeneous;
+    const glm::dvec3& h = c.vertex.sight;
     const double moved = at * h.z, margin = 1e-9 * (std::abs(h[axis]) + std::abs(moved));
     left += h[axis] - moved < -margin;
     right += h[axis] - moved > margin;
@@ -73,8 +73,11 @@ struct Hit {
   double depth, scalar;
 };
 
-/// Weights need not be normalised, only not negative; the results lie between the corners' by construction.
-Hit weighted(const std::array<const Corner*, 3>& corners, const std::array<long double, 3>& weights) {
+/// `areas`: |E| of the opposite edges, of lines of sight, which the corners' scales make weights of the corners. They
+/// need not be normalised, only not negative; the results lie between the corners' by construction.
+Hit weighted(const std::array<const Corner*, 3>& corners, const std::array<long double, 3>& areas) {
+  std::array<long double, 3> weights;
+  for (std::size_t i = 0; i < 3; ++i) weights[i] = areas[i] / corners[i]->vertex.scale;
   const long double sum = weights[0] + weights[1] + weights[2];
   long double depth = 0, scalar = 0;
   for (int i = 0; i < 3; ++i) {
@@ -91,9 +94,11 @@ Hit weighted(const std::array<const Corner*, 3>& corners, const std::array<long 
 /// barycentric coordinates.
 double scalar_at_eye(const std::array<Corner, 4>& c) {
   const auto volume = [&](int i, int j, int k) {
-    return exact_determinant(c[i].vertex.homogeneous, c[j].vertex.homogeneous, c[k].vertex.homogeneous).value;
+    return exact_determinant(c[i].vertex.sight, c[j].vertex.sight, c[k].vertex.sight).value;
   };
-  const std::array<double, 4> volumes{volume(1, 2, 3), -volume(0, 2, 3), volume(0, 1, 3), -volume(0, 1, 2)};
+  // Of lines of sight; those of the corners are larger by the scales of three, so these by one over that of the fourth.
+  std::array<double, 4> volumes{volume(1, 2, 3), -volume(0, 2, 3), volume(0, 1, 3), -volume(0, 1, 2)};
+  for (std::size_t i = 0; i < 4; ++i) volumes[i] /= c[i].vertex.scale;
   const double sum = volumes[0] + volumes[1] + volumes[2] + volumes[3];
   double scalar = 0;
   for (int i = 0; i < 4; ++i) scalar += volumes[i] / sum * c[i].scalar;
@@ -107,8 +112,7 @@ std::optional<Stretch> intersect(const std::array<Corner, 4>& corners, double x,
   if (on_one_side(corners, 0, x) || on_one_side(corners, 1, y)) return std::nullopt;
   EdgeValue e[4][4];
   for (int i = 0; i < 4; ++i)
-    for (int j = i + 1; j < 4; ++j)
-      e[i][j] = edge_value(x, y, corners[i].vertex.homogeneous, corners[j].vertex.homogeneous);
+    for (int j = i + 1; j < 4; ++j) e[i][j] = edge_value(x, y, corners[i].vertex.sight, corners[j].vertex.sight);
 
   constexpr int faces[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
   std::array<Hit, 2> hits{};
@@ -117,7 +121,7 @@ std::optional<Stretch> intersect(const std::array<Corner, 4>& corners, double x,
     // E_ca is -E_ac.
     const int sign = e[a][b].sign;
     if (sign == 0 || e[b][c].sign != sign || -e[a][c].sign != sign) continue;
-    if (edge_on(corners[a].vertex.homogeneous, corners[b].vertex.homogeneous, corners[c].vertex.homogeneous)) continue;
+    if (edge_on(corners[a].vertex.sight, corners[b].vertex.sight, corners[c].vertex.sight)) continue;
     if (count == 2) return std::nullopt;  // cannot be: a line enters and leaves a tetrahedron once
     hits[count++] = weighted({&corners[a], &corners[b], &corners[c]},
                              {std::abs(e[b][c].value), std::abs(e[a][c].value), std::abs(e[a][b].value)});

@@ -68,9 +68,10 @@ Reference::Box Reference::box(std::size_t tet) const {
   Box box{infinity, infinity, -infinity, -infinity};
   double least_w = infinity, largest_w = 0, deepest = -infinity;
   for (const std::uint32_t v : mesh_->tets[tet]) {
-    const glm::dvec3& h = vertices_[v].homogeneous;
-    least_w = std::min(least_w, h.z);
-    largest_w = std::max(largest_w, std::abs(h.z));
+    const glm::dvec3& h = vertices_[v].sight;
+    const double w = h.z * vertices_[v].scale;
+    least_w = std::min(least_w, w);
+    largest_w = std::max(largest_w, std::abs(w));
     deepest = std::max(deepest, vertices_[v].depth);
     box.x_low = std::min(box.x_low, h.x / h.z), box.x_high = std::max(box.x_high, h.x / h.z);
     box.y_low = std::min(box.y_low, h.y / h.z), box.y_high = std::max(box.y_high, h.y / h.z);

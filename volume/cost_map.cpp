@@ -53,7 +53,7 @@ class Costs {
                              (c & 4) != 0 ? box.high.z : box.low.z);
       const projection::PixelVertex v = space_.project(scene::world_of_index(geometry_, index));
       o.behind_eye = o.behind_eye || !(v.w > 0) || !(v.depth > rays_.near_depth);
-      o.corner[static_cast<std::size_t>(c)] = glm::dvec2(v.x, v.y) / v.w * settings_.resolution;
+      o.corner[static_cast<std::size_t>(c)] = glm::dvec2(v.x, v.y) * settings_.resolution;
       low = glm::min(low, o.corner[static_cast<std::size_t>(c)]);
       high = glm::max(high, o.corner[static_cast<std::size_t>(c)]);
     }
@@ -66,7 +66,7 @@ class Costs {
     const glm::dvec3 extent = box.high - box.low;
     const double world = mean_voxel_ * mean_voxel_ * mean_voxel_ * extent.x * extent.y * extent.z;
     const double pixel = map_pixel_ * (perspective_ ? v.depth : 1);
-    o.total = rate(v.x / v.w, v.y / v.w) * world / (pixel * pixel);
+    o.total = rate(v.x, v.y) * world / (pixel * pixel);
     return o;
   }
 
@@ -316,8 +316,8 @@ PixelRegion footprint(const scene::Camera& camera, scene::ImageSize image, const
                            (c >> 2) * static_cast<double>(voxels[2]));
     const projection::PixelVertex v = space.project(scene::world_of_index(geometry, index));
     if (!(v.w > 0) || !(v.depth > 0)) return {0, 0, image.width, image.height};
-    low = glm::min(low, glm::dvec2(v.x, v.y) / v.w);
-    high = glm::max(high, glm::dvec2(v.x, v.y) / v.w);
+    low = glm::min(low, glm::dvec2(v.x, v.y));
+    high = glm::max(high, glm::dvec2(v.x, v.y));
   }
   const auto pixel = [](double v, int length) {
     return static_cast<int>(std::clamp(v, 0.0, static_cast<double>(length)));

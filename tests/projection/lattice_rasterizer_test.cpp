@@ -44,8 +44,10 @@ struct Scene {
   }
 
   [[nodiscard]] LatticeView view() const {
-    return {
-        {&prepared, vertices, space.near_depth(), space.far_depth()}, lattice_vertices, lattice, space.perspective()};
+    return {{&prepared, vertices, space.near_depth(), space.far_depth(), space.perspective()},
+            lattice_vertices,
+            lattice,
+            space.perspective()};
   }
 
   PreparedMesh prepared;
@@ -95,7 +97,7 @@ bool edge_on(const Scene& scene, std::uint32_t tet) {
     std::array<glm::dvec2, 3> p;
     for (int i = 0; i < 3; ++i) {
       const PixelVertex& v = scene.vertices[corners[face[i]]];
-      p[i] = glm::dvec2(v.x, v.y) / v.w;
+      p[i] = glm::dvec2(v.x, v.y);
     }
     const glm::dvec2 a = p[1] - p[0], b = p[2] - p[0];
     if (std::abs(a.x * b.y - a.y * b.x) < 0x1p-9 * (std::abs(a.x) + std::abs(a.y) + std::abs(b.x) + std::abs(b.y)))

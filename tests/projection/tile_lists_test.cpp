@@ -19,7 +19,7 @@ struct Lists {
         const scene::TransferFunction& function)
       : prepared(mesh), space(camera, size), grid{size, tile} {
     for (const glm::dvec3& p : mesh.positions) vertices.push_back(space.project(p));
-    projected = {&prepared, vertices, space.near_depth(), space.far_depth()};
+    projected = {&prepared, vertices, space.near_depth(), space.far_depth(), space.perspective()};
     lists.emplace(projected, grid, function, false);
   }
   PreparedMesh prepared;
@@ -125,7 +125,7 @@ Expected expected_lists(const ProjectedMesh& projected, const TileGrid& grid, co
     const auto [nearest, farthest] = std::minmax({c[0].depth, c[1].depth, c[2].depth, c[3].depth});
     const PixelRect box = footprint(c, window);
     const auto inside = [&](const PixelVertex& v) {
-      return v.w > 0 && v.x > 0 && v.x < window.x1 * v.w && v.y > 0 && v.y < window.y1 * v.w;
+      return v.w > 0 && v.x > 0 && v.x < window.x1 && v.y > 0 && v.y < window.y1;
     };
     if (!function.visible(low, high, independent)) {
       ++all.counts.invisible;
@@ -198,7 +198,7 @@ void expect_lists(const scene::TetMesh& mesh, const View& view, const scene::Tra
   const PixelSpace space(view.camera, view.size);
   std::vector<PixelVertex> vertices(mesh.positions.size());
   space.project(mesh.positions, vertices);
-  const ProjectedMesh projected{&prepared, vertices, space.near_depth(), space.far_depth()};
+  const ProjectedMesh projected{&prepared, vertices, space.near_depth(), space.far_depth(), space.perspective()};
   const TileGrid grid{view.size, view.tile_size};
   const Expected expected = expected_lists(projected, grid, function, independent);
   TileListBuffers buffers;
@@ -265,7 +265,7 @@ TEST(TileLists, HoldInScenesOfAnySize) {
     const PixelSpace space(view.camera, view.size);
     std::vector<PixelVertex> vertices(mesh.positions.size());
     space.project(mesh.positions, vertices);
-    const ProjectedMesh projected{&prepared, vertices, space.near_depth(), space.far_depth()};
+    const ProjectedMesh projected{&prepared, vertices, space.near_depth(), space.far_depth(), space.perspective()};
     const TileGrid grid{view.size, view.tile_size};
     const Expected expected = expected_lists(projected, grid, function, false);
     TileLists lists(projected, grid, function, false);
