@@ -54,7 +54,8 @@ struct Frame {
         grid{size, 32} {
     vertices.resize(m.positions.size());
     space.project(m.positions, vertices);
-    const projection::ProjectedMesh projected{&prepared, vertices, space.near_depth(), space.far_depth()};
+    const projection::ProjectedMesh projected{&prepared, vertices, space.near_depth(), space.far_depth(),
+                                              space.pixels_per_tangent()};
     lattice = *frame::lattice_of(space, scene::bounds(m), scene::scalar_range(m), function, {});
     lattice_vertices.resize(vertices.size());
     projection::make_lattice_vertices(vertices, m.scalars, lattice, false, lattice_vertices);

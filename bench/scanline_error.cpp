@@ -83,7 +83,8 @@ void measure(const std::string& name, const scene::TetMesh& mesh, const scene::C
   const projection::PixelSpace space(camera, size);
   std::vector<projection::PixelVertex> vertices;
   for (const auto& p : mesh.positions) vertices.push_back(space.project(p));
-  const projection::ProjectedMesh projected{&prepared, vertices, space.near_depth(), space.far_depth()};
+  const projection::ProjectedMesh projected{&prepared, vertices, space.near_depth(), space.far_depth(),
+                                            space.pixels_per_tangent()};
   const projection::TileGrid grid{size, 32};
   projection::TileLists lists(projected, grid, function, false);
   lists.fill(0, grid.count());

@@ -161,7 +161,8 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   const projection::PixelSpace& space = *task.space;
   const bool independent = settings_.emission == scene::Emission::independent;
   project_vertices(space, task.frame);
-  const projection::ProjectedMesh projected{&prepared_, vertices_, space.near_depth(), space.far_depth()};
+  const projection::ProjectedMesh projected{&prepared_, vertices_, space.near_depth(), space.far_depth(),
+                                            space.pixels_per_tangent()};
   const float longest_edge = task.longest_edge > 0 ? task.longest_edge : longest_edge_;
   if (settings_.rasterizer == Rasterizer::scanline) check_scanline(projected, space, longest_edge);
   const projection::TileGrid& grid = task.grid;

@@ -98,7 +98,7 @@ struct Covered {
 };
 
 /// Ten times the rounding of a float pixel position and of what is added to it here, and of footprint()'s slack.
-HWY_INLINE V slack_of(V pixel) { return hn::MulAdd(hn::Abs(pixel), hn::Set(D(), 0x1p-22f), hn::Set(D(), 1e-7f)); }
+HWY_INLINE V slack_of(V pixel) { return hn::MulAdd(hn::Abs(pixel), hn::Set(D(), 0x1p-22f), hn::Set(D(), 1e-6f)); }
 
 HWY_INLINE Covered covered(V least, V most, V side) {
   const D d;

@@ -1,8 +1,11 @@
 #include "projection/edge_sign.hpp"
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 namespace tessera::projection {
 namespace {
@@ -52,9 +55,44 @@ int sign_2x2(double a, double b, double c, double d) {
   return sum.sign();
 }
 
+constexpr double finest_step = 0x1p-32, position_precision = 0x1p-46, most_per_tangent = 0x1p22;
+constexpr double beside_reach = 0x1p46, beside_precision = 0x1p-40;
+
+/// The power of two at or below a positive number.
+double power_of_two(double v) { return std::bit_cast<double>(std::bit_cast<std::uint64_t>(v) & 0x7ff0000000000000u); }
+
+/// The multiple of a power of two that is nearest to v, which is less than 2^51 of it.
+double rounded(double v, double step) { return step > 0 ? std::nearbyint(v / step) * step : v; }
+
 }  // namespace
 
-int edge_sign(const PixelVertex& a, const PixelVertex& b, double px, double py, bool* on_edge) {
+LineOfSight line_of_sight(const PixelVertex& v, double pixels_per_tangent) {
+  if (pixels_per_tangent == 0) return {v.x, v.y, v.w};
+  const double x = v.x / v.w, y = v.y / v.w, reach = std::max(std::abs(x), std::abs(y));
+  if (reach < beside_reach) {
+    const double step =
+        std::max(finest_step,
+                 power_of_two(std::max(reach, std::min(pixels_per_tangent, most_per_tangent))) * position_precision);
+    const double side = v.w > 0 ? 1 : -1;
+    return {side * rounded(x, step), side * rounded(y, step), side};
+  }
+  const double step = power_of_two(std::max(std::abs(v.x), std::abs(v.y))) * beside_precision;
+  return {rounded(v.x, step), rounded(v.y, step), 0};
+}
+
+double sight_error(const PixelVertex& v, double pixels_per_tangent, double most_pixels) {
+  if (pixels_per_tangent == 0) return 0;
+  const double size = std::max(std::abs(v.x), std::abs(v.y)), w = std::abs(v.w);
+  // Twice the halves of steps: what is compared with these limits here has noise of its own.
+  if (size < 0.5 * beside_reach * w)
+    return std::max(finest_step * w,
+                    position_precision * std::max(size, std::min(pixels_per_tangent, most_per_tangent) * w));
+  return beside_precision * size + most_pixels * w;
+}
+
+int edge_sign(const PixelVertex& from, const PixelVertex& to, double px, double py, double pixels_per_tangent,
+              bool* on_edge) {
+  const LineOfSight a = line_of_sight(from, pixels_per_tangent), b = line_of_sight(to, pixels_per_tangent);
   ExactSum sum;
   sum.add_product(a.x, b.y);
   sum.add_product(-a.y, b.x);

@@ -13,11 +13,12 @@ bool beyond(const std::array<PixelVertex, 4>& corners, double PixelVertex::*coor
                      [&](const PixelVertex& v) { return sign * (v.*coordinate - side * v.w) > 0; });
 }
 
-/// Pixels [first, last) of [low, high) whose centres lie in the closed interval, widened by far more than rounding.
+/// Pixels [first, last) of [low, high) whose centres lie in the closed interval, widened by more than rounding, that of
+/// lines of sight (edge_sign.hpp) included.
 std::array<int, 2> covered(double least, double most, int low, int high) {
-  const double slack = 1e-9;
-  const double first = std::ceil(least - 0.5 - slack * (1 + std::abs(least)));
-  const double last = std::floor(most - 0.5 + slack * (1 + std::abs(most))) + 1;
+  const double slack = 1e-7, relative = 1e-9;
+  const double first = std::ceil(least - 0.5 - (slack + relative * std::abs(least)));
+  const double last = std::floor(most - 0.5 + (slack + relative * std::abs(most))) + 1;
   return {static_cast<int>(std::clamp(first, static_cast<double>(low), static_cast<double>(high))),
           static_cast<int>(std::clamp(last, static_cast<double>(low), static_cast<double>(high)))};
 }

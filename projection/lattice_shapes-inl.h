@@ -114,8 +114,9 @@ inline bool settle_pixel(const LatticeView& view, const CellBatch& batch, int t,
     float& edge = edges[e * stride];
     if (std::abs(edge) > 1) continue;
     bool on_edge = false;
-    const int sign = edge_sign(view.projected.vertices[corners[edge_from[e]]],
-                               view.projected.vertices[corners[edge_to[e]]], px, py, &on_edge);
+    const int sign =
+        edge_sign(view.projected.vertices[corners[edge_from[e]]], view.projected.vertices[corners[edge_to[e]]], px, py,
+                  view.projected.pixels_per_tangent, &on_edge);
     const unsigned edge_on = batch.edge_on(t) >> edge_faces[e][0] | batch.edge_on(t) >> edge_faces[e][1];
     if (on_edge && (edge_on & 1) == 0 && std::find(roles.outline, roles.outline + 4, e) != roles.outline + 4)
       touching = true;

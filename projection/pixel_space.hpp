@@ -12,7 +12,8 @@ namespace tessera::projection {
 
 /// A vertex as a view sees it. (x / w, y / w) is its pixel position: x to the right, y down, pixel (0,0)'s centre at
 /// (0.5, 0.5). Orthographic: w = 1. Perspective: w = depth, and a vertex behind the eye has w < 0; nothing is divided,
-/// so cells that cross the eye plane need no clipping before they are rasterized.
+/// so cells that cross the eye plane need no clipping before they are rasterized. Whether a ray passes a vertex left,
+/// right or through it, line_of_sight() says.
 struct PixelVertex {
   double x, y, w;
   double depth;  ///< planar depth along the view direction from the eye, world units
@@ -40,6 +41,8 @@ class PixelSpace {
   [[nodiscard]] double near_depth() const { return near_; }
   [[nodiscard]] double far_depth() const { return far_; }
   [[nodiscard]] bool perspective() const { return perspective_; }
+  /// Pixels per unit of x / depth in perspective; 0 in orthographic projection.
+  [[nodiscard]] double pixels_per_tangent() const { return perspective_ ? pixels_per_unit_ : 0; }
   [[nodiscard]] scene::ImageSize size() const { return size_; }
 
  private:

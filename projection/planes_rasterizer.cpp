@@ -40,22 +40,24 @@ struct Cell {
   /// would be uncertain at every pixel.
   double certainty[6];
   bool pierceable[4];
-  double error_bound;  ///< of any E at any candidate pixel
+  double pixels_per_tangent;  ///< ProjectedMesh's
+  double error_bound;         ///< of any E at any candidate pixel
   PixelRect box;
 };
 
 // Gaps between exact and computed E: q = X - px * W is rounded once (twice without FMA, when the product px * W is
-// rounded too), E = qx_a * qy_b - qx_b * qy_a twice more.
+// rounded too), E = qx_a * qy_b - qx_b * qy_a twice more. The exact one is of lines of sight, which lie beside X and Y.
 double error_bound_of(const Cell& cell) {
   constexpr double u = 0x1p-53;
   const double x0 = cell.box.x0, x1 = cell.box.x1, y0 = cell.box.y0, y1 = cell.box.y1;
-  double qx = 0, qy = 0, w = 0;
+  double qx = 0, qy = 0, w = 0, beside = 0;
   for (const PixelVertex& v : cell.corner) {
     qx = std::max({qx, std::abs(v.x - x0 * v.w), std::abs(v.x - x1 * v.w)});
     qy = std::max({qy, std::abs(v.y - y0 * v.w), std::abs(v.y - y1 * v.w)});
     w = std::max(w, std::abs(v.w));
+    beside = std::max(beside, sight_error(v, cell.pixels_per_tangent, std::max(x1, y1)));
   }
-  const double error_x = u * (qx + 2 * x1 * w), error_y = u * (qy + 2 * y1 * w);
+  const double error_x = u * (qx + 2 * x1 * w) + beside, error_y = u * (qy + 2 * y1 * w) + beside;
   return 4 * (qx * error_y + qy * error_x) + 8 * u * qx * qy;
 }
 
@@ -68,12 +70,13 @@ HWY_INLINE Cell set_up(const ProjectedMesh& projected, std::uint32_t tet, const 
   for (int i = 0; i < 4; ++i) cell.scalar[i] = mesh.scalars[per_cell ? tet : corners[i]] - projected.scalar_origin;
   cell.box = footprint({cell.corner[0], cell.corner[1], cell.corner[2], cell.corner[3]}, rect);
   if (cell.box.empty()) return cell;
+  cell.pixels_per_tangent = projected.pixels_per_tangent;
   for (bool& p : cell.pierceable) p = true;
   for (int e = 0; e < 6; ++e) {
     const PixelVertex &a = cell.corner[edge_from[e]], &b = cell.corner[edge_to[e]];
     // Without sides: both ends on one line of sight, or the eye on the edge (some w <= 0 then).
-    const bool one_point =
-        (a.w == b.w && a.x == b.x && a.y == b.y) || ((a.w <= 0 || b.w <= 0) && edge_sign(a, b, 0.5, 0.5) == 0);
+    const bool one_point = (a.w == b.w && a.x == b.x && a.y == b.y) ||
+                           ((a.w <= 0 || b.w <= 0) && edge_sign(a, b, 0.5, 0.5, cell.pixels_per_tangent) == 0);
     cell.certainty[e] = one_point ? HUGE_VAL : 0;
     if (one_point)
       for (int f = 0; f < 4; ++f)
@@ -81,6 +84,17 @@ HWY_INLINE Cell set_up(const ProjectedMesh& projected, std::uint32_t tet, const 
   }
   cell.error_bound = error_bound_of(cell);
   return cell;
+}
+
+/// |E| of a perspective edge that the ray meets, once the ray is shifted by next to nothing: what it grows by. A face
+/// with the eye inside it is met along its plane, where all three E are zero; these are then its weights, and give the
+/// eye's depth.
+double magnitude_beside(const Cell& cell, int e) {
+  const PixelVertex &from = cell.corner[edge_from[e]], &to = cell.corner[edge_to[e]];
+  const LineOfSight a = line_of_sight(from, cell.pixels_per_tangent), b = line_of_sight(to, cell.pixels_per_tangent);
+  const double by_x = a.y * b.w - a.w * b.y, by_y = a.w * b.x - a.x * b.w;
+  const double scale = (a.w == 0 ? 1 : std::abs(from.w)) * (b.w == 0 ? 1 : std::abs(to.w));
+  return std::abs(by_x != 0 ? by_x : by_y) * scale * 0x1p-70;
 }
 
 /// Replaces the edge functions of uncertain lanes by values of the exact sign (0 where an edge has no sides).
@@ -91,22 +105,26 @@ HWY_NOINLINE void settle_signs(const Cell& cell, const double* px, const double*
     for (int e = 0; e < 6; ++e) {
       double& value = edges[e][lane];
       if (std::abs(value) > cell.error_bound) continue;
-      const int sign = edge_sign(cell.corner[edge_from[e]], cell.corner[edge_to[e]], px[lane], py[lane]);
+      bool on_edge = false;
+      const int sign = edge_sign(cell.corner[edge_from[e]], cell.corner[edge_to[e]], px[lane], py[lane],
+                                 cell.pixels_per_tangent, &on_edge);
       ++counts.exact_sign_tests;
       // Within the bound the magnitude is noise. Any magnitude that small is as right; keep it, with the exact sign.
-      const double magnitude = std::max(std::abs(value), cell.error_bound * 0x1p-20);
+      const double magnitude = on_edge && cell.pixels_per_tangent != 0
+                                   ? magnitude_beside(cell, e)
+                                   : std::max(std::abs(value), cell.error_bound * 0x1p-20);
       value = sign * std::max(magnitude, 1e-290);
     }
   }
 }
 
 /// The scalar at an eye that lies exactly on a vertex or an edge of the cell. Both ends of that edge then lie on one
-/// line through the eye, the origin of homogeneous space, so their coordinates are in one ratio; the largest gives it
-/// best.
+/// line through the eye, on either side of it, the origin of homogeneous space, so their coordinates are in one ratio;
+/// the largest gives it best.
 HWY_NOINLINE double scalar_at_eye(const Cell& cell) {
   for (int e = 0; e < 6; ++e) {
     const PixelVertex &a = cell.corner[edge_from[e]], &b = cell.corner[edge_to[e]];
-    if (edge_sign(a, b, 0.5, 0.5) != 0) continue;
+    if (a.w * b.w > 0 || edge_sign(a, b, 0.5, 0.5, cell.pixels_per_tangent) != 0) continue;
     double from = a.w, across = a.w - b.w;
     for (const auto& [p, q] : {std::pair{a.x, b.x}, std::pair{a.y, b.y}})
       if (std::abs(p - q) > std::abs(across)) from = p, across = p - q;

@@ -23,6 +23,7 @@ struct ProjectedMesh {
   const PreparedMesh* mesh;
   std::span<const PixelVertex> vertices;
   double near_depth, far_depth;  ///< the clipping range in planar depth
+  double pixels_per_tangent;     ///< PixelSpace's
   double scalar_origin = 0;      ///< segments' scalars are counted from this
 };
 
@@ -41,8 +42,9 @@ struct RasterCounts {
 /// special (the weights are 3D barycentric coordinates in homogeneous space).
 ///
 /// Watertight: vertices come in canonical order (PreparedMesh), so cells that share an edge or a face compute the same
-/// bits. Signs are those of exact arithmetic with the tie rule (edge_sign.hpp): a double evaluation decides unless it
-/// lies within its error bound. Along any ray the segments of a mesh tile the ray's way through it.
+/// bits. Signs are those of exact arithmetic on rounded lines of sight with the tie rule (edge_sign.hpp): a double
+/// evaluation decides unless it lies within its error bound. Along any ray the segments of a mesh tile the ray's way
+/// through it.
 ///
 /// Lanes hold candidate pixels of the cell's box, packed row after row, so that small boxes fill the lanes.
 ///

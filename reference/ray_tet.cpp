@@ -15,7 +15,7 @@ namespace {
 bool on_one_side(const std::array<Corner, 4>& corners, int axis, double at) {
   int left = 0, right = 0;
   for (const Corner& c : corners) {
-    const glm::dvec3& h = c.vertex.homogeneous;
+    const glm::dvec3& h = c.vertex.sight;
     const double moved = at * h.z, margin = 1e-9 * (std::abs(h[axis]) + std::abs(moved));
     left += h[axis] - moved < -margin;
     right += h[axis] - moved > margin;
@@ -23,7 +23,8 @@ bool on_one_side(const std::array<Corner, 4>& corners, int axis, double at) {
   return left == 4 || right == 4;
 }
 
-/// E of an edge: the sign after the tie rule, and the value before it.
+/// E of an edge: the sign on rounded lines of sight, after the tie rule, and the size on the vertices themselves, which
+/// is a weight.
 struct EdgeValue {
   int sign;
   long double value;
@@ -32,7 +33,12 @@ struct EdgeValue {
 /// Values that rounding could have changed by more than one part in this are computed exactly instead.
 constexpr long double wanted_precision = 1e12L;
 
-EdgeValue edge_value(double x, double y, const glm::dvec3& a, const glm::dvec3& b) {
+/// E, and whether rounding changed it by less than one part in `precision`.
+struct RoundedValue {
+  long double value;
+  bool good;
+};
+RoundedValue rounded_value(double x, double y, const glm::dvec3& a, const glm::dvec3& b, long double precision) {
   // E = (Xa - x wa)(Yb - y wb) - (Ya - y wa)(Xb - x wb), which equals det[(x,y,1), a, b].
   const long double xa_part = static_cast<long double>(x) * a.z, ya_part = static_cast<long double>(y) * a.z;
   const long double xb_part = static_cast<long double>(x) * b.z, yb_part = static_cast<long double>(y) * b.z;
@@ -45,13 +51,24 @@ EdgeValue edge_value(double x, double y, const glm::dvec3& a, const glm::dvec3& 
   const long double error =
       4 * std::numeric_limits<long double>::epsilon() *
       (xa_size * std::abs(yb) + std::abs(xa) * yb_size + ya_size * std::abs(xb) + std::abs(ya) * xb_size);
-  if (std::abs(value) > error * wanted_precision) return {value > 0 ? 1 : -1, value};
+  return {value, std::abs(value) > error * precision};
+}
 
+int sign_by_sight(double x, double y, const glm::dvec3& a, const glm::dvec3& b) {
+  const RoundedValue rounded = rounded_value(x, y, a, b, 1);
+  if (rounded.good) return rounded.value > 0 ? 1 : -1;
   const Determinant exact = exact_determinant({x, y, 1}, a, b);
-  if (exact.sign != 0) return {exact.sign, exact.value};
+  if (exact.sign != 0) return exact.sign;
   // On the edge: the derivative of E by x decides, then that by y.
   const int by_x = exact_determinant({1, 0, 0}, a, b).sign;
-  return {by_x != 0 ? by_x : exact_determinant({0, 1, 0}, a, b).sign, 0};
+  return by_x != 0 ? by_x : exact_determinant({0, 1, 0}, a, b).sign;
+}
+
+EdgeValue edge_value(double x, double y, const ProjectedVertex& a, const ProjectedVertex& b) {
+  const RoundedValue rounded = rounded_value(x, y, a.homogeneous, b.homogeneous, wanted_precision);
+  const long double value =
+      rounded.good ? rounded.value : exact_determinant({x, y, 1}, a.homogeneous, b.homogeneous).value;
+  return {sign_by_sight(x, y, a.sight, b.sight), value};
 }
 
 /// Whether three vertices and the eye lie in one plane.
@@ -110,8 +127,7 @@ std::optional<Stretch> intersect(const std::array<Corner, 4>& corners, double x,
   if (on_one_side(corners, 0, x) || on_one_side(corners, 1, y)) return std::nullopt;
   EdgeValue e[4][4];
   for (int i = 0; i < 4; ++i)
-    for (int j = i + 1; j < 4; ++j)
-      e[i][j] = edge_value(x, y, corners[i].vertex.homogeneous, corners[j].vertex.homogeneous);
+    for (int j = i + 1; j < 4; ++j) e[i][j] = edge_value(x, y, corners[i].vertex, corners[j].vertex);
 
   constexpr int faces[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
   std::array<Hit, 2> hits{};
@@ -120,7 +136,7 @@ std::optional<Stretch> intersect(const std::array<Corner, 4>& corners, double x,
     // E_ca is -E_ac.
     const int sign = e[a][b].sign;
     if (sign == 0 || e[b][c].sign != sign || -e[a][c].sign != sign) continue;
-    if (edge_on(corners[a].vertex.homogeneous, corners[b].vertex.homogeneous, corners[c].vertex.homogeneous)) continue;
+    if (edge_on(corners[a].vertex.sight, corners[b].vertex.sight, corners[c].vertex.sight)) continue;
     if (count == 2) return std::nullopt;  // cannot be: a line enters and leaves a tetrahedron once
     hits[count++] =
         weighted({&corners[a], &corners[b], &corners[c]},

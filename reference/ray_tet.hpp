@@ -27,11 +27,12 @@ struct Stretch {
 ///
 /// Corners  in lexicographic order of their world positions, so that two cells that share a face compute the same
 ///          numbers on it.
-/// Decision exact. Three lines of sight A, B and (x, y) are on one plane where E = det[(x,y,1), A, B] = 0; the line
-///          passes through a triangle ABC iff E_ab, E_bc and E_ca have one sign. Where E is exactly zero (the line goes
-///          through the edge) the sign is that of the line shifted by (e, e^2) pixel in (x, y), e positive and
-///          infinitely small. So among cells that tile space every line, through vertices and edges or in faces, is
-///          tiled too. Source of the idea: Edelsbrunner, Muecke, "Simulation of Simplicity", ACM TOG 1990.
+/// Decision exact, on rounded lines of sight (view.hpp). Three of them, A, B and (x, y), are on one plane where E =
+///          det[(x,y,1), A, B] = 0; the line passes through a triangle ABC iff E_ab, E_bc and E_ca have one sign.
+///          Depths and scalars are those of the corners as they are. Where E is exactly zero (the line goes through the
+///          edge) the sign is that of the line shifted by (e, e^2) pixel in (x, y), e positive and infinitely small. So
+///          among cells that tile space every line, through vertices and edges or in faces, is tiled too. Source of the
+///          idea: Edelsbrunner, Muecke, "Simulation of Simplicity", ACM TOG 1990.
 /// Faces    coplanar with the eye (they project to a line) are never hit.
 /// Eye      on the cell's surface: the line then hits only one other face, and the stretch ends at depth 0 at the eye.
 /// Flat     cells give stretches of length zero, up to rounding.

@@ -78,9 +78,9 @@ Reference::Box Reference::box(std::size_t tet) const {
   }
   if (!(deepest > 0)) return {infinity, infinity, -infinity, -infinity};                 // behind the eye
   if (!(least_w > 1e-6 * largest_w)) return {-infinity, -infinity, infinity, infinity};  // at or across the eye plane
-  // The quotients are rounded; the margin is far wider than that.
-  const double x_margin = 1e-9 * (1 + std::max(std::abs(box.x_low), std::abs(box.x_high)));
-  const double y_margin = 1e-9 * (1 + std::max(std::abs(box.y_low), std::abs(box.y_high)));
+  // The quotients are rounded, as are lines of sight; the margin is wider than that.
+  const double x_margin = 1e-7 + 1e-9 * std::max(std::abs(box.x_low), std::abs(box.x_high));
+  const double y_margin = 1e-7 + 1e-9 * std::max(std::abs(box.y_low), std::abs(box.y_high));
   return {box.x_low - x_margin, box.y_low - y_margin, box.x_high + x_margin, box.y_high + y_margin};
 }
 

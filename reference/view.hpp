@@ -7,11 +7,15 @@
 namespace tessera::reference {
 
 /// A vertex as the camera sees it. The ray through pixel coordinates (x, y) (x to the right, y DOWN, pixel (i, j)
-/// centred at (i + 0.5, j + 0.5)) meets it where (x, y, 1) is parallel to `homogeneous`. From here on these doubles are
-/// exact by definition.
+/// centred at (i + 0.5, j + 0.5)) meets it where (x, y, 1) is parallel to `sight`. From here on these doubles are exact
+/// by definition.
 struct ProjectedVertex {
   glm::dvec3 homogeneous;  ///< (X, Y, w): pixel coordinates X/w and Y/w. Orthographic: w = 1. Perspective: w = depth
-  double depth;            ///< planar: along the view direction from the position, world units; negative behind the eye
+  /// What decides on which side a ray passes, rounded (View::project): (x, y, 1) of a vertex in front of the eye,
+  /// (-x, -y, -1) behind it, with the pixel coordinates of the line through it and the eye; (X, Y, 0) beside the eye, a
+  /// direction. Orthographic: `homogeneous`.
+  glm::dvec3 sight;
+  double depth;  ///< planar: along the view direction from the position, world units; negative behind the eye
 };
 
 /// The camera's geometry, written out once more for the reference alone.
@@ -20,8 +24,14 @@ class View {
   /// The camera and size must be valid.
   View(const scene::Camera& camera, scene::ImageSize size);
 
-  /// Orthographic pixel coordinates are rounded to the nearest multiple of 2^-32 pixel, so that vertices meant to lie
-  /// on pixel centres do, whatever the decimal noise of the camera.
+  /// The pixel coordinates of `sight` are rounded, so that vertices meant to lie on pixel centres, or in the plane of
+  /// the eye and a row or column of them, do, whatever the decimal noise of the camera: to the nearest multiple of
+  /// 2^-32 pixel. In perspective that is too fine for what is far outside of the picture or seen through a very long
+  /// lens. So there the unit is at least 2^(n-46) pixels, where 2^n is the power of two at or below the largest of |x|,
+  /// |y| and the pixels per unit of tangent (2^22 of them count at most). From 2^46 pixels on a vertex is beside the
+  /// eye; the unit for X and Y is then 2^(n-40), where 2^n is the power of two at or below the larger of |X| and |Y|.
+  /// Computed in long double, so that what is rounded has no noise of its own. `homogeneous` is rounded in orthographic
+  /// projection alone.
   [[nodiscard]] ProjectedVertex project(const glm::dvec3& p_world) const;
 
   /// The ray through (x, y): at planar depth z it is at `origin` + z * `step`. Not rounded.
@@ -41,9 +51,12 @@ class View {
   [[nodiscard]] bool perspective() const { return perspective_; }
 
  private:
-  glm::dvec3 position_, right_, up_, forward_;
-  double half_width_, half_height_;  ///< pixels
-  double pixels_per_unit_;           ///< orthographic: per world unit; perspective: per world unit at planar depth one
+  using Direction = glm::vec<3, long double>;
+
+  glm::dvec3 position_;
+  Direction right_, up_, forward_;
+  long double half_width_, half_height_;  ///< pixels
+  long double pixels_per_unit_;  ///< orthographic: per world unit; perspective: per world unit at planar depth one
   bool perspective_;
   double nearest_, farthest_;
 };

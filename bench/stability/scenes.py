@@ -114,6 +114,14 @@ def mesh_stresses(m):
         eye = (1 + 1 / 64 + 4 * math.sin(angle), 1 + 1 / 64 + 4 * math.sin(angle) * 0.7, 4)
         return scene(s, "--camera", m.camera(f"edge-{angle:g}", eye, (1 + 1 / 64, 1 + 1 / 64, 0), scale=1), *tf(), verify=4096)
 
+    def beside_plane(offset):
+        """The eye beside a plane of faces that a column of pixel centres lies in, and cell data, which has two sides there."""
+        s = m.generated("regular", nx=8, ny=8, nz=8, cell_data=1)
+        eye = (1 + 0.25 * offset, 0.9, 5)
+        turn = math.atan((40.5 - 32) / 32 * math.tan(math.radians(15)))  # column 40 of 64
+        at = (eye[0] - 3 * math.sin(turn), 0.9, eye[2] - 3 * math.cos(turn))
+        return scene(s, "--camera", m.camera(f"beside-{offset:g}", eye, at, angle=30), *tf(), verify=4096)
+
     def unshared(share):
         name = f"unshared-{share:g}"
         points, cells, scalars = m.loaded(m.generated("cube", ".tets", n=5))
@@ -214,6 +222,7 @@ def mesh_stresses(m):
         ("volume ratio", "largest over smallest cell", powers(1, 15, 2), lambda v: scene(m.generated("graded", n=8, volume_ratio=v), *tf())),
         ("neighbours' volumes", "of two that share a face", powers(0, 12, 3), neighbours),
         ("edge-on faces", "angle to the view, radian", powers(-1, -15, -2) + [0.0], seen_at),
+        ("faces along rays", "eye beside their plane, cell sides", powers(-1, -15, -2) + [0.0], beside_plane),
         ("coincident vertices", "share of cells with vertices of their own", [0.0, 0.5, 1.0], unshared),
         ("inverted cells", "0 none, 1 all, 2 every other", [0, 1, 2], lambda v: scene(cube(inverted=v), *tf())),
         ("small cells", "pixels a cell", powers(1, -4, -1), subpixel),

@@ -44,8 +44,10 @@ struct Scene {
   }
 
   [[nodiscard]] LatticeView view() const {
-    return {
-        {&prepared, vertices, space.near_depth(), space.far_depth()}, lattice_vertices, lattice, space.perspective()};
+    return {{&prepared, vertices, space.near_depth(), space.far_depth(), space.pixels_per_tangent()},
+            lattice_vertices,
+            lattice,
+            space.perspective()};
   }
 
   PreparedMesh prepared;

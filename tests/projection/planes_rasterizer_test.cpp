@@ -31,7 +31,7 @@ Rays rasterized(const scene::TetMesh& mesh, const scene::Camera& camera, scene::
   const PixelSpace space(camera, size);
   std::vector<PixelVertex> vertices;
   for (const glm::dvec3& p : mesh.positions) vertices.push_back(space.project(p));
-  const ProjectedMesh projected{&prepared, vertices, space.near_depth(), space.far_depth()};
+  const ProjectedMesh projected{&prepared, vertices, space.near_depth(), space.far_depth(), space.pixels_per_tangent()};
   std::vector<TileEntry> entries;
   for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) entries.push_back({0, t});
   Rays rays(static_cast<std::size_t>(size.width) * size.height);

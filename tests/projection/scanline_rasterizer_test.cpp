@@ -37,7 +37,7 @@ struct Frame {
   Frame(const scene::TetMesh& m, const scene::Camera& camera, scene::ImageSize size) : Frame(m) {
     const PixelSpace space(camera, size);
     for (const glm::dvec3& p : m.positions) vertices.push_back(space.project(p));
-    projected = {&prepared, vertices, space.near_depth(), space.far_depth()};
+    projected = {&prepared, vertices, space.near_depth(), space.far_depth(), space.pixels_per_tangent()};
   }
 };
 
@@ -258,7 +258,7 @@ TEST(ScanlineRasterizer, AnyCoordinatesStayInsideTheBuffers) {
       c[1].y = c[0].y = c[2].y;
     }
     const bool cut = round % 2 == 1;
-    frame.projected = {&frame.prepared, frame.vertices, cut ? 3.0 : 0.0, cut ? 6.0 : HUGE_VAL};
+    frame.projected = {&frame.prepared, frame.vertices, cut ? 3.0 : 0.0, cut ? 6.0 : HUGE_VAL, 0};
     ASSERT_TRUE(fits_scanline(frame.projected, frame.edge));
     std::size_t segments = 0;
     const Rays whole = rasterized(frame, size, 64);

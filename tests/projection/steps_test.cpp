@@ -27,7 +27,9 @@ struct Projected {
     camera.parallel_scale = 1.8;
     return camera;
   }
-  [[nodiscard]] ProjectedMesh view() const { return {&prepared, vertices, space.near_depth(), space.far_depth()}; }
+  [[nodiscard]] ProjectedMesh view() const {
+    return {&prepared, vertices, space.near_depth(), space.far_depth(), space.pixels_per_tangent()};
+  }
   PreparedMesh prepared;
   PixelSpace space;
   std::vector<PixelVertex> vertices;

@@ -19,7 +19,7 @@ struct Lists {
         const scene::TransferFunction& function)
       : prepared(mesh), space(camera, size), grid{size, tile} {
     for (const glm::dvec3& p : mesh.positions) vertices.push_back(space.project(p));
-    projected = {&prepared, vertices, space.near_depth(), space.far_depth()};
+    projected = {&prepared, vertices, space.near_depth(), space.far_depth(), space.pixels_per_tangent()};
     lists.emplace(projected, grid, function, false);
   }
   PreparedMesh prepared;
@@ -198,7 +198,7 @@ void expect_lists(const scene::TetMesh& mesh, const View& view, const scene::Tra
   const PixelSpace space(view.camera, view.size);
   std::vector<PixelVertex> vertices(mesh.positions.size());
   space.project(mesh.positions, vertices);
-  const ProjectedMesh projected{&prepared, vertices, space.near_depth(), space.far_depth()};
+  const ProjectedMesh projected{&prepared, vertices, space.near_depth(), space.far_depth(), space.pixels_per_tangent()};
   const TileGrid grid{view.size, view.tile_size};
   const Expected expected = expected_lists(projected, grid, function, independent);
   TileListBuffers buffers;
@@ -265,7 +265,8 @@ TEST(TileLists, HoldInScenesOfAnySize) {
     const PixelSpace space(view.camera, view.size);
     std::vector<PixelVertex> vertices(mesh.positions.size());
     space.project(mesh.positions, vertices);
-    const ProjectedMesh projected{&prepared, vertices, space.near_depth(), space.far_depth()};
+    const ProjectedMesh projected{&prepared, vertices, space.near_depth(), space.far_depth(),
+                                  space.pixels_per_tangent()};
     const TileGrid grid{view.size, view.tile_size};
     const Expected expected = expected_lists(projected, grid, function, false);
     TileLists lists(projected, grid, function, false);

@@ -25,6 +25,27 @@ TEST(View, DecimalNoiseOfTheCameraIsRoundedAway) {
   EXPECT_EQ(view.project({0.3, 0, 0}).homogeneous.x, 50);
 }
 
+TEST(View, DecimalNoiseOfPerspectiveIsRoundedAwayBeforeBesideAndBehindTheEye) {
+  const View view(looking({0.1, 0.2, 0.3}, {0.4, 0.9, -0.7}, ProjectionKind::perspective, 40, {0.1, 1, 0.2}),
+                  {101, 61});
+  const double per_tangent = 30.5 / std::tan(20 * std::acos(-1.0) / 180);
+  const scene::ViewBasis basis =
+      scene::view_basis(looking({0.1, 0.2, 0.3}, {0.4, 0.9, -0.7}, ProjectionKind::perspective, 40, {0.1, 1, 0.2}));
+  for (const double depth : {0.7, 3.1, -0.4, -11.0})
+    for (const double y : {3.5, 17.25, -40.5}) {
+      const double x = 70.5, across = (x - 50.5) / per_tangent, upward = (30.5 - y) / per_tangent;
+      const glm::dvec3 p =
+          glm::dvec3(0.1, 0.2, 0.3) + depth * (basis.forward + across * basis.right + upward * basis.up);
+      const double side = depth > 0 ? 1 : -1;
+      EXPECT_EQ(view.project(p).sight, glm::dvec3(side * x, side * y, side));
+    }
+  // In the plane of the eye and all columns, and of all rows.
+  EXPECT_EQ(view.project(glm::dvec3(0.1, 0.2, 0.3) + 0.7 * basis.up).sight.x, 0);
+  EXPECT_EQ(view.project(glm::dvec3(0.1, 0.2, 0.3) + 0.7 * basis.up).sight.z, 0);
+  EXPECT_EQ(view.project(glm::dvec3(0.1, 0.2, 0.3) - 0.3 * basis.right).sight.y, 0);
+  EXPECT_EQ(view.project({0.1, 0.2, 0.3}).sight, glm::dvec3(0, 0, 0));
+}
+
 TEST(View, PerspectiveAngleSpansTheHeight) {
   const View view(looking({0, 0, 10}, {0, 0, 0}, ProjectionKind::perspective, 90), {100, 100});
   for (const double depth : {1.0, 7.0, -2.0}) {
