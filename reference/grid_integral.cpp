@@ -84,10 +84,13 @@ void GridIntegral::add_piece(double length, const Cubic& scalar, double u0, doub
   while (above < knots_.size() && knots_[above].value <= within) ++above;
   const scene::Knot& low = knots_[above == 0 ? 0 : above - 1];
   const scene::Knot& high = knots_[above == knots_.size() ? above - 1 : above];
+  // As a difference, which keeps its places where knots are much closer than their values are large.
+  Cubic from_low = scalar;
+  from_low.c[0] -= low.value;
   const auto along = [&](double at_low, double at_high) {
     if (!(high.value > low.value)) return Cubic{{at_low, 0, 0, 0}};
     const double slope = (at_high - at_low) / (high.value - low.value);
-    return linear_of(at_low - slope * low.value, slope, scalar);
+    return linear_of(at_low, slope, from_low);
   };
   const Cubic extinction = along(low.extinction, high.extinction);
   const auto lit = [&](double at_low, double at_high) {
