@@ -206,14 +206,20 @@ def mesh_stresses(m):
         knots = [*KNOTS[:-1], (1.0, 0.1, 0.3, 0.9, 0.1), (1.0, 1.0, 0.9, 0.3, 3.0)]
         return scene(m.tets(f"plateau-{places:g}", points, cells, values), "--transfer-function", m.function("plateau", knots))
 
-    def lengthwise(thickness):
-        """A wide view along a dense sheet beside the eye: depth is its length, rays at the edge go through its thickness."""
-        low, high = (-2.0, -thickness, -2.1), (2.0, 0.0, -0.12)
-        points = [tuple(h if i >> a & 1 else l for a, (l, h) in enumerate(zip(low, high))) for i in range(8)]
-        cells = [(0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7)]
-        path = m.tets(f"sheet-{thickness:g}", points, cells, [0.55 + 0.05 * (i & 1) for i in range(8)])
-        return scene(path, "--transfer-function", m.function("sheet", scaled(KNOTS, extinction=300)), "--camera",
-                     m.camera(f"sheet-{thickness:g}", (0.031, 1.73, 0), (0.031, 1.73, -1), angle=140))
+    def lengthwise(extinction):
+        """A wide view along a thin sheet beside the eye: depth is its length, rays at the edge go through its thickness."""
+        across, down = (-2.0, 0.0, 2.0), (-2.12, -1.12, -0.12)
+        points = [(x, y, z) for z in down for y in (-3e-4, 0.0) for x in across]
+        at = lambda i, j, k: i + 3 * j + 6 * k
+        cells = []
+        for i, k in ((0, 0), (1, 0), (0, 1), (1, 1)):
+            for u, v in (((1, 0, 0), (1, 1, 0)), ((1, 0, 0), (1, 0, 1)), ((0, 1, 0), (1, 1, 0)), ((0, 1, 0), (0, 1, 1)),
+                         ((0, 0, 1), (1, 0, 1)), ((0, 0, 1), (0, 1, 1))):
+                cells.append((at(i, 0, k), at(i + u[0], u[1], k + u[2]), at(i + v[0], v[1], k + v[2]), at(i + 1, 1, k + 1)))
+        path = m.tets("sheet", points, cells, [0.5] * len(points))
+        knots = m.function(f"sheet-{extinction:g}", [(0.0, 0.2, 0.4, 0.9, extinction), (1.0, 0.9, 0.5, 0.2, extinction)])
+        return scene(path, "--transfer-function", knots, "--camera",
+                     m.camera("sheet", (0.031, 1.73, 0), (0.031, 1.73, -1), angle=140), verify=4096)
 
     across = lambda size: seen_across(m, size)
     plain = lambda *args, **more: scene(cube(), *tf(), *args, **more)
@@ -233,7 +239,7 @@ def mesh_stresses(m):
         ("knots", "number", [2, 6, 14, 15, 30, 100, 1000, 4096], lambda v: with_knots(f"knots-{v}", random_knots(v))),
         ("steps", "number", [1, 7, 50, 300], lambda v: with_knots(f"steps-{v}", steps(v))),
         ("plateau at a step", "last places of a float between neighbours", [1e6, 1e4, 256, 16, 1, 0], plateau),
-        ("sheet seen lengthwise", "thickness", powers(-1, -6, -1), lengthwise),
+        ("sheet seen lengthwise", "extinction", [1, 10, 100, 200, 300, 1e3, 1e4, 1e6], lengthwise),
         ("oscillations", "over the range", [1, 10, 100, 1000], lambda v: with_knots(f"osc-{v}", oscillating(v))),
         ("field range", "largest value", [0.0] + powers(-30, 30, 10), field),
         ("field far from zero", "offset over range", powers(0, 7), offset_field),
