@@ -144,7 +144,7 @@ class Comparison:
             if "perspective" in words:
                 camera, words = camera.replace("parallel_scale 1.8", "view_angle 36"), []
             self.compare(f"large {kind} {' '.join(parameters)}, {function} {' '.join(words)}",
-                         [self.generate(kind, parameters, ".tets"), "--camera", self.text("camera.txt", camera), "--transfer-function",
+                         [self.generate(kind, parameters, ".vtu" if "cell_data" in str(parameters) else ".tets"), "--camera", self.text("camera.txt", camera), "--transfer-function",
                           self.function(large_function(function)), *words])
 
     def ranks(self):
