@@ -13,6 +13,7 @@
 #include "reference/image_suspicion.hpp"
 #include "reference/mesh_suspicion.hpp"
 #include "reference/reference.hpp"
+#include "scene/threads.hpp"
 #include "volume/voxel_cast.hpp"
 
 namespace tessera::frame {
@@ -70,7 +71,7 @@ SuspicionMap second_opinion(const scene::Image& image, const scene::SampleSource
   // What is looked for is as large as the bound.
   const double bound = promised_error(settings).value_or(1e-4);
   const volume::VoxelCastSettings cast{{settings.emission, bound / 1000, bound / 64}, settings.shading};
-  tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(scene::threads_for(settings.threads));
   arena.execute([&] { volume::cast_voxel_by_voxel(source, camera, function, cast, pixels, again); });
   SuspicionMap map(image.depth.size(), 0.0f);
   for (const auto& [x, y] : pixels)

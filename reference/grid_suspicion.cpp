@@ -12,6 +12,7 @@
 #include "reference/edge_walk.hpp"
 #include "reference/light_error.hpp"
 #include "reference/view.hpp"
+#include "scene/threads.hpp"
 
 namespace tessera::reference {
 namespace {
@@ -219,7 +220,7 @@ GridSuspicion suspect(const scene::SampleSource& source, const scene::Camera& ca
                       const scene::TransferFunction& transfer_function, scene::Emission emission,
                       const scene::Image& image, const SuspicionMap& edge, int threads) {
   GridSuspects suspects(source, camera, transfer_function, emission, image, edge);
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(scene::threads_for(threads));
   arena.execute([&] {
     tbb::parallel_for(std::int64_t{0}, suspects.blocks(), [&](std::int64_t block) { suspects.look_at(block); });
     suspects.find_ties();

@@ -10,6 +10,8 @@
 #include <limits>
 #include <map>
 
+#include "scene/threads.hpp"
+
 namespace tessera::reference {
 namespace {
 
@@ -160,7 +162,7 @@ ImageSuspicion suspect(const scene::Image& image, double least, int threads) {
       for (int x = 0; x < picture.width(); x += step) score(x, row * step);
     });
   };
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(scene::threads_for(threads));
   arena.execute([&] {
     for_all(1, [&](int x, int y) {
       const float edge = picture.edge(x, y);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "scene/error.hpp"
+#include "scene/threads.hpp"
 
 namespace tessera::reference {
 namespace {
@@ -88,7 +89,7 @@ std::vector<PixelJudgement> judge_each(const scene::Image& image, const RayRefer
 
   constexpr std::size_t enough = 100, together = 64;
   over_bound.resize(std::min(over_bound.size(), most_examined));
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(scene::threads_for(threads));
   std::size_t without_excuse = 0;
   for (std::size_t begin = 0; begin < over_bound.size() && without_excuse < enough; begin += together) {
     const std::size_t end = std::min(begin + together, over_bound.size());

@@ -11,6 +11,7 @@
 #include "reference/edge_walk.hpp"
 #include "reference/light_error.hpp"
 #include "reference/view.hpp"
+#include "scene/threads.hpp"
 
 namespace tessera::reference {
 namespace {
@@ -136,7 +137,7 @@ MeshSuspicion suspect(const scene::TetMesh& mesh, const scene::Camera& camera,
                       const scene::TransferFunction& transfer_function, scene::Emission emission,
                       const scene::Image& image, const SuspicionMap& edge, int threads) {
   MeshSuspects suspects(mesh, camera, transfer_function, emission, image, edge);
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(scene::threads_for(threads));
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, suspects.looked_at(), [&](std::size_t n) { suspects.look_at_nth(n); });
   });

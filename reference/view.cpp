@@ -17,10 +17,11 @@ Direction cross(const Direction& a, const Direction& b) {
 }
 
 /// Divides by the length (and first by the largest component, against overflow): (0, 0, 49) gives exactly (0, 0, 1).
-Direction unit(const Direction& v) {
-  const long double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-  const Direction scaled(v.x / largest, v.y / largest, v.z / largest);
-  const long double length = std::sqrt(dot(scaled, scaled));
+template <class Vector>
+Vector unit(const Vector& v) {
+  const auto largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  const Vector scaled(v.x / largest, v.y / largest, v.z / largest);
+  const auto length = std::sqrt(scaled.x * scaled.x + scaled.y * scaled.y + scaled.z * scaled.z);
   return {scaled.x / length, scaled.y / length, scaled.z / length};
 }
 
@@ -42,6 +43,7 @@ View::View(const scene::Camera& camera, scene::ImageSize size)
       perspective_(camera.projection == scene::ProjectionKind::perspective),
       nearest_(0),
       farthest_(std::numeric_limits<double>::infinity()) {
+  depth_axis_ = unit(camera.focal_point - camera.position);
   forward_ = unit(Direction(camera.focal_point) - Direction(camera.position));
   right_ = unit(cross(forward_, unit(Direction(camera.view_up))));
   up_ = cross(right_, forward_);
@@ -58,7 +60,8 @@ ProjectedVertex View::project(const glm::dvec3& p_world) const {
   const long double across = dot(right_, from_eye) * pixels_per_unit_;
   const long double upward = dot(up_, from_eye) * pixels_per_unit_;
   const long double depth = dot(forward_, from_eye);
-  const auto planar = static_cast<double>(depth);
+  const glm::dvec3 from = p_world - position_;
+  const double planar = depth_axis_.x * from.x + depth_axis_.y * from.y + depth_axis_.z * from.z;
   if (!perspective_) {
     const glm::dvec3 h(rounded_to(half_width_ + across, finest_unit), rounded_to(half_height_ - upward, finest_unit),
                        1);

@@ -54,6 +54,8 @@ class View {
   using Direction = glm::vec<3, long double>;
 
   glm::dvec3 position_;
+  glm::dvec3
+      depth_axis_;  ///< forward, in double: depths are rounded once a product, as any renderer in double has them
   Direction right_, up_, forward_;
   long double half_width_, half_height_;  ///< pixels
   long double pixels_per_unit_;  ///< orthographic: per world unit; perspective: per world unit at planar depth one

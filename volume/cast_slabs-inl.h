@@ -460,14 +460,15 @@ HWY_NOINLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int r
 template <bool cell_data, CL::TableForm form>
 HWY_NOINLINE void cast_chunk_as(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
   const CL::Lookup<form> lookup(*chunk.frame.table);
+  CurrentInterval current(*chunk.frame.table, chunk.frame);
   const int voxels_i = static_cast<int>(chunk.frame.voxels[static_cast<std::size_t>(chunk.axes.i)]),
             voxels_j = static_cast<int>(chunk.frame.voxels[static_cast<std::size_t>(chunk.axes.j)]);
   for (int packet = 0; packet < TileRays::packets; ++packet) {
     const Reach& reach = chunk.reach[packet];
     if (!reach.any) continue;
     PacketSlabs slabs(reach, voxels_i, voxels_j);
-    // Of this packet alone: what others find must not change its bits.
-    CurrentInterval current(*chunk.frame.table, chunk.frame);
+    // Begins where this packet does: what others find must not change its bits.
+    current.begin_at(*chunk.block.at(0, slabs.i_first[0], slabs.j_first[0]));
     const auto cast = [&]<class Window>() HWY_ATTR {
       slabs.template place_windows<Window>(chunk.block, chunk.slabs);
       for (int lane = 0; lane < TileRays::packet_rays; lane += static_cast<int>(HN::Lanes(DF())))

@@ -49,6 +49,8 @@ class CurrentInterval {
   }
   /// Whether a sample lies in the current interval for certain.
   [[nodiscard]] HWY_INLINE bool holds(float s) const { return held_low_ <= s && s < held_high_; }
+  /// Makes a sample's interval the current one; that of a blank is the first.
+  HWY_INLINE void begin_at(float sample) { move_to(sample == sample ? interval_of(sample) : 0); }
   /// Makes interval n the current one.
   HWY_INLINE void move_to(std::size_t n) {
     if (n != interval_) set(n);
