@@ -88,7 +88,10 @@ std::optional<projection::Lattice> lattice_of(const projection::PixelSpace& spac
     // A scalar is known to 16 steps (gradients over a square) or half a float's last place.
     const double reached =
         std::max(std::abs(a.value - lattice.scalar_origin), std::abs(b.value - lattice.scalar_origin));
-    const double scalar_error = std::max(16 * lattice.scalar_unit, std::min(reached, reach) * 0x1p-24);
+    // Just below a step it is a whole last place: what rounds to the step goes to the next float below it.
+    const bool step_above = i + 1 < knots.size() && knots[i + 1].value == b.value;
+    const double scalar_error =
+        std::max(16 * lattice.scalar_unit, std::min(reached, reach) * (step_above ? 0x1p-23 : 0x1p-24));
     const glm::dvec3 color = glm::abs(b.color - a.color);
     const double seen = seen_length(length, std::min(a.extinction, b.extinction));
     const double depth = std::min(std::abs(b.extinction - a.extinction) * seen, most_change_of_depth) * brightest;

@@ -205,9 +205,9 @@ void SplitRasterizer::split(std::size_t segment, std::span<const Step> steps, do
     at = depth, scalar = value;
   };
   if (from < to)
-    for (std::size_t i = 0; i < steps.size(); ++i) cut(steps[i]);
+    std::for_each(steps.begin(), steps.end(), cut);
   else
-    for (std::size_t i = steps.size(); i-- > 0;) cut(steps[i]);
+    std::for_each(steps.rbegin(), steps.rend(), cut);
   if (at < back) add(at, back, scalar, to);
 }
 
