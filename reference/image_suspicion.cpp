@@ -49,14 +49,15 @@ class Picture {
 
   struct Misfit {
     float least = 0;  ///< of the directions
-    float alike = 0;  ///< how alike they are: mean over spread
+    float alike = 0;  ///< how alike they are, and how smooth the neighbours: mean over spread
   };
 
   /// How far the pixel is from the cubic through its four neighbours along a line, of four directions: along a straight
-  /// edge the least is small; at a single pixel that is off all are alike.
-  [[nodiscard]] Misfit misfit(int x, int y, float noise) const {
+  /// edge the least is small; at a single pixel that is off all are alike. `least`: what does not matter.
+  [[nodiscard]] Misfit misfit(int x, int y, float least) const {
     constexpr std::array<std::array<int, 2>, 4> directions{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
     std::array<Colour, 4> off{};
+    Colour bend{};  // of the neighbours alone: a step bends, a single wrong pixel does not
     std::size_t count = 0;
     Misfit misfit{std::numeric_limits<float>::infinity(), 0};
     for (const auto& [i, j] : directions) {
@@ -67,16 +68,18 @@ class Picture {
       for (std::size_t n = 0; n < 4; ++n) {
         off[count][n] = here[n] - (4 * (b[n] + c[n]) - (a[n] + d[n])) / 6;
         largest = std::max(largest, std::abs(off[count][n]));
+        bend[n] = std::max(bend[n], std::abs(c[n] - b[n] - (d[n] - a[n]) / 2));
       }
+      if (!(largest > least)) return {largest, 0};
       ++count;
       misfit.least = std::min(misfit.least, largest);
     }
     if (!std::isfinite(misfit.least)) return {};
     for (std::size_t n = 0; n < 4 && count > 1; ++n) {
-      float mean = 0, spread = 0;
+      float mean = 0, spread = bend[n];
       for (std::size_t i = 0; i < count; ++i) mean += off[i][n] / static_cast<float>(count);
       for (std::size_t i = 0; i < count; ++i) spread = std::max(spread, std::abs(off[i][n] - mean));
-      misfit.alike = std::max(misfit.alike, std::abs(mean) / (spread + noise));
+      misfit.alike = std::max(misfit.alike, std::abs(mean) / (spread + least / 4));
     }
     return misfit;
   }
@@ -121,7 +124,8 @@ float standing_out(const SuspicionMap& misfit, const Picture& picture, int x, in
         ring[count++] = misfit[picture.index(x + i, y + j)];
   std::nth_element(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(count / 2),
                    ring.begin() + static_cast<std::ptrdiff_t>(count));
-  return misfit[picture.index(x, y)] / (least + (count == 0 ? 0 : ring[count / 2]));
+  constexpr float most = 32;  // beyond, its size tells no more
+  return std::min(most, misfit[picture.index(x, y)] / (least + (count == 0 ? 0 : ring[count / 2])));
 }
 
 /// A pixel of each colour that 3x3 pixels have and more.
@@ -168,7 +172,7 @@ ImageSuspicion suspect(const scene::Image& image, double least, int threads) {
       const float edge = picture.edge(x, y);
       if (!(edge > floor)) return;
       result.edge[picture.index(x, y)] = edge;
-      const Picture::Misfit off = picture.misfit(x, y, floor / 4);
+      const Picture::Misfit off = picture.misfit(x, y, floor);
       misfit[picture.index(x, y)] = off.least;
       alike[picture.index(x, y)] = off.alike;
     });
