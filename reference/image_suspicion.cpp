@@ -76,7 +76,7 @@ class Picture {
     }
     if (!std::isfinite(misfit.least)) return {};
     for (std::size_t n = 0; n < 4 && count > 1; ++n) {
-      float mean = 0, spread = bend[n];
+      float mean = 0, spread = bend[n] / 4;  // a quarter: smooth matter bends too
       for (std::size_t i = 0; i < count; ++i) mean += off[i][n] / static_cast<float>(count);
       for (std::size_t i = 0; i < count; ++i) spread = std::max(spread, std::abs(off[i][n] - mean));
       misfit.alike = std::max(misfit.alike, std::abs(mean) / (spread + least / 4));

@@ -219,11 +219,12 @@ TEST_F(RankFaults, AStoppedRankIsNamedAndWaitedFor) {
   for (const std::string& input : inputs_)
     for (const auto& [ranks, stopped] : std::vector<std::pair<int, int>>{{2, 1}, {2, 0}, {3, 2}, {3, 0}}) {
       std::filesystem::create_directory(pictures_);
-      Words words = film(input, {"--stall-timeout", "1.5"}, "30");
+      Words words = film(input, {"--stall-timeout", "1.5"}, "60");
       if (input == inputs_[0]) words.insert(words.end(), {"--exchange", "segments"});  // the bytes of one process
       std::erase(words, "--quiet");
       Running running(command(ranks, words));
-      ASSERT_TRUE(wait_for_pictures(running, 3)) << running.wait().err;
+      // By then each rank has had the others' first sign of life, which says their process.
+      ASSERT_TRUE(wait_for_pictures(running, 20)) << running.wait().err;
       const pid_t process = ranks_with(pictures_).at(stopped);
       kill(process, SIGSTOP);
       std::this_thread::sleep_for(milliseconds(4000));
@@ -239,7 +240,7 @@ TEST_F(RankFaults, AStoppedRankIsNamedAndWaitedFor) {
       EXPECT_TRUE(own_lines_of(outcome.err).empty()) << outcome.err;
 
       const Folder alone;
-      ASSERT_EQ(tessera({"render", input, "-o", alone / "f_%04d.pfm", "--size", "150x150", "--orbit", "30", "--quiet"})
+      ASSERT_EQ(tessera({"render", input, "-o", alone / "f_%04d.pfm", "--size", "150x150", "--orbit", "60", "--quiet"})
                     .status,
                 0);
       for (const auto& picture : alone.names())
