@@ -10,7 +10,7 @@
 #include "scene/image.hpp"
 #include "volume/image_split.hpp"
 
-/// `--show balance`: who rendered what, and what it was thought to cost ([Mol08] Figures 1.2, 4.1, 4.4).
+/// `--show balance`: who rendered what, and what it was thought to cost (Moloney 2008, Figures 1.2, 4.1, 4.4).
 namespace tessera::apps {
 
 /// Draws the outlines of `bricks` (low and high corners in index space) over the picture, dimmed, on black; each pixel

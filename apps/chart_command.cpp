@@ -9,12 +9,12 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "analysis/canvas.hpp"
+#include "analysis/chart_figure.hpp"
+#include "analysis/chart_measure.hpp"
+#include "analysis/chart_peers.hpp"
 #include "apps/argument_values.hpp"
-#include "apps/canvas.hpp"
-#include "apps/chart_figure.hpp"
-#include "apps/chart_measure.hpp"
 #include "apps/chart_methods.hpp"
-#include "apps/chart_peers.hpp"
 #include "apps/frame_list.hpp"
 #include "apps/mesh_input.hpp"
 #include "apps/output_check.hpp"
@@ -102,7 +102,7 @@ class CostGuess {
 constexpr auto no_room = "no room in the budget";
 
 struct Measured {
-  std::vector<ChartPoint> points;
+  std::vector<analysis::ChartPoint> points;
   double missing_seconds = 0;  ///< what one frame each of the methods without room would take
 };
 
@@ -115,7 +115,7 @@ Measured measure(const ChartScene& scene, const Truth& truth, Clock::time_point 
   auto waiting = static_cast<double>(
       std::count_if(methods.begin(), methods.end(), [](const ChartMethod& m) { return m.left_out.empty(); }));
   for (const ChartMethod& method : methods) {
-    ChartPoint point;
+    analysis::ChartPoint point;
     point.family = method.family, point.name = method.name, point.options = method.options;
     point.left_out = method.left_out;
     const double left = budget - seconds_since(begin);
@@ -137,7 +137,7 @@ Measured measure(const ChartScene& scene, const Truth& truth, Clock::time_point 
           point.frame_ms.push_back(ms);
           if (i == 0) {
             guess.learn(method, seconds_since(start));
-            point.error = chart_error(image, truth.pixels, truth.values);
+            point.error = analysis::chart_error(image, truth.pixels, truth.values);
           }
           if (seconds_since(start) + ms / 1000 > share) break;
         }
@@ -155,21 +155,21 @@ Measured measure(const ChartScene& scene, const Truth& truth, Clock::time_point 
 
 std::string error_words(double error) { return error == 0 ? "0" : fmt::format("{:.2e}", error); }
 
-void print_table(const std::vector<ChartPoint>& points) {
+void print_table(const std::vector<analysis::ChartPoint>& points) {
   std::size_t widest = 8;
-  for (const ChartPoint& p : points) widest = std::max(widest, p.name.size());
+  for (const analysis::ChartPoint& p : points) widest = std::max(widest, p.name.size());
   fmt::print("  {:<{}}  {:>9} {:>9} {:>9}  {:>8}  {:>8}  {:>8}  {:>8}\n", "method", widest, "median ms", "min", "max",
              "max err", "RMS", "99.9 %", "visible");
-  std::vector<const ChartPoint*> sorted;
-  for (const ChartPoint& p : points)
+  std::vector<const analysis::ChartPoint*> sorted;
+  for (const analysis::ChartPoint& p : points)
     if (p.measured()) sorted.push_back(&p);
   std::sort(sorted.begin(), sorted.end(), [](auto* a, auto* b) { return a->error.max < b->error.max; });
-  for (const ChartPoint* p : sorted)
+  for (const analysis::ChartPoint* p : sorted)
     fmt::print("{} {:<{}}  {:>9.4g} {:>9.4g} {:>9.4g}  {:>8}  {:>8}  {:>8}  {:>7.3g}%\n", p->on_front ? "*" : " ",
                p->name, widest, p->median_ms(), p->min_ms(), p->max_ms(), error_words(p->error.max),
                error_words(p->error.rms), error_words(p->error.p999), 100 * p->error.visible_share);
   std::string crowded;
-  for (const ChartPoint& p : points) {
+  for (const analysis::ChartPoint& p : points) {
     if (p.left_out == no_room)
       crowded += fmt::format("{}{}", crowded.empty() ? "" : ", ", p.name);
     else if (!p.left_out.empty())
@@ -178,7 +178,7 @@ void print_table(const std::vector<ChartPoint>& points) {
   if (!crowded.empty()) fmt::print("  {}: {}\n", no_room, crowded);
 }
 
-Json point_json(const ChartPoint& p) {
+Json point_json(const analysis::ChartPoint& p) {
   Json json = {{"family", p.family}, {"name", p.name}, {"options", p.options}};
   if (!p.measured()) {
     json["left_out"] = p.left_out;
@@ -195,7 +195,7 @@ Json point_json(const ChartPoint& p) {
   return json;
 }
 
-std::string csv_of(const std::vector<ChartPoint>& points) {
+std::string csv_of(const std::vector<analysis::ChartPoint>& points) {
   std::string csv =
       "family,name,options,median_ms,min_ms,max_ms,repeats,max_error,rms_error,error_999,visible_share,"
       "front,left_out\n";
@@ -203,7 +203,7 @@ std::string csv_of(const std::vector<ChartPoint>& points) {
     for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2) text.insert(at, 1, '"');
     return fmt::format("\"{}\"", text);
   };
-  for (const ChartPoint& p : points)
+  for (const analysis::ChartPoint& p : points)
     if (p.measured())
       csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{},{:.6g},{:.6g},{:.6g},{:.6g},{},\n", quoted(p.family),
                          quoted(p.name), quoted(p.options), p.median_ms(), p.min_ms(), p.max_ms(), p.frame_ms.size(),
@@ -255,7 +255,7 @@ void chart(const RenderWords& words, const ChartWords& chart) {
   const int repeat = parse_count("--repeat", chart.repeat, 1, 1000);
   std::optional<int> pixels;
   if (!chart.pixels.empty()) pixels = parse_count("--pixels", chart.pixels, 1, std::numeric_limits<int>::max());
-  for (const auto& figure : chart.figures) check_figure_path(figure);
+  for (const auto& figure : chart.figures) analysis::check_figure_path(figure);
   for (const auto& file : chart.figures) check_output_file(file, options.input);
   for (const auto& file : {chart.json, chart.csv})
     if (!file.empty()) check_output_file(file, options.input);
@@ -296,8 +296,9 @@ void chart(const RenderWords& words, const ChartWords& chart) {
   Measured measured = measure(scene, truth, read, budget, repeat, options.quiet);
   auto& points = measured.points;
   for (const auto& file : chart.peers)
-    for (ChartPoint& peer : read_peers(file, scene.size, truth.pixels, truth.values)) points.push_back(std::move(peer));
-  mark_front(points);
+    for (analysis::ChartPoint& peer : analysis::read_peers(file, scene.size, truth.pixels, truth.values))
+      points.push_back(std::move(peer));
+  analysis::mark_front(points);
 
   const std::string what =
       fmt::format("{}, {}x{}, {}", options.input.filename().string(), scene.size.width, scene.size.height,
@@ -316,12 +317,12 @@ void chart(const RenderWords& words, const ChartWords& chart) {
                std::ceil(1.1 * (seconds_since(read) + measured.missing_seconds)));
   Json fastest = Json::array();
   // What needs mpirun, or leaves out what saves work, is on the chart, but no setting to recommend.
-  std::vector<ChartPoint> alone = points;
-  std::erase_if(alone, [](const ChartPoint& p) {
+  std::vector<analysis::ChartPoint> alone = points;
+  std::erase_if(alone, [](const analysis::ChartPoint& p) {
     return p.options.starts_with("mpirun") || p.options.find("--without") != std::string::npos;
   });
   for (const double bound : bounds) {
-    const ChartPoint* best = fastest_within(alone, bound);
+    const analysis::ChartPoint* best = analysis::fastest_within(alone, bound);
     Json entry = {{"bound", bound}};
     if (best != nullptr) {
       fmt::print("fastest within {:g}: {} ({:.4g} ms){}\n", bound, best->name, best->median_ms(),
@@ -338,7 +339,7 @@ void chart(const RenderWords& words, const ChartWords& chart) {
   report["seconds"] = seconds_since(read);
   report["reading_seconds"] = reading;
   report["methods"] = Json::array();
-  for (const ChartPoint& p : points) report["methods"].push_back(point_json(p));
+  for (const analysis::ChartPoint& p : points) report["methods"].push_back(point_json(p));
   report["fastest"] = fastest;
   if (!chart.json.empty()) write_json(report, chart.json);
   if (!chart.csv.empty()) {
@@ -346,7 +347,7 @@ void chart(const RenderWords& words, const ChartWords& chart) {
     file.write(csv_of(points));
     file.commit();
   }
-  for (const auto& figure : chart.figures) write_chart(points, what, where, figure);
+  for (const auto& figure : chart.figures) analysis::write_chart(points, what, where, figure);
 }
 
 }  // namespace tessera::apps

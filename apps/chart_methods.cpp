@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <numeric>
 
-#include "compositor/loopback_transport.hpp"
+#include "exchange/loopback_transport.hpp"
 #include "frame/distributed.hpp"
 #include "projection/scanline_rasterizer.hpp"
 #include "scene/mesh_facts.hpp"
@@ -71,7 +71,7 @@ class RanksRenderer final : public ChartRenderer {
     scene::Image image;
     const std::vector<frame::FrameJob> jobs = {{scene_.camera, scene_.size, 0}};
     double ms = 0;
-    compositor::run_ranks(ranks_, [&](compositor::Transport& transport) {
+    exchange::run_ranks(ranks_, [&](exchange::Transport& transport) {
       render_distributed(
           transport, settings_, jobs, scene_.function,
           [&](std::size_t) {

@@ -12,8 +12,8 @@
 namespace tessera::apps {
 namespace {
 
-using compositor::Bytes;
-using compositor::Transport;
+using exchange::Bytes;
+using exchange::Transport;
 using nlohmann::json;
 
 // What ranks agree on travels as CBOR, which keeps doubles to the bit and takes any bytes as text.
@@ -80,7 +80,7 @@ io::MeshFile description_of(const json& j) {
 
 /// All ranks' values, in the order of `projectors`; the others have nothing to say.
 std::vector<json> gather(Transport& transport, const json& own, std::span<const int> projectors) {
-  const std::vector<Bytes> all = compositor::gather_all(transport, bytes_of(own));
+  const std::vector<Bytes> all = exchange::gather_all(transport, bytes_of(own));
   std::vector<json> values;
   for (const int rank : projectors) values.push_back(json_of(all[static_cast<std::size_t>(rank)]));
   return values;
@@ -90,7 +90,7 @@ std::vector<json> gather(Transport& transport, const json& own, std::span<const 
 io::MeshFile share_description(Transport& transport, std::span<const int> projectors, const io::MeshFile& own) {
   const bool speaks = transport.rank() == projectors.front();
   const Bytes bytes = speaks ? bytes_of(to_json(own)) : Bytes{};
-  return description_of(json_of(compositor::broadcast(transport, projectors.front(), bytes)));
+  return description_of(json_of(exchange::broadcast(transport, projectors.front(), bytes)));
 }
 
 /// The whole by the first projector.
@@ -170,7 +170,7 @@ DistributedMesh read_distributed(Transport& transport, std::span<const std::file
       Bytes in_parts(1);
       if (transport.rank() == projectors.front())
         in_parts[0] = std::byte{files.size() == 1 && io::readable_in_parts(files.front(), options)};
-      in_parts = compositor::broadcast(transport, projectors.front(), std::move(in_parts));
+      in_parts = exchange::broadcast(transport, projectors.front(), std::move(in_parts));
       result = in_parts[0] != std::byte{0} ? read_parts(transport, files.front(), options, projectors)
                                            : read_whole(transport, files, options, projectors);
     }

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <span>
 
-#include "compositor/transport.hpp"
+#include "exchange/transport.hpp"
 #include "frame/mesh_exchange.hpp"
 #include "io/mesh_reader.hpp"
 #include "projection/partition.hpp"
@@ -28,7 +28,7 @@ struct DistributedMesh {
 /// where every rank reading in turn would be many. The tets' numbers, and so every picture, do not depend on how it was
 /// read. With one rank it is io::read_mesh and nothing more. Spans `read` and `partition`. An error of one rank is
 /// transport.fail()ed and thrown on all. `threads` find the facts; 0 is all cores.
-DistributedMesh read_distributed(compositor::Transport& transport, std::span<const std::filesystem::path> files,
+DistributedMesh read_distributed(exchange::Transport& transport, std::span<const std::filesystem::path> files,
                                  const io::MeshOptions& options, const projection::Partition& partition,
                                  std::span<const int> projectors, int threads, scene::Trace* trace);
 

@@ -9,7 +9,7 @@
 #include "apps/frame_list.hpp"
 #include "apps/output_check.hpp"
 #include "apps/run_output.hpp"
-#include "compositor/wire.hpp"
+#include "exchange/wire.hpp"
 #include "frame/distributed.hpp"
 #include "frame/verify.hpp"
 #include "projection/segment_tuple.hpp"
@@ -18,7 +18,7 @@
 namespace tessera::apps {
 namespace {
 
-using compositor::Bytes;
+using exchange::Bytes;
 
 std::string process_name(const frame::Roles& roles, int rank) {
   const bool projects = roles.projects(rank), composites = roles.composites(rank);
@@ -45,7 +45,7 @@ const char* word(projection::PartitionKind kind) {
 /// One rank's share of a run.
 class RankRun {
  public:
-  RankRun(const RenderOptions& options, compositor::Transport& transport)
+  RankRun(const RenderOptions& options, exchange::Transport& transport)
       : options_(options),
         transport_(transport),
         roles_(frame::assign_roles(transport.size(), options.projectors, options.compositors)),
@@ -72,7 +72,7 @@ class RankRun {
     }
     Bytes code(1);
     if (writes_) code[0] = static_cast<std::byte>(output_.finish());
-    return static_cast<scene::ExitCode>(compositor::broadcast(transport_, roles_.assembler(), code)[0]);
+    return static_cast<scene::ExitCode>(exchange::broadcast(transport_, roles_.assembler(), code)[0]);
   }
 
  private:
@@ -87,7 +87,7 @@ class RankRun {
     if (writes_) check_outputs(options_, frames_);
     Bytes finished(frames_.size());
     for (std::size_t i = 0; i < frames_.size(); ++i) finished[i] = std::byte{frames_[i].finished};
-    finished = compositor::broadcast(transport_, roles_.assembler(), std::move(finished));
+    finished = exchange::broadcast(transport_, roles_.assembler(), std::move(finished));
     for (std::size_t i = 0; i < frames_.size(); ++i) frames_[i].finished = finished[i] != std::byte{0};
   }
 
@@ -96,9 +96,9 @@ class RankRun {
     if (options_.settings.rasterizer != frame::Rasterizer::scanline) return 0;
     float longest = projection::longest_edge(part);
     Bytes mine;
-    compositor::append(mine, longest);
-    for (const Bytes& other : compositor::gather_all(transport_, std::move(mine)))
-      longest = std::max(longest, compositor::RecordReader(other).take<float>());
+    exchange::append(mine, longest);
+    for (const Bytes& other : exchange::gather_all(transport_, std::move(mine)))
+      longest = std::max(longest, exchange::RecordReader(other).take<float>());
     return longest;
   }
 
@@ -108,7 +108,7 @@ class RankRun {
 
   const RenderOptions& options_;
   RenderOptions quiet_ = options_;
-  compositor::Transport& transport_;
+  exchange::Transport& transport_;
   frame::Roles roles_;
   bool writes_;
   std::vector<Frame> frames_;
@@ -117,7 +117,7 @@ class RankRun {
   RunOutput output_;
 
   std::uint64_t tets_ = 0;
-  io::LoadedTransferFunction loaded_;
+  colormaps::LoadedTransferFunction loaded_;
   std::vector<std::size_t> job_frames_;  ///< frame of each job
   std::vector<std::size_t> meshes_;      ///< first frame of each mesh of the jobs
   std::vector<frame::FrameJob> jobs_;
@@ -232,7 +232,7 @@ void RankRun::take(const frame::FinishedFrame& finished) {
 
 }  // namespace
 
-scene::ExitCode render_on_ranks(const RenderOptions& options, compositor::Transport& transport) {
+scene::ExitCode render_on_ranks(const RenderOptions& options, exchange::Transport& transport) {
   return RankRun(options, transport).run();
 }
 

@@ -6,12 +6,13 @@
 
 #include "apps/mesh_input.hpp"
 #include "apps/report.hpp"
-#include "scene/mesh_check.hpp"
+#include "frame/mesh_check.hpp"
 
 namespace tessera::apps {
 namespace {
 
-void print_text(const std::filesystem::path& input, const MeshSummary& file, const io::LoadedTransferFunction& loaded) {
+void print_text(const std::filesystem::path& input, const MeshSummary& file,
+                const colormaps::LoadedTransferFunction& loaded) {
   const auto& counts = file.counts;
   const auto& box = file.facts.box;
   fmt::print("file      {}\n", input.string());
@@ -36,7 +37,7 @@ void print_text(const std::filesystem::path& input, const MeshSummary& file, con
   for (const auto& note : file.notes) fmt::print("note      {}\n", note);
 }
 
-void print_finding(const char* name, const scene::MeshCheck::Finding& finding, const std::string& more = "",
+void print_finding(const char* name, const frame::MeshCheck::Finding& finding, const std::string& more = "",
                    bool pairs = false) {
   fmt::print("  {:<21} {}{}\n", name, finding.count, more);
   for (const auto& place : finding.places)
@@ -47,7 +48,7 @@ void print_finding(const char* name, const scene::MeshCheck::Finding& finding, c
                place.at.x, place.at.y, place.at.z, place.value > 0 ? fmt::format(", {:.3g}", place.value) : "");
 }
 
-void print_check(const scene::MeshCheck& check) {
+void print_check(const frame::MeshCheck& check) {
   fmt::print("check     {} tets, {} points: {}\n", check.tets, check.points,
              check.clean() ? "every ray meets each place once"
                            : "cells overlap, fold or do not match; pictures are wrong where cells overlap");
@@ -63,7 +64,7 @@ void print_check(const scene::MeshCheck& check) {
   fmt::print("  {:<21} {} right-handed, {} left-handed\n", "orientation", check.right_handed, check.left_handed);
 }
 
-nlohmann::ordered_json finding_json(const scene::MeshCheck::Finding& finding) {
+nlohmann::ordered_json finding_json(const frame::MeshCheck::Finding& finding) {
   nlohmann::ordered_json places = nlohmann::ordered_json::array();
   for (const auto& place : finding.places) {
     nlohmann::ordered_json json = {{"id", place.cell}};
@@ -75,7 +76,7 @@ nlohmann::ordered_json finding_json(const scene::MeshCheck::Finding& finding) {
   return {{"count", finding.count}, {"places", places}};
 }
 
-nlohmann::ordered_json check_json(const scene::MeshCheck& check) {
+nlohmann::ordered_json check_json(const frame::MeshCheck& check) {
   nlohmann::ordered_json json = {{"tets", check.tets}, {"points", check.points}, {"clean", check.clean()}};
   json["overlaps"] = finding_json(check.overlaps);
   json["overlaps"]["cells"] = check.overlapping_cells;
@@ -96,10 +97,10 @@ nlohmann::ordered_json check_json(const scene::MeshCheck& check) {
 }  // namespace
 
 void info(const std::filesystem::path& input, const io::MeshOptions& options, bool as_json, bool check) {
-  std::optional<scene::MeshCheck> checked;
+  std::optional<frame::MeshCheck> checked;
   const auto file = [&] {
     const io::MeshFile read = read_input(input, options);
-    if (check) checked = scene::check_mesh(read.mesh);
+    if (check) checked = frame::check_mesh(read.mesh);
     return summary_of(read);
   }();
   const auto loaded = transfer_function_of(file.facts, RenderOptions{});

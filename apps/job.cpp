@@ -2,30 +2,30 @@
 
 #include "apps/one_line.hpp"
 #include "apps/start_witness.hpp"
-#include "compositor/loopback_transport.hpp"
-#include "compositor/mpi_transport.hpp"
+#include "exchange/loopback_transport.hpp"
+#include "exchange/mpi_transport.hpp"
 
 namespace tessera::apps {
 
 Job::Job(std::function<void(const scene::Error&)> speak) : speak_(std::move(speak)) {
-  if (compositor::launched_by_mpi()) {
+  if (exchange::launched_by_mpi()) {
     name_one_line();
     const StartWitness witness;
-    mpi_ = std::make_unique<compositor::MpiTransport>(
-        compositor::MpiTransport::Hooks{speak_, expect_end, ended_from_outside});
+    mpi_ =
+        std::make_unique<exchange::MpiTransport>(exchange::MpiTransport::Hooks{speak_, expect_end, ended_from_outside});
   } else {
-    alone_ = std::make_unique<compositor::LoopbackNetwork>(1);
+    alone_ = std::make_unique<exchange::LoopbackNetwork>(1);
   }
 }
 
 Job::~Job() = default;
 
-compositor::Transport& Job::transport() {
+exchange::Transport& Job::transport() {
   if (mpi_) return *mpi_;
   return alone_->rank(0);
 }
 
-void Job::watch_stalls(const compositor::StallSettings& settings) {
+void Job::watch_stalls(const exchange::StallSettings& settings) {
   if (mpi_) mpi_->watch_stalls(settings);
 }
 

@@ -5,13 +5,13 @@
 #include <optional>
 #include <string_view>
 
-#include "compositor/transport.hpp"
+#include "exchange/transport.hpp"
 
-namespace tessera::compositor {
+namespace tessera::exchange {
 class LoopbackNetwork;
 class MpiTransport;
 struct StallSettings;
-}  // namespace tessera::compositor
+}  // namespace tessera::exchange
 
 namespace tessera::apps {
 
@@ -22,9 +22,9 @@ class Job {
   explicit Job(std::function<void(const scene::Error&)> speak);
   ~Job();
 
-  [[nodiscard]] compositor::Transport& transport();
+  [[nodiscard]] exchange::Transport& transport();
   /// Looks for ranks that have stopped from now on. Every rank calls this.
-  void watch_stalls(const compositor::StallSettings& settings);
+  void watch_stalls(const exchange::StallSettings& settings);
   /// Rank 0, which speaks for all.
   [[nodiscard]] bool is_first() { return transport().rank() == 0; }
 
@@ -34,15 +34,15 @@ class Job {
 
  private:
   std::function<void(const scene::Error&)> speak_;
-  std::unique_ptr<compositor::LoopbackNetwork> alone_;
-  std::unique_ptr<compositor::MpiTransport> mpi_;
+  std::unique_ptr<exchange::LoopbackNetwork> alone_;
+  std::unique_ptr<exchange::MpiTransport> mpi_;
 };
 
 /// Lets ranks that are ended from outside say so, in one line of all, and end with status 3. The launcher ends all
 /// ranks at once, as it does when one has died: then the first that is ended on rank 0's machine speaks. A rank that
 /// anybody else ends (SIGTERM) ends the run for all, see ended_from_outside(). A launcher that dies takes its ranks
 /// with it. Collective; for jobs of several ranks (Linux).
-void speak_when_ended(compositor::Transport& transport);
+void speak_when_ended(exchange::Transport& transport);
 
 /// The run's error, once this rank got SIGTERM from somebody else than its launcher.
 std::optional<scene::Error> ended_from_outside();

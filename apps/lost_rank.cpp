@@ -66,7 +66,7 @@ std::array<pid_t, 2> find_launchers() {
 
 }  // namespace
 
-void speak_when_ended(compositor::Transport& transport) {
+void speak_when_ended(exchange::Transport& transport) {
   rank_of_run = transport.rank(), size_of_run = transport.size();
   speaks_for_the_lost = share_one_line(transport);
   launchers = find_launchers();

@@ -27,7 +27,7 @@
 #include "apps/timing_command.hpp"
 #include "apps/volume_input.hpp"
 #include "apps/volume_options.hpp"
-#include "compositor/instruction_sets.hpp"
+#include "exchange/instruction_sets.hpp"
 #include "io/atomic_file.hpp"
 #include "io/time_series.hpp"
 #include "scene/error.hpp"
@@ -58,10 +58,10 @@ bool to_mesh(const std::filesystem::path& input, const std::filesystem::path& ou
 }
 
 ExitCode run(int argc, char** argv, Job& job) {
-  compositor::Transport& transport = job.transport();
+  exchange::Transport& transport = job.transport();
   if (transport.size() > 1) {
     speak_when_ended(transport);
-    compositor::agree_instruction_sets(transport);
+    exchange::agree_instruction_sets(transport);
   }
 
   CLI::App app("Tessera renders scientific volumes: unstructured meshes and regular grids, exactly, on the CPU.",

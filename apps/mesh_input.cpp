@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "colormaps/presets.hpp"
 #include "io/time_series.hpp"
 #include "io/volume_file.hpp"
 #include "scene/error.hpp"
@@ -55,8 +56,8 @@ double default_unit_distance(const scene::MeshFacts& facts) {
   return extent > 0 ? extent / 20 : 1;
 }
 
-io::LoadedTransferFunction transfer_function_of(const scene::MeshFacts& facts, const RenderOptions& options) {
-  io::TransferFunctionOptions loading;
+colormaps::LoadedTransferFunction transfer_function_of(const scene::MeshFacts& facts, const RenderOptions& options) {
+  colormaps::TransferFunctionOptions loading;
   loading.field_range = facts.scalar_range;
   loading.unit_distance = options.unit_distance;
   loading.default_unit_distance = default_unit_distance(facts);
@@ -68,7 +69,7 @@ io::LoadedTransferFunction transfer_function_of(const scene::MeshFacts& facts, c
     loaded.name += " (default)";
     return loaded;
   }
-  return options.transfer_function.empty() ? io::default_transfer_function(loading)
+  return options.transfer_function.empty() ? colormaps::default_transfer_function(loading)
                                            : io::load_transfer_function(options.transfer_function, loading);
 }
 

@@ -38,6 +38,6 @@ double diagonal(const scene::Box& box);
 double default_unit_distance(const scene::MeshFacts& facts);
 
 /// The transfer function that the options name, or the default one, over the range of the mesh's scalars.
-io::LoadedTransferFunction transfer_function_of(const scene::MeshFacts& facts, const RenderOptions& options);
+colormaps::LoadedTransferFunction transfer_function_of(const scene::MeshFacts& facts, const RenderOptions& options);
 
 }  // namespace tessera::apps

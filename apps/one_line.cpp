@@ -14,7 +14,7 @@
 #include <ctime>
 #include <random>
 
-#include "compositor/wire.hpp"
+#include "exchange/wire.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -89,17 +89,17 @@ void hold_one_line() {
   nanosleep(&moment, nullptr);
 }
 
-bool share_one_line(compositor::Transport& transport) {
+bool share_one_line(exchange::Transport& transport) {
   Neighbour self;
   gethostname(self.host.data(), self.host.size() - 1);
   self.process = getpid();
   Spoken* shared = make_spoken(self);
-  compositor::Bytes mine;
-  compositor::append(mine, self);
-  const auto all = compositor::gather_all(transport, std::move(mine));
+  exchange::Bytes mine;
+  exchange::append(mine, self);
+  const auto all = exchange::gather_all(transport, std::move(mine));
   bool with_first = true;
   for (std::size_t rank = 0; rank < all.size(); ++rank) {
-    const auto other = compositor::RecordReader(all[rank]).take<Neighbour>();
+    const auto other = exchange::RecordReader(all[rank]).take<Neighbour>();
     if (rank == 0) with_first = other.host == self.host;
     if (other.host != self.host) continue;
     Spoken* others = other.process != self.process && other.key != 0 ? open_spoken(other) : nullptr;

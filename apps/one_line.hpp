@@ -1,6 +1,6 @@
 #pragma once
 
-#include "compositor/transport.hpp"
+#include "exchange/transport.hpp"
 
 /// A run that fails says so in one line, whichever of its ranks' processes say it: who is to speak asks first.
 namespace tessera::apps {
@@ -16,6 +16,6 @@ void name_one_line();
 void hold_one_line();
 
 /// Collective. Returns whether this is the machine of rank 0.
-bool share_one_line(compositor::Transport& transport);
+bool share_one_line(exchange::Transport& transport);
 
 }  // namespace tessera::apps

@@ -2,19 +2,19 @@
 #include <limits>
 
 #include "apps/distributed_render.hpp"
-#include "compositor/wire.hpp"
+#include "exchange/wire.hpp"
 
 namespace tessera::apps {
 namespace {
 
-using compositor::Bytes;
-using compositor::Channel;
+using exchange::Bytes;
+using exchange::Channel;
 
 constexpr int pings = 8;
 
 /// The writer's clock less this rank's, in microseconds: from the quickest of a few exchanges, whose error is at most
 /// half its duration.
-double clock_offset(compositor::Transport& transport, int writer, const scene::Trace& trace) {
+double clock_offset(exchange::Transport& transport, int writer, const scene::Trace& trace) {
   double offset = 0, quickest = std::numeric_limits<double>::infinity();
   for (int i = 0; i < pings; ++i) {
     const double asked = trace.now_us();
@@ -23,14 +23,14 @@ double clock_offset(compositor::Transport& transport, int writer, const scene::T
     const double answered = trace.now_us();
     if (answered - asked >= quickest) continue;
     quickest = answered - asked;
-    offset = compositor::RecordReader(answer.bytes).take<double>() - (asked + answered) / 2;
+    offset = exchange::RecordReader(answer.bytes).take<double>() - (asked + answered) / 2;
   }
   return offset;
 }
 
 }  // namespace
 
-void write_rank_traces(compositor::Transport& transport, int writer, const scene::Trace& trace,
+void write_rank_traces(exchange::Transport& transport, int writer, const scene::Trace& trace,
                        const std::string& process_name, const io::TraceRun& run, const std::filesystem::path& file) {
   const int self = transport.rank();
   if (self != writer) {
@@ -47,7 +47,7 @@ void write_rank_traces(compositor::Transport& transport, int writer, const scene
     const auto message = transport.receive(Channel::timing);
     if (message.bytes.size() == 1) {
       Bytes now;
-      compositor::append(now, trace.now_us());
+      exchange::append(now, trace.now_us());
       transport.send(message.from, Channel::timing, std::move(now));
       continue;
     }

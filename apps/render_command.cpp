@@ -30,7 +30,7 @@ class Run {
   }
 
   [[nodiscard]] const MeshSummary& summary() const { return summary_; }
-  [[nodiscard]] const io::LoadedTransferFunction& transfer_function() const { return loaded_; }
+  [[nodiscard]] const colormaps::LoadedTransferFunction& transfer_function() const { return loaded_; }
 
   /// Renders, verifies if asked, and writes the frame's pictures.
   FrameRecord make(const Frame& frame) {
@@ -92,7 +92,7 @@ class Run {
   std::size_t step_ = 0;  ///< of file_
   io::MeshOptions later_options_ = options_of_later_steps(options_.mesh, file_);
   MeshSummary summary_ = summary_of(file_, options_.settings.threads);
-  io::LoadedTransferFunction loaded_ = transfer_function_of(summary_.facts, options_);
+  colormaps::LoadedTransferFunction loaded_ = transfer_function_of(summary_.facts, options_);
   frame::RenderSettings settings_ = options_.settings;
   std::optional<frame::Renderer> renderer_;
 };
@@ -126,7 +126,7 @@ scene::ExitCode render_alone(const RenderOptions& options) {
 
 }  // namespace
 
-scene::ExitCode render(const RenderOptions& options, compositor::Transport& transport) {
+scene::ExitCode render(const RenderOptions& options, exchange::Transport& transport) {
   if (options.is_volume) return render_volume(options, transport);
   // A device is fed by the same exchange in one process, which then is its only rank.
   if (transport.size() > 1 || !options.compositing_on.backends.empty()) return render_on_ranks(options, transport);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "apps/render_options.hpp"
-#include "compositor/transport.hpp"
+#include "exchange/transport.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::apps {
@@ -10,6 +10,6 @@ namespace tessera::apps {
 /// transport, or in this process if it is the only one.
 /// complete, or accuracy_not_met where --verify found more error than promised (the pictures are written then too).
 /// Throws scene::Error.
-scene::ExitCode render(const RenderOptions& options, compositor::Transport& transport);
+scene::ExitCode render(const RenderOptions& options, exchange::Transport& transport);
 
 }  // namespace tessera::apps

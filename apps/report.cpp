@@ -72,7 +72,7 @@ Json mesh_json(const std::filesystem::path& input, const MeshSummary& mesh) {
       {"notes", mesh.notes}};
 }
 
-Json transfer_function_json(const io::LoadedTransferFunction& loaded) {
+Json transfer_function_json(const colormaps::LoadedTransferFunction& loaded) {
   Json knots = Json::array();
   for (const auto& knot : loaded.function.knots())
     knots.push_back({knot.value, knot.color.x, knot.color.y, knot.color.z, knot.extinction});
@@ -116,22 +116,9 @@ Json frame_json(const Frame& frame, const FrameRecord* record) {
   const auto& statistics = record->statistics;
   json["view"] = view_json(record->camera, frame.size);
   json["frame_ms"] = record->frame_ms;
-  json["counters"] = {{"tets_total", statistics.tets_total},
-                      {"tets_invisible", statistics.tets_invisible},
-                      {"tets_outside_view", statistics.tets_outside_view},
-                      {"tets_projected", statistics.tets_projected},
-                      {"segments", statistics.segments},
-                      {"max_segments_alive", statistics.max_segments_alive},
-                      {"peak_buffer_bytes", statistics.peak_buffer_bytes},
-                      {"exact_sign_tests", statistics.exact_sign_tests},
-                      {"unpaired", statistics.unpaired},
-                      {"tiles_split", statistics.tiles_split}};
-  if (statistics.deep_samples > 0) json["counters"]["deep_samples"] = statistics.deep_samples;
-  if (statistics.fragments > 0) {
-    json["counters"]["fragments"] = statistics.fragments;
-    json["counters"]["exchange_bytes"] = statistics.exchange_bytes;
-    json["counters"]["exchange_messages"] = statistics.exchange_messages;
-  }
+  for (const scene::FrameCounter& counter : scene::frame_counters)
+    if (const std::uint64_t count = statistics.*counter.member; count > 0 || !counter.if_any)
+      json["counters"][std::string(counter.name)] = count;
   json["instruction_set"] = statistics.instruction_set;
   json["arithmetic"] = statistics.on_lattice ? "lattice" : "double";
   json["integrator"] = statistics.integrator;
@@ -166,7 +153,7 @@ std::string view_line(const scene::Camera& camera) {
                      perspective ? camera.view_angle : camera.parallel_scale);
 }
 
-std::string transfer_function_line(const io::LoadedTransferFunction& loaded) {
+std::string transfer_function_line(const colormaps::LoadedTransferFunction& loaded) {
   std::string line = fmt::format("transfer function {}", loaded.name);
   if (loaded.unit_distance)
     line += fmt::format(", unit distance {:.6g} ({})", *loaded.unit_distance, loaded.unit_distance_source);
@@ -186,8 +173,9 @@ std::string frame_line(const RenderOptions& options, const std::vector<Frame>& f
                             ms < 100 ? fmt::format("{:.3g}", ms) : fmt::format("{:.0f}", ms));
 }
 
-std::string run_line(const RenderOptions& options, const MeshSummary& mesh, const io::LoadedTransferFunction& loaded,
-                     const std::vector<Frame>& frames, const Frame& first, const FrameRecord& record) {
+std::string run_line(const RenderOptions& options, const MeshSummary& mesh,
+                     const colormaps::LoadedTransferFunction& loaded, const std::vector<Frame>& frames,
+                     const Frame& first, const FrameRecord& record) {
   const auto& statistics = record.statistics;
   std::string line = fmt::format("{}: {}; field {} ({}) {:.6g} to {:.6g}; {}; view {}, {}x{}", options.input.string(),
                                  cells_line(mesh.counts), mesh.field_name, word(mesh.facts.association),

@@ -37,7 +37,7 @@ RunOutput::RunOutput(const RenderOptions& options, const std::vector<Frame>& fra
       report_{{"program", "tessera"}, {"version", TESSERA_VERSION}, {"method", method_json(options)}},
       frame_reports_(!options.report.empty()) {}
 
-void RunOutput::describe(MeshSummary mesh, io::LoadedTransferFunction transfer_function) {
+void RunOutput::describe(MeshSummary mesh, colormaps::LoadedTransferFunction transfer_function) {
   mesh_ = std::move(mesh);
   transfer_function_ = std::move(transfer_function);
 }

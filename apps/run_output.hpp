@@ -20,7 +20,7 @@ class RunOutput {
   RunOutput(const RenderOptions& options, const std::vector<Frame>& frames);
 
   /// What the run line and the report say of the mesh; before the first add().
-  void describe(MeshSummary mesh, io::LoadedTransferFunction transfer_function);
+  void describe(MeshSummary mesh, colormaps::LoadedTransferFunction transfer_function);
   /// More for the report's head, like the job's shape.
   void note(const char* name, nlohmann::ordered_json value) { report_[name] = std::move(value); }
 
@@ -39,7 +39,7 @@ class RunOutput {
   const std::vector<Frame>& frames_;
   Progress progress_;
   std::optional<MeshSummary> mesh_;
-  std::optional<io::LoadedTransferFunction> transfer_function_;
+  std::optional<colormaps::LoadedTransferFunction> transfer_function_;
   nlohmann::ordered_json report_;
   FrameReports frame_reports_;
   bool met_ = true;

@@ -20,9 +20,9 @@ void add_stall_options(CLI::App& command, StallWords& words) {
       ->type_name("wait|abort");
 }
 
-std::optional<compositor::StallSettings> stall_settings(const StallWords& words, bool quiet) {
+std::optional<exchange::StallSettings> stall_settings(const StallWords& words, bool quiet) {
   check_word("--on-stall", words.on_stall, {"wait", "abort"});
-  compositor::StallSettings settings;
+  exchange::StallSettings settings;
   settings.ends_run = words.on_stall == "abort";
   if (words.timeout == "0") {
     if (settings.ends_run)

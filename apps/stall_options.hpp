@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "compositor/heartbeats.hpp"
+#include "exchange/heartbeats.hpp"
 
 namespace tessera::apps {
 
@@ -18,6 +18,6 @@ void add_stall_options(CLI::App& command, StallWords& words);
 
 /// What they say; nothing if no rank is to be looked after. Notices go to stderr, one line each, unless `quiet`. Throws
 /// scene::Error(bad_input).
-std::optional<compositor::StallSettings> stall_settings(const StallWords& words, bool quiet);
+std::optional<exchange::StallSettings> stall_settings(const StallWords& words, bool quiet);
 
 }  // namespace tessera::apps

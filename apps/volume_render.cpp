@@ -27,7 +27,7 @@ namespace tessera::apps {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using compositor::Bytes;
+using exchange::Bytes;
 
 void refuse_mesh_options(const RenderOptions& options) {
   const auto refuse = [&](const char* option) {
@@ -67,7 +67,7 @@ std::vector<Frame> frames_of(const RenderOptions& options) {
 /// One rank's part of a run. Of a time series one step is held at a time; the first gives transfer function and view.
 class VolumeRun {
  public:
-  VolumeRun(const RenderOptions& options, compositor::Transport& transport)
+  VolumeRun(const RenderOptions& options, exchange::Transport& transport)
       : options_(options),
         transport_(transport),
         speaks_(transport.rank() == 0),
@@ -87,7 +87,7 @@ class VolumeRun {
     if (!options_.timing.empty()) write_trace();
     Bytes code(1);
     if (speaks_) code[0] = static_cast<std::byte>(finish());
-    return static_cast<scene::ExitCode>(compositor::broadcast(transport_, 0, code)[0]);
+    return static_cast<scene::ExitCode>(exchange::broadcast(transport_, 0, code)[0]);
   }
 
  private:
@@ -106,7 +106,7 @@ class VolumeRun {
     if (speaks_) check_outputs(options_, frames_);
     Bytes finished(frames_.size());
     for (std::size_t i = 0; i < frames_.size(); ++i) finished[i] = std::byte{frames_[i].finished};
-    finished = compositor::broadcast(transport_, 0, std::move(finished));
+    finished = exchange::broadcast(transport_, 0, std::move(finished));
     for (std::size_t i = 0; i < frames_.size(); ++i) frames_[i].finished = finished[i] != std::byte{0};
   }
 
@@ -247,7 +247,7 @@ class VolumeRun {
   }
 
   const RenderOptions& options_;
-  compositor::Transport& transport_;
+  exchange::Transport& transport_;
   bool speaks_;
   std::vector<Frame> frames_;
   Progress progress_;
@@ -257,7 +257,7 @@ class VolumeRun {
   io::VolumeFile file_;
   std::size_t step_ = 0;           ///< of file_
   std::optional<scene::Box> box_;  ///< of the first step; none until something is read
-  io::LoadedTransferFunction loaded_;
+  colormaps::LoadedTransferFunction loaded_;
   std::optional<volume::CellRanges> ranges_;  ///< of file_, until its renderer takes them
   std::optional<volume::Renderer> renderer_;
   const std::uint64_t resident_ = resident_bytes();
@@ -269,7 +269,7 @@ class VolumeRun {
 
 }  // namespace
 
-scene::ExitCode render_volume(const RenderOptions& options, compositor::Transport& transport) {
+scene::ExitCode render_volume(const RenderOptions& options, exchange::Transport& transport) {
   refuse_mesh_options(options);
   return VolumeRun(options, transport).run();
 }

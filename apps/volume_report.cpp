@@ -122,7 +122,7 @@ Json volume_frame_json(const RenderOptions& options, const Frame& frame, const V
 }
 
 std::string volume_run_line(const RenderOptions& options, const io::VolumeFile& file,
-                            const io::LoadedTransferFunction& loaded, const std::vector<Frame>& frames,
+                            const colormaps::LoadedTransferFunction& loaded, const std::vector<Frame>& frames,
                             const Frame& first, const VolumeFrameRecord& record) {
   const volume::RenderStatistics& s = record.statistics;
   std::string line = fmt::format("{}: {}; field {} ({}) {:.6g} to {:.6g}; {}; view {}, {}x{}",

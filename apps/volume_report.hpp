@@ -41,7 +41,7 @@ nlohmann::ordered_json volume_frame_json(const RenderOptions& options, const Fra
 
 /// The one line of a run, after its first frame.
 std::string volume_run_line(const RenderOptions& options, const io::VolumeFile& file,
-                            const io::LoadedTransferFunction& loaded, const std::vector<Frame>& frames,
+                            const colormaps::LoadedTransferFunction& loaded, const std::vector<Frame>& frames,
                             const Frame& first, const VolumeFrameRecord& record);
 
 /// `frame 12 of 50: 31415926 voxels visited, 512 ms`: one a frame of a run of several.

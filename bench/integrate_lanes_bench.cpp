@@ -13,8 +13,8 @@
 #include <random>
 #include <vector>
 
-#include "compositor/integrate_lanes.hpp"
-#include "compositor/segment_integrator.hpp"
+#include "integrals/integrate_lanes.hpp"
+#include "integrals/segment_integrator.hpp"
 
 namespace {
 
@@ -72,8 +72,8 @@ void choose(std::int64_t target) {
 
 void run_float(benchmark::State& state, std::int64_t target, int knots, double share, bool smooth) {
   choose(target);
-  const compositor::LaneTable table(function_of(knots), 0, 1, 1, scene::Emission::absorption);
-  compositor::FloatBatch batch;
+  const integrals::LaneTable table(function_of(knots), 0, 1, 1, scene::Emission::absorption);
+  integrals::FloatBatch batch;
   batch.reserve(batch_size);
   for (const Segment& s : segments_of(knots, share, smooth)) {
     batch.length[batch.size] = s.length;
@@ -81,9 +81,9 @@ void run_float(benchmark::State& state, std::int64_t target, int knots, double s
     batch.scalar_back[batch.size] = s.back;
     ++batch.size;
   }
-  state.SetLabel(compositor::lane_table_form(table));
+  state.SetLabel(integrals::lane_table_form(table));
   for (auto _ : state) {
-    compositor::integrate_lanes(table, batch);
+    integrals::integrate_lanes(table, batch);
     benchmark::ClobberMemory();
   }
   report(state);
@@ -91,8 +91,8 @@ void run_float(benchmark::State& state, std::int64_t target, int knots, double s
 
 void run_double(benchmark::State& state, std::int64_t target, int knots, double share, bool smooth) {
   choose(target);
-  const compositor::PiecewiseTable table(function_of(knots));
-  compositor::SegmentBatch batch;
+  const integrals::PiecewiseTable table(function_of(knots));
+  integrals::SegmentBatch batch;
   batch.reserve(batch_size);
   for (const Segment& s : segments_of(knots, share, smooth)) {
     batch.length[batch.size] = s.length;
@@ -101,7 +101,7 @@ void run_double(benchmark::State& state, std::int64_t target, int knots, double 
     ++batch.size;
   }
   for (auto _ : state) {
-    compositor::integrate_exact(table, scene::Emission::absorption, batch);
+    integrals::integrate_exact(table, scene::Emission::absorption, batch);
     benchmark::ClobberMemory();
   }
   report(state);

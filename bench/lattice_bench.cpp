@@ -17,12 +17,12 @@
 #include <memory>
 #include <vector>
 
-#include "compositor/lane_table.hpp"
 #include "compositor/window_kernel.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/transfer_functions.hpp"
 #include "frame/lattice_frame.hpp"
 #include "frame/render.hpp"
+#include "integrals/lane_table.hpp"
 #include "projection/depth_order.hpp"
 #include "projection/lattice_rasterizer.hpp"
 #include "projection/tile_lists.hpp"
@@ -78,7 +78,7 @@ struct Frame {
   projection::TileGrid grid;
   std::vector<projection::PixelVertex> vertices;
   std::vector<projection::LatticeVertex> lattice_vertices;
-  projection::Lattice lattice{};
+  scene::Lattice lattice{};
   projection::LatticeView view{};
   std::unique_ptr<projection::TileLists> lists;
   std::vector<std::vector<projection::TileEntry>> ordered;  ///< of each tile
@@ -94,8 +94,8 @@ struct Stages {
 };
 
 void run_tiles(Frame& f, Stages& stages) {
-  const compositor::LaneTable table(f.function, f.lattice.scalar_origin, f.lattice.scalar_unit, f.lattice.depth_unit,
-                                    scene::Emission::absorption);
+  const integrals::LaneTable table(f.function, f.lattice.scalar_origin, f.lattice.scalar_unit, f.lattice.depth_unit,
+                                   scene::Emission::absorption);
   const compositor::WindowRules rules{&table, 0};
   const auto state = std::make_unique<compositor::WindowState>();
   projection::SegmentWindows windows;
@@ -106,7 +106,7 @@ void run_tiles(Frame& f, Stages& stages) {
   scene::TraceLaps laps(nullptr);
   for (std::size_t tile = 0; tile < f.grid.count(); ++tile) {
     const std::span<const projection::TileEntry> entries = f.ordered[tile];
-    const projection::PixelRect rect = f.grid.rect(tile);
+    const scene::PixelRect rect = f.grid.rect(tile);
     windows.reset(static_cast<std::size_t>(rect.area()), 32);
     state->start(rect, f.space);
     state->open_pixels(rect, open);

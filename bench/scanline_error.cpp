@@ -1,4 +1,5 @@
-/// The error of the `scanline` rasterizer ([JCN07] 4.1-4.2) and where it comes from, and its time beside `planes`.
+/// The error of the `scanline` rasterizer (Juliachs et al. 2007, 4.1-4.2) and where it comes from, and its time beside
+/// `planes`.
 ///
 /// Usage: scanline_error [IMAGE_HEIGHT] [MESH_FILE ...]; prints one Markdown row a mesh. Times are processor time.
 ///
@@ -89,8 +90,8 @@ void measure(const std::string& name, const scene::TetMesh& mesh, const scene::C
   projection::TileLists lists(projected, grid, function, false);
   lists.fill(0, grid.count());
   const float edge = projection::longest_edge(mesh);
-  const compositor::SegmentIntegrator integrator(function, {.kind = scene::IntegratorKind::exact},
-                                                 scene::Emission::absorption);
+  const integrals::SegmentIntegrator integrator(function, {.kind = scene::IntegratorKind::exact},
+                                                scene::Emission::absorption);
 
   projection::RaySegments segments;
   projection::ScanlineBuffers buffers;
@@ -103,7 +104,7 @@ void measure(const std::string& name, const scene::TetMesh& mesh, const scene::C
   const auto rasterize = [&](std::size_t tile, bool paper, Picture& picture) {
     const double start = cpu_seconds();
     segments.size = 0;
-    const projection::PixelRect rect = grid.rect(tile);
+    const scene::PixelRect rect = grid.rect(tile);
     const auto entries = lists.tile(tile);
     for (std::size_t next = 0; next < entries.size();) {
       next += paper ? rasterize_scanline(projected, edge, entries.subspan(next), rect, buffers, segments, counts)
@@ -114,7 +115,7 @@ void measure(const std::string& name, const scene::TetMesh& mesh, const scene::C
     picture.segments += segments.size;
   };
   const auto composite = [&](std::size_t tile, bool paper, Picture& picture) {
-    const projection::PixelRect rect = grid.rect(tile);
+    const scene::PixelRect rect = grid.rect(tile);
     compositor::TilePixels pixels(space, integrator, function.max_color(), 1e9, scene::Emission::absorption,
                                   compositor::ImageWindow{&picture.image});
     pixels.start(rect);
@@ -137,7 +138,7 @@ void measure(const std::string& name, const scene::TetMesh& mesh, const scene::C
     to_floats(segments, edge);
     composite(tile, true, rounded);
 
-    const projection::PixelRect rect = grid.rect(tile);
+    const scene::PixelRect rect = grid.rect(tile);
     const auto note = [&](const std::vector<std::uint64_t>& from, const std::vector<std::uint64_t>& without,
                           std::uint64_t& cell_count, std::uint64_t& pixel_count) {
       std::vector<std::uint64_t> only;

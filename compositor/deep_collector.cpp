@@ -9,7 +9,7 @@
 
 namespace tessera::compositor {
 
-void DeepCollector::add(const projection::PixelRect& rect, std::vector<std::uint32_t> counts,
+void DeepCollector::add(const scene::PixelRect& rect, std::vector<std::uint32_t> counts,
                         std::vector<scene::DeepImageSample> samples) {
   if (samples.empty()) return;
   const std::lock_guard lock(mutex_);

@@ -14,7 +14,7 @@ class DeepTarget {
  public:
   virtual ~DeepTarget() = default;
   /// The samples of a rectangle, pixel after pixel row by row, `counts` of them in each. Rectangles are disjoint.
-  virtual void add(const projection::PixelRect& rect, std::vector<std::uint32_t> counts,
+  virtual void add(const scene::PixelRect& rect, std::vector<std::uint32_t> counts,
                    std::vector<scene::DeepImageSample> samples) = 0;
 };
 
@@ -25,7 +25,7 @@ class DeepCollector final : public DeepTarget {
   DeepCollector(scene::ImageSize size, std::uint64_t most_bytes) : size_(size), most_bytes_(most_bytes) {}
 
   /// Throws Error(system_failure) beyond the bound.
-  void add(const projection::PixelRect& rect, std::vector<std::uint32_t> counts,
+  void add(const scene::PixelRect& rect, std::vector<std::uint32_t> counts,
            std::vector<scene::DeepImageSample> samples) override;
 
   /// The picture; the collector is empty then. Pixels that got none have no samples.
@@ -35,7 +35,7 @@ class DeepCollector final : public DeepTarget {
 
  private:
   struct Block {
-    projection::PixelRect rect;
+    scene::PixelRect rect;
     std::vector<std::uint32_t> counts;
     std::vector<scene::DeepImageSample> samples;
   };

@@ -39,18 +39,18 @@ void append_tidy(std::span<const DeepSample> samples, std::vector<scene::DeepIma
   }
 }
 
-DeepSink::DeepSink(const projection::PixelSpace& space, const SegmentIntegrator& integrator,
+DeepSink::DeepSink(const projection::PixelSpace& space, const integrals::SegmentIntegrator& integrator,
                    const scene::TransferFunction& function, double longest_ray, scene::Emission emission,
                    double accuracy, DeepTarget& collector)
     : space_(&space),
       integrator_(&integrator),
       cutter_(function, emission, accuracy),
       accuracy_(accuracy),
-      left_out_per_transmittance_(opacity_weight(function.max_color(), longest_ray, emission)),
+      left_out_per_transmittance_(integrals::opacity_weight(function.max_color(), longest_ray, emission)),
       termination_error_(integrator.termination_error()),
       collector_(&collector) {}
 
-void DeepSink::start(const projection::PixelRect& rect) {
+void DeepSink::start(const scene::PixelRect& rect) {
   rect_ = rect;
   const auto n = static_cast<std::size_t>(rect.area());
   mergers_.assign(n, DeepMerger(accuracy_));

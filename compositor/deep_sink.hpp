@@ -6,9 +6,9 @@
 #include "compositor/deep_collector.hpp"
 #include "compositor/deep_fragments.hpp"
 #include "compositor/deep_pieces.hpp"
-#include "compositor/segment_batch.hpp"
-#include "compositor/segment_integrator.hpp"
 #include "compositor/tile_sink.hpp"
+#include "integrals/segment_batch.hpp"
+#include "integrals/segment_integrator.hpp"
 #include "projection/pixel_space.hpp"
 
 namespace tessera::compositor {
@@ -18,11 +18,11 @@ namespace tessera::compositor {
 class DeepSink final : public TileSink {
  public:
   /// `integrator`, `space` and `collector` must outlive this object; threads share the collector.
-  DeepSink(const projection::PixelSpace& space, const SegmentIntegrator& integrator,
+  DeepSink(const projection::PixelSpace& space, const integrals::SegmentIntegrator& integrator,
            const scene::TransferFunction& function, double longest_ray, scene::Emission emission, double accuracy,
            DeepTarget& collector);
 
-  void start(const projection::PixelRect& rect) override;
+  void start(const scene::PixelRect& rect) override;
   void take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) override;
   bool take_unordered(const projection::RaySegments&, const sorting::PixelLists&, double) override { return false; }
   [[nodiscard]] bool open(std::size_t pixel) const override { return open_[pixel] != 0; }
@@ -36,18 +36,18 @@ class DeepSink final : public TileSink {
   void integrate_pieces();
 
   const projection::PixelSpace* space_;
-  const SegmentIntegrator* integrator_;
+  const integrals::SegmentIntegrator* integrator_;
   PieceCutter cutter_;
   double accuracy_, left_out_per_transmittance_, termination_error_;
   DeepTarget* collector_;
-  projection::PixelRect rect_{0, 0, 0, 0};
+  scene::PixelRect rect_{0, 0, 0, 0};
   std::vector<DeepMerger> mergers_;  ///< one a pixel
   std::vector<double> transmittance_before_, length_per_depth_;
   std::vector<std::uint8_t> open_;
   std::size_t open_count_ = 0;
   std::vector<DeepPiece> pieces_;  ///< that wait for the integrator
   std::vector<std::uint32_t> piece_pixels_;
-  SegmentBatch batch_;
+  integrals::SegmentBatch batch_;
   struct PixelSample {
     std::uint32_t pixel;
     DeepSample sample;

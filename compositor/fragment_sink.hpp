@@ -1,20 +1,22 @@
 #pragma once
 
-#include "compositor/part_writer.hpp"
 #include "compositor/tile_sink.hpp"
+#include "exchange/part_writer.hpp"
 
 namespace tessera::compositor {
 
 /// A sink that makes fragments for another process.
-class FragmentSink : public TileSink, protected PartWriter {
+class FragmentSink : public TileSink, protected exchange::PartWriter {
  public:
-  using PartWriter::Deliver;
+  using exchange::PartWriter::Deliver;
 
-  FragmentSink(RecordKind kind, Deliver deliver) : PartWriter(kind, std::move(deliver)) {}
+  FragmentSink(exchange::RecordKind kind, Deliver deliver) : exchange::PartWriter(kind, std::move(deliver)) {}
 
-  void begin_tile(std::size_t tile, const projection::PixelRect& rect) override { PartWriter::begin_tile(tile, rect); }
-  void end_tile() override { PartWriter::end_tile(); }
-  void start(const projection::PixelRect& rect) override { PartWriter::start(rect); }
+  void begin_tile(std::size_t tile, const scene::PixelRect& rect) override {
+    exchange::PartWriter::begin_tile(tile, rect);
+  }
+  void end_tile() override { exchange::PartWriter::end_tile(); }
+  void start(const scene::PixelRect& rect) override { exchange::PartWriter::start(rect); }
 };
 
 }  // namespace tessera::compositor

@@ -186,7 +186,7 @@ class ComputeKernel final : public GlKernel {
 }  // namespace
 
 void GlIntegrals::prepare(const gl::Program& program, const GlRules& rules) {
-  const LaneTable& table = *rules.table;
+  const integrals::LaneTable& table = *rules.table;
   if (frame_ != static_cast<std::int64_t>(rules.frame)) {
     fence_.wait();  // the last table has gone up
     const std::size_t bytes = table.rows.size() * sizeof(float);

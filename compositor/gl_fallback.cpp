@@ -7,8 +7,8 @@
 namespace tessera::compositor {
 
 std::vector<GlLight> composite_on_cpu(const GlFragments& fragments, const GlRules& rules,
-                                      const SegmentIntegrator& integrator, const projection::Lattice& units) {
-  SegmentBatch batch;
+                                      const integrals::SegmentIntegrator& integrator, const scene::Lattice& units) {
+  integrals::SegmentBatch batch;
   batch.size = fragments.values.size();
   batch.reserve(batch.size);
   for (std::size_t i = 0; i < batch.size; ++i) {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "compositor/lane_table.hpp"
+#include "integrals/lane_table.hpp"
 #include "sorting/gl_list_sort.hpp"
 
 namespace tessera::compositor {
@@ -44,10 +44,10 @@ static_assert(sizeof(GlLight) == 32);
 
 /// How a frame's fragments become light.
 struct GlRules {
-  const LaneTable* table;     ///< of a frame; lives until its tiles are done
-  std::uint32_t frame;        ///< its number; jobs of one frame share all of this
-  int samples;                ///< 0: exact
-  float least_transmittance;  ///< behind less nothing shows
+  const integrals::LaneTable* table;  ///< of a frame; lives until its tiles are done
+  std::uint32_t frame;                ///< its number; jobs of one frame share all of this
+  int samples;                        ///< 0: exact
+  float least_transmittance;          ///< behind less nothing shows
 };
 
 }  // namespace tessera::compositor

@@ -14,6 +14,7 @@
 #include "compositor/gl_fallback.hpp"
 #include "compositor/merge_kinds.hpp"
 #include "compositor/merged_pixel.hpp"
+#include "compositor/tuple_record.hpp"
 #include "compositor/window_kernel.hpp"
 #include "projection/segment_tuple.hpp"
 
@@ -31,19 +32,19 @@ std::uint32_t ordered(float x) {
 
 /// A scalar in the table's units: as lane_scalar() has it where the transfer function has knots, so that a value at a
 /// step stays there; beyond, where rounding to whole units would do no good, as it is.
-float device_scalar(double value, const projection::Lattice& units) {
+float device_scalar(double value, const scene::Lattice& units) {
   const double n = (value - units.scalar_origin) / units.scalar_unit;
-  return std::abs(n) < projection::Lattice::limit ? lane_scalar(value, units.scalar_origin, units.scalar_unit)
-                                                  : static_cast<float>(n);
+  return std::abs(n) < scene::Lattice::limit ? integrals::lane_scalar(value, units.scalar_origin, units.scalar_unit)
+                                             : static_cast<float>(n);
 }
 
 class GlMerger final : public TileMerger {
  public:
-  GlMerger(const MergeContext& context, const projection::PixelRect& rect)
+  GlMerger(const MergeContext& context, const scene::PixelRect& rect)
       : context_(context),
         units_(*context.lattice),
         rect_(rect),
-        weight_(opacity_weight(context.max_color, context.longest_ray, context.emission)),
+        weight_(integrals::opacity_weight(context.max_color, context.longest_ray, context.emission)),
         rules_{context.table, context.frame, context.integrator->samples(),
                static_cast<float>(context.integrator->termination_error() / weight_)},
         pixels_(static_cast<std::size_t>(rect.area())) {
@@ -52,22 +53,22 @@ class GlMerger final : public TileMerger {
       for (int x = rect.x0; x < rect.x1; ++x) length_.push_back(context.space->length_per_depth(x + 0.5, y + 0.5));
   }
 
-  void add(const TilePart& part) override {
+  void add(const exchange::TilePart& part) override {
     reserve(fragments_.size() + part.fragments);
-    RecordReader reader(part.records.bytes());
+    exchange::RecordReader reader(part.records.bytes());
     while (!reader.empty()) switch (part.kind) {
-        case RecordKind::lattice: {
-          const auto header = reader.take<LatticeHeader>();
+        case exchange::RecordKind::lattice: {
+          const auto header = reader.take<exchange::LatticeHeader>();
           check(part, header.pixel);
           for (std::uint32_t i = 0; i < header.segments; ++i)
             add(header.pixel, reader.take<projection::LatticeSegment>());
           break;
         }
-        case RecordKind::lattice_runs: {
-          const auto header = reader.take<RunsHeader>();
+        case exchange::RecordKind::lattice_runs: {
+          const auto header = reader.take<exchange::RunsHeader>();
           check(part, header.pixel);
           for (int i = 0; i < header.runs; ++i) {
-            const auto run = reader.take<LatticeRun>();
+            const auto run = reader.take<exchange::LatticeRun>();
             push({double(run.front),
                   double(run.back),
                   {run.red, run.green, run.blue, optical_depth_of(run.opacity)},
@@ -78,8 +79,8 @@ class GlMerger final : public TileMerger {
           for (int i = 0; i < header.segments; ++i) add(header.pixel, reader.take<projection::LatticeSegment>());
           break;
         }
-        case RecordKind::runs: {
-          const auto run = reader.take<RunRecord>();
+        case exchange::RecordKind::runs: {
+          const auto run = reader.take<exchange::RunRecord>();
           check(part, run.pixel);
           push({run.front,
                 run.front + run.thickness,
@@ -88,11 +89,11 @@ class GlMerger final : public TileMerger {
                 ordered(run.opacity)});
           break;
         }
-        case RecordKind::chains:
-        case RecordKind::chains_of_cells:
+        case exchange::RecordKind::chains:
+        case exchange::RecordKind::chains_of_cells:
           add_chain(part, reader);
           break;
-        case RecordKind::tuples: {
+        case exchange::RecordKind::tuples: {
           const auto record = reader.take<TupleRecord>();
           check(part, record.pixel);
           by_back_ = true;
@@ -137,7 +138,7 @@ class GlMerger final : public TileMerger {
     return !on_lattice() && rules_.samples == 0 && context_.device->method() == GlMethod::compute;
   }
 
-  void check(const TilePart& part, std::uint32_t pixel) const {
+  void check(const exchange::TilePart& part, std::uint32_t pixel) const {
     if (pixel < pixels_.size()) return;
     throw scene::Error(scene::ExitCode::system_failure,
                        fmt::format("exchange: the fragments of tile {} are malformed; all ranks must run the same "
@@ -195,13 +196,13 @@ class GlMerger final : public TileMerger {
     batch_.size = 0;
   }
 
-  void add_chain(const TilePart& part, RecordReader& reader) {
-    const bool cell_data = part.kind == RecordKind::chains_of_cells;
-    const auto chain = reader.take<ChainHeader>();
+  void add_chain(const exchange::TilePart& part, exchange::RecordReader& reader) {
+    const bool cell_data = part.kind == exchange::RecordKind::chains_of_cells;
+    const auto chain = reader.take<exchange::ChainHeader>();
     check(part, chain.pixel);
     double front = chain.front, scalar = chain.scalar_front;
     for (std::uint32_t i = 0; i < chain.links; ++i) {
-      const auto link = reader.take<ChainLink>();
+      const auto link = reader.take<exchange::ChainLink>();
       add(chain.pixel, front, link.back, cell_data ? link.scalar : scalar, link.scalar,
           static_cast<std::uint32_t>(link.tet));
       front = link.back;
@@ -311,22 +312,22 @@ class GlMerger final : public TileMerger {
   }
 
   MergeContext context_;
-  projection::Lattice units_;
-  projection::PixelRect rect_;
+  scene::Lattice units_;
+  scene::PixelRect rect_;
   double weight_;
   GlRules rules_;
   std::vector<MergedPixel> pixels_;
   std::vector<double> length_;  ///< world length per unit of planar depth, by pixel
   std::vector<Fragment> fragments_;
-  SegmentBatch batch_;
+  integrals::SegmentBatch batch_;
   bool by_back_ = false;
   std::uint32_t arrivals_ = 0;
 };
 
 }  // namespace
 
-projection::Lattice device_units(const scene::TransferFunction& function, double longest_ray) {
-  using projection::Lattice;
+scene::Lattice device_units(const scene::TransferFunction& function, double longest_ray) {
+  using scene::Lattice;
   const double low = function.knots().front().value, high = function.knots().back().value;
   Lattice units{};
   units.depth_unit = longest_ray > 0 ? std::exp2(std::ceil(std::log2(longest_ray))) : 1;
@@ -335,7 +336,7 @@ projection::Lattice device_units(const scene::TransferFunction& function, double
   return units;
 }
 
-std::unique_ptr<TileMerger> make_gl_merger(const MergeContext& context, const projection::PixelRect& rect) {
+std::unique_ptr<TileMerger> make_gl_merger(const MergeContext& context, const scene::PixelRect& rect) {
   return std::make_unique<GlMerger>(context, rect);
 }
 

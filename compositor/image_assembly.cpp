@@ -17,7 +17,7 @@ scene::Error malformed(int from) {
 }
 
 /// A tile's deep samples, if it has any.
-void take_deep(RecordReader& reader, const projection::PixelRect& rect, DeepCollector* to) {
+void take_deep(exchange::RecordReader& reader, const scene::PixelRect& rect, DeepCollector* to) {
   const auto count = reader.take<std::uint64_t>();
   if (count == 0) return;
   std::vector<std::uint32_t> counts(static_cast<std::size_t>(rect.area()));
@@ -33,7 +33,7 @@ void take_deep(RecordReader& reader, const projection::PixelRect& rect, DeepColl
 
 }  // namespace
 
-TileSender::TileSender(Transport& transport, int assembler, std::uint32_t frame)
+TileSender::TileSender(exchange::Transport& transport, int assembler, std::uint32_t frame)
     : transport_(transport), assembler_(assembler), frame_(frame) {}
 
 void TileSender::send(std::uint32_t tile, const MergedTile& merged) {
@@ -42,14 +42,14 @@ void TileSender::send(std::uint32_t tile, const MergedTile& merged) {
     message_.reserve(message_bytes + (64 << 10));  // and the tile that goes beyond
     message_.resize(sizeof(TilesHeader));          // flush() fills it in
   }
-  append(message_, std::uint64_t{tile});
+  exchange::append(message_, std::uint64_t{tile});
   const auto append_all = [&](const auto& values) {
     const auto bytes = std::as_bytes(std::span(values));
     message_.insert(message_.end(), bytes.begin(), bytes.end());
   };
   append_all(merged.image.rgba);
   append_all(merged.image.depth);
-  append(message_, std::uint64_t{merged.deep_samples.size()});
+  exchange::append(message_, std::uint64_t{merged.deep_samples.size()});
   if (!merged.deep_samples.empty()) {
     append_all(merged.deep_counts);
     append_all(merged.deep_samples);
@@ -62,30 +62,30 @@ void TileSender::flush() {
   if (tiles_ == 0) return;
   const TilesHeader header{.frame = frame_, .tiles = std::exchange(tiles_, 0)};
   std::memcpy(message_.data(), &header, sizeof header);
-  transport_.send(assembler_, Channel::tiles, std::exchange(message_, {}), static_cast<std::int32_t>(frame_));
+  transport_.send(assembler_, exchange::Channel::tiles, std::exchange(message_, {}), static_cast<std::int32_t>(frame_));
 }
 
-void TileSender::end(const FrameEnd& sums) {
+void TileSender::end(const exchange::FrameEnd& sums) {
   const std::lock_guard lock(mutex_);
   flush();
-  Bytes message;
-  append(message, TilesHeader{.ends = 1, .frame = frame_});
-  append(message, sums);
-  transport_.send(assembler_, Channel::tiles, std::move(message), static_cast<std::int32_t>(frame_));
+  exchange::Bytes message;
+  exchange::append(message, TilesHeader{.ends = 1, .frame = frame_});
+  exchange::append(message, sums);
+  transport_.send(assembler_, exchange::Channel::tiles, std::move(message), static_cast<std::int32_t>(frame_));
 }
 
 ImageAssembly::ImageAssembly(int compositors, std::function<projection::TileGrid(std::uint32_t)> grid_of,
                              std::uint64_t deep_bytes)
     : compositors_(compositors), grid_of_(std::move(grid_of)), deep_bytes_(deep_bytes) {}
 
-std::optional<AssembledFrame> ImageAssembly::accept(const Message& message, int self) {
-  RecordReader reader(message.bytes);
+std::optional<AssembledFrame> ImageAssembly::accept(const exchange::Message& message, int self) {
+  exchange::RecordReader reader(message.bytes);
   const auto header = reader.take<TilesHeader>();
-  if (header.magic != wire_magic || header.version != wire_version)
+  if (header.magic != exchange::wire_magic || header.version != exchange::wire_version)
     throw scene::Error(scene::ExitCode::system_failure,
                        fmt::format("assembly: rank {} speaks another wire version than rank {}, {}; run one version of "
                                    "the program on all machines",
-                                   message.from, self, wire_version));
+                                   message.from, self, exchange::wire_version));
   auto [at, is_new] = frames_.try_emplace(header.frame);
   Frame& frame = at->second;
   if (is_new) {
@@ -96,7 +96,7 @@ std::optional<AssembledFrame> ImageAssembly::accept(const Message& message, int 
   for (std::uint32_t i = 0; i < header.tiles; ++i) {
     const auto tile = reader.take<std::uint64_t>();
     if (tile >= frame.grid.count()) throw malformed(message.from);
-    const projection::PixelRect rect = frame.grid.rect(tile);
+    const scene::PixelRect rect = frame.grid.rect(tile);
     const auto width = static_cast<std::size_t>(rect.x1 - rect.x0);
     const auto area = static_cast<std::size_t>(rect.area());
     const auto rgba = reader.take_bytes(area * 4 * sizeof(float)), depth = reader.take_bytes(area * sizeof(float));
@@ -108,30 +108,12 @@ std::optional<AssembledFrame> ImageAssembly::accept(const Message& message, int 
     take_deep(reader, rect, frame.deep.get());
   }
   if (header.ends == 0) return std::nullopt;
-  frame.sums = sum(frame.sums, reader.take<FrameEnd>());
+  frame.sums = sum(frame.sums, reader.take<exchange::FrameEnd>());
   if (++frame.ended < compositors_) return std::nullopt;
   AssembledFrame assembled{header.frame, std::move(frame.image), frame.sums, {}};
   if (frame.deep != nullptr) assembled.deep = frame.deep->image();
   frames_.erase(at);
   return assembled;
-}
-
-FrameEnd sum(const FrameEnd& a, const FrameEnd& b) {
-  return {a.tets_total + b.tets_total,
-          a.tets_invisible + b.tets_invisible,
-          a.tets_outside_view + b.tets_outside_view,
-          a.tets_between_pixels + b.tets_between_pixels,
-          a.tets_projected + b.tets_projected,
-          a.segments + b.segments,
-          std::max(a.max_segments_alive, b.max_segments_alive),
-          a.peak_buffer_bytes + b.peak_buffer_bytes,
-          a.exact_sign_tests + b.exact_sign_tests,
-          a.tiles_split + b.tiles_split,
-          a.fragments + b.fragments,
-          a.bytes + b.bytes,
-          a.messages + b.messages,
-          a.on_lattice + b.on_lattice,
-          a.failed_devices + b.failed_devices};
 }
 
 }  // namespace tessera::compositor

@@ -8,7 +8,7 @@
 
 #include "compositor/deep_collector.hpp"
 #include "compositor/tile_merger.hpp"
-#include "compositor/wire.hpp"
+#include "exchange/wire.hpp"
 #include "projection/tile_lists.hpp"
 #include "scene/image.hpp"
 
@@ -23,8 +23,8 @@
 namespace tessera::compositor {
 
 struct TilesHeader {
-  std::uint32_t magic = wire_magic;
-  std::uint16_t version = wire_version;
+  std::uint32_t magic = exchange::wire_magic;
+  std::uint16_t version = exchange::wire_version;
   std::uint16_t ends = 0;
   std::uint32_t frame = 0;
   std::uint32_t tiles = 0;
@@ -34,26 +34,26 @@ static_assert(sizeof(TilesHeader) == 16);
 /// A compositor's finished tiles of one frame on their way, in messages of about half a megabyte. Any thread.
 class TileSender {
  public:
-  TileSender(Transport& transport, int assembler, std::uint32_t frame);
+  TileSender(exchange::Transport& transport, int assembler, std::uint32_t frame);
   void send(std::uint32_t tile, const MergedTile& merged);
-  void end(const FrameEnd& sums);
+  void end(const exchange::FrameEnd& sums);
 
  private:
   void flush();
 
-  Transport& transport_;
+  exchange::Transport& transport_;
   int assembler_;
   std::uint32_t frame_;
   std::mutex mutex_;
   std::uint32_t tiles_ = 0;
-  Bytes message_;
+  exchange::Bytes message_;
 };
 
 /// A picture that has all its tiles.
 struct AssembledFrame {
   std::uint32_t frame;
   scene::Image image;
-  FrameEnd sums;
+  exchange::FrameEnd sums;
   scene::DeepImage deep;  ///< if asked for
 };
 
@@ -65,13 +65,13 @@ class ImageAssembly {
                 std::uint64_t deep_bytes = 0);
 
   /// Takes a message of channel `tiles`; the frame that it completes, if any.
-  std::optional<AssembledFrame> accept(const Message& message, int self);
+  std::optional<AssembledFrame> accept(const exchange::Message& message, int self);
 
  private:
   struct Frame {
     scene::Image image;
     projection::TileGrid grid;
-    FrameEnd sums{};
+    exchange::FrameEnd sums{};
     int ended = 0;
     std::unique_ptr<DeepCollector> deep;
   };
@@ -80,8 +80,5 @@ class ImageAssembly {
   std::uint64_t deep_bytes_;
   std::map<std::uint32_t, Frame> frames_;
 };
-
-/// Sums of two processes' counts; for `max_segments_alive` the larger one.
-FrameEnd sum(const FrameEnd& a, const FrameEnd& b);
 
 }  // namespace tessera::compositor

@@ -5,9 +5,9 @@
 /// The mergers of each kind of record, for make_tile_merger() alone.
 namespace tessera::compositor {
 
-std::unique_ptr<TileMerger> make_segment_merger(const MergeContext& context, const projection::PixelRect& rect);
-std::unique_ptr<TileMerger> make_tuple_merger(const MergeContext& context, const projection::PixelRect& rect);
-std::unique_ptr<TileMerger> make_window_merger(const MergeContext& context, const projection::PixelRect& rect);
-std::unique_ptr<TileMerger> make_run_merger(const MergeContext& context, const projection::PixelRect& rect);
+std::unique_ptr<TileMerger> make_segment_merger(const MergeContext& context, const scene::PixelRect& rect);
+std::unique_ptr<TileMerger> make_tuple_merger(const MergeContext& context, const scene::PixelRect& rect);
+std::unique_ptr<TileMerger> make_window_merger(const MergeContext& context, const scene::PixelRect& rect);
+std::unique_ptr<TileMerger> make_run_merger(const MergeContext& context, const scene::PixelRect& rect);
 
 }  // namespace tessera::compositor

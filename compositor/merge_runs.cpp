@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "compositor/integrate_lanes.hpp"
 #include "compositor/merge_kinds.hpp"
 #include "compositor/merged_pixel.hpp"
 #include "compositor/window_kernel.hpp"
+#include "integrals/integrate_lanes.hpp"
 
 namespace tessera::compositor {
 namespace {
@@ -17,30 +17,30 @@ namespace {
 /// Runs: few a pixel, composited front to back.
 class RunMerger final : public TileMerger {
  public:
-  RunMerger(const MergeContext& context, const projection::PixelRect& rect)
+  RunMerger(const MergeContext& context, const scene::PixelRect& rect)
       : context_(context),
         budget_(context.budget_bytes),
         rect_(rect),
-        weight_(opacity_weight(context.max_color, context.longest_ray, context.emission)),
+        weight_(integrals::opacity_weight(context.max_color, context.longest_ray, context.emission)),
         termination_error_(context.integrator->termination_error()),
         first_of_(static_cast<std::size_t>(rect.area()), none) {}
 
-  void add(const TilePart& part) override {
+  void add(const exchange::TilePart& part) override {
     if ((runs_.size() + part.fragments) * sizeof(Run) > budget_)
       throw scene::Error(scene::ExitCode::system_failure,
                          fmt::format("the tile at pixel {},{} holds {} runs at once, beyond the memory budget; raise "
                                      "--memory or make --tile-size smaller",
                                      rect_.x0, rect_.y0, runs_.size() + part.fragments));
-    RecordReader reader(part.records.bytes());
+    exchange::RecordReader reader(part.records.bytes());
     const auto check = [&](std::uint32_t pixel) {
       if (pixel < first_of_.size()) return;
       throw scene::Error(
           scene::ExitCode::system_failure,
           fmt::format("exchange: the runs of tile {} are malformed; all ranks must run the same program", part.tile));
     };
-    if (part.kind == RecordKind::runs) {
+    if (part.kind == exchange::RecordKind::runs) {
       while (!reader.empty()) {
-        const auto run = reader.take<RunRecord>();
+        const auto run = reader.take<exchange::RunRecord>();
         check(run.pixel);
         push(run.pixel, {run.front, run.thickness, run.red, run.green, run.blue, run.opacity});
       }
@@ -49,13 +49,13 @@ class RunMerger final : public TileMerger {
     if (context_.lattice == nullptr || context_.table == nullptr)
       throw scene::Error(scene::ExitCode::system_failure,
                          "exchange: runs on a lattice without one; all ranks must run the same program");
-    const projection::Lattice& lattice = *context_.lattice;
+    const scene::Lattice& lattice = *context_.lattice;
     single_.clear();
     while (!reader.empty()) {
-      const auto header = reader.take<RunsHeader>();
+      const auto header = reader.take<exchange::RunsHeader>();
       check(header.pixel);
       for (int i = 0; i < header.runs; ++i) {
-        const auto run = reader.take<LatticeRun>();
+        const auto run = reader.take<exchange::LatticeRun>();
         const double front = lattice.depth(run.front);
         push(header.pixel,
              {front, static_cast<float>(lattice.depth(run.back) - front), run.red, run.green, run.blue, run.opacity});
@@ -140,7 +140,7 @@ class RunMerger final : public TileMerger {
       batch_.scalar_front[i] = segment.scalar_front;
       batch_.scalar_back[i] = segment.scalar_back;
     }
-    integrate_lanes(*context_.table, batch_);
+    integrals::integrate_lanes(*context_.table, batch_);
     for (std::size_t i = 0; i < single_.size(); ++i) {
       const auto& [pixel, segment] = single_[i];
       const double front = first_visible_depth(*context_.lattice, segment, *context_.integrator);
@@ -151,7 +151,7 @@ class RunMerger final : public TileMerger {
 
   MergeContext context_;
   std::uint64_t budget_;
-  projection::PixelRect rect_;
+  scene::PixelRect rect_;
   double weight_, termination_error_;
   std::vector<MergedPixel> pixels_;      ///< once something was composited before the last
   std::vector<std::uint32_t> first_of_;  ///< by pixel: its last run that came, which has the others' numbers
@@ -163,12 +163,12 @@ class RunMerger final : public TileMerger {
     projection::LatticeSegment segment;
   };
   std::vector<Single> single_;
-  FloatBatch batch_;
+  integrals::FloatBatch batch_;
 };
 
 }  // namespace
 
-std::unique_ptr<TileMerger> make_run_merger(const MergeContext& context, const projection::PixelRect& rect) {
+std::unique_ptr<TileMerger> make_run_merger(const MergeContext& context, const scene::PixelRect& rect) {
   return std::make_unique<RunMerger>(context, rect);
 }
 

@@ -8,6 +8,7 @@
 #include "compositor/deep_sink.hpp"
 #include "compositor/merge_kinds.hpp"
 #include "compositor/tile_pixels.hpp"
+#include "compositor/tuple_record.hpp"
 #include "compositor/two_sinks.hpp"
 #include "projection/ray_segments.hpp"
 #include "sorting/pixel_lists.hpp"
@@ -20,7 +21,7 @@ using Key = sorting::PixelLists::Key;
 /// Raw segments: sorted and integrated here, by the code that does it for a single process.
 class SegmentMerger : public TileMerger {
  public:
-  SegmentMerger(const MergeContext& context, const projection::PixelRect& rect, Key key = Key::front)
+  SegmentMerger(const MergeContext& context, const scene::PixelRect& rect, Key key = Key::front)
       : budget_(context.budget_bytes),
         rect_(rect),
         key_(key),
@@ -35,16 +36,16 @@ class SegmentMerger : public TileMerger {
     sink_->start(rect);
   }
 
-  void add(const TilePart& part) override {
-    const bool cell_data = part.kind == RecordKind::chains_of_cells;
+  void add(const exchange::TilePart& part) override {
+    const bool cell_data = part.kind == exchange::RecordKind::chains_of_cells;
     reserve(segments_.size + part.fragments);
-    RecordReader reader(part.records.bytes());
+    exchange::RecordReader reader(part.records.bytes());
     while (!reader.empty()) {
-      const auto chain = reader.take<ChainHeader>();
+      const auto chain = reader.take<exchange::ChainHeader>();
       check_room(part.tile, chain.pixel, chain.links);
       double front = chain.front, scalar = chain.scalar_front;
       for (std::uint32_t i = 0; i < chain.links; ++i) {
-        const auto link = reader.take<ChainLink>();
+        const auto link = reader.take<exchange::ChainLink>();
         const std::size_t at = segments_.size++;
         segments_.pixel_and_tet[at] = link.tet << 32 | chain.pixel;
         segments_.front[at] = front;
@@ -85,7 +86,7 @@ class SegmentMerger : public TileMerger {
   void reserve(std::size_t segments) {
     if (segments <= segments_.capacity()) return;
     constexpr std::size_t each =
-        projection::RaySegments::bytes_each + sorting::PixelLists::bytes_each + SegmentBatch::bytes_each;
+        projection::RaySegments::bytes_each + sorting::PixelLists::bytes_each + integrals::SegmentBatch::bytes_each;
     if (segments * each > budget_ || segments > std::numeric_limits<std::uint32_t>::max())
       throw scene::Error(scene::ExitCode::system_failure,
                          fmt::format("the tile at pixel {},{} holds {} ray segments at once, beyond the memory budget; "
@@ -96,13 +97,12 @@ class SegmentMerger : public TileMerger {
 
  private:
   std::uint64_t budget_;
-  projection::PixelRect rect_;
+  scene::PixelRect rect_;
   Key key_;
   scene::Image image_;
   /// The samples of the tile, which DeepSink gives all at once.
   struct Deep final : DeepTarget {
-    void add(const projection::PixelRect&, std::vector<std::uint32_t> c,
-             std::vector<scene::DeepImageSample> s) override {
+    void add(const scene::PixelRect&, std::vector<std::uint32_t> c, std::vector<scene::DeepImageSample> s) override {
       counts = std::move(c);
       samples = std::move(s);
     }
@@ -118,12 +118,12 @@ class SegmentMerger : public TileMerger {
 /// cells.
 class TupleMerger final : public SegmentMerger {
  public:
-  TupleMerger(const MergeContext& context, const projection::PixelRect& rect)
+  TupleMerger(const MergeContext& context, const scene::PixelRect& rect)
       : SegmentMerger(context, rect, Key::back), longest_edge_(context.longest_edge) {}
 
-  void add(const TilePart& part) override {
+  void add(const exchange::TilePart& part) override {
     reserve(segments().size + part.fragments);
-    RecordReader reader(part.records.bytes());
+    exchange::RecordReader reader(part.records.bytes());
     while (!reader.empty()) {
       const auto record = reader.take<TupleRecord>();
       check_room(part.tile, record.pixel, 1);
@@ -141,11 +141,11 @@ class TupleMerger final : public SegmentMerger {
 
 }  // namespace
 
-std::unique_ptr<TileMerger> make_tuple_merger(const MergeContext& context, const projection::PixelRect& rect) {
+std::unique_ptr<TileMerger> make_tuple_merger(const MergeContext& context, const scene::PixelRect& rect) {
   return std::make_unique<TupleMerger>(context, rect);
 }
 
-std::unique_ptr<TileMerger> make_segment_merger(const MergeContext& context, const projection::PixelRect& rect) {
+std::unique_ptr<TileMerger> make_segment_merger(const MergeContext& context, const scene::PixelRect& rect) {
   return std::make_unique<SegmentMerger>(context, rect);
 }
 

@@ -16,13 +16,13 @@ constexpr std::size_t first_capacity = 8;  // segments a pixel
 /// Lattice segments: windowed, sorted and integrated by the code that does it for a single process.
 class WindowMerger final : public TileMerger {
  public:
-  WindowMerger(const MergeContext& context, const projection::PixelRect& rect)
+  WindowMerger(const MergeContext& context, const scene::PixelRect& rect)
       : trace_(context.trace),
         budget_(context.budget_bytes),
         rect_(rect),
         lattice_(*context.lattice),
         scene_{context.space, context.table, context.integrator, lattice_,
-               opacity_weight(context.max_color, context.longest_ray, context.emission)},
+               integrals::opacity_weight(context.max_color, context.longest_ray, context.emission)},
         image_({rect.width(), rect.height()}),
         places_(static_cast<std::size_t>(rect.area())) {
     const auto next = [](int v) { return (v & ~(side - 1)) + side; };
@@ -31,10 +31,10 @@ class WindowMerger final : public TileMerger {
         add_square({x, y, std::min(rect.x1, next(x)), std::min(rect.y1, next(y))});
   }
 
-  void add(const TilePart& part) override {
-    RecordReader reader(part.records.bytes());
+  void add(const exchange::TilePart& part) override {
+    exchange::RecordReader reader(part.records.bytes());
     while (!reader.empty()) {
-      const auto header = reader.take<LatticeHeader>();
+      const auto header = reader.take<exchange::LatticeHeader>();
       if (header.pixel >= places_.size())
         throw scene::Error(scene::ExitCode::system_failure,
                            fmt::format("exchange: the segments of tile {} are malformed; all ranks must run the same "
@@ -67,7 +67,7 @@ class WindowMerger final : public TileMerger {
  private:
   /// Opened by its first segment: a large tile has many, most of them empty at any time.
   struct Square {
-    projection::PixelRect rect;
+    scene::PixelRect rect;
     projection::SegmentWindows windows;
     std::unique_ptr<WindowPixels> pixels;
   };
@@ -76,7 +76,7 @@ class WindowMerger final : public TileMerger {
     std::uint32_t square, pixel;
   };
 
-  void add_square(const projection::PixelRect& rect) {
+  void add_square(const scene::PixelRect& rect) {
     const auto number = static_cast<std::uint32_t>(squares_.size());
     squares_.push_back({rect, {}, nullptr});
     std::uint32_t pixel = 0;
@@ -121,8 +121,8 @@ class WindowMerger final : public TileMerger {
 
   scene::Trace* trace_;
   std::uint64_t budget_, bytes_ = 0;
-  projection::PixelRect rect_;
-  projection::Lattice lattice_;
+  scene::PixelRect rect_;
+  scene::Lattice lattice_;
   WindowScene scene_;
   scene::Image image_;
   std::vector<Place> places_;
@@ -131,7 +131,7 @@ class WindowMerger final : public TileMerger {
 
 }  // namespace
 
-std::unique_ptr<TileMerger> make_window_merger(const MergeContext& context, const projection::PixelRect& rect) {
+std::unique_ptr<TileMerger> make_window_merger(const MergeContext& context, const scene::PixelRect& rect) {
   if (context.lattice == nullptr || context.table == nullptr)
     throw scene::Error(scene::ExitCode::system_failure,
                        "exchange: lattice segments without a lattice; all ranks must run the same program");

@@ -4,22 +4,22 @@
 #include <limits>
 
 namespace tessera::compositor {
-RunSink::RunSink(const projection::PixelSpace& space, const SegmentIntegrator& integrator, double max_color,
+RunSink::RunSink(const projection::PixelSpace& space, const integrals::SegmentIntegrator& integrator, double max_color,
                  double longest_ray, scene::Emission emission, std::uint64_t bytes_between_cuts, Deliver deliver)
-    : FragmentSink(RecordKind::runs, std::move(deliver)),
+    : FragmentSink(exchange::RecordKind::runs, std::move(deliver)),
       space_(&space),
       integrator_(&integrator),
-      left_out_per_transmittance_(opacity_weight(max_color, longest_ray, emission)),
+      left_out_per_transmittance_(integrals::opacity_weight(max_color, longest_ray, emission)),
       termination_error_(integrator.termination_error()),
       bytes_between_cuts_(bytes_between_cuts) {}
 
-void RunSink::begin_tile(std::size_t tile, const projection::PixelRect& rect) {
+void RunSink::begin_tile(std::size_t tile, const scene::PixelRect& rect) {
   FragmentSink::begin_tile(tile, rect);
   in_order_ = true;
   bytes_since_cut_ = 0;
 }
 
-void RunSink::start(const projection::PixelRect& rect) {
+void RunSink::start(const scene::PixelRect& rect) {
   FragmentSink::start(rect);
   const auto n = static_cast<std::size_t>(rect.area());
   runs_.assign(n, Run{});
@@ -52,11 +52,12 @@ void RunSink::integrate(const projection::RaySegments& segments, const sorting::
 void RunSink::close(std::size_t pixel) {
   Run& run = runs_[pixel];
   if (run.begun && run.visible()) {
-    append(records(), RunRecord{run.front, static_cast<float>(run.back - run.front), static_cast<float>(run.red),
-                                static_cast<float>(run.green), static_cast<float>(run.blue),
-                                static_cast<float>(-std::expm1(-run.optical_depth)), tile_pixel(pixel)});
+    exchange::append(
+        records(), exchange::RunRecord{run.front, static_cast<float>(run.back - run.front), static_cast<float>(run.red),
+                                       static_cast<float>(run.green), static_cast<float>(run.blue),
+                                       static_cast<float>(-std::expm1(-run.optical_depth)), tile_pixel(pixel)});
     count(1);
-    bytes_since_cut_ += sizeof(RunRecord);
+    bytes_since_cut_ += sizeof(exchange::RunRecord);
   }
   run.begun = false;
 }

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "compositor/fragment_sink.hpp"
-#include "compositor/segment_batch.hpp"
-#include "compositor/segment_integrator.hpp"
+#include "integrals/segment_batch.hpp"
+#include "integrals/segment_integrator.hpp"
 #include "projection/pixel_space.hpp"
 
 namespace tessera::compositor {
@@ -18,11 +18,11 @@ namespace tessera::compositor {
 /// Pixels that this process's own cells make opaque are closed, as in TilePixels.
 class RunSink final : public FragmentSink {
  public:
-  RunSink(const projection::PixelSpace& space, const SegmentIntegrator& integrator, double max_color,
+  RunSink(const projection::PixelSpace& space, const integrals::SegmentIntegrator& integrator, double max_color,
           double longest_ray, scene::Emission emission, std::uint64_t bytes_between_cuts, Deliver deliver);
 
-  void begin_tile(std::size_t tile, const projection::PixelRect& rect) override;
-  void start(const projection::PixelRect& rect) override;
+  void begin_tile(std::size_t tile, const scene::PixelRect& rect) override;
+  void start(const scene::PixelRect& rect) override;
   void take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) override;
   bool take_unordered(const projection::RaySegments& segments, const sorting::PixelLists& lists,
                       double final_depth) override;
@@ -44,7 +44,7 @@ class RunSink final : public FragmentSink {
   void integrate(const projection::RaySegments& segments, const sorting::PixelLists& lists, double end_depth);
 
   const projection::PixelSpace* space_;
-  const SegmentIntegrator* integrator_;
+  const integrals::SegmentIntegrator* integrator_;
   double left_out_per_transmittance_, termination_error_;
   std::uint64_t bytes_between_cuts_;
   bool in_order_ = true;               ///< false once segments were taken unordered: then no pixel of the tile closes
@@ -53,7 +53,7 @@ class RunSink final : public FragmentSink {
   std::vector<double> transmittance_, length_per_depth_;
   std::vector<std::uint8_t> open_;
   std::size_t open_count_ = 0;
-  SegmentBatch batch_;
+  integrals::SegmentBatch batch_;
 };
 
 }  // namespace tessera::compositor

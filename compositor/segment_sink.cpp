@@ -2,14 +2,16 @@
 
 #include <limits>
 
+#include "compositor/tuple_record.hpp"
+
 namespace tessera::compositor {
 
 void SegmentSink::write(const projection::RaySegments& segments, const sorting::PixelLists& lists, double end_depth) {
-  Bytes& out = records();
+  exchange::Bytes& out = records();
   const auto pixels = static_cast<std::size_t>(rect().area());
   for (std::size_t p = 0; p < pixels; ++p) {
     std::size_t header_at = 0;
-    ChainHeader chain{};
+    exchange::ChainHeader chain{};
     double back = 0, scalar = 0;
     const auto close = [&] {
       if (chain.links > 0) std::memcpy(out.data() + header_at, &chain, sizeof chain);
@@ -25,12 +27,12 @@ void SegmentSink::write(const projection::RaySegments& segments, const sorting::
         close();
         chain = {tile_pixel(p), 0, segments.front[i], segments.scalar_front[i]};
         header_at = out.size();
-        append(out, chain);
+        exchange::append(out, chain);
       }
       back = segments.back[i];
       scalar = segments.scalar_back[i];
       const std::uint32_t tet = segments.tet(i);
-      append(out, ChainLink{back, scalar, global_tet_.empty() ? tet : global_tet_[tet]});
+      exchange::append(out, exchange::ChainLink{back, scalar, global_tet_.empty() ? tet : global_tet_[tet]});
       ++chain.links;
     }
     close();
@@ -56,7 +58,8 @@ void TupleSink::write(const projection::RaySegments& segments, const sorting::Pi
   for (std::size_t p = 0; p < pixels; ++p)
     for (const auto& entry : lists.pixel(p)) {
       if (!(entry.depth < end_depth)) break;
-      append(records(), TupleRecord{tile_pixel(p), projection::to_tuple(segments, entry.segment, longest_edge_)});
+      exchange::append(records(),
+                       TupleRecord{tile_pixel(p), projection::to_tuple(segments, entry.segment, longest_edge_)});
       count(1);
     }
 }

@@ -12,7 +12,8 @@ class SegmentSink final : public FragmentSink {
   /// `global_tet[t]`: index in the whole mesh of this process's tet t, ascending; empty: t itself. Must outlive the
   /// sink.
   SegmentSink(bool cell_data, std::span<const std::uint64_t> global_tet, Deliver deliver)
-      : FragmentSink(cell_data ? RecordKind::chains_of_cells : RecordKind::chains, std::move(deliver)),
+      : FragmentSink(cell_data ? exchange::RecordKind::chains_of_cells : exchange::RecordKind::chains,
+                     std::move(deliver)),
         cell_data_(cell_data),
         global_tet_(global_tet) {}
 
@@ -36,7 +37,7 @@ class TupleSink final : public FragmentSink {
  public:
   /// `longest_edge`: of the whole mesh, world units.
   TupleSink(float longest_edge, Deliver deliver)
-      : FragmentSink(RecordKind::tuples, std::move(deliver)), longest_edge_(longest_edge) {}
+      : FragmentSink(exchange::RecordKind::tuples, std::move(deliver)), longest_edge_(longest_edge) {}
 
   void take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) override;
   bool take_unordered(const projection::RaySegments& segments, const sorting::PixelLists& lists,

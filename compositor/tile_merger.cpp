@@ -10,10 +10,11 @@
 
 namespace tessera::compositor {
 
-void merge(TileMerger& merger, const std::vector<TilePart>& parts, double final_depth, std::uint64_t budget_bytes) {
+void merge(TileMerger& merger, const std::vector<exchange::TilePart>& parts, double final_depth,
+           std::uint64_t budget_bytes) {
   const std::uint64_t bytes_a_step = std::min<std::uint64_t>(budget_bytes / 20, 1 << 20);
   std::uint64_t added = 0;
-  for (const TilePart& part : parts) {
+  for (const exchange::TilePart& part : parts) {
     // Beyond final_depth projectors that are not among these parts may still send something.
     if (added >= bytes_a_step && std::isfinite(part.start_depth)) {
       merger.advance(std::min(part.start_depth, final_depth));
@@ -25,19 +26,19 @@ void merge(TileMerger& merger, const std::vector<TilePart>& parts, double final_
   merger.advance(final_depth);
 }
 
-std::unique_ptr<TileMerger> make_tile_merger(RecordKind kind, const MergeContext& context,
-                                             const projection::PixelRect& rect) {
+std::unique_ptr<TileMerger> make_tile_merger(exchange::RecordKind kind, const MergeContext& context,
+                                             const scene::PixelRect& rect) {
   if (context.device != nullptr) return make_gl_merger(context, rect);
   switch (kind) {
-    case RecordKind::runs:
-    case RecordKind::lattice_runs:
+    case exchange::RecordKind::runs:
+    case exchange::RecordKind::lattice_runs:
       return make_run_merger(context, rect);
-    case RecordKind::chains:
-    case RecordKind::chains_of_cells:
+    case exchange::RecordKind::chains:
+    case exchange::RecordKind::chains_of_cells:
       return make_segment_merger(context, rect);
-    case RecordKind::lattice:
+    case exchange::RecordKind::lattice:
       return make_window_merger(context, rect);
-    case RecordKind::tuples:
+    case exchange::RecordKind::tuples:
       return make_tuple_merger(context, rect);
   }
   throw scene::Error(

@@ -4,14 +4,14 @@
 #include <memory>
 #include <vector>
 
-#include "compositor/lane_table.hpp"
-#include "compositor/segment_integrator.hpp"
-#include "compositor/wire.hpp"
+#include "exchange/wire.hpp"
+#include "integrals/lane_table.hpp"
+#include "integrals/segment_integrator.hpp"
 #include "projection/footprint.hpp"
-#include "projection/lattice.hpp"
 #include "projection/pixel_space.hpp"
 #include "scene/deep_image.hpp"
 #include "scene/image.hpp"
+#include "scene/lattice.hpp"
 #include "scene/transfer_function.hpp"
 
 namespace tessera::compositor {
@@ -21,7 +21,7 @@ class GlCompositor;
 /// What a compositor knows of its frame. All must outlive the mergers.
 struct MergeContext {
   const projection::PixelSpace* space;
-  const SegmentIntegrator* integrator;
+  const integrals::SegmentIntegrator* integrator;
   double max_color, longest_ray;
   float longest_edge;  ///< tuples: the unit of their lengths
   scene::Emission emission;
@@ -29,8 +29,8 @@ struct MergeContext {
   const scene::TransferFunction* function = nullptr;  ///< with deep samples
   double deep_accuracy = 0;                           ///< > 0: raw segments give deep samples too (deep_sink.hpp)
   // Lattice segments:
-  const projection::Lattice* lattice = nullptr;
-  const LaneTable* table = nullptr;  ///< on that lattice
+  const scene::Lattice* lattice = nullptr;
+  const integrals::LaneTable* table = nullptr;  ///< on that lattice
   scene::Trace* trace = nullptr;
   // On a device (gl_merger.hpp), which wants a table and units (in `lattice`) in any case:
   GlCompositor* device = nullptr;
@@ -58,7 +58,7 @@ class TileMerger {
 
   /// Takes a part's records. Throws Error(system_failure) for a malformed part, or if the tile holds more than the
   /// budget.
-  virtual void add(const TilePart& part) = 0;
+  virtual void add(const exchange::TilePart& part) = 0;
 
   /// Composites all fragments before this planar depth: no fragment may still come before it.
   virtual void advance(double final_depth) = 0;
@@ -69,10 +69,11 @@ class TileMerger {
 
 /// Adds parts that are ordered by start_depth and advances to `final_depth`, in steps that stay well within a merger's
 /// budget (a segment takes five times its bytes on the wire).
-void merge(TileMerger& merger, const std::vector<TilePart>& parts, double final_depth, std::uint64_t budget_bytes);
+void merge(TileMerger& merger, const std::vector<exchange::TilePart>& parts, double final_depth,
+           std::uint64_t budget_bytes);
 
 /// A merger for parts of this kind.
-std::unique_ptr<TileMerger> make_tile_merger(RecordKind kind, const MergeContext& context,
-                                             const projection::PixelRect& rect);
+std::unique_ptr<TileMerger> make_tile_merger(exchange::RecordKind kind, const MergeContext& context,
+                                             const scene::PixelRect& rect);
 
 }  // namespace tessera::compositor

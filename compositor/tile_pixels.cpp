@@ -6,13 +6,13 @@
 
 namespace tessera::compositor {
 
-TilePixels::TilePixels(const projection::PixelSpace& space, const SegmentIntegrator& integrator, double max_color,
-                       double longest_ray, scene::Emission emission, ImageWindow window)
+TilePixels::TilePixels(const projection::PixelSpace& space, const integrals::SegmentIntegrator& integrator,
+                       double max_color, double longest_ray, scene::Emission emission, ImageWindow window)
     : space_(&space), integrator_(&integrator), window_(window), termination_error_(integrator.termination_error()) {
-  left_out_per_transmittance_ = opacity_weight(max_color, longest_ray, emission);
+  left_out_per_transmittance_ = integrals::opacity_weight(max_color, longest_ray, emission);
 }
 
-void TilePixels::start(const projection::PixelRect& rect) {
+void TilePixels::start(const scene::PixelRect& rect) {
   rect_ = rect;
   const auto n = static_cast<std::size_t>(rect.area());
   for (auto* channel : {&red_, &green_, &blue_, &optical_depth_}) channel->assign(n, 0.0);

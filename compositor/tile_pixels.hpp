@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "compositor/segment_batch.hpp"
-#include "compositor/segment_integrator.hpp"
 #include "compositor/tile_sink.hpp"
+#include "integrals/segment_batch.hpp"
+#include "integrals/segment_integrator.hpp"
 #include "projection/footprint.hpp"
 #include "projection/pixel_space.hpp"
 #include "projection/ray_segments.hpp"
@@ -32,10 +32,10 @@ class TilePixels : public TileSink {
  public:
   /// `longest_ray` bounds the world length of a ray inside the data: with independent emission, what may still come
   /// behind a pixel. The window's image must outlive this object; tiles of it are disjoint, so threads may share it.
-  TilePixels(const projection::PixelSpace& space, const SegmentIntegrator& integrator, double max_color,
+  TilePixels(const projection::PixelSpace& space, const integrals::SegmentIntegrator& integrator, double max_color,
              double longest_ray, scene::Emission emission, ImageWindow window);
 
-  void start(const projection::PixelRect& rect) override;
+  void start(const scene::PixelRect& rect) override;
   void take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) override;
   bool take_unordered(const projection::RaySegments&, const sorting::PixelLists&, double) override { return false; }
   [[nodiscard]] bool open(std::size_t pixel) const override { return open_[pixel] != 0; }
@@ -45,14 +45,14 @@ class TilePixels : public TileSink {
 
  private:
   const projection::PixelSpace* space_;
-  const SegmentIntegrator* integrator_;
+  const integrals::SegmentIntegrator* integrator_;
   ImageWindow window_;
   double left_out_per_transmittance_, termination_error_;
-  projection::PixelRect rect_{0, 0, 0, 0};
+  scene::PixelRect rect_{0, 0, 0, 0};
   std::vector<double> red_, green_, blue_, transmittance_, optical_depth_, first_depth_, length_per_depth_;
   std::vector<std::uint8_t> open_;
   std::size_t open_count_ = 0;
-  SegmentBatch batch_;
+  integrals::SegmentBatch batch_;
 };
 
 }  // namespace tessera::compositor

@@ -18,11 +18,11 @@ class TileSink {
   virtual ~TileSink() = default;
 
   /// Called once a tile around all else; the rectangles given to start() are the tile or parts of it.
-  virtual void begin_tile(std::size_t /*tile*/, const projection::PixelRect& /*rect*/) {}
+  virtual void begin_tile(std::size_t /*tile*/, const scene::PixelRect& /*rect*/) {}
   virtual void end_tile() {}
 
   /// Forgets what an unfinished rectangle left and begins on the pixels of `rect`.
-  virtual void start(const projection::PixelRect& rect) = 0;
+  virtual void start(const scene::PixelRect& rect) = 0;
 
   /// Takes, in each pixel's order, the segments that are final: those whose key (the lists' Entry::depth: the front,
   /// unless the back is the key) lies before `final_depth`, as no later segment may come before them. The rest will be

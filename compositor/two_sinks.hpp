@@ -13,11 +13,11 @@ class TwoSinks final : public TileSink {
  public:
   TwoSinks(std::unique_ptr<TileSink> a, std::unique_ptr<TileSink> b) : a_(std::move(a)), b_(std::move(b)) {}
 
-  void begin_tile(std::size_t tile, const projection::PixelRect& rect) override {
+  void begin_tile(std::size_t tile, const scene::PixelRect& rect) override {
     a_->begin_tile(tile, rect), b_->begin_tile(tile, rect);
   }
   void end_tile() override { a_->end_tile(), b_->end_tile(); }
-  void start(const projection::PixelRect& rect) override { a_->start(rect), b_->start(rect); }
+  void start(const scene::PixelRect& rect) override { a_->start(rect), b_->start(rect); }
   void take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) override {
     a_->take(segments, lists, final_depth), b_->take(segments, lists, final_depth);
   }

@@ -4,11 +4,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "compositor/lane_table.hpp"
-#include "projection/lattice.hpp"
+#include "integrals/lane_table.hpp"
+#include "integrals/segment_integrator.hpp"
 #include "projection/lattice_rasterizer.hpp"
 #include "projection/pixel_space.hpp"
 #include "projection/segment_windows.hpp"
+#include "scene/lattice.hpp"
 #include "scene/trace.hpp"
 
 namespace tessera::compositor {
@@ -53,22 +54,22 @@ struct WindowState {
   std::vector<projection::LatticeSegment> rest;
 
   /// Empty rays for the pixels of `rect`, all open.
-  void start(const projection::PixelRect& rect, const projection::PixelSpace& space);
+  void start(const scene::PixelRect& rect, const projection::PixelSpace& space);
   /// The run that a pixel is in, one that shows.
   [[nodiscard]] Run run(std::size_t pixel) const;
   /// Ends a pixel's run, if it is in one that shows.
   void end_run(std::size_t pixel);
   /// Which pixels of `rect` are open, as the rasterizer asks. Returns how many.
-  int open_pixels(const projection::PixelRect& rect, projection::OpenPixels& open_rows) const;
+  int open_pixels(const scene::PixelRect& rect, projection::OpenPixels& open_rows) const;
 };
 
 /// Where the planar depth of a segment becomes visible: world units.
-double first_visible_depth(const projection::Lattice& lattice, const projection::LatticeSegment& segment,
-                           const class SegmentIntegrator& integrator);
+double first_visible_depth(const scene::Lattice& lattice, const projection::LatticeSegment& segment,
+                           const class integrals::SegmentIntegrator& integrator);
 
 /// How windows are composited.
 struct WindowRules {
-  const LaneTable* table;
+  const integrals::LaneTable* table;
   double least_transmittance;  ///< a pixel of less is closed
   bool runs = false;           ///< segments that do not touch begin a new run
 };

@@ -12,8 +12,8 @@
 
 #include <algorithm>
 
-#include "compositor/integrate_lanes-inl.h"
 #include "compositor/window_kernel.hpp"
+#include "integrals/integrate_lanes-inl.h"
 #include "projection/pack_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -21,6 +21,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::compositor {
 namespace HWY_NAMESPACE {
 
+using namespace integrals::HWY_NAMESPACE;  // vectors, and the integral of a segment a lane
 using DD = HN::ScalableTag<double>;
 using VD = HN::Vec<DD>;
 using HalfF = HN::Half<DF>;

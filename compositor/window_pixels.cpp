@@ -4,7 +4,7 @@
 
 namespace tessera::compositor {
 
-void WindowPixels::start(const projection::PixelRect& rect) {
+void WindowPixels::start(const scene::PixelRect& rect) {
   rect_ = rect;
   segments_here_ = 0;
   state_.start(rect, *scene_.space);

@@ -1,18 +1,18 @@
 #pragma once
 
-#include "compositor/segment_integrator.hpp"
 #include "compositor/tile_pixels.hpp"
 #include "compositor/window_kernel.hpp"
 #include "compositor/window_sink.hpp"
+#include "integrals/segment_integrator.hpp"
 
 namespace tessera::compositor {
 
 /// The frame's side of a window sink. All must outlive it.
 struct WindowScene {
   const projection::PixelSpace* space;
-  const LaneTable* table;
-  const SegmentIntegrator* integrator;  ///< where a segment becomes visible, and the termination error
-  projection::Lattice lattice;
+  const integrals::LaneTable* table;
+  const integrals::SegmentIntegrator* integrator;  ///< where a segment becomes visible, and the termination error
+  scene::Lattice lattice;
   double left_out_per_transmittance;  ///< opacity_weight()
 
   [[nodiscard]] double least_transmittance() const {
@@ -26,7 +26,7 @@ class WindowPixels final : public WindowSink {
   WindowPixels(const WindowScene& scene, const ImageWindow& window)
       : scene_(scene), rules_{scene.table, scene.least_transmittance()}, window_(window) {}
 
-  void start(const projection::PixelRect& rect) override;
+  void start(const scene::PixelRect& rect) override;
   void take(projection::SegmentWindows& windows, std::int64_t final_step, std::size_t at_least,
             scene::TraceLaps& laps) override;
   bool take_unordered(projection::SegmentWindows&, std::int64_t, scene::TraceLaps&) override { return false; }
@@ -40,7 +40,7 @@ class WindowPixels final : public WindowSink {
   WindowScene scene_;
   WindowRules rules_;
   ImageWindow window_;
-  projection::PixelRect rect_{0, 0, 0, 0};
+  scene::PixelRect rect_{0, 0, 0, 0};
   projection::OpenPixels open_{};
   int open_count_ = 0;
   std::uint64_t segments_ = 0, segments_here_ = 0;  ///< of finished rectangles, of this one

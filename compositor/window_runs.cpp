@@ -5,12 +5,12 @@
 
 namespace tessera::compositor {
 
-void WindowRuns::begin_tile(std::size_t tile, const projection::PixelRect& rect) {
+void WindowRuns::begin_tile(std::size_t tile, const scene::PixelRect& rect) {
   writer_.begin_tile(tile, rect);
   bytes_since_cut_ = 0;
 }
 
-void WindowRuns::start(const projection::PixelRect& rect) {
+void WindowRuns::start(const scene::PixelRect& rect) {
   writer_.start(rect);
   rules_.least_transmittance = scene_.least_transmittance();
   state_.start(rect, *scene_.space);
@@ -56,9 +56,10 @@ void WindowRuns::finish() {
     return;
   }
   // Mostly each ray ends its first run here: straight from the state then.
-  const projection::PixelRect& rect = writer_.rect();
-  Bytes& out = writer_.records();
-  out.reserve(out.size() + static_cast<std::size_t>(rect.area()) * (sizeof(RunsHeader) + sizeof(LatticeRun)));
+  const scene::PixelRect& rect = writer_.rect();
+  exchange::Bytes& out = writer_.records();
+  out.reserve(out.size() +
+              static_cast<std::size_t>(rect.area()) * (sizeof(exchange::RunsHeader) + sizeof(exchange::LatticeRun)));
   std::uint64_t runs = 0;
   std::size_t p = 0;
   for (int y = rect.y0; y < rect.y1; ++y) {
@@ -66,8 +67,8 @@ void WindowRuns::finish() {
     for (std::uint32_t x = 0; x < static_cast<std::uint32_t>(rect.width()); ++x, ++p) {
       if (state_.first_back[p] == WindowState::not_yet) continue;
       const WindowState::Run run = state_.run(p);
-      append(out,
-             RunsHeader{row + x, static_cast<std::uint16_t>(run.several), static_cast<std::uint16_t>(!run.several)});
+      exchange::append(out, exchange::RunsHeader{row + x, static_cast<std::uint16_t>(run.several),
+                                                 static_cast<std::uint16_t>(!run.several)});
       append_run(out, run);
       ++runs;
     }
@@ -75,14 +76,15 @@ void WindowRuns::finish() {
   writer_.count(runs);
 }
 
-void WindowRuns::append_run(Bytes& out, const WindowState::Run& run) const {
+void WindowRuns::append_run(exchange::Bytes& out, const WindowState::Run& run) const {
   if (!run.several) {
-    append(out, run.first);
+    exchange::append(out, run.first);
     return;
   }
   const double front = first_visible_depth(scene_.lattice, run.first, *scene_.integrator);
-  append(out, LatticeRun{scene_.lattice.depth_step(front), run.back, static_cast<float>(run.red),
-                         static_cast<float>(run.green), static_cast<float>(run.blue), static_cast<float>(run.opacity)});
+  exchange::append(out, exchange::LatticeRun{scene_.lattice.depth_step(front), run.back, static_cast<float>(run.red),
+                                             static_cast<float>(run.green), static_cast<float>(run.blue),
+                                             static_cast<float>(run.opacity)});
 }
 
 void WindowRuns::write_ended() {
@@ -90,15 +92,16 @@ void WindowRuns::write_ended() {
   if (ended.empty()) return;
   const auto by_pixel = [](const WindowState::Run& a, const WindowState::Run& b) { return a.pixel < b.pixel; };
   if (!std::is_sorted(ended.begin(), ended.end(), by_pixel)) std::stable_sort(ended.begin(), ended.end(), by_pixel);
-  Bytes& out = writer_.records();
+  exchange::Bytes& out = writer_.records();
   const std::size_t before = out.size();
   constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max();
   for (auto first = ended.begin(); first != ended.end();) {
     auto last = first;
     while (last != ended.end() && last->pixel == first->pixel && static_cast<std::size_t>(last - first) < most) ++last;
     const auto segments = std::partition(first, last, [](const WindowState::Run& run) { return run.several; });
-    append(out, RunsHeader{writer_.tile_pixel(first->pixel), static_cast<std::uint16_t>(segments - first),
-                           static_cast<std::uint16_t>(last - segments)});
+    exchange::append(
+        out, exchange::RunsHeader{writer_.tile_pixel(first->pixel), static_cast<std::uint16_t>(segments - first),
+                                  static_cast<std::uint16_t>(last - segments)});
     for (auto run = first; run != last; ++run) append_run(out, *run);
     writer_.count(static_cast<std::uint64_t>(last - first));
     first = last;

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "compositor/part_writer.hpp"
 #include "compositor/window_pixels.hpp"
+#include "exchange/part_writer.hpp"
 
 namespace tessera::compositor {
 
@@ -10,15 +10,15 @@ namespace tessera::compositor {
 class WindowRuns final : public WindowSink {
  public:
   /// Runs are cut, and the tile's compositor told so, after `bytes_between_cuts` of records of a tile.
-  WindowRuns(const WindowScene& scene, std::uint64_t bytes_between_cuts, PartWriter::Deliver deliver)
+  WindowRuns(const WindowScene& scene, std::uint64_t bytes_between_cuts, exchange::PartWriter::Deliver deliver)
       : scene_(scene),
         rules_{scene.table, scene.least_transmittance(), true},
         bytes_between_cuts_(bytes_between_cuts),
-        writer_(RecordKind::lattice_runs, std::move(deliver)) {}
+        writer_(exchange::RecordKind::lattice_runs, std::move(deliver)) {}
 
-  void begin_tile(std::size_t tile, const projection::PixelRect& rect) override;
+  void begin_tile(std::size_t tile, const scene::PixelRect& rect) override;
   void end_tile() override { writer_.end_tile(); }
-  void start(const projection::PixelRect& rect) override;
+  void start(const scene::PixelRect& rect) override;
   void take(projection::SegmentWindows& windows, std::int64_t final_step, std::size_t at_least,
             scene::TraceLaps& laps) override;
   /// Runs are then shorter, and no pixel of the rectangle closes any more, as what hides it may lie behind it.
@@ -30,14 +30,14 @@ class WindowRuns final : public WindowSink {
 
  private:
   void end_runs();
-  void append_run(Bytes& out, const WindowState::Run& run) const;
+  void append_run(exchange::Bytes& out, const WindowState::Run& run) const;
   void cut(std::int64_t final_step);
   void write_ended();
 
   WindowScene scene_;
   WindowRules rules_;
   std::uint64_t bytes_between_cuts_, bytes_since_cut_ = 0;
-  PartWriter writer_;
+  exchange::PartWriter writer_;
   projection::OpenPixels open_{};
   int open_count_ = 0;
   std::uint64_t segments_ = 0;

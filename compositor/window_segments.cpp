@@ -4,12 +4,12 @@ namespace tessera::compositor {
 
 void WindowSegments::take(projection::SegmentWindows& windows, std::int64_t final_step, std::size_t /*at_least*/,
                           scene::TraceLaps& laps) {
-  Bytes& out = writer_.records();
+  exchange::Bytes& out = writer_.records();
   for (std::size_t p = 0; p < windows.pixels(); ++p) {
     const std::uint32_t count = windows.count(p);
     if (count == 0) continue;
-    append(out, LatticeHeader{writer_.tile_pixel(p), count});
-    for (std::uint32_t k = 0; k < count; ++k) append(out, windows.segments()[k * windows.stride() + p]);
+    exchange::append(out, exchange::LatticeHeader{writer_.tile_pixel(p), count});
+    for (std::uint32_t k = 0; k < count; ++k) exchange::append(out, windows.segments()[k * windows.stride() + p]);
     writer_.count(count);
     segments_ += count;
   }

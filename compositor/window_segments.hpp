@@ -1,7 +1,7 @@
 #pragma once
 
-#include "compositor/part_writer.hpp"
 #include "compositor/window_sink.hpp"
+#include "exchange/part_writer.hpp"
 
 namespace tessera::compositor {
 
@@ -9,14 +9,14 @@ namespace tessera::compositor {
 /// no order, so nothing is done here but copying.
 class WindowSegments final : public WindowSink {
  public:
-  WindowSegments(const projection::Lattice& lattice, PartWriter::Deliver deliver)
-      : lattice_(lattice), writer_(RecordKind::lattice, std::move(deliver)) {
+  WindowSegments(const scene::Lattice& lattice, exchange::PartWriter::Deliver deliver)
+      : lattice_(lattice), writer_(exchange::RecordKind::lattice, std::move(deliver)) {
     open_.fill(~0u);  // nothing is integrated here, so no pixel is known to be opaque
   }
 
-  void begin_tile(std::size_t tile, const projection::PixelRect& rect) override { writer_.begin_tile(tile, rect); }
+  void begin_tile(std::size_t tile, const scene::PixelRect& rect) override { writer_.begin_tile(tile, rect); }
   void end_tile() override { writer_.end_tile(); }
-  void start(const projection::PixelRect& rect) override { writer_.start(rect); }
+  void start(const scene::PixelRect& rect) override { writer_.start(rect); }
   void take(projection::SegmentWindows& windows, std::int64_t final_step, std::size_t at_least,
             scene::TraceLaps& laps) override;
   bool take_unordered(projection::SegmentWindows& windows, std::int64_t final_step, scene::TraceLaps& laps) override {
@@ -29,8 +29,8 @@ class WindowSegments final : public WindowSink {
   [[nodiscard]] std::uint64_t segments() const override { return segments_; }
 
  private:
-  projection::Lattice lattice_;
-  PartWriter writer_;
+  scene::Lattice lattice_;
+  exchange::PartWriter writer_;
   projection::OpenPixels open_{};
   std::uint64_t segments_ = 0;
 };

@@ -21,12 +21,12 @@ class WindowSink {
   virtual ~WindowSink() = default;
 
   /// Called once a tile around all else.
-  virtual void begin_tile(std::size_t /*tile*/, const projection::PixelRect& /*rect*/) {}
+  virtual void begin_tile(std::size_t /*tile*/, const scene::PixelRect& /*rect*/) {}
   virtual void end_tile() {}
 
   /// Forgets what an unfinished rectangle left and begins on the pixels of `rect`, which lies in one square of 32 x 32
   /// pixels aligned to multiples of 32.
-  virtual void start(const projection::PixelRect& rect) = 0;
+  virtual void start(const scene::PixelRect& rect) = 0;
 
   /// Takes, in each pixel's order, all segments whose front lies before `final_step` (a lattice depth) and removes them
   /// from the windows; no later segment may come before them. Lists of less than `at_least` may be left for later.

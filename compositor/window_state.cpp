@@ -1,14 +1,14 @@
 #include <limits>
 
-#include "compositor/segment_integrator.hpp"
 #include "compositor/window_kernel.hpp"
+#include "integrals/segment_integrator.hpp"
 
 namespace tessera::compositor {
 namespace {
 constexpr int side = projection::SegmentWindows::side;
 }
 
-void WindowState::start(const projection::PixelRect& rect, const projection::PixelSpace& space) {
+void WindowState::start(const scene::PixelRect& rect, const projection::PixelSpace& space) {
   for (auto* a : {&red, &green, &blue}) a->fill(0);
   transmittance.fill(1);
   ray_transmittance.fill(1);
@@ -47,7 +47,7 @@ void WindowState::end_run(std::size_t p) {
   first_back[p] = back[p] = not_yet;
 }
 
-int WindowState::open_pixels(const projection::PixelRect& rect, projection::OpenPixels& open_rows) const {
+int WindowState::open_pixels(const scene::PixelRect& rect, projection::OpenPixels& open_rows) const {
   open_rows.fill(0);
   int count = 0;
   std::size_t p = 0;
@@ -60,8 +60,8 @@ int WindowState::open_pixels(const projection::PixelRect& rect, projection::Open
   return count;
 }
 
-double first_visible_depth(const projection::Lattice& lattice, const projection::LatticeSegment& segment,
-                           const SegmentIntegrator& integrator) {
+double first_visible_depth(const scene::Lattice& lattice, const projection::LatticeSegment& segment,
+                           const integrals::SegmentIntegrator& integrator) {
   const double along =
       integrator.first_visible(lattice.scalar(segment.scalar_front), lattice.scalar(segment.scalar_back)).value_or(0);
   const double front = lattice.depth(segment.front), back = lattice.depth(segment.back);

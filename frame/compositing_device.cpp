@@ -11,21 +11,21 @@
 namespace tessera::frame {
 namespace {
 
-compositor::Bytes bytes_of(std::string_view text) {
+exchange::Bytes bytes_of(std::string_view text) {
   const auto* first = reinterpret_cast<const std::byte*>(text.data());
   return {first, first + text.size()};
 }
 
-std::string text_of(const compositor::Bytes& bytes) {
+std::string text_of(const exchange::Bytes& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 /// How many ranks of lower number are on this machine. Collective.
-int local_rank(compositor::Transport& transport) {
+int local_rank(exchange::Transport& transport) {
   std::array<char, 256> host{};
   gethostname(host.data(), host.size() - 1);
   const std::string mine = host.data();
-  const auto hosts = compositor::gather_all(transport, bytes_of(mine));
+  const auto hosts = exchange::gather_all(transport, bytes_of(mine));
   return static_cast<int>(std::count_if(hosts.begin(), hosts.begin() + transport.rank(),
                                         [&](const auto& h) { return text_of(h) == mine; }));
 }
@@ -38,7 +38,7 @@ std::string reason(const scene::Error& error) {
 
 }  // namespace
 
-void open_compositing_device(const CompositingSettings& settings, const Roles& roles, compositor::Transport& transport,
+void open_compositing_device(const CompositingSettings& settings, const Roles& roles, exchange::Transport& transport,
                              scene::Trace* trace, CompositingDevice& made) {
   const std::vector<Backend>& backends = settings.backends;
   if (std::all_of(backends.begin(), backends.end(), [](Backend b) { return b == Backend::cpu; })) {
@@ -68,7 +68,7 @@ void open_compositing_device(const CompositingSettings& settings, const Roles& r
       }
   }
   std::vector<std::string> names;
-  for (const compositor::Bytes& other : compositor::gather_all(transport, bytes_of(name)))
+  for (const exchange::Bytes& other : exchange::gather_all(transport, bytes_of(name)))
     if (std::string text = text_of(other); !text.empty() && std::find(names.begin(), names.end(), text) == names.end())
       names.push_back(std::move(text));
   made.name = fmt::format("{}", fmt::join(names, " + "));

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "compositor/gl_compositor.hpp"
-#include "compositor/transport.hpp"
+#include "exchange/transport.hpp"
 #include "frame/roles.hpp"
 
 namespace tessera::frame {
@@ -37,7 +37,7 @@ struct CompositingDevice {
 
 /// Opens this rank's device into `made`. Collective. Throws Error(bad_input) if there is neither one backend nor one
 /// for each compositor, Error(system_failure) if a device that was asked for by name cannot be opened.
-void open_compositing_device(const CompositingSettings& settings, const Roles& roles, compositor::Transport& transport,
+void open_compositing_device(const CompositingSettings& settings, const Roles& roles, exchange::Transport& transport,
                              scene::Trace* trace, CompositingDevice& made);
 
 }  // namespace tessera::frame

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "compositor/frame_collector.hpp"
 #include "compositor/gl_merger.hpp"
 #include "compositor/image_assembly.hpp"
 #include "compositor/tile_merger.hpp"
+#include "exchange/frame_collector.hpp"
 #include "frame/distributed_roles.hpp"
 #include "frame/run_error.hpp"
 #include "frame/worker_threads.hpp"
@@ -21,7 +21,7 @@
 namespace tessera::frame {
 namespace {
 
-using compositor::Channel;
+using exchange::Channel;
 
 /// Workers that feed a device wait for it with a tile each: a few more keep tiles in flight.
 int worker_count(const DistributedRun& run) {
@@ -43,13 +43,13 @@ struct Frame {
 
   std::uint32_t number;
   projection::TileGrid grid;
-  compositor::TileMap map;
-  compositor::FrameCollector collector;
+  exchange::TileMap map;
+  exchange::FrameCollector collector;
   projection::PixelSpace space;
-  compositor::SegmentIntegrator integrator;
+  integrals::SegmentIntegrator integrator;
   compositor::TileSender sender;
-  std::optional<compositor::LaneTable> table;  ///< of lattice segments, or for a device
-  projection::Lattice units;                   ///< on a device: the table's
+  std::optional<integrals::LaneTable> table;  ///< of lattice segments, or for a device
+  scene::Lattice units;                       ///< on a device: the table's
   double start_us = 0;
 
   struct Merge {
@@ -75,19 +75,19 @@ class CompositorLoop {
 
   void loop() {
     while (frames_finished_ < run_.jobs.size()) {
-      compositor::Message message = [&] {
+      exchange::Message message = [&] {
         const scene::TraceScope timing(trace_, "wait");
         return next();
       }();
       if (message.bytes.empty()) continue;
       const std::lock_guard lock(mutex_);
-      accept(message.from, std::make_shared<const compositor::Bytes>(std::move(message.bytes)));
+      accept(message.from, std::make_shared<const exchange::Bytes>(std::move(message.bytes)));
     }
   }
 
  private:
   /// The next message; an empty one now and then, as the last frame may finish without one.
-  compositor::Message next() {
+  exchange::Message next() {
     auto message = run_.transport.receive(Channel::fragments, std::chrono::milliseconds(20));
     if (message) return std::move(*message);
     const std::lock_guard lock(mutex_);
@@ -109,9 +109,9 @@ class CompositorLoop {
   }
 
   /// Parts stay in their message's memory.
-  void accept(int from, const std::shared_ptr<const compositor::Bytes>& message) {
-    compositor::RecordReader reader(*message);
-    const auto header = compositor::take_header(reader, from, run_.transport.rank());
+  void accept(int from, const std::shared_ptr<const exchange::Bytes>& message) {
+    exchange::RecordReader reader(*message);
+    const auto header = exchange::take_header(reader, from, run_.transport.rank());
     // What a rank sends to itself does not move.
     const bool moved = from != run_.transport.rank();
     const scene::TraceScope timing(trace_, "receive", static_cast<std::int32_t>(header.frame),
@@ -121,8 +121,8 @@ class CompositorLoop {
     Frame& to = frame(header.frame);
     std::uint64_t credit = message->size();
     switch (header.kind) {
-      case compositor::MessageKind::begin: {
-        const auto begin = reader.take<compositor::FrameBegin>();
+      case exchange::MessageKind::begin: {
+        const auto begin = reader.take<exchange::FrameBegin>();
         to.collector.begin(projector, begin, reader.take_bytes((begin.tiles + 7) / 8));
         if (!to.table && begin.lattice.depth_unit > 0)
           to.table.emplace(run_.function, begin.lattice.scalar_origin, begin.lattice.scalar_unit,
@@ -131,20 +131,20 @@ class CompositorLoop {
           for (auto& [tile, merge] : to.merges) schedule(to, tile);
         break;
       }
-      case compositor::MessageKind::parts:
+      case exchange::MessageKind::parts:
         while (!reader.empty()) {
-          const auto part = reader.take<compositor::PartHeader>();
+          const auto part = reader.take<exchange::PartHeader>();
           const auto records = reader.take_bytes(part.bytes);
           const double start = to.collector.add(projector, {part.tile, part.kind, part.last != 0, part.final_depth,
-                                                            part.fragments, compositor::Records(message, records)});
+                                                            part.fragments, exchange::Records(message, records)});
           to.collector.owe(projector, part.tile, start, part.bytes);
           credit -= part.bytes;
           to.merges.try_emplace(part.tile);
           schedule(to, part.tile);
         }
         break;
-      case compositor::MessageKind::end:
-        to.collector.end(reader.take<compositor::FrameEnd>());
+      case exchange::MessageKind::end:
+        to.collector.end(reader.take<exchange::FrameEnd>());
         break;
     }
     give_back(projector, credit);
@@ -161,8 +161,8 @@ class CompositorLoop {
 
   void pay_out(std::size_t projector) {
     if (credit_[projector] == 0) return;
-    compositor::Bytes message;
-    compositor::append(message, std::exchange(credit_[projector], 0));
+    exchange::Bytes message;
+    exchange::append(message, std::exchange(credit_[projector], 0));
     run_.transport.send(run_.settings.roles.projectors[projector], Channel::credit, std::move(message));
   }
 
@@ -173,7 +173,7 @@ class CompositorLoop {
       for (std::size_t p = 0; p < run_.settings.roles.projectors.size(); ++p)
         give_back(static_cast<int>(p), first.collector.pay(static_cast<int>(p)));
       if (first.number != frames_finished_ || !first.collector.finished()) return;
-      compositor::FrameEnd sums = first.collector.sums();
+      exchange::FrameEnd sums = first.collector.sums();
       sums.failed_devices += run_.device.failed ? 1 : 0;
       first.sender.end(sums);
       if (trace_ != nullptr) trace_->add_frame(static_cast<std::int32_t>(first.number), first.start_us);
@@ -198,7 +198,7 @@ class CompositorLoop {
         merge.running = false;
         return;
       }
-      compositor::FrameCollector::Waiting waiting = of.collector.take(tile);
+      exchange::FrameCollector::Waiting waiting = of.collector.take(tile);
       const double longest_ray = of.collector.longest_ray();
       const float longest_edge = of.collector.longest_edge();
       const bool on_lattice = of.collector.lattice().depth_unit > 0;
@@ -213,14 +213,15 @@ class CompositorLoop {
       {
         const scene::TraceScope timing(trace_, "composite", static_cast<std::int32_t>(of.number));
         if (merge.merger == nullptr && !waiting.parts.empty())
-          merge.merger = make_tile_merger(waiting.parts.front().kind,
-                                          {&of.space, &of.integrator, run_.function.max_color(), longest_ray,
-                                           longest_edge, run_.settings.render.emission, budget_.tile, &run_.function,
-                                           run_.settings.deep ? run_.settings.render.deep_accuracy : 0,
-                                           run_.device.device != nullptr ? &of.units : &of.collector.lattice(),
-                                           of.table ? &*of.table : nullptr, trace_, run_.device.device.get(),
-                                           on_lattice, of.number, run_.device.may_fail ? &run_.device.failed : nullptr},
-                                          of.grid.rect(tile));
+          merge.merger = compositor::make_tile_merger(
+              waiting.parts.front().kind,
+              {&of.space, &of.integrator, run_.function.max_color(), longest_ray, longest_edge,
+               run_.settings.render.emission, budget_.tile, &run_.function,
+               run_.settings.deep ? run_.settings.render.deep_accuracy : 0,
+               run_.device.device != nullptr ? &of.units : &of.collector.lattice(), of.table ? &*of.table : nullptr,
+               trace_, run_.device.device.get(), on_lattice, of.number,
+               run_.device.may_fail ? &run_.device.failed : nullptr},
+              of.grid.rect(tile));
         if (merge.merger != nullptr) compositor::merge(*merge.merger, waiting.parts, waiting.final_depth, budget_.tile);
         // A tile that got nothing stays as empty as the assembled picture is.
         if (all && merge.merger != nullptr) of.sender.send(tile, merge.merger->finish());
@@ -249,7 +250,7 @@ void run_compositor(const DistributedRun& run) { CompositorLoop(run).loop(); }
 
 void run_assembler(const DistributedRun& run, const std::function<void(FinishedFrame)>& done) {
   const DistributedSettings& settings = run.settings;
-  const compositor::SegmentIntegrator integrator(run.function, settings.render.integrator, settings.render.emission);
+  const integrals::SegmentIntegrator integrator(run.function, settings.render.integrator, settings.render.emission);
   compositor::ImageAssembly assembly(
       static_cast<int>(settings.roles.compositors.size()),
       [&](std::uint32_t frame) {
@@ -258,7 +259,7 @@ void run_assembler(const DistributedRun& run, const std::function<void(FinishedF
       settings.deep ? settings.render.memory_bytes / 2 : 0);
   auto last = run.start;
   for (std::size_t left = 0; left < run.jobs.size();) {
-    compositor::Message message = [&] {
+    exchange::Message message = [&] {
       const scene::TraceScope timing(settings.compositing, "wait");
       return run.transport.receive(Channel::tiles);
     }();
@@ -272,21 +273,9 @@ void run_assembler(const DistributedRun& run, const std::function<void(FinishedF
     FinishedFrame finished{assembled->frame, std::move(assembled->image), std::move(assembled->deep), {}, 0};
     const auto now = std::chrono::steady_clock::now();
     finished.frame_ms = std::chrono::duration<double, std::milli>(now - std::exchange(last, now)).count();
-    const compositor::FrameEnd& sums = assembled->sums;
+    const exchange::FrameEnd& sums = assembled->sums;
     FrameStatistics& statistics = finished.statistics;
-    statistics.tets_total = sums.tets_total;
-    statistics.tets_invisible = sums.tets_invisible;
-    statistics.tets_outside_view = sums.tets_outside_view;
-    statistics.tets_between_pixels = sums.tets_between_pixels;
-    statistics.tets_projected = sums.tets_projected;
-    statistics.segments = sums.segments;
-    statistics.max_segments_alive = sums.max_segments_alive;
-    statistics.peak_buffer_bytes = sums.peak_buffer_bytes;
-    statistics.exact_sign_tests = sums.exact_sign_tests;
-    statistics.tiles_split = sums.tiles_split;
-    statistics.fragments = sums.fragments;
-    statistics.exchange_bytes = sums.bytes;
-    statistics.exchange_messages = sums.messages;
+    static_cast<scene::FrameCounters&>(statistics) = sums.counters;
     statistics.on_lattice = sums.on_lattice > 0;
     statistics.deep_samples = finished.deep.samples.size();
     statistics.instruction_set = projection::instruction_set();

@@ -10,7 +10,7 @@
 namespace tessera::frame {
 namespace {
 
-using compositor::Bytes;
+using exchange::Bytes;
 
 /// First row of a rank's band.
 int first_row(int rank, int ranks, int height) {
@@ -50,26 +50,26 @@ void append(const Bytes& bytes, std::size_t pixels, scene::DeepImage& image) {
 
 }  // namespace
 
-std::optional<scene::DeepImage> deep_rows(compositor::Transport& transport, const scene::SampleSource& source,
+std::optional<scene::DeepImage> deep_rows(exchange::Transport& transport, const scene::SampleSource& source,
                                           const scene::Camera& camera, scene::ImageSize size,
-                                          const scene::TransferFunction& function, const volume::DeepSettings& settings,
+                                          const scene::TransferFunction& function, const DeepSettings& settings,
                                           std::int32_t number) {
   // Bands would be taken for tiles of the flat picture by a rank 0 that still puts that together.
-  compositor::gather_all(transport, {});
+  exchange::gather_all(transport, {});
   const int rank = transport.rank(), ranks = transport.size();
   const auto row = [&](int r) { return first_row(r, ranks, size.height); };
-  scene::DeepImage own = volume::deep_image(source, camera, size, function, settings, row(rank), row(rank + 1));
+  scene::DeepImage own = deep_image(source, camera, size, function, settings, row(rank), row(rank + 1));
   if (ranks == 1) return own;
   Bytes bytes = packed(own, row(rank), row(rank + 1));
   own = {};
   if (rank != 0) {
-    transport.send(0, compositor::Channel::tiles, std::move(bytes), number);
+    transport.send(0, exchange::Channel::tiles, std::move(bytes), number);
     return std::nullopt;
   }
   std::vector<Bytes> bands(static_cast<std::size_t>(ranks));
   bands[0] = std::move(bytes);
   for (int others = ranks - 1; others > 0; --others) {
-    compositor::Message message = transport.receive(compositor::Channel::tiles);
+    exchange::Message message = transport.receive(exchange::Channel::tiles);
     bands[static_cast<std::size_t>(message.from)] = std::move(message.bytes);
   }
   scene::DeepImage whole;

@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "compositor/transport.hpp"
-#include "volume/deep_grid.hpp"
+#include "exchange/transport.hpp"
+#include "frame/deep_grid.hpp"
 
 namespace tessera::frame {
 
@@ -11,9 +11,9 @@ namespace tessera::frame {
 /// the other. The picture on rank 0, nothing elsewhere; the same bits for any number of ranks. Collective; on channel
 /// `tiles`, and begins when all ranks are done with what was on it. Throws this rank's error, which the caller gives to
 /// transport.fail().
-std::optional<scene::DeepImage> deep_rows(compositor::Transport& transport, const scene::SampleSource& source,
+std::optional<scene::DeepImage> deep_rows(exchange::Transport& transport, const scene::SampleSource& source,
                                           const scene::Camera& camera, scene::ImageSize size,
-                                          const scene::TransferFunction& function, const volume::DeepSettings& settings,
+                                          const scene::TransferFunction& function, const DeepSettings& settings,
                                           std::int32_t number);
 
 }  // namespace tessera::frame

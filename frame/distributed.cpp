@@ -50,7 +50,7 @@ void take_part_in_loading(const DistributedRun& run, const std::function<Project
 
 }  // namespace
 
-void render_distributed(compositor::Transport& transport, const DistributedSettings& settings,
+void render_distributed(exchange::Transport& transport, const DistributedSettings& settings,
                         std::span<const FrameJob> jobs, const scene::TransferFunction& function,
                         const std::function<ProjectorMesh(std::size_t)>& mesh_of,
                         const std::function<void(FinishedFrame)>& done) {
@@ -82,7 +82,7 @@ void render_distributed(compositor::Transport& transport, const DistributedSetti
   }
   CompositingDevice device;
   open_compositing_device(settings.compositing_on, settings.roles, transport, settings.compositing, device);
-  compositor::gather_all(transport, {});  // a frame's time does not count reading
+  exchange::gather_all(transport, {});  // a frame's time does not count reading
   const DistributedRun run{transport, settings, jobs, function, device, std::chrono::steady_clock::now()};
   std::vector<std::function<void()>> parts;
   if (loaded)

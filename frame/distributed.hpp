@@ -5,14 +5,14 @@
 #include <memory>
 #include <span>
 
-#include "compositor/transport.hpp"
+#include "exchange/transport.hpp"
 #include "frame/compositing_device.hpp"
 #include "frame/render.hpp"
 #include "frame/roles.hpp"
 
 namespace tessera::frame {
 
-/// What projectors send (compositor/wire.hpp).
+/// What projectors send (exchange/wire.hpp).
 enum class Exchange {
   runs,      ///< segments that touch end to end, composited: a few fragments a pixel. At most 2e-6 from `segments`
   segments,  ///< raw ray segments, as Juliachs et al. 2007: the bits of a single process whatever the job's shape
@@ -65,7 +65,7 @@ struct FinishedFrame {
 /// order of frames synchronises ranks.
 ///
 /// The transfer function is one for all frames, so that a film does not flicker. Throws the run's error, on every rank.
-void render_distributed(compositor::Transport& transport, const DistributedSettings& settings,
+void render_distributed(exchange::Transport& transport, const DistributedSettings& settings,
                         std::span<const FrameJob> jobs, const scene::TransferFunction& function,
                         const std::function<ProjectorMesh(std::size_t)>& mesh_of,
                         const std::function<void(FinishedFrame)>& done);

@@ -11,7 +11,7 @@
 namespace tessera::frame {
 
 struct DistributedRun {
-  compositor::Transport& transport;
+  exchange::Transport& transport;
   const DistributedSettings& settings;
   std::span<const FrameJob> jobs;
   const scene::TransferFunction& function;

@@ -57,8 +57,7 @@ class TileWorker {
   TileWorker(const TileWorker&) = delete;
   TileWorker& operator=(const TileWorker&) = delete;
   virtual ~TileWorker() = default;
-  virtual void render(std::size_t tile, const projection::PixelRect& rect,
-                      std::span<projection::TileEntry> entries) = 0;
+  virtual void render(std::size_t tile, const scene::PixelRect& rect, std::span<projection::TileEntry> entries) = 0;
   [[nodiscard]] virtual TileCounts counts() const = 0;
 };
 
@@ -66,7 +65,7 @@ class DoubleWorker final : public TileWorker {
  public:
   DoubleWorker(const TileContext& context, std::unique_ptr<compositor::TileSink> sink)
       : renderer_(context), sink_(std::move(sink)) {}
-  void render(std::size_t tile, const projection::PixelRect& rect, std::span<projection::TileEntry> entries) override {
+  void render(std::size_t tile, const scene::PixelRect& rect, std::span<projection::TileEntry> entries) override {
     sink_->begin_tile(tile, rect);
     renderer_.render(rect, entries, *sink_);
     sink_->end_tile();
@@ -83,7 +82,7 @@ class LatticeWorker final : public TileWorker {
   LatticeWorker(const TileContext& context, const projection::LatticeView& view,
                 std::unique_ptr<compositor::WindowSink> sink)
       : renderer_(context, view), sink_(std::move(sink)) {}
-  void render(std::size_t tile, const projection::PixelRect& rect, std::span<projection::TileEntry> entries) override {
+  void render(std::size_t tile, const scene::PixelRect& rect, std::span<projection::TileEntry> entries) override {
     sink_->begin_tile(tile, rect);
     renderer_.render(rect, entries, *sink_);
     sink_->end_tile();
@@ -140,7 +139,7 @@ void FrameProjector::project_vertices(const projection::PixelSpace& space, std::
   });
 }
 
-void FrameProjector::place_on_lattice(const projection::Lattice& lattice, bool perspective) {
+void FrameProjector::place_on_lattice(const scene::Lattice& lattice, bool perspective) {
   const scene::TetMesh& mesh = prepared_.mesh();
   const bool per_point = mesh.association == scene::Association::point;
   lattice_vertices_.reset(vertices_.size());

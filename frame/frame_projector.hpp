@@ -34,7 +34,7 @@ class FrameProjector {
     /// A sink for one thread; tiles go to it one after the other, and each thread takes tiles in ascending order.
     std::function<std::unique_ptr<compositor::TileSink>()> make_sink;
     /// If set, tiles are rendered on this lattice and go to sinks of make_window_sink; else in double precision.
-    const projection::Lattice* lattice = nullptr;
+    const scene::Lattice* lattice = nullptr;
     std::function<std::unique_ptr<compositor::WindowSink>()> make_window_sink;
     /// Called once before the first tile: which tiles have cells, so will be given to a sink. May be empty.
     std::function<void(const std::vector<bool>& has_cells)> announce;
@@ -51,7 +51,7 @@ class FrameProjector {
  private:
   FrameStatistics project_in_arena(const Task& task);
   void project_vertices(const projection::PixelSpace& space, std::int32_t frame);
-  void place_on_lattice(const projection::Lattice& lattice, bool perspective);
+  void place_on_lattice(const scene::Lattice& lattice, bool perspective);
 
   RenderSettings settings_;
   tbb::task_arena arena_;

@@ -46,10 +46,10 @@ double most_length_per_depth(const projection::PixelSpace& space) { return space
 
 }  // namespace
 
-std::optional<projection::Lattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
-                                              const std::array<double, 2>& scalar_range,
-                                              const scene::TransferFunction& function, const RenderSettings& settings) {
-  using projection::Lattice;
+std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
+                                         const std::array<double, 2>& scalar_range,
+                                         const scene::TransferFunction& function, const RenderSettings& settings) {
+  using scene::Lattice;
   const bool exact = settings.integrator.kind == scene::IntegratorKind::exact ||
                      settings.integrator.kind == scene::IntegratorKind::automatic;
   if (!settings.use.lattice || settings.rasterizer != Rasterizer::planes || !exact || box.empty() ||
@@ -101,7 +101,7 @@ std::optional<projection::Lattice> lattice_of(const projection::PixelSpace& spac
   return lattice;
 }
 
-projection::DepthLimits depth_limits_of(const projection::PixelSpace& space, const projection::Lattice& lattice,
+projection::DepthLimits depth_limits_of(const projection::PixelSpace& space, const scene::Lattice& lattice,
                                         const scene::TransferFunction& function, scene::Emission emission,
                                         double longest_ray) {
   const bool independent = emission == scene::Emission::independent;

@@ -5,9 +5,9 @@
 
 #include "frame/render.hpp"
 #include "projection/depth_limits.hpp"
-#include "projection/lattice.hpp"
 #include "projection/pixel_space.hpp"
 #include "scene/camera.hpp"
+#include "scene/lattice.hpp"
 #include "scene/transfer_function.hpp"
 
 namespace tessera::frame {
@@ -21,13 +21,13 @@ namespace tessera::frame {
 ///   - two steps of the function lie so close together that the lattice takes them for one;
 ///   - it is switched off, the integrator samples, or the rasterizer is not `planes`;
 ///   - nothing is in front of the eye, or the processor has no lanes.
-std::optional<projection::Lattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
-                                              const std::array<double, 2>& scalar_range,
-                                              const scene::TransferFunction& function, const RenderSettings& settings);
+std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
+                                         const std::array<double, 2>& scalar_range,
+                                         const scene::TransferFunction& function, const RenderSettings& settings);
 
 /// Which single cells need double precision on that lattice. `longest_ray` bounds a ray's length in the whole mesh,
 /// world units.
-projection::DepthLimits depth_limits_of(const projection::PixelSpace& space, const projection::Lattice& lattice,
+projection::DepthLimits depth_limits_of(const projection::PixelSpace& space, const scene::Lattice& lattice,
                                         const scene::TransferFunction& function, scene::Emission emission,
                                         double longest_ray);
 

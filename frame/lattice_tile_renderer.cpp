@@ -25,7 +25,7 @@ constexpr std::int64_t depth_error = 64;
 
 }  // namespace
 
-void LatticeTileRenderer::render(const projection::PixelRect& rect, std::span<projection::TileEntry> entries,
+void LatticeTileRenderer::render(const scene::PixelRect& rect, std::span<projection::TileEntry> entries,
                                  compositor::WindowSink& sink) {
   projection::DepthOrder order;
   {
@@ -39,7 +39,7 @@ void LatticeTileRenderer::render(const projection::PixelRect& rect, std::span<pr
                     order, sink);
 }
 
-void LatticeTileRenderer::render_square(const projection::PixelRect& rect, const projection::DepthOrder& order,
+void LatticeTileRenderer::render_square(const scene::PixelRect& rect, const projection::DepthOrder& order,
                                         compositor::WindowSink& sink) {
   if (rect.empty()) return;
   if (try_render(rect, order, sink)) return;
@@ -51,9 +51,9 @@ void LatticeTileRenderer::render_square(const projection::PixelRect& rect, const
             rect.x0, rect.y0, windows_.capacity()));
   ++counts_.tiles_split;
   const int x = (rect.x0 + rect.x1 + 1) / 2, y = (rect.y0 + rect.y1 + 1) / 2;
-  for (const projection::PixelRect& quarter :
-       {projection::PixelRect{rect.x0, rect.y0, x, y}, projection::PixelRect{x, rect.y0, rect.x1, y},
-        projection::PixelRect{rect.x0, y, x, rect.y1}, projection::PixelRect{x, y, rect.x1, rect.y1}})
+  for (const scene::PixelRect& quarter :
+       {scene::PixelRect{rect.x0, rect.y0, x, y}, scene::PixelRect{x, rect.y0, rect.x1, y},
+        scene::PixelRect{rect.x0, y, x, rect.y1}, scene::PixelRect{x, y, rect.x1, rect.y1}})
     render_square(quarter, order, sink);
 }
 
@@ -62,7 +62,7 @@ std::int64_t LatticeTileRenderer::step_before(double near_depth) const {
   return static_cast<std::int64_t>(std::floor(std::clamp(steps, -0x1p32, 0x1p32))) - depth_error;
 }
 
-bool LatticeTileRenderer::try_render(const projection::PixelRect& rect, const projection::DepthOrder& order,
+bool LatticeTileRenderer::try_render(const scene::PixelRect& rect, const projection::DepthOrder& order,
                                      compositor::WindowSink& sink) {
   const std::span<const projection::TileEntry> entries = order.entries;
   scene::TraceLaps laps(context_.trace);

@@ -24,15 +24,13 @@ class LatticeTileRenderer {
 
   /// Gives `sink` the pixels of `rect` from `entries`, whose order is lost. Throws Error(system_failure) if one pixel
   /// alone has more segments that overlap in depth than the budget holds.
-  void render(const projection::PixelRect& rect, std::span<projection::TileEntry> entries,
-              compositor::WindowSink& sink);
+  void render(const scene::PixelRect& rect, std::span<projection::TileEntry> entries, compositor::WindowSink& sink);
 
   [[nodiscard]] const TileCounts& counts() const { return counts_; }
 
  private:
-  void render_square(const projection::PixelRect& rect, const projection::DepthOrder& order,
-                     compositor::WindowSink& sink);
-  bool try_render(const projection::PixelRect& rect, const projection::DepthOrder& order, compositor::WindowSink& sink);
+  void render_square(const scene::PixelRect& rect, const projection::DepthOrder& order, compositor::WindowSink& sink);
+  bool try_render(const scene::PixelRect& rect, const projection::DepthOrder& order, compositor::WindowSink& sink);
   [[nodiscard]] std::int64_t step_before(double near_depth) const;
 
   TileContext context_;

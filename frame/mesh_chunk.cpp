@@ -19,7 +19,7 @@ constexpr std::uint32_t unsent = std::numeric_limits<std::uint32_t>::max();
 constexpr std::uint64_t most_indices = unsent;
 
 template <class T>
-void put(compositor::Bytes& bytes, std::size_t& at, const std::vector<T>& values) {
+void put(exchange::Bytes& bytes, std::size_t& at, const std::vector<T>& values) {
   if (values.empty()) return;
   std::memcpy(bytes.data() + at, values.data(), values.size() * sizeof(T));
   at += values.size() * sizeof(T);
@@ -27,7 +27,7 @@ void put(compositor::Bytes& bytes, std::size_t& at, const std::vector<T>& values
 
 /// Appends `n` values to a vector.
 template <class T>
-void take(const compositor::Bytes& bytes, std::size_t& at, std::uint64_t n, std::vector<T>& values) {
+void take(const exchange::Bytes& bytes, std::size_t& at, std::uint64_t n, std::vector<T>& values) {
   const std::size_t before = values.size();
   values.resize(before + n);
   if (n > 0) std::memcpy(values.data() + before, bytes.data() + at, n * sizeof(T));
@@ -62,7 +62,7 @@ void ChunkSender::begin_part() {
   sent_vertices_ = 0;
 }
 
-bool ChunkSender::next(int& part, compositor::Bytes& message) {
+bool ChunkSender::next(int& part, exchange::Bytes& message) {
   while (at_ == end_) {
     if (turn_ + 1 == parts_) return false;
     begin_part();
@@ -121,7 +121,7 @@ ChunkReceiver::ChunkReceiver(const scene::MeshFacts& facts, std::uint64_t tets, 
   if (association_ == scene::Association::cell) part_.mesh.scalars.reserve(tets);
 }
 
-void ChunkReceiver::add(int from, const compositor::Bytes& message) {
+void ChunkReceiver::add(int from, const exchange::Bytes& message) {
   const auto refuse = [&](const std::string& what) {
     return scene::Error(scene::ExitCode::system_failure,
                         fmt::format("a part of the mesh from rank {}: {}; please report", from, what));

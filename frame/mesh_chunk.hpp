@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "compositor/transport.hpp"
+#include "exchange/transport.hpp"
 #include "frame/mesh_exchange.hpp"
 
 /// The wire record of channel `mesh`, and its two ends.
@@ -34,7 +34,7 @@ class ChunkSender {
               std::size_t chunk_bytes);
 
   /// The next message and the part it is for; false when all is sent.
-  bool next(int& part, compositor::Bytes& message);
+  bool next(int& part, exchange::Bytes& message);
 
  private:
   void begin_part();
@@ -55,7 +55,7 @@ class ChunkReceiver {
   ChunkReceiver(const scene::MeshFacts& facts, std::uint64_t tets, int ranks);
 
   /// Throws Error(system_failure) if the message is not what MeshChunkHeader says.
-  void add(int from, const compositor::Bytes& message);
+  void add(int from, const exchange::Bytes& message);
 
   /// The part, in canonical order: the same whatever order the messages came in.
   MeshPart finish();

@@ -10,9 +10,9 @@
 namespace tessera::frame {
 namespace {
 
-using compositor::Bytes;
-using compositor::Channel;
-using compositor::Transport;
+using exchange::Bytes;
+using exchange::Channel;
+using exchange::Transport;
 using projection::PartitionKind;
 
 template <class T>
@@ -145,7 +145,7 @@ MeshPart redistribute(Transport& transport, MeshPart local, const scene::MeshFac
         awaited += all[k];
     }
     for (; awaited > 0; --awaited) {
-      const compositor::Message taken = transport.receive(Channel::mesh);
+      const exchange::Message taken = transport.receive(Channel::mesh);
       receiver.add(taken.from, taken.bytes);
     }
   }

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "compositor/transport.hpp"
+#include "exchange/transport.hpp"
 #include "projection/partition.hpp"
 #include "scene/mesh_facts.hpp"
 #include "scene/tet_mesh.hpp"
@@ -26,7 +26,7 @@ struct MeshPart {
 
 /// Facts of the whole mesh, to the same bits on every rank, for any distribution, and in one process
 /// (scene::facts_of). Collective. `threads` of each rank; 0 is all cores.
-scene::MeshFacts agree_facts(compositor::Transport& transport, const scene::TetMesh& part, int threads = 1);
+scene::MeshFacts agree_facts(exchange::Transport& transport, const scene::TetMesh& part, int threads = 1);
 
 /// Memory of an exchange: a message holds about `chunk_bytes`, and a rank is at most two rounds of `round_bytes` ahead
 /// of what the slowest has taken.
@@ -42,7 +42,7 @@ struct ExchangeLimits {
 /// use, each once for every rank it came from. Where no tet has to move, nothing is copied and `local` is the answer.
 /// At its peak a rank holds what it read, what it got and the limits' bytes. Spans `partition`, with bytes sent.
 /// Throws Error(system_failure) for a part of 2^32 vertices or tets, or a malformed message.
-MeshPart redistribute(compositor::Transport& transport, MeshPart local, const scene::MeshFacts& facts,
+MeshPart redistribute(exchange::Transport& transport, MeshPart local, const scene::MeshFacts& facts,
                       const projection::Partition& how, std::span<const int> projectors, scene::Trace* trace = nullptr,
                       const ExchangeLimits& limits = {});
 

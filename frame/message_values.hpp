@@ -4,14 +4,14 @@
 #include <span>
 #include <type_traits>
 
-#include "compositor/transport.hpp"
+#include "exchange/transport.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::frame {
 
 /// Puts values behind a message, as they lie in memory: little endian, as all ranks are.
 template <class T>
-void append_values(compositor::Bytes& message, std::span<const T> values) {
+void append_values(exchange::Bytes& message, std::span<const T> values) {
   static_assert(std::is_trivially_copyable_v<T>);
   const auto raw = std::as_bytes(values);
   message.insert(message.end(), raw.begin(), raw.end());

@@ -4,11 +4,11 @@
 #include <memory>
 #include <optional>
 
-#include "compositor/outbox.hpp"
 #include "compositor/run_sink.hpp"
 #include "compositor/segment_sink.hpp"
 #include "compositor/window_runs.hpp"
 #include "compositor/window_segments.hpp"
+#include "exchange/outbox.hpp"
 #include "frame/distributed_roles.hpp"
 #include "frame/frame_projector.hpp"
 #include "frame/lattice_frame.hpp"
@@ -16,7 +16,7 @@
 namespace tessera::frame {
 namespace {
 
-using compositor::Channel;
+using exchange::Channel;
 
 /// Waits until no more than `in_flight - 1` frames before this one are on their way.
 void wait_for_turn(const DistributedRun& run, std::size_t frame, std::size_t& left) {
@@ -26,23 +26,7 @@ void wait_for_turn(const DistributedRun& run, std::size_t frame, std::size_t& le
   for (; frame >= left + in_flight; ++left) run.transport.receive(Channel::frames);
 }
 
-compositor::FrameEnd counts_of(const FrameStatistics& s) {
-  return {.tets_total = s.tets_total,
-          .tets_invisible = s.tets_invisible,
-          .tets_outside_view = s.tets_outside_view,
-          .tets_between_pixels = s.tets_between_pixels,
-          .tets_projected = s.tets_projected,
-          .segments = s.segments,
-          .max_segments_alive = s.max_segments_alive,
-          .peak_buffer_bytes = s.peak_buffer_bytes,
-          .exact_sign_tests = s.exact_sign_tests,
-          .tiles_split = s.tiles_split,
-          .fragments = 0,
-          .bytes = 0,
-          .messages = 0,
-          .on_lattice = s.on_lattice ? 1u : 0u,
-          .failed_devices = 0};
-}
+exchange::FrameEnd counts_of(const FrameStatistics& s) { return {s, s.on_lattice ? 1u : 0u, 0}; }
 
 }  // namespace
 
@@ -52,8 +36,8 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
   RenderSettings render = settings.render;
   render.trace = settings.projecting;
 
-  compositor::Outbox outbox(run.transport,
-                            {settings.roles.compositors, budget.window, budget.backlog, settings.projecting});
+  exchange::Outbox outbox(run.transport,
+                          {settings.roles.compositors, budget.window, budget.backlog, settings.projecting});
   std::size_t left = 0;  // frames that have left the assembling rank
   for (std::size_t frame = 0; frame < run.jobs.size(); ++frame) {
     const FrameJob& job = run.jobs[frame];
@@ -65,7 +49,7 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
     const double start_us = render.trace != nullptr ? render.trace->now_us() : 0;
 
     const projection::PixelSpace space(job.camera, job.size);
-    const compositor::SegmentIntegrator integrator(run.function, render.integrator, render.emission, render.trace);
+    const integrals::SegmentIntegrator integrator(run.function, render.integrator, render.emission, render.trace);
     FrameProjector::Task task;
     task.space = &space;
     task.grid = {job.size, render.tile_size};
@@ -73,9 +57,9 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
     task.frame = number;
     task.longest_edge = mesh.longest_edge;
     task.longest_ray = mesh.box.empty() ? 0 : glm::length(mesh.box.high - mesh.box.low);
-    const compositor::TileMap map(task.grid.count(), static_cast<int>(settings.roles.compositors.size()),
-                                  settings.tile_seed);
-    const auto deliver = [&](compositor::TilePart part) {
+    const exchange::TileMap map(task.grid.count(), static_cast<int>(settings.roles.compositors.size()),
+                                settings.tile_seed);
+    const auto deliver = [&](exchange::TilePart part) {
       const scene::TraceScope timing(render.trace, "pack", number, part.records.size(), 0);
       outbox.put(std::move(part));
     };
@@ -88,9 +72,9 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
       return std::make_unique<compositor::RunSink>(space, integrator, run.function.max_color(), mesh.diagonal,
                                                    render.emission, budget.cut, deliver);
     };
-    const std::optional<projection::Lattice> lattice =
+    const std::optional<scene::Lattice> lattice =
         settings.deep ? std::nullopt : lattice_of(space, mesh.box, mesh.scalar_range, run.function, render);
-    std::optional<compositor::LaneTable> table;
+    std::optional<integrals::LaneTable> table;
     if (lattice) {
       table.emplace(run.function, lattice->scalar_origin, lattice->scalar_unit, lattice->depth_unit, render.emission);
       task.lattice = &*lattice;
@@ -99,7 +83,7 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
           return std::make_unique<compositor::WindowSegments>(*lattice, deliver);
         const compositor::WindowScene scene{
             &space, &*table, &integrator, *lattice,
-            compositor::opacity_weight(run.function.max_color(), mesh.diagonal, render.emission)};
+            integrals::opacity_weight(run.function.max_color(), mesh.diagonal, render.emission)};
         return std::make_unique<compositor::WindowRuns>(scene, budget.cut, deliver);
       };
     }
@@ -108,7 +92,7 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
                          {.longest_ray = mesh.diagonal,
                           .tiles = 0,
                           .longest_edge = mesh.longest_edge,
-                          .lattice = lattice.value_or(projection::Lattice{})});
+                          .lattice = lattice.value_or(scene::Lattice{})});
     };
     run.transport.set_working(true);
     const FrameStatistics statistics = loaded.projector().project(task);

@@ -6,10 +6,10 @@
 
 namespace tessera::frame {
 
-using compositor::Bytes;
-using compositor::Channel;
+using exchange::Bytes;
+using exchange::Channel;
 
-std::vector<std::uint64_t> reduce_all(compositor::Transport& transport, std::vector<std::uint64_t> values,
+std::vector<std::uint64_t> reduce_all(exchange::Transport& transport, std::vector<std::uint64_t> values,
                                       Reduction reduction) {
   if (transport.size() == 1) return values;
   const std::size_t size = values.size() * sizeof(std::uint64_t);
@@ -18,7 +18,7 @@ std::vector<std::uint64_t> reduce_all(compositor::Transport& transport, std::vec
     return Bytes(first, first + size);
   };
   const auto take = [&] {
-    compositor::Message message = transport.receive(Channel::agreement);
+    exchange::Message message = transport.receive(Channel::agreement);
     if (message.bytes.size() != size)
       throw scene::Error(
           scene::ExitCode::system_failure,

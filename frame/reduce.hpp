@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "compositor/transport.hpp"
+#include "exchange/transport.hpp"
 
 namespace tessera::frame {
 
@@ -11,7 +11,7 @@ enum class Reduction { sum, bit_or };
 
 /// Element by element over all ranks, on every rank. Collective (channel `agreement`); the same length everywhere, at
 /// most 2^27 numbers.
-std::vector<std::uint64_t> reduce_all(compositor::Transport& transport, std::vector<std::uint64_t> values,
+std::vector<std::uint64_t> reduce_all(exchange::Transport& transport, std::vector<std::uint64_t> values,
                                       Reduction reduction);
 
 }  // namespace tessera::frame

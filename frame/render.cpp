@@ -8,12 +8,12 @@
 
 #include "compositor/deep_collector.hpp"
 #include "compositor/deep_sink.hpp"
-#include "compositor/segment_integrator.hpp"
 #include "compositor/tile_pixels.hpp"
 #include "compositor/two_sinks.hpp"
 #include "compositor/window_pixels.hpp"
 #include "frame/frame_projector.hpp"
 #include "frame/lattice_frame.hpp"
+#include "integrals/segment_integrator.hpp"
 #include "projection/planes_rasterizer.hpp"
 #include "scene/error.hpp"
 
@@ -23,7 +23,7 @@ void check_deep(const RenderSettings& settings, const scene::TransferFunction& f
     throw scene::bad_input(fmt::format("--deep-accuracy {}: it must be 1e-6 to 1", settings.deep_accuracy));
   if (settings.rasterizer != Rasterizer::planes)
     throw scene::bad_input("deep picture: --rasterizer scanline leaves gaps and overlaps in depth; use planes");
-  const compositor::SegmentIntegrator integrator(function, settings.integrator, settings.emission);
+  const integrals::SegmentIntegrator integrator(function, settings.integrator, settings.emission);
   if (integrator.name() != "exact")
     throw scene::bad_input(
         fmt::format("deep picture: --integrator {} gives a segment other light than its parts; use exact or auto",
@@ -35,7 +35,7 @@ struct Renderer::State {
       : settings(s), projector(mesh, s), scalar_range(scene::scalar_range(mesh, s.threads)) {}
 
   /// The integrator of this function. Its tables are kept for as long as the function stays.
-  const compositor::SegmentIntegrator& integrator(const scene::TransferFunction& f) {
+  const integrals::SegmentIntegrator& integrator(const scene::TransferFunction& f) {
     if (!kept || !std::ranges::equal(f.knots(), function.knots())) {
       kept.emplace(f, settings.integrator, settings.emission, settings.trace);
       function = f;
@@ -47,7 +47,7 @@ struct Renderer::State {
   FrameProjector projector;
   std::array<double, 2> scalar_range;
   scene::TransferFunction function;
-  std::optional<compositor::SegmentIntegrator> kept;
+  std::optional<integrals::SegmentIntegrator> kept;
 };
 
 Renderer::Renderer(const scene::TetMesh& mesh, const RenderSettings& settings)
@@ -60,7 +60,7 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
                               scene::DeepImage* deep) {
   const RenderSettings& settings = state_->settings;
   const projection::PixelSpace space(camera, size);
-  const compositor::SegmentIntegrator& integrator = state_->integrator(transfer_function);
+  const integrals::SegmentIntegrator& integrator = state_->integrator(transfer_function);
   scene::Image image(size);
   FrameProjector::Task task;
   task.space = &space;
@@ -83,17 +83,17 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
         std::make_unique<compositor::DeepSink>(space, integrator, transfer_function, longest_ray, settings.emission,
                                                settings.deep_accuracy, *collector));
   };
-  const std::optional<projection::Lattice> lattice =
+  const std::optional<scene::Lattice> lattice =
       collector ? std::nullopt
                 : lattice_of(space, state_->projector.box(), state_->scalar_range, transfer_function, settings);
-  std::optional<compositor::LaneTable> table;
+  std::optional<integrals::LaneTable> table;
   if (lattice) {
     table.emplace(transfer_function, lattice->scalar_origin, lattice->scalar_unit, lattice->depth_unit,
                   settings.emission);
     task.lattice = &*lattice;
     const compositor::WindowScene scene{
         &space, &*table, &integrator, *lattice,
-        compositor::opacity_weight(transfer_function.max_color(), longest_ray, settings.emission)};
+        integrals::opacity_weight(transfer_function.max_color(), longest_ray, settings.emission)};
     task.make_window_sink = [scene, &image] {
       return std::make_unique<compositor::WindowPixels>(scene, compositor::ImageWindow{&image});
     };

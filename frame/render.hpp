@@ -6,6 +6,7 @@
 
 #include "scene/camera.hpp"
 #include "scene/deep_image.hpp"
+#include "scene/frame_counters.hpp"
 #include "scene/image.hpp"
 #include "scene/mechanisms.hpp"
 #include "scene/optical_model.hpp"
@@ -18,7 +19,8 @@ namespace tessera::frame {
 /// How cells become ray segments.
 enum class Rasterizer {
   planes,   ///< exact hits, double precision: the default
-  scanline  ///< [JCN07] 4.1-4.2 as printed: float32, no tie rule, segments ordered by z_back alone; orthographic only
+  scanline  ///< Juliachs et al. 2007, 4.1-4.2 as printed: float32, no tie rule, segments ordered by z_back alone;
+            ///< orthographic only
 };
 
 /// What a frame is made with. None of it but the rasterizer, integrator, emission, accuracy and `use` changes a bit of
@@ -37,26 +39,11 @@ struct RenderSettings {
 };
 
 /// What happened in one frame.
-struct FrameStatistics {
-  std::uint64_t tets_total = 0;           ///< in the mesh
-  std::uint64_t tets_invisible = 0;       ///< transfer function is zero over all of their scalars: never projected
-  std::uint64_t tets_outside_view = 0;    ///< of the rest: outside the window or the clipping range
-  std::uint64_t tets_between_pixels = 0;  ///< of the rest: too small to cover the centre of any pixel
-  std::uint64_t tets_projected = 0;       ///< what is left
-  std::uint64_t segments = 0;             ///< ray segments composited or left out behind opaque ones
-  std::uint64_t max_segments_alive = 0;   ///< most segments one thread held at once
-  std::uint64_t peak_buffer_bytes = 0;    ///< most bytes of frame buffers held at once (estimate from capacities)
-  std::uint64_t exact_sign_tests = 0;     ///< edge signs decided by exact arithmetic
-  std::uint64_t unpaired = 0;             ///< scanline: front-face fragments lost for want of a back-face one
-  std::uint64_t tiles_split = 0;          ///< tiles worked through in parts to stay within the memory budget
-  std::uint64_t fragments = 0;            ///< runs or segments sent to compositors; 0 in a single process
-  std::uint64_t exchange_bytes = 0;       ///< of the messages they went in, those to the same rank included
-  std::uint64_t exchange_messages = 0;
-  std::uint64_t deep_samples = 0;  ///< of the deep picture, if one was asked for
-  bool on_lattice = false;         ///< the integer lattice held the frame; false: double precision
-  std::string instruction_set;     ///< of the kernels that ran
-  std::string integrator;          ///< what `automatic` chose
-  std::string composited_on;       ///< CompositingDevice::name, of all compositors; empty in a single process
+struct FrameStatistics : scene::FrameCounters {
+  bool on_lattice = false;      ///< the integer lattice held the frame; false: double precision
+  std::string instruction_set;  ///< of the kernels that ran
+  std::string integrator;       ///< what `automatic` chose
+  std::string composited_on;    ///< CompositingDevice::name, of all compositors; empty in a single process
 };
 
 /// projection::order_corners() on the threads of `settings`: of a mesh that has been through it a renderer keeps no

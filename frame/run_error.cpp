@@ -8,7 +8,7 @@
 
 namespace tessera::frame {
 
-scene::Error run_error(const compositor::Transport& transport, const std::exception& fault) {
+scene::Error run_error(const exchange::Transport& transport, const std::exception& fault) {
   if (const auto* known = dynamic_cast<const scene::Error*>(&fault)) return *known;
   const auto of_this_rank = [&](const std::string& words) {
     return scene::Error(scene::ExitCode::system_failure,

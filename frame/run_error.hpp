@@ -2,11 +2,11 @@
 
 #include <exception>
 
-#include "compositor/transport.hpp"
+#include "exchange/transport.hpp"
 
 namespace tessera::frame {
 
 /// What an exception that ended this rank's part is to the user: itself if it is a scene::Error.
-scene::Error run_error(const compositor::Transport& transport, const std::exception& fault);
+scene::Error run_error(const exchange::Transport& transport, const std::exception& fault);
 
 }  // namespace tessera::frame

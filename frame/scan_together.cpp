@@ -11,8 +11,8 @@
 namespace tessera::frame {
 namespace {
 
-using compositor::Bytes;
-using compositor::Channel;
+using exchange::Bytes;
+using exchange::Channel;
 
 /// Some cells of a rank's share, as they travel: this, then `count` lowest samples, then as many highest. Little
 /// endian.
@@ -56,7 +56,7 @@ std::uint64_t place(const Bytes& bytes, volume::CellScan& whole) {
 
 }  // namespace
 
-volume::CellRanges scan_together(compositor::Transport& transport, const scene::SampleSource& source, int threads) {
+volume::CellRanges scan_together(exchange::Transport& transport, const scene::SampleSource& source, int threads) {
   const int ranks = transport.size(), self = transport.rank();
   const scene::GridIndex cells = volume::cells_along(source.geometry());
   const auto first_layer = [&](int rank) { return cells[2] * rank / ranks; };
@@ -82,7 +82,7 @@ volume::CellRanges scan_together(compositor::Transport& transport, const scene::
   const ScanTotals totals{own.lowest, own.highest, own.blanks};
   Bytes bytes;
   append_values(bytes, std::span(&totals, 1));
-  for (const Bytes& of_rank : compositor::gather_all(transport, std::move(bytes))) {
+  for (const Bytes& of_rank : exchange::gather_all(transport, std::move(bytes))) {
     const auto part = ValueReader(of_rank).take<ScanTotals>();
     whole.lowest = std::min(whole.lowest, part.lowest);
     whole.highest = std::max(whole.highest, part.highest);

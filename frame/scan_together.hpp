@@ -1,6 +1,6 @@
 #pragma once
 
-#include "compositor/transport.hpp"
+#include "exchange/transport.hpp"
 #include "scene/sample_source.hpp"
 #include "volume/cell_ranges.hpp"
 
@@ -12,6 +12,6 @@ namespace tessera::frame {
 ///
 /// Collective: the same volume on every rank, from a source of each rank's own. Throws the run's error, or this rank's
 /// (a source that cannot be read), which the caller gives to transport.fail().
-volume::CellRanges scan_together(compositor::Transport& transport, const scene::SampleSource& source, int threads);
+volume::CellRanges scan_together(exchange::Transport& transport, const scene::SampleSource& source, int threads);
 
 }  // namespace tessera::frame

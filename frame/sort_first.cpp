@@ -17,8 +17,8 @@
 namespace tessera::frame {
 namespace {
 
-using compositor::Bytes;
-using compositor::Channel;
+using exchange::Bytes;
+using exchange::Channel;
 using volume::CostMap;
 using volume::ImageSplit;
 using volume::PixelRegion;
@@ -63,7 +63,7 @@ volume::CostMethod method_of(Balance balance) {
 /// One rank's part.
 class SortFirst::State {
  public:
-  State(compositor::Transport& transport, SortFirstSettings settings)
+  State(exchange::Transport& transport, SortFirstSettings settings)
       : transport_(transport),
         settings_(std::move(settings)),
         weights_(settings_.weights.empty() ? std::vector<double>(static_cast<std::size_t>(transport.size()), 1.0)
@@ -80,7 +80,7 @@ class SortFirst::State {
     {
       // No rank runs ahead of the picture that rank 0 puts together, and a frame's time does not count reading.
       const scene::TraceScope timing(settings_.trace, "wait", static_cast<std::int32_t>(number));
-      compositor::gather_all(transport_, {});
+      exchange::gather_all(transport_, {});
     }
     const auto begin = std::chrono::steady_clock::now();
     const ImageSplit split = [&] {
@@ -128,7 +128,7 @@ class SortFirst::State {
     finished.samples.assign(static_cast<std::size_t>(transport_.size()), statistics.samples);
     finished.cpu_seconds.assign(static_cast<std::size_t>(transport_.size()), cpu);
     for (int others = transport_.size() - 1; others > 0; --others) {
-      const compositor::Message message = [&] {
+      const exchange::Message message = [&] {
         const scene::TraceScope timing(settings_.trace, "wait", static_cast<std::int32_t>(number));
         return transport_.receive(Channel::tiles);
       }();
@@ -187,7 +187,7 @@ class SortFirst::State {
     append_values(bytes, std::span(&own.region, 1));
     append_values(bytes, std::span<const std::uint64_t>(own.rows));
     std::vector<volume::RowSums> all;
-    for (const Bytes& of_rank : compositor::gather_all(transport_, std::move(bytes))) {
+    for (const Bytes& of_rank : exchange::gather_all(transport_, std::move(bytes))) {
       ValueReader reader(of_rank);
       volume::RowSums& part = all.emplace_back();
       part.region = reader.take<PixelRegion>();
@@ -202,7 +202,7 @@ class SortFirst::State {
     append_values(bytes, std::span(&own.region, 1));
     for (const auto& columns : own.columns) append_values(bytes, std::span<const std::uint64_t>(columns));
     std::vector<volume::ColumnSums> all;
-    for (const Bytes& of_rank : compositor::gather_all(transport_, std::move(bytes))) {
+    for (const Bytes& of_rank : exchange::gather_all(transport_, std::move(bytes))) {
       ValueReader reader(of_rank);
       volume::ColumnSums& part = all.emplace_back();
       part.region = reader.take<PixelRegion>();
@@ -219,7 +219,7 @@ class SortFirst::State {
     Bytes bytes;
     append_values(bytes, std::span<const double>(&cpu, 1));
     times_.clear();
-    for (const Bytes& of_rank : compositor::gather_all(transport_, std::move(bytes)))
+    for (const Bytes& of_rank : exchange::gather_all(transport_, std::move(bytes)))
       times_.push_back(ValueReader(of_rank).take<double>());
   }
 
@@ -255,7 +255,7 @@ class SortFirst::State {
     transport_.send(0, Channel::tiles, std::move(bytes), static_cast<std::int32_t>(header.frame));
   }
 
-  void place(const compositor::Message& message, FinishedVolumeFrame& finished) {
+  void place(const exchange::Message& message, FinishedVolumeFrame& finished) {
     ValueReader reader(message.bytes);
     const auto header = reader.take<RegionHeader>();
     const PixelRegion& r = header.region;
@@ -280,7 +280,7 @@ class SortFirst::State {
     finished.cpu_seconds[static_cast<std::size_t>(message.from)] = header.cpu_seconds;
   }
 
-  compositor::Transport& transport_;
+  exchange::Transport& transport_;
   const SortFirstSettings settings_;
   std::vector<double> weights_, times_;
   std::optional<volume::WorkRates> rates_;
@@ -289,7 +289,7 @@ class SortFirst::State {
   CostMap cost_;
 };
 
-SortFirst::SortFirst(compositor::Transport& transport, SortFirstSettings settings)
+SortFirst::SortFirst(exchange::Transport& transport, SortFirstSettings settings)
     : state_(std::make_unique<State>(transport, std::move(settings))) {}
 SortFirst::~SortFirst() = default;
 
@@ -299,7 +299,7 @@ std::optional<FinishedVolumeFrame> SortFirst::render(volume::Renderer& renderer,
   return state_->render(renderer, function, job, number);
 }
 
-void render_sort_first(compositor::Transport& transport, const SortFirstSettings& settings,
+void render_sort_first(exchange::Transport& transport, const SortFirstSettings& settings,
                        std::span<const VolumeJob> jobs, const scene::TransferFunction& function,
                        volume::Renderer& renderer, const std::function<void(FinishedVolumeFrame)>& done) {
   try {

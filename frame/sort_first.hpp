@@ -6,14 +6,14 @@
 #include <span>
 #include <vector>
 
-#include "compositor/transport.hpp"
+#include "exchange/transport.hpp"
 #include "scene/grid.hpp"
 #include "volume/cost_map.hpp"
 #include "volume/render.hpp"
 
 namespace tessera::frame {
 
-/// How the picture of a volume is split between processes ([Mol08] chapter 4).
+/// How the picture of a volume is split between processes (Moloney 2008, chapter 4).
 enum class Balance {
   accurate,  ///< by what each pixel will cost, as a look at every 32nd ray tells
   backface,
@@ -50,7 +50,8 @@ struct FinishedVolumeFrame {
 };
 
 /// Renders pictures of volumes with all ranks of `transport` (sort first): each casts the rays of one rectangle through
-/// its own renderer of the same volume, rank 0 gathers ([Mol08] 6.3.2). A single rank casts all and splits nothing.
+/// its own renderer of the same volume, rank 0 gathers (Moloney 2008, 6.3.2). A single rank casts all and splits
+/// nothing.
 ///
 /// The split is found by all ranks together in two stages (volume/image_split.hpp): each finds the cost of the
 /// rectangle it had in the frame before, of an even tile in the first one. The bits of the picture are those of one
@@ -59,7 +60,7 @@ class SortFirst {
  public:
   /// Throws Error(bad_input) unless there are no weights or as many positive ones as ranks. `transport` must outlive
   /// it.
-  SortFirst(compositor::Transport& transport, SortFirstSettings settings);
+  SortFirst(exchange::Transport& transport, SortFirstSettings settings);
   ~SortFirst();
   SortFirst(const SortFirst&) = delete;
   SortFirst& operator=(const SortFirst&) = delete;
@@ -76,7 +77,7 @@ class SortFirst {
 
 /// A list of pictures of one volume. Each rank calls this with the same arguments but for `done`, which runs on rank 0,
 /// in order. Throws the run's error, on every rank.
-void render_sort_first(compositor::Transport& transport, const SortFirstSettings& settings,
+void render_sort_first(exchange::Transport& transport, const SortFirstSettings& settings,
                        std::span<const VolumeJob> jobs, const scene::TransferFunction& function,
                        volume::Renderer& renderer, const std::function<void(FinishedVolumeFrame)>& done);
 

@@ -26,7 +26,7 @@ void append(const projection::RaySegments& from, projection::RaySegments& to) {
 
 }  // namespace
 
-void TileRenderer::render(const projection::PixelRect& rect, std::span<projection::TileEntry> entries,
+void TileRenderer::render(const scene::PixelRect& rect, std::span<projection::TileEntry> entries,
                           compositor::TileSink& sink) {
   projection::DepthOrder order;
   {
@@ -36,7 +36,7 @@ void TileRenderer::render(const projection::PixelRect& rect, std::span<projectio
   render_sorted(rect, order, sink);
 }
 
-void TileRenderer::render_sorted(const projection::PixelRect& rect, const projection::DepthOrder& order,
+void TileRenderer::render_sorted(const scene::PixelRect& rect, const projection::DepthOrder& order,
                                  compositor::TileSink& sink) {
   if (rect.empty()) return;
   const TileCounts before = counts_;
@@ -54,9 +54,9 @@ void TileRenderer::render_sorted(const projection::PixelRect& rect, const projec
   counts_.segments = before.segments;
   ++counts_.tiles_split;
   const int x = (rect.x0 + rect.x1 + 1) / 2, y = (rect.y0 + rect.y1 + 1) / 2;
-  for (const projection::PixelRect& quarter :
-       {projection::PixelRect{rect.x0, rect.y0, x, y}, projection::PixelRect{x, rect.y0, rect.x1, y},
-        projection::PixelRect{rect.x0, y, x, rect.y1}, projection::PixelRect{x, y, rect.x1, rect.y1}})
+  for (const scene::PixelRect& quarter :
+       {scene::PixelRect{rect.x0, rect.y0, x, y}, scene::PixelRect{x, rect.y0, rect.x1, y},
+        scene::PixelRect{rect.x0, y, x, rect.y1}, scene::PixelRect{x, y, rect.x1, rect.y1}})
     render_sorted(quarter, order, sink);
 }
 
@@ -69,7 +69,7 @@ bool TileRenderer::reserve(std::size_t segments) {
   return true;
 }
 
-bool TileRenderer::try_render(const projection::PixelRect& rect, const projection::DepthOrder& order,
+bool TileRenderer::try_render(const scene::PixelRect& rect, const projection::DepthOrder& order,
                               compositor::TileSink& sink) {
   const std::span<const projection::TileEntry> entries = order.entries;
   const auto area = static_cast<std::size_t>(rect.area());
@@ -105,7 +105,7 @@ bool TileRenderer::try_render(const projection::PixelRect& rect, const projectio
   return true;
 }
 
-std::size_t TileRenderer::rasterize(std::span<const projection::TileEntry> entries, const projection::PixelRect& rect) {
+std::size_t TileRenderer::rasterize(std::span<const projection::TileEntry> entries, const scene::PixelRect& rect) {
   if (context_.rasterizer == Rasterizer::scanline)
     return projection::rasterize_scanline(*context_.projected, context_.longest_edge, entries, rect, scanline_,
                                           segments_, counts_.raster);
@@ -114,7 +114,7 @@ std::size_t TileRenderer::rasterize(std::span<const projection::TileEntry> entri
 }
 
 std::size_t TileRenderer::rasterize_at_steps(std::span<const projection::TileEntry> entries,
-                                             const projection::PixelRect& rect) {
+                                             const scene::PixelRect& rect) {
   const std::size_t most = static_cast<std::size_t>(rect.area()) * context_.at_steps->most_pieces();
   const auto needs_care = [&](const projection::TileEntry& e) { return context_.at_steps->contain(e.tet); };
   std::size_t taken = 0;

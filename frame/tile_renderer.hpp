@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <span>
 
-#include "compositor/segment_batch.hpp"
 #include "compositor/tile_sink.hpp"
 #include "frame/render.hpp"
+#include "integrals/segment_batch.hpp"
 #include "projection/depth_order.hpp"
 #include "projection/planes_rasterizer.hpp"
 #include "projection/ray_segments.hpp"
@@ -49,7 +49,7 @@ class TileRenderer {
 
   /// Gives `sink` the pixels of `rect` from `entries`, whose order is lost. Throws Error(system_failure) if one pixel
   /// alone has more segments that overlap in depth than the budget holds.
-  void render(const projection::PixelRect& rect, std::span<projection::TileEntry> entries, compositor::TileSink& sink);
+  void render(const scene::PixelRect& rect, std::span<projection::TileEntry> entries, compositor::TileSink& sink);
 
   [[nodiscard]] const TileCounts& counts() const { return counts_; }
 
@@ -61,16 +61,15 @@ class TileRenderer {
 
   /// Bytes that one segment takes in all buffers of a renderer.
   static constexpr std::size_t bytes_a_segment =
-      projection::RaySegments::bytes_each + sorting::PixelLists::bytes_each + compositor::SegmentBatch::bytes_each;
+      projection::RaySegments::bytes_each + sorting::PixelLists::bytes_each + integrals::SegmentBatch::bytes_each;
 
  private:
-  void render_sorted(const projection::PixelRect& rect, const projection::DepthOrder& order,
-                     compositor::TileSink& sink);
-  bool try_render(const projection::PixelRect& rect, const projection::DepthOrder& order, compositor::TileSink& sink);
+  void render_sorted(const scene::PixelRect& rect, const projection::DepthOrder& order, compositor::TileSink& sink);
+  bool try_render(const scene::PixelRect& rect, const projection::DepthOrder& order, compositor::TileSink& sink);
   void flush(std::size_t pixel_count, double final_depth, compositor::TileSink& sink);
   bool reserve(std::size_t segments);
-  std::size_t rasterize(std::span<const projection::TileEntry> entries, const projection::PixelRect& rect);
-  std::size_t rasterize_at_steps(std::span<const projection::TileEntry> entries, const projection::PixelRect& rect);
+  std::size_t rasterize(std::span<const projection::TileEntry> entries, const scene::PixelRect& rect);
+  std::size_t rasterize_at_steps(std::span<const projection::TileEntry> entries, const scene::PixelRect& rect);
 
   TileContext context_;
   projection::DepthOrderScratch depth_order_;

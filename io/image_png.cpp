@@ -8,8 +8,8 @@
 #include <exception>
 #include <vector>
 
+#include "colormaps/color_spaces.hpp"
 #include "io/atomic_file.hpp"
-#include "io/color_spaces.hpp"
 #include "io/image_formats.hpp"
 #include "scene/error.hpp"
 
@@ -86,7 +86,7 @@ void encode_row(const std::vector<float>& rgba, int channels, const ImageFileOpt
     const double alpha = rgba[i + 3], scale = alpha > 0 ? 1 / alpha : 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const double straight = std::clamp(rgba[i + k] * scale, 0.0, 1.0);
-      put(options.encode_srgb ? encode_srgb(straight) : straight);
+      put(options.encode_srgb ? colormaps::encode_srgb(straight) : straight);
     }
     if (channels == 4) put(alpha);
   }

@@ -8,11 +8,11 @@
 #include <cmath>
 #include <glm/common.hpp>
 
+#include "colormaps/function_options.hpp"
+#include "colormaps/presets.hpp"
+#include "colormaps/transfer_curves.hpp"
 #include "io/json_text.hpp"
-#include "io/presets.hpp"
 #include "io/text_file.hpp"
-#include "io/transfer_curves.hpp"
-#include "io/transfer_function_checks.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -59,9 +59,9 @@ class Reader {
     return out;
   }
 
-  [[nodiscard]] std::vector<ColorPoint> colors() const {
+  [[nodiscard]] std::vector<colormaps::ColorPoint> colors() const {
     const std::vector<double> flat = numbers("RGBPoints", 4);
-    std::vector<ColorPoint> points;
+    std::vector<colormaps::ColorPoint> points;
     for (std::size_t i = 0; i + 3 < flat.size(); i += 4) {
       const glm::dvec3 color{flat[i + 1], flat[i + 2], flat[i + 3]};
       // Rounding beyond 0 and 1 is common in exported maps and is clamped; bytes are another convention.
@@ -73,9 +73,9 @@ class Reader {
     return points;
   }
 
-  [[nodiscard]] std::vector<OpacityPoint> opacities() const {
+  [[nodiscard]] std::vector<colormaps::OpacityPoint> opacities() const {
     const std::vector<double> flat = numbers("Points", 4);
-    std::vector<OpacityPoint> points;
+    std::vector<colormaps::OpacityPoint> points;
     for (std::size_t i = 0; i + 3 < flat.size(); i += 4) {
       constexpr std::array<const char*, 3> name{"opacity", "midpoint", "sharpness"};
       for (std::size_t k = 0; k < 3; ++k)
@@ -131,24 +131,24 @@ auto round_middle(const std::vector<Point>& points) {
 }
 
 /// Sets the space; returns a remark for the name, or "".
-std::string set_color_space(const std::string& name, const Reader& reader, TransferCurves& curves) {
+std::string set_color_space(const std::string& name, const Reader& reader, colormaps::TransferCurves& curves) {
   curves.hue_wraps = false;
   if (const json* wrap = reader.find("HSVWrap"))
     curves.hue_wraps = wrap->is_boolean() ? wrap->get<bool>() : wrap->is_number() && wrap->get<double>() != 0;
   if (name == "RGB") {
-    curves.space = ColorSpace::rgb;
+    curves.space = colormaps::ColorSpace::rgb;
   } else if (name == "HSV" || name == "Wrapped") {  // ParaView's older name for HSV that wraps
-    curves.space = ColorSpace::hsv;
+    curves.space = colormaps::ColorSpace::hsv;
     curves.hue_wraps = curves.hue_wraps || name == "Wrapped";
   } else if (name == "Lab" || name == "CIELAB" || name == "CIELab" || name == "LAB") {
-    curves.space = ColorSpace::lab;
+    curves.space = colormaps::ColorSpace::lab;
   } else if (name == "LabCIEDE2000" || name == "Lab/CIEDE2000") {
-    curves.space = ColorSpace::lab;
+    curves.space = colormaps::ColorSpace::lab;
     return "Lab for LabCIEDE2000";
   } else if (name == "Diverging") {
-    curves.space = ColorSpace::diverging;
+    curves.space = colormaps::ColorSpace::diverging;
   } else if (name == "Step") {
-    curves.space = ColorSpace::step;
+    curves.space = colormaps::ColorSpace::step;
   } else {
     throw reader.fault(fmt::format(
         "ColorSpace {} is not known; RGB, HSV, Lab, CIELAB, LabCIEDE2000, Diverging, Step are", quote(name)));
@@ -158,9 +158,9 @@ std::string set_color_space(const std::string& name, const Reader& reader, Trans
 
 }  // namespace
 
-LoadedTransferFunction parse_paraview_color_map(std::string_view text, const std::string& source,
-                                                const TransferFunctionOptions& options) {
-  check(options);
+colormaps::LoadedTransferFunction parse_paraview_color_map(std::string_view text, const std::string& source,
+                                                           const colormaps::TransferFunctionOptions& options) {
+  colormaps::check(options);
   const json root = parse_json(text, source);
   if (root.is_array() && root.empty())
     throw scene::bad_input(source + ": is an empty list; export a colour map into it");
@@ -173,7 +173,7 @@ LoadedTransferFunction parse_paraview_color_map(std::string_view text, const std
   if (root.is_array() && root.size() > 1) remarks.push_back(fmt::format("first of {} maps", root.size()));
   const std::string given_name = reader.text("Name", "");
 
-  TransferCurves curves;
+  colormaps::TransferCurves curves;
   curves.colors = reader.colors();
   if (curves.colors.empty())
     throw reader.fault(reader.find("IndexedColors") != nullptr
@@ -192,22 +192,22 @@ LoadedTransferFunction parse_paraview_color_map(std::string_view text, const std
     remarks.push_back(fmt::format("rescaled to {:.6g} to {:.6g}", spanned[0], spanned[1]));
     stretch(curves.colors, color_range, spanned, [&] {
       const auto [a, b, t] = round_middle(curves.colors);
-      return ColorPoint{0, mix_colors(a.color, b.color, t, curves.space, curves.hue_wraps)};
+      return colormaps::ColorPoint{0, colormaps::mix_colors(a.color, b.color, t, curves.space, curves.hue_wraps)};
     });
   } else if (options.field_range[1] < color_range[0] || options.field_range[0] > color_range[1]) {
     remarks.push_back(
         fmt::format("the field's {:.6g} to {:.6g} lies outside its {:.6g} to {:.6g}: --rescale stretches it",
                     options.field_range[0], options.field_range[1], color_range[0], color_range[1]));
   }
-  if (!has_opacities) curves.opacities = opacity_ramp();
+  if (!has_opacities) curves.opacities = colormaps::opacity_ramp();
   sort_points(curves.opacities);
   if (options.rescale || !has_opacities)
     stretch(curves.opacities, range_of(curves.opacities), spanned, [&] {
       const auto [a, b, t] = round_middle(curves.opacities);
-      return OpacityPoint{0, mix_opacities(a, b, t)};
+      return colormaps::OpacityPoint{0, colormaps::mix_opacities(a, b, t)};
     });
 
-  LoadedTransferFunction loaded;
+  colormaps::LoadedTransferFunction loaded;
   loaded.unit_distance_source = "default";
   double distance = options.default_unit_distance;
   if (const json* in_file = reader.find("ScalarOpacityUnitDistance")) {
@@ -224,7 +224,7 @@ LoadedTransferFunction parse_paraview_color_map(std::string_view text, const std
   loaded.name = given_name.empty() ? source : source + " " + quote(given_name);
   if (!remarks.empty()) loaded.name += fmt::format(" ({})", fmt::join(remarks, "; "));
   try {
-    loaded.function = scene::TransferFunction(refined_knots(
+    loaded.function = scene::TransferFunction(colormaps::refined_knots(
         curves,
         {.unit_distance = distance, .opacity_scale = options.opacity_scale, .display_colors = options.display_colors}));
   } catch (const scene::Error& error) {

@@ -17,7 +17,7 @@ namespace tessera::io {
 /// Values are the field's own; with `rescale`, colours and opacities are each stretched over the field's range, which
 /// the name says. Two points at one x are a step. NaN's colour, annotations and other keys are passed over. Maps of
 /// `IndexedColors` alone (categories) are refused. Throws Error(bad_input) in one line.
-LoadedTransferFunction parse_paraview_color_map(std::string_view text, const std::string& source,
-                                                const TransferFunctionOptions& options);
+colormaps::LoadedTransferFunction parse_paraview_color_map(std::string_view text, const std::string& source,
+                                                           const colormaps::TransferFunctionOptions& options);
 
 }  // namespace tessera::io

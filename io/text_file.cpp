@@ -83,12 +83,4 @@ std::optional<double> parse_number(std::string_view word) {
   return number;
 }
 
-std::string quote(std::string_view text) {
-  constexpr std::size_t most = 40;
-  std::string out = "'";
-  for (const char c : text.substr(0, most)) out += (c >= 0x20 && c < 0x7f) ? c : '?';
-  if (text.size() > most) out += "...";
-  return out + "'";
-}
-
 }  // namespace tessera::io

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/quote.hpp"
+
 namespace tessera::io {
 
 /// The whole of a small file (transfer function, camera). Throws Error(bad_input) if it is missing, a folder, or larger
@@ -38,7 +40,6 @@ char first_character(std::string_view text);
 /// A finite double that fills the whole word, in the C locale whatever the user's is; a leading + is allowed.
 std::optional<double> parse_number(std::string_view word);
 
-/// Foreign text for a message: quoted, one line, at most 40 characters, unprintable bytes as `?`.
-std::string quote(std::string_view text);
+using scene::quote;
 
 }  // namespace tessera::io

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "colormaps/function_options.hpp"
 #include "io/text_file.hpp"
-#include "io/transfer_function_checks.hpp"
 #include "io/transfer_function_file.hpp"
 #include "scene/error.hpp"
 
@@ -29,9 +29,9 @@ std::string rescale(std::vector<scene::Knot>& knots, const std::array<double, 2>
 
 }  // namespace
 
-LoadedTransferFunction parse_text_transfer_function(std::string_view text, const std::string& source,
-                                                    const TransferFunctionOptions& options) {
-  check(options);
+colormaps::LoadedTransferFunction parse_text_transfer_function(std::string_view text, const std::string& source,
+                                                               const colormaps::TransferFunctionOptions& options) {
+  colormaps::check(options);
   constexpr std::array<const char*, 5> column{"value", "red", "green", "blue", "extinction"};
   std::vector<scene::Knot> knots;
   TextLines lines(text);
@@ -65,7 +65,7 @@ LoadedTransferFunction parse_text_transfer_function(std::string_view text, const
   std::string name = source;
   if (options.unit_distance) name += " (extinctions as they stand; --unit-distance does not apply)";
   if (options.rescale) name += rescale(knots, options.field_range);
-  return {make_transfer_function(std::move(knots), source), name, std::nullopt, ""};
+  return {colormaps::make_transfer_function(std::move(knots), source), name, std::nullopt, ""};
 }
 
 }  // namespace tessera::io

@@ -25,8 +25,8 @@ std::array<int, 2> covered(double least, double most, int low, int high) {
 
 }  // namespace
 
-PixelRect footprint(const std::array<PixelVertex, 4>& c, const PixelRect& window) {
-  const PixelRect nothing{window.x0, window.y0, window.x0, window.y0};
+scene::PixelRect footprint(const std::array<PixelVertex, 4>& c, const scene::PixelRect& window) {
+  const scene::PixelRect nothing{window.x0, window.y0, window.x0, window.y0};
   if (c[0].w > 0 && c[1].w > 0 && c[2].w > 0 && c[3].w > 0) {
     std::array<double, 4> x, y;
     for (int i = 0; i < 4; ++i) x[i] = c[i].x / c[i].w, y[i] = c[i].y / c[i].w;
@@ -34,7 +34,7 @@ PixelRect footprint(const std::array<PixelVertex, 4>& c, const PixelRect& window
     const auto [y_low, y_high] = std::minmax({y[0], y[1], y[2], y[3]});
     const auto [x0, x1] = covered(x_low, x_high, window.x0, window.x1);
     const auto [y0, y1] = covered(y_low, y_high, window.y0, window.y1);
-    return x0 < x1 && y0 < y1 ? PixelRect{x0, y0, x1, y1} : nothing;
+    return x0 < x1 && y0 < y1 ? scene::PixelRect{x0, y0, x1, y1} : nothing;
   }
   if (beyond(c, &PixelVertex::x, window.x0, -1) || beyond(c, &PixelVertex::x, window.x1, 1) ||
       beyond(c, &PixelVertex::y, window.y0, -1) || beyond(c, &PixelVertex::y, window.y1, 1))

@@ -145,7 +145,8 @@ class CellBlocks {
  public:
   /// Lays blocks over all cells at once. Blocks that would reach out of the rectangle move inwards: what is not the
   /// cell's its edges tell. Only in the narrowest of rectangles does that not help; those are `clipped`.
-  HWY_INLINE void lay(const CellBatch& batch, const CellParts& parts, const PixelRect& rect, const PixelRect& square) {
+  HWY_INLINE void lay(const CellBatch& batch, const CellParts& parts, const scene::PixelRect& rect,
+                      const scene::PixelRect& square) {
     right_ = rect.x1 - square.x0, bottom_ = rect.y1 - square.y0;
     const I d;
     const F df;

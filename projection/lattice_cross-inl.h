@@ -129,8 +129,9 @@ class OneCell {
 template <bool perspective, bool per_cell>
 class HitCrossing {
  public:
-  HWY_INLINE HitCrossing(const LatticeView& view, const CellBatch& batch, const CellParts& parts, const PixelRect& rect,
-                         const PixelRect& square, SegmentStream& out, RasterCounts& counts)
+  HWY_INLINE HitCrossing(const LatticeView& view, const CellBatch& batch, const CellParts& parts,
+                         const scene::PixelRect& rect, const scene::PixelRect& square, SegmentStream& out,
+                         RasterCounts& counts)
       : view_(view),
         batch_(batch),
         parts_(parts),
@@ -341,7 +342,7 @@ class HitCrossing {
   const LatticeView& view_;
   const CellBatch& batch_;
   const CellParts& parts_;
-  const PixelRect& square_;
+  const scene::PixelRect& square_;
   SegmentStream& out_;
   RasterCounts& counts_;
   VI pixel_step_, center_pixel_;  ///< a row's pixels and one in 16 bits each; of column and row 0

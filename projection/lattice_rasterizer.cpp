@@ -17,12 +17,13 @@ namespace HWY_NAMESPACE {
 bool available() { return HWY_TARGET != HWY_SCALAR; }
 
 #if HWY_TARGET == HWY_SCALAR
-void rasterize(const LatticeView&, std::span<const TileEntry>, std::span<const TileEntry>, const PixelRect&,
+void rasterize(const LatticeView&, std::span<const TileEntry>, std::span<const TileEntry>, const scene::PixelRect&,
                const OpenPixels&, LatticeScratch&, SegmentStream&, RasterCounts&) {}
 #else
 template <bool perspective, bool per_cell>
-void rasterize_cells(const LatticeView& view, CellBatch& batch, const PixelRect& rect, const PixelRect& square,
-                     const OpenPixels& open, CoverScratch& scratch, SegmentStream& out, RasterCounts& counts) {
+void rasterize_cells(const LatticeView& view, CellBatch& batch, const scene::PixelRect& rect,
+                     const scene::PixelRect& square, const OpenPixels& open, CoverScratch& scratch, SegmentStream& out,
+                     RasterCounts& counts) {
   HitQueue& hits = scratch.hits;
   const std::uint32_t all = static_cast<std::uint32_t>((std::uint64_t{1} << rect.width()) - 1) << (rect.x0 - square.x0);
   bool all_open = true;
@@ -74,7 +75,7 @@ void rasterize_cells(const LatticeView& view, CellBatch& batch, const PixelRect&
 }
 
 /// An irregular cell, from double precision to the lattice.
-HWY_NOINLINE void rasterize_irregular(const LatticeView& view, const TileEntry& entry, const PixelRect& rect,
+HWY_NOINLINE void rasterize_irregular(const LatticeView& view, const TileEntry& entry, const scene::PixelRect& rect,
                                       LatticeScratch& scratch, SegmentStream& out, RasterCounts& counts) {
   const RaySegments& s = scratch.splitter.rasterize(view.projected, view.steps, entry, rect, counts);
   out.reserve(out.size + s.size);
@@ -90,9 +91,9 @@ HWY_NOINLINE void rasterize_irregular(const LatticeView& view, const TileEntry& 
 }
 
 void rasterize(const LatticeView& view, std::span<const TileEntry> entries, std::span<const TileEntry> ahead,
-               const PixelRect& rect, const OpenPixels& open, LatticeScratch& scratch, SegmentStream& out,
+               const scene::PixelRect& rect, const OpenPixels& open, LatticeScratch& scratch, SegmentStream& out,
                RasterCounts& counts) {
-  const PixelRect square{rect.x0 & ~(SegmentWindows::side - 1), rect.y0 & ~(SegmentWindows::side - 1), 0, 0};
+  const scene::PixelRect square{rect.x0 & ~(SegmentWindows::side - 1), rect.y0 & ~(SegmentWindows::side - 1), 0, 0};
   const bool per_cell = view.projected.mesh->mesh().association == scene::Association::cell;
   CellBatch batch;
   CoverScratch cover_scratch;
@@ -126,7 +127,7 @@ HWY_EXPORT(rasterize);
 HWY_EXPORT(available);
 
 void make_lattice_vertices(std::span<const PixelVertex> vertices, std::span<const double> scalars,
-                           const Lattice& lattice, bool perspective, std::span<LatticeVertex> out) {
+                           const scene::Lattice& lattice, bool perspective, std::span<LatticeVertex> out) {
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const PixelVertex& v = vertices[i];
     LatticeVertex& to = out[i];
@@ -140,8 +141,8 @@ void make_lattice_vertices(std::span<const PixelVertex> vertices, std::span<cons
 bool lattice_available() { return HWY_DYNAMIC_DISPATCH(available)(); }
 
 void rasterize_lattice(const LatticeView& view, std::span<const TileEntry> entries, std::span<const TileEntry> ahead,
-                       const PixelRect& rect, const OpenPixels& open, LatticeScratch& scratch, SegmentStream& out,
-                       RasterCounts& counts) {
+                       const scene::PixelRect& rect, const OpenPixels& open, LatticeScratch& scratch,
+                       SegmentStream& out, RasterCounts& counts) {
   HWY_DYNAMIC_DISPATCH(rasterize)(view, entries, ahead, rect, open, scratch, out, counts);
 }
 

@@ -5,11 +5,11 @@
 #include <span>
 
 #include "projection/depth_limits.hpp"
-#include "projection/lattice.hpp"
 #include "projection/planes_rasterizer.hpp"
 #include "projection/ray_segments.hpp"
 #include "projection/segment_windows.hpp"
 #include "projection/steps.hpp"
+#include "scene/lattice.hpp"
 
 namespace tessera::projection {
 
@@ -23,13 +23,13 @@ static_assert(sizeof(LatticeVertex) == 32);
 
 /// out[v] from vertices[v] and scalars[v]; `scalars` is empty for cell data.
 void make_lattice_vertices(std::span<const PixelVertex> vertices, std::span<const double> scalars,
-                           const Lattice& lattice, bool perspective, std::span<LatticeVertex> out);
+                           const scene::Lattice& lattice, bool perspective, std::span<LatticeVertex> out);
 
 /// What the lattice rasterizer reads of a frame.
 struct LatticeView {
   ProjectedMesh projected;
   std::span<const LatticeVertex> vertices;  ///< of all vertices of `projected`
-  Lattice lattice;
+  scene::Lattice lattice;
   bool perspective;
   DepthLimits depth_limits{};
   std::span<const Step> steps{};           ///< of the transfer function
@@ -81,8 +81,8 @@ using OpenPixels = std::array<std::uint32_t, SegmentWindows::side>;
 /// Cells behind closed pixels alone are skipped; single closed pixels still get segments. `ahead` are the entries that
 /// will come next: their numbers are fetched meanwhile.
 void rasterize_lattice(const LatticeView& view, std::span<const TileEntry> entries, std::span<const TileEntry> ahead,
-                       const PixelRect& rect, const OpenPixels& open, LatticeScratch& scratch, SegmentStream& out,
-                       RasterCounts& counts);
+                       const scene::PixelRect& rect, const OpenPixels& open, LatticeScratch& scratch,
+                       SegmentStream& out, RasterCounts& counts);
 
 /// Whether this processor's instruction set has lanes (SSE4 or better).
 bool lattice_available();

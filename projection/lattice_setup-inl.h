@@ -111,9 +111,10 @@ HWY_INLINE unsigned bits_of(M mask) {
 struct DepthBounds {
   double near, far;  ///< steps
   explicit DepthBounds(const LatticeView& view) {
-    const Lattice& l = view.lattice;
+    const scene::Lattice& l = view.lattice;
     const auto steps = [&](double depth, double sign) {
-      return std::clamp((depth - l.depth_origin) / l.depth_unit + sign, -2 * Lattice::limit, 2 * Lattice::limit);
+      return std::clamp((depth - l.depth_origin) / l.depth_unit + sign, -2 * scene::Lattice::limit,
+                        2 * scene::Lattice::limit);
     };
     near = steps(view.projected.near_depth, 1), far = steps(view.projected.far_depth, -1);
   }
@@ -237,8 +238,8 @@ HWY_INLINE auto load_every_second(const Vertex& vertex, int first, int pair) {
 /// One vector of cells: the first of them is cell `from` of the batch. `cell_scalar` is read of cell data only.
 template <bool perspective>
 HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds, const scene::Tet* const* tets,
-                             const double* cell_scalar, const PixelRect& rect, int square_x, int square_y, int from,
-                             CellBatch& batch) {
+                             const double* cell_scalar, const scene::PixelRect& rect, int square_x, int square_y,
+                             int from, CellBatch& batch) {
   const D d;
   const hn::Rebind<float, D> df;
   const hn::Rebind<std::int32_t, D> di32;
@@ -391,7 +392,7 @@ HWY_INLINE void prefetch_cells(const LatticeView& view, std::span<const TileEntr
 
 /// Sets up at most CellBatch::most cells.
 template <bool perspective>
-HWY_INLINE void set_up_cells(const LatticeView& view, std::span<const TileEntry> cells, const PixelRect& rect,
+HWY_INLINE void set_up_cells(const LatticeView& view, std::span<const TileEntry> cells, const scene::PixelRect& rect,
                              CellBatch& batch) {
   const int square_x = rect.x0 & ~(SegmentWindows::side - 1), square_y = rect.y0 & ~(SegmentWindows::side - 1);
   const PreparedMesh& prepared = *view.projected.mesh;

@@ -23,7 +23,7 @@ struct PixelVertex {
 ///
 /// Orthographic pixel positions are rounded to multiples of 2^-32 pixel: a vertex meant to lie on a pixel centre does,
 /// in spite of the decimal noise of camera and mesh, and the tie rule then decides in one way along a whole edge. The
-/// shift is a hundredth of a per mille of the 3e-6 pixel that DESIGN section 3 allows.
+/// shift is far below what a picture shows (docs/ACCURACY.md).
 class PixelSpace {
  public:
   /// Throws Error(bad_input) if camera or size is invalid.

@@ -42,7 +42,7 @@ struct Cell {
   bool pierceable[4];
   double pixels_per_tangent;  ///< ProjectedMesh's
   double error_bound;         ///< of any E at any candidate pixel
-  PixelRect box;
+  scene::PixelRect box;
 };
 
 // Gaps between exact and computed E: q = X - px * W is rounded once (twice without FMA, when the product px * W is
@@ -61,7 +61,7 @@ double error_bound_of(const Cell& cell) {
   return 4 * (qx * error_y + qy * error_x) + 8 * u * qx * qy;
 }
 
-HWY_INLINE Cell set_up(const ProjectedMesh& projected, std::uint32_t tet, const PixelRect& rect) {
+HWY_INLINE Cell set_up(const ProjectedMesh& projected, std::uint32_t tet, const scene::PixelRect& rect) {
   Cell cell;
   const scene::TetMesh& mesh = projected.mesh->mesh();
   const scene::Tet& corners = projected.mesh->tets()[tet];
@@ -160,7 +160,7 @@ HWY_INLINE void gather_face(hn::Mask<D> pierced, V depth_sum, V scalar_sum, V we
   x.any = hn::Or(x.any, pierced);
 }
 
-void rasterize_cell(const ProjectedMesh& projected, const Cell& cell, std::uint32_t tet, const PixelRect& rect,
+void rasterize_cell(const ProjectedMesh& projected, const Cell& cell, std::uint32_t tet, const scene::PixelRect& rect,
                     RaySegments& out, RasterCounts& counts) {
   const D d;
   const hn::RebindToUnsigned<D> du;
@@ -275,7 +275,7 @@ void rasterize_cell(const ProjectedMesh& projected, const Cell& cell, std::uint3
   }
 }
 
-std::size_t rasterize(const ProjectedMesh& projected, std::span<const TileEntry> entries, const PixelRect& rect,
+std::size_t rasterize(const ProjectedMesh& projected, std::span<const TileEntry> entries, const scene::PixelRect& rect,
                       RaySegments& out, RasterCounts& counts) {
   const auto room = static_cast<std::size_t>(rect.area());
   std::size_t taken = 0;
@@ -298,8 +298,8 @@ namespace tessera::projection {
 HWY_EXPORT(rasterize);
 HWY_EXPORT(target_name);
 
-std::size_t rasterize_planes(const ProjectedMesh& projected, std::span<const TileEntry> entries, const PixelRect& rect,
-                             RaySegments& out, RasterCounts& counts) {
+std::size_t rasterize_planes(const ProjectedMesh& projected, std::span<const TileEntry> entries,
+                             const scene::PixelRect& rect, RaySegments& out, RasterCounts& counts) {
   return HWY_DYNAMIC_DISPATCH(rasterize)(projected, entries, rect, out, counts);
 }
 

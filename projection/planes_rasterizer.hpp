@@ -50,10 +50,10 @@ struct RasterCounts {
 ///
 /// Processes cells from the front of `entries` while `out` has room for a whole rectangle more, appends to `out`, and
 /// returns how many it took (all, if there is room; at least one if out.capacity() - out.size >= rect.area()). Bits do
-/// not depend on the rectangle. Departs from DESIGN section 3's max/min over planes in that signs, not depths, choose
-/// the faces: a maximum over depths needs a tie rule at every edge anyway.
-std::size_t rasterize_planes(const ProjectedMesh& projected, std::span<const TileEntry> entries, const PixelRect& rect,
-                             RaySegments& out, RasterCounts& counts);
+/// not depend on the rectangle. Signs, not depths, choose the faces: a maximum over the planes' depths would
+/// need a tie rule at every edge.
+std::size_t rasterize_planes(const ProjectedMesh& projected, std::span<const TileEntry> entries,
+                             const scene::PixelRect& rect, RaySegments& out, RasterCounts& counts);
 
 /// Name of the instruction set that rasterize_planes runs on: "AVX3", "AVX2", "SSE4", ...
 std::string instruction_set();

@@ -12,11 +12,10 @@ namespace tessera::projection {
 ///         elements behind the last, which a SIMD store may overwrite.
 /// Order   none: one pixel's segments lie anywhere. sorting/ orders them by (front, back, tet).
 /// Units   front, back: planar depth of entry and exit along the view direction, world units, double, so that the
-/// length of
-///         a thin cell far away is right to 1e-16 of its depth; scalars in the field's own unit at entry and exit.
+///         length of a thin cell far away is right to 1e-16 of its depth; scalars in the field's own unit at entry and
+///         exit.
 /// Holds   front <= back, both inside the clipping range, all finite. Cells that are thinner than the rounding of a
-/// depth have
-///         length zero; they are kept, so that the set of cells a ray passes is exact.
+///         depth have length zero; they are kept, so that the set of cells a ray passes is exact.
 struct RaySegments {
   static constexpr std::size_t padding = 16;
 

@@ -51,8 +51,8 @@ struct Arrays {
 
 /// What the fragments of one cell need.
 struct Cell {
-  PixelRect box;  ///< pixels it may cover, inside the rectangle
-  float nearest;  ///< depth of its nearest vertex
+  scene::PixelRect box;  ///< pixels it may cover, inside the rectangle
+  float nearest;         ///< depth of its nearest vertex
   float near_clip, far_clip;
   bool clipped;  ///< reaches beyond one of them
   float longest_edge;
@@ -87,7 +87,7 @@ HWY_INLINE void walk_edge(const Vertex& start, const Vertex& end, int rect_y0, c
 }
 
 /// Integer ends and inverse width of the face's rows, four rows at a time, before the rows are filled.
-HWY_INLINE void set_up_rows(int row0, int row1, const PixelRect& box, const Arrays& to) {
+HWY_INLINE void set_up_rows(int row0, int row1, const scene::PixelRect& box, const Arrays& to) {
   const F f;
   const I i;
   const VF half = hn::Set(f, 0.5f), one = hn::Set(f, 1.0f);
@@ -146,7 +146,7 @@ enum class Side { back, front };
 
 /// Fills the face's rows, four pixels at a time.
 template <Side side>
-HWY_INLINE void fill_rows(int row0, int row1, const Cell& cell, const PixelRect& rect, Arrays& to) {
+HWY_INLINE void fill_rows(int row0, int row1, const Cell& cell, const scene::PixelRect& rect, Arrays& to) {
   const F f;
   const I i;
   const int step = lane_count();
@@ -194,7 +194,7 @@ HWY_INLINE void fill_rows(int row0, int row1, const Cell& cell, const PixelRect&
 
 /// Scan-converts one face. `area` is twice its signed area in (x, y), not zero.
 HWY_INLINE void rasterize_face(const Vertex& a, const Vertex& b, const Vertex& c, double area, Side side,
-                               const Cell& cell, const PixelRect& rect, Arrays& to) {
+                               const Cell& cell, const scene::PixelRect& rect, Arrays& to) {
   const Vertex *min = &a, *mid = &b, *max = &c;
   bool turned = false;  // an odd permutation turns the area's sign
   const auto sort = [&](const Vertex*& p, const Vertex*& q) {
@@ -223,7 +223,7 @@ struct Face {
 constexpr Face faces[4] = {{0, 1, 2, true}, {0, 1, 3, false}, {0, 2, 3, true}, {1, 2, 3, false}};
 
 void rasterize_cell(const std::array<PixelVertex, 4>& corners, const Vertex (&v)[4], const Cell& cell,
-                    const PixelRect& rect, Arrays& to) {
+                    const scene::PixelRect& rect, Arrays& to) {
   // Six times the signed volume: which way the cell's faces turn. In double, as a thin cell's would be noise in float.
   const auto across = [&](int i) { return corners[i].x - corners[0].x; };
   const auto down = [&](int i) { return corners[i].y - corners[0].y; };
@@ -249,7 +249,7 @@ void rasterize_cell(const std::array<PixelVertex, 4>& corners, const Vertex (&v)
 }
 
 std::size_t rasterize(const ProjectedMesh& projected, float longest_edge, std::span<const TileEntry> entries,
-                      const PixelRect& rect, ScanlineBuffers& buffers, RaySegments& out, RasterCounts& counts) {
+                      const scene::PixelRect& rect, ScanlineBuffers& buffers, RaySegments& out, RasterCounts& counts) {
   const scene::TetMesh& mesh = projected.mesh->mesh();
   const bool per_cell = mesh.association == scene::Association::cell;
   const auto room = static_cast<std::size_t>(rect.area());
@@ -319,13 +319,13 @@ namespace {
 constexpr std::size_t padding = 4;  // a step of four lanes may begin at the last element
 }
 
-std::size_t ScanlineBuffers::bytes_for(const PixelRect& rect) {
+std::size_t ScanlineBuffers::bytes_for(const scene::PixelRect& rect) {
   return (static_cast<std::size_t>(rect.area()) + padding) * (2 * sizeof(float) + sizeof(std::int32_t)) +
          (static_cast<std::size_t>(rect.height()) + padding) * (7 * sizeof(float) + 2 * sizeof(std::int32_t));
 }
 
 std::size_t rasterize_scanline(const ProjectedMesh& projected, float longest_edge, std::span<const TileEntry> entries,
-                               const PixelRect& rect, ScanlineBuffers& buffers, RaySegments& out,
+                               const scene::PixelRect& rect, ScanlineBuffers& buffers, RaySegments& out,
                                RasterCounts& counts) {
   const std::size_t pixels = static_cast<std::size_t>(rect.area()) + padding,
                     rows = static_cast<std::size_t>(rect.height()) + padding;

@@ -30,7 +30,7 @@ struct ScanlineBuffers {
   std::vector<std::int32_t> owner;
   std::int32_t cells = 0;  ///< number of the cell at work: owners before it are stale
 
-  [[nodiscard]] static std::size_t bytes_for(const PixelRect& rect);
+  [[nodiscard]] static std::size_t bytes_for(const scene::PixelRect& rect);
 };
 
 /// The `scanline` rasterizer: Juliachs, Carrard, Nominé, "Hybrid CPU-GPU Unstructured Meshes Parallel Volume Rendering
@@ -62,6 +62,7 @@ struct ScanlineBuffers {
 /// Takes cells as rasterize_planes() does; at most one segment a cell and pixel. Requires fits_scanline(). Writes stay
 /// inside the buffers whatever the coordinates are.
 std::size_t rasterize_scanline(const ProjectedMesh& projected, float longest_edge, std::span<const TileEntry> entries,
-                               const PixelRect& rect, ScanlineBuffers& buffers, RaySegments& out, RasterCounts& counts);
+                               const scene::PixelRect& rect, ScanlineBuffers& buffers, RaySegments& out,
+                               RasterCounts& counts);
 
 }  // namespace tessera::projection

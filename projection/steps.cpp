@@ -29,12 +29,12 @@ std::size_t steps_passed(std::span<const Step> steps, double value) {
 /// Which cells, asked one by one.
 class Rule {
  public:
-  Rule(const PreparedMesh& prepared, std::span<const Step> steps, double longest_ray, const Lattice* lattice)
+  Rule(const PreparedMesh& prepared, std::span<const Step> steps, double longest_ray, const scene::Lattice* lattice)
       : prepared_(prepared), mesh_(prepared.mesh()), steps_(steps), longest_ray_(longest_ray), lattice_(lattice) {
     double most = 0;
     if (lattice == nullptr)
       for (const Step& step : steps) most = std::max(most, std::abs(step.value));
-    most_error_ = lattice != nullptr ? (planes_error + Lattice::limit * float_error) * lattice->scalar_unit
+    most_error_ = lattice != nullptr ? (planes_error + scene::Lattice::limit * float_error) * lattice->scalar_unit
                                      : 2 * most * double_error;
   }
 
@@ -90,7 +90,7 @@ class Rule {
   const scene::TetMesh& mesh_;
   std::span<const Step> steps_;
   double longest_ray_;
-  const Lattice* lattice_;
+  const scene::Lattice* lattice_;
   double most_error_;  ///< of any scalar near a step
 };
 
@@ -114,7 +114,7 @@ std::vector<Step> steps_of(const scene::TransferFunction& function, scene::Emiss
 }
 
 CellsAtSteps::CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> steps, double longest_ray,
-                           const Lattice* lattice) {
+                           const scene::Lattice* lattice) {
   const std::size_t count = prepared.tets().size();
   if (steps.empty() || count == 0) return;
   if (lattice == nullptr && prepared.mesh().association == scene::Association::cell) return;
@@ -143,7 +143,8 @@ CellsAtSteps::CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> s
 }
 
 const RaySegments& SplitRasterizer::rasterize(const ProjectedMesh& projected, std::span<const Step> steps,
-                                              const TileEntry& entry, const PixelRect& rect, RasterCounts& counts) {
+                                              const TileEntry& entry, const scene::PixelRect& rect,
+                                              RasterCounts& counts) {
   const auto area = static_cast<std::size_t>(rect.area());
   if (whole_.capacity() < area) whole_.reserve(area);
   whole_.size = 0;
@@ -211,7 +212,7 @@ void SplitRasterizer::split(std::size_t segment, std::span<const Step> steps, do
   if (at < back) add(at, back, scalar, to);
 }
 
-LatticeScalars lattice_scalars(double front, double back, std::span<const Step> steps, const Lattice& lattice) {
+LatticeScalars lattice_scalars(double front, double back, std::span<const Step> steps, const scene::Lattice& lattice) {
   const auto on_lanes = [&](double v) { return static_cast<float>(lattice.scalar_step(v)); };
   LatticeScalars s{on_lanes(front), on_lanes(back)};
   const std::size_t passed = steps_passed(steps, std::min(front, back));

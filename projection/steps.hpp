@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "projection/lattice.hpp"
 #include "projection/planes_rasterizer.hpp"
+#include "scene/lattice.hpp"
 #include "scene/optical_model.hpp"
 #include "scene/transfer_function.hpp"
 
@@ -35,7 +35,8 @@ class CellsAtSteps {
   CellsAtSteps() = default;
   /// `steps` must outlive this object. `lattice`: on which scalars are kept; null: in double precision. Work runs in
   /// the caller's task arena (oneTBB).
-  CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> steps, double longest_ray, const Lattice* lattice);
+  CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> steps, double longest_ray,
+               const scene::Lattice* lattice);
 
   [[nodiscard]] bool contain(std::uint32_t tet) const {
     return !bits_.empty() && (bits_[tet / 64] >> tet % 64 & 1) != 0;
@@ -56,7 +57,7 @@ class SplitRasterizer {
  public:
   /// As rasterize_planes() of this cell alone, for all of `rect`. The segments stay until the next call.
   const RaySegments& rasterize(const ProjectedMesh& projected, std::span<const Step> steps, const TileEntry& entry,
-                               const PixelRect& rect, RasterCounts& counts);
+                               const scene::PixelRect& rect, RasterCounts& counts);
 
  private:
   void split(std::size_t segment, std::span<const Step> steps, double origin);
@@ -68,6 +69,6 @@ class SplitRasterizer {
 struct LatticeScalars {
   float front, back;
 };
-LatticeScalars lattice_scalars(double front, double back, std::span<const Step> steps, const Lattice& lattice);
+LatticeScalars lattice_scalars(double front, double back, std::span<const Step> steps, const scene::Lattice& lattice);
 
 }  // namespace tessera::projection

@@ -58,7 +58,7 @@ void for_each_of(std::uint64_t bits, std::size_t first, Visit visit) {
 
 }  // namespace
 
-PixelRect TileGrid::rect(std::size_t tile) const {
+scene::PixelRect TileGrid::rect(std::size_t tile) const {
   const int column = static_cast<int>(tile % static_cast<std::size_t>(columns()));
   const int row = static_cast<int>(tile / static_cast<std::size_t>(columns()));
   return {column * tile_size, row * tile_size, std::min((column + 1) * tile_size, image.width),
@@ -77,7 +77,7 @@ void TileLists::for_each_tile(std::size_t tet, Visit visit) const {
     return;
   }
   const std::array<PixelVertex, 4> corners = corners_of(*projected_, tet);
-  const PixelRect box = footprint(corners, {0, 0, grid_.image.width, grid_.image.height});
+  const scene::PixelRect box = footprint(corners, {0, 0, grid_.image.width, grid_.image.height});
   const int size = grid_.tile_size;
   const bool crossing = crosses_eye_plane(corners);
   for (int row = box.y0 / size; row <= (box.y1 - 1) / size; ++row)
@@ -196,7 +196,7 @@ bool TileLists::cull_exactly(std::size_t tet, const ClearIntervals& clear, CullC
     ++counts.outside_view;
     return false;
   }
-  const PixelRect window{0, 0, grid_.image.width, grid_.image.height}, box = footprint(c, window);
+  const scene::PixelRect window{0, 0, grid_.image.width, grid_.image.height}, box = footprint(c, window);
   if (box.empty()) {
     // Inside the window's span in both directions, yet without a pixel centre?
     const auto inside = [&](const PixelVertex& v) {

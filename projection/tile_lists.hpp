@@ -22,7 +22,7 @@ struct TileGrid {
   [[nodiscard]] std::size_t count() const {
     return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows());
   }
-  [[nodiscard]] PixelRect rect(std::size_t tile) const;
+  [[nodiscard]] scene::PixelRect rect(std::size_t tile) const;
 };
 
 /// Which cells were left out, and why.

@@ -59,7 +59,8 @@ double GridIntegral::opacity() const { return -std::expm1(-optical_depth_); }
 
 bool GridIntegral::opaque() const { return optical_depth_ > depth_of_nothing; }
 
-void GridIntegral::add(double length, const Cubic& scalar, double depth_front, double depth_back, const Light& light) {
+void GridIntegral::add(double length, const Cubic& scalar, double depth_front, double depth_back, const Light& light,
+                       double origin) {
   if (!(length > 0)) return;
   std::vector<double> ends = {0};
   for (const double u : turning_points(scalar)) ends.push_back(u);
@@ -68,25 +69,27 @@ void GridIntegral::add(double length, const Cubic& scalar, double depth_front, d
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
     const double one = scalar.at(ends[i]), other = scalar.at(ends[i + 1]);
     const double low = std::min(one, other), high = std::max(one, other);
-    for (const scene::Knot& knot : knots_)
-      if (knot.value > low && knot.value < high) cuts.push_back(crossing(scalar, ends[i], ends[i + 1], knot.value));
+    for (const scene::Knot& knot : knots_) {
+      const double value = knot.value - origin;
+      if (value > low && value < high) cuts.push_back(crossing(scalar, ends[i], ends[i + 1], value));
+    }
   }
   std::sort(cuts.begin(), cuts.end());
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
-    if (cuts[i + 1] > cuts[i]) add_piece(length, scalar, cuts[i], cuts[i + 1], depth_front, depth_back, light);
+    if (cuts[i + 1] > cuts[i]) add_piece(length, scalar, cuts[i], cuts[i + 1], depth_front, depth_back, light, origin);
 }
 
 void GridIntegral::add_piece(double length, const Cubic& scalar, double u0, double u1, double depth_front,
-                             double depth_back, const Light& light) {
+                             double depth_back, const Light& light, double origin) {
   // The knots on either side of the piece; a value on a step belongs to the step's upper knot.
   const double within = scalar.at((u0 + u1) / 2);
   std::size_t above = 0;
-  while (above < knots_.size() && knots_[above].value <= within) ++above;
+  while (above < knots_.size() && knots_[above].value - origin <= within) ++above;
   const scene::Knot& low = knots_[above == 0 ? 0 : above - 1];
   const scene::Knot& high = knots_[above == knots_.size() ? above - 1 : above];
   // As a difference, which keeps its places where knots are much closer than their values are large.
   Cubic from_low = scalar;
-  from_low.c[0] -= low.value;
+  from_low.c[0] -= low.value - origin;
   const auto along = [&](double at_low, double at_high) {
     if (!(high.value > low.value)) return Cubic{{at_low, 0, 0, 0}};
     const double slope = (at_high - at_low) / (high.value - low.value);

@@ -33,8 +33,10 @@ class GridIntegral {
     double own = 1, white = 0;
   };
 
-  /// The next stretch: its world length, the scalar over u in [0, 1], the planar depths at its ends, its light.
-  void add(double length, const Cubic& scalar, double depth_front, double depth_back, const Light& light);
+  /// The next stretch: its world length, the scalar over u in [0, 1], the planar depths at its ends, its light. Scalars
+  /// are counted from `origin`, so that they may be nearer to a knot than numbers of their size tell apart.
+  void add(double length, const Cubic& scalar, double depth_front, double depth_back, const Light& light,
+           double origin = 0);
   void add(double length, const Cubic& scalar, double depth_front, double depth_back) {
     add(length, scalar, depth_front, depth_back, Light());
   }
@@ -48,7 +50,7 @@ class GridIntegral {
  private:
   /// A piece u0 to u1 of a stretch in which the transfer function is linear.
   void add_piece(double length, const Cubic& scalar, double u0, double u1, double depth_front, double depth_back,
-                 const Light& light);
+                 const Light& light, double origin);
   /// Colour of [u0, u1], which lies `before` of optical depth behind the piece's front.
   void add_color(double length, double u0, double u1, double before, const Cubic& extinction,
                  const std::array<Cubic, 3>& color, int depth);

@@ -21,7 +21,7 @@ Cubic mixed(const Cubic& p, const Cubic& q, double a, double b) {
   Cubic result;
   for (std::size_t i = 0; i < 4; ++i) {
     const double difference = q.c[i] - p.c[i];
-    result.c[i] += p.c[i] + difference * a;
+    result.c[i] += a == 1 ? q.c[i] : p.c[i] + difference * a;
     if (i < 3) result.c[i + 1] += difference * b;
   }
   return result;
@@ -116,7 +116,14 @@ GridReference::LocalRay GridReference::local_ray(double x, double y) const {
       const double shift = std::abs(by_x) > plane_tolerance * voxel ? by_x : by_y;
       const double shifted = local + std::copysign(plane_tolerance * voxel, shift);
       ray.in_plane[a] = shifted >= low && shifted < high ? voxel_along(a, shifted) : -1;
-      if (ray.in_plane[a] < 0) ray.end = ray.begin;
+      if (ray.in_plane[a] < 0) {
+        ray.end = ray.begin;
+        continue;
+      }
+      // What is a plane but for rounding has the plane's values.
+      ray.step[axis] = 0;
+      for (const std::int64_t n : {ray.in_plane[a], ray.in_plane[a] + 1})
+        if (std::abs(local - g.lattice(a, n)) < plane_tolerance * voxel) ray.origin[axis] = g.lattice(a, n);
       continue;
     }
     double enter = (low - ray.origin[axis]) / ray.step[axis], leave = (high - ray.origin[axis]) / ray.step[axis];
@@ -168,12 +175,14 @@ Pixel GridReference::pixel(double x, double y) const {
     if (!std::all_of(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(count),
                      [](double s) { return std::isfinite(s); }))
       continue;
+    // As differences: where a voxel's values are last places apart they keep them all.
+    const double origin = grid.value(samples[0]);
     std::array<Cubic, 8> field;
-    for (std::size_t i = 0; i < count; ++i) field[i].c[0] = grid.value(samples[i]);
+    for (std::size_t i = 0; i < count; ++i) field[i].c[0] = grid.value(samples[i]) - origin;
     GridIntegral::Light lit;
     if (count == 8 && shading_) {
       std::array<double, 8> corners{};
-      for (std::size_t i = 0; i < 8; ++i) corners[i] = field[i].c[0];
+      for (std::size_t i = 0; i < 8; ++i) corners[i] = grid.value(samples[i]);
       glm::dvec3 place, side;
       for (std::size_t a = 0; a < 3; ++a) {
         const int axis = static_cast<int>(a);
@@ -194,7 +203,7 @@ Pixel GridReference::pixel(double x, double y) const {
       }
     }
     const double length = (z1 - z0) * length_per_depth;
-    integral.add(length, field[0], z0, z1, lit);
+    integral.add(length, field[0], z0, z1, lit, origin);
     pixel.length += length;
     ++pixel.segments;
   }

@@ -20,8 +20,7 @@ namespace tessera::reference {
 /// plain values of scene/.
 ///
 /// Field    point data: trilinear in each voxel, hence a cubic along the ray (grid_integral.hpp). Cell data: constant
-/// in
-///          each voxel. A voxel with a blank corner (cell data: a blank sample) is a gap.
+///          in each voxel. A voxel with a blank corner (cell data: a blank sample) is a gap.
 /// Domain   the box between the first and last lattice points.
 /// Ties     a ray that runs in a plane of the lattice (to 1e-9 of a voxel) belongs to the voxels that an infinitesimal
 ///          shift of the ray by (e, e^2) in (x, y) selects, as in ray_tet.hpp. So does one in the volume's boundary.

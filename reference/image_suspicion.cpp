@@ -76,7 +76,9 @@ class Picture {
     }
     if (!std::isfinite(misfit.least)) return {};
     for (std::size_t n = 0; n < 4 && count > 1; ++n) {
-      float mean = 0, spread = bend[n] / 4;  // a quarter: smooth matter bends too
+      // A step bends as much as it is off, so that a quarter keeps it below four; smooth matter of wave number k bends
+      // by k^3 of its amplitude, and would hide what a whole of that exceeds.
+      float mean = 0, spread = bend[n] / 4;
       for (std::size_t i = 0; i < count; ++i) mean += off[i][n] / static_cast<float>(count);
       for (std::size_t i = 0; i < count; ++i) spread = std::max(spread, std::abs(off[i][n] - mean));
       misfit.alike = std::max(misfit.alike, std::abs(mean) / (spread + least / 4));

@@ -12,8 +12,7 @@ namespace tessera::reference {
 /// Where a mesh makes a picture hard.
 ///
 /// Noise   scalars and depths are taken as rounded to 2^-30 of their range over the mesh. A renderer that rounds more
-/// or
-///         less has the same order of suspects.
+///         or less has the same order of suspects.
 /// Cost    a pass over the tets and over their edges' pixels; of more than 262,144 tets that many, evenly spread, and
 ///         the edges of 65,536.
 struct MeshSuspicion {

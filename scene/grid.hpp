@@ -95,8 +95,7 @@ double mean_thickness(const GridGeometry& geometry);
 /// Value   of the field = scale * sample + shift (NIfTI's slope and intercept); transfer functions, ranges and pictures
 ///         mean the value. Both are finite, scale is not zero. Trilinear interpolation commutes with it.
 /// Blank   a sample that is NaN or infinite. A voxel with such a corner (cell data: whose sample is such) is not part
-/// of
-///         the volume: it neither absorbs nor emits. Readers give blanks of integer files (ghost arrays) as NaN of a
+///         of the volume: it neither absorbs nor emits. Readers give blanks of integer files (ghost arrays) as NaN of a
 ///         float type.
 struct Grid {
   GridGeometry geometry;

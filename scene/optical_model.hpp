@@ -8,7 +8,7 @@ enum class Emission {
   independent,  ///< I = int c T dt: emission c per world unit, whatever kappa is (Juliachs et al. 2007, 4.3)
 };
 
-/// How a ray segment becomes colour and opacity (DESIGN: Integrals).
+/// How a ray segment becomes colour and opacity.
 enum class IntegratorKind {
   exact,          ///< split at the transfer function's knots, error near rounding
   sampled,        ///< `samples` midpoint samples a segment, at step length / samples

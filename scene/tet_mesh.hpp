@@ -20,13 +20,13 @@ using Tet = std::array<std::uint32_t, 4>;
 /// A tetrahedral mesh with one scalar field: what every reader makes and every renderer takes.
 ///
 /// Shape   positions[v] and, for point data, scalars[v] for each vertex v; tets[t] and, for cell data, scalars[t] for
-/// each tet t. Order   tets of one original cell are adjacent and cells stand in the file's order, so the index t is
-/// the rank of the pair
-///         (original cell, sub-tet): the last part of the depth order's key.
+///         each tet t.
+/// Order   tets of one original cell are adjacent and cells stand in the file's order, so the index t is the rank of
+///         the pair (original cell, sub-tet): the last part of the depth order's key.
 /// Units   world units of the file in double precision, so metre-size cells at coordinates of 7e6 keep their shape.
 /// Holds   all indices < positions.size(); positions finite; scalars of used vertices (or of tets) finite: cells with
-/// NaN are
-///         blanked by the reader. Flat, inverted and duplicate tets are allowed. Vertices may be unused, or coincide.
+///         NaN are blanked by the reader. Flat, inverted and duplicate tets are allowed. Vertices may be unused, or
+///         coincide.
 struct TetMesh {
   std::vector<glm::dvec3> positions;
   std::vector<Tet> tets;

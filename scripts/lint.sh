@@ -6,13 +6,14 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-sources() { git ls-files --cached --others --exclude-standard -- '*.cpp' '*.hpp'; }
+# With what -inl.h files hold: kernels, compiled once per instruction set.
+sources() { git ls-files --cached --others --exclude-standard -- '*.cpp' '*.hpp' '*.h'; }
 
 format() { sources | xargs -r clang-format-14 --style=file "$@"; }
 
 tidy() {
   [ -f build/release/compile_commands.json ] || cmake --preset release
-  sources | grep -E '^(scene|projection|sorting|compositor|frame|reference|volume|apps)/.*\.cpp$' |
+  sources | grep -E '^(scene|colormaps|integrals|exchange|projection|sorting|compositor|frame|reference|volume|analysis|apps)/.*\.cpp$' |
     xargs -r -P "$(nproc)" -n 2 clang-tidy-14 -p build/release --quiet 2> >(grep -v 'warnings\? generated' >&2)
 }
 

@@ -1,8 +1,18 @@
 #!/usr/bin/env bash
-# Every check of the project: installs what is missing, checks the format, builds and runs all tests, once as released
-# and once under ASan and UBSan, and, with CI=true, fuzzes (clang-tidy: scripts/lint.sh). Goes on after a failed stage; the end says which.
+# test.sh        installs what is missing, checks the format, builds and runs all tests as released
+# test.sh --all  also under ASan and UBSan, fuzzes, and runs clang-tidy
+# With CI=true, as .ci/run calls it, all but clang-tidy. Goes on after a failed stage; the end says which.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+
+case "${1:-}" in
+  '') extent=${CI:+ci} ;;
+  --all) extent=all ;;
+  *)
+    echo "test.sh: $1 is not --all" >&2
+    exit 2
+    ;;
+esac
 
 scripts/install_packages.sh build test
 
@@ -15,9 +25,9 @@ stage() {  # stage NAME COMMAND...: runs it, remembers a failure
   echo "== $name: $((SECONDS - start)) s"
 }
 
-# A build machine compiles all there is from nothing: several sources at once take half the time.
-unity=()
-if [ "${CI:-}" = true ]; then unity=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=6); fi
+# Several sources compiled at once take half the time; --all compiles each by itself, which finds what one lacks.
+unity=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=6)
+if [ "$extent" = all ]; then unity=(-DCMAKE_UNITY_BUILD=OFF); fi
 
 build_and_test() {  # build_and_test PRESET
   cmake --preset "$1" "${unity[@]}" &&
@@ -27,11 +37,16 @@ build_and_test() {  # build_and_test PRESET
 
 stage format scripts/lint.sh format
 stage release build_and_test release
-stage sanitize build_and_test sanitize
-if [ "${CI:-}" = true ]; then stage fuzz scripts/fuzz.sh 20; fi
+presets=(release)
+if [ -n "$extent" ]; then
+  stage sanitize build_and_test sanitize
+  presets=(sanitize release)
+  stage fuzz scripts/fuzz.sh 20
+fi
+if [ "$extent" = all ]; then stage tidy scripts/lint.sh tidy; fi
 
 # ctest's own closing lines once more, last, where they are found.
-for preset in sanitize release; do
+for preset in "${presets[@]}"; do
   echo "$preset:"
   grep -h 'tests passed' "build/$preset/ctest.log" || echo "no tests ran"
 done

@@ -134,23 +134,28 @@ CellRanges::CellRanges(const scene::Grid& grid, CellScan whole)
     range.high = std::max(grid.value(whole.lowest), grid.value(whole.highest));
   }
   lanes = LaneSamples(grid, range);
+  if (range.empty()) return;
+  // Floats of doubles are rounded outwards, by much where all values are but last places apart.
+  const float one = lanes.lane(whole.lowest), other = lanes.lane(whole.highest);
+  const float least = std::min(one, other), most = std::max(one, other);
   for (std::size_t cell = 0; cell < low.size(); ++cell) {
     if (low[cell] > high[cell]) continue;
     const float a = lanes.lane(low[cell]), b = lanes.lane(high[cell]);
-    low[cell] = std::min(a, b);
-    high[cell] = std::max(a, b);
+    low[cell] = std::max(least, std::min(a, b));
+    high[cell] = std::min(most, std::max(a, b));
   }
 }
 
 namespace {
 
 /// Intervals of the table that show anything, counted from the lowest: those before each.
-std::vector<std::size_t> shown_intervals(const compositor::LaneTable& table) {
-  using compositor::LaneTable;
+std::vector<std::size_t> shown_intervals(const integrals::LaneTable& table) {
+  using integrals::LaneTable;
   std::vector<std::size_t> shown_before(table.knot_count + 2, 0);
   for (std::size_t i = 0; i <= table.knot_count; ++i) {
     const auto any = [&](int column) { return table.column(column)[i] != 0; };
     bool shows = any(LaneTable::half_extinction) || any(LaneTable::half_extinction_slope);
+    shows = shows || table.has_peak[i] != 0 || table.has_peak[i + 1] != 0;
     if (table.emission == scene::Emission::independent)
       for (int c = LaneTable::red; c <= LaneTable::blue_slope; ++c) shows = shows || any(c);
     shown_before[i + 1] = shown_before[i] + (shows ? 1 : 0);
@@ -158,14 +163,14 @@ std::vector<std::size_t> shown_intervals(const compositor::LaneTable& table) {
   return shown_before;
 }
 
-std::size_t interval_of(const compositor::LaneTable& table, float s) {
-  const float* const knots = table.column(compositor::LaneTable::edge) + 1;
+std::size_t interval_of(const integrals::LaneTable& table, float s) {
+  const float* const knots = table.column(integrals::LaneTable::edge) + 1;
   return static_cast<std::size_t>(std::upper_bound(knots, knots + table.knot_count, s) - knots);
 }
 
 }  // namespace
 
-bool any_clear(const CellRanges& ranges, const compositor::LaneTable& table) {
+bool any_clear(const CellRanges& ranges, const integrals::LaneTable& table) {
   float low = std::numeric_limits<float>::infinity(), high = -low;
   for (std::size_t cell = 0; cell < ranges.count(); ++cell)
     low = std::min(low, ranges.low[cell]), high = std::max(high, ranges.high[cell]);
@@ -175,12 +180,21 @@ bool any_clear(const CellRanges& ranges, const compositor::LaneTable& table) {
   return shown_before[last + 1] - shown_before[first] < last + 1 - first;
 }
 
-std::vector<std::uint8_t> visible_cells(const CellRanges& ranges, const compositor::LaneTable& table) {
+std::vector<std::uint8_t> visible_cells(const CellRanges& ranges, const integrals::LaneTable& table) {
   const std::vector<std::size_t> shown_before = shown_intervals(table);
-  // Rounding may have moved values across a knot that something is shown beyond: two places of a float, and a unit.
+  // Rounding may have moved values and steps, or knots, across each other: by two places of a float and a unit.
+  const auto uncertain = [&](std::size_t edge) {
+    return table.is_moved[edge] != 0 || (table.has_steps && !ranges.lanes.whole_numbers);
+  };
+  bool any = false;
+  for (std::size_t edge = 1; edge <= table.knot_count; ++edge) any = any || uncertain(edge);
   const auto interval = [&](float s, float away) {
-    return interval_of(table,
-                       !table.has_steps || ranges.lanes.whole_numbers ? s : s + away * (std::abs(s) * 0x1p-22f + 1));
+    if (!any) return interval_of(table, s);
+    std::size_t n = interval_of(table, s);
+    const std::size_t last = interval_of(table, s + away * (std::abs(s) * 0x1p-22f + 1));
+    while (n < last && uncertain(n + 1)) ++n;
+    while (n > last && uncertain(n)) --n;
+    return n;
   };
   std::vector<std::uint8_t> visible(ranges.count(), 0);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, ranges.count(), 4096), [&](const auto& some) {

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "compositor/lane_table.hpp"
+#include "integrals/lane_table.hpp"
 #include "scene/sample_source.hpp"
 #include "volume/brick_layout.hpp"
 #include "volume/lane_samples.hpp"
@@ -52,10 +52,10 @@ struct CellRanges {
 };
 
 /// One byte a cell: 1 where the transfer function shows anything of its range.
-std::vector<std::uint8_t> visible_cells(const CellRanges& ranges, const compositor::LaneTable& table);
+std::vector<std::uint8_t> visible_cells(const CellRanges& ranges, const integrals::LaneTable& table);
 
 /// Whether the transfer function shows nothing of some value in the volume's range.
-bool any_clear(const CellRanges& ranges, const compositor::LaneTable& table);
+bool any_clear(const CellRanges& ranges, const integrals::LaneTable& table);
 
 /// One byte a brick: 1 where it holds voxels of a visible cell.
 std::vector<std::uint8_t> visible_bricks(const CellRanges& ranges, const std::vector<std::uint8_t>& visible,

@@ -13,7 +13,7 @@
 
 namespace tessera::volume {
 
-/// How the cost of a pixel is found from the boxes behind it ([Mol08] 4.1).
+/// How the cost of a pixel is found from the boxes behind it (Moloney 2008, 4.1).
 enum class CostMethod {
   accurate,  ///< each ray's way through what the caster visits of it
   backface,  ///< back faces alone, a weight at each corner, linear between
@@ -57,8 +57,8 @@ PixelRegion footprint(const scene::Camera& camera, scene::ImageSize image, const
 /// count if a packet of 4 x 4 pixels round the ray may meet a visible cell in them; with what was learned, samples
 /// count instead of voxels, until the ray is dark. The approximations sum over visible_boxes(), each with its true
 /// total by the depth of its centre: `backface` counts a corner 1 inside the box's outline and 0.25 on it, faces cut in
-/// two triangles through the inner corner ([Mol08] A.4); `splatting` the chords of a sphere as wide as the box. Boxes
-/// that reach behind the eye are done by each ray's way through them.
+/// two triangles through the inner corner (Moloney 2008, A.4); `splatting` the chords of a sphere as wide as the box.
+/// Boxes that reach behind the eye are done by each ray's way through them.
 ///
 /// Throws Error(bad_input) for a resolution out of range. Uses the calling thread's arena.
 CostMap cost_map(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,

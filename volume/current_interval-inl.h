@@ -73,7 +73,7 @@ class CurrentInterval {
       if (doubt.sharp[n] == 0) held_low_ = guarded_low_;
       if (doubt.sharp[n + 1] == 0) held_high_ = guarded_high_;
       if (!doubt.ramp.empty() && doubt.ramp[n] > 0)
-        uniform_.ramp = doubt.ramp[n], uniform_.ramp_steady = doubt.ramp_steady[n],
+        uniform_.ramp = doubt.ramp[n], uniform_.ramp_steady = doubt.steady * doubt.ramp[n],
         uniform_.ramp_color = doubt.ramp_color[n];
     }
     clear_ = true;

@@ -213,8 +213,8 @@ struct Target {
 }  // namespace fill
 
 /// Fills the block, whose slices have been laid out, with slices first_k .. first_k + slices - 1.
-HWY_INLINE void fill_block(const FrameView& frame, const RayAxes& axes, std::int64_t first_k, int slices,
-                           std::vector<float>& row_memory, SlabBlock& block) {
+HWY_NOINLINE void fill_block(const FrameView& frame, const RayAxes& axes, std::int64_t first_k, int slices,
+                             std::vector<float>& row_memory, SlabBlock& block) {
   using namespace fill;
   const Target target{frame, axes, block, first_k, slices};
   const scene::GridIndex &samples = frame.samples, &cells = frame.ranges->cells;
@@ -254,22 +254,29 @@ HWY_INLINE void fill_block(const FrameView& frame, const RayAxes& axes, std::int
     for (std::int64_t b = all_low[1] / side; b <= cell_of(1, high[1]) && !some_hidden; ++b)
       for (std::int64_t a = first_cell; a <= last_cell && !some_hidden; ++a)
         some_hidden = frame.visible[a + cells[0] * (b + cells[1] * c)] == 0;
-  if (some_hidden)
-    for (std::int64_t z = low[2]; z <= high[2]; ++z)
-      for (std::int64_t y = low[1]; y <= high[1]; ++y)
-        for (std::int64_t a = cell_of(0, low[0]); a <= last_cell; ++a) {
-          // Where blanks lie between two hidden cells what is between their values may show: there all is blank.
-          const float hidden =
-              frame.ranges->range.blanks > 0
-                  ? std::numeric_limits<float>::quiet_NaN()
-                  : frame.ranges
-                        ->low[static_cast<std::size_t>(a + cells[0] * (cell_of(1, y) + cells[1] * cell_of(2, z)))];
-          const std::int64_t x0 = std::max(low[0], a * side),
-                             x1 = a == last_cell ? high[0] : std::min(high[0], a * side + side - 1);
-          target.row(y, z, x0, x1, [&](std::int64_t xa, std::int64_t xb, float* to) HWY_ATTR {
-            std::fill(to, to + (xb - xa + 1), hidden);
-          });
+  // Where blanks lie between two hidden cells what is between their values may show: there all is blank.
+  const bool has_blanks = frame.ranges->range.blanks > 0;
+  if (some_hidden) {
+    const std::int64_t stride[3] = {1, cells[0], cells[0] * cells[1]};
+    for (int n = 0; n < slices; ++n) {
+      const auto s = static_cast<std::size_t>(n);
+      const std::int64_t k = axes.mirrored ? samples[ka] - 1 - (first_k + n) : first_k + n;
+      const std::int64_t columns = std::min<std::int64_t>(block.pitch, samples[ia] - block.low_i[s]),
+                         rows = std::min<std::int64_t>(block.rows, samples[ja] - block.low_j[s]);
+      for (std::int64_t j = 0; j < rows; ++j) {
+        const float* const hidden =
+            frame.ranges->low.data() + stride[ka] * cell_of(ka, k) + stride[ja] * cell_of(ja, block.low_j[s] + j);
+        float* const to = block.slice(n) + j * block.pitch;
+        for (std::int64_t i = 0; i < columns;) {
+          const std::int64_t a = cell_of(ia, block.low_i[s] + i),
+                             end = a == cells[ia] - 1 ? columns : std::min(columns, (a + 1) * side - block.low_i[s]);
+          const float value = has_blanks ? std::numeric_limits<float>::quiet_NaN() : hidden[stride[ia] * a];
+          std::fill(to + i, to + end, value);
+          i = end;
         }
+      }
+    }
+  }
 
   const BrickLayout& layout = frame.bricks->layout();
   const scene::SampleType type = frame.bricks->source().grid().type;

@@ -5,7 +5,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "compositor/lane_table.hpp"
+#include "integrals/lane_table.hpp"
 #include "scene/camera.hpp"
 #include "scene/grid.hpp"
 #include "volume/brick_cache.hpp"
@@ -17,7 +17,7 @@
 
 namespace tessera::volume {
 
-/// Rays of all pixels in index space (voxels; DESIGN: "scene/grid.hpp, index frame"), affine in pixel coordinates.
+/// Rays of all pixels in index space (voxels, scene/grid.hpp), affine in pixel coordinates.
 ///
 /// The ray of pixel (x, y), y down, is origin(x, y) + t * direction(x, y), where t is planar depth, world units.
 struct PixelRays {
@@ -43,7 +43,7 @@ struct ShadingView {
 /// All that one frame's tiles share; read-only while they are made.
 struct FrameView {
   const PixelRays* rays;
-  const compositor::LaneTable* table;
+  const integrals::LaneTable* table;
   const CellRanges* ranges;
   LaneSamples lanes;                  ///< of samples: `ranges->lanes`, which keeps fractions where steps ask for them
   const std::uint8_t* visible;        ///< by cell of `ranges`

@@ -36,8 +36,8 @@ class SummedArea {
   std::vector<std::uint64_t> sums_;
 };
 
-/// A picture cut into rows of columns, one rectangle a process ([Mol08] 4.2): a row may have any number of columns, so
-/// any number of processes works.
+/// A picture cut into rows of columns, one rectangle a process (Moloney 2008, 4.2): a row may have any number of
+/// columns, so any number of processes works.
 struct ImageSplit {
   std::vector<int> rows;                  ///< edges in image pixels, from 0 to the height
   std::vector<std::vector<int>> columns;  ///< of each row: edges from 0 to the width
@@ -53,8 +53,8 @@ std::vector<int> columns_of_rows(int processes, scene::ImageSize size);
 /// reach to the picture's.
 ImageSplit even_split(int processes, scene::ImageSize size, const PixelRegion& area);
 
-/// What a process says of its part of the map: the two stages of the parallel search ([Mol08] Figure 4.3), in which
-/// only sums along edges travel.
+/// What a process says of its part of the map: the two stages of the parallel search (Moloney 2008, Figure 4.3), in
+/// which only sums along edges travel.
 ///   first    the cost of each of its rows: the right-most column of its table
 ///   second   for each map row in which a row of rectangles begins: the cost above it of each of its columns
 /// All processes gather both and find the same edges. A split by one process is the same with one part.

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 namespace tessera::volume {
 namespace {
 
-using compositor::LaneTable;
+using integrals::LaneTable;
 
 /// What one interval of the table has at a scalar.
 struct Matter {
@@ -66,6 +67,19 @@ std::vector<double> knots_moved(const scene::TransferFunction& function, const L
   return moved;
 }
 
+/// The knots that an edge of the table stands for, where they have several values; else none.
+std::span<const scene::Knot> knots_at(const scene::TransferFunction& function, const LaneTable& table,
+                                      std::size_t edge) {
+  const auto& [least, largest] = table.edge_values[edge];
+  if (least == largest) return {};
+  const auto knots = function.knots();
+  const auto first = std::lower_bound(knots.begin(), knots.end(), least,
+                                      [](const scene::Knot&knot, double v) { return knot.value < v; }),
+             last = std::upper_bound(first, knots.end(), largest,
+                                     [](double v, const scene::Knot&knot) { return v < knot.value; });
+  return {first, last};
+}
+
 }  // namespace
 
 LaneDoubt::LaneDoubt(const scene::TransferFunction& function, const LaneTable& table, const CellRanges& ranges,
@@ -74,7 +88,7 @@ LaneDoubt::LaneDoubt(const scene::TransferFunction& function, const LaneTable& t
   find_noise(ranges, settings.cell_data);
   most = table.emission != scene::Emission::independent ? bounded(std::max(1.0, settings.largest_color)) : 1e18f;
   find_sharp_edges(table, ranges.lanes);
-  find_steps(table, settings);
+  find_steps(function, table, settings);
   find_ramps(table, knots_moved(function, table, ranges), settings);
   const bool independent = table.emission == scene::Emission::independent;
   double densest = 0;
@@ -95,8 +109,8 @@ void LaneDoubt::find_noise(const CellRanges& ranges, bool cell_data) {
     steepest = std::max(steepest, high - low);
   }
   // Two roundings of the field itself, and places of 5e-7 voxel (packet_lanes-inl.h); cell data: of the sample, and of
-  // an edge.
-  noise = bounded(cell_data ? (ranges.lanes.exact ? 0x1p-25 : 0x1p-22) * reach : 0x1p-23 * reach + 5e-7 * steepest);
+  // an edge. No less than a float's last place there, so that what is added to an edge counts.
+  noise = bounded(cell_data ? (ranges.lanes.exact ? 0x1p-23 : 0x1p-22) * reach : 0x1p-23 * reach + 5e-7 * steepest);
 }
 
 void LaneDoubt::find_sharp_edges(const LaneTable& table, const LaneSamples& lanes) {
@@ -104,7 +118,8 @@ void LaneDoubt::find_sharp_edges(const LaneTable& table, const LaneSamples& lane
   for (std::size_t e = 1; e <= table.knot_count; ++e) sharp[e] = lanes.exact && table.is_step[e] != 0;
 }
 
-void LaneDoubt::find_steps(const LaneTable& table, const DoubtSettings& settings) {
+void LaneDoubt::find_steps(const scene::TransferFunction& function, const LaneTable& table,
+                           const DoubtSettings& settings) {
   const float* const edges = table.column(LaneTable::edge);
   const bool independent = table.emission == scene::Emission::independent;
   for (std::vector<float>* each : {&step, &step_extinction, &step_red, &step_green, &step_blue, &step_light})
@@ -118,10 +133,21 @@ void LaneDoubt::find_steps(const LaneTable& table, const DoubtSettings& settings
                  b = matter_at(table, above, edges[e] + (above > e ? noise : 0.0f));
     // Cell data is all samples.
     if (settings.cell_data && sharp[e] != 0) continue;
-    step[e] = bounded(difference(a, b, independent, settings.brightest));
-    const Matter &dense = a.extinction > b.extinction ? a : b, &thin = a.extinction > b.extinction ? b : a;
+    double differs = difference(a, b, independent, settings.brightest), colors = color_difference(a, 1, b, 1);
+    Matter dense = a.extinction > b.extinction ? a : b, thin = a.extinction > b.extinction ? b : a;
+    for (const scene::Knot& knot : knots_at(function, table, e)) {
+      const double color_unit = independent ? settings.unit : 1;
+      const Matter m{knot.extinction * settings.unit,
+                     {knot.color.x * color_unit, knot.color.y * color_unit, knot.color.z * color_unit}};
+      // Of two knots at most the sum of what each differs from `a`.
+      differs = std::max(differs, 2 * difference(m, a, independent, settings.brightest));
+      colors = std::max(colors, 2 * color_difference(m, 1, a, 1));
+      if (m.extinction > dense.extinction) dense = m;
+      if (m.extinction < thin.extinction) thin = m;
+    }
+    step[e] = bounded(differs);
     step_extinction[e] = bounded(dense.extinction - thin.extinction);
-    step_light[e] = bounded((independent ? 1 : thin.extinction) * color_difference(dense, 1, thin, 1));
+    step_light[e] = bounded((independent ? 1 : thin.extinction) * colors);
     if (independent) continue;
     step_red[e] = bounded(dense.color[0]), step_green[e] = bounded(dense.color[1]);
     step_blue[e] = bounded(dense.color[2]);
@@ -132,17 +158,17 @@ void LaneDoubt::find_steps(const LaneTable& table, const DoubtSettings& settings
 void LaneDoubt::find_ramps(const LaneTable& table, const std::vector<double>& moved, const DoubtSettings& settings) {
   const float* const edges = table.column(LaneTable::edge);
   const bool independent = table.emission == scene::Emission::independent;
-  for (std::vector<float>* each : {&ramp, &ramp_steady, &ramp_extinction, &ramp_color})
-    each->assign(table.stride, 0.0f);
+  for (std::vector<float>* each : {&ramp, &ramp_extinction, &ramp_color}) each->assign(table.stride, 0.0f);
   for (std::size_t e = 1; e < table.knot_count; ++e) {
     const Matter a = matter_at(table, e, edges[e]), b = matter_at(table, e, edges[e + 1]);
     const double width = static_cast<double>(edges[e + 1]) - edges[e],
                  all = difference(a, b, independent, settings.brightest), share = std::min(1.0, noise / 8 / width),
-                 steady = std::max(moved[e], moved[e + 1]) / width;
+                 steadily = std::max(moved[e], moved[e + 1]) / width;
     ramp[e] = bounded(share * all);
-    ramp_steady[e] = bounded(std::min(1.0, share / 2 + steady) * all);
-    ramp_extinction[e] = bounded(std::min(1.0, share + steady) * std::abs(b.extinction - a.extinction));
-    ramp_color[e] = bounded(std::min(1.0, share + steady) * color_difference(a, 1, b, 1));
+    if (share * all > settings.least / settings.longest / 128)
+      steady = std::max(steady, static_cast<float>(std::min(1.0, share / 2 + steadily) / share));
+    ramp_extinction[e] = bounded(std::min(1.0, share + steadily) * std::abs(b.extinction - a.extinction));
+    ramp_color[e] = bounded(std::min(1.0, share + steadily) * color_difference(a, 1, b, 1));
   }
   ramp = those_above(settings.least / settings.longest / 128, std::move(ramp));
 }

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "compositor/lane_table.hpp"
+#include "integrals/lane_table.hpp"
 #include "volume/cell_ranges.hpp"
 
 namespace tessera::volume {
@@ -15,6 +15,7 @@ struct DoubtSettings {
   double brightest = 1;  ///< light that may come along a ray
   double least = 0;      ///< errors of light or opacity that do not matter
   double longest = 1;    ///< of a ray in a voxel, in the table's unit
+  double unit = 1;       ///< of lengths of the table, world units
 };
 
 /// Where float lanes cannot tell a ray's light to the accuracy asked: rays of which that may be are cast again in
@@ -26,6 +27,7 @@ struct DoubtSettings {
 /// Steps   a ray that all but touches the surface of a step of the transfer function sees it for a length whose
 ///         error is the square root of the field's: where that is level + a (u - u0)^2, rounding of 1e-7 makes or
 ///         moves crossings by 3e-4.
+///         Knots that lanes do not tell apart are a step too, by all that the function is between them.
 /// Ramps   where the function is steep, the field's error shows for as long as a ray stays there. Roundings of places
 ///         and field differ from voxel to voxel: an eighth of what they may be adds up as squares do, and a sixteenth
 ///         is alike (measured over random grids and where peaks are narrow, docs/ACCURACY.md).
@@ -41,9 +43,10 @@ struct LaneDoubt {
   /// on it, so is the field: it is never beyond its samples.
   std::vector<std::uint8_t> sharp;
   std::vector<float> step_extinction, step_red, step_green, step_blue, step_light;
-  /// By interval of the table: error of light and opacity per unit of length that a voxel's rounding makes, and of it
-  /// what adds up; 0 and empty as above.
-  std::vector<float> ramp, ramp_steady;
+  /// By interval of the table: error of light and opacity per unit of length that a voxel's rounding makes; 0 and empty
+  /// as above.
+  std::vector<float> ramp;
+  float steady = 0;  ///< largest share of it that adds up, over all intervals
   /// Of the intervals where `ramp` is not 0: error of extinction, and of colour.
   std::vector<float> ramp_extinction, ramp_color;
   bool ends = false;    ///< whether matter is so dense that ends matter
@@ -53,16 +56,17 @@ struct LaneDoubt {
   float matters = 0;    ///< what a voxel may err before it is looked at closely
 
   LaneDoubt() = default;
-  LaneDoubt(const scene::TransferFunction& function, const compositor::LaneTable& table, const CellRanges& ranges,
+  LaneDoubt(const scene::TransferFunction& function, const integrals::LaneTable& table, const CellRanges& ranges,
             const DoubtSettings& settings);
 
   [[nodiscard]] bool any() const { return ends || !step.empty() || !ramp.empty(); }
 
  private:
   void find_noise(const CellRanges& ranges, bool cell_data);
-  void find_sharp_edges(const compositor::LaneTable& table, const LaneSamples& lanes);
-  void find_steps(const compositor::LaneTable& table, const DoubtSettings& settings);
-  void find_ramps(const compositor::LaneTable& table, const std::vector<double>& moved, const DoubtSettings& settings);
+  void find_sharp_edges(const integrals::LaneTable& table, const LaneSamples& lanes);
+  void find_steps(const scene::TransferFunction& function, const integrals::LaneTable& table,
+                  const DoubtSettings& settings);
+  void find_ramps(const integrals::LaneTable& table, const std::vector<double>& moved, const DoubtSettings& settings);
 };
 
 }  // namespace tessera::volume

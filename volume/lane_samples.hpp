@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compositor/lane_table.hpp"
+#include "integrals/lane_table.hpp"
 #include "scene/sample_source.hpp"
 
 namespace tessera::volume {
 
-/// From stored samples to the scalars of float lanes (compositor::lane_scalar): lane = round(factor * sample + term).
+/// From stored samples to the scalars of float lanes (integrals::lane_scalar): lane = round(factor * sample + term).
 ///
 /// Unit    2^-29 of the largest distance between the origin and a value: products of few differences stay finite.
 /// Origin  zero, if the range holds or nearly holds it, so that float samples keep their bits; else the range's middle.

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <bit>
 
-#include "compositor/integrate_lanes.hpp"
+#include "integrals/integrate_lanes.hpp"
 
 namespace tessera::volume {
 
-PreintegratedTable::PreintegratedTable(const compositor::LaneTable& function, float low_scalar, float high_scalar,
+PreintegratedTable::PreintegratedTable(const integrals::LaneTable& function, float low_scalar, float high_scalar,
                                        float step, int size_)
     : size(size_), low(low_scalar) {
   // A constant field still needs two places.
@@ -18,7 +18,7 @@ PreintegratedTable::PreintegratedTable(const compositor::LaneTable& function, fl
   const auto n = static_cast<std::size_t>(size);
   entries.resize(4 * n * n);
   tbb::parallel_for(0, size, [&](int front) {
-    compositor::FloatBatch batch;
+    integrals::FloatBatch batch;
     batch.reserve(n);
     batch.size = n;
     for (std::size_t back = 0; back < n; ++back) {
@@ -26,15 +26,15 @@ PreintegratedTable::PreintegratedTable(const compositor::LaneTable& function, fl
       batch.scalar_front[back] = low + static_cast<float>(front) / scale;
       batch.scalar_back[back] = low + static_cast<float>(back) / scale;
     }
-    compositor::integrate_lanes(function, batch);
+    integrals::integrate_lanes(function, batch);
     const std::vector<float>* const channels[] = {&batch.optical_depth, &batch.red, &batch.green, &batch.blue};
     for (std::size_t c = 0; c < 4; ++c)
       std::copy_n(channels[c]->begin(), n, &entries[(c * n + static_cast<std::size_t>(front)) * n]);
   });
 }
 
-int PreintegratedTable::size_for(const compositor::LaneTable& function, float low_scalar, float high_scalar) {
-  const float* const edges = function.column(compositor::LaneTable::edge);
+int PreintegratedTable::size_for(const integrals::LaneTable& function, float low_scalar, float high_scalar) {
+  const float* const edges = function.column(integrals::LaneTable::edge);
   float closest = high_scalar - low_scalar;
   for (std::size_t knot = 2; knot <= function.knot_count; ++knot)
     if (edges[knot] > low_scalar && edges[knot - 1] < high_scalar && edges[knot] > edges[knot - 1])

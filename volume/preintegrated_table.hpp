@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "compositor/lane_table.hpp"
+#include "integrals/lane_table.hpp"
 
 namespace tessera::volume {
 
@@ -14,11 +14,11 @@ struct PreintegratedTable {
   static constexpr int least_size = 512, most_size = 2048;
 
   /// `step` in the table's length unit. low < high, the field's range.
-  PreintegratedTable(const compositor::LaneTable& function, float low_scalar, float high_scalar, float step, int size_);
+  PreintegratedTable(const integrals::LaneTable& function, float low_scalar, float high_scalar, float step, int size_);
 
   /// Entries a side at which the closest knots are sixteen entries apart, so far as `most_size` goes: between entries
   /// the table is bilinear, and cuts peaks that lie between them.
-  static int size_for(const compositor::LaneTable& function, float low_scalar, float high_scalar);
+  static int size_for(const integrals::LaneTable& function, float low_scalar, float high_scalar);
 
   [[nodiscard]] const float* channel(int c) const {
     return entries.data() +

@@ -5,7 +5,7 @@
 //           exactly. The rest is b-shaped, -4 b ((v - 1/2)^2 - 1/4) with b = 3 m / 2, and odd,
 //           p_3 v (v - 1/2) (v - 1).
 // Integral  Within one interval of the transfer function extinction and colour are linear in s. The line is moved by m,
-//           so that optical depth is that of the cubic, and integrated exactly (compositor/integrate_lanes-inl.h).
+//           so that optical depth is that of the cubic, and integrated exactly (integrals/integrate_lanes-inl.h).
 // Error     What is left of the rest, r, has mean zero and is of even or odd form, so its products with constant, and
 //           of the even part with linear, terms vanish. There stay, per colour, |k' c'| l (4 b^2 / 45 + |b p_3| / 20
 //           + |p_3 (s_1 - s_0)| / 60) from the product of extinction and colour, |k'|^2 c l^2 |r| (|s_1 - s_0| +
@@ -37,7 +37,7 @@ namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
 using CL::lanes::Progress;
-using compositor::LaneTable;
+using integrals::LaneTable;
 
 /// One stretch a lane. The field at its ends and middle, the cubic's leading coefficient over it, and its length (zero:
 /// nothing there). Where in the slab it begins, and how much of the slab it takes.
@@ -182,11 +182,12 @@ HWY_INLINE VF doubt_row(const std::vector<float>& row, VI at, MF wanted) {
 HWY_INLINE void note_ramps(VI interval, MF wanted, VF length, const LaneDoubt& doubt, VF before, VF behind,
                            RayNotes& notes) {
   if (doubt.ramp.empty()) return;
+  const DF d;
   const VF through = HN::Mul(length, behind);
   const VF color = HN::Mul(HN::Sub(before, behind), doubt_row(doubt.ramp_color, interval, wanted));
-  const VF error = HN::Max(HN::Mul(through, doubt_row(doubt.ramp, interval, wanted)), color);
+  const VF ramp = HN::Mul(through, doubt_row(doubt.ramp, interval, wanted)), error = HN::Max(ramp, color);
   notes.rough = HN::MulAdd(error, error, notes.rough);
-  notes.doubt = HN::MulAdd(through, doubt_row(doubt.ramp_steady, interval, wanted), notes.doubt);
+  notes.doubt = HN::MulAdd(ramp, HN::Set(d, doubt.steady), notes.doubt);
 }
 HWY_INLINE void note_ramps(const UniformLookup& table, VF length, VF before, VF behind, RayNotes& notes) {
   const DF d;
@@ -228,7 +229,7 @@ HWY_INLINE bool touches(const Lookup& table, typename Lookup::Index index, VI in
 
 /// What a stretch may err, as seen from where its light is measured.
 struct StretchDoubt {
-  VF steps, ramps, steady;
+  VF steps, ramps;
   VF left;  ///< by pieces that were not made small enough
 };
 
@@ -237,7 +238,7 @@ struct StretchDoubt {
 /// w |a - E|, and that is less than the root of (sum of w) (sum of w |a - E|^2) by Cauchy and Schwarz.
 struct Excess {
   VF depth, ramps, red, green, blue, square;  ///< sums of w, of those of ramps, of w a and of w |a|^2
-  VF beside;                                  ///< light that differs whatever lies behind
+  VF beside_steps, beside_ramps;              ///< light that differs whatever lies behind
 
   HWY_INLINE void add(VF w, VF through, const VF (&color)[3], const Progress& progress) {
     const VF a[3] = {HN::MulAdd(through, color[0], progress.red), HN::MulAdd(through, color[1], progress.green),
@@ -246,7 +247,7 @@ struct Excess {
     red = HN::MulAdd(w, a[0], red), green = HN::MulAdd(w, a[1], green), blue = HN::MulAdd(w, a[2], blue);
     square = HN::MulAdd(w, HN::MulAdd(a[0], a[0], HN::MulAdd(a[1], a[1], HN::Mul(a[2], a[2]))), square);
   }
-  /// Of the whole stretch.
+  /// Of the whole stretch, by the depths alone.
   HWY_INLINE VF error(const Progress& e, const LaneDoubt& doubt) const {
     const DF d;
     const VF across = HN::MulAdd(red, e.red, HN::MulAdd(green, e.green, HN::Mul(blue, e.blue)));
@@ -254,7 +255,7 @@ struct Excess {
     const VF squares = HN::MulAdd(depth, light, HN::NegMulAdd(HN::Set(d, 2.0f), across, square));
     const VF inside = HN::Sqrt(HN::Mul(depth, HN::Max(HN::Zero(d), squares)));
     const VF behind = HN::Mul(HN::Mul(depth, e.transmittance), HN::Set(d, doubt.brightest));
-    return HN::Add(HN::Add(inside, behind), beside);
+    return HN::Add(inside, behind);
   }
 };
 
@@ -269,9 +270,9 @@ HWY_INLINE void colors_at(const Lookup& table, typename Lookup::Index index, VF 
 
 /// Adds what a step may err that the cubic is at v on, or nearly.
 template <bool closely, class Lookup>
-HWY_INLINE void add_step_doubt(const Lookup& table, typename Lookup::Index index, VI interval, MF active,
-                               const LaneDoubt& doubt, const Cubic& c, VF v, VF s, VF stretch_length,
-                               const Progress& progress, StretchDoubt& sum, Excess& excess) {
+HWY_NOINLINE void add_step_doubt(const Lookup& table, typename Lookup::Index index, VI interval, MF active,
+                                 const LaneDoubt& doubt, const Cubic& c, VF v, VF s, VF stretch_length,
+                                 const Progress& progress, StretchDoubt& sum, Excess& excess) {
   const DF d;
   const VF most_depth = HN::Set(d, 1e3f), behind = progress.transmittance;
   Touch touch;
@@ -286,37 +287,24 @@ HWY_INLINE void add_step_doubt(const Lookup& table, typename Lookup::Index index
     const VF w = HN::Min(HN::Mul(length_there, row(doubt.step_extinction)), most_depth);
     const VF color[3] = {row(doubt.step_red), row(doubt.step_green), row(doubt.step_blue)};
     excess.add(w, behind, color, progress);
-    excess.beside = HN::MulAdd(HN::Mul(length_there, row(doubt.step_light)), behind, excess.beside);
+    excess.beside_steps = HN::MulAdd(HN::Mul(length_there, row(doubt.step_light)), behind, excess.beside_steps);
   }
 }
 
-/// Adds what a piece that ends at a step, or nearly, and lies on a ramp errs. `before`: what got through to it.
-template <bool closely, class Lookup>
-HWY_NOINLINE void add_doubt(const Lookup& table, typename Lookup::Index index, VI interval, MF active,
-                            const LaneDoubt& doubt, const Cubic& c, VF end, VF s_end, VF length, VF stretch_length,
-                            VF before, const Progress& progress, StretchDoubt& sum, Excess& excess) {
+/// Adds what a piece of a ramp errs, closely: of `length`, to which `before` got through.
+template <class Lookup>
+HWY_NOINLINE void add_ramp_excess(const Lookup& table, typename Lookup::Index index, VI interval, MF steep,
+                                  const LaneDoubt& doubt, VF s_end, VF length, VF before, const Progress& progress,
+                                  Excess& excess) {
   const DF d;
   const VF most_depth = HN::Set(d, 1e3f), behind = progress.transmittance;
-  if (!doubt.step.empty())
-    add_step_doubt<closely>(table, index, interval, active, doubt, c, end, s_end, stretch_length, progress, sum,
-                            excess);
-  if (doubt.ramp.empty()) return;
-  const VF ramp = doubt_row(doubt.ramp, interval, active);
-  if (HN::AllFalse(d, HN::Gt(ramp, HN::Zero(d)))) return;
-  if (!closely) {
-    const VF through = HN::Mul(length, before);
-    sum.ramps = HN::MulAdd(through, ramp, sum.ramps);
-    sum.steady = HN::MulAdd(through, doubt_row(doubt.ramp_steady, interval, active), sum.steady);
-  } else {
-    const MF steep = HN::Gt(ramp, HN::Zero(d));
-    const VF w = HN::Min(HN::Mul(length, doubt_row(doubt.ramp_extinction, interval, steep)), most_depth);
-    VF color[3];
-    colors_at(table, index, s_end, color);
-    excess.add(w, behind, color, progress);
-    excess.ramps = HN::Add(excess.ramps, w);
-    const VF seen = table.independent ? HN::Mul(length, before) : HN::Sub(before, behind);
-    excess.beside = HN::MulAdd(seen, doubt_row(doubt.ramp_color, interval, steep), excess.beside);
-  }
+  const VF w = HN::Min(HN::Mul(length, doubt_row(doubt.ramp_extinction, interval, steep)), most_depth);
+  VF color[3];
+  colors_at(table, index, s_end, color);
+  excess.add(w, behind, color, progress);
+  excess.ramps = HN::Add(excess.ramps, w);
+  const VF seen = table.independent ? HN::Mul(length, before) : HN::Sub(before, behind);
+  excess.beside_ramps = HN::MulAdd(seen, doubt_row(doubt.ramp_color, interval, steep), excess.beside_ramps);
 }
 
 /// A stretch is halved no more often; 4096 of an optical depth of 1e4 are still thin.
@@ -330,8 +318,8 @@ HWY_NOINLINE StretchDoubt walk_cubic(const Lookup& table, const FrameView& frame
   const DF d;
   const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f), half = HN::Set(d, 0.5f);
   MF active = HN::And(HN::Gt(piece.length, zero), HN::Eq(piece.s_mid, piece.s_mid));
-  StretchDoubt doubt{zero, zero, zero, zero};
-  Excess excess{zero, zero, zero, zero, zero, zero, zero};
+  StretchDoubt doubt{zero, zero, zero};
+  Excess excess{zero, zero, zero, zero, zero, zero, zero, zero};
   if (HN::AllFalse(d, active)) return doubt;
   const VF s_0 = HN::IfThenElseZero(active, piece.s_0), s_mid = HN::IfThenElseZero(active, piece.s_mid),
            s_1 = HN::IfThenElseZero(active, piece.s_1), p_3 = HN::IfThenElseZero(active, piece.p_3);
@@ -350,6 +338,8 @@ HWY_NOINLINE StretchDoubt walk_cubic(const Lookup& table, const FrameView& frame
     find_extrema(c, turn_1, turn_2);
 
   const VF per_tolerance = HN::Set(d, 1 / frame.piece_tolerance);
+  const bool has_steps = frame.doubt != nullptr && !frame.doubt->step.empty();
+  const float* const ramps = frame.doubt != nullptr && !frame.doubt->ramp.empty() ? frame.doubt->ramp.data() : nullptr;
   VF v = zero, s = s_0;
   // Each round ends at a knot, an extremum, a halving or the stretch's end; knots are few but for wild functions.
   for (int round = 0; round < 4096; ++round) {
@@ -402,15 +392,23 @@ HWY_NOINLINE StretchDoubt walk_cubic(const Lookup& table, const FrameView& frame
       s_end = HN::IfThenElse(rough, middle, s_end);
     }
     pieces += HN::CountTrue(d, active);
-    if (HWY_UNLIKELY(round == 0 && frame.doubt != nullptr && !frame.doubt->step.empty()))
+    if (HWY_UNLIKELY(round == 0 && has_steps))
       add_step_doubt<closely>(table, index, interval, active, *frame.doubt, c, v, s, piece.length, progress, doubt,
                               excess);
     const VF before = progress.transmittance;
     CL::lanes::add_piece<false>(table, index, HN::Add(s, m), HN::Add(s_end, m), HN::Sub(s_end, s), length, progress);
     note_first_light(progress, HN::MulAdd(v, piece.extent, piece.begin), notes);
-    if (HWY_UNLIKELY(frame.doubt != nullptr))
-      add_doubt<closely>(table, index, interval, active, *frame.doubt, c, end, s_end, length, piece.length, before,
-                         progress, doubt, excess);
+    if (HWY_UNLIKELY(has_steps))
+      add_step_doubt<closely>(table, index, interval, active, *frame.doubt, c, end, s_end, piece.length, progress,
+                              doubt, excess);
+    if (ramps != nullptr) {
+      // Lanes that are done have an interval and no length.
+      const VF ramp = HN::GatherIndex(d, ramps, interval);
+      if (!closely)
+        doubt.ramps = HN::MulAdd(HN::Mul(length, before), ramp, doubt.ramps);
+      else if (const MF steep = HN::And(active, HN::Gt(ramp, zero)); !HN::AllFalse(d, steep))
+        add_ramp_excess(table, index, interval, steep, *frame.doubt, s_end, length, before, progress, excess);
+    }
     v = HN::IfThenElse(active, end, v);
     s = HN::IfThenElse(active, s_end, s);
     active = HN::And(active, HN::Lt(v, one));
@@ -419,10 +417,12 @@ HWY_NOINLINE StretchDoubt walk_cubic(const Lookup& table, const FrameView& frame
   // Rounds that do not do.
   doubt.left = HN::Add(doubt.left, HN::IfThenElseZero(active, progress.transmittance));
   if (closely) {
-    const VF error = HN::Min(excess.error(progress, *frame.doubt), HN::Set(d, frame.doubt->most));
+    // Depths that differ are told apart by how much; light beside them is each one's own.
+    const VF error = excess.error(progress, *frame.doubt), most_error = HN::Set(d, frame.doubt->most);
     const VF share = HN::Div(excess.ramps, HN::Max(excess.depth, HN::Set(d, 1e-30f)));
-    doubt.ramps = HN::Mul(error, share);
-    doubt.steps = HN::Sub(error, doubt.ramps);
+    const VF of_ramps = HN::Mul(error, share);
+    doubt.ramps = HN::Min(most_error, HN::Add(of_ramps, excess.beside_ramps));
+    doubt.steps = HN::Min(most_error, HN::Add(HN::Sub(error, of_ramps), excess.beside_steps));
   }
   return doubt;
 }
@@ -444,10 +444,10 @@ HWY_INLINE void add_any(const Lookup& table, const FrameView& frame, const Piece
     const auto less = [&](VF far, VF near) HWY_ATTR { return HN::Min(far, HN::Mul(before, near)); };
     const VF ramps = less(doubt.ramps, close.ramps);
     doubt.steps = HN::Min(HN::Add(doubt.steps, HN::Sub(doubt.ramps, ramps)), HN::Mul(before, close.steps));
-    doubt.steady = HN::Mul(doubt.steady, HN::Div(ramps, HN::Max(doubt.ramps, HN::Set(d, 1e-30f))));
     doubt.ramps = ramps;
   }
-  notes.doubt = HN::Add(notes.doubt, HN::Add(doubt.left, HN::Add(doubt.steps, doubt.steady)));
+  const VF steady = HN::Set(d, frame.doubt->steady);
+  notes.doubt = HN::Add(notes.doubt, HN::Add(doubt.left, HN::MulAdd(doubt.ramps, steady, doubt.steps)));
   notes.rough = HN::MulAdd(doubt.ramps, doubt.ramps, notes.rough);
 }
 

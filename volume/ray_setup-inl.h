@@ -9,6 +9,7 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "volume/frame_view.hpp"
@@ -39,14 +40,40 @@ HWY_INLINE unsigned axis_codes(const PixelRays& rays, int x0, int y0) {
   return codes;
 }
 
+/// Voxels that a ray in a plane of the lattice may be off it, or leave it by: what rounding makes of views along axes.
+constexpr double in_plane_within = 1e-9;
+
+/// Where such rays go instead, voxels along an axis: to the side that they would be on if they were shifted by (e, e^2)
+/// pixel, e infinitely small. Below a plane by a float's last place before 1, as places are floats in [0, 1) within a
+/// voxel; above it by what doubles of 65,536 voxels still tell.
+HWY_INLINE double side_of_plane(const PixelRays& rays, bool perspective, int axis) {
+  const double by_x = perspective ? rays.direction_x[axis] : rays.origin_x[axis],
+               by_y = perspective ? rays.direction_y[axis] : rays.origin_y[axis];
+  return (std::abs(by_x) > 1e-9 * std::abs(by_y) ? by_x : by_y) < 0 ? -0x1p-24 : 0x1p-36;
+}
+
+/// Whether no ray of the tile runs in a plane across an axis: none is nearly level with it.
+HWY_NOINLINE bool crosses_planes(const PixelRays& rays, int x0, int y0, int axis) {
+  double least = 0, most = 0, largest = 0;
+  for (int corner = 0; corner < 4; ++corner) {
+    const double px = x0 + (corner % 2) * TileRays::side, py = y0 + (corner / 2) * TileRays::side;
+    const glm::dvec3 d = rays.direction + px * rays.direction_x + py * rays.direction_y;
+    least = corner == 0 ? d[axis] : std::min(least, d[axis]), most = corner == 0 ? d[axis] : std::max(most, d[axis]);
+    largest = std::max({largest, std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
+  }
+  // Rays go half a voxel and more.
+  return std::max(least, -most) > 4 * in_plane_within * largest;
+}
+
 /// Lays the tile's rays of one axis code out for the kernels; those of others are empty. The light is left alone.
-HWY_INLINE void set_up_rays(const FrameView& frame, int x0, int y0, int code, TileRays& out) {
+HWY_NOINLINE void set_up_rays(const FrameView& frame, int x0, int y0, int code, TileRays& out) {
   const PixelRays& rays = *frame.rays;
   const RayAxes axes = RayAxes::of(code);
   const double end_i = static_cast<double>(frame.voxels[static_cast<std::size_t>(axes.i)]),
                end_j = static_cast<double>(frame.voxels[static_cast<std::size_t>(axes.j)]),
                end_k = static_cast<double>(frame.voxels[static_cast<std::size_t>(axes.k)]);
   const bool perspective = rays.tangent_step != 0;
+  const bool level_i = !crosses_planes(rays, x0, y0, axes.i), level_j = !crosses_planes(rays, x0, y0, axes.j);
   namespace HN = hwy::HWY_NAMESPACE;
   const HN::ScalableTag<double> d;
   const auto set = [&](double v) HWY_ATTR { return HN::Set(d, v); };
@@ -74,8 +101,18 @@ HWY_INLINE void set_up_rays(const FrameView& frame, int x0, int y0, int code, Ti
       here = HN::And(signed_right, HN::And(not_less(di, axes.i), not_less(dj, axes.j)));
     }
     const auto per_k = HN::Div(one, HN::IfThenElse(here, dk, one));
-    const auto bx = HN::Mul(di, per_k), by = HN::Mul(dj, per_k);
-    const auto ax = HN::NegMulAdd(ok, bx, origin(axes.i)), ay = HN::NegMulAdd(ok, by, origin(axes.j));
+    auto bx = HN::Mul(di, per_k), by = HN::Mul(dj, per_k);
+    auto ax = HN::NegMulAdd(ok, bx, origin(axes.i)), ay = HN::NegMulAdd(ok, by, origin(axes.j));
+    const auto reach = HN::Max(HN::Abs(ok), HN::Abs(HN::Sub(set(end_k), ok)));
+    const auto keep_side = [&](auto& a, auto& b, int axis) HWY_ATTR {
+      const auto plane = HN::Round(a);
+      const auto in_plane = HN::And(HN::Lt(HN::Mul(HN::Abs(b), reach), set(in_plane_within)),
+                                    HN::Lt(HN::Abs(HN::Sub(a, plane)), set(in_plane_within)));
+      a = HN::IfThenElse(in_plane, HN::Add(plane, set(side_of_plane(rays, perspective, axis))), a);
+      b = HN::IfThenElse(in_plane, zero, b);
+    };
+    if (level_i) keep_side(ax, bx, axes.i);
+    if (level_j) keep_side(ay, by, axes.j);
     auto in = HN::Max(zero, HN::MulAdd(set(rays.near_depth), dk, ok));
     auto out_k = set(end_k);
     if (std::isfinite(rays.far_depth)) out_k = HN::Min(out_k, HN::MulAdd(set(rays.far_depth), dk, ok));

@@ -88,7 +88,7 @@ ShadingView shading_view(const scene::Shading& s, const scene::Camera& camera, c
   return view;
 }
 
-/// Distance of every brick's centre to the cone round the view frustum ([Mol08] 3.3), world units, 0 inside. In
+/// Distance of every brick's centre to the cone round the view frustum (Moloney 2008, 3.3), world units, 0 inside. In
 /// orthographic views the cone is a cylinder.
 std::vector<float> cone_distances(const scene::Camera& camera, scene::ImageSize size, const PixelRegion& region,
                                   const scene::GridGeometry& geometry, const BrickLayout& layout) {
@@ -181,10 +181,10 @@ struct Renderer::State {
   [[nodiscard]] bool in_steps() const {
     return settings.method == Method::sampled || settings.method == Method::preintegrated;
   }
-  [[nodiscard]] compositor::LaneTable table_of(const scene::TransferFunction& function) const {
+  [[nodiscard]] integrals::LaneTable table_of(const scene::TransferFunction& function) const {
     return {function,          ranges.lanes.origin,
             ranges.lanes.unit, length_unit,
-            settings.emission, in_steps() ? compositor::StepRounding::nearest : compositor::StepRounding::up};
+            settings.emission, in_steps() ? integrals::StepRounding::nearest : integrals::StepRounding::up};
   }
 
   /// A ray that lets less through is done.
@@ -259,7 +259,7 @@ const scene::GridGeometry& Renderer::geometry() const { return state_->source.ge
 std::vector<std::array<glm::dvec3, 2>> Renderer::visible_bricks(
     const scene::TransferFunction& transfer_function) const {
   const State& state = *state_;
-  const compositor::LaneTable table = state.table_of(transfer_function);
+  const integrals::LaneTable table = state.table_of(transfer_function);
   const BrickLayout& layout = state.bricks.layout();
   const std::vector<std::uint8_t> shown =
       volume::visible_bricks(state.ranges, visible_cells(state.ranges, table), layout);
@@ -281,7 +281,7 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
                            const scene::TransferFunction& transfer_function, const PixelRegion& wanted,
                            WorkTally* tally, scene::Image* image, float* doubts, Cast& result) {
   const PixelRays rays(camera, size, source.geometry());
-  const compositor::LaneTable table = table_of(transfer_function);
+  const integrals::LaneTable table = table_of(transfer_function);
   std::vector<std::uint8_t> visible;
   tbb::task_arena arena(scene::threads_for(settings.threads));
   arena.execute([&] {
@@ -315,7 +315,7 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
       frame.doubt_tolerance = static_cast<float>(std::max(accuracy(), 1e-5) / 2);
       doubt = LaneDoubt(transfer_function, table, ranges,
                         {frame.cell_data, frame.largest_color, brightest(transfer_function), frame.doubt_tolerance,
-                         longest_in_voxel(source.geometry()) / length_unit});
+                         longest_in_voxel(source.geometry()) / length_unit, length_unit});
       if (doubt.any()) frame.doubt = &doubt;
     }
     frame.lanes = ranges.lanes;
@@ -331,7 +331,7 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
       frame.step = settings.step * voxel_side / length_unit;
     if (settings.method == Method::preintegrated && tally == nullptr) {
       const auto lane_of = [&](double value) {
-        return compositor::lane_scalar(value, ranges.lanes.origin, ranges.lanes.unit);
+        return integrals::lane_scalar(value, ranges.lanes.origin, ranges.lanes.unit);
       };
       const scene::ValueRange& range = ranges.range;
       const float low = range.empty() ? 0.0f : lane_of(range.low), high = range.empty() ? 0.0f : lane_of(range.high);
@@ -383,7 +383,7 @@ void Renderer::State::cast_again(const scene::Camera& camera, const scene::Trans
 
 void Renderer::State::cast_rectilinear(const scene::Camera& camera, const scene::TransferFunction& function,
                                        const PixelRegion& wanted, scene::Image& image, Cast& result) const {
-  const compositor::LaneTable table = table_of(function);
+  const integrals::LaneTable table = table_of(function);
   tbb::task_arena arena(scene::threads_for(settings.threads));
   arena.execute([&] {
     std::vector<std::uint8_t> visible = visible_cells(ranges, table);

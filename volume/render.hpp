@@ -27,13 +27,13 @@ enum class Method {
   preintegrated  ///< a table over the scalars at both ends of a step (Engel, Kraus, Ertl 2001)
 };
 
-/// What the brick cache throws out first ([Mol08] 3.3).
+/// What the brick cache throws out first (Moloney 2008, 3.3).
 enum class CachePolicy {
   lru,       ///< the brick that has not been used for longest
   proximity  ///< the brick whose centre is farthest from a cone round the view frustum
 };
 
-/// How much memory a brick at the volume's high end takes ([Mol08] Table 6.2).
+/// How much memory a brick at the volume's high end takes (Moloney 2008, Table 6.2).
 enum class EdgeBricks { variable, fixed };
 
 struct RenderSettings {

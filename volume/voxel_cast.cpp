@@ -11,8 +11,8 @@
 #include <limits>
 #include <memory>
 
-#include "compositor/segment_batch.hpp"
-#include "compositor/segment_integrator.hpp"
+#include "integrals/segment_batch.hpp"
+#include "integrals/segment_integrator.hpp"
 
 namespace tessera::volume {
 namespace {
@@ -64,7 +64,7 @@ class VoxelPixels final : public WalkSink {
  public:
   VoxelPixels(const scene::SampleSource& source, const scene::Camera& camera, const scene::TransferFunction& function,
               const VoxelCastSettings& settings)
-      : integrator_(function, {.kind = scene::IntegratorKind::exact}, settings.walk.emission),
+      : integrator_(over_knot_numbers(function), {.kind = scene::IntegratorKind::exact}, settings.walk.emission),
         walk_(source, function, settings.walk) {
     if (settings.shading && source.geometry().association == scene::Association::point)
       shading_.emplace(*settings.shading, camera, source.geometry());
@@ -92,11 +92,11 @@ class VoxelPixels final : public WalkSink {
   void enter(const VoxelStretch& stretch) override {
     if (shading_) light_ = shading_->light(stretch, ray_->step);
   }
-  void line(double z0, double z1, double s_0, double s_1) override {
+  void line(double z0, double z1, double k_0, double k_1) override {
     if (batch_.size == together) put();
     const std::size_t n = batch_.size++;
     batch_.length[n] = (z1 - z0) * ray_->length_per_depth;
-    batch_.scalar_front[n] = s_0, batch_.scalar_back[n] = s_1;
+    batch_.scalar_front[n] = k_0, batch_.scalar_back[n] = k_1;
     lights_[n] = light_, places_[n] = {z0, z1};
   }
   [[nodiscard]] double transmittance() const override { return transmittance_; }
@@ -130,10 +130,10 @@ class VoxelPixels final : public WalkSink {
     batch_.size = 0;
   }
 
-  compositor::SegmentIntegrator integrator_;
+  integrals::SegmentIntegrator integrator_;
   std::optional<VoxelShading> shading_;
   VoxelWalk walk_;
-  compositor::SegmentBatch batch_;
+  integrals::SegmentBatch batch_;
   std::vector<VoxelLight> lights_;
   std::vector<std::array<double, 2>> places_;
   const VoxelRay* ray_ = nullptr;

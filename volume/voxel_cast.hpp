@@ -20,7 +20,8 @@ namespace tessera::volume {
 /// integrated exactly in double precision.
 ///
 /// Error   below 1e-5, whatever the spacings; what the walk may leave out (WalkSettings::tolerance, least) comes on
-/// top. Bits    of a pixel depend on nothing but itself.
+///         top.
+/// Bits    of a pixel depend on nothing but itself.
 struct VoxelCastSettings {
   WalkSettings walk;
   std::optional<scene::Shading> shading;

@@ -283,7 +283,8 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
   const VF value[4] = {lines.s[m], HN::IfThenElse(HN::Lt(u_1, one), lines.f_1[m], s_end),
                        HN::IfThenElse(HN::Lt(u_2, one), lines.f_2[m], s_end), s_end};
   Piece pieces[3];
-  MF there[3];
+  MF there[3], torn = HN::Ne(zero, zero);
+  const bool has_blanks = frame.ranges->range.blanks > 0;
   for (int k = 0; k < 3; ++k) {
     Piece& p = pieces[k];
     p.extent = HN::Sub(place[k + 1], place[k]);
@@ -296,10 +297,11 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
     // A voxel that is whole, but whose end is taken from one that is blank, as rounding has the ray pass an edge of
     // both on different sides.
     const VF shape = HN::Add(lines.even[k][m], lines.odd[k][m]);
-    const MF torn = HN::AndNot(HN::Eq(p.s_mid, p.s_mid), HN::And(there[k], HN::Eq(shape, shape)));
-    if (HWY_UNLIKELY(!HN::AllFalse(d, torn)))
-      notes.doubt = HN::Add(notes.doubt, HN::IfThenElseZero(torn, HN::Set(d, 1e9f)));
+    if (HWY_UNLIKELY(has_blanks))
+      torn = HN::Or(torn, HN::AndNot(HN::Eq(p.s_mid, p.s_mid), HN::And(there[k], HN::Eq(shape, shape))));
   }
+  if (HWY_UNLIKELY(has_blanks && !HN::AllFalse(d, torn)))
+    notes.doubt = HN::Add(notes.doubt, HN::IfThenElseZero(torn, HN::Set(d, 1e9f)));
 #if HWY_TARGET <= HWY_AVX3
   if (HN::AllTrue(d, HN::Or(notes.seen, HN::Not(wanted)))) {
     constexpr std::size_t lanes_each = HN::MaxLanes(DF()), most = 4 * lanes_each;

@@ -11,6 +11,21 @@ namespace {
 
 constexpr std::int64_t block_side = 16, cell_side = 8;
 constexpr std::size_t blocks_kept = 256;
+constexpr double in_plane = 1e-9;  ///< voxels that a ray parallel to a plane may be off it, or leave it by
+
+/// The voxel that has a place of the local frame, or is nearest.
+std::int64_t voxel_along(const scene::GridGeometry& geometry, std::size_t axis, double local) {
+  std::int64_t low = 0, high = geometry.points[axis] - 1;
+  if (!geometry.rectilinear(axis)) {
+    const double place = std::floor(local / geometry.spacing[static_cast<int>(axis)]);
+    return static_cast<std::int64_t>(std::clamp(place, 0.0, static_cast<double>(high - 1)));
+  }
+  while (high - low > 1) {
+    const std::int64_t middle = low + (high - low) / 2;
+    (geometry.lattice(axis, middle) <= local ? low : high) = middle;
+  }
+  return low;
+}
 
 }  // namespace
 
@@ -24,6 +39,12 @@ VoxelRays::VoxelRays(const scene::Camera& camera, scene::ImageSize size, const s
       height_(size.height) {
   const double half = perspective_ ? std::tan(camera.view_angle * std::numbers::pi / 360) : camera.parallel_scale;
   pixel_ = 2 * half / size.height;
+  const scene::Box box = scene::bounds(geometry);
+  for (int n = 0; n < 8; ++n) {
+    const glm::dvec3 p((n & 1) != 0 ? box.high.x : box.low.x, (n & 2) != 0 ? box.high.y : box.low.y,
+                       (n & 4) != 0 ? box.high.z : box.low.z);
+    deepest_ = std::max(deepest_, std::abs(glm::dot(p - camera.position, basis_.forward)));
+  }
 }
 
 VoxelRay VoxelRays::ray(double x, double y) const {
@@ -39,8 +60,21 @@ VoxelRay VoxelRays::ray(double x, double y) const {
   for (std::size_t a = 0; a < 3; ++a) {
     const int axis = static_cast<int>(a);
     const double low = geometry_.lattice(a, 0), high = geometry_.lattice(a, geometry_.points[a] - 1);
-    if (ray.step[axis] == 0) {
-      if (ray.origin[axis] < low || ray.origin[axis] >= high) ray.end = ray.begin;
+    const double voxel = (high - low) / static_cast<double>(geometry_.points[a] - 1);
+    if (std::abs(ray.step[axis]) * deepest_ < in_plane * voxel) {
+      // Rounding would have it change sides on its way.
+      const double by_x = (to_local_ * basis_.right)[axis] * pixel_ * (perspective_ ? deepest_ : 1.0),
+                   by_y = -(to_local_ * basis_.up)[axis];
+      ray.step[axis] = 0;
+      ray.aside[axis] = std::copysign(in_plane * voxel, std::abs(by_x) > in_plane * voxel ? by_x : by_y);
+      const double place = ray.origin[axis] + ray.aside[axis];
+      if (place < low || place >= high) {
+        ray.end = ray.begin;
+        continue;
+      }
+      const std::int64_t n = voxel_along(geometry_, a, place);
+      for (const double plane : {geometry_.lattice(a, n), geometry_.lattice(a, n + 1)})
+        if (std::abs(ray.origin[axis] - plane) < in_plane * voxel) ray.origin[axis] = plane;
       continue;
     }
     const double one = (low - ray.origin[axis]) / ray.step[axis], other = (high - ray.origin[axis]) / ray.step[axis];
@@ -81,7 +115,7 @@ std::array<double, 4> cubic_of(const std::array<double, 8>& corner, const glm::d
     for (std::size_t n = 0; n < (4u >> axis); ++n) {
       const std::array<double, 4> low = p[2 * n], high = p[2 * n + 1];
       for (std::size_t i = 0; i < 4; ++i) {
-        p[n][i] = low[i] + (high[i] - low[i]) * front[axis];
+        p[n][i] = front[axis] == 1 ? high[i] : low[i] + (high[i] - low[i]) * front[axis];
         if (i > 0) p[n][i] += (high[i - 1] - low[i - 1]) * rise[axis];
       }
     }
@@ -101,6 +135,12 @@ void turning_points(const std::array<double, 4>& p, std::array<double, 4>& ends,
 }
 
 }  // namespace
+
+scene::TransferFunction over_knot_numbers(const scene::TransferFunction& function) {
+  std::vector<scene::Knot> knots(function.knots().begin(), function.knots().end());
+  for (std::size_t k = 0; k < knots.size(); ++k) knots[k].value = static_cast<double>(k);
+  return scene::TransferFunction(std::move(knots));
+}
 
 VoxelWalk::VoxelWalk(const scene::SampleSource& source, const scene::TransferFunction& function,
                      const WalkSettings& settings)
@@ -153,7 +193,7 @@ void VoxelWalk::walk(const VoxelRay& ray, WalkSink& sink) {
   for (std::size_t a = 0; a < 3; ++a) {
     const int axis = static_cast<int>(a);
     step[a] = ray.step[axis] < 0 ? -1 : 1;
-    voxel[a] = voxel_along(a, ray.origin[axis] + ray.begin * ray.step[axis]);
+    voxel[a] = voxel_along(geometry_, a, ray.origin[axis] + ray.begin * ray.step[axis] + ray.aside[axis]);
     last[a] = step[a] > 0 ? geometry_.points[a] - 2 : 0;
     next[a] = ray.step[axis] == 0 ? never : plane(a);
   }
@@ -200,8 +240,16 @@ void VoxelWalk::cross(const VoxelRay& ray, const scene::GridIndex& voxel, double
     stretch.side[axis] = side;
   }
   sink.enter(stretch);
-  if (low == high) return sink.line(z0, z1, low, low);  // cell data too
-  const FieldCubic field{cubic_of(corner, stretch.front, stretch.rise)};
+  const auto first = std::lower_bound(knots_.begin(), knots_.end(), low,
+                                      [](const scene::Knot& knot, double v) { return knot.value < v; });
+  origin_ = first != knots_.end() && first->value <= high ? first->value : low;
+  if (low == high) {  // cell data too
+    const double number = knot_number(knots_above(low - origin_), low - origin_);
+    return sink.line(z0, z1, number, number);
+  }
+  std::array<double, 8> differences;
+  std::transform(corner.begin(), corner.end(), differences.begin(), [&](double s) { return s - origin_; });
+  const FieldCubic field{cubic_of(differences, stretch.front, stretch.rise)};
   const double length = (z1 - z0) * ray.length_per_depth;
 
   std::array<double, 4> ends{0, 1, 1, 1};
@@ -231,33 +279,45 @@ void VoxelWalk::cross(const VoxelRay& ray, const scene::GridIndex& voxel, double
 double VoxelWalk::next_knot(double s, double crossed, bool up) const {
   constexpr double none = std::numeric_limits<double>::infinity();
   if (up) {
-    const double past = std::isnan(crossed) ? s : std::max(s, crossed);
-    const auto k = std::upper_bound(knots_.begin(), knots_.end(), past,
-                                    [](double v, const scene::Knot& knot) { return v < knot.value; });
-    return k == knots_.end() ? none : k->value;
+    const std::size_t k = knots_above(std::isnan(crossed) ? s : std::max(s, crossed));
+    return k == knots_.size() ? none : knots_[k].value - origin_;
   }
   const double past = std::isnan(crossed) ? s : std::min(s, crossed);
   const auto k = std::lower_bound(knots_.begin(), knots_.end(), past,
-                                  [](const scene::Knot& knot, double v) { return knot.value < v; });
-  return k == knots_.begin() ? -none : std::prev(k)->value;
+                                  [&](const scene::Knot& knot, double v) { return knot.value - origin_ < v; });
+  return k == knots_.begin() ? -none : std::prev(k)->value - origin_;
+}
+
+/// The first knot beyond s.
+std::size_t VoxelWalk::knots_above(double s) const {
+  return static_cast<std::size_t>(
+      std::upper_bound(knots_.begin(), knots_.end(), s,
+                       [&](double v, const scene::Knot& knot) { return v < knot.value - origin_; }) -
+      knots_.begin());
+}
+
+/// Of s, which lies between the knot `above` and the one before it.
+double VoxelWalk::knot_number(std::size_t above, double s) const {
+  if (above == 0) return -1;
+  const auto below = static_cast<double>(above - 1);
+  if (above == knots_.size()) return below;
+  const double low = knots_[above - 1].value - origin_, high = knots_[above].value - origin_;
+  return below + std::clamp((s - low) / (high - low), 0.0, 1.0);
 }
 
 /// A monotone stretch in one interval of the transfer function: halved until a line through its mean is enough.
 void VoxelWalk::add_smooth(const FieldCubic& p, double u0, double u1, double length, double z0, double z1, int halvings,
                            WalkSink& sink) const {
   const double s_0 = p.at(u0), s_1 = p.at(u1), middle = p.at((u0 + u1) / 2), e = u1 - u0;
-  const auto above =
-      static_cast<std::size_t>(std::upper_bound(knots_.begin(), knots_.end(), middle,
-                                                [](double v, const scene::Knot& knot) { return v < knot.value; }) -
-                               knots_.begin());
+  const std::size_t above = knots_above(middle);
   // The line that stands for the stretch is its chord, moved to the mean.
   const double shift = p.mean(u0, u1) - (s_0 + s_1) / 2;
   double low = -std::numeric_limits<double>::infinity(), high = -low, kappa = 0;
-  if (above > 0) low = knots_[above - 1].value, kappa = knots_[above - 1].extinction;
-  if (above < knots_.size()) high = knots_[above].value, kappa = std::max(kappa, knots_[above].extinction);
+  if (above > 0) low = knots_[above - 1].value - origin_, kappa = knots_[above - 1].extinction;
+  if (above < knots_.size()) high = knots_[above].value - origin_, kappa = std::max(kappa, knots_[above].extinction);
   if (above > 0 && above < knots_.size() && halvings < 12) {
     const scene::Knot &a = knots_[above - 1], &b = knots_[above];
-    const double width = b.value - a.value, slope = std::abs(b.extinction - a.extinction) / width;
+    const double width = high - low, slope = std::abs(b.extinction - a.extinction) / width;
     const glm::dvec3 change = glm::abs(b.color - a.color) / width;
     const double color_slope = std::max({change.x, change.y, change.z});
     const double color = std::max({a.color.x, a.color.y, a.color.z, b.color.x, b.color.y, b.color.z});
@@ -276,10 +336,8 @@ void VoxelWalk::add_smooth(const FieldCubic& p, double u0, double u1, double len
       return;
     }
   }
-  const double below_high = std::nextafter(high, low);
-  const auto kept = [&](double s) { return std::clamp(s + shift, low, below_high); };
   const auto depth = [&](double u) { return u == 0 ? z0 : u == 1 ? z1 : z0 + (z1 - z0) * u; };
-  sink.line(depth(u0), depth(u1), kept(s_0), kept(s_1));
+  sink.line(depth(u0), depth(u1), knot_number(above, s_0 + shift), knot_number(above, s_1 + shift));
 }
 
 /// Whether anything between two values shows.
@@ -293,19 +351,6 @@ bool VoxelWalk::shows(double low, double high) const {
                                      [](double v, const scene::Knot& knot) { return v < knot.value; });
   return std::any_of(first == knots_.begin() ? first : std::prev(first), last == knots_.end() ? last : std::next(last),
                      lit);
-}
-
-std::int64_t VoxelWalk::voxel_along(std::size_t axis, double local) const {
-  std::int64_t low = 0, high = geometry_.points[axis] - 1;
-  if (!geometry_.rectilinear(axis)) {
-    const double place = std::floor(local / geometry_.spacing[static_cast<int>(axis)]);
-    return static_cast<std::int64_t>(std::clamp(place, 0.0, static_cast<double>(high - 1)));
-  }
-  while (high - low > 1) {
-    const std::int64_t middle = low + (high - low) / 2;
-    (geometry_.lattice(axis, middle) <= local ? low : high) = middle;
-  }
-  return low;
 }
 
 }  // namespace tessera::volume

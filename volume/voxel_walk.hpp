@@ -19,6 +19,7 @@ namespace tessera::volume {
 struct VoxelRay {
   glm::dvec3 origin, step;
   double length_per_depth, begin, end;
+  glm::dvec3 aside{0};  ///< of the origin, of a ray in a plane of the lattice: where the voxel is that it counts for
 };
 
 /// The rays of a picture; any lattice.
@@ -27,7 +28,9 @@ class VoxelRays {
   /// A valid camera and size.
   VoxelRays(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry);
 
-  /// Through pixel coordinates (x, y), pixel (i, j) having its centre at (i + 0.5, j + 0.5).
+  /// Through pixel coordinates (x, y), pixel (i, j) having its centre at (i + 0.5, j + 0.5). Where it runs in a plane
+  /// of the lattice it has that plane's values, and counts for the voxels that it would be in if it were shifted by
+  /// (e, e^2) pixel, e infinitely small.
   [[nodiscard]] VoxelRay ray(double x, double y) const;
 
  private:
@@ -37,6 +40,7 @@ class VoxelRays {
   glm::dmat3 to_local_;
   bool perspective_;
   double width_, height_, pixel_;
+  double deepest_ = 0;  ///< planar depth of the volume's corners, at most
 };
 
 /// A ray's stretch in one voxel, planar depths z0 to z1. `corner` a + 2 b + 4 c is the value at the voxel's corner
@@ -53,12 +57,17 @@ class WalkSink {
   virtual ~WalkSink() = default;
   /// The ray has come to a voxel of which something shows.
   virtual void enter(const VoxelStretch& stretch) = 0;
-  /// In it the scalar is a line from s_0 to s_1 between planar depths z0 and z1, in one interval of the transfer
-  /// function.
-  virtual void line(double z0, double z1, double s_0, double s_1) = 0;
+  /// In it the scalar goes in a straight line between planar depths z0 and z1, within one interval of the transfer
+  /// function, from knot number k_0 to k_1: n + t is at t in [0, 1] of the way from knot n to the next, n from 0 on;
+  /// below 0 and from the last number on nothing changes. So scalars keep their places between knots that are much
+  /// closer than they are large. over_knot_numbers() is the function to look them up in.
+  virtual void line(double z0, double z1, double k_0, double k_1) = 0;
   /// At most what is let through so far; below `least` the walk ends.
   [[nodiscard]] virtual double transmittance() const = 0;
 };
+
+/// The transfer function with its knots at 0, 1, 2 and so on; the two knots of a step have numbers of their own.
+scene::TransferFunction over_knot_numbers(const scene::TransferFunction& function);
 
 struct WalkSettings {
   scene::Emission emission = scene::Emission::absorption;
@@ -71,7 +80,8 @@ struct WalkSettings {
 /// Goes along rays from voxel to voxel in double precision, one thread's way: regular and rectilinear grids, point and
 /// cell data. The cubic of the trilinear field is cut where it turns and at the knots of the transfer function, and
 /// into stretches so short that a line through its mean gives their light to the tolerance (ray_piece-inl.h has the
-/// bound).
+/// bound). The field is computed in differences to a knot among the voxel's values, or to the least of them: fields and
+/// knots may differ by last places of doubles.
 ///
 /// Samples are read in blocks of 16^3 voxels, 256 of which are kept: 10 MB.
 class VoxelWalk {
@@ -98,10 +108,11 @@ class VoxelWalk {
   void fill(Block& block, const scene::GridIndex& place);
   void cross(const VoxelRay& ray, const scene::GridIndex& voxel, double z0, double z1, WalkSink& sink);
   [[nodiscard]] double next_knot(double s, double crossed, bool up) const;
+  [[nodiscard]] std::size_t knots_above(double s) const;
+  [[nodiscard]] double knot_number(std::size_t above, double s) const;
   void add_smooth(const FieldCubic& field, double u0, double u1, double length, double z0, double z1, int halvings,
                   WalkSink& sink) const;
   [[nodiscard]] bool shows(double low, double high) const;
-  [[nodiscard]] std::int64_t voxel_along(std::size_t axis, double local) const;
 
   const scene::SampleSource& source_;
   const scene::GridGeometry& geometry_;
@@ -111,7 +122,8 @@ class VoxelWalk {
   std::vector<Block> blocks_;
   std::vector<scene::Knot> knots_;
   bool independent_;
-  double last_knot_ = 0;
+  double origin_ = 0;     ///< scalars in the voxel are counted from here
+  double last_knot_ = 0;  ///< crossed, from there
   Counts counts_;
 };
 

@@ -15,14 +15,14 @@
 
 #include <cstddef>
 
-#include "compositor/integrate_lanes-inl.h"
+#include "integrals/integrate_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
 namespace HN = hwy::HWY_NAMESPACE;
-namespace CL = compositor::HWY_NAMESPACE;
+namespace CL = integrals::HWY_NAMESPACE;
 using CL::DF;
 using CL::DI;
 using CL::MF;

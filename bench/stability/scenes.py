@@ -379,7 +379,7 @@ def volume_stresses(m):
         ("oscillations (grid)", "over the range", [1, 10, 100, 1000], lambda v: scene(ripples(), *tf(f"vo-{v}", oscillating(v)))),
         ("extinction (grid)", "times world size", [0.0] + powers(-12, 12, 4), lambda v: scene(ripples(), *tf(f"ve-{v:g}", scaled(KNOTS, extinction=v)))),
         ("peaks of a thousandth (grid)", "extinction times size", powers(0, 8, 2), steep),
-        ("blank samples", "share", [0.0, 0.001, 0.03, 0.3, 0.9], blanks),
+        ("blank samples", "share", [0.0, 0.001, 0.03, 0.3, 0.42], blanks),
         ("constant grid", "distance of knots", powers(3, -6, -3), constant),
         ("plateau at a step (grid)", "last places of a float from the step", [1e6, 1e4, 256, 16, 1, 0], saturated),
         ("grid far from the origin", "offset over voxel", [0.0] + powers(3, 12, 3), offset),

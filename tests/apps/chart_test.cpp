@@ -6,8 +6,8 @@
 #include <set>
 #include <sstream>
 
-#include "apps/chart_measure.hpp"
-#include "apps/delta_e.hpp"
+#include "analysis/chart_measure.hpp"
+#include "analysis/delta_e.hpp"
 #include "program.hpp"
 
 namespace tessera::apps {
@@ -27,11 +27,11 @@ TEST(DeltaE, AgreesWithThePublishedPairs) {
                {{60.2574, -34.0099, 36.2677}, {60.4626, -34.1751, 39.4387}, 1.2644},
                {{6.7747, -0.2908, -2.4247}, {5.8714, -0.0985, -2.2286}, 0.6377}};
   for (const auto& pair : pairs) {
-    EXPECT_NEAR(delta_e_2000(pair.a, pair.b), pair.difference, 5.1e-5);  // four digits are printed
-    EXPECT_NEAR(delta_e_2000(pair.b, pair.a), pair.difference, 5.1e-5);
+    EXPECT_NEAR(analysis::delta_e_2000(pair.a, pair.b), pair.difference, 5.1e-5);  // four digits are printed
+    EXPECT_NEAR(analysis::delta_e_2000(pair.b, pair.a), pair.difference, 5.1e-5);
   }
-  EXPECT_NEAR(glm::dvec3(lab_of_linear({1, 1, 1})).x, 100, 1e-12);
-  EXPECT_NEAR(lab_of_linear({0.18, 0.18, 0.18}).x, 49.496, 1e-3);
+  EXPECT_NEAR(glm::dvec3(analysis::lab_of_linear({1, 1, 1})).x, 100, 1e-12);
+  EXPECT_NEAR(analysis::lab_of_linear({0.18, 0.18, 0.18}).x, 49.496, 1e-3);
 }
 
 TEST(ChartMeasure, ErrorsAreOfThePixelsLookedAt) {
@@ -41,35 +41,35 @@ TEST(ChartMeasure, ErrorsAreOfThePixelsLookedAt) {
   std::vector<reference::Pixel> truths(3);
   truths[1] = {0.5, 0.25, 0.5, 1};
   truths[2] = {0.25, 0, 0, 0.5};
-  const ChartError error = chart_error(image, pixels, truths);
+  const analysis::ChartError error = analysis::chart_error(image, pixels, truths);
   EXPECT_DOUBLE_EQ(error.max, 0.25);
   EXPECT_DOUBLE_EQ(error.p999, 0.25);
   EXPECT_DOUBLE_EQ(error.rms, std::sqrt(2 * 0.0625 / 12));
   EXPECT_DOUBLE_EQ(error.visible_share, 1.0 / 3);  // an opacity alone is not seen over black
-  EXPECT_DOUBLE_EQ(chart_error(image, pixels, truths, 3).rms, std::sqrt(0.0625 / 9));
+  EXPECT_DOUBLE_EQ(analysis::chart_error(image, pixels, truths, 3).rms, std::sqrt(0.0625 / 9));
   image.rgba[0] = std::nanf("");
-  EXPECT_TRUE(std::isinf(chart_error(image, pixels, truths).max));
-  EXPECT_FALSE(chart_error(image, pixels, truths).finite);
+  EXPECT_TRUE(std::isinf(analysis::chart_error(image, pixels, truths).max));
+  EXPECT_FALSE(analysis::chart_error(image, pixels, truths).finite);
 }
 
-ChartPoint point(const char* name, std::vector<double> ms, double error) {
-  ChartPoint p;
+analysis::ChartPoint point(const char* name, std::vector<double> ms, double error) {
+  analysis::ChartPoint p;
   p.name = name, p.frame_ms = std::move(ms), p.error.max = error;
   return p;
 }
 
 TEST(ChartMeasure, TheFrontIsWhatNothingElseBeats) {
-  std::vector<ChartPoint> points = {point("fast", {9, 1, 1}, 1e-2), point("best", {5}, 1e-7),
-                                    point("beaten", {6}, 1e-3),     point("middle", {4, 2}, 1e-3),
-                                    point("twin", {3}, 1e-3),       ChartPoint()};
+  std::vector<analysis::ChartPoint> points = {point("fast", {9, 1, 1}, 1e-2), point("best", {5}, 1e-7),
+                                              point("beaten", {6}, 1e-3),     point("middle", {4, 2}, 1e-3),
+                                              point("twin", {3}, 1e-3),       analysis::ChartPoint()};
   points.back().left_out = "not here";
-  mark_front(points);
+  analysis::mark_front(points);
   const std::vector<bool> expected = {true, true, false, true, true, false};
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(points[i].on_front, expected[i]) << i;
-  EXPECT_EQ(fastest_within(points, 1e-2)->name, "fast");
-  EXPECT_EQ(fastest_within(points, 2e-3)->name, "middle");
-  EXPECT_EQ(fastest_within(points, 1e-5)->name, "best");
-  EXPECT_EQ(fastest_within(points, 1e-9), nullptr);
+  EXPECT_EQ(analysis::fastest_within(points, 1e-2)->name, "fast");
+  EXPECT_EQ(analysis::fastest_within(points, 2e-3)->name, "middle");
+  EXPECT_EQ(analysis::fastest_within(points, 1e-5)->name, "best");
+  EXPECT_EQ(analysis::fastest_within(points, 1e-9), nullptr);
 }
 
 nlohmann::json parsed(const std::string& file) { return nlohmann::json::parse(std::ifstream(file)); }

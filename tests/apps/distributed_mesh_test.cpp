@@ -6,16 +6,16 @@
 #include <cstring>
 
 #include "apps/program.hpp"
-#include "compositor/loopback_transport.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
+#include "exchange/loopback_transport.hpp"
 #include "io/mesh_parts.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::apps {
 namespace {
 
-using compositor::Transport;
+using exchange::Transport;
 using projection::PartitionKind;
 
 /// A tet's positions and scalars in the order of its corners.
@@ -32,7 +32,7 @@ std::vector<double> content(const scene::TetMesh& mesh, std::size_t t) {
 std::vector<DistributedMesh> read_on(int ranks, const std::filesystem::path& file, const std::vector<int>& projectors,
                                      PartitionKind kind, const io::MeshOptions& options = {}) {
   std::vector<DistributedMesh> result(static_cast<std::size_t>(ranks));
-  compositor::run_ranks(ranks, [&](Transport& transport) {
+  exchange::run_ranks(ranks, [&](Transport& transport) {
     result[static_cast<std::size_t>(transport.rank())] =
         read_distributed(transport, std::span(&file, 1), options, {kind, 1}, projectors, 1, nullptr);
   });

@@ -1,9 +1,9 @@
-#include "apps/timing_breakdown.hpp"
+#include "analysis/timing_breakdown.hpp"
 
 #include <gtest/gtest.h>
 
+#include "analysis/timing_clock.hpp"
 #include "apps/program.hpp"
-#include "apps/timing_clock.hpp"
 #include "apps/traced_pipeline.hpp"
 
 namespace tessera::apps {
@@ -27,16 +27,19 @@ FileSpan span(Stage stage, std::uint32_t thread, double start, double wall, doub
   return made;
 }
 
-ProcessTime share(const std::vector<FileSpan>& spans) { return share_clock(spans, stage_count, frame, wait); }
-
-RunTime run_of(const TracedPipeline& pipeline) {
-  const Folder folder;
-  pipeline.write(folder / "trace.json");
-  return break_down(io::read_chrome_trace(folder / "trace.json"), "trace.json");
+analysis::ProcessTime share(const std::vector<FileSpan>& spans) {
+  return analysis::share_clock(spans, stage_count, frame, wait);
 }
 
-void expect_stage(const RoleTime& role, const std::string& name, double ms_a_frame, double cpu_ms_a_frame, int frames) {
-  const StageTime* stage = role.stage(name);
+analysis::RunTime run_of(const TracedPipeline& pipeline) {
+  const Folder folder;
+  pipeline.write(folder / "trace.json");
+  return analysis::break_down(io::read_chrome_trace(folder / "trace.json"), "trace.json");
+}
+
+void expect_stage(const analysis::RoleTime& role, const std::string& name, double ms_a_frame, double cpu_ms_a_frame,
+                  int frames) {
+  const analysis::StageTime* stage = role.stage(name);
   ASSERT_NE(stage, nullptr) << name;
   EXPECT_NEAR(stage->average_us, ms_a_frame * 1e3 * frames, rounding_us) << name;
   EXPECT_NEAR(stage->cpu_us, cpu_ms_a_frame * 1e3 * frames, rounding_us) << name;
@@ -101,11 +104,11 @@ TEST(SharedClock, WithoutFramesTheWholeIsAllThereIs) {
 TEST(Breakdown, ProjectorsAndCompositorsApartAddUpToTheirWhole) {
   for (const bool shared : {false, true}) {
     const TracedPipeline pipeline{3, 2, shared};
-    const RunTime run = run_of(pipeline);
+    const analysis::RunTime run = run_of(pipeline);
     EXPECT_EQ(run.ranks, shared ? 3 : 5);
     EXPECT_EQ(run.frames, 3);
     ASSERT_EQ(run.roles.size(), 2u);
-    const RoleTime& projectors = *run.role(TraceRole::projector);
+    const analysis::RoleTime& projectors = *run.role(TraceRole::projector);
     EXPECT_EQ(projectors.processes, 3);
     EXPECT_NEAR(projectors.whole.average_us, 300e3, rounding_us);
     expect_stage(projectors, "transform", 10, 10, 3);
@@ -123,7 +126,7 @@ TEST(Breakdown, ProjectorsAndCompositorsApartAddUpToTheirWhole) {
     EXPECT_NEAR(projectors.busy_threads, (10 + 2 * 80) / 100.0, 1e-6);
     EXPECT_NEAR(projectors.worst_wait_share, 0.1, 1e-6);
 
-    const RoleTime& compositors = *run.role(TraceRole::compositor);
+    const analysis::RoleTime& compositors = *run.role(TraceRole::compositor);
     EXPECT_EQ(compositors.processes, 2);
     expect_stage(compositors, "receive", 10, 5, 3);
     expect_stage(compositors, "wait", 60, 0, 3);
@@ -133,9 +136,9 @@ TEST(Breakdown, ProjectorsAndCompositorsApartAddUpToTheirWhole) {
     EXPECT_NEAR(compositors.stage("assemble")->worst_us, 15e3, rounding_us);
     EXPECT_EQ(compositors.stage("assemble")->worst_rank, shared ? 0 : 3);
 
-    for (const RoleTime& role : run.roles) {
+    for (const analysis::RoleTime& role : run.roles) {
       double sum = 0, shares = 0;
-      for (const StageTime& stage : role.stages) sum += stage.average_us, shares += stage.share;
+      for (const analysis::StageTime& stage : role.stages) sum += stage.average_us, shares += stage.share;
       EXPECT_NEAR(sum, role.whole.average_us, rounding_us);
       EXPECT_NEAR(shares, 1, 1e-6);
     }
@@ -143,8 +146,8 @@ TEST(Breakdown, ProjectorsAndCompositorsApartAddUpToTheirWhole) {
 }
 
 TEST(Breakdown, WhatIsDoneOnceAMeshIsCountedApartWithItsWorstProcess) {
-  const RunTime run = run_of({3, 1});
-  const RoleTime& projectors = *run.role(TraceRole::projector);
+  const analysis::RunTime run = run_of({3, 1});
+  const analysis::RoleTime& projectors = *run.role(TraceRole::projector);
   EXPECT_EQ(projectors.stage("read"), nullptr);
   ASSERT_EQ(projectors.outside.size(), 1u);
   EXPECT_EQ(projectors.outside[0].stage, "read");
@@ -155,7 +158,7 @@ TEST(Breakdown, WhatIsDoneOnceAMeshIsCountedApartWithItsWorstProcess) {
 
 TEST(Breakdown, ClocksOfRanksAreBroughtTogether) {
   // On their own clocks the ranks would be 1000 s apart.
-  const RunTime run = run_of({2, 1});
+  const analysis::RunTime run = run_of({2, 1});
   EXPECT_NEAR(run.elapsed_us, 350e3, rounding_us);
   EXPECT_NEAR(run.kilotets_per_second.value(), 3 * 1e6 / 0.35 / 1000, 0.1);
 }
@@ -188,7 +191,7 @@ TEST(Breakdown, OneProcessForBothHasNoExchange) {
   io::TraceFile trace;
   trace.stages = {"frame", "wait", "project", "sort", "integrate"};
   trace.spans = {span(frame, 0, 0, 100), span(project, 0, 0, 100)};
-  const RunTime run = break_down(trace, "a");
+  const analysis::RunTime run = analysis::break_down(trace, "a");
   ASSERT_EQ(run.roles.size(), 1u);
   EXPECT_EQ(run.roles[0].role, TraceRole::both);
   EXPECT_EQ(run.frames, 1);
@@ -209,7 +212,7 @@ TEST(Breakdown, SpansWithoutARoleGoToTheOneThatDoesSuchWork) {
   add(0, 0, TraceRole::both), add(1, 0, TraceRole::both);
   add(2, 0, TraceRole::projector), add(3, 0, TraceRole::compositor);
   add(1, 1, TraceRole::both), add(2, 1, TraceRole::projector);
-  const RunTime run = break_down(trace, "a");
+  const analysis::RunTime run = analysis::break_down(trace, "a");
   ASSERT_EQ(run.roles.size(), 2u);
   EXPECT_NE(run.roles[0].stage("read"), nullptr);
   EXPECT_EQ(run.roles[0].stage("write")->worst_rank, 1);
@@ -225,7 +228,7 @@ TEST(Breakdown, ARankHasTheRolesThatItMadeFramesIn) {
     trace.spans.push_back(span(stage, 0, stage == frame ? 50 : 0, 10));
     trace.spans.back().role = role;
   }
-  const RunTime run = break_down(trace, "a");
+  const analysis::RunTime run = analysis::break_down(trace, "a");
   ASSERT_EQ(run.roles.size(), 1u);
   EXPECT_EQ(run.roles[0].role, TraceRole::compositor);
   ASSERT_EQ(run.roles[0].outside.size(), 1u);
@@ -234,14 +237,14 @@ TEST(Breakdown, ARankHasTheRolesThatItMadeFramesIn) {
 
 TEST(Breakdown, EfficiencyIsTheRateACoreAgainstTheSmallestRunOfTheSameMesh) {
   // Twice the processes; frames come twice as fast, then a quarter slower than that.
-  std::vector<RunTime> runs = {run_of({4, 4, false, 20, 50, 50, 0}), run_of({2, 2, false, 20, 100, 100, 0}),
-                               run_of({4, 4, false, 20, 62.5, 62.5, 0})};
+  std::vector<analysis::RunTime> runs = {run_of({4, 4, false, 20, 50, 50, 0}), run_of({2, 2, false, 20, 100, 100, 0}),
+                                         run_of({4, 4, false, 20, 62.5, 62.5, 0})};
   TracedPipeline other{1, 1, false, 20, 100, 100, 0};
   other.tets = 5;
   runs.push_back(run_of(other));
   runs.push_back(runs[0]);
   runs.back().kilotets_per_second.reset();
-  const auto found = efficiencies(runs);
+  const auto found = analysis::efficiencies(runs);
   EXPECT_NEAR(found[0].value(), 1, 1e-6);
   EXPECT_NEAR(found[1].value(), 1, 1e-6);
   EXPECT_NEAR(found[2].value(), 0.8, 1e-6);

@@ -8,8 +8,8 @@
 
 #include "compositor/deep_pieces.hpp"
 #include "compositor/deep_sink.hpp"
-#include "compositor/segment_batch.hpp"
-#include "compositor/segment_integrator.hpp"
+#include "integrals/segment_batch.hpp"
+#include "integrals/segment_integrator.hpp"
 #include "support/deep_pixels.hpp"
 
 namespace tessera::compositor {
@@ -30,13 +30,13 @@ struct Medium {
   scene::TransferFunction function;
   Emission emission = Emission::absorption;
   double length_per_depth = 1;
-  [[nodiscard]] SegmentIntegrator integrator() const {
+  [[nodiscard]] integrals::SegmentIntegrator integrator() const {
     return {function, {.kind = scene::IntegratorKind::exact}, emission};
   }
 };
 
 std::vector<DeepSample> integrated(const std::vector<DeepPiece>& pieces, const Medium& medium) {
-  SegmentBatch batch;
+  integrals::SegmentBatch batch;
   batch.reserve(pieces.size());
   batch.size = pieces.size();
   for (std::size_t k = 0; k < pieces.size(); ++k) {

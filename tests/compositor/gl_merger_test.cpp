@@ -8,7 +8,8 @@
 #include <random>
 
 #include "compositor/gl_compositor.hpp"
-#include "compositor/part_writer.hpp"
+#include "compositor/tuple_record.hpp"
+#include "exchange/part_writer.hpp"
 #include "support/gl_context.hpp"
 
 namespace tessera::compositor {
@@ -43,8 +44,9 @@ struct GlFrame {
   }
 
   /// On the device, or on the CPU if it is null.
-  scene::Image merged(GlCompositor* device, const std::vector<TilePart>& parts) const {
-    const bool on_lattice = parts.front().kind == RecordKind::lattice || parts.front().kind == RecordKind::lattice_runs;
+  scene::Image merged(GlCompositor* device, const std::vector<exchange::TilePart>& parts) const {
+    const bool on_lattice =
+        parts.front().kind == exchange::RecordKind::lattice || parts.front().kind == exchange::RecordKind::lattice_runs;
     MergeContext mine = context(on_lattice);
     mine.device = device;
     static std::uint32_t frames = 0;
@@ -54,7 +56,7 @@ struct GlFrame {
       mine.table = &units_table;
     }
     const auto merger = make_tile_merger(parts.front().kind, mine, {0, 0, 16, 8});
-    for (const TilePart& part : parts) merger->add(part);
+    for (const exchange::TilePart& part : parts) merger->add(part);
     merger->advance(infinity);
     return merger->finish().image;
   }
@@ -68,11 +70,11 @@ struct GlFrame {
                                     {1, {1, 1, 1}, 8}}};
   scene::Emission emission;
   projection::PixelSpace space;
-  SegmentIntegrator integrator;
-  projection::Lattice lattice;
-  LaneTable lattice_table;
-  projection::Lattice units;
-  LaneTable units_table;
+  integrals::SegmentIntegrator integrator;
+  scene::Lattice lattice;
+  integrals::LaneTable lattice_table;
+  scene::Lattice units;
+  integrals::LaneTable units_table;
 };
 
 /// Ray segments that touch end to end: `counts` of them in each pixel (in turn), in the order that `arrange` leaves.
@@ -108,7 +110,7 @@ void arrange(std::vector<T>& list, const std::string& arrangement, std::mt19937&
   if (arrangement == "shuffled") std::shuffle(list.begin(), list.end(), random);
 }
 
-TilePart part_of(RecordKind kind, Bytes records, std::uint64_t fragments) {
+exchange::TilePart part_of(exchange::RecordKind kind, exchange::Bytes records, std::uint64_t fragments) {
   return {.tile = 0,
           .kind = kind,
           .last = true,
@@ -119,27 +121,28 @@ TilePart part_of(RecordKind kind, Bytes records, std::uint64_t fragments) {
           .start_depth = -infinity};
 }
 
-TilePart lattice_part(const GlFrame& frame, const Stack& stack) {
+exchange::TilePart lattice_part(const GlFrame& frame, const Stack& stack) {
   std::mt19937 random(1);
-  Bytes bytes;
+  exchange::Bytes bytes;
   std::uint64_t fragments = 0;
   for (std::uint32_t pixel = 0; pixel < 16 * 8; ++pixel) {
     const std::uint32_t count = stack.counts[pixel % stack.counts.size()];
     auto segments = segments_of(count, stack, random);
     arrange(segments, stack.arrangement, random);
-    append(bytes, LatticeHeader{pixel, count});
+    exchange::append(bytes, exchange::LatticeHeader{pixel, count});
     for (const StackSegment& s : segments)
-      append(bytes, projection::LatticeSegment{frame.lattice.depth_step(s.front), frame.lattice.depth_step(s.back),
-                                               static_cast<float>(frame.lattice.scalar_step(s.scalar_front)),
-                                               static_cast<float>(frame.lattice.scalar_step(s.scalar_back))});
+      exchange::append(bytes,
+                       projection::LatticeSegment{frame.lattice.depth_step(s.front), frame.lattice.depth_step(s.back),
+                                                  static_cast<float>(frame.lattice.scalar_step(s.scalar_front)),
+                                                  static_cast<float>(frame.lattice.scalar_step(s.scalar_back))});
     fragments += count;
   }
-  return part_of(RecordKind::lattice, std::move(bytes), fragments);
+  return part_of(exchange::RecordKind::lattice, std::move(bytes), fragments);
 }
 
-TilePart chain_part(const Stack& stack) {
+exchange::TilePart chain_part(const Stack& stack) {
   std::mt19937 random(2);
-  Bytes bytes;
+  exchange::Bytes bytes;
   std::uint64_t fragments = 0;
   for (std::uint32_t pixel = 0; pixel < 16 * 8; ++pixel) {
     const std::uint32_t count = stack.counts[pixel % stack.counts.size()];
@@ -148,29 +151,29 @@ TilePart chain_part(const Stack& stack) {
     for (std::uint32_t i = 0; i < count; ++i) order[i] = i;
     arrange(order, stack.arrangement, random);
     for (const std::uint32_t i : order) {
-      append(bytes, ChainHeader{pixel, 1, segments[i].front, segments[i].scalar_front});
-      append(bytes, ChainLink{segments[i].back, segments[i].scalar_back, i});
+      exchange::append(bytes, exchange::ChainHeader{pixel, 1, segments[i].front, segments[i].scalar_front});
+      exchange::append(bytes, exchange::ChainLink{segments[i].back, segments[i].scalar_back, i});
     }
     fragments += count;
   }
-  return part_of(RecordKind::chains, std::move(bytes), fragments);
+  return part_of(exchange::RecordKind::chains, std::move(bytes), fragments);
 }
 
-TilePart tuple_part(const Stack& stack) {
+exchange::TilePart tuple_part(const Stack& stack) {
   std::mt19937 random(3);
-  Bytes bytes;
+  exchange::Bytes bytes;
   std::uint64_t fragments = 0;
   for (std::uint32_t pixel = 0; pixel < 16 * 8; ++pixel) {
     const std::uint32_t count = stack.counts[pixel % stack.counts.size()];
     auto segments = segments_of(count, stack, random);
     arrange(segments, stack.arrangement, random);
     for (const StackSegment& s : segments)
-      append(bytes, TupleRecord{pixel,
-                                {static_cast<float>(s.back), static_cast<float>((s.back - s.front) / 0.5),
-                                 static_cast<float>(s.scalar_front), static_cast<float>(s.scalar_back)}});
+      exchange::append(bytes, TupleRecord{pixel,
+                                          {static_cast<float>(s.back), static_cast<float>((s.back - s.front) / 0.5),
+                                           static_cast<float>(s.scalar_front), static_cast<float>(s.scalar_back)}});
     fragments += count;
   }
-  return part_of(RecordKind::tuples, std::move(bytes), fragments);
+  return part_of(exchange::RecordKind::tuples, std::move(bytes), fragments);
 }
 
 double difference(const scene::Image& a, const scene::Image& b) {
@@ -208,10 +211,10 @@ TEST(GlCompute, ExactIsTheCpusWithinFloatRounding) {
   TESSERA_DEVICE_OR_SKIP(device, compute());
   for (const auto emission : {scene::Emission::absorption, scene::Emission::independent}) {
     const GlFrame frame(exact, emission);
-    for (const TilePart& part : {lattice_part(frame, shallow), chain_part(shallow)}) {
+    for (const exchange::TilePart& part : {lattice_part(frame, shallow), chain_part(shallow)}) {
       const auto cpu = frame.merged(nullptr, {part}), gpu = frame.merged(&device, {part});
       // 64 segments of up to 8 optical depths, colours up to 8 times their extinction: floats' roundings, each below
-      // 2^-24 of the light. A quarter of what DESIGN allows against the reference.
+      // 2^-24 of the light. A quarter of what `exact` promises.
       EXPECT_LT(difference(cpu, gpu), 5e-6) << int(part.kind);
       expect_same_depth(cpu, gpu);
     }
@@ -222,7 +225,7 @@ TEST(GlCompute, SampledIsTheCpus) {
   TESSERA_DEVICE_OR_SKIP(device, compute());
   for (const auto emission : {scene::Emission::absorption, scene::Emission::independent}) {
     const GlFrame frame(sampled, emission);
-    for (const TilePart& part : {chain_part(shallow), tuple_part(shallow)})
+    for (const exchange::TilePart& part : {chain_part(shallow), tuple_part(shallow)})
       // A sample whose scalar rounds across the step at 0.7 takes the other side's colour: none does here.
       EXPECT_LT(difference(frame.merged(nullptr, {part}), frame.merged(&device, {part})), 5e-6) << int(part.kind);
   }
@@ -231,18 +234,18 @@ TEST(GlCompute, SampledIsTheCpus) {
 TEST(GlCompute, RunsAreCompositedAsTheyCome) {
   TESSERA_DEVICE_OR_SKIP(device, compute());
   const GlFrame frame(exact);
-  Bytes bytes, on_lattice;
+  exchange::Bytes bytes, on_lattice;
   for (std::uint32_t pixel = 0; pixel < 128; ++pixel) {
-    append(on_lattice, RunsHeader{pixel, 2, 1});
+    exchange::append(on_lattice, exchange::RunsHeader{pixel, 2, 1});
     for (int i = 2; i >= 1; --i) {  // the farther first
       const float depth = 0.3f * static_cast<float>(i), color = 0.1f * static_cast<float>(i + pixel % 3);
-      append(bytes, RunRecord{2.0 + i, 0.5f, color, 0.1f, 0.2f, depth, pixel});
-      append(on_lattice, LatticeRun{i * 1000000, i * 1000000 + 5000, color, 0.1f, 0.2f, depth});
+      exchange::append(bytes, exchange::RunRecord{2.0 + i, 0.5f, color, 0.1f, 0.2f, depth, pixel});
+      exchange::append(on_lattice, exchange::LatticeRun{i * 1000000, i * 1000000 + 5000, color, 0.1f, 0.2f, depth});
     }
-    append(on_lattice, projection::LatticeSegment{-5000000, 900000, 0.2e9f, 0.5e9f});
+    exchange::append(on_lattice, projection::LatticeSegment{-5000000, 900000, 0.2e9f, 0.5e9f});
   }
-  for (const TilePart& part :
-       {part_of(RecordKind::runs, bytes, 256), part_of(RecordKind::lattice_runs, on_lattice, 384)}) {
+  for (const exchange::TilePart& part : {part_of(exchange::RecordKind::runs, bytes, 256),
+                                         part_of(exchange::RecordKind::lattice_runs, on_lattice, 384)}) {
     const auto cpu = frame.merged(nullptr, {part}), gpu = frame.merged(&device, {part});
     EXPECT_LT(difference(cpu, gpu), 1e-6) << int(part.kind);  // three fragments: a few roundings of a float
     expect_same_depth(cpu, gpu);
@@ -265,7 +268,7 @@ TEST_P(Arrangements, OneDeepPixelAmongShallowOnesIsRightByCompute) {
   const GlFrame frame(exact);
   for (const bool one_depth : {false, true}) {
     const Stack stack = deep_stack(GetParam(), one_depth);
-    for (const TilePart& part : {lattice_part(frame, stack), chain_part(stack)}) {
+    for (const exchange::TilePart& part : {lattice_part(frame, stack), chain_part(stack)}) {
       const auto cpu = frame.merged(nullptr, {part}), gpu = frame.merged(&device, {part});
       // Sums are double on both; each of 20,000 segments is right to 2^-23 of its own light.
       EXPECT_LT(difference(cpu, gpu), 5e-6) << int(part.kind) << (one_depth ? ", one depth" : "");
@@ -278,7 +281,7 @@ TEST_P(Arrangements, OneDeepPixelAmongShallowOnesIsRightByFragments) {
   TESSERA_DEVICE_OR_SKIP(device, fragment(false));
   const GlFrame frame(sampled);
   for (const bool one_depth : {false, true}) {
-    const TilePart part = chain_part(deep_stack(GetParam(), one_depth));
+    const exchange::TilePart part = chain_part(deep_stack(GetParam(), one_depth));
     const auto cpu = frame.merged(nullptr, {part}), gpu = frame.merged(&device, {part});
     EXPECT_LT(difference(cpu, gpu), 1e-4) << (one_depth ? "one depth" : "");  // issue: float equals sampled:Ns to 1e-4
     expect_same_depth(cpu, gpu);
@@ -289,9 +292,9 @@ TEST(GlFragment, SampledIsTheCpusWithAFloatFramebuffer) {
   TESSERA_DEVICE_OR_SKIP(device, fragment(false));
   for (const auto emission : {scene::Emission::absorption, scene::Emission::independent}) {
     const GlFrame frame(sampled, emission);
-    for (const TilePart& part : {lattice_part(frame, shallow), chain_part(shallow), tuple_part(shallow)}) {
+    for (const exchange::TilePart& part : {lattice_part(frame, shallow), chain_part(shallow), tuple_part(shallow)}) {
       const auto gpu = frame.merged(&device, {part});
-      if (part.kind == RecordKind::lattice) continue;  // no counterpart: the CPU samples in double alone
+      if (part.kind == exchange::RecordKind::lattice) continue;  // no counterpart: the CPU samples in double alone
       const auto cpu = frame.merged(nullptr, {part});
       EXPECT_LT(difference(cpu, gpu), 1e-5) << int(part.kind);  // 64 blends of 2^-24
       expect_same_depth(cpu, gpu);
@@ -304,14 +307,14 @@ TEST(GlFragment, ListsLongerThanTheTextureAreSortedInPartsAndMerged) {
   settings.texture_limit = 16;  // lists of 64 take four rows, four of them at a time
   TESSERA_DEVICE_OR_SKIP(device, settings);
   const GlFrame frame(sampled);
-  const TilePart part = chain_part({{64, 3, 33, 0, 16, 17}, "shuffled"});
+  const exchange::TilePart part = chain_part({{64, 3, 33, 0, 16, 17}, "shuffled"});
   EXPECT_LT(difference(frame.merged(nullptr, {part}), frame.merged(&device, {part})), 1e-5);
 }
 
 TEST(GlFragment, AHalfFramebufferErrsByItsRoundingAndNoMore) {
   TESSERA_DEVICE_OR_SKIP(device, fragment(true));
   const GlFrame frame(sampled);
-  const TilePart part = chain_part(shallow);
+  const exchange::TilePart part = chain_part(shallow);
   const double error = difference(frame.merged(nullptr, {part}), frame.merged(&device, {part}));
   EXPECT_GT(error, 1e-5);          // else it would not be one
   EXPECT_LT(error, 64 * 0x1p-11);  // each blend rounds by 2^-12 of a value below 2
@@ -350,7 +353,7 @@ TEST(GlCompositor, AFaultReachesTheJobAndAllLaterOnes) {
     settings.fault_after = 1;
     TESSERA_DEVICE_OR_SKIP(device, settings);
     const GlFrame frame(exact);
-    const TilePart part = lattice_part(frame, shallow);
+    const exchange::TilePart part = lattice_part(frame, shallow);
     EXPECT_EQ(frame.merged(&device, {part}).rgba.size(), 4u * 128);
     for (int later = 0; later < 2; ++later) try {
         frame.merged(&device, {part});

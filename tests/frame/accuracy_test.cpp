@@ -11,7 +11,7 @@
 #include "reference/judge.hpp"
 
 /// The promise of the `exact` integrator: at most 2e-5 from the reference in linear RGBA, whatever the mesh, the view
-/// and the transfer function. (DESIGN section 2: how error is judged.)
+/// and the transfer function. (docs/ACCURACY.md: how error is judged.)
 namespace tessera::frame {
 namespace {
 

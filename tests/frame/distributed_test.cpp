@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "compositor/loopback_transport.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
 #include "datasets/shapes.hpp"
+#include "exchange/loopback_transport.hpp"
 #include "frame/leaning_stack.hpp"
 #include "frame/plateaus.hpp"
 #include "projection/segment_tuple.hpp"
@@ -89,7 +89,7 @@ std::vector<FinishedFrame> render(const Parts& parts, const Shape& shape, Distri
   std::vector<FinishedFrame> frames;
   scene::MeshFacts whole;
   for (const scene::TetMesh& part : parts) whole = scene::joined(whole, scene::facts_of(part));
-  compositor::run_ranks(shape.ranks, [&](compositor::Transport& transport) {
+  exchange::run_ranks(shape.ranks, [&](exchange::Transport& transport) {
     DistributedSettings mine = settings;
     mine.roles = assign_roles(shape.ranks, shape.projectors, shape.compositors);
     render_distributed(
@@ -398,7 +398,7 @@ TEST(Distributed, AnErrorOfOneRankIsTheErrorOfAll) {
   for (int broken = 0; broken < 4; ++broken) {
     std::atomic<int> told = 0;
     try {
-      compositor::run_ranks(4, [&](compositor::Transport& transport) {
+      exchange::run_ranks(4, [&](exchange::Transport& transport) {
         DistributedSettings mine = settings;
         mine.roles = assign_roles(4, 4, 4);
         const auto parts = slices(mesh, 4);
@@ -432,27 +432,27 @@ TEST(Distributed, AFullDiskWhileWritingEndsAllAfterTheFramesBeforeIt) {
   const scene::TetMesh mesh = datasets::cube(6, 0.2);
   const auto parts = slices(mesh, 3);
   std::atomic<int> written = 0;
-  EXPECT_THROW(compositor::run_ranks(3,
-                                     [&](compositor::Transport& transport) {
-                                       DistributedSettings settings;
-                                       settings.render = exact();
-                                       settings.roles = assign_roles(3, 3, 3);
-                                       const std::vector<FrameJob> jobs(9, FrameJob{oblique(), {64, 64}});
-                                       render_distributed(
-                                           transport, settings, jobs, six_knots(),
-                                           [&](std::size_t) {
-                                             ProjectorMesh part;
-                                             part.part = std::make_shared<scene::TetMesh>(
-                                                 parts[static_cast<std::size_t>(transport.rank())]);
-                                             part.diagonal = 4;
-                                             return part;
-                                           },
-                                           [&](const FinishedFrame& frame) {
-                                             if (frame.frame == 3)
-                                               throw scene::Error(scene::ExitCode::system_failure, "full");
-                                             ++written;
-                                           });
-                                     }),
+  EXPECT_THROW(exchange::run_ranks(3,
+                                   [&](exchange::Transport& transport) {
+                                     DistributedSettings settings;
+                                     settings.render = exact();
+                                     settings.roles = assign_roles(3, 3, 3);
+                                     const std::vector<FrameJob> jobs(9, FrameJob{oblique(), {64, 64}});
+                                     render_distributed(
+                                         transport, settings, jobs, six_knots(),
+                                         [&](std::size_t) {
+                                           ProjectorMesh part;
+                                           part.part = std::make_shared<scene::TetMesh>(
+                                               parts[static_cast<std::size_t>(transport.rank())]);
+                                           part.diagonal = 4;
+                                           return part;
+                                         },
+                                         [&](const FinishedFrame& frame) {
+                                           if (frame.frame == 3)
+                                             throw scene::Error(scene::ExitCode::system_failure, "full");
+                                           ++written;
+                                         });
+                                   }),
                scene::Error);
   EXPECT_EQ(written, 3);
 }
@@ -468,6 +468,38 @@ TEST(Roles, FillTheJobOrShareItsRanks) {
   EXPECT_THROW(assign_roles(4, 2, 1), scene::Error);
   EXPECT_THROW(assign_roles(4, 5, 1), scene::Error);
   EXPECT_THROW(assign_roles(4, 0, 4), scene::Error);
+}
+
+/// Every tet is counted once, in one group; what projectors count arrives, whoever composites.
+TEST_P(AnyShape, CountersAddUp) {
+  const Shape shape = GetParam();
+  const ImageSize size{97, 61};
+  const scene::TetMesh mesh = datasets::cube(20, 0.2);  // cells smaller than pixels, some outside of the view
+  Camera near_by = oblique();
+  near_by.parallel_scale = 0.7;
+  const TransferFunction half({{0.5, {1, 0.5, 0}, 0}, {1, {0, 0.5, 1}, 3}});
+  for (const Camera& camera : {oblique(), near_by}) {
+    FrameStatistics alone;
+    Renderer(mesh, exact()).render(camera, size, half, &alone);
+    EXPECT_EQ(alone.tets_total, mesh.tets.size());
+    EXPECT_EQ(alone.tets_total,
+              alone.tets_invisible + alone.tets_outside_view + alone.tets_between_pixels + alone.tets_projected);
+    EXPECT_GT(alone.tets_invisible, 0u);
+    DistributedSettings settings;
+    settings.render = exact();
+    settings.exchange = Exchange::segments;
+    const std::vector<FinishedFrame> frames =
+        render(slices(mesh, static_cast<std::size_t>(shape.projectors)), shape, settings, {{camera, size, 0}}, half);
+    const FrameStatistics& together = frames.at(0).statistics;
+    for (const auto member : {&scene::FrameCounters::tets_total, &scene::FrameCounters::tets_invisible,
+                              &scene::FrameCounters::tets_outside_view, &scene::FrameCounters::tets_between_pixels,
+                              &scene::FrameCounters::tets_projected, &scene::FrameCounters::segments})
+      EXPECT_EQ(together.*member, alone.*member);
+    // Segments are sent one by one, those behind opaque ones too.
+    EXPECT_EQ(together.fragments, together.segments);
+    EXPECT_GT(together.exchange_messages, 0u);
+    EXPECT_GT(together.exchange_bytes, 16 * together.fragments);
+  }
 }
 
 }  // namespace

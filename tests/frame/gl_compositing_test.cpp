@@ -4,10 +4,10 @@
 #include <cmath>
 #include <memory>
 
-#include "compositor/loopback_transport.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
 #include "datasets/shapes.hpp"
+#include "exchange/loopback_transport.hpp"
 #include "frame/distributed.hpp"
 #include "projection/segment_tuple.hpp"
 #include "reference/judge.hpp"
@@ -63,7 +63,7 @@ std::vector<FinishedFrame> rendered(const GlJobSetup& setup, const scene::TetMes
   settings.compositing_on = {setup.backends, setup.gl, true};
   settings.roles = assign_roles(ranks, setup.projectors, setup.compositors);
   std::vector<FinishedFrame> frames;
-  compositor::run_ranks(ranks, [&](compositor::Transport& transport) {
+  exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
     render_distributed(
         transport, settings,
         std::vector<FrameJob>(static_cast<std::size_t>(setup.frames), {camera(setup.inside), {48, 40}}), bands(),

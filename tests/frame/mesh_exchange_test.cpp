@@ -8,17 +8,17 @@
 #include <mutex>
 #include <random>
 
-#include "compositor/loopback_transport.hpp"
 #include "datasets/boxes.hpp"
+#include "exchange/loopback_transport.hpp"
 #include "frame/mesh_chunk.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::frame {
 namespace {
 
-using compositor::Bytes;
-using compositor::Channel;
-using compositor::Transport;
+using exchange::Bytes;
+using exchange::Channel;
+using exchange::Transport;
 using projection::Partition;
 using projection::PartitionKind;
 
@@ -81,7 +81,7 @@ Result exchange(const scene::TetMesh& mesh, Start start, int ranks, const std::v
   Result result;
   result.parts.resize(static_cast<std::size_t>(ranks));
   result.facts.resize(static_cast<std::size_t>(ranks));
-  compositor::run_ranks(ranks, [&](Transport& transport) {
+  exchange::run_ranks(ranks, [&](Transport& transport) {
     const auto r = static_cast<std::size_t>(transport.rank());
     MeshPart part = part_of(mesh, start, transport.rank(), ranks, seed);
     result.facts[r] = agree_facts(transport, part.mesh);
@@ -176,7 +176,7 @@ TEST(MeshExchange, PartsAreBalanced) {
 
 TEST(MeshExchange, NothingIsSentWhereEverythingLiesRight) {
   const scene::TetMesh mesh = datasets::cube(4);
-  compositor::run_ranks(3, [&](Transport& transport) {
+  exchange::run_ranks(3, [&](Transport& transport) {
     MeshPart part = part_of(mesh, Start::slices, transport.rank(), 3, 1);
     const scene::MeshFacts facts = agree_facts(transport, part.mesh);
     const glm::dvec3* before = part.mesh.positions.data();
@@ -191,7 +191,7 @@ TEST(MeshExchange, NoMessageIsMuchLargerThanAsked) {
   const scene::TetMesh mesh = datasets::cube(10);
   scene::Trace trace;
   std::mutex mutex;
-  compositor::run_ranks(3, [&](Transport& transport) {
+  exchange::run_ranks(3, [&](Transport& transport) {
     MeshPart part = part_of(mesh, Start::first_rank, transport.rank(), 3, 1);
     const scene::MeshFacts facts = agree_facts(transport, part.mesh);
     const std::vector<int> projectors = {1, 2};
@@ -220,7 +220,7 @@ TEST(MeshExchange, AMeshWithoutTetsAndOneTetWork) {
 TEST(MeshExchange, AFaultOfOneRankReachesAll) {
   const scene::TetMesh mesh = datasets::cube(4);
   try {
-    compositor::run_ranks(3, [&](Transport& transport) {
+    exchange::run_ranks(3, [&](Transport& transport) {
       if (transport.rank() == 1) throw scene::bad_input("piece_1.vtu: it is truncated; write it anew");
       MeshPart part = part_of(mesh, Start::slices, transport.rank(), 3, 1);
       agree_facts(transport, part.mesh);

@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "compositor/loopback_transport.hpp"
+#include "exchange/loopback_transport.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::frame {
@@ -51,7 +51,7 @@ TEST(ScanTogether, EveryRankHasTheRangesOfOneProcessAndHasReadItsShareOnly) {
   for (const int ranks : {1, 2, 3, 6, 9}) {
     std::mutex mutex;
     int done = 0;
-    compositor::run_ranks(ranks, [&](compositor::Transport& transport) {
+    exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
       // Twice in a row, as of a series whose second step is asked for: the two may not mix.
       for (int time = 0; time < 2; ++time) {
         const NoiseSource source;
@@ -74,7 +74,7 @@ TEST(ScanTogether, EveryRankHasTheRangesOfOneProcessAndHasReadItsShareOnly) {
 
 TEST(ScanTogether, WhatOneRankCannotReadEndsTheRunForAllWithItsWords) {
   try {
-    compositor::run_ranks(3, [&](compositor::Transport& transport) {
+    exchange::run_ranks(3, [&](exchange::Transport& transport) {
       const NoiseSource source(40);  // in the last rank's share
       scan_together(transport, source, 1);
       ADD_FAILURE() << "rank " << transport.rank() << " went on";

@@ -7,7 +7,7 @@
 #include <memory>
 #include <numeric>
 
-#include "compositor/loopback_transport.hpp"
+#include "exchange/loopback_transport.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::frame {
@@ -50,7 +50,7 @@ std::vector<FinishedVolumeFrame> render(int ranks, const SortFirstSettings& sett
                                         const std::vector<VolumeJob>& jobs) {
   const auto source = ball();
   std::vector<FinishedVolumeFrame> frames;
-  compositor::run_ranks(ranks, [&](compositor::Transport& transport) {
+  exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
     volume::RenderSettings render;
     render.threads = 1;
     volume::Renderer renderer(*source, render);
@@ -107,7 +107,7 @@ TEST(SortFirst, AccurateBalanceSharesCountedSamplesFromTheFirstFrameOnAndWhereRa
     double worst = 0;
     SortFirstSettings settings;
     settings.balance = balance;
-    compositor::run_ranks(6, [&](compositor::Transport& transport) {
+    exchange::run_ranks(6, [&](exchange::Transport& transport) {
       volume::RenderSettings render;
       render.threads = 1;
       volume::Renderer renderer(*source, render);

@@ -9,7 +9,7 @@
 #include <memory>
 #include <random>
 
-#include "compositor/loopback_transport.hpp"
+#include "exchange/loopback_transport.hpp"
 #include "frame/sort_first.hpp"
 #include "reference/reference.hpp"
 #include "reference/small_meshes.hpp"
@@ -278,7 +278,7 @@ TEST(Verify, LooksAtTheSamePixelsOnAnyNumberOfRanksAndThreads) {
   std::vector<std::vector<float>> doubts;
   for (const int ranks : {1, 3})
     for (const int threads : {1, 3})
-      compositor::run_ranks(ranks, [&](compositor::Transport& transport) {
+      exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
         volume::RenderSettings settings;
         settings.threads = threads;
         volume::Renderer renderer(*source, settings);

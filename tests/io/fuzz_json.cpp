@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   test::parse_or_refuse([&] { io::parse_json_cameras(text, "f"); });
   test::parse_or_refuse([&] {
-    io::TransferFunctionOptions options;
+    colormaps::TransferFunctionOptions options;
     options.field_range = {-3, 1e6};
     const auto loaded = io::parse_paraview_color_map(text, "f", options);
     test::require(loaded.function.max_color() <= 1 + 1e-9);

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <limits>
 
-#include "io/color_spaces.hpp"
+#include "colormaps/color_spaces.hpp"
 #include "temporary_folder.hpp"
 
 namespace tessera::io {
@@ -151,7 +151,7 @@ TEST(ImageFile, PngHoldsStraightAlphaInSrgb) {
         const float* in = &image.rgba[4 * image.index(x, y)];
         for (int k = 0; k < 3; ++k) {
           const double straight = in[3] > 0 ? in[k] / static_cast<double>(in[3]) : 0;
-          EXPECT_EQ(png.at(x, y, k), std::lround(encode_srgb(straight) * full)) << x << ' ' << y;
+          EXPECT_EQ(png.at(x, y, k), std::lround(colormaps::encode_srgb(straight) * full)) << x << ' ' << y;
         }
         EXPECT_EQ(png.at(x, y, 3), std::lround(in[3] * full));
       }
@@ -181,8 +181,8 @@ TEST(ImageFile, BackgroundIsCompositedOnRequestInEveryFormat) {
   write_image(image, folder / "a.png", options);
   const Png png = read_png(folder / "a.png");
   EXPECT_EQ(png.channels, 3);
-  EXPECT_EQ(png.at(1, 0, 1), std::lround(encode_srgb(0.5) * 255));
-  EXPECT_EQ(png.at(0, 0, 0), std::lround(encode_srgb(0.5) * 255));
+  EXPECT_EQ(png.at(1, 0, 1), std::lround(colormaps::encode_srgb(0.5) * 255));
+  EXPECT_EQ(png.at(0, 0, 0), std::lround(colormaps::encode_srgb(0.5) * 255));
 }
 
 TEST(ImageFile, LightBeyondAlphaIsClampedInPng) {

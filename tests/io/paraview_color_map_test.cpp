@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "io/color_spaces.hpp"
-#include "io/transfer_curves.hpp"
+#include "colormaps/color_spaces.hpp"
+#include "colormaps/transfer_curves.hpp"
 #include "temporary_folder.hpp"
 
 namespace tessera::io {
@@ -13,7 +13,8 @@ namespace {
 
 using test::expect_bad_input;
 
-LoadedTransferFunction parse(const std::string& text, const TransferFunctionOptions& options = {}) {
+colormaps::LoadedTransferFunction parse(const std::string& text,
+                                        const colormaps::TransferFunctionOptions& options = {}) {
   return parse_paraview_color_map(text, "map.json", options);
 }
 
@@ -32,7 +33,7 @@ struct Color {
 void expect_colors(const scene::TransferFunction& f, const std::vector<Color>& truths, double tolerance,
                    const std::string& space) {
   for (const Color& truth : truths) {
-    const glm::dvec3 c = encode_srgb(f.evaluate(truth.x).color);
+    const glm::dvec3 c = colormaps::encode_srgb(f.evaluate(truth.x).color);
     EXPECT_NEAR(c.x, truth.r, tolerance) << space << " red at " << truth.x;
     EXPECT_NEAR(c.y, truth.g, tolerance) << space << " green at " << truth.x;
     EXPECT_NEAR(c.z, truth.b, tolerance) << space << " blue at " << truth.x;
@@ -125,14 +126,16 @@ TEST(ParaViewColorMap, StepTakesTheSecondColourOfTheInterval) {
 
 TEST(ParaViewColorMap, ColoursBetweenKnotsAreRightTo1e4OfLinearLight) {
   for (const auto& [name, space, wraps] :
-       {std::tuple{"RGB", ColorSpace::rgb, false}, std::tuple{"Lab", ColorSpace::lab, false},
-        std::tuple{"Diverging", ColorSpace::diverging, false}, std::tuple{"HSV", ColorSpace::hsv, false}}) {
+       {std::tuple{"RGB", colormaps::ColorSpace::rgb, false}, std::tuple{"Lab", colormaps::ColorSpace::lab, false},
+        std::tuple{"Diverging", colormaps::ColorSpace::diverging, false},
+        std::tuple{"HSV", colormaps::ColorSpace::hsv, false}}) {
     const auto f = parse(map(name)).function;
     const glm::dvec3 a{0.231373, 0.298039, 0.752941}, b{0.705882, 0.0156863, 0.14902};
     double worst = 0;
     for (int i = 0; i < 10000; ++i) {
       const double t = (i + 0.5) / 10000;
-      const glm::dvec3 miss = decode_srgb(mix_colors(a, b, t, space, wraps)) - f.evaluate(t).color;
+      const glm::dvec3 miss =
+          colormaps::decode_srgb(colormaps::mix_colors(a, b, t, space, wraps)) - f.evaluate(t).color;
       worst = std::max({worst, std::abs(miss.x), std::abs(miss.y), std::abs(miss.z)});
     }
     // Chords are tested at 15 places; a gamut edge or hue's corner between two of them can hide 2 % of the bound.
@@ -206,7 +209,7 @@ TEST(ParaViewColorMap, StepsOfColourAndOpacityAreKept) {
 
 TEST(ParaViewColorMap, UnitDistanceIsTheUsersThenTheFilesThenTheDefault) {
   const std::string points = ", \"Points\": [0, 0.5, 0.5, 0, 2, 0.5, 0.5, 0]";
-  TransferFunctionOptions options;
+  colormaps::TransferFunctionOptions options;
   options.default_unit_distance = 8;
   const auto without = parse(map("RGB", points), options);
   EXPECT_EQ(without.unit_distance_source, "default");
@@ -222,7 +225,7 @@ TEST(ParaViewColorMap, UnitDistanceIsTheUsersThenTheFilesThenTheDefault) {
 }
 
 TEST(ParaViewColorMap, ValuesStandUnlessRescaled) {
-  TransferFunctionOptions options;
+  colormaps::TransferFunctionOptions options;
   options.field_range = {100, 300};
   const std::string text = R"({"RGBPoints": [0,0,0,0, 1,1,1,1], "Points": [0,0,0.5,0, 4,0.5,0.5,0]})";
   const auto as_is = parse(text, options);
@@ -235,14 +238,14 @@ TEST(ParaViewColorMap, ValuesStandUnlessRescaled) {
   EXPECT_EQ(rescaled.function.knots().front().value, 100);
   EXPECT_EQ(rescaled.function.knots().back().value, 300);
   EXPECT_NE(rescaled.name.find("rescaled to 100 to 300"), std::string::npos) << rescaled.name;
-  EXPECT_NEAR(encode_srgb(rescaled.function.evaluate(200).color.x), 0.5, 1e-3);
+  EXPECT_NEAR(colormaps::encode_srgb(rescaled.function.evaluate(200).color.x), 0.5, 1e-3);
   EXPECT_NEAR(rescaled.function.evaluate(200).extinction, -std::log(0.75), 1e-4);
 
   // A constant field takes the map's middle.
   options.field_range = {7, 7};
   const auto constant = parse(text, options);
   EXPECT_NEAR(constant.function.evaluate(7).extinction, -std::log(0.75), 1e-12);
-  EXPECT_NEAR(encode_srgb(constant.function.evaluate(7).color.x), 0.5, 1e-12);
+  EXPECT_NEAR(colormaps::encode_srgb(constant.function.evaluate(7).color.x), 0.5, 1e-12);
 }
 
 TEST(ParaViewColorMap, WithoutPointsHasTheDefaultRampAndSaysSo) {

@@ -1,11 +1,12 @@
-#include "io/presets.hpp"
+#include "colormaps/presets.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "io/color_spaces.hpp"
+#include "colormaps/color_spaces.hpp"
+#include "io/transfer_function_file.hpp"
 #include "temporary_folder.hpp"
 
 namespace tessera::io {
@@ -15,18 +16,18 @@ using test::expect_bad_input;
 
 constexpr std::array<const char*, 7> variants{"ramp", "inverse", "ends", "peaks", "rise", "surface", "flat"};
 
-double opacity(const LoadedTransferFunction& loaded, double s) {
+double opacity(const colormaps::LoadedTransferFunction& loaded, double s) {
   return -std::expm1(-loaded.function.evaluate(s).extinction * loaded.unit_distance.value());
 }
 
 TEST(Presets, AreAtLeastEightEachWithSixOpacities) {
-  const auto names = preset_names();
+  const auto names = colormaps::preset_names();
   EXPECT_GE(names.size(), 8u);
-  TransferFunctionOptions options;
+  colormaps::TransferFunctionOptions options;
   options.field_range = {-3, 12};
   for (const std::string& name : names)
     for (const char* variant : variants) {
-      const auto loaded = preset(name + ":" + variant, options);
+      const auto loaded = colormaps::preset(name + ":" + variant, options);
       EXPECT_EQ(loaded.name, name + ":" + variant);
       EXPECT_EQ(loaded.function.knots().front().value, -3);
       EXPECT_EQ(loaded.function.knots().back().value, 12);
@@ -37,23 +38,24 @@ TEST(Presets, AreAtLeastEightEachWithSixOpacities) {
 }
 
 TEST(Presets, TakeTheirUnitDistanceFromTheUserBeforeTheDefault) {
-  TransferFunctionOptions options;
+  colormaps::TransferFunctionOptions options;
   options.default_unit_distance = 5;
-  const auto otherwise = preset("viridis:flat", options);
+  const auto otherwise = colormaps::preset("viridis:flat", options);
   EXPECT_EQ(otherwise.unit_distance_source, "default");
   EXPECT_EQ(otherwise.unit_distance, 5);
   EXPECT_NEAR(otherwise.function.evaluate(0.5).extinction, -std::log(0.9) / 5, 1e-12);
   options.unit_distance = 0.5;
-  const auto asked = preset("viridis:flat", options);
+  const auto asked = colormaps::preset("viridis:flat", options);
   EXPECT_EQ(asked.unit_distance_source, "--unit-distance");
   EXPECT_NEAR(asked.function.evaluate(0.5).extinction, -std::log(0.9) / 0.5, 1e-12);
 }
 
 TEST(Presets, HaveThePublishedColours) {
   // viridis at its ends and middle, from its published table.
-  const auto f = preset("viridis", {}).function;
-  const glm::dvec3 low = encode_srgb(f.evaluate(0).color), middle = encode_srgb(f.evaluate(0.5).color),
-                   high = encode_srgb(f.evaluate(1).color);
+  const auto f = colormaps::preset("viridis", {}).function;
+  const glm::dvec3 low = colormaps::encode_srgb(f.evaluate(0).color),
+                   middle = colormaps::encode_srgb(f.evaluate(0.5).color),
+                   high = colormaps::encode_srgb(f.evaluate(1).color);
   const auto expect_near = [](const glm::dvec3& c, double r, double g, double b) {
     EXPECT_NEAR(c.x, r, 2e-3);  // the stops are rounded to 1e-4; knots may stand 5e-4 of linear light off
     EXPECT_NEAR(c.y, g, 2e-3);
@@ -66,7 +68,7 @@ TEST(Presets, HaveThePublishedColours) {
 
 TEST(Presets, LightnessOfThePerceptualOnesRises) {
   for (const char* name : {"viridis", "plasma", "inferno", "magma", "cividis", "black-body", "gray"}) {
-    const auto f = preset(name, {}).function;
+    const auto f = colormaps::preset(name, {}).function;
     double before = -1;
     for (int i = 0; i <= 100; ++i) {
       const glm::dvec3 c = f.evaluate(i / 100.0).color;
@@ -78,29 +80,29 @@ TEST(Presets, LightnessOfThePerceptualOnesRises) {
 }
 
 TEST(Presets, ColoursOfDisplayBlendingStayUndecoded) {
-  TransferFunctionOptions options;
-  const glm::dvec3 decoded = preset("gray", options).function.evaluate(0.5).color;
+  colormaps::TransferFunctionOptions options;
+  const glm::dvec3 decoded = colormaps::preset("gray", options).function.evaluate(0.5).color;
   options.display_colors = true;
-  const glm::dvec3 display = preset("gray", options).function.evaluate(0.5).color;
-  EXPECT_NEAR(display.x, encode_srgb(decoded.x), 1e-3);
+  const glm::dvec3 display = colormaps::preset("gray", options).function.evaluate(0.5).color;
+  EXPECT_NEAR(display.x, colormaps::encode_srgb(decoded.x), 1e-3);
   EXPECT_GT(display.x, 0.4);
 }
 
 TEST(Presets, RefuseAnUnknownVariantWithTheListOfThem) {
-  EXPECT_TRUE(is_preset("viridis"));
-  EXPECT_TRUE(is_preset("viridis:peak"));
-  EXPECT_FALSE(is_preset("./viridis"));
-  EXPECT_FALSE(is_preset("Viridis"));
-  EXPECT_FALSE(is_preset(""));
+  EXPECT_TRUE(colormaps::is_preset("viridis"));
+  EXPECT_TRUE(colormaps::is_preset("viridis:peak"));
+  EXPECT_FALSE(colormaps::is_preset("./viridis"));
+  EXPECT_FALSE(colormaps::is_preset("Viridis"));
+  EXPECT_FALSE(colormaps::is_preset(""));
   expect_bad_input([] { load_transfer_function("viridis:peak", {}); }, {"'viridis:peak'", "peaks", "surface"});
 }
 
 TEST(DefaultTransferFunction, IsNeitherTransparentNorOpaqueAnywhere) {
   // Rays through a mesh whose diagonal is twenty unit distances: a short one crosses a tenth of it, a usual one half.
-  TransferFunctionOptions options;
+  colormaps::TransferFunctionOptions options;
   options.field_range = {1e-3, 7e5};
   options.default_unit_distance = 0.3;
-  const auto loaded = default_transfer_function(options);
+  const auto loaded = colormaps::default_transfer_function(options);
   EXPECT_EQ(loaded.unit_distance_source, "default");
   for (int i = 0; i <= 20; ++i) {
     const double s = std::lerp(options.field_range[0], options.field_range[1], i / 20.0);
@@ -116,24 +118,24 @@ TEST(DefaultTransferFunction, IsNeitherTransparentNorOpaqueAnywhere) {
 }
 
 TEST(DefaultTransferFunction, ShowsAConstantField) {
-  TransferFunctionOptions options;
+  colormaps::TransferFunctionOptions options;
   options.field_range = {4, 4};
-  const auto loaded = default_transfer_function(options);
+  const auto loaded = colormaps::default_transfer_function(options);
   const scene::Knot knot = loaded.function.evaluate(4);
   EXPECT_NEAR(opacity(loaded, 4), 0.1, 1e-12);
   EXPECT_GT(knot.color.x, 0.5);
-  for (const std::string& name : preset_names())
+  for (const std::string& name : colormaps::preset_names())
     for (const char* variant : variants)
-      EXPECT_NEAR(opacity(preset(name + ":" + variant, options), 4), 0.1, 1e-12) << name << variant;
+      EXPECT_NEAR(opacity(colormaps::preset(name + ":" + variant, options), 4), 0.1, 1e-12) << name << variant;
 }
 
 TEST(DefaultTransferFunction, SurvivesRangesAtTheEndsOfDoubles) {
   for (const auto& range :
        {std::array{-1.7e308, 1.7e308}, std::array{0.0, 5e-324}, std::array{7e6, std::nextafter(7e6, 8e6)},
         std::array{1e-320, 1e300}, std::array{-1e-300, 1e-300}}) {
-    TransferFunctionOptions options;
+    colormaps::TransferFunctionOptions options;
     options.field_range = range;
-    const auto f = default_transfer_function(options).function;
+    const auto f = colormaps::default_transfer_function(options).function;
     EXPECT_GT(f.evaluate(range[0]).extinction, 0);
     EXPECT_GT(f.evaluate(range[1]).extinction, f.evaluate(range[0]).extinction);
   }

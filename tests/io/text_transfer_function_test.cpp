@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "colormaps/presets.hpp"
 #include "io/transfer_function_file.hpp"
 #include "temporary_folder.hpp"
 
@@ -10,7 +11,7 @@ namespace {
 
 using test::expect_bad_input;
 
-scene::TransferFunction parse_function(std::string_view text, const TransferFunctionOptions& options = {}) {
+scene::TransferFunction parse_function(std::string_view text, const colormaps::TransferFunctionOptions& options = {}) {
   return parse_text_transfer_function(text, "tf.txt", options).function;
 }
 
@@ -36,7 +37,7 @@ TEST(TextTransferFunction, KeepsAStep) {
 }
 
 TEST(TextTransferFunction, OpacityScaleMultipliesExtinction) {
-  TransferFunctionOptions options;
+  colormaps::TransferFunctionOptions options;
   options.opacity_scale = 2.5;
   EXPECT_DOUBLE_EQ(parse_function("0 1 1 1 2\n", options).knots()[0].extinction, 5);
 }
@@ -78,7 +79,7 @@ TEST(TextTransferFunction, RefusesAFileWithoutKnots) {
 }
 
 TEST(TextTransferFunction, SaysThatAUnitDistanceDoesNotApply) {
-  TransferFunctionOptions options;
+  colormaps::TransferFunctionOptions options;
   options.unit_distance = 2;
   const auto loaded = parse_text_transfer_function("0 1 1 1 3\n", "tf.txt", options);
   EXPECT_EQ(loaded.function.max_extinction(), 3);
@@ -86,7 +87,7 @@ TEST(TextTransferFunction, SaysThatAUnitDistanceDoesNotApply) {
 }
 
 TEST(TextTransferFunction, RescalesOnRequest) {
-  TransferFunctionOptions options;
+  colormaps::TransferFunctionOptions options;
   options.field_range = {10, 30};
   options.rescale = true;
   const auto loaded = parse_text_transfer_function("0 1 1 1 0\n0.25 1 1 1 1\n1 1 1 1 2\n", "tf.txt", options);
@@ -124,18 +125,18 @@ TEST(TransferFunctionFile, RefusesAFileTooLargeToBeOne) {
 }
 
 TEST(TransferFunctionOptions, AreChecked) {
-  TransferFunctionOptions options;
+  colormaps::TransferFunctionOptions options;
   options.unit_distance = -1;
-  expect_bad_input([&] { default_transfer_function(options); }, {"--unit-distance is -1"});
+  expect_bad_input([&] { colormaps::default_transfer_function(options); }, {"--unit-distance is -1"});
   options = {};
   options.default_unit_distance = 0;
-  expect_bad_input([&] { default_transfer_function(options); }, {"unit distance is 0"});
+  expect_bad_input([&] { colormaps::default_transfer_function(options); }, {"unit distance is 0"});
   options = {};
   options.field_range = {2, 1};
-  expect_bad_input([&] { default_transfer_function(options); }, {"field range 2 to 1"});
+  expect_bad_input([&] { colormaps::default_transfer_function(options); }, {"field range 2 to 1"});
   options = {};
   options.opacity_scale = std::numeric_limits<double>::quiet_NaN();
-  expect_bad_input([&] { default_transfer_function(options); }, {"opacity scale"});
+  expect_bad_input([&] { colormaps::default_transfer_function(options); }, {"opacity scale"});
 }
 
 }  // namespace

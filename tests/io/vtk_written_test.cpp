@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
+#include "frame/mesh_check.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
-#include "scene/mesh_check.hpp"
 
 namespace tessera::io {
 namespace {
@@ -49,7 +49,7 @@ vtkNew<vtkUnstructuredGrid> hexahedra(int n) {
 void expect_pairs(const std::filesystem::path& file, int n) {
   const MeshFile read = read_mesh(file);
   ASSERT_EQ(read.mesh.tets.size(), 6u * static_cast<std::size_t>(n + 1)) << file;
-  const scene::MeshCheck check = scene::check_mesh(read.mesh);
+  const frame::MeshCheck check = frame::check_mesh(read.mesh);
   EXPECT_EQ(check.overlaps.count, 2u) << file;
   EXPECT_EQ(check.overlapping_cells, 4u) << file;
   std::vector<std::pair<std::uint64_t, std::uint64_t>> pairs;

@@ -36,7 +36,8 @@ struct Scene {
     near = std::max(near, space.near_depth()), far = std::min(far, space.far_depth());
     const auto [low, high] = scene::scalar_range(mesh);
     const double depth = (near + far) / 2, scalar = (low + high) / 2;
-    lattice = {depth, Lattice::unit_for(1.001 * (far - near) / 2), scalar, Lattice::unit_for(1.001 * (high - low) / 2)};
+    lattice = {depth, scene::Lattice::unit_for(1.001 * (far - near) / 2), scalar,
+               scene::Lattice::unit_for(1.001 * (high - low) / 2)};
     const bool per_point = mesh.association == scene::Association::point;
     lattice_vertices.resize(vertices.size());
     make_lattice_vertices(vertices, per_point ? std::span(mesh.scalars) : std::span<const double>(), lattice,
@@ -54,7 +55,7 @@ struct Scene {
   PixelSpace space;
   scene::ImageSize size;
   std::vector<PixelVertex> vertices;
-  Lattice lattice{};
+  scene::Lattice lattice{};
   std::vector<LatticeVertex> lattice_vertices;
 };
 
@@ -70,7 +71,7 @@ Rays rasterized(const Scene& scene, int tile, RasterCounts* counts_out = nullptr
   Rays rays(static_cast<std::size_t>(scene.size.width) * scene.size.height);
   for (int y = 0; y < scene.size.height; y += tile)
     for (int x = 0; x < scene.size.width; x += tile) {
-      const PixelRect rect{x, y, std::min(x + tile, scene.size.width), std::min(y + tile, scene.size.height)};
+      const scene::PixelRect rect{x, y, std::min(x + tile, scene.size.width), std::min(y + tile, scene.size.height)};
       std::vector<TileEntry> entries(scene.prepared.tet_count());
       for (std::uint32_t t = 0; t < entries.size(); ++t) entries[t] = {0, t};
       for (std::size_t from = 0; from < entries.size(); from += together) {
@@ -113,7 +114,7 @@ void expect_like_planes(const scene::TetMesh& mesh, const scene::Camera& camera,
   std::vector<std::map<std::uint32_t, std::array<double, 4>>> expected(rays.size());
   RaySegments out;
   RasterCounts counts;
-  const PixelRect window{0, 0, size.width, size.height};
+  const scene::PixelRect window{0, 0, size.width, size.height};
   out.reserve(static_cast<std::size_t>(window.area()));
   for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
     const TileEntry entry{0, t};
@@ -125,7 +126,7 @@ void expect_like_planes(const scene::TetMesh& mesh, const scene::Camera& camera,
   // Gradients rounded to a step, over 16 pixels a direction, and scalars to floats of 2^30 steps: 20 and 32 steps.
   // Perspective adds a float quotient times what a face spans: an estimate of 1.5 * 2^-12 (SSE's) squared by a Newton
   // step and three roundings, 3.2e-7 in all, of less than half the lattice.
-  const double quotient = scene.space.perspective() ? 3.2e-7 * Lattice::limit : 0;
+  const double quotient = scene.space.perspective() ? 3.2e-7 * scene::Lattice::limit : 0;
   const double depth_error = (20 + quotient) * scene.lattice.depth_unit;
   const double scalar_error = (20 + 32 + quotient) * scene.lattice.scalar_unit;
   std::size_t hits = 0;

@@ -51,7 +51,7 @@ Rays rasterized(const Frame& frame, scene::ImageSize size, int tile, Way way = W
   ScanlineBuffers buffers;
   for (int y = 0; y < size.height; y += tile)
     for (int x = 0; x < size.width; x += tile) {
-      const PixelRect rect{x, y, std::min(x + tile, size.width), std::min(y + tile, size.height)};
+      const scene::PixelRect rect{x, y, std::min(x + tile, size.width), std::min(y + tile, size.height)};
       RaySegments out;
       out.reserve(static_cast<std::size_t>(2 * rect.area()));
       for (std::size_t next = 0; next < entries.size();) {

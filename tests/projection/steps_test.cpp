@@ -41,7 +41,7 @@ TEST(SplitRasterizer, CutsSegmentsWhereTheyCrossStepsAndTilesThemWithThePieces) 
   const std::vector<Step> steps{{0.2, 1}, {0.45, 1}, {0.5, 1}, {0.8, 1}};
   SplitRasterizer splitter;
   RasterCounts counts;
-  const PixelRect rect{0, 0, size.width, size.height};
+  const scene::PixelRect rect{0, 0, size.width, size.height};
   RaySegments whole;
   whole.reserve(static_cast<std::size_t>(rect.area()));
   std::size_t cuts = 0;
@@ -89,7 +89,7 @@ TEST(SplitRasterizer, KeepsWhatIsBelowAStepByADoublesLastPlaceBelowIt) {
       const double least = std::min(pieces.scalar_front[i], pieces.scalar_back[i]);
       // Of a mixed cell all is below but the corners, edges and faces at the step.
       EXPECT_EQ(least < 1, low < 1) << low << ' ' << high;
-      const Lattice lattice{0, 0x1p-30, 0.5, 0x1p-30};
+      const scene::Lattice lattice{0, 0x1p-30, 0.5, 0x1p-30};
       const LatticeScalars on_lattice = lattice_scalars(pieces.scalar_front[i], pieces.scalar_back[i], steps, lattice);
       const auto step = static_cast<float>(lattice.scalar_step(1));
       EXPECT_EQ(std::min(on_lattice.front, on_lattice.back) < step, low < 1);
@@ -100,7 +100,7 @@ TEST(SplitRasterizer, KeepsWhatIsBelowAStepByADoublesLastPlaceBelowIt) {
 TEST(CellsAtSteps, AreThoseNearAStepWhoseScalarsDifferLittle) {
   scene::TetMesh mesh = datasets::cube(6, 0.2);
   const std::vector<Step> steps{{0.5, 1}};
-  const Lattice lattice{0, 0x1p-30, 0.5, 0x1p-30};
+  const scene::Lattice lattice{0, 0x1p-30, 0.5, 0x1p-30};
   const auto count = [&] {
     const PreparedMesh prepared(mesh);
     const CellsAtSteps cells(prepared, steps, 3.5, &lattice);

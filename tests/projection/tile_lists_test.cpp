@@ -117,13 +117,13 @@ struct Expected {
 Expected expected_lists(const ProjectedMesh& projected, const TileGrid& grid, const scene::TransferFunction& function,
                         bool independent) {
   Expected all{{}, std::vector<std::vector<std::uint32_t>>(grid.count())};
-  const PixelRect window{0, 0, grid.image.width, grid.image.height};
+  const scene::PixelRect window{0, 0, grid.image.width, grid.image.height};
   for (std::uint32_t t = 0; t < projected.mesh->tet_count(); ++t) {
     const auto [low, high] = projected.mesh->scalar_bounds(t);
     std::array<PixelVertex, 4> c;
     for (int i = 0; i < 4; ++i) c[i] = projected.vertices[projected.mesh->mesh().tets[t][i]];
     const auto [nearest, farthest] = std::minmax({c[0].depth, c[1].depth, c[2].depth, c[3].depth});
-    const PixelRect box = footprint(c, window);
+    const scene::PixelRect box = footprint(c, window);
     const auto inside = [&](const PixelVertex& v) {
       return v.w > 0 && v.x > 0 && v.x < window.x1 * v.w && v.y > 0 && v.y < window.y1 * v.w;
     };
@@ -137,7 +137,7 @@ Expected expected_lists(const ProjectedMesh& projected, const TileGrid& grid, co
       ++all.counts.projected;
       const bool crossing = std::any_of(c.begin(), c.end(), [](const PixelVertex& v) { return !(v.w > 0); });
       for (std::size_t tile = 0; tile < grid.count(); ++tile) {
-        const PixelRect r = grid.rect(tile);
+        const scene::PixelRect r = grid.rect(tile);
         const bool meets =
             crossing ? !footprint(c, r).empty() : r.x0 < box.x1 && box.x0 < r.x1 && r.y0 < box.y1 && box.y0 < r.y1;
         if (meets) all.tiles[tile].push_back(t);

@@ -167,5 +167,168 @@ TEST(PlateauGrid, PlateausStayOnTheirSideOfAStep) {
   expect_right(*cells, sides(1), size, "cells of doubles");
 }
 
+/// The cell of a number, 0 to n - 1, at random but always the same.
+int hashed(double x, double y, double z, int n) {
+  return static_cast<int>(std::fmod(std::abs(std::sin(12.9898 * x + 78.233 * y + 37.719 * z)) * 43758.5453, n));
+}
+
+/// Doubles that are last places apart, and knots as near: the picture is that of the same field in units of such a
+/// place, counted from 1. Interpolated as they stand, they round to whole places.
+TEST(PlateauGrid, LastPlacesOfDoublesAreNumbersLikeOthers) {
+  const double place = 0x1p-52;
+  const scene::ImageSize size{24, 20};
+  for (const bool rectilinear : {true, false}) {
+    scene::Grid grid = grid_of(9);
+    if (rectilinear) grid.geometry.coordinates[1] = {0, 0.1, 0.3, 0.6, 0.7, 1, 1.2, 1.5, 2};
+    const auto places = [](double x, double y, double z) { return hashed(x, y, z, 3); };
+    const auto near =
+        volume_of<double>(grid, [&](double x, double y, double z) { return 1 + places(x, y, z) * place; });
+    const auto plain = volume_of<double>(grid, places);
+    const auto function = [](double origin, double unit) {
+      return scene::TransferFunction({{origin - 3.5 * unit, {0.9, 0.1, 0.3}, 0},
+                                      {origin + unit, {0.1, 0.8, 0.2}, 1.5},
+                                      {origin + 5 * unit, {0.2, 0.1, 0.9}, 3}});
+    };
+    const scene::TransferFunction near_function = function(1, place), plain_function = function(0, 1);
+    for (const scene::Camera& camera : views_of(*plain, size)) {
+      const reference::GridReference near_truth(*near, camera, size, near_function, scene::Emission::absorption),
+          truth(*plain, camera, size, plain_function, scene::Emission::absorption);
+      volume::RenderSettings settings;
+      settings.method = volume::Method::exact;
+      settings.threads = 2;
+      const scene::Image image = volume::Renderer(*near, settings).render(camera, size, near_function);
+      const auto judgement = reference::judge(image, truth, 1e-5, {}, 2);
+      EXPECT_LE(judgement.max_error, 1e-5) << judgement.worst_x << ' ' << judgement.worst_y;
+      for (int y = 0; y < size.height; y += 3)
+        for (int x = 0; x < size.width; x += 3) {
+          // Both integrate the same numbers; only the grid's own coordinates round, alike.
+          const auto one = near_truth.pixel(x + 0.5, y + 0.5), other = truth.pixel(x + 0.5, y + 0.5);
+          EXPECT_NEAR(one.a, other.a, 1e-11) << x << ' ' << y;
+          EXPECT_NEAR(one.r, other.r, 1e-11) << x << ' ' << y;
+        }
+    }
+  }
+}
+
+/// Knots that lanes do not tell apart: what the function is between them, and on either side, is seen where samples
+/// are.
+TEST(PlateauGrid, KnotsWithinALanesUnitAreAllSeen) {
+  const float value = -0.0113818934f;
+  const double place = 0x1p-59;
+  const scene::ImageSize size{30, 24};
+  std::vector<float> values{value};
+  for (int n = 0; n < 100; ++n) values.push_back(std::nextafter(values.back(), 0.0f));
+  for (const auto association : {scene::Association::point, scene::Association::cell})
+    for (const bool half : {false, true}) {
+      const auto source = volume_of<float>(grid_of(9, association), [&](double x, double y, double z) {
+        return half && x < 0 ? value : values[static_cast<std::size_t>(hashed(x, y, z, 101))];
+      });
+      const double v = value;
+      expect_right(*source,
+                   {{v - 13 * place, {0.5, 0.5, 0.3}, 0}, {v, {0.3, 0.9, 0.2}, 2}, {v + 8 * place, {0, 0.9, 0.3}, 0.8}},
+                   size, "a ramp, a knot and a ramp");
+      expect_right(*source,
+                   {{v - 13 * place, {0.5, 0.5, 0.3}, 0}, {v, {0.3, 0.9, 0.2}, 2}, {v + 8 * place, {0, 0.9, 0.3}, 0}},
+                   size, "a peak");
+      expect_right(*source, {{v + place, {0.6, 0.9, 0.1}, 2}, {v + 3 * place, {0.3, 0.8, 0.3}, 0}}, size,
+                   "knots beside it");
+      const double unit = 0x1p-53, near = v + 40 * unit;
+      expect_right(*source,
+                   {{v + 12 * unit, {0.6, 0.9, 0.1}, 40},
+                    {near, {0.3, 0.8, 0.3}, 0},
+                    {near + 30 * unit, {1, 1, 1}, 40},
+                    {near + 900 * unit, {1, 1, 1}, 0}},
+                   size, "narrow ramps");
+    }
+}
+
+/// A step of colour alone between ramps: what it errs was taken for the ramps', which are as good as level.
+TEST(PlateauGrid, StepsOfColourAloneAreSteps) {
+  const double step = 2.0000038146972656, place = 0x1p-22;
+  const auto source = volume_of<float>(grid_of(17), [&](double x, double y, double z) {
+    return 1 + std::min(1.0, std::max(0.0, 1 + x + std::sin(3 * y))) + (hashed(x, y, z, 20001) - 10000) * place;
+  });
+  expect_right(*source,
+               {{step, {0.15, 0.23, 0.09}, 0.53}, {step, {0.84, 0.13, 0.41}, 0.53}, {2.176, {0.68, 0.64, 0.12}, 0}},
+               {46, 35}, "colours");
+}
+
+/// Where a field of doubles crosses a step that it is only last places away from: lanes give such rays up, and doubles
+/// keep the place only as differences to the step.
+TEST(PlateauGrid, CrossingsOnAFrayedPlateauKeepTheirPlaces) {
+  const double step = 0.21390244162149247, place = 0x1p-55;
+  const scene::ImageSize size{40, 32};
+  for (const int frayed : {2, 16, 256}) {
+    const auto source = volume_of<double>(grid_of(17), [&](double x, double y, double z) {
+      return x + 0.3 * y < -0.2 ? 0.5 * (x + 1) * step : step + (hashed(x, y, z, 2 * frayed + 1) - frayed) * place;
+    });
+    expect_right(*source, {{step, {0.6, 0.7, 0.5}, 2}, {step, {0.5, 0.7, 0.4}, 0}}, size,
+                 "frayed by " + std::to_string(frayed));
+    expect_right(*source, {{step - 3.3 * place, {0.6, 0.7, 0.5}, 2}, {step + 7.1 * place, {0.5, 0.7, 0.4}, 0}}, size,
+                 "a ramp in the fray of " + std::to_string(frayed));
+  }
+}
+
+/// The field is continuous: a ray in a plane of the lattice has the plane's values, whatever lies beside it.
+TEST(PlateauGrid, RaysInALatticePlaneHaveItsValues) {
+  const scene::ImageSize size{9, 9};
+  const auto source = volume_of<std::uint16_t>(grid_of(13), [](double x, double y, double z) {
+    return std::abs(y) < 1e-9 ? 27465 : hashed(x, y, z, 2) == 0 ? 20533 : 48263;
+  });
+  const double extinction = 3;
+  const scene::TransferFunction function({{27465, {0.9, 0.7, 0.6}, 0},
+                                          {27465, {0.9, 0.7, 0.6}, extinction},
+                                          {27468, {0.9, 0.7, 0.6}, extinction},
+                                          {27468, {0.1, 0, 0.2}, 0}});
+  for (const bool perspective : {false, true})
+    for (const double up : {-1.0, 1.0}) {
+      scene::Camera camera;
+      camera.position = {9, 0, 0.37}, camera.focal_point = {0, 0, 0.37}, camera.view_up = {0, up, 0};
+      if (perspective) camera.projection = scene::ProjectionKind::perspective, camera.view_angle = 11;
+      camera.parallel_scale = 0.8;
+      const reference::GridReference truth(*source, camera, size, function, scene::Emission::absorption);
+      volume::RenderSettings settings;
+      settings.method = volume::Method::exact;
+      const scene::Image image = volume::Renderer(*source, settings).render(camera, size, function);
+      const std::size_t middle = image.index(4, 4);
+      const double alpha =
+          1 - std::exp(-2 * extinction);  // the middle pixel's ray goes along x through all of the grid
+      EXPECT_NEAR(image.rgba[4 * middle + 3], alpha, 1e-5);
+      EXPECT_NEAR(truth.pixel(4.5, 4.5).a, alpha, 1e-12);
+    }
+}
+
+/// Rays that run in a plane of the lattice, with blanks on one side of it here and on the other there.
+TEST(PlateauGrid, RaysInALatticePlaneStayOnOneSide) {
+  const scene::ImageSize size{17, 17};
+  const auto source = volume_of<double>(grid_of(13), [](double x, double y, double z) {
+    return std::abs(x + 1.3 * y - 0.7 * z) < 0.15 ? blank : 0.5 + 0.4 * std::sin(3 * x + y) * std::cos(2 * z - y);
+  });
+  std::vector<scene::Knot> many;
+  for (int n = 0; n <= 200; ++n) many.push_back({n / 200.0, {0.3, 0.5, 0.9}, n % 3 == 0 ? 6.0 : 0});
+  // Doubles for the first, lanes for the second; steep, so that a shift by what is excused changes more than the bound.
+  for (const scene::TransferFunction& function :
+       {scene::TransferFunction(many), scene::TransferFunction({{0, {1, 0.5, 0}, 0}, {1, {0, 0.5, 1}, 900}})})
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double side : {-1.0, 1.0})
+        for (const double turned : {-1.0, 1.0})
+          for (const bool perspective : {false, true}) {
+            scene::Camera camera;
+            camera.position = camera.focal_point = camera.view_up = glm::dvec3(0);
+            camera.position[axis] = 7.123 * side, camera.view_up[(axis + 1) % 3] = turned;
+            if (perspective) camera.projection = scene::ProjectionKind::perspective, camera.view_angle = 23.7;
+            camera.parallel_scale = 1.3;
+            const reference::GridReference truth(*source, camera, size, function, scene::Emission::absorption);
+            volume::RenderSettings settings;
+            settings.method = volume::Method::exact;
+            settings.threads = 2;
+            const scene::Image image = volume::Renderer(*source, settings).render(camera, size, function);
+            const auto judgement = reference::judge(image, truth, 1e-5, {}, 2);
+            EXPECT_LE(judgement.max_error_not_excused, 1e-5)
+                << axis << ' ' << side << ' ' << turned << ' ' << perspective << ", worst at " << judgement.worst_x
+                << ' ' << judgement.worst_y;
+          }
+}
+
 }  // namespace
 }  // namespace tessera

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+extern "C" {
+typedef struct _cairo cairo_t;  // NOLINT(bugprone-reserved-identifier, modernize-use-using): theirs
+}
+
+namespace tessera::analysis {
+
+/// Cairo with our few shapes. Lengths are points, y runs downwards, colours are 0xRRGGBB.
+class Canvas {
+ public:
+  explicit Canvas(cairo_t* cairo);
+
+  void rectangle(double x, double y, double width, double height, std::uint32_t rgb);
+  void disc(double x, double y, double radius, std::uint32_t rgb);
+  void line(double x0, double y0, double x1, double y1, double width, std::uint32_t rgb);
+  [[nodiscard]] double text_width(const std::string& text, double size);
+  /// `align` 0: x is the text's left end, 0.5 its middle, 1 its right end. y is the base line. UTF-8.
+  void text(double x, double y, const std::string& text, double size, double align = 0, std::uint32_t rgb = 0x222222);
+  /// Turned to run upwards, its middle at (x, y).
+  void upward_text(double x, double y, const std::string& label, double size);
+
+ private:
+  void color(std::uint32_t rgb);
+  cairo_t* cairo_;
+};
+
+/// Throws Error(bad_input) unless the name ends in .svg or .png.
+void check_figure_path(const std::filesystem::path& file);
+
+/// A drawing of this size in points, as .svg or as .png of two pixels a point. The file appears by rename. Throws as
+/// check_figure_path, as AtomicFile, or Error(system_failure) if Cairo fails.
+void write_drawing(double width, double height, const std::filesystem::path& file,
+                   const std::function<void(Canvas&)>& draw);
+
+}  // namespace tessera::analysis

@@ -1,0 +1,68 @@
+#include "analysis/chart_peers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <sstream>
+
+#include "io/input_file.hpp"
+#include "io/json_text.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::analysis {
+namespace {
+
+scene::Image read_pfm(const std::filesystem::path& file, scene::ImageSize size) {
+  const std::string bytes = io::read_beginning(file, io::require_file(file));
+  std::istringstream head(bytes);
+  std::string magic;
+  int width = 0, height = 0;
+  double scale = 0;
+  head >> magic >> width >> height >> scale;
+  const auto begin = static_cast<std::size_t>(head.tellg()) + 1;
+  const auto values = 3 * static_cast<std::size_t>(std::max(width, 0)) * static_cast<std::size_t>(std::max(height, 0));
+  if (!head || magic != "PF" || scale >= 0 || begin + 4 * values != bytes.size())
+    throw scene::bad_input(fmt::format("{}: is no colour .pfm of little endian; write PF, size, -1.0", file.string()));
+  if (width != size.width || height != size.height)
+    throw scene::bad_input(fmt::format("{}: is {}x{}, the chart {}x{}; render both at one size", file.string(), width,
+                                       height, size.width, size.height));
+  scene::Image image(size);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const auto at =
+          static_cast<std::size_t>(height - 1 - y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+      std::memcpy(&image.rgba[4 * image.index(x, y)], bytes.data() + begin + 12 * at, 12);
+    }
+  return image;
+}
+
+}  // namespace
+
+std::vector<ChartPoint> read_peers(const std::filesystem::path& file, scene::ImageSize size,
+                                   std::span<const reference::PixelIndex> pixels,
+                                   std::span<const reference::Pixel> truths) {
+  const nlohmann::json list = io::parse_json(io::read_beginning(file, io::require_file(file)), file.string());
+  std::vector<ChartPoint> points;
+  try {
+    for (const auto& entry : list) {
+      ChartPoint point;
+      point.family = entry.at("family").get<std::string>();
+      point.name = entry.at("name").get<std::string>();
+      if (entry.contains("left_out")) {
+        point.left_out = entry.at("left_out").get<std::string>();
+      } else {
+        point.frame_ms = entry.at("frame_ms").get<std::vector<double>>();
+        const auto picture = file.parent_path() / entry.at("picture").get<std::string>();
+        point.error = chart_error(read_pfm(picture, size), pixels, truths, 3);
+      }
+      points.push_back(std::move(point));
+    }
+  } catch (const nlohmann::json::exception& error) {
+    throw scene::bad_input(fmt::format("{}: {}; write a list of objects with family, name, frame_ms and picture",
+                                       file.string(), error.what()));
+  }
+  return points;
+}
+
+}  // namespace tessera::analysis

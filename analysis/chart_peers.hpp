@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "analysis/chart_measure.hpp"
+
+namespace tessera::analysis {
+
+/// Other programs' measured pictures (ChartCommand says the file's shape), judged by colour alone on the same pixels.
+/// Pictures are .pfm (linear RGB, bottom row first), named beside the file. Throws Error(bad_input) for what is missing
+/// or of another size.
+std::vector<ChartPoint> read_peers(const std::filesystem::path& file, scene::ImageSize size,
+                                   std::span<const reference::PixelIndex> pixels,
+                                   std::span<const reference::Pixel> truths);
+
+}  // namespace tessera::analysis

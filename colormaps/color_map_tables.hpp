@@ -1,0 +1,21 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <span>
+#include <string_view>
+
+#include "colormaps/color_spaces.hpp"
+
+namespace tessera::colormaps {
+
+/// Colours of a preset: display values at equal distances from the low to the high end, and where to mix them.
+struct ColorMapTable {
+  std::string_view name;
+  ColorSpace space;
+  std::span<const glm::dvec3> colors;
+};
+
+/// All of them, the default first. Sources stand at the numbers.
+std::span<const ColorMapTable> color_map_tables();
+
+}  // namespace tessera::colormaps

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+
+#include "projection/segment_tuple.hpp"
+#include "projection/segment_windows.hpp"
+
+namespace tessera::compositor {
+
+/// The paper's 4-tuple and its pixel.
+struct TupleRecord {
+  std::uint32_t pixel;
+  projection::SegmentTuple tuple;
+};
+static_assert(sizeof(TupleRecord) == 20);
+
+/// What follows a LatticeHeader (exchange/wire.hpp) byte by byte.
+static_assert(sizeof(projection::LatticeSegment) == 16);
+
+}  // namespace tessera::compositor

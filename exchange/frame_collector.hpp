@@ -1,0 +1,83 @@
+#pragma once
+
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "exchange/tile_map.hpp"
+#include "exchange/wire.hpp"
+
+namespace tessera::exchange {
+
+/// What one compositor has received of one frame, and what it still lacks: bookkeeping without threads or sends.
+class FrameCollector {
+ public:
+  /// Of `projectors` projectors, numbered 0 .. N-1; tiles of `compositor` in the map, which must outlive this.
+  FrameCollector(int projectors, const TileMap& map, int compositor);
+
+  void begin(int projector, const FrameBegin& begin, std::span<const std::byte> bits);
+  void end(const FrameEnd& sums);
+  /// Returns the depth from which on the part adds to the tile: where the projector's part before it was complete.
+  double add(int projector, TilePart part);
+
+  [[nodiscard]] bool has_all_begins() const { return begins_ == projectors_; }
+  [[nodiscard]] bool has_all_ends() const { return ends_ == projectors_; }
+  [[nodiscard]] double longest_ray() const { return longest_ray_; }
+  [[nodiscard]] float longest_edge() const { return longest_edge_; }
+  /// Of the frame's lattice segments; units of 0 without.
+  [[nodiscard]] const scene::Lattice& lattice() const { return lattice_; }
+  [[nodiscard]] const FrameEnd& sums() const { return sums_; }
+
+  /// Parts of a tile that wait to be merged.
+  struct Waiting {
+    std::vector<TilePart> parts;  ///< by start_depth: before one is added, all before its start_depth has been
+    double final_depth;           ///< the tile is complete before this planar depth; infinity: complete
+    bool all;                     ///< no more parts will come
+  };
+  /// Whether there is work on a tile: it is complete and not merged yet, or enough of it can be merged to free memory.
+  [[nodiscard]] bool has_work(std::uint32_t tile) const;
+  Waiting take(std::uint32_t tile);
+
+  /// Marks a tile as composited.
+  void finish(std::uint32_t tile);
+  [[nodiscard]] bool finished() const;  ///< all tiles are, and all projectors have ended
+
+  /// Bytes of a part are owed to their projector while the part is ahead: its tile comes after the first one that is
+  /// not composited, or it begins deeper in that tile than other projectors have come. pay() returns what is due now.
+  void owe(int projector, std::uint32_t tile, double start_depth, std::uint64_t bytes);
+  std::uint64_t pay(int projector);
+
+ private:
+  struct Tile {
+    int contributors = 0, ended = 0;
+    std::vector<double> final_depth;  ///< by projector: -infinity to begin with, +infinity where nothing comes
+    std::vector<TilePart> parts;
+    std::uint64_t bytes = 0;
+    double merged_to = -std::numeric_limits<double>::infinity();
+    bool composited = false;
+  };
+  Tile& tile(std::uint32_t number);
+  [[nodiscard]] const Tile& tile(std::uint32_t number) const;
+  [[nodiscard]] double final_depth(const Tile& tile) const;
+  [[nodiscard]] bool is_complete(const Tile& tile) const { return has_all_begins() && tile.ended == tile.contributors; }
+  void advance();
+
+  int projectors_;
+  const std::vector<std::uint32_t>* numbers_;  ///< this compositor's tiles in order
+  std::vector<Tile> tiles_;                    ///< likewise
+  std::size_t first_unfinished_ = 0;
+  int begins_ = 0, ends_ = 0;
+  double longest_ray_ = 0;
+  float longest_edge_ = 0;
+  scene::Lattice lattice_;
+  FrameEnd sums_{};
+  struct Debt {
+    std::uint32_t tile;
+    double start_depth;
+    std::uint64_t bytes;
+  };
+  [[nodiscard]] bool is_ahead(const Debt& debt) const;
+  std::vector<std::vector<Debt>> debts_;  ///< by projector
+};
+
+}  // namespace tessera::exchange

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exchange/stall_watch.hpp"
+#include "exchange/transport.hpp"
+
+namespace tessera::exchange {
+
+/// What is done about a rank that is silent: its process is stopped, or its machine hangs.
+struct StallSettings {
+  std::chrono::milliseconds timeout = std::chrono::seconds(120);  ///< of silence, more than 0
+  bool ends_run = false;  ///< by an error that names the rank; else it is waited for
+  /// Tells the user of a rank that is waited for, and of its return; from a thread of the transport's own. May be
+  /// empty.
+  std::function<void(const std::string& words)> say;
+};
+
+/// One rank's part in finding ranks that have stopped: what it tells the others, and what it makes of their silence.
+///
+/// Eight times in a timeout every rank sends a heartbeat to rank 0, and rank 0 one to each; any other message is as
+/// good. They come from the thread that speaks MPI, so that a rank which computes for hours is heard, and one whose
+/// process or machine stands still is not. Rank 0 watches all others. These watch rank 0, and the lowest of them that
+/// runs speaks of it: rank r waits r quarters of a second longer and is silent if another has told it.
+///
+/// Bookkeeping only: the caller moves the messages, and says what time it is.
+class Heartbeats {
+ public:
+  using Clock = StallWatch::Clock;
+
+  /// `name` of this rank's process, for people: machine and number.
+  Heartbeats(int rank, int size, StallSettings settings, std::string name, Clock::time_point now);
+
+  struct Outgoing {
+    int to;
+    Bytes bytes;
+  };
+  /// To be called again and again: what to send now. Says what there is to say.
+  std::vector<Outgoing> turn(Clock::time_point now);
+
+  /// A message of another kind came from that rank.
+  void heard(int from) { watch_.heard(from); }
+  /// A message of turn() came.
+  void take(int from, const Bytes& bytes);
+
+  /// The rank whose silence ends the run, and the run's error: with StallSettings::ends_run.
+  struct Lost {
+    int rank;
+    scene::Error error;
+  };
+  [[nodiscard]] const std::optional<Lost>& lost() const { return lost_; }
+
+ private:
+  [[nodiscard]] std::string name_of(int rank) const;
+  void notice(const StallWatch::Notice& notice, std::vector<Outgoing>& messages);
+
+  int rank_, size_;
+  StallSettings settings_;
+  StallWatch watch_;
+  std::vector<std::string> names_;  ///< of processes, by rank; empty until heard
+  Clock::duration interval_;
+  Clock::time_point next_beat_;
+  std::optional<Lost> lost_;
+};
+
+}  // namespace tessera::exchange

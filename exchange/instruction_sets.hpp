@@ -1,0 +1,12 @@
+#pragma once
+
+#include "exchange/transport.hpp"
+
+namespace tessera::exchange {
+
+/// Restricts every rank's kernels to the instruction sets that all ranks have: SSE4 has no fused multiply-add, so bits
+/// differ between sets, and a picture must not depend on which machine made a tile. Collective, before the first kernel
+/// runs.
+void agree_instruction_sets(Transport& transport);
+
+}  // namespace tessera::exchange

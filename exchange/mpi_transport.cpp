@@ -1,0 +1,460 @@
+#include "exchange/mpi_transport.hpp"
+
+#include <fmt/format.h>
+#include <mpi.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <list>
+#include <mutex>
+#include <thread>
+
+#include "exchange/heartbeats.hpp"
+#include "exchange/mailboxes.hpp"
+#include "scene/start_thread.hpp"
+
+namespace tessera::exchange {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::microseconds;
+
+// Tags below channel_count are channels; these are the transport's own.
+constexpr int fault_tag = 100;    // a rank to rank 0: I have failed (code, words)
+constexpr int verdict_tag = 101;  // rank 0 to all: the run's error (code, words)
+constexpr int done_tag = 102;     // a rank to rank 0: nothing more will come from me
+constexpr int clear_tag = 103;    // rank 0 to all: nothing more will come from anyone
+constexpr int beat_tag = 104;     // heartbeats.hpp
+
+// Naps of the engine between two looks at MPI: a look costs 20 to 30 us of a core that projects or composites. They
+// double while nothing comes; messages on their way need looks to get on.
+struct Naps {
+  microseconds shortest, longest_moving, longest;
+};
+constexpr Naps idle_naps{microseconds(100), microseconds(500), microseconds(2000)};
+// While the rank's cores project, a look in time for the next part of the frame is soon enough.
+constexpr Naps working_naps{microseconds(2000), microseconds(2000), microseconds(5000)};
+
+/// For the others to hear of the error that a stalled rank is; at most the transport's patience.
+constexpr auto stall_grace = std::chrono::seconds(1);
+
+Bytes error_bytes(const scene::Error& error) {
+  const std::string words = error.what();
+  Bytes bytes(1 + words.size());
+  bytes[0] = static_cast<std::byte>(error.code());
+  std::memcpy(bytes.data() + 1, words.data(), words.size());
+  return bytes;
+}
+
+std::string process_name() {
+  std::array<char, 256> host{};
+  gethostname(host.data(), host.size() - 1);
+  return fmt::format("process {} on {}", getpid(), host.data());
+}
+
+scene::Error error_from(const Bytes& bytes) {
+  return {static_cast<scene::ExitCode>(bytes.at(0)),
+          std::string(reinterpret_cast<const char*>(bytes.data()) + 1, bytes.size() - 1)};
+}
+
+}  // namespace
+
+bool launched_by_mpi() {
+  // Open MPI's mpirun, PMIx launchers (srun, prun), and PMI-1/2 ones, in that order.
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"})
+    if (std::getenv(name) != nullptr) return true;
+  return false;
+}
+
+/// The thread that speaks MPI, and what it shares with the others.
+class MpiTransport::Engine {
+ public:
+  Engine(Hooks hooks, std::chrono::milliseconds patience)
+      : hooks_(std::move(hooks)), patience_(patience), thread_(scene::start_thread([this] { run(); })) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return started_; });
+    if (start_error_) {
+      lock.unlock();
+      thread_.join();
+      throw scene::Error(*start_error_);
+    }
+  }
+  ~Engine() {
+    if (thread_.joinable()) finish();
+  }
+
+  void send(int to, Channel channel, Bytes bytes, std::int32_t frame) {
+    if (mailboxes.failed()) return;
+    constexpr std::size_t most_bytes = std::size_t{1} << 30;  // MPI counts in int
+    if (bytes.size() > most_bytes)
+      throw scene::Error(scene::ExitCode::system_failure,
+                         fmt::format("rank {} of {}: a message of {} bytes is too long; make --tile-size smaller", rank,
+                                     size, bytes.size()));
+    if (to == rank) {
+      mailboxes.deliver(channel, {rank, std::move(bytes)});
+      return;
+    }
+    sent.add(channel, bytes.size());
+    enqueue({to, static_cast<int>(channel), std::move(bytes), frame});
+  }
+
+  void fail(const scene::Error& error) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!own_fault_) own_fault_ = error;
+    }
+    changed_.notify_all();
+  }
+
+  std::optional<scene::Error> finish() {
+    {
+      const std::lock_guard lock(mutex_);
+      finishing_ = true;
+    }
+    changed_.notify_all();
+    if (thread_.joinable()) thread_.join();
+    return mailboxes.error();
+  }
+
+  void set_working(bool working) {
+    {
+      const std::lock_guard lock(mutex_);
+      working_ = working;
+    }
+    if (!working) changed_.notify_all();
+  }
+
+  void watch_stalls(const StallSettings& settings) {
+    const std::lock_guard lock(mutex_);
+    stalls_ = settings;
+  }
+
+  /// What was sent before is on the old faces when this returns.
+  void trace_to(scene::Trace* projecting, scene::Trace* compositing) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return queue_.empty() && !posting_; });
+    projecting_ = projecting;
+    compositing_ = compositing;
+  }
+
+  int rank = 0, size = 1;
+  Mailboxes mailboxes;
+  TrafficCounters sent;
+
+ private:
+  struct Outgoing {
+    int to, tag;
+    Bytes bytes;
+    std::int32_t frame = -1;
+    MPI_Request request = MPI_REQUEST_NULL;
+  };
+
+  struct Incoming {
+    int from = 0, tag = 0;
+    Bytes bytes;
+    MPI_Request request = MPI_REQUEST_NULL;
+  };
+
+  void enqueue(Outgoing message) {
+    {
+      const std::lock_guard lock(mutex_);
+      queue_.push_back(std::move(message));
+    }
+    changed_.notify_all();
+  }
+
+  void checked(int code, const char* doing) {
+    if (code == MPI_SUCCESS) return;
+    char words[MPI_MAX_ERROR_STRING];
+    int length = 0;
+    MPI_Error_string(code, words, &length);
+    throw scene::Error(scene::ExitCode::system_failure,
+                       fmt::format("rank {} of {}: MPI cannot {}: {}", rank, size, doing,
+                                   std::string_view(words, static_cast<std::size_t>(length))));
+  }
+
+  void start() {
+    int provided = MPI_THREAD_SINGLE;
+    checked(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "start");
+    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
+    checked(MPI_Comm_rank(MPI_COMM_WORLD, &rank), "tell the rank");
+    checked(MPI_Comm_size(MPI_COMM_WORLD, &size), "tell the number of ranks");
+    if (provided < MPI_THREAD_FUNNELED)
+      throw scene::Error(scene::ExitCode::system_failure,
+                         "MPI: gives no thread support (MPI_THREAD_FUNNELED); use a build of it that does");
+  }
+
+  void run() {
+    try {
+      start();
+    } catch (const scene::Error& error) {
+      start_error_ = error;
+    }
+    {
+      const std::lock_guard lock(mutex_);
+      started_ = true;
+    }
+    changed_.notify_all();
+    if (start_error_) return;
+
+    microseconds nap = idle_naps.shortest;
+    while (!all_clear_) {
+      bool came = false;
+      try {
+        post();
+        complete();
+        came = take();
+        came = deliver() || came;
+      } catch (const scene::Error& error) {
+        fail(error);
+        give_up(error);  // MPI itself is broken: no words will reach anyone
+      }
+      look_for_stalls();
+      settle_faults();
+      settle_end();
+      if (all_clear_) break;
+      const bool moving = !pending_.empty() || !arriving_.empty();
+      std::unique_lock lock(mutex_);
+      const Naps& naps = working_ ? working_naps : idle_naps;
+      nap = came ? naps.shortest : std::clamp(2 * nap, naps.shortest, moving ? naps.longest_moving : naps.longest);
+      if (queue_.empty()) changed_.wait_for(lock, nap);
+    }
+    while (!pending_.empty()) complete();
+    MPI_Finalize();
+  }
+
+  /// Hands queued messages to MPI.
+  void post() {
+    std::deque<Outgoing> queue;
+    {
+      const std::lock_guard lock(mutex_);
+      queue.swap(queue_);
+      posting_ = !queue.empty();
+    }
+    for (Outgoing& message : queue) {
+      const bool is_ours = message.tag >= fault_tag;
+      if (mailboxes.failed() && !is_ours) continue;
+      pending_.push_back(std::move(message));
+      Outgoing& posted = pending_.back();
+      const scene::TraceScope timing = traced(posted);
+      // Whether it has gone is asked of all that are pending, elsewhere.
+      // NOLINTNEXTLINE(clang-analyzer-optin.mpi.MPI-Checker)
+      checked(MPI_Isend(posted.bytes.data(), static_cast<int>(posted.bytes.size()), MPI_BYTE, posted.to, posted.tag,
+                        MPI_COMM_WORLD, &posted.request),
+              "send");
+    }
+    if (queue.empty()) return;
+    {
+      const std::lock_guard lock(mutex_);
+      posting_ = false;
+    }
+    changed_.notify_all();
+  }
+
+  /// A span of what a user asks about: fragments, meshes and tiles.
+  scene::TraceScope traced(const Outgoing& message) {
+    scene::Trace* trace = nullptr;
+    if (message.tag == static_cast<int>(Channel::fragments) || message.tag == static_cast<int>(Channel::mesh))
+      trace = projecting_;
+    if (message.tag == static_cast<int>(Channel::tiles)) trace = compositing_;
+    return {trace, "send", message.frame, message.bytes.size(), 1};
+  }
+
+  /// Frees messages that have left.
+  void complete() {
+    for (auto message = pending_.begin(); message != pending_.end();) {
+      int left = 0;
+      checked(MPI_Test(&message->request, &left, MPI_STATUS_IGNORE), "send");
+      message = left == 0 ? std::next(message) : pending_.erase(message);
+    }
+  }
+
+  /// Begins to receive what is there; without waiting, as a long message needs its sender's looks at MPI, too.
+  bool take() {
+    bool moved = false;
+    for (;;) {
+      MPI_Message handle = MPI_MESSAGE_NULL;
+      MPI_Status status;
+      int found = 0, length = 0;
+      checked(MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &found, &handle, &status), "look for messages");
+      if (found == 0) return moved;
+      moved = true;
+      checked(MPI_Get_count(&status, MPI_BYTE, &length), "receive");
+      Incoming& message = arriving_.emplace_back();
+      message.from = status.MPI_SOURCE;
+      message.tag = status.MPI_TAG;
+      message.bytes.resize(static_cast<std::size_t>(length));
+      checked(MPI_Imrecv(message.bytes.data(), length, MPI_BYTE, &handle, &message.request), "receive");
+    }
+  }
+
+  /// Hands on what has arrived, in the order of its coming.
+  bool deliver() {
+    bool moved = false;
+    for (; !arriving_.empty(); moved = true) {
+      Incoming& first = arriving_.front();
+      int here = 0;
+      checked(MPI_Test(&first.request, &here, MPI_STATUS_IGNORE), "receive");
+      if (here == 0) break;
+      if (heartbeats_ && first.tag != beat_tag) heartbeats_->heard(first.from);
+      switch (first.tag) {
+        case beat_tag:
+          if (heartbeats_) heartbeats_->take(first.from, first.bytes);
+          break;
+        case fault_tag:
+          decide(error_from(first.bytes));
+          break;
+        case verdict_tag:
+          conclude(error_from(first.bytes));
+          break;
+        case done_tag:
+          ++ranks_done_;
+          break;
+        case clear_tag:
+          all_clear_ = true;
+          break;
+        default:
+          if (!mailboxes.failed())
+            mailboxes.deliver(static_cast<Channel>(first.tag), {first.from, std::move(first.bytes)});
+      }
+      arriving_.pop_front();
+    }
+    return moved;
+  }
+
+  /// Rank 0: the first error it hears of is the run's.
+  void decide(const scene::Error& error) {
+    if (mailboxes.failed()) return;
+    for (int other = 1; other < size; ++other) enqueue({other, verdict_tag, error_bytes(error)});
+    conclude(error);
+  }
+
+  void conclude(const scene::Error& error) {
+    if (!mailboxes.failed() && hooks_.on_fault) hooks_.on_fault();
+    mailboxes.fail(error);
+    if (!deadline_) deadline_ = Clock::now() + patience_;
+  }
+
+  void look_for_stalls() {
+    {
+      const std::lock_guard lock(mutex_);
+      if (stalls_ && size > 1) heartbeats_.emplace(rank, size, *stalls_, process_name(), Clock::now());
+      stalls_.reset();
+    }
+    if (!heartbeats_) return;
+    for (auto& message : heartbeats_->turn(Clock::now())) enqueue({message.to, beat_tag, std::move(message.bytes)});
+    if (!heartbeats_->lost() || mailboxes.failed()) return;
+    lost_at_ = Clock::now();
+    if (rank == 0) return decide(heartbeats_->lost()->error);
+    // Rank 0 itself: this rank decides in its place.
+    for (int other = 1; other < size; ++other)
+      if (other != rank) enqueue({other, verdict_tag, error_bytes(heartbeats_->lost()->error)});
+    conclude(heartbeats_->lost()->error);
+  }
+
+  void settle_faults() {
+    if (!asked_to_end_ && hooks_.asked_to_end)
+      if ((asked_to_end_ = hooks_.asked_to_end())) fail(*asked_to_end_);
+    std::optional<scene::Error> fault;
+    {
+      const std::lock_guard lock(mutex_);
+      if (own_fault_ && !fault_told_) {
+        fault = own_fault_;
+        fault_told_ = true;
+      }
+    }
+    if (fault && rank == 0) decide(*fault);
+    if (fault && rank != 0) {
+      enqueue({0, fault_tag, error_bytes(*fault)});
+      deadline_ = Clock::now() + patience_;
+    }
+    // Rank 0 first: the others only if it cannot.
+    if (deadline_ && Clock::now() > *deadline_ + (rank == 0 ? std::chrono::seconds(0) : std::chrono::seconds(4)))
+      give_up(mailboxes.failed() ? *mailboxes.error() : *own_fault_);
+  }
+
+  [[noreturn]] void give_up(const scene::Error& error) {
+    hooks_.speak(error);
+    std::_Exit(static_cast<int>(error.code()));
+  }
+
+  /// Done is said once, when all this rank has sent has left; rank 0 gives the all-clear.
+  void settle_end() {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!finishing_) return;
+      // A stalled rank takes nothing and will not say that it is done, and MPI cannot end without it: once the others
+      // have had the time to hear of the error, this rank speaks and leaves the rest to the launcher.
+      if (lost_at_ && ((rank == 0 && ranks_done_ >= size - 2) || Clock::now() > *lost_at_ + stall_grace))
+        give_up(*mailboxes.error());
+      if (!queue_.empty() || !pending_.empty() || (own_fault_ && !mailboxes.failed())) return;
+    }
+    if (!done_told_) {
+      done_told_ = true;
+      if (rank == 0)
+        ++ranks_done_;
+      else
+        enqueue({0, done_tag, {}});
+    }
+    if (rank == 0 && ranks_done_ == size) {
+      if (mailboxes.failed()) hooks_.speak(*mailboxes.error());
+      for (int other = 1; other < size; ++other) enqueue({other, clear_tag, {}});
+      post();
+      all_clear_ = true;
+    }
+  }
+
+  Hooks hooks_;
+  std::chrono::milliseconds patience_;
+
+  std::mutex mutex_;  // guards what follows
+  std::condition_variable changed_;
+  bool posting_ = false;                                         // messages are between the queue and MPI
+  scene::Trace *projecting_ = nullptr, *compositing_ = nullptr;  // changed while nothing is being posted
+  std::deque<Outgoing> queue_;
+  std::optional<scene::Error> own_fault_, start_error_;
+  std::optional<StallSettings> stalls_;  ///< until the engine has begun to watch
+  bool started_ = false, finishing_ = false, fault_told_ = false, working_ = false;
+
+  // The engine's thread alone.
+  std::list<Outgoing> pending_;
+  std::deque<Incoming> arriving_;
+  std::optional<Heartbeats> heartbeats_;
+  std::optional<Clock::time_point> lost_at_;  ///< when this rank ended the run for another's silence
+  std::optional<scene::Error> asked_to_end_;
+  std::optional<Clock::time_point> deadline_;
+  int ranks_done_ = 0;
+  bool done_told_ = false, all_clear_ = false;
+
+  std::thread thread_;  // last: it uses all of the above
+};
+
+MpiTransport::MpiTransport(Hooks hooks, std::chrono::milliseconds patience)
+    : engine_(std::make_unique<Engine>(std::move(hooks), patience)) {}
+MpiTransport::~MpiTransport() = default;
+
+std::optional<scene::Error> MpiTransport::finish() { return engine_->finish(); }
+int MpiTransport::rank() const { return engine_->rank; }
+int MpiTransport::size() const { return engine_->size; }
+void MpiTransport::send(int to, Channel channel, Bytes bytes, std::int32_t frame) {
+  engine_->send(to, channel, std::move(bytes), frame);
+}
+std::optional<Message> MpiTransport::receive(Channel channel, std::chrono::milliseconds timeout) {
+  return engine_->mailboxes.receive(channel, timeout);
+}
+void MpiTransport::fail(const scene::Error& error) { engine_->fail(error); }
+void MpiTransport::set_working(bool working) { engine_->set_working(working); }
+void MpiTransport::watch_stalls(const StallSettings& settings) { engine_->watch_stalls(settings); }
+void MpiTransport::check() const { engine_->mailboxes.check(); }
+void MpiTransport::trace_to(scene::Trace* projecting, scene::Trace* compositing) {
+  engine_->trace_to(projecting, compositing);
+}
+Transport::Traffic MpiTransport::sent(Channel channel) const { return engine_->sent.of(channel); }
+
+}  // namespace tessera::exchange

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <functional>
+
+#include "exchange/wire.hpp"
+#include "scene/pixel_rect.hpp"
+
+namespace tessera::exchange {
+
+/// Makes the parts of a tile for another process: what all sinks that send fragments have in common.
+///
+/// Parts leave as they fill, so a tile of any depth complexity costs a projector no memory. A part says up to which
+/// depth the tile is complete, so that the compositor need not hold all of it either.
+class PartWriter {
+ public:
+  using Deliver = std::function<void(TilePart)>;
+
+  /// `deliver` takes parts of a tile in order; it may block, and it may be called from any thread that uses the writer.
+  PartWriter(RecordKind kind, Deliver deliver) : kind_(kind), deliver_(std::move(deliver)) {}
+
+  void begin_tile(std::size_t tile, const scene::PixelRect& rect);
+  void end_tile();
+  /// A rectangle of the tile, to which pixel numbers refer from now on.
+  void start(const scene::PixelRect& rect) { rect_ = rect; }
+
+  /// Room for the records; fragments are to be counted.
+  Bytes& records() { return records_; }
+  void count(std::uint64_t fragments) { fragments_ += fragments; }
+
+  /// Number within the tile of a pixel of the current rectangle.
+  [[nodiscard]] std::uint32_t tile_pixel(std::size_t pixel) const;
+  [[nodiscard]] const scene::PixelRect& rect() const { return rect_; }
+
+  /// All of the rectangle's fragments before `depth` are in the records.
+  void complete_to(double depth);
+  /// Sends what there is if that is worth a message.
+  void send_if_full();
+
+ private:
+  void send(bool last);
+
+  RecordKind kind_;
+  Deliver deliver_;
+  std::uint32_t tile_ = 0;
+  scene::PixelRect tile_rect_{0, 0, 0, 0}, rect_{0, 0, 0, 0};
+  double final_depth_ = 0;
+  std::uint64_t fragments_ = 0;
+  Bytes records_;
+};
+
+}  // namespace tessera::exchange

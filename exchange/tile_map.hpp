@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace tessera::exchange {
+
+/// Which compositor makes which tile: every sequence of P tiles in scanline order goes to the P compositors in a random
+/// order of its own (Juliachs et al. 2007, section 3), so that neighbouring tiles, which tend to be equally full, are
+/// spread evenly. Seeded: the same on every rank and in every run. The picture does not depend on it.
+class TileMap {
+ public:
+  TileMap(std::size_t tiles, int compositors, std::uint64_t seed);
+
+  /// Compositor (0 .. P-1, not its rank) of a tile.
+  [[nodiscard]] int owner(std::size_t tile) const { return owners_[tile]; }
+  /// Tiles of a compositor, in scanline order: the order in which every projector sends them.
+  [[nodiscard]] const std::vector<std::uint32_t>& tiles(int compositor) const {
+    return tiles_[static_cast<std::size_t>(compositor)];
+  }
+  [[nodiscard]] std::size_t size() const { return owners_.size(); }
+
+ private:
+  std::vector<int> owners_;
+  std::vector<std::vector<std::uint32_t>> tiles_;
+};
+
+}  // namespace tessera::exchange

@@ -1,0 +1,195 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "exchange/transport.hpp"
+#include "scene/frame_counters.hpp"
+#include "scene/lattice.hpp"
+
+/// What travels from projectors to compositors, byte by byte. Little endian, no padding, version 5.
+///
+///   message    MessageHeader, then by its kind
+///     begin    FrameBegin, then one bit a tile of the receiver in its order, lowest bit first: 1 where parts will come
+///     parts    any number of: PartHeader, then `bytes` bytes of records of its kind
+///     end      FrameEnd
+///
+/// A projector sends each compositor, frame after frame: one begin; the parts of its tiles in tile order, tile by tile;
+/// one end. So a compositor knows from the begins what a tile still lacks.
+///
+/// Records of a part:
+///   runs       RunRecord each
+///   chains     ChainHeader and `links` ChainLinks each: segments of one pixel that touch end to end. Where one ends
+///              the next begins, at the same depth and scalar, so 24 bytes a segment carry all of it in double
+///              precision: the compositor's picture has the bits of a single process's. Scalars of cell data are the
+///              same at both ends of a link and are not shared with the next.
+///   lattice    LatticeHeader and `segments` LatticeSegments each: segments of one pixel in any order, on the frame's
+///              integer lattice, 16 bytes each: the compositor's picture has the bits of a single process's.
+///   lattice_runs  RunsHeader, `runs` LatticeRuns and `segments` LatticeSegments each: runs of one pixel. A run of one
+///              segment is that segment, 16 bytes, integrated by the compositor.
+///   tuples     TupleRecord each, in the order of their cells: Juliachs et al. 2007, 4.1
+namespace tessera::exchange {
+
+static_assert(std::endian::native == std::endian::little, "the wire is little endian");
+
+inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
+inline constexpr std::uint16_t wire_version = 5;
+
+enum class MessageKind : std::uint16_t { begin = 1, parts = 2, end = 3 };
+enum class RecordKind : std::uint8_t {
+  runs = 1,
+  chains = 2,
+  chains_of_cells = 3,
+  tuples = 4,
+  lattice = 5,
+  lattice_runs = 6
+};
+
+struct MessageHeader {
+  std::uint32_t magic = wire_magic;
+  std::uint16_t version = wire_version;
+  MessageKind kind;
+  std::uint32_t frame;
+  std::uint32_t reserved = 0;
+};
+static_assert(sizeof(MessageHeader) == 16);
+
+struct FrameBegin {
+  double longest_ray;   ///< bounds the world length of a ray inside the whole mesh
+  std::uint64_t tiles;  ///< number of bits that follow
+  float longest_edge;   ///< of the whole mesh, world units: the unit of a tuple's length; 0 without tuples
+  std::uint32_t reserved = 0;
+  scene::Lattice lattice{};  ///< of lattice segments; all 0 without
+};
+static_assert(sizeof(FrameBegin) == 56);
+
+struct PartHeader {
+  std::uint32_t tile;
+  RecordKind kind;
+  std::uint8_t last;  ///< 1: this projector's last part of the tile
+  std::uint16_t reserved = 0;
+  std::uint64_t bytes;
+  double final_depth;       ///< planar; all of this projector's fragments of the tile before it have been sent
+  std::uint64_t fragments;  ///< runs, links or tuples in the part
+};
+static_assert(sizeof(PartHeader) == 32);
+
+/// Segments of a pixel that touch end to end, composited. Nothing of another process can lie inside.
+struct RunRecord {
+  double front;            ///< planar depth where extinction first becomes positive (or light, if there is none)
+  float thickness;         ///< back - front
+  float red, green, blue;  ///< linear light that leaves the front, not attenuated by what lies before it
+  float opacity;           ///< not transmittance: 1 - 1e-8 would be 1
+  std::uint32_t pixel;     ///< row by row in the tile
+};
+static_assert(sizeof(RunRecord) == 32);
+
+struct ChainHeader {
+  std::uint32_t pixel, links;
+  double front, scalar_front;  ///< of the first link; scalar_front unused for cell data
+};
+static_assert(sizeof(ChainHeader) == 24);
+
+struct ChainLink {
+  double back, scalar;  ///< exit's planar depth and scalar; cell data: the cell's scalar
+  std::uint64_t tet;    ///< index in the whole mesh: the last key of the depth order
+};
+static_assert(sizeof(ChainLink) == 24);
+
+/// Segments of one pixel on the lattice.
+struct LatticeHeader {
+  std::uint32_t pixel, segments;
+};
+static_assert(sizeof(LatticeHeader) == 8);
+
+/// Runs of one pixel on the lattice.
+struct RunsHeader {
+  std::uint32_t pixel;
+  std::uint16_t runs, segments;
+};
+static_assert(sizeof(RunsHeader) == 8);
+
+/// RunRecord with its depths in steps of the lattice.
+struct LatticeRun {
+  std::int32_t front, back;
+  float red, green, blue, opacity;
+};
+static_assert(sizeof(LatticeRun) == 24);
+
+/// What a frame took, put together over projectors and compositors by the assembling rank.
+struct FrameEnd {
+  scene::FrameCounters counters;
+  std::uint64_t on_lattice = 0;      ///< 1: the projector's segments are on the integer lattice
+  std::uint64_t failed_devices = 0;  ///< compositors whose device failed and that went on with the CPU
+};
+static_assert(sizeof(FrameEnd) == sizeof(scene::FrameCounters) + 16);
+/// Two processes' counts put together.
+FrameEnd sum(const FrameEnd& a, const FrameEnd& b);
+
+/// Appends a record's bytes.
+template <class Record>
+void append(Bytes& bytes, const Record& record) {
+  const auto* first = reinterpret_cast<const std::byte*>(&record);
+  bytes.insert(bytes.end(), first, first + sizeof record);
+}
+
+/// Takes records off the front of a message; throws Error(system_failure) where it is too short.
+class RecordReader {
+ public:
+  explicit RecordReader(std::span<const std::byte> bytes) : left_(bytes) {}
+  template <class Record>
+  Record take() {
+    Record record;
+    std::memcpy(&record, take_bytes(sizeof record).data(), sizeof record);
+    return record;
+  }
+  std::span<const std::byte> take_bytes(std::size_t count) {
+    if (count > left_.size())
+      throw scene::Error(scene::ExitCode::system_failure,
+                         "exchange: a message is shorter than it says; all ranks must run the same program");
+    const auto taken = left_.first(count);
+    left_ = left_.subspan(count);
+    return taken;
+  }
+  [[nodiscard]] bool empty() const { return left_.empty(); }
+
+ private:
+  std::span<const std::byte> left_;
+};
+
+/// A message's header, checked. Throws Error(system_failure) naming ranks and versions.
+MessageHeader take_header(RecordReader& reader, int from, int self);
+
+/// Records that nobody changes: in memory of their own, or in that of the message they came in.
+class Records {
+ public:
+  Records() = default;
+  Records(Bytes bytes)  // NOLINT(google-explicit-constructor): records are bytes
+      : memory_(std::make_shared<const Bytes>(std::move(bytes))), bytes_(*memory_) {}
+  Records(std::shared_ptr<const Bytes> message, std::span<const std::byte> bytes)
+      : memory_(std::move(message)), bytes_(bytes) {}
+  [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
+  [[nodiscard]] std::size_t size() const { return bytes_.size(); }
+
+ private:
+  std::shared_ptr<const Bytes> memory_;
+  std::span<const std::byte> bytes_;
+};
+
+/// One projector's fragments of a tile, or some of them.
+struct TilePart {
+  std::uint32_t tile = 0;
+  RecordKind kind = RecordKind::runs;
+  bool last = false;
+  double final_depth = 0;
+  std::uint64_t fragments = 0;
+  Records records;
+  int projector = 0;       ///< at the compositor: whose part, 0 .. N-1
+  double start_depth = 0;  ///< at the compositor: the projector's part before this one was complete to here
+};
+
+}  // namespace tessera::exchange

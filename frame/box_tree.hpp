@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "scene/camera.hpp"
+
+namespace tessera::frame {
+
+/// Boxes halved at the median of their centres, so that those that meet another box are found in about log n steps
+/// each. Built in n log n.
+class BoxTree {
+ public:
+  explicit BoxTree(std::span<const scene::Box> boxes);
+
+  /// Calls `found(i)` for each box that shares a point with `box`, in no order.
+  void visit(const scene::Box& box, const std::function<void(std::uint32_t)>& found) const;
+
+ private:
+  static constexpr std::size_t leaf_size = 8;
+  void build(std::size_t node, std::size_t begin, std::size_t end);
+  template <class Found>
+  void descend(std::size_t node, std::size_t begin, std::size_t end, const scene::Box& box, const Found& found) const;
+
+  std::span<const scene::Box> boxes_;
+  std::vector<std::uint32_t> order_;
+  std::vector<scene::Box> nodes_;  ///< a heap: node i has children 2 i + 1 and 2 i + 2
+};
+
+}  // namespace tessera::frame

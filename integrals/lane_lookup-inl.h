@@ -1,0 +1,271 @@
+// A LaneTable in reach of float lanes; included once per instruction set (Highway's include guard idiom).
+
+#if defined(TESSERA_INTEGRALS_LANE_LOOKUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_INTEGRALS_LANE_LOOKUP_INL_H_
+#undef TESSERA_INTEGRALS_LANE_LOOKUP_INL_H_
+#else
+#define TESSERA_INTEGRALS_LANE_LOOKUP_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "integrals/lane_table.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::integrals {
+namespace HWY_NAMESPACE {
+
+namespace HN = hwy::HWY_NAMESPACE;
+using DF = HN::ScalableTag<float>;
+using DI = HN::RebindToSigned<DF>;
+using VF = HN::Vec<DF>;
+using VI = HN::Vec<DI>;
+using MF = HN::Mask<DF>;
+
+/// Where the table's rows are: each in one vector, each in two, or in memory.
+enum class TableForm { one_vector, two_vectors, many };
+
+HWY_INLINE TableForm form_of(const LaneTable& table) {
+  const std::size_t edges = table.knot_count + 2, lanes = HN::Lanes(DF());
+  return edges <= lanes ? TableForm::one_vector : edges <= 2 * lanes ? TableForm::two_vectors : TableForm::many;
+}
+
+/// low[i] for i < lanes, high[i - lanes] above; 0 <= i < 2 lanes.
+HWY_INLINE VF two_table_lookup(VF low, VF high, VI i) {
+  const DF d;
+#if HWY_TARGET <= HWY_AVX3
+  return VF{_mm512_permutex2var_ps(low.raw, i.raw, high.raw)};
+#else
+  const DI di;
+  const auto lanes = HN::Set(di, static_cast<std::int32_t>(HN::Lanes(di)));
+  const auto in_row = HN::IndicesFromVec(d, HN::And(i, HN::Sub(lanes, HN::Set(di, 1))));
+  return HN::IfThenElse(HN::RebindMask(d, HN::Lt(i, lanes)), HN::TableLookupLanes(low, in_row),
+                        HN::TableLookupLanes(high, in_row));
+#endif
+}
+
+/// Towards zero, of numbers that integers hold: Highway's ConvertTo mends others, in four instructions more.
+HWY_INLINE VI truncated(VF v) {
+#if HWY_TARGET <= HWY_AVX3
+  return VI{_mm512_cvttps_epi32(v.raw)};
+#elif HWY_TARGET <= HWY_AVX2
+  return VI{_mm256_cvttps_epi32(v.raw)};
+#else
+  return HN::ConvertTo(DI(), v);
+#endif
+}
+
+/// Numbers of intervals by lane. Every form offers:
+///   locate(s, up)   the interval in which a ray at s goes on: the knots at or below s where `up`, else those below s;
+///   index(i, active) makes intervals ready for look-ups, of which those of active lanes must be right;
+///   at(column, index), and edge(i, index, upper) where intervals end: their upper edges where `upper` is 1 or true.
+template <TableForm form>
+class Lookup;
+
+/// One more in lanes of the mask.
+HWY_INLINE VI count_if(MF mask, VI count) {
+  const DI di;
+#if HWY_TARGET <= HWY_AVX3
+  return HN::IfThenElse(HN::RebindMask(di, mask), HN::Add(count, HN::Set(di, 1)), count);
+#else
+  return HN::Sub(count, HN::VecFromMask(di, HN::RebindMask(di, mask)));
+#endif
+}
+
+/// The next float above s in lanes of `up`: a knot is below that if it is at s or below, so that one comparison does.
+HWY_INLINE VF past(VF s, MF up) {
+  const DF d;
+  const DI di;
+  const VI bits = HN::BitCast(di, HN::Add(s, HN::Zero(d)));  // -0 has no neighbour in its bits
+  const VI away = HN::Or(HN::ShiftRight<31>(bits), HN::Set(di, 1));
+  return HN::BitCast(d, HN::IfThenElse(HN::RebindMask(di, up), HN::Add(bits, away), bits));
+}
+
+/// Further knots below s, of those after the first `passed`, by a binary search of the edges: edge_at finds edge[i].
+template <class EdgeAt>
+HWY_INLINE VI search(VI passed, std::size_t first_step, VF s, const EdgeAt& edge_at) {
+  const DI di;
+  for (std::size_t step = first_step; step > 0; step /= 2) {
+    const VI further = HN::Add(passed, HN::Set(di, static_cast<std::int32_t>(step)));
+    passed = HN::IfThenElse(HN::RebindMask(di, HN::Lt(edge_at(further), s)), further, passed);
+  }
+  return passed;
+}
+
+/// Up to eight knots, evenly spread by index, that are compared one and all, which is shorter than a search.
+struct Landmarks {
+  static constexpr std::size_t count = 8;
+  explicit HWY_INLINE Landmarks(const LaneTable& table) {
+    const std::size_t stride = std::bit_ceil((table.knot_count + count - 1) / count);
+    for (std::size_t i = 0; i < count; ++i)
+      value[i] = table.column(LaneTable::edge)[std::min((i + 1) * stride, table.knot_count + 1)];
+    stride_bits = std::countr_zero(stride);
+    first_step = stride / 2;
+  }
+  HWY_INLINE VI passed(VF s) const {
+    const DF d;
+    VI even = HN::Zero(DI()), odd = even;
+    for (std::size_t i = 0; i < count; i += 2) {
+      even = count_if(HN::Lt(HN::Set(d, value[i]), s), even);
+      odd = count_if(HN::Lt(HN::Set(d, value[i + 1]), s), odd);
+    }
+    const VI landmarks = HN::Add(even, odd);
+    return first_step > 0 ? HN::ShiftLeftSame(landmarks, stride_bits) : landmarks;
+  }
+  float value[count];
+  int stride_bits;
+  std::size_t first_step;  ///< of the search between two landmarks
+};
+
+template <>
+class Lookup<TableForm::one_vector> {
+ public:
+  using Index = HN::Vec<DI>;
+  explicit HWY_INLINE Lookup(const LaneTable& table)
+      : independent(table.emission == scene::Emission::independent), has_clear(table.has_clear), landmarks_(table) {
+    const DF d;
+    const DI di;
+    for (int c = 0; c < LaneTable::column_count; ++c) rows_[c] = HN::LoadU(d, table.column(c));
+    // A grid of few cells, no two knots in one, goes into registers too: half the work of comparing knot by knot.
+    const std::size_t lanes = HN::Lanes(di), cells = table.knots_before.size();
+    in_registers_ = cells <= 2 * lanes && table.largest_step <= 1;
+    if (!in_registers_) return;
+    HWY_ALIGN std::int32_t before[2 * HN::MaxLanes(DI())] = {};
+    std::copy(table.knots_before.begin(), table.knots_before.end(), before);
+    low_cells_ = HN::BitCast(d, HN::Load(di, before)), high_cells_ = HN::BitCast(d, HN::Load(di, before + lanes));
+    grid_origin_ = HN::Set(d, table.grid_origin), grid_scale_ = HN::Set(d, table.grid_scale);
+    last_cell_ = HN::Set(d, table.last_cell);
+  }
+  HWY_INLINE VI locate(VF s, MF up) const {
+    const DF d;
+    const DI di;
+    if (HWY_LIKELY(in_registers_)) {
+      const VF place = HN::Mul(HN::Sub(s, grid_origin_), grid_scale_);
+      const VI cell = truncated(HN::Min(HN::Max(place, HN::Zero(d)), last_cell_));
+      const VI before = HN::BitCast(di, two_table_lookup(low_cells_, high_cells_, cell));
+      const VF next = at(LaneTable::edge, HN::Add(before, HN::Set(di, 1)));
+      return count_if(HN::Or(HN::Lt(next, s), HN::And(up, HN::Eq(next, s))), before);
+    }
+    const VF passing = past(s, up);
+    return search(landmarks_.passed(passing), landmarks_.first_step, passing,
+                  [&](VI i) HWY_ATTR { return at(LaneTable::edge, i); });
+  }
+  HWY_INLINE Index index(VI interval, MF) const { return interval; }
+  HWY_INLINE VF at(int column, const Index& i) const {
+    return HN::TableLookupLanes(rows_[column], HN::IndicesFromVec(DF(), i));
+  }
+  HWY_INLINE VF edge(VI, const Index& i, VI upper) const { return at(LaneTable::edge, HN::Add(i, upper)); }
+  HWY_INLINE VF edge(VI, const Index& i, MF upper) const { return at(LaneTable::edge, count_if(upper, i)); }
+
+  bool independent, has_clear;
+
+ private:
+  Landmarks landmarks_;
+  VF rows_[LaneTable::column_count];
+  bool in_registers_;
+  VF low_cells_, high_cells_;  ///< numbers of knots in lower cells, as bits
+  VF grid_origin_, grid_scale_, last_cell_;
+};
+
+template <>
+class Lookup<TableForm::two_vectors> {
+ public:
+  using Index = HN::Vec<DI>;
+  explicit HWY_INLINE Lookup(const LaneTable& table)
+      : independent(table.emission == scene::Emission::independent), has_clear(table.has_clear), landmarks_(table) {
+    const DF d;
+    for (int c = 0; c < LaneTable::column_count; ++c) {
+      low_[c] = HN::LoadU(d, table.column(c));
+      high_[c] = HN::LoadU(d, table.column(c) + HN::Lanes(d));
+    }
+  }
+  HWY_INLINE VI locate(VF s, MF up) const {
+    s = past(s, up);
+    return search(landmarks_.passed(s), landmarks_.first_step, s,
+                  [&](VI i) HWY_ATTR { return at(LaneTable::edge, i); });
+  }
+  HWY_INLINE Index index(VI interval, MF) const { return interval; }
+  HWY_INLINE VF at(int column, const Index& i) const { return two_table_lookup(low_[column], high_[column], i); }
+  HWY_INLINE VF edge(VI, const Index& i, VI upper) const { return at(LaneTable::edge, HN::Add(i, upper)); }
+  HWY_INLINE VF edge(VI, const Index& i, MF upper) const { return at(LaneTable::edge, count_if(upper, i)); }
+
+  bool independent, has_clear;
+
+ private:
+  Landmarks landmarks_;
+  VF low_[LaneTable::column_count], high_[LaneTable::column_count];
+};
+
+/// Neighbouring lanes are mostly in neighbouring intervals: a window of two vectors around the first active lane's
+/// interval then holds them all, and two loads and a permute take the place of a gather. It is the same number either
+/// way.
+template <>
+class Lookup<TableForm::many> {
+ public:
+  struct Index {
+    VI interval, in_window;
+    std::size_t window;
+    bool windowed;
+  };
+  explicit HWY_INLINE Lookup(const LaneTable& table)
+      : independent(table.emission == scene::Emission::independent), has_clear(table.has_clear), table_(table) {}
+  HWY_INLINE VI locate(VF s, MF up) const {
+    const DF d;
+    const DI di;
+    const VF place = HN::Mul(HN::Sub(s, HN::Set(d, table_.grid_origin)), HN::Set(d, table_.grid_scale));
+    const VI cell = truncated(HN::Min(HN::Max(place, HN::Zero(d)), HN::Set(d, table_.last_cell)));
+    return search(HN::GatherIndex(di, table_.knots_before.data(), cell), table_.largest_step, past(s, up),
+                  [&](VI i) HWY_ATTR { return HN::GatherIndex(DF(), table_.column(LaneTable::edge), i); });
+  }
+  HWY_INLINE Index index(VI interval, MF active) const {
+    const DF d;
+    const DI di;
+    constexpr std::size_t most = HN::MaxLanes(DF());
+    HWY_ALIGN std::int32_t intervals[most];
+    HN::Store(interval, di, intervals);
+    const auto lanes = static_cast<std::int32_t>(HN::Lanes(di));
+    const auto first = std::max<std::intptr_t>(0, HN::FindFirstTrue(d, active));
+    const std::int32_t window = std::max(0, intervals[first] - lanes);
+    Index index;
+    index.interval = interval;
+    index.window = static_cast<std::size_t>(window);
+    const VI in_window = HN::Sub(interval, HN::Set(di, window));
+    // Bits above 2 lanes are set where a lane is out of the window, on either side; one place is kept for the far edge.
+    const auto outside =
+        HN::RebindMask(d, HN::Or(HN::Lt(in_window, HN::Zero(di)), HN::Gt(in_window, HN::Set(di, 2 * lanes - 2))));
+    index.windowed = HN::AllFalse(d, HN::And(active, outside));
+    index.in_window = HN::IfThenZeroElse(HN::RebindMask(di, outside), in_window);
+    return index;
+  }
+  HWY_INLINE VF at(int column, const Index& i) const { return look_up(column, i, i.interval, i.in_window); }
+  HWY_INLINE VF edge(VI interval, const Index& i, VI upper) const {
+    return look_up(LaneTable::edge, i, HN::Add(interval, upper), HN::Add(i.in_window, upper));
+  }
+  HWY_INLINE VF edge(VI interval, const Index& i, MF upper) const {
+    return look_up(LaneTable::edge, i, count_if(upper, interval), count_if(upper, i.in_window));
+  }
+
+  bool independent, has_clear;
+
+ private:
+  HWY_INLINE VF look_up(int column, const Index& i, VI interval, VI in_window) const {
+    const DF d;
+    const float* const row = table_.column(column);
+    if (HWY_LIKELY(i.windowed)) {
+      const float* const window = row + i.window;
+      return two_table_lookup(HN::LoadU(d, window), HN::LoadU(d, window + HN::Lanes(d)), in_window);
+    }
+    return HN::GatherIndex(d, row, interval);
+  }
+
+  const LaneTable& table_;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::integrals
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,51 @@
+// Lane code shared by the integrators; included once per instruction set (Highway's include guard idiom).
+
+#if defined(TESSERA_INTEGRALS_PIECEWISE_TABLE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_INTEGRALS_PIECEWISE_TABLE_INL_H_
+#undef TESSERA_INTEGRALS_PIECEWISE_TABLE_INL_H_
+#else
+#define TESSERA_INTEGRALS_PIECEWISE_TABLE_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <bit>
+
+#include "integrals/piecewise_table.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::integrals {
+namespace HWY_NAMESPACE {
+
+using D = hwy::HWY_NAMESPACE::ScalableTag<double>;
+using DI = hwy::HWY_NAMESPACE::RebindToSigned<D>;
+using V = hwy::HWY_NAMESPACE::Vec<D>;
+using VI = hwy::HWY_NAMESPACE::Vec<DI>;
+
+/// The interval in which a ray at scalar s goes on: lanes going up (or level) count the knots at or below s, those
+/// going down the knots below s. Comparing all knots is cheaper than log2 gathers while they are few.
+HWY_INLINE VI locate(const PiecewiseTable& table, V s, hwy::HWY_NAMESPACE::Mask<D> up) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  const D d;
+  const DI di;
+  VI count = hn::Zero(di);
+  const auto passed = [&](V value) HWY_ATTR { return hn::Or(hn::Lt(value, s), hn::And(up, hn::Eq(value, s))); };
+  if (table.knot_count <= 12) {
+    for (std::size_t k = 0; k < table.knot_count; ++k)
+      count = hn::Sub(count, hn::VecFromMask(di, hn::RebindMask(di, passed(hn::Set(d, table.values[k])))));
+    return count;
+  }
+  for (std::size_t step = (table.values.size() + 1) / 2; step > 0; step /= 2) {
+    const auto jump = hn::Set(di, static_cast<std::int64_t>(step));
+    const V value =
+        hn::GatherIndex(d, table.values.data(), hn::Add(count, hn::Set(di, static_cast<std::int64_t>(step) - 1)));
+    count = hn::Add(count, hn::IfThenElseZero(hn::RebindMask(di, passed(value)), jump));
+  }
+  return count;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::integrals
+HWY_AFTER_NAMESPACE();
+
+#endif

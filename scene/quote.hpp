@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace tessera::scene {
+
+/// Foreign text for a message: quoted, one line, at most 40 characters, unprintable bytes as `?`.
+std::string quote(std::string_view text);
+
+}  // namespace tessera::scene

@@ -1,0 +1,83 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstring>
+#include <string>
+
+#include "exchange/loopback_transport.hpp"
+
+namespace tessera::exchange {
+namespace {
+
+Bytes bytes_of(const std::string& text) {
+  Bytes bytes(text.size());
+  if (!text.empty()) std::memcpy(bytes.data(), text.data(), text.size());
+  return bytes;
+}
+
+std::string text_of(const Bytes& bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
+
+TEST(LoopbackTransport, KeepsTheOrderOfTwoRanksOnAChannelAndKeepsChannelsApart) {
+  run_ranks(2, [](Transport& transport) {
+    if (transport.rank() == 0) {
+      for (int i = 0; i < 100; ++i) {
+        transport.send(1, Channel::tiles, bytes_of("tile " + std::to_string(i)));
+        transport.send(1, Channel::credit, bytes_of("credit " + std::to_string(i)));
+      }
+      EXPECT_EQ(transport.sent(Channel::tiles).messages, 100u);
+      EXPECT_EQ(transport.sent(Channel::tiles).bytes, 10u * 6 + 90u * 7);
+      EXPECT_EQ(transport.sent(Channel::mesh).messages, 0u);
+    } else {
+      for (int i = 0; i < 100; ++i)
+        EXPECT_EQ(text_of(transport.receive(Channel::credit).bytes), "credit " + std::to_string(i));
+      for (int i = 0; i < 100; ++i) {
+        const Message message = transport.receive(Channel::tiles);
+        EXPECT_EQ(message.from, 0);
+        EXPECT_EQ(text_of(message.bytes), "tile " + std::to_string(i));
+      }
+    }
+  });
+}
+
+TEST(LoopbackTransport, ReturnsWithNothingWhenTheTimeIsUp) {
+  LoopbackNetwork network(1);
+  EXPECT_FALSE(network.rank(0).receive(Channel::frames, std::chrono::milliseconds(1)).has_value());
+}
+
+TEST(LoopbackTransport, OneRanksErrorEndsAllThatWaitWithTheSameWords) {
+  std::atomic<int> ended = 0;
+  try {
+    run_ranks(4, [&](Transport& transport) {
+      if (transport.rank() == 2) throw scene::bad_input("mesh.vtu: is empty; give another");
+      try {
+        transport.receive(Channel::fragments);
+      } catch (const scene::Error& error) {
+        EXPECT_STREQ(error.what(), "mesh.vtu: is empty; give another");
+        ++ended;
+        throw;
+      }
+    });
+    FAIL() << "no error came out";
+  } catch (const scene::Error& error) {
+    EXPECT_EQ(error.code(), scene::ExitCode::bad_input);
+    EXPECT_STREQ(error.what(), "mesh.vtu: is empty; give another");
+  }
+  EXPECT_EQ(ended, 3);
+}
+
+TEST(Collectives, GiveEveryRankTheSameInRankOrderHoweverOftenAndFromWhateverRoot) {
+  for (const int ranks : {1, 2, 3, 8})
+    run_ranks(ranks, [&](Transport& transport) {
+      for (int round = 0; round < 50; ++round) {
+        const int root = round % ranks;
+        const std::string word = "from " + std::to_string(root) + " in round " + std::to_string(round);
+        ASSERT_EQ(text_of(broadcast(transport, root, bytes_of(transport.rank() == root ? word : "not mine"))), word);
+        const auto all = gather_all(transport, bytes_of(std::string(static_cast<std::size_t>(transport.rank()), 'x')));
+        ASSERT_EQ(all.size(), static_cast<std::size_t>(ranks));
+        for (int rank = 0; rank < ranks; ++rank) ASSERT_EQ(all[static_cast<std::size_t>(rank)].size(), rank);
+      }
+    });
+}
+
+}  // namespace
+}  // namespace tessera::exchange

@@ -1,0 +1,124 @@
+// The promise of deep pictures, for volumes: flattened they are the picture, and with an opaque plane put in at any
+// depth they are within the accuracy of a rendering that ends there. The truth is reference/'s.
+#include "frame/deep_grid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "reference/grid_reference.hpp"
+#include "scene/error.hpp"
+#include "support/deep_pixels.hpp"
+
+namespace tessera {
+namespace {
+
+constexpr scene::ImageSize size{30, 26};
+
+std::unique_ptr<scene::MemorySource> noise(scene::Association association, bool rectilinear = false) {
+  scene::Grid grid;
+  grid.geometry.association = association;
+  grid.geometry.points = {19, 8, 9};  // two blocks along x
+  grid.geometry.spacing = {0.5, 1, 1.3};
+  grid.geometry.origin = {-4, -3, -5};
+  if (rectilinear) grid.geometry.coordinates[1] = {0, 0.5, 1, 2, 2.1, 4, 5, 6};
+  std::mt19937 random(7);
+  std::vector<float> values(static_cast<std::size_t>(grid.geometry.all_samples().count()));
+  for (float& v : values) v = std::uniform_real_distribution<float>(0, 1)(random);
+  values[100] = NAN;
+  return scene::MemorySource::of(grid, std::move(values));
+}
+
+std::vector<scene::Camera> views(const scene::SampleSource& source) {
+  scene::Camera outside = scene::frame_box(scene::bounds(source.geometry()), size), inside = outside;
+  inside.projection = scene::ProjectionKind::perspective;
+  inside.view_angle = 100;
+  inside.position = {0.3, -0.2, 0.1}, inside.focal_point = {2, 1, 3};
+  return {outside, inside};
+}
+
+const scene::TransferFunction smooth({{0, {0.1, 0.2, 0.9}, 0}, {0.5, {0.9, 0.8, 0.1}, 0.7}, {1, {1, 0.2, 0.1}, 0.2}});
+const scene::TransferFunction sharp(
+    {{0, {0, 0, 1}, 0}, {0.55, {0, 0, 1}, 0}, {0.55, {1, 0.3, 0}, 2}, {0.8, {1, 0.9, 0}, 5}, {1, {0, 0.9, 1}, 60}});
+
+scene::DeepImage deep(const scene::SampleSource& source, const scene::Camera& camera, const scene::TransferFunction& f,
+                      double accuracy, scene::Emission emission = scene::Emission::absorption) {
+  frame::DeepSettings settings;
+  settings.accuracy = accuracy;
+  settings.emission = emission;
+  settings.threads = 2;
+  return frame::deep_image(source, camera, size, f, settings, 0, size.height);
+}
+
+/// Largest difference of a composited pixel to the truth that ends at `z`, or goes on for ever.
+double error_at(const scene::DeepImage& image, const scene::SampleSource& source, scene::Camera camera,
+                const scene::TransferFunction& function, double z,
+                scene::Emission emission = scene::Emission::absorption) {
+  const std::array<double, 3> plane{0.2, 1, 0.6};
+  const bool ends = std::isfinite(z);
+  if (ends) camera.clipping_range = scene::ClippingRange{0, z};
+  const reference::GridReference truth(source, camera, size, function, emission);
+  double worst = 0;
+  for (int y = 1; y < size.height; y += 3)
+    for (int x = 1; x < size.width; x += 3) {
+      const reference::Pixel p = truth.pixel(x + 0.5, y + 0.5);
+      const double through = ends ? 1 - p.a : 0;
+      const std::array<double, 4> wanted{p.r + through * plane[0], p.g + through * plane[1], p.b + through * plane[2],
+                                         ends ? 1 : p.a};
+      const auto pixel = image.pixel(static_cast<std::size_t>(y * size.width + x));
+      const auto got = tests::composited(pixel, z, plane);
+      for (std::size_t c = 0; c < 4; ++c) worst = std::max(worst, std::abs(got[c] - wanted[c]));
+    }
+  return worst;
+}
+
+TEST(DeepGrid, FlattenedItIsThePicture) {
+  for (const auto association : {scene::Association::point, scene::Association::cell})
+    for (const bool rectilinear : {false, true}) {
+      const auto source = noise(association, rectilinear);
+      for (const scene::Camera& camera : views(*source))
+        for (const auto& function : {smooth, sharp}) {
+          EXPECT_LT(error_at(deep(*source, camera, function, 1e-3), *source, camera, function, HUGE_VAL), 1e-5);
+          constexpr auto independent = scene::Emission::independent;
+          EXPECT_LT(error_at(deep(*source, camera, function, 1e-3, independent), *source, camera, function, HUGE_VAL,
+                             independent),
+                    1e-4);  // light of the whole way, up to 10 a pixel
+        }
+    }
+}
+
+TEST(DeepGrid, CutAnywhereItIsWithinItsAccuracy) {
+  const auto source = noise(scene::Association::point);
+  for (const scene::Camera& camera : views(*source))
+    for (const auto& function : {smooth, sharp})
+      for (const double accuracy : {1e-2, 1e-3, 1e-4}) {
+        const scene::DeepImage image = deep(*source, camera, function, accuracy);
+        const double middle = glm::length(camera.position - glm::dvec3(0, 0.5, 0.2));
+        for (const double off : {-3.0, -1.1, 0.0, 0.7, 2.5})
+          EXPECT_LT(error_at(image, *source, camera, function, std::max(0.1, middle + off)), accuracy) << off;
+      }
+}
+
+TEST(DeepGrid, SamplesAreTidyAndFewerWhereLessIsAsked) {
+  const auto source = noise(scene::Association::point);
+  const scene::Camera camera = views(*source)[0];
+  const scene::DeepImage fine = deep(*source, camera, smooth, 1e-4), coarse = deep(*source, camera, smooth, 1e-2);
+  EXPECT_LT(2 * coarse.samples.size(), fine.samples.size());
+  for (std::size_t p = 0; p + 1 < fine.begin.size(); ++p) {
+    float last = -HUGE_VALF;
+    for (const scene::DeepImageSample& s : fine.pixel(p)) {
+      EXPECT_LE(last, s.z);
+      EXPECT_LE(s.z, s.z_back);
+      last = s.z_back;
+    }
+  }
+}
+
+TEST(DeepGrid, AnAccuracyOutOfRangeIsRefused) {
+  const auto source = noise(scene::Association::point);
+  EXPECT_THROW(deep(*source, views(*source)[0], smooth, 2), scene::Error);
+}
+
+}  // namespace
+}  // namespace tessera
