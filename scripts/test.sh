@@ -45,10 +45,18 @@ if [ -n "$extent" ]; then
 fi
 if [ "$extent" = all ]; then stage tidy scripts/lint.sh tidy; fi
 
-# ctest's own closing lines once more, last, where they are found.
+# What failed tests printed, and ctest's own closing lines, once more and last, where they are found.
 for preset in "${presets[@]}"; do
   echo "$preset:"
-  grep -h 'tests passed' "build/$preset/ctest.log" || echo "no tests ran"
+  log=build/$preset/ctest.log
+  if [ -f "$log" ]; then
+    awk '/^ +Start +[0-9]+:/ { next }
+         /tests passed/ { print; shown = 0; next }
+         /Test +#[0-9]+:/ { shown = /\*\*\*(Failed|Timeout|Exception)/ ? 60 : 0 }
+         shown-- > 0' "$log"
+  else
+    echo "no tests ran"
+  fi
 done
 if [ ${#failed[@]} -gt 0 ]; then
   echo "test.sh: failed: ${failed[*]}" >&2
