@@ -75,8 +75,11 @@ void TileSender::end(const exchange::FrameEnd& sums) {
 }
 
 ImageAssembly::ImageAssembly(int compositors, std::function<projection::TileGrid(std::uint32_t)> grid_of,
-                             std::uint64_t deep_bytes)
-    : compositors_(compositors), grid_of_(std::move(grid_of)), deep_bytes_(deep_bytes) {}
+                             std::uint64_t deep_bytes, Finished finished)
+    : compositors_(compositors),
+      grid_of_(std::move(grid_of)),
+      deep_bytes_(deep_bytes),
+      finished_(std::move(finished)) {}
 
 std::optional<AssembledFrame> ImageAssembly::accept(const exchange::Message& message, int self) {
   exchange::RecordReader reader(message.bytes);
@@ -91,6 +94,7 @@ std::optional<AssembledFrame> ImageAssembly::accept(const exchange::Message& mes
   if (is_new) {
     frame.grid = grid_of_(header.frame);
     frame.image = scene::Image(frame.grid.image);
+    if (finished_) frame.has_come.resize(frame.grid.count());
     if (deep_bytes_ > 0) frame.deep = std::make_unique<DeepCollector>(frame.grid.image, deep_bytes_);
   }
   for (std::uint32_t i = 0; i < header.tiles; ++i) {
@@ -106,10 +110,15 @@ std::optional<AssembledFrame> ImageAssembly::accept(const exchange::Message& mes
       std::memcpy(&frame.image.depth[to], depth.data() + from * sizeof(float), width * sizeof(float));
     }
     take_deep(reader, rect, frame.deep.get());
+    if (!finished_) continue;
+    frame.has_come[tile] = true;
+    finished_(header.frame, rect, frame.image);
   }
   if (header.ends == 0) return std::nullopt;
   frame.sums = sum(frame.sums, reader.take<exchange::FrameEnd>());
   if (++frame.ended < compositors_) return std::nullopt;
+  for (std::size_t tile = 0; tile < frame.has_come.size() && frame.sums.stopped == 0; ++tile)
+    if (!frame.has_come[tile]) finished_(header.frame, frame.grid.rect(tile), frame.image);
   AssembledFrame assembled{header.frame, std::move(frame.image), frame.sums, {}};
   if (frame.deep != nullptr) assembled.deep = frame.deep->image();
   frames_.erase(at);

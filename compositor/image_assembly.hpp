@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "compositor/deep_collector.hpp"
 #include "compositor/tile_merger.hpp"
@@ -60,9 +61,12 @@ struct AssembledFrame {
 /// Puts pictures together on the first compositor. Frames complete in order.
 class ImageAssembly {
  public:
+  /// Hears of each tile of a frame when its pixels are final; of those in which nothing is, at the frame's end.
+  using Finished = std::function<void(std::uint32_t frame, const scene::PixelRect& rect, const scene::Image& image)>;
+
   /// `grid_of(frame)`: the frame's tiles. `deep_bytes`: bound of a deep picture's samples; 0: no deep pictures.
   ImageAssembly(int compositors, std::function<projection::TileGrid(std::uint32_t)> grid_of,
-                std::uint64_t deep_bytes = 0);
+                std::uint64_t deep_bytes = 0, Finished finished = {});
 
   /// Takes a message of channel `tiles`; the frame that it completes, if any.
   std::optional<AssembledFrame> accept(const exchange::Message& message, int self);
@@ -74,10 +78,12 @@ class ImageAssembly {
     exchange::FrameEnd sums{};
     int ended = 0;
     std::unique_ptr<DeepCollector> deep;
+    std::vector<bool> has_come;  ///< by tile, if somebody wants to hear of them
   };
   int compositors_;
   std::function<projection::TileGrid(std::uint32_t)> grid_of_;
   std::uint64_t deep_bytes_;
+  Finished finished_;
   std::map<std::uint32_t, Frame> frames_;
 };
 

@@ -1,6 +1,7 @@
 #include "exchange/outbox.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "scene/start_thread.hpp"
@@ -87,7 +88,7 @@ void Outbox::write(Lane& lane, const TilePart& part) {
     lane.batch.reserve(message_bytes + part.records.size() + sizeof(MessageHeader) + sizeof(PartHeader));
     append(lane.batch, MessageHeader{.kind = MessageKind::parts, .frame = frame_});
   }
-  append(lane.batch, PartHeader{part.tile, part.kind, static_cast<std::uint8_t>(part.last ? 1 : 0), 0,
+  append(lane.batch, PartHeader{part.tile, part.kind, static_cast<std::uint8_t>(part.stopped ? 2 : part.last ? 1 : 0), 0,
                                 part.records.size(), part.final_depth, part.fragments});
   const std::span<const std::byte> records = part.records.bytes();
   lane.batch.insert(lane.batch.end(), records.begin(), records.end());
@@ -165,6 +166,20 @@ void Outbox::put(TilePart part) {
     transport_.check();
   }
   if (--threads_waiting_ == 0) transport_.set_working(true);
+}
+
+void Outbox::end_tiles() {
+  for (;;) {
+    TilePart last;
+    last.last = last.stopped = true;
+    last.final_depth = std::numeric_limits<double>::infinity();
+    {
+      const std::lock_guard lock(mutex_);
+      if (unfinished_.empty()) return;
+      last.tile = unfinished_.front();
+    }
+    put(std::move(last));
+  }
 }
 
 void Outbox::end_frame(FrameEnd sums) {

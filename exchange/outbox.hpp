@@ -47,6 +47,9 @@ class Outbox {
   /// error.
   void put(TilePart part);
 
+  /// Ends all tiles of the frame that have not been ended, as they are: the frame is stopped.
+  void end_tiles();
+
   /// All parts of the frame have been put. The traffic that the frame made here is added to `sums`.
   void end_frame(FrameEnd sums);
 

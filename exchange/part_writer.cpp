@@ -39,7 +39,7 @@ void PartWriter::send_if_full() {
 }
 
 void PartWriter::send(bool last) {
-  TilePart part{tile_, kind_, last, final_depth_, fragments_, std::exchange(records_, {})};
+  TilePart part{tile_, kind_, last, false, final_depth_, fragments_, std::exchange(records_, {})};
   fragments_ = 0;
   deliver_(std::move(part));
 }

@@ -21,8 +21,9 @@ enum class Channel : std::uint8_t {
   tiles,      ///< compositor to the first compositor: finished tiles
   frames,     ///< first compositor to projectors: a frame has left
   timing,     ///< spans to the rank that writes the trace
+  stop,       ///< any rank to all: the run is to end early
 };
-inline constexpr std::size_t channel_count = 7;
+inline constexpr std::size_t channel_count = 8;
 
 using Bytes = std::vector<std::byte>;
 

@@ -11,7 +11,7 @@
 #include "scene/frame_counters.hpp"
 #include "scene/lattice.hpp"
 
-/// What travels from projectors to compositors, byte by byte. Little endian, no padding, version 5.
+/// What travels from projectors to compositors, byte by byte. Little endian, no padding, version 6.
 ///
 ///   message    MessageHeader, then by its kind
 ///     begin    FrameBegin, then one bit a tile of the receiver in its order, lowest bit first: 1 where parts will come
@@ -37,7 +37,7 @@ namespace tessera::exchange {
 static_assert(std::endian::native == std::endian::little, "the wire is little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 5;
+inline constexpr std::uint16_t wire_version = 6;
 
 enum class MessageKind : std::uint16_t { begin = 1, parts = 2, end = 3 };
 enum class RecordKind : std::uint8_t {
@@ -62,7 +62,7 @@ struct FrameBegin {
   double longest_ray;   ///< bounds the world length of a ray inside the whole mesh
   std::uint64_t tiles;  ///< number of bits that follow
   float longest_edge;   ///< of the whole mesh, world units: the unit of a tuple's length; 0 without tuples
-  std::uint32_t reserved = 0;
+  std::uint32_t stopped = 0;  ///< 1: the projector has been stopped; of this frame come no parts, though cells show
   scene::Lattice lattice{};  ///< of lattice segments; all 0 without
 };
 static_assert(sizeof(FrameBegin) == 56);
@@ -70,7 +70,7 @@ static_assert(sizeof(FrameBegin) == 56);
 struct PartHeader {
   std::uint32_t tile;
   RecordKind kind;
-  std::uint8_t last;  ///< 1: this projector's last part of the tile
+  std::uint8_t last;  ///< 1: this projector's last part of the tile; 2: the same, and some are missing: it was stopped
   std::uint16_t reserved = 0;
   std::uint64_t bytes;
   double final_depth;       ///< planar; all of this projector's fragments of the tile before it have been sent
@@ -125,8 +125,9 @@ struct FrameEnd {
   scene::FrameCounters counters;
   std::uint64_t on_lattice = 0;      ///< 1: the projector's segments are on the integer lattice
   std::uint64_t failed_devices = 0;  ///< compositors whose device failed and that went on with the CPU
+  std::uint64_t stopped = 0;         ///< projectors and compositors that left something out, being stopped
 };
-static_assert(sizeof(FrameEnd) == sizeof(scene::FrameCounters) + 16);
+static_assert(sizeof(FrameEnd) == sizeof(scene::FrameCounters) + 24);
 /// Two processes' counts put together.
 FrameEnd sum(const FrameEnd& a, const FrameEnd& b);
 
@@ -185,6 +186,7 @@ struct TilePart {
   std::uint32_t tile = 0;
   RecordKind kind = RecordKind::runs;
   bool last = false;
+  bool stopped = false;  ///< last, and some of the tile is missing
   double final_depth = 0;
   std::uint64_t fragments = 0;
   Records records;

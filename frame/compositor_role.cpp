@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <limits>
 #include <map>
 #include <memory>
@@ -51,6 +52,7 @@ struct Frame {
   std::optional<integrals::LaneTable> table;  ///< of lattice segments, or for a device
   scene::Lattice units;                       ///< on a device: the table's
   double start_us = 0;
+  std::atomic<bool> stopped = false;  ///< from now on tiles lack fragments, and are not sent
 
   struct Merge {
     std::unique_ptr<compositor::TileMerger> merger;
@@ -124,6 +126,7 @@ class CompositorLoop {
       case exchange::MessageKind::begin: {
         const auto begin = reader.take<exchange::FrameBegin>();
         to.collector.begin(projector, begin, reader.take_bytes((begin.tiles + 7) / 8));
+        if (begin.stopped != 0) to.stopped = true;
         if (!to.table && begin.lattice.depth_unit > 0)
           to.table.emplace(run_.function, begin.lattice.scalar_origin, begin.lattice.scalar_unit,
                            begin.lattice.depth_unit, run_.settings.render.emission);
@@ -135,8 +138,11 @@ class CompositorLoop {
         while (!reader.empty()) {
           const auto part = reader.take<exchange::PartHeader>();
           const auto records = reader.take_bytes(part.bytes);
-          const double start = to.collector.add(projector, {part.tile, part.kind, part.last != 0, part.final_depth,
-                                                            part.fragments, exchange::Records(message, records)});
+          const bool stopped = part.last == 2;
+          if (stopped) to.stopped = true;
+          const double start =
+              to.collector.add(projector, {part.tile, part.kind, part.last != 0, stopped, part.final_depth,
+                                           part.fragments, exchange::Records(message, records)});
           to.collector.owe(projector, part.tile, start, part.bytes);
           credit -= part.bytes;
           to.merges.try_emplace(part.tile);
@@ -175,6 +181,7 @@ class CompositorLoop {
       if (first.number != frames_finished_ || !first.collector.finished()) return;
       exchange::FrameEnd sums = first.collector.sums();
       sums.failed_devices += run_.device.failed ? 1 : 0;
+      sums.stopped += first.stopped ? 1 : 0;
       first.sender.end(sums);
       if (trace_ != nullptr) trace_->add_frame(static_cast<std::int32_t>(first.number), first.start_us);
       frames_.erase(frames_.begin());
@@ -212,6 +219,7 @@ class CompositorLoop {
       lock.unlock();
       {
         const scene::TraceScope timing(trace_, "composite", static_cast<std::int32_t>(of.number));
+        if (run_.stop.stop_requested()) waiting.parts.clear(), of.stopped = true;
         if (merge.merger == nullptr && !waiting.parts.empty())
           merge.merger = compositor::make_tile_merger(
               waiting.parts.front().kind,
@@ -224,7 +232,7 @@ class CompositorLoop {
               of.grid.rect(tile));
         if (merge.merger != nullptr) compositor::merge(*merge.merger, waiting.parts, waiting.final_depth, budget_.tile);
         // A tile that got nothing stays as empty as the assembled picture is.
-        if (all && merge.merger != nullptr) of.sender.send(tile, merge.merger->finish());
+        if (all && merge.merger != nullptr && !of.stopped) of.sender.send(tile, merge.merger->finish());
       }
       lock.lock();
     }
@@ -248,7 +256,24 @@ class CompositorLoop {
 
 void run_compositor(const DistributedRun& run) { CompositorLoop(run).loop(); }
 
-void run_assembler(const DistributedRun& run, const std::function<void(FinishedFrame)>& done) {
+std::exception_ptr run_assembler(const DistributedRun& run, const DistributedCallbacks& callbacks,
+                                 const std::function<void()>& stop_all) {
+  // What a caller's function throws is the caller's: all ranks end their frames in order before it gets it.
+  std::exception_ptr thrown;
+  const auto guarded = [&](const auto& call) {
+    if (thrown) return;
+    try {
+      call();
+    } catch (...) {
+      thrown = std::current_exception();
+      stop_all();
+    }
+  };
+  compositor::ImageAssembly::Finished finished_tile;
+  if (callbacks.tile)
+    finished_tile = [&](std::uint32_t frame, const scene::PixelRect& rect, const scene::Image& image) {
+      if (!run.stop.stop_requested()) guarded([&] { callbacks.tile(frame, rect, image); });
+    };
   const DistributedSettings& settings = run.settings;
   const integrals::SegmentIntegrator integrator(run.function, settings.render.integrator, settings.render.emission);
   compositor::ImageAssembly assembly(
@@ -256,7 +281,7 @@ void run_assembler(const DistributedRun& run, const std::function<void(FinishedF
       [&](std::uint32_t frame) {
         return projection::TileGrid{run.jobs[frame].size, settings.render.tile_size};
       },
-      settings.deep ? settings.render.memory_bytes / 2 : 0);
+      settings.deep ? settings.render.memory_bytes / 2 : 0, std::move(finished_tile));
   auto last = run.start;
   for (std::size_t left = 0; left < run.jobs.size();) {
     exchange::Message message = [&] {
@@ -283,9 +308,11 @@ void run_assembler(const DistributedRun& run, const std::function<void(FinishedF
     statistics.composited_on = run.device.name;
     if (sums.failed_devices > 0)
       statistics.composited_on += fmt::format(", of which {} failed and left the rest to the CPU", sums.failed_devices);
+    finished.stopped = sums.stopped > 0;
     ++left;
-    done(std::move(finished));
+    guarded([&] { callbacks.frame(std::move(finished)); });
   }
+  return thrown;
 }
 
 }  // namespace tessera::frame

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <exception>
+#include <optional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "frame/distributed_roles.hpp"
 #include "frame/run_error.hpp"
+#include "frame/stop_relay.hpp"
 #include "scene/error.hpp"
 #include "scene/start_thread.hpp"
 
@@ -42,25 +45,13 @@ void LoadedMesh::load(std::size_t number) {
 
 namespace {
 
-/// Meshes are loaded by all ranks together, those that do not project included.
-void take_part_in_loading(const DistributedRun& run, const std::function<ProjectorMesh(std::size_t)>& mesh_of) {
-  for (std::size_t frame = 1; frame < run.jobs.size(); ++frame)
-    if (run.jobs[frame].mesh != run.jobs[frame - 1].mesh) static_cast<void>(mesh_of(run.jobs[frame].mesh));
-}
-
-}  // namespace
-
-void render_distributed(exchange::Transport& transport, const DistributedSettings& settings,
-                        std::span<const FrameJob> jobs, const scene::TransferFunction& function,
-                        const std::function<ProjectorMesh(std::size_t)>& mesh_of,
-                        const std::function<void(FinishedFrame)>& done) {
+void check(const DistributedSettings& settings) {
   if (settings.frames_in_flight < 1)
     throw scene::bad_input(fmt::format("--frames-in-flight {}: it must be at least 1", settings.frames_in_flight));
   if (settings.render.rasterizer == Rasterizer::scanline && settings.exchange == Exchange::runs)
     throw scene::bad_input("--exchange runs: segments of --rasterizer scanline do not touch; use --exchange segments");
   if (settings.deep && settings.exchange == Exchange::runs)
     throw scene::bad_input("--exchange runs: a deep picture needs the segments that runs are made of; use segments");
-  if (settings.deep) check_deep(settings.render, function);
   const auto& backends = settings.compositing_on.backends;
   const bool on_device = std::any_of(backends.begin(), backends.end(), [](Backend b) { return b != Backend::cpu; });
   if (on_device && settings.deep)
@@ -72,42 +63,95 @@ void render_distributed(exchange::Transport& transport, const DistributedSetting
       (settings.render.integrator.kind == scene::IntegratorKind::preintegrated ||
        settings.render.integrator.kind == scene::IntegratorKind::partial))
     throw scene::bad_input("--integrator: --compositor gl-fragment knows sampled:N, exact and auto; use one of these");
-  const int self = transport.rank();
-  std::optional<LoadedMesh> loaded;
-  if (!jobs.empty()) {
-    if (settings.roles.projects(self))
-      loaded.emplace(settings, mesh_of).load(jobs.front().mesh);
-    else
-      static_cast<void>(mesh_of(jobs.front().mesh));
-  }
-  CompositingDevice device;
-  open_compositing_device(settings.compositing_on, settings.roles, transport, settings.compositing, device);
-  exchange::gather_all(transport, {});  // a frame's time does not count reading
-  const DistributedRun run{transport, settings, jobs, function, device, std::chrono::steady_clock::now()};
-  std::vector<std::function<void()>> parts;
-  if (loaded)
-    parts.emplace_back([&] { run_projector(run, *loaded); });
-  else
-    parts.emplace_back([&] { take_part_in_loading(run, mesh_of); });
-  if (settings.roles.composites(self)) parts.emplace_back([&] { run_compositor(run); });
-  if (settings.roles.assembler() == self) parts.emplace_back([&] { run_assembler(run, done); });
+}
 
-  // An error of any part is the run's: the others wake up with it.
-  const auto guarded = [&](const std::function<void()>& part) {
-    try {
-      part();
-    } catch (const std::exception& fault) {
-      transport.fail(run_error(transport, fault));
+}  // namespace
+
+class DistributedRenderer::State {
+ public:
+  State(exchange::Transport& transport, DistributedSettings settings, MeshOf mesh_of)
+      : transport_(transport), settings_(std::move(settings)), mesh_of_(std::move(mesh_of)), relay_(transport) {
+    check(settings_);
+    if (settings_.roles.projects(transport.rank())) loaded_.emplace(settings_, mesh_of_);
+  }
+
+  void render(std::span<const FrameJob> jobs, const scene::TransferFunction& function,
+              const DistributedCallbacks& callbacks, const std::stop_token& asked) {
+    if (settings_.deep) check_deep(settings_.render, function);
+    StopRelay::Run relayed(relay_, asked);
+    const std::stop_token stop = relayed.token();
+    if (!jobs.empty()) load(jobs.front().mesh);
+    if (!opened_) {
+      open_compositing_device(settings_.compositing_on, settings_.roles, transport_, settings_.compositing, device_);
+      opened_ = true;
     }
-  };
-  std::vector<std::thread> threads;
-  guarded([&] {
-    for (std::size_t i = 1; i < parts.size(); ++i)
-      threads.push_back(scene::start_thread([&, i] { guarded(parts[i]); }));
-    parts.front()();  // projection, where there is one, on the calling thread
-  });
-  for (auto& thread : threads) thread.join();
-  transport.check();
+    exchange::gather_all(transport_, {});  // a frame's time does not count reading
+    const DistributedRun run{transport_, settings_, jobs, function, device_, std::chrono::steady_clock::now(), stop};
+    std::exception_ptr of_caller;
+    std::vector<std::function<void()>> parts;
+    if (loaded_)
+      parts.emplace_back([&] { run_projector(run, *loaded_); });
+    else
+      parts.emplace_back([&] {
+        for (const FrameJob& job : jobs) load(job.mesh);
+      });
+    if (settings_.roles.composites(transport_.rank())) parts.emplace_back([&] { run_compositor(run); });
+    if (settings_.roles.assembler() == transport_.rank())
+      parts.emplace_back([&] { of_caller = run_assembler(run, callbacks, [&] { relayed.stop(); }); });
+
+    // An error of any part is the run's: the others wake up with it.
+    const auto guarded = [&](const std::function<void()>& part) {
+      try {
+        part();
+      } catch (const std::exception& fault) {
+        transport_.fail(run_error(transport_, fault));
+      }
+    };
+    std::vector<std::thread> threads;
+    guarded([&] {
+      for (std::size_t i = 1; i < parts.size(); ++i)
+        threads.push_back(scene::start_thread([&, i] { guarded(parts[i]); }));
+      parts.front()();  // projection, where there is one, on the calling thread
+    });
+    for (auto& thread : threads) thread.join();
+    transport_.check();
+    if (of_caller) std::rethrow_exception(of_caller);
+  }
+
+ private:
+  /// Meshes are loaded by all ranks together, those that do not project included.
+  void load(std::size_t number) {
+    if (loaded_)
+      loaded_->load(number);
+    else if (number_ != number)
+      static_cast<void>(mesh_of_(number));
+    number_ = number;
+  }
+
+  exchange::Transport& transport_;
+  const DistributedSettings settings_;
+  const MeshOf mesh_of_;
+  StopRelay relay_;
+  std::optional<LoadedMesh> loaded_;   ///< of a projector
+  std::optional<std::size_t> number_;  ///< of the mesh that was loaded last
+  CompositingDevice device_;
+  bool opened_ = false;
+};
+
+DistributedRenderer::DistributedRenderer(exchange::Transport& transport, DistributedSettings settings, MeshOf mesh_of)
+    : state_(std::make_unique<State>(transport, std::move(settings), std::move(mesh_of))) {}
+DistributedRenderer::~DistributedRenderer() = default;
+
+void DistributedRenderer::render(std::span<const FrameJob> jobs, const scene::TransferFunction& function,
+                                 const DistributedCallbacks& callbacks, const std::stop_token& stop) {
+  state_->render(jobs, function, callbacks, stop);
+}
+
+void render_distributed(exchange::Transport& transport, const DistributedSettings& settings,
+                        std::span<const FrameJob> jobs, const scene::TransferFunction& function,
+                        const std::function<ProjectorMesh(std::size_t)>& mesh_of,
+                        const std::function<void(FinishedFrame)>& done) {
+  DistributedRenderer(transport, settings, mesh_of).render(jobs, function, {done, {}});
 }
 
 }  // namespace tessera::frame

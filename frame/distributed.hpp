@@ -4,11 +4,13 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <stop_token>
 
 #include "exchange/transport.hpp"
 #include "frame/compositing_device.hpp"
 #include "frame/render.hpp"
 #include "frame/roles.hpp"
+#include "scene/pixel_rect.hpp"
 
 namespace tessera::frame {
 
@@ -55,16 +57,44 @@ struct FinishedFrame {
   scene::DeepImage deep;       ///< if asked for
   FrameStatistics statistics;  ///< of all ranks
   double frame_ms;             ///< since the frame before it was complete, or since all ranks were ready
+  bool stopped = false;        ///< the image lacks tiles
 };
 
-/// Renders a list of pictures with all ranks of `transport`; each calls this with the same arguments but for the
-/// functions, which run where their work is:
+/// What the assembling rank's caller is told, from a thread of its own, one call at a time. An exception stops the run
+/// on all ranks and comes out of render() on this one.
+struct DistributedCallbacks {
+  std::function<void(FinishedFrame)> frame;  ///< every frame, in order, stopped ones too
+  /// Pixels of a frame that are final; perhaps of a later frame than the one at hand. May be empty.
+  std::function<void(std::size_t frame, const scene::PixelRect& rect, const scene::Image& image)> tile;
+};
+
+/// Renders pictures of meshes with all ranks of a transport: each makes one, with the same arguments but for the traces
+/// and the function, which runs where its work is:
 ///   mesh_of(m)     on every rank, once a mesh, in order, collective: loads this rank's part of mesh m
-///   done(frame)    on the assembling rank, in order, from a thread of its own
 /// Projectors stream tile by tile while they project; frame i projects while frame i - 1 composites. Nothing but the
 /// order of frames synchronises ranks.
-///
-/// The transfer function is one for all frames, so that a film does not flicker. Throws the run's error, on every rank.
+class DistributedRenderer {
+ public:
+  using MeshOf = std::function<ProjectorMesh(std::size_t)>;
+
+  /// Throws Error(bad_input) for settings that do not go together. `transport` must outlive this object.
+  DistributedRenderer(exchange::Transport& transport, DistributedSettings settings, MeshOf mesh_of);
+  ~DistributedRenderer();
+  DistributedRenderer(const DistributedRenderer&) = delete;
+  DistributedRenderer& operator=(const DistributedRenderer&) = delete;
+
+  /// Makes a list of pictures. Collective: the same jobs and function on every rank. The transfer function is one for
+  /// all of them, so that a film does not flicker. `stop`, asked for on any rank, ends the list early on all, within
+  /// one batch of cells; all return and can go on. Throws the run's error, on every rank.
+  void render(std::span<const FrameJob> jobs, const scene::TransferFunction& function,
+              const DistributedCallbacks& callbacks, const std::stop_token& stop = {});
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
+
+/// The same for one list, without tiles: `done` gets every frame.
 void render_distributed(exchange::Transport& transport, const DistributedSettings& settings,
                         std::span<const FrameJob> jobs, const scene::TransferFunction& function,
                         const std::function<ProjectorMesh(std::size_t)>& mesh_of,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <exception>
 #include <optional>
 
 #include "frame/distributed.hpp"
@@ -17,6 +18,7 @@ struct DistributedRun {
   const scene::TransferFunction& function;
   const CompositingDevice& device;              ///< of this rank's compositor
   std::chrono::steady_clock::time_point start;  ///< all ranks were ready
+  const std::stop_token& stop;                  ///< asked for on any rank
 };
 
 /// A projector's part of the mesh at hand, prepared.
@@ -42,8 +44,10 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded);
 /// Merges the fragments of this rank's tiles and sends finished tiles to the assembling rank.
 void run_compositor(const DistributedRun& run);
 
-/// Puts pictures together, tells the projectors, and hands them out.
-void run_assembler(const DistributedRun& run, const std::function<void(FinishedFrame)>& done);
+/// Puts pictures together, tells the projectors, and hands them out, and their tiles before them. What the caller's
+/// functions throw is returned once all frames are through, and `stop_all` called at once.
+std::exception_ptr run_assembler(const DistributedRun& run, const DistributedCallbacks& callbacks,
+                   const std::function<void()>& stop_all);
 
 /// How a rank's memory budget is shared out.
 struct ExchangeBudget {

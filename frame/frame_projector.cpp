@@ -115,7 +115,7 @@ void order_corners(scene::TetMesh& mesh, const RenderSettings& settings) {
   tbb::task_arena(scene::threads_for(checked(settings).threads)).execute([&] { projection::order_corners(mesh); });
 }
 
-FrameProjector::FrameProjector(const scene::TetMesh& mesh, const RenderSettings& settings)
+FrameProjector::FrameProjector(const scene::TetMeshView& mesh, const RenderSettings& settings)
     : settings_(checked(settings)),
       arena_(scene::threads_for(settings.threads)),
       prepared_(arena_.execute([&] {
@@ -128,22 +128,25 @@ FrameProjector::FrameProjector(const scene::TetMesh& mesh, const RenderSettings&
     longest_edge_ = arena_.execute([&] { return projection::longest_edge(mesh); });
 }
 
-void FrameProjector::project_vertices(const projection::PixelSpace& space, std::int32_t frame) {
+void FrameProjector::project_vertices(const projection::PixelSpace& space, std::int32_t frame,
+                                      const std::stop_token& stop) {
   const scene::TraceScope timing(settings_.trace, "transform", frame);
-  const std::vector<glm::dvec3>& positions = prepared_.mesh().positions;
+  const std::span<const glm::dvec3> positions = prepared_.mesh().positions;
   vertices_.resize(positions.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size(), 4096), [&](const auto& range) {
+    scene::throw_if_stopped(stop);
     const scene::TraceScope helping(settings_.trace, "transform", frame);
     const std::size_t n = range.end() - range.begin();
-    space.project(std::span(positions).subspan(range.begin(), n), std::span(vertices_).subspan(range.begin(), n));
+    space.project(positions.subspan(range.begin(), n), std::span(vertices_).subspan(range.begin(), n));
   });
 }
 
-void FrameProjector::place_on_lattice(const scene::Lattice& lattice, bool perspective) {
-  const scene::TetMesh& mesh = prepared_.mesh();
+void FrameProjector::place_on_lattice(const scene::Lattice& lattice, bool perspective, const std::stop_token& stop) {
+  const scene::TetMeshView& mesh = prepared_.mesh();
   const bool per_point = mesh.association == scene::Association::point;
   lattice_vertices_.reset(vertices_.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, vertices_.size(), 4096), [&](const auto& range) {
+    scene::throw_if_stopped(stop);
     const std::size_t n = range.end() - range.begin();
     projection::make_lattice_vertices(
         std::span(vertices_).subspan(range.begin(), n),
@@ -159,13 +162,15 @@ FrameStatistics FrameProjector::project(const Task& task) {
 FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   const projection::PixelSpace& space = *task.space;
   const bool independent = settings_.emission == scene::Emission::independent;
-  project_vertices(space, task.frame);
+  const std::stop_token stop = task.watch != nullptr ? task.watch->stop() : std::stop_token();
+  scene::throw_if_stopped(stop);
+  project_vertices(space, task.frame, stop);
   const projection::ProjectedMesh projected{&prepared_, vertices_, space.near_depth(), space.far_depth(),
                                             space.pixels_per_tangent()};
   const float longest_edge = task.longest_edge > 0 ? task.longest_edge : longest_edge_;
   if (settings_.rasterizer == Rasterizer::scanline) check_scanline(projected, space, longest_edge);
   const projection::TileGrid& grid = task.grid;
-  if (task.lattice != nullptr) place_on_lattice(*task.lattice, space.perspective());
+  if (task.lattice != nullptr) place_on_lattice(*task.lattice, space.perspective(), stop);
 
   const double longest_ray = task.longest_ray > 0 ? task.longest_ray : diagonal_;
   // Sampling promises nothing that steps could break.
@@ -177,12 +182,13 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   if (exact) {
     const scene::TraceScope timing(settings_.trace, "cull", task.frame);
     steps = projection::steps_of(*task.function, settings_.emission, longest_ray);
-    at_steps = projection::CellsAtSteps(prepared_, steps, longest_ray, task.lattice);
+    at_steps = projection::CellsAtSteps(prepared_, steps, longest_ray, task.lattice, stop);
   }
   std::optional<projection::TileLists> lists;
   {
     const scene::TraceScope timing(settings_.trace, "cull", task.frame);
-    lists.emplace(projected, grid, *task.function, independent, settings_.trace, &list_buffers_, settings_.use.culling);
+    lists.emplace(projected, grid, *task.function, independent, settings_.trace, &list_buffers_, settings_.use.culling,
+                  stop);
   }
   if (task.announce) {
     std::vector<bool> has_cells(grid.count());
@@ -205,7 +211,8 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
                             longest_edge,
                             usual_optical_depth(*task.function, diagonal_) > opaque_depth,
                             steps,
-                            at_steps.empty() ? nullptr : &at_steps};
+                            at_steps.empty() ? nullptr : &at_steps,
+                            stop};
   tbb::enumerable_thread_specific<std::unique_ptr<TileWorker>> workers([&]() -> std::unique_ptr<TileWorker> {
     if (task.lattice == nullptr) return std::make_unique<DoubleWorker>(context, task.make_sink());
     const projection::LatticeView view{
@@ -237,8 +244,9 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
         [&](int) {
           TileWorker& worker = *workers.local();
           for (std::size_t tile = next++; tile < last; tile = next++) {
-            if (lists->entry_count(tile) == 0) continue;
-            worker.render(tile, grid.rect(tile), lists->tile(tile));
+            scene::throw_if_stopped(stop);
+            if (lists->entry_count(tile) > 0) worker.render(tile, grid.rect(tile), lists->tile(tile));
+            if (task.image != nullptr && task.watch != nullptr) task.watch->finished(grid.rect(tile), *task.image);
           }
         },
         tbb::simple_partitioner());

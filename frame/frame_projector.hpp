@@ -13,6 +13,7 @@
 #include "projection/lattice_rasterizer.hpp"
 #include "projection/prepared_mesh.hpp"
 #include "projection/tile_lists.hpp"
+#include "scene/frame_watch.hpp"
 
 namespace tessera::frame {
 
@@ -21,7 +22,7 @@ namespace tessera::frame {
 class FrameProjector {
  public:
   /// The mesh must outlive this object. Throws Error(bad_input) for settings out of range.
-  FrameProjector(const scene::TetMesh& mesh, const RenderSettings& settings);
+  FrameProjector(const scene::TetMeshView& mesh, const RenderSettings& settings);
 
   struct Task {
     const projection::PixelSpace* space;
@@ -36,6 +37,10 @@ class FrameProjector {
     /// If set, tiles are rendered on this lattice and go to sinks of make_window_sink; else in double precision.
     const scene::Lattice* lattice = nullptr;
     std::function<std::unique_ptr<compositor::WindowSink>()> make_window_sink;
+    /// Asked all along whether to stop; then project() throws scene::FrameStopped. Null: nobody looks on.
+    scene::FrameWatch* watch = nullptr;
+    /// The picture that sinks write to, so that `watch` hears of its tiles; null: they go elsewhere.
+    const scene::Image* image = nullptr;
     /// Called once before the first tile: which tiles have cells, so will be given to a sink. May be empty.
     std::function<void(const std::vector<bool>& has_cells)> announce;
   };
@@ -50,8 +55,8 @@ class FrameProjector {
 
  private:
   FrameStatistics project_in_arena(const Task& task);
-  void project_vertices(const projection::PixelSpace& space, std::int32_t frame);
-  void place_on_lattice(const scene::Lattice& lattice, bool perspective);
+  void project_vertices(const projection::PixelSpace& space, std::int32_t frame, const std::stop_token& stop);
+  void place_on_lattice(const scene::Lattice& lattice, bool perspective, const std::stop_token& stop);
 
   RenderSettings settings_;
   tbb::task_arena arena_;

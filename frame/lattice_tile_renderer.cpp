@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "scene/error.hpp"
+#include "scene/frame_watch.hpp"
 
 namespace tessera::frame {
 namespace {
@@ -71,6 +72,7 @@ bool LatticeTileRenderer::try_render(const scene::PixelRect& rect, const project
   windows_.reset(static_cast<std::size_t>(rect.area()), capacity);
   sink.start(rect);
   for (std::size_t from = 0; from < entries.size() && sink.any_open(); from += cells_at_once) {
+    scene::throw_if_stopped(context_.stop);
     const auto cells = entries.subspan(from, std::min(cells_at_once, entries.size() - from));
     stream_.size = 0;
     projection::rasterize_lattice(view_, cells, entries.subspan(from + cells.size()), rect, sink.open(), scratch_,

@@ -21,7 +21,7 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
 using Corners = std::array<glm::dvec3, 4>;
 
-Corners corners_of(const scene::TetMesh& mesh, std::size_t tet) {
+Corners corners_of(const scene::TetMeshView& mesh, std::size_t tet) {
   const scene::Tet& t = mesh.tets[tet];
   return {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]], mesh.positions[t[3]]};
 }
@@ -126,7 +126,7 @@ struct Face {
 
 class Check {
  public:
-  explicit Check(const scene::TetMesh& mesh) : mesh_(mesh) {
+  explicit Check(const scene::TetMeshView& mesh) : mesh_(mesh) {
     result_.tets = mesh.tets.size();
     name_points();
     measure_tets();
@@ -337,7 +337,7 @@ class Check {
     result_.overlapping_cells = overlapping.size();
   }
 
-  const scene::TetMesh& mesh_;
+  scene::TetMeshView mesh_;
   MeshCheck result_;
   std::vector<std::uint32_t> name_, neighbor_;
   std::vector<std::uint8_t> solid_;  ///< neither flat nor a sliver beyond the overlap's tolerance
@@ -347,6 +347,6 @@ class Check {
 
 }  // namespace
 
-MeshCheck check_mesh(const scene::TetMesh& mesh) { return Check(mesh).take(); }
+MeshCheck check_mesh(const scene::TetMeshView& mesh) { return Check(mesh).take(); }
 
 }  // namespace tessera::frame

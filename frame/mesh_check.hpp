@@ -62,6 +62,6 @@ struct MeshCheck {
   }
 };
 
-MeshCheck check_mesh(const scene::TetMesh& mesh);
+MeshCheck check_mesh(const scene::TetMeshView& mesh);
 
 }  // namespace tessera::frame

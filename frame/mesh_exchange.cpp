@@ -75,7 +75,7 @@ std::vector<std::uint32_t> parts_of_tets(Transport& transport, const MeshPart& l
 
 }  // namespace
 
-scene::MeshFacts agree_facts(Transport& transport, const scene::TetMesh& part, int threads) {
+scene::MeshFacts agree_facts(Transport& transport, const scene::TetMeshView& part, int threads) {
   if (transport.size() == 1) return scene::facts_of(part, threads);
   scene::MeshFacts own{bounds(part, threads), scalar_range(part, threads), 0, part.tets.size(), part.association},
       facts;

@@ -26,7 +26,7 @@ struct MeshPart {
 
 /// Facts of the whole mesh, to the same bits on every rank, for any distribution, and in one process
 /// (scene::facts_of). Collective. `threads` of each rank; 0 is all cores.
-scene::MeshFacts agree_facts(exchange::Transport& transport, const scene::TetMesh& part, int threads = 1);
+scene::MeshFacts agree_facts(exchange::Transport& transport, const scene::TetMeshView& part, int threads = 1);
 
 /// Memory of an exchange: a message holds about `chunk_bytes`, and a rank is at most two rounds of `round_bytes` ahead
 /// of what the slowest has taken.

@@ -12,6 +12,7 @@
 #include "frame/distributed_roles.hpp"
 #include "frame/frame_projector.hpp"
 #include "frame/lattice_frame.hpp"
+#include "scene/frame_watch.hpp"
 
 namespace tessera::frame {
 namespace {
@@ -26,7 +27,7 @@ void wait_for_turn(const DistributedRun& run, std::size_t frame, std::size_t& le
   for (; frame >= left + in_flight; ++left) run.transport.receive(Channel::frames);
 }
 
-exchange::FrameEnd counts_of(const FrameStatistics& s) { return {s, s.on_lattice ? 1u : 0u, 0}; }
+exchange::FrameEnd counts_of(const FrameStatistics& s) { return {s, s.on_lattice ? 1u : 0u, 0, 0}; }
 
 }  // namespace
 
@@ -87,17 +88,31 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
         return std::make_unique<compositor::WindowRuns>(scene, budget.cut, deliver);
       };
     }
+    bool announced = false, stopped = false;
     task.announce = [&](const std::vector<bool>& has_cells) {
+      announced = true;
       outbox.begin_frame(static_cast<std::uint32_t>(frame), map, has_cells,
                          {.longest_ray = mesh.diagonal,
                           .tiles = 0,
                           .longest_edge = mesh.longest_edge,
+                          .stopped = stopped ? 1u : 0u,
                           .lattice = lattice.value_or(scene::Lattice{})});
     };
+    scene::FrameWatch watch(run.stop);
+    task.watch = &watch;
+    exchange::FrameEnd end;
     run.transport.set_working(true);
-    const FrameStatistics statistics = loaded.projector().project(task);
+    try {
+      end = counts_of(loaded.projector().project(task));
+    } catch (const scene::FrameStopped&) {
+      // The others wait for what they were told of: it ends here, empty.
+      stopped = true;
+      if (!announced) task.announce(std::vector<bool>(task.grid.count(), false));
+      outbox.end_tiles();
+      end = {.stopped = 1};
+    }
     run.transport.set_working(false);
-    outbox.end_frame(counts_of(statistics));
+    outbox.end_frame(end);
     if (render.trace != nullptr) render.trace->add_frame(number, start_us);
   }
 }

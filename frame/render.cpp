@@ -31,7 +31,7 @@ void check_deep(const RenderSettings& settings, const scene::TransferFunction& f
 }
 
 struct Renderer::State {
-  State(const scene::TetMesh& mesh, const RenderSettings& s)
+  State(const scene::TetMeshView& mesh, const RenderSettings& s)
       : settings(s), projector(mesh, s), scalar_range(scene::scalar_range(mesh, s.threads)) {}
 
   /// The integrator of this function. Its tables are kept for as long as the function stays.
@@ -50,14 +50,14 @@ struct Renderer::State {
   std::optional<integrals::SegmentIntegrator> kept;
 };
 
-Renderer::Renderer(const scene::TetMesh& mesh, const RenderSettings& settings)
+Renderer::Renderer(const scene::TetMeshView& mesh, const RenderSettings& settings)
     : state_(std::make_unique<State>(mesh, settings)) {}
 
 Renderer::~Renderer() = default;
 
 scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size,
                               const scene::TransferFunction& transfer_function, FrameStatistics* statistics,
-                              scene::DeepImage* deep) {
+                              scene::DeepImage* deep, scene::FrameWatch* watch) {
   const RenderSettings& settings = state_->settings;
   const projection::PixelSpace space(camera, size);
   const integrals::SegmentIntegrator& integrator = state_->integrator(transfer_function);
@@ -66,6 +66,8 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   task.space = &space;
   task.grid = {size, settings.tile_size};
   task.function = &transfer_function;
+  task.watch = watch;
+  task.image = &image;
   const double longest_ray = state_->projector.diagonal();
   std::optional<compositor::DeepCollector> collector;
   if (deep != nullptr) {

@@ -7,6 +7,7 @@
 #include "scene/camera.hpp"
 #include "scene/deep_image.hpp"
 #include "scene/frame_counters.hpp"
+#include "scene/frame_watch.hpp"
 #include "scene/image.hpp"
 #include "scene/mechanisms.hpp"
 #include "scene/optical_model.hpp"
@@ -54,7 +55,7 @@ void order_corners(scene::TetMesh& mesh, const RenderSettings& settings);
 /// function happens in the constructor; the mesh must outlive the renderer and not change.
 class Renderer {
  public:
-  Renderer(const scene::TetMesh& mesh, const RenderSettings& settings);
+  Renderer(const scene::TetMeshView& mesh, const RenderSettings& settings);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
@@ -67,9 +68,12 @@ class Renderer {
   /// image; cut anywhere in depth by OpenEXR's rules its error is below `deep_accuracy`. It needs the planes rasterizer
   /// and an exact integrator (exact, automatic), else Error(bad_input); Error(system_failure) if its samples exceed
   /// their half.
+  ///
+  /// `watch` hears of every tile as it is finished, those without cells included; once it is asked to stop, render()
+  /// throws scene::FrameStopped within a batch of cells, and can be called again.
   scene::Image render(const scene::Camera& camera, scene::ImageSize size,
                       const scene::TransferFunction& transfer_function, FrameStatistics* statistics = nullptr,
-                      scene::DeepImage* deep = nullptr);
+                      scene::DeepImage* deep = nullptr, scene::FrameWatch* watch = nullptr);
 
  private:
   struct State;

@@ -6,11 +6,13 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <exception>
 #include <optional>
 #include <utility>
 
 #include "frame/message_values.hpp"
 #include "frame/reduce.hpp"
+#include "frame/stop_relay.hpp"
 #include "scene/error.hpp"
 #include "volume/learned_work.hpp"
 
@@ -30,8 +32,9 @@ struct RegionHeader {
   std::uint64_t rays, voxels_visited, samples, pixels_again, bricks_total, bricks_invisible, brick_hits, bricks_loaded,
       bricks_evicted, bytes_loaded, bytes_resident, peak_bytes, blank_samples;
   double cpu_seconds;
+  std::uint64_t stopped;  ///< 1: no pixels follow
 };
-static_assert(sizeof(RegionHeader) == 17 * 8);
+static_assert(sizeof(RegionHeader) == 18 * 8);
 
 double process_cpu_seconds() {
   timespec t{};
@@ -65,6 +68,7 @@ class SortFirst::State {
  public:
   State(exchange::Transport& transport, SortFirstSettings settings)
       : transport_(transport),
+        relay_(transport),
         settings_(std::move(settings)),
         weights_(settings_.weights.empty() ? std::vector<double>(static_cast<std::size_t>(transport.size()), 1.0)
                                            : settings_.weights) {
@@ -76,7 +80,31 @@ class SortFirst::State {
   }
 
   std::optional<FinishedVolumeFrame> render(volume::Renderer& renderer, const scene::TransferFunction& function,
-                                            const VolumeJob& job, std::size_t number) {
+                                            const VolumeJob& job, std::size_t number, scene::FrameWatch* watch) {
+    scene::FrameWatch nobody;
+    if (watch == nullptr) watch = &nobody;
+    StopRelay::Run relayed(relay_, watch->stop());
+    // What the caller's function throws stops all ranks in order before the caller gets it.
+    std::exception_ptr thrown;
+    scene::FrameWatch here(relayed.token());
+    if (watch->wants_tiles() && transport_.rank() == 0)
+      here.listen([&](const scene::PixelRect& rect, const scene::Image& image) {
+        try {
+          watch->finished(rect, image);
+        } catch (...) {
+          thrown = std::current_exception();
+          relayed.stop();
+          throw scene::FrameStopped();
+        }
+      });
+    auto finished = make(renderer, function, job, number, here);
+    if (thrown) std::rethrow_exception(thrown);
+    return finished;
+  }
+
+ private:
+  std::optional<FinishedVolumeFrame> make(volume::Renderer& renderer, const scene::TransferFunction& function,
+                                          const VolumeJob& job, std::size_t number, scene::FrameWatch& watch) {
     {
       // No rank runs ahead of the picture that rank 0 puts together, and a frame's time does not count reading.
       const scene::TraceScope timing(settings_.trace, "wait", static_cast<std::int32_t>(number));
@@ -85,15 +113,21 @@ class SortFirst::State {
     const auto begin = std::chrono::steady_clock::now();
     const ImageSplit split = [&] {
       const scene::TraceScope timing(settings_.trace, "partition", static_cast<std::int32_t>(number));
-      look(renderer, function, job);
+      look(renderer, function, job, watch);
       return split_of(renderer, function, job);
     }();
     const PixelRegion mine = split.region(transport_.rank());
     const double cpu_before = process_cpu_seconds();
     volume::RenderStatistics statistics;
     std::vector<float> doubts;
-    scene::Image image =
-        renderer.render(job.camera, job.size, function, &statistics, mine, settings_.keep_doubts ? &doubts : nullptr);
+    scene::Image image;
+    bool stopped = false;
+    try {
+      image = renderer.render(job.camera, job.size, function, &statistics, mine,
+                              settings_.keep_doubts ? &doubts : nullptr, &watch);
+    } catch (const scene::FrameStopped&) {
+      stopped = true;
+    }
     const double cpu = process_cpu_seconds() - cpu_before;
     if (settings_.balance == Balance::previous) share_times(cpu);
     last_split_ = split;
@@ -113,13 +147,16 @@ class SortFirst::State {
                         statistics.bytes_resident,
                         statistics.peak_bytes,
                         statistics.blank_samples,
-                        cpu};
+                        cpu,
+                        stopped ? 1u : 0u};
     if (transport_.rank() != 0) {
       send(header, image, doubts);
       return std::nullopt;
     }
     FinishedVolumeFrame finished;
     finished.frame = number;
+    finished.stopped = stopped;
+    if (stopped) image = scene::Image(job.size);
     finished.image = std::move(image);
     finished.doubts = std::move(doubts);
     finished.statistics = statistics;
@@ -134,13 +171,22 @@ class SortFirst::State {
       }();
       const scene::TraceScope timing(settings_.trace, "assemble", static_cast<std::int32_t>(number),
                                      message.bytes.size(), 1);
-      place(message, finished);
+      place(message, finished, watch);
     }
     finished.frame_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
     return finished;
   }
 
- private:
+  /// On rank 0, of pixels that came from another.
+  static void tell(scene::FrameWatch& watch, const scene::PixelRect& rect, FinishedVolumeFrame& finished) {
+    if (finished.stopped || watch.stopped()) return;
+    try {
+      watch.finished(rect, finished.image);
+    } catch (const scene::FrameStopped&) {
+      finished.stopped = true;
+    }
+  }
+
   ImageSplit split_of(const volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job) {
     const int processes = transport_.size();
     const Balance balance = settings_.balance;
@@ -170,14 +216,19 @@ class SortFirst::State {
 
   /// What a look at every 32nd ray teaches of the work that this view takes: each rank looks at the rectangle it had in
   /// the frame before, whose bricks it holds. Collective.
-  void look(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job) {
+  void look(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
+            scene::FrameWatch& watch) {
     if ((transport_.size() == 1 && !settings_.keep_cost) || settings_.balance != Balance::accurate) return;
     const bool has_last = last_split_.has_value() && last_size_ == job.size;
     const PixelRegion area = volume::footprint(job.camera, job.size, renderer.geometry());
     const PixelRegion part = has_last ? last_split_->region(transport_.rank())
                                       : volume::even_split(transport_.size(), job.size, area).region(transport_.rank());
     volume::WorkTally tally(renderer.geometry().voxels());
-    renderer.look(job.camera, job.size, function, tally, part);
+    try {
+      renderer.look(job.camera, job.size, function, tally, part, &watch);
+    } catch (const scene::FrameStopped&) {
+      // The others wait for what this rank has learnt; the picture is dropped all the same.
+    }
     rates_.emplace(renderer.geometry().voxels());
     rates_->learn(reduce_all(transport_, tally.take(), Reduction::sum));
   }
@@ -246,7 +297,7 @@ class SortFirst::State {
     Bytes bytes;
     const PixelRegion& r = header.region;
     append_values(bytes, std::span(&header, 1));
-    for (int y = r.y0; y < r.y1; ++y) {
+    for (int y = r.y0; y < r.y1 && header.stopped == 0; ++y) {
       const auto width = static_cast<std::size_t>(r.x1 - r.x0);
       append_values(bytes, std::span(image.rgba).subspan(4 * image.index(r.x0, y), 4 * width));
       append_values(bytes, std::span(image.depth).subspan(image.index(r.x0, y), width));
@@ -255,7 +306,7 @@ class SortFirst::State {
     transport_.send(0, Channel::tiles, std::move(bytes), static_cast<std::int32_t>(header.frame));
   }
 
-  void place(const exchange::Message& message, FinishedVolumeFrame& finished) {
+  void place(const exchange::Message& message, FinishedVolumeFrame& finished, scene::FrameWatch& watch) {
     ValueReader reader(message.bytes);
     const auto header = reader.take<RegionHeader>();
     const PixelRegion& r = header.region;
@@ -263,13 +314,15 @@ class SortFirst::State {
     if (header.frame != finished.frame || r.x0 < 0 || r.y0 < 0 || r.x1 > size.width || r.y1 > size.height)
       throw scene::Error(scene::ExitCode::system_failure,
                          "exchange: a rectangle of another picture came; all ranks must run the same program");
-    for (int y = r.y0; y < r.y1; ++y) {
+    finished.stopped = finished.stopped || header.stopped != 0;
+    for (int y = r.y0; y < r.y1 && header.stopped == 0; ++y) {
       const auto width = static_cast<std::size_t>(r.x1 - r.x0);
       reader.take(std::span(finished.image.rgba).subspan(4 * finished.image.index(r.x0, y), 4 * width));
       reader.take(std::span(finished.image.depth).subspan(finished.image.index(r.x0, y), width));
       if (!finished.doubts.empty())
         reader.take(std::span(finished.doubts).subspan(finished.image.index(r.x0, y), width));
     }
+    if (header.stopped == 0) tell(watch, {r.x0, r.y0, r.x1, r.y1}, finished);
     volume::RenderStatistics& s = finished.statistics;
     s.rays += header.rays, s.voxels_visited += header.voxels_visited, s.samples += header.samples;
     s.pixels_again += header.pixels_again;
@@ -281,6 +334,7 @@ class SortFirst::State {
   }
 
   exchange::Transport& transport_;
+  StopRelay relay_;
   const SortFirstSettings settings_;
   std::vector<double> weights_, times_;
   std::optional<volume::WorkRates> rates_;
@@ -295,8 +349,8 @@ SortFirst::~SortFirst() = default;
 
 std::optional<FinishedVolumeFrame> SortFirst::render(volume::Renderer& renderer,
                                                      const scene::TransferFunction& function, const VolumeJob& job,
-                                                     std::size_t number) {
-  return state_->render(renderer, function, job, number);
+                                                     std::size_t number, scene::FrameWatch* watch) {
+  return state_->render(renderer, function, job, number, watch);
 }
 
 void render_sort_first(exchange::Transport& transport, const SortFirstSettings& settings,

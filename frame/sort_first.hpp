@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "exchange/transport.hpp"
+#include "scene/frame_watch.hpp"
 #include "scene/grid.hpp"
 #include "volume/cost_map.hpp"
 #include "volume/render.hpp"
@@ -47,6 +48,7 @@ struct FinishedVolumeFrame {
   double frame_ms;                     ///< from when all ranks were ready to the picture in memory, split included
   volume::CostMap cost;                ///< of the whole picture, if SortFirstSettings::keep_cost
   std::vector<float> doubts;           ///< by pixel, if SortFirstSettings::keep_doubts
+  bool stopped = false;                ///< the image lacks pixels
 };
 
 /// Renders pictures of volumes with all ranks of `transport` (sort first): each casts the rays of one rectangle through
@@ -67,8 +69,12 @@ class SortFirst {
 
   /// The picture on rank 0, nothing elsewhere. Collective: the same arguments on every rank, but for the renderer,
   /// which is each rank's own. Throws the run's error, or this rank's, which the caller gives to transport.fail().
+  ///
+  /// `watch` hears on rank 0 of pixels that are final, those of other ranks by whole rectangles; its stop, asked for on
+  /// any rank, ends the picture on all within a tile of rays. All return and can go on.
   std::optional<FinishedVolumeFrame> render(volume::Renderer& renderer, const scene::TransferFunction& function,
-                                            const VolumeJob& job, std::size_t number);
+                                            const VolumeJob& job, std::size_t number,
+                                            scene::FrameWatch* watch = nullptr);
 
  private:
   class State;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "scene/error.hpp"
+#include "scene/frame_watch.hpp"
 
 namespace tessera::frame {
 namespace {
@@ -83,6 +84,7 @@ bool TileRenderer::try_render(const scene::PixelRect& rect, const projection::De
     return false;
   sink.start(rect);
   for (std::size_t next = 0; next < entries.size();) {
+    scene::throw_if_stopped(context_.stop);
     {
       const scene::TraceScope timing(context_.trace, "project");
       next += rasterize(entries.subspan(next), rect);

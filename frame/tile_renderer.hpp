@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <stop_token>
 
 #include "compositor/tile_sink.hpp"
 #include "frame/render.hpp"
@@ -27,6 +28,7 @@ struct TileContext {
   bool opaque = false;                                 ///< a usual ray ends in a fraction of the mesh's depth
   std::span<const projection::Step> steps{};           ///< of the transfer function
   const projection::CellsAtSteps* at_steps = nullptr;  ///< whose segments are cut there; null: none
+  std::stop_token stop{};                              ///< renderers throw scene::FrameStopped once it is asked for
 };
 
 /// Sums over the tiles that one renderer made.

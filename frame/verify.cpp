@@ -108,7 +108,7 @@ std::optional<double> promised_error(const volume::RenderSettings& settings) {
   return std::nullopt;
 }
 
-reference::Suspects suspects(const scene::Image& image, const scene::TetMesh& mesh, const scene::Camera& camera,
+reference::Suspects suspects(const scene::Image& image, const scene::TetMeshView& mesh, const scene::Camera& camera,
                              const scene::TransferFunction& transfer_function, const RenderSettings& settings,
                              std::size_t count) {
   if (checks_all(image.size, count)) return {};
@@ -145,7 +145,7 @@ reference::Suspects suspects(const scene::Image& image, const scene::SampleSourc
   return found;
 }
 
-reference::Verification verify(const scene::Image& image, const scene::TetMesh& mesh, const scene::Camera& camera,
+reference::Verification verify(const scene::Image& image, const scene::TetMeshView& mesh, const scene::Camera& camera,
                                const scene::TransferFunction& transfer_function, const RenderSettings& settings,
                                std::size_t count) {
   const reference::Suspects where = suspects(image, mesh, camera, transfer_function, settings, count);

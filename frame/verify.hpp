@@ -26,7 +26,7 @@ std::optional<double> promised_error(const volume::RenderSettings& settings);
 /// Where a finished picture is to be looked at when `count` of its pixels are judged: where the picture itself, the
 /// scene and the frame's own estimates make it least sure (reference/suspicion.hpp). Depends on the arguments alone,
 /// `threads` excepted, so that a second run, on any number of ranks, looks at the same pixels.
-reference::Suspects suspects(const scene::Image& image, const scene::TetMesh& mesh, const scene::Camera& camera,
+reference::Suspects suspects(const scene::Image& image, const scene::TetMeshView& mesh, const scene::Camera& camera,
                              const scene::TransferFunction& transfer_function, const RenderSettings& settings,
                              std::size_t count);
 
@@ -36,7 +36,7 @@ reference::Suspects suspects(const scene::Image& image, const scene::SampleSourc
                              std::span<const float> doubts, std::size_t count);
 
 /// Checks `count` pixels of a finished picture against the reference: a third at random, the rest of its suspects.
-reference::Verification verify(const scene::Image& image, const scene::TetMesh& mesh, const scene::Camera& camera,
+reference::Verification verify(const scene::Image& image, const scene::TetMeshView& mesh, const scene::Camera& camera,
                                const scene::TransferFunction& transfer_function, const RenderSettings& settings,
                                std::size_t count);
 reference::Verification verify(const scene::Image& image, const scene::SampleSource& source,

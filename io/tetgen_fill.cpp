@@ -26,7 +26,8 @@
 #include "io/surface.hpp"
 #include "scene/error.hpp"
 
-void terminatetetgen(tetgenmesh*, int reason) { throw reason; }
+// The library must find it, in a shared library of ours too, so it is not hidden.
+__attribute__((visibility("default"))) void terminatetetgen(tetgenmesh*, int reason) { throw reason; }
 
 namespace tessera::io {
 namespace {

@@ -378,7 +378,7 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
 /// worked on. `ahead` begins with the next batch.
 HWY_INLINE void prefetch_cells(const LatticeView& view, std::span<const TileEntry> ahead) {
   const std::span<const scene::Tet> tets = view.projected.mesh->tets();
-  const scene::TetMesh& mesh = view.projected.mesh->mesh();
+  const scene::TetMeshView& mesh = view.projected.mesh->mesh();
   const bool per_cell = mesh.association == scene::Association::cell;
   const std::size_t near = std::min<std::size_t>(ahead.size(), CellBatch::most);
   for (std::size_t i = 0; i < near; ++i)

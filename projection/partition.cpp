@@ -99,7 +99,7 @@ std::uint64_t curve_place(const glm::dvec3& point, const scene::Box& box) {
   return hilbert_index(grid_step(offset.x, longest), grid_step(offset.y, longest), grid_step(offset.z, longest));
 }
 
-std::vector<CurveKey> curve_keys(const scene::TetMesh& mesh, std::span<const std::uint64_t> global_tet,
+std::vector<CurveKey> curve_keys(const scene::TetMeshView& mesh, std::span<const std::uint64_t> global_tet,
                                  const scene::Box& box) {
   std::vector<CurveKey> keys(mesh.tets.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, keys.size(), 4096), [&](const auto& range) {
@@ -177,7 +177,7 @@ int part_on_curve(const CurveKey& key, std::span<const CurveKey> splitters) {
   return static_cast<int>(std::upper_bound(splitters.begin(), splitters.end(), key) - splitters.begin());
 }
 
-std::vector<std::uint32_t> parts_of_whole(const scene::TetMesh& mesh, const Partition& how, int parts) {
+std::vector<std::uint32_t> parts_of_whole(const scene::TetMeshView& mesh, const Partition& how, int parts) {
   std::vector<std::uint32_t> part_of(mesh.tets.size());
   const auto fill = [&](const auto& part) {
     for (std::size_t t = 0; t < part_of.size(); ++t) part_of[t] = static_cast<std::uint32_t>(part(t));

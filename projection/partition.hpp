@@ -48,7 +48,7 @@ std::uint64_t curve_place(const glm::dvec3& point, const scene::Box& box);
 
 /// Keys of the mesh's tets. `box` is the whole mesh's; `global_tet` their indices in the whole, or empty if the mesh is
 /// the whole. Uses all threads of the caller's arena.
-std::vector<CurveKey> curve_keys(const scene::TetMesh& mesh, std::span<const std::uint64_t> global_tet,
+std::vector<CurveKey> curve_keys(const scene::TetMeshView& mesh, std::span<const std::uint64_t> global_tet,
                                  const scene::Box& box);
 
 /// Cuts the list of all processes' keys, in curve order, into parts of equal number by counting alone: nobody holds or
@@ -98,6 +98,6 @@ class CurveCut {
 int part_on_curve(const CurveKey& key, std::span<const CurveKey> splitters);
 
 /// Part of each tet of a mesh that is whole in this process: the same as several processes find.
-std::vector<std::uint32_t> parts_of_whole(const scene::TetMesh& mesh, const Partition& how, int parts);
+std::vector<std::uint32_t> parts_of_whole(const scene::TetMeshView& mesh, const Partition& how, int parts);
 
 }  // namespace tessera::projection

@@ -63,7 +63,7 @@ double error_bound_of(const Cell& cell) {
 
 HWY_INLINE Cell set_up(const ProjectedMesh& projected, std::uint32_t tet, const scene::PixelRect& rect) {
   Cell cell;
-  const scene::TetMesh& mesh = projected.mesh->mesh();
+  const scene::TetMeshView& mesh = projected.mesh->mesh();
   const scene::Tet& corners = projected.mesh->tets()[tet];
   for (int i = 0; i < 4; ++i) cell.corner[i] = projected.vertices[corners[i]];
   const bool per_cell = mesh.association == scene::Association::cell;

@@ -18,7 +18,7 @@ constexpr std::size_t tets_a_task = 4096;
 /// Canonical order of corners; equal positions by index.
 class CornerOrder {
  public:
-  explicit CornerOrder(const scene::TetMesh& mesh) : positions_(mesh.positions) {}
+  explicit CornerOrder(const scene::TetMeshView& mesh) : positions_(mesh.positions) {}
   bool operator()(std::uint32_t a, std::uint32_t b) const {
     const glm::dvec3 &p = positions_[a], &q = positions_[b];
     return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
@@ -53,12 +53,12 @@ bool ordered(std::span<const scene::Tet> tets, const CornerOrder& before) {
 
 void order_corners(scene::TetMesh& mesh) { order(mesh.tets, CornerOrder(mesh)); }
 
-PreparedMesh::PreparedMesh(const scene::TetMesh& mesh) : mesh_(&mesh), tets_(mesh.tets) {
+PreparedMesh::PreparedMesh(const scene::TetMeshView& mesh) : mesh_(mesh), tets_(mesh.tets) {
   if (mesh.tets.size() > std::numeric_limits<std::uint32_t>::max())
     throw scene::bad_input("mesh: more than 4294967295 tets in one process; split it into pieces");
   const CornerOrder before(mesh);
   if (!ordered(mesh.tets, before)) {
-    ordered_ = mesh.tets;
+    ordered_.assign(mesh.tets.begin(), mesh.tets.end());
     order(ordered_, before);
     tets_ = ordered_;
   }
@@ -79,10 +79,10 @@ PreparedMesh::PreparedMesh(const scene::TetMesh& mesh) : mesh_(&mesh), tets_(mes
 }
 
 std::array<double, 2> PreparedMesh::scalar_bounds(std::size_t tet) const {
-  if (mesh_->association == scene::Association::cell) return {mesh_->scalars[tet], mesh_->scalars[tet]};
-  const scene::Tet& t = mesh_->tets[tet];
+  if (mesh_.association == scene::Association::cell) return {mesh_.scalars[tet], mesh_.scalars[tet]};
+  const scene::Tet& t = mesh_.tets[tet];
   const auto [low, high] =
-      std::minmax({mesh_->scalars[t[0]], mesh_->scalars[t[1]], mesh_->scalars[t[2]], mesh_->scalars[t[3]]});
+      std::minmax({mesh_.scalars[t[0]], mesh_.scalars[t[1]], mesh_.scalars[t[2]], mesh_.scalars[t[3]]});
   return {low, high};
 }
 

@@ -19,12 +19,12 @@ class PreparedMesh {
  public:
   /// The mesh must outlive this object. Where order_corners() has not been called for it, its tets are copied, which
   /// takes 16 bytes each. Throws Error(bad_input) beyond 2^32 - 1 tets: split such a mesh over processes.
-  explicit PreparedMesh(const scene::TetMesh& mesh);
+  explicit PreparedMesh(const scene::TetMeshView& mesh);
   PreparedMesh(PreparedMesh&&) = default;
   PreparedMesh& operator=(PreparedMesh&&) = default;
 
-  [[nodiscard]] const scene::TetMesh& mesh() const { return *mesh_; }
-  [[nodiscard]] std::size_t tet_count() const { return mesh_->tets.size(); }
+  [[nodiscard]] const scene::TetMeshView& mesh() const { return mesh_; }
+  [[nodiscard]] std::size_t tet_count() const { return mesh_.tets.size(); }
 
   /// The tets, their corners in canonical order.
   [[nodiscard]] std::span<const scene::Tet> tets() const { return tets_; }
@@ -41,7 +41,7 @@ class PreparedMesh {
   [[nodiscard]] bool scalars_are_floats() const { return scalars_are_floats_; }
 
  private:
-  const scene::TetMesh* mesh_;
+  scene::TetMeshView mesh_;
   std::vector<scene::Tet> ordered_;  ///< a copy, where the mesh's own are in another order
   std::span<const scene::Tet> tets_;
   std::vector<std::array<double, 2>> block_bounds_;

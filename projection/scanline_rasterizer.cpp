@@ -250,7 +250,7 @@ void rasterize_cell(const std::array<PixelVertex, 4>& corners, const Vertex (&v)
 
 std::size_t rasterize(const ProjectedMesh& projected, float longest_edge, std::span<const TileEntry> entries,
                       const scene::PixelRect& rect, ScanlineBuffers& buffers, RaySegments& out, RasterCounts& counts) {
-  const scene::TetMesh& mesh = projected.mesh->mesh();
+  const scene::TetMeshView& mesh = projected.mesh->mesh();
   const bool per_cell = mesh.association == scene::Association::cell;
   const auto room = static_cast<std::size_t>(rect.area());
   const auto side = [](ScanlineBuffers::EdgeArrays& e) { return EdgeArrays{e.x.data(), e.z.data(), e.s.data()}; };

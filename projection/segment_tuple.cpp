@@ -28,7 +28,7 @@ void from_tuple(const SegmentTuple& tuple, std::uint32_t pixel, std::uint32_t te
   segments.scalar_back[i] = tuple.scalar_back;
 }
 
-float longest_edge(const scene::TetMesh& mesh) {
+float longest_edge(const scene::TetMeshView& mesh) {
   const double longest = tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, mesh.tets.size(), 4096), 0.0,
       [&](const auto& range, double most) {

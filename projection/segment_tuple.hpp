@@ -34,6 +34,6 @@ void from_tuple(const SegmentTuple& tuple, std::uint32_t pixel, std::uint32_t te
 
 /// The longest edge of all tets, rounded to float; 1 if all are zero. Of several meshes that are parts of one data set:
 /// take the largest. Work runs in the caller's task arena (oneTBB).
-float longest_edge(const scene::TetMesh& mesh);
+float longest_edge(const scene::TetMeshView& mesh);
 
 }  // namespace tessera::projection

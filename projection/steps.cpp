@@ -9,6 +9,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "scene/frame_watch.hpp"
+
 namespace tessera::projection {
 namespace {
 
@@ -87,7 +89,7 @@ class Rule {
   }
 
   const PreparedMesh& prepared_;
-  const scene::TetMesh& mesh_;
+  scene::TetMeshView mesh_;
   std::span<const Step> steps_;
   double longest_ray_;
   const scene::Lattice* lattice_;
@@ -114,7 +116,7 @@ std::vector<Step> steps_of(const scene::TransferFunction& function, scene::Emiss
 }
 
 CellsAtSteps::CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> steps, double longest_ray,
-                           const scene::Lattice* lattice) {
+                           const scene::Lattice* lattice, const std::stop_token& stop) {
   const std::size_t count = prepared.tets().size();
   if (steps.empty() || count == 0) return;
   if (lattice == nullptr && prepared.mesh().association == scene::Association::cell) return;
@@ -126,6 +128,7 @@ CellsAtSteps::CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> s
   const Most most = tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, bits_.size(), 64), Most{},
       [&](const auto& words, Most so_far) {
+        scene::throw_if_stopped(stop);
         for (std::size_t word = words.begin(); word < words.end(); ++word) {
           if (rule.spares(word)) continue;
           for (std::size_t tet = 64 * word; tet < std::min(count, 64 * word + 64); ++tet) {

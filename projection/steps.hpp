@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "projection/planes_rasterizer.hpp"
@@ -34,9 +35,9 @@ class CellsAtSteps {
  public:
   CellsAtSteps() = default;
   /// `steps` must outlive this object. `lattice`: on which scalars are kept; null: in double precision. Work runs in
-  /// the caller's task arena (oneTBB).
+  /// the caller's task arena (oneTBB). Throws scene::FrameStopped once `stop` is asked for.
   CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> steps, double longest_ray,
-               const scene::Lattice* lattice);
+               const scene::Lattice* lattice, const std::stop_token& stop = {});
 
   [[nodiscard]] bool contain(std::uint32_t tet) const {
     return !bits_.empty() && (bits_[tet / 64] >> tet % 64 & 1) != 0;

@@ -9,6 +9,9 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "scene/frame_watch.hpp"
 
 namespace tessera::projection {
 namespace {
@@ -41,6 +44,8 @@ bool crosses_eye_plane(const std::array<PixelVertex, 4>& c) {
 }
 
 static_assert(PreparedMesh::block_tets == cull_block_cells);
+
+constexpr std::size_t blocks_a_check = 256;  // of being stopped: 16,384 tets, below a millisecond
 
 /// Runs of blocks that are culled and filled apart: a few a thread, so that none waits long for the last, yet their
 /// counters, one a tile each, stay below 32 MiB.
@@ -91,10 +96,12 @@ void TileLists::for_each_tile(std::size_t tet, Visit visit) const {
 
 TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
                      const scene::TransferFunction& transfer_function, bool emits_without_extinction,
-                     scene::Trace* trace, TileListBuffers* buffers, bool cull_invisible)
+                     scene::Trace* trace, TileListBuffers* buffers, bool cull_invisible,
+                     std::stop_token stop)
     : projected_(&projected),
       trace_(trace),
       grid_(grid),
+      stop_(std::move(stop)),
       columns_(static_cast<std::size_t>(grid.columns())),
       buffers_(buffers != nullptr ? buffers : &own_),
       depth_origin_(nearest_depth(projected)),
@@ -102,13 +109,14 @@ TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
       projected_tets_(projected.mesh->block_count()),
       in_one_tile_(projected_tets_.size()),
       tile_counts_(grid.count(), 0) {
-  const scene::TetMesh& mesh = projected.mesh->mesh();
+  const scene::TetMeshView& mesh = projected.mesh->mesh();
   buffers_->vertices.reset(projected.vertices.size());
   buffers_->places.reset(projected_tets_.size() * cull_block_cells);
   buffers_->near_depths.reset(projected_tets_.size() * cull_block_cells);
   buffers_->entries.clear();
   const bool per_cell = mesh.association == scene::Association::cell;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, projected.vertices.size(), 4096), [&](const auto& range) {
+    scene::throw_if_stopped(stop_);
     const scene::TraceScope timing(trace_, "cull");
     const std::size_t n = range.end() - range.begin();
     make_cull_vertices(projected.vertices.subspan(range.begin(), n),
@@ -146,13 +154,14 @@ TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
 
 void TileLists::cull(Run& run, const ClearIntervals& clear) {
   const PreparedMesh& prepared = *projected_->mesh;
-  const scene::TetMesh& mesh = prepared.mesh();
+  const scene::TetMeshView& mesh = prepared.mesh();
   const bool per_cell = mesh.association == scene::Association::cell;
   CullCounts& counts = run.culled;
   run.tiles.assign(grid_.count(), 0);
   std::uint32_t* const tiles = run.tiles.data();
   std::vector<ClearFloats> clear_here;
   for (std::size_t block = run.first_block; block < run.last_block; ++block) {
+    if (block % blocks_a_check == 0) scene::throw_if_stopped(stop_);
     const std::size_t first = block * cull_block_cells;
     const std::size_t n = std::min(cull_block_cells, mesh.tets.size() - first);
     const auto [low, high] = prepared.block_scalar_bounds(block);
@@ -247,6 +256,7 @@ void TileLists::fill(std::size_t r, std::size_t first, std::size_t last) {
       entries[next[tile - first]++] = {buffers_->near_depths[tet], static_cast<std::uint32_t>(tet)};
   };
   for (std::size_t block = run.first_block; block < run.last_block; ++block) {
+    if (block % blocks_a_check == 0) scene::throw_if_stopped(stop_);
     const std::size_t first_tet = block * cull_block_cells;
     for_each_of(in_one_tile_[block], first_tet, [&](std::size_t tet) { add(tet, buffers_->places[tet]); });
     for_each_of(projected_tets_[block] & ~in_one_tile_[block], first_tet,

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "projection/cull_cells.hpp"
@@ -53,10 +54,11 @@ class TileLists {
  public:
   /// First pass: culls and counts. Work runs in the caller's task arena (oneTBB); `trace`, if any, gets spans `cull`
   /// and `bin` of the threads that help. `buffers`, if any, must outlive this object and serve no other meanwhile.
-  /// Without `cull_invisible` cells of which the transfer function shows nothing are listed like others.
+  /// Without `cull_invisible` cells of which the transfer function shows nothing are listed like others. Both passes
+  /// throw scene::FrameStopped once `stop` is asked for.
   TileLists(const ProjectedMesh& projected, const TileGrid& grid, const scene::TransferFunction& transfer_function,
             bool emits_without_extinction, scene::Trace* trace = nullptr, TileListBuffers* buffers = nullptr,
-            bool cull_invisible = true);
+            bool cull_invisible = true, std::stop_token stop = {});
   TileLists(const TileLists&) = delete;
   TileLists& operator=(const TileLists&) = delete;
 
@@ -93,6 +95,7 @@ class TileLists {
   const ProjectedMesh* projected_;
   scene::Trace* trace_;
   TileGrid grid_;
+  std::stop_token stop_;
   std::size_t columns_;  ///< of the grid, which would divide for them tet by tet
   TileListBuffers own_;
   TileListBuffers* buffers_;

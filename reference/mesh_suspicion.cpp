@@ -26,7 +26,7 @@ constexpr double pixels_per_mark = 32, most_marks = 64;
 
 class MeshSuspects {
  public:
-  MeshSuspects(const scene::TetMesh& mesh, const scene::Camera& camera, const scene::TransferFunction& function,
+  MeshSuspects(const scene::TetMeshView& mesh, const scene::Camera& camera, const scene::TransferFunction& function,
                scene::Emission emission, const scene::Image& image, const SuspicionMap& edge)
       : mesh_(mesh), image_(image), edge_(edge), view_(camera, image.size), light_(function, emission, noise(mesh)) {
     const std::size_t pixels = image.depth.size();
@@ -104,7 +104,7 @@ class MeshSuspects {
     }
   }
 
-  static double noise(const scene::TetMesh& mesh) {
+  static double noise(const scene::TetMeshView& mesh) {
     const std::array<double, 2> range = scene::scalar_range(mesh);
     return std::max(quantum * (range[1] - range[0]), 0x1p-50 * std::max(std::abs(range[0]), std::abs(range[1]))) +
            std::numeric_limits<double>::min();
@@ -122,7 +122,7 @@ class MeshSuspects {
     raise(found_.depth[pixel], static_cast<float>(std::min(1.0, by_depth * along) * (through + 0.001)));
   }
 
-  const scene::TetMesh& mesh_;
+  scene::TetMeshView mesh_;
   const scene::Image& image_;
   const SuspicionMap& edge_;
   View view_;
@@ -133,7 +133,7 @@ class MeshSuspects {
 
 }  // namespace
 
-MeshSuspicion suspect(const scene::TetMesh& mesh, const scene::Camera& camera,
+MeshSuspicion suspect(const scene::TetMeshView& mesh, const scene::Camera& camera,
                       const scene::TransferFunction& transfer_function, scene::Emission emission,
                       const scene::Image& image, const SuspicionMap& edge, int threads) {
   MeshSuspects suspects(mesh, camera, transfer_function, emission, image, edge);

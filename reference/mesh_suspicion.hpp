@@ -22,7 +22,7 @@ struct MeshSuspicion {
 };
 
 /// `edge`: the picture's ImageSuspicion::edge. `threads` 0: all cores.
-MeshSuspicion suspect(const scene::TetMesh& mesh, const scene::Camera& camera,
+MeshSuspicion suspect(const scene::TetMeshView& mesh, const scene::Camera& camera,
                       const scene::TransferFunction& transfer_function, scene::Emission emission,
                       const scene::Image& image, const SuspicionMap& edge, int threads = 0);
 

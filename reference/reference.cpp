@@ -35,9 +35,9 @@ void sort_front_to_back(std::vector<RaySegment>& segments) {
 
 }  // namespace
 
-Reference::Reference(const scene::TetMesh& mesh, const scene::Camera& camera, scene::ImageSize size,
+Reference::Reference(const scene::TetMeshView& mesh, const scene::Camera& camera, scene::ImageSize size,
                      const scene::TransferFunction& transfer_function, scene::Emission emission)
-    : mesh_(&mesh),
+    : mesh_(mesh),
       size_((scene::validate(camera), scene::validate(size), size)),
       knots_(transfer_function.knots().begin(), transfer_function.knots().end()),
       emission_(emission),
@@ -51,15 +51,15 @@ Reference::Reference(const scene::TetMesh& mesh, const scene::Camera& camera, sc
 }
 
 std::array<Corner, 4> Reference::corners(std::size_t tet) const {
-  scene::Tet order = mesh_->tets[tet];
+  scene::Tet order = mesh_.tets[tet];
   std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
-    const glm::dvec3 &p = mesh_->positions[i], &q = mesh_->positions[j];
+    const glm::dvec3 &p = mesh_.positions[i], &q = mesh_.positions[j];
     return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
   });
   std::array<Corner, 4> corners;
   for (int i = 0; i < 4; ++i) {
-    const bool cell_data = mesh_->association == scene::Association::cell;
-    corners[i] = {vertices_[order[i]], mesh_->scalars[cell_data ? tet : order[i]]};
+    const bool cell_data = mesh_.association == scene::Association::cell;
+    corners[i] = {vertices_[order[i]], mesh_.scalars[cell_data ? tet : order[i]]};
   }
   return corners;
 }
@@ -68,7 +68,7 @@ Reference::Box Reference::box(std::size_t tet) const {
   const double infinity = std::numeric_limits<double>::infinity();
   Box box{infinity, infinity, -infinity, -infinity};
   double least_w = infinity, largest_w = 0, deepest = -infinity;
-  for (const std::uint32_t v : mesh_->tets[tet]) {
+  for (const std::uint32_t v : mesh_.tets[tet]) {
     const glm::dvec3& h = vertices_[v].homogeneous;
     least_w = std::min(least_w, h.z);
     largest_w = std::max(largest_w, std::abs(h.z));

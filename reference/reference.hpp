@@ -38,7 +38,7 @@ class Reference final : public RayReference {
  public:
   /// The mesh must outlive the reference. Throws scene::Error(bad_input) for an invalid camera or size, an empty
   /// transfer function, or a mesh that breaks its invariants.
-  Reference(const scene::TetMesh& mesh, const scene::Camera& camera, scene::ImageSize size,
+  Reference(const scene::TetMeshView& mesh, const scene::Camera& camera, scene::ImageSize size,
             const scene::TransferFunction& transfer_function, scene::Emission emission = scene::Emission::absorption);
 
   /// The ray through pixel coordinates (x, y), front to back. Pixel (i, j) has its centre at (i + 0.5, j + 0.5).
@@ -67,7 +67,7 @@ class Reference final : public RayReference {
   /// Of segments in order.
   [[nodiscard]] Pixel shaded(std::span<const RaySegment> segments) const;
 
-  const scene::TetMesh* mesh_;
+  scene::TetMeshView mesh_;
   scene::ImageSize size_;
   std::vector<scene::Knot> knots_;
   scene::Emission emission_;

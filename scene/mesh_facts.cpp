@@ -21,7 +21,7 @@ double longest_side(const Box& box) {
 
 }  // namespace
 
-MeshFacts facts_of(const TetMesh& mesh, int threads) {
+MeshFacts facts_of(const TetMeshView& mesh, int threads) {
   MeshFacts facts{bounds(mesh, threads), scalar_range(mesh, threads), 0, mesh.tets.size(), mesh.association};
   facts.mean_thickness = mean_thickness(facts.box, volume_sum(mesh, facts.box, threads));
   return facts;
@@ -37,7 +37,7 @@ MeshFacts joined(const MeshFacts& a, const MeshFacts& b) {
           a.association};
 }
 
-VolumeSum volume_sum(const TetMesh& mesh, const Box& box, int threads) {
+VolumeSum volume_sum(const TetMeshView& mesh, const Box& box, int threads) {
   const double longest = longest_side(box);
   if (!(longest > 0)) return 0;
   const auto volume_of = [&](const Tet& tet) {

@@ -19,7 +19,7 @@ struct MeshFacts {
 };
 
 /// The facts of a mesh that is whole.
-MeshFacts facts_of(const TetMesh& mesh, int threads = 1);
+MeshFacts facts_of(const TetMeshView& mesh, int threads = 1);
 
 /// Of two parts of one mesh; a part without tets changes nothing. `mean_thickness` is not meant: it needs the box of
 /// the whole first, then volume_sum() of each part, and their sum.
@@ -30,7 +30,7 @@ MeshFacts joined(const MeshFacts& a, const MeshFacts& b);
 using VolumeSum = __int128;
 
 /// Sum over the mesh's tets, each rounded down, with the box of the whole mesh. Zero if the box has no extent.
-VolumeSum volume_sum(const TetMesh& mesh, const Box& box, int threads = 1);
+VolumeSum volume_sum(const TetMeshView& mesh, const Box& box, int threads = 1);
 
 /// mean_thickness() from the box and the volume of the whole.
 double mean_thickness(const Box& box, VolumeSum volume);

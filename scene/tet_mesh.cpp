@@ -12,7 +12,7 @@
 
 namespace tessera::scene {
 
-Box bounds(const TetMesh& mesh, int threads) {
+Box bounds(const TetMeshView& mesh, int threads) {
   const auto join = [](const Box& a, const Box& b) { return Box{glm::min(a.low, b.low), glm::max(a.high, b.high)}; };
   const auto of = [&](std::size_t first, std::size_t last) {
     Box box;
@@ -25,12 +25,12 @@ Box bounds(const TetMesh& mesh, int threads) {
   return {box.low + 0.0, box.high + 0.0};
 }
 
-double mean_thickness(const TetMesh& mesh) {
+double mean_thickness(const TetMeshView& mesh) {
   const Box box = bounds(mesh);
   return mean_thickness(box, volume_sum(mesh, box));
 }
 
-std::array<double, 2> scalar_range(const TetMesh& mesh, int threads) {
+std::array<double, 2> scalar_range(const TetMeshView& mesh, int threads) {
   if (mesh.tets.empty()) return {0, 0};
   using Range = std::array<double, 2>;
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -50,7 +50,7 @@ std::array<double, 2> scalar_range(const TetMesh& mesh, int threads) {
   return {low + 0.0, high + 0.0};  // -0 becomes 0, as in bounds()
 }
 
-TetMesh subset(const TetMesh& mesh, std::span<const std::uint32_t> tets) {
+TetMesh subset(const TetMeshView& mesh, std::span<const std::uint32_t> tets) {
   TetMesh part;
   part.association = mesh.association;
   part.field_name = mesh.field_name;
@@ -75,7 +75,7 @@ TetMesh subset(const TetMesh& mesh, std::span<const std::uint32_t> tets) {
   return part;
 }
 
-void validate(const TetMesh& mesh, const std::string& source) {
+void validate(const TetMeshView& mesh, const std::string& source) {
   const bool point = mesh.association == Association::point;
   const std::size_t expected = point ? mesh.positions.size() : mesh.tets.size();
   if (mesh.scalars.size() != expected)

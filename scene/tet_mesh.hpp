@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scene/camera.hpp"
@@ -41,22 +42,46 @@ struct TetMesh {
   }
 };
 
+/// A mesh that somebody else keeps: the same arrays by reference, for all who only read. They must stay as they are for
+/// as long as the view is used.
+struct TetMeshView {
+  std::span<const glm::dvec3> positions;
+  std::span<const Tet> tets;
+  std::span<const double> scalars;
+  Association association = Association::point;
+  std::span<const std::uint64_t> original_cell{};
+  std::string_view field_name{};
+
+  TetMeshView() = default;
+  TetMeshView(const TetMesh& mesh)  // NOLINT(google-explicit-constructor): every mesh can be read
+      : positions(mesh.positions),
+        tets(mesh.tets),
+        scalars(mesh.scalars),
+        association(mesh.association),
+        original_cell(mesh.original_cell),
+        field_name(mesh.field_name) {}
+
+  [[nodiscard]] std::uint64_t cell_of(std::size_t tet) const {
+    return original_cell.empty() ? tet : original_cell[tet];
+  }
+};
+
 /// Box of the vertices that tets use. Empty if there are no tets. `threads`, here and below: 0 is all cores.
-Box bounds(const TetMesh& mesh, int threads = 1);
+Box bounds(const TetMeshView& mesh, int threads = 1);
 
 /// Volume of the tets over the largest face of their box: how much matter a ray meets on average that crosses the box
 /// the short way. World units; the length that default extinctions refer to, as it sees plates, shells and scattered
 /// parts that the box's diagonal does not. Zero for an empty or flat mesh. The same bits for any order of the tets, and
 /// from mesh_facts.hpp for any division into parts.
-double mean_thickness(const TetMesh& mesh);
+double mean_thickness(const TetMeshView& mesh);
 
 /// Smallest and largest scalar that tets use; {0, 0} if there are no tets.
-std::array<double, 2> scalar_range(const TetMesh& mesh, int threads = 1);
+std::array<double, 2> scalar_range(const TetMeshView& mesh, int threads = 1);
 
 /// Some tets of a mesh, in the order given, with the vertices that they use in the mesh's order.
-TetMesh subset(const TetMesh& mesh, std::span<const std::uint32_t> tets);
+TetMesh subset(const TetMeshView& mesh, std::span<const std::uint32_t> tets);
 
 /// Throws Error(bad_input, "SOURCE: ...") if an index, size or number breaks the invariants above.
-void validate(const TetMesh& mesh, const std::string& source);
+void validate(const TetMeshView& mesh, const std::string& source);
 
 }  // namespace tessera::scene

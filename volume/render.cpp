@@ -139,6 +139,12 @@ std::vector<std::pair<int, int>> tiles_of(const PixelRegion& region) {
   return tiles;
 }
 
+/// The pixels of a tile that are in the region.
+scene::PixelRect tile_rect(const std::pair<int, int>& tile, const PixelRegion& region) {
+  return {std::max(tile.first, region.x0), std::max(tile.second, region.y0),
+          std::min(tile.first + TileRays::side, region.x1), std::min(tile.second + TileRays::side, region.y1)};
+}
+
 PixelRegion within(scene::ImageSize size, const std::optional<PixelRegion>& region) {
   if (!region) return {0, 0, size.width, size.height};
   return {std::max(0, region->x0), std::max(0, region->y0), std::min(size.width, region->x1),
@@ -208,12 +214,13 @@ struct Renderer::State {
   [[nodiscard]] double accuracy() const { return settings.method == Method::exact ? 2e-6 : settings.accuracy; }
 
   void cast(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
-            const PixelRegion& wanted, WorkTally* tally, scene::Image* image, float* doubts, Cast& result);
+            const PixelRegion& wanted, WorkTally* tally, scene::Image* image, float* doubts, scene::FrameWatch& watch,
+            Cast& result);
   void cast_rectilinear(const scene::Camera& camera, const scene::TransferFunction& function, const PixelRegion& wanted,
-                        scene::Image& image, Cast& result) const;
+                        scene::Image& image, scene::FrameWatch& watch, Cast& result) const;
   void cast_again(const scene::Camera& camera, const scene::TransferFunction& function,
                   const std::vector<std::uint8_t>& visible, const std::vector<std::array<int, 2>>& pixels,
-                  scene::Image& image, Cast& result) const;
+                  scene::Image& image, const std::stop_token& stop, Cast& result) const;
 
   /// Bricks near the view, while the picture is gathered and written; the next frame ends it.
   void begin_preload(std::vector<std::uint8_t> wanted) {
@@ -279,7 +286,8 @@ std::vector<std::array<glm::dvec3, 2>> Renderer::visible_bricks(
 /// The rays of the pixels `wanted`: an image, or a tally.
 void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
                            const scene::TransferFunction& transfer_function, const PixelRegion& wanted,
-                           WorkTally* tally, scene::Image* image, float* doubts, Cast& result) {
+                           WorkTally* tally, scene::Image* image, float* doubts, scene::FrameWatch& watch,
+                           Cast& result) {
   const PixelRays rays(camera, size, source.geometry());
   const integrals::LaneTable table = table_of(transfer_function);
   std::vector<std::uint8_t> visible;
@@ -350,19 +358,30 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
     tbb::enumerable_thread_specific<std::unique_ptr<TileMemory>> memories(
         [] { return std::make_unique<TileMemory>(); });
     tbb::enumerable_thread_specific<TileCounts> tile_counts;
+    tbb::enumerable_thread_specific<std::vector<std::size_t>> late_tiles;  // finished by cast_again()
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, tiles.size(), 1),
         [&](const auto& some) {
           const scene::TraceScope scope(settings.trace, tally == nullptr ? "project" : "partition");
-          for (std::size_t n = some.begin(); n != some.end(); ++n)
-            cast_tile(frame, tiles[n].first, tiles[n].second, wanted, *memories.local(), image, tile_counts.local(),
-                      doubts);
+          for (std::size_t n = some.begin(); n != some.end(); ++n) {
+            watch.check();
+            TileMemory& memory = *memories.local();
+            const std::size_t doubtful_before = memory.doubtful.size();
+            cast_tile(frame, tiles[n].first, tiles[n].second, wanted, memory, image, tile_counts.local(), doubts);
+            if (image == nullptr || !watch.wants_tiles()) continue;
+            if (memory.doubtful.size() == doubtful_before)
+              watch.finished(tile_rect(tiles[n], wanted), *image);
+            else
+              late_tiles.local().push_back(n);
+          }
         },
         tbb::auto_partitioner());
     std::vector<std::array<int, 2>> doubtful;
     for (const auto& memory : memories)
       doubtful.insert(doubtful.end(), memory->doubtful.begin(), memory->doubtful.end());
-    if (!doubtful.empty()) cast_again(camera, transfer_function, visible, doubtful, *image, result);
+    if (!doubtful.empty()) cast_again(camera, transfer_function, visible, doubtful, *image, watch.stop(), result);
+    for (const auto& late : late_tiles)
+      for (const std::size_t n : late) watch.finished(tile_rect(tiles[n], wanted), *image);
     for (const TileCounts& c : tile_counts) {
       result.counts.rays += c.rays;
       result.counts.voxels_visited += c.voxels_visited;
@@ -375,14 +394,15 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
 void Renderer::State::cast_again(const scene::Camera& camera, const scene::TransferFunction& function,
                                  const std::vector<std::uint8_t>& visible,
                                  const std::vector<std::array<int, 2>>& pixels, scene::Image& image,
-                                 Cast& result) const {
+                                 const std::stop_token& stop, Cast& result) const {
   const scene::TraceScope scope(settings.trace, "project");
-  cast_voxel_by_voxel(source, camera, function, voxel_settings(function, visible), pixels, image);
+  cast_voxel_by_voxel(source, camera, function, voxel_settings(function, visible), pixels, image, stop);
   result.pixels_again = pixels.size();
 }
 
 void Renderer::State::cast_rectilinear(const scene::Camera& camera, const scene::TransferFunction& function,
-                                       const PixelRegion& wanted, scene::Image& image, Cast& result) const {
+                                       const PixelRegion& wanted, scene::Image& image, scene::FrameWatch& watch,
+                                       Cast& result) const {
   const integrals::LaneTable table = table_of(function);
   tbb::task_arena arena(scene::threads_for(settings.threads));
   arena.execute([&] {
@@ -391,7 +411,7 @@ void Renderer::State::cast_rectilinear(const scene::Camera& camera, const scene:
     result.brick_visible = volume::visible_bricks(ranges, visible, bricks.layout());
     const scene::TraceScope scope(settings.trace, "project");
     const VoxelCastCounts counts =
-        cast_voxel_by_voxel(source, camera, function, voxel_settings(function, visible), wanted, image);
+        cast_voxel_by_voxel(source, camera, function, voxel_settings(function, visible), wanted, image, watch);
     result.counts.rays = counts.rays, result.counts.voxels_visited = counts.voxels;
     result.counts.samples = counts.lines;
     result.blocks_read = counts.blocks_read, result.block_bytes = counts.bytes_read;
@@ -400,7 +420,8 @@ void Renderer::State::cast_rectilinear(const scene::Camera& camera, const scene:
 
 scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size,
                               const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
-                              std::optional<PixelRegion> region, std::vector<float>* doubts) {
+                              std::optional<PixelRegion> region, std::vector<float>* doubts,
+                              scene::FrameWatch* watch) {
   scene::validate(camera);
   scene::validate(size);
   State& state = *state_;
@@ -412,15 +433,18 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   const bool near_ones = settings.cache == CachePolicy::proximity;
   if (near_ones)
     state.bricks.set_distances(cone_distances(camera, size, wanted, state.source.geometry(), state.bricks.layout()));
+  scene::FrameWatch nobody;
+  if (watch == nullptr) watch = &nobody;
+  watch->check();
   scene::Image image(size);
   if (doubts != nullptr) doubts->assign(image.depth.size(), 0.0f);
   Cast cast;
   const bool rectilinear = state.source.geometry().rectilinear();
   if (rectilinear)
-    state.cast_rectilinear(camera, transfer_function, wanted, image, cast);
+    state.cast_rectilinear(camera, transfer_function, wanted, image, *watch, cast);
   else
     state.cast(camera, size, transfer_function, wanted, nullptr, &image, doubts == nullptr ? nullptr : doubts->data(),
-               cast);
+               *watch, cast);
   const BrickCache::Counts after = state.bricks.counts();
   state.counts_before = after;
   if (near_ones && settings.preload_limit > 0 && !rectilinear) state.begin_preload(cast.brick_visible);
@@ -445,12 +469,14 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
 
 void Renderer::look(const scene::Camera& camera, scene::ImageSize size,
                     const scene::TransferFunction& transfer_function, WorkTally& tally,
-                    std::optional<PixelRegion> region) {
+                    std::optional<PixelRegion> region, scene::FrameWatch* watch) {
   scene::validate(camera);
   scene::validate(size);
   if (state_->source.geometry().rectilinear()) return;
   Cast unused;
-  state_->cast(camera, size, transfer_function, within(size, region), &tally, nullptr, nullptr, unused);
+  scene::FrameWatch nobody;
+  state_->cast(camera, size, transfer_function, within(size, region), &tally, nullptr, nullptr,
+               watch == nullptr ? nobody : *watch, unused);
 }
 
 CostMap Renderer::cost_map(const scene::Camera& camera, scene::ImageSize size,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scene/camera.hpp"
+#include "scene/frame_watch.hpp"
 #include "scene/image.hpp"
 #include "scene/mechanisms.hpp"
 #include "scene/optical_model.hpp"
@@ -98,15 +99,17 @@ class Renderer {
   /// Error(bad_input) for an invalid camera or size; Error(system_failure) if the budget does not hold the bricks that
   /// the threads need at one time. `doubts` gets, by pixel, what float lanes may err there in linear RGBA, so far as
   /// they add it up (lane_doubt.hpp); above half the accuracy asked a pixel was cast again in double precision. Zero
-  /// where no ray was cast, and all over rectilinear grids.
+  /// where no ray was cast, and all over rectilinear grids. `watch` hears of finished tiles of the region; once it is
+  /// asked to stop, render() throws scene::FrameStopped within a tile of rays, and can be called again.
   scene::Image render(const scene::Camera& camera, scene::ImageSize size,
                       const scene::TransferFunction& transfer_function, RenderStatistics* statistics = nullptr,
-                      std::optional<PixelRegion> region = std::nullopt, std::vector<float>* doubts = nullptr);
+                      std::optional<PixelRegion> region = std::nullopt, std::vector<float>* doubts = nullptr,
+                      scene::FrameWatch* watch = nullptr);
 
   /// Casts every 32nd ray of the picture (more of a small one), or of a region of it, and counts where in the volume
   /// the work was (learned_work.hpp); makes no light. As render() otherwise.
   void look(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
-            WorkTally& tally, std::optional<PixelRegion> region = std::nullopt);
+            WorkTally& tally, std::optional<PixelRegion> region = std::nullopt, scene::FrameWatch* watch = nullptr);
 
   /// What each pixel will cost, for the split of the image between processes (cost_map.hpp): from the cells of 8^3
   /// voxels that the transfer function shows, and from what a look has taught, if given. `region`: in map

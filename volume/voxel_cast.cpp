@@ -176,23 +176,28 @@ class VoxelCaster {
 
 VoxelCastCounts cast_voxel_by_voxel(const scene::SampleSource& source, const scene::Camera& camera,
                                     const scene::TransferFunction& function, const VoxelCastSettings& settings,
-                                    const PixelRegion& region, scene::Image& image) {
+                                    const PixelRegion& region, scene::Image& image, scene::FrameWatch& watch) {
   VoxelCaster caster(source, camera, function, settings, image);
   constexpr int side = 32;
   if (region.x0 < region.x1 && region.y0 < region.y1)
     tbb::parallel_for(tbb::blocked_range2d<int>(region.y0, region.y1, side, region.x0, region.x1, side),
                       [&](const auto& tile) {
+                        watch.check();
                         for (int y = tile.rows().begin(); y != tile.rows().end(); ++y)
                           for (int x = tile.cols().begin(); x != tile.cols().end(); ++x) caster.cast(x, y);
+                        watch.finished({tile.cols().begin(), tile.rows().begin(), tile.cols().end(), tile.rows().end()},
+                                       image);
                       });
   return caster.counts();
 }
 
 VoxelCastCounts cast_voxel_by_voxel(const scene::SampleSource& source, const scene::Camera& camera,
                                     const scene::TransferFunction& function, const VoxelCastSettings& settings,
-                                    std::span<const std::array<int, 2>> pixels, scene::Image& image) {
+                                    std::span<const std::array<int, 2>> pixels, scene::Image& image,
+                                    const std::stop_token& stop) {
   VoxelCaster caster(source, camera, function, settings, image);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), 16), [&](const auto& some) {
+    scene::throw_if_stopped(stop);
     for (std::size_t n = some.begin(); n != some.end(); ++n) caster.cast(pixels[n][0], pixels[n][1]);
   });
   return caster.counts();
