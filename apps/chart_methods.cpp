@@ -77,8 +77,8 @@ class RanksRenderer final : public ChartRenderer {
           [&](std::size_t) {
             const auto rank = static_cast<std::size_t>(transport.rank());
             const glm::dvec3 extent = facts_.box.high - facts_.box.low;
-            return frame::ProjectorMesh{parts_[rank], ids_[rank],          glm::length(extent),
-                                        facts_.box,   facts_.scalar_range, 0};
+            return frame::ProjectorMesh{*parts_[rank], parts_[rank],        nullptr, ids_[rank], glm::length(extent),
+                                        facts_.box,    facts_.scalar_range, 0};
           },
           [&](frame::FinishedFrame done) {
             image = std::move(done.image);

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <numeric>
 
-#include "apps/distributed_mesh.hpp"
 #include "apps/frame_list.hpp"
 #include "apps/output_check.hpp"
 #include "apps/run_output.hpp"
 #include "exchange/wire.hpp"
 #include "frame/distributed.hpp"
+#include "frame/distributed_mesh.hpp"
 #include "frame/verify.hpp"
 #include "projection/segment_tuple.hpp"
 #include "scene/trace.hpp"
@@ -134,8 +134,9 @@ void RankRun::render() {
   if (timed) transport_.trace_to(&projecting_, &compositing_);
 
   // Of a time series the first step, which gives transfer function and view, even if none of its frames is to be made.
-  DistributedMesh mesh = read_distributed(transport_, frames_.front().mesh.files, options_.mesh, options_.partition,
-                                          roles_.projectors, options_.settings.threads, trace);
+  frame::DistributedMesh mesh =
+      frame::read_distributed(transport_, frames_.front().mesh.files, options_.mesh, options_.partition,
+                              roles_.projectors, options_.settings.threads, trace);
   later_options_ = options_of_later_steps(options_.mesh, mesh.description);
   const MeshSummary summary = summary_of(mesh.description, mesh.facts);
   tets_ = summary.facts.tets;
@@ -180,12 +181,15 @@ void RankRun::render() {
         if (first.step != 0) {
           require_still_there(first);
           mesh = {};  // the last one's memory before the next one's
-          mesh = read_distributed(transport_, first.mesh.files, later_options_, options_.partition, roles_.projectors,
-                                  options_.settings.threads, trace);
+          mesh = frame::read_distributed(transport_, first.mesh.files, later_options_, options_.partition,
+                                         roles_.projectors, options_.settings.threads, trace);
         }
         const float edge = longest_edge(mesh.part.mesh);
         frame::order_corners(mesh.part.mesh, settings.render);
-        return frame::ProjectorMesh{std::make_shared<scene::TetMesh>(std::move(mesh.part.mesh)),
+        auto part = std::make_shared<const scene::TetMesh>(std::move(mesh.part.mesh));
+        return frame::ProjectorMesh{*part,
+                                    part,
+                                    nullptr,
                                     std::move(mesh.part.global_tet),
                                     diagonal(mesh.facts.box),
                                     mesh.facts.box,

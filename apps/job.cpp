@@ -1,5 +1,7 @@
 #include "apps/job.hpp"
 
+#include <csignal>
+
 #include "apps/one_line.hpp"
 #include "apps/start_witness.hpp"
 #include "exchange/loopback_transport.hpp"
@@ -9,6 +11,9 @@ namespace tessera::apps {
 
 Job::Job(std::function<void(const scene::Error&)> speak) : speak_(std::move(speak)) {
   if (exchange::launched_by_mpi()) {
+    // A launcher that goes while MPI starts closes its sockets: an error of a write, not the death of a rank by a
+    // signal of which nobody says a word.
+    std::signal(SIGPIPE, SIG_IGN);
     name_one_line();
     const StartWitness witness;
     mpi_ =

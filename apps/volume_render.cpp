@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "apps/balance_picture.hpp"
-#include "apps/brick_memory.hpp"
+#include "frame/brick_memory.hpp"
 #include "apps/distributed_render.hpp"
 #include "apps/frame_list.hpp"
 #include "apps/frame_reports.hpp"
@@ -145,7 +145,7 @@ class VolumeRun {
     volume::RenderSettings settings = options_.volume_settings;
     settings.trace = trace();
     settings.memory_bytes =
-        brick_memory(settings.memory_bytes, resident_ + ranges_->bytes(), frame.size, settings.threads);
+        frame::brick_memory(settings.memory_bytes, resident_ + ranges_->bytes(), frame.size, settings.threads);
     renderer_.emplace(*file_.source, settings, std::move(*ranges_));
   }
 
@@ -260,7 +260,7 @@ class VolumeRun {
   colormaps::LoadedTransferFunction loaded_;
   std::optional<volume::CellRanges> ranges_;  ///< of file_, until its renderer takes them
   std::optional<volume::Renderer> renderer_;
-  const std::uint64_t resident_ = resident_bytes();
+  const std::uint64_t resident_ = frame::resident_bytes();
 
   FrameReports frame_reports_{!options_.report.empty()};
   std::size_t done_ = 0, rendered_ = 0;

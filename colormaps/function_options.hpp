@@ -28,14 +28,7 @@ struct TransferFunctionOptions {
   bool rescale = false;
 };
 
-/// A preset's or a file's function over a field, and where its numbers came from.
-struct LoadedTransferFunction {
-  scene::TransferFunction function;
-  std::string name;                       ///< the preset's or the file's, with what was assumed in brackets
-  std::optional<double> unit_distance{};  ///< that was used; none where the file gives extinctions
-  /// "file", "--unit-distance", "default", or "" where extinctions are absolute.
-  std::string unit_distance_source;
-};
+using tessera::LoadedTransferFunction;
 
 /// Throws Error(bad_input) naming the option if a range, distance or scale is not what its comment says.
 void check(const TransferFunctionOptions& options);

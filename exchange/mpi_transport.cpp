@@ -75,8 +75,13 @@ bool launched_by_mpi() {
 /// The thread that speaks MPI, and what it shares with the others.
 class MpiTransport::Engine {
  public:
-  Engine(Hooks hooks, std::chrono::milliseconds patience)
-      : hooks_(std::move(hooks)), patience_(patience), thread_(scene::start_thread([this] { run(); })) {
+  /// `borrowed`: a duplicate of a caller's communicator; null: the world's, and all of MPI.
+  Engine(Hooks hooks, std::chrono::milliseconds patience, MPI_Comm borrowed)
+      : hooks_(std::move(hooks)),
+        patience_(patience),
+        borrowed_(borrowed != MPI_COMM_NULL),
+        comm_(borrowed_ ? borrowed : MPI_COMM_WORLD),
+        thread_(scene::start_thread([this] { run(); })) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return started_; });
     if (start_error_) {
@@ -180,11 +185,11 @@ class MpiTransport::Engine {
   }
 
   void start() {
-    int provided = MPI_THREAD_SINGLE;
-    checked(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "start");
-    MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
-    checked(MPI_Comm_rank(MPI_COMM_WORLD, &rank), "tell the rank");
-    checked(MPI_Comm_size(MPI_COMM_WORLD, &size), "tell the number of ranks");
+    int provided = MPI_THREAD_FUNNELED;
+    if (!borrowed_) checked(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "start");
+    MPI_Comm_set_errhandler(comm_, MPI_ERRORS_RETURN);
+    checked(MPI_Comm_rank(comm_, &rank), "tell the rank");
+    checked(MPI_Comm_size(comm_, &size), "tell the number of ranks");
     if (provided < MPI_THREAD_FUNNELED)
       throw scene::Error(scene::ExitCode::system_failure,
                          "MPI: gives no thread support (MPI_THREAD_FUNNELED); use a build of it that does");
@@ -215,6 +220,7 @@ class MpiTransport::Engine {
         fail(error);
         give_up(error);  // MPI itself is broken: no words will reach anyone
       }
+      if (given_up_) break;
       look_for_stalls();
       settle_faults();
       settle_end();
@@ -225,8 +231,17 @@ class MpiTransport::Engine {
       nap = came ? naps.shortest : std::clamp(2 * nap, naps.shortest, moving ? naps.longest_moving : naps.longest);
       if (queue_.empty()) changed_.wait_for(lock, nap);
     }
+    if (given_up_) {
+      // MPI may still read these messages; they stay where they are for as long as the process.
+      static_cast<void>(new std::list<Outgoing>(std::move(pending_)));
+      static_cast<void>(new std::deque<Incoming>(std::move(arriving_)));
+      return;
+    }
     while (!pending_.empty()) complete();
-    MPI_Finalize();
+    if (borrowed_)
+      MPI_Comm_free(&comm_);
+    else
+      MPI_Finalize();
   }
 
   /// Hands queued messages to MPI.
@@ -246,7 +261,7 @@ class MpiTransport::Engine {
       // Whether it has gone is asked of all that are pending, elsewhere.
       // NOLINTNEXTLINE(clang-analyzer-optin.mpi.MPI-Checker)
       checked(MPI_Isend(posted.bytes.data(), static_cast<int>(posted.bytes.size()), MPI_BYTE, posted.to, posted.tag,
-                        MPI_COMM_WORLD, &posted.request),
+                        comm_, &posted.request),
               "send");
     }
     if (queue.empty()) return;
@@ -282,7 +297,7 @@ class MpiTransport::Engine {
       MPI_Message handle = MPI_MESSAGE_NULL;
       MPI_Status status;
       int found = 0, length = 0;
-      checked(MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &found, &handle, &status), "look for messages");
+      checked(MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, comm_, &found, &handle, &status), "look for messages");
       if (found == 0) return moved;
       moved = true;
       checked(MPI_Get_count(&status, MPI_BYTE, &length), "receive");
@@ -379,7 +394,13 @@ class MpiTransport::Engine {
       give_up(mailboxes.failed() ? *mailboxes.error() : *own_fault_);
   }
 
-  [[noreturn]] void give_up(const scene::Error& error) {
+  /// Ends what cannot end in order: the process, or where that is a caller's, this rank's part in the run.
+  void give_up(const scene::Error& error) {
+    if (borrowed_) {
+      mailboxes.fail(error);
+      given_up_ = all_clear_ = true;
+      return;
+    }
     hooks_.speak(error);
     std::_Exit(static_cast<int>(error.code()));
   }
@@ -393,6 +414,7 @@ class MpiTransport::Engine {
       // have had the time to hear of the error, this rank speaks and leaves the rest to the launcher.
       if (lost_at_ && ((rank == 0 && ranks_done_ >= size - 2) || Clock::now() > *lost_at_ + stall_grace))
         give_up(*mailboxes.error());
+      if (given_up_) return;
       if (!queue_.empty() || !pending_.empty() || (own_fault_ && !mailboxes.failed())) return;
     }
     if (!done_told_) {
@@ -403,7 +425,7 @@ class MpiTransport::Engine {
         enqueue({0, done_tag, {}});
     }
     if (rank == 0 && ranks_done_ == size) {
-      if (mailboxes.failed()) hooks_.speak(*mailboxes.error());
+      if (mailboxes.failed() && hooks_.speak) hooks_.speak(*mailboxes.error());
       for (int other = 1; other < size; ++other) enqueue({other, clear_tag, {}});
       post();
       all_clear_ = true;
@@ -412,6 +434,8 @@ class MpiTransport::Engine {
 
   Hooks hooks_;
   std::chrono::milliseconds patience_;
+  const bool borrowed_;
+  MPI_Comm comm_;
 
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
@@ -430,13 +454,48 @@ class MpiTransport::Engine {
   std::optional<scene::Error> asked_to_end_;
   std::optional<Clock::time_point> deadline_;
   int ranks_done_ = 0;
-  bool done_told_ = false, all_clear_ = false;
+  bool done_told_ = false, all_clear_ = false, given_up_ = false;
 
   std::thread thread_;  // last: it uses all of the above
 };
 
 MpiTransport::MpiTransport(Hooks hooks, std::chrono::milliseconds patience)
-    : engine_(std::make_unique<Engine>(std::move(hooks), patience)) {}
+    : engine_(std::make_unique<Engine>(std::move(hooks), patience, MPI_COMM_NULL)) {}
+
+namespace {
+
+MPI_Comm duplicate(int fortran_handle) {
+  int running = 0, ended = 0, provided = MPI_THREAD_SINGLE;
+  MPI_Initialized(&running);
+  MPI_Finalized(&ended);
+  if (running == 0 || ended != 0)
+    throw scene::bad_input("communicator: MPI does not run; call MPI_Init_thread first, MPI_Finalize last");
+  MPI_Query_thread(&provided);
+  if (provided < MPI_THREAD_MULTIPLE)
+    throw scene::bad_input(
+        "communicator: MPI was started for fewer threads than it takes; call MPI_Init_thread with MPI_THREAD_MULTIPLE");
+  MPI_Comm copy = MPI_COMM_NULL;
+  if (MPI_Comm_dup(MPI_Comm_f2c(fortran_handle), &copy) != MPI_SUCCESS)
+    throw scene::Error(scene::ExitCode::system_failure, "communicator: MPI cannot duplicate it");
+  return copy;
+}
+
+}  // namespace
+
+MpiTransport::MpiTransport(int fortran_handle, std::chrono::milliseconds patience)
+    : engine_(std::make_unique<Engine>(Hooks{}, patience, duplicate(fortran_handle))) {}
+
+MpiShape mpi_shape(int fortran_handle) {
+  int running = 0, ended = 0;
+  MPI_Initialized(&running);
+  MPI_Finalized(&ended);
+  if (running == 0 || ended != 0)
+    throw scene::bad_input("communicator: MPI does not run; call MPI_Init_thread first, MPI_Finalize last");
+  MpiShape shape;
+  MPI_Comm_rank(MPI_Comm_f2c(fortran_handle), &shape.rank);
+  MPI_Comm_size(MPI_Comm_f2c(fortran_handle), &shape.size);
+  return shape;
+}
 MpiTransport::~MpiTransport() = default;
 
 std::optional<scene::Error> MpiTransport::finish() { return engine_->finish(); }

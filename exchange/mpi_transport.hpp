@@ -12,12 +12,20 @@ namespace tessera::exchange {
 /// Whether a launcher (mpirun, srun) started this process as a rank of a job; from the environment, without MPI.
 bool launched_by_mpi();
 
-/// Ranks that are processes, over MPI's world communicator.
+/// This process's place in a caller's communicator, by its Fortran handle. Throws Error(bad_input) if MPI does not run.
+struct MpiShape {
+  int rank = 0, size = 1;
+};
+MpiShape mpi_shape(int fortran_handle);
+
+/// Ranks that are processes: those of MPI's world, which this object then starts and ends, or of a communicator that a
+/// caller has.
 ///
-/// One thread of this object makes all MPI calls, so MPI_THREAD_FUNNELED is enough, and it always takes what arrives:
-/// no send waits for the other side to look, and a rank that waits sleeps instead of spinning. It looks for messages
-/// whenever it sends, 100 microseconds after one came, and then ever less often, down to every 2 milliseconds;
-/// set_working(true) makes that every 2 to 5 milliseconds.
+/// One thread of this object makes all MPI calls, so in the world MPI_THREAD_FUNNELED is enough; beside a caller that
+/// speaks MPI itself it takes MPI_THREAD_MULTIPLE. It always takes what arrives: no send waits for the other side to
+/// look, and a rank that waits sleeps instead of spinning. It looks for messages whenever it sends, 100 microseconds
+/// after one came, and then ever less often, down to every 2 milliseconds; set_working(true) makes that every 2 to 5
+/// milliseconds.
 ///
 /// Faults: a rank that fails tells rank 0, which decides on the first one it hears of and tells all. A rank that cannot
 /// end in an orderly way within `patience` after that (it hangs in a read, or its peers are gone) speaks and
@@ -40,6 +48,10 @@ class MpiTransport final : public Transport {
 
   /// Starts MPI. Throws Error(system_failure) if that fails.
   explicit MpiTransport(Hooks hooks, std::chrono::milliseconds patience = std::chrono::seconds(5));
+  /// Over a duplicate of a caller's communicator, by its Fortran handle. Collective, and so is the destructor. Nothing
+  /// of the process is touched: where the world's transport ends it, this one gives the run up and leaves what it
+  /// has. Throws Error(bad_input) if MPI does not run or gives too little thread support.
+  explicit MpiTransport(int fortran_handle, std::chrono::milliseconds patience = std::chrono::seconds(5));
   ~MpiTransport() override;
 
   /// Looks for stalled ranks from now on. Every rank calls this, with the same settings but for `say`.

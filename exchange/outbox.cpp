@@ -88,8 +88,11 @@ void Outbox::write(Lane& lane, const TilePart& part) {
     lane.batch.reserve(message_bytes + part.records.size() + sizeof(MessageHeader) + sizeof(PartHeader));
     append(lane.batch, MessageHeader{.kind = MessageKind::parts, .frame = frame_});
   }
-  append(lane.batch, PartHeader{part.tile, part.kind, static_cast<std::uint8_t>(part.stopped ? 2 : part.last ? 1 : 0), 0,
-                                part.records.size(), part.final_depth, part.fragments});
+  append(lane.batch, PartHeader{part.tile, part.kind,
+                                static_cast<std::uint8_t>(part.stopped ? 2
+                                                          : part.last  ? 1
+                                                                       : 0),
+                                0, part.records.size(), part.final_depth, part.fragments});
   const std::span<const std::byte> records = part.records.bytes();
   lane.batch.insert(lane.batch.end(), records.begin(), records.end());
   lane.waiting += lane.batch.size() - before;

@@ -16,8 +16,7 @@ MessageHeader take_header(RecordReader& reader, int from, int self) {
 }
 
 FrameEnd sum(const FrameEnd& a, const FrameEnd& b) {
-  FrameEnd both{a.counters, a.on_lattice + b.on_lattice, a.failed_devices + b.failed_devices,
-                a.stopped + b.stopped};
+  FrameEnd both{a.counters, a.on_lattice + b.on_lattice, a.failed_devices + b.failed_devices, a.stopped + b.stopped};
   both.counters += b.counters;
   return both;
 }

@@ -59,11 +59,11 @@ struct MessageHeader {
 static_assert(sizeof(MessageHeader) == 16);
 
 struct FrameBegin {
-  double longest_ray;   ///< bounds the world length of a ray inside the whole mesh
-  std::uint64_t tiles;  ///< number of bits that follow
-  float longest_edge;   ///< of the whole mesh, world units: the unit of a tuple's length; 0 without tuples
+  double longest_ray;         ///< bounds the world length of a ray inside the whole mesh
+  std::uint64_t tiles;        ///< number of bits that follow
+  float longest_edge;         ///< of the whole mesh, world units: the unit of a tuple's length; 0 without tuples
   std::uint32_t stopped = 0;  ///< 1: the projector has been stopped; of this frame come no parts, though cells show
-  scene::Lattice lattice{};  ///< of lattice segments; all 0 without
+  scene::Lattice lattice{};   ///< of lattice segments; all 0 without
 };
 static_assert(sizeof(FrameBegin) == 56);
 

@@ -39,7 +39,10 @@ void LoadedMesh::load(std::size_t number) {
   projector_.reset();  // the last mesh's memory before the next one's
   mesh_ = {};
   mesh_ = mesh_of_(number);
-  projector_.emplace(*mesh_.part, settings_);
+  if (mesh_.prepared != nullptr)
+    projector_.emplace(mesh_.prepared, scene::bounds(mesh_.part, settings_.threads), settings_);
+  else
+    projector_.emplace(mesh_.part, settings_);
   number_ = number;
 }
 
@@ -73,6 +76,14 @@ class DistributedRenderer::State {
       : transport_(transport), settings_(std::move(settings)), mesh_of_(std::move(mesh_of)), relay_(transport) {
     check(settings_);
     if (settings_.roles.projects(transport.rank())) loaded_.emplace(settings_, mesh_of_);
+  }
+
+  void set_deep(bool deep, double accuracy) {
+    DistributedSettings settings = settings_;
+    settings.deep = deep;
+    settings.render.deep_accuracy = accuracy;
+    check(settings);
+    settings_ = std::move(settings);
   }
 
   void render(std::span<const FrameJob> jobs, const scene::TransferFunction& function,
@@ -129,7 +140,7 @@ class DistributedRenderer::State {
   }
 
   exchange::Transport& transport_;
-  const DistributedSettings settings_;
+  DistributedSettings settings_;
   const MeshOf mesh_of_;
   StopRelay relay_;
   std::optional<LoadedMesh> loaded_;   ///< of a projector
@@ -141,6 +152,8 @@ class DistributedRenderer::State {
 DistributedRenderer::DistributedRenderer(exchange::Transport& transport, DistributedSettings settings, MeshOf mesh_of)
     : state_(std::make_unique<State>(transport, std::move(settings), std::move(mesh_of))) {}
 DistributedRenderer::~DistributedRenderer() = default;
+
+void DistributedRenderer::set_deep(bool deep, double accuracy) { state_->set_deep(deep, accuracy); }
 
 void DistributedRenderer::render(std::span<const FrameJob> jobs, const scene::TransferFunction& function,
                                  const DistributedCallbacks& callbacks, const std::stop_token& stop) {

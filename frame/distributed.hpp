@@ -11,15 +11,11 @@
 #include "frame/render.hpp"
 #include "frame/roles.hpp"
 #include "scene/pixel_rect.hpp"
+#include "tessera/settings.hpp"
 
 namespace tessera::frame {
 
-/// What projectors send (exchange/wire.hpp).
-enum class Exchange {
-  runs,      ///< segments that touch end to end, composited: a few fragments a pixel. At most 2e-6 from `segments`
-  segments,  ///< raw ray segments, as Juliachs et al. 2007: the bits of a single process whatever the job's shape
-             ///< (scanline: up to the order of equal keys, of which the paper has many)
-};
+using tessera::Exchange;
 
 struct DistributedSettings {
   RenderSettings render;  ///< `memory_bytes` and `threads` are each rank's; `trace` is not used
@@ -42,12 +38,15 @@ struct FrameJob {
 
 /// This projector's part of a mesh.
 struct ProjectorMesh {
-  std::shared_ptr<const scene::TetMesh> part;  ///< may have no tets
-  std::vector<std::uint64_t> global_tet;       ///< index in the whole mesh of each tet, ascending; empty: its own
-  double diagonal = 0;                         ///< of the whole mesh's box, world units
-  scene::Box box;                              ///< of the whole mesh
-  std::array<double, 2> scalar_range{};        ///< of the whole mesh
-  float longest_edge = 0;                      ///< scanline: of the whole mesh, world units
+  scene::TetMeshView part;            ///< may have no tets
+  std::shared_ptr<const void> owner;  ///< keeps its arrays
+  /// The part prepared for projection, if somebody has done it; null: it is done here.
+  std::shared_ptr<const projection::PreparedMesh> prepared{};
+  std::vector<std::uint64_t> global_tet;  ///< index in the whole mesh of each tet, ascending; empty: its own
+  double diagonal = 0;                    ///< of the whole mesh's box, world units
+  scene::Box box;                         ///< of the whole mesh
+  std::array<double, 2> scalar_range{};   ///< of the whole mesh
+  float longest_edge = 0;                 ///< scanline: of the whole mesh, world units
 };
 
 /// A finished picture, on the assembling rank.
@@ -83,11 +82,14 @@ class DistributedRenderer {
   DistributedRenderer(const DistributedRenderer&) = delete;
   DistributedRenderer& operator=(const DistributedRenderer&) = delete;
 
-  /// Makes a list of pictures. Collective: the same jobs and function on every rank. The transfer function is one for
-  /// all of them, so that a film does not flicker. `stop`, asked for on any rank, ends the list early on all, within
-  /// one batch of cells; all return and can go on. Throws the run's error, on every rank.
+  /// Makes a list of pictures, deep ones too if DistributedSettings::deep or set_deep() says so. Collective: the same
+  /// jobs and function on every rank. The transfer function is one for all of them, so that a film does not flicker.
+  /// `stop`, asked for on any rank, ends the list early on all, within one batch of cells; all return and can go on.
+  /// Throws the run's error, on every rank.
   void render(std::span<const FrameJob> jobs, const scene::TransferFunction& function,
               const DistributedCallbacks& callbacks, const std::stop_token& stop = {});
+  /// Of later lists. Throws Error(bad_input) where the settings cannot do it.
+  void set_deep(bool deep, double accuracy);
 
  private:
   class State;

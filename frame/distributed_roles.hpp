@@ -47,7 +47,7 @@ void run_compositor(const DistributedRun& run);
 /// Puts pictures together, tells the projectors, and hands them out, and their tiles before them. What the caller's
 /// functions throw is returned once all frames are through, and `stop_all` called at once.
 std::exception_ptr run_assembler(const DistributedRun& run, const DistributedCallbacks& callbacks,
-                   const std::function<void()>& stop_all);
+                                 const std::function<void()>& stop_all);
 
 /// How a rank's memory budget is shared out.
 struct ExchangeBudget {

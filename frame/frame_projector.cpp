@@ -115,23 +115,36 @@ void order_corners(scene::TetMesh& mesh, const RenderSettings& settings) {
   tbb::task_arena(scene::threads_for(checked(settings).threads)).execute([&] { projection::order_corners(mesh); });
 }
 
+namespace {
+
+std::shared_ptr<const projection::PreparedMesh> prepared(const scene::TetMeshView& mesh,
+                                                         const RenderSettings& settings) {
+  return tbb::task_arena(scene::threads_for(checked(settings).threads)).execute([&] {
+    const scene::TraceScope timing(settings.trace, "prepare");
+    return std::make_shared<const projection::PreparedMesh>(mesh);
+  });
+}
+
+}  // namespace
+
 FrameProjector::FrameProjector(const scene::TetMeshView& mesh, const RenderSettings& settings)
+    : FrameProjector(prepared(mesh, settings), scene::bounds(mesh, settings.threads), settings) {}
+
+FrameProjector::FrameProjector(std::shared_ptr<const projection::PreparedMesh> mesh, const scene::Box& box,
+                               const RenderSettings& settings)
     : settings_(checked(settings)),
       arena_(scene::threads_for(settings.threads)),
-      prepared_(arena_.execute([&] {
-        const scene::TraceScope timing(settings.trace, "prepare");
-        return projection::PreparedMesh(mesh);
-      })),
-      box_(scene::bounds(mesh, settings.threads)) {
+      prepared_(std::move(mesh)),
+      box_(box) {
   diagonal_ = box_.empty() ? 0 : glm::length(box_.high - box_.low);
   if (settings.rasterizer == Rasterizer::scanline)
-    longest_edge_ = arena_.execute([&] { return projection::longest_edge(mesh); });
+    longest_edge_ = arena_.execute([&] { return projection::longest_edge(prepared_->mesh()); });
 }
 
 void FrameProjector::project_vertices(const projection::PixelSpace& space, std::int32_t frame,
                                       const std::stop_token& stop) {
   const scene::TraceScope timing(settings_.trace, "transform", frame);
-  const std::span<const glm::dvec3> positions = prepared_.mesh().positions;
+  const std::span<const glm::dvec3> positions = prepared_->mesh().positions;
   vertices_.resize(positions.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size(), 4096), [&](const auto& range) {
     scene::throw_if_stopped(stop);
@@ -142,7 +155,7 @@ void FrameProjector::project_vertices(const projection::PixelSpace& space, std::
 }
 
 void FrameProjector::place_on_lattice(const scene::Lattice& lattice, bool perspective, const std::stop_token& stop) {
-  const scene::TetMeshView& mesh = prepared_.mesh();
+  const scene::TetMeshView& mesh = prepared_->mesh();
   const bool per_point = mesh.association == scene::Association::point;
   lattice_vertices_.reset(vertices_.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, vertices_.size(), 4096), [&](const auto& range) {
@@ -165,7 +178,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   const std::stop_token stop = task.watch != nullptr ? task.watch->stop() : std::stop_token();
   scene::throw_if_stopped(stop);
   project_vertices(space, task.frame, stop);
-  const projection::ProjectedMesh projected{&prepared_, vertices_, space.near_depth(), space.far_depth(),
+  const projection::ProjectedMesh projected{prepared_.get(), vertices_, space.near_depth(), space.far_depth(),
                                             space.pixels_per_tangent()};
   const float longest_edge = task.longest_edge > 0 ? task.longest_edge : longest_edge_;
   if (settings_.rasterizer == Rasterizer::scanline) check_scanline(projected, space, longest_edge);
@@ -182,7 +195,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   if (exact) {
     const scene::TraceScope timing(settings_.trace, "cull", task.frame);
     steps = projection::steps_of(*task.function, settings_.emission, longest_ray);
-    at_steps = projection::CellsAtSteps(prepared_, steps, longest_ray, task.lattice, stop);
+    at_steps = projection::CellsAtSteps(*prepared_, steps, longest_ray, task.lattice, stop);
   }
   std::optional<projection::TileLists> lists;
   {
@@ -254,7 +267,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   }
 
   FrameStatistics statistics;
-  statistics.tets_total = prepared_.tet_count();
+  statistics.tets_total = prepared_->tet_count();
   statistics.on_lattice = task.lattice != nullptr;
   const projection::CullCounts& culled = lists->counts();
   statistics.tets_invisible = culled.invisible;

@@ -23,6 +23,9 @@ class FrameProjector {
  public:
   /// The mesh must outlive this object. Throws Error(bad_input) for settings out of range.
   FrameProjector(const scene::TetMeshView& mesh, const RenderSettings& settings);
+  /// Of a mesh that has been prepared; `box` is its scene::bounds().
+  FrameProjector(std::shared_ptr<const projection::PreparedMesh> mesh, const scene::Box& box,
+                 const RenderSettings& settings);
 
   struct Task {
     const projection::PixelSpace* space;
@@ -60,7 +63,7 @@ class FrameProjector {
 
   RenderSettings settings_;
   tbb::task_arena arena_;
-  projection::PreparedMesh prepared_;
+  std::shared_ptr<const projection::PreparedMesh> prepared_;
   scene::Box box_;
   double diagonal_ = 0;
   float longest_edge_ = 0;  ///< scanline only

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 #include <type_traits>
 
 #include "frame/mesh_chunk.hpp"
@@ -77,13 +78,23 @@ std::vector<std::uint32_t> parts_of_tets(Transport& transport, const MeshPart& l
 
 scene::MeshFacts agree_facts(Transport& transport, const scene::TetMeshView& part, int threads) {
   if (transport.size() == 1) return scene::facts_of(part, threads);
-  scene::MeshFacts own{bounds(part, threads), scalar_range(part, threads), 0, part.tets.size(), part.association},
+  scene::MeshFacts own{scene::bounds(part, threads), scene::scalar_range(part, threads), 0, part.tets.size(),
+                       part.association},
       facts;
   for (const auto& other : gather_values(transport, own)) facts = joined(facts, other);
   scene::VolumeSum volume = 0;
   for (const auto other : gather_values(transport, volume_sum(part, facts.box, threads))) volume += other;
-  facts.mean_thickness = mean_thickness(facts.box, volume);
+  facts.mean_thickness = scene::mean_thickness(facts.box, volume);
   return facts;
+}
+
+std::vector<std::uint64_t> numbered_by_rank(Transport& transport, std::size_t tets) {
+  std::uint64_t first = 0;
+  const std::vector<std::uint64_t> counts = gather_values(transport, static_cast<std::uint64_t>(tets));
+  for (int rank = 0; rank < transport.rank(); ++rank) first += counts[static_cast<std::size_t>(rank)];
+  std::vector<std::uint64_t> numbers(tets);
+  std::iota(numbers.begin(), numbers.end(), first);
+  return numbers;
 }
 
 MeshPart redistribute(Transport& transport, MeshPart local, const scene::MeshFacts& facts,

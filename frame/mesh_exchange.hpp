@@ -28,6 +28,9 @@ struct MeshPart {
 /// (scene::facts_of). Collective. `threads` of each rank; 0 is all cores.
 scene::MeshFacts agree_facts(exchange::Transport& transport, const scene::TetMeshView& part, int threads = 1);
 
+/// Indices in the whole of this rank's tets, where the whole is all ranks' tets, rank after rank. Collective.
+std::vector<std::uint64_t> numbered_by_rank(exchange::Transport& transport, std::size_t tets);
+
 /// Memory of an exchange: a message holds about `chunk_bytes`, and a rank is at most two rounds of `round_bytes` ahead
 /// of what the slowest has taken.
 struct ExchangeLimits {

@@ -68,7 +68,7 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
       if (render.rasterizer == Rasterizer::scanline)
         return std::make_unique<compositor::TupleSink>(mesh.longest_edge, deliver);
       if (settings.exchange == Exchange::segments)
-        return std::make_unique<compositor::SegmentSink>(mesh.part->association == scene::Association::cell,
+        return std::make_unique<compositor::SegmentSink>(mesh.part.association == scene::Association::cell,
                                                          mesh.global_tet, deliver);
       return std::make_unique<compositor::RunSink>(space, integrator, run.function.max_color(), mesh.diagonal,
                                                    render.emission, budget.cut, deliver);
@@ -100,7 +100,7 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
     };
     scene::FrameWatch watch(run.stop);
     task.watch = &watch;
-    exchange::FrameEnd end;
+    exchange::FrameEnd end{};
     run.transport.set_working(true);
     try {
       end = counts_of(loaded.projector().project(task));
@@ -109,7 +109,7 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
       stopped = true;
       if (!announced) task.announce(std::vector<bool>(task.grid.count(), false));
       outbox.end_tiles();
-      end = {.stopped = 1};
+      end.stopped = 1;
     }
     run.transport.set_working(false);
     outbox.end_frame(end);

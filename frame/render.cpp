@@ -33,6 +33,8 @@ void check_deep(const RenderSettings& settings, const scene::TransferFunction& f
 struct Renderer::State {
   State(const scene::TetMeshView& mesh, const RenderSettings& s)
       : settings(s), projector(mesh, s), scalar_range(scene::scalar_range(mesh, s.threads)) {}
+  State(std::shared_ptr<const projection::PreparedMesh> mesh, const scene::MeshFacts& facts, const RenderSettings& s)
+      : settings(s), projector(std::move(mesh), facts.box, s), scalar_range(facts.scalar_range) {}
 
   /// The integrator of this function. Its tables are kept for as long as the function stays.
   const integrals::SegmentIntegrator& integrator(const scene::TransferFunction& f) {
@@ -53,7 +55,13 @@ struct Renderer::State {
 Renderer::Renderer(const scene::TetMeshView& mesh, const RenderSettings& settings)
     : state_(std::make_unique<State>(mesh, settings)) {}
 
+Renderer::Renderer(std::shared_ptr<const projection::PreparedMesh> mesh, const scene::MeshFacts& facts,
+                   const RenderSettings& settings)
+    : state_(std::make_unique<State>(std::move(mesh), facts, settings)) {}
+
 Renderer::~Renderer() = default;
+
+void Renderer::set_deep_accuracy(double accuracy) { state_->settings.deep_accuracy = accuracy; }
 
 scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size,
                               const scene::TransferFunction& transfer_function, FrameStatistics* statistics,

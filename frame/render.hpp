@@ -10,19 +10,20 @@
 #include "scene/frame_watch.hpp"
 #include "scene/image.hpp"
 #include "scene/mechanisms.hpp"
+#include "scene/mesh_facts.hpp"
 #include "scene/optical_model.hpp"
 #include "scene/tet_mesh.hpp"
 #include "scene/trace.hpp"
 #include "scene/transfer_function.hpp"
+#include "tessera/settings.hpp"
+
+namespace tessera::projection {
+class PreparedMesh;
+}
 
 namespace tessera::frame {
 
-/// How cells become ray segments.
-enum class Rasterizer {
-  planes,   ///< exact hits, double precision: the default
-  scanline  ///< Juliachs et al. 2007, 4.1-4.2 as printed: float32, no tie rule, segments ordered by z_back alone;
-            ///< orthographic only
-};
+using tessera::Rasterizer;
 
 /// What a frame is made with. None of it but the rasterizer, integrator, emission, accuracy and `use` changes a bit of
 /// the picture.
@@ -56,6 +57,9 @@ void order_corners(scene::TetMesh& mesh, const RenderSettings& settings);
 class Renderer {
  public:
   Renderer(const scene::TetMeshView& mesh, const RenderSettings& settings);
+  /// Of a mesh that has been prepared, with what is known of it.
+  Renderer(std::shared_ptr<const projection::PreparedMesh> mesh, const scene::MeshFacts& facts,
+           const RenderSettings& settings);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
@@ -74,6 +78,9 @@ class Renderer {
   scene::Image render(const scene::Camera& camera, scene::ImageSize size,
                       const scene::TransferFunction& transfer_function, FrameStatistics* statistics = nullptr,
                       scene::DeepImage* deep = nullptr, scene::FrameWatch* watch = nullptr);
+
+  /// RenderSettings::deep_accuracy of later frames.
+  void set_deep_accuracy(double accuracy);
 
  private:
   struct State;

@@ -9,19 +9,13 @@
 #include "exchange/transport.hpp"
 #include "scene/frame_watch.hpp"
 #include "scene/grid.hpp"
+#include "tessera/settings.hpp"
 #include "volume/cost_map.hpp"
 #include "volume/render.hpp"
 
 namespace tessera::frame {
 
-/// How the picture of a volume is split between processes (Moloney 2008, chapter 4).
-enum class Balance {
-  accurate,  ///< by what each pixel will cost, as a look at every 32nd ray tells
-  backface,
-  splatting,
-  previous,  ///< by the CPU times of the frame before, each spread evenly over its rectangle; to compare with
-  even       ///< equal rectangles of the volume's bounding box
-};
+using tessera::Balance;
 
 struct SortFirstSettings {
   Balance balance = Balance::accurate;

@@ -1,6 +1,7 @@
 #include "frame/stop_relay.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "exchange/wire.hpp"
 #include "scene/start_thread.hpp"
@@ -12,8 +13,8 @@ namespace {
 constexpr std::uint64_t end_of_run = 0;
 
 exchange::Bytes number_bytes(std::uint64_t number) {
-  exchange::Bytes bytes;
-  exchange::append(bytes, number);
+  exchange::Bytes bytes(sizeof number);
+  std::memcpy(bytes.data(), &number, sizeof number);
   return bytes;
 }
 

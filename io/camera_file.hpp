@@ -7,25 +7,20 @@
 #include <vector>
 
 #include "scene/camera.hpp"
+#include "tessera/view.hpp"
 
 namespace tessera::io {
 
-/// A view as a file gives it, with the picture's size if the file names one.
-struct CameraFile {
-  scene::Camera camera;
-  std::optional<scene::ImageSize> size{};
-  bool operator==(const CameraFile&) const = default;
-};
+using tessera::CameraFile;
 
-/// Reads one view, or the list of views of a camera path; never an empty list.
-///
-/// The format is seen from the first character: `{` or `[` is JSON, `<` ParaView's .pvcc, anything else plain text.
-/// Words: `position x y z`, `focal_point x y z`, either `parallel_scale s` or `view_angle degrees`; and, if wanted,
-/// `view_up x y z` (0 1 0 without it, as in VTK), `clipping_range near far`, `size W H`. Throws Error(bad_input) in one
-/// line naming file and line for unknown, repeated or missing words and for what scene::validate refuses.
+/// tessera::read_cameras(): the format is seen from the first character: `{` or `[` is JSON, `<` ParaView's .pvcc,
+/// anything else plain text. Words: `position x y z`, `focal_point x y z`, either `parallel_scale s` or `view_angle
+/// degrees`; and, if wanted, `view_up x y z` (0 1 0 without it, as in VTK), `clipping_range near far`, `size W H`.
+/// Throws Error(bad_input) in one line naming file and line for unknown, repeated or missing words and for what
+/// scene::validate refuses.
 std::vector<CameraFile> read_cameras(const std::filesystem::path& file);
 
-/// Writes one view as JSON, every double in the shortest form that reads back the same. Appears by rename.
+/// tessera::write_camera().
 void write_camera(const CameraFile& camera, const std::filesystem::path& file);
 
 /// The three formats by themselves; `source` is the name in messages. JSON may be one object or a list.

@@ -93,23 +93,6 @@ MeshBlocks blocks_of_tets(scene::TetMesh mesh) {
   return result;
 }
 
-MeshCounts& MeshCounts::operator+=(const MeshCounts& other) {
-  cells_read += other.cells_read;
-  cells_ghost += other.cells_ghost;
-  cells_hidden += other.cells_hidden;
-  cells_nan += other.cells_nan;
-  cells_not_volumetric += other.cells_not_volumetric;
-  cells_zero_volume += other.cells_zero_volume;
-  cells_tangled += other.cells_tangled;
-  cells_quadratic += other.cells_quadratic;
-  points_read += other.points_read;
-  points_unused += other.points_unused;
-  tets_made += other.tets_made;
-  tets_collapsed += other.tets_collapsed;
-  return *this;
-}
-static_assert(sizeof(MeshCounts) == 12 * sizeof(std::uint64_t));  // one line above for each
-
 void require_mesh_file(const std::filesystem::path& file) {
   require_file(file);
   if (!is_mesh_file(file)) refuse_extension(file);

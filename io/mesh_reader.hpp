@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scene/tet_mesh.hpp"
+#include "tessera/field_info.hpp"
 
 namespace tessera::io {
 
@@ -24,36 +25,9 @@ struct MeshOptions {
   int threads = 1;                         ///< that make tets of cells; 0: all cores
 };
 
-/// What became of the file's cells and points. A cell is counted as read, then in at most one of ghost, hidden, nan,
-/// not_volumetric; what remains is split into tets.
-struct MeshCounts {
-  std::uint64_t cells_read = 0;
-  std::uint64_t cells_ghost = 0;           ///< dropped: another piece's (vtkGhostType bit 1, vtkGhostLevels > 0)
-  std::uint64_t cells_hidden = 0;          ///< dropped: vtkGhostType bit 32, or a point of it hidden (2), IBLANK 0
-  std::uint64_t cells_nan = 0;             ///< blanked: a coordinate or scalar of it is missing, NaN or infinite
-  std::uint64_t cells_not_volumetric = 0;  ///< skipped: points, lines, faces
-  std::uint64_t cells_zero_volume = 0;     ///< kept: all their tets have exactly no volume
-  std::uint64_t cells_tangled = 0;         ///< kept: their tets differ in orientation, so they overlap
-  std::uint64_t cells_quadratic = 0;       ///< kept: second or higher order, rendered by their corner nodes
-  std::uint64_t points_read = 0;
-  std::uint64_t points_unused = 0;   ///< of no tet; they stay in `positions`
-  std::uint64_t tets_made = 0;       ///< in the mesh
-  std::uint64_t tets_collapsed = 0;  ///< not made: two of their corners are one point in space
+using tessera::MeshCounts;
 
-  MeshCounts& operator+=(const MeshCounts& other);  ///< of another part
-  bool operator==(const MeshCounts&) const = default;
-};
-
-/// One array of the file as `info` lists it. Range and count are of all tuples, cells that were dropped included.
-struct FieldSummary {
-  std::string name;
-  scene::Association association = scene::Association::point;
-  int components = 1;
-  std::string type;             ///< "float", "double", "int64", "uint8", ...
-  double low = 0, high = 0;     ///< finite values, of the magnitude if there are several components; 0, 0 if none is
-  std::uint64_t nan_count = 0;  ///< tuples that are NaN or infinite
-  bool active = false;          ///< the file marks it as its scalars or vectors
-};
+using FieldSummary = tessera::FieldInfo;
 
 struct MeshFile {
   scene::TetMesh mesh;
@@ -83,10 +57,10 @@ bool is_mesh_file(const std::filesystem::path& file);
 /// Writes a .tets file: float32 coordinates and point scalars, so doubles are rounded. Appears by rename. Throws
 /// Error(bad_input) for cell data, more than 2^31 - 1 points or values beyond float's range, Error(system_failure) if
 /// it cannot be written.
-void write_tets(const scene::TetMesh& mesh, const std::filesystem::path& file);
+void write_tets(const scene::TetMeshView& mesh, const std::filesystem::path& file);
 
 /// Writes a VTK XML unstructured grid, appended raw data with zlib, double coordinates and scalars; a cell array
 /// "OriginalCellId" if tets were split from other cells. Appears by rename. Throws Error(system_failure).
-void write_vtu(const scene::TetMesh& mesh, const std::filesystem::path& file);
+void write_vtu(const scene::TetMeshView& mesh, const std::filesystem::path& file);
 
 }  // namespace tessera::io

@@ -52,7 +52,7 @@ class Chunks {
   std::size_t used_ = 0;
 };
 
-vtkNew<vtkUnstructuredGrid> grid_of(const scene::TetMesh& mesh) {
+vtkNew<vtkUnstructuredGrid> grid_of(const scene::TetMeshView& mesh) {
   vtkNew<vtkUnstructuredGrid> grid;
   vtkNew<vtkDoubleArray> xyz;
   xyz->SetNumberOfComponents(3);
@@ -75,7 +75,7 @@ vtkNew<vtkUnstructuredGrid> grid_of(const scene::TetMesh& mesh) {
   grid->SetCells(VTK_TETRA, cells);
 
   vtkNew<vtkDoubleArray> scalars;
-  scalars->SetName(mesh.field_name.empty() ? "scalar" : mesh.field_name.c_str());
+  scalars->SetName(mesh.field_name.empty() ? "scalar" : std::string(mesh.field_name).c_str());
   scalars->SetNumberOfValues(static_cast<vtkIdType>(mesh.scalars.size()));
   std::copy(mesh.scalars.begin(), mesh.scalars.end(), scalars->GetPointer(0));
   if (mesh.association == scene::Association::point)
@@ -94,7 +94,7 @@ vtkNew<vtkUnstructuredGrid> grid_of(const scene::TetMesh& mesh) {
 
 }  // namespace
 
-void write_tets(const scene::TetMesh& mesh, const std::filesystem::path& file) {
+void write_tets(const scene::TetMeshView& mesh, const std::filesystem::path& file) {
   const std::string target = file.string();
   if (mesh.association == scene::Association::cell)
     throw scene::bad_input(fmt::format(
@@ -115,7 +115,7 @@ void write_tets(const scene::TetMesh& mesh, const std::filesystem::path& file) {
   out.commit();
 }
 
-void write_vtu(const scene::TetMesh& mesh, const std::filesystem::path& file) {
+void write_vtu(const scene::TetMeshView& mesh, const std::filesystem::path& file) {
   AtomicFile out(file);
   const std::string part = out.named_part().string();
   const vtkNew<vtkUnstructuredGrid> grid = grid_of(mesh);

@@ -7,21 +7,14 @@
 
 #include "scene/camera.hpp"
 #include "scene/tet_mesh.hpp"
+#include "tessera/settings.hpp"
 
 /// Which of several processes projects which tet of a mesh. Pure functions: each process asks them about the tets it
 /// happens to hold, and all find the same owner for a tet whoever asks.
 namespace tessera::projection {
 
-enum class PartitionKind {
-  file,    ///< contiguous ranges in file order, by count
-  curve,   ///< contiguous stretches of a Hilbert curve through the tets' centroids, by count: compact parts
-  random,  ///< each tet by a hash of its index: balanced at any view, no locality at all
-};
-
-struct Partition {
-  PartitionKind kind = PartitionKind::curve;
-  std::uint64_t seed = 1;  ///< of `random`
-};
+using tessera::Partition;
+using tessera::PartitionKind;
 
 /// Part of each of the tets [0, total) in file order: parts differ by one tet at most, the first ones are the larger.
 /// `parts` > 0; tet < total.

@@ -96,8 +96,7 @@ void TileLists::for_each_tile(std::size_t tet, Visit visit) const {
 
 TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
                      const scene::TransferFunction& transfer_function, bool emits_without_extinction,
-                     scene::Trace* trace, TileListBuffers* buffers, bool cull_invisible,
-                     std::stop_token stop)
+                     scene::Trace* trace, TileListBuffers* buffers, bool cull_invisible, std::stop_token stop)
     : projected_(&projected),
       trace_(trace),
       grid_(grid),

@@ -11,8 +11,10 @@
 
 #include "scene/error.hpp"
 
-namespace tessera::scene {
+namespace tessera {
 namespace {
+
+using scene::bad_input;
 
 using std::numbers::pi;
 
@@ -130,4 +132,4 @@ Camera orbit(const Camera& camera, double turn) {
   return turned;
 }
 
-}  // namespace tessera::scene
+}  // namespace tessera

@@ -10,8 +10,10 @@
 
 #include "scene/error.hpp"
 
-namespace tessera::scene {
+namespace tessera {
 namespace {
+
+using scene::bad_input;
 
 constexpr std::array type_names = {"int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64"};
 constexpr std::array<std::size_t, 8> type_sizes = {1, 1, 2, 2, 4, 4, 4, 8};
@@ -125,4 +127,4 @@ void validate(const Grid& grid, const std::string& source) {
     fail(fmt::format("samples are scaled by {} and shifted by {}", grid.scale, grid.shift));
 }
 
-}  // namespace tessera::scene
+}  // namespace tessera

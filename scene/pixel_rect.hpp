@@ -1,14 +1,9 @@
 #pragma once
 
+#include "tessera/pixel_rect.hpp"
+
 namespace tessera::scene {
 
-/// Half-open rectangle of pixels.
-struct PixelRect {
-  int x0, y0, x1, y1;
-  [[nodiscard]] bool empty() const { return x0 >= x1 || y0 >= y1; }
-  [[nodiscard]] int width() const { return x1 - x0; }
-  [[nodiscard]] int height() const { return y1 - y0; }
-  [[nodiscard]] int area() const { return width() * height(); }
-};
+using tessera::PixelRect;
 
 }  // namespace tessera::scene

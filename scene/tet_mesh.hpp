@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "scene/camera.hpp"
+#include "tessera/association.hpp"
 
 namespace tessera::scene {
 
-/// Which mesh element carries the scalar.
-enum class Association { point, cell };
+using tessera::Association;
 
 /// Four vertex indices of a tetrahedron, either orientation.
 using Tet = std::array<std::uint32_t, 4>;

@@ -7,8 +7,10 @@
 
 #include "scene/error.hpp"
 
-namespace tessera::scene {
+namespace tessera {
 namespace {
+
+using scene::bad_input;
 
 bool emits(const Knot& k) { return k.color.x > 0 || k.color.y > 0 || k.color.z > 0; }
 
@@ -85,4 +87,4 @@ double TransferFunction::max_color() const {
   return most;
 }
 
-}  // namespace tessera::scene
+}  // namespace tessera

@@ -1,45 +1,10 @@
 #pragma once
 
-#include <glm/vec3.hpp>
-#include <span>
-#include <vector>
+#include "tessera/transfer_function.hpp"
 
 namespace tessera::scene {
 
-/// Colour and extinction at one scalar value.
-struct Knot {
-  double value = 0;       ///< in the field's unit
-  glm::dvec3 color{0};    ///< linear RGB, not premultiplied, >= 0
-  double extinction = 0;  ///< kappa, 1 / world unit, >= 0
-  bool operator==(const Knot&) const = default;
-};
-
-/// Linear RGB colour c(s) and extinction kappa(s) of a scalar s: piecewise linear between knots, clamped outside their
-/// range.
-///
-/// Steps: two knots at one value make a step; there the function is right-continuous, its value is the upper (later)
-/// knot's. Holds: at least one knot, values finite and not decreasing, at most two knots at one value (more are merged
-/// to first and last), colours and extinctions finite and >= 0. A single knot is a constant function.
-class TransferFunction {
- public:
-  TransferFunction() = default;
-  /// Throws Error(bad_input) naming the knot (from 1) and the number at fault.
-  explicit TransferFunction(std::vector<Knot> knots);
-
-  [[nodiscard]] std::span<const Knot> knots() const { return knots_; }
-
-  /// The function's value as a knot at `s`. NaN gives a knot of zeros.
-  [[nodiscard]] Knot evaluate(double s) const;
-
-  /// Whether kappa (or, for independent emission, any colour) is positive anywhere in [low, high], ends included.
-  [[nodiscard]] bool visible(double low, double high, bool emits_without_extinction = false) const;
-
-  [[nodiscard]] double max_extinction() const;
-  [[nodiscard]] double max_color() const;
-
- private:
-  std::vector<Knot> knots_;
-  std::vector<std::size_t> visible_knots_before_, emitting_knots_before_;  ///< prefix counts, size knots + 1
-};
+using tessera::Knot;
+using tessera::TransferFunction;
 
 }  // namespace tessera::scene

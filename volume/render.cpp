@@ -177,10 +177,11 @@ CostMap cost_of_planes(const scene::Camera& camera, scene::ImageSize image, cons
 }  // namespace
 
 struct Renderer::State {
-  State(const scene::SampleSource& source_, const RenderSettings& settings_, CellRanges ranges_)
+  State(const scene::SampleSource& source_, const RenderSettings& settings_, std::shared_ptr<const CellRanges> ranges_)
       : source(source_),
         settings(settings_),
-        ranges(std::move(ranges_)),
+        ranges_owner(std::move(ranges_)),
+        ranges(*ranges_owner),
         bricks(source_, BrickLayout(source_.geometry(), settings_.brick_size, settings_.edge_bricks),
                settings_.memory_bytes, settings_.cache) {}
 
@@ -240,21 +241,26 @@ struct Renderer::State {
   const scene::SampleSource& source;
   RenderSettings settings;
   double voxel_side = voxel_side_of(source.geometry()), length_unit = length_unit_of(voxel_side);
-  CellRanges ranges;
+  std::shared_ptr<const CellRanges> ranges_owner;
+  const CellRanges& ranges;
   BrickCache bricks;
   BrickCache::Counts counts_before;  ///< as the last frame's statistics ended: loads ahead count for the next one
   std::atomic<bool> stop_preload = false;
   std::thread preloading;
 };
 
-Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& settings, CellRanges ranges) {
+Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& settings,
+                   std::shared_ptr<const CellRanges> ranges) {
   check(settings, source.geometry());
   state_ = std::make_unique<State>(source, settings, std::move(ranges));
 }
 
+Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& settings, CellRanges ranges)
+    : Renderer(source, settings, std::make_shared<const CellRanges>(std::move(ranges))) {}
+
 Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& settings) {
   check(settings, source.geometry());
-  state_ = std::make_unique<State>(source, settings, CellRanges(source, settings.threads));
+  state_ = std::make_unique<State>(source, settings, std::make_shared<const CellRanges>(source, settings.threads));
 }
 
 Renderer::~Renderer() = default;
@@ -420,8 +426,7 @@ void Renderer::State::cast_rectilinear(const scene::Camera& camera, const scene:
 
 scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size,
                               const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
-                              std::optional<PixelRegion> region, std::vector<float>* doubts,
-                              scene::FrameWatch* watch) {
+                              std::optional<PixelRegion> region, std::vector<float>* doubts, scene::FrameWatch* watch) {
   scene::validate(camera);
   scene::validate(size);
   State& state = *state_;

@@ -17,6 +17,7 @@
 #include "scene/shading.hpp"
 #include "scene/trace.hpp"
 #include "scene/transfer_function.hpp"
+#include "tessera/settings.hpp"
 
 namespace tessera::volume {
 
@@ -28,14 +29,9 @@ enum class Method {
   preintegrated  ///< a table over the scalars at both ends of a step (Engel, Kraus, Ertl 2001)
 };
 
-/// What the brick cache throws out first (Moloney 2008, 3.3).
-enum class CachePolicy {
-  lru,       ///< the brick that has not been used for longest
-  proximity  ///< the brick whose centre is farthest from a cone round the view frustum
-};
+using tessera::CachePolicy;
 
-/// How much memory a brick at the volume's high end takes (Moloney 2008, Table 6.2).
-enum class EdgeBricks { variable, fixed };
+using tessera::EdgeBricks;
 
 struct RenderSettings {
   Method method = Method::automatic;
@@ -89,6 +85,8 @@ class Renderer {
  public:
   /// Takes ranges that have been found before, of this very source. Throws Error(bad_input) for settings out of range.
   Renderer(const scene::SampleSource& source, const RenderSettings& settings, CellRanges ranges);
+  /// The same, of ranges that others use too.
+  Renderer(const scene::SampleSource& source, const RenderSettings& settings, std::shared_ptr<const CellRanges> ranges);
   /// Reads all samples once, for their ranges.
   Renderer(const scene::SampleSource& source, const RenderSettings& settings);
   ~Renderer();

@@ -180,14 +180,13 @@ VoxelCastCounts cast_voxel_by_voxel(const scene::SampleSource& source, const sce
   VoxelCaster caster(source, camera, function, settings, image);
   constexpr int side = 32;
   if (region.x0 < region.x1 && region.y0 < region.y1)
-    tbb::parallel_for(tbb::blocked_range2d<int>(region.y0, region.y1, side, region.x0, region.x1, side),
-                      [&](const auto& tile) {
-                        watch.check();
-                        for (int y = tile.rows().begin(); y != tile.rows().end(); ++y)
-                          for (int x = tile.cols().begin(); x != tile.cols().end(); ++x) caster.cast(x, y);
-                        watch.finished({tile.cols().begin(), tile.rows().begin(), tile.cols().end(), tile.rows().end()},
-                                       image);
-                      });
+    tbb::parallel_for(
+        tbb::blocked_range2d<int>(region.y0, region.y1, side, region.x0, region.x1, side), [&](const auto& tile) {
+          watch.check();
+          for (int y = tile.rows().begin(); y != tile.rows().end(); ++y)
+            for (int x = tile.cols().begin(); x != tile.cols().end(); ++x) caster.cast(x, y);
+          watch.finished({tile.cols().begin(), tile.rows().begin(), tile.cols().end(), tile.rows().end()}, image);
+        });
   return caster.counts();
 }
 

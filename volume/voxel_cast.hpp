@@ -32,14 +32,14 @@ struct VoxelCastCounts {
   std::uint64_t rays = 0, voxels = 0, lines = 0, blocks_read = 0, bytes_read = 0;
 };
 
-/// Fills the pixels of `region` in `image`. Uses the calling thread's arena. `watch` hears of finished rectangles and is
-/// asked for a stop at each, see volume::Renderer::render.
+/// Fills the pixels of `region` in `image`. Uses the calling thread's arena. `watch` hears of finished rectangles and
+/// is asked for a stop at each, see volume::Renderer::render.
 VoxelCastCounts cast_voxel_by_voxel(const scene::SampleSource& source, const scene::Camera& camera,
                                     const scene::TransferFunction& function, const VoxelCastSettings& settings,
                                     const PixelRegion& region, scene::Image& image, scene::FrameWatch& watch);
 
-/// Casts the pixels (x, y) of a list anew, in place of what `image` has there. Throws scene::FrameStopped once `stop` is
-/// asked for.
+/// Casts the pixels (x, y) of a list anew, in place of what `image` has there. Throws scene::FrameStopped once `stop`
+/// is asked for.
 VoxelCastCounts cast_voxel_by_voxel(const scene::SampleSource& source, const scene::Camera& camera,
                                     const scene::TransferFunction& function, const VoxelCastSettings& settings,
                                     std::span<const std::array<int, 2>> pixels, scene::Image& image,

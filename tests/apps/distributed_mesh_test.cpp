@@ -1,4 +1,4 @@
-#include "apps/distributed_mesh.hpp"
+#include "frame/distributed_mesh.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -16,6 +16,8 @@ namespace tessera::apps {
 namespace {
 
 using exchange::Transport;
+using frame::DistributedMesh;
+using frame::read_distributed;
 using projection::PartitionKind;
 
 /// A tet's positions and scalars in the order of its corners.

@@ -97,8 +97,10 @@ std::vector<FinishedFrame> render(const Parts& parts, const Shape& shape, Distri
         [&](std::size_t) {
           ProjectorMesh mesh;
           const auto rank = static_cast<std::size_t>(transport.rank());
-          mesh.part = std::make_shared<scene::TetMesh>(rank < parts.size() ? parts[rank] : scene::TetMesh{});
-          mesh.global_tet = mesh.part->original_cell;
+          static const scene::TetMesh none;
+          const scene::TetMesh& part = rank < parts.size() ? parts[rank] : none;
+          mesh.part = part;
+          mesh.global_tet = part.original_cell;
           mesh.diagonal = diagonal;
           mesh.box = whole.box;
           mesh.scalar_range = whole.scalar_range;
@@ -409,7 +411,7 @@ TEST(Distributed, AnErrorOfOneRankIsTheErrorOfAll) {
               [&](std::size_t) -> ProjectorMesh {
                 if (transport.rank() == broken) throw scene::bad_input("piece_2.vtu: is cut short; copy it again");
                 ProjectorMesh part;
-                part.part = std::make_shared<scene::TetMesh>(parts[static_cast<std::size_t>(transport.rank())]);
+                part.part = parts[static_cast<std::size_t>(transport.rank())];
                 part.diagonal = 4;
                 return part;
               },
@@ -442,8 +444,7 @@ TEST(Distributed, AFullDiskWhileWritingEndsAllAfterTheFramesBeforeIt) {
                                          transport, settings, jobs, six_knots(),
                                          [&](std::size_t) {
                                            ProjectorMesh part;
-                                           part.part = std::make_shared<scene::TetMesh>(
-                                               parts[static_cast<std::size_t>(transport.rank())]);
+                                           part.part = parts[static_cast<std::size_t>(transport.rank())];
                                            part.diagonal = 4;
                                            return part;
                                          },

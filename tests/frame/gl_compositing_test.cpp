@@ -76,7 +76,8 @@ std::vector<FinishedFrame> rendered(const GlJobSetup& setup, const scene::TetMes
               tets->tets.push_back(mesh.tets[t]);
               part.global_tet.push_back(t);
             }
-          part.part = tets;
+          part.part = *tets;
+          part.owner = tets;
           part.diagonal = 4;
           part.box = facts.box;
           part.scalar_range = facts.scalar_range;

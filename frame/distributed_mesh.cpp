@@ -1,15 +1,15 @@
-#include "apps/distributed_mesh.hpp"
+#include "frame/distributed_mesh.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "apps/mesh_input.hpp"
+#include "frame/mesh_input.hpp"
 #include "frame/reduce.hpp"
 #include "io/mesh_parts.hpp"
 
-namespace tessera::apps {
+namespace tessera::frame {
 namespace {
 
 using exchange::Bytes;
@@ -131,8 +131,7 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
     words = std::max(words, j[3].get<std::uint64_t>());
   }
   own.summary.used_points.resize(words, 0);
-  summaries.front().used_points =
-      frame::reduce_all(transport, std::move(own.summary.used_points), frame::Reduction::bit_or);
+  summaries.front().used_points = reduce_all(transport, std::move(own.summary.used_points), Reduction::bit_or);
 
   DistributedMesh result;
   io::MeshFile description;
@@ -174,8 +173,8 @@ DistributedMesh read_distributed(Transport& transport, std::span<const std::file
       result = in_parts[0] != std::byte{0} ? read_parts(transport, files.front(), options, projectors)
                                            : read_whole(transport, files, options, projectors);
     }
-    result.facts = frame::agree_facts(transport, result.part.mesh, threads);
-    result.part = frame::redistribute(transport, std::move(result.part), result.facts, partition, projectors, trace);
+    result.facts = agree_facts(transport, result.part.mesh, threads);
+    result.part = redistribute(transport, std::move(result.part), result.facts, partition, projectors, trace);
   } catch (const scene::Error& error) {
     transport.fail(error);
     transport.check();  // throws the run's error, which may be another rank's
@@ -192,4 +191,4 @@ DistributedMesh read_distributed(Transport& transport, std::span<const std::file
   return result;
 }
 
-}  // namespace tessera::apps
+}  // namespace tessera::frame

@@ -1,4 +1,4 @@
-#include "apps/brick_memory.hpp"
+#include "frame/brick_memory.hpp"
 
 #include <unistd.h>
 
@@ -7,7 +7,7 @@
 
 #include "scene/threads.hpp"
 
-namespace tessera::apps {
+namespace tessera::frame {
 
 std::uint64_t resident_bytes() {
   std::uint64_t whole = 0, resident = 0;
@@ -25,4 +25,4 @@ std::uint64_t brick_memory(std::uint64_t memory, std::uint64_t resident, scene::
   return std::max(std::min(memory, least), memory > rest ? memory - rest : 0);
 }
 
-}  // namespace tessera::apps
+}  // namespace tessera::frame

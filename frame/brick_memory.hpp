@@ -4,7 +4,7 @@
 
 #include "scene/image.hpp"
 
-namespace tessera::apps {
+namespace tessera::frame {
 
 /// Bytes of memory that this process holds now, shared libraries included; 0 where the system does not tell.
 std::uint64_t resident_bytes();
@@ -15,4 +15,4 @@ std::uint64_t resident_bytes();
 /// itself.
 std::uint64_t brick_memory(std::uint64_t memory, std::uint64_t resident, scene::ImageSize picture, int threads);
 
-}  // namespace tessera::apps
+}  // namespace tessera::frame

@@ -10,11 +10,11 @@
 #include "scene/mesh_facts.hpp"
 #include "scene/trace.hpp"
 
-namespace tessera::apps {
+namespace tessera::frame {
 
 /// What one rank gets of a mesh that several read together.
 struct DistributedMesh {
-  frame::MeshPart part;    ///< this rank's tets; none on ranks that do not project
+  MeshPart part;           ///< this rank's tets; none on ranks that do not project
   scene::MeshFacts facts;  ///< of the whole
   /// What io::read_mesh says of the whole, the same on every rank, but for the mesh: that has its field and association
   /// only.
@@ -32,4 +32,4 @@ DistributedMesh read_distributed(exchange::Transport& transport, std::span<const
                                  const io::MeshOptions& options, const projection::Partition& partition,
                                  std::span<const int> projectors, int threads, scene::Trace* trace);
 
-}  // namespace tessera::apps
+}  // namespace tessera::frame

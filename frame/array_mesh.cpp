@@ -1,0 +1,166 @@
+#include "frame/array_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+
+#include "io/cell_block.hpp"
+#include "io/mesh_assembly.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::frame {
+namespace {
+
+/// Calls `use` with the numbers as they are stored.
+template <class Use>
+auto with_numbers(const ArrayView& view, const Use& use) {
+  switch (view.type()) {
+    case NumberType::int8:
+      return use(view.as<std::int8_t>());
+    case NumberType::uint8:
+      return use(view.as<std::uint8_t>());
+    case NumberType::int16:
+      return use(view.as<std::int16_t>());
+    case NumberType::uint16:
+      return use(view.as<std::uint16_t>());
+    case NumberType::int32:
+      return use(view.as<std::int32_t>());
+    case NumberType::uint32:
+      return use(view.as<std::uint32_t>());
+    case NumberType::int64:
+      return use(view.as<std::int64_t>());
+    case NumberType::uint64:
+      return use(view.as<std::uint64_t>());
+    case NumberType::float32:
+      return use(view.as<float>());
+    case NumberType::float64:
+      break;
+  }
+  return use(view.as<double>());
+}
+
+bool is_whole(NumberType type) { return type != NumberType::float32 && type != NumberType::float64; }
+
+std::vector<double> doubles_of(const ArrayView& view) {
+  return with_numbers(view, [](const auto& numbers) { return std::vector<double>(numbers.begin(), numbers.end()); });
+}
+
+/// Whole numbers below `end`, or an error that names the first that is not.
+template <class T>
+std::vector<T> whole_numbers(const ArrayView& view, const char* name, std::uint64_t end) {
+  if (!is_whole(view.type())) throw scene::bad_input(fmt::format("mesh: {} are no whole numbers; give integers", name));
+  return with_numbers(view, [&](const auto& numbers) {
+    std::vector<T> values;
+    values.reserve(numbers.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const auto number = static_cast<std::int64_t>(numbers[i]);
+      if (number < 0 || static_cast<std::uint64_t>(number) >= end)
+        throw scene::bad_input(
+            fmt::format("mesh: {} {} is {}; it must be 0 to {}", name, i, number, static_cast<std::int64_t>(end) - 1));
+      values.push_back(static_cast<T>(number));
+    }
+    return values;
+  });
+}
+
+void check_shapes(const MeshArrays& a) {
+  if (a.points.size() % 3 != 0)
+    throw scene::bad_input(fmt::format("mesh: {} coordinates are not three a point", a.points.size()));
+  const std::size_t points = a.points.size() / 3;
+  if (points > 0xffffffffull) throw scene::bad_input("mesh: more than 2^32 points; give it in parts, one a rank");
+  const bool as_tets = a.types.empty() && a.offsets.empty() && a.connectivity.empty();
+  if (!as_tets && !a.tets.empty())
+    throw scene::bad_input("mesh: cells are given twice; give tets, or types, offsets and connectivity");
+  if (as_tets && a.tets.size() % 4 != 0)
+    throw scene::bad_input(fmt::format("mesh: {} corners are not four a tet", a.tets.size()));
+  if (!as_tets && a.offsets.size() != a.types.size() + 1)
+    throw scene::bad_input(
+        fmt::format("mesh: {} offsets for {} cells; give one more than cells", a.offsets.size(), a.types.size()));
+  const std::size_t cells = as_tets ? a.tets.size() / 4 : a.types.size();
+  const bool of_points = a.association == Association::point;
+  const std::size_t wanted = of_points ? points : cells;
+  if (a.scalars.size() != wanted)
+    throw scene::bad_input(fmt::format("mesh: {} scalars for {} {}; give one each", a.scalars.size(), wanted,
+                                       of_points ? "points" : "cells"));
+}
+
+/// The arrays as they stand, if the renderer can take them so.
+std::optional<scene::TetMeshView> borrowed(const MeshArrays& a) {
+  if (a.points.type() != NumberType::float64 || a.scalars.type() != NumberType::float64 ||
+      a.tets.type() != NumberType::uint32 || !a.types.empty())
+    return std::nullopt;
+  static_assert(sizeof(glm::dvec3) == 3 * sizeof(double) && sizeof(scene::Tet) == 4 * sizeof(std::uint32_t));
+  scene::TetMeshView mesh;
+  mesh.positions = {static_cast<const glm::dvec3*>(a.points.data()), a.points.size() / 3};
+  mesh.tets = {static_cast<const scene::Tet*>(a.tets.data()), a.tets.size() / 4};
+  mesh.scalars = a.scalars.as<double>();
+  mesh.association = a.association;
+  const auto finite = [](double v) { return std::isfinite(v); };
+  for (const scene::Tet& tet : mesh.tets)
+    for (const std::uint32_t v : tet)
+      if (v >= mesh.positions.size()) return std::nullopt;  // said by the conversion
+  const auto coordinates = a.points.as<double>();
+  if (!std::all_of(coordinates.begin(), coordinates.end(), finite) ||
+      !std::all_of(mesh.scalars.begin(), mesh.scalars.end(), finite))
+    return std::nullopt;
+  return mesh;
+}
+
+io::CellBlock block_of(const MeshArrays& a) {
+  io::CellBlock block;
+  const std::size_t points = a.points.size() / 3;
+  const std::vector<double> coordinates = doubles_of(a.points);
+  block.positions.resize(points);
+  std::memcpy(block.positions.data(), coordinates.data(), coordinates.size() * sizeof(double));
+  if (a.types.empty()) {
+    const auto corners = whole_numbers<std::uint32_t>(a.tets, "tet corner", points);
+    block.tets.resize(corners.size() / 4);
+    std::memcpy(block.tets.data(), corners.data(), corners.size() * sizeof(std::uint32_t));
+  } else {
+    block.types = whole_numbers<std::uint8_t>(a.types, "cell type", 256);
+    block.connectivity = whole_numbers<std::uint32_t>(a.connectivity, "connectivity", points);
+    block.offsets = whole_numbers<std::uint64_t>(a.offsets, "offset", a.connectivity.size() + 1);
+    for (std::size_t i = 1; i < block.offsets.size(); ++i)
+      if (block.offsets[i] < block.offsets[i - 1])
+        throw scene::bad_input(fmt::format("mesh: offset {} is {}, below the one before it, {}", i, block.offsets[i],
+                                           block.offsets[i - 1]));
+    if (block.offsets.back() != block.connectivity.size() || block.offsets.front() != 0)
+      throw scene::bad_input(fmt::format("mesh: offsets go from {} to {}; they must from 0 to connectivity's {}",
+                                         block.offsets.front(), block.offsets.back(), block.connectivity.size()));
+  }
+  block.fields.push_back(io::field_of_values(a.field_name, "double", a.association, 1, doubles_of(a.scalars)));
+  return block;
+}
+
+}  // namespace
+
+ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty) {
+  check_shapes(arrays);
+  if (may_be_empty && arrays.tets.empty() && arrays.types.empty()) {
+    scene::TetMeshView nothing;
+    nothing.association = arrays.association;
+    return {nothing, nullptr, {}, {}};
+  }
+  ArrayMesh result;
+  if (const auto mesh = borrowed(arrays); mesh && !mesh->tets.empty()) {
+    result.mesh = *mesh;
+    result.owner = arrays.owner;
+    result.counts.cells_read = result.counts.tets_made = mesh->tets.size();
+    result.counts.points_read = mesh->positions.size();
+    return result;
+  }
+  std::vector<io::CellBlock> blocks;
+  blocks.push_back(block_of(arrays));
+  io::MeshOptions options;
+  options.threads = 0;
+  auto file = std::make_shared<io::MeshFile>(io::assemble_mesh(std::move(blocks), options, "mesh"));
+  result.mesh = file->mesh;
+  result.counts = file->counts;
+  result.notes = file->notes;
+  result.owner = std::move(file);
+  return result;
+}
+
+}  // namespace tessera::frame

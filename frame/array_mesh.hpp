@@ -1,0 +1,23 @@
+#pragma once
+
+#include <memory>
+
+#include "io/mesh_reader.hpp"
+#include "scene/tet_mesh.hpp"
+#include "tessera/dataset.hpp"
+
+namespace tessera::frame {
+
+/// A caller's mesh as the renderer sees it.
+struct ArrayMesh {
+  scene::TetMeshView mesh;
+  std::shared_ptr<const void> owner;  ///< of the caller's arrays, or of what was made of them
+  MeshCounts counts;
+  std::vector<std::string> notes;
+};
+
+/// Borrows the arrays where they are laid out as the renderer wants them and nothing is blank, else converts them as a
+/// file's. `may_be_empty`: of a part. Throws Error(bad_input) naming array and place.
+ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty);
+
+}  // namespace tessera::frame

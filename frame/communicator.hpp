@@ -1,0 +1,25 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "exchange/transport.hpp"
+#include "tessera/communicator.hpp"
+
+namespace tessera {
+
+/// How a Communicator becomes messages.
+struct Communicator::State {
+  int rank = 0, size = 1;
+  /// A transport for one data set or session alone. Collective.
+  std::function<std::shared_ptr<exchange::Transport>()> connect;
+};
+
+namespace frame {
+
+/// Ranks of a transport that somebody else has: everything made with it shares it, one after the other. It must outlive
+/// them.
+Communicator communicator_over(exchange::Transport& transport);
+
+}  // namespace frame
+}  // namespace tessera

@@ -1,0 +1,317 @@
+#include "frame/dataset.hpp"
+
+#include <fmt/format.h>
+#include <tbb/task_arena.h>
+
+#include <utility>
+
+#include "colormaps/presets.hpp"
+#include "exchange/transport.hpp"
+#include "frame/array_mesh.hpp"
+#include "frame/communicator.hpp"
+#include "frame/distributed_mesh.hpp"
+#include "frame/mesh_check.hpp"
+#include "frame/mesh_input.hpp"
+#include "frame/render.hpp"
+#include "frame/roles.hpp"
+#include "frame/scan_together.hpp"
+#include "io/volume_reader.hpp"
+#include "scene/error.hpp"
+#include "scene/threads.hpp"
+
+namespace tessera {
+namespace {
+
+io::VolumeOptions volume_options(const ReadOptions& o) {
+  return {o.field, o.dims, o.type, o.spacing, o.origin, o.big_endian, o.skip};
+}
+
+void check_grid_options(const std::filesystem::path& file, const ReadOptions& options) {
+  const auto refuse = [&](const char* setting) {
+    throw scene::bad_input(
+        fmt::format("{}: `{}` is for meshes, and this is a grid; leave it out", file.string(), setting));
+  };
+  if (options.smooth) refuse("smooth");
+  if (options.max_volume) refuse("max_volume");
+  if (options.time_step) refuse("time_step");
+  if (!options.plot3d_q.empty()) refuse("plot3d_q");
+}
+
+void check_mesh_options(const std::filesystem::path& file, const ReadOptions& options) {
+  if (volume_options(options).describes_raw())
+    throw scene::bad_input(fmt::format(
+        "{}: `dims`, `type`, `spacing`, `origin`, `big_endian` and `skip` are for .raw files; leave them out",
+        file.string()));
+}
+
+std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, const ReadOptions& options,
+                                            exchange::Transport* transport) {
+  check_grid_options(file, options);
+  auto state = std::make_shared<Dataset::State>();
+  io::VolumeFile volume = io::open_unscanned_volume(file, volume_options(options));
+  state->ranges = std::make_shared<const volume::CellRanges>(
+      transport != nullptr ? frame::scan_together(*transport, *volume.source, options.threads)
+                           : volume::CellRanges(*volume.source, options.threads));
+  io::set_range(volume, file, state->ranges->range);
+  state->fields = std::move(volume.fields);
+  state->notes = std::move(volume.notes);
+  state->format = std::move(volume.format);
+  state->samples = std::move(volume.source);
+  return state;
+}
+
+/// Facts of a grid whose samples and ranges are known.
+void complete_grid(Dataset::State& state) {
+  const scene::Grid& grid = state.samples->grid();
+  const scene::ValueRange& range = state.ranges->range;
+  state.field_name = grid.field_name;
+  state.facts = {scene::bounds(grid.geometry),
+                 {range.low, range.high},
+                 scene::mean_thickness(grid.geometry),
+                 0,
+                 grid.geometry.association};
+}
+
+void take_description(io::MeshFile&& file, Dataset::State& state) {
+  state.field_name = std::move(file.mesh.field_name);
+  state.fields = std::move(file.fields);
+  state.notes = std::move(file.notes);
+  state.format = std::move(file.format);
+  state.counts = file.counts;
+}
+
+/// Makes a mesh the state's own, its corners in the order that needs no copy.
+void keep(scene::TetMesh mesh, int threads, Dataset::State& state) {
+  frame::RenderSettings settings;
+  settings.threads = threads;
+  frame::order_corners(mesh, settings);
+  auto kept = std::make_shared<const scene::TetMesh>(std::move(mesh));
+  state.mesh = *kept;
+  state.owner = std::move(kept);
+}
+
+bool opens_as_grid(std::span<const std::filesystem::path> files, const ReadOptions& options) {
+  if (files.empty()) throw scene::bad_input("input: no file is named; name one");
+  return files.size() == 1 && !options.grid_as_mesh && io::is_volume(files.front());
+}
+
+FieldInfo only_field(const std::string& name, Association association, const char* type,
+                     const scene::MeshFacts& facts) {
+  return {name, association, 1, type, facts.scalar_range[0], facts.scalar_range[1], 0, true};
+}
+
+const char* word(NumberType type) {
+  constexpr const char* words[] = {"int8",   "uint8", "int16",  "uint16",  "int32",
+                                   "uint32", "int64", "uint64", "float32", "float64"};
+  return words[static_cast<std::size_t>(type)];
+}
+
+SampleType sample_type_of(NumberType type) {
+  switch (type) {
+    case NumberType::int8:
+      return SampleType::int8;
+    case NumberType::uint8:
+      return SampleType::uint8;
+    case NumberType::int16:
+      return SampleType::int16;
+    case NumberType::uint16:
+      return SampleType::uint16;
+    case NumberType::int32:
+      return SampleType::int32;
+    case NumberType::uint32:
+      return SampleType::uint32;
+    case NumberType::float32:
+      return SampleType::float32;
+    case NumberType::float64:
+      return SampleType::float64;
+    default:
+      throw scene::bad_input("grid: samples are 64-bit integers; give float64");
+  }
+}
+
+/// This rank's error ends the run for all, and the run's one error is thrown on each.
+template <class Work>
+auto together(exchange::Transport& transport, const Work& work) {
+  try {
+    return work();
+  } catch (const scene::Error& error) {
+    transport.fail(error);
+    transport.check();
+    throw;
+  }
+}
+
+}  // namespace
+
+namespace frame {
+
+io::MeshOptions mesh_options(const ReadOptions& o) {
+  return {o.field, o.smooth, o.plot3d_q, o.max_volume, o.time_step, o.threads};
+}
+
+}  // namespace frame
+
+std::shared_ptr<const projection::PreparedMesh> Dataset::State::prepared(int threads) const {
+  std::call_once(once_, [&] {
+    tbb::task_arena(scene::threads_for(threads)).execute([&] {
+      prepared_ = std::make_shared<const projection::PreparedMesh>(mesh);
+    });
+  });
+  return prepared_;
+}
+
+Dataset Dataset::open(const std::filesystem::path& file, const ReadOptions& options) {
+  return open(std::span(&file, 1), options);
+}
+
+Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOptions& options) {
+  std::shared_ptr<State> state;
+  if (opens_as_grid(files, options)) {
+    state = opened_grid(files.front(), options, nullptr);
+    complete_grid(*state);
+  } else {
+    check_mesh_options(files.front(), options);
+    state = std::make_shared<State>();
+    io::MeshFile file = frame::read_input(files, frame::mesh_options(options));
+    scene::TetMesh mesh = std::move(file.mesh);
+    file.mesh.field_name = mesh.field_name;
+    take_description(std::move(file), *state);
+    state->facts = scene::facts_of(mesh, options.threads);
+    keep(std::move(mesh), options.threads, *state);
+  }
+  state->source = files.front().string();
+  state->files.assign(files.begin(), files.end());
+  state->options = options;
+  return Dataset(std::move(state));
+}
+
+Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOptions& options,
+                      const Communicator& communicator, const RankSettings& ranks) {
+  if (communicator.size() == 1) return open(files, options);
+  const std::shared_ptr<exchange::Transport> transport = communicator.state().connect();
+  return together(*transport, [&] {
+    std::shared_ptr<State> state;
+    if (opens_as_grid(files, options)) {
+      state = opened_grid(files.front(), options, transport.get());
+      complete_grid(*state);
+    } else {
+      check_mesh_options(files.front(), options);
+      state = std::make_shared<State>();
+      const frame::Roles roles = frame::assign_roles(transport->size(), ranks.projectors, ranks.compositors);
+      frame::DistributedMesh mesh = frame::read_distributed(
+          *transport, files, frame::mesh_options(options), ranks.partition, roles.projectors, options.threads, nullptr);
+      take_description(std::move(mesh.description), *state);
+      state->facts = mesh.facts;
+      state->ranks = transport->size();
+      state->global_tet = std::move(mesh.part.global_tet);
+      keep(std::move(mesh.part.mesh), options.threads, *state);
+    }
+    state->source = files.front().string();
+    state->files.assign(files.begin(), files.end());
+    state->options = options;
+    return Dataset(std::move(state));
+  });
+}
+
+Dataset Dataset::of(const MeshArrays& arrays) {
+  auto state = std::make_shared<State>();
+  frame::ArrayMesh mesh = frame::mesh_of_arrays(arrays, false);
+  state->mesh = mesh.mesh;
+  state->owner = std::move(mesh.owner);
+  state->counts = mesh.counts;
+  state->notes = std::move(mesh.notes);
+  state->facts = scene::facts_of(state->mesh, 0);
+  state->source = "mesh";
+  state->format = "arrays";
+  state->field_name = arrays.field_name;
+  state->fields = {only_field(arrays.field_name, arrays.association, word(arrays.scalars.type()), state->facts)};
+  return Dataset(std::move(state));
+}
+
+Dataset Dataset::of(const GridArrays& arrays) {
+  auto state = std::make_shared<State>();
+  scene::Grid grid;
+  grid.geometry = arrays.geometry;
+  grid.type = sample_type_of(arrays.samples.type());
+  grid.scale = arrays.scale, grid.shift = arrays.shift;
+  grid.field_name = arrays.field_name;
+  const std::span bytes(static_cast<const std::byte*>(arrays.samples.data()),
+                        arrays.samples.size() * scene::size_of(grid.type));
+  state->samples = std::make_shared<const scene::MemorySource>(std::move(grid), bytes, arrays.owner, "grid");
+  state->ranges = std::make_shared<const volume::CellRanges>(*state->samples, 0);
+  if (state->ranges->range.empty())
+    throw scene::bad_input("grid: none of its samples is finite; give a field that has values");
+  complete_grid(*state);
+  state->source = "grid";
+  state->format = "arrays";
+  state->fields = {only_field(state->field_name, state->facts.association, word(arrays.samples.type()), state->facts)};
+  state->fields.front().nan_count = state->ranges->range.blanks;
+  return Dataset(std::move(state));
+}
+
+Dataset Dataset::of_parts(const MeshArrays& part, const Communicator& communicator) {
+  if (communicator.size() == 1) return of(part);
+  const std::shared_ptr<exchange::Transport> transport = communicator.state().connect();
+  return together(*transport, [&] {
+    auto state = std::make_shared<State>();
+    frame::ArrayMesh mesh = frame::mesh_of_arrays(part, true);
+    state->mesh = mesh.mesh;
+    state->owner = std::move(mesh.owner);
+    state->counts = mesh.counts;
+    state->notes = std::move(mesh.notes);
+    state->facts = frame::agree_facts(*transport, state->mesh, 0);
+    if (state->facts.tets == 0) throw scene::bad_input("mesh: no rank has a cell; give at least one");
+    state->ranks = transport->size();
+    state->global_tet = frame::numbered_by_rank(*transport, state->mesh.tets.size());
+    state->source = "mesh";
+    state->format = "arrays";
+    state->field_name = part.field_name;
+    state->fields = {only_field(part.field_name, part.association, word(part.scalars.type()), state->facts)};
+    return Dataset(std::move(state));
+  });
+}
+
+bool Dataset::is_mesh() const { return state_->samples == nullptr; }
+const Box& Dataset::bounds() const { return state_->facts.box; }
+std::array<double, 2> Dataset::range() const { return state_->facts.scalar_range; }
+Association Dataset::association() const { return state_->facts.association; }
+const std::string& Dataset::field_name() const { return state_->field_name; }
+std::span<const FieldInfo> Dataset::fields() const { return state_->fields; }
+std::span<const std::string> Dataset::notes() const { return state_->notes; }
+const std::string& Dataset::format() const { return state_->format; }
+const std::string& Dataset::source() const { return state_->source; }
+std::uint64_t Dataset::tet_count() const { return state_->facts.tets; }
+const MeshCounts& Dataset::mesh_counts() const { return state_->counts; }
+
+const GridGeometry& Dataset::grid_geometry() const {
+  if (is_mesh()) throw scene::bad_input(state_->source + ": is a mesh, which has no lattice; ask grids for it");
+  return state_->samples->geometry();
+}
+SampleType Dataset::sample_type() const {
+  if (is_mesh()) throw scene::bad_input(state_->source + ": is a mesh, which has no samples; ask grids for it");
+  return state_->samples->grid().type;
+}
+std::uint64_t Dataset::blank_samples() const { return is_mesh() ? 0 : state_->ranges->range.blanks; }
+
+double Dataset::default_unit_distance() const { return frame::default_unit_distance(state_->facts); }
+
+Camera Dataset::default_camera(ImageSize size, ProjectionKind projection) const {
+  validate(size);
+  return frame_box(bounds(), size, projection);
+}
+
+LoadedTransferFunction Dataset::transfer_function(const std::string& file_or_preset,
+                                                  const TransferFunctionOptions& options) const {
+  return frame::transfer_function_of(state_->facts, is_grid(), file_or_preset, options);
+}
+
+MeshCheck Dataset::check() const {
+  if (is_grid()) throw scene::bad_input(state_->source + ": is a grid, which nothing can be wrong with; check meshes");
+  if (state_->ranks > 1)
+    throw scene::bad_input(state_->source + ": this rank has a part of the mesh; open it on one rank to check it");
+  return frame::check_mesh(state_->mesh);
+}
+
+std::vector<std::string> preset_names() { return colormaps::preset_names(); }
+
+}  // namespace tessera

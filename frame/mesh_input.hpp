@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "colormaps/function_options.hpp"
+#include "io/mesh_reader.hpp"
+#include "scene/mesh_facts.hpp"
+#include "tessera/dataset.hpp"
+
+/// Meshes as files have them, and what stands in for settings that were not given.
+namespace tessera::frame {
+
+/// io::read_mesh, but a regular grid or time series is refused as one. Throws scene::Error.
+io::MeshFile read_input(const std::filesystem::path& input, const io::MeshOptions& options);
+/// Several files are the pieces of one mesh.
+io::MeshFile read_input(std::span<const std::filesystem::path> files, const io::MeshOptions& options);
+
+/// Length of a box's diagonal, world units; 0 if it has no extent.
+double diagonal(const scene::Box& box);
+
+/// The length over which an opacity holds where neither file nor user says it, world units: a tenth of the mesh's mean
+/// thickness, so that the presets' ramps (0.03 to 0.2) make an average ray 0.26 to 0.89 opaque, in plates and scattered
+/// parts too. A mesh of no volume: a twentieth of its diagonal; of no extent: 1.
+double default_unit_distance(const scene::MeshFacts& facts);
+
+/// The preset or file named, or the default one, over the range of the field.
+LoadedTransferFunction transfer_function_of(const scene::MeshFacts& facts, bool is_grid,
+                                            const std::string& file_or_preset, const TransferFunctionOptions& options);
+
+}  // namespace tessera::frame

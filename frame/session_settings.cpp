@@ -1,0 +1,73 @@
+#include "frame/session_settings.hpp"
+
+#include "scene/error.hpp"
+
+namespace tessera::frame {
+namespace {
+
+volume::Method method_of(IntegratorKind kind) {
+  switch (kind) {
+    case IntegratorKind::automatic:
+      return volume::Method::automatic;
+    case IntegratorKind::exact:
+      return volume::Method::exact;
+    case IntegratorKind::sampled:
+      return volume::Method::sampled;
+    case IntegratorKind::preintegrated:
+      return volume::Method::preintegrated;
+    case IntegratorKind::partial:
+      break;
+  }
+  throw scene::bad_input("`integrator` partial: is for meshes, and the data set is a grid; use automatic or exact");
+}
+
+}  // namespace
+
+RenderSettings mesh_settings(const Settings& s) {
+  RenderSettings settings;
+  settings.rasterizer = s.mesh.rasterizer;
+  settings.integrator = s.integrator;
+  settings.emission = s.emission;
+  settings.use = s.use;
+  settings.threads = s.threads;
+  settings.tile_size = s.mesh.tile_size;
+  settings.memory_bytes = s.memory_bytes;
+  return settings;
+}
+
+volume::RenderSettings grid_settings(const Settings& s) {
+  volume::RenderSettings settings;
+  settings.method = method_of(s.integrator.kind);
+  settings.accuracy = s.integrator.accuracy;
+  settings.step = s.grid.step;
+  settings.emission = s.emission;
+  settings.shading = s.grid.shading;
+  settings.threads = s.threads;
+  settings.brick_size = s.grid.brick_size;
+  settings.edge_bricks = s.grid.edge_bricks;
+  settings.memory_bytes = s.memory_bytes;
+  settings.cache = s.grid.cache;
+  settings.preload_limit = s.grid.preload_limit;
+  settings.use = s.use;
+  return settings;
+}
+
+SortFirstSettings sort_first_settings(const Settings& s) {
+  SortFirstSettings settings;
+  settings.balance = s.ranks.balance;
+  settings.resolution = s.ranks.balance_resolution;
+  settings.weights = s.ranks.balance_weights;
+  return settings;
+}
+
+DistributedSettings distributed_settings(const Settings& s, int ranks) {
+  DistributedSettings settings;
+  settings.render = mesh_settings(s);
+  settings.roles = assign_roles(ranks, s.ranks.projectors, s.ranks.compositors);
+  settings.exchange = s.ranks.exchange;
+  settings.frames_in_flight = s.ranks.frames_in_flight;
+  settings.tile_seed = s.ranks.tile_seed;
+  return settings;
+}
+
+}  // namespace tessera::frame

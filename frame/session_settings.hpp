@@ -1,0 +1,22 @@
+#pragma once
+
+#include "frame/distributed.hpp"
+#include "frame/render.hpp"
+#include "frame/sort_first.hpp"
+#include "tessera/settings.hpp"
+#include "volume/render.hpp"
+
+/// A session's settings as the renderers have them.
+namespace tessera::frame {
+
+RenderSettings mesh_settings(const Settings& settings);
+
+/// Throws Error(bad_input) for methods that grids do not have.
+volume::RenderSettings grid_settings(const Settings& settings);
+
+SortFirstSettings sort_first_settings(const Settings& settings);
+
+/// `ranks`: of the job.
+DistributedSettings distributed_settings(const Settings& settings, int ranks);
+
+}  // namespace tessera::frame

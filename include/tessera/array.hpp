@@ -1,0 +1,67 @@
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <ranges>
+#include <span>
+#include <type_traits>
+
+namespace tessera {
+
+/// How a number is stored.
+enum class NumberType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+
+/// The type that a C++ number is stored as.
+template <class T>
+requires std::is_arithmetic_v<T>
+constexpr NumberType number_type_of() {
+  if constexpr (std::is_floating_point_v<T>) {
+    static_assert(sizeof(T) == 4 || sizeof(T) == 8, "float and double only");
+    return sizeof(T) == 4 ? NumberType::float32 : NumberType::float64;
+  } else {
+    constexpr int size = sizeof(T) == 1 ? 0 : sizeof(T) == 2 ? 2 : sizeof(T) == 4 ? 4 : 6;
+    return static_cast<NumberType>(size + (std::is_signed_v<T> ? 0 : 1));
+  }
+}
+
+/// Numbers in the caller's memory, next to each other: any vector, array or span of numbers, or of glm::dvec3, which
+/// counts as three. Keeps nothing: the memory must stay for as long as the view is used.
+class ArrayView {
+ public:
+  ArrayView() = default;
+
+  template <std::ranges::contiguous_range Range>
+  requires std::ranges::sized_range<Range> && std::is_arithmetic_v<std::ranges::range_value_t<Range>> ArrayView(
+      const Range& numbers)  // NOLINT(google-explicit-constructor): a view of what is there
+      : data_(std::ranges::data(numbers)),
+        size_(std::ranges::size(numbers)),
+        type_(number_type_of<std::ranges::range_value_t<Range>>()) {}
+
+  template <std::ranges::contiguous_range Range>
+  requires std::ranges::sized_range<Range> && std::same_as<std::ranges::range_value_t<Range>, glm::dvec3> ArrayView(
+      const Range& vectors)  // NOLINT(google-explicit-constructor): a view of what is there
+      : data_(std::ranges::data(vectors)), size_(3 * std::ranges::size(vectors)), type_(NumberType::float64) {}
+
+  ArrayView(const void* data, std::size_t size, NumberType type) : data_(data), size_(size), type_(type) {}
+
+  [[nodiscard]] const void* data() const { return data_; }
+  /// How many numbers.
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] bool empty() const { return size_ == 0; }
+  [[nodiscard]] NumberType type() const { return type_; }
+
+  /// The numbers themselves, if they are stored as T; else an empty span.
+  template <class T>
+  [[nodiscard]] std::span<const T> as() const {
+    return type_ == number_type_of<T>() ? std::span(static_cast<const T*>(data_), size_) : std::span<const T>();
+  }
+
+ private:
+  const void* data_ = nullptr;
+  std::size_t size_ = 0;
+  NumberType type_ = NumberType::float64;
+};
+
+}  // namespace tessera

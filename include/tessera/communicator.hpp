@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+
+#include "tessera/export.hpp"
+
+namespace tessera {
+
+/// The processes that work on one data set or picture together, numbered from 0: this process alone, or those of an MPI
+/// communicator (tessera/mpi.hpp makes it from an MPI_Comm).
+///
+/// What is given a communicator duplicates it, so that its messages never meet the caller's or another session's, and
+/// leaves MPI itself alone: it neither starts nor ends it. Its own thread speaks MPI while the caller's threads may, so
+/// the caller starts MPI with MPI_THREAD_MULTIPLE; anything less is an Error. Of one process no MPI is needed at all.
+class TESSERA_EXPORT Communicator {
+ public:
+  /// This process alone.
+  Communicator();
+  /// Of an MPI communicator by its Fortran handle (MPI_Comm_c2f). Throws Error(bad_input) if MPI has not been
+  /// initialised, or without MPI_THREAD_MULTIPLE; Error(system_failure) in a build without MPI.
+  static Communicator of_handle(int fortran_handle);
+
+  [[nodiscard]] int rank() const;
+  [[nodiscard]] int size() const;
+
+  struct State;
+  /// For the library itself.
+  explicit Communicator(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+  [[nodiscard]] const State& state() const { return *state_; }
+
+ private:
+  std::shared_ptr<const State> state_;
+};
+
+}  // namespace tessera

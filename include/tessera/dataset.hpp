@@ -1,0 +1,165 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tessera/array.hpp"
+#include "tessera/association.hpp"
+#include "tessera/camera.hpp"
+#include "tessera/communicator.hpp"
+#include "tessera/export.hpp"
+#include "tessera/field_info.hpp"
+#include "tessera/grid.hpp"
+#include "tessera/mesh_check.hpp"
+#include "tessera/settings.hpp"
+#include "tessera/transfer_function.hpp"
+
+namespace tessera {
+
+/// What may be said about a file; the defaults read any file that describes itself.
+struct ReadOptions {
+  /// Scalar to render: "" (the reader's choice, said in the notes), "NAME", "NAME:mag", "NAME:x", "NAME:0", each with
+  /// an optional "point:" or "cell:" before it. A vector with no component named gives its magnitude.
+  std::string field;
+  int threads = 0;  ///< that make tets of cells, or scan samples; 0: all cores
+
+  // Meshes.
+  bool smooth = false;                     ///< average cell data to the points, weighted by tet volume
+  std::filesystem::path plot3d_q;          ///< PLOT3D solution file; empty: found beside the grid file by its name
+  std::optional<double> max_volume;        ///< surfaces only: largest tet TetGen makes, world units cubed
+  std::optional<std::size_t> time_step{};  ///< Exodus: step counted from 0; default the last one
+
+  // A .raw file says nothing of itself, but perhaps by its name: NAME_WxHxD_TYPE.raw. These win over the name, and are
+  // refused for other files.
+  std::optional<GridIndex> dims{};
+  std::optional<SampleType> type{};
+  std::optional<glm::dvec3> spacing{}, origin{};
+  bool big_endian = false;
+  std::uint64_t skip = 0;  ///< bytes before the first sample
+
+  /// Of a rectilinear grid, which is a mesh too: its voxels as hexahedra.
+  bool grid_as_mesh = false;
+};
+
+/// A mesh in the caller's arrays.
+///
+/// Cells   either `tets`, or `types`, `offsets` and `connectivity` as VTK has them: cell c has type types[c] (VTK's
+///         number) and points connectivity[offsets[c]] up to connectivity[offsets[c + 1]]; offsets are one more than
+///         cells.
+/// Copies  float64 points and scalars and uint32 tets are borrowed as they stand, for point data that is finite
+///         everywhere and tets whose corners are in range; anything else is converted. One copy of tets (16 bytes each)
+///         is made if their corners are not in the order that order_corners() of a file's mesh gives.
+/// Blanks  cells with a scalar or corner that is NaN or infinite are left out, as from files.
+struct MeshArrays {
+  ArrayView points;  ///< three numbers a point
+  ArrayView tets;    ///< four points a tet, either orientation
+  ArrayView types, offsets, connectivity;
+  ArrayView scalars;  ///< one a point, or one a cell
+  Association association = Association::point;
+  std::string field_name = "scalar";
+  /// Keeps the arrays alive for as long as the data set needs them; null: the caller sees to that.
+  std::shared_ptr<const void> owner;
+};
+
+/// A regular or rectilinear grid in the caller's memory: samples with i fastest, never copied.
+struct GridArrays {
+  GridGeometry geometry;
+  ArrayView samples;            ///< as many as geometry.samples(); no 64-bit integers
+  double scale = 1, shift = 0;  ///< value = scale * sample + shift
+  std::string field_name = "scalar";
+  std::shared_ptr<const void> owner;  ///< as MeshArrays::owner
+};
+
+/// How a preset's or a file's numbers become extinction [1 / world unit] and linear colour.
+struct TransferFunctionOptions {
+  std::optional<double> unit_distance{};  ///< world units over which an opacity holds; wins over the file's own
+  double opacity_scale = 1;               ///< multiplies extinction, >= 0
+  bool display_colors = false;  ///< colours stay as the file shows them, undecoded from sRGB, as VTK composites them
+  bool rescale = false;         ///< stretch a file's values over the field's range
+};
+
+/// A mesh or a grid with one scalar field, opened once. Immutable: copies share it, and so may threads and sessions.
+///
+/// On several ranks a data set is whole on each of them, or opened by all together, each rank holding a part.
+class TESSERA_EXPORT Dataset {
+ public:
+  /// Opens a file; several are the pieces of one mesh. What kind it is, is seen from what the file begins with, then
+  /// from its name (docs/FORMATS.md). Throws Error(bad_input) in one line for a missing, truncated, malformed or empty
+  /// file or an unknown field, Error(system_failure) if memory runs out.
+  static Dataset open(const std::filesystem::path& file, const ReadOptions& options = {});
+  static Dataset open(std::span<const std::filesystem::path> files, const ReadOptions& options = {});
+  /// The same by all ranks of a communicator, which must then be the session's: formats that can be read in parts are,
+  /// each projector its share; others by one rank, which hands the parts on. Grids are scanned together and read brick
+  /// by brick where they are needed. `ranks` as the session's. Collective.
+  static Dataset open(std::span<const std::filesystem::path> files, const ReadOptions& options,
+                      const Communicator& communicator, const RankSettings& ranks = {});
+
+  /// Of the caller's arrays. Throws Error(bad_input) naming the array and place at fault; no cell that is left, or no
+  /// finite sample, is one too.
+  static Dataset of(const MeshArrays& arrays);
+  static Dataset of(const GridArrays& arrays);
+  /// Of a mesh in parts, one a rank, as a simulation has it: every cell on one rank, ghosts left out; a rank may have
+  /// none. Cells are numbered rank after rank. Collective; the communicator must be the session's, where every rank
+  /// projects what it has.
+  static Dataset of_parts(const MeshArrays& part, const Communicator& communicator);
+
+  [[nodiscard]] bool is_mesh() const;
+  [[nodiscard]] bool is_grid() const { return !is_mesh(); }
+
+  /// Of the whole, on every rank.
+  [[nodiscard]] const Box& bounds() const;
+  /// Smallest and largest value of the field that is not blank.
+  [[nodiscard]] std::array<double, 2> range() const;
+  [[nodiscard]] Association association() const;
+  [[nodiscard]] const std::string& field_name() const;
+  /// Arrays of the file; of the caller's, the one.
+  [[nodiscard]] std::span<const FieldInfo> fields() const;
+  /// One line each: what was chosen or applied, or odd about the file.
+  [[nodiscard]] std::span<const std::string> notes() const;
+  /// "VTK XML unstructured grid", "NRRD", ...; "arrays" of the caller's.
+  [[nodiscard]] const std::string& format() const;
+  /// What messages call it: the file, or "mesh" or "grid".
+  [[nodiscard]] const std::string& source() const;
+
+  /// Meshes, else zero.
+  [[nodiscard]] std::uint64_t tet_count() const;
+  [[nodiscard]] const MeshCounts& mesh_counts() const;
+  /// Grids. Throws Error(bad_input) for a mesh.
+  [[nodiscard]] const GridGeometry& grid_geometry() const;
+  [[nodiscard]] SampleType sample_type() const;
+  [[nodiscard]] std::uint64_t blank_samples() const;
+
+  /// The length over which an opacity holds where neither file nor caller says it, world units: a tenth of the mean
+  /// thickness, so that the presets' ramps make an average ray 0.26 to 0.89 opaque. Of no volume: a twentieth of the
+  /// diagonal; of no extent: 1.
+  [[nodiscard]] double default_unit_distance() const;
+  /// The view that frames all of it.
+  [[nodiscard]] Camera default_camera(ImageSize size, ProjectionKind projection = ProjectionKind::orthographic) const;
+  /// A preset ("viridis", "cool-warm:rise", ...) or a file over this field's range; "": the default, which for meshes
+  /// shows everything and for grids leaves low values clear. Throws Error(bad_input) naming file and line.
+  [[nodiscard]] LoadedTransferFunction transfer_function(const std::string& file_or_preset = "",
+                                                         const TransferFunctionOptions& options = {}) const;
+
+  /// Overlapping cells, folds, unmatched faces, slivers, duplicates of a mesh that is whole on this rank. Throws
+  /// Error(bad_input) for a grid or a part.
+  [[nodiscard]] MeshCheck check() const;
+
+  struct State;
+  /// For the library itself.
+  explicit Dataset(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+  [[nodiscard]] const State& state() const { return *state_; }
+
+ private:
+  std::shared_ptr<const State> state_;
+};
+
+/// The names of all presets' colours, the default first.
+TESSERA_EXPORT std::vector<std::string> preset_names();
+
+}  // namespace tessera

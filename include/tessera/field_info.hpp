@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "tessera/association.hpp"
+
+namespace tessera {
+
+/// One array of a file. Range and count are of all tuples, cells that were dropped included.
+struct FieldInfo {
+  std::string name;
+  Association association = Association::point;
+  int components = 1;
+  std::string type;             ///< "float", "double", "int64", "uint8", ...
+  double low = 0, high = 0;     ///< finite values, of the magnitude if there are several components; 0, 0 if none is
+  std::uint64_t nan_count = 0;  ///< tuples that are NaN or infinite
+  bool active = false;          ///< the file marks it as its scalars or vectors
+};
+
+/// What became of a mesh's cells and points. A cell is counted as read, then in at most one of ghost, hidden, nan,
+/// not_volumetric; what remains is split into tets.
+struct MeshCounts {
+  std::uint64_t cells_read = 0;
+  std::uint64_t cells_ghost = 0;           ///< dropped: another piece's (vtkGhostType bit 1, vtkGhostLevels > 0)
+  std::uint64_t cells_hidden = 0;          ///< dropped: vtkGhostType bit 32, or a point of it hidden (2), IBLANK 0
+  std::uint64_t cells_nan = 0;             ///< blanked: a coordinate or scalar of it is missing, NaN or infinite
+  std::uint64_t cells_not_volumetric = 0;  ///< skipped: points, lines, faces
+  std::uint64_t cells_zero_volume = 0;     ///< kept: all their tets have exactly no volume
+  std::uint64_t cells_tangled = 0;         ///< kept: their tets differ in orientation, so they overlap
+  std::uint64_t cells_quadratic = 0;       ///< kept: second or higher order, rendered by their corner nodes
+  std::uint64_t points_read = 0;
+  std::uint64_t points_unused = 0;   ///< of no tet
+  std::uint64_t tets_made = 0;       ///< in the mesh
+  std::uint64_t tets_collapsed = 0;  ///< not made: two of their corners are one point in space
+
+  MeshCounts& operator+=(const MeshCounts& other);  ///< of another part
+  bool operator==(const MeshCounts&) const = default;
+};
+
+inline MeshCounts& MeshCounts::operator+=(const MeshCounts& other) {
+  cells_read += other.cells_read;
+  cells_ghost += other.cells_ghost;
+  cells_hidden += other.cells_hidden;
+  cells_nan += other.cells_nan;
+  cells_not_volumetric += other.cells_not_volumetric;
+  cells_zero_volume += other.cells_zero_volume;
+  cells_tangled += other.cells_tangled;
+  cells_quadratic += other.cells_quadratic;
+  points_read += other.points_read;
+  points_unused += other.points_unused;
+  tets_made += other.tets_made;
+  tets_collapsed += other.tets_collapsed;
+  return *this;
+}
+static_assert(sizeof(MeshCounts) == 12 * sizeof(std::uint64_t));  // one line above for each
+
+}  // namespace tessera

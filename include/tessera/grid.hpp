@@ -1,0 +1,113 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "tessera/association.hpp"
+#include "tessera/camera.hpp"
+#include "tessera/export.hpp"
+
+namespace tessera {
+
+/// How a sample is stored. Other types (64-bit integers, bits) become float64 or uint8 in the reader.
+enum class SampleType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+/// Bytes of one sample: 1, 2, 4 or 8.
+TESSERA_EXPORT std::size_t size_of(SampleType type);
+/// "uint8", "float32", ...
+TESSERA_EXPORT const char* name_of(SampleType type);
+TESSERA_EXPORT bool is_float(SampleType type);
+/// Whether single precision holds every number of the type.
+TESSERA_EXPORT bool fits_float(SampleType type);
+
+/// Numbers along the axes i, j, k; i is the fastest in memory and in files.
+using GridIndex = std::array<std::int64_t, 3>;
+
+/// Samples low <= (i, j, k) < high. Empty if low >= high along an axis.
+struct SampleBox {
+  GridIndex low{0, 0, 0}, high{0, 0, 0};
+
+  [[nodiscard]] std::int64_t extent(std::size_t axis) const { return high[axis] - low[axis]; }
+  [[nodiscard]] std::int64_t count() const {
+    return extent(0) <= 0 || extent(1) <= 0 || extent(2) <= 0 ? 0 : extent(0) * extent(1) * extent(2);
+  }
+  bool operator==(const SampleBox&) const = default;
+};
+
+/// Where the lattice of a regular or rectilinear grid lies.
+///
+/// Frames  index: lattice numbers, (0, 0, 0) at the first lattice point, continuous between them.
+///         local: lengths along the grid's own axes. Regular: index * spacing. Rectilinear: coordinates[axis][index].
+///         world: origin + direction * local.
+/// Data    point: a sample at every lattice point, trilinear between; the volume is the box between the first and the
+///         last of them. Cell: a sample for each voxel between lattice points, one fewer along each axis, constant in
+///         the voxel. A voxel (i, j, k) lies between lattice points (i, j, k) and (i + 1, j + 1, k + 1), for both.
+/// Units   world units of the file; int64 everywhere, so 2048^3 samples and more are addressable.
+/// Holds   (validate) at least two lattice points along each axis; spacing > 0; coordinates, if there are any along an
+///         axis, as many as lattice points, finite and strictly increasing; direction's columns of length one,
+///         independent, of either handedness, not always orthogonal (NIfTI may shear); all finite.
+struct GridGeometry {
+  GridIndex points{0, 0, 0};  ///< lattice points along each axis
+  Association association = Association::point;
+  glm::dvec3 origin{0};       ///< world, of local (0, 0, 0)
+  glm::dmat3 direction{1.0};  ///< column a: the grid's axis a in the world, of length one
+  glm::dvec3 spacing{1.0};    ///< world units between lattice points; of no meaning along rectilinear axes
+  std::array<std::vector<double>, 3> coordinates;  ///< rectilinear: local coordinate of each lattice point; else empty
+
+  /// Samples along each axis.
+  [[nodiscard]] GridIndex samples() const {
+    const std::int64_t fewer = association == Association::cell ? 1 : 0;
+    return {points[0] - fewer, points[1] - fewer, points[2] - fewer};
+  }
+  [[nodiscard]] GridIndex voxels() const { return {points[0] - 1, points[1] - 1, points[2] - 1}; }
+  [[nodiscard]] SampleBox all_samples() const { return {{0, 0, 0}, samples()}; }
+  [[nodiscard]] bool rectilinear(std::size_t axis) const { return !coordinates[axis].empty(); }
+  [[nodiscard]] bool rectilinear() const { return rectilinear(0) || rectilinear(1) || rectilinear(2); }
+
+  /// Local coordinate of lattice point `index` along `axis`; the same double wherever it is asked for.
+  [[nodiscard]] double lattice(std::size_t axis, std::int64_t index) const {
+    return coordinates[axis].empty() ? spacing[static_cast<int>(axis)] * static_cast<double>(index)
+                                     : coordinates[axis][static_cast<std::size_t>(index)];
+  }
+
+  bool operator==(const GridGeometry&) const = default;
+};
+
+/// World position of a continuous lattice index. Outside of the lattice the first and last spacing go on.
+TESSERA_EXPORT glm::dvec3 world_of_index(const GridGeometry& geometry, const glm::dvec3& index);
+/// The inverse.
+TESSERA_EXPORT glm::dvec3 index_of_world(const GridGeometry& geometry, const glm::dvec3& p_world);
+/// Inverse of `direction`: local = world_to_local * (world - origin).
+TESSERA_EXPORT glm::dmat3 world_to_local(const GridGeometry& geometry);
+
+/// World box round the volume's eight corners.
+TESSERA_EXPORT Box bounds(const GridGeometry& geometry);
+
+/// Volume over the largest face of bounds(): what scene::mean_thickness is for the same matter as a mesh. World units.
+TESSERA_EXPORT double mean_thickness(const GridGeometry& geometry);
+
+/// A volume but for its samples: what every reader finds and every renderer asks for first.
+///
+/// Value   of the field = scale * sample + shift (NIfTI's slope and intercept); transfer functions, ranges and pictures
+///         mean the value. Both are finite, scale is not zero. Trilinear interpolation commutes with it.
+/// Blank   a sample that is NaN or infinite. A voxel with such a corner (cell data: whose sample is such) is not part
+///         of the volume: it neither absorbs nor emits. Readers give blanks of integer files (ghost arrays) as NaN of a
+///         float type.
+struct Grid {
+  GridGeometry geometry;
+  SampleType type = SampleType::float32;  ///< as stored
+  double scale = 1, shift = 0;
+  std::string field_name{};  ///< as chosen, with component: "Velocity:mag"
+
+  [[nodiscard]] double value(double sample) const { return scale * sample + shift; }
+};
+
+/// Throws Error(bad_input, "SOURCE: ...") if the invariants above are broken: what is wrong and along which axis.
+TESSERA_EXPORT void validate(const Grid& grid, const std::string& source);
+
+}  // namespace tessera

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <optional>
+
+#include "tessera/deep_image.hpp"
+#include "tessera/export.hpp"
+#include "tessera/image.hpp"
+
+namespace tessera {
+
+/// How a picture is written.
+struct ImageFileOptions {
+  bool half = false;        ///< .exr: R G B A as half instead of float; Z is float always
+  int png_bits = 8;         ///< .png: 8 or 16 bits a channel
+  bool encode_srgb = true;  ///< .png: false with display colours, which are display values already
+  /// Composited behind the picture, which is opaque then (A = 1; .png without an alpha channel). In the picture's own
+  /// space: linear RGB, or display values where encode_srgb is false.
+  std::optional<glm::dvec3> background{};
+};
+
+// Files appear by rename, whole or not at all.
+
+/// Writes a picture by its name's extension.
+///   .exr  OpenEXR scan lines, ZIP: R G B A linear and premultiplied, Z planar depth (+inf where nothing is).
+///   .png  sRGB. Without a background RGBA with straight alpha, as PNG has it: light that a pixel emits beyond its
+///         alpha (independent emission) is clamped, give a background to see it.
+///   .pfm  linear RGB, premultiplied, 32-bit floats, little endian, bottom row first. No alpha.
+/// Throws Error(bad_input) for another extension, a folder that is not there, a number that half cannot hold;
+/// Error(system_failure) if the disk fails or a pixel is NaN or infinite.
+TESSERA_EXPORT void write_image(const Image& image, const std::filesystem::path& file,
+                                const ImageFileOptions& options = {});
+
+/// Reads .exr (R G B, A if present, else 1; Z if present, else +inf) and .pfm (A = 1, Z = +inf). Throws
+/// Error(bad_input) for anything else and for broken files.
+TESSERA_EXPORT Image read_image(const std::filesystem::path& file);
+
+/// Writes a deep picture as OpenEXR, .exr. Throws as write_image.
+TESSERA_EXPORT void write_deep_image(const DeepImage& image, const std::filesystem::path& file);
+
+}  // namespace tessera

@@ -1,0 +1,13 @@
+#pragma once
+
+// The only public header that needs MPI (component `mpi` of the package).
+#include <mpi.h>
+
+#include "tessera/communicator.hpp"
+
+namespace tessera {
+
+/// The processes of an MPI communicator. It must stay valid for as long as anything made with it lives.
+inline Communicator communicator(MPI_Comm mpi) { return Communicator::of_handle(static_cast<int>(MPI_Comm_c2f(mpi))); }
+
+}  // namespace tessera

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <stop_token>
+
+#include "tessera/communicator.hpp"
+#include "tessera/dataset.hpp"
+#include "tessera/export.hpp"
+#include "tessera/settings.hpp"
+#include "tessera/sink.hpp"
+#include "tessera/transfer_function.hpp"
+#include "tessera/verification.hpp"
+#include "tessera/view.hpp"
+
+namespace tessera {
+
+/// Renders one data set many times. Prepares once; renders one frame at a time. Several sessions may run at once, on
+/// one data set too. Threads are the session's own share of the process (Settings::threads); it prints nothing and
+/// changes nothing of the process.
+///
+/// On several ranks constructor, render() and destructor are collective: every rank calls them in the same order, with
+/// the same arguments but for sinks and stops. An Error(bad_input) is thrown on all ranks alike and leaves the session
+/// usable; after an Error(system_failure) it can only be destroyed.
+class TESSERA_EXPORT Session {
+ public:
+  /// Throws Error(bad_input) naming the setting that is out of range or does not go with another or with the data.
+  explicit Session(Dataset dataset, const Settings& settings = {}, const Communicator& communicator = {});
+  ~Session();
+  Session(Session&&) noexcept;
+  Session& operator=(Session&&) noexcept;
+
+  /// One picture, the same bits for any number of threads. `sink`, if any, is given tiles as they finish; the picture
+  /// is what is returned, on the rank that assembles. Once `stop` is asked for, on any rank, it returns on all within
+  /// one batch of cells or one tile of rays, with RenderedFrame::stopped, and the session can go on.
+  ///
+  /// Throws Error(bad_input) for an invalid camera or size, or a view that the settings cannot do;
+  /// Error(system_failure) if memory or the budget run out; what the sink throws.
+  RenderedFrame render(const View& view, const TransferFunction& transfer_function, const FrameSettings& settings = {},
+                       Sink* sink = nullptr, std::stop_token stop = {});
+
+  /// A film: on several ranks frames overlap (RankSettings::frames_in_flight). Each goes to sink.frame() as it is
+  /// complete. Returns how many were completed, on every rank: all, unless stopped.
+  std::size_t render(std::span<const View> views, const TransferFunction& transfer_function,
+                     const FrameSettings& settings, Sink& sink, std::stop_token stop = {});
+
+  /// Whether this rank assembles the pictures: is told of tiles and gets images.
+  [[nodiscard]] bool assembles() const;
+
+  /// The largest error that is promised, in linear RGBA against exact arithmetic: of meshes 2e-5 for exact, of grids
+  /// 1e-5; what was asked for automatic; none for the other methods, and with the scanline rasterizer.
+  [[nodiscard]] std::optional<double> promised_error() const;
+
+  /// Checks `count` pixels of a finished picture against a double-precision reference: a third at random, the rest
+  /// where the picture is least sure. Not collective; the data set must be whole on this rank, or opened from files,
+  /// which are then read once more.
+  [[nodiscard]] Verification verify(const RenderedFrame& frame, const View& view,
+                                    const TransferFunction& transfer_function, std::size_t count) const;
+
+  [[nodiscard]] const Dataset& dataset() const;
+  [[nodiscard]] const Settings& settings() const;
+
+  /// For the library itself.
+  class State;
+
+ private:
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace tessera

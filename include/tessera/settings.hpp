@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "tessera/mechanisms.hpp"
+#include "tessera/optical_model.hpp"
+#include "tessera/shading.hpp"
+
+namespace tessera {
+
+/// How cells of a mesh become ray segments.
+enum class Rasterizer {
+  planes,   ///< exact hits, double precision: the default
+  scanline  ///< Juliachs et al. 2007, 4.1-4.2 as printed: float32, no tie rule, segments ordered by z_back alone;
+            ///< orthographic only
+};
+
+/// What projectors send to compositors (meshes on several ranks).
+enum class Exchange {
+  runs,      ///< segments that touch end to end, composited: a few fragments a pixel. At most 2e-6 from `segments`
+  segments,  ///< raw ray segments, as Juliachs et al. 2007: the bits of a single process whatever the job's shape
+             ///< (scanline: up to the order of equal keys, of which the paper has many)
+};
+
+/// Which of several processes projects which cell of a mesh.
+enum class PartitionKind {
+  file,    ///< contiguous ranges in file order, by count
+  curve,   ///< contiguous stretches of a Hilbert curve through the tets' centroids, by count: compact parts
+  random,  ///< each tet by a hash of its index: balanced at any view, no locality at all
+};
+
+struct Partition {
+  PartitionKind kind = PartitionKind::curve;
+  std::uint64_t seed = 1;  ///< of `random`
+};
+
+/// How the picture of a grid is split between processes (Moloney 2008, chapter 4).
+enum class Balance {
+  accurate,  ///< by what each pixel will cost, as a look at every 32nd ray tells
+  backface,
+  splatting,
+  previous,  ///< by the CPU times of the frame before, each spread evenly over its rectangle; to compare with
+  even       ///< equal rectangles of the volume's bounding box
+};
+
+/// What the brick cache throws out first (Moloney 2008, 3.3).
+enum class CachePolicy {
+  lru,       ///< the brick that has not been used for longest
+  proximity  ///< the brick whose centre is farthest from a cone round the view frustum
+};
+
+/// How much memory a brick at the volume's high end takes (Moloney 2008, Table 6.2).
+enum class EdgeBricks { variable, fixed };
+
+/// Of meshes alone.
+struct MeshSettings {
+  Rasterizer rasterizer = Rasterizer::planes;
+  int tile_size = 32;  ///< pixels a side, 1 to 1024; changes no bit of the picture
+};
+
+/// Of regular and rectilinear grids alone.
+struct GridSettings {
+  double step = 0.5;               ///< sampled, preintegrated: in voxels (cube root of a mean voxel's volume), > 0
+  std::optional<Shading> shading;  ///< with exact and automatic, emission in proportion to absorption
+  int brick_size = 32;             ///< voxels a side, 2 or more; bricks share their border samples
+  EdgeBricks edge_bricks = EdgeBricks::variable;
+  CachePolicy cache = CachePolicy::lru;
+  int preload_limit = 0;  ///< proximity: bricks near the frustum loaded ahead between frames, at most
+};
+
+/// Of jobs of several ranks.
+struct RankSettings {
+  /// Meshes: how many ranks project and composite. N + P ranks: the first N project, the others composite; max(N, P)
+  /// ranks: both start at rank 0 and share. One number given: the other takes what is left. None: every rank does both.
+  std::optional<int> projectors, compositors;
+  Exchange exchange = Exchange::runs;
+  Partition partition;
+  int frames_in_flight = 2;               ///< frames a projector may be ahead of the assembled picture, at least 1
+  std::uint64_t tile_seed = 1;            ///< of the map from tiles to compositors
+  Balance balance = Balance::accurate;    ///< grids
+  double balance_resolution = 0.5;        ///< grids: of the cost map, map pixels an image pixel along each axis
+  std::vector<double> balance_weights{};  ///< grids: how much of the work each rank should get; empty: equal
+};
+
+/// How a session renders: one vocabulary for meshes and grids, one process and many. Of what changes the picture there
+/// are the integrator, the emission, the shading, the rasterizer and the grid's step; nothing else changes it by more
+/// than the accuracy asked.
+struct Settings {
+  /// Meshes: all kinds. Grids: exact, sampled and preintegrated by GridSettings::step, automatic.
+  Integrator integrator;
+  Emission emission = Emission::absorption;
+  Mechanisms use;                           ///< what saves work
+  int threads = 0;                          ///< of each process; 0: all cores
+  std::uint64_t memory_bytes = 4ull << 30;  ///< of each process: frame buffers beside a mesh, bricks of a grid
+  MeshSettings mesh;
+  GridSettings grid;
+  RankSettings ranks;
+};
+
+/// Of one frame.
+struct FrameSettings {
+  /// The deep picture of the same frame too: flattened it is the image; cut anywhere in depth by OpenEXR's rules its
+  /// error is below `deep_accuracy` (linear RGBA, 1e-6 to 1).
+  bool deep = false;
+  double deep_accuracy = 1e-3;
+  /// Grids: what verify() looks at first, see RenderedFrame::uncertainty.
+  bool keep_uncertainty = false;
+};
+
+}  // namespace tessera

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+
+namespace tessera {
+
+/// Blinn-Phong, two-sided, for regular grids. The normal n is the gradient of the trilinear field, taken in the middle
+/// of every stretch of a ray inside a voxel and kept over it. With l the unit vector towards the light, v towards the
+/// eye along the ray and h halfway between them, colour c becomes c * (ambient + diffuse |n.l|) + specular
+/// |n.h|^shininess; where the gradient is zero, and in cell data, it stays as it is. Extinction does not change.
+///
+/// Source  Blinn, "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977.
+struct Shading {
+  double ambient = 0.2, diffuse = 0.8, specular = 0.2, shininess = 32;
+  glm::dvec3 to_light{0, 0, 1};  ///< towards the light, infinitely far; any length but zero
+  bool camera_light = true;      ///< `to_light` in the camera's frame (right, up, towards the eye), else in the world's
+  bool operator==(const Shading&) const = default;
+};
+
+}  // namespace tessera

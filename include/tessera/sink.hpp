@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "tessera/deep_image.hpp"
+#include "tessera/image.hpp"
+#include "tessera/pixel_rect.hpp"
+#include "tessera/statistics.hpp"
+
+namespace tessera {
+
+/// A finished picture, or one that was stopped.
+struct RenderedFrame {
+  std::size_t number = 0;      ///< in the list that was asked for
+  bool stopped = false;        ///< the image lacks pixels; nothing else is set
+  Image image;                 ///< on the rank that assembles it; elsewhere empty
+  DeepImage deep;              ///< if FrameSettings::deep
+  FrameStatistics statistics;  ///< on the rank that assembles
+  /// If FrameSettings::keep_uncertainty, of grids: by pixel, what single precision may err there in linear RGBA.
+  std::vector<float> uncertainty;
+};
+
+/// Pixels of a frame that have their final values.
+struct Tile {
+  std::size_t frame;   ///< in the list that was asked for; of several frames in flight perhaps not the first
+  PixelRect rect;      ///< every pixel of a frame is in one tile
+  const Image& image;  ///< of the whole picture; outside of finished tiles its pixels mean nothing yet
+};
+
+/// Who is told of pixels while they are made, on the rank that assembles: one call at a time, from any thread. What a
+/// call throws stops the frame on all ranks and comes out of Session::render there.
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  Sink() = default;
+  Sink(const Sink&) = delete;
+  Sink& operator=(const Sink&) = delete;
+
+  /// Whether tile() is to be called at all.
+  [[nodiscard]] virtual bool wants_tiles() const { return true; }
+  virtual void tile(const Tile& /*tile*/) {}
+  /// Of a list of frames: each as it is complete, in order; the last one may be stopped.
+  virtual void frame(RenderedFrame&& /*frame*/) {}
+};
+
+}  // namespace tessera

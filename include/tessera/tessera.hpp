@@ -1,0 +1,22 @@
+#pragma once
+
+// All of the public API but tessera/mpi.hpp, which needs MPI.
+#include "tessera/array.hpp"
+#include "tessera/camera.hpp"
+#include "tessera/communicator.hpp"
+#include "tessera/dataset.hpp"
+#include "tessera/deep_image.hpp"
+#include "tessera/error.hpp"
+#include "tessera/grid.hpp"
+#include "tessera/image.hpp"
+#include "tessera/image_file.hpp"
+#include "tessera/mesh_check.hpp"
+#include "tessera/session.hpp"
+#include "tessera/settings.hpp"
+#include "tessera/sink.hpp"
+#include "tessera/statistics.hpp"
+#include "tessera/transfer_function.hpp"
+#include "tessera/verification.hpp"
+#include "tessera/version.hpp"
+#include "tessera/view.hpp"
+#include "tessera/write.hpp"

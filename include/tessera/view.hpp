@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "tessera/camera.hpp"
+#include "tessera/export.hpp"
+
+namespace tessera {
+
+/// A camera and the size of its picture.
+struct View {
+  Camera camera;
+  ImageSize size;
+  bool operator==(const View&) const = default;
+};
+
+/// A view as a file gives it, with the picture's size if the file names one.
+struct CameraFile {
+  Camera camera;
+  std::optional<ImageSize> size{};
+  bool operator==(const CameraFile&) const = default;
+};
+
+/// Reads one view, or the list of views of a camera path; never an empty list. JSON, ParaView's .pvcc or plain text
+/// (docs/FORMATS.md). Throws Error(bad_input) in one line naming file and line.
+TESSERA_EXPORT std::vector<CameraFile> read_cameras(const std::filesystem::path& file);
+
+/// Writes one view as JSON, every double in the shortest form that reads back the same. Appears by rename.
+TESSERA_EXPORT void write_camera(const CameraFile& camera, const std::filesystem::path& file);
+
+}  // namespace tessera
