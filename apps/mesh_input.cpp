@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "apps/setting_words.hpp"
 #include "colormaps/presets.hpp"
 #include "io/time_series.hpp"
 #include "io/volume_file.hpp"
@@ -16,7 +17,7 @@ MeshSummary summary_of(const io::MeshFile& file, int threads) {
 }
 
 MeshSummary summary_of(const io::MeshFile& description, const scene::MeshFacts& facts) {
-  return {description.counts, description.fields,          description.notes,
+  return {description.counts, description.fields,          with_options(description.notes),
           description.format, description.mesh.field_name, facts};
 }
 
@@ -56,7 +57,9 @@ double default_unit_distance(const scene::MeshFacts& facts) {
   return extent > 0 ? extent / 20 : 1;
 }
 
-colormaps::LoadedTransferFunction transfer_function_of(const scene::MeshFacts& facts, const RenderOptions& options) {
+namespace {
+
+colormaps::LoadedTransferFunction loaded_function(const scene::MeshFacts& facts, const RenderOptions& options) {
   colormaps::TransferFunctionOptions loading;
   loading.field_range = facts.scalar_range;
   loading.unit_distance = options.unit_distance;
@@ -71,6 +74,15 @@ colormaps::LoadedTransferFunction transfer_function_of(const scene::MeshFacts& f
   }
   return options.transfer_function.empty() ? colormaps::default_transfer_function(loading)
                                            : io::load_transfer_function(options.transfer_function, loading);
+}
+
+}  // namespace
+
+colormaps::LoadedTransferFunction transfer_function_of(const scene::MeshFacts& facts, const RenderOptions& options) {
+  colormaps::LoadedTransferFunction loaded = loaded_function(facts, options);
+  loaded.name = with_options(loaded.name);
+  loaded.unit_distance_source = with_options(loaded.unit_distance_source);
+  return loaded;
 }
 
 }  // namespace tessera::apps

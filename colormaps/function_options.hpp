@@ -33,7 +33,7 @@ struct LoadedTransferFunction {
   scene::TransferFunction function;
   std::string name;                       ///< the preset's or the file's, with what was assumed in brackets
   std::optional<double> unit_distance{};  ///< that was used; none where the file gives extinctions
-  /// "file", "--unit-distance", "default", or "" where extinctions are absolute.
+  /// "file", "`unit_distance`", "default", or "" where extinctions are absolute.
   std::string unit_distance_source;
 };
 

@@ -8,7 +8,7 @@ bool launched_by_mpi() { return false; }
 class MpiTransport::Engine {};
 
 MpiTransport::MpiTransport(Hooks, std::chrono::milliseconds) {
-  throw scene::Error(scene::ExitCode::system_failure, "MPI: this program was built without it (TESSERA_MPI=OFF)");
+  throw scene::Error(scene::ErrorCode::system_failure, "MPI: this program was built without it (TESSERA_MPI=OFF)");
 }
 MpiTransport::~MpiTransport() = default;
 

@@ -59,7 +59,7 @@ std::string process_name() {
 }
 
 scene::Error error_from(const Bytes& bytes) {
-  return {static_cast<scene::ExitCode>(bytes.at(0)),
+  return {static_cast<scene::ErrorCode>(bytes.at(0)),
           std::string(reinterpret_cast<const char*>(bytes.data()) + 1, bytes.size() - 1)};
 }
 
@@ -93,8 +93,8 @@ class MpiTransport::Engine {
     if (mailboxes.failed()) return;
     constexpr std::size_t most_bytes = std::size_t{1} << 30;  // MPI counts in int
     if (bytes.size() > most_bytes)
-      throw scene::Error(scene::ExitCode::system_failure,
-                         fmt::format("rank {} of {}: a message of {} bytes is too long; make --tile-size smaller", rank,
+      throw scene::Error(scene::ErrorCode::system_failure,
+                         fmt::format("rank {} of {}: a message of {} bytes is too long; make `tile_size` smaller", rank,
                                      size, bytes.size()));
     if (to == rank) {
       mailboxes.deliver(channel, {rank, std::move(bytes)});
@@ -174,7 +174,7 @@ class MpiTransport::Engine {
     char words[MPI_MAX_ERROR_STRING];
     int length = 0;
     MPI_Error_string(code, words, &length);
-    throw scene::Error(scene::ExitCode::system_failure,
+    throw scene::Error(scene::ErrorCode::system_failure,
                        fmt::format("rank {} of {}: MPI cannot {}: {}", rank, size, doing,
                                    std::string_view(words, static_cast<std::size_t>(length))));
   }
@@ -186,7 +186,7 @@ class MpiTransport::Engine {
     checked(MPI_Comm_rank(MPI_COMM_WORLD, &rank), "tell the rank");
     checked(MPI_Comm_size(MPI_COMM_WORLD, &size), "tell the number of ranks");
     if (provided < MPI_THREAD_FUNNELED)
-      throw scene::Error(scene::ExitCode::system_failure,
+      throw scene::Error(scene::ErrorCode::system_failure,
                          "MPI: gives no thread support (MPI_THREAD_FUNNELED); use a build of it that does");
   }
 
