@@ -20,7 +20,7 @@ cairo_status_t append(void* text, const unsigned char* bytes, unsigned int count
 
 void check(cairo_status_t status, const std::filesystem::path& file) {
   if (status != CAIRO_STATUS_SUCCESS)
-    throw scene::Error(scene::ExitCode::system_failure,
+    throw scene::Error(scene::ErrorCode::system_failure,
                        fmt::format("{}: the figure could not be drawn: {}; try the other of .svg and .png",
                                    file.string(), cairo_status_to_string(status)));
 }

@@ -20,6 +20,7 @@
 #include "apps/output_check.hpp"
 #include "apps/report.hpp"
 #include "apps/run_output.hpp"
+#include "apps/setting_words.hpp"
 #include "apps/volume_input.hpp"
 #include "io/atomic_file.hpp"
 #include "projection/planes_rasterizer.hpp"
@@ -142,7 +143,7 @@ Measured measure(const ChartScene& scene, const Truth& truth, Clock::time_point 
           if (seconds_since(start) + ms / 1000 > share) break;
         }
       } catch (const scene::Error& error) {
-        point.left_out = error.what();
+        point.left_out = with_options(error.what());
         point.frame_ms.clear();
       }
       if (!quiet && point.measured())

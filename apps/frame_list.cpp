@@ -126,7 +126,7 @@ void require_still_there(const Frame& frame) {
     std::error_code unreadable;  // then reading says why
     if (!std::filesystem::exists(file, unreadable) && !unreadable)
       throw scene::Error(
-          scene::ExitCode::system_failure,
+          scene::ErrorCode::system_failure,
           fmt::format("{}: was there when the run began and is gone; bring it back and use --resume", file.string()));
   }
 }

@@ -80,7 +80,7 @@ void speak_when_ended(exchange::Transport& transport) {
 
 std::optional<scene::Error> ended_from_outside() {
   if (!asked_to_end) return std::nullopt;
-  return scene::Error(scene::ExitCode::system_failure,
+  return scene::Error(scene::ErrorCode::system_failure,
                       fmt::format("the run was ended from outside (rank {} of {} got SIGTERM); finished pictures stay, "
                                   "and the same command with --resume goes on from there",
                                   rank_of_run, size_of_run));

@@ -23,6 +23,7 @@
 #include "apps/one_line.hpp"
 #include "apps/render_command.hpp"
 #include "apps/render_options.hpp"
+#include "apps/setting_words.hpp"
 #include "apps/stall_options.hpp"
 #include "apps/timing_command.hpp"
 #include "apps/volume_input.hpp"
@@ -39,16 +40,16 @@ namespace {
 using scene::ExitCode;
 
 /// One line whatever the message holds: file names may contain line breaks, and libraries' messages do. Nothing if the
-/// run's line has been said.
-int fail(ExitCode code, std::string_view message) {
-  if (!may_speak()) return static_cast<int>(code);
+/// run's line has been said. Settings are options in it.
+int fail(const scene::Error& error) {
+  if (!may_speak()) return static_cast<int>(error.code());
   std::string line = "tessera: ";
-  for (const char c : message) line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
+  for (const char c : with_options(error.what())) line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
   while (line.ends_with(' ')) line.pop_back();
   fmt::print(stderr, "{}\n", line);
   std::fflush(stderr);
   hold_one_line();
-  return static_cast<int>(code);
+  return static_cast<int>(error.code());
 }
 
 /// Whether a rectilinear grid, which is a volume, is asked for as the mesh that it is too.
@@ -173,6 +174,7 @@ ExitCode run(int argc, char** argv, Job& job) {
 namespace {
 
 using tessera::scene::Error;
+using tessera::scene::ErrorCode;
 using tessera::scene::ExitCode;
 
 /// What any exception is to the user.
@@ -184,13 +186,13 @@ Error as_error() {
   } catch (const Error& error) {
     return error;
   } catch (const std::bad_alloc&) {
-    return {ExitCode::system_failure,
+    return {ErrorCode::system_failure,
             "memory: this run needs more than there is; make --size smaller or use a machine with more"};
   } catch (const std::exception& error) {
     if (const auto of_threads = tessera::scene::thread_fault(error)) return *of_threads;
-    return {ExitCode::system_failure, fmt::format("unexpected: {}; please report", error.what())};
+    return {ErrorCode::system_failure, fmt::format("unexpected: {}; please report", error.what())};
   } catch (...) {
-    return {ExitCode::system_failure, "unexpected: unknown exception; please report"};
+    return {ErrorCode::system_failure, "unexpected: unknown exception; please report"};
   }
 }
 
@@ -199,7 +201,7 @@ Error as_error() {
   static std::atomic<bool> again = false;
   if (std::current_exception() == nullptr || again.exchange(true)) std::abort();
   const Error error = as_error();
-  tessera::apps::fail(error.code(), error.what());
+  tessera::apps::fail(error);
   std::_Exit(static_cast<int>(error.code()));
 }
 
@@ -210,17 +212,16 @@ int main(int argc, char** argv) {
   std::set_terminate(on_terminate);
   std::optional<tessera::apps::Job> job;
   try {
-    job.emplace([](const Error& error) { fail(error.code(), error.what()); });
+    job.emplace([](const Error& error) { fail(error); });
   } catch (...) {
-    const Error error = as_error();
-    return fail(error.code(), error.what());
+    return fail(as_error());
   }
   ExitCode code = ExitCode::complete;
   try {
     code = tessera::apps::run(argc, argv, *job);
     // A result that did not reach its reader (a full disk behind `>`) is not a success.
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-      throw Error(ExitCode::system_failure, "standard output: cannot be written; make room or close the pipe later");
+      throw Error(ErrorCode::system_failure, "standard output: cannot be written; make room or close the pipe later");
   } catch (...) {
     job->transport().fail(as_error());
   }

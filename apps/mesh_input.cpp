@@ -1,5 +1,7 @@
 #include "apps/mesh_input.hpp"
 
+#include "apps/setting_words.hpp"
+
 namespace tessera::apps {
 
 MeshSummary summary_of(const io::MeshFile& file, int threads) {
@@ -7,7 +9,7 @@ MeshSummary summary_of(const io::MeshFile& file, int threads) {
 }
 
 MeshSummary summary_of(const io::MeshFile& description, const scene::MeshFacts& facts) {
-  return {description.counts, description.fields,          description.notes,
+  return {description.counts, description.fields,          with_options(description.notes),
           description.format, description.mesh.field_name, facts};
 }
 
@@ -21,9 +23,12 @@ io::MeshOptions options_of_later_steps(io::MeshOptions options, const io::MeshFi
 }
 
 colormaps::LoadedTransferFunction transfer_function_of(const scene::MeshFacts& facts, const RenderOptions& options) {
-  return frame::transfer_function_of(
+  colormaps::LoadedTransferFunction loaded = frame::transfer_function_of(
       facts, options.is_volume, options.transfer_function,
       {options.unit_distance, options.opacity_scale, options.display_blend, options.rescale});
+  loaded.name = with_options(loaded.name);
+  loaded.unit_distance_source = with_options(loaded.unit_distance_source);
+  return loaded;
 }
 
 }  // namespace tessera::apps

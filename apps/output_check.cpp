@@ -24,7 +24,7 @@ void check_fits_memory(scene::ImageSize size) {
   const double needed = 20.0 * size.width * size.height;
   const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
   if (needed > memory)
-    throw scene::Error(scene::ExitCode::system_failure,
+    throw scene::Error(scene::ErrorCode::system_failure,
                        fmt::format("--size: a {}x{} picture takes {:.0f} GiB, this machine has {:.0f}; make it smaller",
                                    size.width, size.height, needed / (1 << 30), memory / (1 << 30)));
 }

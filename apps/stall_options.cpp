@@ -6,6 +6,7 @@
 
 #include "apps/argument_values.hpp"
 #include "apps/compositing_options.hpp"
+#include "apps/setting_words.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::apps {
@@ -38,8 +39,8 @@ std::optional<exchange::StallSettings> stall_settings(const StallWords& words, b
     settings.timeout = std::chrono::milliseconds(static_cast<std::int64_t>(1000 * seconds));
   }
   if (!quiet)
-    settings.say = [](const std::string& words_of_it) {
-      fmt::print(stderr, "{}\n", words_of_it);
+    settings.say = [](const std::string& notice) {
+      fmt::print(stderr, "{}\n", with_options(notice));
       std::fflush(stderr);
     };
   return settings;

@@ -7,6 +7,7 @@
 #include "apps/mesh_input.hpp"
 #include "apps/output_check.hpp"
 #include "apps/report.hpp"
+#include "apps/setting_words.hpp"
 #include "io/volume_writer.hpp"
 #include "scene/error.hpp"
 
@@ -77,7 +78,7 @@ Json volume_json(const std::filesystem::path& input, const io::VolumeFile& volum
             {"range", {volume.range.low, volume.range.high}},
             {"blank", volume.range.blanks}}},
           {"fields", fields},
-          {"notes", volume.notes}};
+          {"notes", with_options(volume.notes)}};
 }
 
 void volume_info(const std::filesystem::path& input, const io::VolumeOptions& options, bool as_json) {
@@ -111,7 +112,7 @@ void volume_info(const std::filesystem::path& input, const io::VolumeOptions& op
   }
   fmt::print("renders   field {}, {:.6g} to {:.6g}; {}; view {}\n", volume.source->grid().field_name, volume.range.low,
              volume.range.high, transfer_function_line(loaded), view_line(view));
-  for (const auto& note : volume.notes) fmt::print("note      {}\n", note);
+  for (const auto& note : with_options(volume.notes)) fmt::print("note      {}\n", note);
 }
 
 void convert_volume(const std::filesystem::path& input, const std::filesystem::path& output,

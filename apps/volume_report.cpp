@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "apps/report.hpp"
+#include "apps/setting_words.hpp"
 #include "apps/volume_input.hpp"
 
 namespace tessera::apps {
@@ -138,7 +139,7 @@ std::string volume_run_line(const RenderOptions& options, const io::VolumeFile& 
   if (const std::size_t steps = frames.back().step + 1; is_series(options))
     line += fmt::format("; transfer function{} of the first of {} time steps, {}, for all",
                         first.camera ? "" : " and view", steps, frames.front().mesh.files.front().string());
-  for (const auto& note : file.notes) line += fmt::format("; {}", note);
+  for (const auto& note : with_options(file.notes)) line += fmt::format("; {}", note);
   return line;
 }
 

@@ -17,7 +17,7 @@ void check(const TransferFunctionOptions& options) {
     if (!(distance > 0) || !std::isfinite(distance))
       throw scene::bad_input(fmt::format("{} is {}; it must be a positive length", name, distance));
   };
-  if (options.unit_distance) check_distance(*options.unit_distance, "--unit-distance");
+  if (options.unit_distance) check_distance(*options.unit_distance, "`unit_distance`");
   check_distance(options.default_unit_distance, "default unit distance");
   if (!(options.opacity_scale >= 0) || !std::isfinite(options.opacity_scale))
     throw scene::bad_input(fmt::format("opacity scale is {}; it must not be negative", options.opacity_scale));

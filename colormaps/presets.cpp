@@ -112,7 +112,7 @@ LoadedTransferFunction preset(std::string_view name, const TransferFunctionOptio
                                                         .color_tolerance = preset_color_tolerance,
                                                         .extinction_tolerance = preset_extinction_tolerance}),
                                  std::string(name)),
-          std::string(name), distance, options.unit_distance ? "--unit-distance" : "default"};
+          std::string(name), distance, options.unit_distance ? "`unit_distance`" : "default"};
 }
 
 LoadedTransferFunction default_transfer_function(const TransferFunctionOptions& options) {

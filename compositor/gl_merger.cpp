@@ -140,7 +140,7 @@ class GlMerger final : public TileMerger {
 
   void check(const exchange::TilePart& part, std::uint32_t pixel) const {
     if (pixel < pixels_.size()) return;
-    throw scene::Error(scene::ExitCode::system_failure,
+    throw scene::Error(scene::ErrorCode::system_failure,
                        fmt::format("exchange: the fragments of tile {} are malformed; all ranks must run the same "
                                    "program",
                                    part.tile));
@@ -148,9 +148,9 @@ class GlMerger final : public TileMerger {
 
   void reserve(std::size_t count) {
     if (count * sizeof(Fragment) > context_.budget_bytes || count > std::numeric_limits<std::uint32_t>::max())
-      throw scene::Error(scene::ExitCode::system_failure,
+      throw scene::Error(scene::ErrorCode::system_failure,
                          fmt::format("the tile at pixel {},{} holds {} fragments at once, beyond the memory budget; "
-                                     "raise --memory or make --tile-size smaller",
+                                     "raise `memory` or make `tile_size` smaller",
                                      rect_.x0, rect_.y0, count));
   }
 

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t message_bytes = 512 << 10;
 
 scene::Error malformed(int from) {
-  return {scene::ExitCode::system_failure,
+  return {scene::ErrorCode::system_failure,
           fmt::format("assembly: rank {} sent malformed tiles; run one version of the program on all machines", from)};
 }
 
@@ -85,7 +85,7 @@ std::optional<AssembledFrame> ImageAssembly::accept(const exchange::Message& mes
   exchange::RecordReader reader(message.bytes);
   const auto header = reader.take<TilesHeader>();
   if (header.magic != exchange::wire_magic || header.version != exchange::wire_version)
-    throw scene::Error(scene::ExitCode::system_failure,
+    throw scene::Error(scene::ErrorCode::system_failure,
                        fmt::format("assembly: rank {} speaks another wire version than rank {}, {}; run one version of "
                                    "the program on all machines",
                                    message.from, self, exchange::wire_version));

@@ -27,15 +27,15 @@ class RunMerger final : public TileMerger {
 
   void add(const exchange::TilePart& part) override {
     if ((runs_.size() + part.fragments) * sizeof(Run) > budget_)
-      throw scene::Error(scene::ExitCode::system_failure,
+      throw scene::Error(scene::ErrorCode::system_failure,
                          fmt::format("the tile at pixel {},{} holds {} runs at once, beyond the memory budget; raise "
-                                     "--memory or make --tile-size smaller",
+                                     "`memory` or make `tile_size` smaller",
                                      rect_.x0, rect_.y0, runs_.size() + part.fragments));
     exchange::RecordReader reader(part.records.bytes());
     const auto check = [&](std::uint32_t pixel) {
       if (pixel < first_of_.size()) return;
       throw scene::Error(
-          scene::ExitCode::system_failure,
+          scene::ErrorCode::system_failure,
           fmt::format("exchange: the runs of tile {} are malformed; all ranks must run the same program", part.tile));
     };
     if (part.kind == exchange::RecordKind::runs) {
@@ -47,7 +47,7 @@ class RunMerger final : public TileMerger {
       return;
     }
     if (context_.lattice == nullptr || context_.table == nullptr)
-      throw scene::Error(scene::ExitCode::system_failure,
+      throw scene::Error(scene::ErrorCode::system_failure,
                          "exchange: runs on a lattice without one; all ranks must run the same program");
     const scene::Lattice& lattice = *context_.lattice;
     single_.clear();

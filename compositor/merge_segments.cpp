@@ -79,7 +79,7 @@ class SegmentMerger : public TileMerger {
   void check_room(std::uint32_t tile, std::uint32_t pixel, std::size_t more) const {
     if (pixel >= static_cast<std::uint32_t>(rect_.area()) || more > segments_.capacity() - segments_.size)
       throw scene::Error(
-          scene::ExitCode::system_failure,
+          scene::ErrorCode::system_failure,
           fmt::format("exchange: the segments of tile {} are malformed; all ranks must run the same program", tile));
   }
 
@@ -88,9 +88,9 @@ class SegmentMerger : public TileMerger {
     constexpr std::size_t each =
         projection::RaySegments::bytes_each + sorting::PixelLists::bytes_each + integrals::SegmentBatch::bytes_each;
     if (segments * each > budget_ || segments > std::numeric_limits<std::uint32_t>::max())
-      throw scene::Error(scene::ExitCode::system_failure,
+      throw scene::Error(scene::ErrorCode::system_failure,
                          fmt::format("the tile at pixel {},{} holds {} ray segments at once, beyond the memory budget; "
-                                     "raise --memory or make --tile-size smaller",
+                                     "raise `memory` or make `tile_size` smaller",
                                      rect_.x0, rect_.y0, segments));
     segments_.reserve(std::min<std::size_t>(std::max(segments, 2 * segments_.capacity()), budget_ / each));
   }

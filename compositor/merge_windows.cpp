@@ -36,7 +36,7 @@ class WindowMerger final : public TileMerger {
     while (!reader.empty()) {
       const auto header = reader.take<exchange::LatticeHeader>();
       if (header.pixel >= places_.size())
-        throw scene::Error(scene::ExitCode::system_failure,
+        throw scene::Error(scene::ErrorCode::system_failure,
                            fmt::format("exchange: the segments of tile {} are malformed; all ranks must run the same "
                                        "program",
                                        part.tile));
@@ -103,9 +103,9 @@ class WindowMerger final : public TileMerger {
     bytes_ += more_bytes;
     if (bytes_ <= budget_) return;
     throw scene::Error(
-        scene::ExitCode::system_failure,
+        scene::ErrorCode::system_failure,
         fmt::format("the tile at pixel {},{} holds more than {} ray segments of a pixel at once, beyond the memory "
-                    "budget; raise --memory or make --tile-size smaller",
+                    "budget; raise `memory` or make `tile_size` smaller",
                     rect_.x0, rect_.y0, capacity));
   }
 
@@ -133,7 +133,7 @@ class WindowMerger final : public TileMerger {
 
 std::unique_ptr<TileMerger> make_window_merger(const MergeContext& context, const scene::PixelRect& rect) {
   if (context.lattice == nullptr || context.table == nullptr)
-    throw scene::Error(scene::ExitCode::system_failure,
+    throw scene::Error(scene::ErrorCode::system_failure,
                        "exchange: lattice segments without a lattice; all ranks must run the same program");
   return std::make_unique<WindowMerger>(context, rect);
 }

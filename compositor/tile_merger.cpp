@@ -42,7 +42,7 @@ std::unique_ptr<TileMerger> make_tile_merger(exchange::RecordKind kind, const Me
       return make_tuple_merger(context, rect);
   }
   throw scene::Error(
-      scene::ExitCode::system_failure,
+      scene::ErrorCode::system_failure,
       fmt::format("exchange: records of unknown kind {}; all ranks must run the same program", static_cast<int>(kind)));
 }
 

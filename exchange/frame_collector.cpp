@@ -29,7 +29,7 @@ const FrameCollector::Tile& FrameCollector::tile(std::uint32_t number) const {
   const auto found = std::lower_bound(numbers_->begin(), numbers_->end(), number);
   if (found == numbers_->end() || *found != number)
     throw scene::Error(
-        scene::ExitCode::system_failure,
+        scene::ErrorCode::system_failure,
         fmt::format("exchange: tile {} came to the wrong compositor; run one version of the program", number));
   return tiles_[static_cast<std::size_t>(found - numbers_->begin())];
 }
@@ -37,7 +37,7 @@ const FrameCollector::Tile& FrameCollector::tile(std::uint32_t number) const {
 void FrameCollector::begin(int projector, const FrameBegin& begin, std::span<const std::byte> bits) {
   if (begin.tiles != tiles_.size())
     throw scene::Error(
-        scene::ExitCode::system_failure,
+        scene::ErrorCode::system_failure,
         fmt::format("exchange: projector {} has {} tiles for a compositor of {}; all ranks must be given "
                     "the same arguments",
                     projector, begin.tiles, tiles_.size()));

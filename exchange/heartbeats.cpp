@@ -76,16 +76,16 @@ void Heartbeats::notice(const StallWatch::Notice& notice, std::vector<Outgoing>&
   if (settings_.ends_run) {
     if (lost_) return;
     lost_ = {notice.rank,
-             {scene::ExitCode::system_failure,
+             {scene::ErrorCode::system_failure,
               fmt::format("{} has been silent for {:.3g} s: its process is stopped or its machine hangs; finished "
-                          "pictures stay, and the same command with --resume goes on from there",
+                          "pictures stay, and the same command with `resume` goes on from there",
                           name, seconds(notice.silent))}};
     return;
   }
   if (settings_.say)
     settings_.say(
         fmt::format("{} has been silent for {:.3g} s: its process is stopped or its machine hangs; waiting "
-                    "for it (--on-stall abort ends the run)",
+                    "for it (`on_stall` abort ends the run)",
                     name, seconds(notice.silent)));
 }
 

@@ -59,7 +59,7 @@ void run_ranks(int ranks, const std::function<void(Transport&)>& work) {
       } catch (const scene::Error& error) {
         transport.fail(error);
       } catch (const std::exception& error) {
-        transport.fail(scene::Error(scene::ExitCode::system_failure, error.what()));
+        transport.fail(scene::Error(scene::ErrorCode::system_failure, error.what()));
       }
     });
   for (auto& thread : threads) thread.join();

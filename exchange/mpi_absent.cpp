@@ -6,13 +6,13 @@ namespace tessera::exchange {
 bool launched_by_mpi() { return false; }
 
 MpiShape mpi_shape(int) {
-  throw scene::Error(scene::ExitCode::system_failure, "MPI: this library was built without it (TESSERA_MPI=OFF)");
+  throw scene::Error(scene::ErrorCode::system_failure, "MPI: this library was built without it (TESSERA_MPI=OFF)");
 }
 
 class MpiTransport::Engine {};
 
 MpiTransport::MpiTransport(Hooks, std::chrono::milliseconds) {
-  throw scene::Error(scene::ExitCode::system_failure, "MPI: this program was built without it (TESSERA_MPI=OFF)");
+  throw scene::Error(scene::ErrorCode::system_failure, "MPI: this program was built without it (TESSERA_MPI=OFF)");
 }
 MpiTransport::MpiTransport(int, std::chrono::milliseconds) : MpiTransport(Hooks{}, {}) {}
 MpiTransport::~MpiTransport() = default;

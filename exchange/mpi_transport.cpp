@@ -59,7 +59,7 @@ std::string process_name() {
 }
 
 scene::Error error_from(const Bytes& bytes) {
-  return {static_cast<scene::ExitCode>(bytes.at(0)),
+  return {static_cast<scene::ErrorCode>(bytes.at(0)),
           std::string(reinterpret_cast<const char*>(bytes.data()) + 1, bytes.size() - 1)};
 }
 
@@ -98,8 +98,8 @@ class MpiTransport::Engine {
     if (mailboxes.failed()) return;
     constexpr std::size_t most_bytes = std::size_t{1} << 30;  // MPI counts in int
     if (bytes.size() > most_bytes)
-      throw scene::Error(scene::ExitCode::system_failure,
-                         fmt::format("rank {} of {}: a message of {} bytes is too long; make --tile-size smaller", rank,
+      throw scene::Error(scene::ErrorCode::system_failure,
+                         fmt::format("rank {} of {}: a message of {} bytes is too long; make `tile_size` smaller", rank,
                                      size, bytes.size()));
     if (to == rank) {
       mailboxes.deliver(channel, {rank, std::move(bytes)});
@@ -179,7 +179,7 @@ class MpiTransport::Engine {
     char words[MPI_MAX_ERROR_STRING];
     int length = 0;
     MPI_Error_string(code, words, &length);
-    throw scene::Error(scene::ExitCode::system_failure,
+    throw scene::Error(scene::ErrorCode::system_failure,
                        fmt::format("rank {} of {}: MPI cannot {}: {}", rank, size, doing,
                                    std::string_view(words, static_cast<std::size_t>(length))));
   }
@@ -191,7 +191,7 @@ class MpiTransport::Engine {
     checked(MPI_Comm_rank(comm_, &rank), "tell the rank");
     checked(MPI_Comm_size(comm_, &size), "tell the number of ranks");
     if (provided < MPI_THREAD_FUNNELED)
-      throw scene::Error(scene::ExitCode::system_failure,
+      throw scene::Error(scene::ErrorCode::system_failure,
                          "MPI: gives no thread support (MPI_THREAD_FUNNELED); use a build of it that does");
   }
 
@@ -476,7 +476,7 @@ MPI_Comm duplicate(int fortran_handle) {
         "communicator: MPI was started for fewer threads than it takes; call MPI_Init_thread with MPI_THREAD_MULTIPLE");
   MPI_Comm copy = MPI_COMM_NULL;
   if (MPI_Comm_dup(MPI_Comm_f2c(fortran_handle), &copy) != MPI_SUCCESS)
-    throw scene::Error(scene::ExitCode::system_failure, "communicator: MPI cannot duplicate it");
+    throw scene::Error(scene::ErrorCode::system_failure, "communicator: MPI cannot duplicate it");
   return copy;
 }
 

@@ -150,7 +150,7 @@ class RecordReader {
   }
   std::span<const std::byte> take_bytes(std::size_t count) {
     if (count > left_.size())
-      throw scene::Error(scene::ExitCode::system_failure,
+      throw scene::Error(scene::ErrorCode::system_failure,
                          "exchange: a message is shorter than it says; all ranks must run the same program");
     const auto taken = left_.first(count);
     left_ = left_.subspan(count);

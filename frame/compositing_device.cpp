@@ -46,7 +46,7 @@ void open_compositing_device(const CompositingSettings& settings, const Roles& r
     return;
   }
   if (backends.size() != 1 && backends.size() != roles.compositors.size())
-    throw scene::bad_input(fmt::format("--backend: {} words for {} compositors; give one, or one for each",
+    throw scene::bad_input(fmt::format("`backend`: {} words for {} compositors; give one, or one for each",
                                        backends.size(), roles.compositors.size()));
   compositor::GlSettings gl = settings.gl;
   if (gl.by_local_rank) gl.egl_device.local_rank = local_rank(transport);
@@ -63,7 +63,7 @@ void open_compositing_device(const CompositingSettings& settings, const Roles& r
             backend == Backend::osmesa ? gl::Platform::osmesa : gl::Platform::egl, gl, trace);
         name = made.device->name();
       } catch (const scene::Error& error) {
-        if (backend != Backend::automatic || error.code() != scene::ExitCode::system_failure) throw;
+        if (backend != Backend::automatic || error.code() != scene::ErrorCode::system_failure) throw;
         name = fmt::format("cpu ({})", reason(error));
       }
   }

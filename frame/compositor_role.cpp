@@ -101,7 +101,7 @@ class CompositorLoop {
     auto& at = frames_[number];
     if (at == nullptr) {
       if (number >= run_.jobs.size())
-        throw scene::Error(scene::ExitCode::system_failure,
+        throw scene::Error(scene::ErrorCode::system_failure,
                            fmt::format("exchange: frame {} of {}; all ranks must be given the same arguments", number,
                                        run_.jobs.size()));
       at = std::make_unique<Frame>(run_, number, self_);

@@ -41,7 +41,7 @@ void append(const Bytes& bytes, std::size_t pixels, scene::DeepImage& image) {
   }
   const std::size_t head = pixels * sizeof(std::uint64_t), own = samples * sizeof(scene::DeepImageSample);
   if (bytes.size() != head + own)
-    throw scene::Error(scene::ExitCode::system_failure,
+    throw scene::Error(scene::ErrorCode::system_failure,
                        "exchange: a band of deep samples is of another length; all ranks must run the same program");
   const std::size_t before = image.samples.size();
   image.samples.resize(before + samples);

@@ -50,22 +50,22 @@ namespace {
 
 void check(const DistributedSettings& settings) {
   if (settings.frames_in_flight < 1)
-    throw scene::bad_input(fmt::format("--frames-in-flight {}: it must be at least 1", settings.frames_in_flight));
+    throw scene::bad_input(fmt::format("`frames_in_flight` {}: it must be at least 1", settings.frames_in_flight));
   if (settings.render.rasterizer == Rasterizer::scanline && settings.exchange == Exchange::runs)
-    throw scene::bad_input("--exchange runs: segments of --rasterizer scanline do not touch; use --exchange segments");
+    throw scene::bad_input("`exchange` runs: segments of `rasterizer` scanline do not touch; use `exchange` segments");
   if (settings.deep && settings.exchange == Exchange::runs)
-    throw scene::bad_input("--exchange runs: a deep picture needs the segments that runs are made of; use segments");
+    throw scene::bad_input("`exchange` runs: a deep picture needs the segments that runs are made of; use segments");
   const auto& backends = settings.compositing_on.backends;
   const bool on_device = std::any_of(backends.begin(), backends.end(), [](Backend b) { return b != Backend::cpu; });
   if (on_device && settings.deep)
-    throw scene::bad_input("deep picture: it is made on the CPU; leave out --compositor and --backend");
+    throw scene::bad_input("deep picture: it is made on the CPU; leave out `compositor` and `backend`");
   if (on_device && settings.compositing_on.gl.method == compositor::GlMethod::fragment &&
       settings.exchange == Exchange::runs)
-    throw scene::bad_input("--exchange runs: --compositor gl-fragment takes ray segments; use --exchange segments");
+    throw scene::bad_input("`exchange` runs: `compositor` gl-fragment takes ray segments; use `exchange` segments");
   if (on_device && settings.compositing_on.gl.method == compositor::GlMethod::fragment &&
       (settings.render.integrator.kind == scene::IntegratorKind::preintegrated ||
        settings.render.integrator.kind == scene::IntegratorKind::partial))
-    throw scene::bad_input("--integrator: --compositor gl-fragment knows sampled:N, exact and auto; use one of these");
+    throw scene::bad_input("`integrator`: `compositor` gl-fragment knows sampled:N, exact and auto; use one of these");
 }
 
 }  // namespace

@@ -180,7 +180,7 @@ DistributedMesh read_distributed(Transport& transport, std::span<const std::file
     transport.check();  // throws the run's error, which may be another rank's
     throw;
   } catch (const std::bad_alloc&) {
-    transport.fail(scene::Error(scene::ExitCode::system_failure,
+    transport.fail(scene::Error(scene::ErrorCode::system_failure,
                                 files.front().string() + ": memory ran out; use more processes or larger machines"));
     transport.check();
     throw;

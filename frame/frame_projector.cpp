@@ -22,9 +22,9 @@ namespace {
 
 const RenderSettings& checked(const RenderSettings& settings) {
   if (settings.threads < 0 || settings.threads > 4096)
-    throw scene::bad_input(fmt::format("--threads {}: it must be 0 (all cores) to 4096", settings.threads));
+    throw scene::bad_input(fmt::format("`threads` {}: it must be 0 (all cores) to 4096", settings.threads));
   if (settings.tile_size < 1 || settings.tile_size > 1024)
-    throw scene::bad_input(fmt::format("--tile-size {}: it must be 1 to 1024 pixels", settings.tile_size));
+    throw scene::bad_input(fmt::format("`tile_size` {}: it must be 1 to 1024 pixels", settings.tile_size));
   return settings;
 }
 
@@ -32,10 +32,10 @@ void check_scanline(const projection::ProjectedMesh& projected, const projection
                     float longest_edge) {
   if (space.perspective())
     throw scene::bad_input(
-        "--rasterizer scanline: it projects orthographically only; use an orthographic view, or --rasterizer planes");
+        "`rasterizer` scanline: it projects orthographically only; use an orthographic view, or `rasterizer` planes");
   if (!projection::fits_scanline(projected, longest_edge))
     throw scene::bad_input(
-        "--rasterizer scanline: its 32-bit floats do not hold this scene's depths, pixels or scalars; use --rasterizer "
+        "`rasterizer` scanline: its 32-bit floats do not hold this scene's depths, pixels or scalars; use `rasterizer` "
         "planes");
 }
 
@@ -103,7 +103,7 @@ std::uint64_t segment_budget(const RenderSettings& settings, std::uint64_t held,
   const std::uint64_t least = held + static_cast<std::uint64_t>(threads) * (1u << 20);
   if (settings.memory_bytes < least)
     throw scene::bad_input(
-        fmt::format("--memory: projection has {} MiB of it and needs at least {} MiB for this mesh and image; raise it",
+        fmt::format("`memory`: projection has {} MiB of it and needs at least {} MiB for this mesh and image; raise it",
                     settings.memory_bytes >> 20, (least >> 20) + 1));
   return (settings.memory_bytes - held) / static_cast<std::uint64_t>(threads);
 }

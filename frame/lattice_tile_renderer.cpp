@@ -46,9 +46,9 @@ void LatticeTileRenderer::render_square(const scene::PixelRect& rect, const proj
   if (try_render(rect, order, sink)) return;
   if (rect.area() == 1)
     throw scene::Error(
-        scene::ExitCode::system_failure,
+        scene::ErrorCode::system_failure,
         fmt::format(
-            "pixel {},{}: more than {} of its ray segments overlap in depth, beyond the memory budget; raise --memory",
+            "pixel {},{}: more than {} of its ray segments overlap in depth, beyond the memory budget; raise `memory`",
             rect.x0, rect.y0, windows_.capacity()));
   ++counts_.tiles_split;
   const int x = (rect.x0 + rect.x1 + 1) / 2, y = (rect.y0 + rect.y1 + 1) / 2;

@@ -113,7 +113,7 @@ ChunkReceiver::ChunkReceiver(const scene::MeshFacts& facts, std::uint64_t tets, 
       bases_(static_cast<std::size_t>(ranks)),
       stream_end_(static_cast<std::size_t>(ranks), 0) {
   if (tets > most_indices)
-    throw scene::Error(scene::ExitCode::system_failure,
+    throw scene::Error(scene::ErrorCode::system_failure,
                        fmt::format("{} tets come to one process, at most 2^32 - 1 fit; use more processes", tets));
   part_.mesh.association = association_;
   part_.mesh.tets.reserve(tets);
@@ -123,7 +123,7 @@ ChunkReceiver::ChunkReceiver(const scene::MeshFacts& facts, std::uint64_t tets, 
 
 void ChunkReceiver::add(int from, const exchange::Bytes& message) {
   const auto refuse = [&](const std::string& what) {
-    return scene::Error(scene::ExitCode::system_failure,
+    return scene::Error(scene::ErrorCode::system_failure,
                         fmt::format("a part of the mesh from rank {}: {}; please report", from, what));
   };
   MeshChunkHeader header;
@@ -143,7 +143,7 @@ void ChunkReceiver::add(int from, const exchange::Bytes& message) {
   scene::TetMesh& mesh = part_.mesh;
   const std::uint64_t known = mesh.positions.size(), first_tet = mesh.tets.size();
   if (known + v > most_indices)
-    throw scene::Error(scene::ExitCode::system_failure,
+    throw scene::Error(scene::ErrorCode::system_failure,
                        "more than 2^32 - 1 vertices come to one process; use more processes");
   bases.push_back({header.first_vertex, known});
   std::size_t at = sizeof header;
@@ -168,7 +168,7 @@ MeshPart ChunkReceiver::finish() {
   scene::TetMesh& mesh = part_.mesh;
   const std::size_t n = mesh.tets.size();
   if (n != expected_)
-    throw scene::Error(scene::ExitCode::system_failure,
+    throw scene::Error(scene::ErrorCode::system_failure,
                        fmt::format("{} tets of a mesh were awaited, {} came; please report", expected_, n));
   if (!std::is_sorted(part_.global_tet.begin(), part_.global_tet.end())) {
     std::vector<std::uint32_t> order(n);

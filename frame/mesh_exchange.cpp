@@ -29,7 +29,7 @@ std::vector<T> gather_values(Transport& transport, const T& value) {
   std::vector<T> values;
   for (const Bytes& bytes : gather_all(transport, bytes_of(value))) {
     if (bytes.size() != sizeof(T))
-      throw scene::Error(scene::ExitCode::system_failure, "ranks disagree on what they agree on; run one program");
+      throw scene::Error(scene::ErrorCode::system_failure, "ranks disagree on what they agree on; run one program");
     std::memcpy(&values.emplace_back(), bytes.data(), sizeof(T));
   }
   return values;
@@ -41,7 +41,7 @@ std::vector<std::uint64_t> gather_rows(Transport& transport, const std::vector<s
   std::vector<std::uint64_t> table;
   for (const Bytes& bytes : gather_all(transport, Bytes(first, first + size))) {
     if (bytes.size() != size)
-      throw scene::Error(scene::ExitCode::system_failure,
+      throw scene::Error(scene::ErrorCode::system_failure,
                          "ranks disagree on the number of projectors; run one program");
     table.resize(table.size() + row.size());
     if (size > 0) std::memcpy(table.data() + table.size() - row.size(), bytes.data(), size);

@@ -26,7 +26,7 @@ class ValueReader {
   void take(std::span<T> values) {
     static_assert(std::is_trivially_copyable_v<T>);
     if (values.size_bytes() > left_.size())
-      throw scene::Error(scene::ExitCode::system_failure,
+      throw scene::Error(scene::ErrorCode::system_failure,
                          "exchange: a message is shorter than it says; all ranks must run the same program");
     if (!values.empty()) std::memcpy(values.data(), left_.data(), values.size_bytes());
     left_ = left_.subspan(values.size_bytes());

@@ -21,7 +21,7 @@ std::vector<std::uint64_t> reduce_all(exchange::Transport& transport, std::vecto
     exchange::Message message = transport.receive(Channel::agreement);
     if (message.bytes.size() != size)
       throw scene::Error(
-          scene::ExitCode::system_failure,
+          scene::ErrorCode::system_failure,
           fmt::format("rank {} of {}: rank {} agrees on {} bytes, {} were awaited; all have to run one program",
                       transport.rank(), transport.size(), message.from, message.bytes.size(), size));
     return message.bytes;

@@ -20,13 +20,13 @@
 namespace tessera::frame {
 void check_deep(const RenderSettings& settings, const scene::TransferFunction& function) {
   if (!(settings.deep_accuracy >= 1e-6 && settings.deep_accuracy <= 1))
-    throw scene::bad_input(fmt::format("--deep-accuracy {}: it must be 1e-6 to 1", settings.deep_accuracy));
+    throw scene::bad_input(fmt::format("`deep_accuracy` {}: it must be 1e-6 to 1", settings.deep_accuracy));
   if (settings.rasterizer != Rasterizer::planes)
-    throw scene::bad_input("deep picture: --rasterizer scanline leaves gaps and overlaps in depth; use planes");
+    throw scene::bad_input("deep picture: `rasterizer` scanline leaves gaps and overlaps in depth; use planes");
   const integrals::SegmentIntegrator integrator(function, settings.integrator, settings.emission);
   if (integrator.name() != "exact")
     throw scene::bad_input(
-        fmt::format("deep picture: --integrator {} gives a segment other light than its parts; use exact or auto",
+        fmt::format("deep picture: `integrator` {} gives a segment other light than its parts; use exact or auto",
                     integrator.name()));
 }
 

@@ -26,17 +26,17 @@ bool Roles::projects(int rank) const { return contains(projectors, rank); }
 bool Roles::composites(int rank) const { return contains(compositors, rank); }
 
 Roles assign_roles(int ranks, std::optional<int> projectors, std::optional<int> compositors) {
-  for (const auto& [asked, option] : {std::pair{projectors, "--projectors"}, std::pair{compositors, "--compositors"}})
+  for (const auto& [asked, setting] : {std::pair{projectors, "`projectors`"}, std::pair{compositors, "`compositors`"}})
     if (asked && (*asked < 1 || *asked > ranks))
       throw scene::bad_input(fmt::format("{} {}: this job has {} rank{}; give 1 to {}, or start more with mpirun -n",
-                                         option, *asked, ranks, ranks == 1 ? "" : "s", ranks));
+                                         setting, *asked, ranks, ranks == 1 ? "" : "s", ranks));
   const auto rest = [&](int taken) { return taken < ranks ? ranks - taken : ranks; };
   const int n = projectors.value_or(compositors ? rest(*compositors) : ranks);
   const int p = compositors.value_or(projectors ? rest(*projectors) : ranks);
   if (n + p == ranks) return {consecutive(0, n), consecutive(n, p)};
   if (std::max(n, p) == ranks) return {consecutive(0, n), consecutive(0, p)};
   throw scene::bad_input(
-      fmt::format("--projectors {} --compositors {}: on {} ranks they must add up to {}, or the larger "
+      fmt::format("`projectors` {} `compositors` {}: on {} ranks they must add up to {}, or the larger "
                   "must be {} for ranks that do both; start mpirun -n {}",
                   n, p, ranks, ranks, ranks, n + p));
 }

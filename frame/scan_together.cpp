@@ -46,7 +46,7 @@ std::uint64_t place(const Bytes& bytes, volume::CellScan& whole) {
   const std::uint64_t size = header.count * sizeof(float);
   if (header.count > cells_a_message || header.first > whole.low.size() ||
       header.count > whole.low.size() - header.first || bytes.size() != sizeof header + 2 * size)
-    throw scene::Error(scene::ExitCode::system_failure,
+    throw scene::Error(scene::ErrorCode::system_failure,
                        "exchange: cells of another volume came; all ranks must read the same file");
   if (header.count == 0) return 0;
   std::memcpy(&whole.low[header.first], bytes.data() + sizeof header, size);

@@ -312,7 +312,7 @@ class SortFirst::State {
     const PixelRegion& r = header.region;
     const scene::ImageSize size = finished.image.size;
     if (header.frame != finished.frame || r.x0 < 0 || r.y0 < 0 || r.x1 > size.width || r.y1 > size.height)
-      throw scene::Error(scene::ExitCode::system_failure,
+      throw scene::Error(scene::ErrorCode::system_failure,
                          "exchange: a rectangle of another picture came; all ranks must run the same program");
     finished.stopped = finished.stopped || header.stopped != 0;
     for (int y = r.y0; y < r.y1 && header.stopped == 0; ++y) {

@@ -48,9 +48,9 @@ void TileRenderer::render_sorted(const scene::PixelRect& rect, const projection:
   }
   if (rect.area() == 1)
     throw scene::Error(
-        scene::ExitCode::system_failure,
+        scene::ErrorCode::system_failure,
         fmt::format(
-            "pixel {},{}: more than {} of its ray segments overlap in depth, beyond the memory budget; raise --memory",
+            "pixel {},{}: more than {} of its ray segments overlap in depth, beyond the memory budget; raise `memory`",
             rect.x0, rect.y0, segments_.capacity()));
   counts_.segments = before.segments;
   ++counts_.tiles_split;

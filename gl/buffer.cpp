@@ -23,9 +23,9 @@ void Buffer::reserve(std::size_t bytes) {
   const auto most = static_cast<std::size_t>(context_->limit(GL_MAX_SHADER_STORAGE_BLOCK_SIZE));
   if (use_ == Use::device && bytes > most)
     throw scene::Error(
-        scene::ExitCode::system_failure,
-        fmt::format("{}: {} bytes of ray segments at once, its shaders reach {}; make --tile-size smaller, or use "
-                    "--backend cpu",
+        scene::ErrorCode::system_failure,
+        fmt::format("{}: {} bytes of ray segments at once, its shaders reach {}; make `tile_size` smaller, or use "
+                    "`backend` cpu",
                     context_->name(), bytes, most));
   release();
   const Functions& gl = context_->gl();
@@ -41,8 +41,8 @@ void Buffer::reserve(std::size_t bytes) {
     mapped_ = static_cast<std::byte*>(gl.MapNamedBufferRange(name_, 0, static_cast<GLsizeiptr>(room), map));
     if (mapped_ == nullptr) {
       context_->check("mapping memory");
-      throw scene::Error(scene::ExitCode::system_failure,
-                         fmt::format("{}: its memory cannot be mapped; use --backend cpu", context_->name()));
+      throw scene::Error(scene::ErrorCode::system_failure,
+                         fmt::format("{}: its memory cannot be mapped; use `backend` cpu", context_->name()));
     }
   }
   bytes_ = room;
@@ -73,8 +73,8 @@ void Fence::wait() {
     // A software device may take long over a large batch; a lost one says so, or never answers.
     if (answer == GL_WAIT_FAILED || waited >= 600)
       throw scene::Error(
-          scene::ExitCode::system_failure,
-          fmt::format("{}: the device does not answer; start again, or use --backend cpu", context_->name()));
+          scene::ErrorCode::system_failure,
+          fmt::format("{}: the device does not answer; start again, or use `backend` cpu", context_->name()));
   }
   context_->gl().DeleteSync(sync_);
   sync_ = nullptr;

@@ -7,7 +7,7 @@
 namespace tessera::gl {
 namespace {
 
-scene::Error failure(const std::string& message) { return {scene::ExitCode::system_failure, message}; }
+scene::Error failure(const std::string& message) { return {scene::ErrorCode::system_failure, message}; }
 
 }  // namespace
 
@@ -19,7 +19,7 @@ void Context::load(const char* platform, const std::function<void*(const char*)>
 #define TESSERA_GL_LOAD(type, member)                            \
   gl_.member = reinterpret_cast<type>(address_of("gl" #member)); \
   if (gl_.member == nullptr)                                     \
-    throw failure(fmt::format("{}: OpenGL 4.5 is needed, gl{} is missing; use --backend cpu", platform, #member));
+    throw failure(fmt::format("{}: OpenGL 4.5 is needed, gl{} is missing; use `backend` cpu", platform, #member));
   TESSERA_GL_FUNCTIONS(TESSERA_GL_LOAD)
 #undef TESSERA_GL_LOAD
   const auto text = [&](GLenum which) {
@@ -32,7 +32,7 @@ void Context::load(const char* platform, const std::function<void*(const char*)>
               renderer.find("SWR") != std::string::npos;
   const int version = 10 * limit(GL_MAJOR_VERSION) + limit(GL_MINOR_VERSION);
   if (version < 45)
-    throw failure(fmt::format("{}: OpenGL 4.5 is needed, there is {}; use --backend cpu", name_, text(GL_VERSION)));
+    throw failure(fmt::format("{}: OpenGL 4.5 is needed, there is {}; use `backend` cpu", name_, text(GL_VERSION)));
   robust_ = limit(GL_RESET_NOTIFICATION_STRATEGY) == GL_LOSE_CONTEXT_ON_RESET;
 }
 
@@ -44,7 +44,7 @@ int Context::limit(GLenum which) const {
 
 void Context::check(const char* doing) const {
   const auto lost = [&] {
-    return failure(fmt::format("{}: the context was lost while {}; start again, or use --backend cpu", name_, doing));
+    return failure(fmt::format("{}: the context was lost while {}; start again, or use `backend` cpu", name_, doing));
   };
   if (pretended_ == GL_CONTEXT_LOST || (robust_ && gl_.GetGraphicsResetStatus() != GL_NO_ERROR)) throw lost();
   const GLenum error = pretended_ != GL_NO_ERROR ? pretended_ : gl_.GetError();
@@ -52,11 +52,11 @@ void Context::check(const char* doing) const {
   if (error == GL_CONTEXT_LOST) throw lost();
   if (error == GL_OUT_OF_MEMORY)
     throw failure(
-        fmt::format("{}: out of device memory while {}; lower --memory, make --tile-size smaller, or use "
-                    "--backend cpu",
+        fmt::format("{}: out of device memory while {}; lower `memory`, make `tile_size` smaller, or use "
+                    "`backend` cpu",
                     name_, doing));
   throw failure(
-      fmt::format("{}: OpenGL error 0x{:04x} while {}; please report, and use --backend cpu", name_, error, doing));
+      fmt::format("{}: OpenGL error 0x{:04x} while {}; please report, and use `backend` cpu", name_, error, doing));
 }
 
 }  // namespace tessera::gl

@@ -34,12 +34,12 @@ class OsmesaContext final : public Context {
                                   0};
     context_ = create(attributes, nullptr);
     if (context_ == nullptr)
-      throw scene::Error(scene::ExitCode::system_failure,
-                         "OSMesa: gives no OpenGL 4.5 core context; install Mesa 22 or newer, or use --backend cpu");
+      throw scene::Error(scene::ErrorCode::system_failure,
+                         "OSMesa: gives no OpenGL 4.5 core context; install Mesa 22 or newer, or use `backend` cpu");
     if (make_current(context_, pixel_.data(), GL_UNSIGNED_BYTE, 1, 1) == GL_FALSE) {
       destroy_(context_);
-      throw scene::Error(scene::ExitCode::system_failure,
-                         "OSMesa: its context cannot be made current; use --backend cpu");
+      throw scene::Error(scene::ErrorCode::system_failure,
+                         "OSMesa: its context cannot be made current; use `backend` cpu");
     }
     try {
       load("OSMesa", [&](const char* name) { return reinterpret_cast<void*>(address_of(name)); });

@@ -11,8 +11,8 @@ namespace tessera::gl {
 namespace {
 
 scene::Error refused(const Context& context, const std::string& complaint) {
-  return {scene::ExitCode::system_failure,
-          fmt::format("{}: {}; please report, and use --backend cpu", context.name(), complaint)};
+  return {scene::ErrorCode::system_failure,
+          fmt::format("{}: {}; please report, and use `backend` cpu", context.name(), complaint)};
 }
 
 GLuint compile(const Context& context, const Stage& stage) {

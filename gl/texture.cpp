@@ -40,8 +40,8 @@ void Framebuffer::attach(std::initializer_list<const Texture*> textures) {
   gl.NamedFramebufferDrawBuffers(name_, static_cast<GLsizei>(buffers.size()), buffers.data());
   if (gl.CheckNamedFramebufferStatus(name_, GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
     throw scene::Error(
-        scene::ExitCode::system_failure,
-        fmt::format("{}: cannot draw into the textures that this needs; use --backend cpu", context_->name()));
+        scene::ErrorCode::system_failure,
+        fmt::format("{}: cannot draw into the textures that this needs; use `backend` cpu", context_->name()));
 }
 
 }  // namespace tessera::gl

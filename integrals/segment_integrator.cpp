@@ -18,23 +18,23 @@ SegmentIntegrator::SegmentIntegrator(const scene::TransferFunction& function, co
     case scene::IntegratorKind::sampled:
       if (integrator.samples < 1)
         throw scene::bad_input(
-            fmt::format("--integrator sampled:{}: the number of samples must be at least 1", integrator.samples));
+            fmt::format("`integrator` sampled:{}: the number of samples must be at least 1", integrator.samples));
       samples_ = integrator.samples;
       break;
     case scene::IntegratorKind::preintegrated:
       if (integrator.table_size < 8 || integrator.table_size > 512)
         throw scene::bad_input(
-            fmt::format("--integrator preintegrated:{}: the table's size must be 8 to 512", integrator.table_size));
+            fmt::format("`integrator` preintegrated:{}: the table's size must be 8 to 512", integrator.table_size));
       segments_ = std::make_shared<SegmentTable>(function, emission, integrator.table_size);
       break;
     case scene::IntegratorKind::partial:
       if (emission == scene::Emission::independent)
-        throw scene::bad_input("--integrator partial: knows emission by absorption only; use exact or auto");
+        throw scene::bad_input("`integrator` partial: knows emission by absorption only; use exact or auto");
       psi_ = std::make_shared<PsiTable>();
       break;
     case scene::IntegratorKind::automatic:
       if (!(integrator.accuracy > 0))
-        throw scene::bad_input(fmt::format("--accuracy {}: it must be positive", integrator.accuracy));
+        throw scene::bad_input(fmt::format("`accuracy` {}: it must be positive", integrator.accuracy));
       termination_error_ = std::min(0.25 * integrator.accuracy, 1e-2);
       if (emission == scene::Emission::absorption)
         pieces_ = ExactPieces::within(std::min(integrator.accuracy, 4e-2), function.max_color());

@@ -41,16 +41,16 @@ bool user_can_mend(int error_number) {
 }  // namespace
 
 scene::Error OutputFault::since_changed() const {
-  if (code() == scene::ExitCode::system_failure) return *this;
-  return {scene::ExitCode::system_failure,
-          fault_ + "; it could be written when the run began, see what has removed or closed the folder since"};
+  if (code() == scene::ErrorCode::system_failure) return *this;
+  return {scene::ErrorCode::system_failure, subject(), problem(),
+          "it could be written when the run began, see what has removed or closed the folder since"};
 }
 
 void check_writable(const fs::path& target) {
   try {
     const AtomicFile probe(target);  // never committed: leaves no trace
   } catch (const OutputFault& fault) {
-    throw scene::Error(fault.code(), fault.what());
+    throw scene::Error(fault);
   }
 }
 
@@ -60,7 +60,7 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
   if (::stat(target_.c_str(), &present) == 0) {
     if (S_ISDIR(present.st_mode)) fail(EISDIR, "cannot be written");
     if (!S_ISREG(present.st_mode))
-      throw OutputFault(scene::ExitCode::bad_input, fmt::format("{}: is not a regular file", target_.string()),
+      throw OutputFault(scene::ErrorCode::bad_input, target_, "is not a regular file",
                         "outputs are replaced as a whole, name a file");
   } else if (errno != ENOENT) {
     fail(errno, "cannot be written");
@@ -161,9 +161,8 @@ void AtomicFile::fail(int error_number, const char* doing) const {
     default:
       break;
   }
-  const OutputFault fault(
-      user_can_mend(error_number) ? scene::ExitCode::bad_input : scene::ExitCode::system_failure,
-      fmt::format("{}: {}: {}", target_.string(), doing, std::generic_category().message(error_number)), remedy);
+  const OutputFault fault(user_can_mend(error_number) ? scene::ErrorCode::bad_input : scene::ErrorCode::system_failure,
+                          target_, fmt::format("{}: {}", doing, std::generic_category().message(error_number)), remedy);
   if (begun_ && user_can_mend(error_number)) throw fault.since_changed();
   throw fault;
 }

@@ -15,13 +15,10 @@ namespace tessera::io {
 /// that it could be written calls since_changed().
 class OutputFault : public scene::Error {
  public:
-  OutputFault(scene::ExitCode code, const std::string& fault, const std::string& remedy)
-      : Error(code, fault + "; " + remedy), fault_(fault) {}
+  OutputFault(scene::ErrorCode code, const std::filesystem::path& target, const std::string& fault, const char* remedy)
+      : Error(code, target.string(), fault, remedy) {}
   /// The same as Error(system_failure): something has removed or closed the folder since.
   [[nodiscard]] scene::Error since_changed() const;
-
- private:
-  std::string fault_;
 };
 
 /// Before a run: begins such a file as AtomicFile is, and leaves it. Throws a plain Error, which is not OutputFault, so

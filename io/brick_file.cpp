@@ -89,7 +89,7 @@ class Descriptor {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw scene::Error(scene::ExitCode::system_failure,
+    throw scene::Error(scene::ErrorCode::system_failure,
                        fmt::format("{}: it {}: {}; check the disk", name_, what, std::strerror(errno)));
   }
   std::string name_;
@@ -291,7 +291,7 @@ VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& o
 void write_bricks(const scene::SampleSource& source, const std::filesystem::path& file, int side) {
   if (side < least_side || side > most_side)
     throw scene::bad_input(
-        fmt::format("--block: {} is not a block's side; give {} to {}", side, least_side, most_side));
+        fmt::format("`block`: {} is not a block's side; give {} to {}", side, least_side, most_side));
   const scene::Grid& grid = source.grid();
   const std::size_t size = scene::size_of(grid.type);
   const Blocks blocks(grid.geometry.samples(), side);

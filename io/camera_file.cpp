@@ -89,7 +89,12 @@ std::vector<CameraFile> parse_cameras(std::string_view text, const std::string& 
 }
 
 std::vector<CameraFile> read_cameras(const std::filesystem::path& file) {
-  return parse_cameras(read_text_file(file), file.string());
+  const std::string source = file.string();
+  try {
+    return parse_cameras(read_text_file(file), source);
+  } catch (const scene::Error& error) {
+    throw scene::with_subject(error, source);
+  }
 }
 
 std::string camera_json(const CameraFile& view) {

@@ -89,7 +89,7 @@ void XMLCALL on_doctype(void* user, const XML_Char*, const XML_Char*, const XML_
 
 CameraFile parse_pvcc_camera(std::string_view text, const std::string& source) {
   const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr), &XML_ParserFree);
-  if (!parser) throw scene::Error(scene::ExitCode::system_failure, source + ": no memory for the XML parser");
+  if (!parser) throw scene::Error(scene::ErrorCode::system_failure, source + ": no memory for the XML parser");
   Pvcc pvcc;
   pvcc.parser = parser.get();
   XML_SetUserData(parser.get(), &pvcc);

@@ -38,7 +38,7 @@ class Reader final : public nlohmann::json_sax<nlohmann::json> {
   [[nodiscard]] TraceFile take() && {
     if (file_.spans.empty())
       throw scene::bad_input(
-          fmt::format("{}: no span of Tessera in it; give a file that tessera render --timing wrote", source_));
+          fmt::format("{}: no span of Tessera in it; give a file that tessera render `timing` wrote", source_));
     return std::move(file_);
   }
 

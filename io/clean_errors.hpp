@@ -10,20 +10,25 @@
 
 namespace tessera::io {
 
-/// Runs one reading of a mesh: its errors come out in one line whatever they quote, and memory that runs out as
-/// Error(system_failure).
+/// `text` with blanks in place of control characters.
+inline std::string printable(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = ' ';
+  return text;
+}
+
+/// Runs one reading of a file: its errors come out in one line whatever they quote, with `source` as their subject
+/// where they begin with it, and memory that runs out as Error(system_failure).
 template <class Work>
 auto with_clean_errors(const std::string& source, const Work& work) {
   try {
     return work();
   } catch (const scene::Error& e) {
-    std::string message = e.what();  // may quote what a file holds, which may be anything
-    for (char& c : message)
-      if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = ' ';
-    throw scene::Error(e.code(), message);
+    // May quote what a file holds, which may be anything.
+    throw scene::with_subject(scene::Error(e.code(), printable(e.what())), printable(source));
   } catch (const std::bad_alloc&) {
-    throw scene::Error(scene::ExitCode::system_failure,
-                       fmt::format("{}: memory ran out; use a larger machine or a part of the mesh", source));
+    throw scene::Error(scene::ErrorCode::system_failure, source, "memory ran out",
+                       "use a larger machine or a part of the mesh");
   }
 }
 

@@ -215,7 +215,7 @@ FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> 
   if (!choice) choice = resolve(wish, std::nullopt, fields, source);
   if (!choice)
     throw scene::bad_input(fields.empty()
-                               ? fmt::format("{}: no field '{}', the file has none; leave --field out", source, wish)
+                               ? fmt::format("{}: no field '{}', the file has none; leave `field` out", source, wish)
                                : fmt::format("{}: no field '{}'; it has {}", source, wish, list(fields)));
   if (choice->association == Association::point && find(fields, choice->name, Association::cell) &&
       !wish.starts_with("point:"))

@@ -41,7 +41,7 @@ void check_tidy(const scene::DeepImage& image, const std::filesystem::path& file
       for (const auto& channel : channels) good = good && std::isfinite(s.*channel.second);
       if (!good)
         throw scene::Error(
-            scene::ExitCode::system_failure,
+            scene::ErrorCode::system_failure,
             fmt::format("{}: pixel ({}, {}) has a sample from {} to {} behind {}, alpha {}; not written, "
                         "please report",
                         file.string(), p % width, p / width, s.z, s.z_back, last, s.alpha));
@@ -88,8 +88,8 @@ void write_deep_exr(const scene::DeepImage& image, const std::filesystem::path& 
   scene::validate(image.size);
   const std::size_t pixels = static_cast<std::size_t>(image.size.width) * static_cast<std::size_t>(image.size.height);
   if (image.begin.size() != pixels + 1 || image.begin.back() != image.samples.size())
-    throw scene::Error(scene::ExitCode::system_failure, fmt::format("{}: {} sample lists for {} pixels; please report",
-                                                                    file.string(), image.begin.size(), pixels));
+    throw scene::Error(scene::ErrorCode::system_failure, fmt::format("{}: {} sample lists for {} pixels; please report",
+                                                                     file.string(), image.begin.size(), pixels));
   check_tidy(image, file);
   AtomicFile target(file);
   try {
@@ -106,7 +106,7 @@ void write_deep_exr(const scene::DeepImage& image, const std::filesystem::path& 
   } catch (const scene::Error&) {
     throw;
   } catch (const std::exception& error) {
-    throw scene::Error(scene::ExitCode::system_failure,
+    throw scene::Error(scene::ErrorCode::system_failure,
                        fmt::format("{}: cannot be written: {}; see the disk", file.string(), error.what()));
   }
   target.commit();

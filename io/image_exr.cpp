@@ -86,7 +86,7 @@ void write_exr(const scene::Image& image, const std::filesystem::path& file, con
   } catch (const scene::Error&) {
     throw;
   } catch (const std::exception& error) {
-    throw scene::Error(scene::ExitCode::system_failure,
+    throw scene::Error(scene::ErrorCode::system_failure,
                        fmt::format("{}: cannot be written: {}; see the disk", file.string(), error.what()));
   }
   target.commit();

@@ -45,13 +45,13 @@ void composited_row(const scene::Image& image, int y, const ImageFileOptions& op
     for (int k = 0; k < 4; ++k) {
       if (!std::isfinite(in[k]))
         throw scene::Error(
-            scene::ExitCode::system_failure,
+            scene::ErrorCode::system_failure,
             fmt::format("{}: pixel ({}, {}) came out as {}; not written, please report", file.string(), x, y, in[k]));
       out[k] = in[k];
     }
     if (std::isnan(image.depth[first + x]))
       throw scene::Error(
-          scene::ExitCode::system_failure,
+          scene::ErrorCode::system_failure,
           fmt::format("{}: the depth of pixel ({}, {}) is no number; not written, please report", file.string(), x, y));
     if (options.background) {
       for (int k = 0; k < 3; ++k) out[k] += (1 - in[3]) * background[k];
@@ -64,7 +64,7 @@ void write_image(const scene::Image& image, const std::filesystem::path& file, c
   scene::validate(image.size);
   const std::size_t pixels = static_cast<std::size_t>(image.size.width) * static_cast<std::size_t>(image.size.height);
   if (image.rgba.size() != 4 * pixels || image.depth.size() != pixels)
-    throw scene::Error(scene::ExitCode::system_failure,
+    throw scene::Error(scene::ErrorCode::system_failure,
                        fmt::format("{}: {} colours and {} depths for {} pixels; please report", file.string(),
                                    image.rgba.size(), image.depth.size(), pixels));
   if (options.background)
@@ -99,7 +99,7 @@ scene::Image read_image(const std::filesystem::path& file) {
         throw scene::bad_input(file.string() + ": cannot be read back by its name; .exr and .pfm can");
     }
   } catch (const std::bad_alloc&) {
-    throw scene::Error(scene::ExitCode::system_failure, file.string() + ": no memory for the image");
+    throw scene::Error(scene::ErrorCode::system_failure, file.string() + ": no memory for the image");
   }
 }
 

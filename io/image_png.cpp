@@ -110,11 +110,11 @@ void write_png(const scene::Image& image, const std::filesystem::path& file, con
   const auto check = [&](bool done) {
     if (done) return;
     if (state.thrown) std::rethrow_exception(state.thrown);
-    throw scene::Error(scene::ExitCode::system_failure,
+    throw scene::Error(scene::ErrorCode::system_failure,
                        fmt::format("{}: cannot be written: {}; write .exr", file.string(), state.message));
   };
   if (handles.info == nullptr)
-    throw scene::Error(scene::ExitCode::system_failure, file.string() + ": no memory to write it");
+    throw scene::Error(scene::ErrorCode::system_failure, file.string() + ": no memory to write it");
   png_set_write_fn(handles.png, &state, on_write, on_flush);
 
   const int channels = options.background ? 3 : 4;

@@ -15,7 +15,7 @@ MappedFile::MappedFile(const std::filesystem::path& file) : size_(require_file(f
   start_ = descriptor < 0 ? MAP_FAILED : ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, descriptor, 0);
   if (descriptor >= 0) ::close(descriptor);
   if (start_ == MAP_FAILED)
-    throw scene::Error(scene::ExitCode::system_failure,
+    throw scene::Error(scene::ErrorCode::system_failure,
                        fmt::format("{}: it cannot be mapped into memory; check disk and memory limits", file.string()));
 }
 

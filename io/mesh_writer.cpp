@@ -131,7 +131,7 @@ void write_vtu(const scene::TetMeshView& mesh, const std::filesystem::path& file
         throw scene::bad_input(fmt::format("{}: it cannot be written; check the disk", file.string()));
     });
   } catch (const scene::Error& e) {  // what cannot be written is the system's fault, not the mesh's
-    throw scene::Error(scene::ExitCode::system_failure, e.what());
+    throw scene::Error(scene::ErrorCode::system_failure, e.what());
   }
   out.commit();
 }

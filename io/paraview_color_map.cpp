@@ -196,7 +196,7 @@ colormaps::LoadedTransferFunction parse_paraview_color_map(std::string_view text
     });
   } else if (options.field_range[1] < color_range[0] || options.field_range[0] > color_range[1]) {
     remarks.push_back(
-        fmt::format("the field's {:.6g} to {:.6g} lies outside its {:.6g} to {:.6g}: --rescale stretches it",
+        fmt::format("the field's {:.6g} to {:.6g} lies outside its {:.6g} to {:.6g}: `rescale` stretches it",
                     options.field_range[0], options.field_range[1], color_range[0], color_range[1]));
   }
   if (!has_opacities) curves.opacities = colormaps::opacity_ramp();
@@ -218,7 +218,7 @@ colormaps::LoadedTransferFunction parse_paraview_color_map(std::string_view text
   }
   if (options.unit_distance) {
     distance = *options.unit_distance;
-    loaded.unit_distance_source = "--unit-distance";
+    loaded.unit_distance_source = "`unit_distance`";
   }
   loaded.unit_distance = distance;
   loaded.name = given_name.empty() ? source : source + " " + quote(given_name);

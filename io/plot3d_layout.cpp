@@ -132,7 +132,7 @@ Plot3dLayout detect_plot3d(const std::filesystem::path& grid_file) {
   }
   throw scene::bad_input(
       fmt::format("{}: no layout of a three-dimensional binary PLOT3D grid gives its {} bytes; it is "
-                  "truncated or of another kind (the solution goes with --q)",
+                  "truncated or of another kind (the solution goes with `q`)",
                   grid_file.string(), size));
 }
 

@@ -75,7 +75,7 @@ void PvtuWriter::commit() {
     std::error_code error;
     std::filesystem::rename(left_over_[static_cast<std::size_t>(p)], name, error);
     if (error)
-      throw scene::Error(scene::ExitCode::system_failure,
+      throw scene::Error(scene::ErrorCode::system_failure,
                          fmt::format("{}: cannot be written: {}; check the folder", name.string(), error.message()));
     left_over_[static_cast<std::size_t>(p)] = name;
   }

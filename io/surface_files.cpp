@@ -120,7 +120,7 @@ MeshBlocks read_surface(const std::filesystem::path& file, std::optional<double>
   FilledSurface filled = fill_surface(surface, largest, source);
   result.notes.push_back(fmt::format("surface of {} points and {} facets filled with {} tets of at most {:.4g}{}",
                                      surface.points.size(), surface.facets.size(), filled.tets.size() / 4, largest,
-                                     max_volume ? "" : " (--max-volume sets it)"));
+                                     max_volume ? "" : " (`max_volume` sets it)"));
   CellBlock block;
   if (!surface.attributes.empty()) {
     std::vector<std::vector<double>> attributes =

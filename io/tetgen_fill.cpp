@@ -215,12 +215,12 @@ FilledSurface fill_surface(const Surface& surface, std::optional<double> max_vol
   // child starts no thread and allocates only, which a fork of a threaded process may do under glibc.
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0)
-    throw scene::Error(scene::ExitCode::system_failure, fmt::format("{}: no pipe for TetGen's process", source));
+    throw scene::Error(scene::ErrorCode::system_failure, fmt::format("{}: no pipe for TetGen's process", source));
   const pid_t process = ::fork();
   if (process < 0) {
     ::close(ends[0]);
     ::close(ends[1]);
-    throw scene::Error(scene::ExitCode::system_failure, fmt::format("{}: no process for TetGen", source));
+    throw scene::Error(scene::ErrorCode::system_failure, fmt::format("{}: no process for TetGen", source));
   }
   if (process == 0) fill_in_child(surface, frame, max_volume, ends[1]);
   ::close(ends[1]);

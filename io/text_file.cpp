@@ -41,7 +41,7 @@ std::string read_text_file(const std::filesystem::path& file) {
                                          largest_file >> 20));
   }
   if (stream.bad())
-    throw scene::Error(scene::ExitCode::system_failure, file.string() + ": reading failed; see the disk");
+    throw scene::Error(scene::ErrorCode::system_failure, file.string() + ": reading failed; see the disk");
   return text;
 }
 

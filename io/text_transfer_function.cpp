@@ -63,7 +63,7 @@ colormaps::LoadedTransferFunction parse_text_transfer_function(std::string_view 
   if (knots.empty())
     throw scene::bad_input(source + ": holds no knot; give at least one line `value r g b extinction`");
   std::string name = source;
-  if (options.unit_distance) name += " (extinctions as they stand; --unit-distance does not apply)";
+  if (options.unit_distance) name += " (extinctions as they stand; `unit_distance` does not apply)";
   if (options.rescale) name += rescale(knots, options.field_range);
   return {colormaps::make_transfer_function(std::move(knots), source), name, std::nullopt, ""};
 }

@@ -14,23 +14,35 @@
 
 namespace tessera::io {
 
+namespace {
+
+colormaps::LoadedTransferFunction load_file(const std::string& file,
+                                            const colormaps::TransferFunctionOptions& options) {
+  const std::string text = read_text_file(file);
+  switch (first_character(text)) {
+    case '[':
+    case '{':
+      return parse_paraview_color_map(text, file, options);
+    case '<':
+      throw scene::Error(scene::ErrorCode::bad_input, file, "is XML, which is not read as a transfer function",
+                         "import it in ParaView and export it as .json");
+    default:
+      return parse_text_transfer_function(text, file, options);
+  }
+}
+
+}  // namespace
+
 colormaps::LoadedTransferFunction load_transfer_function(const std::string& file_or_preset,
                                                          const colormaps::TransferFunctionOptions& options) {
   if (colormaps::is_preset(file_or_preset)) return colormaps::preset(file_or_preset, options);
   if (!std::filesystem::exists(file_or_preset))
-    throw scene::bad_input(fmt::format("{}: no such file and no preset; the presets are {}", file_or_preset,
-                                       fmt::join(colormaps::preset_names(), ", ")));
-  const std::string text = read_text_file(file_or_preset);
-  switch (first_character(text)) {
-    case '[':
-    case '{':
-      return parse_paraview_color_map(text, file_or_preset, options);
-    case '<':
-      throw scene::bad_input(file_or_preset +
-                             ": is XML, which is not read as a transfer function; import it in ParaView and export it "
-                             "as .json");
-    default:
-      return parse_text_transfer_function(text, file_or_preset, options);
+    throw scene::Error(scene::ErrorCode::bad_input, file_or_preset, "no such file and no preset",
+                       fmt::format("the presets are {}", fmt::join(colormaps::preset_names(), ", ")));
+  try {
+    return load_file(file_or_preset, options);
+  } catch (const scene::Error& error) {
+    throw scene::with_subject(error, file_or_preset);
   }
 }
 

@@ -122,7 +122,7 @@ VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const 
       if (grid.shift != 0)
         throw scene::bad_input(
             fmt::format("{}: its components are shifted by {}, so their magnitude has no meaning; choose one with "
-                        "--field samples:0",
+                        "`field` samples:0",
                         source, grid.shift));
       grid.scale = std::abs(grid.scale);
     }
@@ -213,7 +213,7 @@ VolumeFile open_unscanned_volume(const std::filesystem::path& file, const Volume
     const bool raw = kind == VolumeKind::none && (extension == ".raw" || options.describes_raw());
     if (!raw && options.describes_raw())
       throw scene::bad_input(
-          fmt::format("{}: --dims, --type, --spacing, --origin, --endian and --skip are for .raw files; this one says "
+          fmt::format("{}: `dims`, `type`, `spacing`, `origin`, `endian` and `skip` are for .raw files; this one says "
                       "them itself",
                       source));
     return raw ? open_stored(describe_raw(file, options), options, source)

@@ -282,7 +282,7 @@ VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions&
   const FieldChoice choice = choose_field(options.field, result.fields, source);
   result.notes.insert(result.notes.end(), choice.notes.begin(), choice.notes.end());
   const BlockField* field = find_field(block, choice.name, choice.association);
-  if (!field) throw scene::bad_input(fmt::format("{}: none of its fields can be shown; name one with --field", source));
+  if (!field) throw scene::bad_input(fmt::format("{}: none of its fields can be shown; name one with `field`", source));
   grid.geometry.association = choice.association;
   grid.field_name = choice.label;
   scene::validate(grid, source);  // before an array is taken for samples that a flat grid has not

@@ -19,7 +19,7 @@ MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem:
   MeshBlocks result;
   result.format = "PLOT3D";
   if (q.empty())
-    result.notes.emplace_back("no solution (Q) file lies beside the grid: it has no field; name one by --q");
+    result.notes.emplace_back("no solution (Q) file lies beside the grid: it has no field; name one by `q`");
   else if (const std::uint64_t left = check_plot3d_solution(q, layout); left > 0)
     result.notes.push_back(fmt::format("{} bytes after the solution in {} are not used", left, q.filename().string()));
   result.notes.push_back(

@@ -1,30 +1,30 @@
 #pragma once
 
-#include <stdexcept>
 #include <string>
+#include <string_view>
+
+#include "tessera/error.hpp"
 
 namespace tessera::scene {
 
-/// What the process reports to its caller (the program's exit status).
+/// The one exception of the project. Libraries throw it at their boundary and never print or exit; `apps/` turns it
+/// into a line and a status, and the names of settings in it into options.
+using tessera::Error;
+using tessera::ErrorCode;
+
+/// What the process reports to its caller (the program's exit status). An error's code is one too.
 enum class ExitCode : int {
-  complete = 0,          ///< the picture is complete
-  bad_input = 2,         ///< a file or an argument is wrong; the user can mend it
-  system_failure = 3,    ///< disk, memory, GPU, a lost rank
+  complete = 0,  ///< the picture is complete
+  bad_input = static_cast<int>(ErrorCode::bad_input),
+  system_failure = static_cast<int>(ErrorCode::system_failure),
   accuracy_not_met = 4,  ///< --verify found more error than was asked for
 };
 
-/// The one exception of the project. The message is one line: `FILE: what is wrong and where; what to do`.
-/// Libraries throw it at their boundary and never print or exit; `apps/` turns it into a line and a status.
-class Error : public std::runtime_error {
- public:
-  Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
-  [[nodiscard]] ExitCode code() const { return code_; }
-
- private:
-  ExitCode code_;
-};
-
 /// Shorthand for the most frequent case.
-inline Error bad_input(const std::string& message) { return Error(ExitCode::bad_input, message); }
+inline Error bad_input(const std::string& message) { return {ErrorCode::bad_input, message}; }
+
+/// The same error, with all of `subject` as its subject if the line begins with `SUBJECT: `. For who has given a file's
+/// name to something that may fail: names may hold what Error splits lines at.
+Error with_subject(const Error& error, std::string_view subject);
 
 }  // namespace tessera::scene

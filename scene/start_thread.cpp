@@ -29,8 +29,8 @@ std::optional<Error> thread_fault(const std::exception& fault) {
   // oneTBB has no type of its own for this.
   const bool of_tbb = std::string_view(fault.what()).starts_with("pthread_create has failed");
   if (!of_std && !of_tbb) return std::nullopt;
-  return Error(ExitCode::system_failure,
-               fmt::format("threads: the system starts no more than the {} of this process; lower --threads, or raise "
+  return Error(ErrorCode::system_failure,
+               fmt::format("threads: the system starts no more than the {} of this process; lower `threads`, or raise "
                            "the limits on memory and processes (ulimit -v, ulimit -u)",
                            threads_running()));
 }

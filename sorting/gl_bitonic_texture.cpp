@@ -27,8 +27,8 @@ GlBitonicTexture::Layout GlBitonicTexture::layout(std::uint32_t longest) const {
   const auto log2_limit = static_cast<std::uint32_t>(std::countr_zero(static_cast<unsigned>(limit_)));
   Layout layout{log2_size, std::min(log2_size, log2_limit), 1, limit_};
   if (log2_size > 2 * log2_limit)
-    throw scene::Error(scene::ExitCode::system_failure,
-                       fmt::format("{}: {} ray segments of a pixel do not fit one texture; use --compositor gl-compute",
+    throw scene::Error(scene::ErrorCode::system_failure,
+                       fmt::format("{}: {} ray segments of a pixel do not fit one texture; use `compositor` gl-compute",
                                    context_->name(), longest));
   layout.rows_a_list = 1 << (log2_size - layout.log2_width);
   layout.lists = limit_ / layout.rows_a_list;

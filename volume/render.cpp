@@ -40,7 +40,7 @@ void check(const RenderSettings& settings, const scene::GridGeometry& geometry) 
     throw scene::bad_input(fmt::format("preload limit {}; give 0 or more", settings.preload_limit));
   const bool in_steps = settings.method == Method::sampled || settings.method == Method::preintegrated;
   if (geometry.rectilinear() && in_steps)
-    throw scene::bad_input("a rectilinear grid is not rendered in steps; use --integrator auto or exact");
+    throw scene::bad_input("a rectilinear grid is not rendered in steps; use `integrator` auto or exact");
   if (settings.shading && in_steps) throw scene::bad_input("shading needs the exact or auto method");
   if (settings.shading && settings.emission == scene::Emission::independent)
     throw scene::bad_input("shading needs emission in proportion to extinction");

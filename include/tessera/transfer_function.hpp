@@ -51,7 +51,7 @@ struct LoadedTransferFunction {
   TransferFunction function;
   std::string name;                       ///< the preset's or the file's, with what was assumed in brackets
   std::optional<double> unit_distance{};  ///< that was used; none where the file gives extinctions
-  std::string unit_distance_source;       ///< "file", "setting", "default", or "" where extinctions are absolute
+  std::string unit_distance_source;       ///< "file", "`unit_distance`", "default", or "" where they are absolute
 };
 
 }  // namespace tessera

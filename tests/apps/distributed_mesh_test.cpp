@@ -122,7 +122,7 @@ TEST(DistributedMesh, AFaultInOnePieceIsTheErrorOfAll) {
     read_on(3, file, {0, 1, 2}, PartitionKind::curve);
     FAIL() << "no error";
   } catch (const scene::Error& error) {
-    EXPECT_EQ(error.code(), scene::ExitCode::bad_input);
+    EXPECT_EQ(error.code(), scene::ErrorCode::bad_input);
     EXPECT_NE(std::string(error.what()).find("piece2.vtu: "), std::string::npos) << error.what();
   }
   for (const char* name : {"none.pvtu", "none.vtu", "none.tets"})

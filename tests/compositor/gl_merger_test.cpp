@@ -359,7 +359,7 @@ TEST(GlCompositor, AFaultReachesTheJobAndAllLaterOnes) {
         frame.merged(&device, {part});
         ADD_FAILURE() << "no error";
       } catch (const scene::Error& error) {
-        EXPECT_EQ(error.code(), scene::ExitCode::system_failure);
+        EXPECT_EQ(error.code(), scene::ErrorCode::system_failure);
         EXPECT_NE(std::string(error.what()).find(fault == GlFault::lost ? "context was lost" : "out of device memory"),
                   std::string::npos)
             << error.what();

@@ -127,7 +127,7 @@ TEST(Generate, NamesWhatIsWrongAndWhatThereIs) {
     try {
       generate(kind, parameters);
     } catch (const scene::Error& error) {
-      EXPECT_EQ(error.code(), scene::ExitCode::bad_input);
+      EXPECT_EQ(error.code(), scene::ErrorCode::bad_input);
       return error.what();
     }
     return "";

@@ -137,7 +137,7 @@ TEST(Heartbeats, OneRankEndsTheRunWhereThatIsAsked) {
     EXPECT_EQ(job.losses(), (std::vector<std::array<int, 2>>{{judge, stopped}})) << stopped;
     EXPECT_TRUE(job.all_said().empty());
     const scene::Error& error = job.rank(judge).lost()->error;
-    EXPECT_EQ(error.code(), scene::ExitCode::system_failure);
+    EXPECT_EQ(error.code(), scene::ErrorCode::system_failure);
     EXPECT_NE(std::string(error.what()).find("rank " + std::to_string(stopped) + " of 4"), std::string::npos);
   }
 }

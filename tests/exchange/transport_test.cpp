@@ -59,7 +59,7 @@ TEST(LoopbackTransport, OneRanksErrorEndsAllThatWaitWithTheSameWords) {
     });
     FAIL() << "no error came out";
   } catch (const scene::Error& error) {
-    EXPECT_EQ(error.code(), scene::ExitCode::bad_input);
+    EXPECT_EQ(error.code(), scene::ErrorCode::bad_input);
     EXPECT_STREQ(error.what(), "mesh.vtu: is empty; give another");
   }
   EXPECT_EQ(ended, 3);

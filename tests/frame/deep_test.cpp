@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <glm/geometric.hpp>
+#include <optional>
 
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
@@ -230,7 +231,7 @@ TEST(Deep, AnEmptyPictureHasNoSamples) {
 
 TEST(Deep, SaysWhatItCannotDo) {
   const scene::TetMesh mesh = datasets::cube(12, 0.2);
-  const auto attempt = [&](RenderSettings settings, ImageSize size = {8, 8}) {
+  const auto attempt = [&](RenderSettings settings, ImageSize size = {8, 8}) -> std::optional<scene::ErrorCode> {
     DeepImage deep;
     try {
       Renderer(mesh, settings).render(oblique(), size, datasets::smooth_knots(12), nullptr, &deep);
@@ -238,20 +239,20 @@ TEST(Deep, SaysWhatItCannotDo) {
       EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
       return error.code();
     }
-    return scene::ExitCode::complete;
+    return std::nullopt;
   };
-  EXPECT_EQ(attempt(settings_for(1e-3)), scene::ExitCode::complete);
+  EXPECT_EQ(attempt(settings_for(1e-3)), std::nullopt);
   RenderSettings settings = settings_for(1e-3);
   settings.rasterizer = Rasterizer::scanline;
-  EXPECT_EQ(attempt(settings), scene::ExitCode::bad_input);
+  EXPECT_EQ(attempt(settings), scene::ErrorCode::bad_input);
   settings = settings_for(1e-3);
   settings.integrator = {scene::IntegratorKind::sampled, 4};
-  EXPECT_EQ(attempt(settings), scene::ExitCode::bad_input);
-  EXPECT_EQ(attempt(settings_for(0)), scene::ExitCode::bad_input);
-  EXPECT_EQ(attempt(settings_for(NAN)), scene::ExitCode::bad_input);
+  EXPECT_EQ(attempt(settings), scene::ErrorCode::bad_input);
+  EXPECT_EQ(attempt(settings_for(0)), scene::ErrorCode::bad_input);
+  EXPECT_EQ(attempt(settings_for(NAN)), scene::ErrorCode::bad_input);
   settings = settings_for(1e-6);
   settings.memory_bytes = 16 << 20;
-  EXPECT_EQ(attempt(settings, {400, 400}), scene::ExitCode::system_failure);
+  EXPECT_EQ(attempt(settings, {400, 400}), scene::ErrorCode::system_failure);
 }
 
 }  // namespace

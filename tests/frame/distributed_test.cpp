@@ -424,7 +424,7 @@ TEST(Distributed, AnErrorOfOneRankIsTheErrorOfAll) {
       });
       FAIL() << "no error came out";
     } catch (const scene::Error& error) {
-      EXPECT_EQ(error.code(), scene::ExitCode::bad_input);
+      EXPECT_EQ(error.code(), scene::ErrorCode::bad_input);
     }
     EXPECT_EQ(told, 4);
   }
@@ -450,7 +450,7 @@ TEST(Distributed, AFullDiskWhileWritingEndsAllAfterTheFramesBeforeIt) {
                                          },
                                          [&](const FinishedFrame& frame) {
                                            if (frame.frame == 3)
-                                             throw scene::Error(scene::ExitCode::system_failure, "full");
+                                             throw scene::Error(scene::ErrorCode::system_failure, "full");
                                            ++written;
                                          });
                                    }),

@@ -189,7 +189,7 @@ TEST(GlCompositing, ADeviceThatFailsUnderWayEndsTheJobOnAllRanks) {
     setup.gl.fault_after = 1;
     setup.frames = 3;
     const scene::Error error = error_of(setup);
-    EXPECT_EQ(error.code(), scene::ExitCode::system_failure);
+    EXPECT_EQ(error.code(), scene::ErrorCode::system_failure);
     EXPECT_NE(std::string(error.what()).find("OSMesa, "), std::string::npos) << error.what();
   }
 }
@@ -198,7 +198,7 @@ TEST(GlCompositing, BackendsMustBeOneOrOneForEachCompositor) {
   GlJobSetup setup;
   setup.compositors = 3;
   setup.backends = {Backend::cpu, Backend::osmesa};
-  EXPECT_EQ(error_of(setup).code(), scene::ExitCode::bad_input);
+  EXPECT_EQ(error_of(setup).code(), scene::ErrorCode::bad_input);
 }
 
 TEST(GlCompositing, AutomaticGoesOnWithTheCpuWhereTheDeviceFailsAndSaysSo) {

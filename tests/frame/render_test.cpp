@@ -145,7 +145,7 @@ TEST(Render, ScanlineRefusesPerspectiveAndScenesBeyondFloat) {
     Renderer(mesh, scanline()).render(camera, {8, 8}, six_knots());
     FAIL() << "perspective was taken";
   } catch (const scene::Error& error) {
-    EXPECT_EQ(error.code(), scene::ExitCode::bad_input);
+    EXPECT_EQ(error.code(), scene::ErrorCode::bad_input);
     EXPECT_NE(std::string(error.what()).find("orthographic"), std::string::npos) << error.what();
   }
   scene::TetMesh huge = mesh;

@@ -85,7 +85,7 @@ TEST(Egl, ComputesOnADeviceWithoutASurface) {
   try {
     context = open_context(Platform::egl);
   } catch (const scene::Error& error) {
-    EXPECT_EQ(error.code(), scene::ExitCode::system_failure);
+    EXPECT_EQ(error.code(), scene::ErrorCode::system_failure);
     GTEST_SKIP() << error.what();
   }
   expect_doubled(*context);
@@ -97,7 +97,7 @@ TEST(Egl, SoftwareIsNoAnswerWhereHardwareIsAsked) {
   try {
     EXPECT_FALSE(open_context(Platform::egl, hardware)->software());
   } catch (const scene::Error& error) {
-    EXPECT_EQ(error.code(), scene::ExitCode::system_failure);
+    EXPECT_EQ(error.code(), scene::ErrorCode::system_failure);
     EXPECT_NE(std::string(error.what()).find("EGL"), std::string::npos);
   }
 }
@@ -107,13 +107,13 @@ TEST(Egl, ADeviceThatIsNotThereIsRefused) {
   none.number = 1000;
   const auto error = error_of([&] { open_context(Platform::egl, none); });
   const std::string words = error.what();  // there may be no EGL, or no device at all
-  EXPECT_TRUE(words.starts_with("--egl-device 1000: ") || words.starts_with("EGL: ")) << words;
+  EXPECT_TRUE(words.starts_with("`egl_device` 1000: ") || words.starts_with("EGL: ")) << words;
 }
 
 TEST(Library, OneThatIsNotThereIsNamed) {
   const auto error = error_of([] { Library("libnothing.so.0", "Nothing", "libnothing0"); });
-  EXPECT_EQ(error.code(), scene::ExitCode::system_failure);
-  EXPECT_STREQ(error.what(), "Nothing: libnothing.so.0 cannot be opened; install libnothing0 or use --backend cpu");
+  EXPECT_EQ(error.code(), scene::ErrorCode::system_failure);
+  EXPECT_STREQ(error.what(), "Nothing: libnothing.so.0 cannot be opened; install libnothing0 or use `backend` cpu");
 }
 
 TEST(Shader, AMistakeIsFoundByFileAndLine) {
@@ -123,7 +123,7 @@ TEST(Shader, AMistakeIsFoundByFileAndLine) {
                        {{"first.glsl", "float twice(float x) {\n  return 2.0 * x;\n}\n"},
                         {"second.comp", "layout(local_size_x = 1) in;\nvoid main() {\n  undeclared = 1.0;\n}\n"}}}});
   });
-  EXPECT_EQ(error.code(), scene::ExitCode::system_failure);
+  EXPECT_EQ(error.code(), scene::ErrorCode::system_failure);
   EXPECT_NE(std::string(error.what()).find("second.comp:3: "), std::string::npos) << error.what();
 }
 
@@ -160,7 +160,7 @@ TEST(Buffer, MoreThanShadersReachIsRefused) {
   TESSERA_OSMESA_OR_SKIP(context);
   Buffer buffer(context, Buffer::Use::device);
   const auto most = static_cast<std::size_t>(context.limit(GL_MAX_SHADER_STORAGE_BLOCK_SIZE));
-  EXPECT_EQ(error_of([&] { buffer.reserve(most + 1); }).code(), scene::ExitCode::system_failure);
+  EXPECT_EQ(error_of([&] { buffer.reserve(most + 1); }).code(), scene::ErrorCode::system_failure);
   buffer.reserve(100);
   EXPECT_GE(buffer.bytes(), 100u);
 }

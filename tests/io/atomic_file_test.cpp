@@ -147,7 +147,7 @@ TEST(AtomicFile, AFullDiskIsASystemFailureThatLeavesTheOldFile) {
   for (const char* name : {"a.exr", "a.png", "a.pfm"}) {
     folder.write(name, "old");
     const auto fault = fault_of([&] { write_image(image, folder / name, {.png_bits = 16}); });
-    EXPECT_EQ(fault.code, scene::ExitCode::system_failure) << name;
+    EXPECT_EQ(fault.code, scene::ErrorCode::system_failure) << name;
     EXPECT_NE(fault.message.find(name), std::string::npos) << fault.message;
     EXPECT_NE(fault.message.find("free some space"), std::string::npos) << fault.message;
     EXPECT_EQ(contents(folder / name), "old");

@@ -28,8 +28,8 @@ class Damaged : public ::testing::TestWithParam<const char*> {
   bool read(const std::string& bytes) {
     const auto file = folder.write(name, bytes);
     const test::Fault fault = test::fault_of([&] { scene::validate(read_mesh(file).mesh, name); });
-    if (fault.code == scene::ExitCode::complete) return true;
-    EXPECT_EQ(fault.code, scene::ExitCode::bad_input) << fault.message;
+    if (!fault.code) return true;
+    EXPECT_EQ(fault.code, scene::ErrorCode::bad_input) << fault.message;
     EXPECT_EQ(fault.message.find('\n'), std::string::npos) << fault.message;
     EXPECT_TRUE(fault.message.starts_with(folder.path().string())) << fault.message;
     EXPECT_NE(fault.message.find("; "), std::string::npos) << "no remedy: " << fault.message;

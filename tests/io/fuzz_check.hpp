@@ -16,7 +16,7 @@ void parse_or_refuse(const Parse& parse) {
   } catch (const scene::Error& error) {
     const std::string message = error.what();
     const bool one_line = std::all_of(message.begin(), message.end(), [](char c) { return c >= 0x20 && c < 0x7f; });
-    if (error.code() != scene::ExitCode::bad_input || !one_line || message.size() > 400) std::abort();
+    if (error.code() != scene::ErrorCode::bad_input || !one_line || message.size() > 400) std::abort();
   }
 }
 

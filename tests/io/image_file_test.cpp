@@ -203,12 +203,12 @@ TEST(ImageFile, NeverWritesNaNSilently) {
       scene::Image image = picture();
       image.rgba[4 * image.index(7, 20) + 1] = broken;
       const auto fault = fault_of([&] { write_image(image, folder / name, {}); });
-      EXPECT_EQ(fault.code, scene::ExitCode::system_failure) << name;
+      EXPECT_EQ(fault.code, scene::ErrorCode::system_failure) << name;
       EXPECT_NE(fault.message.find("pixel (7, 20)"), std::string::npos) << fault.message;
     }
     scene::Image image = picture();
     image.depth[image.index(1, 2)] = nan;
-    EXPECT_EQ(fault_of([&] { write_image(image, folder / name, {}); }).code, scene::ExitCode::system_failure);
+    EXPECT_EQ(fault_of([&] { write_image(image, folder / name, {}); }).code, scene::ErrorCode::system_failure);
   }
   EXPECT_TRUE(folder.names().empty());
 }

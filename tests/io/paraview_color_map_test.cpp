@@ -219,7 +219,7 @@ TEST(ParaViewColorMap, UnitDistanceIsTheUsersThenTheFilesThenTheDefault) {
   EXPECT_NEAR(with.function.max_extinction(), std::log(2.0) / 4, 1e-15);
   options.unit_distance = 2;
   const auto asked = parse(map("RGB", points + ", \"ScalarOpacityUnitDistance\": 4"), options);
-  EXPECT_EQ(asked.unit_distance_source, "--unit-distance");
+  EXPECT_EQ(asked.unit_distance_source, "`unit_distance`");
   EXPECT_EQ(asked.unit_distance, 2);
   EXPECT_NEAR(asked.function.max_extinction(), std::log(2.0) / 2, 1e-15);
 }

@@ -46,7 +46,7 @@ TEST(Presets, TakeTheirUnitDistanceFromTheUserBeforeTheDefault) {
   EXPECT_NEAR(otherwise.function.evaluate(0.5).extinction, -std::log(0.9) / 5, 1e-12);
   options.unit_distance = 0.5;
   const auto asked = colormaps::preset("viridis:flat", options);
-  EXPECT_EQ(asked.unit_distance_source, "--unit-distance");
+  EXPECT_EQ(asked.unit_distance_source, "`unit_distance`");
   EXPECT_NEAR(asked.function.evaluate(0.5).extinction, -std::log(0.9) / 0.5, 1e-12);
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -57,10 +58,10 @@ inline std::string contents(const std::filesystem::path& file) {
   return out.str();
 }
 
-/// The one-line message of the Error that `action` throws, and its code; "" if it throws none.
+/// The one-line message of the Error that `action` throws, and its code; "" and no code if it throws none.
 struct Fault {
   std::string message;
-  scene::ExitCode code = scene::ExitCode::complete;
+  std::optional<scene::ErrorCode> code;  ///< none: nothing was thrown
 };
 template <class Action>
 Fault fault_of(const Action& action) {
@@ -76,7 +77,7 @@ Fault fault_of(const Action& action) {
 template <class Action>
 void expect_bad_input(const Action& action, const std::vector<std::string>& parts) {
   const Fault fault = fault_of(action);
-  EXPECT_EQ(fault.code, scene::ExitCode::bad_input) << fault.message;
+  EXPECT_EQ(fault.code, scene::ErrorCode::bad_input) << fault.message;
   for (const std::string& part : parts) EXPECT_NE(fault.message.find(part), std::string::npos) << fault.message;
   EXPECT_TRUE(std::ranges::all_of(fault.message, [](char c) { return c >= 0x20 && c < 0x7f; })) << fault.message;
   EXPECT_LT(fault.message.size(), 400u) << fault.message;

@@ -83,7 +83,7 @@ TEST(TextTransferFunction, SaysThatAUnitDistanceDoesNotApply) {
   options.unit_distance = 2;
   const auto loaded = parse_text_transfer_function("0 1 1 1 3\n", "tf.txt", options);
   EXPECT_EQ(loaded.function.max_extinction(), 3);
-  EXPECT_NE(loaded.name.find("--unit-distance does not apply"), std::string::npos) << loaded.name;
+  EXPECT_NE(loaded.name.find("`unit_distance` does not apply"), std::string::npos) << loaded.name;
 }
 
 TEST(TextTransferFunction, RescalesOnRequest) {
@@ -127,7 +127,7 @@ TEST(TransferFunctionFile, RefusesAFileTooLargeToBeOne) {
 TEST(TransferFunctionOptions, AreChecked) {
   colormaps::TransferFunctionOptions options;
   options.unit_distance = -1;
-  expect_bad_input([&] { colormaps::default_transfer_function(options); }, {"--unit-distance is -1"});
+  expect_bad_input([&] { colormaps::default_transfer_function(options); }, {"`unit_distance` is -1"});
   options = {};
   options.default_unit_distance = 0;
   expect_bad_input([&] { colormaps::default_transfer_function(options); }, {"unit distance is 0"});

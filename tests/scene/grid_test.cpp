@@ -74,7 +74,7 @@ TEST(Grid, BrokenInvariantsAreNamedWithTheirAxis) {
     try {
       validate(grid, "v.vti");
     } catch (const Error& e) {
-      EXPECT_EQ(e.code(), ExitCode::bad_input);
+      EXPECT_EQ(e.code(), ErrorCode::bad_input);
       return std::string(e.what());
     }
     return std::string();

@@ -1,0 +1,127 @@
+#include "apps/setting_words.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+namespace tessera::apps {
+namespace {
+
+// Written down, and not asked of CLI11, for an error may come before the options are declared and on any thread. A test
+// compares it with what --help says.
+constexpr std::array<std::string_view, 74> settings = {"accuracy",
+                                                       "backend",
+                                                       "background",
+                                                       "balance",
+                                                       "balance_resolution",
+                                                       "balance_weights",
+                                                       "blend",
+                                                       "block",
+                                                       "brick_size",
+                                                       "budget_seconds",
+                                                       "cache",
+                                                       "camera",
+                                                       "check",
+                                                       "compositor",
+                                                       "compositors",
+                                                       "csv",
+                                                       "deep_accuracy",
+                                                       "dims",
+                                                       "egl_device",
+                                                       "emission",
+                                                       "endian",
+                                                       "exchange",
+                                                       "field",
+                                                       "figure",
+                                                       "framebuffer",
+                                                       "frames_in_flight",
+                                                       "half",
+                                                       "help",
+                                                       "integrator",
+                                                       "json",
+                                                       "light",
+                                                       "max_volume",
+                                                       "memory",
+                                                       "on_stall",
+                                                       "opacity_scale",
+                                                       "orbit",
+                                                       "origin",
+                                                       "output",
+                                                       "partition",
+                                                       "peer",
+                                                       "pieces",
+                                                       "pixels",
+                                                       "png_bits",
+                                                       "preload",
+                                                       "progress",
+                                                       "projection",
+                                                       "projectors",
+                                                       "q",
+                                                       "quiet",
+                                                       "rasterizer",
+                                                       "repeat",
+                                                       "report",
+                                                       "rescale",
+                                                       "resume",
+                                                       "seed",
+                                                       "shade",
+                                                       "show",
+                                                       "size",
+                                                       "skip",
+                                                       "smooth",
+                                                       "spacing",
+                                                       "stall_timeout",
+                                                       "step",
+                                                       "subdivide",
+                                                       "threads",
+                                                       "tile_size",
+                                                       "time_step",
+                                                       "timing",
+                                                       "transfer_function",
+                                                       "type",
+                                                       "unit_distance",
+                                                       "verify",
+                                                       "version",
+                                                       "without"};
+static_assert(std::ranges::is_sorted(settings));
+
+/// A setting's name is a word of the sentence: not a part of a file's name, nor quoted.
+bool may_precede(std::string_view before) { return before.empty() || before.back() == ' ' || before.back() == '('; }
+bool may_follow(std::string_view after) {
+  return after.empty() || std::string_view(" ,;:)").find(after.front()) != std::string_view::npos;
+}
+
+}  // namespace
+
+std::span<const std::string_view> option_settings() { return settings; }
+
+std::string with_options(std::string_view text) {
+  std::string result;
+  std::size_t done = 0;
+  while (true) {
+    const std::size_t open = text.find('`', done);
+    const std::size_t close = open == std::string_view::npos ? open : text.find('`', open + 1);
+    if (close == std::string_view::npos) break;
+    const std::string_view name = text.substr(open + 1, close - open - 1);
+    if (!may_precede(text.substr(0, open)) || !may_follow(text.substr(close + 1)) ||
+        !std::ranges::binary_search(settings, name)) {
+      // The second backquote may be the first of a name.
+      result += text.substr(done, close - done);
+      done = close;
+      continue;
+    }
+    result += text.substr(done, open - done);
+    result += "--";
+    std::ranges::replace_copy(name, std::back_inserter(result), '_', '-');
+    done = close + 1;
+  }
+  return result += text.substr(done);
+}
+
+std::vector<std::string> with_options(const std::vector<std::string>& notes) {
+  std::vector<std::string> worded;
+  for (const std::string& note : notes) worded.push_back(with_options(note));
+  return worded;
+}
+
+}  // namespace tessera::apps

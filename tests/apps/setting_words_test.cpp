@@ -1,0 +1,115 @@
+// Settings of libraries' messages are options in what the program says, and nothing else that stands in backquotes is.
+
+#include "apps/setting_words.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <regex>
+#include <set>
+
+#include "apps/program.hpp"
+
+namespace tessera::apps {
+namespace {
+
+TEST(SettingWords, KnownNamesBecomeOptions) {
+  EXPECT_EQ(with_options("`deep_accuracy` 0.5: it must be 1e-6 to 1"), "--deep-accuracy 0.5: it must be 1e-6 to 1");
+  EXPECT_EQ(with_options("raise `memory`"), "raise --memory");
+  EXPECT_EQ(with_options("`exchange` runs: `rasterizer` scanline; use `exchange` segments"),
+            "--exchange runs: --rasterizer scanline; use --exchange segments");
+  EXPECT_EQ(with_options("`integrator`: of `dims`, `type` (`max_volume` sets it; or `q`)"),
+            "--integrator: of --dims, --type (--max-volume sets it; or --q)");
+  EXPECT_EQ(with_options("waiting (`on_stall` abort ends the run)"), "waiting (--on-stall abort ends the run)");
+}
+
+TEST(SettingWords, AllElseStaysAsItIs) {
+  for (const char* text :
+       {"", "`", "``", "a ` b", "no setting", "`memory", "memory`", "`no_setting`", "`deep-accuracy`", "--memory",
+        "has a broken header; it is `PF`, width and height", "each line is `value r g b extinction`",
+        // Names of files, and words that somebody quotes.
+        "`memory`.vtu: is empty", "data/`memory`/a.vtu: is empty", "a`memory`: is empty", "no field '`memory`'"})
+    EXPECT_EQ(with_options(text), text);
+  EXPECT_EQ(with_options("it`s `memory` `` `size`"), "it`s --memory `` --size");
+}
+
+TEST(SettingWords, TableHoldsWhatHelpLists) {
+  std::set<std::string> listed;
+  for (const std::string command : {"", "render", "info", "convert", "generate", "chart", "timing"}) {
+    const auto help = command.empty() ? tessera({"--help"}) : tessera({command, "--help"});
+    ASSERT_EQ(help.status, 0) << command;
+    const std::regex option("(^|\n) +(-[a-z],)?--([a-z-]+)");
+    for (std::sregex_iterator found(help.out.begin(), help.out.end(), option), end; found != end; ++found) {
+      std::string name = (*found)[3];
+      std::ranges::replace(name, '-', '_');
+      listed.insert(name);
+    }
+  }
+  const auto table = option_settings();
+  EXPECT_EQ(listed, std::set<std::string>(table.begin(), table.end()));
+}
+
+/// What `tessera` says on stderr, less the line's end.
+std::string said(const std::vector<std::string>& arguments) {
+  std::string words = tessera(arguments).err;
+  if (words.ends_with('\n')) words.pop_back();
+  return words;
+}
+
+TEST(SettingWords, ErrorLinesNameOptions) {
+  const Folder folder;
+  const auto mesh = folder.cube(), samples = folder.file("v.raw", std::string(8, '\0'));
+  const std::vector<std::string> head = {"render", mesh, "--quiet", "-o", folder / "a.png"};
+  const std::pair<std::vector<std::string>, std::string> cases[] = {
+      {{"--deep-accuracy", "2", "-o", folder / "d.deep.exr"}, "--deep-accuracy 2: it must be 1e-6 to 1"},
+      {{"--rasterizer", "scanline", "--projection", "perspective"},
+       "--rasterizer scanline: it projects orthographically only; use an orthographic view, or --rasterizer planes"},
+      {{"--integrator", "sampled:4", "-o", folder / "d.deep.exr"},
+       "deep picture: --integrator sampled:4 gives a segment other light than its parts; use exact or auto"},
+      {{"--compositor", "gl-fragment", "--backend", "osmesa", "--exchange", "runs"},
+       "--exchange runs: --compositor gl-fragment takes ray segments; use --exchange segments"},
+      {{"--backend", "osmesa,cpu"}, "--backend: 2 words for 1 compositors; give one, or one for each"},
+      {{"--projectors", "2"}, "--projectors 2: this job has 1 rank; give 1 to 1, or start more with mpirun -n"},
+      {{"--memory", "1M", "--size", "1024x1024", "--threads", "1"},
+       "--memory: projection has 1 MiB of it and needs at least 2 MiB for this mesh and image; raise it"}};
+  for (const auto& [arguments, line] : cases) {
+    std::vector<std::string> all = head;
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    EXPECT_EQ(said(all), "tessera: " + line);
+  }
+  EXPECT_EQ(said({"info", samples}), "tessera: " + samples +
+                                         ": a raw file does not say its dimensions and type; give --dims WxHxD --type "
+                                         "uint8, or name it NAME_WxHxD_uint8.raw");
+  const auto trace = folder.file("t.json", "[]");
+  EXPECT_EQ(said({"timing", trace}),
+            "tessera: " + trace + ": no span of Tessera in it; give a file that tessera render --timing wrote");
+}
+
+TEST(SettingWords, RunLineReportAndNotesNameOptions) {
+  const Folder folder;
+  const auto mesh = folder.cube(), report = folder / "r.json";
+  const auto line_of = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"render", mesh, "-o", folder / "a.png", "--size", "8x8", "--report", report});
+    return said(more);
+  };
+  const auto holds = [](const std::string& text, const std::string& words) {
+    EXPECT_NE(text.find(words), std::string::npos) << words << " in " << text;
+  };
+  holds(line_of({"--unit-distance", "2"}), ", unit distance 2 (--unit-distance);");
+  holds(contents(report), "\"source\": \"--unit-distance\"");
+  const auto plain = folder.file("t.txt", "0 1 1 1 2\n");
+  const std::string assumed = "t.txt (extinctions as they stand; --unit-distance does not apply)";
+  holds(line_of({"--transfer-function", plain, "--unit-distance", "2"}), assumed);
+  holds(contents(report), assumed);
+  const auto map = folder.file("m.json", R"([{"RGBPoints": [200, 0, 0, 0, 400, 1, 1, 1], "Name": "m"}])");
+  holds(line_of({"--transfer-function", map}), "lies outside its 200 to 400: --rescale stretches it)");
+
+  const std::vector<std::string> raw = {"--dims", "2x2x2", "--type", "uint8"};
+  std::vector<std::string> volume = {"render", folder.file("v.raw", std::string(8, '\1')), "-o", folder / "v.png"};
+  volume.insert(volume.end(), raw.begin(), raw.end());
+  volume.insert(volume.end(), {"--size", "8x8", "--unit-distance", "3"});
+  holds(said(volume), ", unit distance 3 (--unit-distance);");
+}
+
+}  // namespace
+}  // namespace tessera::apps
