@@ -11,6 +11,7 @@
 #include "io/volume_bytes.hpp"
 #include "io/volume_reader.hpp"
 #include "io/volume_writer.hpp"
+#include "io/vtk_or_skip.hpp"
 
 namespace tessera::io {
 namespace {
@@ -44,6 +45,7 @@ class VolumeFiles : public ::testing::Test {
 };
 
 TEST_F(VolumeFiles, TheFourPublicVolumesAreReadAsDescribed) {
+  TESSERA_VTK_OR_SKIP();
   if (!std::filesystem::exists(volumes)) GTEST_SKIP() << "no " << volumes << ": the public volumes are not here";
   const VolumeFile heptane = open_volume(volumes / "heptane.nii.gz");
   EXPECT_EQ(heptane.source->geometry().points, (GridIndex{302, 302, 302}));
@@ -281,6 +283,7 @@ TEST_F(VolumeFiles, NanSamplesAreCountedAndNothingElseIsRefused) {
 }
 
 TEST_F(VolumeFiles, VtkImagesKeepExtentDirectionCellDataAndHiddenSamples) {
+  TESSERA_VTK_OR_SKIP();
   const auto file = folder.write(
       "a.vti",
       "<?xml version=\"1.0\"?><VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\">"
@@ -304,6 +307,7 @@ TEST_F(VolumeFiles, VtkImagesKeepExtentDirectionCellDataAndHiddenSamples) {
 }
 
 TEST_F(VolumeFiles, ImagesInPiecesAreOneAndGapsOrHugeExtentsAreRefused) {
+  TESSERA_VTK_OR_SKIP();
   const auto piece = [](const std::string& extent, const std::string& numbers) {
     return "<?xml version=\"1.0\"?><VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\"><ImageData "
            "WholeExtent=\"" +
@@ -358,6 +362,7 @@ TEST_F(VolumeFiles, ImagesInPiecesAreOneAndGapsOrHugeExtentsAreRefused) {
 }
 
 TEST_F(VolumeFiles, RectilinearGridsInPiecesAreOneVolumeAndBadPiecesAreNamed) {
+  TESSERA_VTK_OR_SKIP();
   const std::string head = "<?xml version=\"1.0\"?><VTKFile version=\"1.0\" byte_order=\"LittleEndian\" type=\"";
   const auto piece = [&](const std::string& extent, const std::string& x, const std::string& numbers) {
     const auto array = [](const std::string& type, const std::string& name, const std::string& values) {
@@ -412,6 +417,7 @@ TEST_F(VolumeFiles, RectilinearGridsInPiecesAreOneVolumeAndBadPiecesAreNamed) {
 }
 
 TEST_F(VolumeFiles, RectilinearCoordinatesThatFallAreTurnedOver) {
+  TESSERA_VTK_OR_SKIP();
   const auto file = folder.write("a.vtk",
                                  "# vtk DataFile Version 3.0\nt\nASCII\nDATASET RECTILINEAR_GRID\nDIMENSIONS 3 2 2\n"
                                  "X_COORDINATES 3 double\n4 1 0\nY_COORDINATES 2 float\n0 2\nZ_COORDINATES 2 float\n"
@@ -442,6 +448,7 @@ std::vector<float> wavy_values() {
 }
 
 TEST_F(VolumeFiles, WhatIsWrittenReadsBackTheSame) {
+  TESSERA_VTK_OR_SKIP();
   const auto source = scene::MemorySource::of(wavy_grid(), wavy_values());
   const auto expected = all_samples(*source);
   for (const char* name : {"a.vti", "a.nrrd", "a.bricks", "a_21x10x17_float32.raw", "a.vtr"}) {
@@ -495,6 +502,7 @@ TEST_F(VolumeFiles, ABrickFileKeepsGeometryScaleAndRangesAndReadsAnyBox) {
 }
 
 TEST_F(VolumeFiles, RectilinearCoordinatesThatAreEvenButForRoundingMakeARegularGrid) {
+  TESSERA_VTK_OR_SKIP();
   const auto geometry = [&](const std::string& type, const std::string& axis) {
     const std::string array = "<DataArray type=\"" + type + "\" format=\"ascii\">" + axis + "</DataArray>";
     folder.write(
@@ -549,6 +557,7 @@ TEST_F(VolumeFiles, FormatsRefuseWhatTheyCannotSay) {
 
 /// Every format, cut short and with bytes changed: opened, or refused in one line, never a crash.
 TEST_F(VolumeFiles, DamagedFilesAreRefusedOrReadButNeverCrash) {
+  TESSERA_VTK_OR_SKIP();
   const auto source = scene::MemorySource::of(wavy_grid(), wavy_values());
   for (const char* name : {"a.vti", "a.nrrd", "a.bricks", "a_21x10x17_float32.raw", "a.vtr"})
     write_volume(*source, folder / name, 8);

@@ -1,0 +1,114 @@
+#!/usr/bin/env bash
+# Installs the build into a folder of its own, builds examples/ and a file by pkg-config against it, moves it, and uses it
+# again. CMakeLists.txt sets the environment.
+set -euo pipefail
+
+failed() {
+  echo "package_test.sh: $*" >&2
+  exit 1
+}
+quietly() { "$@" >"$SCRATCH/log" 2>&1 || { cat "$SCRATCH/log"; failed "$*"; }; }
+
+unset DESTDIR CMAKE_PREFIX_PATH tessera_DIR tessera_ROOT
+rm -rf "$SCRATCH"
+mkdir -p "$SCRATCH"
+first=$SCRATCH/first moved=$SCRATCH/elsewhere/tessera
+quietly "$CMAKE" --install "$BUILD" --prefix "$first"
+
+# No path of the machine that built it.
+if grep -rlaF -e "$BUILD" -e "$SOURCE" "$first"; then failed "the files above name the build's folders"; fi
+for header in "$SOURCE"/include/tessera/*.hpp; do
+  [ -f "$first/include/tessera/$(basename "$header")" ] || failed "$header is not installed"
+done
+
+# The shared library shows the public API, and that alone.
+if [ "$SHARED" = 1 ]; then
+  shown=$(nm -DC --defined-only "$first/$LIBDIR/libtessera.so" | sed 's/^[0-9a-f]* . //' |
+    grep -vE '^(typeinfo (name )?for |vtable for |VTT for )?tessera::' || true)
+  [ -z "$shown" ] || failed "libtessera.so shows $shown"
+  nm -DC --defined-only "$first/$LIBDIR/libtessera.so" | grep -q 'tessera::version()' || failed "version() is not shown"
+  if nm -DC --defined-only "$first/$LIBDIR/libtessera.so" | grep -E 'tessera::(scene|io|frame|exchange)::'; then
+    failed "libtessera.so shows the above of its inside"
+  fi
+fi
+
+build_examples() {  # build_examples FOLDER PREFIX [OPTION...]
+  local folder=$SCRATCH/$1 prefix=$2
+  shift 2
+  quietly "$CMAKE" -S "$SOURCE/examples" -B "$folder" -G "$GENERATOR" -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_CXX_COMPILER="$CXX" -DCMAKE_C_COMPILER="$CC" -DCMAKE_PREFIX_PATH="$prefix" \
+    -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF "$@"
+  grep -q "^tessera_DIR:.*=$prefix/" "$folder/CMakeCache.txt" || failed "another Tessera than $prefix was found"
+  quietly "$CMAKE" --build "$folder"
+  [ "$("$folder/version")" = "$VERSION" ] || failed "$folder/version prints $("$folder/version")"
+}
+
+if [ "$SHARED" = 1 ]; then
+  build_examples shared "$first"
+  readelf -d "$SCRATCH/shared/version" | grep -q "NEEDED.*libtessera.so.${VERSION%%.*}\]" || failed "it is not linked shared"
+fi
+if [ "$STATIC" = 1 ]; then
+  build_examples static "$first" -DTESSERA_EXAMPLES_STATIC=ON
+  if readelf -d "$SCRATCH/static/version" | grep -q libtessera; then failed "it is not linked statically"; fi
+fi
+
+# pkg-config, as a line in a Makefile would.
+from_pkg_config() {  # from_pkg_config PREFIX [--static]
+  local flags
+  flags=$(PKG_CONFIG_PATH=$1/$LIBDIR/pkgconfig pkg-config --cflags --libs "${@:2}" tessera)
+  if [ "${2:-}" = --static ]; then flags=${flags/-ltessera/-l:libtessera.a}; fi
+  # shellcheck disable=SC2086
+  quietly "$CXX" -std=c++20 "$SOURCE/examples/version.cpp" $flags -Wl,-rpath,"$1/$LIBDIR" -o "$SCRATCH/by_pkg_config"
+  [ "$("$SCRATCH/by_pkg_config")" = "$VERSION" ] || failed "the program built by pkg-config prints something else"
+}
+from_pkg_config "$first"
+if [ "$STATIC" = 1 ]; then from_pkg_config "$first" --static; fi
+
+# What is not there is said.
+mkdir "$SCRATCH/lacking"
+cat >"$SCRATCH/lacking/CMakeLists.txt" <<'TEXT'
+cmake_minimum_required(VERSION 3.25)
+project(lacking LANGUAGES CXX)
+find_package(tessera 0.1 REQUIRED COMPONENTS teapot)
+TEXT
+if "$CMAKE" -S "$SCRATCH/lacking" -B "$SCRATCH/lacking/build" -G "$GENERATOR" -DCMAKE_CXX_COMPILER="$CXX" \
+  -DCMAKE_PREFIX_PATH="$first" >"$SCRATCH/log" 2>&1; then
+  failed "a component that there is not was found"
+fi
+tr -s ' \n' ' ' <"$SCRATCH/log" | grep -q 'was built without: teapot' || {
+  cat "$SCRATCH/log"
+  failed "the message of a component that is not there"
+}
+
+# Elsewhere.
+mkdir -p "$(dirname "$moved")"
+mv "$first" "$moved"
+if [ "$SHARED" = 1 ]; then
+  build_examples moved "$moved"
+else
+  build_examples moved "$moved" -DTESSERA_EXAMPLES_STATIC=ON
+fi
+from_pkg_config "$moved"
+if [ "$APPS" = 1 ]; then [ "$("$moved/bin/tessera" --version)" = "tessera $VERSION" ] || failed "bin/tessera --version"; fi
+
+# As a folder of another project: configured only.
+mkdir "$SCRATCH/parent"
+cat >"$SCRATCH/parent/CMakeLists.txt" <<TEXT
+cmake_minimum_required(VERSION 3.25)
+project(parent LANGUAGES CXX)
+add_subdirectory("$SOURCE" tessera)
+foreach(target tessera_program tessera_apps scene_test)
+  if(TARGET \${target})
+    message(FATAL_ERROR "\${target} is part of another project's build")
+  endif()
+endforeach()
+add_executable(program "$SOURCE/examples/version.cpp")
+target_link_libraries(program PRIVATE tessera::tessera)
+add_executable(static_program "$SOURCE/examples/version.cpp")
+target_link_libraries(static_program PRIVATE tessera::static)
+TEXT
+# The same parts as this build has: others may lack their packages here.
+mapfile -t options < <(sed -nE 's/^(TESSERA_(VTK|MPI|GL|CAIRO|TETGEN)):BOOL=(.*)$/-D\1=\3/p' "$BUILD/CMakeCache.txt")
+quietly "$CMAKE" -S "$SCRATCH/parent" -B "$SCRATCH/parent/build" -G "$GENERATOR" -DCMAKE_CXX_COMPILER="$CXX" \
+  -DCMAKE_C_COMPILER="$CC" "${options[@]}"
+[ ! -e "$SCRATCH/parent/build/compile_commands.json" ] || failed "it sets options of the project around it"
