@@ -11,6 +11,10 @@ if(TESSERA_APPS)
   install(TARGETS tessera_program)
 endif()
 
+if(NOT TARGET tessera::tessera)
+  return()
+endif()
+
 # What there is, in the words of find_package(tessera COMPONENTS ...).
 set(tessera_components)
 foreach(part shared static vtk mpi gl cairo tetgen apps)

@@ -24,9 +24,12 @@ done
 # The shared library shows the public API, and that alone.
 if [ "$SHARED" = 1 ]; then
   shown=$(nm -DC --defined-only "$first/$LIBDIR/libtessera.so" | sed 's/^[0-9a-f]* . //' |
-    grep -vE '^(typeinfo (name )?for |vtable for |VTT for )?tessera::' || true)
+    grep -vE '^(typeinfo (name )?for |vtable for |VTT for )?tessera::|^terminatetetgen\(' || true)
   [ -z "$shown" ] || failed "libtessera.so shows $shown"
   nm -DC --defined-only "$first/$LIBDIR/libtessera.so" | grep -q 'tessera::version()' || failed "version() is not shown"
+  if [ "$TETGEN" = 1 ]; then # or TetGen's own would be called: io/tetgen_fill.cpp
+    nm -DC --defined-only "$first/$LIBDIR/libtessera.so" | grep -q 'terminatetetgen(' || failed "terminatetetgen() is not shown"
+  fi
   if nm -DC --defined-only "$first/$LIBDIR/libtessera.so" | grep -E 'tessera::(scene|io|frame|exchange)::'; then
     failed "libtessera.so shows the above of its inside"
   fi
@@ -52,11 +55,28 @@ if [ "$STATIC" = 1 ]; then
   if readelf -d "$SCRATCH/static/version" | grep -q libtessera; then failed "it is not linked statically"; fi
 fi
 
+if [ "$STATIC" = 1 ]; then # all of the archive, so that all that it needs has to be found
+  mkdir "$SCRATCH/whole"
+  cat >"$SCRATCH/whole/CMakeLists.txt" <<TEXT
+cmake_minimum_required(VERSION 3.25)
+project(whole LANGUAGES C CXX)
+find_package(tessera REQUIRED COMPONENTS static)
+add_executable(version "$SOURCE/examples/version.cpp")
+target_link_libraries(version PRIVATE "\$<LINK_LIBRARY:WHOLE_ARCHIVE,tessera::static>")
+TEXT
+  quietly "$CMAKE" -S "$SCRATCH/whole" -B "$SCRATCH/whole/build" -G "$GENERATOR" -DCMAKE_CXX_COMPILER="$CXX" \
+    -DCMAKE_C_COMPILER="$CC" -DCMAKE_PREFIX_PATH="$first"
+  quietly "$CMAKE" --build "$SCRATCH/whole/build"
+fi
+
 # pkg-config, as a line in a Makefile would.
 from_pkg_config() {  # from_pkg_config PREFIX [--static]
   local flags
   flags=$(PKG_CONFIG_PATH=$1/$LIBDIR/pkgconfig pkg-config --cflags --libs "${@:2}" tessera)
-  if [ "${2:-}" = --static ]; then flags=${flags/-ltessera/-l:libtessera.a}; fi
+  # All of the archive, so that all that it needs has to be named.
+  if [ "${2:-}" = --static ]; then
+    flags=${flags/-ltessera/-Wl,--whole-archive -l:libtessera.a -Wl,--no-whole-archive}
+  fi
   # shellcheck disable=SC2086
   quietly "$CXX" -std=c++20 "$SOURCE/examples/version.cpp" $flags -Wl,-rpath,"$1/$LIBDIR" -o "$SCRATCH/by_pkg_config"
   [ "$("$SCRATCH/by_pkg_config")" = "$VERSION" ] || failed "the program built by pkg-config prints something else"
