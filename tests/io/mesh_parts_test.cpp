@@ -262,7 +262,7 @@ TEST_F(MeshParts, MorePartsThanTetsLeaveSomeEmpty) {
   const auto file = folder / "one.tets";
   write_tets(mesh, file);
   expect_as_whole(file);
-  expect_as_whole(write_pieces({piece_at(0)}));
+  if (has_vtk()) expect_as_whole(write_pieces({piece_at(0)}));
 }
 
 TEST_F(MeshParts, NothingLeftIsSaidOnceForAllParts) {
