@@ -60,10 +60,16 @@ if [ "$STATIC" = 1 ]; then # all of the archive, so that all that it needs has t
   cat >"$SCRATCH/whole/CMakeLists.txt" <<TEXT
 cmake_minimum_required(VERSION 3.25)
 project(whole LANGUAGES C CXX)
-find_package(tessera REQUIRED COMPONENTS static)
+find_package(tessera REQUIRED COMPONENTS static OPTIONAL_COMPONENTS mpi)
 add_executable(version "$SOURCE/examples/version.cpp")
 target_link_libraries(version PRIVATE "\$<LINK_LIBRARY:WHOLE_ARCHIVE,tessera::static>")
+if(TARGET tessera::mpi)
+  add_executable(ranks ranks.cpp)
+  target_link_libraries(ranks PRIVATE tessera::mpi)
+endif()
 TEXT
+  printf '%s\n' '#include <mpi.h>' '#include <tessera/version.hpp>' \
+    'int main() { return MPI_VERSION < 3 || *tessera::version() == 0; }' >"$SCRATCH/whole/ranks.cpp"
   quietly "$CMAKE" -S "$SCRATCH/whole" -B "$SCRATCH/whole/build" -G "$GENERATOR" -DCMAKE_CXX_COMPILER="$CXX" \
     -DCMAKE_C_COMPILER="$CC" -DCMAKE_PREFIX_PATH="$first"
   quietly "$CMAKE" --build "$SCRATCH/whole/build"
@@ -123,7 +129,7 @@ foreach(target tessera_program tessera_apps scene_test)
   endif()
 endforeach()
 add_executable(program "$SOURCE/examples/version.cpp")
-target_link_libraries(program PRIVATE tessera::tessera)
+target_link_libraries(program PRIVATE tessera::tessera \$<TARGET_NAME_IF_EXISTS:tessera::mpi>)
 add_executable(static_program "$SOURCE/examples/version.cpp")
 target_link_libraries(static_program PRIVATE tessera::static)
 TEXT
