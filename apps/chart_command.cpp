@@ -27,6 +27,7 @@
 #include "reference/grid_reference.hpp"
 #include "reference/reference.hpp"
 #include "scene/error.hpp"
+#include "tessera/version.hpp"
 
 namespace tessera::apps {
 namespace {

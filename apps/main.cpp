@@ -33,6 +33,7 @@
 #include "io/time_series.hpp"
 #include "scene/error.hpp"
 #include "scene/start_thread.hpp"
+#include "tessera/version.hpp"
 
 namespace tessera::apps {
 namespace {

@@ -7,6 +7,7 @@
 #include "io/atomic_file.hpp"
 #include "io/image_deep_exr.hpp"
 #include "scene/threads.hpp"
+#include "tessera/version.hpp"
 
 namespace tessera::apps {
 namespace {

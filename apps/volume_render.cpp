@@ -22,6 +22,7 @@
 #include "frame/verify.hpp"
 #include "io/chrome_trace.hpp"
 #include "io/time_series.hpp"
+#include "tessera/version.hpp"
 
 namespace tessera::apps {
 namespace {

@@ -1,4 +1,5 @@
-# One library a folder: tessera_library(NAME SOURCES ... LINK ...), alias tessera::NAME.
+# One library a folder: tessera_library(NAME SOURCES ... LINK ... PRIVATE_LINK ...), alias tessera::NAME. Without SOURCES
+# it is headers only.
 # Each target sees only the folders it links to: headers are staged per folder as include/<folder>, so that an include
 # which the links do not allow fails to compile.
 
@@ -15,18 +16,24 @@ if(TESSERA_SANITIZE)
 endif()
 
 function(tessera_stage_headers target folder)
-  set(stage ${CMAKE_BINARY_DIR}/include/${folder})
+  set(stage ${PROJECT_BINARY_DIR}/include/${folder})
   file(MAKE_DIRECTORY ${stage})
-  file(CREATE_LINK ${CMAKE_SOURCE_DIR}/${folder} ${stage}/${folder} SYMBOLIC)
-  target_include_directories(${target} PUBLIC ${stage})
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${stage}/${folder} SYMBOLIC)
+  target_include_directories(${target} ${ARGN} ${stage})
 endfunction()
 
 function(tessera_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
-  add_library(tessera_${name} STATIC ${ARG_SOURCES})
+  if(ARG_SOURCES)
+    add_library(tessera_${name} STATIC ${ARG_SOURCES})
+    tessera_stage_headers(tessera_${name} ${name} PUBLIC)
+    target_link_libraries(tessera_${name} PUBLIC ${ARG_LINK} PRIVATE tessera_warnings ${ARG_PRIVATE_LINK})
+  else() # headers only
+    add_library(tessera_${name} INTERFACE)
+    tessera_stage_headers(tessera_${name} ${name} INTERFACE)
+    target_link_libraries(tessera_${name} INTERFACE ${ARG_LINK})
+  endif()
   add_library(tessera::${name} ALIAS tessera_${name})
-  tessera_stage_headers(tessera_${name} ${name})
-  target_link_libraries(tessera_${name} PUBLIC ${ARG_LINK} PRIVATE tessera_warnings ${ARG_PRIVATE_LINK})
 endfunction()
 
 # tessera_shaders(NAME FILES ...): the GLSL files of a folder as strings in <NAME>/shader_files.hpp, each named after its
@@ -41,20 +48,27 @@ function(tessera_shaders name)
     string(APPEND header "inline constexpr gl::ShaderSource ${identifier}{\"${name}/${file}\", R\"glsl(${text})glsl\"};\n")
   endforeach()
   string(APPEND header "}\n")
-  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/include/${name}-shaders/${name}/shader_files.hpp CONTENT "${header}" @ONLY)
-  target_include_directories(tessera_${name} PRIVATE ${CMAKE_BINARY_DIR}/include/${name}-shaders)
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/include/${name}-shaders/${name}/shader_files.hpp CONTENT "${header}" @ONLY)
+  target_include_directories(tessera_${name} PRIVATE ${PROJECT_BINARY_DIR}/include/${name}-shaders)
 endfunction()
 
-# tessera_test(NAME [UNITY] SOURCES ... LINK ...): a GoogleTest program, registered test by test. UNITY: its sources name
-# their helpers differently, so that a unity build (the preset sanitize) may compile several at once.
+# tessera_test(NAME [UNITY] [SLOW] SOURCES ... LINK ...): a GoogleTest program, registered test by test. UNITY: its sources
+# name their helpers differently, so that a unity build (the preset sanitize) may compile several at once. All but SLOW
+# ones are labelled fast, and built by the target fast_tests.
 function(tessera_test name)
-  cmake_parse_arguments(ARG "UNITY" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "UNITY;SLOW" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   if(NOT ARG_UNITY)
     set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
   endif()
   target_link_libraries(${name} PRIVATE tessera_warnings ${ARG_LINK} GTest::gtest GTest::gtest_main)
-  target_include_directories(${name} PRIVATE ${CMAKE_SOURCE_DIR}/tests)
-  target_compile_definitions(${name} PRIVATE TESSERA_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_compile_definitions(${name} PRIVATE TESSERA_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  if(ARG_SLOW)
+    set(label slow)
+  else()
+    set(label fast)
+    add_dependencies(fast_tests ${name})
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600 LABELS ${label})
 endfunction()

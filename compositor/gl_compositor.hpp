@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "compositor/gl_fragments.hpp"
-#include "gl/context.hpp"
+#include "gl/platform.hpp"
 #include "scene/trace.hpp"
 
 namespace tessera::compositor {

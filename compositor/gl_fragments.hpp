@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "integrals/lane_table.hpp"
-#include "sorting/gl_list_sort.hpp"
+#include "sorting/gl_key.hpp"
 
 namespace tessera::compositor {
 

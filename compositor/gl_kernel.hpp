@@ -7,6 +7,8 @@
 
 #include "compositor/gl_compositor.hpp"
 #include "compositor/gl_fragments.hpp"
+#include "gl/buffer.hpp"
+#include "gl/shader.hpp"
 
 /// The ways a device composites, for GlCompositor alone.
 namespace tessera::compositor {

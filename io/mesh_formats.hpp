@@ -18,6 +18,10 @@ struct MeshBlocks {
   std::string format;
 };
 
+/// Whether this build has VTK's readers and writers (CMake option TESSERA_VTK). Without them read_vtk_xml(),
+/// read_vtk_legacy(), read_exodus(), read_plot3d(), read_vtk_grid(), read_stl() and write_vtu() throw Error(bad_input).
+bool has_vtk();
+
 /// VTK's XML files: .vtu .pvtu .vts .pvts .vtr .pvtr. The pieces of a .pvtu are a block each, their points not merged.
 MeshBlocks read_vtk_xml(const std::filesystem::path& file);
 

@@ -52,4 +52,7 @@ void require_closed(const Surface& surface, const std::string& source);
 /// Volume inside, from the polygons' signed cones; right if all polygons turn one way, else too small.
 double enclosed_volume(const Surface& surface);
 
+/// Gives points from number `known` on the mean of their neighbours in the tets, ring after ring.
+void fill_unknown(const FilledSurface& mesh, std::size_t known, std::vector<double>& values);
+
 }  // namespace tessera::io

@@ -3,7 +3,8 @@
 
 #define TETLIBRARY
 // The header's terminatetetgen frees the mesh, then throws; the mesh's destructor frees it again, which crashes. The
-// library calls that function through the dynamic linker, so the one defined below takes its place.
+// library calls that function through the dynamic linker, so the one defined below takes its place, which it has to be
+// visible for.
 #define terminatetetgen tetgen_header_terminatetetgen
 #include <tetgen.h>
 #undef terminatetetgen
@@ -26,7 +27,6 @@
 #include "io/surface.hpp"
 #include "scene/error.hpp"
 
-// The library must find it, in a shared library of ours too, so it is not hidden.
 __attribute__((visibility("default"))) void terminatetetgen(tetgenmesh*, int reason) { throw reason; }
 
 namespace tessera::io {

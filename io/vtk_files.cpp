@@ -99,6 +99,8 @@ vtkSmartPointer<vtkDataObject> read_xml(const std::string& source, const std::st
 
 }  // namespace
 
+bool has_vtk() { return true; }
+
 MeshBlocks read_vtk_xml(const std::filesystem::path& file) {
   const std::string source = file.string(), extension = lower_extension(file), type = xml_type(file);
   const XmlKind* const kind = kind_of(type);

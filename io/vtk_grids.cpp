@@ -221,15 +221,6 @@ std::unique_ptr<scene::MemorySource> vtk_source_of(vtkDataSet& data, const Field
 
 }  // namespace
 
-bool has_quoted(std::string_view text, std::string_view word) {
-  for (std::size_t at = text.find(word, 1); at != std::string_view::npos; at = text.find(word, at + 1)) {
-    const std::size_t end = at + word.size();
-    const char quote = text[at - 1];
-    if (end < text.size() && (quote == '"' || quote == '\'') && text[end] == quote) return true;
-  }
-  return false;
-}
-
 void require_xml_end(const std::filesystem::path& file) {
   const MappedFile mapped(file);
   const std::string_view text = mapped.text();
@@ -240,22 +231,6 @@ void require_xml_end(const std::filesystem::path& file) {
 double rounding_of(vtkDataArray& array) {
   if (array.GetDataType() == VTK_FLOAT) return 0x1p-24;
   return array.GetDataType() == VTK_DOUBLE ? 0x1p-53 : 0;
-}
-
-bool looks_like_vtk_grid(std::string_view beginning) {
-  if (beginning.starts_with("# vtk DataFile")) {
-    const std::size_t at = beginning.find("DATASET");
-    if (at == std::string_view::npos) return false;
-    const std::string_view kind = beginning.substr(at + 7, 40);
-    const std::size_t word = kind.find_first_not_of(" \t");
-    return word != std::string_view::npos &&
-           (kind.substr(word).starts_with("STRUCTURED_POINTS") || kind.substr(word).starts_with("RECTILINEAR_GRID"));
-  }
-  const std::size_t element = beginning.find("<VTKFile");
-  if (element == std::string_view::npos) return false;
-  const std::string_view tag = beginning.substr(element, beginning.find('>', element) - element);
-  return has_quoted(tag, "ImageData") || has_quoted(tag, "PImageData") || has_quoted(tag, "RectilinearGrid") ||
-         has_quoted(tag, "PRectilinearGrid");
 }
 
 VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions& options) {

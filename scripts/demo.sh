@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 
 scripts/install_packages.sh build
 cmake --preset release -DTESSERA_TESTS=OFF -B build/demo
-cmake --build build/demo -j"$(nproc)" --target tessera
+cmake --build build/demo -j"$(nproc)" --target tessera_program
 
 tessera=build/demo/apps/tessera
 "$tessera" generate demo build/demo.vtu

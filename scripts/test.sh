@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # test.sh        installs what is missing, checks the format, builds and runs all tests as released
-# test.sh --all  also under ASan and UBSan, fuzzes, and runs clang-tidy
-# With CI=true, as .ci/run calls it, all but clang-tidy. Goes on after a failed stage; the end says which.
+# test.sh --all  also under ASan and UBSan, without the parts that are options, fuzzes, and runs clang-tidy
+# With CI=true, as .ci/run calls it, all but clang-tidy and most of the configurations. Goes on after a failed stage; the
+# end says which.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -41,6 +42,8 @@ presets=(release)
 if [ -n "$extent" ]; then
   stage sanitize build_and_test sanitize
   presets=(sanitize release)
+  if [ "$extent" = all ]; then configurations=(); else configurations=(least); fi
+  stage configurations scripts/configurations.sh "${configurations[@]}"
   stage fuzz scripts/fuzz.sh 20
 fi
 if [ "$extent" = all ]; then stage tidy scripts/lint.sh tidy; fi

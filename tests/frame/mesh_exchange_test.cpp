@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
-#include <mutex>
 #include <random>
 
 #include "datasets/boxes.hpp"
@@ -190,7 +189,6 @@ TEST(MeshExchange, NothingIsSentWhereEverythingLiesRight) {
 TEST(MeshExchange, NoMessageIsMuchLargerThanAsked) {
   const scene::TetMesh mesh = datasets::cube(10);
   scene::Trace trace;
-  std::mutex mutex;
   exchange::run_ranks(3, [&](Transport& transport) {
     MeshPart part = part_of(mesh, Start::first_rank, transport.rank(), 3, 1);
     const scene::MeshFacts facts = agree_facts(transport, part.mesh);

@@ -95,7 +95,8 @@ TEST(ChromeTraceReader, AnEventThatMakesNoSenseIsNamedByItsNumber) {
       {R"("name":"sort",)", "", "name is missing"},
   };
   for (const auto& [from, to, words] : cases)
-    expect_bad_input([&] { parse_chrome_trace(with(from, to), "a.json"); }, {"a.json: event 2", words});
+    expect_bad_input([&, &from = from, &to = to] { parse_chrome_trace(with(from, to), "a.json"); },
+                     {"a.json: event 2", words});
   expect_bad_input([&] { parse_chrome_trace(R"({"otherData":{"ranks":-1}})", "a.json"); }, {"a.json", "ranks is -1"});
   expect_bad_input([&] { parse_chrome_trace(R"({"otherData":{"tets":1e40}})", "a.json"); },
                    {"a.json", "tets is 1e+40"});

@@ -7,6 +7,7 @@
 #include "io/mesh_assembly.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
+#include "io/vtk_or_skip.hpp"
 
 namespace tessera::io {
 namespace {
@@ -89,6 +90,7 @@ TEST(TetsFile, NaNBlanksTheTetsThatUseIt) {
 }
 
 TEST(VtuWriter, WhatIsWrittenIsReadBitForBit) {
+  TESSERA_VTK_OR_SKIP();
   const test::TemporaryFolder folder;
   scene::TetMesh mesh = assemble_mesh({testing::mixed_mesh(2, 4, false)}, {}, "mesh").mesh;
   write_vtu(mesh, folder / "m.vtu");

@@ -11,6 +11,7 @@
 #include "io/volume_bytes.hpp"
 #include "io/volume_reader.hpp"
 #include "io/volume_writer.hpp"
+#include "io/vtk_or_skip.hpp"
 
 namespace tessera::io {
 namespace {
@@ -30,6 +31,13 @@ std::vector<double> all_samples(const scene::SampleSource& source) {
   return values;
 }
 
+/// Files in every format that is written, and that this build reads again.
+std::vector<std::string> names_written() {
+  std::vector<std::string> names = {"a.nrrd", "a.bricks", "a_21x10x17_float32.raw"};
+  if (has_vtk()) names.insert(names.end(), {"a.vti", "a.vtr"});
+  return names;
+}
+
 class VolumeFiles : public ::testing::Test {
  protected:
   /// Opens the file and expects one line of refusal that holds `words`.
@@ -44,6 +52,7 @@ class VolumeFiles : public ::testing::Test {
 };
 
 TEST_F(VolumeFiles, TheFourPublicVolumesAreReadAsDescribed) {
+  TESSERA_VTK_OR_SKIP();
   if (!std::filesystem::exists(volumes)) GTEST_SKIP() << "no " << volumes << ": the public volumes are not here";
   const VolumeFile heptane = open_volume(volumes / "heptane.nii.gz");
   EXPECT_EQ(heptane.source->geometry().points, (GridIndex{302, 302, 302}));
@@ -281,6 +290,7 @@ TEST_F(VolumeFiles, NanSamplesAreCountedAndNothingElseIsRefused) {
 }
 
 TEST_F(VolumeFiles, VtkImagesKeepExtentDirectionCellDataAndHiddenSamples) {
+  TESSERA_VTK_OR_SKIP();
   const auto file = folder.write(
       "a.vti",
       "<?xml version=\"1.0\"?><VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\">"
@@ -304,6 +314,7 @@ TEST_F(VolumeFiles, VtkImagesKeepExtentDirectionCellDataAndHiddenSamples) {
 }
 
 TEST_F(VolumeFiles, ImagesInPiecesAreOneAndGapsOrHugeExtentsAreRefused) {
+  TESSERA_VTK_OR_SKIP();
   const auto piece = [](const std::string& extent, const std::string& numbers) {
     return "<?xml version=\"1.0\"?><VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\"><ImageData "
            "WholeExtent=\"" +
@@ -358,6 +369,7 @@ TEST_F(VolumeFiles, ImagesInPiecesAreOneAndGapsOrHugeExtentsAreRefused) {
 }
 
 TEST_F(VolumeFiles, RectilinearGridsInPiecesAreOneVolumeAndBadPiecesAreNamed) {
+  TESSERA_VTK_OR_SKIP();
   const std::string head = "<?xml version=\"1.0\"?><VTKFile version=\"1.0\" byte_order=\"LittleEndian\" type=\"";
   const auto piece = [&](const std::string& extent, const std::string& x, const std::string& numbers) {
     const auto array = [](const std::string& type, const std::string& name, const std::string& values) {
@@ -412,6 +424,7 @@ TEST_F(VolumeFiles, RectilinearGridsInPiecesAreOneVolumeAndBadPiecesAreNamed) {
 }
 
 TEST_F(VolumeFiles, RectilinearCoordinatesThatFallAreTurnedOver) {
+  TESSERA_VTK_OR_SKIP();
   const auto file = folder.write("a.vtk",
                                  "# vtk DataFile Version 3.0\nt\nASCII\nDATASET RECTILINEAR_GRID\nDIMENSIONS 3 2 2\n"
                                  "X_COORDINATES 3 double\n4 1 0\nY_COORDINATES 2 float\n0 2\nZ_COORDINATES 2 float\n"
@@ -444,7 +457,7 @@ std::vector<float> wavy_values() {
 TEST_F(VolumeFiles, WhatIsWrittenReadsBackTheSame) {
   const auto source = scene::MemorySource::of(wavy_grid(), wavy_values());
   const auto expected = all_samples(*source);
-  for (const char* name : {"a.vti", "a.nrrd", "a.bricks", "a_21x10x17_float32.raw", "a.vtr"}) {
+  for (const std::string& name : names_written()) {
     SCOPED_TRACE(name);
     write_volume(*source, folder / name, 8);
     const VolumeFile back = open_volume(folder / name);
@@ -452,7 +465,7 @@ TEST_F(VolumeFiles, WhatIsWrittenReadsBackTheSame) {
     for (std::size_t i = 0; i < expected.size(); ++i) ASSERT_TRUE(i == 77 || values[i] == expected[i]) << i;
     EXPECT_TRUE(std::isnan(values[77]));
     EXPECT_EQ(back.range, scene::value_range(*source));
-    if (std::string(name).ends_with(".raw")) continue;
+    if (name.ends_with(".raw")) continue;
     const glm::dvec3 corner = scene::world_of_index(back.source->geometry(), {20, 9, 16});
     EXPECT_LT(glm::length(corner - scene::world_of_index(source->geometry(), {20, 9, 16})), 1e-9);
   }
@@ -495,6 +508,7 @@ TEST_F(VolumeFiles, ABrickFileKeepsGeometryScaleAndRangesAndReadsAnyBox) {
 }
 
 TEST_F(VolumeFiles, RectilinearCoordinatesThatAreEvenButForRoundingMakeARegularGrid) {
+  TESSERA_VTK_OR_SKIP();
   const auto geometry = [&](const std::string& type, const std::string& axis) {
     const std::string array = "<DataArray type=\"" + type + "\" format=\"ascii\">" + axis + "</DataArray>";
     folder.write(
@@ -550,13 +564,13 @@ TEST_F(VolumeFiles, FormatsRefuseWhatTheyCannotSay) {
 /// Every format, cut short and with bytes changed: opened, or refused in one line, never a crash.
 TEST_F(VolumeFiles, DamagedFilesAreRefusedOrReadButNeverCrash) {
   const auto source = scene::MemorySource::of(wavy_grid(), wavy_values());
-  for (const char* name : {"a.vti", "a.nrrd", "a.bricks", "a_21x10x17_float32.raw", "a.vtr"})
-    write_volume(*source, folder / name, 8);
+  for (const std::string& name : names_written()) write_volume(*source, folder / name, 8);
   folder.write("a.nii", test::nifti());
   folder.write("a.mha",
                "ObjectType = Image\nNDims = 3\nDimSize = 3 2 2\nElementType = MET_UCHAR\nElementSpacing = 1 1 1\n"
                "ElementDataFile = LOCAL\nabcdefghijkl");
-  if (std::filesystem::exists(volumes)) std::filesystem::copy_file(volumes / "carotid.vtk", folder / "carotid.vtk");
+  if (has_vtk() && std::filesystem::exists(volumes))
+    std::filesystem::copy_file(volumes / "carotid.vtk", folder / "carotid.vtk");
   for (const std::string& name : folder.names()) {
     SCOPED_TRACE(name);
     const std::string original = test::contents(folder / name);

@@ -1,0 +1,24 @@
+// Built in place of what draws with TESSERA_CAIRO=OFF.
+#include <fmt/format.h>
+
+#include "analysis/chart_figure.hpp"
+#include "analysis/timing_figure.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::analysis {
+
+/// Programs ask this before they measure, so that nobody waits for a figure that does not come.
+void check_figure_path(const std::filesystem::path& file) {
+  throw scene::bad_input(fmt::format(
+      "{}: figures need Cairo, which this build leaves out; build with TESSERA_CAIRO=ON, or write a table with --csv",
+      file.string()));
+}
+
+void write_chart(std::span<const ChartPoint>, const std::string&, const std::string&,
+                 const std::filesystem::path& file) {
+  check_figure_path(file);
+}
+
+void write_figure(std::span<const RunTime>, const std::filesystem::path& file) { check_figure_path(file); }
+
+}  // namespace tessera::analysis

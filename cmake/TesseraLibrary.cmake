@@ -1,0 +1,58 @@
+# The whole library, of the very objects that the folders' targets compile: libtessera.so, which shows what TESSERA_EXPORT
+# marks, and libtessera.a. In this build and installed: tessera::shared, tessera::static, and tessera::tessera, the shared
+# one where both are. tessera::mpi: what tessera/mpi.hpp needs beside.
+set(folders scene colormaps io integrals exchange projection gl sorting compositor volume reference frame datasets)
+if(TESSERA_CAIRO)
+  list(APPEND folders analysis)
+endif()
+
+# What the objects link: all that the folders link but each other, and what is headers only.
+set(objects)
+set(links)
+foreach(folder ${folders})
+  get_target_property(type tessera_${folder} TYPE)
+  if(NOT type STREQUAL INTERFACE_LIBRARY)
+    list(APPEND objects $<TARGET_OBJECTS:tessera_${folder}>)
+    get_target_property(linked tessera_${folder} LINK_LIBRARIES)
+    list(APPEND links ${linked})
+  endif()
+endforeach()
+list(FILTER links EXCLUDE REGEX "^(tessera|glm::|nlohmann_json::)")
+list(REMOVE_DUPLICATES links)
+
+function(tessera_whole_library kind)
+  string(TOUPPER ${kind} type)
+  add_library(tessera_${kind} ${type} ${objects})
+  add_library(tessera::${kind} ALIAS tessera_${kind})
+  set_target_properties(tessera_${kind} PROPERTIES OUTPUT_NAME tessera EXPORT_NAME ${kind} LINKER_LANGUAGE CXX)
+  target_compile_features(tessera_${kind} INTERFACE cxx_std_20)
+  target_include_directories(
+    tessera_${kind} INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                              $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include/generated>)
+  target_link_libraries(tessera_${kind} PRIVATE $<BUILD_INTERFACE:tessera_warnings> ${links} INTERFACE glm::glm)
+endfunction()
+
+if(TESSERA_SHARED)
+  tessera_whole_library(shared)
+  # Instances of templates of the standard library and oneTBB stay inside too.
+  set(exports ${CMAKE_CURRENT_LIST_DIR}/tessera.map)
+  set_target_properties(tessera_shared PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}
+                                                  LINK_DEPENDS ${exports})
+  target_link_options(tessera_shared PRIVATE -Wl,--version-script=${exports} -Wl,--as-needed)
+endif()
+if(TESSERA_STATIC)
+  tessera_whole_library(static)
+endif()
+
+if(TESSERA_SHARED)
+  add_library(tessera::tessera ALIAS tessera_shared)
+elseif(TESSERA_STATIC)
+  add_library(tessera::tessera ALIAS tessera_static)
+endif()
+if(TESSERA_MPI AND TARGET tessera::tessera)
+  add_library(tessera_mpi INTERFACE)
+  add_library(tessera::mpi ALIAS tessera_mpi)
+  # MPI's C interface only: its old C++ one wants another library.
+  target_compile_definitions(tessera_mpi INTERFACE OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX)
+  target_link_libraries(tessera_mpi INTERFACE tessera::tessera MPI::MPI_C)
+endif()

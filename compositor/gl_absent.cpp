@@ -1,0 +1,17 @@
+// Built in place of what draws on a device with TESSERA_GL=OFF.
+#include "compositor/gl_compositor.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::compositor {
+
+class GlCompositor::Worker {};
+
+GlCompositor::GlCompositor(gl::Platform, const GlSettings&, scene::Trace*) {
+  throw scene::Error(scene::ErrorCode::system_failure,
+                     "OpenGL: this build leaves it out; use --backend cpu, or build with TESSERA_GL=ON");
+}
+GlCompositor::~GlCompositor() = default;
+
+std::future<std::vector<GlLight>> GlCompositor::composite(GlFragments, const GlRules&) { return {}; }
+
+}  // namespace tessera::compositor

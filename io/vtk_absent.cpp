@@ -1,0 +1,37 @@
+// Built in place of what needs VTK with TESSERA_VTK=OFF.
+#include <fmt/format.h>
+
+#include "io/input_file.hpp"
+#include "io/mesh_formats.hpp"
+#include "io/stl_file.hpp"
+#include "io/surface_fields.hpp"
+#include "io/volume_formats.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& file) {
+  throw scene::bad_input(fmt::format(
+      "{}: {} files need VTK, which this build leaves out; build with TESSERA_VTK=ON, or convert it to another format",
+      file.string(), lower_extension(file)));
+}
+
+}  // namespace
+
+bool has_vtk() { return false; }
+
+MeshBlocks read_vtk_xml(const std::filesystem::path& file) { refuse(file); }
+MeshBlocks read_vtk_legacy(const std::filesystem::path& file) { refuse(file); }
+MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t>) { refuse(file); }
+MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem::path&) { refuse(file); }
+VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions&) { refuse(file); }
+Surface read_stl(const std::string& source) { refuse(source); }
+void write_vtu(const scene::TetMeshView&, const std::filesystem::path& file) { refuse(file); }
+
+// Read whole, by read_vtk_xml().
+bool is_pvtu(const std::filesystem::path&) { return false; }
+std::vector<std::filesystem::path> pvtu_pieces(const std::filesystem::path& file) { refuse(file); }
+MeshBlocks read_pvtu_pieces(const std::filesystem::path& file, std::span<const std::filesystem::path>) { refuse(file); }
+
+}  // namespace tessera::io

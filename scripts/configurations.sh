@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# Builds the library with parts of it left out, by other compilers, and runs its fast tests: what is optional stays so.
+# Usage: scripts/configurations.sh [NAME...], all of them by default. Each lies in build/NAME.
+#   no-mpi no-tetgen no-gl   without VTK and that
+#   least                    with no part that is an option, by clang 14
+#   clang                    without VTK, by clang 14
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+common=(-G Ninja -DCMAKE_BUILD_TYPE=Release -DTESSERA_APPS=OFF -DTESSERA_VTK=OFF
+  -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=6)
+clang=(-DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14)
+if command -v ccache >/dev/null; then
+  common+=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+fi
+
+options_of() {  # options_of NAME
+  case $1 in
+    no-mpi) echo -DTESSERA_MPI=OFF ;;
+    no-tetgen) echo -DTESSERA_TETGEN=OFF ;;
+    no-gl) echo -DTESSERA_GL=OFF ;;
+    least)
+      echo -DTESSERA_MPI=OFF -DTESSERA_TETGEN=OFF -DTESSERA_GL=OFF -DTESSERA_CAIRO=OFF "${clang[@]}" \
+        -DCMAKE_DISABLE_FIND_PACKAGE_{VTK,MPI,TetGen,CLI11}=ON # as if they were not there
+      ;;
+    clang) echo "${clang[@]}" ;;
+    *)
+      echo "configurations.sh: $1 is not one of no-mpi, no-tetgen, no-gl, least, clang" >&2
+      return 2
+      ;;
+  esac
+}
+
+build_and_test() {  # build_and_test NAME
+  local options
+  options=$(options_of "$1") || return
+  # shellcheck disable=SC2086
+  cmake -S . -B "build/$1" "${common[@]}" $options >"build/$1.log" || return
+  cmake --build "build/$1" -j"$(nproc)" --target tessera_shared tessera_static tessera_analysis fast_tests -- -k 0 || return
+  ctest --test-dir "build/$1" -L fast -j"$(nproc)" --no-tests=error --output-on-failure
+}
+
+if [ $# -eq 0 ]; then set -- no-mpi no-tetgen no-gl least clang; fi
+mkdir -p build
+failed=()
+for name in "$@"; do
+  echo "-- $name"
+  build_and_test "$name" || failed+=("$name")
+done
+if [ ${#failed[@]} -gt 0 ]; then
+  echo "configurations.sh: failed: ${failed[*]}" >&2
+  exit 1
+fi

@@ -1,0 +1,147 @@
+#!/usr/bin/env bash
+# Installs the build into a folder of its own, builds examples/ and a file by pkg-config against it, moves it, and uses it
+# again. CMakeLists.txt sets the environment.
+set -euo pipefail
+
+failed() {
+  echo "package_test.sh: $*" >&2
+  exit 1
+}
+quietly() { "$@" >"$SCRATCH/log" 2>&1 || { cat "$SCRATCH/log"; failed "$*"; }; }
+
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+unset DESTDIR CMAKE_PREFIX_PATH tessera_DIR tessera_ROOT
+rm -rf "$SCRATCH"
+mkdir -p "$SCRATCH"
+first=$SCRATCH/first moved=$SCRATCH/elsewhere/tessera
+quietly "$CMAKE" --install "$BUILD" --prefix "$first"
+
+# No path of the machine that built it.
+if grep -rlaF -e "$BUILD" -e "$SOURCE" "$first"; then failed "the files above name the build's folders"; fi
+for header in "$SOURCE"/include/tessera/*.hpp; do
+  [ -f "$first/include/tessera/$(basename "$header")" ] || failed "$header is not installed"
+done
+
+# The shared library shows the public API, and that alone.
+if [ "$SHARED" = 1 ]; then
+  shown=$(nm -DC --defined-only "$first/$LIBDIR/libtessera.so" | sed 's/^[0-9a-f]* . //' |
+    grep -vE '^(typeinfo (name )?for |vtable for |VTT for )?tessera::|^terminatetetgen\(' || true)
+  [ -z "$shown" ] || failed "libtessera.so shows $shown"
+  nm -DC --defined-only "$first/$LIBDIR/libtessera.so" | grep -q 'tessera::version()' || failed "version() is not shown"
+  if [ "$TETGEN" = 1 ]; then # or TetGen's own would be called: io/tetgen_fill.cpp
+    nm -DC --defined-only "$first/$LIBDIR/libtessera.so" | grep -q 'terminatetetgen(' || failed "terminatetetgen() is not shown"
+  fi
+  if nm -DC --defined-only "$first/$LIBDIR/libtessera.so" | grep -E 'tessera::(scene|io|frame|exchange)::'; then
+    failed "libtessera.so shows the above of its inside"
+  fi
+fi
+
+build_examples() {  # build_examples FOLDER PREFIX [OPTION...]
+  local folder=$SCRATCH/$1 prefix=$2
+  shift 2
+  quietly "$CMAKE" -S "$SOURCE/examples" -B "$folder" -G "$GENERATOR" -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_CXX_COMPILER="$CXX" -DCMAKE_C_COMPILER="$CC" -DCMAKE_PREFIX_PATH="$prefix" \
+    -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF "$@"
+  grep -q "^tessera_DIR:.*=$prefix/" "$folder/CMakeCache.txt" || failed "another Tessera than $prefix was found"
+  quietly "$CMAKE" --build "$folder"
+  # Each draws its picture.
+  (cd "$folder" && quietly ./mesh_from_arrays && [ -s mesh.png ]) || failed "$folder/mesh_from_arrays"
+  "$folder/tiles_and_stop" "$SOURCE/datasets/small/"*.tets >"$SCRATCH/log" || failed "$folder/tiles_and_stop"
+  grep -q stopped "$SCRATCH/log" || failed "$folder/tiles_and_stop did not stop"
+  if [ -x "$folder/grid_on_ranks" ]; then
+    (cd "$folder" && quietly mpirun --oversubscribe -n 3 ./grid_on_ranks && [ -s grid.png ]) || failed "$folder/grid_on_ranks"
+  fi
+}
+
+if [ "$SHARED" = 1 ]; then
+  build_examples shared "$first"
+  readelf -d "$SCRATCH/shared/mesh_from_arrays" | grep -q "NEEDED.*libtessera.so.${VERSION%%.*}\]" || failed "it is not linked shared"
+fi
+if [ "$STATIC" = 1 ]; then
+  build_examples static "$first" -DTESSERA_EXAMPLES_STATIC=ON
+  if readelf -d "$SCRATCH/static/mesh_from_arrays" | grep -q libtessera; then failed "it is not linked statically"; fi
+fi
+
+if [ "$STATIC" = 1 ]; then # all of the archive, so that all that it needs has to be found
+  mkdir "$SCRATCH/whole"
+  cat >"$SCRATCH/whole/CMakeLists.txt" <<TEXT
+cmake_minimum_required(VERSION 3.25)
+project(whole LANGUAGES C CXX)
+find_package(tessera REQUIRED COMPONENTS static OPTIONAL_COMPONENTS mpi)
+add_executable(version "$SOURCE/tests/package/version.cpp")
+target_link_libraries(version PRIVATE "\$<LINK_LIBRARY:WHOLE_ARCHIVE,tessera::static>")
+if(TARGET tessera::mpi)
+  add_executable(ranks ranks.cpp)
+  target_link_libraries(ranks PRIVATE tessera::mpi)
+endif()
+TEXT
+  printf '%s\n' '#include <mpi.h>' '#include <tessera/version.hpp>' \
+    'int main() { return MPI_VERSION < 3 || *tessera::version() == 0; }' >"$SCRATCH/whole/ranks.cpp"
+  quietly "$CMAKE" -S "$SCRATCH/whole" -B "$SCRATCH/whole/build" -G "$GENERATOR" -DCMAKE_CXX_COMPILER="$CXX" \
+    -DCMAKE_C_COMPILER="$CC" -DCMAKE_PREFIX_PATH="$first"
+  quietly "$CMAKE" --build "$SCRATCH/whole/build"
+fi
+
+# pkg-config, as a line in a Makefile would.
+from_pkg_config() {  # from_pkg_config PREFIX [--static]
+  local flags
+  flags=$(PKG_CONFIG_PATH=$1/$LIBDIR/pkgconfig pkg-config --cflags --libs "${@:2}" tessera)
+  # All of the archive, so that all that it needs has to be named.
+  if [ "${2:-}" = --static ]; then
+    flags=${flags/-ltessera/-Wl,--whole-archive -l:libtessera.a -Wl,--no-whole-archive}
+  fi
+  # shellcheck disable=SC2086
+  quietly "$CXX" -std=c++20 "$SOURCE/tests/package/version.cpp" $flags -Wl,-rpath,"$1/$LIBDIR" -o "$SCRATCH/by_pkg_config"
+  [ "$("$SCRATCH/by_pkg_config")" = "$VERSION" ] || failed "the program built by pkg-config prints something else"
+}
+from_pkg_config "$first"
+if [ "$STATIC" = 1 ]; then from_pkg_config "$first" --static; fi
+
+# What is not there is said.
+mkdir "$SCRATCH/lacking"
+cat >"$SCRATCH/lacking/CMakeLists.txt" <<'TEXT'
+cmake_minimum_required(VERSION 3.25)
+project(lacking LANGUAGES CXX)
+find_package(tessera 0.1 REQUIRED COMPONENTS teapot)
+TEXT
+if "$CMAKE" -S "$SCRATCH/lacking" -B "$SCRATCH/lacking/build" -G "$GENERATOR" -DCMAKE_CXX_COMPILER="$CXX" \
+  -DCMAKE_PREFIX_PATH="$first" >"$SCRATCH/log" 2>&1; then
+  failed "a component that there is not was found"
+fi
+tr -s ' \n' ' ' <"$SCRATCH/log" | grep -q 'was built without: teapot' || {
+  cat "$SCRATCH/log"
+  failed "the message of a component that is not there"
+}
+
+# Elsewhere.
+mkdir -p "$(dirname "$moved")"
+mv "$first" "$moved"
+if [ "$SHARED" = 1 ]; then
+  build_examples moved "$moved"
+else
+  build_examples moved "$moved" -DTESSERA_EXAMPLES_STATIC=ON
+fi
+from_pkg_config "$moved"
+if [ "$APPS" = 1 ]; then [ "$("$moved/bin/tessera" --version)" = "tessera $VERSION" ] || failed "bin/tessera --version"; fi
+
+# As a folder of another project: configured only.
+mkdir "$SCRATCH/parent"
+cat >"$SCRATCH/parent/CMakeLists.txt" <<TEXT
+cmake_minimum_required(VERSION 3.25)
+project(parent LANGUAGES CXX)
+add_subdirectory("$SOURCE" tessera)
+foreach(target tessera_program tessera_apps scene_test)
+  if(TARGET \${target})
+    message(FATAL_ERROR "\${target} is part of another project's build")
+  endif()
+endforeach()
+add_executable(program "$SOURCE/tests/package/version.cpp")
+target_link_libraries(program PRIVATE tessera::tessera \$<TARGET_NAME_IF_EXISTS:tessera::mpi>)
+add_executable(static_program "$SOURCE/tests/package/version.cpp")
+target_link_libraries(static_program PRIVATE tessera::static)
+TEXT
+# The same parts as this build has: others may lack their packages here.
+mapfile -t options < <(sed -nE 's/^(TESSERA_(VTK|MPI|GL|CAIRO|TETGEN)):BOOL=(.*)$/-D\1=\3/p' "$BUILD/CMakeCache.txt")
+quietly "$CMAKE" -S "$SCRATCH/parent" -B "$SCRATCH/parent/build" -G "$GENERATOR" -DCMAKE_CXX_COMPILER="$CXX" \
+  -DCMAKE_C_COMPILER="$CC" "${options[@]}"
+[ ! -e "$SCRATCH/parent/build/compile_commands.json" ] || failed "it sets options of the project around it"
