@@ -1,0 +1,125 @@
+// A caller with MPI of its own: ranks 0 and 1 of three render a mesh from arrays on a communicator of theirs, while rank
+// 2 does something else and speaks to rank 0. Exit status 0 if all was as it should be.
+//   mpirun -n 3 own_communicator            the above
+//   mpirun -n 3 own_communicator funneled   MPI is started for too few threads: an error that says so
+#include <cstdio>
+#include <cstring>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "tessera/mpi.hpp"
+#include "tessera/tessera.hpp"
+
+namespace {
+
+int faults = 0;
+
+void expect(bool holds, const char* what) {
+  if (holds) return;
+  ++faults;
+  std::fprintf(stderr, "own_communicator: %s\n", what);
+}
+
+/// A box of n^3 cubes, each cut into six tets.
+struct Mesh {
+  explicit Mesh(int n) {
+    const auto point = [n](int i, int j, int k) { return static_cast<std::uint32_t>(i + (n + 1) * (j + (n + 1) * k)); };
+    for (int k = 0; k <= n; ++k)
+      for (int j = 0; j <= n; ++j)
+        for (int i = 0; i <= n; ++i) {
+          points.insert(points.end(), {1.0 * i, 1.0 * j, 1.0 * k});
+          scalars.push_back(i * j - 0.5 * k * i);
+        }
+    constexpr int ways[6][2] = {{1, 3}, {1, 5}, {2, 3}, {2, 6}, {4, 5}, {4, 6}};
+    for (int k = 0; k < n; ++k)
+      for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i)
+          for (const auto& way : ways) {
+            const auto corner = [&](int bits) {
+              return point(i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2 & 1));
+            };
+            tets.insert(tets.end(), {corner(0), corner(way[0]), corner(way[1]), corner(7)});
+          }
+  }
+  [[nodiscard]] tessera::MeshArrays arrays() const {
+    tessera::MeshArrays arrays;
+    arrays.points = points, arrays.tets = tets, arrays.scalars = scalars;
+    return arrays;
+  }
+  std::vector<double> points, scalars;
+  std::vector<std::uint32_t> tets;
+};
+
+class StopAtFirstTile final : public tessera::Sink {
+ public:
+  void tile(const tessera::Tile& /*tile*/) override { source.request_stop(); }
+  std::stop_source source;
+};
+
+void render(MPI_Comm two, int rank) {
+  const Mesh mesh(12);
+  const tessera::Dataset data = tessera::Dataset::of(mesh.arrays());
+  const tessera::View view{data.default_camera({160, 120}), {160, 120}};
+  const tessera::TransferFunction function = data.transfer_function("viridis").function;
+  const tessera::RenderedFrame alone = tessera::Session(data).render(view, function);
+
+  tessera::Settings settings;
+  settings.ranks.exchange = tessera::Exchange::segments;
+  const tessera::Communicator ranks = tessera::communicator(two);
+  expect(ranks.size() == 2 && ranks.rank() == rank, "the communicator has another shape");
+  tessera::Session session(data, settings, ranks), other(data, settings, ranks);
+  const auto whole = [&](tessera::Session& of, const char* what) {
+    const tessera::RenderedFrame frame = of.render(view, function);
+    expect(!frame.stopped, what);
+    if (of.assembles()) expect(frame.image.rgba == alone.image.rgba && frame.image.depth == alone.image.depth, what);
+  };
+  whole(session, "the picture has other bits than one process's");
+  whole(other, "a second session's picture has other bits");
+  // Stops of either rank, before it begins and from the sink.
+  for (int who = 0; who < 2; ++who) {
+    std::stop_source source;
+    if (rank == who) source.request_stop();
+    expect(session.render(view, function, {}, nullptr, source.get_token()).stopped, "it was not stopped on all ranks");
+    whole(session, "the picture after a stop has other bits");
+  }
+  StopAtFirstTile sink;
+  expect(session.render(view, function, {}, &sink, sink.source.get_token()).stopped, "the sink's stop was not heard");
+  whole(session, "the picture after the sink's stop has other bits");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const bool funneled = argc > 1 && std::strcmp(argv[1], "funneled") == 0;
+  int provided = 0, rank = 0, size = 0;
+  MPI_Init_thread(&argc, &argv, funneled ? MPI_THREAD_FUNNELED : MPI_THREAD_MULTIPLE, &provided);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &size);
+  expect(size == 3, "start me with mpirun -n 3");
+  MPI_Comm two = MPI_COMM_NULL;
+  MPI_Comm_split(MPI_COMM_WORLD, rank < 2 ? 0 : MPI_UNDEFINED, rank, &two);
+  constexpr int tag = 5, messages = 1000;
+  if (rank == 2) {
+    // Something else, with the caller's own messages, of tags that the library uses too.
+    for (int i = 0; i < messages; ++i) MPI_Send(&i, 1, MPI_INT, 0, tag, MPI_COMM_WORLD);
+  } else {
+    try {
+      render(two, rank);
+      expect(!funneled, "MPI_THREAD_FUNNELED was taken for enough");
+    } catch (const tessera::Error& error) {
+      const std::string line = error.what();
+      expect(funneled && line.find("MPI_THREAD_MULTIPLE") != std::string::npos, error.what());
+    }
+    MPI_Comm_free(&two);
+  }
+  if (rank == 0)
+    for (int i = 0, got = -1; i < messages; ++i) {
+      MPI_Recv(&got, 1, MPI_INT, 2, tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+      expect(got == i, "a message of the caller's own was lost");
+    }
+  int of_all = 0;
+  MPI_Allreduce(&faults, &of_all, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+  MPI_Finalize();
+  return of_all == 0 ? 0 : 1;
+}
