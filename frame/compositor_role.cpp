@@ -34,10 +34,10 @@ int worker_count(const DistributedRun& run) {
 struct Frame {
   Frame(const DistributedRun& run, std::uint32_t number, int compositor)
       : number(number),
-        grid{run.jobs[number].size, run.settings.render.tile_size},
+        grid{job_of(run, number).size, run.settings.render.tile_size},
         map(grid.count(), static_cast<int>(run.settings.roles.compositors.size()), run.settings.tile_seed),
         collector(static_cast<int>(run.settings.roles.projectors.size()), map, compositor),
-        space(run.jobs[number].camera, run.jobs[number].size),
+        space(job_of(run, number).camera, job_of(run, number).size),
         integrator(run.function, run.settings.render.integrator, run.settings.render.emission,
                    run.settings.compositing),
         sender(run.transport, run.settings.roles.assembler(), number) {}
@@ -100,10 +100,6 @@ class CompositorLoop {
   Frame& frame(std::uint32_t number) {
     auto& at = frames_[number];
     if (at == nullptr) {
-      if (number >= run_.jobs.size())
-        throw scene::Error(scene::ErrorCode::system_failure,
-                           fmt::format("exchange: frame {} of {}; all ranks must be given the same arguments", number,
-                                       run_.jobs.size()));
       at = std::make_unique<Frame>(run_, number, self_);
       if (trace_ != nullptr) at->start_us = trace_->now_us();
     }
@@ -178,7 +174,7 @@ class CompositorLoop {
       Frame& first = *frames_.begin()->second;
       for (std::size_t p = 0; p < run_.settings.roles.projectors.size(); ++p)
         give_back(static_cast<int>(p), first.collector.pay(static_cast<int>(p)));
-      if (first.number != frames_finished_ || !first.collector.finished()) return;
+      if (first.number - run_.first != frames_finished_ || !first.collector.finished()) return;
       exchange::FrameEnd sums = first.collector.sums();
       sums.failed_devices += run_.device.failed ? 1 : 0;
       sums.stopped += first.stopped ? 1 : 0;
@@ -272,14 +268,14 @@ std::exception_ptr run_assembler(const DistributedRun& run, const DistributedCal
   compositor::ImageAssembly::Finished finished_tile;
   if (callbacks.tile)
     finished_tile = [&](std::uint32_t frame, const scene::PixelRect& rect, const scene::Image& image) {
-      if (!run.stop.stop_requested()) guarded([&] { callbacks.tile(frame, rect, image); });
+      if (!run.stop.stop_requested()) guarded([&] { callbacks.tile(frame - run.first, rect, image); });
     };
   const DistributedSettings& settings = run.settings;
   const integrals::SegmentIntegrator integrator(run.function, settings.render.integrator, settings.render.emission);
   compositor::ImageAssembly assembly(
       static_cast<int>(settings.roles.compositors.size()),
       [&](std::uint32_t frame) {
-        return projection::TileGrid{run.jobs[frame].size, settings.render.tile_size};
+        return projection::TileGrid{job_of(run, frame).size, settings.render.tile_size};
       },
       settings.deep ? settings.render.memory_bytes / 2 : 0, std::move(finished_tile));
   auto last = run.start;
@@ -295,7 +291,7 @@ std::exception_ptr run_assembler(const DistributedRun& run, const DistributedCal
     }
     if (!assembled) continue;
     for (const int projector : settings.roles.projectors) run.transport.send(projector, Channel::frames, {});
-    FinishedFrame finished{assembled->frame, std::move(assembled->image), std::move(assembled->deep), {}, 0};
+    FinishedFrame finished{assembled->frame - run.first, std::move(assembled->image), std::move(assembled->deep), {}, 0};
     const auto now = std::chrono::steady_clock::now();
     finished.frame_ms = std::chrono::duration<double, std::milli>(now - std::exchange(last, now)).count();
     const exchange::FrameEnd& sums = assembled->sums;

@@ -15,6 +15,7 @@
 #include "frame/render.hpp"
 #include "frame/roles.hpp"
 #include "frame/scan_together.hpp"
+#include "frame/session_extras.hpp"
 #include "io/volume_reader.hpp"
 #include "scene/error.hpp"
 #include "scene/threads.hpp"
@@ -45,13 +46,18 @@ void check_mesh_options(const std::filesystem::path& file, const ReadOptions& op
 }
 
 std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, const ReadOptions& options,
-                                            exchange::Transport* transport) {
+                                            exchange::Transport& transport, scene::Trace* trace) {
   check_grid_options(file, options);
   auto state = std::make_shared<Dataset::State>();
-  io::VolumeFile volume = io::open_unscanned_volume(file, volume_options(options));
-  state->ranges = std::make_shared<const volume::CellRanges>(
-      transport != nullptr ? frame::scan_together(*transport, *volume.source, options.threads)
-                           : volume::CellRanges(*volume.source, options.threads));
+  io::VolumeFile volume = [&] {
+    const scene::TraceScope timing(trace, "read");
+    return io::open_unscanned_volume(file, volume_options(options));
+  }();
+  {
+    const scene::TraceScope timing(trace, "prepare");
+    state->ranges = std::make_shared<const volume::CellRanges>(
+        frame::scan_together(transport, *volume.source, options.threads));
+  }
   io::set_range(volume, file, state->ranges->range);
   state->fields = std::move(volume.fields);
   state->notes = std::move(volume.notes);
@@ -81,9 +87,10 @@ void take_description(io::MeshFile&& file, Dataset::State& state) {
 }
 
 /// Makes a mesh the state's own, its corners in the order that needs no copy.
-void keep(scene::TetMesh mesh, int threads, Dataset::State& state) {
+void keep(scene::TetMesh mesh, int threads, scene::Trace* trace, Dataset::State& state) {
   frame::RenderSettings settings;
   settings.threads = threads;
+  settings.trace = trace;
   frame::order_corners(mesh, settings);
   auto kept = std::make_shared<const scene::TetMesh>(std::move(mesh));
   state.mesh = *kept;
@@ -135,8 +142,10 @@ auto together(exchange::Transport& transport, const Work& work) {
   try {
     return work();
   } catch (const scene::Error& error) {
-    transport.fail(error);
-    transport.check();
+    if (transport.size() > 1) {
+      transport.fail(error);
+      transport.check();
+    }
     throw;
   }
 }
@@ -151,8 +160,9 @@ io::MeshOptions mesh_options(const ReadOptions& o) {
 
 }  // namespace frame
 
-std::shared_ptr<const projection::PreparedMesh> Dataset::State::prepared(int threads) const {
+std::shared_ptr<const projection::PreparedMesh> Dataset::State::prepared(int threads, scene::Trace* trace) const {
   std::call_once(once_, [&] {
+    const scene::TraceScope timing(trace, "prepare");
     tbb::task_arena(scene::threads_for(threads)).execute([&] {
       prepared_ = std::make_shared<const projection::PreparedMesh>(mesh);
     });
@@ -165,46 +175,33 @@ Dataset Dataset::open(const std::filesystem::path& file, const ReadOptions& opti
 }
 
 Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOptions& options) {
-  std::shared_ptr<State> state;
-  if (opens_as_grid(files, options)) {
-    state = opened_grid(files.front(), options, nullptr);
-    complete_grid(*state);
-  } else {
-    check_mesh_options(files.front(), options);
-    state = std::make_shared<State>();
-    io::MeshFile file = frame::read_input(files, frame::mesh_options(options));
-    scene::TetMesh mesh = std::move(file.mesh);
-    file.mesh.field_name = mesh.field_name;
-    take_description(std::move(file), *state);
-    state->facts = scene::facts_of(mesh, options.threads);
-    keep(std::move(mesh), options.threads, *state);
-  }
-  state->source = files.front().string();
-  state->files.assign(files.begin(), files.end());
-  state->options = options;
-  return Dataset(std::move(state));
+  return open(files, options, Communicator());
 }
 
 Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOptions& options,
                       const Communicator& communicator, const RankSettings& ranks) {
-  if (communicator.size() == 1) return open(files, options);
   const std::shared_ptr<exchange::Transport> transport = communicator.state().connect();
-  return together(*transport, [&] {
-    std::shared_ptr<State> state;
+  return frame::open_dataset(files, options, *transport, ranks, nullptr);
+}
+
+Dataset frame::open_dataset(std::span<const std::filesystem::path> files, const ReadOptions& options,
+                            exchange::Transport& transport, const RankSettings& ranks, scene::Trace* trace) {
+  return together(transport, [&] {
+    std::shared_ptr<Dataset::State> state;
     if (opens_as_grid(files, options)) {
-      state = opened_grid(files.front(), options, transport.get());
+      state = opened_grid(files.front(), options, transport, trace);
       complete_grid(*state);
     } else {
       check_mesh_options(files.front(), options);
-      state = std::make_shared<State>();
-      const frame::Roles roles = frame::assign_roles(transport->size(), ranks.projectors, ranks.compositors);
-      frame::DistributedMesh mesh = frame::read_distributed(
-          *transport, files, frame::mesh_options(options), ranks.partition, roles.projectors, options.threads, nullptr);
+      state = std::make_shared<Dataset::State>();
+      const Roles roles = assign_roles(transport.size(), ranks.projectors, ranks.compositors);
+      DistributedMesh mesh = read_distributed(transport, files, mesh_options(options), ranks.partition,
+                                              roles.projectors, options.threads, trace);
       take_description(std::move(mesh.description), *state);
       state->facts = mesh.facts;
-      state->ranks = transport->size();
+      state->ranks = transport.size();
       state->global_tet = std::move(mesh.part.global_tet);
-      keep(std::move(mesh.part.mesh), options.threads, *state);
+      keep(std::move(mesh.part.mesh), options.threads, trace, *state);
     }
     state->source = files.front().string();
     state->files.assign(files.begin(), files.end());
@@ -291,6 +288,8 @@ SampleType Dataset::sample_type() const {
   if (is_mesh()) throw scene::bad_input(state_->source + ": is a mesh, which has no samples; ask grids for it");
   return state_->samples->grid().type;
 }
+double Dataset::scale() const { return is_mesh() ? 1 : state_->samples->grid().scale; }
+double Dataset::shift() const { return is_mesh() ? 0 : state_->samples->grid().shift; }
 std::uint64_t Dataset::blank_samples() const { return is_mesh() ? 0 : state_->ranges->range.blanks; }
 
 double Dataset::default_unit_distance() const { return frame::default_unit_distance(state_->facts); }

@@ -36,7 +36,8 @@ struct Dataset::State {
   std::shared_ptr<const volume::CellRanges> ranges;
 
   /// The mesh prepared for projection, shared by sessions.
-  [[nodiscard]] std::shared_ptr<const projection::PreparedMesh> prepared(int threads) const;
+  [[nodiscard]] std::shared_ptr<const projection::PreparedMesh> prepared(int threads,
+                                                                         scene::Trace* trace = nullptr) const;
 
  private:
   mutable std::once_flag once_;

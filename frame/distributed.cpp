@@ -46,6 +46,15 @@ void LoadedMesh::load(std::size_t number) {
   number_ = number;
 }
 
+const FrameJob& job_of(const DistributedRun& run, std::uint32_t number) {
+  if (number - run.first >= run.jobs.size())
+    throw scene::Error(scene::ErrorCode::system_failure,
+                       fmt::format("exchange: frame {} is none of {} from {} on; all ranks must be given the same "
+                                   "arguments",
+                                   number, run.jobs.size(), run.first));
+  return run.jobs[number - run.first];
+}
+
 namespace {
 
 void check(const DistributedSettings& settings) {
@@ -97,7 +106,10 @@ class DistributedRenderer::State {
       opened_ = true;
     }
     exchange::gather_all(transport_, {});  // a frame's time does not count reading
-    const DistributedRun run{transport_, settings_, jobs, function, device_, std::chrono::steady_clock::now(), stop};
+    const DistributedRun run{transport_, settings_, jobs,
+                             function,   device_,   std::chrono::steady_clock::now(),
+                             stop,       next_frame_};
+    next_frame_ += static_cast<std::uint32_t>(jobs.size());
     std::exception_ptr of_caller;
     std::vector<std::function<void()>> parts;
     if (loaded_)
@@ -147,6 +159,7 @@ class DistributedRenderer::State {
   std::optional<std::size_t> number_;  ///< of the mesh that was loaded last
   CompositingDevice device_;
   bool opened_ = false;
+  std::uint32_t next_frame_ = settings_.first_frame;
 };
 
 DistributedRenderer::DistributedRenderer(exchange::Transport& transport, DistributedSettings settings, MeshOf mesh_of)

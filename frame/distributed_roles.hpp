@@ -19,7 +19,11 @@ struct DistributedRun {
   const CompositingDevice& device;              ///< of this rank's compositor
   std::chrono::steady_clock::time_point start;  ///< all ranks were ready
   const std::stop_token& stop;                  ///< asked for on any rank
+  std::uint32_t first;                          ///< number of the first job: frames are counted over all lists
 };
+
+/// The job of frame `number`. Throws Error(system_failure) if there is none.
+const FrameJob& job_of(const DistributedRun& run, std::uint32_t number);
 
 /// A projector's part of the mesh at hand, prepared.
 class LoadedMesh {

@@ -23,7 +23,7 @@ using exchange::Channel;
 void wait_for_turn(const DistributedRun& run, std::size_t frame, std::size_t& left) {
   const auto in_flight = static_cast<std::size_t>(run.settings.frames_in_flight);
   if (frame < left + in_flight) return;
-  const scene::TraceScope timing(run.settings.projecting, "wait", static_cast<std::int32_t>(frame));
+  const scene::TraceScope timing(run.settings.projecting, "wait", static_cast<std::int32_t>(run.first + frame));
   for (; frame >= left + in_flight; ++left) run.transport.receive(Channel::frames);
 }
 
@@ -44,7 +44,7 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
     const FrameJob& job = run.jobs[frame];
     loaded.load(job.mesh);
     const ProjectorMesh& mesh = loaded.mesh();
-    const auto number = static_cast<std::int32_t>(frame);
+    const auto number = static_cast<std::int32_t>(run.first + frame);
     if (render.trace != nullptr) render.trace->set_frame(number);
     wait_for_turn(run, frame, left);
     const double start_us = render.trace != nullptr ? render.trace->now_us() : 0;
@@ -91,7 +91,7 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
     bool announced = false, stopped = false;
     task.announce = [&](const std::vector<bool>& has_cells) {
       announced = true;
-      outbox.begin_frame(static_cast<std::uint32_t>(frame), map, has_cells,
+      outbox.begin_frame(static_cast<std::uint32_t>(number), map, has_cells,
                          {.longest_ray = mesh.diagonal,
                           .tiles = 0,
                           .longest_edge = mesh.longest_edge,
@@ -115,6 +115,8 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
     outbox.end_frame(end);
     if (render.trace != nullptr) render.trace->add_frame(number, start_us);
   }
+  // The next list begins with none on their way.
+  for (; left < run.jobs.size(); ++left) run.transport.receive(Channel::frames);
 }
 
 }  // namespace tessera::frame

@@ -15,6 +15,7 @@
 #include "frame/deep_rows.hpp"
 #include "frame/mesh_input.hpp"
 #include "frame/run_error.hpp"
+#include "frame/session_extras.hpp"
 #include "frame/session_settings.hpp"
 #include "frame/verify.hpp"
 #include "io/mesh_reader.hpp"
@@ -105,7 +106,8 @@ RenderedFrame stopped_frame(std::size_t number) {
 /// How a kind of data is rendered by a number of processes.
 class Session::State {
  public:
-  State(Dataset dataset, const Settings& settings) : dataset_(std::move(dataset)), settings_(settings) {}
+  State(Dataset dataset, const Settings& settings, const frame::SessionExtras& extras)
+      : dataset_(std::move(dataset)), settings_(settings), bounded_(extras.bounded) {}
   virtual ~State() = default;
   State(const State&) = delete;
   State& operator=(const State&) = delete;
@@ -116,6 +118,11 @@ class Session::State {
 
   [[nodiscard]] const Dataset& dataset() const { return dataset_; }
   [[nodiscard]] const Settings& settings() const { return settings_; }
+  [[nodiscard]] frame::RenderSettings mesh_settings() const {
+    frame::RenderSettings settings = frame::mesh_settings(settings_);
+    settings.bounded = bounded_;
+    return settings;
+  }
 
  protected:
   [[nodiscard]] const Dataset::State& data() const { return dataset_.state(); }
@@ -123,6 +130,7 @@ class Session::State {
  private:
   Dataset dataset_;
   Settings settings_;
+  bool bounded_;
 };
 
 namespace {
@@ -130,9 +138,11 @@ namespace {
 /// A mesh, by this process.
 class MeshAlone final : public Session::State {
  public:
-  MeshAlone(Dataset dataset, const Settings& settings)
-      : State(std::move(dataset), settings),
-        renderer_(data().prepared(settings.threads), data().facts, frame::mesh_settings(settings)) {}
+  MeshAlone(Dataset dataset, const Settings& settings, const frame::SessionExtras& extras)
+      : State(std::move(dataset), settings, extras),
+        renderer_(data().prepared(settings.threads, extras.projecting), data().facts, traced(settings, extras)) {
+    frame::assign_roles(1, settings.ranks.projectors, settings.ranks.compositors);  // of one rank there are not more
+  }
 
   std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
                      Sink& sink, const std::stop_token& stop) override {
@@ -158,17 +168,30 @@ class MeshAlone final : public Session::State {
   }
 
  private:
+  static frame::RenderSettings traced(const Settings& settings, const frame::SessionExtras& extras) {
+    frame::RenderSettings mesh = frame::mesh_settings(settings);
+    mesh.trace = extras.projecting;
+    return mesh;
+  }
+
   frame::Renderer renderer_;
 };
 
 /// A mesh, by several processes.
 class MeshOnRanks final : public Session::State {
  public:
-  MeshOnRanks(Dataset dataset, const Settings& settings, const Communicator& communicator)
-      : State(std::move(dataset), settings),
-        distributed_(frame::distributed_settings(settings, communicator.size())),
-        transport_(communicator.state().connect()) {
+  MeshOnRanks(Dataset dataset, const Settings& settings, std::shared_ptr<exchange::Transport> transport,
+              const frame::SessionExtras& extras)
+      : State(std::move(dataset), settings, extras),
+        distributed_(frame::distributed_settings(settings, transport->size())),
+        transport_(std::move(transport)) {
+    distributed_.projecting = extras.projecting;
+    distributed_.compositing = extras.compositing;
+    distributed_.compositing_on = extras.compositing_on;
+    distributed_.first_frame = extras.first_frame;
     const Dataset::State& state = data();
+    if (distributed_.exchange == Exchange::segments && state.facts.tets > 0xffffffffull)
+      throw scene::bad_input(fmt::format("`exchange` segments: {} tets are more than 2^32; use runs", state.facts.tets));
     const auto projects = [&](int rank) { return distributed_.roles.projects(rank); };
     if (state.ranks > 1 && state.ranks != transport_->size())
       throw scene::bad_input(fmt::format("{}: was opened by {} ranks, the session has {}; give both one communicator",
@@ -239,13 +262,14 @@ class MeshOnRanks final : public Session::State {
       mesh.longest_edge = projection::longest_edge(state.mesh);
       if (state.ranks > 1) mesh.longest_edge = longest_of_all(mesh.longest_edge);
     }
-    if (state.ranks > 1) {
+    const auto& projectors = distributed_.roles.projectors;
+    const bool is_only_projector = projectors.size() == 1 && projectors.front() == transport_->rank();
+    if (state.ranks > 1 || is_only_projector) {
       mesh.part = state.mesh;
       mesh.global_tet = state.global_tet;
-      mesh.prepared = state.prepared(settings().threads);
+      mesh.prepared = state.prepared(settings().threads, distributed_.projecting);
       return mesh;
     }
-    const auto& projectors = distributed_.roles.projectors;
     const auto own = std::find(projectors.begin(), projectors.end(), transport_->rank());
     auto share = std::make_shared<scene::TetMesh>();
     share->association = state.mesh.association;
@@ -280,20 +304,23 @@ class MeshOnRanks final : public Session::State {
 /// A grid, by any number of processes.
 class GridByRays final : public Session::State {
  public:
-  GridByRays(Dataset dataset, const Settings& settings, const Communicator& communicator)
-      : State(std::move(dataset), settings), transport_(communicator.state().connect()) {
+  GridByRays(Dataset dataset, const Settings& settings, std::shared_ptr<exchange::Transport> transport,
+             const frame::SessionExtras& extras)
+      : State(std::move(dataset), settings, extras),
+        transport_(std::move(transport)),
+        trace_(extras.projecting),
+        keeps_cost_(extras.keep_cost) {
     check();
     make_renderer({});
-    sort_first_.emplace(*transport_, frame::sort_first_settings(settings));
+    make_sort_first();
   }
 
   std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
                      Sink& sink, const std::stop_token& stop) override {
     if (settings.deep) check_deep();
     if (settings.keep_uncertainty != keeps_uncertainty_) {
-      frame::SortFirstSettings sort_first = frame::sort_first_settings(this->settings());
-      sort_first.keep_doubts = keeps_uncertainty_ = settings.keep_uncertainty;
-      sort_first_.emplace(*transport_, sort_first);
+      keeps_uncertainty_ = settings.keep_uncertainty;
+      make_sort_first();
     }
     for (std::size_t i = 0; i < views.size(); ++i) {
       make_renderer(views[i].size);
@@ -315,7 +342,19 @@ class GridByRays final : public Session::State {
 
   [[nodiscard]] bool assembles() const override { return transport_->rank() == 0; }
 
+  [[nodiscard]] frame::GridBalance balance(const TransferFunction& function) const {
+    return {split_, cost_, renderer_->visible_bricks(function)};
+  }
+
  private:
+  void make_sort_first() {
+    frame::SortFirstSettings sort_first = frame::sort_first_settings(settings());
+    sort_first.keep_doubts = keeps_uncertainty_;
+    sort_first.keep_cost = keeps_cost_;
+    sort_first.trace = trace_;
+    sort_first_.emplace(*transport_, std::move(sort_first));
+  }
+
   void check() const {
     if (settings().mesh.rasterizer != Rasterizer::planes)
       throw scene::bad_input("`rasterizer`: is for meshes, and the data set is a grid; leave it out");
@@ -337,6 +376,8 @@ class GridByRays final : public Session::State {
       return;
     }
     if (renderer_) return;
+    const scene::TraceScope timing(trace_, "prepare");
+    grid.trace = trace_;
     grid.memory_bytes = frame::brick_memory(grid.memory_bytes, resident_ + data().ranges->bytes(), *size, grid.threads);
     renderer_.emplace(*data().samples, grid, data().ranges);
   }
@@ -348,7 +389,9 @@ class GridByRays final : public Session::State {
     std::exception_ptr thrown;
     std::optional<frame::FinishedVolumeFrame> finished;
     try {
-      finished = sort_first_->render(*renderer_, function, {view.camera, view.size}, number, &watch);
+      // A trace's numbers are its caller's.
+      const std::size_t traced = trace_ != nullptr ? static_cast<std::size_t>(std::max(trace_->frame(), 0)) : number;
+      finished = sort_first_->render(*renderer_, function, {view.camera, view.size}, traced, &watch);
     } catch (const scene::Error&) {
       throw;
     } catch (...) {
@@ -358,17 +401,21 @@ class GridByRays final : public Session::State {
     if (thrown) std::rethrow_exception(thrown);
     if (stopped) return false;
     std::optional<DeepImage> deep;
-    if (settings.deep)
-      deep = frame::deep_rows(
-          *transport_, *data().samples, view.camera, view.size, function,
-          {settings.deep_accuracy, this->settings().emission, this->settings().threads, this->settings().memory_bytes},
-          static_cast<std::int32_t>(number));
+    if (settings.deep) {
+      const scene::TraceScope timing(trace_, "project");
+      deep = frame::deep_rows(*transport_, *data().samples, view.camera, view.size, function,
+                              {settings.deep_accuracy, this->settings().emission, this->settings().threads,
+                               this->settings().memory_bytes},
+                              static_cast<std::int32_t>(number));
+    }
     RenderedFrame frame;
     frame.number = number;
     if (finished) {
       frame.statistics = statistics_of(*finished, name_of(this->settings().integrator.kind));
       frame.image = std::move(finished->image);
       frame.uncertainty = std::move(finished->doubts);
+      split_ = std::move(finished->split);
+      cost_ = std::move(finished->cost);
     }
     if (deep) {
       frame.deep = std::move(*deep);
@@ -385,6 +432,10 @@ class GridByRays final : public Session::State {
   }
 
   std::shared_ptr<exchange::Transport> transport_;
+  scene::Trace* trace_;
+  const bool keeps_cost_;
+  volume::ImageSplit split_;
+  volume::CostMap cost_;
   const std::uint64_t resident_ = frame::resident_bytes();
   std::optional<volume::Renderer> renderer_;
   bool keeps_uncertainty_ = false;
@@ -417,14 +468,24 @@ Verification public_form(const reference::Verification& v) {
 
 }  // namespace
 
-Session::Session(Dataset dataset, const Settings& settings, const Communicator& communicator) {
+namespace {
+
+std::unique_ptr<Session::State> make_state(Dataset dataset, const Settings& settings,
+                                           std::shared_ptr<exchange::Transport> transport,
+                                           const frame::SessionExtras& extras) {
   if (dataset.is_grid())
-    state_ = std::make_unique<GridByRays>(std::move(dataset), settings, communicator);
-  else if (communicator.size() == 1)
-    state_ = std::make_unique<MeshAlone>(std::move(dataset), settings);
-  else
-    state_ = std::make_unique<MeshOnRanks>(std::move(dataset), settings, communicator);
+    return std::make_unique<GridByRays>(std::move(dataset), settings, std::move(transport), extras);
+  if (transport->size() == 1 && extras.compositing_on.backends.empty())
+    return std::make_unique<MeshAlone>(std::move(dataset), settings, extras);
+  return std::make_unique<MeshOnRanks>(std::move(dataset), settings, std::move(transport), extras);
 }
+
+}  // namespace
+
+Session::Session(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+Session::Session(Dataset dataset, const Settings& settings, const Communicator& communicator)
+    : Session(make_state(std::move(dataset), settings, communicator.state().connect(), {})) {}
 
 Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
@@ -449,7 +510,7 @@ bool Session::assembles() const { return state_->assembles(); }
 
 std::optional<double> Session::promised_error() const {
   return dataset().is_grid() ? frame::promised_error(frame::grid_settings(settings()))
-                             : frame::promised_error(frame::mesh_settings(settings()));
+                             : frame::promised_error(state_->mesh_settings());
 }
 
 Verification Session::verify(const RenderedFrame& frame, const View& view, const TransferFunction& transfer_function,
@@ -461,7 +522,7 @@ Verification Session::verify(const RenderedFrame& frame, const View& view, const
   if (dataset().is_grid())
     return public_form(frame::verify(frame.image, *data.samples, view.camera, transfer_function,
                                      frame::grid_settings(settings()), frame.uncertainty, count));
-  const frame::RenderSettings settings = frame::mesh_settings(this->settings());
+  const frame::RenderSettings settings = state_->mesh_settings();
   if (data.ranks == 1)
     return public_form(frame::verify(frame.image, data.mesh, view.camera, transfer_function, settings, count));
   if (data.files.empty())
@@ -472,5 +533,18 @@ Verification Session::verify(const RenderedFrame& frame, const View& view, const
 
 const Dataset& Session::dataset() const { return state_->dataset(); }
 const Settings& Session::settings() const { return state_->settings(); }
+
+namespace frame {
+
+Session make_session(Dataset dataset, const Settings& settings, exchange::Transport& transport,
+                     const SessionExtras& extras) {
+  return Session(make_state(std::move(dataset), settings, {std::shared_ptr<void>(), &transport}, extras));
+}
+
+GridBalance balance_of(const Session& session, const TransferFunction& function) {
+  return dynamic_cast<const GridByRays&>(session.state()).balance(function);
+}
+
+}  // namespace frame
 
 }  // namespace tessera

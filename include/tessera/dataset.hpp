@@ -133,6 +133,9 @@ class TESSERA_EXPORT Dataset {
   /// Grids. Throws Error(bad_input) for a mesh.
   [[nodiscard]] const GridGeometry& grid_geometry() const;
   [[nodiscard]] SampleType sample_type() const;
+  /// value = scale * sample + shift; 1 and 0 of a mesh.
+  [[nodiscard]] double scale() const;
+  [[nodiscard]] double shift() const;
   [[nodiscard]] std::uint64_t blank_samples() const;
 
   /// The length over which an opacity holds where neither file nor caller says it, world units: a tenth of the mean

@@ -61,8 +61,10 @@ class TESSERA_EXPORT Session {
   [[nodiscard]] const Dataset& dataset() const;
   [[nodiscard]] const Settings& settings() const;
 
-  /// For the library itself.
   class State;
+  /// For the library itself.
+  explicit Session(std::unique_ptr<State> state);
+  [[nodiscard]] State& state() const { return *state_; }
 
  private:
   std::unique_ptr<State> state_;
