@@ -1,7 +1,8 @@
+#include "apps/rank_traces.hpp"
+
 #include <cstring>
 #include <limits>
 
-#include "apps/distributed_render.hpp"
 #include "exchange/wire.hpp"
 
 namespace tessera::apps {
