@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scene/camera.hpp"
-#include "tessera/view.hpp"
+#include "tessera/camera_file.hpp"
 
 namespace tessera::io {
 

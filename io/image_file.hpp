@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "scene/image.hpp"
-#include "tessera/image_file.hpp"
+#include "tessera/image_file_options.hpp"
 
 namespace tessera::io {
 

@@ -16,6 +16,8 @@ struct FieldInfo {
   double low = 0, high = 0;     ///< finite values, of the magnitude if there are several components; 0, 0 if none is
   std::uint64_t nan_count = 0;  ///< tuples that are NaN or infinite
   bool active = false;          ///< the file marks it as its scalars or vectors
+
+  bool operator==(const FieldInfo&) const = default;
 };
 
 /// What became of a mesh's cells and points. A cell is counted as read, then in at most one of ghost, hidden, nan,

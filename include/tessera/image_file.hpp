@@ -1,24 +1,13 @@
 #pragma once
 
 #include <filesystem>
-#include <glm/vec3.hpp>
-#include <optional>
 
 #include "tessera/deep_image.hpp"
 #include "tessera/export.hpp"
 #include "tessera/image.hpp"
+#include "tessera/image_file_options.hpp"
 
 namespace tessera {
-
-/// How a picture is written.
-struct ImageFileOptions {
-  bool half = false;        ///< .exr: R G B A as half instead of float; Z is float always
-  int png_bits = 8;         ///< .png: 8 or 16 bits a channel
-  bool encode_srgb = true;  ///< .png: false with display colours, which are display values already
-  /// Composited behind the picture, which is opaque then (A = 1; .png without an alpha channel). In the picture's own
-  /// space: linear RGB, or display values where encode_srgb is false.
-  std::optional<glm::dvec3> background{};
-};
 
 // Files appear by rename, whole or not at all.
 

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <vector>
 
 #include "tessera/camera.hpp"
+#include "tessera/camera_file.hpp"
 #include "tessera/export.hpp"
 
 namespace tessera {
@@ -14,13 +14,6 @@ struct View {
   Camera camera;
   ImageSize size;
   bool operator==(const View&) const = default;
-};
-
-/// A view as a file gives it, with the picture's size if the file names one.
-struct CameraFile {
-  Camera camera;
-  std::optional<ImageSize> size{};
-  bool operator==(const CameraFile&) const = default;
 };
 
 /// Reads one view, or the list of views of a camera path; never an empty list. JSON, ParaView's .pvcc or plain text

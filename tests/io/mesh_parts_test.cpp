@@ -13,11 +13,6 @@
 
 namespace tessera::io {
 
-static bool operator==(const FieldSummary& a, const FieldSummary& b) {
-  return a.name == b.name && a.association == b.association && a.components == b.components && a.type == b.type &&
-         a.low == b.low && a.high == b.high && a.nan_count == b.nan_count && a.active == b.active;
-}
-
 namespace {
 
 using testing::message_of;

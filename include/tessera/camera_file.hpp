@@ -1,0 +1,16 @@
+#pragma once
+
+#include <optional>
+
+#include "tessera/camera.hpp"
+
+namespace tessera {
+
+/// A view as a file gives it, with the picture's size if the file names one.
+struct CameraFile {
+  Camera camera;
+  std::optional<ImageSize> size{};
+  bool operator==(const CameraFile&) const = default;
+};
+
+}  // namespace tessera
