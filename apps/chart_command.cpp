@@ -20,8 +20,10 @@
 #include "apps/output_check.hpp"
 #include "apps/report.hpp"
 #include "apps/run_output.hpp"
+#include "apps/session_options.hpp"
 #include "apps/setting_words.hpp"
 #include "apps/volume_input.hpp"
+#include "frame/dataset.hpp"
 #include "io/atomic_file.hpp"
 #include "projection/planes_rasterizer.hpp"
 #include "reference/grid_reference.hpp"
@@ -268,26 +270,16 @@ void chart(const RenderWords& words, const ChartWords& chart) {
   scene.emission = options.settings.emission;
   scene.threads = options.settings.threads;
   scene.memory_bytes = options.settings.memory_bytes;
-  io::MeshFile mesh;
-  io::VolumeFile volume;
-  scene::MeshFacts facts;
+  const Dataset data = Dataset::open(frame.mesh.files, read_options(options));
   Json report = {{"program", "tessera"}, {"version", TESSERA_VERSION}};
-  if (options.is_volume) {
-    volume = io::open_volume(frame.mesh.files.front(), options.volume);
-    facts = facts_of(volume);
-    scene.volume = volume.source.get();
-    report["volume"] = volume_json(options.input, volume);
-  } else {
-    mesh = read_input(frame.mesh.files, options.mesh);
-    const MeshSummary summary = summary_of(mesh, options.settings.threads);
-    frame::order_corners(mesh.mesh, options.settings);
-    facts = summary.facts;
-    scene.mesh = &mesh.mesh;
-    report["mesh"] = mesh_json(options.input, summary);
-  }
-  const auto loaded = transfer_function_of(facts, options);
+  if (data.is_grid())
+    scene.volume = data.state().samples.get();
+  else
+    scene.mesh = &data.state().mesh;
+  report[data.is_grid() ? "volume" : "mesh"] = data_json(options.input, Description(data));
+  const auto loaded = transfer_function_of(data, options);
   scene.function = loaded.function;
-  scene.camera = view_of(frame, facts.box, options.projection);
+  scene.camera = view_of(frame, data.bounds(), options.projection);
   report["transfer_function"] = transfer_function_json(loaded);
   report["view"] = view_json(scene.camera, scene.size);
 

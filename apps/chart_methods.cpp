@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "exchange/loopback_transport.hpp"
+#include "frame/dataset.hpp"
 #include "frame/distributed.hpp"
 #include "projection/scanline_rasterizer.hpp"
 #include "scene/mesh_facts.hpp"

@@ -6,15 +6,15 @@
 
 #include "apps/mesh_input.hpp"
 #include "apps/report.hpp"
-#include "frame/mesh_check.hpp"
+#include "apps/session_options.hpp"
+#include "tessera/mesh_check.hpp"
 
 namespace tessera::apps {
 namespace {
 
-void print_text(const std::filesystem::path& input, const MeshSummary& file,
-                const colormaps::LoadedTransferFunction& loaded) {
+void print_text(const std::filesystem::path& input, const Description& file, const LoadedTransferFunction& loaded) {
   const auto& counts = file.counts;
-  const auto& box = file.facts.box;
+  const auto& box = file.box;
   fmt::print("file      {}\n", input.string());
   fmt::print("format    {}\n", file.format);
   fmt::print("cells     {}\n", cells_line(counts));
@@ -30,14 +30,14 @@ void print_text(const std::filesystem::path& input, const MeshSummary& file,
                field.low, field.high, field.nan_count > 0 ? fmt::format(", {} NaN", field.nan_count) : "");
     title = "";
   }
-  const auto& range = file.facts.scalar_range;
+  const auto& range = file.range;
   const auto view = scene::frame_box(box, scene::ImageSize{});
   fmt::print("renders   field {}, {:.6g} to {:.6g}; {}; view {}\n", file.field_name, range[0], range[1],
              transfer_function_line(loaded), view_line(view));
   for (const auto& note : file.notes) fmt::print("note      {}\n", note);
 }
 
-void print_finding(const char* name, const frame::MeshCheck::Finding& finding, const std::string& more = "",
+void print_finding(const char* name, const MeshCheck::Finding& finding, const std::string& more = "",
                    bool pairs = false) {
   fmt::print("  {:<21} {}{}\n", name, finding.count, more);
   for (const auto& place : finding.places)
@@ -48,7 +48,7 @@ void print_finding(const char* name, const frame::MeshCheck::Finding& finding, c
                place.at.x, place.at.y, place.at.z, place.value > 0 ? fmt::format(", {:.3g}", place.value) : "");
 }
 
-void print_check(const frame::MeshCheck& check) {
+void print_check(const MeshCheck& check) {
   fmt::print("check     {} tets, {} points: {}\n", check.tets, check.points,
              check.clean() ? "every ray meets each place once"
                            : "cells overlap, fold or do not match; pictures are wrong where cells overlap");
@@ -64,7 +64,7 @@ void print_check(const frame::MeshCheck& check) {
   fmt::print("  {:<21} {} right-handed, {} left-handed\n", "orientation", check.right_handed, check.left_handed);
 }
 
-nlohmann::ordered_json finding_json(const frame::MeshCheck::Finding& finding) {
+nlohmann::ordered_json finding_json(const MeshCheck::Finding& finding) {
   nlohmann::ordered_json places = nlohmann::ordered_json::array();
   for (const auto& place : finding.places) {
     nlohmann::ordered_json json = {{"id", place.cell}};
@@ -76,7 +76,7 @@ nlohmann::ordered_json finding_json(const frame::MeshCheck::Finding& finding) {
   return {{"count", finding.count}, {"places", places}};
 }
 
-nlohmann::ordered_json check_json(const frame::MeshCheck& check) {
+nlohmann::ordered_json check_json(const MeshCheck& check) {
   nlohmann::ordered_json json = {{"tets", check.tets}, {"points", check.points}, {"clean", check.clean()}};
   json["overlaps"] = finding_json(check.overlaps);
   json["overlaps"]["cells"] = check.overlapping_cells;
@@ -97,23 +97,21 @@ nlohmann::ordered_json check_json(const frame::MeshCheck& check) {
 }  // namespace
 
 void info(const std::filesystem::path& input, const io::MeshOptions& options, bool as_json, bool check) {
-  std::optional<frame::MeshCheck> checked;
-  const auto file = [&] {
-    const io::MeshFile read = read_input(input, options);
-    if (check) checked = frame::check_mesh(read.mesh);
-    return summary_of(read);
-  }();
-  const auto loaded = transfer_function_of(file.facts, RenderOptions{});
+  const Dataset data = Dataset::open(input, read_options(options));
+  std::optional<MeshCheck> checked;
+  if (check) checked = data.check();
+  const Description file(data);
+  const auto loaded = transfer_function_of(data, RenderOptions{});
   if (!as_json) {
     print_text(input, file, loaded);
     if (checked) print_check(*checked);
     return;
   }
 
-  auto json = mesh_json(input, file);
+  auto json = data_json(input, file);
   const scene::ImageSize size;
   json["renders"] = {{"transfer_function", transfer_function_json(loaded)},
-                     {"view", view_json(scene::frame_box(file.facts.box, size), size)}};
+                     {"view", view_json(data.default_camera(size), size)}};
   if (checked) json["check"] = check_json(*checked);
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }

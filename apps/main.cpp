@@ -21,7 +21,7 @@
 #include "apps/info_command.hpp"
 #include "apps/job.hpp"
 #include "apps/one_line.hpp"
-#include "apps/render_command.hpp"
+#include "apps/film.hpp"
 #include "apps/render_options.hpp"
 #include "apps/setting_words.hpp"
 #include "apps/stall_options.hpp"

@@ -85,7 +85,7 @@ void name_one_line() {
 
 void hold_one_line() {
   if (name_length == 0) return;
-  const timespec moment{1, 0};
+  const timespec moment{2, 0};
   nanosleep(&moment, nullptr);
 }
 

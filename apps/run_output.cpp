@@ -31,51 +31,50 @@ void write_json(const Json& json, const std::filesystem::path& path) {
   file.commit();
 }
 
-RunOutput::RunOutput(const RenderOptions& options, const std::vector<Frame>& frames)
-    : options_(options),
-      frames_(frames),
+RunOutput::RunOutput(const RenderOptions& options, const std::vector<Frame>& frames, int ranks)
+    : frames_(frames),
       progress_(options.progress, frames.size()),
-      report_{{"program", "tessera"}, {"version", TESSERA_VERSION}, {"method", method_json(options)}},
+      report_{{"program", "tessera"}, {"version", TESSERA_VERSION}, {"method", method_json(options, ranks)}},
       frame_reports_(!options.report.empty()) {}
 
-void RunOutput::describe(MeshSummary mesh, colormaps::LoadedTransferFunction transfer_function) {
-  mesh_ = std::move(mesh);
+void RunOutput::describe(Description data, LoadedTransferFunction transfer_function) {
+  data_ = std::move(data);
   transfer_function_ = std::move(transfer_function);
 }
 
-void RunOutput::skip(const Frame& frame) {
-  if (frame_reports_.kept()) frame_reports_.add(frame_json(frame, nullptr));
+void RunOutput::skip(const RenderOptions& options, const Frame& frame) {
+  if (frame_reports_.kept()) frame_reports_.add(frame_json(options, frame, nullptr));
   progress_.update(++done_, rendered_);
 }
 
-void RunOutput::add(const Frame& frame, const FrameRecord& record) {
-  if (frame_reports_.kept()) frame_reports_.add(frame_json(frame, &record));
-  if (rendered_ == 0 && !options_.quiet) {
+void RunOutput::add(const RenderOptions& options, const Frame& frame, const FrameRecord& record) {
+  if (frame_reports_.kept()) frame_reports_.add(frame_json(options, frame, &record));
+  if (rendered_ == 0 && !options.quiet) {
     progress_.clear();
-    fmt::print(stderr, "{}\n", run_line(options_, *mesh_, *transfer_function_, frames_, frame, record));
+    fmt::print(stderr, "{}\n", run_line(options, *data_, *transfer_function_, frames_, frame, record));
   }
-  if (frames_.size() > 1 && !options_.quiet) {
+  if (frames_.size() > 1 && !options.quiet) {
     progress_.clear();
-    fmt::print(stderr, "{}\n", frame_line(options_, frames_, frame, record));
+    fmt::print(stderr, "{}\n", frame_line(options, frames_, frame, record));
   }
-  if (options_.repeat > 0) fmt::print("{}\n", frame_ms_line(record.frame_ms));
+  if (options.repeat > 0) fmt::print("{}\n", frame_ms_line(record.frame_ms));
   if (record.verification) {
     fmt::print("{}\n", verification_line(*record.verification, frame.number));
-    met_ = met_ && record.verification->met();
+    met_ = met_ && record.verification->met;
   }
   progress_.update(++done_, ++rendered_);
 }
 
-scene::ExitCode RunOutput::finish() {
+scene::ExitCode RunOutput::finish(const RenderOptions& options) {
   progress_.clear();
-  if (mesh_) {
-    report_["mesh"] = mesh_json(options_.input, *mesh_);
+  if (data_) {
+    report_[data_->is_mesh ? "mesh" : "volume"] = data_json(options.input, *data_);
     report_["transfer_function"] = transfer_function_json(*transfer_function_);
-  } else if (!options_.quiet) {
-    fmt::print(stderr, "{}: all {} frames are there already, nothing rendered\n", options_.input.string(),
+  } else if (!options.quiet) {
+    fmt::print(stderr, "{}: all {} frames are there already, nothing rendered\n", options.input.string(),
                frames_.size());
   }
-  if (!options_.report.empty()) frame_reports_.write(report_, options_.report);
+  if (!options.report.empty()) frame_reports_.write(report_, options.report);
   return met_ ? scene::ExitCode::complete : scene::ExitCode::accuracy_not_met;
 }
 
@@ -94,7 +93,7 @@ void write_pictures(const scene::Image& image, const scene::DeepImage& deep, con
 }
 
 io::TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const Frame& frame, std::size_t rendered) {
-  const Json method = method_json(options);
+  const Json method = method_json(options, 1);
   io::TraceRun traced;
   traced.version = TESSERA_VERSION;
   traced.input = options.input.string();

@@ -5,11 +5,9 @@
 
 #include "apps/frame_list.hpp"
 #include "apps/frame_reports.hpp"
-#include "apps/mesh_input.hpp"
 #include "apps/progress.hpp"
 #include "apps/report.hpp"
 #include "io/chrome_trace.hpp"
-#include "io/transfer_function_file.hpp"
 
 namespace tessera::apps {
 
@@ -17,29 +15,29 @@ namespace tessera::apps {
 /// the one process or rank that speaks.
 class RunOutput {
  public:
-  RunOutput(const RenderOptions& options, const std::vector<Frame>& frames);
+  /// `options` for what is shown; `ranks` of the job.
+  RunOutput(const RenderOptions& options, const std::vector<Frame>& frames, int ranks);
 
-  /// What the run line and the report say of the mesh; before the first add().
-  void describe(MeshSummary mesh, colormaps::LoadedTransferFunction transfer_function);
+  /// What the run line and the report say of the data; before the first add().
+  void describe(Description data, LoadedTransferFunction transfer_function);
   /// More for the report's head, like the job's shape.
   void note(const char* name, nlohmann::ordered_json value) { report_[name] = std::move(value); }
 
   /// A frame that --resume left alone.
-  void skip(const Frame& frame);
+  void skip(const RenderOptions& options, const Frame& frame);
   /// A frame that was rendered and written.
-  void add(const Frame& frame, const FrameRecord& record);
+  void add(const RenderOptions& options, const Frame& frame, const FrameRecord& record);
 
   /// Writes the report, if asked. Complete, or accuracy_not_met.
-  scene::ExitCode finish();
+  scene::ExitCode finish(const RenderOptions& options);
 
   [[nodiscard]] std::size_t rendered() const { return rendered_; }
 
  private:
-  const RenderOptions& options_;
   const std::vector<Frame>& frames_;
   Progress progress_;
-  std::optional<MeshSummary> mesh_;
-  std::optional<colormaps::LoadedTransferFunction> transfer_function_;
+  std::optional<Description> data_;
+  std::optional<LoadedTransferFunction> transfer_function_;
   nlohmann::ordered_json report_;
   FrameReports frame_reports_;
   bool met_ = true;

@@ -7,8 +7,11 @@
 #include "apps/mesh_input.hpp"
 #include "apps/output_check.hpp"
 #include "apps/report.hpp"
+#include "apps/session_options.hpp"
+#include "frame/dataset.hpp"
 #include "apps/setting_words.hpp"
 #include "io/volume_writer.hpp"
+#include "tessera/write.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::apps {
@@ -35,72 +38,24 @@ std::string lattice_line(const scene::GridGeometry& g) {
 
 }  // namespace
 
-scene::MeshFacts facts_of(const io::VolumeFile& volume) {
-  const scene::GridGeometry& g = volume.source->geometry();
-  return {scene::bounds(g), {volume.range.low, volume.range.high}, scene::mean_thickness(g), 0, g.association};
-}
-
-std::string samples_line(const io::VolumeFile& volume) {
-  const scene::Grid& grid = volume.source->grid();
-  const scene::GridIndex n = grid.geometry.samples();
-  std::string line = fmt::format("{}x{}x{} {} samples", n[0], n[1], n[2], scene::name_of(grid.type));
-  if (volume.range.blanks > 0) line += fmt::format(", {} blank", volume.range.blanks);
-  return line;
-}
-
-Json volume_json(const std::filesystem::path& input, const io::VolumeFile& volume) {
-  const scene::Grid& grid = volume.source->grid();
-  const scene::GridGeometry& g = grid.geometry;
-  const auto vector = [](const glm::dvec3& v) { return Json{v.x, v.y, v.z}; };
-  const scene::Box box = scene::bounds(g);
-  Json fields = Json::array();
-  for (const auto& field : volume.fields)
-    fields.push_back({{"name", field.name},
-                      {"association", element(field.association)},
-                      {"components", field.components},
-                      {"type", field.type},
-                      {"range", {field.low, field.high}},
-                      {"nan", field.nan_count}});
-  return {{"file", input.string()},
-          {"format", volume.format},
-          {"points", g.points},
-          {"rectilinear", g.rectilinear()},
-          {"origin", vector(g.origin)},
-          {"spacing", vector(g.spacing)},
-          {"direction", {vector(g.direction[0]), vector(g.direction[1]), vector(g.direction[2])}},
-          {"bounds", {vector(box.low), vector(box.high)}},
-          {"type", scene::name_of(grid.type)},
-          {"scale", grid.scale},
-          {"shift", grid.shift},
-          {"field",
-           {{"name", grid.field_name},
-            {"association", element(g.association)},
-            {"range", {volume.range.low, volume.range.high}},
-            {"blank", volume.range.blanks}}},
-          {"fields", fields},
-          {"notes", with_options(volume.notes)}};
-}
-
 void volume_info(const std::filesystem::path& input, const io::VolumeOptions& options, bool as_json) {
-  const io::VolumeFile volume = io::open_volume(input, options);
-  const scene::MeshFacts facts = facts_of(volume);
-  RenderOptions defaults;
-  defaults.is_volume = true;
-  const auto loaded = transfer_function_of(facts, defaults);
+  const Dataset data = Dataset::open(input, read_options(options));
+  const Description volume(data);
+  const auto loaded = transfer_function_of(data, RenderOptions{});
   const scene::ImageSize size;
-  const scene::Camera view = scene::frame_box(facts.box, size);
+  const scene::Camera view = data.default_camera(size);
   if (as_json) {
-    auto json = volume_json(input, volume);
+    auto json = data_json(input, volume);
     json["renders"] = {{"transfer_function", transfer_function_json(loaded)}, {"view", view_json(view, size)}};
     fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
     return;
   }
   fmt::print("file      {}\n", input.string());
   fmt::print("format    {}\n", volume.format);
-  fmt::print("lattice   {}\n", lattice_line(volume.source->geometry()));
+  fmt::print("lattice   {}\n", lattice_line(volume.geometry));
   fmt::print("samples   {}\n", samples_line(volume));
-  fmt::print("bounds    {} to {}, diagonal {:.6g}\n", triple(facts.box.low), triple(facts.box.high),
-             diagonal(facts.box));
+  fmt::print("bounds    {} to {}, diagonal {:.6g}\n", triple(volume.box.low), triple(volume.box.high),
+             diagonal(volume.box));
   std::size_t widest = 0;
   for (const auto& field : volume.fields) widest = std::max(widest, field.name.size());
   const char* title = "fields";
@@ -110,9 +65,9 @@ void volume_info(const std::filesystem::path& input, const io::VolumeOptions& op
                field.nan_count > 0 ? fmt::format(", {} NaN", field.nan_count) : "");
     title = "";
   }
-  fmt::print("renders   field {}, {:.6g} to {:.6g}; {}; view {}\n", volume.source->grid().field_name, volume.range.low,
-             volume.range.high, transfer_function_line(loaded), view_line(view));
-  for (const auto& note : with_options(volume.notes)) fmt::print("note      {}\n", note);
+  fmt::print("renders   field {}, {:.6g} to {:.6g}; {}; view {}\n", volume.field_name, volume.range[0],
+             volume.range[1], transfer_function_line(loaded), view_line(view));
+  for (const auto& note : volume.notes) fmt::print("note      {}\n", note);
 }
 
 void convert_volume(const std::filesystem::path& input, const std::filesystem::path& output,
@@ -122,16 +77,16 @@ void convert_volume(const std::filesystem::path& input, const std::filesystem::p
         fmt::format("{}: '{}' is no volume format to write; choose .vti, .vtr, .nrrd, .raw or .bricks", output.string(),
                     output.extension().string()));
   check_output_file(output, input);
-  const io::VolumeFile volume = io::open_volume(input, options);
-  io::write_volume(*volume.source, output, block);
+  const Dataset data = Dataset::open(input, read_options(options));
+  write_grid(data, output, block);
   if (quiet) return;
-  const scene::GridGeometry& g = volume.source->geometry();
+  const scene::GridGeometry& g = data.grid_geometry();
   const bool raw = output.extension() == ".raw";
   fmt::print(
-      stderr, "{}: {}; field {} written to {}{}\n", input.string(), samples_line(volume),
-      volume.source->grid().field_name, output.string(),
+      stderr, "{}: {}; field {} written to {}{}\n", input.string(), samples_line(Description(data)),
+      data.field_name(), output.string(),
       raw ? fmt::format("; read it with --dims {}x{}x{} --type {} --spacing {},{},{} --origin {},{},{}", g.points[0],
-                        g.points[1], g.points[2], scene::name_of(io::written_type(volume.source->grid())), g.spacing.x,
+                        g.points[1], g.points[2], scene::name_of(io::written_type(data.state().samples->grid())), g.spacing.x,
                         g.spacing.y, g.spacing.z, g.origin.x, g.origin.y, g.origin.z)
           : "");
 }

@@ -52,11 +52,11 @@ function(tessera_shaders name)
   target_include_directories(tessera_${name} PRIVATE ${PROJECT_BINARY_DIR}/include/${name}-shaders)
 endfunction()
 
-# tessera_test(NAME [UNITY] [SLOW] SOURCES ... LINK ...): a GoogleTest program, registered test by test. UNITY: its sources
+# tessera_test(NAME [UNITY] [SLOW] [ALONE PATTERN] SOURCES ... LINK ...): a GoogleTest program, registered test by test. UNITY: its sources
 # name their helpers differently, so that a unity build (the preset sanitize) may compile several at once. All but SLOW
 # ones are labelled fast, and built by the target fast_tests.
 function(tessera_test name)
-  cmake_parse_arguments(ARG "UNITY;SLOW" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "UNITY;SLOW" "ALONE" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   if(NOT ARG_UNITY)
     set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
@@ -70,5 +70,12 @@ function(tessera_test name)
     set(label fast)
     add_dependencies(fast_tests ${name})
   endif()
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600 LABELS ${label})
+  # Tests of which processes die when, run alone: beside others they would measure the machine's load.
+  if(ARG_ALONE)
+    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST TEST_FILTER "-${ARG_ALONE}" PROPERTIES TIMEOUT 600 LABELS ${label})
+    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST TEST_FILTER "${ARG_ALONE}" TEST_LIST ${name}_alone
+                         PROPERTIES TIMEOUT 600 LABELS ${label} RUN_SERIAL ON)
+  else()
+    gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600 LABELS ${label})
+  endif()
 endfunction()

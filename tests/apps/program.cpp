@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <sstream>
+#include <thread>
 #include <utility>
 
 namespace tessera::apps {
@@ -88,6 +90,16 @@ Outcome Running::wait() {
   outcome.status = status_of(std::exchange(process_, -1));
   outcome.out = contents(folder_ / "out");
   outcome.err = contents(folder_ / "err");
+  return outcome;
+}
+
+std::optional<Outcome> Running::wait_for(int seconds) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
+  while (runs() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  const bool over = !runs();
+  if (!over) kill(process_, SIGTERM);
+  Outcome outcome = wait();
+  if (!over) return std::nullopt;
   return outcome;
 }
 

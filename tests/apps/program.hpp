@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -65,6 +66,8 @@ class Running {
   [[nodiscard]] bool runs() const;
   /// Its end.
   Outcome wait();
+  /// Its end, if that comes within `seconds`; else it is told to end.
+  std::optional<Outcome> wait_for(int seconds);
 
  private:
   const Folder folder_;

@@ -10,17 +10,17 @@
 namespace tessera::io {
 namespace {
 
-const std::filesystem::path data = std::filesystem::path(TESSERA_SOURCE_DIR) / ".." / "shared" / "data";
+const std::filesystem::path meshes = std::filesystem::path(TESSERA_SOURCE_DIR) / ".." / "shared" / "data";
 
 class Damaged : public ::testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(data)) GTEST_SKIP() << "no " << data << ": the public meshes are not here";
-    original = test::contents(data / GetParam());
+    if (!std::filesystem::exists(meshes)) GTEST_SKIP() << "no " << meshes << ": the public meshes are not here";
+    original = test::contents(meshes / GetParam());
     name = std::filesystem::path(GetParam()).filename().string();
     if (const std::size_t at = name.find("xyz"); at != std::string::npos) {
       const std::string q = name.substr(0, at) + "q.bin";
-      std::filesystem::copy_file((data / GetParam()).parent_path() / q, folder / q);
+      std::filesystem::copy_file((meshes / GetParam()).parent_path() / q, folder / q);
     }
   }
 
