@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "apps/balance_picture.hpp"
-#include "frame/brick_memory.hpp"
 #include "apps/distributed_render.hpp"
 #include "apps/frame_list.hpp"
 #include "apps/frame_reports.hpp"
@@ -16,6 +15,7 @@
 #include "apps/verify.hpp"
 #include "apps/volume_input.hpp"
 #include "apps/volume_report.hpp"
+#include "frame/brick_memory.hpp"
 #include "frame/deep_rows.hpp"
 #include "frame/scan_together.hpp"
 #include "frame/sort_first.hpp"
