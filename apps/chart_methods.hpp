@@ -17,7 +17,7 @@ namespace tessera::apps {
 
 /// What all methods render.
 struct ChartScene {
-  const scene::TetMeshView* mesh = nullptr;         ///< this
+  const scene::TetMeshView* mesh = nullptr;     ///< this
   const scene::SampleSource* volume = nullptr;  ///< or this
   scene::Camera camera;
   scene::ImageSize size;

@@ -141,9 +141,7 @@ class Film final : public Sink {
     for (; writes_ && next_ < frame; ++next_) output_.skip(options_, frames_[next_]);
   }
 
-  [[nodiscard]] scene::Camera camera_of(const Frame& frame) const {
-    return view_of(frame, *box_, options_.projection);
-  }
+  [[nodiscard]] scene::Camera camera_of(const Frame& frame) const { return view_of(frame, *box_, options_.projection); }
 
   void open(const Frame& frame, const ReadOptions& read) {
     require_still_there(frame);

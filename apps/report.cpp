@@ -19,9 +19,7 @@ using Json = nlohmann::ordered_json;
 
 const char* word(scene::Association association) { return association == scene::Association::point ? "point" : "cell"; }
 
-const char* word(Rasterizer rasterizer) {
-  return rasterizer == Rasterizer::planes ? "planes" : "scanline";
-}
+const char* word(Rasterizer rasterizer) { return rasterizer == Rasterizer::planes ? "planes" : "scanline"; }
 
 std::string method_line(const scene::Integrator& integrator) {
   switch (integrator.kind) {
@@ -89,7 +87,6 @@ Json balance_json(const RenderOptions& options, const FrameStatistics& statistic
           {"cpu_deviation", deviation(statistics.cpu_seconds)},
           {"processes", processes}};
 }
-
 
 }  // namespace
 
@@ -346,21 +343,19 @@ std::string frame_line(const RenderOptions& options, const std::vector<Frame>& f
     if (frame.mesh.files.size() > 1) line += fmt::format(" and {} more", frame.mesh.files.size() - 1);
     line += ", ";
   }
-  const std::string work = options.is_volume
-                               ? fmt::format("{} voxels visited", record.statistics.grid.voxels_visited)
-                               : fmt::format("{} tets projected", record.statistics.mesh.tets_projected);
+  const std::string work = options.is_volume ? fmt::format("{} voxels visited", record.statistics.grid.voxels_visited)
+                                             : fmt::format("{} tets projected", record.statistics.mesh.tets_projected);
   return line + fmt::format("{}, {} ms{}", work, ms_words(record.frame_ms.front()), balance_words(options, record));
 }
 
 std::string run_line(const RenderOptions& options, const Description& data, const LoadedTransferFunction& loaded,
                      const std::vector<Frame>& frames, const Frame& first, const FrameRecord& record) {
   const FrameStatistics& statistics = record.statistics;
-  std::string line = fmt::format(
-      "{}: {}; field {} ({}) {:.6g} to {:.6g}; {}; view {}, {}x{}",
-      options.is_volume ? first.mesh.files.front().string() : options.input.string(),
-      options.is_volume ? samples_line(data) : cells_line(data.counts), data.field_name, word(data.association),
-      data.range[0], data.range[1], transfer_function_line(loaded), view_line(record.camera), first.size.width,
-      first.size.height);
+  std::string line = fmt::format("{}: {}; field {} ({}) {:.6g} to {:.6g}; {}; view {}, {}x{}",
+                                 options.is_volume ? first.mesh.files.front().string() : options.input.string(),
+                                 options.is_volume ? samples_line(data) : cells_line(data.counts), data.field_name,
+                                 word(data.association), data.range[0], data.range[1], transfer_function_line(loaded),
+                                 view_line(record.camera), first.size.width, first.size.height);
   if (frames.size() > 1) line += fmt::format(" (frame {} of {})", first.number + 1, frames.size());
   if (options.is_volume) {
     const GridCounters& s = statistics.grid;

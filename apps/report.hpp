@@ -35,8 +35,8 @@ struct Description {
   std::array<double, 2> range;
   std::vector<FieldInfo> fields;
   std::vector<std::string> notes;
-  MeshCounts counts;        ///< meshes
-  GridGeometry geometry;    ///< grids, and so on
+  MeshCounts counts;      ///< meshes
+  GridGeometry geometry;  ///< grids, and so on
   SampleType type{};
   double scale = 1, shift = 0;
   std::uint64_t blanks = 0;

@@ -84,14 +84,14 @@ ReadOptions read_of_later_steps(ReadOptions options, const Dataset& first) {
   if (first.is_grid() || !options.field.empty() || first.fields().empty()) return options;
   options.field = first.field_name();
   // Smoothing has made point data of cell data, so only the name is sure.
-  if (!options.smooth)
-    options.field = (first.association() == Association::point ? "point:" : "cell:") + options.field;
+  if (!options.smooth) options.field = (first.association() == Association::point ? "point:" : "cell:") + options.field;
   return options;
 }
 
 LoadedTransferFunction transfer_function_of(const Dataset& data, const RenderOptions& options) {
-  LoadedTransferFunction loaded = data.transfer_function(
-      options.transfer_function, {options.unit_distance, options.opacity_scale, options.display_blend, options.rescale});
+  LoadedTransferFunction loaded =
+      data.transfer_function(options.transfer_function,
+                             {options.unit_distance, options.opacity_scale, options.display_blend, options.rescale});
   loaded.name = with_options(loaded.name);
   loaded.unit_distance_source = with_options(loaded.unit_distance_source);
   return loaded;

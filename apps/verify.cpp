@@ -19,11 +19,11 @@ Json tally_json(const Verification::Tally& tally) {
 }  // namespace
 
 std::string verification_line(const Verification& v, int frame_number) {
-  const auto verdict = v.bound ? fmt::format("bound {:.3g} {}", *v.bound, v.met ? "met" : "NOT met")
-                               : std::string("no bound promised");
-  std::string line = fmt::format("verify frame {}: {} pixels, max {:.3g} rms {:.3g}, worst at ({}, {}), {} excused; {}",
-                                 frame_number, v.pixels_checked, v.max_error, v.rms_error, v.worst_x, v.worst_y,
-                                 v.excused, verdict);
+  const auto verdict =
+      v.bound ? fmt::format("bound {:.3g} {}", *v.bound, v.met ? "met" : "NOT met") : std::string("no bound promised");
+  std::string line =
+      fmt::format("verify frame {}: {} pixels, max {:.3g} rms {:.3g}, worst at ({}, {}), {} excused; {}", frame_number,
+                  v.pixels_checked, v.max_error, v.rms_error, v.worst_x, v.worst_y, v.excused, verdict);
   line += fmt::format("; worst: {}; chosen: {} random", v.worst_reason, v.tallies.front().pixels);
   for (const Verification::Tally& tally : std::span(v.tallies).subspan(1))
     line += fmt::format(", {} {}", tally.pixels, tally.reason);

@@ -8,11 +8,11 @@
 #include "apps/output_check.hpp"
 #include "apps/report.hpp"
 #include "apps/session_options.hpp"
-#include "frame/dataset.hpp"
 #include "apps/setting_words.hpp"
+#include "frame/dataset.hpp"
 #include "io/volume_writer.hpp"
-#include "tessera/write.hpp"
 #include "scene/error.hpp"
+#include "tessera/write.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -65,8 +65,8 @@ void volume_info(const std::filesystem::path& input, const io::VolumeOptions& op
                field.nan_count > 0 ? fmt::format(", {} NaN", field.nan_count) : "");
     title = "";
   }
-  fmt::print("renders   field {}, {:.6g} to {:.6g}; {}; view {}\n", volume.field_name, volume.range[0],
-             volume.range[1], transfer_function_line(loaded), view_line(view));
+  fmt::print("renders   field {}, {:.6g} to {:.6g}; {}; view {}\n", volume.field_name, volume.range[0], volume.range[1],
+             transfer_function_line(loaded), view_line(view));
   for (const auto& note : volume.notes) fmt::print("note      {}\n", note);
 }
 
@@ -83,11 +83,11 @@ void convert_volume(const std::filesystem::path& input, const std::filesystem::p
   const scene::GridGeometry& g = data.grid_geometry();
   const bool raw = output.extension() == ".raw";
   fmt::print(
-      stderr, "{}: {}; field {} written to {}{}\n", input.string(), samples_line(Description(data)),
-      data.field_name(), output.string(),
+      stderr, "{}: {}; field {} written to {}{}\n", input.string(), samples_line(Description(data)), data.field_name(),
+      output.string(),
       raw ? fmt::format("; read it with --dims {}x{}x{} --type {} --spacing {},{},{} --origin {},{},{}", g.points[0],
-                        g.points[1], g.points[2], scene::name_of(io::written_type(data.state().samples->grid())), g.spacing.x,
-                        g.spacing.y, g.spacing.z, g.origin.x, g.origin.y, g.origin.z)
+                        g.points[1], g.points[2], scene::name_of(io::written_type(data.state().samples->grid())),
+                        g.spacing.x, g.spacing.y, g.spacing.z, g.origin.x, g.origin.y, g.origin.z)
           : "");
 }
 

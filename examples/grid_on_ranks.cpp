@@ -1,4 +1,5 @@
-// A grid by several processes: mpirun -n 4 grid_on_ranks. Each has all samples here; of a file each reads what it needs.
+// A grid by several processes: mpirun -n 4 grid_on_ranks. Each has all samples here; of a file each reads what it
+// needs.
 #include <cmath>
 #include <iostream>
 #include <vector>

@@ -291,7 +291,8 @@ std::exception_ptr run_assembler(const DistributedRun& run, const DistributedCal
     }
     if (!assembled) continue;
     for (const int projector : settings.roles.projectors) run.transport.send(projector, Channel::frames, {});
-    FinishedFrame finished{assembled->frame - run.first, std::move(assembled->image), std::move(assembled->deep), {}, 0};
+    FinishedFrame finished{
+        assembled->frame - run.first, std::move(assembled->image), std::move(assembled->deep), {}, 0};
     const auto now = std::chrono::steady_clock::now();
     finished.frame_ms = std::chrono::duration<double, std::milli>(now - std::exchange(last, now)).count();
     const exchange::FrameEnd& sums = assembled->sums;

@@ -55,8 +55,8 @@ std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, c
   }();
   {
     const scene::TraceScope timing(trace, "prepare");
-    state->ranges = std::make_shared<const volume::CellRanges>(
-        frame::scan_together(transport, *volume.source, options.threads));
+    state->ranges =
+        std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
   }
   io::set_range(volume, file, state->ranges->range);
   state->fields = std::move(volume.fields);

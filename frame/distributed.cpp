@@ -106,8 +106,7 @@ class DistributedRenderer::State {
       opened_ = true;
     }
     exchange::gather_all(transport_, {});  // a frame's time does not count reading
-    const DistributedRun run{transport_, settings_, jobs,
-                             function,   device_,   std::chrono::steady_clock::now(),
+    const DistributedRun run{transport_, settings_,  jobs, function, device_, std::chrono::steady_clock::now(),
                              stop,       next_frame_};
     next_frame_ += static_cast<std::uint32_t>(jobs.size());
     std::exception_ptr of_caller;

@@ -191,7 +191,8 @@ class MeshOnRanks final : public Session::State {
     distributed_.first_frame = extras.first_frame;
     const Dataset::State& state = data();
     if (distributed_.exchange == Exchange::segments && state.facts.tets > 0xffffffffull)
-      throw scene::bad_input(fmt::format("`exchange` segments: {} tets are more than 2^32; use runs", state.facts.tets));
+      throw scene::bad_input(
+          fmt::format("`exchange` segments: {} tets are more than 2^32; use runs", state.facts.tets));
     const auto projects = [&](int rank) { return distributed_.roles.projects(rank); };
     if (state.ranks > 1 && state.ranks != transport_->size())
       throw scene::bad_input(fmt::format("{}: was opened by {} ranks, the session has {}; give both one communicator",
@@ -403,10 +404,10 @@ class GridByRays final : public Session::State {
     std::optional<DeepImage> deep;
     if (settings.deep) {
       const scene::TraceScope timing(trace_, "project");
-      deep = frame::deep_rows(*transport_, *data().samples, view.camera, view.size, function,
-                              {settings.deep_accuracy, this->settings().emission, this->settings().threads,
-                               this->settings().memory_bytes},
-                              static_cast<std::int32_t>(number));
+      deep = frame::deep_rows(
+          *transport_, *data().samples, view.camera, view.size, function,
+          {settings.deep_accuracy, this->settings().emission, this->settings().threads, this->settings().memory_bytes},
+          static_cast<std::int32_t>(number));
     }
     RenderedFrame frame;
     frame.number = number;

@@ -22,8 +22,8 @@ struct SessionExtras {
   /// On a device a mesh goes through the exchange on one rank too.
   CompositingSettings compositing_on;
   std::uint32_t first_frame = 0;  ///< meshes on ranks: number of the first frame in traces
-  bool bounded = true;     ///< false: composited on a device whose error is only reported
-  bool keep_cost = false;  ///< grids: rank 0 finds the cost of the whole picture, see balance_of()
+  bool bounded = true;            ///< false: composited on a device whose error is only reported
+  bool keep_cost = false;         ///< grids: rank 0 finds the cost of the whole picture, see balance_of()
 };
 
 /// A session by the ranks of a transport, which it shares with others.

@@ -1,0 +1,62 @@
+#!/usr/bin/env python3
+"""Sources and pages that README.md, docs/ and the folders' READMEs name are there.
+
+Three kinds of names: a source by its folder (`frame/session.cpp`, in drawings too; tessera/NAME.hpp is in include/), a
+source without one in a folder's README, which is that folder's, and the target of a link. Says file:line of each that
+is not there; exit status 1 if there is one.
+
+    doc_names.py SOURCE_TREE
+"""
+
+import re
+import sys
+from pathlib import Path
+
+SOURCE = r"[\w*-]+(?:/[\w*-]+)*(?:-inl)?\.(?:hpp|cpp|h|py|sh|glsl|comp|frag|vert|md)\b"
+IN_FOLDER = re.compile(rf"(?<![\w/.*-])([a-z]+/{SOURCE})")
+BARE = re.compile(rf"`({SOURCE})`")
+LINK = re.compile(r"\]\(([^)#:\s]+)(?:#[^)]*)?\)")
+GENERATED = {"tessera/version.hpp"}
+
+
+def pages(tree):
+    yield tree / "README.md"
+    yield from sorted((tree / "docs").glob("*.md"))
+    yield from sorted(tree.glob("*/README.md"))
+
+
+def is_there(tree, page, name):
+    """Whether a source `name` is in the tree, as seen from a page; names of other projects' files are not asked for."""
+    places = [tree, page.parent, tree / "include"]
+    if name in GENERATED:
+        return True
+    first = name.split("/")[0]
+    if "/" in name and not any((place / first).is_dir() for place in places):
+        return True
+    return any(next(place.glob(name), None) for place in places)
+
+
+def faults_of(tree, page):
+    inside = page.parent != tree and page.parent.name != "docs"
+    for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), 1):
+        names = set(IN_FOLDER.findall(line)) | (set(BARE.findall(line)) if inside else set())
+        for name in sorted(names):
+            if not is_there(tree, page, name):
+                yield f"{page.relative_to(tree)}:{number}: {name} is not there"
+        for target in LINK.findall(line):
+            if not (page.parent / target).exists():
+                yield f"{page.relative_to(tree)}:{number}: links to {target}, which is not there"
+
+
+def main():
+    tree = Path(sys.argv[1]).resolve()
+    looked_at = list(dict.fromkeys(pages(tree)))
+    faults = [fault for page in looked_at for fault in faults_of(tree, page)]
+    for fault in faults:
+        print(fault)
+    print(f"{len(looked_at)} pages, {len(faults)} names that are nowhere")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
