@@ -10,7 +10,7 @@ namespace tessera::analysis {
 /// Programs ask this before they measure, so that nobody waits for a figure that does not come.
 void check_figure_path(const std::filesystem::path& file) {
   throw scene::bad_input(fmt::format(
-      "{}: figures need Cairo, which this build leaves out; build with TESSERA_CAIRO=ON, or write a table with --csv",
+      "{}: figures need Cairo, which this build leaves out; build with TESSERA_CAIRO=ON, or write a table with `csv`",
       file.string()));
 }
 

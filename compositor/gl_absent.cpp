@@ -8,7 +8,7 @@ class GlCompositor::Worker {};
 
 GlCompositor::GlCompositor(gl::Platform, const GlSettings&, scene::Trace*) {
   throw scene::Error(scene::ErrorCode::system_failure,
-                     "OpenGL: this build leaves it out; use --backend cpu, or build with TESSERA_GL=ON");
+                     "OpenGL: this build leaves it out; use `backend` cpu, or build with TESSERA_GL=ON");
 }
 GlCompositor::~GlCompositor() = default;
 

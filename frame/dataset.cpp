@@ -41,7 +41,7 @@ void check_grid_options(const std::filesystem::path& file, const ReadOptions& op
 void check_mesh_options(const std::filesystem::path& file, const ReadOptions& options) {
   if (volume_options(options).describes_raw())
     throw scene::bad_input(fmt::format(
-        "{}: `dims`, `type`, `spacing`, `origin`, `big_endian` and `skip` are for .raw files; leave them out",
+        "{}: `dims`, `type`, `spacing`, `origin`, `endian` and `skip` are for .raw files; leave them out",
         file.string()));
 }
 

@@ -54,15 +54,14 @@ TO_GO = {
         datasets/generate.hpp datasets/modify.hpp datasets/volumes.hpp
         exchange/heartbeats.hpp exchange/instruction_sets.hpp exchange/loopback_transport.hpp
         exchange/mpi_transport.hpp exchange/transport.hpp exchange/wire.hpp
-        frame/brick_memory.hpp frame/compositing_device.hpp frame/deep_rows.hpp frame/distributed.hpp
-        frame/distributed_mesh.hpp frame/mesh_check.hpp frame/mesh_input.hpp frame/render.hpp frame/scan_together.hpp
-        frame/sort_first.hpp frame/verify.hpp
+        frame/compositing_device.hpp frame/dataset.hpp frame/distributed.hpp frame/mesh_input.hpp frame/render.hpp
+        frame/roles.hpp frame/session_extras.hpp frame/sort_first.hpp frame/verify.hpp
         io/atomic_file.hpp io/camera_file.hpp io/chrome_trace.hpp io/chrome_trace_reader.hpp io/image_deep_exr.hpp
         io/image_file.hpp io/mesh_parts.hpp io/mesh_reader.hpp io/pvtu_writer.hpp io/time_series.hpp
         io/transfer_function_file.hpp io/volume_reader.hpp io/volume_writer.hpp
         projection/partition.hpp projection/pixel_space.hpp projection/planes_rasterizer.hpp
-        projection/scanline_rasterizer.hpp projection/segment_tuple.hpp
-        reference/grid_reference.hpp reference/reference.hpp reference/verification.hpp
+        projection/scanline_rasterizer.hpp
+        reference/grid_reference.hpp reference/reference.hpp
         scene/camera.hpp scene/error.hpp scene/grid.hpp scene/image.hpp scene/mechanisms.hpp scene/mesh_facts.hpp
         scene/optical_model.hpp scene/sample_source.hpp scene/start_thread.hpp scene/tet_mesh.hpp scene/threads.hpp
         scene/trace.hpp

@@ -1,0 +1,205 @@
+// A grid, by any number of ranks.
+#include <algorithm>
+#include <exception>
+#include <optional>
+
+#include "frame/brick_memory.hpp"
+#include "frame/deep_rows.hpp"
+#include "frame/session_state.hpp"
+#include "frame/sort_first.hpp"
+#include "frame/verify.hpp"
+#include "scene/error.hpp"
+
+namespace tessera {
+namespace {
+
+using frame::stopped_frame;
+using frame::tiles_to;
+
+FrameStatistics statistics_of(const frame::FinishedVolumeFrame& frame, const char* integrator) {
+  FrameStatistics statistics;
+  const volume::RenderStatistics& s = frame.statistics;
+  statistics.grid = {s.rays,           s.voxels_visited,   s.samples,        s.pixels_again,
+                     s.bricks_total,   s.bricks_invisible, s.brick_hits,     s.bricks_loaded,
+                     s.bricks_evicted, s.bytes_loaded,     s.bytes_resident, s.peak_bytes,
+                     s.blank_samples};
+  statistics.instruction_set = s.instruction_set;
+  statistics.integrator = integrator;
+  statistics.milliseconds = frame.frame_ms;
+  for (int process = 0; process < frame.split.processes(); ++process) {
+    const volume::PixelRegion r = frame.split.region(process);
+    statistics.rectangles.push_back({r.x0, r.y0, r.x1, r.y1});
+  }
+  statistics.samples = frame.samples;
+  statistics.cpu_seconds = frame.cpu_seconds;
+  return statistics;
+}
+
+const char* name_of(IntegratorKind kind) {
+  switch (kind) {
+    case IntegratorKind::sampled:
+      return "sampled";
+    case IntegratorKind::preintegrated:
+      return "preintegrated";
+    default:
+      return "exact";
+  }
+}
+
+/// A grid, by any number of processes.
+class GridByRays final : public Session::State {
+ public:
+  GridByRays(Dataset dataset, const Settings& settings, std::shared_ptr<exchange::Transport> transport,
+             const frame::SessionExtras& extras)
+      : State(std::move(dataset), settings, extras),
+        transport_(std::move(transport)),
+        trace_(extras.projecting),
+        keeps_cost_(extras.keep_cost) {
+    check();
+    make_renderer({});
+    make_sort_first();
+  }
+
+  std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
+                     Sink& sink, const std::stop_token& stop) override {
+    if (settings.deep) check_deep();
+    if (settings.keep_uncertainty != keeps_uncertainty_) {
+      keeps_uncertainty_ = settings.keep_uncertainty;
+      make_sort_first();
+    }
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      make_renderer(views[i].size);
+      bool stopped = false;
+      try {
+        stopped = !make(i, views[i], function, settings, sink, stop);
+      } catch (const scene::Error& error) {
+        transport_->fail(error);
+        transport_->check();
+        throw;
+      }
+      if (stopped) {
+        sink.frame(stopped_frame(i));
+        return i;
+      }
+    }
+    return views.size();
+  }
+
+  [[nodiscard]] bool assembles() const override { return transport_->rank() == 0; }
+
+  [[nodiscard]] frame::GridBalance balance(const TransferFunction& function) const {
+    return {split_, cost_, renderer_->visible_bricks(function)};
+  }
+
+ private:
+  void make_sort_first() {
+    frame::SortFirstSettings sort_first = frame::sort_first_settings(settings());
+    sort_first.keep_doubts = keeps_uncertainty_;
+    sort_first.keep_cost = keeps_cost_;
+    sort_first.trace = trace_;
+    sort_first_.emplace(*transport_, std::move(sort_first));
+  }
+
+  void check() const {
+    if (settings().mesh.rasterizer != Rasterizer::planes)
+      throw scene::bad_input("`rasterizer`: is for meshes, and the data set is a grid; leave it out");
+  }
+  void check_deep() const {
+    if (!frame::promised_error(frame::grid_settings(settings())))
+      throw scene::bad_input(
+          "deep picture: steps along rays give light other than that of their parts; set `integrator` automatic or "
+          "exact");
+    if (settings().grid.shading) throw scene::bad_input("deep picture: it is not shaded; leave `shade` out");
+  }
+
+  /// Bricks get what the budget leaves beside a picture of this size: the renderer is made once it is known.
+  void make_renderer(std::optional<ImageSize> size) {
+    volume::RenderSettings grid = frame::grid_settings(settings());
+    if (!size) {
+      // Only for its checks.
+      volume::Renderer(*data().samples, grid, data().ranges);
+      return;
+    }
+    if (renderer_) return;
+    const scene::TraceScope timing(trace_, "prepare");
+    grid.trace = trace_;
+    grid.memory_bytes = frame::brick_memory(grid.memory_bytes, resident_ + data().ranges->bytes(), *size, grid.threads);
+    renderer_.emplace(*data().samples, grid, data().ranges);
+  }
+
+  /// False if it was stopped.
+  bool make(std::size_t number, const View& view, const TransferFunction& function, const FrameSettings& settings,
+            Sink& sink, const std::stop_token& stop) {
+    scene::FrameWatch watch(stop, tiles_to(sink, number));
+    std::exception_ptr thrown;
+    std::optional<frame::FinishedVolumeFrame> finished;
+    try {
+      // A trace's numbers are its caller's.
+      const std::size_t traced = trace_ != nullptr ? static_cast<std::size_t>(std::max(trace_->frame(), 0)) : number;
+      finished = sort_first_->render(*renderer_, function, {view.camera, view.size}, traced, &watch);
+    } catch (const scene::Error&) {
+      throw;
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+    const bool stopped = agreed(thrown || (finished && finished->stopped));
+    if (thrown) std::rethrow_exception(thrown);
+    if (stopped) return false;
+    std::optional<DeepImage> deep;
+    if (settings.deep) {
+      const scene::TraceScope timing(trace_, "project");
+      deep = frame::deep_rows(
+          *transport_, *data().samples, view.camera, view.size, function,
+          {settings.deep_accuracy, this->settings().emission, this->settings().threads, this->settings().memory_bytes},
+          static_cast<std::int32_t>(number));
+    }
+    RenderedFrame frame;
+    frame.number = number;
+    if (finished) {
+      frame.statistics = statistics_of(*finished, name_of(this->settings().integrator.kind));
+      frame.image = std::move(finished->image);
+      frame.uncertainty = std::move(finished->doubts);
+      split_ = std::move(finished->split);
+      cost_ = std::move(finished->cost);
+    }
+    if (deep) {
+      frame.deep = std::move(*deep);
+      frame.statistics.mesh.deep_samples = frame.deep.samples.size();
+    }
+    sink.frame(std::move(frame));
+    return true;
+  }
+
+  /// What rank 0 says, on all.
+  bool agreed(bool mine) {
+    if (transport_->size() == 1) return mine;
+    return exchange::broadcast(*transport_, 0, {std::byte{mine}})[0] != std::byte{0};
+  }
+
+  std::shared_ptr<exchange::Transport> transport_;
+  scene::Trace* trace_;
+  const bool keeps_cost_;
+  volume::ImageSplit split_;
+  volume::CostMap cost_;
+  const std::uint64_t resident_ = frame::resident_bytes();
+  std::optional<volume::Renderer> renderer_;
+  bool keeps_uncertainty_ = false;
+  std::optional<frame::SortFirst> sort_first_;
+};
+
+}  // namespace
+
+namespace frame {
+
+std::unique_ptr<Session::State> grid_by_rays(Dataset dataset, const Settings& settings,
+                                             std::shared_ptr<exchange::Transport> transport,
+                                             const SessionExtras& extras) {
+  return std::make_unique<GridByRays>(std::move(dataset), settings, std::move(transport), extras);
+}
+
+GridBalance balance_of(const Session& session, const TransferFunction& function) {
+  return dynamic_cast<const GridByRays&>(session.state()).balance(function);
+}
+
+}  // namespace frame
+}  // namespace tessera

@@ -1,0 +1,217 @@
+// A mesh, by one process or by all ranks of a job.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <optional>
+
+#include "exchange/wire.hpp"
+#include "frame/distributed.hpp"
+#include "frame/mesh_input.hpp"
+#include "frame/session_state.hpp"
+#include "projection/partition.hpp"
+#include "projection/segment_tuple.hpp"
+#include "scene/error.hpp"
+
+namespace tessera {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using frame::stopped_frame;
+using frame::tiles_to;
+
+FrameStatistics statistics_of(const frame::FrameStatistics& s, double milliseconds) {
+  FrameStatistics statistics;
+  statistics.mesh = s;
+  statistics.on_lattice = s.on_lattice;
+  statistics.instruction_set = s.instruction_set;
+  statistics.integrator = s.integrator;
+  statistics.composited_on = s.composited_on;
+  statistics.milliseconds = milliseconds;
+  return statistics;
+}
+
+/// A mesh, by this process.
+class MeshAlone final : public Session::State {
+ public:
+  MeshAlone(Dataset dataset, const Settings& settings, const frame::SessionExtras& extras)
+      : State(std::move(dataset), settings, extras),
+        renderer_(data().prepared(settings.threads, extras.projecting), data().facts, traced(settings, extras)) {
+    frame::assign_roles(1, settings.ranks.projectors, settings.ranks.compositors);  // of one rank there are not more
+  }
+
+  std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
+                     Sink& sink, const std::stop_token& stop) override {
+    renderer_.set_deep_accuracy(settings.deep_accuracy);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      RenderedFrame frame;
+      frame.number = i;
+      frame::FrameStatistics statistics;
+      scene::FrameWatch watch(stop, tiles_to(sink, i));
+      const auto start = Clock::now();
+      try {
+        frame.image = renderer_.render(views[i].camera, views[i].size, function, &statistics,
+                                       settings.deep ? &frame.deep : nullptr, &watch);
+      } catch (const scene::FrameStopped&) {
+        sink.frame(stopped_frame(i));
+        return i;
+      }
+      frame.statistics =
+          statistics_of(statistics, std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+      sink.frame(std::move(frame));
+    }
+    return views.size();
+  }
+
+ private:
+  static frame::RenderSettings traced(const Settings& settings, const frame::SessionExtras& extras) {
+    frame::RenderSettings mesh = frame::mesh_settings(settings);
+    mesh.trace = extras.projecting;
+    return mesh;
+  }
+
+  frame::Renderer renderer_;
+};
+
+/// A mesh, by several processes.
+class MeshOnRanks final : public Session::State {
+ public:
+  MeshOnRanks(Dataset dataset, const Settings& settings, std::shared_ptr<exchange::Transport> transport,
+              const frame::SessionExtras& extras)
+      : State(std::move(dataset), settings, extras),
+        distributed_(frame::distributed_settings(settings, transport->size())),
+        transport_(std::move(transport)) {
+    distributed_.projecting = extras.projecting;
+    distributed_.compositing = extras.compositing;
+    distributed_.compositing_on = extras.compositing_on;
+    distributed_.first_frame = extras.first_frame;
+    const Dataset::State& state = data();
+    if (distributed_.exchange == Exchange::segments && state.facts.tets > 0xffffffffull)
+      throw scene::bad_input(
+          fmt::format("`exchange` segments: {} tets are more than 2^32; use runs", state.facts.tets));
+    const auto projects = [&](int rank) { return distributed_.roles.projects(rank); };
+    if (state.ranks > 1 && state.ranks != transport_->size())
+      throw scene::bad_input(fmt::format("{}: was opened by {} ranks, the session has {}; give both one communicator",
+                                         state.source, state.ranks, transport_->size()));
+    if (!projects(transport_->rank()) && state.ranks > 1 && !state.mesh.tets.empty())
+      throw scene::bad_input(
+          fmt::format("{}: rank {} has cells and does not project; give data set and session the same `projectors` and "
+                      "`compositors`",
+                      state.source, transport_->rank()));
+    renderer_.emplace(*transport_, distributed_, [this](std::size_t) { return part(); });
+  }
+
+  std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
+                     Sink& sink, const std::stop_token& stop) override {
+    renderer_->set_deep(settings.deep, settings.deep_accuracy);
+    std::vector<frame::FrameJob> jobs;
+    for (const View& view : views) jobs.push_back({view.camera, view.size, 0});
+    std::size_t complete = 0;
+    bool ended = false;
+    frame::DistributedCallbacks callbacks;
+    callbacks.frame = [&](frame::FinishedFrame finished) {
+      if (ended) return;
+      if (finished.stopped) {
+        ended = true;
+        sink.frame(stopped_frame(finished.frame));
+        return;
+      }
+      ++complete;
+      RenderedFrame frame;
+      frame.number = finished.frame;
+      frame.image = std::move(finished.image);
+      frame.deep = std::move(finished.deep);
+      frame.statistics = statistics_of(finished.statistics, finished.frame_ms);
+      sink.frame(std::move(frame));
+    };
+    if (sink.wants_tiles())
+      callbacks.tile = [&](std::size_t number, const PixelRect& rect, const Image& image) {
+        sink.tile({number, rect, image});
+      };
+    std::exception_ptr thrown;
+    try {
+      renderer_->render(jobs, function, callbacks, stop);
+    } catch (const scene::Error&) {
+      throw;
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+    exchange::Bytes bytes;
+    exchange::append(bytes, static_cast<std::uint64_t>(complete));
+    bytes = exchange::broadcast(*transport_, distributed_.roles.assembler(), std::move(bytes));
+    if (thrown) std::rethrow_exception(thrown);
+    complete = exchange::RecordReader(bytes).take<std::uint64_t>();
+    if (!assembles() && complete < views.size()) sink.frame(stopped_frame(complete));
+    return complete;
+  }
+
+  [[nodiscard]] bool assembles() const override { return transport_->rank() == distributed_.roles.assembler(); }
+
+ private:
+  /// What this rank projects: the part it was opened with, or its share of the whole that every rank has.
+  frame::ProjectorMesh part() {
+    const Dataset::State& state = data();
+    frame::ProjectorMesh mesh;
+    mesh.diagonal = frame::diagonal(state.facts.box);
+    mesh.box = state.facts.box;
+    mesh.scalar_range = state.facts.scalar_range;
+    if (distributed_.render.rasterizer == Rasterizer::scanline) {
+      mesh.longest_edge = projection::longest_edge(state.mesh);
+      if (state.ranks > 1) mesh.longest_edge = longest_of_all(mesh.longest_edge);
+    }
+    const auto& projectors = distributed_.roles.projectors;
+    const bool is_only_projector = projectors.size() == 1 && projectors.front() == transport_->rank();
+    if (state.ranks > 1 || is_only_projector) {
+      mesh.part = state.mesh;
+      mesh.global_tet = state.global_tet;
+      mesh.prepared = state.prepared(settings().threads, distributed_.projecting);
+      return mesh;
+    }
+    const auto own = std::find(projectors.begin(), projectors.end(), transport_->rank());
+    auto share = std::make_shared<scene::TetMesh>();
+    share->association = state.mesh.association;
+    if (own != projectors.end()) {
+      const auto part_of =
+          projection::parts_of_whole(state.mesh, settings().ranks.partition, static_cast<int>(projectors.size()));
+      std::vector<std::uint32_t> mine;
+      for (std::uint32_t tet = 0; tet < part_of.size(); ++tet)
+        if (part_of[tet] == static_cast<std::uint32_t>(own - projectors.begin())) mine.push_back(tet);
+      *share = scene::subset(state.mesh, mine);
+      mesh.global_tet.assign(mine.begin(), mine.end());
+    }
+    frame::order_corners(*share, distributed_.render);
+    mesh.part = *share;
+    mesh.owner = std::move(share);
+    return mesh;
+  }
+
+  float longest_of_all(float longest) {
+    exchange::Bytes mine;
+    exchange::append(mine, longest);
+    for (const exchange::Bytes& other : exchange::gather_all(*transport_, std::move(mine)))
+      longest = std::max(longest, exchange::RecordReader(other).take<float>());
+    return longest;
+  }
+
+  frame::DistributedSettings distributed_;
+  std::shared_ptr<exchange::Transport> transport_;
+  std::optional<frame::DistributedRenderer> renderer_;
+};
+
+}  // namespace
+
+namespace frame {
+
+std::unique_ptr<Session::State> mesh_alone(Dataset dataset, const Settings& settings, const SessionExtras& extras) {
+  return std::make_unique<MeshAlone>(std::move(dataset), settings, extras);
+}
+
+std::unique_ptr<Session::State> mesh_on_ranks(Dataset dataset, const Settings& settings,
+                                              std::shared_ptr<exchange::Transport> transport,
+                                              const SessionExtras& extras) {
+  return std::make_unique<MeshOnRanks>(std::move(dataset), settings, std::move(transport), extras);
+}
+
+}  // namespace frame
+}  // namespace tessera

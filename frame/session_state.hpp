@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <stop_token>
+#include <utility>
+
+#include "exchange/transport.hpp"
+#include "frame/dataset.hpp"
+#include "frame/session_extras.hpp"
+#include "frame/session_settings.hpp"
+#include "scene/frame_watch.hpp"
+#include "tessera/session.hpp"
+
+namespace tessera {
+
+/// How a kind of data is rendered by a number of processes.
+class Session::State {
+ public:
+  State(Dataset dataset, const Settings& settings, const frame::SessionExtras& extras)
+      : dataset_(std::move(dataset)), settings_(settings), bounded_(extras.bounded) {}
+  virtual ~State() = default;
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  virtual std::size_t render(std::span<const View> views, const TransferFunction& function,
+                             const FrameSettings& settings, Sink& sink, const std::stop_token& stop) = 0;
+  [[nodiscard]] virtual bool assembles() const { return true; }
+
+  [[nodiscard]] const Dataset& dataset() const { return dataset_; }
+  [[nodiscard]] const Settings& settings() const { return settings_; }
+  [[nodiscard]] frame::RenderSettings mesh_settings() const {
+    frame::RenderSettings settings = frame::mesh_settings(settings_);
+    settings.bounded = bounded_;
+    return settings;
+  }
+
+ protected:
+  [[nodiscard]] const Dataset::State& data() const { return dataset_.state(); }
+
+ private:
+  Dataset dataset_;
+  Settings settings_;
+  bool bounded_;
+};
+
+namespace frame {
+
+/// Of a mesh: by this process alone, or by all ranks.
+std::unique_ptr<Session::State> mesh_alone(Dataset dataset, const Settings& settings, const SessionExtras& extras);
+std::unique_ptr<Session::State> mesh_on_ranks(Dataset dataset, const Settings& settings,
+                                              std::shared_ptr<exchange::Transport> transport,
+                                              const SessionExtras& extras);
+/// Of a grid, by any number of ranks.
+std::unique_ptr<Session::State> grid_by_rays(Dataset dataset, const Settings& settings,
+                                             std::shared_ptr<exchange::Transport> transport,
+                                             const SessionExtras& extras);
+
+/// A watch that tells `sink` of frame `number`.
+inline scene::FrameWatch::Finished tiles_to(Sink& sink, std::size_t number) {
+  if (!sink.wants_tiles()) return {};
+  return [&sink, number](const PixelRect& rect, const Image& image) { sink.tile({number, rect, image}); };
+}
+
+inline RenderedFrame stopped_frame(std::size_t number) {
+  RenderedFrame frame;
+  frame.number = number;
+  frame.stopped = true;
+  return frame;
+}
+
+}  // namespace frame
+}  // namespace tessera
