@@ -40,9 +40,9 @@ void check_grid_options(const std::filesystem::path& file, const ReadOptions& op
 
 void check_mesh_options(const std::filesystem::path& file, const ReadOptions& options) {
   if (volume_options(options).describes_raw())
-    throw scene::bad_input(fmt::format(
-        "{}: `dims`, `type`, `spacing`, `origin`, `endian` and `skip` are for .raw files; leave them out",
-        file.string()));
+    throw scene::bad_input(
+        fmt::format("{}: `dims`, `type`, `spacing`, `origin`, `endian` and `skip` are for .raw files; leave them out",
+                    file.string()));
 }
 
 std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, const ReadOptions& options,
