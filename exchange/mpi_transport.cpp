@@ -14,6 +14,8 @@
 #include <list>
 #include <mutex>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "exchange/heartbeats.hpp"
 #include "exchange/mailboxes.hpp"
@@ -320,7 +322,10 @@ class MpiTransport::Engine {
       if (heartbeats_ && first.tag != beat_tag) heartbeats_->heard(first.from);
       switch (first.tag) {
         case beat_tag:
-          if (heartbeats_) heartbeats_->take(first.from, first.bytes);
+          if (heartbeats_)
+            heartbeats_->take(first.from, first.bytes);
+          else
+            early_beats_.emplace_back(first.from, std::move(first.bytes));  // of ranks that watch already
           break;
         case fault_tag:
           decide(error_from(first.bytes));
@@ -359,7 +364,10 @@ class MpiTransport::Engine {
   void look_for_stalls() {
     {
       const std::lock_guard lock(mutex_);
-      if (stalls_ && size > 1) heartbeats_.emplace(rank, size, *stalls_, process_name(), Clock::now());
+      if (stalls_ && size > 1) {
+        heartbeats_.emplace(rank, size, *stalls_, process_name(), Clock::now());
+        for (const auto& [from, bytes] : std::exchange(early_beats_, {})) heartbeats_->take(from, bytes);
+      }
       stalls_.reset();
     }
     if (!heartbeats_) return;
@@ -450,6 +458,7 @@ class MpiTransport::Engine {
   std::list<Outgoing> pending_;
   std::deque<Incoming> arriving_;
   std::optional<Heartbeats> heartbeats_;
+  std::vector<std::pair<int, Bytes>> early_beats_;
   std::optional<Clock::time_point> lost_at_;  ///< when this rank ended the run for another's silence
   std::optional<scene::Error> asked_to_end_;
   std::optional<Clock::time_point> deadline_;

@@ -9,7 +9,7 @@
 namespace tessera {
 
 /// How a Communicator becomes messages.
-struct Communicator::State {
+struct TESSERA_HIDDEN Communicator::State {
   int rank = 0, size = 1;
   /// A transport for one data set or session alone. Collective.
   std::function<std::shared_ptr<exchange::Transport>()> connect;

@@ -15,7 +15,7 @@
 namespace tessera {
 
 /// What a Dataset holds. Nothing changes once it is made; what is prepared on demand is prepared once.
-struct Dataset::State {
+struct TESSERA_HIDDEN Dataset::State {
   std::string source, format, field_name;
   std::vector<FieldInfo> fields;
   std::vector<std::string> notes;

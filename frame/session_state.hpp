@@ -16,7 +16,7 @@
 namespace tessera {
 
 /// How a kind of data is rendered by a number of processes.
-class Session::State {
+class TESSERA_HIDDEN Session::State {
  public:
   State(Dataset dataset, const Settings& settings, const frame::SessionExtras& extras)
       : dataset_(std::move(dataset)), settings_(settings), bounded_(extras.bounded) {}
