@@ -50,10 +50,13 @@ int main(int argc, char** argv) try {
     differing += next.image.rgba != whole.image.rgba || next.image.depth != whole.image.depth ? 1 : 0;
   }
   std::sort(times.begin(), times.end());
-  const auto at = [&](double part) { return times[static_cast<std::size_t>(part * static_cast<double>(times.size() - 1))]; };
-  std::printf("frame %.0f ms; %zu stops, ms until render() returns: median %.2f, 95 %% %.2f, 99 %% %.2f, all %.2f; frames "
-              "after a stop that differ: %d\n",
-              whole.statistics.milliseconds, times.size(), at(0.5), at(0.95), at(0.99), at(1), differing);
+  const auto at = [&](double part) {
+    return times[static_cast<std::size_t>(part * static_cast<double>(times.size() - 1))];
+  };
+  std::printf(
+      "frame %.0f ms; %zu stops, ms until render() returns: median %.2f, 95 %% %.2f, 99 %% %.2f, all %.2f; frames "
+      "after a stop that differ: %d\n",
+      whole.statistics.milliseconds, times.size(), at(0.5), at(0.95), at(0.99), at(1), differing);
   return differing == 0 ? 0 : 1;
 } catch (const tessera::Error& error) {
   std::fprintf(stderr, "stop_times: %s\n", error.what());

@@ -83,8 +83,10 @@ void render(MPI_Comm two, int rank) {
     expect(session.render(view, function, {}, nullptr, source.get_token()).stopped, "it was not stopped on all ranks");
     whole(session, "the picture after a stop has other bits");
   }
+  // Of a picture so large that its tiles come in many messages.
+  const tessera::View large{data.default_camera({1600, 1200}), {1600, 1200}};
   StopAtFirstTile sink;
-  expect(session.render(view, function, {}, &sink, sink.source.get_token()).stopped, "the sink's stop was not heard");
+  expect(session.render(large, function, {}, &sink, sink.source.get_token()).stopped, "the sink's stop was not heard");
   whole(session, "the picture after the sink's stop has other bits");
 }
 
