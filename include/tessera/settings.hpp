@@ -20,8 +20,8 @@ enum class Rasterizer {
 /// What projectors send to compositors (meshes on several ranks).
 enum class Exchange {
   runs,      ///< segments that touch end to end, composited: a few fragments a pixel. At most 2e-6 from `segments`
-  segments,  ///< raw ray segments, as Juliachs et al. 2007: the bits of a single process whatever the job's shape
-             ///< (scanline: up to the order of equal keys, of which the paper has many)
+  segments,  ///< raw ray segments, as Juliachs et al. 2007: the bits of a single process whatever the job's shape, on
+             ///< machines of one instruction set (scanline: up to the order of equal keys, of which the paper has many)
 };
 
 /// Which of several processes projects which cell of a mesh.
