@@ -10,12 +10,18 @@
 #include "frame/distributed.hpp"
 #include "frame/mesh_input.hpp"
 #include "frame/session_state.hpp"
+#include "integrals/segment_integrator.hpp"
 #include "projection/partition.hpp"
 #include "projection/segment_tuple.hpp"
 #include "scene/error.hpp"
 
 namespace tessera {
 namespace {
+
+/// Throws Error(bad_input) for a method that is out of range, before anybody waits for a frame.
+void check_method(const Settings& settings) {
+  integrals::SegmentIntegrator(TransferFunction({Knot{}}), settings.integrator, settings.emission);
+}
 
 using Clock = std::chrono::steady_clock;
 using frame::stopped_frame;
@@ -38,6 +44,7 @@ class MeshAlone final : public Session::State {
   MeshAlone(Dataset dataset, const Settings& settings, const frame::SessionExtras& extras)
       : State(std::move(dataset), settings, extras),
         renderer_(data().prepared(settings.threads, extras.projecting), data().facts, traced(settings, extras)) {
+    check_method(settings);
     frame::assign_roles(1, settings.ranks.projectors, settings.ranks.compositors);  // of one rank there are not more
   }
 
@@ -82,6 +89,7 @@ class MeshOnRanks final : public Session::State {
       : State(std::move(dataset), settings, extras),
         distributed_(frame::distributed_settings(settings, transport->size())),
         transport_(std::move(transport)) {
+    check_method(settings);
     distributed_.projecting = extras.projecting;
     distributed_.compositing = extras.compositing;
     distributed_.compositing_on = extras.compositing_on;

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "frame/communicator.hpp"
@@ -15,7 +16,11 @@ namespace tessera {
 namespace {
 
 void check_view(const View& view) {
-  validate(view.camera);
+  try {
+    validate(view.camera);
+  } catch (const Error& error) {
+    throw Error(error.code(), std::string("view: ") + error.what());
+  }
   validate(view.size);
 }
 

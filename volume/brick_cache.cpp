@@ -19,8 +19,8 @@ BrickCache::BrickCache(const scene::SampleSource& source, const BrickLayout& lay
   const std::uint64_t largest = bytes_of(0);
   if (largest > budget_)
     throw scene::bad_input(fmt::format(
-        "a memory budget of {} bytes does not hold one brick of {} bytes; give more memory or smaller bricks", budget_,
-        largest));
+        "`memory`: a memory budget of {} bytes does not hold one brick of {} bytes; give more, or smaller bricks",
+        budget_, largest));
   std::uint64_t all = 0;
   for (std::size_t brick = 0; brick < entries_.size() && all <= budget_; ++brick) all += bytes_of(brick);
   holds_all_ = all <= budget_;

@@ -30,24 +30,27 @@ namespace {
 
 void check(const RenderSettings& settings, const scene::GridGeometry& geometry) {
   if (settings.brick_size < 2 || settings.brick_size > 1 << 16)
-    throw scene::bad_input(fmt::format("brick size {}; it must be 2 to 65536 voxels", settings.brick_size));
+    throw scene::bad_input(fmt::format("`brick_size` {}: it must be 2 to 65536 voxels", settings.brick_size));
   if (!(settings.accuracy > 0) || !std::isfinite(settings.accuracy))
-    throw scene::bad_input(fmt::format("accuracy {}; it must be positive", settings.accuracy));
+    throw scene::bad_input(fmt::format("`accuracy` {}: it must be positive", settings.accuracy));
   if (!(settings.step > 0) || !std::isfinite(settings.step))
-    throw scene::bad_input(fmt::format("step {}; it must be positive, in voxels", settings.step));
-  if (settings.threads < 0) throw scene::bad_input(fmt::format("{} threads; give 0 or more", settings.threads));
+    throw scene::bad_input(fmt::format("`step` {}: it must be positive, in voxels", settings.step));
+  if (settings.threads < 0 || settings.threads > 4096)
+    throw scene::bad_input(fmt::format("`threads` {}: it must be 0 (all cores) to 4096", settings.threads));
   if (settings.preload_limit < 0)
-    throw scene::bad_input(fmt::format("preload limit {}; give 0 or more", settings.preload_limit));
+    throw scene::bad_input(fmt::format("`preload` {}: it must be 0 or more", settings.preload_limit));
   const bool in_steps = settings.method == Method::sampled || settings.method == Method::preintegrated;
   if (geometry.rectilinear() && in_steps)
-    throw scene::bad_input("a rectilinear grid is not rendered in steps; use `integrator` auto or exact");
-  if (settings.shading && in_steps) throw scene::bad_input("shading needs the exact or auto method");
+    throw scene::bad_input("`integrator`: a rectilinear grid is not rendered in steps; use auto or exact");
+  if (settings.shading && in_steps)
+    throw scene::bad_input("`shade`: shading needs the exact or auto method; leave one of the two out");
   if (settings.shading && settings.emission == scene::Emission::independent)
-    throw scene::bad_input("shading needs emission in proportion to extinction");
+    throw scene::bad_input("`shade`: shading needs emission in proportion to extinction; leave one of the two out");
   if (settings.shading && !(glm::length(settings.shading->to_light) > 0))
-    throw scene::bad_input("the direction to the light has no length");
+    throw scene::bad_input("`light`: the direction to the light has no length; give one that has");
   if (settings.method == Method::preintegrated && settings.emission == scene::Emission::independent)
-    throw scene::bad_input("pre-integration needs emission in proportion to extinction; use sampled or exact");
+    throw scene::bad_input(
+        "`integrator`: pre-integration needs emission in proportion to extinction; use sampled or exact");
 }
 
 /// World units; a power of two near the mean voxel's side.

@@ -478,8 +478,17 @@ TEST(SessionSettings, FaultsNameTheSetting) {
   settings.integrator.kind = IntegratorKind::partial;
   EXPECT_NE(error_of([&] { Session(grid, settings); }).find("integrator"), std::string::npos);
   settings = {};
+  settings.integrator.accuracy = 0;
+  EXPECT_EQ(error_of([&] { Session(mesh, settings); }), "`accuracy` 0: it must be positive");
+  EXPECT_EQ(error_of([&] { Session(grid, settings); }), "`accuracy` 0: it must be positive");
+  settings = {};
+  settings.grid.brick_size = 1;
+  EXPECT_EQ(error_of([&] { Session(grid, settings); }), "`brick_size` 1: it must be 2 to 65536 voxels");
   Session session(mesh);
   View view = view_of(mesh);
+  view.camera.position.x = NAN;
+  EXPECT_EQ(error_of([&] { session.render(view, mesh.transfer_function().function); }).substr(0, 6), "view: ");
+  view = view_of(mesh);
   view.size.width = 0;
   EXPECT_NE(error_of([&] { session.render(view, mesh.transfer_function().function); }), "no error");
   EXPECT_NE(error_of([&] { session.render(view_of(mesh), TransferFunction()); }).find("knots"), std::string::npos);
