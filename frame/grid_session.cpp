@@ -1,7 +1,10 @@
 // A grid, by any number of ranks.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <exception>
 #include <optional>
+#include <utility>
 
 #include "frame/brick_memory.hpp"
 #include "frame/deep_rows.hpp"
@@ -62,7 +65,7 @@ class GridByRays final : public Session::State {
 
   std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
                      Sink& sink, const std::stop_token& stop) override {
-    if (settings.deep) check_deep();
+    if (settings.deep) check_deep(settings);
     if (settings.keep_uncertainty != keeps_uncertainty_) {
       keeps_uncertainty_ = settings.keep_uncertainty;
       make_sort_first();
@@ -73,14 +76,17 @@ class GridByRays final : public Session::State {
       try {
         stopped = !make(i, views[i], function, settings, sink, stop);
       } catch (const scene::Error& error) {
-        transport_->fail(error);
-        transport_->check();
+        if (transport_->size() > 1) {
+          transport_->fail(error);
+          transport_->check();
+        }
         throw;
       }
       if (stopped) {
         sink.frame(stopped_frame(i));
         return i;
       }
+      if (!give(i + 1 == views.size(), sink)) return i;
     }
     return views.size();
   }
@@ -104,7 +110,9 @@ class GridByRays final : public Session::State {
     if (settings().mesh.rasterizer != Rasterizer::planes)
       throw scene::bad_input("`rasterizer`: is for meshes, and the data set is a grid; leave it out");
   }
-  void check_deep() const {
+  void check_deep(const FrameSettings& frame) const {
+    if (!(frame.deep_accuracy >= 1e-6 && frame.deep_accuracy <= 1))
+      throw scene::bad_input(fmt::format("`deep_accuracy` {}: it must be 1e-6 to 1", frame.deep_accuracy));
     if (!frame::promised_error(frame::grid_settings(settings())))
       throw scene::bad_input(
           "deep picture: steps along rays give light other than that of their parts; set `integrator` automatic or "
@@ -137,10 +145,8 @@ class GridByRays final : public Session::State {
       // A trace's numbers are its caller's.
       const std::size_t traced = trace_ != nullptr ? static_cast<std::size_t>(std::max(trace_->frame(), 0)) : number;
       finished = sort_first_->render(*renderer_, function, {view.camera, view.size}, traced, &watch);
-    } catch (const scene::Error&) {
-      throw;
-    } catch (...) {
-      thrown = std::current_exception();
+    } catch (const frame::SinkFailure& failure) {
+      thrown = failure.cause;
     }
     const bool stopped = agreed(thrown || (finished && finished->stopped));
     if (thrown) std::rethrow_exception(thrown);
@@ -153,7 +159,8 @@ class GridByRays final : public Session::State {
           {settings.deep_accuracy, this->settings().emission, this->settings().threads, this->settings().memory_bytes},
           static_cast<std::int32_t>(number));
     }
-    RenderedFrame frame;
+    RenderedFrame& frame = made_;
+    frame = {};
     frame.number = number;
     if (finished) {
       frame.statistics = statistics_of(*finished, name_of(this->settings().integrator.kind));
@@ -166,8 +173,20 @@ class GridByRays final : public Session::State {
       frame.deep = std::move(*deep);
       frame.statistics.mesh.deep_samples = frame.deep.samples.size();
     }
-    sink.frame(std::move(frame));
     return true;
+  }
+
+  /// Hands out what was made. False if rank 0's sink threw and this rank is another; not asked for the last frame.
+  bool give(bool last, Sink& sink) {
+    std::exception_ptr thrown;
+    try {
+      sink.frame(std::exchange(made_, {}));
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+    const bool failed = !last && agreed(thrown != nullptr);
+    if (thrown) std::rethrow_exception(thrown);
+    return !failed;
   }
 
   /// What rank 0 says, on all.
@@ -179,6 +198,7 @@ class GridByRays final : public Session::State {
   std::shared_ptr<exchange::Transport> transport_;
   scene::Trace* trace_;
   const bool keeps_cost_;
+  RenderedFrame made_;  ///< on its way to the sink
   volume::ImageSplit split_;
   volume::CostMap cost_;
   const std::uint64_t resident_ = frame::resident_bytes();

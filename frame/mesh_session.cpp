@@ -63,6 +63,8 @@ class MeshAlone final : public Session::State {
       } catch (const scene::FrameStopped&) {
         sink.frame(stopped_frame(i));
         return i;
+      } catch (const frame::SinkFailure& failure) {
+        std::rethrow_exception(failure.cause);
       }
       frame.statistics =
           statistics_of(statistics, std::chrono::duration<double, std::milli>(Clock::now() - start).count());
@@ -122,7 +124,7 @@ class MeshOnRanks final : public Session::State {
       if (ended) return;
       if (finished.stopped) {
         ended = true;
-        sink.frame(stopped_frame(finished.frame));
+        frame::call_sink([&] { sink.frame(stopped_frame(finished.frame)); });
         return;
       }
       ++complete;
@@ -131,19 +133,17 @@ class MeshOnRanks final : public Session::State {
       frame.image = std::move(finished.image);
       frame.deep = std::move(finished.deep);
       frame.statistics = statistics_of(finished.statistics, finished.frame_ms);
-      sink.frame(std::move(frame));
+      frame::call_sink([&] { sink.frame(std::move(frame)); });
     };
     if (sink.wants_tiles())
       callbacks.tile = [&](std::size_t number, const PixelRect& rect, const Image& image) {
-        sink.tile({number, rect, image});
+        frame::call_sink([&] { sink.tile({number, rect, image}); });
       };
     std::exception_ptr thrown;
     try {
       renderer_->render(jobs, function, callbacks, stop);
-    } catch (const scene::Error&) {
-      throw;
-    } catch (...) {
-      thrown = std::current_exception();
+    } catch (const frame::SinkFailure& failure) {
+      thrown = failure.cause;  // the others have ended in order too
     }
     exchange::Bytes bytes;
     exchange::append(bytes, static_cast<std::uint64_t>(complete));

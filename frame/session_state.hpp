@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <memory>
 #include <span>
 #include <stop_token>
@@ -57,10 +58,26 @@ std::unique_ptr<Session::State> grid_by_rays(Dataset dataset, const Settings& se
                                              std::shared_ptr<exchange::Transport> transport,
                                              const SessionExtras& extras);
 
-/// A watch that tells `sink` of frame `number`.
+/// What a caller's sink threw, told apart from errors of the run: it stops a frame and harms nothing.
+struct SinkFailure {
+  std::exception_ptr cause;
+};
+
+template <class Call>
+void call_sink(const Call& call) {
+  try {
+    call();
+  } catch (...) {
+    throw SinkFailure{std::current_exception()};
+  }
+}
+
+/// A watch that tells `sink` of frame `number`; throws SinkFailure.
 inline scene::FrameWatch::Finished tiles_to(Sink& sink, std::size_t number) {
   if (!sink.wants_tiles()) return {};
-  return [&sink, number](const PixelRect& rect, const Image& image) { sink.tile({number, rect, image}); };
+  return [&sink, number](const PixelRect& rect, const Image& image) {
+    call_sink([&] { sink.tile({number, rect, image}); });
+  };
 }
 
 inline RenderedFrame stopped_frame(std::size_t number) {

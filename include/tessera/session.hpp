@@ -21,8 +21,9 @@ namespace tessera {
 /// changes nothing of the process.
 ///
 /// On several ranks constructor, render() and destructor are collective: every rank calls them in the same order, with
-/// the same arguments but for sinks and stops. An Error(bad_input) is thrown on all ranks alike and leaves the session
-/// usable; after an Error(system_failure) it can only be destroyed.
+/// the same arguments but for sinks and stops. What a session of one process throws leaves it usable. On several ranks an
+/// error is thrown on all of them, and leaves the session usable if it is found before anything is sent (settings,
+/// views, transfer functions); after any other it can only be destroyed.
 class TESSERA_EXPORT Session {
  public:
   /// Throws Error(bad_input) naming the setting that is out of range or does not go with another or with the data.

@@ -339,6 +339,35 @@ TEST_P(AnyKind, OnRanksToTheSinksExceptionStopsAllAndComesOut) {
   });
 }
 
+/// Throws an Error of Tessera's own, as a writer would, at its second frame.
+class FullDisk final : public Sink {
+ public:
+  [[nodiscard]] bool wants_tiles() const override { return false; }
+  void frame(RenderedFrame&& frame) override {
+    if (frame.number == 1 && !frame.stopped) throw Error(ErrorCode::system_failure, "frame_1.png: the disk is full");
+  }
+};
+
+TEST_P(AnyKind, ASinksOwnErrorIsNotTheRuns) {
+  const Dataset data = dataset(GetParam());
+  const TransferFunction function = data.transfer_function().function;
+  const std::vector<View> views(4, view_of(data));
+  for (const int ranks : {1, 3})
+    exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
+      Settings settings;
+      settings.threads = 1;
+      Session session(data, settings, frame::communicator_over(transport));
+      for (int again = 0; again < 2; ++again) {
+        FullDisk sink;
+        if (session.assembles())
+          EXPECT_THROW(session.render(views, function, {}, sink), Error);
+        else
+          EXPECT_LT(session.render(views, function, {}, sink), views.size());
+      }
+      EXPECT_FALSE(session.render(views.front(), function).stopped);
+    });
+}
+
 TEST(MeshArrays, AreBorrowedWhereTheLayoutAllows) {
   const Cube cube(4);
   const Dataset data = Dataset::of(cube.arrays());
