@@ -180,7 +180,8 @@ class GridByRays final : public Session::State {
   bool give(bool last, Sink& sink) {
     std::exception_ptr thrown;
     try {
-      sink.frame(std::exchange(made_, {}));
+      RenderedFrame made = std::exchange(made_, {});
+      if (assembles()) sink.frame(std::move(made));
     } catch (...) {
       thrown = std::current_exception();
     }

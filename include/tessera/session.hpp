@@ -21,8 +21,8 @@ namespace tessera {
 /// changes nothing of the process.
 ///
 /// On several ranks constructor, render() and destructor are collective: every rank calls them in the same order, with
-/// the same arguments but for sinks and stops. What a session of one process throws leaves it usable. On several ranks an
-/// error is thrown on all of them, and leaves the session usable if it is found before anything is sent (settings,
+/// the same arguments but for sinks and stops. What a session of one process throws leaves it usable. On several ranks
+/// an error is thrown on all of them, and leaves the session usable if it is found before anything is sent (settings,
 /// views, transfer functions); after any other it can only be destroyed.
 class TESSERA_EXPORT Session {
  public:

@@ -40,7 +40,7 @@ class Sink {
   /// Whether tile() is to be called at all.
   [[nodiscard]] virtual bool wants_tiles() const { return true; }
   virtual void tile(const Tile& /*tile*/) {}
-  /// Of a list of frames: each as it is complete, in order; the last one may be stopped.
+  /// Of a list of frames: each as it is complete, in order; the last one may be stopped, which every rank is told.
   virtual void frame(RenderedFrame&& /*frame*/) {}
 };
 
