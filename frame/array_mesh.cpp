@@ -55,6 +55,7 @@ std::vector<T> whole_numbers(const ArrayView& view, const char* name, std::uint6
     std::vector<T> values;
     values.reserve(numbers.size());
     for (std::size_t i = 0; i < numbers.size(); ++i) {
+      // NOLINTNEXTLINE(bugprone-signed-char-misuse): numbers, not characters
       const auto number = static_cast<std::int64_t>(numbers[i]);
       if (number < 0 || static_cast<std::uint64_t>(number) >= end)
         throw scene::bad_input(

@@ -125,7 +125,7 @@ class GridByRays final : public Session::State {
     volume::RenderSettings grid = frame::grid_settings(settings());
     if (!size) {
       // Only for its checks.
-      volume::Renderer(*data().samples, grid, data().ranges);
+      const volume::Renderer checked(*data().samples, grid, data().ranges);
       return;
     }
     if (renderer_) return;

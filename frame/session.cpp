@@ -83,14 +83,14 @@ Session::Session(Session&&) noexcept = default;
 Session& Session::operator=(Session&&) noexcept = default;
 
 RenderedFrame Session::render(const View& view, const TransferFunction& transfer_function,
-                              const FrameSettings& settings, Sink* sink, std::stop_token stop) {
+                              const FrameSettings& settings, Sink* sink, const std::stop_token& stop) {
   OneFrame one(sink);
-  render(std::span(&view, 1), transfer_function, settings, one, std::move(stop));
+  render(std::span(&view, 1), transfer_function, settings, one, stop);
   return one.take();
 }
 
 std::size_t Session::render(std::span<const View> views, const TransferFunction& transfer_function,
-                            const FrameSettings& settings, Sink& sink, std::stop_token stop) {
+                            const FrameSettings& settings, Sink& sink, const std::stop_token& stop) {
   if (transfer_function.knots().empty())
     throw scene::bad_input("transfer function: it has no knots; give at least one, or load a preset");
   for (const View& view : views) check_view(view);

@@ -39,12 +39,12 @@ class TESSERA_EXPORT Session {
   /// Throws Error(bad_input) for an invalid camera or size, or a view that the settings cannot do;
   /// Error(system_failure) if memory or the budget run out; what the sink throws.
   RenderedFrame render(const View& view, const TransferFunction& transfer_function, const FrameSettings& settings = {},
-                       Sink* sink = nullptr, std::stop_token stop = {});
+                       Sink* sink = nullptr, const std::stop_token& stop = {});
 
   /// A film: on several ranks frames overlap (RankSettings::frames_in_flight). Each goes to sink.frame() as it is
   /// complete. Returns how many were completed, on every rank: all, unless stopped.
   std::size_t render(std::span<const View> views, const TransferFunction& transfer_function,
-                     const FrameSettings& settings, Sink& sink, std::stop_token stop = {});
+                     const FrameSettings& settings, Sink& sink, const std::stop_token& stop = {});
 
   /// Whether this rank assembles the pictures: is told of tiles and gets images.
   [[nodiscard]] bool assembles() const;
