@@ -7,12 +7,17 @@ add_library(tessera_warnings INTERFACE)
 target_compile_options(tessera_warnings INTERFACE -Wall -Wextra -Werror)
 if(TESSERA_SANITIZE)
   target_compile_options(tessera_warnings INTERFACE -fsanitize=${TESSERA_SANITIZE} -fno-sanitize-recover=all
-                                                    -fno-omit-frame-pointer
-                         # Scopes of vectors in registers: a kernel compiles four times as long with them watched.
-                                                    -fno-sanitize-address-use-after-scope
-                         # g++ 12 with ASan warns falsely inside std::regex; the release build keeps the warning.
-                                                    -Wno-maybe-uninitialized)
+                                                    -fno-omit-frame-pointer)
   target_link_options(tessera_warnings INTERFACE -fsanitize=${TESSERA_SANITIZE})
+endif()
+if(TESSERA_SANITIZE MATCHES address)
+  # Scopes of vectors in registers: a kernel compiles four times as long with them watched.
+  # g++ 12 with ASan warns falsely inside std::regex; the release build keeps the warning.
+  target_compile_options(tessera_warnings INTERFACE -fno-sanitize-address-use-after-scope -Wno-maybe-uninitialized)
+endif()
+if(TESSERA_SANITIZE MATCHES thread AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  # oneTBB's headers have fences, which TSan does not follow; g++ says so at each.
+  target_compile_options(tessera_warnings INTERFACE -Wno-tsan)
 endif()
 
 function(tessera_stage_headers target folder)
@@ -64,6 +69,9 @@ function(tessera_test name)
   target_link_libraries(${name} PRIVATE tessera_warnings ${ARG_LINK} GTest::gtest GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(${name} PRIVATE TESSERA_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  if(TESSERA_SANITIZE MATCHES thread)
+    target_link_libraries(${name} PRIVATE tsan_onetbb)
+  endif()
   if(ARG_SLOW)
     set(label slow)
   else()

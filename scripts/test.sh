@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # test.sh        installs what is missing, checks the format, builds and runs all tests as released
-# test.sh --all  also under ASan and UBSan, without the parts that are options, fuzzes, and runs clang-tidy
-# With CI=true, as .ci/run calls it, all but clang-tidy and most of the configurations. Goes on after a failed stage; the
+# test.sh --all  also under ASan and UBSan and TSan, without the parts that are options, fuzzes, and runs clang-tidy
+# With CI=true, as .ci/run calls it, all but TSan, clang-tidy and most of the configurations. Goes on after a failed stage; the
 # end says which.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -46,7 +46,12 @@ if [ -n "$extent" ]; then
   stage configurations scripts/configurations.sh "${configurations[@]}"
   stage fuzz scripts/fuzz.sh 20
 fi
-if [ "$extent" = all ]; then stage tidy scripts/lint.sh tidy; fi
+if [ "$extent" = all ]; then
+  unity=() # as the preset has it
+  stage threads build_and_test threads
+  presets=(threads "${presets[@]}")
+  stage tidy scripts/lint.sh tidy
+fi
 
 # What failed tests printed, and ctest's own closing lines, once more and last, where they are found.
 for preset in "${presets[@]}"; do
