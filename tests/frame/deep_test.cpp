@@ -18,6 +18,7 @@
 #include "frame/render.hpp"
 #include "io/image_deep_exr.hpp"
 #include "io/mesh_reader.hpp"
+#include "io/vtk_or_skip.hpp"
 #include "io/temporary_folder.hpp"
 #include "scene/error.hpp"
 #include "support/deep_pixels.hpp"
@@ -183,6 +184,7 @@ TEST(Deep, OneTetWithASharpTransferFunctionIsCutAsFinelyAsItNeeds) {
 }
 
 TEST(Deep, OxygenPostCutInItsMiddle) {
+  TESSERA_VTK_OR_SKIP();
   const std::filesystem::path file =
       std::filesystem::path(TESSERA_SOURCE_DIR) / "../shared/data/oxygen-post/postxyz.bin";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
