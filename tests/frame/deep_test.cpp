@@ -18,8 +18,8 @@
 #include "frame/render.hpp"
 #include "io/image_deep_exr.hpp"
 #include "io/mesh_reader.hpp"
-#include "io/vtk_or_skip.hpp"
 #include "io/temporary_folder.hpp"
+#include "io/vtk_or_skip.hpp"
 #include "scene/error.hpp"
 #include "support/deep_pixels.hpp"
 
