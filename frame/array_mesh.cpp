@@ -114,11 +114,11 @@ io::CellBlock block_of(const MeshArrays& a) {
   const std::size_t points = a.points.size() / 3;
   const std::vector<double> coordinates = doubles_of(a.points);
   block.positions.resize(points);
-  std::memcpy(block.positions.data(), coordinates.data(), coordinates.size() * sizeof(double));
+  if (points > 0) std::memcpy(block.positions.data(), coordinates.data(), coordinates.size() * sizeof(double));
   if (a.types.empty()) {
     const auto corners = whole_numbers<std::uint32_t>(a.tets, "tet corner", points);
     block.tets.resize(corners.size() / 4);
-    std::memcpy(block.tets.data(), corners.data(), corners.size() * sizeof(std::uint32_t));
+    if (!corners.empty()) std::memcpy(block.tets.data(), corners.data(), corners.size() * sizeof(std::uint32_t));
   } else {
     block.types = whole_numbers<std::uint8_t>(a.types, "cell type", 256);
     block.connectivity = whole_numbers<std::uint32_t>(a.connectivity, "connectivity", points);
