@@ -8,6 +8,7 @@
 
 #include "frame/brick_memory.hpp"
 #include "frame/deep_rows.hpp"
+#include "frame/run_error.hpp"
 #include "frame/session_state.hpp"
 #include "frame/sort_first.hpp"
 #include "frame/verify.hpp"
@@ -73,15 +74,18 @@ class GridByRays final : public Session::State {
     for (std::size_t i = 0; i < views.size(); ++i) {
       make_renderer(views[i].size);
       bool stopped = false;
+      std::exception_ptr of_sink;
       try {
-        stopped = !make(i, views[i], function, settings, sink, stop);
-      } catch (const scene::Error& error) {
+        stopped = !make(i, views[i], function, settings, sink, stop, of_sink);
+      } catch (const std::exception& fault) {
+        // The others wait for this rank.
         if (transport_->size() > 1) {
-          transport_->fail(error);
+          transport_->fail(frame::run_error(*transport_, fault));
           transport_->check();
         }
         throw;
       }
+      if (of_sink) std::rethrow_exception(of_sink);
       if (stopped) {
         sink.frame(stopped_frame(i));
         return i;
@@ -135,22 +139,19 @@ class GridByRays final : public Session::State {
     renderer_.emplace(*data().samples, grid, data().ranges);
   }
 
-  /// False if it was stopped.
+  /// False if it was stopped; what the sink threw, if that stopped it, is in `of_sink`.
   bool make(std::size_t number, const View& view, const TransferFunction& function, const FrameSettings& settings,
-            Sink& sink, const std::stop_token& stop) {
+            Sink& sink, const std::stop_token& stop, std::exception_ptr& of_sink) {
     scene::FrameWatch watch(stop, tiles_to(sink, number));
-    std::exception_ptr thrown;
     std::optional<frame::FinishedVolumeFrame> finished;
     try {
       // A trace's numbers are its caller's.
       const std::size_t traced = trace_ != nullptr ? static_cast<std::size_t>(std::max(trace_->frame(), 0)) : number;
       finished = sort_first_->render(*renderer_, function, {view.camera, view.size}, traced, &watch);
     } catch (const frame::SinkFailure& failure) {
-      thrown = failure.cause;
+      of_sink = failure.cause;
     }
-    const bool stopped = agreed(thrown || (finished && finished->stopped));
-    if (thrown) std::rethrow_exception(thrown);
-    if (stopped) return false;
+    if (agreed(of_sink || (finished && finished->stopped))) return false;
     std::optional<DeepImage> deep;
     if (settings.deep) {
       const scene::TraceScope timing(trace_, "project");

@@ -104,11 +104,14 @@ class MeshOnRanks final : public Session::State {
     if (state.ranks > 1 && state.ranks != transport_->size())
       throw scene::bad_input(fmt::format("{}: was opened by {} ranks, the session has {}; give both one communicator",
                                          state.source, state.ranks, transport_->size()));
-    if (!projects(transport_->rank()) && state.ranks > 1 && !state.mesh.tets.empty())
-      throw scene::bad_input(
+    if (!projects(transport_->rank()) && state.ranks > 1 && !state.mesh.tets.empty()) {
+      const Error error = scene::bad_input(
           fmt::format("{}: rank {} has cells and does not project; give data set and session the same `projectors` and "
                       "`compositors`",
                       state.source, transport_->rank()));
+      transport_->fail(error);  // other ranks may find nothing wrong
+      throw error;
+    }
     renderer_.emplace(*transport_, distributed_, [this](std::size_t) { return part(); });
   }
 

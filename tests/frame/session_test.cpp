@@ -348,6 +348,29 @@ class FullDisk final : public Sink {
   }
 };
 
+/// The same of a tile.
+class FullPipe final : public Sink {
+ public:
+  void tile(const Tile& /*tile*/) override { throw Error(ErrorCode::system_failure, "client: it has gone"); }
+};
+
+TEST_P(AnyKind, ASinksOwnErrorOfATileIsNotTheRuns) {
+  const Dataset data = dataset(GetParam());
+  const TransferFunction function = data.transfer_function().function;
+  for (const int ranks : {1, 3})
+    exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
+      Settings settings;
+      settings.threads = 1;
+      Session session(data, settings, frame::communicator_over(transport));
+      FullPipe sink;
+      if (session.assembles())
+        EXPECT_THROW(session.render(view_of(data), function, {}, &sink), Error);
+      else
+        EXPECT_TRUE(session.render(view_of(data), function, {}, &sink).stopped);
+      EXPECT_FALSE(session.render(view_of(data), function).stopped);
+    });
+}
+
 TEST_P(AnyKind, ASinksOwnErrorIsNotTheRuns) {
   const Dataset data = dataset(GetParam());
   const TransferFunction function = data.transfer_function().function;
