@@ -16,7 +16,6 @@
 #include "apps/argument_values.hpp"
 #include "apps/chart_methods.hpp"
 #include "apps/frame_list.hpp"
-#include "apps/mesh_input.hpp"
 #include "apps/output_check.hpp"
 #include "apps/report.hpp"
 #include "apps/run_output.hpp"

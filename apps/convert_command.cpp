@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include "apps/argument_values.hpp"
-#include "apps/mesh_input.hpp"
 #include "apps/output_check.hpp"
 #include "apps/report.hpp"
 #include "datasets/modify.hpp"
+#include "frame/mesh_input.hpp"
 #include "io/mesh_parts.hpp"
 #include "io/pvtu_writer.hpp"
 #include "scene/error.hpp"
@@ -94,7 +94,7 @@ std::optional<ConvertPieces> convert_pieces(const std::string& pieces, const std
 void convert(const std::filesystem::path& input, const std::filesystem::path& output, const io::MeshOptions& options,
              int subdivide, const std::optional<ConvertPieces>& pieces, bool quiet) {
   pieces ? check_pieces_output(output, input, pieces->count) : check_mesh_output(output, input);
-  auto file = read_input(input, options);
+  auto file = frame::read_input(input, options);
   for (int time = 0; time < subdivide; ++time) file.mesh = datasets::subdivided(file.mesh);
   pieces ? write_pieces(file.mesh, output, *pieces) : write_mesh(file.mesh, output);
   if (!quiet)

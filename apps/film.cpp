@@ -7,7 +7,6 @@
 
 #include "apps/balance_picture.hpp"
 #include "apps/frame_list.hpp"
-#include "apps/mesh_input.hpp"
 #include "apps/output_check.hpp"
 #include "apps/rank_traces.hpp"
 #include "apps/report.hpp"

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "apps/mesh_input.hpp"
 #include "apps/report.hpp"
 #include "apps/session_options.hpp"
+#include "frame/mesh_input.hpp"
 #include "tessera/mesh_check.hpp"
 
 namespace tessera::apps {
@@ -20,7 +20,7 @@ void print_text(const std::filesystem::path& input, const Description& file, con
   fmt::print("cells     {}\n", cells_line(counts));
   fmt::print("points    {}, {} of them in no cell kept\n", counts.points_read, counts.points_unused);
   fmt::print("bounds    ({:.9g} {:.9g} {:.9g}) to ({:.9g} {:.9g} {:.9g}), diagonal {:.6g}\n", box.low.x, box.low.y,
-             box.low.z, box.high.x, box.high.y, box.high.z, diagonal(box));
+             box.low.z, box.high.x, box.high.y, box.high.z, frame::diagonal(box));
   std::size_t widest = 0;
   for (const auto& field : file.fields) widest = std::max(widest, field.name.size());
   const char* title = "fields";

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 
-#include "apps/mesh_input.hpp"
 #include "apps/output_check.hpp"
 #include "apps/report.hpp"
 #include "apps/session_options.hpp"
 #include "apps/setting_words.hpp"
 #include "frame/dataset.hpp"
+#include "frame/mesh_input.hpp"
 #include "io/volume_writer.hpp"
 #include "scene/error.hpp"
 #include "tessera/write.hpp"
@@ -55,7 +55,7 @@ void volume_info(const std::filesystem::path& input, const io::VolumeOptions& op
   fmt::print("lattice   {}\n", lattice_line(volume.geometry));
   fmt::print("samples   {}\n", samples_line(volume));
   fmt::print("bounds    {} to {}, diagonal {:.6g}\n", triple(volume.box.low), triple(volume.box.high),
-             diagonal(volume.box));
+             frame::diagonal(volume.box));
   std::size_t widest = 0;
   for (const auto& field : volume.fields) widest = std::max(widest, field.name.size());
   const char* title = "fields";

@@ -23,10 +23,7 @@ using frame::tiles_to;
 FrameStatistics statistics_of(const frame::FinishedVolumeFrame& frame, const char* integrator) {
   FrameStatistics statistics;
   const volume::RenderStatistics& s = frame.statistics;
-  statistics.grid = {s.rays,           s.voxels_visited,   s.samples,        s.pixels_again,
-                     s.bricks_total,   s.bricks_invisible, s.brick_hits,     s.bricks_loaded,
-                     s.bricks_evicted, s.bytes_loaded,     s.bytes_resident, s.peak_bytes,
-                     s.blank_samples};
+  statistics.grid = s;
   statistics.instruction_set = s.instruction_set;
   statistics.integrator = integrator;
   statistics.milliseconds = frame.frame_ms;
