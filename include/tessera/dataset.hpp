@@ -54,7 +54,7 @@ struct ReadOptions {
 ///         cells.
 /// Copies  float64 points and scalars and uint32 tets are borrowed as they stand, for point data that is finite
 ///         everywhere and tets whose corners are in range; anything else is converted. One copy of tets (16 bytes each)
-///         is made if their corners are not in the order that order_corners() of a file's mesh gives.
+///         is made unless each has its corners in the order of their positions (by x, then y, then z).
 /// Blanks  cells with a scalar or corner that is NaN or infinite are left out, as from files.
 struct MeshArrays {
   ArrayView points;  ///< three numbers a point
