@@ -10,7 +10,7 @@
 #include <hwy/highway.h>
 
 #include "compositor/window_light-inl.h"
-#include "sorting/sort_lanes-inl.h"
+#include "sorting/sort_windows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tessera::compositor {
@@ -22,40 +22,8 @@ std::uint64_t composite_windows(const WindowRules&, projection::SegmentWindows&,
   return 0;
 }
 #else
-/// Order of one pixel's segments.
-HWY_INLINE bool before(const projection::LatticeSegment& a, const projection::LatticeSegment& b) {
-  if (a.front != b.front) return a.front < b.front;
-  if (a.back != b.back) return a.back < b.back;
-  if (a.scalar_front != b.scalar_front) return a.scalar_front < b.scalar_front;
-  return a.scalar_back < b.scalar_back;
-}
-
-/// The segment `slot` bytes behind `list`. Slots in bytes spare the address a shift.
-HWY_INLINE const projection::LatticeSegment& segment_at(const projection::LatticeSegment* list, std::int32_t slot) {
-  return *reinterpret_cast<const projection::LatticeSegment*>(reinterpret_cast<const char*>(list) + slot);
-}
-
-/// Puts in order what the network left nearly so: keys do not tell all of a segment, nor always all of its depth.
-HWY_NOINLINE void settle_ties(const projection::LatticeSegment* list, std::size_t count, std::size_t lanes,
-                              std::int32_t* slots) {
-  for (std::size_t i = 1; i < count; ++i) {
-    const std::int32_t slot = slots[i * lanes];
-    std::size_t hole = i;
-    for (; hole > 0 && before(segment_at(list, slot), segment_at(list, slots[(hole - 1) * lanes])); --hole)
-      slots[hole * lanes] = slots[(hole - 1) * lanes];
-    slots[hole * lanes] = slot;
-  }
-}
-
-/// Lists longer than the networks: one lane after the other.
-HWY_NOINLINE void sort_long(const projection::LatticeSegment* list, std::size_t stride, std::size_t count,
-                            std::size_t lanes, std::int32_t* slots) {
-  std::vector<std::int32_t> order(count);
-  for (std::size_t i = 0; i < count; ++i) order[i] = static_cast<std::int32_t>(i * stride * sizeof *list);
-  std::sort(order.begin(), order.end(),
-            [&](std::int32_t i, std::int32_t j) { return before(segment_at(list, i), segment_at(list, j)); });
-  for (std::size_t i = 0; i < count; ++i) slots[i * lanes] = order[i];
-}
+using sorting::HWY_NAMESPACE::has_row;
+using sorting::HWY_NAMESPACE::segment_at;
 
 /// One field of four segments a lane each, in lanes 4 j + i of vector i: transposed in registers, which takes a quarter
 /// of the time of gathers.
@@ -108,65 +76,9 @@ class PixelGroup {
         pixel_(pixel),
         list_(windows.segments() + pixel) {}
 
-  /// Brings slots in order. Returns the number of rows: the longest list's length.
+  /// Puts the lists' slots in order. Returns the number of rows: the longest list's length.
   HWY_INLINE std::size_t sort() {
-    namespace sorter = sorting::HWY_NAMESPACE;
-    const DI d;
-    const std::size_t lanes = HN::Lanes(d);
-    const std::uint32_t* counts = windows_.counts() + pixel_;
-    const VI count = this->count();
-    const auto most = static_cast<std::size_t>(HN::GetLane(HN::MaxOfLanes(d, count)));
-    const std::size_t chunks = (most + sorter::sort_chunk - 1) / sorter::sort_chunk;
-    const std::size_t rows = chunks * sorter::sort_chunk;
-    if (state_.keys.size() < rows * lanes) state_.keys.resize(rows * lanes), state_.slots.resize(rows * lanes);
-    std::int32_t* slots = state_.slots.data();
-    if (chunks > static_cast<std::size_t>(sorter::most_sort_chunks)) {
-      for (std::size_t lane = 0; lane < lanes; ++lane)
-        sort_long(list_ + lane, windows_.stride(), counts[lane], lanes, slots + lane);
-      return most;
-    }
-
-    VI nearest = HN::Set(d, no_key), farthest = HN::Set(d, -no_key);
-    const std::size_t step = windows_.stride();
-    for (std::size_t row = 0; row < most; ++row) {
-      const std::size_t first = row * step;
-      const auto quarter = [&](std::size_t q) HWY_ATTR {
-        return HN::LoadU(d, reinterpret_cast<const std::int32_t*>(list_ + first + q * lanes / 4));
-      };
-      const VI low = HN::ConcatEven(d, quarter(1), quarter(0)), high = HN::ConcatEven(d, quarter(3), quarter(2));
-      const VI front = HN::ConcatEven(d, high, low);
-      const auto here = has(row, count);
-      nearest = HN::Min(nearest, HN::IfThenElse(here, front, nearest));
-      farthest = HN::Max(farthest, HN::IfThenElse(here, front, farthest));
-      // Fronts for now; what is beyond a list's end is not used.
-      HN::StoreU(front, d, slots + row * lanes);
-    }
-    const sorter::PackedKeys packed(nearest, farthest, rows);
-    float* keys = state_.keys.data();
-    for (std::size_t row = 0; row < rows; ++row) {
-      VI key = packed.behind_all(row);
-      if (row < most) key = HN::IfThenElse(has(row, count), packed.pack(HN::LoadU(d, slots + row * lanes), row), key);
-      HN::StoreU(HN::BitCast(DF(), key), DF(), keys + row * lanes);
-    }
-    sorter::sort_lanes(keys, static_cast<int>(chunks));
-    const VI stride = HN::Set(d, static_cast<std::int32_t>(step * sizeof *list_));
-    auto ties = HN::Lt(count, HN::Zero(d));
-    VI before = HN::Zero(d);
-    for (std::size_t row = 0; row < most; ++row) {
-      const VI key = HN::BitCast(d, HN::LoadU(DF(), keys + row * lanes));
-      HN::StoreU(HN::Mul(packed.row(key), stride), d, slots + row * lanes);
-      ties = HN::Or(ties, packed.level(before, key));
-      before = key;
-    }
-    if (!HN::AllFalse(d, ties)) {
-      std::uint8_t bits[8] = {0};
-      HN::StoreMaskBits(d, ties, bits);
-      for (std::uint64_t left = bits[0] | static_cast<std::uint64_t>(bits[1]) << 8; left != 0; left &= left - 1) {
-        const auto lane = static_cast<std::size_t>(__builtin_ctzll(left));
-        settle_ties(list_ + lane, counts[lane], lanes, slots + lane);
-      }
-    }
-    return most;
+    return sorting::HWY_NAMESPACE::sort_windows(list_, windows_.stride(), windows_.counts() + pixel_, state_.order);
   }
 
   /// Loads the segments of the rows [from, to) before `final_step`, in pixels that are open; of runs it notes where
@@ -184,9 +96,9 @@ class PixelGroup {
     const VI count = this->count();
     if constexpr (runs) run_back = HN::Load(d, &state_.back[pixel_]);
     for (std::size_t row = from; row < to; ++row) {
-      const Fields s = load_fields(list_, state_.slots.data() + row * lanes);
+      const Fields s = load_fields(list_, state_.order.slots.data() + row * lanes);
       const VI front = s.front;
-      const auto is_final = HN::And(HN::Lt(front, end), has(row, count));
+      const auto is_final = HN::And(HN::Lt(front, end), has_row(row, count));
       if (HN::AllFalse(d, is_final)) {
         to = row;
         break;
@@ -229,10 +141,6 @@ class PixelGroup {
   HWY_INLINE VI count() const {
     return HN::LoadU(DI(), reinterpret_cast<const std::int32_t*>(windows_.counts() + pixel_));
   }
-  /// Lanes whose lists have this row.
-  static HWY_INLINE HN::Mask<DI> has(std::size_t row, VI count) {
-    return HN::Lt(HN::Set(DI(), static_cast<std::int32_t>(row)), count);
-  }
 
   /// Leaves in the windows what of the sorted rows was not final, in order. Returns how many segments are gone.
   HWY_INLINE std::uint64_t keep_rest(std::size_t rows) {
@@ -255,7 +163,7 @@ class PixelGroup {
     for (std::size_t k = 0; k < most; ++k)
       for (std::size_t lane = 0; lane < own; ++lane) {
         const std::size_t row = std::min(static_cast<std::size_t>(first[lane]) + k, rows - 1);
-        state_.rest[k * lanes + lane] = segment_at(list_ + lane, state_.slots[row * lanes + lane]);
+        state_.rest[k * lanes + lane] = segment_at(list_ + lane, state_.order.slots[row * lanes + lane]);
       }
     for (std::size_t k = 0; k < most; ++k) std::copy_n(&state_.rest[k * lanes], own, list_ + k * windows_.stride());
     return gone;

@@ -11,6 +11,7 @@
 #include "projection/segment_windows.hpp"
 #include "scene/lattice.hpp"
 #include "scene/trace.hpp"
+#include "sorting/window_order.hpp"
 
 namespace tessera::compositor {
 
@@ -49,8 +50,7 @@ struct WindowState {
   std::array<std::int32_t, pixels / 4> rest_rows;
 
   // Working memory.
-  std::vector<float> keys;          ///< rows of lanes, one list's length of them
-  std::vector<std::int32_t> slots;  ///< of the same
+  sorting::WindowOrder order;
   std::vector<projection::LatticeSegment> rest;
 
   /// Empty rays for the pixels of `rect`, all open.

@@ -1,0 +1,133 @@
+// Depth order of the windows that the default frame composites from: as many neighbouring pixels' lists at once as a
+// vector has lanes. Included once per instruction set (Highway's include guard idiom).
+
+#if defined(TESSERA_SORTING_SORT_WINDOWS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_SORTING_SORT_WINDOWS_INL_H_
+#undef TESSERA_SORTING_SORT_WINDOWS_INL_H_
+#else
+#define TESSERA_SORTING_SORT_WINDOWS_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "projection/segment_windows.hpp"
+#include "sorting/sort_lanes-inl.h"
+#include "sorting/window_order.hpp"
+
+HWY_BEFORE_NAMESPACE();
+#if HWY_TARGET != HWY_SCALAR
+namespace tessera::sorting {
+namespace HWY_NAMESPACE {
+
+/// Order of one pixel's segments: front, back, then the scalars, so that what is equal is interchangeable.
+HWY_INLINE bool before(const projection::LatticeSegment& a, const projection::LatticeSegment& b) {
+  if (a.front != b.front) return a.front < b.front;
+  if (a.back != b.back) return a.back < b.back;
+  if (a.scalar_front != b.scalar_front) return a.scalar_front < b.scalar_front;
+  return a.scalar_back < b.scalar_back;
+}
+
+/// The segment `slot` bytes behind `list`. Slots in bytes spare the address a shift.
+HWY_INLINE const projection::LatticeSegment& segment_at(const projection::LatticeSegment* list, std::int32_t slot) {
+  return *reinterpret_cast<const projection::LatticeSegment*>(reinterpret_cast<const char*>(list) + slot);
+}
+
+/// Lanes whose lists have this row.
+HWY_INLINE hn::Mask<KeyTag> has_row(std::size_t row, KeyVec count) {
+  return hn::Lt(hn::Set(KeyTag(), static_cast<std::int32_t>(row)), count);
+}
+
+/// Puts in order what the network left nearly so: keys do not tell all of a segment, nor always all of its depth.
+HWY_NOINLINE void settle_ties(const projection::LatticeSegment* list, std::size_t count, std::size_t lanes,
+                              std::int32_t* slots) {
+  for (std::size_t i = 1; i < count; ++i) {
+    const std::int32_t slot = slots[i * lanes];
+    std::size_t hole = i;
+    for (; hole > 0 && before(segment_at(list, slot), segment_at(list, slots[(hole - 1) * lanes])); --hole)
+      slots[hole * lanes] = slots[(hole - 1) * lanes];
+    slots[hole * lanes] = slot;
+  }
+}
+
+/// Lists longer than the networks: one lane after the other.
+HWY_NOINLINE void sort_long(const projection::LatticeSegment* list, std::size_t stride, std::size_t count,
+                            std::size_t lanes, std::int32_t* slots) {
+  std::vector<std::int32_t> order(count);
+  for (std::size_t i = 0; i < count; ++i) order[i] = static_cast<std::int32_t>(i * stride * sizeof *list);
+  std::sort(order.begin(), order.end(),
+            [&](std::int32_t i, std::int32_t j) { return before(segment_at(list, i), segment_at(list, j)); });
+  for (std::size_t i = 0; i < count; ++i) slots[i * lanes] = order[i];
+}
+
+/// Sorts the lists of the pixels first, first + 1... of the windows, a lane each. `list` is where the first one's
+/// begins, `stride` and `counts` are the windows' own, counted from that pixel. Returns the number of rows: the longest
+/// list's length.
+HWY_INLINE std::size_t sort_windows(const projection::LatticeSegment* list, std::size_t stride,
+                                    const std::uint32_t* counts, WindowOrder& order) {
+  const KeyTag d;
+  const SortTag df;
+  const std::size_t lanes = hn::Lanes(d);
+  const KeyVec count = hn::LoadU(d, reinterpret_cast<const std::int32_t*>(counts));
+  const auto most = static_cast<std::size_t>(hn::GetLane(hn::MaxOfLanes(d, count)));
+  const std::size_t chunks = (most + sort_chunk - 1) / sort_chunk;
+  const std::size_t rows = chunks * sort_chunk;
+  if (order.keys.size() < rows * lanes) order.keys.resize(rows * lanes), order.slots.resize(rows * lanes);
+  std::int32_t* slots = order.slots.data();
+  if (chunks > static_cast<std::size_t>(most_sort_chunks)) {
+    for (std::size_t lane = 0; lane < lanes; ++lane) sort_long(list + lane, stride, counts[lane], lanes, slots + lane);
+    return most;
+  }
+
+  KeyVec nearest = hn::Set(d, 0x7fffffff), farthest = hn::Set(d, -0x7fffffff);
+  for (std::size_t row = 0; row < most; ++row) {
+    const std::size_t first = row * stride;
+    const auto quarter = [&](std::size_t q) HWY_ATTR {
+      return hn::LoadU(d, reinterpret_cast<const std::int32_t*>(list + first + q * lanes / 4));
+    };
+    const KeyVec low = hn::ConcatEven(d, quarter(1), quarter(0)), high = hn::ConcatEven(d, quarter(3), quarter(2));
+    const KeyVec front = hn::ConcatEven(d, high, low);
+    const auto here = has_row(row, count);
+    nearest = hn::Min(nearest, hn::IfThenElse(here, front, nearest));
+    farthest = hn::Max(farthest, hn::IfThenElse(here, front, farthest));
+    // Fronts for now; what is beyond a list's end is not used.
+    hn::StoreU(front, d, slots + row * lanes);
+  }
+  const PackedKeys packed(nearest, farthest, rows);
+  float* keys = order.keys.data();
+  for (std::size_t row = 0; row < rows; ++row) {
+    KeyVec key = packed.behind_all(row);
+    if (row < most) key = hn::IfThenElse(has_row(row, count), packed.pack(hn::LoadU(d, slots + row * lanes), row), key);
+    hn::StoreU(hn::BitCast(df, key), df, keys + row * lanes);
+  }
+  sort_lanes(keys, static_cast<int>(chunks));
+  const KeyVec bytes = hn::Set(d, static_cast<std::int32_t>(stride * sizeof *list));
+  auto ties = hn::Lt(count, hn::Zero(d));
+  KeyVec previous = hn::Zero(d);
+  for (std::size_t row = 0; row < most; ++row) {
+    const KeyVec key = hn::BitCast(d, hn::LoadU(df, keys + row * lanes));
+    hn::StoreU(hn::Mul(packed.row(key), bytes), d, slots + row * lanes);
+    ties = hn::Or(ties, packed.level(previous, key));
+    previous = key;
+  }
+  if (!hn::AllFalse(d, ties)) {
+    std::uint8_t bits[8] = {0};
+    hn::StoreMaskBits(d, ties, bits);
+    for (std::uint64_t left = bits[0] | static_cast<std::uint64_t>(bits[1]) << 8; left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::size_t>(__builtin_ctzll(left));
+      settle_ties(list + lane, counts[lane], lanes, slots + lane);
+    }
+  }
+  return most;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::sorting
+#endif  // HWY_SCALAR
+HWY_AFTER_NAMESPACE();
+
+#endif
