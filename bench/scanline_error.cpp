@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "compositor/tile_pixels.hpp"
+#include "compositor/picture_sink.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
 #include "datasets/transfer_functions.hpp"
@@ -96,7 +96,7 @@ void measure(const std::string& name, const scene::TetMesh& mesh, const scene::C
   projection::RaySegments segments;
   projection::ScanlineBuffers buffers;
   projection::RasterCounts counts;
-  sorting::PixelLists pixel_lists;
+  sorting::SegmentLists store;
   Picture planes, rounded, scanline;
   for (Picture* p : {&planes, &rounded, &scanline}) p->image = scene::Image(size);
   Cells cells;
@@ -116,12 +116,15 @@ void measure(const std::string& name, const scene::TetMesh& mesh, const scene::C
   };
   const auto composite = [&](std::size_t tile, bool paper, Picture& picture) {
     const scene::PixelRect rect = grid.rect(tile);
-    compositor::TilePixels pixels(space, integrator, function.max_color(), 1e9, scene::Emission::absorption,
-                                  compositor::ImageWindow{&picture.image});
+    compositor::PictureSink<sorting::DoubleEncoding> pixels(
+        {&space, &integrator, integrals::opacity_weight(function.max_color(), 1e9, scene::Emission::absorption)},
+        {&picture.image});
     pixels.start(rect);
-    pixel_lists.sort(segments, static_cast<std::size_t>(rect.area()),
-                     paper ? sorting::PixelLists::Key::back : sorting::PixelLists::Key::front);
-    pixels.take(segments, pixel_lists, HUGE_VAL);
+    store.reset(static_cast<std::size_t>(rect.area()),
+                paper ? sorting::SegmentLists::Key::back : sorting::SegmentLists::Key::front);
+    store.segments = segments;
+    scene::TraceLaps laps(nullptr);
+    pixels.take(store, sorting::DoubleEncoding::end, 1, laps);
     pixels.finish();
   };
   for (std::size_t tile = 0; tile < grid.count(); ++tile) {

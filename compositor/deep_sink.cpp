@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "compositor/picture_sink.hpp"
+
 namespace tessera::compositor {
 namespace {
 
@@ -39,47 +41,55 @@ void append_tidy(std::span<const DeepSample> samples, std::vector<scene::DeepIma
   }
 }
 
-DeepSink::DeepSink(const projection::PixelSpace& space, const integrals::SegmentIntegrator& integrator,
-                   const scene::TransferFunction& function, double longest_ray, scene::Emission emission,
-                   double accuracy, DeepTarget& collector)
-    : space_(&space),
-      integrator_(&integrator),
+DeepSink::DeepSink(const TileScene& scene, const ImageWindow& window, const scene::TransferFunction& function,
+                   scene::Emission emission, double accuracy, DeepTarget& collector)
+    : scene_(scene),
+      picture_(scene, false),
+      window_(window),
       cutter_(function, emission, accuracy),
       accuracy_(accuracy),
-      left_out_per_transmittance_(integrals::opacity_weight(function.max_color(), longest_ray, emission)),
-      termination_error_(integrator.termination_error()),
       collector_(&collector) {}
 
 void DeepSink::start(const scene::PixelRect& rect) {
   rect_ = rect;
+  segments_here_ = 0;
+  picture_.start(rect);
   const auto n = static_cast<std::size_t>(rect.area());
   mergers_.assign(n, DeepMerger(accuracy_));
   transmittance_before_.assign(n, 1.0);
   open_.assign(n, 1);
-  open_count_ = n;
+  deep_open_.assign(n, 1);
+  deep_open_count_ = n;
   length_per_depth_.resize(n);
   std::size_t i = 0;
   for (int y = rect.y0; y < rect.y1; ++y)
-    for (int x = rect.x0; x < rect.x1; ++x) length_per_depth_[i++] = space_->length_per_depth(x + 0.5, y + 0.5);
+    for (int x = rect.x0; x < rect.x1; ++x) length_per_depth_[i++] = scene_.space->length_per_depth(x + 0.5, y + 0.5);
   samples_.clear();
 }
 
-void DeepSink::take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) {
-  for (std::uint32_t p = 0; p < open_.size(); ++p) {
-    if (!open_[p]) continue;
+void DeepSink::take(Store& lists, double final_depth, std::size_t /*at_least*/, scene::TraceLaps& laps) {
+  picture_.composite(lists, final_depth, laps);
+  const projection::RaySegments& segments = lists.segments;
+  for (std::uint32_t p = 0; p < deep_open_.size(); ++p) {
+    if (!deep_open_[p]) continue;
     for (const auto& entry : lists.pixel(p)) {
       if (!(entry.depth < final_depth)) break;
       const std::uint32_t i = entry.segment;
       cutter_.cut({segments.front[i], segments.back[i], segments.scalar_front[i], segments.scalar_back[i]},
                   length_per_depth_[p], transmittance_before_[p], pieces_);
       piece_pixels_.resize(pieces_.size(), p);
-      if (pieces_.size() >= batch_pieces) integrate_pieces();
+      if (pieces_.size() >= batch_pieces) integrate_pieces(laps);
     }
   }
-  integrate_pieces();
+  integrate_pieces(laps);
+  for (std::size_t p = 0; p < open_.size(); ++p)
+    open_[p] = static_cast<std::uint8_t>(picture_.open()[p] | deep_open_[p]);
+  segments_here_ += lists.remove(final_depth, open_);
+  laps.lap("composite");
 }
 
-void DeepSink::integrate_pieces() {
+void DeepSink::integrate_pieces(scene::TraceLaps& laps) {
+  laps.lap("composite");
   batch_.reserve(pieces_.size());
   batch_.size = pieces_.size();
   for (std::size_t k = 0; k < pieces_.size(); ++k) {
@@ -87,19 +97,20 @@ void DeepSink::integrate_pieces() {
     batch_.scalar_front[k] = pieces_[k].scalar_front;
     batch_.scalar_back[k] = pieces_[k].scalar_back;
   }
-  integrator_->integrate(batch_);
+  scene_.integrator->integrate(batch_);
+  laps.lap("integrate");
   for (std::size_t k = 0; k < pieces_.size(); ++k) {
     const std::uint32_t p = piece_pixels_[k];
-    if (!open_[p]) continue;
+    if (!deep_open_[p]) continue;
     DeepMerger& merger = mergers_[p];
     ended_.clear();
     merger.add(
         {pieces_[k].front, pieces_[k].back, {batch_.red[k], batch_.green[k], batch_.blue[k]}, pieces_[k].optical_depth},
         ended_);
     for (const DeepSample& sample : ended_) samples_.push_back({p, sample});
-    if (merger.transmittance() * left_out_per_transmittance_ < termination_error_) {
-      open_[p] = 0;
-      --open_count_;
+    if (merger.transmittance() * scene_.left_out_per_transmittance < scene_.integrator->termination_error()) {
+      deep_open_[p] = 0;
+      --deep_open_count_;
     }
   }
   pieces_.clear();
@@ -107,6 +118,8 @@ void DeepSink::integrate_pieces() {
 }
 
 void DeepSink::finish() {
+  segments_ += segments_here_;
+  write_pixels(picture_, rect_, window_);
   const auto n = static_cast<std::uint32_t>(rect_.area());
   for (std::uint32_t p = 0; p < n; ++p) {
     ended_.clear();

@@ -6,45 +6,48 @@
 #include "compositor/deep_collector.hpp"
 #include "compositor/deep_fragments.hpp"
 #include "compositor/deep_pieces.hpp"
+#include "compositor/tile_pixels.hpp"
 #include "compositor/tile_sink.hpp"
 #include "integrals/segment_batch.hpp"
 #include "integrals/segment_integrator.hpp"
-#include "projection/pixel_space.hpp"
 
 namespace tessera::compositor {
 
-/// Makes a tile's ray segments into deep samples: cuts them into pieces, integrates these, merges them. The integrator
-/// must be `exact`, so that the light of a segment is that of its pieces. Pixels close as in TilePixels.
-class DeepSink final : public TileSink {
+/// A picture and, beside it, deep samples: cuts a tile's ray segments into pieces, integrates these, merges them. The
+/// integrator must be `exact`, so that the light of a segment is that of its pieces. Deep pixels close as a picture's
+/// do, by their own sums; a pixel is open while either wants it.
+class DeepSink final : public TileSink<DoubleEncoding> {
  public:
-  /// `integrator`, `space` and `collector` must outlive this object; threads share the collector.
-  DeepSink(const projection::PixelSpace& space, const integrals::SegmentIntegrator& integrator,
-           const scene::TransferFunction& function, double longest_ray, scene::Emission emission, double accuracy,
-           DeepTarget& collector);
+  /// The scene's values, the window's image and `collector` must outlive this object; threads share the collector.
+  DeepSink(const TileScene& scene, const ImageWindow& window, const scene::TransferFunction& function,
+           scene::Emission emission, double accuracy, DeepTarget& collector);
 
   void start(const scene::PixelRect& rect) override;
-  void take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) override;
-  bool take_unordered(const projection::RaySegments&, const sorting::PixelLists&, double) override { return false; }
-  [[nodiscard]] bool open(std::size_t pixel) const override { return open_[pixel] != 0; }
-  [[nodiscard]] std::size_t open_count() const override { return open_count_; }
+  void take(Store& lists, double final_depth, std::size_t at_least, scene::TraceLaps& laps) override;
+  bool take_unordered(Store&, double, scene::TraceLaps&) override { return false; }
+  [[nodiscard]] const std::vector<std::uint8_t>& open() const override { return open_; }
+  [[nodiscard]] bool any_open() const override { return picture_.any_open() || deep_open_count_ > 0; }
   void finish() override;
+  [[nodiscard]] std::uint64_t segments() const override { return segments_; }
 
   /// Working memory a pixel of the tile.
   static constexpr std::size_t bytes_a_pixel = sizeof(DeepMerger) + 3 * sizeof(double);
 
  private:
-  void integrate_pieces();
+  void integrate_pieces(scene::TraceLaps& laps);
 
-  const projection::PixelSpace* space_;
-  const integrals::SegmentIntegrator* integrator_;
+  TileScene scene_;
+  TilePixels<DoubleEncoding> picture_;
+  ImageWindow window_;
   PieceCutter cutter_;
-  double accuracy_, left_out_per_transmittance_, termination_error_;
+  double accuracy_;
   DeepTarget* collector_;
   scene::PixelRect rect_{0, 0, 0, 0};
-  std::vector<DeepMerger> mergers_;  ///< one a pixel
+  std::uint64_t segments_ = 0, segments_here_ = 0;  ///< of finished rectangles, of this one
+  std::vector<DeepMerger> mergers_;                 ///< one a pixel
   std::vector<double> transmittance_before_, length_per_depth_;
-  std::vector<std::uint8_t> open_;
-  std::size_t open_count_ = 0;
+  std::vector<std::uint8_t> open_, deep_open_;
+  std::size_t deep_open_count_ = 0;
   std::vector<DeepPiece> pieces_;  ///< that wait for the integrator
   std::vector<std::uint32_t> piece_pixels_;
   integrals::SegmentBatch batch_;

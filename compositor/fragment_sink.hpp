@@ -1,22 +1,28 @@
 #pragma once
 
+#include <utility>
+
 #include "compositor/tile_sink.hpp"
 #include "exchange/part_writer.hpp"
 
 namespace tessera::compositor {
 
 /// A sink that makes fragments for another process.
-class FragmentSink : public TileSink, protected exchange::PartWriter {
+template <class Encoding>
+class FragmentSink : public TileSink<Encoding> {
  public:
-  using exchange::PartWriter::Deliver;
+  using Deliver = exchange::PartWriter::Deliver;
 
-  FragmentSink(exchange::RecordKind kind, Deliver deliver) : exchange::PartWriter(kind, std::move(deliver)) {}
+  void begin_tile(std::size_t tile, const scene::PixelRect& rect) override { writer_.begin_tile(tile, rect); }
+  void end_tile() override { writer_.end_tile(); }
+  void start(const scene::PixelRect& rect) override { writer_.start(rect); }
+  [[nodiscard]] std::uint64_t segments() const final { return segments_; }
 
-  void begin_tile(std::size_t tile, const scene::PixelRect& rect) override {
-    exchange::PartWriter::begin_tile(tile, rect);
-  }
-  void end_tile() override { exchange::PartWriter::end_tile(); }
-  void start(const scene::PixelRect& rect) override { exchange::PartWriter::start(rect); }
+ protected:
+  FragmentSink(exchange::RecordKind kind, Deliver deliver) : writer_(kind, std::move(deliver)) {}
+
+  exchange::PartWriter writer_;
+  std::uint64_t segments_ = 0;
 };
 
 }  // namespace tessera::compositor

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -7,98 +9,69 @@
 
 #include "compositor/deep_sink.hpp"
 #include "compositor/merge_kinds.hpp"
-#include "compositor/tile_pixels.hpp"
+#include "compositor/picture_sink.hpp"
 #include "compositor/tuple_record.hpp"
-#include "compositor/two_sinks.hpp"
-#include "projection/ray_segments.hpp"
-#include "sorting/pixel_lists.hpp"
 
 namespace tessera::compositor {
 namespace {
 
-using Key = sorting::PixelLists::Key;
+scene::Error malformed(std::uint32_t tile) {
+  return {scene::ErrorCode::system_failure,
+          fmt::format("exchange: the segments of tile {} are malformed; all ranks must run the same program", tile)};
+}
 
-/// Raw segments: sorted and integrated here, by the code that does it for a single process.
+/// Raw segments: sorted, integrated and composited here, by the sinks that do it for a single process. A merger of one
+/// kind of record adds them to the stores.
+template <class Encoding>
 class SegmentMerger : public TileMerger {
  public:
-  SegmentMerger(const MergeContext& context, const scene::PixelRect& rect, Key key = Key::front)
-      : budget_(context.budget_bytes),
-        rect_(rect),
-        key_(key),
-        image_({rect.x1 - rect.x0, rect.y1 - rect.y0}),
-        sink_(std::make_unique<TilePixels>(*context.space, *context.integrator, context.max_color, context.longest_ray,
-                                           context.emission, ImageWindow{&image_, rect.x0, rect.y0})) {
-    if (context.deep_accuracy > 0)
-      sink_ = std::make_unique<TwoSinks>(
-          std::move(sink_),
-          std::make_unique<DeepSink>(*context.space, *context.integrator, *context.function, context.longest_ray,
-                                     context.emission, context.deep_accuracy, deep_));
-    sink_->start(rect);
-  }
-
-  void add(const exchange::TilePart& part) override {
-    const bool cell_data = part.kind == exchange::RecordKind::chains_of_cells;
-    reserve(segments_.size + part.fragments);
-    exchange::RecordReader reader(part.records.bytes());
-    while (!reader.empty()) {
-      const auto chain = reader.take<exchange::ChainHeader>();
-      check_room(part.tile, chain.pixel, chain.links);
-      double front = chain.front, scalar = chain.scalar_front;
-      for (std::uint32_t i = 0; i < chain.links; ++i) {
-        const auto link = reader.take<exchange::ChainLink>();
-        const std::size_t at = segments_.size++;
-        segments_.pixel_and_tet[at] = link.tet << 32 | chain.pixel;
-        segments_.front[at] = front;
-        segments_.back[at] = link.back;
-        segments_.scalar_front[at] = cell_data ? link.scalar : scalar;
-        segments_.scalar_back[at] = link.scalar;
-        front = link.back;
-        scalar = link.scalar;
-      }
-    }
-  }
-
   void advance(double final_depth) override {
-    lists_.sort(segments_, static_cast<std::size_t>(rect_.area()), key_);
-    sink_->take(segments_, lists_, final_depth);
-    const std::vector<double>& depth = key_ == Key::front ? segments_.front : segments_.back;
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < segments_.size; ++i)
-      if (!(depth[i] < final_depth) && sink_->open(segments_.pixel(i))) segments_.move(i, kept++);
-    segments_.size = kept;
+    scene::TraceLaps laps(context_.trace);
+    for (Square& square : squares_)
+      if (square.sink) square.sink->take(square.store, first_from(final_depth), 1, laps);
   }
 
   MergedTile finish() override {
-    sink_->finish();
+    for (Square& square : squares_)
+      if (square.sink) square.sink->finish();
     return {std::move(image_), std::move(deep_.counts), std::move(deep_.samples)};
   }
 
  protected:
-  projection::RaySegments& segments() { return segments_; }
+  /// A rectangle that one store holds. Without a sink until it is opened.
+  struct Square {
+    scene::PixelRect rect;
+    typename Encoding::Store store;
+    std::unique_ptr<TileSink<Encoding>> sink;
+  };
 
-  void check_room(std::uint32_t tile, std::uint32_t pixel, std::size_t more) const {
-    if (pixel >= static_cast<std::uint32_t>(rect_.area()) || more > segments_.capacity() - segments_.size)
-      throw scene::Error(
-          scene::ErrorCode::system_failure,
-          fmt::format("exchange: the segments of tile {} are malformed; all ranks must run the same program", tile));
+  SegmentMerger(const MergeContext& context, const scene::PixelRect& rect)
+      : context_(context),
+        scene_{context.space, context.integrator,
+               integrals::opacity_weight(context.max_color, context.longest_ray, context.emission), context.table,
+               context.lattice != nullptr ? *context.lattice : scene::Lattice{}},
+        rect_(rect),
+        image_({rect.width(), rect.height()}) {}
+
+  void open(Square& square) {
+    const ImageWindow window{&image_, rect_.x0, rect_.y0};
+    if constexpr (std::is_same_v<Encoding, DoubleEncoding>)
+      if (context_.deep_accuracy > 0)
+        square.sink = std::make_unique<DeepSink>(scene_, window, *context_.function, context_.emission,
+                                                 context_.deep_accuracy, deep_);
+    if (!square.sink) square.sink = std::make_unique<PictureSink<Encoding>>(scene_, window);
+    square.sink->start(square.rect);
   }
 
-  void reserve(std::size_t segments) {
-    if (segments <= segments_.capacity()) return;
-    constexpr std::size_t each =
-        projection::RaySegments::bytes_each + sorting::PixelLists::bytes_each + integrals::SegmentBatch::bytes_each;
-    if (segments * each > budget_ || segments > std::numeric_limits<std::uint32_t>::max())
-      throw scene::Error(scene::ErrorCode::system_failure,
-                         fmt::format("the tile at pixel {},{} holds {} ray segments at once, beyond the memory budget; "
-                                     "raise `memory` or make `tile_size` smaller",
-                                     rect_.x0, rect_.y0, segments));
-    segments_.reserve(std::min<std::size_t>(std::max(segments, 2 * segments_.capacity()), budget_ / each));
-  }
+  /// The first depth that does not lie before `depth`, in the encoding.
+  [[nodiscard]] virtual typename Encoding::Depth first_from(double depth) const = 0;
+
+  MergeContext context_;
+  TileScene scene_;
+  scene::PixelRect rect_;
+  std::vector<Square> squares_;
 
  private:
-  std::uint64_t budget_;
-  scene::PixelRect rect_;
-  Key key_;
   scene::Image image_;
   /// The samples of the tile, which DeepSink gives all at once.
   struct Deep final : DeepTarget {
@@ -109,34 +82,169 @@ class SegmentMerger : public TileMerger {
     std::vector<std::uint32_t> counts;
     std::vector<scene::DeepImageSample> samples;
   } deep_;
-  std::unique_ptr<TileSink> sink_;
-  projection::RaySegments segments_;
-  sorting::PixelLists lists_;
+};
+
+/// Segments in double precision, in chains: one store for the tile.
+class ChainMerger : public SegmentMerger<DoubleEncoding> {
+ public:
+  using Key = sorting::SegmentLists::Key;
+
+  ChainMerger(const MergeContext& context, const scene::PixelRect& rect, Key key = Key::front)
+      : SegmentMerger(context, rect) {
+    squares_.push_back({rect, {}, nullptr});
+    squares_[0].store.reset(static_cast<std::size_t>(rect.area()), key);
+    open(squares_[0]);
+  }
+
+  void add(const exchange::TilePart& part) override {
+    const bool cell_data = part.kind == exchange::RecordKind::chains_of_cells;
+    projection::RaySegments& segments = reserve(part.fragments);
+    exchange::RecordReader reader(part.records.bytes());
+    while (!reader.empty()) {
+      const auto chain = reader.take<exchange::ChainHeader>();
+      check_room(part.tile, chain.pixel, chain.links);
+      double front = chain.front, scalar = chain.scalar_front;
+      for (std::uint32_t i = 0; i < chain.links; ++i) {
+        const auto link = reader.take<exchange::ChainLink>();
+        const std::size_t at = segments.size++;
+        segments.pixel_and_tet[at] = link.tet << 32 | chain.pixel;
+        segments.front[at] = front;
+        segments.back[at] = link.back;
+        segments.scalar_front[at] = cell_data ? link.scalar : scalar;
+        segments.scalar_back[at] = link.scalar;
+        front = link.back;
+        scalar = link.scalar;
+      }
+    }
+  }
+
+ protected:
+  [[nodiscard]] double first_from(double depth) const override { return depth; }
+
+  void check_room(std::uint32_t tile, std::uint32_t pixel, std::size_t more) const {
+    const projection::RaySegments& segments = squares_[0].store.segments;
+    if (pixel >= static_cast<std::uint32_t>(rect_.area()) || more > segments.capacity() - segments.size)
+      throw malformed(tile);
+  }
+
+  /// Room for `more` segments.
+  projection::RaySegments& reserve(std::size_t more) {
+    projection::RaySegments& held = squares_[0].store.segments;
+    const std::size_t segments = held.size + more;
+    if (segments <= held.capacity()) return held;
+    constexpr std::size_t each = sorting::SegmentLists::bytes_each + integrals::SegmentBatch::bytes_each;
+    const std::uint64_t budget = context_.budget_bytes;
+    if (segments * each > budget || segments > std::numeric_limits<std::uint32_t>::max())
+      throw scene::Error(scene::ErrorCode::system_failure,
+                         fmt::format("the tile at pixel {},{} holds {} ray segments at once, beyond the memory budget; "
+                                     "raise `memory` or make `tile_size` smaller",
+                                     rect_.x0, rect_.y0, segments));
+    held.reserve(std::min<std::size_t>(std::max(segments, 2 * held.capacity()), budget / each));
+    return held;
+  }
 };
 
 /// The paper's tuples, whose key is the back alone. Equal ones stand by projector, then as they came: the order of
 /// cells.
-class TupleMerger final : public SegmentMerger {
+class TupleMerger final : public ChainMerger {
  public:
-  TupleMerger(const MergeContext& context, const scene::PixelRect& rect)
-      : SegmentMerger(context, rect, Key::back), longest_edge_(context.longest_edge) {}
+  TupleMerger(const MergeContext& context, const scene::PixelRect& rect) : ChainMerger(context, rect, Key::back) {}
 
   void add(const exchange::TilePart& part) override {
-    reserve(segments().size + part.fragments);
+    projection::RaySegments& segments = reserve(part.fragments);
     exchange::RecordReader reader(part.records.bytes());
     while (!reader.empty()) {
       const auto record = reader.take<TupleRecord>();
       check_room(part.tile, record.pixel, 1);
       // 2^22 arrivals before the number comes round are more than the ties of any one depth.
       const auto arrival = static_cast<std::uint32_t>(part.projector) << 22 | (arrivals_++ & 0x3fffff);
-      projection::from_tuple(record.tuple, record.pixel, arrival, longest_edge_, segments(), segments().size);
-      ++segments().size;
+      projection::from_tuple(record.tuple, record.pixel, arrival, context_.longest_edge, segments, segments.size);
+      ++segments.size;
     }
   }
 
  private:
-  float longest_edge_;
   std::uint32_t arrivals_ = 0;
+};
+
+/// Lattice segments: a store for each square of the tile, opened by its first segment, as a large tile has many, most
+/// of them empty at any time.
+class WindowMerger final : public SegmentMerger<LatticeEncoding> {
+ public:
+  WindowMerger(const MergeContext& context, const scene::PixelRect& rect)
+      : SegmentMerger(context, rect), places_(static_cast<std::size_t>(rect.area())) {
+    const auto next = [](int v) { return (v & ~(LatticeEncoding::square - 1)) + LatticeEncoding::square; };
+    for (int y = rect.y0; y < rect.y1; y = next(y))
+      for (int x = rect.x0; x < rect.x1; x = next(x))
+        add_square({x, y, std::min(rect.x1, next(x)), std::min(rect.y1, next(y))});
+  }
+
+  void add(const exchange::TilePart& part) override {
+    exchange::RecordReader reader(part.records.bytes());
+    while (!reader.empty()) {
+      const auto header = reader.take<exchange::LatticeHeader>();
+      if (header.pixel >= places_.size()) throw malformed(part.tile);
+      const Place place = places_[header.pixel];
+      Square& square = squares_[place.square];
+      projection::SegmentWindows& windows = square.store;
+      if (!square.sink) {
+        windows.reset(static_cast<std::size_t>(square.rect.area()), first_capacity);
+        open(square);
+        hold(windows.bytes() + sizeof(PictureSink<LatticeEncoding>), first_capacity);
+      }
+      for (std::uint32_t i = 0; i < header.segments; ++i) {
+        const auto segment = reader.take<projection::LatticeSegment>();
+        while (!windows.push(place.pixel, segment)) grow(windows);
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t first_capacity = 8;  ///< segments a pixel
+
+  /// Where a pixel of the tile is.
+  struct Place {
+    std::uint32_t square, pixel;
+  };
+
+  [[nodiscard]] std::int64_t first_from(double depth) const override {
+    const scene::Lattice& lattice = scene_.lattice;
+    const double steps = (depth - lattice.depth_origin) / lattice.depth_unit;
+    if (!(std::abs(steps) < 0x1p40)) return steps > 0 ? 1LL << 40 : -(1LL << 40);
+    auto step = static_cast<std::int64_t>(std::ceil(steps));
+    while (lattice.depth(static_cast<double>(step - 1)) >= depth) --step;
+    while (lattice.depth(static_cast<double>(step)) < depth) ++step;
+    return step;
+  }
+
+  void add_square(const scene::PixelRect& rect) {
+    const auto number = static_cast<std::uint32_t>(squares_.size());
+    squares_.push_back({rect, {}, nullptr});
+    std::uint32_t pixel = 0;
+    for (int y = rect.y0; y < rect.y1; ++y)
+      for (int x = rect.x0; x < rect.x1; ++x)
+        places_[static_cast<std::size_t>(y - rect_.y0) * static_cast<std::size_t>(rect_.width()) +
+                static_cast<std::size_t>(x - rect_.x0)] = {number, pixel++};
+  }
+
+  void grow(projection::SegmentWindows& windows) {
+    const std::size_t grown = windows.bytes_after_growth(), more = grown - windows.bytes();
+    hold(grown > windows.most_bytes ? context_.budget_bytes + 1 : more, windows.capacity());
+    windows.grow();
+  }
+
+  void hold(std::uint64_t more_bytes, std::size_t capacity) {
+    bytes_ += more_bytes;
+    if (bytes_ <= context_.budget_bytes) return;
+    throw scene::Error(
+        scene::ErrorCode::system_failure,
+        fmt::format("the tile at pixel {},{} holds more than {} ray segments of a pixel at once, beyond the memory "
+                    "budget; raise `memory` or make `tile_size` smaller",
+                    rect_.x0, rect_.y0, capacity));
+  }
+
+  std::vector<Place> places_;
+  std::uint64_t bytes_ = 0;
 };
 
 }  // namespace
@@ -146,7 +254,14 @@ std::unique_ptr<TileMerger> make_tuple_merger(const MergeContext& context, const
 }
 
 std::unique_ptr<TileMerger> make_segment_merger(const MergeContext& context, const scene::PixelRect& rect) {
-  return std::make_unique<SegmentMerger>(context, rect);
+  return std::make_unique<ChainMerger>(context, rect);
+}
+
+std::unique_ptr<TileMerger> make_window_merger(const MergeContext& context, const scene::PixelRect& rect) {
+  if (context.lattice == nullptr || context.table == nullptr)
+    throw scene::Error(scene::ErrorCode::system_failure,
+                       "exchange: lattice segments without a lattice; all ranks must run the same program");
+  return std::make_unique<WindowMerger>(context, rect);
 }
 
 }  // namespace tessera::compositor

@@ -1,130 +1,160 @@
 #include "compositor/run_sink.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 namespace tessera::compositor {
-RunSink::RunSink(const projection::PixelSpace& space, const integrals::SegmentIntegrator& integrator, double max_color,
-                 double longest_ray, scene::Emission emission, std::uint64_t bytes_between_cuts, Deliver deliver)
-    : FragmentSink(exchange::RecordKind::runs, std::move(deliver)),
-      space_(&space),
-      integrator_(&integrator),
-      left_out_per_transmittance_(integrals::opacity_weight(max_color, longest_ray, emission)),
-      termination_error_(integrator.termination_error()),
+namespace {
+
+template <class Encoding>
+constexpr exchange::RecordKind kind =
+    std::is_same_v<Encoding, LatticeEncoding> ? exchange::RecordKind::lattice_runs : exchange::RecordKind::runs;
+
+double planar_depth(const TileScene&, double depth) { return depth; }
+double planar_depth(const TileScene& scene, std::int64_t step) {
+  return scene.lattice.depth(static_cast<double>(step));
+}
+
+void append_run(const TileScene& scene, const WindowState::Run& run, exchange::Bytes& out) {
+  if (!run.several) {
+    exchange::append(out, run.first);
+    return;
+  }
+  const double front = first_visible_depth(scene.lattice, run.first, *scene.integrator);
+  exchange::append(out, exchange::LatticeRun{scene.lattice.depth_step(front), run.back, static_cast<float>(run.red),
+                                             static_cast<float>(run.green), static_cast<float>(run.blue),
+                                             static_cast<float>(run.opacity)});
+}
+
+void write_runs(const TileScene&, std::vector<TilePixels<DoubleEncoding>::Run>& runs, exchange::PartWriter& writer) {
+  for (const auto& run : runs)
+    exchange::append(
+        writer.records(),
+        exchange::RunRecord{run.front, static_cast<float>(run.back - run.front), static_cast<float>(run.red),
+                            static_cast<float>(run.green), static_cast<float>(run.blue),
+                            static_cast<float>(-std::expm1(-run.optical_depth)), writer.tile_pixel(run.pixel)});
+  writer.count(runs.size());
+}
+
+/// Runs of one pixel share a header.
+void write_runs(const TileScene& scene, std::vector<WindowState::Run>& runs, exchange::PartWriter& writer) {
+  const auto by_pixel = [](const WindowState::Run& a, const WindowState::Run& b) { return a.pixel < b.pixel; };
+  if (!std::is_sorted(runs.begin(), runs.end(), by_pixel)) std::stable_sort(runs.begin(), runs.end(), by_pixel);
+  exchange::Bytes& out = writer.records();
+  constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max();
+  for (auto first = runs.begin(); first != runs.end();) {
+    auto last = first;
+    while (last != runs.end() && last->pixel == first->pixel && static_cast<std::size_t>(last - first) < most) ++last;
+    const auto segments = std::partition(first, last, [](const WindowState::Run& run) { return run.several; });
+    exchange::append(out,
+                     exchange::RunsHeader{writer.tile_pixel(first->pixel), static_cast<std::uint16_t>(segments - first),
+                                          static_cast<std::uint16_t>(last - segments)});
+    for (auto run = first; run != last; ++run) append_run(scene, *run, out);
+    writer.count(static_cast<std::uint64_t>(last - first));
+    first = last;
+  }
+}
+
+/// Mostly each ray ends its first run with the rectangle: straight from the state then.
+void write_only_runs(const TileScene& scene, const WindowState& state, exchange::PartWriter& writer) {
+  const scene::PixelRect& rect = writer.rect();
+  exchange::Bytes& out = writer.records();
+  out.reserve(out.size() +
+              static_cast<std::size_t>(rect.area()) * (sizeof(exchange::RunsHeader) + sizeof(exchange::LatticeRun)));
+  std::uint64_t runs = 0;
+  std::size_t p = 0;
+  for (int y = rect.y0; y < rect.y1; ++y) {
+    const std::uint32_t row = writer.tile_pixel(p);
+    for (std::uint32_t x = 0; x < static_cast<std::uint32_t>(rect.width()); ++x, ++p) {
+      if (state.first_back[p] == WindowState::not_yet) continue;
+      const WindowState::Run run = state.run(p);
+      exchange::append(out, exchange::RunsHeader{row + x, static_cast<std::uint16_t>(run.several),
+                                                 static_cast<std::uint16_t>(!run.several)});
+      append_run(scene, run, out);
+      ++runs;
+    }
+  }
+  writer.count(runs);
+}
+
+auto& ended_of(TilePixels<DoubleEncoding>& pixels) { return pixels.ended; }
+auto& ended_of(TilePixels<LatticeEncoding>& pixels) { return pixels.state().ended; }
+
+}  // namespace
+
+template <class Encoding>
+RunSink<Encoding>::RunSink(const TileScene& scene, std::uint64_t bytes_between_cuts, Deliver deliver)
+    : FragmentSink<Encoding>(kind<Encoding>, std::move(deliver)),
+      scene_(scene),
+      pixels_(scene, true),
       bytes_between_cuts_(bytes_between_cuts) {}
 
-void RunSink::begin_tile(std::size_t tile, const scene::PixelRect& rect) {
-  FragmentSink::begin_tile(tile, rect);
-  in_order_ = true;
+template <class Encoding>
+void RunSink<Encoding>::begin_tile(std::size_t tile, const scene::PixelRect& rect) {
+  FragmentSink<Encoding>::begin_tile(tile, rect);
   bytes_since_cut_ = 0;
 }
 
-void RunSink::start(const scene::PixelRect& rect) {
-  FragmentSink::start(rect);
-  const auto n = static_cast<std::size_t>(rect.area());
-  runs_.assign(n, Run{});
-  transmittance_.assign(n, 1.0);
-  open_.assign(n, 1);
-  open_count_ = n;
-  length_per_depth_.resize(n);
-  std::size_t i = 0;
-  for (int y = rect.y0; y < rect.y1; ++y)
-    for (int x = rect.x0; x < rect.x1; ++x) length_per_depth_[i++] = space_->length_per_depth(x + 0.5, y + 0.5);
+template <class Encoding>
+void RunSink<Encoding>::start(const scene::PixelRect& rect) {
+  FragmentSink<Encoding>::start(rect);
+  pixels_.start(rect);
 }
 
-void RunSink::integrate(const projection::RaySegments& segments, const sorting::PixelLists& lists, double end_depth) {
-  batch_.reserve(segments.size);
-  batch_.size = 0;
-  for (std::size_t p = 0; p < open_.size(); ++p) {
-    if (!open_[p]) continue;
-    for (const auto& entry : lists.pixel(p)) {
-      const std::uint32_t i = entry.segment;
-      if (!(entry.depth < end_depth)) break;
-      batch_.length[batch_.size] = (segments.back[i] - segments.front[i]) * length_per_depth_[p];
-      batch_.scalar_front[batch_.size] = segments.scalar_front[i];
-      batch_.scalar_back[batch_.size] = segments.scalar_back[i];
-      ++batch_.size;
-    }
-  }
-  integrator_->integrate(batch_);
-}
-
-void RunSink::close(std::size_t pixel) {
-  Run& run = runs_[pixel];
-  if (run.begun && run.visible()) {
-    exchange::append(
-        records(), exchange::RunRecord{run.front, static_cast<float>(run.back - run.front), static_cast<float>(run.red),
-                                       static_cast<float>(run.green), static_cast<float>(run.blue),
-                                       static_cast<float>(-std::expm1(-run.optical_depth)), tile_pixel(pixel)});
-    count(1);
-    bytes_since_cut_ += sizeof(exchange::RunRecord);
-  }
-  run.begun = false;
-}
-
-void RunSink::close_runs() {
-  for (std::size_t p = 0; p < runs_.size(); ++p) close(p);
-}
-
-void RunSink::merge(const projection::RaySegments& segments, const sorting::PixelLists& lists, double end_depth) {
-  integrate(segments, lists, end_depth);
-  std::size_t next = 0;
-  for (std::size_t p = 0; p < open_.size(); ++p) {
-    if (!open_[p]) continue;
-    Run& run = runs_[p];
-    bool open = true;
-    for (const auto& entry : lists.pixel(p)) {
-      const std::uint32_t i = entry.segment;
-      if (!(entry.depth < end_depth)) break;
-      const std::size_t k = next++;
-      if (!open) continue;
-      // Light without optical depth (independent emission) does not share a fragment with what absorbs behind it: the
-      // fragment's front is where absorption begins.
-      const bool absorbs = batch_.optical_depth[k] > 0;
-      if (run.begun && (run.back != segments.front[i] || (absorbs && run.optical_depth == 0 && run.visible())))
-        close(p);
-      if (!run.begun) run = {segments.front[i], 0, 0, 0, 0, 1, 0, true};
-      if (!run.visible()) {
-        const double at =
-            absorbs ? integrator_->first_visible(segments.scalar_front[i], segments.scalar_back[i]).value_or(0) : 0;
-        run.front = segments.front[i] + (segments.back[i] - segments.front[i]) * at;
-      }
-      run.back = segments.back[i];
-      run.red += run.transmittance * batch_.red[k];
-      run.green += run.transmittance * batch_.green[k];
-      run.blue += run.transmittance * batch_.blue[k];
-      run.optical_depth += batch_.optical_depth[k];
-      run.transmittance *= batch_.transmittance[k];
-      transmittance_[p] *= batch_.transmittance[k];
-      open = !in_order_ || transmittance_[p] * left_out_per_transmittance_ >= termination_error_;
-    }
-    if (!open) {
-      close(p);
-      open_[p] = 0;
-      --open_count_;
-    }
-  }
-}
-
-void RunSink::take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) {
-  merge(segments, lists, final_depth);
+template <class Encoding>
+void RunSink<Encoding>::take(Store& store, Depth final_depth, std::size_t at_least, scene::TraceLaps& laps) {
+  segments_ += pixels_.take(store, final_depth, at_least, laps);
+  write_ended();
   if (bytes_since_cut_ >= bytes_between_cuts_) {
-    close_runs();
-    complete_to(final_depth);
-    bytes_since_cut_ = 0;
+    segments_ += pixels_.take(store, final_depth, 1, laps);
+    cut(final_depth);
   }
-  send_if_full();
+  laps.lap("composite");
+  writer_.send_if_full();
 }
 
-bool RunSink::take_unordered(const projection::RaySegments& segments, const sorting::PixelLists& lists,
-                             double final_depth) {
-  in_order_ = false;
-  merge(segments, lists, std::numeric_limits<double>::infinity());
-  close_runs();
-  complete_to(final_depth);
-  bytes_since_cut_ = 0;
-  send_if_full();
+template <class Encoding>
+bool RunSink<Encoding>::take_unordered(Store& store, Depth final_depth, scene::TraceLaps& laps) {
+  pixels_.keep_open();
+  segments_ += pixels_.take(store, Encoding::end, 1, laps);
+  cut(final_depth);
+  laps.lap("composite");
+  writer_.send_if_full();
   return true;
 }
+
+template <class Encoding>
+void RunSink<Encoding>::cut(Depth final_depth) {
+  pixels_.end_runs();
+  write_ended();
+  writer_.complete_to(planar_depth(scene_, final_depth));
+  bytes_since_cut_ = 0;
+}
+
+template <class Encoding>
+void RunSink<Encoding>::finish() {
+  if constexpr (std::is_same_v<Encoding, LatticeEncoding>)
+    if (ended_of(pixels_).empty()) {
+      write_only_runs(scene_, pixels_.state(), writer_);
+      return;
+    }
+  pixels_.end_runs();
+  write_ended();
+}
+
+template <class Encoding>
+void RunSink<Encoding>::write_ended() {
+  auto& ended = ended_of(pixels_);
+  if (ended.empty()) return;
+  const std::size_t before = writer_.records().size();
+  write_runs(scene_, ended, writer_);
+  bytes_since_cut_ += writer_.records().size() - before;
+  ended.clear();
+}
+
+template class RunSink<DoubleEncoding>;
+template class RunSink<LatticeEncoding>;
 
 }  // namespace tessera::compositor

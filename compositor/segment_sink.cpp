@@ -1,31 +1,62 @@
 #include "compositor/segment_sink.hpp"
 
-#include <limits>
+#include <cstring>
+#include <type_traits>
 
 #include "compositor/tuple_record.hpp"
 
 namespace tessera::compositor {
 
-void SegmentSink::write(const projection::RaySegments& segments, const sorting::PixelLists& lists, double end_depth) {
-  exchange::Bytes& out = records();
-  const auto pixels = static_cast<std::size_t>(rect().area());
-  for (std::size_t p = 0; p < pixels; ++p) {
+template <class Encoding>
+void RawSink<Encoding>::start(const scene::PixelRect& rect) {
+  FragmentSink<Encoding>::start(rect);
+  if constexpr (std::is_same_v<Encoding, LatticeEncoding>)
+    open_.fill(~0u);
+  else
+    open_.assign(static_cast<std::size_t>(rect.area()), 1);
+}
+
+template <class Encoding>
+void RawSink<Encoding>::take(Store& store, Depth final_depth, std::size_t /*at_least*/, scene::TraceLaps& laps) {
+  this->segments_ += write(store, final_depth, this->writer_);
+  this->writer_.complete_to(planar(final_depth));
+  laps.lap("pack");
+  this->writer_.send_if_full();
+}
+
+template <class Encoding>
+bool RawSink<Encoding>::take_unordered(Store& store, Depth final_depth, scene::TraceLaps& laps) {
+  this->segments_ += write(store, Encoding::end, this->writer_);
+  this->writer_.complete_to(planar(final_depth));
+  laps.lap("pack");
+  this->writer_.send_if_full();
+  return true;
+}
+
+template class RawSink<DoubleEncoding>;
+template class RawSink<LatticeEncoding>;
+
+std::uint64_t SegmentSink<DoubleEncoding>::write(Store& lists, double final_depth, exchange::PartWriter& writer) {
+  lists.sort();
+  const projection::RaySegments& segments = lists.segments;
+  exchange::Bytes& out = writer.records();
+  for (std::size_t p = 0; p < lists.pixels(); ++p) {
     std::size_t header_at = 0;
     exchange::ChainHeader chain{};
     double back = 0, scalar = 0;
     const auto close = [&] {
       if (chain.links > 0) std::memcpy(out.data() + header_at, &chain, sizeof chain);
-      count(chain.links);
+      writer.count(chain.links);
       chain.links = 0;
     };
     for (const auto& entry : lists.pixel(p)) {
       const std::uint32_t i = entry.segment;
-      if (!(entry.depth < end_depth)) break;
+      if (!(entry.depth < final_depth)) break;
       const bool touches =
           chain.links > 0 && segments.front[i] == back && (cell_data_ || segments.scalar_front[i] == scalar);
       if (!touches) {
         close();
-        chain = {tile_pixel(p), 0, segments.front[i], segments.scalar_front[i]};
+        chain = {writer.tile_pixel(p), 0, segments.front[i], segments.scalar_front[i]};
         header_at = out.size();
         exchange::append(out, chain);
       }
@@ -37,45 +68,36 @@ void SegmentSink::write(const projection::RaySegments& segments, const sorting::
     }
     close();
   }
+  return lists.remove(final_depth, {});
 }
 
-void SegmentSink::take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) {
-  write(segments, lists, final_depth);
-  complete_to(final_depth);
-  send_if_full();
+std::uint64_t SegmentSink<LatticeEncoding>::write(Store& windows, std::int64_t /*all of them, always*/,
+                                                  exchange::PartWriter& writer) {
+  exchange::Bytes& out = writer.records();
+  std::uint64_t written = 0;
+  for (std::size_t p = 0; p < windows.pixels(); ++p) {
+    const std::uint32_t count = windows.count(p);
+    if (count == 0) continue;
+    exchange::append(out, exchange::LatticeHeader{writer.tile_pixel(p), count});
+    for (std::uint32_t k = 0; k < count; ++k) exchange::append(out, windows.segments()[k * windows.stride() + p]);
+    writer.count(count);
+    written += count;
+  }
+  windows.clear();
+  return written;
 }
 
-bool SegmentSink::take_unordered(const projection::RaySegments& segments, const sorting::PixelLists& lists,
-                                 double final_depth) {
-  write(segments, lists, std::numeric_limits<double>::infinity());
-  complete_to(final_depth);
-  send_if_full();
-  return true;
-}
-
-void TupleSink::write(const projection::RaySegments& segments, const sorting::PixelLists& lists, double end_depth) {
-  const auto pixels = static_cast<std::size_t>(rect().area());
-  for (std::size_t p = 0; p < pixels; ++p)
+std::uint64_t TupleSink::write(Store& lists, double final_depth, exchange::PartWriter& writer) {
+  lists.sort();
+  for (std::size_t p = 0; p < lists.pixels(); ++p)
     for (const auto& entry : lists.pixel(p)) {
-      if (!(entry.depth < end_depth)) break;
-      exchange::append(records(),
-                       TupleRecord{tile_pixel(p), projection::to_tuple(segments, entry.segment, longest_edge_)});
-      count(1);
+      if (!(entry.depth < final_depth)) break;
+      exchange::append(
+          writer.records(),
+          TupleRecord{writer.tile_pixel(p), projection::to_tuple(lists.segments, entry.segment, longest_edge_)});
+      writer.count(1);
     }
-}
-
-void TupleSink::take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) {
-  write(segments, lists, final_depth);
-  complete_to(final_depth);
-  send_if_full();
-}
-
-bool TupleSink::take_unordered(const projection::RaySegments& segments, const sorting::PixelLists& lists,
-                               double final_depth) {
-  write(segments, lists, std::numeric_limits<double>::infinity());
-  complete_to(final_depth);
-  send_if_full();
-  return true;
+  return lists.remove(final_depth, {});
 }
 
 }  // namespace tessera::compositor

@@ -1,53 +1,86 @@
 #pragma once
 
-#include <vector>
+#include <span>
 
 #include "compositor/fragment_sink.hpp"
+#include "scene/lattice.hpp"
 
 namespace tessera::compositor {
 
-/// `--exchange segments`: every ray segment as it is, in chains of those that touch (wire.hpp).
-class SegmentSink final : public FragmentSink {
+/// A sink that sends every segment as it is: nothing is integrated, so no pixel is known to be opaque.
+template <class Encoding>
+class RawSink : public FragmentSink<Encoding> {
+ public:
+  using typename FragmentSink<Encoding>::Deliver;
+  using typename FragmentSink<Encoding>::Store;
+  using typename FragmentSink<Encoding>::Depth;
+
+  void start(const scene::PixelRect& rect) final;
+  void take(Store& store, Depth final_depth, std::size_t at_least, scene::TraceLaps& laps) final;
+  bool take_unordered(Store& store, Depth final_depth, scene::TraceLaps& laps) final;
+  [[nodiscard]] const typename Encoding::Open& open() const final { return open_; }
+  [[nodiscard]] bool any_open() const final { return true; }
+  void finish() final {}
+
+ protected:
+  using FragmentSink<Encoding>::FragmentSink;
+
+ private:
+  /// Appends the records of segments before `final_depth` and removes them; returns how many they are.
+  virtual std::uint64_t write(Store& store, Depth final_depth, exchange::PartWriter& writer) = 0;
+  [[nodiscard]] virtual double planar(Depth depth) const = 0;
+
+  typename Encoding::Open open_{};
+};
+
+/// Exchange::segments: every ray segment, in the encoding's records (wire.hpp).
+template <class Encoding>
+class SegmentSink;
+
+/// In chains of those that touch.
+template <>
+class SegmentSink<DoubleEncoding> final : public RawSink<DoubleEncoding> {
  public:
   /// `global_tet[t]`: index in the whole mesh of this process's tet t, ascending; empty: t itself. Must outlive the
   /// sink.
   SegmentSink(bool cell_data, std::span<const std::uint64_t> global_tet, Deliver deliver)
-      : FragmentSink(cell_data ? exchange::RecordKind::chains_of_cells : exchange::RecordKind::chains,
-                     std::move(deliver)),
+      : RawSink(cell_data ? exchange::RecordKind::chains_of_cells : exchange::RecordKind::chains, std::move(deliver)),
         cell_data_(cell_data),
         global_tet_(global_tet) {}
 
-  void take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) override;
-  bool take_unordered(const projection::RaySegments& segments, const sorting::PixelLists& lists,
-                      double final_depth) override;
-  /// Nothing is integrated here, so no pixel is known to be opaque.
-  [[nodiscard]] bool open(std::size_t) const override { return true; }
-  [[nodiscard]] std::size_t open_count() const override { return static_cast<std::size_t>(rect().area()); }
-  void finish() override {}
-
  private:
-  void write(const projection::RaySegments& segments, const sorting::PixelLists& lists, double end_depth);
+  std::uint64_t write(Store& lists, double final_depth, exchange::PartWriter& writer) override;
+  [[nodiscard]] double planar(double depth) const override { return depth; }
 
   bool cell_data_;
   std::span<const std::uint64_t> global_tet_;
 };
 
-/// `--exchange segments` of the `scanline` rasterizer: the paper's 4-tuples, in the order of their cells, as they are.
-class TupleSink final : public FragmentSink {
+/// In no order, as the compositor sorts: nothing is done here but copying, of all segments at once.
+template <>
+class SegmentSink<LatticeEncoding> final : public RawSink<LatticeEncoding> {
+ public:
+  SegmentSink(const scene::Lattice& lattice, Deliver deliver)
+      : RawSink(exchange::RecordKind::lattice, std::move(deliver)), lattice_(lattice) {}
+
+ private:
+  std::uint64_t write(Store& windows, std::int64_t final_step, exchange::PartWriter& writer) override;
+  [[nodiscard]] double planar(std::int64_t step) const override { return lattice_.depth(static_cast<double>(step)); }
+
+  scene::Lattice lattice_;
+};
+
+/// Exchange::segments of the scanline rasterizer: the 4-tuples of Juliachs et al. 2007, 4.2, in the order of their
+/// cells, as they are.
+class TupleSink final : public RawSink<DoubleEncoding> {
  public:
   /// `longest_edge`: of the whole mesh, world units.
   TupleSink(float longest_edge, Deliver deliver)
-      : FragmentSink(exchange::RecordKind::tuples, std::move(deliver)), longest_edge_(longest_edge) {}
-
-  void take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) override;
-  bool take_unordered(const projection::RaySegments& segments, const sorting::PixelLists& lists,
-                      double final_depth) override;
-  [[nodiscard]] bool open(std::size_t) const override { return true; }
-  [[nodiscard]] std::size_t open_count() const override { return static_cast<std::size_t>(rect().area()); }
-  void finish() override {}
+      : RawSink(exchange::RecordKind::tuples, std::move(deliver)), longest_edge_(longest_edge) {}
 
  private:
-  void write(const projection::RaySegments& segments, const sorting::PixelLists& lists, double end_depth);
+  std::uint64_t write(Store& lists, double final_depth, exchange::PartWriter& writer) override;
+  [[nodiscard]] double planar(double depth) const override { return depth; }
 
   float longest_edge_;
 };

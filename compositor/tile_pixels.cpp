@@ -1,39 +1,36 @@
 #include "compositor/tile_pixels.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tessera::compositor {
 
-TilePixels::TilePixels(const projection::PixelSpace& space, const integrals::SegmentIntegrator& integrator,
-                       double max_color, double longest_ray, scene::Emission emission, ImageWindow window)
-    : space_(&space), integrator_(&integrator), window_(window), termination_error_(integrator.termination_error()) {
-  left_out_per_transmittance_ = integrals::opacity_weight(max_color, longest_ray, emission);
-}
+using Lists = sorting::SegmentLists;
+using ListPixels = TilePixels<sorting::DoubleEncoding>;
+using WindowPixels = TilePixels<sorting::LatticeEncoding>;
 
-void TilePixels::start(const scene::PixelRect& rect) {
-  rect_ = rect;
+void ListPixels::start(const scene::PixelRect& rect) {
   const auto n = static_cast<std::size_t>(rect.area());
-  for (auto* channel : {&red_, &green_, &blue_, &optical_depth_}) channel->assign(n, 0.0);
+  ended.clear();
+  pixels_.assign(n, Run{});
+  for (std::size_t p = 0; p < n; ++p) pixels_[p].pixel = static_cast<std::uint32_t>(p);
   transmittance_.assign(n, 1.0);
-  first_depth_.assign(n, std::numeric_limits<double>::infinity());
   open_.assign(n, 1);
   open_count_ = n;
+  closes_ = true;
   length_per_depth_.resize(n);
   std::size_t i = 0;
   for (int y = rect.y0; y < rect.y1; ++y)
-    for (int x = rect.x0; x < rect.x1; ++x) length_per_depth_[i++] = space_->length_per_depth(x + 0.5, y + 0.5);
+    for (int x = rect.x0; x < rect.x1; ++x) length_per_depth_[i++] = scene_.space->length_per_depth(x + 0.5, y + 0.5);
 }
 
-void TilePixels::take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) {
-  const auto is_final = [&](const sorting::PixelLists::Entry& entry) { return entry.depth < final_depth; };
+void ListPixels::integrate(const Lists& lists, double final_depth) {
+  const projection::RaySegments& segments = lists.segments;
   batch_.reserve(segments.size);
   batch_.size = 0;
   for (std::size_t p = 0; p < open_.size(); ++p) {
     if (!open_[p]) continue;
     for (const auto& entry : lists.pixel(p)) {
-      if (!is_final(entry)) break;
+      if (!(entry.depth < final_depth)) break;
       const std::uint32_t i = entry.segment;
       batch_.length[batch_.size] = (segments.back[i] - segments.front[i]) * length_per_depth_[p];
       batch_.scalar_front[batch_.size] = segments.scalar_front[i];
@@ -41,32 +38,65 @@ void TilePixels::take(const projection::RaySegments& segments, const sorting::Pi
       ++batch_.size;
     }
   }
-  integrator_->integrate(batch_);
+  scene_.integrator->integrate(batch_);
+}
 
+/// Ends a run that a pixel is in.
+void ListPixels::end(Run& run) {
+  if (run.begun && run.visible()) ended.push_back(run);
+  const std::uint32_t pixel = run.pixel;
+  run = Run{};
+  run.pixel = pixel;
+}
+
+void ListPixels::end_runs() {
+  for (Run& run : pixels_) end(run);
+}
+
+template <bool runs>
+void ListPixels::add(const Lists& lists, double final_depth) {
+  const projection::RaySegments& segments = lists.segments;
+  const double termination_error = scene_.integrator->termination_error();
   std::size_t next = 0;
   for (std::size_t p = 0; p < open_.size(); ++p) {
     if (!open_[p]) continue;
-    double red = red_[p], green = green_[p], blue = blue_[p], transmittance = transmittance_[p],
-           depth = optical_depth_[p];
+    Run run = pixels_[p];
+    double transmittance = transmittance_[p];
     bool open = true;
     for (const auto& entry : lists.pixel(p)) {
-      if (!is_final(entry)) break;
+      if (!(entry.depth < final_depth)) break;
+      const std::uint32_t i = entry.segment;
       const std::size_t k = next++;
       if (!open) continue;
-      if (depth == 0 && batch_.optical_depth[k] > 0 && std::isinf(first_depth_[p])) {
-        const std::uint32_t i = entry.segment;
-        const double at = integrator_->first_visible(segments.scalar_front[i], segments.scalar_back[i]).value_or(0);
-        first_depth_[p] = segments.front[i] + (segments.back[i] - segments.front[i]) * at;
+      const bool absorbs = batch_.optical_depth[k] > 0;
+      bool appears = absorbs && run.optical_depth == 0 && std::isinf(run.front);
+      if constexpr (runs) {
+        // Light without optical depth (independent emission) does not share a fragment with what absorbs behind it: the
+        // fragment's front is where absorption begins.
+        if (run.begun && (run.back != segments.front[i] || (absorbs && run.optical_depth == 0 && run.visible())))
+          end(run);
+        run.begun = true;
+        run.back = segments.back[i];
+        appears = !run.visible();
       }
-      red += transmittance * batch_.red[k];
-      green += transmittance * batch_.green[k];
-      blue += transmittance * batch_.blue[k];
-      depth += batch_.optical_depth[k];
+      if (appears) {
+        const double at =
+            absorbs ? scene_.integrator->first_visible(segments.scalar_front[i], segments.scalar_back[i]).value_or(0)
+                    : 0;
+        run.front = segments.front[i] + (segments.back[i] - segments.front[i]) * at;
+      }
+      run.red += run.transmittance * batch_.red[k];
+      run.green += run.transmittance * batch_.green[k];
+      run.blue += run.transmittance * batch_.blue[k];
+      run.optical_depth += batch_.optical_depth[k];
+      run.transmittance *= batch_.transmittance[k];
       transmittance *= batch_.transmittance[k];
       // After each segment, not each batch: where a ray ends must not depend on how segments were batched.
-      open = transmittance * left_out_per_transmittance_ >= termination_error_;
+      open = !closes_ || transmittance * scene_.left_out_per_transmittance >= termination_error;
     }
-    red_[p] = red, green_[p] = green, blue_[p] = blue, transmittance_[p] = transmittance, optical_depth_[p] = depth;
+    if (runs && !open) end(run);
+    pixels_[p] = run;
+    transmittance_[p] = transmittance;
     if (!open) {
       open_[p] = 0;
       --open_count_;
@@ -74,18 +104,39 @@ void TilePixels::take(const projection::RaySegments& segments, const sorting::Pi
   }
 }
 
-void TilePixels::finish() {
-  scene::Image& image = *window_.image;
-  std::size_t i = 0;
-  for (int y = rect_.y0; y < rect_.y1; ++y)
-    for (int x = rect_.x0; x < rect_.x1; ++x, ++i) {
-      const std::size_t at = image.index(x - window_.x0, y - window_.y0);
-      image.rgba[4 * at + 0] = static_cast<float>(red_[i]);
-      image.rgba[4 * at + 1] = static_cast<float>(green_[i]);
-      image.rgba[4 * at + 2] = static_cast<float>(blue_[i]);
-      image.rgba[4 * at + 3] = static_cast<float>(-std::expm1(-optical_depth_[i]));
-      image.depth[at] = static_cast<float>(first_depth_[i]);
-    }
+void ListPixels::composite(Lists& lists, double final_depth, scene::TraceLaps& laps) {
+  lists.sort();
+  laps.lap("sort");
+  integrate(lists, final_depth);
+  laps.lap("integrate");
+  runs_ ? add<true>(lists, final_depth) : add<false>(lists, final_depth);
+  laps.lap("composite");
+}
+
+PixelValue ListPixels::value(std::size_t p) const {
+  const Run& ray = pixels_[p];
+  return {ray.red, ray.green, ray.blue, -std::expm1(-ray.optical_depth), ray.front};
+}
+
+void WindowPixels::start(const scene::PixelRect& rect) {
+  rect_ = rect;
+  rules_.least_transmittance = scene_.least_transmittance();
+  state_.start(rect, *scene_.space);
+  open_count_ = state_.open_pixels(rect, open_);
+}
+
+void WindowPixels::end_runs() {
+  for (std::size_t p = 0; p < static_cast<std::size_t>(rect_.area()); ++p) state_.end_run(p);
+}
+
+PixelValue WindowPixels::value(std::size_t p) const {
+  const WindowState& s = state_;
+  double depth = std::numeric_limits<double>::infinity();
+  if (s.first_back[p] != WindowState::not_yet)
+    depth = first_visible_depth(scene_.lattice,
+                                {s.first_front[p], s.first_back[p], s.first_scalar_front[p], s.first_scalar_back[p]},
+                                *scene_.integrator);
+  return {s.red[p], s.green[p], s.blue[p], 1 - s.transmittance[p], depth};
 }
 
 }  // namespace tessera::compositor

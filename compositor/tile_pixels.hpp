@@ -1,58 +1,120 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
+#include <limits>
 #include <vector>
 
-#include "compositor/tile_sink.hpp"
+#include "compositor/tile_scene.hpp"
+#include "compositor/window_kernel.hpp"
 #include "integrals/segment_batch.hpp"
-#include "integrals/segment_integrator.hpp"
-#include "projection/footprint.hpp"
-#include "projection/pixel_space.hpp"
-#include "projection/ray_segments.hpp"
-#include "scene/image.hpp"
-#include "sorting/pixel_lists.hpp"
+#include "sorting/encodings.hpp"
 
 namespace tessera::compositor {
 
-/// Where finished pixels go: pixel (x0, y0) of the picture is the image's first.
-struct ImageWindow {
-  scene::Image* image;
-  int x0 = 0, y0 = 0;
+/// A pixel of a picture: premultiplied linear RGB, opacity, and the planar depth at which it begins to show, world
+/// units, infinite if it does not.
+struct PixelValue {
+  double red, green, blue, opacity, depth;
 };
 
-/// The pixels of a tile while segments are composited into them, front to back.
+/// The pixels of a rectangle while segments are composited into them, front to back: the whole ray of each as one run,
+/// or (`runs`) a new run wherever a segment does not touch the one before.
 ///
-/// Carries premultiplied linear RGB, transmittance and optical depth in double. The opacity is -expm1(-optical depth),
-/// so that a hundred thousand segments of opacity 1e-9 add up, and 1 - 1e-8 is not 1.
+///   start(rect)                       all pixels empty and open
+///   take(store, final, at_least, laps) composites what is final and removes it; returns how many segments are gone
+///   open(), any_open()                a pixel behind which everything left cannot change it by the integrator's
+///                                     termination error is closed and takes nothing more
+///   value(p)                          a picture's pixel
+///   ended, end_runs()                 runs: those that show and have ended; ends all
+///   keep_open()                       runs: until the next start() no pixel closes, as what hides it may lie behind it
 ///
-/// A pixel behind which everything left cannot change it by the integrator's termination error is closed; it takes
-/// nothing more.
-class TilePixels : public TileSink {
- public:
-  /// `longest_ray` bounds the world length of a ray inside the data: with independent emission, what may still come
-  /// behind a pixel. The window's image must outlive this object; tiles of it are disjoint, so threads may share it.
-  TilePixels(const projection::PixelSpace& space, const integrals::SegmentIntegrator& integrator, double max_color,
-             double longest_ray, scene::Emission emission, ImageWindow window);
+/// Two texts, as each encoding has arithmetic of its own: here lists of doubles, on the lattice 16 pixels a vector
+/// (window_kernel.hpp). compositor/README.md says what the second gains.
+template <class Encoding>
+class TilePixels;
 
-  void start(const scene::PixelRect& rect) override;
-  void take(const projection::RaySegments& segments, const sorting::PixelLists& lists, double final_depth) override;
-  bool take_unordered(const projection::RaySegments&, const sorting::PixelLists&, double) override { return false; }
-  [[nodiscard]] bool open(std::size_t pixel) const override { return open_[pixel] != 0; }
-  [[nodiscard]] std::size_t open_count() const override { return open_count_; }
-  /// Writes the pixels into their place in the window's image.
-  void finish() override;
+/// Sums in double, optical depth among them. The opacity is -expm1(-optical depth), so that a hundred thousand segments
+/// of opacity 1e-9 add up, and 1 - 1e-8 is not 1.
+template <>
+class TilePixels<sorting::DoubleEncoding> {
+ public:
+  /// Runs touch if one's back is the other's front to the bit: neighbours compute a shared face from the same numbers.
+  struct Run {
+    std::uint32_t pixel = 0;
+    bool begun = false;                                      ///< false: no segment yet
+    double front = std::numeric_limits<double>::infinity();  ///< where it begins to show
+    double back = 0;
+    double red = 0, green = 0, blue = 0, transmittance = 1, optical_depth = 0;
+    [[nodiscard]] bool visible() const { return optical_depth > 0 || red != 0 || green != 0 || blue != 0; }
+  };
+  std::vector<Run> ended;
+
+  TilePixels(const TileScene& scene, bool runs) : scene_(scene), runs_(runs) {}
+
+  void start(const scene::PixelRect& rect);
+  std::uint64_t take(sorting::SegmentLists& lists, double final_depth, std::size_t /*at_least*/,
+                     scene::TraceLaps& laps) {
+    composite(lists, final_depth, laps);
+    return lists.remove(final_depth, open_);
+  }
+  /// take() without removing anything.
+  void composite(sorting::SegmentLists& lists, double final_depth, scene::TraceLaps& laps);
+
+  [[nodiscard]] const std::vector<std::uint8_t>& open() const { return open_; }
+  [[nodiscard]] bool any_open() const { return open_count_ > 0; }
+  void keep_open() { closes_ = false; }
+  void end_runs();
+  [[nodiscard]] PixelValue value(std::size_t pixel) const;
 
  private:
-  const projection::PixelSpace* space_;
-  const integrals::SegmentIntegrator* integrator_;
-  ImageWindow window_;
-  double left_out_per_transmittance_, termination_error_;
-  scene::PixelRect rect_{0, 0, 0, 0};
-  std::vector<double> red_, green_, blue_, transmittance_, optical_depth_, first_depth_, length_per_depth_;
+  void integrate(const sorting::SegmentLists& lists, double final_depth);
+  template <bool runs>
+  void add(const sorting::SegmentLists& lists, double final_depth);
+  void end(Run& run);
+
+  TileScene scene_;
+  bool runs_, closes_ = true;
+  std::vector<Run> pixels_;
+  std::vector<double> transmittance_;  ///< of each ray: its runs so far
+  std::vector<double> length_per_depth_;
   std::vector<std::uint8_t> open_;
   std::size_t open_count_ = 0;
   integrals::SegmentBatch batch_;
+};
+
+template <>
+class TilePixels<sorting::LatticeEncoding> {
+ public:
+  using Run = WindowState::Run;
+
+  TilePixels(const TileScene& scene, bool runs)
+      : scene_(scene), rules_{scene.table, scene.least_transmittance(), runs} {}
+
+  void start(const scene::PixelRect& rect);
+  std::uint64_t take(projection::SegmentWindows& windows, std::int64_t final_step, std::size_t at_least,
+                     scene::TraceLaps& laps) {
+    const std::uint64_t gone = composite_windows(rules_, windows, final_step, at_least, state_, laps);
+    open_count_ = state_.open_pixels(rect_, open_);
+    laps.lap("composite");
+    return gone;
+  }
+
+  [[nodiscard]] const projection::OpenPixels& open() const { return open_; }
+  [[nodiscard]] bool any_open() const { return open_count_ > 0; }
+  void keep_open() { rules_.least_transmittance = 0; }
+  void end_runs();
+  [[nodiscard]] PixelValue value(std::size_t pixel) const;
+
+  /// Runs that have ended are in state().ended; those that have not may be read there too.
+  [[nodiscard]] WindowState& state() { return state_; }
+
+ private:
+  TileScene scene_;
+  WindowRules rules_;
+  scene::PixelRect rect_{0, 0, 0, 0};
+  projection::OpenPixels open_{};
+  int open_count_ = 0;
+  WindowState state_;
 };
 
 }  // namespace tessera::compositor

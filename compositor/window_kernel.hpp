@@ -18,7 +18,7 @@ namespace tessera::compositor {
 /// The pixels of one square while windows of lattice segments go through them, numbered row by row in the rectangle:
 /// the light of the run of segments that each is in. For a picture that run is the whole ray.
 ///
-/// Sums are kept in double as in TilePixels, segment after segment, so a pixel's bits do not depend on how its segments
+/// Sums are kept in double, segment after segment, so a pixel's bits do not depend on how its segments
 /// were cut into windows.
 struct WindowState {
   static constexpr std::size_t pixels =

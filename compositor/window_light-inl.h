@@ -224,6 +224,7 @@ class GroupLight {
 
   /// The same in runs, a lane's run in registers while it goes on. Whether some pixel stays open may change only where
   /// `closes`.
+  // Long: one loop over rows whose state stays in registers; a part of it would get that state through memory.
   template <bool closes>
   HWY_INLINE bool add_to_runs(std::size_t count, const WindowRules& rules) {
     const DI d;

@@ -38,8 +38,7 @@ struct Frame {
         map(grid.count(), static_cast<int>(run.settings.roles.compositors.size()), run.settings.tile_seed),
         collector(static_cast<int>(run.settings.roles.projectors.size()), map, compositor),
         space(job_of(run, number).camera, job_of(run, number).size),
-        integrator(run.function, run.settings.render.integrator, run.settings.render.emission,
-                   run.settings.compositing),
+        integrator(run.function, run.settings.render.integrator, run.settings.render.emission),
         sender(run.transport, run.settings.roles.assembler(), number) {}
 
   std::uint32_t number;

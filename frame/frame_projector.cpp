@@ -11,8 +11,9 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
+#include "frame/double_source.hpp"
 #include "frame/lattice_frame.hpp"
-#include "frame/lattice_tile_renderer.hpp"
+#include "frame/lattice_source.hpp"
 #include "frame/tile_renderer.hpp"
 #include "scene/error.hpp"
 #include "scene/threads.hpp"
@@ -58,44 +59,34 @@ class TileWorker {
   TileWorker& operator=(const TileWorker&) = delete;
   virtual ~TileWorker() = default;
   virtual void render(std::size_t tile, const scene::PixelRect& rect, std::span<projection::TileEntry> entries) = 0;
-  [[nodiscard]] virtual TileCounts counts() const = 0;
+  virtual void add_to(FrameStatistics& statistics) const = 0;
 };
 
-class DoubleWorker final : public TileWorker {
+template <class Source>
+class Worker final : public TileWorker {
  public:
-  DoubleWorker(const TileContext& context, std::unique_ptr<compositor::TileSink> sink)
-      : renderer_(context), sink_(std::move(sink)) {}
+  using Sink = typename TileRenderer<Source>::Sink;
+  template <class... More>
+  Worker(std::unique_ptr<Sink> sink, const TileContext& context, const More&... more)
+      : renderer_(context, more...), sink_(std::move(sink)) {}
   void render(std::size_t tile, const scene::PixelRect& rect, std::span<projection::TileEntry> entries) override {
     sink_->begin_tile(tile, rect);
     renderer_.render(rect, entries, *sink_);
     sink_->end_tile();
   }
-  [[nodiscard]] TileCounts counts() const override { return renderer_.counts(); }
-
- private:
-  TileRenderer renderer_;
-  std::unique_ptr<compositor::TileSink> sink_;
-};
-
-class LatticeWorker final : public TileWorker {
- public:
-  LatticeWorker(const TileContext& context, const projection::LatticeView& view,
-                std::unique_ptr<compositor::WindowSink> sink)
-      : renderer_(context, view), sink_(std::move(sink)) {}
-  void render(std::size_t tile, const scene::PixelRect& rect, std::span<projection::TileEntry> entries) override {
-    sink_->begin_tile(tile, rect);
-    renderer_.render(rect, entries, *sink_);
-    sink_->end_tile();
-  }
-  [[nodiscard]] TileCounts counts() const override {
-    TileCounts counts = renderer_.counts();
-    counts.segments = sink_->segments();
-    return counts;
+  void add_to(FrameStatistics& statistics) const override {
+    const TileCounts& counts = renderer_.counts();
+    statistics.segments += sink_->segments();
+    statistics.max_segments_alive = std::max(statistics.max_segments_alive, counts.max_segments_alive);
+    statistics.peak_buffer_bytes += counts.peak_bytes;
+    statistics.exact_sign_tests += counts.raster.exact_sign_tests;
+    statistics.unpaired += counts.raster.unpaired;
+    statistics.tiles_split += counts.tiles_split;
   }
 
  private:
-  LatticeTileRenderer renderer_;
-  std::unique_ptr<compositor::WindowSink> sink_;
+  TileRenderer<Source> renderer_;
+  std::unique_ptr<Sink> sink_;
 };
 
 /// What is left of the budget for segments, shared by the threads.
@@ -172,9 +163,33 @@ FrameStatistics FrameProjector::project(const Task& task) {
   return arena_.execute([&] { return project_in_arena(task); });
 }
 
+namespace {
+
+using Workers = tbb::enumerable_thread_specific<std::unique_ptr<TileWorker>>;
+
+/// Renders tiles [first, last) of a task, whose lists are filled.
+void render_tiles(const FrameProjector::Task& task, projection::TileLists& lists, Workers& workers, std::size_t first,
+                  std::size_t last, const std::stop_token& stop) {
+  // Threads draw tiles in order: fragments then leave in the order in which all processes send them.
+  std::atomic<std::size_t> next = first;
+  tbb::parallel_for(
+      0, tbb::this_task_arena::max_concurrency(),
+      [&](int) {
+        TileWorker& worker = *workers.local();
+        for (std::size_t tile = next++; tile < last; tile = next++) {
+          scene::throw_if_stopped(stop);
+          const scene::PixelRect rect = task.grid.rect(tile);
+          if (lists.entry_count(tile) > 0) worker.render(tile, rect, lists.tile(tile));
+          if (task.image != nullptr && task.watch != nullptr) task.watch->finished(rect, *task.image);
+        }
+      },
+      tbb::simple_partitioner());
+}
+
+}  // namespace
+
 FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   const projection::PixelSpace& space = *task.space;
-  const bool independent = settings_.emission == scene::Emission::independent;
   const std::stop_token stop = task.watch != nullptr ? task.watch->stop() : std::stop_token();
   scene::throw_if_stopped(stop);
   project_vertices(space, task.frame, stop);
@@ -182,7 +197,6 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
                                             space.pixels_per_tangent()};
   const float longest_edge = task.longest_edge > 0 ? task.longest_edge : longest_edge_;
   if (settings_.rasterizer == Rasterizer::scanline) check_scanline(projected, space, longest_edge);
-  const projection::TileGrid& grid = task.grid;
   if (task.lattice != nullptr) place_on_lattice(*task.lattice, space.perspective(), stop);
 
   const double longest_ray = task.longest_ray > 0 ? task.longest_ray : diagonal_;
@@ -192,33 +206,27 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
                                                      settings_.integrator.kind == scene::IntegratorKind::automatic);
   std::vector<projection::Step> steps;
   projection::CellsAtSteps at_steps;
-  if (exact) {
-    const scene::TraceScope timing(settings_.trace, "cull", task.frame);
-    steps = projection::steps_of(*task.function, settings_.emission, longest_ray);
-    at_steps = projection::CellsAtSteps(*prepared_, steps, longest_ray, task.lattice, stop);
-  }
   std::optional<projection::TileLists> lists;
   {
     const scene::TraceScope timing(settings_.trace, "cull", task.frame);
-    lists.emplace(projected, grid, *task.function, independent, settings_.trace, &list_buffers_, settings_.use.culling,
-                  stop);
+    if (exact) {
+      steps = projection::steps_of(*task.function, settings_.emission, longest_ray);
+      at_steps = projection::CellsAtSteps(*prepared_, steps, longest_ray, task.lattice, stop);
+    }
+    lists.emplace(projected, task.grid, *task.function, settings_.emission == scene::Emission::independent,
+                  settings_.trace, &list_buffers_, settings_.use.culling, stop);
   }
   if (task.announce) {
-    std::vector<bool> has_cells(grid.count());
+    std::vector<bool> has_cells(task.grid.count());
     for (std::size_t tile = 0; tile < has_cells.size(); ++tile) has_cells[tile] = lists->entry_count(tile) > 0;
     task.announce(has_cells);
   }
-  const int threads = arena_.max_concurrency();
+
   const std::uint64_t vertex_bytes = vertices_.capacity() * sizeof(projection::PixelVertex) + lattice_vertices_.bytes();
   const std::uint64_t held = vertex_bytes + lists->bytes() + task.kept_bytes;
-  // A quarter of what is left for the lists of a band of tiles; the rest for segments.
-  const std::uint64_t list_budget =
-      std::max<std::uint64_t>(segment_budget(settings_, held, 1) / 4 / sizeof(projection::TileEntry), 1);
-  const std::uint64_t budget = segment_budget(settings_, held, threads) / 4 * 3;
-
   const TileContext context{&projected,
                             lists->depth_origin(),
-                            budget,
+                            segment_budget(settings_, held, arena_.max_concurrency()) / 4 * 3,
                             settings_.trace,
                             settings_.rasterizer,
                             longest_edge,
@@ -226,8 +234,8 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
                             steps,
                             at_steps.empty() ? nullptr : &at_steps,
                             stop};
-  tbb::enumerable_thread_specific<std::unique_ptr<TileWorker>> workers([&]() -> std::unique_ptr<TileWorker> {
-    if (task.lattice == nullptr) return std::make_unique<DoubleWorker>(context, task.make_sink());
+  Workers workers([&]() -> std::unique_ptr<TileWorker> {
+    if (task.lattice == nullptr) return std::make_unique<Worker<DoubleSource>>(task.make_sink(), context);
     const projection::LatticeView view{
         projected,
         {lattice_vertices_.data(), lattice_vertices_.size()},
@@ -236,35 +244,11 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
         depth_limits_of(space, *task.lattice, *task.function, settings_.emission, longest_ray),
         steps,
         context.at_steps};
-    return std::make_unique<LatticeWorker>(context, view, task.make_window_sink());
+    return std::make_unique<Worker<LatticeSource>>(task.make_lattice_sink(), context, view);
   });
-  std::uint64_t most_list_bytes = 0;
-  for (std::size_t first = 0; first < grid.count();) {
-    std::size_t last = first;
-    for (std::uint64_t entries = 0; last < grid.count(); ++last) {
-      entries += lists->entry_count(last);
-      if (last > first && entries > list_budget) break;
-    }
-    {
-      const scene::TraceScope timing(settings_.trace, "bin", task.frame);
-      lists->fill(first, last);
-    }
-    most_list_bytes = std::max<std::uint64_t>(most_list_bytes, lists->bytes());
-    // Threads draw tiles in order: fragments then leave in the order in which all processes send them.
-    std::atomic<std::size_t> next = first;
-    tbb::parallel_for(
-        0, threads,
-        [&](int) {
-          TileWorker& worker = *workers.local();
-          for (std::size_t tile = next++; tile < last; tile = next++) {
-            scene::throw_if_stopped(stop);
-            if (lists->entry_count(tile) > 0) worker.render(tile, grid.rect(tile), lists->tile(tile));
-            if (task.image != nullptr && task.watch != nullptr) task.watch->finished(grid.rect(tile), *task.image);
-          }
-        },
-        tbb::simple_partitioner());
-    first = last;
-  }
+  const std::uint64_t most_list_bytes = render_bands(task, *lists, held, [&](std::size_t first, std::size_t last) {
+    render_tiles(task, *lists, workers, first, last, stop);
+  });
 
   FrameStatistics statistics;
   statistics.tets_total = prepared_->tet_count();
@@ -275,16 +259,32 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   statistics.tets_between_pixels = culled.between_pixels;
   statistics.tets_projected = culled.projected;
   statistics.peak_buffer_bytes = vertex_bytes + most_list_bytes;
-  for (const std::unique_ptr<TileWorker>& worker : workers) {
-    const TileCounts counts = worker->counts();
-    statistics.segments += counts.segments;
-    statistics.max_segments_alive = std::max(statistics.max_segments_alive, counts.max_segments_alive);
-    statistics.peak_buffer_bytes += counts.peak_bytes;
-    statistics.exact_sign_tests += counts.raster.exact_sign_tests;
-    statistics.unpaired += counts.raster.unpaired;
-    statistics.tiles_split += counts.tiles_split;
-  }
+  for (const std::unique_ptr<TileWorker>& worker : workers) worker->add_to(statistics);
   return statistics;
+}
+
+/// Calls `render` for band after band of tiles, as many as a quarter of what is left of the budget holds lists for; the
+/// rest is for segments. Returns the most bytes of lists.
+std::uint64_t FrameProjector::render_bands(const Task& task, projection::TileLists& lists, std::uint64_t held,
+                                           const std::function<void(std::size_t, std::size_t)>& render) const {
+  const std::uint64_t most_entries =
+      std::max<std::uint64_t>(segment_budget(settings_, held, 1) / 4 / sizeof(projection::TileEntry), 1);
+  std::uint64_t most_bytes = 0;
+  for (std::size_t first = 0; first < task.grid.count();) {
+    std::size_t last = first;
+    for (std::uint64_t entries = 0; last < task.grid.count(); ++last) {
+      entries += lists.entry_count(last);
+      if (last > first && entries > most_entries) break;
+    }
+    {
+      const scene::TraceScope timing(settings_.trace, "bin", task.frame);
+      lists.fill(first, last);
+    }
+    most_bytes = std::max<std::uint64_t>(most_bytes, lists.bytes());
+    render(first, last);
+    first = last;
+  }
+  return most_bytes;
 }
 
 }  // namespace tessera::frame

@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "compositor/tile_sink.hpp"
-#include "compositor/window_sink.hpp"
 #include "frame/render.hpp"
 #include "projection/large_array.hpp"
 #include "projection/lattice_rasterizer.hpp"
 #include "projection/prepared_mesh.hpp"
 #include "projection/tile_lists.hpp"
 #include "scene/frame_watch.hpp"
+#include "sorting/encodings.hpp"
 
 namespace tessera::frame {
 
@@ -36,10 +36,10 @@ class FrameProjector {
     double longest_ray = 0;        ///< bounds a ray's world length in the whole mesh; 0: diagonal()
     std::uint64_t kept_bytes = 0;  ///< of the memory budget, for what becomes of the segments
     /// A sink for one thread; tiles go to it one after the other, and each thread takes tiles in ascending order.
-    std::function<std::unique_ptr<compositor::TileSink>()> make_sink;
-    /// If set, tiles are rendered on this lattice and go to sinks of make_window_sink; else in double precision.
+    std::function<std::unique_ptr<compositor::TileSink<sorting::DoubleEncoding>>()> make_sink;
+    /// If set, tiles are rendered on this lattice and go to sinks of make_lattice_sink; else in double precision.
     const scene::Lattice* lattice = nullptr;
-    std::function<std::unique_ptr<compositor::WindowSink>()> make_window_sink;
+    std::function<std::unique_ptr<compositor::TileSink<sorting::LatticeEncoding>>()> make_lattice_sink;
     /// Asked all along whether to stop; then project() throws scene::FrameStopped. Null: nobody looks on.
     scene::FrameWatch* watch = nullptr;
     /// The picture that sinks write to, so that `watch` hears of its tiles; null: they go elsewhere.
@@ -58,6 +58,8 @@ class FrameProjector {
 
  private:
   FrameStatistics project_in_arena(const Task& task);
+  std::uint64_t render_bands(const Task& task, projection::TileLists& lists, std::uint64_t held,
+                             const std::function<void(std::size_t, std::size_t)>& render) const;
   void project_vertices(const projection::PixelSpace& space, std::int32_t frame, const std::stop_token& stop);
   void place_on_lattice(const scene::Lattice& lattice, bool perspective, const std::stop_token& stop);
 

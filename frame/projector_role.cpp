@@ -6,8 +6,6 @@
 
 #include "compositor/run_sink.hpp"
 #include "compositor/segment_sink.hpp"
-#include "compositor/window_runs.hpp"
-#include "compositor/window_segments.hpp"
 #include "exchange/outbox.hpp"
 #include "frame/distributed_roles.hpp"
 #include "frame/frame_projector.hpp"
@@ -50,7 +48,7 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
     const double start_us = render.trace != nullptr ? render.trace->now_us() : 0;
 
     const projection::PixelSpace space(job.camera, job.size);
-    const integrals::SegmentIntegrator integrator(run.function, render.integrator, render.emission, render.trace);
+    const integrals::SegmentIntegrator integrator(run.function, render.integrator, render.emission);
     FrameProjector::Task task;
     task.space = &space;
     task.grid = {job.size, render.tile_size};
@@ -64,28 +62,28 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
       const scene::TraceScope timing(render.trace, "pack", number, part.records.size(), 0);
       outbox.put(std::move(part));
     };
-    task.make_sink = [&]() -> std::unique_ptr<compositor::TileSink> {
+    compositor::TileScene scene{&space, &integrator,
+                                integrals::opacity_weight(run.function.max_color(), mesh.diagonal, render.emission)};
+    task.make_sink = [&]() -> std::unique_ptr<compositor::TileSink<sorting::DoubleEncoding>> {
       if (render.rasterizer == Rasterizer::scanline)
         return std::make_unique<compositor::TupleSink>(mesh.longest_edge, deliver);
       if (settings.exchange == Exchange::segments)
-        return std::make_unique<compositor::SegmentSink>(mesh.part.association == scene::Association::cell,
-                                                         mesh.global_tet, deliver);
-      return std::make_unique<compositor::RunSink>(space, integrator, run.function.max_color(), mesh.diagonal,
-                                                   render.emission, budget.cut, deliver);
+        return std::make_unique<compositor::SegmentSink<sorting::DoubleEncoding>>(
+            mesh.part.association == scene::Association::cell, mesh.global_tet, deliver);
+      return std::make_unique<compositor::RunSink<sorting::DoubleEncoding>>(scene, budget.cut, deliver);
     };
     const std::optional<scene::Lattice> lattice =
         settings.deep ? std::nullopt : lattice_of(space, mesh.box, mesh.scalar_range, run.function, render);
     std::optional<integrals::LaneTable> table;
     if (lattice) {
       table.emplace(run.function, lattice->scalar_origin, lattice->scalar_unit, lattice->depth_unit, render.emission);
+      scene.table = &*table;
+      scene.lattice = *lattice;
       task.lattice = &*lattice;
-      task.make_window_sink = [&]() -> std::unique_ptr<compositor::WindowSink> {
+      task.make_lattice_sink = [&]() -> std::unique_ptr<compositor::TileSink<sorting::LatticeEncoding>> {
         if (settings.exchange == Exchange::segments)
-          return std::make_unique<compositor::WindowSegments>(*lattice, deliver);
-        const compositor::WindowScene scene{
-            &space, &*table, &integrator, *lattice,
-            integrals::opacity_weight(run.function.max_color(), mesh.diagonal, render.emission)};
-        return std::make_unique<compositor::WindowRuns>(scene, budget.cut, deliver);
+          return std::make_unique<compositor::SegmentSink<sorting::LatticeEncoding>>(*lattice, deliver);
+        return std::make_unique<compositor::RunSink<sorting::LatticeEncoding>>(scene, budget.cut, deliver);
       };
     }
     bool announced = false, stopped = false;

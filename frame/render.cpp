@@ -8,9 +8,7 @@
 
 #include "compositor/deep_collector.hpp"
 #include "compositor/deep_sink.hpp"
-#include "compositor/tile_pixels.hpp"
-#include "compositor/two_sinks.hpp"
-#include "compositor/window_pixels.hpp"
+#include "compositor/picture_sink.hpp"
 #include "frame/frame_projector.hpp"
 #include "frame/lattice_frame.hpp"
 #include "integrals/segment_integrator.hpp"
@@ -39,7 +37,7 @@ struct Renderer::State {
   /// The integrator of this function. Its tables are kept for as long as the function stays.
   const integrals::SegmentIntegrator& integrator(const scene::TransferFunction& f) {
     if (!kept || !std::ranges::equal(f.knots(), function.knots())) {
-      kept.emplace(f, settings.integrator, settings.emission, settings.trace);
+      kept.emplace(f, settings.integrator, settings.emission);
       function = f;
     }
     return *kept;
@@ -83,15 +81,13 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
     task.kept_bytes = settings.memory_bytes / 2;
     collector.emplace(size, task.kept_bytes);
   }
-  task.make_sink = [&]() -> std::unique_ptr<compositor::TileSink> {
-    auto pixels =
-        std::make_unique<compositor::TilePixels>(space, integrator, transfer_function.max_color(), longest_ray,
-                                                 settings.emission, compositor::ImageWindow{&image});
-    if (!collector) return pixels;
-    return std::make_unique<compositor::TwoSinks>(
-        std::move(pixels),
-        std::make_unique<compositor::DeepSink>(space, integrator, transfer_function, longest_ray, settings.emission,
-                                               settings.deep_accuracy, *collector));
+  compositor::TileScene scene{&space, &integrator,
+                              integrals::opacity_weight(transfer_function.max_color(), longest_ray, settings.emission)};
+  const compositor::ImageWindow window{&image};
+  task.make_sink = [&]() -> std::unique_ptr<compositor::TileSink<sorting::DoubleEncoding>> {
+    if (!collector) return std::make_unique<compositor::PictureSink<sorting::DoubleEncoding>>(scene, window);
+    return std::make_unique<compositor::DeepSink>(scene, window, transfer_function, settings.emission,
+                                                  settings.deep_accuracy, *collector);
   };
   const std::optional<scene::Lattice> lattice =
       collector ? std::nullopt
@@ -100,12 +96,11 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   if (lattice) {
     table.emplace(transfer_function, lattice->scalar_origin, lattice->scalar_unit, lattice->depth_unit,
                   settings.emission);
+    scene.table = &*table;
+    scene.lattice = *lattice;
     task.lattice = &*lattice;
-    const compositor::WindowScene scene{
-        &space, &*table, &integrator, *lattice,
-        integrals::opacity_weight(transfer_function.max_color(), longest_ray, settings.emission)};
-    task.make_window_sink = [scene, &image] {
-      return std::make_unique<compositor::WindowPixels>(scene, compositor::ImageWindow{&image});
+    task.make_lattice_sink = [&] {
+      return std::make_unique<compositor::PictureSink<sorting::LatticeEncoding>>(scene, window);
     };
   }
   FrameStatistics counted = state_->projector.project(task);

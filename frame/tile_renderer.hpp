@@ -3,17 +3,14 @@
 #include <cstdint>
 #include <span>
 #include <stop_token>
+#include <utility>
 
 #include "compositor/tile_sink.hpp"
 #include "frame/render.hpp"
-#include "integrals/segment_batch.hpp"
 #include "projection/depth_order.hpp"
 #include "projection/planes_rasterizer.hpp"
-#include "projection/ray_segments.hpp"
-#include "projection/scanline_rasterizer.hpp"
 #include "projection/steps.hpp"
 #include "scene/trace.hpp"
-#include "sorting/pixel_lists.hpp"
 
 namespace tessera::frame {
 
@@ -33,53 +30,54 @@ struct TileContext {
 
 /// Sums over the tiles that one renderer made.
 struct TileCounts {
-  std::uint64_t segments = 0, max_segments_alive = 0, peak_bytes = 0, tiles_split = 0;
+  std::uint64_t max_segments_alive = 0, peak_bytes = 0, tiles_split = 0;
   projection::RasterCounts raster;
 };
 
-/// Makes tiles one after the other: rasterize, sort, and hand the segments to a sink; one renderer a thread.
+/// Makes tiles one after the other: rasterize, and hand the segments to a sink; one renderer a thread.
 ///
-/// A tile's cells come by their nearest depth. When the segment buffer is full, all segments nearer than the next
-/// cell's nearest depth are final (scanline, whose key is the back: all whose back is nearer): they are sorted, handed
-/// over and forgotten, the rest stays. So the depth complexity
-/// costs no memory, only the number of segments that overlap in depth does; where that outgrows the buffer, the buffer
-/// grows up to the budget; then a sink that takes segments in any order gets them all, and for one that does not the
-/// tile is rendered in quarters, which hold a quarter of the segments each. Nothing is ever dropped.
+/// A tile's cells come by their nearest depth. When the store of segments is full, all that lie nearer than the next
+/// cell are final: the sink takes them, the rest stays. So the depth complexity costs no memory, only the number of
+/// segments that overlap in depth does. Where that outgrows the store, the store grows up to the budget; then a sink
+/// that takes segments in any order gets them all, and for one that does not the rectangle is rendered in quarters,
+/// which hold a quarter of the segments each. Nothing is ever dropped.
+///
+/// `Source` fills a store of its encoding from cells (DoubleSource, LatticeSource):
+///
+///   bool start(rect, order)     empties the store for these pixels; false: even that is beyond the budget
+///   bool fill(sink)             adds cells until the store is full (true), or all are in it or the sink takes none
+///                               any more (false)
+///   Depth final_depth()         after fill() was true: no segment still to come lies before
+///   std::size_t at_least()      shorter lists may wait
+///   bool make_room()            after the sink took what is final: whether fill() can go on
+///   Store& store(); std::size_t capacity(); std::uint64_t alive()
+template <class Source>
 class TileRenderer {
  public:
-  explicit TileRenderer(const TileContext& context) : context_(context) {}
+  using Encoding = typename Source::Encoding;
+  using Sink = compositor::TileSink<Encoding>;
+
+  /// `more` is what the source needs besides.
+  template <class... More>
+  explicit TileRenderer(const TileContext& context, More&&... more)
+      : trace_(context.trace), source_(context, counts_, std::forward<More>(more)...) {}
+  TileRenderer(const TileRenderer&) = delete;
+  TileRenderer& operator=(const TileRenderer&) = delete;
 
   /// Gives `sink` the pixels of `rect` from `entries`, whose order is lost. Throws Error(system_failure) if one pixel
   /// alone has more segments that overlap in depth than the budget holds.
-  void render(const scene::PixelRect& rect, std::span<projection::TileEntry> entries, compositor::TileSink& sink);
+  void render(const scene::PixelRect& rect, std::span<projection::TileEntry> entries, Sink& sink);
 
   [[nodiscard]] const TileCounts& counts() const { return counts_; }
 
-  /// What the segments given to a sink are ordered by.
-  [[nodiscard]] sorting::PixelLists::Key key() const {
-    return context_.rasterizer == Rasterizer::scanline ? sorting::PixelLists::Key::back
-                                                       : sorting::PixelLists::Key::front;
-  }
-
-  /// Bytes that one segment takes in all buffers of a renderer.
-  static constexpr std::size_t bytes_a_segment =
-      projection::RaySegments::bytes_each + sorting::PixelLists::bytes_each + integrals::SegmentBatch::bytes_each;
-
  private:
-  void render_sorted(const scene::PixelRect& rect, const projection::DepthOrder& order, compositor::TileSink& sink);
-  bool try_render(const scene::PixelRect& rect, const projection::DepthOrder& order, compositor::TileSink& sink);
-  void flush(std::size_t pixel_count, double final_depth, compositor::TileSink& sink);
-  bool reserve(std::size_t segments);
-  std::size_t rasterize(std::span<const projection::TileEntry> entries, const scene::PixelRect& rect);
-  std::size_t rasterize_at_steps(std::span<const projection::TileEntry> entries, const scene::PixelRect& rect);
+  void render_part(const scene::PixelRect& rect, const projection::DepthOrder& order, Sink& sink);
+  bool try_render(const scene::PixelRect& rect, const projection::DepthOrder& order, Sink& sink);
 
-  TileContext context_;
+  scene::Trace* trace_;
   projection::DepthOrderScratch depth_order_;
-  projection::RaySegments segments_;
-  projection::ScanlineBuffers scanline_;
-  projection::SplitRasterizer splitter_;
-  sorting::PixelLists lists_;
   TileCounts counts_;
+  Source source_;
 };
 
 }  // namespace tessera::frame

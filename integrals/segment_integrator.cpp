@@ -10,8 +10,8 @@
 namespace tessera::integrals {
 
 SegmentIntegrator::SegmentIntegrator(const scene::TransferFunction& function, const scene::Integrator& integrator,
-                                     scene::Emission emission, scene::Trace* trace)
-    : table_(function), emission_(emission), trace_(trace), termination_error_(1e-7) {
+                                     scene::Emission emission)
+    : table_(function), emission_(emission), termination_error_(1e-7) {
   switch (integrator.kind) {
     case scene::IntegratorKind::exact:
       break;
@@ -53,7 +53,6 @@ ExactPieces ExactPieces::within(double accuracy, double max_color) {
 }
 
 void SegmentIntegrator::integrate(SegmentBatch& batch) const {
-  const scene::TraceScope timing(trace_, "integrate");
   if (samples_ > 0)
     integrate_sampled(table_, emission_, samples_, batch);
   else if (segments_)

@@ -9,7 +9,6 @@
 #include "integrals/segment_batch.hpp"
 #include "integrals/segment_table.hpp"
 #include "scene/optical_model.hpp"
-#include "scene/trace.hpp"
 #include "scene/transfer_function.hpp"
 
 namespace tessera::integrals {
@@ -40,10 +39,9 @@ struct ExactPieces {
 class SegmentIntegrator {
  public:
   /// Throws Error(bad_input) if the integrator's numbers are out of range, or for `partial` with independent emission,
-  /// which its table knows nothing of. Tables are made here and shared by copies. `trace`, if any, gets an `integrate`
-  /// span a batch.
+  /// which its table knows nothing of. Tables are made here and shared by copies.
   SegmentIntegrator(const scene::TransferFunction& function, const scene::Integrator& integrator,
-                    scene::Emission emission, scene::Trace* trace = nullptr);
+                    scene::Emission emission);
 
   /// Fills the batch's outputs. Each segment's result depends on that segment alone.
   void integrate(SegmentBatch& batch) const;
@@ -64,7 +62,6 @@ class SegmentIntegrator {
  private:
   PiecewiseTable table_;
   scene::Emission emission_;
-  scene::Trace* trace_;
   int samples_ = 0;  ///< 0: not sampled
   ExactPieces pieces_;
   // At most one of them; none and no samples: exact.

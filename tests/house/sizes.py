@@ -31,7 +31,6 @@ KNOWN = """
     projection/lattice_cross-inl.h cross
     projection/lattice_setup-inl.h set_up_lanes
     projection/planes_rasterizer.cpp rasterize_cell
-    compositor/window_light-inl.h add_to_runs
     volume/cast_slabs-inl.h
     volume/fill_block-inl.h fill_block
     volume/ray_piece-inl.h walk_cubic
@@ -40,7 +39,6 @@ KNOWN = """
     volume/render.cpp Renderer::State::cast
     volume/sample_slabs-inl.h sample_lanes
     volume/slab_lines-inl.h find_line
-    frame/frame_projector.cpp FrameProjector::project_in_arena
     frame/projector_role.cpp run_projector
 """.strip().splitlines()
 KNOWN = {line.strip() for line in KNOWN}

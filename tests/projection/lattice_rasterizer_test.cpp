@@ -189,7 +189,7 @@ TEST(LatticeRasterizer, NeighboursShareTheBitsOfTheirFace) {
           if (ray[i - 1].back == ray[i].front && ray[i - 1].scalar_back == ray[i].scalar_front) continue;
           ++irregular;
           EXPECT_TRUE(edge_on(scene, ray[i - 1].tet) != edge_on(scene, ray[i].tet));
-          EXPECT_NEAR(ray[i - 1].back, ray[i].front, 64);  // what RunSink's counterpart takes for touching
+          EXPECT_NEAR(ray[i - 1].back, ray[i].front, 64);  // what runs take for touching
         }
       EXPECT_GT(junctions, 5000u);
       EXPECT_LT(irregular, junctions / 100);

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "integrals/lane_table.hpp"
+#include "integrals/segment_integrator.hpp"
+#include "projection/pixel_space.hpp"
+#include "scene/image.hpp"
+#include "scene/lattice.hpp"
+
+namespace tessera::compositor {
+
+/// What sinks and mergers that integrate know of their frame. All must outlive them.
+struct TileScene {
+  const projection::PixelSpace* space;
+  const integrals::SegmentIntegrator* integrator;
+  double left_out_per_transmittance;  ///< integrals::opacity_weight()
+  // On the lattice:
+  const integrals::LaneTable* table = nullptr;
+  scene::Lattice lattice{};
+
+  /// Behind less light than this nothing changes a pixel by the integrator's termination error.
+  [[nodiscard]] double least_transmittance() const {
+    return integrator->termination_error() / left_out_per_transmittance;
+  }
+};
+
+/// Where finished pixels go: pixel (x0, y0) of the picture is the image's first.
+struct ImageWindow {
+  scene::Image* image;
+  int x0 = 0, y0 = 0;
+};
+
+}  // namespace tessera::compositor

@@ -1,0 +1,15 @@
+#include "sorting/segment_lists.hpp"
+
+namespace tessera::sorting {
+
+std::size_t SegmentLists::remove(double final_depth, std::span<const std::uint8_t> open) {
+  const std::vector<double>& depth = key_ == Key::back ? segments.back : segments.front;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < segments.size; ++i)
+    if (!(depth[i] < final_depth) && (open.empty() || open[segments.pixel(i)] != 0)) segments.move(i, kept++);
+  const std::size_t gone = segments.size - kept;
+  segments.size = kept;
+  return gone;
+}
+
+}  // namespace tessera::sorting

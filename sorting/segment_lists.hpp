@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "projection/ray_segments.hpp"
+#include "sorting/pixel_lists.hpp"
+
+namespace tessera::sorting {
+
+/// The ray segments of a rectangle's pixels in double precision, as a rasterizer appends them, and their lists pixel by
+/// pixel in visibility order: what projection::SegmentWindows is on the integer lattice.
+class SegmentLists {
+ public:
+  using Key = PixelLists::Key;
+  static constexpr std::size_t bytes_each = projection::RaySegments::bytes_each + PixelLists::bytes_each;
+
+  /// Empties the lists: one for each of `pixels` pixels, ordered by `key`. Capacity stays.
+  void reset(std::size_t pixels, Key key = Key::front) {
+    pixels_ = pixels;
+    key_ = key;
+    segments.size = 0;
+  }
+
+  /// Rasterizers append here; room is the caller's business.
+  projection::RaySegments segments;
+
+  /// Lists what is in `segments` now.
+  void sort() { lists_.sort(segments, pixels_, key_); }
+  [[nodiscard]] std::span<const PixelLists::Entry> pixel(std::size_t p) const { return lists_.pixel(p); }
+  [[nodiscard]] std::size_t pixels() const { return pixels_; }
+
+  /// Removes segments whose key lies before `final_depth`, and those of pixels p with open[p] == 0 (empty: all are
+  /// open); the others keep their order. Returns how many are gone. The lists are those of before.
+  std::size_t remove(double final_depth, std::span<const std::uint8_t> open);
+
+ private:
+  std::size_t pixels_ = 0;
+  Key key_ = Key::front;
+  PixelLists lists_;
+};
+
+}  // namespace tessera::sorting
