@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 
 #include "scene/frame_watch.hpp"
 
@@ -12,19 +13,23 @@ namespace {
 constexpr std::size_t comfortable_segments = 8192;
 
 /// There must be room.
-void append(const projection::RaySegments& from, projection::RaySegments& to) {
+template <class Segments>
+void append(const Segments& from, Segments& to) {
   const auto copy = [&](const auto& source, auto& target) {
     std::copy_n(source.begin(), from.size, target.begin() + static_cast<std::ptrdiff_t>(to.size));
   };
   copy(from.pixel_and_tet, to.pixel_and_tet);
   copy(from.front, to.front), copy(from.back, to.back);
   copy(from.scalar_front, to.scalar_front), copy(from.scalar_back, to.scalar_back);
+  if constexpr (std::is_same_v<Segments, projection::AttributeSegments>)
+    copy(from.attribute_front, to.attribute_front), copy(from.attribute_back, to.attribute_back);
   to.size += from.size;
 }
 
 }  // namespace
 
-bool DoubleSource::reserve(std::size_t segments) {
+template <class Segments>
+bool DoubleSourceOf<Segments>::reserve(std::size_t segments) {
   if (segments <= capacity()) return true;
   if (segments * bytes_a_segment > context_.budget_bytes || segments > std::numeric_limits<std::uint32_t>::max())
     return false;
@@ -33,8 +38,9 @@ bool DoubleSource::reserve(std::size_t segments) {
   return true;
 }
 
-bool DoubleSource::start(const scene::PixelRect& rect, const projection::DepthOrder& order) {
-  using Key = sorting::SegmentLists::Key;
+template <class Segments>
+bool DoubleSourceOf<Segments>::start(const scene::PixelRect& rect, const projection::DepthOrder& order) {
+  using Key = typename Store::Key;
   rect_ = rect;
   order_ = &order;
   next_ = 0;
@@ -48,7 +54,8 @@ bool DoubleSource::start(const scene::PixelRect& rect, const projection::DepthOr
       std::max<std::size_t>(2 * most_, std::min(comfortable_segments, context_.budget_bytes / bytes_a_segment)));
 }
 
-bool DoubleSource::fill(const compositor::TileSink<Encoding>& sink) {
+template <class Segments>
+bool DoubleSourceOf<Segments>::fill(const compositor::TileSink<Encoding>& sink) {
   if (!sink.any_open()) return false;
   if (next_ == order_->entries.size()) return false;
   scene::throw_if_stopped(context_.stop);
@@ -56,29 +63,34 @@ bool DoubleSource::fill(const compositor::TileSink<Encoding>& sink) {
   return next_ < order_->entries.size();
 }
 
-double DoubleSource::final_depth() const {
+template <class Segments>
+double DoubleSourceOf<Segments>::final_depth() const {
   const double depth = context_.depth_origin + order_->nearest_from(next_);
   // Scanline's depths are floats, rounded the same way and not before their cell's nearest vertex.
   return context_.rasterizer == Rasterizer::scanline ? static_cast<float>(depth) : depth;
 }
 
-bool DoubleSource::make_room() {
+template <class Segments>
+bool DoubleSourceOf<Segments>::make_room() {
   const std::size_t held = lists_.segments.size;
   if (held + most_ <= capacity() / 2) return true;
   return reserve(std::max(2 * capacity(), 2 * (held + most_))) || held + most_ <= capacity();
 }
 
-std::size_t DoubleSource::rasterize(std::span<const projection::TileEntry> entries) {
-  if (context_.rasterizer == Rasterizer::scanline)
-    return projection::rasterize_scanline(*context_.projected, context_.longest_edge, entries, rect_, scanline_,
-                                          lists_.segments, counts_->raster);
+template <class Segments>
+std::size_t DoubleSourceOf<Segments>::rasterize(std::span<const projection::TileEntry> entries) {
+  if constexpr (std::is_same_v<Segments, projection::RaySegments>)
+    if (context_.rasterizer == Rasterizer::scanline)
+      return projection::rasterize_scanline(*context_.projected, context_.longest_edge, entries, rect_, scanline_,
+                                            lists_.segments, counts_->raster);
   if (context_.at_steps != nullptr) return rasterize_at_steps(entries);
   return projection::rasterize_planes(*context_.projected, entries, rect_, lists_.segments, counts_->raster);
 }
 
-std::size_t DoubleSource::rasterize_at_steps(std::span<const projection::TileEntry> entries) {
+template <class Segments>
+std::size_t DoubleSourceOf<Segments>::rasterize_at_steps(std::span<const projection::TileEntry> entries) {
   const auto needs_care = [&](const projection::TileEntry& e) { return context_.at_steps->contain(e.tet); };
-  projection::RaySegments& segments = lists_.segments;
+  Segments& segments = lists_.segments;
   std::size_t taken = 0;
   while (taken < entries.size()) {
     const auto rest = entries.subspan(taken);
@@ -92,5 +104,8 @@ std::size_t DoubleSource::rasterize_at_steps(std::span<const projection::TileEnt
   }
   return taken;
 }
+
+template class DoubleSourceOf<projection::RaySegments>;
+template class DoubleSourceOf<projection::AttributeSegments>;
 
 }  // namespace tessera::frame

@@ -9,24 +9,27 @@ namespace tessera::frame {
 
 /// A tile renderer's source in double precision, for any frame: the `planes` or the `scanline` rasterizer, cells that
 /// need care at steps of the transfer function cut there. The store is one buffer for all pixels.
-class DoubleSource {
+///
+/// With AttributeSegments the `planes` rasterizer alone.
+template <class Segments>
+class DoubleSourceOf {
  public:
-  using Encoding = sorting::DoubleEncoding;
+  using Encoding = sorting::DoubleEncodingOf<Segments>;
+  using Store = typename Encoding::Store;
 
-  DoubleSource(const TileContext& context, TileCounts& counts) : context_(context), counts_(&counts) {}
+  DoubleSourceOf(const TileContext& context, TileCounts& counts) : context_(context), counts_(&counts) {}
 
   bool start(const scene::PixelRect& rect, const projection::DepthOrder& order);
   bool fill(const compositor::TileSink<Encoding>& sink);
   [[nodiscard]] double final_depth() const;
   [[nodiscard]] std::size_t at_least() const { return 1; }
   bool make_room();
-  sorting::SegmentLists& store() { return lists_; }
+  Store& store() { return lists_; }
   [[nodiscard]] std::size_t capacity() const { return lists_.segments.capacity(); }
   [[nodiscard]] std::size_t alive() const { return lists_.segments.size; }
 
   /// Bytes that one segment takes in all buffers of a renderer and its sink.
-  static constexpr std::size_t bytes_a_segment =
-      sorting::SegmentLists::bytes_each + integrals::SegmentBatch::bytes_each;
+  static constexpr std::size_t bytes_a_segment = Store::bytes_each + integrals::SegmentBatch::bytes_each;
 
  private:
   bool reserve(std::size_t segments);
@@ -40,8 +43,10 @@ class DoubleSource {
   std::size_t next_ = 0;  ///< cell
   std::size_t most_ = 0;  ///< segments that a cell may add
   projection::ScanlineBuffers scanline_;
-  projection::SplitRasterizer splitter_;
-  sorting::SegmentLists lists_;
+  projection::SplitRasterizer<Segments> splitter_;
+  Store lists_;
 };
+
+using DoubleSource = DoubleSourceOf<projection::RaySegments>;
 
 }  // namespace tessera::frame

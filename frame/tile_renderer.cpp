@@ -69,6 +69,7 @@ bool TileRenderer<Source>::try_render(const scene::PixelRect& rect, const projec
 }
 
 template class TileRenderer<DoubleSource>;
+template class TileRenderer<DoubleSourceOf<projection::AttributeSegments>>;
 template class TileRenderer<LatticeSource>;
 
 }  // namespace tessera::frame

@@ -38,7 +38,7 @@ struct LatticeView {
 
 /// Working memory of one thread.
 struct LatticeScratch {
-  SplitRasterizer splitter;  ///< of irregular cells, in double precision
+  SplitRasterizer<RaySegments> splitter;  ///< of irregular cells, in double precision
 };
 
 /// Bit x of rows[y]: pixel (x, y) of the square still takes segments.

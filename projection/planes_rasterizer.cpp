@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 #include "projection/edge_sign.hpp"
@@ -31,10 +32,15 @@ struct Face {
 constexpr Face faces[4] = {
     {0, 1, 2, 3, 1, 0, true}, {0, 1, 3, 4, 2, 0, false}, {0, 2, 3, 5, 2, 1, true}, {1, 2, 3, 5, 4, 3, false}};
 
-/// A cell ready for its pixels.
+/// How many values the segments have that are linear in a cell: the scalar, and the attribute if they carry one.
+template <class Segments>
+constexpr int value_count = std::is_same_v<Segments, AttributeSegments> ? 2 : 1;
+
+/// A cell ready for its pixels. `values`: linear ones, the scalar first.
+template <int values>
 struct Cell {
   PixelVertex corner[4];
-  double scalar[4];
+  double value[values][4];
   /// Added to |E| before it is held against the error bound: infinite for an edge without sides, whose ends project to
   /// one point or that holds the eye. Its two faces are edge-on (pierceable = false), so its sign is not needed, and it
   /// would be uncertain at every pixel.
@@ -47,27 +53,30 @@ struct Cell {
 
 // Gaps between exact and computed E: q = X - px * W is rounded once (twice without FMA, when the product px * W is
 // rounded too), E = qx_a * qy_b - qx_b * qy_a twice more. The exact one is of lines of sight, which lie beside X and Y.
-double error_bound_of(const Cell& cell) {
+double error_bound_of(const PixelVertex (&corner)[4], const scene::PixelRect& box, double pixels_per_tangent) {
   constexpr double u = 0x1p-53;
-  const double x0 = cell.box.x0, x1 = cell.box.x1, y0 = cell.box.y0, y1 = cell.box.y1;
+  const double x0 = box.x0, x1 = box.x1, y0 = box.y0, y1 = box.y1;
   double qx = 0, qy = 0, w = 0, beside = 0;
-  for (const PixelVertex& v : cell.corner) {
+  for (const PixelVertex& v : corner) {
     qx = std::max({qx, std::abs(v.x - x0 * v.w), std::abs(v.x - x1 * v.w)});
     qy = std::max({qy, std::abs(v.y - y0 * v.w), std::abs(v.y - y1 * v.w)});
     w = std::max(w, std::abs(v.w));
-    beside = std::max(beside, sight_error(v, cell.pixels_per_tangent, std::max(x1, y1)));
+    beside = std::max(beside, sight_error(v, pixels_per_tangent, std::max(x1, y1)));
   }
   const double error_x = u * (qx + 2 * x1 * w) + beside, error_y = u * (qy + 2 * y1 * w) + beside;
   return 4 * (qx * error_y + qy * error_x) + 8 * u * qx * qy;
 }
 
-HWY_INLINE Cell set_up(const ProjectedMesh& projected, std::uint32_t tet, const scene::PixelRect& rect) {
-  Cell cell;
+template <int values>
+HWY_INLINE Cell<values> set_up(const ProjectedMesh& projected, std::uint32_t tet, const scene::PixelRect& rect) {
+  Cell<values> cell;
   const scene::TetMeshView& mesh = projected.mesh->mesh();
   const scene::Tet& corners = projected.mesh->tets()[tet];
   for (int i = 0; i < 4; ++i) cell.corner[i] = projected.vertices[corners[i]];
   const bool per_cell = mesh.association == scene::Association::cell;
-  for (int i = 0; i < 4; ++i) cell.scalar[i] = mesh.scalars[per_cell ? tet : corners[i]] - projected.scalar_origin;
+  for (int i = 0; i < 4; ++i) cell.value[0][i] = mesh.scalars[per_cell ? tet : corners[i]] - projected.scalar_origin;
+  if constexpr (values == 2)
+    for (int i = 0; i < 4; ++i) cell.value[1][i] = projected.attribute[corners[i]];
   cell.box = footprint({cell.corner[0], cell.corner[1], cell.corner[2], cell.corner[3]}, rect);
   if (cell.box.empty()) return cell;
   cell.pixels_per_tangent = projected.pixels_per_tangent;
@@ -82,23 +91,23 @@ HWY_INLINE Cell set_up(const ProjectedMesh& projected, std::uint32_t tet, const 
       for (int f = 0; f < 4; ++f)
         if (faces[f].bc == e || faces[f].ac == e || faces[f].ab == e) cell.pierceable[f] = false;
   }
-  cell.error_bound = error_bound_of(cell);
+  cell.error_bound = error_bound_of(cell.corner, cell.box, cell.pixels_per_tangent);
   return cell;
 }
 
 /// |E| of a perspective edge that the ray meets, once the ray is shifted by next to nothing: what it grows by. A face
 /// with the eye inside it is met along its plane, where all three E are zero; these are then its weights, and give the
 /// eye's depth.
-double magnitude_beside(const Cell& cell, int e) {
-  const PixelVertex &from = cell.corner[edge_from[e]], &to = cell.corner[edge_to[e]];
-  const LineOfSight a = line_of_sight(from, cell.pixels_per_tangent), b = line_of_sight(to, cell.pixels_per_tangent);
+double magnitude_beside(const PixelVertex& from, const PixelVertex& to, double pixels_per_tangent) {
+  const LineOfSight a = line_of_sight(from, pixels_per_tangent), b = line_of_sight(to, pixels_per_tangent);
   const double by_x = a.y * b.w - a.w * b.y, by_y = a.w * b.x - a.x * b.w;
   const double scale = (a.w == 0 ? 1 : std::abs(from.w)) * (b.w == 0 ? 1 : std::abs(to.w));
   return std::abs(by_x != 0 ? by_x : by_y) * scale * 0x1p-70;
 }
 
 /// Replaces the edge functions of uncertain lanes by values of the exact sign (0 where an edge has no sides).
-HWY_NOINLINE void settle_signs(const Cell& cell, const double* px, const double* py, std::uint64_t lanes,
+template <int values>
+HWY_NOINLINE void settle_signs(const Cell<values>& cell, const double* px, const double* py, std::uint64_t lanes,
                                double (*edges)[8], RasterCounts& counts) {
   for (; lanes != 0; lanes &= lanes - 1) {
     const int lane = __builtin_ctzll(lanes);
@@ -106,185 +115,288 @@ HWY_NOINLINE void settle_signs(const Cell& cell, const double* px, const double*
       double& value = edges[e][lane];
       if (std::abs(value) > cell.error_bound) continue;
       bool on_edge = false;
-      const int sign = edge_sign(cell.corner[edge_from[e]], cell.corner[edge_to[e]], px[lane], py[lane],
-                                 cell.pixels_per_tangent, &on_edge);
+      const PixelVertex &from = cell.corner[edge_from[e]], &to = cell.corner[edge_to[e]];
+      const int sign = edge_sign(from, to, px[lane], py[lane], cell.pixels_per_tangent, &on_edge);
       ++counts.exact_sign_tests;
       // Within the bound the magnitude is noise. Any magnitude that small is as right; keep it, with the exact sign.
       const double magnitude = on_edge && cell.pixels_per_tangent != 0
-                                   ? magnitude_beside(cell, e)
+                                   ? magnitude_beside(from, to, cell.pixels_per_tangent)
                                    : std::max(std::abs(value), cell.error_bound * 0x1p-20);
       value = sign * std::max(magnitude, 1e-290);
     }
   }
 }
 
-/// The scalar at an eye that lies exactly on a vertex or an edge of the cell. Both ends of that edge then lie on one
-/// line through the eye, on either side of it, the origin of homogeneous space, so their coordinates are in one ratio;
-/// the largest gives it best.
-HWY_NOINLINE double scalar_at_eye(const Cell& cell) {
+/// Where an eye that lies exactly on a vertex or an edge of the cell is: value[from] + (value[to] - value[from]) *
+/// part. Both ends of that edge lie on one line through the eye, on either side of it, the origin of homogeneous space,
+/// so their coordinates are in one ratio; the largest gives it best.
+struct EyeOnEdge {
+  int from = 0, to = 0;
+  double part = 0;
+};
+HWY_NOINLINE EyeOnEdge eye_on_edge(const PixelVertex (&corner)[4], double pixels_per_tangent) {
   for (int e = 0; e < 6; ++e) {
-    const PixelVertex &a = cell.corner[edge_from[e]], &b = cell.corner[edge_to[e]];
-    if (a.w * b.w > 0 || edge_sign(a, b, 0.5, 0.5, cell.pixels_per_tangent) != 0) continue;
+    const PixelVertex &a = corner[edge_from[e]], &b = corner[edge_to[e]];
+    if (a.w * b.w > 0 || edge_sign(a, b, 0.5, 0.5, pixels_per_tangent) != 0) continue;
     double from = a.w, across = a.w - b.w;
     for (const auto& [p, q] : {std::pair{a.x, b.x}, std::pair{a.y, b.y}})
       if (std::abs(p - q) > std::abs(across)) from = p, across = p - q;
-    const double s_a = cell.scalar[edge_from[e]], s_b = cell.scalar[edge_to[e]];
-    return across == 0 ? s_a : s_a + (s_b - s_a) * std::clamp(from / across, 0.0, 1.0);
+    if (across == 0) return {edge_from[e], edge_from[e], 0};
+    return {edge_from[e], edge_to[e], std::clamp(from / across, 0.0, 1.0)};
   }
-  return cell.scalar[0];
+  return {};
 }
 
-/// One way through the cell's surface: depth and scalar where a lane's ray pierces it.
-struct Crossing {
-  V depth, scalar;
+/// Candidate pixels of a cell, one a lane.
+struct Pixels {
+  V x, y;
+  hn::Mask<D> in_box;
 };
+
+/// What stays the same for all pixels of a cell, in registers as far as they go.
+struct CellLanes {
+  V width, inverse_width, left, top, count;  ///< of the box
+  V near_depth, far_depth, tile_left, tile_top, tile_width, bound;
+  hn::Vec<hn::RebindToUnsigned<D>> tet;
+
+  template <int values>
+  HWY_INLINE CellLanes(const ProjectedMesh& projected, const Cell<values>& cell, std::uint32_t number,
+                       const scene::PixelRect& rect) {
+    const D d;
+    width = hn::Set(d, cell.box.width());
+    inverse_width = hn::Set(d, 1.0 / cell.box.width());
+    left = hn::Set(d, cell.box.x0 + 0.5);
+    top = hn::Set(d, cell.box.y0 + 0.5);
+    count = hn::Set(d, cell.box.area());
+    near_depth = hn::Set(d, projected.near_depth);
+    far_depth = hn::Set(d, projected.far_depth);
+    tile_left = hn::Set(d, rect.x0 + 0.5);
+    tile_top = hn::Set(d, rect.y0 + 0.5);
+    tile_width = hn::Set(d, rect.width());
+    bound = hn::Set(d, cell.error_bound);
+    tet = hn::Set(hn::RebindToUnsigned<D>(), static_cast<std::uint64_t>(number) << 32);
+  }
+
+  /// Candidates base, base + 1... of the box, row after row.
+  HWY_INLINE Pixels pixels_from(int base) const {
+    const D d;
+    const V k = hn::Iota(d, base);
+    const V row = hn::Floor(hn::Mul(hn::Add(k, hn::Set(d, 0.5)), inverse_width));  // k < 2^20: exact
+    return {hn::Add(hn::NegMulAdd(row, width, k), left), hn::Add(row, top), hn::Lt(k, count)};
+  }
+};
+
+/// The six edge functions at these pixels, with the exact signs.
+template <int values>
+HWY_INLINE void edge_functions(const Cell<values>& cell, const CellLanes& lanes, const Pixels& pixels, V (&edge)[6],
+                               RasterCounts& counts) {
+  const D d;
+  V qx[4], qy[4];
+  for (int i = 0; i < 4; ++i) {
+    const V w = hn::Set(d, cell.corner[i].w);
+    qx[i] = hn::NegMulAdd(pixels.x, w, hn::Set(d, cell.corner[i].x));
+    qy[i] = hn::NegMulAdd(pixels.y, w, hn::Set(d, cell.corner[i].y));
+  }
+  V least = hn::Set(d, HUGE_VAL);
+  for (int e = 0; e < 6; ++e) {
+    const int a = edge_from[e], b = edge_to[e];
+    edge[e] = hn::MulSub(qx[a], qy[b], hn::Mul(qx[b], qy[a]));
+    least = hn::Min(least, hn::Add(hn::Abs(edge[e]), hn::Set(d, cell.certainty[e])));
+  }
+  const auto uncertain = hn::And(pixels.in_box, hn::Le(least, lanes.bound));
+  if (HWY_UNLIKELY(!hn::AllFalse(d, uncertain))) {
+    alignas(64) double x[8], y[8], settled[6][8];
+    std::uint8_t bits[8] = {0};
+    hn::StoreMaskBits(d, uncertain, bits);
+    hn::Store(pixels.x, d, x);
+    hn::Store(pixels.y, d, y);
+    for (int e = 0; e < 6; ++e) hn::Store(edge[e], d, settled[e]);
+    settle_signs(cell, x, y, bits[0], settled, counts);
+    for (int e = 0; e < 6; ++e) edge[e] = hn::Load(d, settled[e]);
+  }
+}
 
 /// Numerators and denominators of the pierced face of either orientation, gathered face by face.
+template <int values>
 struct Crossed {
-  V depth_sum, scalar_sum, weight, depth_c, scalar_c;
+  V depth_sum, value_sum[values], weight, depth_c, value_c[values];
   hn::Mask<D> any;
+
+  HWY_INLINE Crossed() {
+    const V zero = hn::Zero(D());
+    depth_sum = depth_c = zero;
+    for (int v = 0; v < values; ++v) value_sum[v] = value_c[v] = zero;
+    weight = hn::Set(D(), 1.0);
+    any = hn::Lt(zero, zero);
+  }
+  HWY_INLINE void gather(hn::Mask<D> pierced, const Crossed& face) {
+    depth_sum = hn::IfThenElse(pierced, face.depth_sum, depth_sum);
+    weight = hn::IfThenElse(pierced, face.weight, weight);
+    depth_c = hn::IfThenElse(pierced, face.depth_c, depth_c);
+    for (int v = 0; v < values; ++v) {
+      value_sum[v] = hn::IfThenElse(pierced, face.value_sum[v], value_sum[v]);
+      value_c[v] = hn::IfThenElse(pierced, face.value_c[v], value_c[v]);
+    }
+    any = hn::Or(any, pierced);
+  }
 };
 
-HWY_INLINE Crossing crossing(const Crossed& x) {
-  const V inverse = hn::Div(hn::Set(D(), 1.0), x.weight);
-  return {hn::MulAdd(x.depth_sum, inverse, x.depth_c), hn::MulAdd(x.scalar_sum, inverse, x.scalar_c)};
+/// a * (at_a - at_c) + b * (at_b - at_c).
+HWY_INLINE V weighted(V a, V b, double at_a, double at_b, double at_c) {
+  return hn::MulAdd(a, hn::Set(D(), at_a - at_c), hn::Mul(b, hn::Set(D(), at_b - at_c)));
 }
 
-HWY_INLINE void gather_face(hn::Mask<D> pierced, V depth_sum, V scalar_sum, V weight, V depth_c, V scalar_c,
-                            Crossed& x) {
-  x.depth_sum = hn::IfThenElse(pierced, depth_sum, x.depth_sum);
-  x.scalar_sum = hn::IfThenElse(pierced, scalar_sum, x.scalar_sum);
-  x.weight = hn::IfThenElse(pierced, weight, x.weight);
-  x.depth_c = hn::IfThenElse(pierced, depth_c, x.depth_c);
-  x.scalar_c = hn::IfThenElse(pierced, scalar_c, x.scalar_c);
-  x.any = hn::Or(x.any, pierced);
+/// The cell's faces that rays pierce from one side (`plus`) and the other.
+template <int values>
+HWY_INLINE void cross_faces(const Cell<values>& cell, const V (&edge)[6], Crossed<values>& plus,
+                            Crossed<values>& minus) {
+  const D d;
+  const V zero = hn::Zero(d);
+  hn::Mask<D> positive[6], negative[6];
+  V weight[6];
+  for (int e = 0; e < 6; ++e) {
+    positive[e] = hn::Gt(edge[e], zero);
+    negative[e] = hn::Lt(edge[e], zero);
+    weight[e] = hn::Abs(edge[e]);
+  }
+  for (int f = 0; f < 4; ++f) {
+    if (!cell.pierceable[f]) continue;
+    const Face face = faces[f];
+    const auto clockwise = hn::And(hn::And(positive[face.bc], negative[face.ac]), positive[face.ab]);
+    const auto counter = hn::And(hn::And(negative[face.bc], positive[face.ac]), negative[face.ab]);
+    const auto is_plus = face.outward ? clockwise : counter, is_minus = face.outward ? counter : clockwise;
+    Crossed<values> here;
+    // Relative to corner c, so that a face of one value or depth keeps it to the bit: a transfer function may step
+    // there.
+    const V a = weight[face.bc], b = weight[face.ac];
+    here.depth_c = hn::Set(d, cell.corner[face.c].depth);
+    here.depth_sum = weighted(a, b, cell.corner[face.a].depth, cell.corner[face.b].depth, cell.corner[face.c].depth);
+    for (int v = 0; v < values; ++v) {
+      const double* value = cell.value[v];
+      here.value_c[v] = hn::Set(d, value[face.c]);
+      here.value_sum[v] = weighted(a, b, value[face.a], value[face.b], value[face.c]);
+    }
+    here.weight = hn::Add(hn::Add(weight[face.bc], weight[face.ac]), weight[face.ab]);
+    plus.gather(is_plus, here);
+    minus.gather(is_minus, here);
+  }
 }
 
-void rasterize_cell(const ProjectedMesh& projected, const Cell& cell, std::uint32_t tet, const scene::PixelRect& rect,
-                    RaySegments& out, RasterCounts& counts) {
+/// Segments of the candidate pixels that have one.
+template <int values>
+struct Segments {
+  hn::Mask<D> hit;
+  V front, back, value_front[values], value_back[values];
+};
+
+/// From the nearer crossing to the farther one, inside the clipping range.
+template <int values>
+HWY_INLINE Segments<values> segments_between(const CellLanes& lanes, hn::Mask<D> hit, const Crossed<values>& plus,
+                                             const Crossed<values>& minus) {
+  const D d;
+  const V near_depth = lanes.near_depth, far_depth = lanes.far_depth;
+  const V plus_inverse = hn::Div(hn::Set(d, 1.0), plus.weight), minus_inverse = hn::Div(hn::Set(d, 1.0), minus.weight);
+  const V plus_depth = hn::MulAdd(plus.depth_sum, plus_inverse, plus.depth_c);
+  const V minus_depth = hn::MulAdd(minus.depth_sum, minus_inverse, minus.depth_c);
+  const auto plus_first = hn::Le(plus_depth, minus_depth);
+  Segments<values> s;
+  s.front = hn::Min(plus_depth, minus_depth);
+  s.back = hn::Max(plus_depth, minus_depth);
+  for (int v = 0; v < values; ++v) {
+    const V at_plus = hn::MulAdd(plus.value_sum[v], plus_inverse, plus.value_c[v]);
+    const V at_minus = hn::MulAdd(minus.value_sum[v], minus_inverse, minus.value_c[v]);
+    s.value_front[v] = hn::IfThenElse(plus_first, at_plus, at_minus);
+    s.value_back[v] = hn::IfThenElse(plus_first, at_minus, at_plus);
+  }
+  s.hit = hn::And(hit, hn::And(hn::Gt(s.back, near_depth), hn::Lt(s.front, far_depth)));
+  const auto clipped = hn::And(s.hit, hn::Or(hn::Lt(s.front, near_depth), hn::Gt(s.back, far_depth)));
+  if (HWY_UNLIKELY(!hn::AllFalse(d, clipped))) {
+    const V front = hn::Max(s.front, near_depth), back = hn::Min(s.back, far_depth);
+    for (int v = 0; v < values; ++v) {
+      const V slope = hn::Div(hn::Sub(s.value_back[v], s.value_front[v]), hn::Sub(s.back, s.front));
+      const V from = s.value_front[v];
+      s.value_front[v] =
+          hn::IfThenElse(hn::Lt(s.front, near_depth), hn::MulAdd(hn::Sub(front, s.front), slope, from), from);
+      s.value_back[v] =
+          hn::IfThenElse(hn::Gt(s.back, far_depth), hn::MulAdd(hn::Sub(back, s.front), slope, from), s.value_back[v]);
+    }
+    s.front = front;
+    s.back = back;
+  }
+  return s;
+}
+
+template <int values>
+HWY_INLINE void append(const Segments<values>& s, const CellLanes& lanes, const Pixels& pixels, RaySegments& out) {
   const D d;
   const hn::RebindToUnsigned<D> du;
   const hn::RebindToSigned<D> di;
-  const auto lanes = static_cast<int>(hn::Lanes(d));
+  const V in_tile = hn::MulAdd(hn::Sub(pixels.y, lanes.tile_top), lanes.tile_width, hn::Sub(pixels.x, lanes.tile_left));
+  const auto packed = hn::Or(hn::BitCast(du, hn::ConvertTo(di, in_tile)), lanes.tet);
+  const WideLanePacker pack(hn::RebindMask(du, s.hit));
+  hn::StoreU(pack(packed), du, out.pixel_and_tet.data() + out.size);
+  hn::StoreU(pack(s.front), d, out.front.data() + out.size);
+  hn::StoreU(pack(s.back), d, out.back.data() + out.size);
+  hn::StoreU(pack(s.value_front[0]), d, out.scalar_front.data() + out.size);
+  hn::StoreU(pack(s.value_back[0]), d, out.scalar_back.data() + out.size);
+  if constexpr (values == 2) {
+    auto& attributed = static_cast<AttributeSegments&>(out);
+    hn::StoreU(pack(s.value_front[1]), d, attributed.attribute_front.data() + out.size);
+    hn::StoreU(pack(s.value_back[1]), d, attributed.attribute_back.data() + out.size);
+  }
+  out.size += pack.count();
+}
+
+template <int values>
+void rasterize_cell(const ProjectedMesh& projected, const Cell<values>& cell, std::uint32_t tet,
+                    const scene::PixelRect& rect, RaySegments& out, RasterCounts& counts) {
+  const D d;
+  const CellLanes lanes(projected, cell, tet, rect);
   const int count = cell.box.area();
-  const V zero = hn::Zero(d), half = hn::Set(d, 0.5), width = hn::Set(d, cell.box.width());
-  const V inverse_width = hn::Set(d, 1.0 / cell.box.width());
-  const V near_depth = hn::Set(d, projected.near_depth), far_depth = hn::Set(d, projected.far_depth);
-  const V left = hn::Set(d, cell.box.x0 + 0.5), top = hn::Set(d, cell.box.y0 + 0.5);
-  const V tile_left = hn::Set(d, rect.x0 + 0.5), tile_top = hn::Set(d, rect.y0 + 0.5),
-          tile_width = hn::Set(d, rect.width());
-  const auto tet_bits = hn::Set(du, static_cast<std::uint64_t>(tet) << 32);
-  const V bound = hn::Set(d, cell.error_bound);
-
-  for (int base = 0; base < count; base += lanes) {
-    const V k = hn::Iota(d, base);
-    const V row = hn::Floor(hn::Mul(hn::Add(k, half), inverse_width));  // k < 2^20: exact
-    const V px = hn::Add(hn::NegMulAdd(row, width, k), left), py = hn::Add(row, top);
-    const auto in_box = hn::Lt(k, hn::Set(d, count));
-
-    V qx[4], qy[4], edge[6];
-    for (int i = 0; i < 4; ++i) {
-      const V w = hn::Set(d, cell.corner[i].w);
-      qx[i] = hn::NegMulAdd(px, w, hn::Set(d, cell.corner[i].x));
-      qy[i] = hn::NegMulAdd(py, w, hn::Set(d, cell.corner[i].y));
-    }
-    V least = hn::Set(d, HUGE_VAL);
-    for (int e = 0; e < 6; ++e) {
-      const int a = edge_from[e], b = edge_to[e];
-      edge[e] = hn::MulSub(qx[a], qy[b], hn::Mul(qx[b], qy[a]));
-      least = hn::Min(least, hn::Add(hn::Abs(edge[e]), hn::Set(d, cell.certainty[e])));
-    }
-    const auto uncertain = hn::And(in_box, hn::Le(least, bound));
-    if (HWY_UNLIKELY(!hn::AllFalse(d, uncertain))) {
-      alignas(64) double x[8], y[8], values[6][8];
-      std::uint8_t bits[8] = {0};
-      hn::StoreMaskBits(d, uncertain, bits);
-      hn::Store(px, d, x);
-      hn::Store(py, d, y);
-      for (int e = 0; e < 6; ++e) hn::Store(edge[e], d, values[e]);
-      settle_signs(cell, x, y, bits[0], values, counts);
-      for (int e = 0; e < 6; ++e) edge[e] = hn::Load(d, values[e]);
-    }
-
-    hn::Mask<D> positive[6], negative[6];
-    V weight[6];
-    for (int e = 0; e < 6; ++e) {
-      positive[e] = hn::Gt(edge[e], zero);
-      negative[e] = hn::Lt(edge[e], zero);
-      weight[e] = hn::Abs(edge[e]);
-    }
-    const auto none = hn::Lt(zero, zero);
-    const V one = hn::Set(d, 1.0);
-    Crossed plus{zero, zero, one, zero, zero, none}, minus{zero, zero, one, zero, zero, none};
-    for (int f = 0; f < 4; ++f) {
-      if (!cell.pierceable[f]) continue;
-      const Face face = faces[f];
-      const auto clockwise = hn::And(hn::And(positive[face.bc], negative[face.ac]), positive[face.ab]);
-      const auto counter = hn::And(hn::And(negative[face.bc], positive[face.ac]), negative[face.ab]);
-      const auto is_plus = face.outward ? clockwise : counter, is_minus = face.outward ? counter : clockwise;
-      // Relative to corner c, so that a face of one scalar or depth keeps it to the bit: a transfer function may step
-      // there.
-      const V depth_c = hn::Set(d, cell.corner[face.c].depth), scalar_c = hn::Set(d, cell.scalar[face.c]);
-      const V depth_a = hn::Set(d, cell.corner[face.a].depth - cell.corner[face.c].depth);
-      const V depth_b = hn::Set(d, cell.corner[face.b].depth - cell.corner[face.c].depth);
-      const V scalar_a = hn::Set(d, cell.scalar[face.a] - cell.scalar[face.c]);
-      const V scalar_b = hn::Set(d, cell.scalar[face.b] - cell.scalar[face.c]);
-      const V depth_sum = hn::MulAdd(weight[face.bc], depth_a, hn::Mul(weight[face.ac], depth_b));
-      const V scalar_sum = hn::MulAdd(weight[face.bc], scalar_a, hn::Mul(weight[face.ac], scalar_b));
-      const V total = hn::Add(hn::Add(weight[face.bc], weight[face.ac]), weight[face.ab]);
-      gather_face(is_plus, depth_sum, scalar_sum, total, depth_c, scalar_c, plus);
-      gather_face(is_minus, depth_sum, scalar_sum, total, depth_c, scalar_c, minus);
-    }
+  for (int base = 0; base < count; base += static_cast<int>(hn::Lanes(d))) {
+    const Pixels pixels = lanes.pixels_from(base);
+    V edge[6];
+    edge_functions(cell, lanes, pixels, edge, counts);
+    Crossed<values> plus, minus;
+    cross_faces(cell, edge, plus, minus);
     // One crossing alone: the eye lies on a vertex or an edge of the cell, whose faces there are edge-on from
     // everywhere, and the ray begins on them.
-    const auto alone = hn::And(in_box, hn::Xor(plus.any, minus.any));
+    const auto alone = hn::And(pixels.in_box, hn::Xor(plus.any, minus.any));
     if (HWY_UNLIKELY(!hn::AllFalse(d, alone))) {
-      const V at_eye = hn::Set(d, scalar_at_eye(cell));
-      gather_face(hn::AndNot(plus.any, alone), zero, zero, one, zero, at_eye, plus);
-      gather_face(hn::AndNot(minus.any, alone), zero, zero, one, zero, at_eye, minus);
+      const EyeOnEdge eye = eye_on_edge(cell.corner, cell.pixels_per_tangent);
+      Crossed<values> here;
+      for (int v = 0; v < values; ++v)
+        here.value_c[v] =
+            hn::Set(d, cell.value[v][eye.from] + (cell.value[v][eye.to] - cell.value[v][eye.from]) * eye.part);
+      plus.gather(hn::AndNot(plus.any, alone), here);
+      minus.gather(hn::AndNot(minus.any, alone), here);
     }
-    auto hit = hn::And(in_box, hn::And(plus.any, minus.any));
+    const auto hit = hn::And(pixels.in_box, hn::And(plus.any, minus.any));
     if (hn::AllFalse(d, hit)) continue;
-
-    const Crossing p = crossing(plus), m = crossing(minus);
-    const auto plus_first = hn::Le(p.depth, m.depth);
-    V front = hn::Min(p.depth, m.depth), back = hn::Max(p.depth, m.depth);
-    V scalar_front = hn::IfThenElse(plus_first, p.scalar, m.scalar);
-    V scalar_back = hn::IfThenElse(plus_first, m.scalar, p.scalar);
-    hit = hn::And(hit, hn::And(hn::Gt(back, near_depth), hn::Lt(front, far_depth)));
-    const auto clipped = hn::And(hit, hn::Or(hn::Lt(front, near_depth), hn::Gt(back, far_depth)));
-    if (HWY_UNLIKELY(!hn::AllFalse(d, clipped))) {
-      const V slope = hn::Div(hn::Sub(scalar_back, scalar_front), hn::Sub(back, front));
-      const V f0 = front, s0 = scalar_front;
-      const V f1 = hn::Max(front, near_depth), b1 = hn::Min(back, far_depth);
-      scalar_front = hn::IfThenElse(hn::Lt(front, near_depth), hn::MulAdd(hn::Sub(f1, f0), slope, s0), scalar_front);
-      scalar_back = hn::IfThenElse(hn::Gt(back, far_depth), hn::MulAdd(hn::Sub(b1, f0), slope, s0), scalar_back);
-      front = f1;
-      back = b1;
-    }
-
-    const V in_tile = hn::MulAdd(hn::Sub(py, tile_top), tile_width, hn::Sub(px, tile_left));
-    const auto packed = hn::Or(hn::BitCast(du, hn::ConvertTo(di, in_tile)), tet_bits);
-    const WideLanePacker pack(hn::RebindMask(du, hit));
-    hn::StoreU(pack(packed), du, out.pixel_and_tet.data() + out.size);
-    hn::StoreU(pack(front), d, out.front.data() + out.size);
-    hn::StoreU(pack(back), d, out.back.data() + out.size);
-    hn::StoreU(pack(scalar_front), d, out.scalar_front.data() + out.size);
-    hn::StoreU(pack(scalar_back), d, out.scalar_back.data() + out.size);
-    out.size += pack.count();
+    append(segments_between(lanes, hit, plus, minus), lanes, pixels, out);
   }
 }
 
-std::size_t rasterize(const ProjectedMesh& projected, std::span<const TileEntry> entries, const scene::PixelRect& rect,
-                      RaySegments& out, RasterCounts& counts) {
+template <class Out>
+std::size_t rasterize_cells(const ProjectedMesh& projected, std::span<const TileEntry> entries,
+                            const scene::PixelRect& rect, Out& out, RasterCounts& counts) {
   const auto room = static_cast<std::size_t>(rect.area());
   std::size_t taken = 0;
   for (; taken < entries.size() && out.size + room <= out.capacity(); ++taken) {
     const std::uint32_t tet = entries[taken].tet;
-    const Cell cell = set_up(projected, tet, rect);
+    const auto cell = set_up<value_count<Out>>(projected, tet, rect);
     if (!cell.box.empty()) rasterize_cell(projected, cell, tet, rect, out, counts);
   }
   return taken;
+}
+
+std::size_t rasterize(const ProjectedMesh& projected, std::span<const TileEntry> entries, const scene::PixelRect& rect,
+                      RaySegments& out, RasterCounts& counts) {
+  return rasterize_cells(projected, entries, rect, out, counts);
+}
+std::size_t rasterize_attribute(const ProjectedMesh& projected, std::span<const TileEntry> entries,
+                                const scene::PixelRect& rect, AttributeSegments& out, RasterCounts& counts) {
+  return rasterize_cells(projected, entries, rect, out, counts);
 }
 
 const char* target_name() { return hwy::TargetName(HWY_TARGET); }
@@ -296,11 +408,17 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tessera::projection {
 HWY_EXPORT(rasterize);
+HWY_EXPORT(rasterize_attribute);
 HWY_EXPORT(target_name);
 
 std::size_t rasterize_planes(const ProjectedMesh& projected, std::span<const TileEntry> entries,
                              const scene::PixelRect& rect, RaySegments& out, RasterCounts& counts) {
   return HWY_DYNAMIC_DISPATCH(rasterize)(projected, entries, rect, out, counts);
+}
+
+std::size_t rasterize_planes(const ProjectedMesh& projected, std::span<const TileEntry> entries,
+                             const scene::PixelRect& rect, AttributeSegments& out, RasterCounts& counts) {
+  return HWY_DYNAMIC_DISPATCH(rasterize_attribute)(projected, entries, rect, out, counts);
 }
 
 std::string instruction_set() { return HWY_DYNAMIC_DISPATCH(target_name)(); }

@@ -25,6 +25,8 @@ struct ProjectedMesh {
   double near_depth, far_depth;  ///< the clipping range in planar depth
   double pixels_per_tangent;     ///< PixelSpace's
   double scalar_origin = 0;      ///< segments' scalars are counted from this
+  /// For AttributeSegments, by vertex: the attribute. Linear in each cell, whether the scalars are by point or by cell.
+  std::span<const double> attribute{};
 };
 
 /// What happened on the way.
@@ -54,6 +56,10 @@ struct RasterCounts {
 /// need a tie rule at every edge.
 std::size_t rasterize_planes(const ProjectedMesh& projected, std::span<const TileEntry> entries,
                              const scene::PixelRect& rect, RaySegments& out, RasterCounts& counts);
+
+/// The same with projected.attribute at both ends of each segment.
+std::size_t rasterize_planes(const ProjectedMesh& projected, std::span<const TileEntry> entries,
+                             const scene::PixelRect& rect, AttributeSegments& out, RasterCounts& counts);
 
 /// Name of the instruction set that rasterize_planes runs on: "AVX3", "AVX2", "SSE4", ...
 std::string instruction_set();

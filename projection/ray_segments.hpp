@@ -43,4 +43,22 @@ struct RaySegments {
   }
 };
 
+/// Ray segments that carry a second value beside the scalar which is linear in each cell, such as the light that
+/// reaches it. A type of its own: rasterizer, store and sinks that are compiled for RaySegments know nothing of it.
+struct AttributeSegments : RaySegments {
+  std::vector<double> attribute_front, attribute_back;  ///< at entry and exit, in the attribute's own unit
+
+  static constexpr std::size_t bytes_each = RaySegments::bytes_each + 2 * sizeof(double);
+
+  void reserve(std::size_t capacity) {
+    RaySegments::reserve(capacity);
+    for (std::vector<double>* array : {&attribute_front, &attribute_back}) array->resize(capacity + padding);
+  }
+  void move(std::size_t from, std::size_t to) {
+    RaySegments::move(from, to);
+    attribute_front[to] = attribute_front[from];
+    attribute_back[to] = attribute_back[from];
+  }
+};
+
 }  // namespace tessera::projection

@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <type_traits>
 
 #include "scene/frame_watch.hpp"
 
@@ -145,9 +146,10 @@ CellsAtSteps::CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> s
   most_pieces_ = std::max<std::size_t>(most.pieces, 1);
 }
 
-const RaySegments& SplitRasterizer::rasterize(const ProjectedMesh& projected, std::span<const Step> steps,
-                                              const TileEntry& entry, const scene::PixelRect& rect,
-                                              RasterCounts& counts) {
+template <class Segments>
+const Segments& SplitRasterizer<Segments>::rasterize(const ProjectedMesh& projected, std::span<const Step> steps,
+                                                     const TileEntry& entry, const scene::PixelRect& rect,
+                                                     RasterCounts& counts) {
   const auto area = static_cast<std::size_t>(rect.area());
   if (whole_.capacity() < area) whole_.reserve(area);
   whole_.size = 0;
@@ -180,7 +182,8 @@ const RaySegments& SplitRasterizer::rasterize(const ProjectedMesh& projected, st
   return pieces_;
 }
 
-void SplitRasterizer::split(std::size_t segment, std::span<const Step> steps, double origin) {
+template <class Segments>
+void SplitRasterizer<Segments>::split(std::size_t segment, std::span<const Step> steps, double origin) {
   const double front = whole_.front[segment], back = whole_.back[segment];
   const double from = whole_.scalar_front[segment], to = whole_.scalar_back[segment];
   // Ends relative to `origin`; no step lies between them.
@@ -198,6 +201,13 @@ void SplitRasterizer::split(std::size_t segment, std::span<const Step> steps, do
     pieces_.pixel_and_tet[at] = whole_.pixel_and_tet[segment];
     pieces_.front[at] = piece_front, pieces_.back[at] = piece_back;
     pieces_.scalar_front[at] = scalar_front, pieces_.scalar_back[at] = scalar_back;
+    if constexpr (std::is_same_v<Segments, AttributeSegments>) {
+      const double a0 = whole_.attribute_front[segment], a1 = whole_.attribute_back[segment];
+      const auto attribute = [&](double depth) {
+        return front < back ? a0 + (a1 - a0) * ((depth - front) / (back - front)) : a0;
+      };
+      pieces_.attribute_front[at] = attribute(piece_front), pieces_.attribute_back[at] = attribute(piece_back);
+    }
   };
   if (!(front < back)) return add(front, back, from, from);
   double at = front, scalar = from;
@@ -214,6 +224,9 @@ void SplitRasterizer::split(std::size_t segment, std::span<const Step> steps, do
     std::for_each(steps.rbegin(), steps.rend(), cut);
   if (at < back) add(at, back, scalar, to);
 }
+
+template class SplitRasterizer<RaySegments>;
+template class SplitRasterizer<AttributeSegments>;
 
 LatticeScalars lattice_scalars(double front, double back, std::span<const Step> steps, const scene::Lattice& lattice) {
   const auto on_lanes = [&](double v) { return static_cast<float>(lattice.scalar_step(v)); };

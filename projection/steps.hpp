@@ -54,17 +54,21 @@ class CellsAtSteps {
 /// Rasterizes single cells with their segments cut where they cross steps: no segment has a step's value between its
 /// ends, and one that is below a step has an end below its value. Scalars are interpolated as differences to the
 /// nearest step, so that those which differ from it by a double's last place are as good as any.
+/// `Segments`: RaySegments, or AttributeSegments, whose attribute is cut too.
+template <class Segments>
 class SplitRasterizer {
  public:
   /// As rasterize_planes() of this cell alone, for all of `rect`. The segments stay until the next call.
-  const RaySegments& rasterize(const ProjectedMesh& projected, std::span<const Step> steps, const TileEntry& entry,
-                               const scene::PixelRect& rect, RasterCounts& counts);
+  const Segments& rasterize(const ProjectedMesh& projected, std::span<const Step> steps, const TileEntry& entry,
+                            const scene::PixelRect& rect, RasterCounts& counts);
 
  private:
   void split(std::size_t segment, std::span<const Step> steps, double origin);
 
-  RaySegments whole_, pieces_;
+  Segments whole_, pieces_;
 };
+extern template class SplitRasterizer<RaySegments>;
+extern template class SplitRasterizer<AttributeSegments>;
 
 /// Ends of a SplitRasterizer's segment in the lattice's steps, as floats, on the sides of all steps that they are on.
 struct LatticeScalars {

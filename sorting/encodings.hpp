@@ -18,13 +18,19 @@ namespace tessera::sorting {
 ///   Open   which pixels of a rectangle still take anything
 ///
 /// Double precision: any frame. Depths in world units, scalars in the field's own.
-struct DoubleEncoding {
-  using Store = SegmentLists;
+template <class Segments>
+struct DoubleEncodingOf {
+  using Store = SegmentListsOf<Segments>;
   using Depth = double;
   using Open = std::vector<std::uint8_t>;  ///< by pixel, row by row: 0 or 1
   static constexpr Depth end = std::numeric_limits<double>::infinity();
   static constexpr int square = 0;  ///< rectangles are whole tiles
 };
+using DoubleEncoding = DoubleEncodingOf<projection::RaySegments>;
+
+/// The same with an attribute beside the scalar (projection::ProjectedMesh::attribute). What is compiled for
+/// DoubleEncoding does not change by it.
+using AttributeEncoding = DoubleEncodingOf<projection::AttributeSegments>;
 
 /// The integer lattice (scene/lattice.hpp): frames that fit it, 16 pixels or cells at a time.
 struct LatticeEncoding {

@@ -2,7 +2,8 @@
 
 namespace tessera::sorting {
 
-std::size_t SegmentLists::remove(double final_depth, std::span<const std::uint8_t> open) {
+template <class Segments>
+std::size_t SegmentListsOf<Segments>::remove(double final_depth, std::span<const std::uint8_t> open) {
   const std::vector<double>& depth = key_ == Key::back ? segments.back : segments.front;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < segments.size; ++i)
@@ -11,5 +12,8 @@ std::size_t SegmentLists::remove(double final_depth, std::span<const std::uint8_
   segments.size = kept;
   return gone;
 }
+
+template class SegmentListsOf<projection::RaySegments>;
+template class SegmentListsOf<projection::AttributeSegments>;
 
 }  // namespace tessera::sorting

@@ -12,10 +12,12 @@ namespace tessera::sorting {
 
 /// The ray segments of a rectangle's pixels in double precision, as a rasterizer appends them, and their lists pixel by
 /// pixel in visibility order: what projection::SegmentWindows is on the integer lattice.
-class SegmentLists {
+/// `Segments`: projection::RaySegments, or AttributeSegments.
+template <class Segments>
+class SegmentListsOf {
  public:
   using Key = PixelLists::Key;
-  static constexpr std::size_t bytes_each = projection::RaySegments::bytes_each + PixelLists::bytes_each;
+  static constexpr std::size_t bytes_each = Segments::bytes_each + PixelLists::bytes_each;
 
   /// Empties the lists: one for each of `pixels` pixels, ordered by `key`. Capacity stays.
   void reset(std::size_t pixels, Key key = Key::front) {
@@ -25,7 +27,7 @@ class SegmentLists {
   }
 
   /// Rasterizers append here; room is the caller's business.
-  projection::RaySegments segments;
+  Segments segments;
 
   /// Lists what is in `segments` now.
   void sort() { lists_.sort(segments, pixels_, key_); }
@@ -41,5 +43,9 @@ class SegmentLists {
   Key key_ = Key::front;
   PixelLists lists_;
 };
+
+using SegmentLists = SegmentListsOf<projection::RaySegments>;
+extern template class SegmentListsOf<projection::RaySegments>;
+extern template class SegmentListsOf<projection::AttributeSegments>;
 
 }  // namespace tessera::sorting

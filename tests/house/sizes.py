@@ -30,7 +30,6 @@ KNOWN = """
     projection/cull_cells.cpp cull
     projection/lattice_cross-inl.h cross
     projection/lattice_setup-inl.h set_up_lanes
-    projection/planes_rasterizer.cpp rasterize_cell
     volume/cast_slabs-inl.h
     volume/fill_block-inl.h fill_block
     volume/ray_piece-inl.h walk_cubic
