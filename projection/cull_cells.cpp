@@ -124,6 +124,86 @@ HWY_INLINE void boxes_of(const CullVertex* vertices, const scene::Tet* tets, std
   }
 }
 
+/// A vector of cells.
+struct Boxes {
+  V x_low, y_low, depth_low, scalar_low, x_high, y_high, depth_high, scalar_high;
+
+  HWY_INLINE Boxes(const float* low, const float* high) {
+    const D d;
+    hn::LoadInterleaved4(d, low, x_low, y_low, depth_low, scalar_low);
+    hn::LoadInterleaved4(d, high, x_high, y_high, depth_high, scalar_high);
+  }
+};
+
+/// Cells of which the transfer function shows nothing: certainly, perhaps.
+struct Hidden {
+  M surely, maybe;
+
+  HWY_INLINE Hidden(const Boxes& boxes, const ClearFloats* clear, std::size_t clear_count) {
+    const D d;
+    surely = maybe = hn::Lt(hn::Zero(d), hn::Zero(d));
+    for (std::size_t i = 0; i < clear_count; ++i) {
+      surely = hn::Or(surely, hn::And(hn::Ge(boxes.scalar_low, hn::Set(d, clear[i].sure_low)),
+                                      hn::Le(boxes.scalar_high, hn::Set(d, clear[i].sure_high))));
+      maybe = hn::Or(maybe, hn::And(hn::Ge(boxes.scalar_low, hn::Set(d, clear[i].maybe_low)),
+                                    hn::Le(boxes.scalar_high, hn::Set(d, clear[i].maybe_high))));
+    }
+  }
+};
+
+/// Where cells lie against the clipping range and the window.
+struct Placed {
+  Covered columns, rows;
+  M too_near, too_far, in_depth, empty, covers, tame, inside, outside;
+
+  HWY_INLINE Placed(const CullView& view, const Boxes& b) {
+    const D d;
+    // The farthest that a vertex of this CullVertex::depth may lie.
+    const auto at_most = [&](V v) HWY_ATTR {
+      return hn::Add(hn::MulAdd(hn::Abs(v), hn::Set(d, 4e-7f), v), hn::Set(d, view.depth_slack));
+    };
+    too_near = hn::Lt(at_most(b.depth_high), hn::Set(d, view.near_low));
+    too_far = hn::Gt(b.depth_low, hn::Set(d, view.far_high));
+    in_depth = hn::And(hn::Gt(b.depth_low, hn::Set(d, view.near_high)),
+                       hn::Lt(at_most(b.depth_low), hn::Set(d, view.far_low)));
+
+    const V width = hn::Set(d, view.width), height = hn::Set(d, view.height);
+    columns = covered(b.x_low, b.x_high, width), rows = covered(b.y_low, b.y_high, height);
+    const V widest =
+        hn::Max(hn::Max(hn::Abs(b.x_low), hn::Abs(b.x_high)), hn::Max(hn::Abs(b.y_low), hn::Abs(b.y_high)));
+    tame = hn::Lt(widest, hn::Set(d, 1e30f));
+    empty = hn::Or(columns.empty, rows.empty);
+    covers = hn::AndNot(empty, hn::And(columns.sure, rows.sure));
+    const auto within = [&](V least, V most, V side) HWY_ATTR {
+      return hn::And(hn::Gt(least, slack_of(least)), hn::Lt(hn::Add(most, slack_of(most)), side));
+    };
+    const auto beyond = [&](V least, V most, V side) HWY_ATTR {
+      return hn::Or(hn::Lt(hn::Add(most, slack_of(most)), hn::Zero(d)), hn::Gt(hn::Sub(least, slack_of(least)), side));
+    };
+    inside = hn::And(within(b.x_low, b.x_high, width), within(b.y_low, b.y_high, height));
+    outside = hn::Or(beyond(b.x_low, b.x_high, width), beyond(b.y_low, b.y_high, height));
+  }
+};
+
+/// Writes the places of cells with these boxes of pixels; returns which of them lie in one tile.
+HWY_INLINE std::uint64_t store_places(const CullView& view, const Placed& placed, std::uint32_t* places) {
+  const D d;
+  const hn::RebindToSigned<D> di;
+  // Whole numbers up to 65536 plus a half, over the tile's size: floats are off by less than half a pixel.
+  const V inverse = hn::Set(d, view.inverse_tile_size), half = hn::Set(d, 0.5f);
+  const auto tile = [&](V pixel) HWY_ATTR { return hn::Floor(hn::Mul(pixel, inverse)); };
+  const V column0 = tile(hn::Add(placed.columns.low, half)), column1 = tile(hn::Sub(placed.columns.high, half));
+  const V row0 = tile(hn::Add(placed.rows.low, half)), row1 = tile(hn::Sub(placed.rows.high, half));
+  const auto first = hn::ConvertTo(di, hn::MulAdd(row0, hn::Set(d, view.columns), column0));
+  const auto more_columns = hn::ConvertTo(di, hn::Sub(column1, column0));
+  const auto more_rows = hn::ConvertTo(di, hn::Sub(row1, row0));
+  const auto place = hn::Or(first, hn::Or(hn::ShiftLeft<24>(more_columns), hn::ShiftLeft<28>(more_rows)));
+  const auto wide = hn::Gt(hn::Max(more_columns, more_rows), hn::Set(di, largest_place_span));
+  hn::StoreU(hn::IfThenElse(wide, hn::Set(di, static_cast<std::int32_t>(wide_place)), place), di,
+             reinterpret_cast<std::int32_t*>(places));
+  return bits_of(hn::RebindMask(d, hn::Eq(hn::Or(more_columns, more_rows), hn::Zero(di))));
+}
+
 CulledBlock cull(const CullView& view, const CullVertex* vertices, const scene::Tet* tets, std::size_t count,
                  const double* cell_scalars, const ClearFloats* clear, std::size_t clear_count, std::uint32_t* places,
                  float* near_depths) {
@@ -139,78 +219,28 @@ CulledBlock cull(const CullView& view, const CullVertex* vertices, const scene::
     for (std::size_t t = 0; t < count; ++t) scalars[t] = static_cast<float>(cell_scalars[t]);
 
   const D d;
-  const hn::RebindToSigned<D> di;
   const std::size_t lanes = hn::Lanes(d);
   for (std::size_t t = count; t < (count + lanes - 1) / lanes * lanes; ++t) {  // any numbers
     for (std::size_t i = 0; i < 4; ++i) low[4 * t + i] = high[4 * t + i] = 0;
     scalars[t] = 0;
   }
-  const V width = hn::Set(d, view.width), height = hn::Set(d, view.height), half = hn::Set(d, 0.5f);
   for (std::size_t t = 0; t < count; t += lanes) {
-    V x_low, y_low, depth_low, scalar_low, x_high, y_high, depth_high, scalar_high;
-    hn::LoadInterleaved4(d, low + 4 * t, x_low, y_low, depth_low, scalar_low);
-    hn::LoadInterleaved4(d, high + 4 * t, x_high, y_high, depth_high, scalar_high);
-    if (cell_scalars != nullptr) scalar_low = scalar_high = hn::Load(d, scalars + t);
+    Boxes boxes(low + 4 * t, high + 4 * t);
+    if (cell_scalars != nullptr) boxes.scalar_low = boxes.scalar_high = hn::Load(d, scalars + t);
+    const Hidden hidden(boxes, clear, clear_count);
+    const Placed placed(view, boxes);
 
-    M hidden = hn::Lt(half, half), may_be_hidden = hidden;
-    for (std::size_t i = 0; i < clear_count; ++i) {
-      hidden = hn::Or(hidden, hn::And(hn::Ge(scalar_low, hn::Set(d, clear[i].sure_low)),
-                                      hn::Le(scalar_high, hn::Set(d, clear[i].sure_high))));
-      may_be_hidden = hn::Or(may_be_hidden, hn::And(hn::Ge(scalar_low, hn::Set(d, clear[i].maybe_low)),
-                                                    hn::Le(scalar_high, hn::Set(d, clear[i].maybe_high))));
-    }
-
-    // The farthest that a vertex of this CullVertex::depth may lie.
-    const auto at_most = [&](V v) HWY_ATTR {
-      return hn::Add(hn::MulAdd(hn::Abs(v), hn::Set(d, 4e-7f), v), hn::Set(d, view.depth_slack));
-    };
-    const M too_near = hn::Lt(at_most(depth_high), hn::Set(d, view.near_low));
-    const M too_far = hn::Gt(depth_low, hn::Set(d, view.far_high));
-    const M in_depth =
-        hn::And(hn::Gt(depth_low, hn::Set(d, view.near_high)), hn::Lt(at_most(depth_low), hn::Set(d, view.far_low)));
-
-    const Covered columns = covered(x_low, x_high, width), rows = covered(y_low, y_high, height);
-    const V widest = hn::Max(hn::Max(hn::Abs(x_low), hn::Abs(x_high)), hn::Max(hn::Abs(y_low), hn::Abs(y_high)));
-    const M tame = hn::Lt(widest, hn::Set(d, 1e30f));
-    const M empty = hn::Or(columns.empty, rows.empty);
-    const M covers = hn::AndNot(empty, hn::And(columns.sure, rows.sure));
-    const auto inside = [&](V least, V most, V side) HWY_ATTR {
-      return hn::And(hn::Gt(least, slack_of(least)), hn::Lt(hn::Add(most, slack_of(most)), side));
-    };
-    const auto outside = [&](V least, V most, V side) HWY_ATTR {
-      return hn::Or(hn::Lt(hn::Add(most, slack_of(most)), hn::Zero(d)), hn::Gt(hn::Sub(least, slack_of(least)), side));
-    };
-    const M all_inside = hn::And(inside(x_low, x_high, width), inside(y_low, y_high, height));
-    const M all_outside = hn::Or(outside(x_low, x_high, width), outside(y_low, y_high, height));
-
-    const M drawn = hn::And(in_depth, tame);
-    const std::uint64_t hidden_bits = bits_of(hidden), visible = ~bits_of(may_be_hidden);
-    const std::uint64_t drawn_bits = visible & bits_of(drawn), empty_bits = drawn_bits & bits_of(empty);
-    const std::uint64_t here = cells >> t & (~std::uint64_t{0} >> (64 - lanes));
-    const std::uint64_t projected = drawn_bits & bits_of(covers) & here;
-    const std::uint64_t outside_bits =
-        ((visible & bits_of(hn::Or(too_near, too_far))) | (empty_bits & bits_of(all_outside))) & here;
-    const std::uint64_t between = empty_bits & bits_of(all_inside) & ~outside_bits & here;
+    const std::uint64_t here = cells >> t & (~std::uint64_t{0} >> (64 - lanes)), visible = ~bits_of(hidden.maybe);
+    const std::uint64_t drawn = visible & bits_of(hn::And(placed.in_depth, placed.tame));
+    const std::uint64_t empty = drawn & bits_of(placed.empty), projected = drawn & bits_of(placed.covers) & here;
+    const std::uint64_t outside =
+        ((visible & bits_of(hn::Or(placed.too_near, placed.too_far))) | (empty & bits_of(placed.outside))) & here;
     block.projected |= projected << t;
-    block.invisible |= (hidden_bits & here) << t;
-    block.outside_view |= outside_bits << t;
-    block.between_pixels |= between << t;
-
-    // Whole numbers up to 65536 plus a half, over the tile's size: floats are off by less than half a pixel.
-    const V inverse = hn::Set(d, view.inverse_tile_size);
-    const auto tile = [&](V pixel) HWY_ATTR { return hn::Floor(hn::Mul(pixel, inverse)); };
-    const V column0 = tile(hn::Add(columns.low, half)), column1 = tile(hn::Sub(columns.high, half));
-    const V row0 = tile(hn::Add(rows.low, half)), row1 = tile(hn::Sub(rows.high, half));
-    const auto first = hn::ConvertTo(di, hn::MulAdd(row0, hn::Set(d, view.columns), column0));
-    const auto more_columns = hn::ConvertTo(di, hn::Sub(column1, column0));
-    const auto more_rows = hn::ConvertTo(di, hn::Sub(row1, row0));
-    const auto place = hn::Or(first, hn::Or(hn::ShiftLeft<24>(more_columns), hn::ShiftLeft<28>(more_rows)));
-    const auto wide = hn::Gt(hn::Max(more_columns, more_rows), hn::Set(di, largest_place_span));
-    const auto one_tile = hn::Eq(hn::Or(more_columns, more_rows), hn::Zero(di));
-    block.in_one_tile |= (projected & bits_of(hn::RebindMask(d, one_tile))) << t;
-    hn::StoreU(hn::IfThenElse(wide, hn::Set(di, static_cast<std::int32_t>(wide_place)), place), di,
-               reinterpret_cast<std::int32_t*>(places + t));
-    hn::StoreU(hn::Max(depth_low, hn::Set(d, view.near_low)), d, near_depths + t);
+    block.invisible |= (bits_of(hidden.surely) & here) << t;
+    block.outside_view |= outside << t;
+    block.between_pixels |= (empty & bits_of(placed.inside) & ~outside & here) << t;
+    block.in_one_tile |= (projected & store_places(view, placed, places + t)) << t;
+    hn::StoreU(hn::Max(boxes.depth_low, hn::Set(d, view.near_low)), d, near_depths + t);
   }
   block.unsure = cells & ~(block.projected | block.invisible | block.outside_view | block.between_pixels);
   return block;

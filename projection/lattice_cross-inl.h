@@ -202,6 +202,8 @@ class HitCrossing {
   }
 #endif
 
+  // Long: the two crossings of sixteen hits, whose dozen vectors stay in registers from the first line to the last; a
+  // part of it would take nearly all of them as arguments.
   template <class Cells>
   HWY_INLINE void cross(const std::int32_t* hits, std::size_t count, const Cells& cells) {
     const I d;

@@ -235,6 +235,102 @@ HWY_INLINE auto load_every_second(const Vertex& vertex, int first, int pair) {
   }
 }
 
+/// A vector of cells' corners: place in the picture from the square's centre, depth and scalar in steps, weight.
+struct Corners {
+  V x[4], y[4], z[4], s[4], w[4];
+  V nearest, farthest;  ///< of z
+
+  HWY_INLINE Corners(const LatticeVertex* vertices, const scene::Tet* const* tets, int square_x, int square_y) {
+    const D d;
+    const hn::Rebind<std::int32_t, D> di32;
+    const hn::RebindToUnsigned<D> du64;
+    const hn::Rebind<std::uint32_t, D> du32;
+    nearest = hn::Set(d, HUGE_VAL), farthest = hn::Set(d, -HUGE_VAL);
+    for (int i = 0; i < 4; ++i) {
+      const auto vertex = [&](int lane) HWY_ATTR { return &vertices[(*tets[lane])[static_cast<std::size_t>(i)]]; };
+      const auto even = [&](int pair) HWY_ATTR { return load_every_second<hn::MaxLanes(D())>(vertex, 0, pair); };
+      const auto odd = [&](int pair) HWY_ATTR { return load_every_second<hn::MaxLanes(D())>(vertex, 1, pair); };
+      const V xy_even = even(0), xy_odd = odd(0), rest_even = even(1), rest_odd = odd(1);
+      x[i] = hn::InterleaveLower(d, xy_even, xy_odd), y[i] = hn::InterleaveUpper(d, xy_even, xy_odd);
+      w[i] = hn::InterleaveLower(d, rest_even, rest_odd);
+      const auto both = hn::BitCast(du64, hn::InterleaveUpper(d, rest_even, rest_odd));
+      z[i] = hn::PromoteTo(d, hn::BitCast(di32, hn::TruncateTo(du32, both)));
+      s[i] = hn::PromoteTo(d, hn::BitCast(di32, hn::TruncateTo(du32, hn::ShiftRight<32>(both))));
+      x[i] = hn::Sub(x[i], hn::Set(d, square_x + CellBatch::center + 0.5));
+      y[i] = hn::Sub(y[i], hn::Set(d, square_y + CellBatch::center + 0.5));
+      nearest = hn::Min(nearest, z[i]), farthest = hn::Max(farthest, z[i]);
+    }
+  }
+  [[nodiscard]] HWY_INLINE V least_weight() const { return hn::Min(hn::Min(w[0], w[1]), hn::Min(w[2], w[3])); }
+  [[nodiscard]] HWY_INLINE V most_weight() const { return hn::Max(hn::Max(w[0], w[1]), hn::Max(w[2], w[3])); }
+};
+
+/// Stores the candidate pixels: centres inside the bounding box, widened by far more than rounding. Returns the box's
+/// width and height together; cells too far off to be set up become irregular.
+HWY_INLINE V set_up_box(const Corners& corners, const scene::PixelRect& rect, int square_x, int square_y, int from,
+                        M& irregular, CellBatch& batch) {
+  const D d;
+  const hn::Rebind<std::int32_t, D> di32;
+  const auto number = [](double v) HWY_ATTR { return hn::Set(D(), v); };
+  const V(&x)[4] = corners.x, (&y)[4] = corners.y;
+  const V x_low = hn::Min(hn::Min(x[0], x[1]), hn::Min(x[2], x[3]));
+  const V x_high = hn::Max(hn::Max(x[0], x[1]), hn::Max(x[2], x[3]));
+  const V y_low = hn::Min(hn::Min(y[0], y[1]), hn::Min(y[2], y[3]));
+  const V y_high = hn::Max(hn::Max(y[0], y[1]), hn::Max(y[2], y[3]));
+  const V reach = hn::Max(hn::Max(hn::Neg(x_low), x_high), hn::Max(hn::Neg(y_low), y_high));
+  irregular = hn::Or(irregular, hn::Not(hn::Lt(reach, number(16384))));
+  const V slack = number(1e-6), center = number(CellBatch::center), behind = number(CellBatch::center + 1);
+  const auto store_bound = [&](V v, int low, int high, std::int32_t* out) HWY_ATTR {
+    hn::StoreU(hn::DemoteTo(di32, hn::Min(hn::Max(v, number(low)), number(high))), di32, out + from);
+  };
+  const int left = rect.x0 - square_x, right = rect.x1 - square_x, top = rect.y0 - square_y,
+            bottom = rect.y1 - square_y;
+  store_bound(hn::Add(hn::Ceil(hn::Sub(x_low, slack)), center), left, right, batch.x0);
+  store_bound(hn::Add(hn::Floor(hn::Add(x_high, slack)), behind), left, right, batch.x1);
+  store_bound(hn::Add(hn::Ceil(hn::Sub(y_low, slack)), center), top, bottom, batch.y0);
+  store_bound(hn::Add(hn::Floor(hn::Add(y_high, slack)), behind), top, bottom, batch.y1);
+  return hn::Add(hn::Sub(x_high, x_low), hn::Sub(y_high, y_low));
+}
+
+/// Stores the faces' planes: depth and, of point data, scalar.
+template <bool perspective>
+HWY_INLINE void set_up_planes(const Corners& corners, const FaceShape (&shape)[4], bool per_cell, int from,
+                              CellBatch& batch) {
+  const D d;
+  const hn::Rebind<float, D> df;
+  const hn::Rebind<std::int32_t, D> di32;
+  const V(&z)[4] = corners.z, (&s)[4] = corners.s, (&w)[4] = corners.w;
+  if constexpr (!perspective) {
+    const auto planes = [&](const V(&q)[4], CellBatch::FacePlanes& out) HWY_ATTR {
+      for (int f = 0; f < 4; ++f)
+        store_plane(plane_of(shape[f], q[face_corners[f][0]], q[face_corners[f][1]], q[face_corners[f][2]]), f, from,
+                    out);
+    };
+    planes(z, batch.depth);
+    if (!per_cell) planes(s, batch.scalar);
+  } else {
+    for (int f = 0; f < 4; ++f) {
+      const V wa = w[face_corners[f][0]], wb = w[face_corners[f][1]], wc = w[face_corners[f][2]];
+      const V most = hn::Max(wa, hn::Max(wb, wc)), full = hn::Set(d, CellBatch::weight_one);
+      const V weight[3] = {hn::Div(wa, most), hn::Div(wb, most), hn::Div(wc, most)};
+      store_plane(plane_of(shape[f], hn::Mul(weight[0], full), hn::Mul(weight[1], full), hn::Mul(weight[2], full)), f,
+                  from, batch.weight);
+      const auto relative = [&](const V(&q)[4], V qc) HWY_ATTR {
+        return plane_of(shape[f], hn::Mul(weight[0], hn::Sub(q[face_corners[f][0]], qc)),
+                        hn::Mul(weight[1], hn::Sub(q[face_corners[f][1]], qc)),
+                        hn::Mul(weight[2], hn::Sub(q[face_corners[f][2]], qc)));
+      };
+      const V depth_c = hn::Round(z[face_corners[f][2]]);
+      store_plane(relative(z, depth_c), f, from, batch.depth);
+      hn::StoreU(wrapped(depth_c), di32, batch.depth_c[f] + from);
+      if (per_cell) continue;
+      const V scalar_c = hn::Round(s[face_corners[f][2]]);
+      store_plane(relative(s, scalar_c), f, from, batch.scalar);
+      hn::StoreU(hn::DemoteTo(df, scalar_c), df, batch.scalar_c[f] + from);
+    }
+  }
+}
+
 /// One vector of cells: the first of them is cell `from` of the batch. `cell_scalar` is read of cell data only.
 template <bool perspective>
 HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds, const scene::Tet* const* tets,
@@ -242,62 +338,18 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
                              int from, CellBatch& batch) {
   const D d;
   const hn::Rebind<float, D> df;
-  const hn::Rebind<std::int32_t, D> di32;
-  const hn::RebindToUnsigned<D> du64;
-  const hn::Rebind<std::uint32_t, D> du32;
   const auto number = [](double v) HWY_ATTR { return hn::Set(D(), v); };
-  const V zero = hn::Zero(d), one = number(1);
-  const LatticeVertex* const vertices = view.vertices.data();
-  V x[4], y[4], z[4], s[4], w[4], order[4];
-  M irregular = hn::Lt(zero, zero);
-  V nearest = number(HUGE_VAL), farthest = number(-HUGE_VAL);
-  for (int i = 0; i < 4; ++i) {
-    const auto vertex = [&](int lane) HWY_ATTR { return &vertices[(*tets[lane])[static_cast<std::size_t>(i)]]; };
-    const auto even = [&](int pair) HWY_ATTR { return load_every_second<hn::MaxLanes(D())>(vertex, 0, pair); };
-    const auto odd = [&](int pair) HWY_ATTR { return load_every_second<hn::MaxLanes(D())>(vertex, 1, pair); };
-    const V xy_even = even(0), xy_odd = odd(0), rest_even = even(1), rest_odd = odd(1);
-    x[i] = hn::InterleaveLower(d, xy_even, xy_odd), y[i] = hn::InterleaveUpper(d, xy_even, xy_odd);
-    w[i] = hn::InterleaveLower(d, rest_even, rest_odd);
-    const auto both = hn::BitCast(du64, hn::InterleaveUpper(d, rest_even, rest_odd));
-    z[i] = hn::PromoteTo(d, hn::BitCast(di32, hn::TruncateTo(du32, both)));
-    s[i] = hn::PromoteTo(d, hn::BitCast(di32, hn::TruncateTo(du32, hn::ShiftRight<32>(both))));
-    if constexpr (perspective) {
-      irregular = hn::Or(irregular, hn::Not(hn::Gt(w[i], zero)));
-      order[i] = hn::Neg(w[i]);
-    } else {
-      order[i] = z[i];
-    }
-    x[i] = hn::Sub(x[i], number(square_x + CellBatch::center + 0.5));
-    y[i] = hn::Sub(y[i], number(square_y + CellBatch::center + 0.5));
-    nearest = hn::Min(nearest, z[i]), farthest = hn::Max(farthest, z[i]);
-  }
-  irregular = hn::Or(irregular, hn::Or(hn::Lt(nearest, number(bounds.near)), hn::Gt(farthest, number(bounds.far))));
+  const V zero = hn::Zero(d);
+  const Corners corners(view.vertices.data(), tets, square_x, square_y);
+  const V(&x)[4] = corners.x, (&y)[4] = corners.y, nearest = corners.nearest, farthest = corners.farthest;
+  M irregular = hn::Or(hn::Lt(nearest, number(bounds.near)), hn::Gt(farthest, number(bounds.far)));
+  V order[4];
+  for (int i = 0; i < 4; ++i) order[i] = perspective ? hn::Neg(corners.w[i]) : corners.z[i];
   if constexpr (perspective) {
-    const V w_most = hn::Max(hn::Max(w[0], w[1]), hn::Max(w[2], w[3]));
-    const V w_least = hn::Min(hn::Min(w[0], w[1]), hn::Min(w[2], w[3]));
-    irregular = hn::Or(irregular, hn::Gt(w_most, hn::Mul(w_least, number(16))));
+    for (int i = 0; i < 4; ++i) irregular = hn::Or(irregular, hn::Not(hn::Gt(corners.w[i], zero)));
+    irregular = hn::Or(irregular, hn::Gt(corners.most_weight(), hn::Mul(corners.least_weight(), number(16))));
   }
-
-  // Candidate pixels: centres inside the bounding box, widened by far more than rounding.
-  const V x_low = hn::Min(hn::Min(x[0], x[1]), hn::Min(x[2], x[3]));
-  const V x_high = hn::Max(hn::Max(x[0], x[1]), hn::Max(x[2], x[3]));
-  const V y_low = hn::Min(hn::Min(y[0], y[1]), hn::Min(y[2], y[3]));
-  const V y_high = hn::Max(hn::Max(y[0], y[1]), hn::Max(y[2], y[3]));
-  const V reach = hn::Max(hn::Max(hn::Neg(x_low), x_high), hn::Max(hn::Neg(y_low), y_high));
-  irregular = hn::Or(irregular, hn::Not(hn::Lt(reach, number(16384))));
-  const V slack = number(1e-6);
-  const auto store_bound = [&](V v, int low, int high, std::int32_t* out) HWY_ATTR {
-    hn::StoreU(hn::DemoteTo(di32, hn::Min(hn::Max(v, number(low)), number(high))), di32, out + from);
-  };
-  const V center = number(CellBatch::center);
-  store_bound(hn::Add(hn::Ceil(hn::Sub(x_low, slack)), center), rect.x0 - square_x, rect.x1 - square_x, batch.x0);
-  store_bound(hn::Add(hn::Floor(hn::Add(x_high, slack)), hn::Add(center, one)), rect.x0 - square_x, rect.x1 - square_x,
-              batch.x1);
-  store_bound(hn::Add(hn::Ceil(hn::Sub(y_low, slack)), center), rect.y0 - square_y, rect.y1 - square_y, batch.y0);
-  store_bound(hn::Add(hn::Floor(hn::Add(y_high, slack)), hn::Add(center, one)), rect.y0 - square_y, rect.y1 - square_y,
-              batch.y1);
-
-  const V span = hn::Add(hn::Sub(x_high, x_low), hn::Sub(y_high, y_low));
+  const V span = set_up_box(corners, rect, square_x, square_y, from, irregular, batch);
 
   // Faces: area, which side of the cell, planes.
   M thin = hn::Lt(zero, zero);
@@ -324,11 +376,9 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
   if (HWY_UNLIKELY(!hn::AllFalse(d, deep))) {
     const V twice_area =
         hn::Add(hn::Add(hn::Abs(area[0]), hn::Abs(area[1])), hn::Add(hn::Abs(area[2]), hn::Abs(area[3])));
-    const V w_most = hn::Max(hn::Max(w[0], w[1]), hn::Max(w[2], w[3]));
-    const V w_least = hn::Min(hn::Min(w[0], w[1]), hn::Min(w[2], w[3]));
-    irregular =
-        hn::Or(irregular,
-               hn::And(deep, rounded_visibly<perspective>(view, extent, volume, twice_area, hn::Mul(w_most, w_least))));
+    irregular = hn::Or(
+        irregular, hn::And(deep, rounded_visibly<perspective>(view, extent, volume, twice_area,
+                                                              hn::Mul(corners.most_weight(), corners.least_weight()))));
   }
   if (HWY_UNLIKELY(!hn::AllFalse(d, thin)))
     set_up_sides<perspective, true>(shape, area, upright, x, y, span, from, irregular, batch);
@@ -336,35 +386,7 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
     set_up_sides<perspective, false>(shape, area, upright, x, y, span, from, irregular, batch);
 
   const bool per_cell = view.projected.mesh->mesh().association == scene::Association::cell;
-  if constexpr (!perspective) {
-    const auto planes = [&](const V(&q)[4], CellBatch::FacePlanes& out) HWY_ATTR {
-      for (int f = 0; f < 4; ++f)
-        store_plane(plane_of(shape[f], q[face_corners[f][0]], q[face_corners[f][1]], q[face_corners[f][2]]), f, from,
-                    out);
-    };
-    planes(z, batch.depth);
-    if (!per_cell) planes(s, batch.scalar);
-  } else {
-    for (int f = 0; f < 4; ++f) {
-      const V wa = w[face_corners[f][0]], wb = w[face_corners[f][1]], wc = w[face_corners[f][2]];
-      const V most = hn::Max(wa, hn::Max(wb, wc)), full = number(CellBatch::weight_one);
-      const V weight[3] = {hn::Div(wa, most), hn::Div(wb, most), hn::Div(wc, most)};
-      store_plane(plane_of(shape[f], hn::Mul(weight[0], full), hn::Mul(weight[1], full), hn::Mul(weight[2], full)), f,
-                  from, batch.weight);
-      const auto relative = [&](const V(&q)[4], V qc) HWY_ATTR {
-        return plane_of(shape[f], hn::Mul(weight[0], hn::Sub(q[face_corners[f][0]], qc)),
-                        hn::Mul(weight[1], hn::Sub(q[face_corners[f][1]], qc)),
-                        hn::Mul(weight[2], hn::Sub(q[face_corners[f][2]], qc)));
-      };
-      const V depth_c = hn::Round(z[face_corners[f][2]]);
-      store_plane(relative(z, depth_c), f, from, batch.depth);
-      hn::StoreU(wrapped(depth_c), di32, batch.depth_c[f] + from);
-      if (per_cell) continue;
-      const V scalar_c = hn::Round(s[face_corners[f][2]]);
-      store_plane(relative(s, scalar_c), f, from, batch.scalar);
-      hn::StoreU(hn::DemoteTo(df, scalar_c), df, batch.scalar_c[f] + from);
-    }
-  }
+  set_up_planes<perspective>(corners, shape, per_cell, from, batch);
   if (per_cell) {
     const V scalar = hn::Mul(hn::Sub(hn::LoadU(d, cell_scalar), number(view.lattice.scalar_origin)),
                              number(1 / view.lattice.scalar_unit));

@@ -27,9 +27,6 @@ KNOWN = """
     io/meta_image.cpp read_meta_image_header
     integrals/integrate_exact.cpp exact
     exchange/mpi_transport.cpp
-    projection/cull_cells.cpp cull
-    projection/lattice_cross-inl.h cross
-    projection/lattice_setup-inl.h set_up_lanes
     volume/cast_slabs-inl.h
     volume/fill_block-inl.h fill_block
     volume/ray_piece-inl.h walk_cubic

@@ -39,7 +39,7 @@ TEST(SplitRasterizer, CutsSegmentsWhereTheyCrossStepsAndTilesThemWithThePieces) 
   const scene::TetMesh mesh = datasets::cube(3, 0.2);
   const Projected projected(mesh);
   const std::vector<Step> steps{{0.2, 1}, {0.45, 1}, {0.5, 1}, {0.8, 1}};
-  SplitRasterizer splitter;
+  SplitRasterizer<RaySegments> splitter;
   RasterCounts counts;
   const scene::PixelRect rect{0, 0, size.width, size.height};
   RaySegments whole;
@@ -79,7 +79,7 @@ TEST(SplitRasterizer, KeepsWhatIsBelowAStepByADoublesLastPlaceBelowIt) {
   for (double& s : mesh.scalars) s = random() % 2 == 0 ? 1 : below(1);
   const Projected projected(mesh);
   const std::vector<Step> steps{{1, 1}};
-  SplitRasterizer splitter;
+  SplitRasterizer<RaySegments> splitter;
   RasterCounts counts;
   for (std::uint32_t tet = 0; tet < mesh.tets.size(); ++tet) {
     const auto [low, high] = projected.prepared.scalar_bounds(tet);
