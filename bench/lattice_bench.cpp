@@ -1,6 +1,6 @@
-// The lattice path's kernels: nanoseconds a cell (set up and rasterized), a segment (dealt to its pixel's window) and a
-// segment (sorted, integrated, composited), by the mean size of a cell in pixels and by instruction set, on one thread;
-// and whole frames on one and two threads.
+// The lattice path's kernels: nanoseconds a cell (set up and rasterized), a segment (scattered to its pixel's window)
+// and a segment (sorted, integrated, composited), by the mean size of a cell in pixels and by instruction set, on one
+// thread; and whole frames on one and two threads.
 //
 //   lattice_bench --benchmark_filter=composite/.*AVX3
 //
@@ -86,10 +86,10 @@ struct Frame {
   std::size_t entries = 0;
 };
 
-/// Nanoseconds of each stage over all tiles, in the order of a frame: sixteen cells, dealt, and composited when a list
-/// is full.
+/// Nanoseconds of each stage over all tiles, in the order of a frame: sixteen cells, scattered, and composited when a
+/// list is full.
 struct Stages {
-  double rasterize = 0, deal = 0, composite = 0;
+  double rasterize = 0, scatter = 0, composite = 0;
   std::uint64_t cells = 0, segments = 0;
 };
 
@@ -126,13 +126,13 @@ void run_tiles(Frame& f, Stages& stages) {
       stages.rasterize += seconds_since(start);
       const double near = f.lists->depth_origin() + cells.front().near_depth - f.slack[tile] - f.lattice.depth_origin;
       const auto before = static_cast<std::int64_t>(std::floor(near / f.lattice.depth_unit)) - 64;
-      for (std::size_t dealt = 0; dealt < stream.size;) {
+      for (std::size_t placed = 0; placed < stream.size;) {
         start = Clock::now();
-        dealt = windows.deal(stream, dealt);
-        stages.deal += seconds_since(start);
-        if (dealt == stream.size) break;
+        placed = windows.scatter(stream, placed);
+        stages.scatter += seconds_since(start);
+        if (placed == stream.size) break;
         composite(before);
-        if (windows.count(static_cast<std::size_t>(stream.pixel[dealt])) == windows.capacity()) windows.grow();
+        if (windows.count(static_cast<std::size_t>(stream.pixel[placed])) == windows.capacity()) windows.grow();
       }
     }
     composite(std::numeric_limits<std::int64_t>::max());
@@ -153,14 +153,14 @@ void kernels(benchmark::State& state, const scene::TetMesh& mesh, int pixels, st
   for (auto _ : state) {
     Stages stages;
     run_tiles(frame, stages);
-    const double all = stages.rasterize + stages.deal + stages.composite;
+    const double all = stages.rasterize + stages.scatter + stages.composite;
     state.SetIterationTime(all);
     if (all < best) best = all, least = stages;
   }
   const auto cells = static_cast<double>(least.cells), segments = static_cast<double>(least.segments);
   state.counters["pixels_a_cell"] = segments / cells;
   state.counters["rasterize_ns_a_cell"] = 1e9 * least.rasterize / cells;
-  state.counters["deal_ns_a_segment"] = 1e9 * least.deal / segments;
+  state.counters["scatter_ns_a_segment"] = 1e9 * least.scatter / segments;
   state.counters["composite_ns_a_segment"] = 1e9 * least.composite / segments;
   state.counters["all_ns_a_segment"] = 1e9 * best / segments;
   choose(0);

@@ -35,7 +35,7 @@ scene::TetMesh subdivided(const scene::TetMesh& mesh);
 /// Tets and vertices in random order, original_cell dropped: file order carries no locality any more.
 scene::TetMesh shuffled(const scene::TetMesh& mesh, std::uint64_t seed);
 
-/// How a mesh is dealt to parts.
+/// How a mesh is distributed over parts.
 enum class Partition {
   interleaved,  ///< each tet to a random part: the worst case, parts lie within one another everywhere
   random_blobs  ///< each tet to the nearest of four random centres a part: jagged, not convex, not connected

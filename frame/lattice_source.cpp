@@ -40,7 +40,7 @@ bool LatticeSource::start(const scene::PixelRect& rect, const projection::DepthO
 bool LatticeSource::fill(const compositor::TileSink<Encoding>& sink) {
   const std::span<const projection::TileEntry> entries = order_->entries;
   for (;;) {
-    placed_ = windows_.deal(stream_, placed_);
+    placed_ = windows_.scatter(stream_, placed_);
     if (placed_ < stream_.size) return true;
     counts_->peak_bytes = std::max<std::uint64_t>(counts_->peak_bytes, windows_.bytes() + stream_.bytes());
     if (cells_ == entries.size() || !sink.any_open()) return false;

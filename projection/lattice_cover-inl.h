@@ -37,7 +37,7 @@ constexpr BlockShape block_shapes[] = {block_of(usual_width), block_of(2 * usual
 /// that each time, as to make the step did; beside a narrow rectangle, whose blocks reach out of it, values are up to
 /// 1.4 times as large.
 constexpr int most_blocks = SegmentWindows::most_pixels / lanes;
-constexpr float outline_doubt = 2.0f + 0.75f * static_cast<float>(most_blocks);
+constexpr float outline_uncertainty = 2.0f + 0.75f * static_cast<float>(most_blocks);
 
 /// first, first + 1... (Iota() of what is no constant goes through memory, lane by lane.)
 HWY_INLINE VI numbers_from(int first) { return hn::Add(hn::Iota(I(), 0), hn::Set(I(), first)); }
@@ -46,12 +46,12 @@ HWY_INLINE VI numbers_from(int first) { return hn::Add(hn::Iota(I(), 0), hn::Set
 HWY_INLINE std::size_t push_hits(VF least, MF among, VI hits, HitQueue& queue, std::size_t size) {
   const F df;
   const I d;
-  const VF bound = hn::Set(df, outline_doubt), minus_bound = hn::Set(df, -outline_doubt);
-  const VI mark = hn::Set(d, Hit::doubtful);
+  const VF bound = hn::Set(df, outline_uncertainty), minus_bound = hn::Set(df, -outline_uncertainty);
+  const VI mark = hn::Set(d, Hit::uncertain);
 #if HWY_TARGET <= HWY_AVX3
   const MF near{_mm512_mask_cmp_ps_mask(among.raw, least.raw, minus_bound.raw, _CMP_GT_OQ)};
-  const MF doubtful = hn::Le(least, bound);
-  hits = VI{_mm512_mask_or_epi32(hits.raw, doubtful.raw, hits.raw, mark.raw)};
+  const MF uncertain = hn::Le(least, bound);
+  hits = VI{_mm512_mask_or_epi32(hits.raw, uncertain.raw, hits.raw, mark.raw)};
 #else
   const MF near = hn::And(among, hn::Gt(least, minus_bound));
   hits = hn::Or(hits, hn::IfThenElseZero(hn::RebindMask(d, hn::Le(least, bound)), mark));

@@ -227,14 +227,14 @@ class HitCrossing {
       sure = least_magnitude(sure, inner0);
     }
     MF hits_cell = hn::FirstN(df, count), touching = hits_cell;
-    const MF flagged = hn::RebindMask(df, hn::TestBit(hit, number(Hit::doubtful)));
-    const MF doubtful = hn::And(hits_cell, hn::Or(hn::Le(sure, hn::Set(df, 1.0f)), flagged));
+    const MF flagged = hn::RebindMask(df, hn::TestBit(hit, number(Hit::uncertain)));
+    const MF uncertain = hn::And(hits_cell, hn::Or(hn::Le(sure, hn::Set(df, 1.0f)), flagged));
     bool all_hit = true;
-    if (HWY_UNLIKELY(!hn::AllFalse(df, doubtful))) {
-      Doubt doubt{{inner0, inner1, inner2}, hits_cell, touching};  // what settle() changes lies in memory
-      settle(lane_bits(doubtful), hits, doubt);
-      inner0 = doubt.inner[0], inner1 = doubt.inner[1], inner2 = doubt.inner[2];
-      hits_cell = doubt.hits_cell, touching = doubt.touching;
+    if (HWY_UNLIKELY(!hn::AllFalse(df, uncertain))) {
+      Unsettled unsettled{{inner0, inner1, inner2}, hits_cell, touching};  // what settle() changes lies in memory
+      settle(lane_bits(uncertain), hits, unsettled);
+      inner0 = unsettled.inner[0], inner1 = unsettled.inner[1], inner2 = unsettled.inner[2];
+      hits_cell = unsettled.hits_cell, touching = unsettled.touching;
       all_hit = false;
     }
 
@@ -300,20 +300,20 @@ class HitCrossing {
     out_.size = at + count;
   }
 
-  struct Doubt {
+  struct Unsettled {
     VF inner[3];
     MF hits_cell, touching;
   };
-  /// Exact signs for the doubtful lanes.
-  HWY_NOINLINE void settle(unsigned doubtful, const std::int32_t* hits, Doubt& doubt) {
+  /// Exact signs for the uncertain lanes.
+  HWY_NOINLINE void settle(unsigned uncertain, const std::int32_t* hits, Unsettled& unsettled) {
     const F df;
-    VF(&inner)[3] = doubt.inner;
-    MF &hits_cell = doubt.hits_cell, &touching = doubt.touching;
+    VF(&inner)[3] = unsettled.inner;
+    MF &hits_cell = unsettled.hits_cell, &touching = unsettled.touching;
     alignas(64) float inners[3][lanes], hit[lanes], touches[lanes] = {};
     for (int k = 0; k < 3; ++k) hn::Store(inner[k], df, inners[k]);
     hn::Store(hn::IfThenElseZero(hits_cell, hn::Set(df, 1.0f)), df, hit);
-    for (; doubtful != 0; doubtful &= doubtful - 1) {
-      const int lane = __builtin_ctz(doubtful), t = hits[lane] & (CellBatch::most - 1);
+    for (; uncertain != 0; uncertain &= uncertain - 1) {
+      const int lane = __builtin_ctz(uncertain), t = hits[lane] & (CellBatch::most - 1);
       const int column = hits[lane] >> Hit::column_bit & (SegmentWindows::side - 1);
       const int row = hits[lane] >> Hit::row_bit & (SegmentWindows::side - 1);
       const auto x = static_cast<float>(column - CellBatch::center), y = static_cast<float>(row - CellBatch::center);

@@ -175,10 +175,10 @@ class PartOrder {
 };
 
 /// Pixels that rays of a batch's cells may hit, a number each: the cell, and column and row in the square, 16 bits
-/// apart as in CellParts. `doubtful` marks those at an edge of the outline, where float does not tell.
+/// apart as in CellParts. `uncertain` marks those at an edge of the outline, where float does not tell.
 struct Hit {
   static constexpr int column_bit = 4, row_bit = column_bit + 16;
-  static constexpr std::int32_t doubtful = 1 << 15;
+  static constexpr std::int32_t uncertain = 1 << 15;
 };
 /// Hits that wait to be crossed.
 struct HitQueue {

@@ -13,14 +13,14 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
-std::size_t deal(const SegmentStream& s, std::size_t, std::size_t, std::size_t, LatticeSegment*, std::uint32_t*) {
+std::size_t scatter(const SegmentStream& s, std::size_t, std::size_t, std::size_t, LatticeSegment*, std::uint32_t*) {
   return s.size;
 }
 #else
 /// Segments are made records a vector at a time (a transposition in registers), then stored one by one: one 16-byte
 /// load and store each, in a loop that has no branch to mispredict but its end.
-std::size_t deal(const SegmentStream& s, std::size_t from, std::size_t capacity, std::size_t stride,
-                 LatticeSegment* lists, std::uint32_t* counts) {
+std::size_t scatter(const SegmentStream& s, std::size_t from, std::size_t capacity, std::size_t stride,
+                    LatticeSegment* lists, std::uint32_t* counts) {
   const hn::ScalableTag<std::int32_t> d;
   const hn::RebindToFloat<decltype(d)> df;
   constexpr std::size_t most = 16;
@@ -57,10 +57,10 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace tessera::projection {
-HWY_EXPORT(deal);
+HWY_EXPORT(scatter);
 
-std::size_t SegmentWindows::deal(const SegmentStream& stream, std::size_t from) {
-  return HWY_DYNAMIC_DISPATCH(deal)(stream, from, capacity_, stride(), segments_.data(), counts_.data());
+std::size_t SegmentWindows::scatter(const SegmentStream& stream, std::size_t from) {
+  return HWY_DYNAMIC_DISPATCH(scatter)(stream, from, capacity_, stride(), segments_.data(), counts_.data());
 }
 
 void SegmentWindows::reset(std::size_t pixels, std::size_t capacity) {

@@ -53,9 +53,9 @@ class SegmentWindows {
     return (2 * capacity_ * stride() + pixel_padding) * sizeof(LatticeSegment);
   }
 
-  /// Deals segments [from, stream.size) to their pixels' lists; stops before one whose list is full. Returns where it
-  /// stopped.
-  std::size_t deal(const SegmentStream& stream, std::size_t from);
+  /// Scatters segments [from, stream.size) to their pixels' lists; stops before one whose list is full. Returns where
+  /// it stopped.
+  std::size_t scatter(const SegmentStream& stream, std::size_t from);
 
   /// Appends one segment to a pixel's list; false if that is full.
   bool push(std::size_t pixel, const LatticeSegment& segment) {
