@@ -12,7 +12,7 @@
 #include "apps/report.hpp"
 #include "apps/run_output.hpp"
 #include "apps/session_options.hpp"
-#include "exchange/wire.hpp"
+#include "exchange/collectives.hpp"
 #include "frame/session_extras.hpp"
 #include "frame/verify.hpp"
 #include "io/time_series.hpp"
@@ -91,9 +91,9 @@ class Film final : public Sink {
     }
     skip_to(frames_.size());
     if (timed()) write_trace();
-    Bytes code(1);
-    if (writes_) code[0] = static_cast<std::byte>(output_.finish(options_));
-    return static_cast<scene::ExitCode>(exchange::broadcast(transport_, writer_, code)[0]);
+    const std::uint8_t code = writes_ ? static_cast<std::uint8_t>(output_.finish(options_)) : 0;
+    return static_cast<scene::ExitCode>(
+        exchange::broadcast_value(transport_, writer_, exchange::MessageKind::exit_code, code));
   }
 
   [[nodiscard]] bool wants_tiles() const override { return false; }
@@ -130,10 +130,13 @@ class Film final : public Sink {
   /// The writing rank's view of the disk holds for all.
   void agree_on_finished_frames() {
     if (writes_) check_outputs(options_, frames_);
-    Bytes finished(frames_.size());
-    for (std::size_t i = 0; i < frames_.size(); ++i) finished[i] = std::byte{frames_[i].finished};
+    constexpr auto kind = exchange::MessageKind::finished_frames;
+    Bytes finished = exchange::begin_message(kind, frames_.size());
+    for (const Frame& frame : frames_) exchange::append(finished, std::uint8_t{frame.finished});
     finished = exchange::broadcast(transport_, writer_, std::move(finished));
-    for (std::size_t i = 0; i < frames_.size(); ++i) frames_[i].finished = finished[i] != std::byte{0};
+    exchange::MessageReader reader(finished, writer_, kind);
+    for (Frame& frame : frames_) frame.finished = reader.take<std::uint8_t>() != 0;
+    reader.finish();
   }
 
   void skip_to(std::size_t frame) {

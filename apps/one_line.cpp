@@ -14,7 +14,7 @@
 #include <ctime>
 #include <random>
 
-#include "exchange/wire.hpp"
+#include "exchange/collectives.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -94,12 +94,10 @@ bool share_one_line(exchange::Transport& transport) {
   gethostname(self.host.data(), self.host.size() - 1);
   self.process = getpid();
   Spoken* shared = make_spoken(self);
-  exchange::Bytes mine;
-  exchange::append(mine, self);
-  const auto all = exchange::gather_all(transport, std::move(mine));
+  const auto all = exchange::gather_values(transport, exchange::MessageKind::process_on_host, self);
   bool with_first = true;
   for (std::size_t rank = 0; rank < all.size(); ++rank) {
-    const auto other = exchange::RecordReader(all[rank]).take<Neighbour>();
+    const Neighbour& other = all[rank];
     if (rank == 0) with_first = other.host == self.host;
     if (other.host != self.host) continue;
     Spoken* others = other.process != self.process && other.key != 0 ? open_spoken(other) : nullptr;

@@ -1,15 +1,15 @@
 #include "apps/rank_traces.hpp"
 
-#include <cstring>
 #include <limits>
 
-#include "exchange/wire.hpp"
+#include "exchange/collectives.hpp"
 
 namespace tessera::apps {
 namespace {
 
 using exchange::Bytes;
 using exchange::Channel;
+using exchange::MessageKind;
 
 constexpr int pings = 8;
 
@@ -19,12 +19,12 @@ double clock_offset(exchange::Transport& transport, int writer, const scene::Tra
   double offset = 0, quickest = std::numeric_limits<double>::infinity();
   for (int i = 0; i < pings; ++i) {
     const double asked = trace.now_us();
-    transport.send(writer, Channel::timing, Bytes(1));
+    transport.send(writer, Channel::timing, exchange::begin_message(MessageKind::clock_question));
     const auto answer = transport.receive(Channel::timing);
     const double answered = trace.now_us();
     if (answered - asked >= quickest) continue;
     quickest = answered - asked;
-    offset = exchange::RecordReader(answer.bytes).take<double>() - (asked + answered) / 2;
+    offset = exchange::value_of<double>(answer.bytes, answer.from, MessageKind::clock_answer) - (asked + answered) / 2;
   }
   return offset;
 }
@@ -36,9 +36,8 @@ void write_rank_traces(exchange::Transport& transport, int writer, const scene::
   const int self = transport.rank();
   if (self != writer) {
     const double offset = clock_offset(transport, writer, trace);
-    const std::string events = io::chrome_trace_events(trace, self, process_name, offset);
-    Bytes message(events.size() + 2);  // longer than a ping, even if there are none
-    std::memcpy(message.data() + 2, events.data(), events.size());
+    Bytes message = exchange::begin_message(MessageKind::trace_events);
+    exchange::append_text(message, io::chrome_trace_events(trace, self, process_name, offset));
     transport.send(writer, Channel::timing, std::move(message));
     return;
   }
@@ -46,14 +45,14 @@ void write_rank_traces(exchange::Transport& transport, int writer, const scene::
   events[static_cast<std::size_t>(self)] = io::chrome_trace_events(trace, self, process_name);
   for (int left = transport.size() - 1; left > 0;) {
     const auto message = transport.receive(Channel::timing);
-    if (message.bytes.size() == 1) {
-      Bytes now;
-      exchange::append(now, trace.now_us());
-      transport.send(message.from, Channel::timing, std::move(now));
+    exchange::MessageReader reader(message.bytes, message.from);
+    if (reader.kind() == MessageKind::clock_question) {
+      transport.send(message.from, Channel::timing, exchange::message_of(MessageKind::clock_answer, trace.now_us()));
       continue;
     }
-    events[static_cast<std::size_t>(message.from)] =
-        std::string(reinterpret_cast<const char*>(message.bytes.data()) + 2, message.bytes.size() - 2);
+    if (reader.kind() != MessageKind::trace_events) reader.refuse_kind();
+    events[static_cast<std::size_t>(message.from)] = reader.take_text();
+    reader.finish();
     --left;
   }
   io::write_chrome_trace(events, run, file);

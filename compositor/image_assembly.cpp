@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 #include <utility>
 
 namespace tessera::compositor {
@@ -11,23 +12,16 @@ namespace {
 
 constexpr std::size_t message_bytes = 512 << 10;
 
-scene::Error malformed(int from) {
-  return {scene::ErrorCode::system_failure,
-          fmt::format("assembly: rank {} sent malformed tiles; run one version of the program on all machines", from)};
-}
-
 /// A tile's deep samples, if it has any.
 void take_deep(exchange::RecordReader& reader, const scene::PixelRect& rect, DeepCollector* to) {
   const auto count = reader.take<std::uint64_t>();
   if (count == 0) return;
-  std::vector<std::uint32_t> counts(static_cast<std::size_t>(rect.area()));
-  std::vector<scene::DeepImageSample> samples(count);
-  const auto fill = [&](auto& values) {
-    const auto bytes = std::as_writable_bytes(std::span(values));
-    std::ranges::copy(reader.take_bytes(bytes.size()), bytes.begin());
-  };
-  fill(counts);
-  fill(samples);
+  std::vector<std::uint32_t> counts;
+  std::vector<scene::DeepImageSample> samples;
+  reader.take_onto(counts, static_cast<std::uint64_t>(rect.area()));
+  reader.take_onto(samples, count);
+  if (std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}) != count)
+    reader.refuse("has other deep samples than it counts");
   if (to != nullptr) to->add(rect, std::move(counts), std::move(samples));
 }
 
@@ -39,37 +33,30 @@ TileSender::TileSender(exchange::Transport& transport, int assembler, std::uint3
 void TileSender::send(std::uint32_t tile, const MergedTile& merged) {
   const std::lock_guard lock(mutex_);
   if (message_.empty()) {
-    message_.reserve(message_bytes + (64 << 10));  // and the tile that goes beyond
-    message_.resize(sizeof(TilesHeader));          // flush() fills it in
+    message_ = exchange::begin_message(exchange::MessageKind::tiles, message_bytes + (64 << 10));
+    exchange::append(message_, std::uint64_t{frame_});
   }
   exchange::append(message_, std::uint64_t{tile});
-  const auto append_all = [&](const auto& values) {
-    const auto bytes = std::as_bytes(std::span(values));
-    message_.insert(message_.end(), bytes.begin(), bytes.end());
-  };
-  append_all(merged.image.rgba);
-  append_all(merged.image.depth);
+  exchange::append_values(message_, merged.image.rgba);
+  exchange::append_values(message_, merged.image.depth);
   exchange::append(message_, std::uint64_t{merged.deep_samples.size()});
   if (!merged.deep_samples.empty()) {
-    append_all(merged.deep_counts);
-    append_all(merged.deep_samples);
+    exchange::append_values(message_, merged.deep_counts);
+    exchange::append_values(message_, merged.deep_samples);
   }
-  ++tiles_;
   if (message_.size() >= message_bytes) flush();
 }
 
 void TileSender::flush() {
-  if (tiles_ == 0) return;
-  const TilesHeader header{.frame = frame_, .tiles = std::exchange(tiles_, 0)};
-  std::memcpy(message_.data(), &header, sizeof header);
+  if (message_.empty()) return;
   transport_.send(assembler_, exchange::Channel::tiles, std::exchange(message_, {}), static_cast<std::int32_t>(frame_));
 }
 
 void TileSender::end(const exchange::FrameEnd& sums) {
   const std::lock_guard lock(mutex_);
   flush();
-  exchange::Bytes message;
-  exchange::append(message, TilesHeader{.ends = 1, .frame = frame_});
+  exchange::Bytes message = exchange::begin_message(exchange::MessageKind::end);
+  exchange::append(message, std::uint64_t{frame_});
   exchange::append(message, sums);
   transport_.send(assembler_, exchange::Channel::tiles, std::move(message), static_cast<std::int32_t>(frame_));
 }
@@ -81,25 +68,22 @@ ImageAssembly::ImageAssembly(int compositors, std::function<projection::TileGrid
       deep_bytes_(deep_bytes),
       finished_(std::move(finished)) {}
 
-std::optional<AssembledFrame> ImageAssembly::accept(const exchange::Message& message, int self) {
-  exchange::RecordReader reader(message.bytes);
-  const auto header = reader.take<TilesHeader>();
-  if (header.magic != exchange::wire_magic || header.version != exchange::wire_version)
-    throw scene::Error(scene::ErrorCode::system_failure,
-                       fmt::format("assembly: rank {} speaks another wire version than rank {}, {}; run one version of "
-                                   "the program on all machines",
-                                   message.from, self, exchange::wire_version));
-  auto [at, is_new] = frames_.try_emplace(header.frame);
+std::optional<AssembledFrame> ImageAssembly::accept(const exchange::Message& message) {
+  exchange::MessageReader reader(message.bytes, message.from);
+  const bool ends = reader.kind() == exchange::MessageKind::end;
+  if (!ends && reader.kind() != exchange::MessageKind::tiles) reader.refuse_kind();
+  const auto number = static_cast<std::uint32_t>(reader.take<std::uint64_t>());
+  auto [at, is_new] = frames_.try_emplace(number);
   Frame& frame = at->second;
   if (is_new) {
-    frame.grid = grid_of_(header.frame);
+    frame.grid = grid_of_(number);
     frame.image = scene::Image(frame.grid.image);
     if (finished_) frame.has_come.resize(frame.grid.count());
     if (deep_bytes_ > 0) frame.deep = std::make_unique<DeepCollector>(frame.grid.image, deep_bytes_);
   }
-  for (std::uint32_t i = 0; i < header.tiles; ++i) {
+  while (!ends && !reader.empty()) {
     const auto tile = reader.take<std::uint64_t>();
-    if (tile >= frame.grid.count()) throw malformed(message.from);
+    if (tile >= frame.grid.count()) reader.refuse(fmt::format("brings tile {} of {}", tile, frame.grid.count()));
     const scene::PixelRect rect = frame.grid.rect(tile);
     const auto width = static_cast<std::size_t>(rect.x1 - rect.x0);
     const auto area = static_cast<std::size_t>(rect.area());
@@ -112,14 +96,15 @@ std::optional<AssembledFrame> ImageAssembly::accept(const exchange::Message& mes
     take_deep(reader, rect, frame.deep.get());
     if (!finished_) continue;
     frame.has_come[tile] = true;
-    finished_(header.frame, rect, frame.image);
+    finished_(number, rect, frame.image);
   }
-  if (header.ends == 0) return std::nullopt;
+  if (!ends) return std::nullopt;
   frame.sums = sum(frame.sums, reader.take<exchange::FrameEnd>());
+  reader.finish();
   if (++frame.ended < compositors_) return std::nullopt;
   for (std::size_t tile = 0; tile < frame.has_come.size() && frame.sums.stopped == 0; ++tile)
-    if (!frame.has_come[tile]) finished_(header.frame, frame.grid.rect(tile), frame.image);
-  AssembledFrame assembled{header.frame, std::move(frame.image), frame.sums, {}};
+    if (!frame.has_come[tile]) finished_(number, frame.grid.rect(tile), frame.image);
+  AssembledFrame assembled{number, std::move(frame.image), frame.sums, {}};
   if (frame.deep != nullptr) assembled.deep = frame.deep->image();
   frames_.erase(at);
   return assembled;

@@ -14,23 +14,8 @@
 #include "scene/image.hpp"
 
 /// The last and only sequential step (Juliachs et al. 2007, section 3): compositors send their tiles to the first one,
-/// which puts the picture together.
-///
-/// On channel `tiles`, little endian, version as in wire.hpp:
-///   TilesHeader; `tiles` times: a 32-bit tile number, 32 bits of zero, RGBA floats of its pixels row by row, depth
-///   floats, the 64-bit number of deep samples in the tile, and if that is not 0 their 32-bit number in each pixel and
-///   the samples (scene::DeepImageSample); then, where `ends` is 1, FrameEnd: the sender has no more tiles of the
-///   frame.
+/// which puts the picture together. Their messages, on channel `tiles`, are in exchange/message.hpp.
 namespace tessera::compositor {
-
-struct TilesHeader {
-  std::uint32_t magic = exchange::wire_magic;
-  std::uint16_t version = exchange::wire_version;
-  std::uint16_t ends = 0;
-  std::uint32_t frame = 0;
-  std::uint32_t tiles = 0;
-};
-static_assert(sizeof(TilesHeader) == 16);
 
 /// A compositor's finished tiles of one frame on their way, in messages of about half a megabyte. Any thread.
 class TileSender {
@@ -46,7 +31,6 @@ class TileSender {
   int assembler_;
   std::uint32_t frame_;
   std::mutex mutex_;
-  std::uint32_t tiles_ = 0;
   exchange::Bytes message_;
 };
 
@@ -68,8 +52,9 @@ class ImageAssembly {
   ImageAssembly(int compositors, std::function<projection::TileGrid(std::uint32_t)> grid_of,
                 std::uint64_t deep_bytes = 0, Finished finished = {});
 
-  /// Takes a message of channel `tiles`; the frame that it completes, if any.
-  std::optional<AssembledFrame> accept(const exchange::Message& message, int self);
+  /// Takes a message of channel `tiles`; the frame that it completes, if any. Throws Error(system_failure) if it is not
+  /// what message.hpp says.
+  std::optional<AssembledFrame> accept(const exchange::Message& message);
 
  private:
   struct Frame {

@@ -1,75 +1,62 @@
-#include <cstring>
-
-#include "exchange/transport.hpp"
+#include "exchange/collectives.hpp"
 
 // All collectives pass through rank 0. A rank cannot begin the next one before rank 0 has everybody's part of this one,
 // so messages of two collectives never mix although receive() takes from any rank.
 namespace tessera::exchange {
 namespace {
 
-/// Lists of byte strings as one: count, then length and bytes each, 64-bit little endian.
-Bytes join(const std::vector<Bytes>& parts) {
-  Bytes joined;
-  const auto number = [&](std::uint64_t value) {
-    const auto* first = reinterpret_cast<const std::byte*>(&value);
-    joined.insert(joined.end(), first, first + sizeof value);
-  };
-  number(parts.size());
-  for (const Bytes& part : parts) {
-    number(part.size());
-    joined.insert(joined.end(), part.begin(), part.end());
-  }
-  return joined;
+Bytes joined(const std::vector<Bytes>& messages) {
+  std::size_t room = sizeof(std::uint64_t);
+  for (const Bytes& message : messages) room += sizeof(std::uint64_t) + message.size();
+  Bytes all = begin_message(MessageKind::gathered, room);
+  append(all, std::uint64_t{messages.size()});
+  for (const Bytes& message : messages) append_list(all, message);
+  return all;
 }
 
-std::vector<Bytes> split(const Bytes& joined) {
-  std::size_t at = 0;
-  const auto number = [&] {
-    std::uint64_t value = 0;
-    std::memcpy(&value, joined.data() + at, sizeof value);
-    at += sizeof value;
-    return value;
-  };
-  std::vector<Bytes> parts(number());
-  for (Bytes& part : parts) {
-    const auto length = static_cast<std::ptrdiff_t>(number());
-    const auto begin = joined.begin() + static_cast<std::ptrdiff_t>(at);
-    part.assign(begin, begin + length);
-    at += static_cast<std::size_t>(length);
-  }
-  return parts;
+std::vector<Bytes> split(const Message& joined, int ranks) {
+  MessageReader reader(joined, MessageKind::gathered);
+  if (reader.take<std::uint64_t>() != static_cast<std::uint64_t>(ranks)) reader.refuse_kind();
+  std::vector<Bytes> messages;
+  for (int rank = 0; rank < ranks; ++rank) messages.push_back(reader.take_list<std::byte>());
+  reader.finish();
+  return messages;
 }
 
 }  // namespace
 
-Bytes broadcast(Transport& transport, int root, Bytes bytes) {
+Bytes broadcast(Transport& transport, int root, Bytes message) {
   const int self = transport.rank();
   if (self == 0) {
-    if (root != 0) bytes = transport.receive(Channel::agreement).bytes;
+    if (root != 0) message = transport.receive(Channel::agreement).bytes;
     for (int rank = 1; rank < transport.size(); ++rank)
-      if (rank != root) transport.send(rank, Channel::agreement, bytes);
-    return bytes;
+      if (rank != root) transport.send(rank, Channel::agreement, message);
+    return message;
   }
   if (self != root) return transport.receive(Channel::agreement).bytes;
-  transport.send(0, Channel::agreement, bytes);
-  return bytes;
+  transport.send(0, Channel::agreement, message);
+  return message;
 }
 
-std::vector<Bytes> gather_all(Transport& transport, Bytes bytes) {
+std::vector<Bytes> gather_all(Transport& transport, Bytes message) {
   const int self = transport.rank();
   if (self != 0) {
-    transport.send(0, Channel::agreement, std::move(bytes));
-    return split(transport.receive(Channel::agreement).bytes);
+    transport.send(0, Channel::agreement, std::move(message));
+    return split(transport.receive(Channel::agreement), transport.size());
   }
-  std::vector<Bytes> parts(static_cast<std::size_t>(transport.size()));
-  parts[0] = std::move(bytes);
+  const MessageKind kind = MessageReader(message, self).kind();
+  std::vector<Bytes> messages(static_cast<std::size_t>(transport.size()));
+  messages[0] = std::move(message);
   for (int others = transport.size() - 1; others > 0; --others) {
-    Message message = transport.receive(Channel::agreement);
-    parts[static_cast<std::size_t>(message.from)] = std::move(message.bytes);
+    Message other = transport.receive(Channel::agreement);
+    static_cast<void>(MessageReader(other, kind));
+    messages[static_cast<std::size_t>(other.from)] = std::move(other.bytes);
   }
-  const Bytes joined = join(parts);
-  for (int rank = 1; rank < transport.size(); ++rank) transport.send(rank, Channel::agreement, joined);
-  return parts;
+  const Bytes all = joined(messages);
+  for (int rank = 1; rank < transport.size(); ++rank) transport.send(rank, Channel::agreement, all);
+  return messages;
 }
+
+void barrier(Transport& transport) { gather_all(transport, begin_message(MessageKind::barrier)); }
 
 }  // namespace tessera::exchange

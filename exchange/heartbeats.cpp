@@ -2,15 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
 #include <numeric>
 #include <utility>
 
+#include "exchange/message.hpp"
+
 namespace tessera::exchange {
 namespace {
-
-// A message's first byte. After `alive` comes the name of the sender's process; `told` is of rank 0's silence.
-constexpr std::byte alive{1}, told{2};
 
 std::vector<int> watched_by(int rank, int size) {
   if (rank != 0) return {0};
@@ -20,10 +18,9 @@ std::vector<int> watched_by(int rank, int size) {
 }
 
 Bytes beat(const std::string& name) {
-  Bytes bytes(1 + name.size());
-  bytes[0] = alive;
-  if (!name.empty()) std::memcpy(bytes.data() + 1, name.data(), name.size());
-  return bytes;
+  Bytes message = begin_message(MessageKind::alive);
+  append_text(message, name);
+  return message;
 }
 
 double seconds(StallWatch::Clock::duration time) { return std::chrono::duration<double>(time).count(); }
@@ -53,10 +50,11 @@ std::vector<Heartbeats::Outgoing> Heartbeats::turn(Clock::time_point now) {
 }
 
 void Heartbeats::take(int from, const Bytes& bytes) {
-  if (!bytes.empty() && bytes[0] == told) return watch_.told(0);
+  MessageReader reader(bytes, from);
+  if (reader.kind() == MessageKind::silent) return watch_.told(0);
+  if (reader.kind() != MessageKind::alive) reader.refuse_kind();
   watch_.heard(from);
-  if (bytes.size() > 1)
-    names_[static_cast<std::size_t>(from)].assign(reinterpret_cast<const char*>(bytes.data()) + 1, bytes.size() - 1);
+  names_[static_cast<std::size_t>(from)] = reader.take_text();
 }
 
 std::string Heartbeats::name_of(int rank) const {
@@ -72,7 +70,7 @@ void Heartbeats::notice(const StallWatch::Notice& notice, std::vector<Outgoing>&
   }
   if (rank_ != 0)
     for (int other = 1; other < size_; ++other)
-      if (other != rank_) messages.push_back({other, Bytes{told}});
+      if (other != rank_) messages.push_back({other, begin_message(MessageKind::silent)});
   if (settings_.ends_run) {
     if (lost_) return;
     lost_ = {notice.rank,

@@ -44,7 +44,7 @@ class Heartbeats {
 
   /// A message of another kind came from that rank.
   void heard(int from) { watch_.heard(from); }
-  /// A message of turn() came.
+  /// A message of turn() came. Throws Error(system_failure) if it is not one.
   void take(int from, const Bytes& bytes);
 
   /// The rank whose silence ends the run, and the run's error: with StallSettings::ends_run.

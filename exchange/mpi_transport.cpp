@@ -9,7 +9,6 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdlib>
-#include <cstring>
 #include <deque>
 #include <list>
 #include <mutex>
@@ -19,6 +18,7 @@
 
 #include "exchange/heartbeats.hpp"
 #include "exchange/mailboxes.hpp"
+#include "exchange/message.hpp"
 #include "scene/start_thread.hpp"
 
 namespace tessera::exchange {
@@ -27,12 +27,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::microseconds;
 
-// Tags below channel_count are channels; these are the transport's own.
-constexpr int fault_tag = 100;    // a rank to rank 0: I have failed (code, words)
-constexpr int verdict_tag = 101;  // rank 0 to all: the run's error (code, words)
-constexpr int done_tag = 102;     // a rank to rank 0: nothing more will come from me
-constexpr int clear_tag = 103;    // rank 0 to all: nothing more will come from anyone
-constexpr int beat_tag = 104;     // heartbeats.hpp
+// Tags below channel_count are channels; this one is of the transport's own messages.
+constexpr int own_tag = 100;  // of the kinds fault to silent (message.hpp)
 
 // Naps of the engine between two looks at MPI: a look costs 20 to 30 us of a core that projects or composites. They
 // double while nothing comes; messages on their way need looks to get on.
@@ -46,12 +42,10 @@ constexpr Naps working_naps{microseconds(2000), microseconds(2000), microseconds
 /// For the others to hear of the error that a stalled rank is; at most the transport's patience.
 constexpr auto stall_grace = std::chrono::seconds(1);
 
-Bytes error_bytes(const scene::Error& error) {
-  const std::string words = error.what();
-  Bytes bytes(1 + words.size());
-  bytes[0] = static_cast<std::byte>(error.code());
-  std::memcpy(bytes.data() + 1, words.data(), words.size());
-  return bytes;
+Bytes error_message(MessageKind kind, const scene::Error& error) {
+  Bytes message = message_of(kind, static_cast<std::uint8_t>(error.code()));
+  append_text(message, error.what());
+  return message;
 }
 
 std::string process_name() {
@@ -60,9 +54,9 @@ std::string process_name() {
   return fmt::format("process {} on {}", getpid(), host.data());
 }
 
-scene::Error error_from(const Bytes& bytes) {
-  return {static_cast<scene::ErrorCode>(bytes.at(0)),
-          std::string(reinterpret_cast<const char*>(bytes.data()) + 1, bytes.size() - 1)};
+scene::Error take_error(MessageReader& reader) {
+  const auto code = static_cast<scene::ErrorCode>(reader.take<std::uint8_t>());
+  return {code, reader.take_text()};
 }
 
 }  // namespace
@@ -255,7 +249,7 @@ class MpiTransport::Engine {
       posting_ = !queue.empty();
     }
     for (Outgoing& message : queue) {
-      const bool is_ours = message.tag >= fault_tag;
+      const bool is_ours = message.tag == own_tag;
       if (mailboxes.failed() && !is_ours) continue;
       pending_.push_back(std::move(message));
       Outgoing& posted = pending_.back();
@@ -319,39 +313,57 @@ class MpiTransport::Engine {
       int here = 0;
       checked(MPI_Test(&first.request, &here, MPI_STATUS_IGNORE), "receive");
       if (here == 0) break;
-      if (heartbeats_ && first.tag != beat_tag) heartbeats_->heard(first.from);
-      switch (first.tag) {
-        case beat_tag:
-          if (heartbeats_)
-            heartbeats_->take(first.from, first.bytes);
-          else
-            early_beats_.emplace_back(first.from, std::move(first.bytes));  // of ranks that watch already
-          break;
-        case fault_tag:
-          decide(error_from(first.bytes));
-          break;
-        case verdict_tag:
-          conclude(error_from(first.bytes));
-          break;
-        case done_tag:
-          ++ranks_done_;
-          break;
-        case clear_tag:
-          all_clear_ = true;
-          break;
-        default:
-          if (!mailboxes.failed())
-            mailboxes.deliver(static_cast<Channel>(first.tag), {first.from, std::move(first.bytes)});
-      }
+      Message message{first.from, std::move(first.bytes)};
+      const int tag = first.tag;
       arriving_.pop_front();
+      if (tag == own_tag) {
+        obey(std::move(message));
+        continue;
+      }
+      if (heartbeats_) heartbeats_->heard(message.from);
+      if (!mailboxes.failed()) mailboxes.deliver(static_cast<Channel>(tag), std::move(message));
     }
     return moved;
+  }
+
+  /// Takes one of the transport's own messages. One that no rank of this program sends is an error of the run.
+  void obey(Message message) {
+    try {
+      MessageReader reader(message.bytes, message.from);
+      const MessageKind kind = reader.kind();
+      if (kind == MessageKind::alive || kind == MessageKind::silent) {
+        if (heartbeats_)
+          heartbeats_->take(message.from, message.bytes);
+        else
+          early_beats_.push_back(std::move(message));  // of ranks that watch already
+        return;
+      }
+      if (heartbeats_) heartbeats_->heard(message.from);
+      if (kind == MessageKind::fault)
+        decide(take_error(reader));
+      else if (kind == MessageKind::verdict)
+        conclude(take_error(reader));
+      else if (kind == MessageKind::done)
+        ++ranks_done_;
+      else if (kind == MessageKind::clear)
+        all_clear_ = true;
+      else
+        reader.refuse_kind();
+    } catch (const scene::Error& error) {
+      fail(error);
+    }
+  }
+
+  /// To all ranks but rank 0 and this one.
+  void tell_all(const Bytes& message) {
+    for (int other = 1; other < size; ++other)
+      if (other != rank) enqueue({other, own_tag, message});
   }
 
   /// Rank 0: the first error it hears of is the run's.
   void decide(const scene::Error& error) {
     if (mailboxes.failed()) return;
-    for (int other = 1; other < size; ++other) enqueue({other, verdict_tag, error_bytes(error)});
+    tell_all(error_message(MessageKind::verdict, error));
     conclude(error);
   }
 
@@ -366,18 +378,18 @@ class MpiTransport::Engine {
       const std::lock_guard lock(mutex_);
       if (stalls_ && size > 1) {
         heartbeats_.emplace(rank, size, *stalls_, process_name(), Clock::now());
-        for (const auto& [from, bytes] : std::exchange(early_beats_, {})) heartbeats_->take(from, bytes);
       }
       stalls_.reset();
     }
+    if (heartbeats_)
+      for (Message& beat : std::exchange(early_beats_, {})) obey(std::move(beat));
     if (!heartbeats_) return;
-    for (auto& message : heartbeats_->turn(Clock::now())) enqueue({message.to, beat_tag, std::move(message.bytes)});
+    for (auto& message : heartbeats_->turn(Clock::now())) enqueue({message.to, own_tag, std::move(message.bytes)});
     if (!heartbeats_->lost() || mailboxes.failed()) return;
     lost_at_ = Clock::now();
     if (rank == 0) return decide(heartbeats_->lost()->error);
     // Rank 0 itself: this rank decides in its place.
-    for (int other = 1; other < size; ++other)
-      if (other != rank) enqueue({other, verdict_tag, error_bytes(heartbeats_->lost()->error)});
+    tell_all(error_message(MessageKind::verdict, heartbeats_->lost()->error));
     conclude(heartbeats_->lost()->error);
   }
 
@@ -394,7 +406,7 @@ class MpiTransport::Engine {
     }
     if (fault && rank == 0) decide(*fault);
     if (fault && rank != 0) {
-      enqueue({0, fault_tag, error_bytes(*fault)});
+      enqueue({0, own_tag, error_message(MessageKind::fault, *fault)});
       deadline_ = Clock::now() + patience_;
     }
     // Rank 0 first: the others only if it cannot.
@@ -430,11 +442,11 @@ class MpiTransport::Engine {
       if (rank == 0)
         ++ranks_done_;
       else
-        enqueue({0, done_tag, {}});
+        enqueue({0, own_tag, begin_message(MessageKind::done)});
     }
     if (rank == 0 && ranks_done_ == size) {
       if (mailboxes.failed() && hooks_.speak) hooks_.speak(*mailboxes.error());
-      for (int other = 1; other < size; ++other) enqueue({other, clear_tag, {}});
+      tell_all(begin_message(MessageKind::clear));
       post();
       all_clear_ = true;
     }
@@ -458,7 +470,7 @@ class MpiTransport::Engine {
   std::list<Outgoing> pending_;
   std::deque<Incoming> arriving_;
   std::optional<Heartbeats> heartbeats_;
-  std::vector<std::pair<int, Bytes>> early_beats_;
+  std::vector<Message> early_beats_;
   std::optional<Clock::time_point> lost_at_;  ///< when this rank ended the run for another's silence
   std::optional<scene::Error> asked_to_end_;
   std::optional<Clock::time_point> deadline_;

@@ -36,8 +36,7 @@ void Outbox::take_credit() {
       const std::lock_guard lock(mutex_);
       if (closing_) return;
       if (!message) continue;
-      RecordReader reader(message->bytes);
-      const auto bytes = reader.take<std::uint64_t>();
+      const auto bytes = value_of<std::uint64_t>(message->bytes, message->from, MessageKind::credit);
       for (Lane& lane : lanes_)
         if (lane.rank == message->from) {
           lane.in_flight -= std::min(bytes, lane.in_flight);
@@ -64,8 +63,7 @@ void Outbox::begin_frame(std::uint32_t frame, const TileMap& map, const std::vec
     Lane& lane = lanes_[c];
     const auto& tiles = map.tiles(static_cast<int>(c));
     lane.order.clear();
-    Bytes message;
-    append(message, MessageHeader{.kind = MessageKind::begin, .frame = frame_});
+    Bytes message = frame_message(MessageKind::begin);
     FrameBegin begin = facts;
     begin.tiles = tiles.size();
     append(message, begin);
@@ -75,26 +73,30 @@ void Outbox::begin_frame(std::uint32_t frame, const TileMap& map, const std::vec
         bits[i / 8] |= std::byte{1} << (i % 8);
         lane.order.push_back(tiles[i]);
       }
-    message.insert(message.end(), bits.begin(), bits.end());
+    append_values(message, bits);
     lane.waiting += message.size();
     lane.ready.push_back(std::move(message));
     drain(lane);
   }
 }
 
+Bytes Outbox::frame_message(MessageKind kind, std::size_t room) const {
+  Bytes message = begin_message(kind, sizeof(std::uint64_t) + room);
+  append(message, std::uint64_t{frame_});
+  return message;
+}
+
 void Outbox::write(Lane& lane, const TilePart& part) {
   const std::size_t before = lane.batch.size();
   if (lane.batch.empty()) {
-    lane.batch.reserve(message_bytes + part.records.size() + sizeof(MessageHeader) + sizeof(PartHeader));
-    append(lane.batch, MessageHeader{.kind = MessageKind::parts, .frame = frame_});
+    lane.batch = frame_message(MessageKind::parts, message_bytes + part.records.size() + sizeof(PartHeader));
   }
   append(lane.batch, PartHeader{part.tile, part.kind,
                                 static_cast<std::uint8_t>(part.stopped ? 2
                                                           : part.last  ? 1
                                                                        : 0),
                                 0, part.records.size(), part.final_depth, part.fragments});
-  const std::span<const std::byte> records = part.records.bytes();
-  lane.batch.insert(lane.batch.end(), records.begin(), records.end());
+  append_values(lane.batch, part.records.bytes());
   lane.waiting += lane.batch.size() - before;
   fragments_ += part.fragments;
   if (lane.batch.size() >= message_bytes) seal(lane);
@@ -190,7 +192,7 @@ void Outbox::end_frame(FrameEnd sums) {
   FrameEnd traffic{};
   traffic.counters.fragments = fragments_;
   for (Lane& lane : lanes_) seal(lane);
-  constexpr std::uint64_t end_bytes = sizeof(MessageHeader) + sizeof(FrameEnd);
+  constexpr std::uint64_t end_bytes = sizeof(MessageHeader) + sizeof(std::uint64_t) + sizeof(FrameEnd);
   traffic.counters.exchange_bytes = bytes_ + lanes_.size() * end_bytes;
   traffic.counters.exchange_messages = messages_ + lanes_.size();
   for (const Lane& lane : lanes_)
@@ -198,8 +200,7 @@ void Outbox::end_frame(FrameEnd sums) {
   for (Lane& lane : lanes_) {
     // Once a projector: the first compositor's copy speaks for all of them.
     const FrameEnd end = &lane == &lanes_.front() ? sum(sums, traffic) : FrameEnd{};
-    Bytes message;
-    append(message, MessageHeader{.kind = MessageKind::end, .frame = frame_});
+    Bytes message = frame_message(MessageKind::end, sizeof end);
     append(message, end);
     lane.waiting += message.size();
     lane.ready.push_back(std::move(message));

@@ -67,6 +67,7 @@ class Outbox {
     std::deque<std::uint32_t> order;  ///< the frame's tiles that are not complete here, first one first
   };
   void take_credit();
+  [[nodiscard]] Bytes frame_message(MessageKind kind, std::size_t room = 0) const;
   void write(Lane& lane, const TilePart& part);
   void seal(Lane& lane);
   void drain(Lane& lane);

@@ -80,12 +80,4 @@ class Transport {
   [[nodiscard]] virtual Traffic sent(Channel channel) const = 0;
 };
 
-/// Collective: every rank of `transport` calls these in the same order (channel `agreement`).
-
-/// `bytes` of rank `root`, on every rank.
-Bytes broadcast(Transport& transport, int root, Bytes bytes);
-
-/// Every rank's bytes, in rank order, on every rank.
-std::vector<Bytes> gather_all(Transport& transport, Bytes bytes);
-
 }  // namespace tessera::exchange

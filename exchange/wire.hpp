@@ -1,22 +1,16 @@
 #pragma once
 
-#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <span>
 #include <utility>
 
-#include "exchange/transport.hpp"
+#include "exchange/message.hpp"
 #include "scene/frame_counters.hpp"
 #include "scene/lattice.hpp"
 
-/// What travels from projectors to compositors, byte by byte. Little endian, no padding, version 6.
-///
-///   message    MessageHeader, then by its kind
-///     begin    FrameBegin, then one bit a tile of the receiver in its order, lowest bit first: 1 where parts will come
-///     parts    any number of: PartHeader, then `bytes` bytes of records of its kind
-///     end      FrameEnd
+/// What travels from projectors to compositors: the structures of messages `begin`, `parts` and `end` (message.hpp),
+/// and the records of a part. Little endian, no padding.
 ///
 /// A projector sends each compositor, frame after frame: one begin; the parts of its tiles in tile order, tile by tile;
 /// one end. So a compositor knows from the begins what a tile still lacks.
@@ -34,12 +28,6 @@
 ///   tuples     TupleRecord each, in the order of their cells: Juliachs et al. 2007, 4.1
 namespace tessera::exchange {
 
-static_assert(std::endian::native == std::endian::little, "the wire is little endian");
-
-inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 6;
-
-enum class MessageKind : std::uint16_t { begin = 1, parts = 2, end = 3 };
 enum class RecordKind : std::uint8_t {
   runs = 1,
   chains = 2,
@@ -48,15 +36,6 @@ enum class RecordKind : std::uint8_t {
   lattice = 5,
   lattice_runs = 6
 };
-
-struct MessageHeader {
-  std::uint32_t magic = wire_magic;
-  std::uint16_t version = wire_version;
-  MessageKind kind;
-  std::uint32_t frame;
-  std::uint32_t reserved = 0;
-};
-static_assert(sizeof(MessageHeader) == 16);
 
 struct FrameBegin {
   double longest_ray;         ///< bounds the world length of a ray inside the whole mesh
@@ -130,40 +109,6 @@ struct FrameEnd {
 static_assert(sizeof(FrameEnd) == sizeof(scene::FrameCounters) + 24);
 /// Two processes' counts put together.
 FrameEnd sum(const FrameEnd& a, const FrameEnd& b);
-
-/// Appends a record's bytes.
-template <class Record>
-void append(Bytes& bytes, const Record& record) {
-  const auto* first = reinterpret_cast<const std::byte*>(&record);
-  bytes.insert(bytes.end(), first, first + sizeof record);
-}
-
-/// Takes records off the front of a message; throws Error(system_failure) where it is too short.
-class RecordReader {
- public:
-  explicit RecordReader(std::span<const std::byte> bytes) : left_(bytes) {}
-  template <class Record>
-  Record take() {
-    Record record;
-    std::memcpy(&record, take_bytes(sizeof record).data(), sizeof record);
-    return record;
-  }
-  std::span<const std::byte> take_bytes(std::size_t count) {
-    if (count > left_.size())
-      throw scene::Error(scene::ErrorCode::system_failure,
-                         "exchange: a message is shorter than it says; all ranks must run the same program");
-    const auto taken = left_.first(count);
-    left_ = left_.subspan(count);
-    return taken;
-  }
-  [[nodiscard]] bool empty() const { return left_.empty(); }
-
- private:
-  std::span<const std::byte> left_;
-};
-
-/// A message's header, checked. Throws Error(system_failure) naming ranks and versions.
-MessageHeader take_header(RecordReader& reader, int from, int self);
 
 /// Records that nobody changes: in memory of their own, or in that of the message they came in.
 class Records {

@@ -6,18 +6,21 @@
 #include <algorithm>
 #include <array>
 
+#include "exchange/collectives.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::frame {
 namespace {
 
-exchange::Bytes bytes_of(std::string_view text) {
-  const auto* first = reinterpret_cast<const std::byte*>(text.data());
-  return {first, first + text.size()};
-}
-
-std::string text_of(const exchange::Bytes& bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+/// Every rank's text, in rank order.
+std::vector<std::string> gather_texts(exchange::Transport& transport, exchange::MessageKind kind,
+                                      std::string_view text) {
+  exchange::Bytes mine = exchange::begin_message(kind);
+  exchange::append_text(mine, text);
+  std::vector<std::string> texts;
+  for (const exchange::Bytes& message : exchange::gather_all(transport, std::move(mine)))
+    texts.push_back(exchange::MessageReader(message, static_cast<int>(texts.size()), kind).take_text());
+  return texts;
 }
 
 /// How many ranks of lower number are on this machine. Collective.
@@ -25,9 +28,9 @@ int local_rank(exchange::Transport& transport) {
   std::array<char, 256> host{};
   gethostname(host.data(), host.size() - 1);
   const std::string mine = host.data();
-  const auto hosts = exchange::gather_all(transport, bytes_of(mine));
-  return static_cast<int>(std::count_if(hosts.begin(), hosts.begin() + transport.rank(),
-                                        [&](const auto& h) { return text_of(h) == mine; }));
+  const auto hosts = gather_texts(transport, exchange::MessageKind::host, mine);
+  return static_cast<int>(
+      std::count_if(hosts.begin(), hosts.begin() + transport.rank(), [&](const auto& h) { return h == mine; }));
 }
 
 /// What went wrong, without the advice: that was taken.
@@ -68,9 +71,9 @@ void open_compositing_device(const CompositingSettings& settings, const Roles& r
       }
   }
   std::vector<std::string> names;
-  for (const exchange::Bytes& other : exchange::gather_all(transport, bytes_of(name)))
-    if (std::string text = text_of(other); !text.empty() && std::find(names.begin(), names.end(), text) == names.end())
-      names.push_back(std::move(text));
+  for (std::string& other : gather_texts(transport, exchange::MessageKind::device, name))
+    if (!other.empty() && std::find(names.begin(), names.end(), other) == names.end())
+      names.push_back(std::move(other));
   made.name = fmt::format("{}", fmt::join(names, " + "));
 }
 

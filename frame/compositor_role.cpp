@@ -107,20 +107,22 @@ class CompositorLoop {
 
   /// Parts stay in their message's memory.
   void accept(int from, const std::shared_ptr<const exchange::Bytes>& message) {
-    exchange::RecordReader reader(*message);
-    const auto header = exchange::take_header(reader, from, run_.transport.rank());
+    exchange::MessageReader reader(*message, from);
+    const auto number = static_cast<std::uint32_t>(reader.take<std::uint64_t>());
     // What a rank sends to itself does not move.
     const bool moved = from != run_.transport.rank();
-    const scene::TraceScope timing(trace_, "receive", static_cast<std::int32_t>(header.frame),
-                                   moved ? message->size() : 0, moved ? 1 : 0);
+    const scene::TraceScope timing(trace_, "receive", static_cast<std::int32_t>(number), moved ? message->size() : 0,
+                                   moved ? 1 : 0);
     const auto& projectors = run_.settings.roles.projectors;
     const auto projector = static_cast<int>(std::find(projectors.begin(), projectors.end(), from) - projectors.begin());
-    Frame& to = frame(header.frame);
+    if (static_cast<std::size_t>(projector) == projectors.size()) reader.refuse_kind();
+    Frame& to = frame(number);
     std::uint64_t credit = message->size();
-    switch (header.kind) {
+    switch (reader.kind()) {
       case exchange::MessageKind::begin: {
         const auto begin = reader.take<exchange::FrameBegin>();
-        to.collector.begin(projector, begin, reader.take_bytes((begin.tiles + 7) / 8));
+        to.collector.begin(projector, begin, reader.take_bytes(begin.tiles / 8 + (begin.tiles % 8 != 0 ? 1 : 0)));
+        reader.finish();
         if (begin.stopped != 0) to.stopped = true;
         if (!to.table && begin.lattice.depth_unit > 0)
           to.table.emplace(run_.function, begin.lattice.scalar_origin, begin.lattice.scalar_unit,
@@ -146,7 +148,10 @@ class CompositorLoop {
         break;
       case exchange::MessageKind::end:
         to.collector.end(reader.take<exchange::FrameEnd>());
+        reader.finish();
         break;
+      default:
+        reader.refuse_kind();
     }
     give_back(projector, credit);
     settle();
@@ -162,9 +167,8 @@ class CompositorLoop {
 
   void pay_out(std::size_t projector) {
     if (credit_[projector] == 0) return;
-    exchange::Bytes message;
-    exchange::append(message, std::exchange(credit_[projector], 0));
-    run_.transport.send(run_.settings.roles.projectors[projector], Channel::credit, std::move(message));
+    run_.transport.send(run_.settings.roles.projectors[projector], Channel::credit,
+                        exchange::message_of(exchange::MessageKind::credit, std::exchange(credit_[projector], 0)));
   }
 
   /// Ends finished frames and pays what is due of the first unfinished one.
@@ -286,10 +290,11 @@ std::exception_ptr run_assembler(const DistributedRun& run, const DistributedCal
     std::optional<compositor::AssembledFrame> assembled;
     {
       const scene::TraceScope timing(settings.compositing, "assemble");
-      assembled = assembly.accept(message, run.transport.rank());
+      assembled = assembly.accept(message);
     }
     if (!assembled) continue;
-    for (const int projector : settings.roles.projectors) run.transport.send(projector, Channel::frames, {});
+    for (const int projector : settings.roles.projectors)
+      run.transport.send(projector, Channel::frames, exchange::begin_message(exchange::MessageKind::frame_left));
     FinishedFrame finished{
         assembled->frame - run.first, std::move(assembled->image), std::move(assembled->deep), {}, 0};
     const auto now = std::chrono::steady_clock::now();

@@ -1,11 +1,10 @@
 #include "frame/deep_rows.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 #include <vector>
 
-#include "scene/error.hpp"
+#include "exchange/collectives.hpp"
 
 namespace tessera::frame {
 namespace {
@@ -23,29 +22,26 @@ Bytes packed(const scene::DeepImage& image, int y0, int y1) {
   const std::size_t first = static_cast<std::size_t>(y0) * width, last = static_cast<std::size_t>(y1) * width;
   std::vector<std::uint64_t> counts;
   for (std::size_t p = first; p < last; ++p) counts.push_back(image.begin[p + 1] - image.begin[p]);
-  const auto head = std::as_bytes(std::span<const std::uint64_t>(counts));
-  const auto samples = std::as_bytes(std::span(image.samples));
-  Bytes bytes(head.begin(), head.end());
-  bytes.insert(bytes.end(), samples.begin(), samples.end());
+  Bytes bytes = exchange::begin_message(
+      exchange::MessageKind::deep_rows,
+      counts.size() * sizeof(std::uint64_t) + image.samples.size() * sizeof(scene::DeepImageSample));
+  exchange::append_values(bytes, counts);
+  exchange::append_values(bytes, image.samples);
   return bytes;
 }
 
-void append(const Bytes& bytes, std::size_t pixels, scene::DeepImage& image) {
-  std::vector<std::uint64_t> counts(pixels);
+void append(const Bytes& bytes, int from, std::size_t pixels, scene::DeepImage& image) {
+  exchange::MessageReader reader(bytes, from, exchange::MessageKind::deep_rows);
+  std::vector<std::uint64_t> counts;
+  reader.take_onto(counts, pixels);
   std::uint64_t samples = 0;
-  if (bytes.size() >= pixels * sizeof(std::uint64_t) && pixels > 0)
-    std::memcpy(counts.data(), bytes.data(), pixels * sizeof(std::uint64_t));
   for (const std::uint64_t n : counts) {
+    if (n > bytes.size()) reader.refuse("has more samples than bytes");
     samples += n;
     image.begin.push_back(image.begin.back() + n);
   }
-  const std::size_t head = pixels * sizeof(std::uint64_t), own = samples * sizeof(scene::DeepImageSample);
-  if (bytes.size() != head + own)
-    throw scene::Error(scene::ErrorCode::system_failure,
-                       "exchange: a band of deep samples is of another length; all ranks must run the same program");
-  const std::size_t before = image.samples.size();
-  image.samples.resize(before + samples);
-  if (own > 0) std::memcpy(image.samples.data() + before, bytes.data() + head, own);
+  reader.take_onto(image.samples, samples);
+  reader.finish();
 }
 
 }  // namespace
@@ -55,7 +51,7 @@ std::optional<scene::DeepImage> deep_rows(exchange::Transport& transport, const 
                                           const scene::TransferFunction& function, const DeepSettings& settings,
                                           std::int32_t number) {
   // Bands would be taken for tiles of the flat picture by a rank 0 that still puts that together.
-  exchange::gather_all(transport, {});
+  exchange::barrier(transport);
   const int rank = transport.rank(), ranks = transport.size();
   const auto row = [&](int r) { return first_row(r, ranks, size.height); };
   scene::DeepImage own = deep_image(source, camera, size, function, settings, row(rank), row(rank + 1));
@@ -76,7 +72,7 @@ std::optional<scene::DeepImage> deep_rows(exchange::Transport& transport, const 
   whole.size = size;
   whole.begin = {0};
   for (int r = 0; r < ranks; ++r) {
-    append(bands[static_cast<std::size_t>(r)],
+    append(bands[static_cast<std::size_t>(r)], r,
            static_cast<std::size_t>(row(r + 1) - row(r)) * static_cast<std::size_t>(size.width), whole);
     bands[static_cast<std::size_t>(r)] = {};
   }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "exchange/collectives.hpp"
 #include "frame/distributed_roles.hpp"
 #include "frame/run_error.hpp"
 #include "frame/stop_relay.hpp"
@@ -105,7 +106,7 @@ class DistributedRenderer::State {
       open_compositing_device(settings_.compositing_on, settings_.roles, transport_, settings_.compositing, device_);
       opened_ = true;
     }
-    exchange::gather_all(transport_, {});  // a frame's time does not count reading
+    exchange::barrier(transport_);  // a frame's time does not count reading
     const DistributedRun run{transport_, settings_,  jobs, function, device_, std::chrono::steady_clock::now(),
                              stop,       next_frame_};
     next_frame_ += static_cast<std::uint32_t>(jobs.size());

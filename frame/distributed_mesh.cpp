@@ -1,10 +1,9 @@
 #include "frame/distributed_mesh.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "exchange/collectives.hpp"
 #include "frame/mesh_input.hpp"
 #include "frame/reduce.hpp"
 #include "io/mesh_parts.hpp"
@@ -12,85 +11,116 @@
 namespace tessera::frame {
 namespace {
 
+using exchange::append;
+using exchange::append_text;
 using exchange::Bytes;
+using exchange::MessageKind;
+using exchange::MessageReader;
 using exchange::Transport;
-using nlohmann::json;
 
-// What ranks agree on travels as CBOR, which keeps doubles to the bit and takes any bytes as text.
+// What ranks agree on of a mesh; exchange/message.hpp lists the messages.
 
-Bytes bytes_of(const json& value) {
-  std::vector<std::uint8_t> cbor = json::to_cbor(value);
-  const auto* first = reinterpret_cast<const std::byte*>(cbor.data());
-  return Bytes(first, first + cbor.size());
+void append_texts(Bytes& message, const std::vector<std::string>& texts) {
+  append(message, std::uint64_t{texts.size()});
+  for (const std::string& text : texts) append_text(message, text);
 }
 
-json json_of(const Bytes& bytes) {
-  const auto* first = reinterpret_cast<const std::uint8_t*>(bytes.data());
-  return json::from_cbor(first, first + bytes.size());
+std::vector<std::string> take_texts(MessageReader& reader) {
+  std::vector<std::string> texts;
+  for (auto left = reader.take<std::uint64_t>(); left > 0; --left) texts.push_back(reader.take_text());
+  return texts;
 }
 
-json to_json(const io::FieldSummary& f) {
-  return {f.name,  f.association == scene::Association::point, f.components, f.type, f.low, f.high, f.nan_count,
-          f.active};
+scene::Association take_association(MessageReader& reader) {
+  return reader.take<std::uint8_t>() == 0 ? scene::Association::point : scene::Association::cell;
 }
 
-io::FieldSummary field_of(const json& j) {
-  return {j[0], j[1].get<bool>() ? scene::Association::point : scene::Association::cell, j[2], j[3], j[4], j[5], j[6],
-          j[7]};
+/// Text name, u8 association, i32 components, text type, f64 low, high, u64 nan_count, u8 active.
+void append_field(Bytes& message, const io::FieldSummary& f) {
+  append_text(message, f.name);
+  append(message, static_cast<std::uint8_t>(f.association));
+  append(message, std::int32_t{f.components});
+  append_text(message, f.type);
+  append(message, f.low);
+  append(message, f.high);
+  append(message, f.nan_count);
+  append(message, std::uint8_t{f.active});
 }
 
-using CountArray = std::array<std::uint64_t, sizeof(io::MeshCounts) / sizeof(std::uint64_t)>;
-
-json to_json(const io::MeshCounts& counts) { return std::bit_cast<CountArray>(counts); }
-io::MeshCounts counts_of(const json& j) { return std::bit_cast<io::MeshCounts>(j.get<CountArray>()); }
-
-json to_json(const std::vector<io::FieldTally>& tallies) {
-  json list = json::array();
-  for (const io::FieldTally& t : tallies) list.push_back({to_json(t.summary), t.any_finite});
-  return list;
+io::FieldSummary take_field(MessageReader& reader) {
+  io::FieldSummary f;
+  f.name = reader.take_text();
+  f.association = take_association(reader);
+  f.components = reader.take<std::int32_t>();
+  f.type = reader.take_text();
+  f.low = reader.take<double>();
+  f.high = reader.take<double>();
+  f.nan_count = reader.take<std::uint64_t>();
+  f.active = reader.take<std::uint8_t>() != 0;
+  return f;
 }
 
-std::vector<io::FieldTally> tallies_of(const json& list) {
+Bytes message_of(const std::vector<io::FieldTally>& tallies) {
+  Bytes message = exchange::begin_message(MessageKind::field_tallies);
+  append(message, std::uint64_t{tallies.size()});
+  for (const io::FieldTally& t : tallies) {
+    append_field(message, t.summary);
+    append(message, std::uint8_t{t.any_finite});
+  }
+  return message;
+}
+
+std::vector<io::FieldTally> tallies_in(MessageReader& reader) {
   std::vector<io::FieldTally> tallies;
-  for (const json& j : list) tallies.push_back({field_of(j[0]), j[1]});
+  for (auto left = reader.take<std::uint64_t>(); left > 0; --left) {
+    io::FieldTally tally{take_field(reader)};
+    tally.any_finite = reader.take<std::uint8_t>() != 0;
+    tallies.push_back(std::move(tally));
+  }
+  reader.finish();
   return tallies;
 }
 
-json to_json(const io::MeshFile& file) {
-  json fields = json::array();
-  for (const io::FieldSummary& f : file.fields) fields.push_back(to_json(f));
-  return {{"counts", to_json(file.counts)},
-          {"fields", fields},
-          {"notes", file.notes},
-          {"format", file.format},
-          {"field_name", file.mesh.field_name},
-          {"point", file.mesh.association == scene::Association::point}};
+Bytes message_of(const io::MeshFile& file) {
+  Bytes message = exchange::begin_message(MessageKind::mesh_description);
+  append(message, file.counts);
+  append(message, std::uint64_t{file.fields.size()});
+  for (const io::FieldSummary& f : file.fields) append_field(message, f);
+  append_texts(message, file.notes);
+  append_text(message, file.format);
+  append_text(message, file.mesh.field_name);
+  append(message, static_cast<std::uint8_t>(file.mesh.association));
+  return message;
 }
 
-io::MeshFile description_of(const json& j) {
+io::MeshFile description_in(MessageReader& reader) {
   io::MeshFile file;
-  file.counts = counts_of(j["counts"]);
-  for (const json& f : j["fields"]) file.fields.push_back(field_of(f));
-  file.notes = j["notes"].get<std::vector<std::string>>();
-  file.format = j["format"];
-  file.mesh.field_name = j["field_name"];
-  file.mesh.association = j["point"].get<bool>() ? scene::Association::point : scene::Association::cell;
+  file.counts = reader.take<io::MeshCounts>();
+  for (auto left = reader.take<std::uint64_t>(); left > 0; --left) file.fields.push_back(take_field(reader));
+  file.notes = take_texts(reader);
+  file.format = reader.take_text();
+  file.mesh.field_name = reader.take_text();
+  file.mesh.association = take_association(reader);
+  reader.finish();
   return file;
 }
 
-/// All ranks' values, in the order of `projectors`; the others have nothing to say.
-std::vector<json> gather(Transport& transport, const json& own, std::span<const int> projectors) {
-  const std::vector<Bytes> all = exchange::gather_all(transport, bytes_of(own));
-  std::vector<json> values;
-  for (const int rank : projectors) values.push_back(json_of(all[static_cast<std::size_t>(rank)]));
-  return values;
+/// All projectors' messages, read in their order; the other ranks have nothing to say.
+template <class Read>
+void gather(Transport& transport, MessageKind kind, Bytes own, std::span<const int> projectors, const Read& read) {
+  const std::vector<Bytes> all = exchange::gather_all(transport, std::move(own));
+  for (const int rank : projectors) {
+    MessageReader reader(all[static_cast<std::size_t>(rank)], rank, kind);
+    read(reader);
+  }
 }
 
 /// The description is the first projector's.
 io::MeshFile share_description(Transport& transport, std::span<const int> projectors, const io::MeshFile& own) {
-  const bool speaks = transport.rank() == projectors.front();
-  const Bytes bytes = speaks ? bytes_of(to_json(own)) : Bytes{};
-  return description_of(json_of(exchange::broadcast(transport, projectors.front(), bytes)));
+  const int speaker = projectors.front();
+  const Bytes message = exchange::broadcast(transport, speaker, message_of(own));
+  MessageReader reader(message, speaker, MessageKind::mesh_description);
+  return description_in(reader);
 }
 
 /// The whole by the first projector.
@@ -114,8 +144,8 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
   if (reads) reading.emplace(input, options, static_cast<int>(part), static_cast<int>(projectors.size()));
 
   std::vector<std::vector<io::FieldTally>> tallies;
-  for (const json& j : gather(transport, reads ? to_json(reading->tallies()) : json::array(), projectors))
-    tallies.push_back(tallies_of(j));
+  gather(transport, MessageKind::field_tallies, message_of(reads ? reading->tallies() : std::vector<io::FieldTally>{}),
+         projectors, [&](MessageReader& reader) { tallies.push_back(tallies_in(reader)); });
   io::MeshFilePart own;
   if (reads) own = reading->finish(tallies);
   reading.reset();
@@ -123,13 +153,19 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
   const io::PartSummary& s = own.summary;
   std::vector<io::PartSummary> summaries;
   std::uint64_t words = 0, first_tet = 0;
-  for (const json& j :
-       gather(transport, {to_json(s.counts), s.reading_notes, s.cell_notes, s.used_points.size()}, projectors)) {
-    summaries.push_back(
-        {counts_of(j[0]), {}, j[1].get<std::vector<std::string>>(), j[2].get<std::vector<std::string>>()});
-    if (summaries.size() <= part) first_tet += summaries.back().counts.tets_made;
-    words = std::max(words, j[3].get<std::uint64_t>());
-  }
+  Bytes message = exchange::message_of(MessageKind::part_summary, s.counts);
+  append_texts(message, s.reading_notes);
+  append_texts(message, s.cell_notes);
+  append(message, std::uint64_t{s.used_points.size()});
+  gather(transport, MessageKind::part_summary, std::move(message), projectors, [&](MessageReader& reader) {
+    io::PartSummary& summary = summaries.emplace_back();
+    summary.counts = reader.take<io::MeshCounts>();
+    summary.reading_notes = take_texts(reader);
+    summary.cell_notes = take_texts(reader);
+    words = std::max(words, reader.take<std::uint64_t>());
+    reader.finish();
+    if (summaries.size() <= part) first_tet += summary.counts.tets_made;
+  });
   own.summary.used_points.resize(words, 0);
   summaries.front().used_points = reduce_all(transport, std::move(own.summary.used_points), Reduction::bit_or);
 
@@ -166,12 +202,12 @@ DistributedMesh read_distributed(Transport& transport, std::span<const std::file
     {
       const scene::TraceScope scope(trace, "read");
       // One rank looks, so that all do the same.
-      Bytes in_parts(1);
+      std::uint8_t in_parts = 0;
       if (transport.rank() == projectors.front())
-        in_parts[0] = std::byte{files.size() == 1 && io::readable_in_parts(files.front(), options)};
-      in_parts = exchange::broadcast(transport, projectors.front(), std::move(in_parts));
-      result = in_parts[0] != std::byte{0} ? read_parts(transport, files.front(), options, projectors)
-                                           : read_whole(transport, files, options, projectors);
+        in_parts = files.size() == 1 && io::readable_in_parts(files.front(), options) ? 1 : 0;
+      in_parts = exchange::broadcast_value(transport, projectors.front(), MessageKind::read_in_parts, in_parts);
+      result = in_parts != 0 ? read_parts(transport, files.front(), options, projectors)
+                             : read_whole(transport, files, options, projectors);
     }
     result.facts = agree_facts(transport, result.part.mesh, threads);
     result.part = redistribute(transport, std::move(result.part), result.facts, partition, projectors, trace);

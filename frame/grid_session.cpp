@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "exchange/collectives.hpp"
 #include "frame/brick_memory.hpp"
 #include "frame/deep_rows.hpp"
 #include "frame/run_error.hpp"
@@ -191,7 +192,7 @@ class GridByRays final : public Session::State {
   /// What rank 0 says, on all.
   bool agreed(bool mine) {
     if (transport_->size() == 1) return mine;
-    return exchange::broadcast(*transport_, 0, {std::byte{mine}})[0] != std::byte{0};
+    return exchange::broadcast_value(*transport_, 0, exchange::MessageKind::sink_failed, std::uint8_t{mine}) != 0;
   }
 
   std::shared_ptr<exchange::Transport> transport_;

@@ -4,35 +4,17 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 #include <limits>
 #include <numeric>
 
 namespace tessera::frame {
 namespace {
 
-// Numbers are copied as they lie; a big-endian rank would have to swap them.
-static_assert(std::endian::native == std::endian::little);
+using exchange::append;
+using exchange::append_values;
 
 constexpr std::uint32_t unsent = std::numeric_limits<std::uint32_t>::max();
 constexpr std::uint64_t most_indices = unsent;
-
-template <class T>
-void put(exchange::Bytes& bytes, std::size_t& at, const std::vector<T>& values) {
-  if (values.empty()) return;
-  std::memcpy(bytes.data() + at, values.data(), values.size() * sizeof(T));
-  at += values.size() * sizeof(T);
-}
-
-/// Appends `n` values to a vector.
-template <class T>
-void take(const exchange::Bytes& bytes, std::size_t& at, std::uint64_t n, std::vector<T>& values) {
-  const std::size_t before = values.size();
-  values.resize(before + n);
-  if (n > 0) std::memcpy(values.data() + before, bytes.data() + at, n * sizeof(T));
-  at += n * sizeof(T);
-}
 
 }  // namespace
 
@@ -97,13 +79,12 @@ bool ChunkSender::next(int& part, exchange::Bytes& message) {
   }
   header.vertices = static_cast<std::uint32_t>(positions.size());
   header.tets = static_cast<std::uint32_t>(tets.size());
-  message.resize(size);
-  std::memcpy(message.data(), &header, sizeof header);
-  std::size_t at = sizeof header;
-  put(message, at, positions);
-  put(message, at, scalars);
-  put(message, at, global_tet);
-  put(message, at, tets);
+  message = exchange::begin_message(exchange::MessageKind::mesh_chunk, size);
+  append(message, header);
+  append_values(message, positions);
+  append_values(message, scalars);
+  append_values(message, global_tet);
+  append_values(message, tets);
   return true;
 }
 
@@ -126,16 +107,12 @@ void ChunkReceiver::add(int from, const exchange::Bytes& message) {
     return scene::Error(scene::ErrorCode::system_failure,
                         fmt::format("a part of the mesh from rank {}: {}; please report", from, what));
   };
-  MeshChunkHeader header;
-  if (message.size() < sizeof header) throw refuse(fmt::format("{} bytes have no header", message.size()));
-  std::memcpy(&header, message.data(), sizeof header);
+  exchange::MessageReader reader(message, from, exchange::MessageKind::mesh_chunk);
+  const auto header = reader.take<MeshChunkHeader>();
   const bool point = association_ == scene::Association::point;
-  const std::uint64_t v = header.vertices, t = header.tets, scalars = point ? v : t;
-  if (header.magic != MeshChunkHeader{}.magic || header.association != static_cast<std::uint32_t>(association_))
-    throw refuse("it is of another version or association");
-  if (message.size() != sizeof header + v * sizeof(glm::dvec3) + scalars * sizeof(double) +
-                            t * (sizeof(std::uint64_t) + sizeof(scene::Tet)))
-    throw refuse(fmt::format("{} bytes for {} vertices and {} tets", message.size(), v, t));
+  const std::uint64_t v = header.vertices, t = header.tets;
+  if (header.association != static_cast<std::uint32_t>(association_))
+    reader.refuse("brings tets of another association");
   std::vector<Base>& bases = bases_[static_cast<std::size_t>(from)];
   std::uint64_t& stream_end = stream_end_[static_cast<std::size_t>(from)];
   if (header.first_vertex != stream_end)
@@ -146,11 +123,11 @@ void ChunkReceiver::add(int from, const exchange::Bytes& message) {
     throw scene::Error(scene::ErrorCode::system_failure,
                        "more than 2^32 - 1 vertices come to one process; use more processes");
   bases.push_back({header.first_vertex, known});
-  std::size_t at = sizeof header;
-  take(message, at, v, mesh.positions);
-  take(message, at, scalars, mesh.scalars);
-  take(message, at, t, part_.global_tet);
-  take(message, at, t, mesh.tets);
+  reader.take_onto(mesh.positions, v);
+  reader.take_onto(mesh.scalars, point ? v : t);
+  reader.take_onto(part_.global_tet, t);
+  reader.take_onto(mesh.tets, t);
+  reader.finish();
   stream_end += v;
   for (std::size_t k = first_tet; k < mesh.tets.size(); ++k)
     for (std::uint32_t& i : mesh.tets[k]) {

@@ -5,23 +5,25 @@
 #include <span>
 #include <vector>
 
-#include "exchange/transport.hpp"
+#include "exchange/message.hpp"
 #include "frame/mesh_exchange.hpp"
 
 /// The wire record of channel `mesh`, and its two ends.
 namespace tessera::frame {
 
-/// Begins each message. What follows it, without gaps, little endian (v = vertices, t = tets):
+/// Begins a message `mesh_chunk`, after its MessageHeader. What follows it (v = vertices, t = tets):
 ///
-///     float64 xyz[3 v]; float64 scalar[v] (point data) or scalar[t] (cell data); uint64 global_tet[t]; uint32 tets[4
-///     t]
+///     f64 xyz[3 v]
+///     f64 scalar[v] of point data, scalar[t] of cell data
+///     u64 global_tet[t]
+///     u32 tets[4 t]
 ///
 /// Vertices are numbered along the stream from one rank to another: a message brings v new ones from `first_vertex`
 /// on, and its tets use those and earlier ones.
 struct MeshChunkHeader {
-  std::uint32_t magic = 0x31434d54;  ///< "TMC1": mesh chunk, version 1
-  std::uint32_t association = 0;     ///< scene::Association
+  std::uint32_t association = 0;  ///< scene::Association
   std::uint32_t vertices = 0, tets = 0;
+  std::uint32_t reserved = 0;
   std::uint64_t first_vertex = 0;
 };
 static_assert(sizeof(MeshChunkHeader) == 24);

@@ -1,52 +1,61 @@
 #include "frame/mesh_exchange.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <array>
 #include <numeric>
-#include <type_traits>
 
+#include "exchange/collectives.hpp"
 #include "frame/mesh_chunk.hpp"
 #include "frame/reduce.hpp"
 
 namespace tessera::frame {
 namespace {
 
+using exchange::append;
+using exchange::append_list;
+using exchange::begin_message;
 using exchange::Bytes;
 using exchange::Channel;
+using exchange::MessageKind;
 using exchange::Transport;
 using projection::PartitionKind;
 
-template <class T>
-Bytes bytes_of(const T& value) {
-  static_assert(std::is_trivially_copyable_v<T>);
-  const auto* first = reinterpret_cast<const std::byte*>(&value);
-  return Bytes(first, first + sizeof value);
-}
-
-/// One value of every rank.
-template <class T>
-std::vector<T> gather_values(Transport& transport, const T& value) {
-  std::vector<T> values;
-  for (const Bytes& bytes : gather_all(transport, bytes_of(value))) {
-    if (bytes.size() != sizeof(T))
-      throw scene::Error(scene::ErrorCode::system_failure, "ranks disagree on what they agree on; run one program");
-    std::memcpy(&values.emplace_back(), bytes.data(), sizeof(T));
-  }
-  return values;
-}
-
+/// Every rank's row, rank after rank; all are as long as this one.
 std::vector<std::uint64_t> gather_rows(Transport& transport, const std::vector<std::uint64_t>& row) {
-  const std::size_t size = row.size() * sizeof(std::uint64_t);
-  const auto* first = reinterpret_cast<const std::byte*>(row.data());
+  Bytes mine = begin_message(MessageKind::tet_table);
+  append_list(mine, row);
   std::vector<std::uint64_t> table;
-  for (const Bytes& bytes : gather_all(transport, Bytes(first, first + size))) {
-    if (bytes.size() != size)
-      throw scene::Error(scene::ErrorCode::system_failure,
-                         "ranks disagree on the number of projectors; run one program");
-    table.resize(table.size() + row.size());
-    if (size > 0) std::memcpy(table.data() + table.size() - row.size(), bytes.data(), size);
+  int from = 0;
+  for (const Bytes& bytes : gather_all(transport, std::move(mine))) {
+    exchange::MessageReader reader(bytes, from++, MessageKind::tet_table);
+    if (reader.take<std::uint64_t>() != row.size()) reader.refuse("is of another number of projectors");
+    reader.take_onto(table, row.size());
+    reader.finish();
   }
   return table;
+}
+
+/// As a message's values: fields one by one, since the structure has padding.
+Bytes message_of(const scene::MeshFacts& facts) {
+  Bytes message = begin_message(MessageKind::mesh_facts);
+  append(message, facts.box.low);
+  append(message, facts.box.high);
+  append(message, facts.scalar_range);
+  append(message, facts.tets);
+  append(message, static_cast<std::uint8_t>(facts.association));
+  return message;
+}
+
+scene::MeshFacts facts_in(const Bytes& message, int from) {
+  exchange::MessageReader reader(message, from, MessageKind::mesh_facts);
+  scene::MeshFacts facts;
+  facts.box.low = reader.take<glm::dvec3>();
+  facts.box.high = reader.take<glm::dvec3>();
+  facts.scalar_range = reader.take<std::array<double, 2>>();
+  facts.tets = reader.take<std::uint64_t>();
+  facts.association = reader.take<std::uint8_t>() == 0 ? scene::Association::point : scene::Association::cell;
+  reader.finish();
+  return facts;
 }
 
 /// As projection::parts_of_whole, of a mesh that lies on many ranks.
@@ -81,16 +90,18 @@ scene::MeshFacts agree_facts(Transport& transport, const scene::TetMeshView& par
   scene::MeshFacts own{scene::bounds(part, threads), scene::scalar_range(part, threads), 0, part.tets.size(),
                        part.association},
       facts;
-  for (const auto& other : gather_values(transport, own)) facts = joined(facts, other);
+  int from = 0;
+  for (const Bytes& other : gather_all(transport, message_of(own))) facts = joined(facts, facts_in(other, from++));
   scene::VolumeSum volume = 0;
-  for (const auto other : gather_values(transport, volume_sum(part, facts.box, threads))) volume += other;
+  for (const auto other : gather_values(transport, MessageKind::mesh_volume, volume_sum(part, facts.box, threads)))
+    volume += other;
   facts.mean_thickness = scene::mean_thickness(facts.box, volume);
   return facts;
 }
 
 std::vector<std::uint64_t> numbered_by_rank(Transport& transport, std::size_t tets) {
   std::uint64_t first = 0;
-  const std::vector<std::uint64_t> counts = gather_values(transport, static_cast<std::uint64_t>(tets));
+  const std::vector<std::uint64_t> counts = gather_values(transport, MessageKind::tet_count, std::uint64_t{tets});
   for (int rank = 0; rank < transport.rank(); ++rank) first += counts[static_cast<std::size_t>(rank)];
   std::vector<std::uint64_t> numbers(tets);
   std::iota(numbers.begin(), numbers.end(), first);

@@ -6,7 +6,7 @@
 #include <exception>
 #include <optional>
 
-#include "exchange/wire.hpp"
+#include "exchange/collectives.hpp"
 #include "frame/distributed.hpp"
 #include "frame/mesh_input.hpp"
 #include "frame/session_state.hpp"
@@ -148,11 +148,9 @@ class MeshOnRanks final : public Session::State {
     } catch (const frame::SinkFailure& failure) {
       thrown = failure.cause;  // the others have ended in order too
     }
-    exchange::Bytes bytes;
-    exchange::append(bytes, static_cast<std::uint64_t>(complete));
-    bytes = exchange::broadcast(*transport_, distributed_.roles.assembler(), std::move(bytes));
+    complete = exchange::broadcast_value(*transport_, distributed_.roles.assembler(),
+                                         exchange::MessageKind::frames_complete, std::uint64_t{complete});
     if (thrown) std::rethrow_exception(thrown);
-    complete = exchange::RecordReader(bytes).take<std::uint64_t>();
     if (!assembles() && complete < views.size()) sink.frame(stopped_frame(complete));
     return complete;
   }
@@ -198,10 +196,8 @@ class MeshOnRanks final : public Session::State {
   }
 
   float longest_of_all(float longest) {
-    exchange::Bytes mine;
-    exchange::append(mine, longest);
-    for (const exchange::Bytes& other : exchange::gather_all(*transport_, std::move(mine)))
-      longest = std::max(longest, exchange::RecordReader(other).take<float>());
+    for (const float other : exchange::gather_values(*transport_, exchange::MessageKind::longest_edge, longest))
+      longest = std::max(longest, other);
     return longest;
   }
 

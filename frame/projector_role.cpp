@@ -17,12 +17,17 @@ namespace {
 
 using exchange::Channel;
 
+/// Waits until one frame more has left the assembling rank.
+void await_frame(const DistributedRun& run) {
+  exchange::MessageReader(run.transport.receive(Channel::frames), exchange::MessageKind::frame_left).finish();
+}
+
 /// Waits until no more than `in_flight - 1` frames before this one are on their way.
 void wait_for_turn(const DistributedRun& run, std::size_t frame, std::size_t& left) {
   const auto in_flight = static_cast<std::size_t>(run.settings.frames_in_flight);
   if (frame < left + in_flight) return;
   const scene::TraceScope timing(run.settings.projecting, "wait", static_cast<std::int32_t>(run.first + frame));
-  for (; frame >= left + in_flight; ++left) run.transport.receive(Channel::frames);
+  for (; frame >= left + in_flight; ++left) await_frame(run);
 }
 
 exchange::FrameEnd counts_of(const FrameStatistics& s) { return {s, s.on_lattice ? 1u : 0u, 0, 0}; }
@@ -114,7 +119,7 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
     if (render.trace != nullptr) render.trace->add_frame(number, start_us);
   }
   // The next list begins with none on their way.
-  for (; left < run.jobs.size(); ++left) run.transport.receive(Channel::frames);
+  for (; left < run.jobs.size(); ++left) await_frame(run);
 }
 
 }  // namespace tessera::frame

@@ -2,46 +2,41 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
+#include "exchange/message.hpp"
 
 namespace tessera::frame {
 
 using exchange::Bytes;
 using exchange::Channel;
+using exchange::MessageKind;
 
 std::vector<std::uint64_t> reduce_all(exchange::Transport& transport, std::vector<std::uint64_t> values,
                                       Reduction reduction) {
   if (transport.size() == 1) return values;
-  const std::size_t size = values.size() * sizeof(std::uint64_t);
-  const auto bytes_of = [&] {
-    const auto* first = reinterpret_cast<const std::byte*>(values.data());
-    return Bytes(first, first + size);
+  const auto message = [&] {
+    Bytes bytes = exchange::begin_message(MessageKind::reduction, (values.size() + 1) * sizeof(std::uint64_t));
+    exchange::append_list(bytes, values);
+    return bytes;
   };
   const auto take = [&] {
-    exchange::Message message = transport.receive(Channel::agreement);
-    if (message.bytes.size() != size)
-      throw scene::Error(
-          scene::ErrorCode::system_failure,
-          fmt::format("rank {} of {}: rank {} agrees on {} bytes, {} were awaited; all have to run one program",
-                      transport.rank(), transport.size(), message.from, message.bytes.size(), size));
-    return message.bytes;
+    const exchange::Message other = transport.receive(Channel::agreement);
+    exchange::MessageReader reader(other, MessageKind::reduction);
+    std::vector<std::uint64_t> list = reader.take_list<std::uint64_t>();
+    if (list.size() != values.size()) reader.refuse(fmt::format("adds {} numbers to {}", list.size(), values.size()));
+    return list;
   };
-  // Through rank 0, as the other collectives, and for the reason that they give (collectives.cpp).
+  // Through rank 0, as the other collectives, and for the reason that they give (exchange/collectives.cpp).
   if (transport.rank() != 0) {
-    transport.send(0, Channel::agreement, bytes_of());
-    const Bytes result = take();
-    if (size > 0) std::memcpy(values.data(), result.data(), size);
-    return values;
+    transport.send(0, Channel::agreement, message());
+    return take();
   }
   for (int others = transport.size() - 1; others > 0; --others) {
-    const Bytes part = take();
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      std::uint64_t value = 0;
-      std::memcpy(&value, part.data() + k * sizeof value, sizeof value);
-      values[k] = reduction == Reduction::sum ? values[k] + value : values[k] | value;
-    }
+    const std::vector<std::uint64_t> part = take();
+    for (std::size_t k = 0; k < values.size(); ++k)
+      values[k] = reduction == Reduction::sum ? values[k] + part[k] : values[k] | part[k];
   }
-  for (int rank = 1; rank < transport.size(); ++rank) transport.send(rank, Channel::agreement, bytes_of());
+  const Bytes sum = message();
+  for (int rank = 1; rank < transport.size(); ++rank) transport.send(rank, Channel::agreement, sum);
   return values;
 }
 

@@ -10,7 +10,7 @@ namespace tessera::frame {
 enum class Reduction { sum, bit_or };
 
 /// Element by element over all ranks, on every rank. Collective (channel `agreement`); the same length everywhere, at
-/// most 2^27 numbers.
+/// fewer than 2^27 numbers.
 std::vector<std::uint64_t> reduce_all(exchange::Transport& transport, std::vector<std::uint64_t> values,
                                       Reduction reduction);
 

@@ -1,25 +1,20 @@
 #include "frame/scan_together.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <span>
 #include <utility>
 
-#include "frame/message_values.hpp"
+#include "exchange/collectives.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::frame {
 namespace {
 
+using exchange::append;
+using exchange::append_values;
 using exchange::Bytes;
 using exchange::Channel;
-
-/// Some cells of a rank's share, as they travel: this, then `count` lowest samples, then as many highest. Little
-/// endian.
-struct CellsHeader {
-  std::uint64_t first, count;  ///< by CellRanges' numbers
-};
-static_assert(sizeof(CellsHeader) == 16);
+using exchange::MessageKind;
 
 /// What a scan adds to the whole volume's range.
 struct ScanTotals {
@@ -30,28 +25,26 @@ static_assert(sizeof(ScanTotals) == 24);
 
 constexpr std::uint64_t cells_a_message = 1 << 24;  // 128 MiB, of the 1 GiB that a message may have
 
+/// Some cells of a rank's share.
 Bytes cells_of(const volume::CellScan& scan, std::uint64_t first_of_scan, std::uint64_t first, std::uint64_t count) {
-  Bytes bytes;
-  const CellsHeader header{first_of_scan + first, count};
-  bytes.reserve(sizeof header + 2 * count * sizeof(float));
-  append_values(bytes, std::span(&header, 1));
+  Bytes bytes =
+      exchange::begin_message(MessageKind::cell_ranges, 2 * sizeof(std::uint64_t) + 2 * count * sizeof(float));
+  append(bytes, first_of_scan + first);  // by CellRanges' numbers
+  append(bytes, count);
   append_values(bytes, std::span(scan.low).subspan(first, count));
   append_values(bytes, std::span(scan.high).subspan(first, count));
   return bytes;
 }
 
 /// Returns how many cells these are.
-std::uint64_t place(const Bytes& bytes, volume::CellScan& whole) {
-  const auto header = ValueReader(bytes).take<CellsHeader>();
-  const std::uint64_t size = header.count * sizeof(float);
-  if (header.count > cells_a_message || header.first > whole.low.size() ||
-      header.count > whole.low.size() - header.first || bytes.size() != sizeof header + 2 * size)
-    throw scene::Error(scene::ErrorCode::system_failure,
-                       "exchange: cells of another volume came; all ranks must read the same file");
-  if (header.count == 0) return 0;
-  std::memcpy(&whole.low[header.first], bytes.data() + sizeof header, size);
-  std::memcpy(&whole.high[header.first], bytes.data() + sizeof header + size, size);
-  return header.count;
+std::uint64_t place(const exchange::Message& message, volume::CellScan& whole) {
+  exchange::MessageReader reader(message, MessageKind::cell_ranges);
+  const auto first = reader.take<std::uint64_t>(), count = reader.take<std::uint64_t>();
+  if (first > whole.low.size() || count > whole.low.size() - first) reader.refuse("brings cells of another volume");
+  reader.take_values(std::span(whole.low).subspan(first, count));
+  reader.take_values(std::span(whole.high).subspan(first, count));
+  reader.finish();
+  return count;
 }
 
 }  // namespace
@@ -75,15 +68,11 @@ volume::CellRanges scan_together(exchange::Transport& transport, const scene::Sa
   whole.high.resize(whole.low.size());
   std::copy(own.low.begin(), own.low.end(), whole.low.begin() + static_cast<std::ptrdiff_t>(before));
   std::copy(own.high.begin(), own.high.end(), whole.high.begin() + static_cast<std::ptrdiff_t>(before));
-  for (std::uint64_t there = count; there < whole.low.size();)
-    there += place(transport.receive(Channel::mesh).bytes, whole);
+  for (std::uint64_t there = count; there < whole.low.size();) there += place(transport.receive(Channel::mesh), whole);
 
   // Also the end of the exchange: no rank is in the next one while another still waits for cells of this one.
   const ScanTotals totals{own.lowest, own.highest, own.blanks};
-  Bytes bytes;
-  append_values(bytes, std::span(&totals, 1));
-  for (const Bytes& of_rank : exchange::gather_all(transport, std::move(bytes))) {
-    const auto part = ValueReader(of_rank).take<ScanTotals>();
+  for (const ScanTotals& part : exchange::gather_values(transport, MessageKind::cell_totals, totals)) {
     whole.lowest = std::min(whole.lowest, part.lowest);
     whole.highest = std::max(whole.highest, part.highest);
     whole.blanks += part.blanks;

@@ -10,7 +10,7 @@
 #include <optional>
 #include <utility>
 
-#include "frame/message_values.hpp"
+#include "exchange/collectives.hpp"
 #include "frame/reduce.hpp"
 #include "frame/stop_relay.hpp"
 #include "scene/error.hpp"
@@ -19,13 +19,18 @@
 namespace tessera::frame {
 namespace {
 
+using exchange::append_list;
+using exchange::append_values;
 using exchange::Bytes;
 using exchange::Channel;
+using exchange::message_of;
+using exchange::MessageKind;
+using exchange::MessageReader;
 using volume::CostMap;
 using volume::ImageSplit;
 using volume::PixelRegion;
 
-/// What travels with the pixels of a rank's rectangle.
+/// What travels before the pixels of a rank's rectangle.
 struct RegionHeader {
   std::uint64_t frame;
   PixelRegion region;
@@ -108,7 +113,7 @@ class SortFirst::State {
     {
       // No rank runs ahead of the picture that rank 0 puts together, and a frame's time does not count reading.
       const scene::TraceScope timing(settings_.trace, "wait", static_cast<std::int32_t>(number));
-      exchange::gather_all(transport_, {});
+      exchange::barrier(transport_);
     }
     const auto begin = std::chrono::steady_clock::now();
     const ImageSplit split = [&] {
@@ -234,45 +239,39 @@ class SortFirst::State {
   }
 
   std::vector<volume::RowSums> gather_rows(const volume::RowSums& own) {
-    Bytes bytes;
-    append_values(bytes, std::span(&own.region, 1));
-    append_values(bytes, std::span<const std::uint64_t>(own.rows));
+    Bytes bytes = message_of(MessageKind::row_costs, own.region);
+    append_list(bytes, own.rows);
     std::vector<volume::RowSums> all;
     for (const Bytes& of_rank : exchange::gather_all(transport_, std::move(bytes))) {
-      ValueReader reader(of_rank);
+      MessageReader reader(of_rank, static_cast<int>(all.size()), MessageKind::row_costs);
       volume::RowSums& part = all.emplace_back();
       part.region = reader.take<PixelRegion>();
-      part.rows.resize((of_rank.size() - sizeof(PixelRegion)) / sizeof(std::uint64_t));
-      reader.take(std::span(part.rows));
+      part.rows = reader.take_list<std::uint64_t>();
+      reader.finish();
     }
     return all;
   }
 
   std::vector<volume::ColumnSums> gather_columns(const volume::ColumnSums& own) {
-    Bytes bytes;
-    append_values(bytes, std::span(&own.region, 1));
-    for (const auto& columns : own.columns) append_values(bytes, std::span<const std::uint64_t>(columns));
+    Bytes bytes = message_of(MessageKind::column_costs, own.region);
+    for (const auto& columns : own.columns) append_list(bytes, columns);
     std::vector<volume::ColumnSums> all;
     for (const Bytes& of_rank : exchange::gather_all(transport_, std::move(bytes))) {
-      ValueReader reader(of_rank);
+      MessageReader reader(of_rank, static_cast<int>(all.size()), MessageKind::column_costs);
       volume::ColumnSums& part = all.emplace_back();
       part.region = reader.take<PixelRegion>();
       part.columns.resize(own.columns.size());
       for (auto& columns : part.columns) {
-        columns.resize(static_cast<std::size_t>(std::max(0, part.region.x1 - part.region.x0)));
-        reader.take(std::span(columns));
+        columns = reader.take_list<std::uint64_t>();
+        if (columns.size() != static_cast<std::size_t>(std::max(0, part.region.x1 - part.region.x0)))
+          reader.refuse("has other columns than its region");
       }
+      reader.finish();
     }
     return all;
   }
 
-  void share_times(double cpu) {
-    Bytes bytes;
-    append_values(bytes, std::span<const double>(&cpu, 1));
-    times_.clear();
-    for (const Bytes& of_rank : exchange::gather_all(transport_, std::move(bytes)))
-      times_.push_back(ValueReader(of_rank).take<double>());
-  }
+  void share_times(double cpu) { times_ = exchange::gather_values(transport_, MessageKind::seconds, cpu); }
 
   /// The times of the last frame, each spread over its rectangle.
   [[nodiscard]] CostMap map_of_times(scene::ImageSize size) const {
@@ -294,9 +293,8 @@ class SortFirst::State {
   }
 
   void send(const RegionHeader& header, const scene::Image& image, const std::vector<float>& doubts) {
-    Bytes bytes;
+    Bytes bytes = message_of(MessageKind::region, header);
     const PixelRegion& r = header.region;
-    append_values(bytes, std::span(&header, 1));
     for (int y = r.y0; y < r.y1 && header.stopped == 0; ++y) {
       const auto width = static_cast<std::size_t>(r.x1 - r.x0);
       append_values(bytes, std::span(image.rgba).subspan(4 * image.index(r.x0, y), 4 * width));
@@ -307,21 +305,21 @@ class SortFirst::State {
   }
 
   void place(const exchange::Message& message, FinishedVolumeFrame& finished, scene::FrameWatch& watch) {
-    ValueReader reader(message.bytes);
+    MessageReader reader(message, MessageKind::region);
     const auto header = reader.take<RegionHeader>();
     const PixelRegion& r = header.region;
     const scene::ImageSize size = finished.image.size;
     if (header.frame != finished.frame || r.x0 < 0 || r.y0 < 0 || r.x1 > size.width || r.y1 > size.height)
-      throw scene::Error(scene::ErrorCode::system_failure,
-                         "exchange: a rectangle of another picture came; all ranks must run the same program");
+      reader.refuse("is a rectangle of another picture");
     finished.stopped = finished.stopped || header.stopped != 0;
     for (int y = r.y0; y < r.y1 && header.stopped == 0; ++y) {
       const auto width = static_cast<std::size_t>(r.x1 - r.x0);
-      reader.take(std::span(finished.image.rgba).subspan(4 * finished.image.index(r.x0, y), 4 * width));
-      reader.take(std::span(finished.image.depth).subspan(finished.image.index(r.x0, y), width));
+      reader.take_values(std::span(finished.image.rgba).subspan(4 * finished.image.index(r.x0, y), 4 * width));
+      reader.take_values(std::span(finished.image.depth).subspan(finished.image.index(r.x0, y), width));
       if (!finished.doubts.empty())
-        reader.take(std::span(finished.doubts).subspan(finished.image.index(r.x0, y), width));
+        reader.take_values(std::span(finished.doubts).subspan(finished.image.index(r.x0, y), width));
     }
+    reader.finish();
     if (header.stopped == 0) tell(watch, {r.x0, r.y0, r.x1, r.y1}, finished);
     volume::RenderStatistics& s = finished.statistics;
     s.rays += header.rays, s.voxels_visited += header.voxels_visited, s.samples += header.samples;

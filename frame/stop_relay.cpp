@@ -1,9 +1,8 @@
 #include "frame/stop_relay.hpp"
 
 #include <algorithm>
-#include <cstring>
 
-#include "exchange/wire.hpp"
+#include "exchange/message.hpp"
 #include "scene/start_thread.hpp"
 
 namespace tessera::frame {
@@ -12,11 +11,7 @@ namespace {
 /// To itself: the run is over, the listener ends.
 constexpr std::uint64_t end_of_run = 0;
 
-exchange::Bytes number_bytes(std::uint64_t number) {
-  exchange::Bytes bytes(sizeof number);
-  std::memcpy(bytes.data(), &number, sizeof number);
-  return bytes;
-}
+exchange::Bytes number_bytes(std::uint64_t number) { return exchange::message_of(exchange::MessageKind::stop, number); }
 
 }  // namespace
 
@@ -45,7 +40,7 @@ void StopRelay::Run::listen() {
   try {
     for (;;) {
       const exchange::Message message = relay_.transport_.receive(exchange::Channel::stop);
-      const auto number = exchange::RecordReader(message.bytes).take<std::uint64_t>();
+      const auto number = exchange::value_of<std::uint64_t>(message.bytes, message.from, exchange::MessageKind::stop);
       if (number == end_of_run) return;
       relay_.stopped_ = std::max(relay_.stopped_, number);
       if (number == relay_.run_) stop_.request_stop();

@@ -12,8 +12,8 @@ namespace tessera::frame {
 
 /// Carries a stop between ranks: asked for on one, it stops all.
 ///
-/// On channel `stop`, little endian: a 64-bit number, of the run that is to stop. Runs are numbered alike on all ranks,
-/// so that a stop which comes too late stops nothing else, and one that comes early is kept for its run.
+/// Its messages carry the number of the run that is to stop. Runs are numbered alike on all ranks, so that a stop which
+/// comes too late stops nothing else, and one that comes early is kept for its run.
 class StopRelay {
  public:
   explicit StopRelay(exchange::Transport& transport) : transport_(transport) {}

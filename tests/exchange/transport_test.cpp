@@ -4,6 +4,7 @@
 #include <cstring>
 #include <string>
 
+#include "exchange/collectives.hpp"
 #include "exchange/loopback_transport.hpp"
 
 namespace tessera::exchange {
@@ -72,9 +73,15 @@ TEST(Collectives, GiveEveryRankTheSameInRankOrderHoweverOftenAndFromWhateverRoot
         const int root = round % ranks;
         const std::string word = "from " + std::to_string(root) + " in round " + std::to_string(round);
         ASSERT_EQ(text_of(broadcast(transport, root, bytes_of(transport.rank() == root ? word : "not mine"))), word);
-        const auto all = gather_all(transport, bytes_of(std::string(static_cast<std::size_t>(transport.rank()), 'x')));
+        ASSERT_EQ(broadcast_value(transport, root, MessageKind::seconds, 0.5 * transport.rank()), 0.5 * root);
+        Bytes mine = begin_message(MessageKind::host);
+        append_text(mine, std::string(static_cast<std::size_t>(transport.rank()), 'x'));
+        const auto all = gather_all(transport, std::move(mine));
         ASSERT_EQ(all.size(), static_cast<std::size_t>(ranks));
-        for (int rank = 0; rank < ranks; ++rank) ASSERT_EQ(all[static_cast<std::size_t>(rank)].size(), rank);
+        for (int rank = 0; rank < ranks; ++rank)
+          ASSERT_EQ(MessageReader(all[static_cast<std::size_t>(rank)], rank, MessageKind::host).take_text().size(),
+                    rank);
+        barrier(transport);
       }
     });
 }

@@ -248,9 +248,9 @@ TEST(MeshChunk, MalformedMessagesAreRefused) {
     }
   };
   EXPECT_FALSE(refused(message));
-  for (const std::size_t size : {std::size_t{0}, std::size_t{23}, message.size() - 1})
+  for (const std::size_t size : {std::size_t{0}, std::size_t{31}, message.size() - 1})
     EXPECT_TRUE(refused(Bytes(message.begin(), message.begin() + static_cast<std::ptrdiff_t>(size)))) << size;
-  for (const std::size_t at : {0, 4, 8, 12, 16}) {  // each word of the header
+  for (const std::size_t at : {0, 4, 6, 8, 12, 16, 24}) {  // each value of the headers
     Bytes changed = message;
     changed[at] ^= std::byte{1};
     EXPECT_TRUE(refused(changed)) << at;

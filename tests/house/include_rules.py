@@ -52,8 +52,8 @@ TO_GO = {
     """,
     "apps": """
         datasets/generate.hpp datasets/modify.hpp datasets/volumes.hpp
-        exchange/heartbeats.hpp exchange/instruction_sets.hpp exchange/loopback_transport.hpp
-        exchange/mpi_transport.hpp exchange/transport.hpp exchange/wire.hpp
+        exchange/collectives.hpp exchange/heartbeats.hpp exchange/instruction_sets.hpp exchange/loopback_transport.hpp
+        exchange/mpi_transport.hpp exchange/transport.hpp
         frame/compositing_device.hpp frame/dataset.hpp frame/distributed.hpp frame/mesh_input.hpp frame/render.hpp
         frame/roles.hpp frame/session_extras.hpp frame/sort_first.hpp frame/verify.hpp
         io/atomic_file.hpp io/camera_file.hpp io/chrome_trace.hpp io/chrome_trace_reader.hpp io/image_deep_exr.hpp

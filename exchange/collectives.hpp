@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "exchange/message.hpp"
+
+/// What all ranks do together. Every rank calls these in the same order (channel `agreement`), with a message of the
+/// same kind: a rank that is elsewhere in its program is found by the kind, and ends the run.
+namespace tessera::exchange {
+
+/// The message of rank `root`, on every rank; of the others' it matters nothing.
+Bytes broadcast(Transport& transport, int root, Bytes message);
+
+/// Every rank's message, in rank order, on every rank.
+std::vector<Bytes> gather_all(Transport& transport, Bytes message);
+
+/// Returns when all ranks have come here.
+void barrier(Transport& transport);
+
+/// The value of rank `root`, on every rank.
+template <class Value>
+Value broadcast_value(Transport& transport, int root, MessageKind kind, const Value& value) {
+  return value_of<Value>(broadcast(transport, root, message_of(kind, value)), root, kind);
+}
+
+/// Every rank's value, in rank order, on every rank.
+template <class Value>
+std::vector<Value> gather_values(Transport& transport, MessageKind kind, const Value& value) {
+  std::vector<Value> values;
+  for (const Bytes& message : gather_all(transport, message_of(kind, value)))
+    values.push_back(value_of<Value>(message, static_cast<int>(values.size()), kind));
+  return values;
+}
+
+}  // namespace tessera::exchange

@@ -1,0 +1,215 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "exchange/transport.hpp"
+
+/// How values become the bytes of a message, and every message that there is.
+///
+/// A message is a MessageHeader and then what its kind says. Values are little endian and follow each other without
+/// gaps; structures have no padding. A list is a 64-bit number of values and the values, a text a list of bytes. All
+/// ranks run the same program: a reader refuses any other version, and any kind or length but the awaited ones.
+namespace tessera::exchange {
+
+static_assert(std::endian::native == std::endian::little, "messages are little endian");
+
+inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
+inline constexpr std::uint16_t wire_version = 7;         ///< the next one whenever a message changes
+
+/// All kinds, by channel, and what follows the header.
+enum class MessageKind : std::uint16_t {
+  // Channel fragments; the structures are in wire.hpp.
+  begin = 1,  ///< u64 frame, FrameBegin, one bit a tile of the receiver in its order, lowest bit first: 1: parts come
+  parts = 2,  ///< u64 frame; until the end: PartHeader, `bytes` bytes of records
+  end = 3,    ///< u64 frame, FrameEnd: the sender has no more of this frame. Also on channel tiles
+  // Channel credit.
+  credit = 4,  ///< u64 bytes that the receiver may send again
+  // Channel tiles.
+  tiles = 5,   ///< u64 frame; until the end: u64 tile, f32 RGBA of its pixels row by row, f32 depths, u64 deep
+               ///< samples in the tile; unless that is 0 u32 samples of each pixel, scene::DeepImageSample each
+  region = 6,  ///< RegionHeader (frame/sort_first.cpp); unless stopped, for each row f32 RGBA, depths, error estimates
+  deep_rows = 7,  ///< u64 samples of each pixel of the sender's rows, scene::DeepImageSample each
+  // Channel frames.
+  frame_left = 8,  ///< nothing: one frame less is on its way
+  // Channel stop.
+  stop = 9,  ///< u64 number of the run to stop, 0: to oneself, the run is over
+  // Channel mesh.
+  mesh_chunk = 10,   ///< MeshChunkHeader and arrays (frame/mesh_chunk.hpp)
+  cell_ranges = 11,  ///< u64 first cell, u64 cells, f32 lowest value of each, f32 highest
+  // Channel timing.
+  clock_question = 12,  ///< nothing
+  clock_answer = 13,    ///< f64 microseconds of the writer's clock
+  trace_events = 14,    ///< text
+  // Channel agreement: collectives (collectives.hpp) and what they carry.
+  gathered = 15,          ///< list of messages, each a list of bytes: of all ranks, from rank 0
+  barrier = 16,           ///< nothing
+  reduction = 17,         ///< list of u64 (frame/reduce.hpp)
+  instruction_sets = 18,  ///< i64 of Highway's target bits
+  host = 19,              ///< text: the machine's name
+  device = 20,            ///< text: the compositing device's name, empty where none composites
+  read_in_parts = 21,     ///< u8: 1: all projectors read
+  field_tallies = 22,     ///< u64 fields; of each a field, u8 any_finite
+  part_summary = 23,      ///< MeshCounts, texts of reading, texts of cells, u64 words of used points
+  mesh_description = 24,  ///< MeshCounts, u64 fields, fields, u64 notes, texts, text format, text field, u8 association
+  mesh_facts = 25,        ///< f64 box[6], f64 scalar range[2], u64 tets, u8 association
+  mesh_volume = 26,       ///< 128-bit scene::VolumeSum
+  tet_count = 27,         ///< u64
+  tet_table = 28,         ///< list of u64: a rank's tets, or messages, for each projector
+  longest_edge = 29,      ///< f32
+  frames_complete = 30,   ///< u64
+  sink_failed = 31,       ///< u8
+  cell_totals = 32,       ///< f64 lowest, f64 highest, u64 blank samples
+  row_costs = 33,         ///< i32 x0, y0, x1, y1 of the map's region, list of u64
+  column_costs = 34,      ///< the same, a list of u64 for each map row that was asked for
+  seconds = 35,           ///< f64 processor time of the last frame
+  finished_frames = 36,   ///< u8 of each frame
+  exit_code = 37,         ///< u8
+  process_on_host = 38,   ///< apps/one_line.cpp
+  // The transport's own.
+  fault = 40,    ///< a rank to rank 0, I have failed: u8 ErrorCode, text
+  verdict = 41,  ///< the run's error to all: u8 ErrorCode, text
+  done = 42,     ///< a rank to rank 0, nothing: no more will come from me
+  clear = 43,    ///< rank 0 to all, nothing: no more will come from anyone
+  alive = 44,    ///< text: the name of the sender's process (heartbeats.hpp)
+  silent = 45,   ///< nothing: the sender has said that rank 0 is silent
+};
+
+struct MessageHeader {
+  std::uint32_t magic = wire_magic;
+  std::uint16_t version = wire_version;
+  MessageKind kind;
+};
+static_assert(sizeof(MessageHeader) == 8);
+
+/// Appends a value's bytes.
+template <class Value>
+void append(Bytes& bytes, const Value& value) {
+  static_assert(std::is_trivially_copyable_v<Value> && !std::is_pointer_v<Value>);
+  const auto* first = reinterpret_cast<const std::byte*>(&value);
+  bytes.insert(bytes.end(), first, first + sizeof value);
+}
+
+/// Appends the values alone: the reader knows their number.
+template <class Values>
+void append_values(Bytes& bytes, const Values& values) {
+  static_assert(std::is_trivially_copyable_v<typename Values::value_type>);
+  const auto raw = std::as_bytes(std::span(values));
+  bytes.insert(bytes.end(), raw.begin(), raw.end());
+}
+
+template <class Values>
+void append_list(Bytes& bytes, const Values& values) {
+  append(bytes, std::uint64_t{values.size()});
+  append_values(bytes, values);
+}
+
+inline void append_text(Bytes& bytes, std::string_view text) { append_list(bytes, text); }
+
+/// A message's header; the rest is appended. `room` for so many bytes behind it.
+Bytes begin_message(MessageKind kind, std::size_t room = 0);
+
+/// A message of one value.
+template <class Value>
+Bytes message_of(MessageKind kind, const Value& value) {
+  Bytes message = begin_message(kind, sizeof value);
+  append(message, value);
+  return message;
+}
+
+/// Takes values off the front of bytes. Throws Error(system_failure) where they are too few, before it allocates what
+/// they could not fill.
+class RecordReader {
+ public:
+  explicit RecordReader(std::span<const std::byte> bytes) : left_(bytes) {}
+
+  template <class Value>
+  Value take() {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    Value value;
+    std::memcpy(&value, take_bytes(sizeof value).data(), sizeof value);
+    return value;
+  }
+  std::span<const std::byte> take_bytes(std::uint64_t count) {
+    if (count > left_.size()) refuse_short();
+    const auto taken = left_.first(count);
+    left_ = left_.subspan(count);
+    return taken;
+  }
+  template <class Value>
+  void take_values(std::span<Value> values) {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    const auto from = take_bytes(values.size_bytes());
+    if (!values.empty()) std::memcpy(values.data(), from.data(), from.size());
+  }
+  /// `count` values behind those that are there.
+  template <class Value>
+  void take_onto(std::vector<Value>& values, std::uint64_t count) {
+    if (count > left_.size() / sizeof(Value)) refuse_short();
+    const std::size_t before = values.size();
+    values.resize(before + count);
+    take_values(std::span(values).subspan(before));
+  }
+  template <class Value>
+  std::vector<Value> take_list() {
+    std::vector<Value> values;
+    take_onto(values, take<std::uint64_t>());
+    return values;
+  }
+  std::string take_text() {
+    const auto bytes = take_bytes(take<std::uint64_t>());
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  }
+
+  [[nodiscard]] bool empty() const { return left_.empty(); }
+  /// Throws Error(system_failure) if there is more.
+  void finish() const {
+    if (!empty()) refuse("is longer than it says");
+  }
+  /// Throws Error(system_failure): the message `what`; all ranks must run the same program.
+  [[noreturn]] void refuse(std::string_view what) const;
+
+ protected:
+  RecordReader(std::span<const std::byte> bytes, int from) : left_(bytes), from_(from) {}
+
+ private:
+  [[noreturn]] void refuse_short() const;
+
+  std::span<const std::byte> left_;
+  int from_ = -1;  ///< the sending rank, if known
+};
+
+/// Reads a message that came from rank `from`. Throws Error(system_failure) that says what is wrong of which rank's
+/// message, and that all ranks must run the same program. The bytes must outlive the reader.
+class MessageReader : public RecordReader {
+ public:
+  /// Of any kind.
+  MessageReader(std::span<const std::byte> message, int from);
+  /// Of this kind.
+  MessageReader(std::span<const std::byte> message, int from, MessageKind awaited);
+  MessageReader(const Message& message, MessageKind awaited) : MessageReader(message.bytes, message.from, awaited) {}
+
+  [[nodiscard]] MessageKind kind() const { return kind_; }
+  /// The message is of a kind that nobody awaits here.
+  [[noreturn]] void refuse_kind() const;
+
+ private:
+  MessageKind kind_;
+};
+
+/// The value of a message of one value.
+template <class Value>
+Value value_of(std::span<const std::byte> message, int from, MessageKind kind) {
+  MessageReader reader(message, from, kind);
+  const auto value = reader.take<Value>();
+  reader.finish();
+  return value;
+}
+
+}  // namespace tessera::exchange
