@@ -1,4 +1,5 @@
-// Built in place of mpi_transport.cpp with TESSERA_MPI=OFF.
+// Built in place of mpi_port.cpp with TESSERA_MPI=OFF: nothing is launched by MPI, and no port opens.
+#include "exchange/mpi_port.hpp"
 #include "exchange/mpi_transport.hpp"
 
 namespace tessera::exchange {
@@ -9,24 +10,20 @@ MpiShape mpi_shape(int) {
   throw scene::Error(scene::ErrorCode::system_failure, "MPI: this library was built without it (TESSERA_MPI=OFF)");
 }
 
-class MpiTransport::Engine {};
+struct MpiPort::State {};
 
-MpiTransport::MpiTransport(Hooks, std::chrono::milliseconds) {
+MpiPort::MpiPort(std::optional<int>) {
   throw scene::Error(scene::ErrorCode::system_failure, "MPI: this program was built without it (TESSERA_MPI=OFF)");
 }
-MpiTransport::MpiTransport(int, std::chrono::milliseconds) : MpiTransport(Hooks{}, {}) {}
-MpiTransport::~MpiTransport() = default;
-
-std::optional<scene::Error> MpiTransport::finish() { return std::nullopt; }
-int MpiTransport::rank() const { return 0; }
-int MpiTransport::size() const { return 1; }
-void MpiTransport::send(int, Channel, Bytes, std::int32_t) {}
-std::optional<Message> MpiTransport::receive(Channel, std::chrono::milliseconds) { return std::nullopt; }
-void MpiTransport::fail(const scene::Error&) {}
-void MpiTransport::check() const {}
-void MpiTransport::set_working(bool) {}
-void MpiTransport::watch_stalls(const StallSettings&) {}
-void MpiTransport::trace_to(scene::Trace*, scene::Trace*) {}
-Transport::Traffic MpiTransport::sent(Channel) const { return {}; }
+MpiPort::~MpiPort() = default;
+void MpiPort::start() {}
+void MpiPort::send(int, int, Bytes) {}
+void MpiPort::complete() {}
+bool MpiPort::is_sending() const { return false; }
+bool MpiPort::take() { return false; }
+std::optional<MpiPort::Arrived> MpiPort::next() { return std::nullopt; }
+bool MpiPort::is_receiving() const { return false; }
+void MpiPort::finish() {}
+void MpiPort::abandon() {}
 
 }  // namespace tessera::exchange

@@ -1,7 +1,6 @@
 #include "exchange/mpi_transport.hpp"
 
 #include <fmt/format.h>
-#include <mpi.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,7 +9,6 @@
 #include <condition_variable>
 #include <cstdlib>
 #include <deque>
-#include <list>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -19,6 +17,7 @@
 #include "exchange/heartbeats.hpp"
 #include "exchange/mailboxes.hpp"
 #include "exchange/message.hpp"
+#include "exchange/mpi_port.hpp"
 #include "scene/start_thread.hpp"
 
 namespace tessera::exchange {
@@ -61,22 +60,15 @@ scene::Error take_error(MessageReader& reader) {
 
 }  // namespace
 
-bool launched_by_mpi() {
-  // Open MPI's mpirun, PMIx launchers (srun, prun), and PMI-1/2 ones, in that order.
-  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"})
-    if (std::getenv(name) != nullptr) return true;
-  return false;
-}
-
 /// The thread that speaks MPI, and what it shares with the others.
 class MpiTransport::Engine {
  public:
-  /// `borrowed`: a duplicate of a caller's communicator; null: the world's, and all of MPI.
-  Engine(Hooks hooks, std::chrono::milliseconds patience, MPI_Comm borrowed)
+  /// `borrowed`: a caller's communicator; else the world's, and all of MPI.
+  Engine(Hooks hooks, std::chrono::milliseconds patience, std::optional<int> borrowed)
       : hooks_(std::move(hooks)),
         patience_(patience),
-        borrowed_(borrowed != MPI_COMM_NULL),
-        comm_(borrowed_ ? borrowed : MPI_COMM_WORLD),
+        borrowed_(borrowed.has_value()),
+        port_(borrowed),
         thread_(scene::start_thread([this] { run(); })) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return started_; });
@@ -153,13 +145,6 @@ class MpiTransport::Engine {
     int to, tag;
     Bytes bytes;
     std::int32_t frame = -1;
-    MPI_Request request = MPI_REQUEST_NULL;
-  };
-
-  struct Incoming {
-    int from = 0, tag = 0;
-    Bytes bytes;
-    MPI_Request request = MPI_REQUEST_NULL;
   };
 
   void enqueue(Outgoing message) {
@@ -170,30 +155,11 @@ class MpiTransport::Engine {
     changed_.notify_all();
   }
 
-  void checked(int code, const char* doing) {
-    if (code == MPI_SUCCESS) return;
-    char words[MPI_MAX_ERROR_STRING];
-    int length = 0;
-    MPI_Error_string(code, words, &length);
-    throw scene::Error(scene::ErrorCode::system_failure,
-                       fmt::format("rank {} of {}: MPI cannot {}: {}", rank, size, doing,
-                                   std::string_view(words, static_cast<std::size_t>(length))));
-  }
-
-  void start() {
-    int provided = MPI_THREAD_FUNNELED;
-    if (!borrowed_) checked(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided), "start");
-    MPI_Comm_set_errhandler(comm_, MPI_ERRORS_RETURN);
-    checked(MPI_Comm_rank(comm_, &rank), "tell the rank");
-    checked(MPI_Comm_size(comm_, &size), "tell the number of ranks");
-    if (provided < MPI_THREAD_FUNNELED)
-      throw scene::Error(scene::ErrorCode::system_failure,
-                         "MPI: gives no thread support (MPI_THREAD_FUNNELED); use a build of it that does");
-  }
-
   void run() {
     try {
-      start();
+      port_.start();
+      rank = port_.rank();
+      size = port_.size();
     } catch (const scene::Error& error) {
       start_error_ = error;
     }
@@ -209,8 +175,8 @@ class MpiTransport::Engine {
       bool came = false;
       try {
         post();
-        complete();
-        came = take();
+        port_.complete();
+        came = port_.take();
         came = deliver() || came;
       } catch (const scene::Error& error) {
         fail(error);
@@ -221,23 +187,13 @@ class MpiTransport::Engine {
       settle_faults();
       settle_end();
       if (all_clear_) break;
-      const bool moving = !pending_.empty() || !arriving_.empty();
+      const bool moving = port_.is_sending() || port_.is_receiving();
       std::unique_lock lock(mutex_);
       const Naps& naps = working_ ? working_naps : idle_naps;
       nap = came ? naps.shortest : std::clamp(2 * nap, naps.shortest, moving ? naps.longest_moving : naps.longest);
       if (queue_.empty()) changed_.wait_for(lock, nap);
     }
-    if (given_up_) {
-      // MPI may still read these messages; they stay where they are for as long as the process.
-      static_cast<void>(new std::list<Outgoing>(std::move(pending_)));
-      static_cast<void>(new std::deque<Incoming>(std::move(arriving_)));
-      return;
-    }
-    while (!pending_.empty()) complete();
-    if (borrowed_)
-      MPI_Comm_free(&comm_);
-    else
-      MPI_Finalize();
+    given_up_ ? port_.abandon() : port_.finish();
   }
 
   /// Hands queued messages to MPI.
@@ -251,14 +207,8 @@ class MpiTransport::Engine {
     for (Outgoing& message : queue) {
       const bool is_ours = message.tag == own_tag;
       if (mailboxes.failed() && !is_ours) continue;
-      pending_.push_back(std::move(message));
-      Outgoing& posted = pending_.back();
-      const scene::TraceScope timing = traced(posted);
-      // Whether it has gone is asked of all that are pending, elsewhere.
-      // NOLINTNEXTLINE(clang-analyzer-optin.mpi.MPI-Checker)
-      checked(MPI_Isend(posted.bytes.data(), static_cast<int>(posted.bytes.size()), MPI_BYTE, posted.to, posted.tag,
-                        comm_, &posted.request),
-              "send");
+      const scene::TraceScope timing = traced(message);
+      port_.send(message.to, message.tag, std::move(message.bytes));
     }
     if (queue.empty()) return;
     {
@@ -277,51 +227,17 @@ class MpiTransport::Engine {
     return {trace, "send", message.frame, message.bytes.size(), 1};
   }
 
-  /// Frees messages that have left.
-  void complete() {
-    for (auto message = pending_.begin(); message != pending_.end();) {
-      int left = 0;
-      checked(MPI_Test(&message->request, &left, MPI_STATUS_IGNORE), "send");
-      message = left == 0 ? std::next(message) : pending_.erase(message);
-    }
-  }
-
-  /// Begins to receive what is there; without waiting, as a long message needs its sender's looks at MPI, too.
-  bool take() {
-    bool moved = false;
-    for (;;) {
-      MPI_Message handle = MPI_MESSAGE_NULL;
-      MPI_Status status;
-      int found = 0, length = 0;
-      checked(MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, comm_, &found, &handle, &status), "look for messages");
-      if (found == 0) return moved;
-      moved = true;
-      checked(MPI_Get_count(&status, MPI_BYTE, &length), "receive");
-      Incoming& message = arriving_.emplace_back();
-      message.from = status.MPI_SOURCE;
-      message.tag = status.MPI_TAG;
-      message.bytes.resize(static_cast<std::size_t>(length));
-      checked(MPI_Imrecv(message.bytes.data(), length, MPI_BYTE, &handle, &message.request), "receive");
-    }
-  }
-
   /// Hands on what has arrived, in the order of its coming.
   bool deliver() {
     bool moved = false;
-    for (; !arriving_.empty(); moved = true) {
-      Incoming& first = arriving_.front();
-      int here = 0;
-      checked(MPI_Test(&first.request, &here, MPI_STATUS_IGNORE), "receive");
-      if (here == 0) break;
-      Message message{first.from, std::move(first.bytes)};
-      const int tag = first.tag;
-      arriving_.pop_front();
-      if (tag == own_tag) {
+    for (; auto arrived = port_.next(); moved = true) {
+      Message& message = arrived->message;
+      if (arrived->tag == own_tag) {
         obey(std::move(message));
         continue;
       }
       if (heartbeats_) heartbeats_->heard(message.from);
-      if (!mailboxes.failed()) mailboxes.deliver(static_cast<Channel>(tag), std::move(message));
+      if (!mailboxes.failed()) mailboxes.deliver(static_cast<Channel>(arrived->tag), std::move(message));
     }
     return moved;
   }
@@ -435,7 +351,7 @@ class MpiTransport::Engine {
       if (lost_at_ && ((rank == 0 && ranks_done_ >= size - 2) || Clock::now() > *lost_at_ + stall_grace))
         give_up(*mailboxes.error());
       if (given_up_) return;
-      if (!queue_.empty() || !pending_.empty() || (own_fault_ && !mailboxes.failed())) return;
+      if (!queue_.empty() || port_.is_sending() || (own_fault_ && !mailboxes.failed())) return;
     }
     if (!done_told_) {
       done_told_ = true;
@@ -455,7 +371,6 @@ class MpiTransport::Engine {
   Hooks hooks_;
   std::chrono::milliseconds patience_;
   const bool borrowed_;
-  MPI_Comm comm_;
 
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
@@ -467,8 +382,7 @@ class MpiTransport::Engine {
   bool started_ = false, finishing_ = false, fault_told_ = false, working_ = false;
 
   // The engine's thread alone.
-  std::list<Outgoing> pending_;
-  std::deque<Incoming> arriving_;
+  MpiPort port_;
   std::optional<Heartbeats> heartbeats_;
   std::vector<Message> early_beats_;
   std::optional<Clock::time_point> lost_at_;  ///< when this rank ended the run for another's silence
@@ -481,42 +395,11 @@ class MpiTransport::Engine {
 };
 
 MpiTransport::MpiTransport(Hooks hooks, std::chrono::milliseconds patience)
-    : engine_(std::make_unique<Engine>(std::move(hooks), patience, MPI_COMM_NULL)) {}
-
-namespace {
-
-MPI_Comm duplicate(int fortran_handle) {
-  int running = 0, ended = 0, provided = MPI_THREAD_SINGLE;
-  MPI_Initialized(&running);
-  MPI_Finalized(&ended);
-  if (running == 0 || ended != 0)
-    throw scene::bad_input("communicator: MPI does not run; call MPI_Init_thread first, MPI_Finalize last");
-  MPI_Query_thread(&provided);
-  if (provided < MPI_THREAD_MULTIPLE)
-    throw scene::bad_input(
-        "communicator: MPI was started for fewer threads than it takes; call MPI_Init_thread with MPI_THREAD_MULTIPLE");
-  MPI_Comm copy = MPI_COMM_NULL;
-  if (MPI_Comm_dup(MPI_Comm_f2c(fortran_handle), &copy) != MPI_SUCCESS)
-    throw scene::Error(scene::ErrorCode::system_failure, "communicator: MPI cannot duplicate it");
-  return copy;
-}
-
-}  // namespace
+    : engine_(std::make_unique<Engine>(std::move(hooks), patience, std::nullopt)) {}
 
 MpiTransport::MpiTransport(int fortran_handle, std::chrono::milliseconds patience)
-    : engine_(std::make_unique<Engine>(Hooks{}, patience, duplicate(fortran_handle))) {}
+    : engine_(std::make_unique<Engine>(Hooks{}, patience, fortran_handle)) {}
 
-MpiShape mpi_shape(int fortran_handle) {
-  int running = 0, ended = 0;
-  MPI_Initialized(&running);
-  MPI_Finalized(&ended);
-  if (running == 0 || ended != 0)
-    throw scene::bad_input("communicator: MPI does not run; call MPI_Init_thread first, MPI_Finalize last");
-  MpiShape shape;
-  MPI_Comm_rank(MPI_Comm_f2c(fortran_handle), &shape.rank);
-  MPI_Comm_size(MPI_Comm_f2c(fortran_handle), &shape.size);
-  return shape;
-}
 MpiTransport::~MpiTransport() = default;
 
 std::optional<scene::Error> MpiTransport::finish() { return engine_->finish(); }

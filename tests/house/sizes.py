@@ -26,7 +26,6 @@ FILE_LINES, FUNCTION_LINES = 500, 80
 KNOWN = """
     io/meta_image.cpp read_meta_image_header
     integrals/integrate_exact.cpp exact
-    exchange/mpi_transport.cpp
     volume/cast_slabs-inl.h
     volume/fill_block-inl.h fill_block
     volume/ray_piece-inl.h walk_cubic
