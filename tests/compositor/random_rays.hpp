@@ -1,0 +1,142 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "integrals/segment_integrator.hpp"
+#include "projection/pixel_space.hpp"
+#include "projection/segment_windows.hpp"
+#include "scene/lattice.hpp"
+#include "scene/transfer_function.hpp"
+
+namespace tessera::compositor::tests {
+
+using projection::LatticeSegment;
+
+/// The rays of a small picture as lattice segments that doubles hold too, and what becomes of them in double precision,
+/// one segment after the other.
+struct RandomRays {
+  static constexpr scene::ImageSize size{16, 11};
+  static constexpr scene::PixelRect rect{0, 0, 16, 11};
+  static constexpr std::size_t pixels = 16 * 11;
+
+  /// One run of segments that touch, composited; the whole ray, if they are not to be told apart.
+  struct Run {
+    std::size_t pixel = 0;
+    double front = 0, back = 0;  ///< planar: where it begins to show, and where its last segment ends
+    double red = 0, green = 0, blue = 0, transmittance = 1;
+    int showing = 0;  ///< segments with light or depth
+  };
+
+  /// Up to `most` segments a ray, some of them clear, some of no length, with gaps between some.
+  RandomRays(std::uint32_t seed, std::size_t most, double extinction, bool perspective)
+      : random(seed),
+        function(random_function(extinction)),
+        integrator(function, {scene::IntegratorKind::exact, 0, 0}, scene::Emission::absorption),
+        space(camera(perspective), size),
+        rays(pixels) {
+    for (std::size_t p = 0; p < pixels; ++p) {
+      const std::size_t count = p % 5 == 0 ? most : random() % (most + 1);
+      std::int64_t at = -(1 << 29) + static_cast<std::int64_t>(random() % 1000000);
+      float scalar = random_scalar();
+      for (std::size_t k = 0; k < count; ++k) {
+        // Gaps are many steps long: on the lattice segments touch that are a few steps apart.
+        const bool gap = random() % 8 == 0;
+        if (gap) at += 1000 + static_cast<std::int64_t>(random() % 1000000);
+        const auto step = static_cast<std::int64_t>((1 << 30) / (static_cast<std::int64_t>(most) + 2));
+        const std::int64_t length = random() % 16 == 0 ? 0 : static_cast<std::int64_t>(random()) % step;
+        const float next = random() % 6 == 0 ? scalar : random_scalar();
+        rays[p].push_back({static_cast<std::int32_t>(at), static_cast<std::int32_t>(at + length),
+                           gap ? random_scalar() : scalar, next});
+        at += length;
+        scalar = next;
+      }
+      // Only what its key does not tell apart may change places; those of no length are level with their neighbours.
+      std::sort(rays[p].begin(), rays[p].end(), [](const LatticeSegment& a, const LatticeSegment& b) {
+        return std::tie(a.front, a.back, a.scalar_front, a.scalar_back) <
+               std::tie(b.front, b.back, b.scalar_front, b.scalar_back);
+      });
+    }
+  }
+
+  /// What shows of a pixel, run by run, or of the ray as one; segments behind less light than `least` are left out.
+  [[nodiscard]] std::vector<Run> composited(std::size_t pixel, bool runs, double least = 0) const {
+    const std::vector<LatticeSegment>& ray = rays[pixel];
+    integrals::SegmentBatch batch;
+    batch.reserve(ray.size());
+    const double length =
+        space.length_per_depth(static_cast<int>(pixel) % size.width + 0.5, static_cast<int>(pixel) / size.width + 0.5);
+    for (const LatticeSegment& s : ray) {
+      batch.length[batch.size] = (lattice.depth(s.back) - lattice.depth(s.front)) * length;
+      batch.scalar_front[batch.size] = lattice.scalar(s.scalar_front);
+      batch.scalar_back[batch.size] = lattice.scalar(s.scalar_back);
+      ++batch.size;
+    }
+    integrator.integrate(batch);
+    std::vector<Run> made;
+    Run run{pixel};
+    double transmittance = 1;
+    const auto end = [&] {
+      if (run.showing > 0) made.push_back(run);
+      run = {pixel};
+    };
+    for (std::size_t k = 0; k < ray.size() && transmittance >= least; ++k) {
+      if (runs && k > 0 && ray[k].front != ray[k - 1].back) end();
+      if (batch.optical_depth[k] > 0 && run.showing++ == 0)
+        run.front = lattice.depth(ray[k].front) +
+                    (lattice.depth(ray[k].back) - lattice.depth(ray[k].front)) *
+                        integrator.first_visible(batch.scalar_front[k], batch.scalar_back[k]).value_or(0);
+      run.back = lattice.depth(ray[k].back);
+      run.red += run.transmittance * batch.red[k];
+      run.green += run.transmittance * batch.green[k];
+      run.blue += run.transmittance * batch.blue[k];
+      run.transmittance *= batch.transmittance[k];
+      transmittance *= batch.transmittance[k];
+    }
+    end();
+    return made;
+  }
+
+  [[nodiscard]] std::size_t total() const {
+    std::size_t sum = 0;
+    for (const auto& ray : rays) sum += ray.size();
+    return sum;
+  }
+
+  std::mt19937 random;
+  scene::Lattice lattice{.depth_origin = 4, .depth_unit = 0x1p-29, .scalar_origin = 0.5, .scalar_unit = 0x1p-31};
+  scene::TransferFunction function;
+  integrals::SegmentIntegrator integrator;
+  projection::PixelSpace space;
+  std::vector<std::vector<LatticeSegment>> rays;  ///< by pixel, in order
+
+ private:
+  static scene::Camera camera(bool perspective) {
+    scene::Camera camera;
+    camera.position = {0, 0, 5};
+    camera.parallel_scale = 1;
+    if (perspective) camera.projection = ProjectionKind::perspective;
+    return camera;
+  }
+  float random_scalar() { return static_cast<float>(std::uniform_real_distribution<double>(-0x1p30, 0x1p30)(random)); }
+  /// Clear below 0.3 and between two knots above, a step at 0.6.
+  scene::TransferFunction random_function(double extinction) {
+    std::uniform_real_distribution<double> uniform(0, 1);
+    const auto color = [&] { return glm::dvec3(uniform(random), uniform(random), uniform(random)); };
+    return scene::TransferFunction({{0, color(), 0},
+                                    {0.3, color(), 0},
+                                    {0.45, color(), extinction * uniform(random)},
+                                    {0.6, color(), extinction * uniform(random)},
+                                    {0.6, color(), extinction},
+                                    {0.7, color(), 0},
+                                    {0.75, color(), 0},
+                                    {1, color(), extinction * uniform(random)}});
+  }
+};
+
+}  // namespace tessera::compositor::tests
