@@ -12,6 +12,7 @@
 #include "projection/pixel_space.hpp"
 #include "projection/segment_windows.hpp"
 #include "scene/lattice.hpp"
+#include "scene/pixel_rect.hpp"
 #include "scene/transfer_function.hpp"
 
 namespace tessera::compositor::tests {
@@ -66,7 +67,10 @@ struct RandomRays {
 
   /// What shows of a pixel, run by run, or of the ray as one; segments behind less light than `least` are left out.
   [[nodiscard]] std::vector<Run> composited(std::size_t pixel, bool runs, double least = 0) const {
-    const std::vector<LatticeSegment>& ray = rays[pixel];
+    return composited(pixel, rays[pixel], runs, least);
+  }
+  [[nodiscard]] std::vector<Run> composited(std::size_t pixel, const std::vector<LatticeSegment>& ray, bool runs,
+                                            double least) const {
     integrals::SegmentBatch batch;
     batch.reserve(ray.size());
     const double length =
