@@ -122,6 +122,9 @@ void push(projection::SegmentWindows& windows, const Scene&, std::size_t pixel, 
   ASSERT_TRUE(windows.push(pixel, s));
 }
 
+std::uint64_t waiting_in(const sorting::SegmentLists& lists) { return lists.segments.size; }
+std::uint64_t waiting_in(const projection::SegmentWindows& windows) { return windows.total(); }
+
 template <class Encoding>
 typename Encoding::Depth depth_of(const Scene& scene, std::int64_t step) {
   if constexpr (std::is_same_v<Encoding, LatticeEncoding>) return step;
@@ -133,7 +136,8 @@ enum class How {
   unordered,  ///< take_unordered() of what has come
 };
 
-/// One tile through a sink, in rounds as the renderer gives them: each brings what begins before its depth.
+/// One tile through a sink, in rounds as the renderer gives them: each brings what begins before its
+/// depth, and some of what lies behind.
 template <class Encoding>
 void send_tile(TileSink<Encoding>& sink, const Scene& scene, int rounds, How how) {
   typename Encoding::Store store;
@@ -142,19 +146,22 @@ void send_tile(TileSink<Encoding>& sink, const Scene& scene, int rounds, How how
   sink.begin_tile(3, Scene::rect);
   sink.start(Scene::rect);
   auto left = scene.rays;
+  std::mt19937 random(1);
   for (int round = 1; round <= rounds; ++round) {
     const std::int64_t step =
         round == rounds ? std::int64_t{1} << 31 : (round * (std::int64_t{1} << 30)) / rounds - (1 << 29);
     for (std::size_t p = 0; p < left.size(); ++p) {
-      const auto later =
-          std::partition(left[p].begin(), left[p].end(), [&](const LatticeSegment& s) { return s.front < step; });
+      const auto later = std::partition(left[p].begin(), left[p].end(),
+                                        [&](const LatticeSegment& s) { return s.front < step || random() % 4 == 0; });
       for (auto s = left[p].begin(); s != later; ++s) push(store, scene, p, *s);
       left[p].erase(left[p].begin(), later);
     }
-    if (how == How::in_order)
+    if (how == How::in_order) {
       sink.take(store, depth_of<Encoding>(scene, step), 1, laps);
-    else
-      ASSERT_TRUE(sink.take_unordered(store, depth_of<Encoding>(scene, step), laps));
+      continue;
+    }
+    ASSERT_TRUE(sink.take_unordered(store, depth_of<Encoding>(scene, step), laps));
+    EXPECT_EQ(waiting_in(store), 0u);
   }
   sink.finish();
   sink.end_tile();
