@@ -20,7 +20,7 @@ namespace tessera::frame {
 ///     three quarters of what was promised;
 ///   - two steps of the function lie so close together that the lattice takes them for one;
 ///   - it is switched off, the integrator samples, or the rasterizer is not `planes`;
-///   - nothing is in front of the eye, or the processor has no lanes.
+///   - nothing is in front of the eye, or the processor has no lanes, and Highway emulates them.
 std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
                                          const std::array<double, 2>& scalar_range,
                                          const scene::TransferFunction& function, const RenderSettings& settings);

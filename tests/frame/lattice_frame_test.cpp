@@ -1,0 +1,70 @@
+// Which instruction set serves a frame, and that none without lanes serves the lattice.
+#include "frame/lattice_frame.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "datasets/boxes.hpp"
+#include "frame/render.hpp"
+#include "reference/judge.hpp"
+#include "reference/reference.hpp"
+#include "support/instruction_sets.hpp"
+
+namespace tessera::frame {
+namespace {
+
+constexpr scene::ImageSize size{40, 30};
+
+scene::Camera camera() {
+  scene::Camera camera;
+  camera.position = {2.9, 2.1, 4.3};
+  camera.parallel_scale = 1.5;
+  return camera;
+}
+
+scene::TransferFunction function() {
+  return scene::TransferFunction({{0, {0.1, 0.2, 0.9}, 0}, {0.5, {0.3, 0.9, 0.2}, 2}, {1, {0.9, 0.3, 0.1}, 5}});
+}
+
+scene::Image rendered(const scene::TetMesh& mesh, bool lattice, FrameStatistics& statistics) {
+  RenderSettings settings;
+  settings.integrator.kind = scene::IntegratorKind::exact;
+  settings.use.lattice = lattice;
+  return Renderer(mesh, settings).render(camera(), size, function(), &statistics);
+}
+
+TEST(LatticeFrame, IsServedByEveryInstructionSetWithLanesAndByTheOneThatWasChosen) {
+  const scene::TetMesh mesh = datasets::cube(4);
+  std::set<std::string> served;
+  tests::for_each_instruction_set([&](const char* name) {
+    FrameStatistics statistics;
+    rendered(mesh, true, statistics);
+    EXPECT_TRUE(statistics.on_lattice) << name;
+    EXPECT_EQ(statistics.instruction_set, name);
+    served.insert(statistics.instruction_set);
+  });
+  // Every machine that this is built on has SSE4 at least.
+  EXPECT_FALSE(served.empty());
+}
+
+TEST(LatticeFrame, OnEmulatedLanesAFrameTakesTheDoubleWayToTheSamePromise) {
+  const scene::TetMesh mesh = datasets::cube(4);
+  const reference::Reference reference(mesh, camera(), size, function());
+  int targets = 0;
+  tests::for_each_target(tests::emulated_targets, [&](const char* name) {
+    SCOPED_TRACE(name);
+    ++targets;
+    FrameStatistics statistics, in_double;
+    const scene::Image image = rendered(mesh, true, statistics);
+    EXPECT_EQ(statistics.instruction_set, name);
+    EXPECT_FALSE(statistics.on_lattice);
+    EXPECT_EQ(image.rgba, rendered(mesh, false, in_double).rgba);
+    EXPECT_LE(reference::judge(image, reference, 2e-5).max_error, 2e-5);  // what `exact` promises
+  });
+  EXPECT_EQ(targets, (HWY_TARGETS & tests::emulated_targets) != 0 ? 1 : 0);  // a build has one fallback or none
+}
+
+}  // namespace
+}  // namespace tessera::frame
