@@ -62,34 +62,8 @@ bool meta_is_true(const std::string* value) {
   return value && !value->empty() && (std::tolower(static_cast<unsigned char>(value->front())) == 't' || *value == "1");
 }
 
-}  // namespace
-
-bool looks_like_meta_image(std::string_view beginning) {
-  return beginning.starts_with("ObjectType") || beginning.starts_with("NDims") ||
-         (beginning.starts_with("Comment") && beginning.find("NDims") != std::string_view::npos);
-}
-
-StoredVolume read_meta_image_header(const std::filesystem::path& file) {
-  constexpr std::size_t longest_header = 1 << 16;
-  const std::string text = read_beginning(file, longest_header);
-  const MetaHeader header = parse_meta_header(text, file);
-  StoredVolume volume;
-  volume.format = "MetaImage";
-  const auto reals = [&](const char* what, const std::string& value, std::size_t count) {
-    return header_numbers(value, count, file, what);
-  };
-
-  if (const auto* object = header.find({"ObjectType"}); object && *object != "Image")
-    throw scene::bad_input(
-        fmt::format("{}: it holds a {}, not an image; give a volume", file.string(), quote(*object)));
-  const auto* dimensions = header.find({"NDims"});
-  if (!dimensions) throw damaged(file, "its header has no NDims");
-  if (const auto count = header_count(*dimensions, 1, 99, file, "NDims"); count != 3)
-    throw scene::bad_input(fmt::format("{}: it has {} dimensions; a volume has three", file.string(), count));
-  const auto* size = header.find({"DimSize"});
-  if (!size) throw damaged(file, "its header has no DimSize");
-  volume.grid.geometry.points = header_counts(*size, file, "DimSize");
-
+/// Numbers and their coding.
+void read_samples_of(const MetaHeader& header, const std::filesystem::path& file, StoredVolume& volume) {
   const auto* type = header.find({"ElementType"});
   if (!type) throw damaged(file, "its header has no ElementType");
   std::string_view word = *type;
@@ -112,7 +86,13 @@ StoredVolume read_meta_image_header(const std::filesystem::path& file) {
   volume.compressed = meta_is_true(header.find({"CompressedData"}));
   if (volume.compressed && volume.coding == StoredVolume::Coding::text)
     throw scene::bad_input(fmt::format("{}: its samples are compressed text; write them binary", file.string()));
+}
 
+/// Axes, origin, and what a sample stands for.
+void read_grid(const MetaHeader& header, const std::filesystem::path& file, StoredVolume& volume) {
+  const auto reals = [&](const char* what, const std::string& value, std::size_t count) {
+    return header_numbers(value, count, file, what);
+  };
   scene::GridGeometry& g = volume.grid.geometry;
   glm::dvec3 spacing(1);
   if (const auto* value = header.find({"ElementSpacing", "ElementSize"})) {
@@ -138,7 +118,10 @@ StoredVolume read_meta_image_header(const std::filesystem::path& file) {
   if (volume.grid.scale != 1 || volume.grid.shift != 0)
     volume.notes.push_back(
         fmt::format("values are {:.9g} * sample + {:.9g}, as its header says", volume.grid.scale, volume.grid.shift));
+}
 
+/// Where the samples are.
+void read_payload(const MetaHeader& header, const std::filesystem::path& file, StoredVolume& volume) {
   const std::string& payload = *header.find({"ElementDataFile"});
   if (payload.starts_with("LIST") || payload.find('%') != std::string::npos)
     throw scene::bad_input(fmt::format("{}: its slices are in several files; write one", file.string()));
@@ -153,6 +136,35 @@ StoredVolume read_meta_image_header(const std::filesystem::path& file) {
     else
       volume.offset = static_cast<std::uint64_t>(header_count(*value, 0, std::int64_t{1} << 40, file, "HeaderSize"));
   }
+}
+
+}  // namespace
+
+bool looks_like_meta_image(std::string_view beginning) {
+  return beginning.starts_with("ObjectType") || beginning.starts_with("NDims") ||
+         (beginning.starts_with("Comment") && beginning.find("NDims") != std::string_view::npos);
+}
+
+StoredVolume read_meta_image_header(const std::filesystem::path& file) {
+  constexpr std::size_t longest_header = 1 << 16;
+  const std::string text = read_beginning(file, longest_header);
+  const MetaHeader header = parse_meta_header(text, file);
+  StoredVolume volume;
+  volume.format = "MetaImage";
+  if (const auto* object = header.find({"ObjectType"}); object && *object != "Image")
+    throw scene::bad_input(
+        fmt::format("{}: it holds a {}, not an image; give a volume", file.string(), quote(*object)));
+  const auto* dimensions = header.find({"NDims"});
+  if (!dimensions) throw damaged(file, "its header has no NDims");
+  if (const auto count = header_count(*dimensions, 1, 99, file, "NDims"); count != 3)
+    throw scene::bad_input(fmt::format("{}: it has {} dimensions; a volume has three", file.string(), count));
+  const auto* size = header.find({"DimSize"});
+  if (!size) throw damaged(file, "its header has no DimSize");
+  volume.grid.geometry.points = header_counts(*size, file, "DimSize");
+
+  read_samples_of(header, file, volume);
+  read_grid(header, file, volume);
+  read_payload(header, file, volume);
   return volume;
 }
 
