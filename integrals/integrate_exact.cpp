@@ -76,6 +76,63 @@ HWY_INLINE V lookup(const std::vector<double>& table, VI interval) {
   return hn::GatherIndex(d, table.data(), interval);
 }
 
+/// Where a piece is thicker than `most_depth`, how much of it has that depth; elsewhere 1. The root u of q(u) = that,
+/// in the form without cancellation.
+HWY_INLINE V part_of_depth(V kappa0, V kappa1, V piece, V twice_most_depth, hn::Mask<D> thick) {
+  const D d;
+  const V one = hn::Set(d, 1.0);
+  const V linear = hn::Mul(kappa0, piece);
+  const V root = hn::Sqrt(hn::Max(
+      hn::Zero(d), hn::MulAdd(linear, linear, hn::Mul(twice_most_depth, hn::Mul(hn::Sub(kappa1, kappa0), piece)))));
+  return hn::IfThenElse(thick, hn::Min(one, hn::Div(twice_most_depth, hn::Add(linear, root))), one);
+}
+
+/// What comes through a piece, and its moments where they are needed.
+struct Passage {
+  V through;
+  Moments m;
+};
+
+/// `varies`: where the colour does. Thin or not is decided lane by lane, so that a segment's bits do not depend on its
+/// neighbours in the batch.
+HWY_INLINE Passage pass(V kappa0, V kappa1, V piece, V depth, hn::Mask<D> varies, hn::Mask<D> active,
+                        bool emits_by_extinction) {
+  const D d;
+  const auto thin = hn::Lt(depth, hn::Set(d, 0.05));
+  const auto needs_exp = hn::AndNot(thin, active);
+  const bool some_thin = !hn::AllTrue(d, needs_exp), some_thick = !hn::AllFalse(d, needs_exp);
+  const bool some_vary = !emits_by_extinction || !hn::AllFalse(d, hn::And(varies, active));
+  const V linear = hn::Mul(kappa0, piece);
+  const V quadratic = hn::Mul(hn::Set(d, 0.5), hn::Mul(hn::Sub(kappa1, kappa0), piece));
+  Passage p{hn::Set(d, 1.0), {hn::Zero(d), hn::Zero(d)}};
+  if (some_thin) {
+    p.through = thin_exp(depth);
+    if (!emits_by_extinction)
+      p.m = moments(linear, quadratic, nodes3, weights3);
+    else if (some_vary)
+      p.m.zeroth = thin_zeroth(linear, quadratic);
+  }
+  if (some_thick) {
+    p.through = hn::IfThenElse(thin, p.through, hn::Exp(d, hn::Neg(depth)));
+    if (some_vary) {
+      const Moments fine = moments(linear, quadratic, nodes6, weights6);
+      p.m = {hn::IfThenElse(thin, p.m.zeroth, fine.zeroth), hn::IfThenElse(thin, p.m.first, fine.first)};
+    }
+  }
+  return p;
+}
+
+/// Light of one colour that leaves the piece's front. By extinction it is
+///   c0 (1 - M) + c1 (M - T) = c0 (1 - T) + (c1 - c0) (M - T),
+/// the second term left out where the colour is constant.
+HWY_INLINE V light_of(V color0, V color1, V piece, const Passage& p, hn::Mask<D> varies, bool emits_by_extinction) {
+  const D d;
+  const V change = hn::Sub(color1, color0);
+  if (!emits_by_extinction) return hn::Mul(piece, hn::MulAdd(change, p.m.first, hn::Mul(color0, p.m.zeroth)));
+  const V light = hn::Mul(color0, hn::Sub(hn::Set(d, 1.0), p.through));
+  return hn::IfThenElse(varies, hn::MulAdd(change, hn::Sub(p.m.zeroth, p.through), light), light);
+}
+
 template <bool in_register>
 void exact(const PiecewiseTable& table, scene::Emission emission, const ExactPieces& pieces, SegmentBatch& batch) {
   const D d;
@@ -122,11 +179,7 @@ void exact(const PiecewiseTable& table, scene::Emission emission, const ExactPie
       V depth = hn::Mul(piece, hn::Mul(half, hn::Add(kappa0, kappa1)));
       const auto thick = hn::Gt(depth, most_depth);
       if (!hn::AllFalse(d, thick)) {
-        // Shorten to the first `most_depth`: the root u of q(u) = that, in the form without cancellation.
-        const V linear = hn::Mul(kappa0, piece);
-        const V root = hn::Sqrt(hn::Max(
-            zero, hn::MulAdd(linear, linear, hn::Mul(twice_most_depth, hn::Mul(hn::Sub(kappa1, kappa0), piece)))));
-        const V u = hn::IfThenElse(thick, hn::Min(one, hn::Div(twice_most_depth, hn::Add(linear, root))), one);
+        const V u = part_of_depth(kappa0, kappa1, piece, twice_most_depth, thick);
         piece = hn::Mul(piece, u);
         kappa1 = hn::IfThenElse(thick, hn::MulAdd(hn::Sub(kappa1, kappa0), u, kappa0), kappa1);
         target = hn::IfThenElse(thick, hn::MulAdd(hn::Sub(target, scalar), u, scalar), target);
@@ -140,43 +193,13 @@ void exact(const PiecewiseTable& table, scene::Emission emission, const ExactPie
         channel(c + 1, color0[c], color1[c]);
         varies = hn::Or(varies, hn::Ne(color0[c], color1[c]));
       }
-      // Thin or not is decided lane by lane, so that a segment's bits do not depend on its neighbours in the batch.
-      const auto thin = hn::Lt(depth, hn::Set(d, 0.05));
-      const auto needs_exp = hn::AndNot(thin, active);
-      const bool some_thin = !hn::AllTrue(d, needs_exp), some_thick = !hn::AllFalse(d, needs_exp);
-      const bool some_vary = !emits_by_extinction || !hn::AllFalse(d, hn::And(varies, active));
-      const V linear = hn::Mul(kappa0, piece), quadratic = hn::Mul(half, hn::Mul(hn::Sub(kappa1, kappa0), piece));
-      V through = one;
-      Moments m{zero, zero};
-      if (some_thin) {
-        through = thin_exp(depth);
-        if (!emits_by_extinction)
-          m = moments(linear, quadratic, nodes3, weights3);
-        else if (some_vary)
-          m.zeroth = thin_zeroth(linear, quadratic);
-      }
-      if (some_thick) {
-        through = hn::IfThenElse(thin, through, hn::Exp(d, hn::Neg(depth)));
-        if (some_vary) {
-          const Moments fine = moments(linear, quadratic, nodes6, weights6);
-          m = {hn::IfThenElse(thin, m.zeroth, fine.zeroth), hn::IfThenElse(thin, m.first, fine.first)};
-        }
-      }
+      const Passage passage = pass(kappa0, kappa1, piece, depth, varies, active, emits_by_extinction);
       for (int c = 0; c < 3; ++c) {
-        const V change = hn::Sub(color1[c], color0[c]);
-        V light;
-        if (emits_by_extinction) {
-          // c0 (1 - M) + c1 (M - T) = c0 (1 - T) + (c1 - c0) (M - T), the second term left out where the colour is
-          // constant.
-          light = hn::Mul(color0[c], hn::Sub(one, through));
-          light = hn::IfThenElse(varies, hn::MulAdd(change, hn::Sub(m.zeroth, through), light), light);
-        } else {
-          light = hn::Mul(piece, hn::MulAdd(change, m.first, hn::Mul(color0[c], m.zeroth)));
-        }
+        const V light = light_of(color0[c], color1[c], piece, passage, varies, emits_by_extinction);
         color[c] = hn::IfThenElse(active, hn::MulAdd(transmittance, light, color[c]), color[c]);
       }
       optical_depth = hn::IfThenElse(active, hn::Add(optical_depth, depth), optical_depth);
-      transmittance = hn::IfThenElse(active, hn::Mul(transmittance, through), transmittance);
+      transmittance = hn::IfThenElse(active, hn::Mul(transmittance, passage.through), transmittance);
       left = hn::Sub(left, piece);
       scalar = target;
       active = hn::AndNot(hn::Or(last, hn::Lt(transmittance, least_transmittance)), active);
