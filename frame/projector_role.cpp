@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <glm/geometric.hpp>
 #include <memory>
 #include <optional>
@@ -32,91 +30,125 @@ void wait_for_turn(const DistributedRun& run, std::size_t frame, std::size_t& le
 
 exchange::FrameEnd counts_of(const FrameStatistics& s) { return {s, s.on_lattice ? 1u : 0u, 0, 0}; }
 
+/// What a frame's sinks refer to, and the sinks.
+class FrameSinks {
+ public:
+  FrameSinks(const DistributedRun& run, const FrameJob& job, const ProjectorMesh& mesh,
+             exchange::PartWriter::Deliver deliver)
+      : settings_(run.settings),
+        mesh_(mesh),
+        deliver_(std::move(deliver)),
+        cut_(exchange_budget(run.settings).cut),
+        space_(job.camera, job.size),
+        integrator_(run.function, settings_.render.integrator, settings_.render.emission),
+        scene_{&space_, &integrator_,
+               integrals::opacity_weight(run.function.max_color(), mesh.diagonal, settings_.render.emission)} {
+    if (!settings_.deep) lattice_ = lattice_of(space_, mesh.box, mesh.scalar_range, run.function, settings_.render);
+    if (!lattice_) return;
+    table_.emplace(run.function, lattice_->scalar_origin, lattice_->scalar_unit, lattice_->depth_unit,
+                   settings_.render.emission);
+    scene_.table = &*table_;
+    scene_.lattice = *lattice_;
+  }
+  FrameSinks(const FrameSinks&) = delete;
+  FrameSinks& operator=(const FrameSinks&) = delete;
+
+  [[nodiscard]] const projection::PixelSpace& space() const { return space_; }
+  [[nodiscard]] const std::optional<scene::Lattice>& lattice() const { return lattice_; }
+
+  [[nodiscard]] std::unique_ptr<compositor::TileSink<sorting::DoubleEncoding>> make() const {
+    if (settings_.render.rasterizer == Rasterizer::scanline)
+      return std::make_unique<compositor::TupleSink>(mesh_.longest_edge, deliver_);
+    if (settings_.exchange == Exchange::segments)
+      return std::make_unique<compositor::SegmentSink<sorting::DoubleEncoding>>(
+          mesh_.part.association == scene::Association::cell, mesh_.global_tet, deliver_);
+    return std::make_unique<compositor::RunSink<sorting::DoubleEncoding>>(scene_, cut_, deliver_);
+  }
+  [[nodiscard]] std::unique_ptr<compositor::TileSink<sorting::LatticeEncoding>> make_on_lattice() const {
+    if (settings_.exchange == Exchange::segments)
+      return std::make_unique<compositor::SegmentSink<sorting::LatticeEncoding>>(*lattice_, deliver_);
+    return std::make_unique<compositor::RunSink<sorting::LatticeEncoding>>(scene_, cut_, deliver_);
+  }
+
+ private:
+  const DistributedSettings& settings_;
+  const ProjectorMesh& mesh_;
+  exchange::PartWriter::Deliver deliver_;
+  std::uint64_t cut_;
+  projection::PixelSpace space_;
+  integrals::SegmentIntegrator integrator_;
+  compositor::TileScene scene_;
+  std::optional<scene::Lattice> lattice_;
+  std::optional<integrals::LaneTable> table_;
+};
+
+/// Projects frame `number` and sends what its sinks make.
+void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t number, LoadedMesh& loaded,
+                   exchange::Outbox& outbox) {
+  const DistributedSettings& settings = run.settings;
+  const ProjectorMesh& mesh = loaded.mesh();
+  const FrameSinks sinks(run, job, mesh, [&](exchange::TilePart part) {
+    const scene::TraceScope timing(settings.projecting, "pack", number, part.records.size(), 0);
+    outbox.put(std::move(part));
+  });
+  FrameProjector::Task task;
+  task.space = &sinks.space();
+  task.grid = {job.size, settings.render.tile_size};
+  task.function = &run.function;
+  task.frame = number;
+  task.longest_edge = mesh.longest_edge;
+  task.longest_ray = mesh.box.empty() ? 0 : glm::length(mesh.box.high - mesh.box.low);
+  task.make_sink = [&] { return sinks.make(); };
+  if (sinks.lattice()) {
+    task.lattice = &*sinks.lattice();
+    task.make_lattice_sink = [&] { return sinks.make_on_lattice(); };
+  }
+  const exchange::TileMap map(task.grid.count(), static_cast<int>(settings.roles.compositors.size()),
+                              settings.tile_seed);
+  bool announced = false, stopped = false;
+  task.announce = [&](const std::vector<bool>& has_cells) {
+    announced = true;
+    outbox.begin_frame(static_cast<std::uint32_t>(number), map, has_cells,
+                       {.longest_ray = mesh.diagonal,
+                        .tiles = 0,
+                        .longest_edge = mesh.longest_edge,
+                        .stopped = stopped ? 1u : 0u,
+                        .lattice = sinks.lattice().value_or(scene::Lattice{})});
+  };
+  scene::FrameWatch watch(run.stop);
+  task.watch = &watch;
+  exchange::FrameEnd end{};
+  run.transport.set_working(true);
+  try {
+    end = counts_of(loaded.projector().project(task));
+  } catch (const scene::FrameStopped&) {
+    // The others wait for what they were told of: it ends here, empty.
+    stopped = true;
+    if (!announced) task.announce(std::vector<bool>(task.grid.count(), false));
+    outbox.end_tiles();
+    end.stopped = 1;
+  }
+  run.transport.set_working(false);
+  outbox.end_frame(end);
+}
+
 }  // namespace
 
 void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
   const DistributedSettings& settings = run.settings;
   const ExchangeBudget budget = exchange_budget(settings);
-  RenderSettings render = settings.render;
-  render.trace = settings.projecting;
-
-  exchange::Outbox outbox(run.transport,
-                          {settings.roles.compositors, budget.window, budget.backlog, settings.projecting});
+  scene::Trace* const trace = settings.projecting;
+  exchange::Outbox outbox(run.transport, {settings.roles.compositors, budget.window, budget.backlog, trace});
   std::size_t left = 0;  // frames that have left the assembling rank
   for (std::size_t frame = 0; frame < run.jobs.size(); ++frame) {
     const FrameJob& job = run.jobs[frame];
     loaded.load(job.mesh);
-    const ProjectorMesh& mesh = loaded.mesh();
     const auto number = static_cast<std::int32_t>(run.first + frame);
-    if (render.trace != nullptr) render.trace->set_frame(number);
+    if (trace != nullptr) trace->set_frame(number);
     wait_for_turn(run, frame, left);
-    const double start_us = render.trace != nullptr ? render.trace->now_us() : 0;
-
-    const projection::PixelSpace space(job.camera, job.size);
-    const integrals::SegmentIntegrator integrator(run.function, render.integrator, render.emission);
-    FrameProjector::Task task;
-    task.space = &space;
-    task.grid = {job.size, render.tile_size};
-    task.function = &run.function;
-    task.frame = number;
-    task.longest_edge = mesh.longest_edge;
-    task.longest_ray = mesh.box.empty() ? 0 : glm::length(mesh.box.high - mesh.box.low);
-    const exchange::TileMap map(task.grid.count(), static_cast<int>(settings.roles.compositors.size()),
-                                settings.tile_seed);
-    const auto deliver = [&](exchange::TilePart part) {
-      const scene::TraceScope timing(render.trace, "pack", number, part.records.size(), 0);
-      outbox.put(std::move(part));
-    };
-    compositor::TileScene scene{&space, &integrator,
-                                integrals::opacity_weight(run.function.max_color(), mesh.diagonal, render.emission)};
-    task.make_sink = [&]() -> std::unique_ptr<compositor::TileSink<sorting::DoubleEncoding>> {
-      if (render.rasterizer == Rasterizer::scanline)
-        return std::make_unique<compositor::TupleSink>(mesh.longest_edge, deliver);
-      if (settings.exchange == Exchange::segments)
-        return std::make_unique<compositor::SegmentSink<sorting::DoubleEncoding>>(
-            mesh.part.association == scene::Association::cell, mesh.global_tet, deliver);
-      return std::make_unique<compositor::RunSink<sorting::DoubleEncoding>>(scene, budget.cut, deliver);
-    };
-    const std::optional<scene::Lattice> lattice =
-        settings.deep ? std::nullopt : lattice_of(space, mesh.box, mesh.scalar_range, run.function, render);
-    std::optional<integrals::LaneTable> table;
-    if (lattice) {
-      table.emplace(run.function, lattice->scalar_origin, lattice->scalar_unit, lattice->depth_unit, render.emission);
-      scene.table = &*table;
-      scene.lattice = *lattice;
-      task.lattice = &*lattice;
-      task.make_lattice_sink = [&]() -> std::unique_ptr<compositor::TileSink<sorting::LatticeEncoding>> {
-        if (settings.exchange == Exchange::segments)
-          return std::make_unique<compositor::SegmentSink<sorting::LatticeEncoding>>(*lattice, deliver);
-        return std::make_unique<compositor::RunSink<sorting::LatticeEncoding>>(scene, budget.cut, deliver);
-      };
-    }
-    bool announced = false, stopped = false;
-    task.announce = [&](const std::vector<bool>& has_cells) {
-      announced = true;
-      outbox.begin_frame(static_cast<std::uint32_t>(number), map, has_cells,
-                         {.longest_ray = mesh.diagonal,
-                          .tiles = 0,
-                          .longest_edge = mesh.longest_edge,
-                          .stopped = stopped ? 1u : 0u,
-                          .lattice = lattice.value_or(scene::Lattice{})});
-    };
-    scene::FrameWatch watch(run.stop);
-    task.watch = &watch;
-    exchange::FrameEnd end{};
-    run.transport.set_working(true);
-    try {
-      end = counts_of(loaded.projector().project(task));
-    } catch (const scene::FrameStopped&) {
-      // The others wait for what they were told of: it ends here, empty.
-      stopped = true;
-      if (!announced) task.announce(std::vector<bool>(task.grid.count(), false));
-      outbox.end_tiles();
-      end.stopped = 1;
-    }
-    run.transport.set_working(false);
-    outbox.end_frame(end);
-    if (render.trace != nullptr) render.trace->add_frame(number, start_us);
+    const double start_us = trace != nullptr ? trace->now_us() : 0;
+    project_frame(run, job, number, loaded, outbox);
+    if (trace != nullptr) trace->add_frame(number, start_us);
   }
   // The next list begins with none on their way.
   for (; left < run.jobs.size(); ++left) await_frame(run);
