@@ -22,7 +22,7 @@ using projection::Partition;
 using projection::PartitionKind;
 
 /// How the tets lie before the exchange.
-enum class Start { first_rank, last_rank, slices, dealt };
+enum class Start { first_rank, last_rank, slices, in_turns };
 
 /// The part of `rank` of a mesh that lies so: with vertices that no tet uses, and its own numbers for them.
 MeshPart part_of(const scene::TetMesh& mesh, Start start, int rank, int ranks, unsigned seed) {
@@ -121,7 +121,7 @@ TEST(MeshExchange, EveryTetReachesItsOneOwnerWithItsBits) {
   for (std::size_t t = 0; t < cells.tets.size(); ++t) cells.scalars.push_back(std::sqrt(static_cast<double>(t)));
   for (const scene::TetMesh* m : {&mesh, &cells})
     for (const PartitionKind kind : {PartitionKind::file, PartitionKind::curve, PartitionKind::random})
-      for (const Start start : {Start::first_rank, Start::last_rank, Start::slices, Start::dealt})
+      for (const Start start : {Start::first_rank, Start::last_rank, Start::slices, Start::in_turns})
         for (const auto& [ranks, projectors] :
              {std::pair<int, std::vector<int>>{1, {0}}, {2, {1}}, {3, {0, 1, 2}}, {5, {4, 1, 2}}, {8, {0, 7}}}) {
           SCOPED_TRACE(testing::Message() << "kind " << static_cast<int>(kind) << " start " << static_cast<int>(start)
@@ -136,7 +136,7 @@ TEST(MeshExchange, PartsDependOnTheMeshAndNotOnWhoReadIt) {
   const scene::TetMesh mesh = datasets::cube(6);
   for (const PartitionKind kind : {PartitionKind::file, PartitionKind::curve, PartitionKind::random}) {
     const auto reference = exchange(mesh, Start::first_rank, 4, {0, 2, 3}, {kind, 9}, {});
-    for (const Start start : {Start::last_rank, Start::slices, Start::dealt}) {
+    for (const Start start : {Start::last_rank, Start::slices, Start::in_turns}) {
       const auto other = exchange(mesh, start, 4, {0, 2, 3}, {kind, 9}, small, 5);
       for (std::size_t r = 0; r < 4; ++r) EXPECT_EQ(other.parts[r].global_tet, reference.parts[r].global_tet);
     }

@@ -149,7 +149,7 @@ TEST_F(MeshParts, GhostsAndEmptyPiecesAreAsInTheWhole) {
 
 TEST_F(MeshParts, NeighbouringPiecesAgreeOnTheirFaces) {
   TESSERA_VTK_OR_SKIP();
-  // One mesh dealt to three pieces, each with points of its own: only positions tell that hexahedra touch.
+  // One mesh cut into three pieces, each with points of its own: only positions tell that hexahedra touch.
   const CellBlock whole = testing::mixed_mesh(3, 4, true);
   std::vector<CellBlock> pieces(3);
   for (std::size_t p = 0; p < 3; ++p) {

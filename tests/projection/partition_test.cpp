@@ -74,7 +74,7 @@ TEST(Curve, ExtremesHaveAPlace) {
   EXPECT_EQ(curve_place({-9, -9, -9}, unit_box), curve_place({0, 0, 0}, unit_box));
 }
 
-/// The splitters when the keys lie on `ranks` processes, dealt by `random`.
+/// The splitters when the keys lie on `ranks` processes, distributed by `random`.
 std::vector<CurveKey> cut(const std::vector<CurveKey>& keys, int parts, std::size_t ranks, unsigned seed, int* rounds) {
   std::mt19937 random(seed);
   std::vector<std::vector<CurveKey>> held(ranks);
