@@ -103,7 +103,7 @@ void run_tiles(Frame& f, Stages& stages) {
   projection::LatticeScratch scratch;
   projection::RasterCounts counts;
   projection::OpenPixels open;
-  scene::TraceLaps laps(nullptr);
+  scene::StageTimer timer(nullptr);
   for (std::size_t tile = 0; tile < f.grid.count(); ++tile) {
     const std::span<const projection::TileEntry> entries = f.ordered[tile];
     const scene::PixelRect rect = f.grid.rect(tile);
@@ -114,7 +114,7 @@ void run_tiles(Frame& f, Stages& stages) {
       const auto start = Clock::now();
       stages.segments += composite_windows(
           rules, windows, final_step,
-          final_step < std::numeric_limits<std::int64_t>::max() ? 3 * windows.capacity() / 4 : 1, *state, laps);
+          final_step < std::numeric_limits<std::int64_t>::max() ? 3 * windows.capacity() / 4 : 1, *state, timer);
       stages.composite += seconds_since(start);
     };
     constexpr std::size_t at_once = 256;  // cells between looks at the clock

@@ -123,8 +123,8 @@ void measure(const std::string& name, const scene::TetMesh& mesh, const scene::C
     store.reset(static_cast<std::size_t>(rect.area()),
                 paper ? sorting::SegmentLists::Key::back : sorting::SegmentLists::Key::front);
     store.segments = segments;
-    scene::TraceLaps laps(nullptr);
-    pixels.take(store, sorting::DoubleEncoding::end, 1, laps);
+    scene::StageTimer timer(nullptr);
+    pixels.take(store, sorting::DoubleEncoding::end, 1, timer);
     pixels.finish();
   };
   for (std::size_t tile = 0; tile < grid.count(); ++tile) {

@@ -67,8 +67,8 @@ void DeepSink::start(const scene::PixelRect& rect) {
   samples_.clear();
 }
 
-void DeepSink::take(Store& lists, double final_depth, std::size_t /*at_least*/, scene::TraceLaps& laps) {
-  picture_.composite(lists, final_depth, laps);
+void DeepSink::take(Store& lists, double final_depth, std::size_t /*at_least*/, scene::StageTimer& timer) {
+  picture_.composite(lists, final_depth, timer);
   const projection::RaySegments& segments = lists.segments;
   for (std::uint32_t p = 0; p < deep_open_.size(); ++p) {
     if (!deep_open_[p]) continue;
@@ -78,18 +78,18 @@ void DeepSink::take(Store& lists, double final_depth, std::size_t /*at_least*/, 
       cutter_.cut({segments.front[i], segments.back[i], segments.scalar_front[i], segments.scalar_back[i]},
                   length_per_depth_[p], transmittance_before_[p], pieces_);
       piece_pixels_.resize(pieces_.size(), p);
-      if (pieces_.size() >= batch_pieces) integrate_pieces(laps);
+      if (pieces_.size() >= batch_pieces) integrate_pieces(timer);
     }
   }
-  integrate_pieces(laps);
+  integrate_pieces(timer);
   for (std::size_t p = 0; p < open_.size(); ++p)
     open_[p] = static_cast<std::uint8_t>(picture_.open()[p] | deep_open_[p]);
   segments_here_ += lists.remove(final_depth, open_);
-  laps.lap("composite");
+  timer.record("composite");
 }
 
-void DeepSink::integrate_pieces(scene::TraceLaps& laps) {
-  laps.lap("composite");
+void DeepSink::integrate_pieces(scene::StageTimer& timer) {
+  timer.record("composite");
   batch_.reserve(pieces_.size());
   batch_.size = pieces_.size();
   for (std::size_t k = 0; k < pieces_.size(); ++k) {
@@ -98,7 +98,7 @@ void DeepSink::integrate_pieces(scene::TraceLaps& laps) {
     batch_.scalar_back[k] = pieces_[k].scalar_back;
   }
   scene_.integrator->integrate(batch_);
-  laps.lap("integrate");
+  timer.record("integrate");
   for (std::size_t k = 0; k < pieces_.size(); ++k) {
     const std::uint32_t p = piece_pixels_[k];
     if (!deep_open_[p]) continue;

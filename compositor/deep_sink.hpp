@@ -23,8 +23,8 @@ class DeepSink final : public TileSink<DoubleEncoding> {
            scene::Emission emission, double accuracy, DeepTarget& collector);
 
   void start(const scene::PixelRect& rect) override;
-  void take(Store& lists, double final_depth, std::size_t at_least, scene::TraceLaps& laps) override;
-  bool take_unordered(Store&, double, scene::TraceLaps&) override { return false; }
+  void take(Store& lists, double final_depth, std::size_t at_least, scene::StageTimer& timer) override;
+  bool take_unordered(Store&, double, scene::StageTimer&) override { return false; }
   [[nodiscard]] const std::vector<std::uint8_t>& open() const override { return open_; }
   [[nodiscard]] bool any_open() const override { return picture_.any_open() || deep_open_count_ > 0; }
   void finish() override;
@@ -34,7 +34,7 @@ class DeepSink final : public TileSink<DoubleEncoding> {
   static constexpr std::size_t bytes_a_pixel = sizeof(DeepMerger) + 3 * sizeof(double);
 
  private:
-  void integrate_pieces(scene::TraceLaps& laps);
+  void integrate_pieces(scene::StageTimer& timer);
 
   TileScene scene_;
   TilePixels<DoubleEncoding> picture_;

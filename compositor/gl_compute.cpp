@@ -61,10 +61,10 @@ class ComputeKernel final : public GlKernel {
     integrate_.set(0, static_cast<GLuint>(fragments));
     values_.bind(0);
     gl.DispatchCompute(groups(fragments, group_of_fragments), 1, 1);
-    slot.timer.lap("integrate");
+    slot.timer.record("integrate");
 
     const std::uint32_t passes = sort_.sort(keys_, {&sorted_0_, &sorted_1_}, tables_);
-    slot.timer.lap("sort", passes);
+    slot.timer.record("sort", passes);
 
     composite_.use();
     composite_.set(0, slot.first_list);
@@ -77,7 +77,7 @@ class ComputeKernel final : public GlKernel {
     lights_.bind(5);
     gl.DispatchCompute(groups(slot.lists, group_of_lists), 1, 1);
     gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    slot.timer.lap("composite");
+    slot.timer.record("composite");
     slot.readback.copy_from(lights_, 0, slot.lists * sizeof(GlLight));
     slot.fence.set();
   }

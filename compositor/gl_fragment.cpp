@@ -98,7 +98,7 @@ class FragmentKernel final : public GlKernel {
     const auto pixels = static_cast<int>(lists.back().pixel - lists.front().pixel + 1);
     fill(job.fragments, lists, layout, pixels);
     const std::uint32_t passes = sort_.sort(layout, pixels, segments_, ties_);
-    timer_.lap("sort", passes);
+    timer_.record("sort", passes);
 
     const gl::Functions& gl = context_->gl();
     tile_.bind();
@@ -111,7 +111,7 @@ class FragmentKernel final : public GlKernel {
     column_.set(1, static_cast<GLuint>(layout.log2_size));
     column_.set(2, static_cast<GLuint>(first));
     gl.DrawArraysInstanced(GL_TRIANGLES, 0, 3, static_cast<GLsizei>(longest));
-    timer_.lap("composite", longest);
+    timer_.record("composite", longest);
   }
 
   /// The padded lists of neighbouring pixels; those without a list get null elements alone.

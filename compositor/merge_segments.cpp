@@ -26,9 +26,9 @@ template <class Encoding>
 class SegmentMerger : public TileMerger {
  public:
   void advance(double final_depth) override {
-    scene::TraceLaps laps(context_.trace);
+    scene::StageTimer timer(context_.trace);
     for (Square& square : squares_)
-      if (square.sink) square.sink->take(square.store, first_from(final_depth), 1, laps);
+      if (square.sink) square.sink->take(square.store, first_from(final_depth), 1, timer);
   }
 
   MergedTile finish() override {

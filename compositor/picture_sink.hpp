@@ -19,10 +19,10 @@ class PictureSink final : public TileSink<Encoding> {
     segments_here_ = 0;
     pixels_.start(rect);
   }
-  void take(Store& store, Depth final_depth, std::size_t at_least, scene::TraceLaps& laps) override {
-    segments_here_ += pixels_.take(store, final_depth, at_least, laps);
+  void take(Store& store, Depth final_depth, std::size_t at_least, scene::StageTimer& timer) override {
+    segments_here_ += pixels_.take(store, final_depth, at_least, timer);
   }
-  bool take_unordered(Store&, Depth, scene::TraceLaps&) override { return false; }
+  bool take_unordered(Store&, Depth, scene::StageTimer&) override { return false; }
   [[nodiscard]] const typename Encoding::Open& open() const override { return pixels_.open(); }
   [[nodiscard]] bool any_open() const override { return pixels_.any_open(); }
   /// Writes the rectangle's pixels into their place in the window's image.

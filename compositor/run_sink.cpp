@@ -104,23 +104,23 @@ void RunSink<Encoding>::start(const scene::PixelRect& rect) {
 }
 
 template <class Encoding>
-void RunSink<Encoding>::take(Store& store, Depth final_depth, std::size_t at_least, scene::TraceLaps& laps) {
-  segments_ += pixels_.take(store, final_depth, at_least, laps);
+void RunSink<Encoding>::take(Store& store, Depth final_depth, std::size_t at_least, scene::StageTimer& timer) {
+  segments_ += pixels_.take(store, final_depth, at_least, timer);
   write_ended();
   if (bytes_since_cut_ >= bytes_between_cuts_) {
-    segments_ += pixels_.take(store, final_depth, 1, laps);
+    segments_ += pixels_.take(store, final_depth, 1, timer);
     cut(final_depth);
   }
-  laps.lap("composite");
+  timer.record("composite");
   writer_.send_if_full();
 }
 
 template <class Encoding>
-bool RunSink<Encoding>::take_unordered(Store& store, Depth final_depth, scene::TraceLaps& laps) {
+bool RunSink<Encoding>::take_unordered(Store& store, Depth final_depth, scene::StageTimer& timer) {
   pixels_.keep_open();
-  segments_ += pixels_.take(store, Encoding::end, 1, laps);
+  segments_ += pixels_.take(store, Encoding::end, 1, timer);
   cut(final_depth);
-  laps.lap("composite");
+  timer.record("composite");
   writer_.send_if_full();
   return true;
 }

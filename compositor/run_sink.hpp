@@ -23,9 +23,9 @@ class RunSink final : public FragmentSink<Encoding> {
 
   void begin_tile(std::size_t tile, const scene::PixelRect& rect) override;
   void start(const scene::PixelRect& rect) override;
-  void take(Store& store, Depth final_depth, std::size_t at_least, scene::TraceLaps& laps) override;
+  void take(Store& store, Depth final_depth, std::size_t at_least, scene::StageTimer& timer) override;
   /// Runs are then shorter, and no pixel of the rectangle closes any more, as what hides it may lie behind it.
-  bool take_unordered(Store& store, Depth final_depth, scene::TraceLaps& laps) override;
+  bool take_unordered(Store& store, Depth final_depth, scene::StageTimer& timer) override;
   [[nodiscard]] const typename Encoding::Open& open() const override { return pixels_.open(); }
   [[nodiscard]] bool any_open() const override { return pixels_.any_open(); }
   void finish() override;

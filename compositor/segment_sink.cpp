@@ -17,18 +17,18 @@ void RawSink<Encoding>::start(const scene::PixelRect& rect) {
 }
 
 template <class Encoding>
-void RawSink<Encoding>::take(Store& store, Depth final_depth, std::size_t /*at_least*/, scene::TraceLaps& laps) {
+void RawSink<Encoding>::take(Store& store, Depth final_depth, std::size_t /*at_least*/, scene::StageTimer& timer) {
   this->segments_ += write(store, final_depth, this->writer_);
   this->writer_.complete_to(planar(final_depth));
-  laps.lap("pack");
+  timer.record("pack");
   this->writer_.send_if_full();
 }
 
 template <class Encoding>
-bool RawSink<Encoding>::take_unordered(Store& store, Depth final_depth, scene::TraceLaps& laps) {
+bool RawSink<Encoding>::take_unordered(Store& store, Depth final_depth, scene::StageTimer& timer) {
   this->segments_ += write(store, Encoding::end, this->writer_);
   this->writer_.complete_to(planar(final_depth));
-  laps.lap("pack");
+  timer.record("pack");
   this->writer_.send_if_full();
   return true;
 }

@@ -16,8 +16,8 @@ class RawSink : public FragmentSink<Encoding> {
   using typename FragmentSink<Encoding>::Depth;
 
   void start(const scene::PixelRect& rect) final;
-  void take(Store& store, Depth final_depth, std::size_t at_least, scene::TraceLaps& laps) final;
-  bool take_unordered(Store& store, Depth final_depth, scene::TraceLaps& laps) final;
+  void take(Store& store, Depth final_depth, std::size_t at_least, scene::StageTimer& timer) final;
+  bool take_unordered(Store& store, Depth final_depth, scene::StageTimer& timer) final;
   [[nodiscard]] const typename Encoding::Open& open() const final { return open_; }
   [[nodiscard]] bool any_open() const final { return true; }
   void finish() final {}

@@ -104,13 +104,13 @@ void ListPixels::add(const Lists& lists, double final_depth) {
   }
 }
 
-void ListPixels::composite(Lists& lists, double final_depth, scene::TraceLaps& laps) {
+void ListPixels::composite(Lists& lists, double final_depth, scene::StageTimer& timer) {
   lists.sort();
-  laps.lap("sort");
+  timer.record("sort");
   integrate(lists, final_depth);
-  laps.lap("integrate");
+  timer.record("integrate");
   runs_ ? add<true>(lists, final_depth) : add<false>(lists, final_depth);
-  laps.lap("composite");
+  timer.record("composite");
 }
 
 PixelValue ListPixels::value(std::size_t p) const {

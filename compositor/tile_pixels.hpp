@@ -21,7 +21,7 @@ struct PixelValue {
 /// or (`runs`) a new run wherever a segment does not touch the one before.
 ///
 ///   start(rect)                       all pixels empty and open
-///   take(store, final, at_least, laps) composites what is final and removes it; returns how many segments are gone
+///   take(store, final, at_least, timer) composites what is final and removes it; returns how many segments are gone
 ///   open(), any_open()                a pixel behind which everything left cannot change it by the integrator's
 ///                                     termination error is closed and takes nothing more
 ///   value(p)                          a picture's pixel
@@ -53,12 +53,12 @@ class TilePixels<sorting::DoubleEncoding> {
 
   void start(const scene::PixelRect& rect);
   std::uint64_t take(sorting::SegmentLists& lists, double final_depth, std::size_t /*at_least*/,
-                     scene::TraceLaps& laps) {
-    composite(lists, final_depth, laps);
+                     scene::StageTimer& timer) {
+    composite(lists, final_depth, timer);
     return lists.remove(final_depth, open_);
   }
   /// take() without removing anything.
-  void composite(sorting::SegmentLists& lists, double final_depth, scene::TraceLaps& laps);
+  void composite(sorting::SegmentLists& lists, double final_depth, scene::StageTimer& timer);
 
   [[nodiscard]] const std::vector<std::uint8_t>& open() const { return open_; }
   [[nodiscard]] bool any_open() const { return open_count_ > 0; }
@@ -92,10 +92,10 @@ class TilePixels<sorting::LatticeEncoding> {
 
   void start(const scene::PixelRect& rect);
   std::uint64_t take(projection::SegmentWindows& windows, std::int64_t final_step, std::size_t at_least,
-                     scene::TraceLaps& laps) {
-    const std::uint64_t gone = composite_windows(rules_, windows, final_step, at_least, state_, laps);
+                     scene::StageTimer& timer) {
+    const std::uint64_t gone = composite_windows(rules_, windows, final_step, at_least, state_, timer);
     open_count_ = state_.open_pixels(rect_, open_);
-    laps.lap("composite");
+    timer.record("composite");
     return gone;
   }
 

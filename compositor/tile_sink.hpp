@@ -40,12 +40,12 @@ class TileSink {
   /// ordered by it) lies before `final_depth`, as no later segment may come before them. Removes them from the store,
   /// with those of closed pixels. On the lattice lists of less than `at_least` may be left for later. The time goes to
   /// the stages `sort`, `integrate` and `composite` (fragments: `pack`).
-  virtual void take(Store& store, Depth final_depth, std::size_t at_least, scene::TraceLaps& laps) = 0;
+  virtual void take(Store& store, Depth final_depth, std::size_t at_least, scene::StageTimer& timer) = 0;
 
   /// Takes all segments, though later ones may come between them, because there is no room for more; what lies before
   /// `final_depth` is complete. False, and nothing taken, if the sink needs them in order: the renderer then starts
   /// again on a part of the rectangle, and start() must undo all that this one gave.
-  virtual bool take_unordered(Store& store, Depth final_depth, scene::TraceLaps& laps) = 0;
+  virtual bool take_unordered(Store& store, Depth final_depth, scene::StageTimer& timer) = 0;
 
   /// Pixels that still take anything, and whether there are any. Segments of others may be dropped.
   [[nodiscard]] virtual const typename Encoding::Open& open() const = 0;

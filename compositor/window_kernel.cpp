@@ -18,7 +18,7 @@ namespace HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
 std::uint64_t composite_windows(const WindowRules&, projection::SegmentWindows&, std::int32_t, std::int32_t,
-                                WindowState&, scene::TraceLaps&) {
+                                WindowState&, scene::StageTimer&) {
   return 0;
 }
 #else
@@ -180,7 +180,7 @@ class PixelGroup {
 
 template <TableForm form>
 std::uint64_t composite_form(const WindowRules& rules, projection::SegmentWindows& windows, std::int32_t final_step,
-                             std::int32_t at_least, WindowState& state, scene::TraceLaps& laps) {
+                             std::int32_t at_least, WindowState& state, scene::StageTimer& timer) {
   const Lookup<form> lookup(*rules.table);
   std::uint64_t done = 0;
   LightRows light;
@@ -193,24 +193,24 @@ std::uint64_t composite_form(const WindowRules& rules, projection::SegmentWindow
     if (HN::AllFalse(d, HN::Gt(count, HN::Set(d, worthwhile - 1)))) continue;
     PixelGroup<form> group(lookup, windows, pixel, state, light);
     const std::size_t rows = group.sort();
-    laps.lap("sort");
+    timer.record("sort");
     done += group.composite(rows, final_step, rules);
-    laps.lap("integrate");
+    timer.record("integrate");
   }
   return done;
 }
 
 std::uint64_t composite_windows(const WindowRules& rules, projection::SegmentWindows& windows, std::int32_t final_step,
-                                std::int32_t at_least, WindowState& state, scene::TraceLaps& laps) {
+                                std::int32_t at_least, WindowState& state, scene::StageTimer& timer) {
   switch (form_of(*rules.table)) {
     case TableForm::one_vector:
-      return composite_form<TableForm::one_vector>(rules, windows, final_step, at_least, state, laps);
+      return composite_form<TableForm::one_vector>(rules, windows, final_step, at_least, state, timer);
     case TableForm::two_vectors:
-      return composite_form<TableForm::two_vectors>(rules, windows, final_step, at_least, state, laps);
+      return composite_form<TableForm::two_vectors>(rules, windows, final_step, at_least, state, timer);
     case TableForm::many:
       break;
   }
-  return composite_form<TableForm::many>(rules, windows, final_step, at_least, state, laps);
+  return composite_form<TableForm::many>(rules, windows, final_step, at_least, state, timer);
 }
 #endif  // HWY_SCALAR
 
@@ -223,10 +223,10 @@ namespace tessera::compositor {
 HWY_EXPORT(composite_windows);
 
 std::uint64_t composite_windows(const WindowRules& rules, projection::SegmentWindows& windows, std::int64_t final_step,
-                                std::size_t at_least, WindowState& state, scene::TraceLaps& laps) {
+                                std::size_t at_least, WindowState& state, scene::StageTimer& timer) {
   const auto end = static_cast<std::int32_t>(std::clamp<std::int64_t>(final_step, -0x7fffffff, 0x7fffffff));
   const auto several = static_cast<std::int32_t>(std::clamp<std::size_t>(at_least, 1, 0x7fffffff));
-  return HWY_DYNAMIC_DISPATCH(composite_windows)(rules, windows, end, several, state, laps);
+  return HWY_DYNAMIC_DISPATCH(composite_windows)(rules, windows, end, several, state, timer);
 }
 
 }  // namespace tessera::compositor

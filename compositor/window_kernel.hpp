@@ -86,6 +86,6 @@ constexpr std::int32_t touching_steps = 64;
 /// Order: front, back, then the scalars, so that what is equal is interchangeable, and no process, partition or thread
 /// shows in a pixel's bits. In a mesh whose cells do not overlap only segments of length zero are level.
 std::uint64_t composite_windows(const WindowRules& rules, projection::SegmentWindows& windows, std::int64_t final_step,
-                                std::size_t at_least, WindowState& state, scene::TraceLaps& laps);
+                                std::size_t at_least, WindowState& state, scene::StageTimer& timer);
 
 }  // namespace tessera::compositor

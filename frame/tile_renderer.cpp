@@ -47,24 +47,24 @@ void TileRenderer<Source>::render_part(const scene::PixelRect& rect, const proje
 
 template <class Source>
 bool TileRenderer<Source>::try_render(const scene::PixelRect& rect, const projection::DepthOrder& order, Sink& sink) {
-  scene::TraceLaps laps(trace_);
+  scene::StageTimer timer(trace_);
   if (!source_.start(rect, order)) return false;
   sink.start(rect);
   const auto note_fullest = [&] {
     counts_.max_segments_alive = std::max<std::uint64_t>(counts_.max_segments_alive, source_.alive());
-    laps.lap("project");
+    timer.record("project");
   };
   while (source_.fill(sink)) {
     note_fullest();
-    sink.take(source_.store(), source_.final_depth(), source_.at_least(), laps);
+    sink.take(source_.store(), source_.final_depth(), source_.at_least(), timer);
     if (source_.make_room()) continue;
-    if (!sink.take_unordered(source_.store(), source_.final_depth(), laps)) return false;
+    if (!sink.take_unordered(source_.store(), source_.final_depth(), timer)) return false;
     ++counts_.tiles_split;
   }
   note_fullest();
-  sink.take(source_.store(), Encoding::end, 1, laps);
+  sink.take(source_.store(), Encoding::end, 1, timer);
   sink.finish();
-  laps.lap("composite");
+  timer.record("composite");
   return true;
 }
 

@@ -39,16 +39,16 @@ void StageTimer::begin(std::int32_t frame) {
   if (trace_ == nullptr) return;
   frame_ = frame;
   used_ = 0;
-  laps_.clear();
+  recorded_.clear();
   GLint64 now = 0;
   context_->gl().GetInteger64v(GL_TIMESTAMP, &now);
   offset_us_ = trace_->now_us() - 1e-3 * static_cast<double>(now);
   mark();
 }
 
-void StageTimer::lap(const char* stage, std::uint32_t passes) {
+void StageTimer::record(const char* stage, std::uint32_t passes) {
   if (trace_ == nullptr) return;
-  laps_.push_back({stage, passes});
+  recorded_.push_back({stage, passes});
   mark();
 }
 
@@ -60,19 +60,19 @@ void StageTimer::collect() {
     context_->gl().GetQueryObjectui64v(queries_[i], GL_QUERY_RESULT, &now);
     if (i > 0) {
       scene::TraceSpan span{};
-      span.stage = laps_[i - 1].stage;
+      span.stage = recorded_[i - 1].stage;
       span.thread = row_;
       span.start_us = 1e-3 * static_cast<double>(last) + offset_us_;
       span.wall_us = 1e-3 * static_cast<double>(std::max(now, last) - last);
       span.frame = frame_;
-      span.messages = laps_[i - 1].passes;
+      span.messages = recorded_[i - 1].passes;
       span.role = trace_->role();
       trace_->add(span);
     }
     last = std::max(now, last);
   }
   used_ = 0;
-  laps_.clear();
+  recorded_.clear();
 }
 
 }  // namespace tessera::gl

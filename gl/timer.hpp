@@ -19,16 +19,16 @@ class StageTimer {
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;
 
-  /// Commands that follow belong to no stage until the first lap().
+  /// Commands that follow belong to no stage until the first record().
   void begin(std::int32_t frame);
-  /// The commands since the last lap were `stage`, a string literal, in so many passes over the lists: the trace has
+  /// The commands since the last call were `stage`, a string literal, in so many passes over the lists: the trace has
   /// them as the messages that they are, to the device.
-  void lap(const char* stage, std::uint32_t passes = 0);
+  void record(const char* stage, std::uint32_t passes = 0);
   /// Adds the spans to the trace; the device must be through with the commands.
   void collect();
 
  private:
-  struct Lap {
+  struct Stage {
     const char* stage;
     std::uint32_t passes;
   };
@@ -43,7 +43,7 @@ class StageTimer {
   double offset_us_ = 0;  ///< device's clock to the trace's
   std::vector<GLuint> queries_;
   std::size_t used_ = 0;
-  std::vector<Lap> laps_;
+  std::vector<Stage> recorded_;
 };
 
 }  // namespace tessera::gl

@@ -125,13 +125,13 @@ std::uint64_t processor_ticks() {
 
 }  // namespace
 
-void TraceLaps::begin() {
+void StageTimer::begin() {
   start_us_ = trace_->now_us();
   start_cpu_us_ = trace_->mine().cpu_time(start_us_);
   last_ = processor_ticks();
 }
 
-void TraceLaps::add(const char* stage) {
+void StageTimer::add(const char* stage) {
   const std::uint64_t now = processor_ticks(), ticks = now - last_;
   last_ = now;
   for (std::size_t i = 0; i < stages_; ++i)
@@ -142,7 +142,7 @@ void TraceLaps::add(const char* stage) {
   if (stages_ < sums_.size()) sums_[stages_++] = {stage, ticks};
 }
 
-void TraceLaps::end() {
+void StageTimer::end() {
   const double wall_us = trace_->now_us() - start_us_;
   const double cpu_us = std::max(0.0, trace_->mine().cpu_time(start_us_ + wall_us) - start_cpu_us_);
   double all = 0, at_us = start_us_;

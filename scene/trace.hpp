@@ -77,7 +77,7 @@ class Trace {
   struct ThreadSpans;
   struct Recording;
   friend class TraceScope;
-  friend class TraceLaps;
+  friend class StageTimer;
   ThreadSpans& mine();
 
   std::shared_ptr<Recording> recording_;
@@ -115,23 +115,23 @@ class TraceScope {
   double start_us_ = 0, start_cpu_us_ = 0;
 };
 
-/// Stages that take turns too quickly for a scope each (sixteen cells, sixteen pixels). Laps are timed by the
+/// Stages that take turns too quickly for a scope each (sixteen cells, sixteen pixels). They are timed by the
 /// processor's own counter, some ten nanoseconds each; at the end every stage gets one span of its share of the time,
 /// one after the other. Does nothing if `trace` is null.
-class TraceLaps {
+class StageTimer {
  public:
-  explicit TraceLaps(Trace* trace) : trace_(trace) {
+  explicit StageTimer(Trace* trace) : trace_(trace) {
     if (trace_ != nullptr) begin();
   }
-  ~TraceLaps() {
+  ~StageTimer() {
     if (trace_ != nullptr) end();
   }
-  /// The time since the last lap went to `stage`, a string literal; at most six different ones.
-  void lap(const char* stage) {
+  /// The time since the last call, or the beginning, went to `stage`, a string literal; at most six different ones.
+  void record(const char* stage) {
     if (trace_ != nullptr) add(stage);
   }
-  TraceLaps(const TraceLaps&) = delete;
-  TraceLaps& operator=(const TraceLaps&) = delete;
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
 
  private:
   void begin();

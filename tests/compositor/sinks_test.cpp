@@ -142,7 +142,7 @@ template <class Encoding>
 void send_tile(TileSink<Encoding>& sink, const Scene& scene, int rounds, How how) {
   typename Encoding::Store store;
   reset(store, scene);
-  scene::TraceLaps laps(nullptr);
+  scene::StageTimer timer(nullptr);
   sink.begin_tile(3, Scene::rect);
   sink.start(Scene::rect);
   auto left = scene.rays;
@@ -157,10 +157,10 @@ void send_tile(TileSink<Encoding>& sink, const Scene& scene, int rounds, How how
       left[p].erase(left[p].begin(), later);
     }
     if (how == How::in_order) {
-      sink.take(store, depth_of<Encoding>(scene, step), 1, laps);
+      sink.take(store, depth_of<Encoding>(scene, step), 1, timer);
       continue;
     }
-    ASSERT_TRUE(sink.take_unordered(store, depth_of<Encoding>(scene, step), laps));
+    ASSERT_TRUE(sink.take_unordered(store, depth_of<Encoding>(scene, step), timer));
     EXPECT_EQ(waiting_in(store), 0u);
   }
   sink.finish();

@@ -33,7 +33,7 @@ std::uint64_t composite(RandomRays& rays, const WindowRules& rules, int rounds, 
   for (const auto& ray : rays.rays) most = std::max(most, ray.size());
   windows.reset(RandomRays::pixels, most);
   state.start(RandomRays::rect, rays.space);
-  scene::TraceLaps laps(nullptr);
+  scene::StageTimer timer(nullptr);
   std::vector<std::vector<projection::LatticeSegment>> left = rays.rays;
   std::uint64_t gone = 0, pushed = 0;
   for (int round = 1; round <= rounds; ++round) {
@@ -49,7 +49,7 @@ std::uint64_t composite(RandomRays& rays, const WindowRules& rules, int rounds, 
       }
       ray.erase(ray.begin(), later);
     }
-    gone += composite_windows(rules, windows, final_step, 1, state, laps);
+    gone += composite_windows(rules, windows, final_step, 1, state, timer);
     EXPECT_EQ(gone + windows.total(), pushed);
     for (std::size_t p = 0; p < RandomRays::pixels; ++p)
       for (std::uint32_t k = 0; k < windows.count(p); ++k)

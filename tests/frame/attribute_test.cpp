@@ -43,7 +43,7 @@ class LightSink final : public compositor::TileSink<sorting::AttributeEncoding> 
     rect_ = rect;
     open_.assign(static_cast<std::size_t>(rect.area()), 1);
   }
-  void take(Store& lists, double final_depth, std::size_t, scene::TraceLaps&) override {
+  void take(Store& lists, double final_depth, std::size_t, scene::StageTimer&) override {
     lists.sort();
     const projection::AttributeSegments& s = lists.segments;
     for (std::size_t p = 0; p < lists.pixels(); ++p) {
@@ -62,7 +62,7 @@ class LightSink final : public compositor::TileSink<sorting::AttributeEncoding> 
     }
     segments_ += lists.remove(final_depth, open_);
   }
-  bool take_unordered(Store&, double, scene::TraceLaps&) override { return false; }
+  bool take_unordered(Store&, double, scene::StageTimer&) override { return false; }
   [[nodiscard]] const std::vector<std::uint8_t>& open() const override { return open_; }
   [[nodiscard]] bool any_open() const override { return true; }
   void finish() override {}
@@ -201,7 +201,7 @@ class KeepingSink final : public compositor::TileSink<sorting::DoubleEncodingOf<
   std::vector<std::array<double, 4>> kept;
 
   void start(const scene::PixelRect& rect) override { open_.assign(static_cast<std::size_t>(rect.area()), 1); }
-  void take(Store& lists, double final_depth, std::size_t, scene::TraceLaps&) override {
+  void take(Store& lists, double final_depth, std::size_t, scene::StageTimer&) override {
     lists.sort();
     const Segments& s = lists.segments;
     for (std::size_t p = 0; p < lists.pixels(); ++p)
@@ -212,7 +212,7 @@ class KeepingSink final : public compositor::TileSink<sorting::DoubleEncodingOf<
         }
     lists.remove(final_depth, {});
   }
-  bool take_unordered(Store&, double, scene::TraceLaps&) override { return false; }
+  bool take_unordered(Store&, double, scene::StageTimer&) override { return false; }
   [[nodiscard]] const std::vector<std::uint8_t>& open() const override { return open_; }
   [[nodiscard]] bool any_open() const override { return true; }
   void finish() override {}

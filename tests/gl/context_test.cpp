@@ -189,8 +189,8 @@ TEST(StageTimer, StagesAreSpansOnARowOfTheirOwn) {
   const std::uint32_t mine = trace.thread_number();
   StageTimer timer(context, &trace);
   timer.begin(3);
-  timer.lap("sort", 7);
-  timer.lap("composite");
+  timer.record("sort", 7);
+  timer.record("composite");
   context.gl().GetError();
   timer.collect();
   const auto spans = trace.spans();
