@@ -43,8 +43,8 @@ HWY_INLINE hn::Mask<KeyTag> has_row(std::size_t row, KeyVec count) {
 }
 
 /// Puts in order what the network left nearly so: keys do not tell all of a segment, nor always all of its depth.
-HWY_NOINLINE void settle_ties(const projection::LatticeSegment* list, std::size_t count, std::size_t lanes,
-                              std::int32_t* slots) {
+HWY_NOINLINE inline void settle_ties(const projection::LatticeSegment* list, std::size_t count, std::size_t lanes,
+                                     std::int32_t* slots) {
   for (std::size_t i = 1; i < count; ++i) {
     const std::int32_t slot = slots[i * lanes];
     std::size_t hole = i;
@@ -55,8 +55,8 @@ HWY_NOINLINE void settle_ties(const projection::LatticeSegment* list, std::size_
 }
 
 /// Lists longer than the networks: one lane after the other.
-HWY_NOINLINE void sort_long(const projection::LatticeSegment* list, std::size_t stride, std::size_t count,
-                            std::size_t lanes, std::int32_t* slots) {
+HWY_NOINLINE inline void sort_long(const projection::LatticeSegment* list, std::size_t stride, std::size_t count,
+                                   std::size_t lanes, std::int32_t* slots) {
   std::vector<std::int32_t> order(count);
   for (std::size_t i = 0; i < count; ++i) order[i] = static_cast<std::int32_t>(i * stride * sizeof *list);
   std::sort(order.begin(), order.end(),
