@@ -4,11 +4,11 @@
 #include <cairo.h>
 #include <fmt/format.h>
 
+#include <cctype>
 #include <cmath>
 
-#include "io/atomic_file.hpp"
-#include "io/input_file.hpp"
-#include "scene/error.hpp"
+#include "tessera/error.hpp"
+#include "tessera/output_file.hpp"
 
 namespace tessera::analysis {
 namespace {
@@ -20,9 +20,15 @@ cairo_status_t append(void* text, const unsigned char* bytes, unsigned int count
 
 void check(cairo_status_t status, const std::filesystem::path& file) {
   if (status != CAIRO_STATUS_SUCCESS)
-    throw scene::Error(scene::ErrorCode::system_failure,
-                       fmt::format("{}: the figure could not be drawn: {}; try the other of .svg and .png",
-                                   file.string(), cairo_status_to_string(status)));
+    throw Error(ErrorCode::system_failure,
+                fmt::format("{}: the figure could not be drawn: {}; try the other of .svg and .png", file.string(),
+                            cairo_status_to_string(status)));
+}
+
+std::string lower_extension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
 }
 
 }  // namespace
@@ -79,9 +85,9 @@ void Canvas::upward_text(double x, double y, const std::string& label, double si
 }
 
 void check_figure_path(const std::filesystem::path& file) {
-  const std::string extension = io::lower_extension(file);
+  const std::string extension = lower_extension(file);
   if (extension != ".svg" && extension != ".png")
-    throw scene::bad_input(fmt::format("{}: a figure's name ends in .svg or .png; choose one", file.string()));
+    throw bad_input(fmt::format("{}: a figure's name ends in .svg or .png; choose one", file.string()));
 }
 
 void write_drawing(double width, double height, const std::filesystem::path& file,
@@ -101,7 +107,7 @@ void write_drawing(double width, double height, const std::filesystem::path& fil
     draw(canvas);
   };
   std::string bytes;
-  if (io::lower_extension(file) == ".svg") {
+  if (lower_extension(file) == ".svg") {
     const Surface surface(cairo_svg_surface_create_for_stream(append, &bytes, width, height));
     draw_on(surface.get(), 1);
     cairo_surface_finish(surface.get());
@@ -114,7 +120,7 @@ void write_drawing(double width, double height, const std::filesystem::path& fil
     draw_on(surface.get(), pixels_a_point);
     check(cairo_surface_write_to_png_stream(surface.get(), append, &bytes), file);
   }
-  io::AtomicFile output(file);
+  AtomicFile output(file);
   output.write(bytes);
   output.commit();
 }

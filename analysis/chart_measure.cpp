@@ -9,8 +9,8 @@
 
 namespace tessera::analysis {
 
-ChartError chart_error(const scene::Image& image, std::span<const reference::PixelIndex> pixels,
-                       std::span<const reference::Pixel> truths, int channels) {
+ChartError chart_error(const Image& image, std::span<const PixelIndex> pixels, std::span<const ReferencePixel> truths,
+                       int channels) {
   ChartError error;
   std::vector<double> largest;
   largest.reserve(pixels.size());

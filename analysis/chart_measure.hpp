@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "reference/ray_reference.hpp"
-#include "scene/image.hpp"
+#include "tessera/image.hpp"
+#include "tessera/reference.hpp"
 
 /// Error and time of one method, and which methods no other one beats.
 namespace tessera::analysis {
@@ -23,8 +23,8 @@ struct ChartError {
 };
 
 /// `truths` in the order of `pixels`. `channels` 4, or 3 for a picture without opacity.
-ChartError chart_error(const scene::Image& image, std::span<const reference::PixelIndex> pixels,
-                       std::span<const reference::Pixel> truths, int channels = 4);
+ChartError chart_error(const Image& image, std::span<const PixelIndex> pixels, std::span<const ReferencePixel> truths,
+                       int channels = 4);
 
 struct ChartPoint {
   std::string family, name;      ///< "planes, sampled"; "planes sampled:4"

@@ -4,17 +4,17 @@
 
 #include <algorithm>
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "io/input_file.hpp"
-#include "io/json_text.hpp"
-#include "scene/error.hpp"
+#include "tessera/error.hpp"
+#include "tessera/input_file.hpp"
 
 namespace tessera::analysis {
 namespace {
 
-scene::Image read_pfm(const std::filesystem::path& file, scene::ImageSize size) {
-  const std::string bytes = io::read_beginning(file, io::require_file(file));
+Image read_pfm(const std::filesystem::path& file, ImageSize size) {
+  const std::string bytes = read_text(file);
   std::istringstream head(bytes);
   std::string magic;
   int width = 0, height = 0;
@@ -23,11 +23,11 @@ scene::Image read_pfm(const std::filesystem::path& file, scene::ImageSize size) 
   const auto begin = static_cast<std::size_t>(head.tellg()) + 1;
   const auto values = 3 * static_cast<std::size_t>(std::max(width, 0)) * static_cast<std::size_t>(std::max(height, 0));
   if (!head || magic != "PF" || scale >= 0 || begin + 4 * values != bytes.size())
-    throw scene::bad_input(fmt::format("{}: is no colour .pfm of little endian; write PF, size, -1.0", file.string()));
+    throw bad_input(fmt::format("{}: is no colour .pfm of little endian; write PF, size, -1.0", file.string()));
   if (width != size.width || height != size.height)
-    throw scene::bad_input(fmt::format("{}: is {}x{}, the chart {}x{}; render both at one size", file.string(), width,
-                                       height, size.width, size.height));
-  scene::Image image(size);
+    throw bad_input(fmt::format("{}: is {}x{}, the chart {}x{}; render both at one size", file.string(), width, height,
+                                size.width, size.height));
+  Image image(size);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const auto at =
@@ -39,10 +39,11 @@ scene::Image read_pfm(const std::filesystem::path& file, scene::ImageSize size) 
 
 }  // namespace
 
-std::vector<ChartPoint> read_peers(const std::filesystem::path& file, scene::ImageSize size,
-                                   std::span<const reference::PixelIndex> pixels,
-                                   std::span<const reference::Pixel> truths) {
-  const nlohmann::json list = io::parse_json(io::read_beginning(file, io::require_file(file)), file.string());
+std::vector<ChartPoint> read_peers(const std::filesystem::path& file, ImageSize size,
+                                   std::span<const PixelIndex> pixels, std::span<const ReferencePixel> truths) {
+  const std::string text = read_text(file);
+  check_json(text, file.string());
+  const nlohmann::json list = nlohmann::json::parse(text);
   std::vector<ChartPoint> points;
   try {
     for (const auto& entry : list) {
@@ -59,8 +60,8 @@ std::vector<ChartPoint> read_peers(const std::filesystem::path& file, scene::Ima
       points.push_back(std::move(point));
     }
   } catch (const nlohmann::json::exception& error) {
-    throw scene::bad_input(fmt::format("{}: {}; write a list of objects with family, name, frame_ms and picture",
-                                       file.string(), error.what()));
+    throw bad_input(fmt::format("{}: {}; write a list of objects with family, name, frame_ms and picture",
+                                file.string(), error.what()));
   }
   return points;
 }

@@ -11,8 +11,7 @@ namespace tessera::analysis {
 /// Other programs' measured pictures (ChartCommand says the file's shape), judged by colour alone on the same pixels.
 /// Pictures are .pfm (linear RGB, bottom row first), named beside the file. Throws Error(bad_input) for what is missing
 /// or of another size.
-std::vector<ChartPoint> read_peers(const std::filesystem::path& file, scene::ImageSize size,
-                                   std::span<const reference::PixelIndex> pixels,
-                                   std::span<const reference::Pixel> truths);
+std::vector<ChartPoint> read_peers(const std::filesystem::path& file, ImageSize size,
+                                   std::span<const PixelIndex> pixels, std::span<const ReferencePixel> truths);
 
 }  // namespace tessera::analysis

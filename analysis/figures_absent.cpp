@@ -3,13 +3,13 @@
 
 #include "analysis/chart_figure.hpp"
 #include "analysis/timing_figure.hpp"
-#include "scene/error.hpp"
+#include "tessera/error.hpp"
 
 namespace tessera::analysis {
 
 /// Programs ask this before they measure, so that nobody waits for a figure that does not come.
 void check_figure_path(const std::filesystem::path& file) {
-  throw scene::bad_input(fmt::format(
+  throw bad_input(fmt::format(
       "{}: figures need Cairo, which this build leaves out; build with TESSERA_CAIRO=ON, or write a table with `csv`",
       file.string()));
 }

@@ -13,9 +13,6 @@
 namespace tessera::analysis {
 namespace {
 
-using io::FileSpan;
-using scene::TraceRole;
-
 constexpr std::array pipeline = {"read",    "partition", "prepare",   "transform", "cull",  "bin",
                                  "project", "sort",      "integrate", "composite", "pack",  "send",
                                  "receive", "wait",      "assemble",  "write",     "verify"};
@@ -24,7 +21,7 @@ std::size_t place_in_pipeline(std::string_view stage) {
   return static_cast<std::size_t>(std::find(pipeline.begin(), pipeline.end(), stage) - pipeline.begin());
 }
 
-int stage_number(const io::TraceFile& trace, std::string_view stage) {
+int stage_number(const TraceFile& trace, std::string_view stage) {
   const auto at = std::find(trace.stages.begin(), trace.stages.end(), stage);
   return at == trace.stages.end() ? -1 : static_cast<int>(at - trace.stages.begin());
 }
@@ -35,7 +32,7 @@ struct Process {
   ProcessTime time;
 };
 
-std::vector<Process> processes_of(const io::TraceFile& trace) {
+std::vector<Process> processes_of(const TraceFile& trace) {
   const int frame = stage_number(trace, "frame"), wait = stage_number(trace, "wait");
   std::map<int, std::set<TraceRole>> roles_of_rank, roles_with_frames;
   for (const FileSpan& span : trace.spans)
@@ -96,7 +93,7 @@ class Merge {
   StageTime merged_;
 };
 
-RoleTime role_time(const io::TraceFile& trace, TraceRole role, std::span<const Process> processes) {
+RoleTime role_time(const TraceFile& trace, TraceRole role, std::span<const Process> processes) {
   RoleTime time;
   time.role = role;
   time.processes = static_cast<int>(processes.size());
@@ -155,7 +152,7 @@ struct FrameExtent {
   double last_work = -std::numeric_limits<double>::infinity();  ///< neither exchange nor waiting
 };
 
-Overlap overlap_of(const io::TraceFile& trace) {
+Overlap overlap_of(const TraceFile& trace) {
   const int frame = stage_number(trace, "frame"), send = stage_number(trace, "send"),
             receive = stage_number(trace, "receive"), wait = stage_number(trace, "wait");
   std::map<int, FrameExtent> projected, composited;
@@ -223,7 +220,7 @@ const RoleTime* RunTime::role(TraceRole wanted) const {
   return at == roles.end() ? nullptr : &*at;
 }
 
-RunTime break_down(const io::TraceFile& trace, const std::string& name) {
+RunTime break_down(const TraceFile& trace, const std::string& name) {
   RunTime run;
   run.name = name;
   run.run = trace.run;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io/chrome_trace_reader.hpp"
+#include "tessera/trace_file.hpp"
 
 /// Where the time of a traced run went: the breakdown of Juliachs, Carrard, Nominé, "Hybrid CPU-GPU Unstructured Meshes
 /// Parallel Volume Rendering on PC Clusters", 2007, section 5, Figure 9 and Table 1.
@@ -40,7 +40,7 @@ struct StageTime {
 
 /// All processes of one role.
 struct RoleTime {
-  scene::TraceRole role = scene::TraceRole::both;
+  TraceRole role = TraceRole::both;
   int processes = 0;
   bool has_frames = true;          ///< false: no `frame` span, so the whole is all that was traced
   StageTime whole;                 ///< its CPU time and bytes are the sums over stages
@@ -70,7 +70,7 @@ struct Overlap {
 /// One run.
 struct RunTime {
   std::string name;  ///< file
-  io::TraceRun run;
+  TraceRun run;
   int ranks = 0;                ///< that the trace has spans of
   int frames = 0;               ///< rendered; times are divided by it to give those of a frame
   double elapsed_us = 0;        ///< wall clock while any process works on a frame
@@ -78,10 +78,10 @@ struct RunTime {
   Overlap overlap;
   std::optional<double> kilotets_per_second;  ///< tets of the mesh x frames / elapsed; none if the mesh is unknown
 
-  [[nodiscard]] const RoleTime* role(scene::TraceRole role) const;
+  [[nodiscard]] const RoleTime* role(TraceRole role) const;
 };
 
-RunTime break_down(const io::TraceFile& trace, const std::string& name);
+RunTime break_down(const TraceFile& trace, const std::string& name);
 
 /// Parallel efficiency as in Table 1: rate a processor core over that of the smallest run (fewest ranks x threads; the
 /// first of several) of the same input and image size; none where the rate is unknown.

@@ -14,7 +14,7 @@ struct Piece {
 
 /// Cuts one thread's spans (sorted: earlier first, longer first) into pieces, each of the innermost span; `self_cpu`
 /// loses, span by span, what spans inside it have.
-void cut(std::span<const io::FileSpan> spans, std::vector<Piece>& pieces, std::span<double> self_cpu) {
+void cut(std::span<const FileSpan> spans, std::vector<Piece>& pieces, std::span<double> self_cpu) {
   std::vector<std::size_t> open;
   double now = 0;
   const auto end_of = [&](std::size_t i) { return spans[i].start_us + spans[i].wall_us; };
@@ -128,15 +128,15 @@ bool TimeRanges::contains(double time) const {
   return after != ranges.begin() && time <= std::prev(after)->end;
 }
 
-ProcessTime share_clock(std::span<const io::FileSpan> spans, std::size_t stage_count, int frame, int wait) {
+ProcessTime share_clock(std::span<const FileSpan> spans, std::size_t stage_count, int frame, int wait) {
   ProcessTime result;
   result.in_frames.resize(stage_count);
   result.outside.resize(stage_count);
 
-  std::vector<io::FileSpan> work;
+  std::vector<FileSpan> work;
   std::vector<TimeRanges::Range> frames;
   TimeRanges::Range all{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  for (const io::FileSpan& span : spans) {
+  for (const FileSpan& span : spans) {
     const TimeRanges::Range range{span.start_us, span.start_us + span.wall_us};
     if (static_cast<int>(span.stage) == frame) {
       frames.push_back(range);
@@ -149,7 +149,7 @@ ProcessTime share_clock(std::span<const io::FileSpan> spans, std::size_t stage_c
   if (frames.empty() && !work.empty()) frames.push_back(all);
   result.frames = TimeRanges::of(std::move(frames));
 
-  std::sort(work.begin(), work.end(), [](const io::FileSpan& a, const io::FileSpan& b) {
+  std::sort(work.begin(), work.end(), [](const FileSpan& a, const FileSpan& b) {
     if (a.thread != b.thread) return a.thread < b.thread;
     return a.start_us != b.start_us ? a.start_us < b.start_us : a.wall_us > b.wall_us;
   });

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "io/chrome_trace_reader.hpp"
+#include "tessera/trace_file.hpp"
 
 namespace tessera::analysis {
 
@@ -37,6 +37,6 @@ struct ProcessTime {
 /// Shares the clock of one process in one role among its stages. `spans` are all of it, in any order; `frame` and
 /// `wait` are the numbers of these stages, or -1 where the trace has none. Spans that do not nest (only edited traces
 /// have any) are taken as if the later one interrupted the earlier.
-ProcessTime share_clock(std::span<const io::FileSpan> spans, std::size_t stage_count, int frame, int wait);
+ProcessTime share_clock(std::span<const FileSpan> spans, std::size_t stage_count, int frame, int wait);
 
 }  // namespace tessera::analysis

@@ -11,12 +11,10 @@
 #include <vector>
 
 #include "analysis/timing_text.hpp"
-#include "scene/error.hpp"
+#include "tessera/error.hpp"
 
 namespace tessera::analysis {
 namespace {
-
-using scene::TraceRole;
 
 /// What is one colour in a bar, from the bottom up. What no kind names is part of the last.
 struct Kind {
@@ -217,8 +215,8 @@ void write_figure(std::span<const RunTime> runs, const std::filesystem::path& fi
   check_figure_path(file);
   constexpr std::size_t most_runs = 60;
   if (runs.size() > most_runs)
-    throw scene::bad_input(fmt::format("{}: {} traces do not fit into one figure; give at most {}", file.string(),
-                                       runs.size(), most_runs));
+    throw bad_input(fmt::format("{}: {} traces do not fit into one figure; give at most {}", file.string(), runs.size(),
+                                most_runs));
   const Figure figure(runs);
   write_drawing(figure.width(), Figure::height(), file, [&](Canvas& canvas) { figure.draw(canvas); });
 }

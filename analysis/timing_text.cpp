@@ -8,8 +8,6 @@
 namespace tessera::analysis {
 namespace {
 
-using scene::TraceRole;
-
 /// Times of one table share a unit and a number of digits, chosen by its largest.
 struct TimeUnit {
   const char* name;
@@ -41,7 +39,7 @@ std::string count(std::uint64_t number, const char* one, const char* many) {
 }
 
 std::string head(const RunTime& run) {
-  const io::TraceRun& of = run.run;
+  const TraceRun& of = run.run;
   std::string mesh = of.input.empty() ? "" : of.input + ", ";
   if (of.tets > 0) mesh += fmt::format("{} tets, ", of.tets);
   std::string text =

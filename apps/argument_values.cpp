@@ -11,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-#include "scene/error.hpp"
+#include "tessera/error.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -25,20 +25,20 @@ std::optional<T> number(std::string_view text) {
   return value;
 }
 
-scene::Error wrong(const std::string& option, const std::string& text, const std::string& allowed) {
-  return scene::bad_input(fmt::format("{}: '{}' is not {}", option, text, allowed));
+Error wrong(const std::string& option, const std::string& text, const std::string& allowed) {
+  return bad_input(fmt::format("{}: '{}' is not {}", option, text, allowed));
 }
 
 }  // namespace
 
-scene::ImageSize parse_size(const std::string& option, const std::string& text) {
+ImageSize parse_size(const std::string& option, const std::string& text) {
   const auto cross = text.find('x');
-  const auto allowed = fmt::format("a size; write WxH, each side 1 to {} pixels, like 1024x768", scene::max_image_side);
+  const auto allowed = fmt::format("a size; write WxH, each side 1 to {} pixels, like 1024x768", max_image_side);
   if (cross == std::string::npos) throw wrong(option, text, allowed);
   const auto width = number<int>(std::string_view(text).substr(0, cross));
   const auto height = number<int>(std::string_view(text).substr(cross + 1));
   for (const auto& side : {width, height})
-    if (!side || *side < 1 || *side > scene::max_image_side) throw wrong(option, text, allowed);
+    if (!side || *side < 1 || *side > max_image_side) throw wrong(option, text, allowed);
   return {*width, *height};
 }
 
@@ -64,24 +64,24 @@ std::uint64_t parse_bytes(const std::string& option, const std::string& text) {
   return static_cast<std::uint64_t>(bytes);
 }
 
-scene::Integrator parse_integrator(const std::string& option, const std::string& text, double accuracy) {
+Integrator parse_integrator(const std::string& option, const std::string& text, double accuracy) {
   constexpr std::string_view prefix = "sampled:", table_prefix = "preintegrated:";
-  scene::Integrator integrator;
+  Integrator integrator;
   integrator.accuracy = accuracy;
   if (text == "exact") {
-    integrator.kind = scene::IntegratorKind::exact;
+    integrator.kind = IntegratorKind::exact;
   } else if (text == "auto") {
-    integrator.kind = scene::IntegratorKind::automatic;
+    integrator.kind = IntegratorKind::automatic;
   } else if (std::string_view(text).starts_with(prefix)) {
     const auto samples = number<int>(std::string_view(text).substr(prefix.size()));
     if (!samples || *samples < 1 || *samples > 4096)
       throw wrong(option, text, "sampled:N with N from 1 to 4096, like sampled:8");
-    integrator.kind = scene::IntegratorKind::sampled;
+    integrator.kind = IntegratorKind::sampled;
     integrator.samples = *samples;
   } else if (text == "partial") {
-    integrator.kind = scene::IntegratorKind::partial;
+    integrator.kind = IntegratorKind::partial;
   } else if (text == "preintegrated" || std::string_view(text).starts_with(table_prefix)) {
-    integrator.kind = scene::IntegratorKind::preintegrated;
+    integrator.kind = IntegratorKind::preintegrated;
     if (text != "preintegrated") {
       const auto size = number<int>(std::string_view(text).substr(table_prefix.size()));
       if (!size || *size < 8 || *size > 512)

@@ -4,16 +4,16 @@
 #include <cstdint>
 #include <string>
 
-#include "scene/camera.hpp"
-#include "scene/mechanisms.hpp"
-#include "scene/optical_model.hpp"
+#include "tessera/camera.hpp"
+#include "tessera/mechanisms.hpp"
+#include "tessera/optical_model.hpp"
 
-/// Words of the command line to values. Every function throws scene::Error(bad_input, "--OPTION: ...") that says what
+/// Words of the command line to values. Every function throws Error(bad_input, "--OPTION: ...") that says what
 /// was given and what is allowed; `option` is only for that message.
 namespace tessera::apps {
 
-/// `WxH` in pixels, each 1 to scene::max_image_side.
-scene::ImageSize parse_size(const std::string& option, const std::string& text);
+/// `WxH` in pixels, each 1 to max_image_side.
+ImageSize parse_size(const std::string& option, const std::string& text);
 
 /// A byte count: a number with an optional suffix K, M, G or T (powers of 1024; `MB` and `MiB` mean `M`).
 /// At least 1M.
@@ -21,10 +21,10 @@ std::uint64_t parse_bytes(const std::string& option, const std::string& text);
 
 /// `exact`, `sampled:N` with N from 1 to 4096, `preintegrated` or `preintegrated:N` with N from 8 to 512, `partial`, or
 /// `auto`; `accuracy` goes into the result.
-scene::Integrator parse_integrator(const std::string& option, const std::string& text, double accuracy);
+Integrator parse_integrator(const std::string& option, const std::string& text, double accuracy);
 
 struct WithoutWords {
-  scene::Mechanisms use;
+  Mechanisms use;
   bool merging = true;  ///< of touching segments before they are sent
 };
 

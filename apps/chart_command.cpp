@@ -6,154 +6,55 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "analysis/canvas.hpp"
 #include "analysis/chart_figure.hpp"
 #include "analysis/chart_measure.hpp"
 #include "analysis/chart_peers.hpp"
+#include "analysis/chart_sweep.hpp"
 #include "apps/argument_values.hpp"
-#include "apps/chart_methods.hpp"
-#include "apps/frame_list.hpp"
-#include "apps/output_check.hpp"
 #include "apps/report.hpp"
 #include "apps/run_output.hpp"
-#include "apps/session_options.hpp"
 #include "apps/setting_words.hpp"
-#include "apps/volume_input.hpp"
-#include "frame/dataset.hpp"
-#include "io/atomic_file.hpp"
-#include "projection/planes_rasterizer.hpp"
-#include "reference/grid_reference.hpp"
-#include "reference/reference.hpp"
-#include "scene/error.hpp"
+#include "tessera/error.hpp"
+#include "tessera/film.hpp"
+#include "tessera/output_file.hpp"
+#include "tessera/statistics.hpp"
 #include "tessera/version.hpp"
 
 namespace tessera::apps {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using analysis::no_room;
 using Json = nlohmann::ordered_json;
 
 constexpr double bounds[] = {1e-2, 1e-3, 1e-4, 1e-5};
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// The pixels that are looked at, and what is right there.
-struct Truth {
-  std::vector<reference::PixelIndex> pixels;
-  std::vector<reference::Pixel> values;
-  bool whole_image = false;
-  double seconds = 0;
-};
-
-Truth truth_of(const ChartScene& scene, double seconds, std::optional<int> asked) {
-  const auto start = Clock::now();
-  std::unique_ptr<reference::RayReference> reference;
-  if (scene.mesh != nullptr)
-    reference =
-        std::make_unique<reference::Reference>(*scene.mesh, scene.camera, scene.size, scene.function, scene.emission);
+/// What makes `tessera render` do it.
+std::string options_text(const analysis::ChartMethod& method, bool is_grid) {
+  if (method.by_slices) return "--renderer slice";
+  const Settings& s = method.settings;
+  if (method.ranks > 1)
+    return fmt::format("mpirun -n {}, --exchange {} --partition random", method.ranks, exchange_word(s.ranks.exchange));
+  std::vector<std::string> words;
+  if (!s.mesh.device.backends.empty()) {
+    const bool fragment = s.mesh.device.method == GlMethod::fragment;
+    words.push_back(fmt::format("--backend osmesa --compositor {}", fragment ? "gl-fragment" : "gl-compute"));
+    if (fragment) words.push_back(fmt::format("--framebuffer {}", s.mesh.device.half ? "half" : "float"));
+  }
+  if (s.mesh.rasterizer == Rasterizer::scanline) words.emplace_back("--rasterizer scanline");
+  if (s.integrator.kind == IntegratorKind::automatic)
+    words.push_back(fmt::format("--accuracy {:g}", s.integrator.accuracy));
   else
-    reference = std::make_unique<reference::GridReference>(*scene.volume, scene.camera, scene.size, scene.function,
-                                                           scene.emission);
-  constexpr std::uint64_t seed = 1;
-  const auto total = static_cast<std::size_t>(scene.size.width) * static_cast<std::size_t>(scene.size.height);
-  Truth truth;
-  const auto look = [&](std::size_t count) {
-    truth.pixels = reference::random_pixels(scene.size, count, seed);
-    const auto begin = Clock::now();
-    truth.values = reference->pixels(truth.pixels, scene.threads);
-    return seconds_since(begin);
-  };
-  if (asked) {
-    look(static_cast<std::size_t>(*asked));
-  } else {
-    // Larger and larger pilots until one says what a pixel costs; passes over the mesh make few as dear as many.
-    std::size_t count = std::min<std::size_t>(total, 256);
-    for (;;) {
-      const double took = look(count);
-      const double left = seconds - seconds_since(start);
-      if (count == total || took * 2.5 > left) break;
-      const double next = static_cast<double>(count) * std::clamp(0.6 * left / std::max(took, 1e-6), 2.0, 16.0);
-      count = std::min(total, static_cast<std::size_t>(next));
-    }
-  }
-  truth.whole_image = truth.pixels.size() == total;
-  truth.seconds = seconds_since(start);
-  return truth;
-}
-
-/// What a method takes, before it is tried: by the last of its family, else by the last of the first family.
-class CostGuess {
- public:
-  [[nodiscard]] double seconds(const ChartMethod& method) const {
-    const auto known = families_.find(method.family);
-    if (known != families_.end()) return method.cost * known->second;
-    return families_.empty() ? 0 : method.cost * families_.at(first_);
-  }
-  void learn(const ChartMethod& method, double seconds) {
-    if (families_.empty()) first_ = method.family;
-    families_[method.family] = seconds / method.cost;
-  }
-
- private:
-  std::map<std::string, double> families_;  ///< preparation and one frame, over `cost`
-  std::string first_;
-};
-
-constexpr auto no_room = "no room in the budget";
-
-struct Measured {
-  std::vector<analysis::ChartPoint> points;
-  double missing_seconds = 0;  ///< what one frame each of the methods without room would take
-};
-
-/// The first method is measured in any case.
-Measured measure(const ChartScene& scene, const Truth& truth, Clock::time_point begin, double budget, int repeat,
-                 bool quiet) {
-  const auto methods = chart_methods(scene);
-  Measured out;
-  CostGuess guess;
-  auto waiting = static_cast<double>(
-      std::count_if(methods.begin(), methods.end(), [](const ChartMethod& m) { return m.left_out.empty(); }));
-  for (const ChartMethod& method : methods) {
-    analysis::ChartPoint point;
-    point.family = method.family, point.name = method.name, point.options = method.options;
-    point.left_out = method.left_out;
-    const double left = budget - seconds_since(begin);
-    double share = 0;
-    if (point.left_out.empty()) {
-      share = left / waiting--;
-      if (guess.seconds(method) > 0 && guess.seconds(method) > left) {
-        point.left_out = no_room;
-        out.missing_seconds += guess.seconds(method);
-      }
-    }
-    if (point.left_out.empty()) {
-      const auto start = Clock::now();
-      try {
-        const auto renderer = method.make(scene);
-        point.prepare_ms = 1000 * seconds_since(start);
-        for (int i = 0; i < repeat; ++i) {
-          auto [image, ms] = renderer->frame();
-          point.frame_ms.push_back(ms);
-          if (i == 0) {
-            guess.learn(method, seconds_since(start));
-            point.error = analysis::chart_error(image, truth.pixels, truth.values);
-          }
-          if (seconds_since(start) + ms / 1000 > share) break;
-        }
-      } catch (const scene::Error& error) {
-        point.left_out = with_options(error.what());
-        point.frame_ms.clear();
-      }
-      if (!quiet && point.measured())
-        fmt::print(stderr, "{}: {:.4g} ms, max {:.3g}\n", point.name, point.median_ms(), point.error.max);
-    }
-    out.points.push_back(std::move(point));
-  }
-  return out;
+    words.push_back("--integrator " + (is_grid ? method_word(s.integrator.kind) : method_line(s.integrator)));
+  if (is_grid && takes_steps(s.integrator)) words.push_back(fmt::format("--step {:g}", s.grid.step));
+  if (!s.use.lattice) words.emplace_back("--without lattice");
+  if (!s.integrator.terminates) words.emplace_back("--without termination");
+  return fmt::format("{}", fmt::join(words, " "));
 }
 
 std::string error_words(double error) { return error == 0 ? "0" : fmt::format("{:.2e}", error); }
@@ -220,7 +121,7 @@ std::string csv_of(const std::vector<analysis::ChartPoint>& points) {
 /// The words of `render` that this command has, checked and in values.
 RenderOptions options_of(const RenderWords& words) {
   RenderOptions options = render_options(words);
-  if (options.deep) throw scene::bad_input("chart: makes no pictures; leave -o out");
+  if (options.frame.deep) throw bad_input("chart: makes no pictures; leave -o out");
   return options;
 }
 
@@ -256,48 +157,56 @@ void chart(const RenderWords& words, const ChartWords& chart) {
   const RenderOptions options = options_of(words);
   const double budget = parse_positive("--budget-seconds", chart.budget);
   const int repeat = parse_count("--repeat", chart.repeat, 1, 1000);
-  std::optional<int> pixels;
-  if (!chart.pixels.empty()) pixels = parse_count("--pixels", chart.pixels, 1, std::numeric_limits<int>::max());
+  std::optional<std::size_t> pixels;
+  if (!chart.pixels.empty())
+    pixels = static_cast<std::size_t>(parse_count("--pixels", chart.pixels, 1, std::numeric_limits<int>::max()));
   for (const auto& figure : chart.figures) analysis::check_figure_path(figure);
-  for (const auto& file : chart.figures) check_output_file(file, options.input);
+  for (const auto& file : chart.figures) check_output(file, options.input());
   for (const auto& file : {chart.json, chart.csv})
-    if (!file.empty()) check_output_file(file, options.input);
+    if (!file.empty()) check_output(file, options.input());
 
-  const Frame frame = list_frames(options).front();
-  ChartScene scene;
-  scene.size = frame.size;
-  scene.emission = options.settings.emission;
-  scene.threads = options.settings.threads;
-  scene.memory_bytes = options.settings.memory_bytes;
-  const Dataset data = Dataset::open(frame.mesh.files, read_options(options));
+  const FilmFrame frame = plan_film(options.plan).front();
+  const Dataset data = Dataset::open(frame.data.files, options.read);
   Json report = {{"program", "tessera"}, {"version", TESSERA_VERSION}};
-  if (data.is_grid())
-    scene.volume = data.state().samples.get();
-  else
-    scene.mesh = &data.state().mesh;
-  report[data.is_grid() ? "volume" : "mesh"] = data_json(options.input, Description(data));
+  report[data.is_grid() ? "volume" : "mesh"] = analysis::data_json(options.input(), described(data));
   const auto loaded = transfer_function_of(data, options);
-  scene.function = loaded.function;
-  scene.camera = view_of(frame, data.bounds(), options.projection);
-  report["transfer_function"] = transfer_function_json(loaded);
-  report["view"] = view_json(scene.camera, scene.size);
+  const View view{frame.view(data.bounds(), options.projection), frame.size};
+  report["transfer_function"] = analysis::transfer_function_json(loaded);
+  report["view"] = analysis::view_json(view.camera, view.size);
+  const Settings& settings = options.settings;
+  const analysis::ChartScene scene{
+      data, view, loaded.function, settings.emission, settings.threads, settings.memory_bytes};
 
   // Reading is what any use of the data takes, and no choice of the chart's.
   const double reading = seconds_since(begin);
   const auto read = Clock::now();
-  const Truth truth = truth_of(scene, budget / 3, pixels);
-  Measured measured = measure(scene, truth, read, budget, repeat, options.quiet);
+  const analysis::ChartTruth truth = analysis::chart_truth(scene, budget / 3, pixels);
+  const auto methods = analysis::chart_methods(scene);
+  const auto say = [&](const analysis::ChartPoint& point) {
+    if (!options.quiet)
+      fmt::print(stderr, "{}: {:.4g} ms, max {:.3g}\n", point.name, point.median_ms(), point.error.max);
+  };
+  analysis::ChartSweep measured = analysis::sweep(scene, methods, truth, {read, budget, repeat}, say);
   auto& points = measured.points;
+  std::vector<analysis::ChartPoint> alone;
+  for (std::size_t i = 0; i < methods.size(); ++i) {
+    points[i].options = options_text(methods[i], data.is_grid());
+    points[i].left_out = with_options(points[i].left_out);
+    // What needs mpirun, or leaves out what saves work, is on the chart, but no setting to recommend.
+    if (methods[i].recommended()) alone.push_back(points[i]);
+  }
   for (const auto& file : chart.peers)
-    for (analysis::ChartPoint& peer : analysis::read_peers(file, scene.size, truth.pixels, truth.values))
+    for (analysis::ChartPoint& peer : analysis::read_peers(file, view.size, truth.pixels, truth.values)) {
+      alone.push_back(peer);
       points.push_back(std::move(peer));
+    }
   analysis::mark_front(points);
 
   const std::string what =
-      fmt::format("{}, {}x{}, {}", options.input.filename().string(), scene.size.width, scene.size.height,
+      fmt::format("{}, {}x{}, {}", options.input().filename().string(), view.size.width, view.size.height,
                   truth.whole_image ? "every pixel" : fmt::format("{} random pixels", truth.pixels.size()));
   const std::string where = fmt::format("{}, {}, {:.0f} s and {:.0f} s for reading", transfer_function_line(loaded),
-                                        projection::instruction_set(), seconds_since(read), reading);
+                                        instruction_set(), seconds_since(read), reading);
   fmt::print("{}; {}\n", what, where);
   print_table(points);
   fmt::print(
@@ -309,11 +218,6 @@ void chart(const RenderWords& words, const ChartWords& chart) {
     fmt::print("--budget-seconds {:.0f} would, by a rough guess, have room for all\n",
                std::ceil(1.1 * (seconds_since(read) + measured.missing_seconds)));
   Json fastest = Json::array();
-  // What needs mpirun, or leaves out what saves work, is on the chart, but no setting to recommend.
-  std::vector<analysis::ChartPoint> alone = points;
-  std::erase_if(alone, [](const analysis::ChartPoint& p) {
-    return p.options.starts_with("mpirun") || p.options.find("--without") != std::string::npos;
-  });
   for (const double bound : bounds) {
     const analysis::ChartPoint* best = analysis::fastest_within(alone, bound);
     Json entry = {{"bound", bound}};
@@ -328,18 +232,14 @@ void chart(const RenderWords& words, const ChartWords& chart) {
     fastest.push_back(entry);
   }
   report["pixels"] = {{"count", truth.pixels.size()}, {"whole_image", truth.whole_image}, {"seconds", truth.seconds}};
-  report["instruction_set"] = projection::instruction_set();
+  report["instruction_set"] = instruction_set();
   report["seconds"] = seconds_since(read);
   report["reading_seconds"] = reading;
   report["methods"] = Json::array();
   for (const analysis::ChartPoint& p : points) report["methods"].push_back(point_json(p));
   report["fastest"] = fastest;
   if (!chart.json.empty()) write_json(report, chart.json);
-  if (!chart.csv.empty()) {
-    io::AtomicFile file(chart.csv);
-    file.write(csv_of(points));
-    file.commit();
-  }
+  if (!chart.csv.empty()) write_text(chart.csv, csv_of(points));
   for (const auto& figure : chart.figures) analysis::write_chart(points, what, where, figure);
 }
 

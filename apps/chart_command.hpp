@@ -28,7 +28,7 @@ void add_chart_options(CLI::App& command, RenderWords& words, ChartWords& chart)
 ///          left over are named, with a guess of a budget for all.
 /// Peers    `--peer FILE.json`: a list of {"family", "name", "frame_ms": [...], "picture": FILE.pfm} of other programs,
 ///          judged on the same pixels by colour alone, as their pictures carry no opacity.
-/// Throws scene::Error.
+/// Throws Error.
 void chart(const RenderWords& words, const ChartWords& chart);
 
 }  // namespace tessera::apps

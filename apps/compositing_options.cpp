@@ -7,12 +7,10 @@
 
 #include "apps/argument_values.hpp"
 #include "apps/render_options.hpp"
-#include "scene/error.hpp"
+#include "tessera/error.hpp"
 
 namespace tessera::apps {
 namespace {
-
-using frame::Backend;
 
 Backend backend_of(const std::string& word) {
   check_word("--backend", word, {"auto", "cpu", "osmesa", "egl"});
@@ -36,7 +34,7 @@ std::vector<Backend> backends_of(const std::string& words) {
 
 void check_word(const char* option, const std::string& text, std::initializer_list<std::string_view> known) {
   if (std::find(known.begin(), known.end(), text) == known.end())
-    throw scene::bad_input(fmt::format("{}: '{}' is unknown; use {}", option, text, fmt::join(known, " or ")));
+    throw bad_input(fmt::format("{}: '{}' is unknown; use {}", option, text, fmt::join(known, " or ")));
 }
 
 void add_compositing_options(CLI::App& command, RenderWords& words) {
@@ -57,13 +55,13 @@ void add_compositing_options(CLI::App& command, RenderWords& words) {
       ->type_name("N|local-rank");
 }
 
-frame::CompositingSettings compositing_settings(const RenderWords& words, bool for_volume) {
-  frame::CompositingSettings settings;
+DeviceSettings device_settings(const RenderWords& words, bool for_volume) {
+  DeviceSettings settings;
   if (!words.compositor.empty()) check_word("--compositor", words.compositor, {"cpu", "gl-compute", "gl-fragment"});
   if (!words.framebuffer.empty()) {
     check_word("--framebuffer", words.framebuffer, {"half", "float"});
     if (words.compositor != "gl-fragment")
-      throw scene::bad_input("--framebuffer: is for --compositor gl-fragment; leave one of the two out");
+      throw bad_input("--framebuffer: is for --compositor gl-fragment; leave one of the two out");
   }
   const bool asks_for_gl = words.compositor.starts_with("gl-");
   std::vector<Backend> backends;
@@ -73,31 +71,26 @@ frame::CompositingSettings compositing_settings(const RenderWords& words, bool f
   const bool named = std::any_of(backends.begin(), backends.end(),
                                  [](Backend b) { return b == Backend::osmesa || b == Backend::egl; });
   if (words.compositor == "cpu" && named)
-    throw scene::bad_input(
-        fmt::format("--backend {}: --compositor cpu needs none; leave one of the two out", words.backend));
+    throw bad_input(fmt::format("--backend {}: --compositor cpu needs none; leave one of the two out", words.backend));
   if (for_volume && (asks_for_gl || named))
-    throw scene::bad_input("--compositor and --backend: volumes are cast on the CPU; leave them out");
+    throw bad_input("--compositor and --backend: volumes are cast on the CPU; leave them out");
   if (asks_for_gl && !backends.empty() && all_cpu)
-    throw scene::bad_input(fmt::format(
-        "--backend cpu: --compositor {} needs osmesa, egl or auto; or use --compositor cpu", words.compositor));
+    throw bad_input(fmt::format("--backend cpu: --compositor {} needs osmesa, egl or auto; or use --compositor cpu",
+                                words.compositor));
   if (!words.egl_device.empty()) {
     if (words.egl_device == "local-rank")
-      settings.gl.by_local_rank = true;
+      settings.by_local_rank = true;
     else
-      settings.gl.egl_device.number = parse_count("--egl-device", words.egl_device, 0, std::numeric_limits<int>::max());
+      settings.egl_device = parse_count("--egl-device", words.egl_device, 0, std::numeric_limits<int>::max());
     if (std::none_of(backends.begin(), backends.end(), is(Backend::egl)) &&
         std::none_of(backends.begin(), backends.end(), is(Backend::automatic)) && !(asks_for_gl && backends.empty()))
-      throw scene::bad_input("--egl-device: is for --backend egl; leave one of the two out");
+      throw bad_input("--egl-device: is for --backend egl; leave one of the two out");
   }
   if (for_volume || words.compositor == "cpu" || (all_cpu && !asks_for_gl)) return settings;
   settings.backends = backends.empty() ? std::vector{Backend::automatic} : backends;
-  if (words.compositor == "gl-fragment") settings.gl.method = compositor::GlMethod::fragment;
-  settings.gl.half = words.framebuffer != "float";
+  if (words.compositor == "gl-fragment") settings.method = GlMethod::fragment;
+  settings.half = words.framebuffer != "float";
   return settings;
-}
-
-bool composites_as_printed(const frame::CompositingSettings& settings) {
-  return !settings.backends.empty() && settings.gl.method == compositor::GlMethod::fragment;
 }
 
 }  // namespace tessera::apps

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "frame/compositing_device.hpp"
+#include "tessera/settings.hpp"
 
 namespace tessera::apps {
 
@@ -15,11 +15,8 @@ struct RenderWords;
 void add_compositing_options(CLI::App& command, RenderWords& words);
 
 /// What they say. Nothing said: no backends, which is the CPU without a word about devices. Throws
-/// scene::Error(bad_input).
-frame::CompositingSettings compositing_settings(const RenderWords& words, bool for_volume);
-
-/// Whether some compositor works as Juliachs et al. 2007 printed it.
-bool composites_as_printed(const frame::CompositingSettings& settings);
+/// Error(bad_input).
+DeviceSettings device_settings(const RenderWords& words, bool for_volume);
 
 /// Throws unless `text` is one of `known`.
 void check_word(const char* option, const std::string& text, std::initializer_list<std::string_view> known);

@@ -3,74 +3,26 @@
 #include <fmt/format.h>
 
 #include "apps/argument_values.hpp"
-#include "apps/output_check.hpp"
 #include "apps/report.hpp"
+#include "datasets/arrays.hpp"
 #include "datasets/modify.hpp"
-#include "frame/mesh_input.hpp"
-#include "io/mesh_parts.hpp"
-#include "io/pvtu_writer.hpp"
-#include "scene/error.hpp"
+#include "tessera/error.hpp"
+#include "tessera/output_file.hpp"
+#include "tessera/write.hpp"
 
 namespace tessera::apps {
-
-void check_mesh_output(const std::filesystem::path& output, const std::filesystem::path& input) {
-  const auto extension = output.extension();
-  if (extension == ".pvtu")
-    throw scene::bad_input(
-        fmt::format("{}: one mesh in pieces is what convert --pieces writes; choose .vtu or .tets", output.string()));
-  if (extension != ".vtu" && extension != ".tets")
-    throw scene::bad_input(
-        fmt::format("{}: '{}' is no mesh format to write; choose .vtu or .tets", output.string(), extension.string()));
-  check_output_file(output, input);
-}
-
-void write_mesh(const scene::TetMesh& mesh, const std::filesystem::path& output) {
-  output.extension() == ".tets" ? io::write_tets(mesh, output) : io::write_vtu(mesh, output);
-}
-
 namespace {
 
-const char* order_words(projection::PartitionKind kind) {
+const char* order_words(PartitionKind kind) {
   switch (kind) {
-    case projection::PartitionKind::file:
+    case PartitionKind::file:
       return "file order";
-    case projection::PartitionKind::random:
+    case PartitionKind::random:
       return "random";
-    case projection::PartitionKind::curve:
+    case PartitionKind::curve:
       break;
   }
   return "curve";
-}
-
-void check_pieces_output(const std::filesystem::path& output, const std::filesystem::path& input, int pieces) {
-  if (output.extension() != ".pvtu")
-    throw scene::bad_input(fmt::format("{}: --pieces writes a .pvtu; name one", output.string()));
-  std::vector<std::filesystem::path> inputs = {input};
-  if (io::readable_in_parts(input, {}) && input.extension() != ".tets") {
-    const auto read = io::pvtu_pieces(input);
-    inputs.insert(inputs.end(), read.begin(), read.end());
-  }
-  // A name may exist, but not as something that is read.
-  for (const auto& file : inputs) {
-    check_output_file(output, file);
-    for (int p = 0; p < pieces; ++p) {
-      const auto name = io::pvtu_piece_name(output, p);
-      std::error_code absent;
-      if (std::filesystem::exists(name, absent)) check_output_file(name, file);
-    }
-  }
-}
-
-void write_pieces(const scene::TetMesh& mesh, const std::filesystem::path& output, const ConvertPieces& pieces) {
-  const std::vector<std::uint32_t> part_of = projection::parts_of_whole(mesh, pieces.partition, pieces.count);
-  std::vector<std::vector<std::uint32_t>> tets(static_cast<std::size_t>(pieces.count));
-  for (std::size_t t = 0; t < part_of.size(); ++t) tets[part_of[t]].push_back(static_cast<std::uint32_t>(t));
-  io::PvtuWriter writer(output, mesh);
-  for (auto& piece : tets) {
-    writer.add(scene::subset(mesh, piece));
-    piece = {};
-  }
-  writer.commit();
 }
 
 }  // namespace
@@ -78,33 +30,55 @@ void write_pieces(const scene::TetMesh& mesh, const std::filesystem::path& outpu
 std::optional<ConvertPieces> convert_pieces(const std::string& pieces, const std::string& partition) {
   ConvertPieces result;
   if (partition == "file")
-    result.partition.kind = projection::PartitionKind::file;
+    result.partition.kind = PartitionKind::file;
   else if (partition == "random")
-    result.partition.kind = projection::PartitionKind::random;
+    result.partition.kind = PartitionKind::random;
   else if (partition != "curve")
-    throw scene::bad_input(fmt::format("--partition: '{}' is none; use curve, file or random", partition));
+    throw bad_input(fmt::format("--partition: '{}' is none; use curve, file or random", partition));
   if (pieces.empty()) {
-    if (partition != "curve") throw scene::bad_input("--partition: is of --pieces; give their number too");
+    if (partition != "curve") throw bad_input("--partition: is of --pieces; give their number too");
     return std::nullopt;
   }
   result.count = parse_count("--pieces", pieces, 1, 100000);
   return result;
 }
 
-void convert(const std::filesystem::path& input, const std::filesystem::path& output, const io::MeshOptions& options,
-             int subdivide, const std::optional<ConvertPieces>& pieces, bool quiet) {
-  pieces ? check_pieces_output(output, input, pieces->count) : check_mesh_output(output, input);
-  auto file = frame::read_input(input, options);
-  for (int time = 0; time < subdivide; ++time) file.mesh = datasets::subdivided(file.mesh);
-  pieces ? write_pieces(file.mesh, output, *pieces) : write_mesh(file.mesh, output);
-  if (!quiet)
-    fmt::print(stderr, "{}: {}; field {} written to {}{}\n", input.string(), cells_line(file.counts),
-               file.mesh.field_name, output.string(),
-               pieces ? fmt::format(" and {} pieces ({}{})", pieces->count, order_words(pieces->partition.kind),
-                                    pieces->partition.kind == projection::PartitionKind::random
-                                        ? fmt::format(", seed {}", pieces->partition.seed)
-                                        : "")
-                      : "");
+void convert_mesh(const std::filesystem::path& input, const std::filesystem::path& output, ReadOptions options,
+                  int subdivide, const std::optional<ConvertPieces>& pieces, bool quiet) {
+  check_mesh_output(output, input, pieces ? std::optional(pieces->count) : std::nullopt);
+  options.keep_corners = true;
+  const Dataset data = Dataset::open(input, options);
+  MeshArrays mesh = data.mesh_arrays();
+  for (int time = 0; time < subdivide; ++time)
+    mesh = datasets::arrays_of(datasets::subdivided(datasets::mesh_of(mesh)));
+  pieces ? write_mesh_pieces(mesh, output, pieces->count, pieces->partition) : write_mesh(mesh, output);
+  if (quiet) return;
+  std::string parts;
+  if (pieces)
+    parts = fmt::format(
+        " and {} pieces ({}{})", pieces->count, order_words(pieces->partition.kind),
+        pieces->partition.kind == PartitionKind::random ? fmt::format(", seed {}", pieces->partition.seed) : "");
+  fmt::print(stderr, "{}: {}; field {} written to {}{}\n", input.string(), cells_line(data.mesh_counts()),
+             data.field_name(), output.string(), parts);
+}
+
+void convert_grid(const std::filesystem::path& input, const std::filesystem::path& output, const ReadOptions& options,
+                  int block, bool quiet) {
+  if (!is_grid_output(output))
+    throw bad_input(fmt::format("{}: '{}' is no volume format to write; choose .vti, .vtr, .nrrd, .raw or .bricks",
+                                output.string(), output.extension().string()));
+  check_output(output, input);
+  const Dataset data = Dataset::open(input, options);
+  write_grid(data, output, block);
+  if (quiet) return;
+  const GridGeometry& g = data.grid_geometry();
+  std::string how_to_read;
+  if (output.extension() == ".raw")
+    how_to_read = fmt::format("; read it with --dims {}x{}x{} --type {} --spacing {},{},{} --origin {},{},{}",
+                              g.points[0], g.points[1], g.points[2], name_of(written_type(data)), g.spacing.x,
+                              g.spacing.y, g.spacing.z, g.origin.x, g.origin.y, g.origin.z);
+  fmt::print(stderr, "{}: {}; field {} written to {}{}\n", input.string(), samples_line(described(data)),
+             data.field_name(), output.string(), how_to_read);
 }
 
 }  // namespace tessera::apps

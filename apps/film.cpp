@@ -3,52 +3,40 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <utility>
 
-#include "apps/balance_picture.hpp"
-#include "apps/frame_list.hpp"
-#include "apps/output_check.hpp"
-#include "apps/rank_traces.hpp"
 #include "apps/report.hpp"
 #include "apps/run_output.hpp"
-#include "apps/session_options.hpp"
-#include "exchange/collectives.hpp"
-#include "frame/session_extras.hpp"
-#include "frame/verify.hpp"
-#include "io/time_series.hpp"
-#include "scene/trace.hpp"
+#include "apps/setting_words.hpp"
+#include "tessera/session.hpp"
+#include "tessera/trace.hpp"
 
 namespace tessera::apps {
 namespace {
 
-using exchange::Bytes;
+/// Where the cost map of a picture goes: `a.png` gives `a.cost.png`.
+std::filesystem::path cost_name(const std::filesystem::path& picture) {
+  std::filesystem::path name = picture;
+  return name.replace_extension().concat(".cost").concat(picture.extension().string());
+}
 
-void refuse_mesh_options(const RenderOptions& options) {
-  const auto refuse = [&](const char* option) {
-    io::require_input(options.input);
-    throw scene::bad_input(fmt::format("{}: is for meshes, and the input is a volume; leave it out", option));
-  };
-  if (options.deep && !frame::promised_error(options.volume_settings))
-    throw scene::bad_input(
-        fmt::format("deep picture: --integrator {} gives a step other light than its parts; use auto or "
-                    "exact",
-                    method_word(options.volume_settings.method)));
-  if (options.deep && options.volume_settings.shading)
-    throw scene::bad_input("deep picture: it is not shaded; leave --shade out");
-  if (options.deep && options.show_balance)
-    throw scene::bad_input("deep picture: --show balance draws none; name an .exr, .png or .pfm");
-  if (options.settings.rasterizer != Rasterizer::planes) refuse("--rasterizer");
-  if (options.mesh.smooth) refuse("--smooth");
-  if (options.mesh.max_volume) refuse("--max-volume");
-  if (options.mesh.time_step) refuse("--time-step");
-  if (!options.mesh.plot3d_q.empty()) refuse("--q");
+/// How later steps of a time series are read: their field is the one that was chosen for the first step. A field that
+/// varies in one step and not in the next would else make the film jump to another.
+ReadOptions read_of_later_steps(ReadOptions options, const Dataset& first) {
+  if (first.is_grid() || !options.field.empty() || first.fields().empty()) return options;
+  options.field = first.field_name();
+  // Smoothing has made point data of cell data, so only the name is sure.
+  if (!options.smooth) options.field = (first.association() == Association::point ? "point:" : "cell:") + options.field;
+  return options;
 }
 
 /// With --show balance every picture has its cost map beside it.
-std::vector<Frame> frames_of(const RenderOptions& options) {
-  std::vector<Frame> frames = list_frames(options);
+std::vector<FilmFrame> frames_of(const RenderOptions& options) {
+  std::vector<FilmFrame> frames = plan_film(options.plan);
   if (!options.show_balance) return frames;
-  for (Frame& frame : frames) {
+  for (FilmFrame& frame : frames) {
     const std::size_t pictures = frame.outputs.size();
     for (std::size_t i = 0; i < pictures; ++i) {
       frame.outputs.push_back(cost_name(frame.outputs[i]));
@@ -61,22 +49,23 @@ std::vector<Frame> frames_of(const RenderOptions& options) {
 /// One rank's part in a run. Of a time series one step is held at a time; the first gives transfer function and view.
 class Film final : public Sink {
  public:
-  Film(const RenderOptions& options, exchange::Transport& transport)
+  Film(const RenderOptions& options, Job& job)
       : options_(options),
-        transport_(transport),
-        roles_(options.is_volume ? frame::Roles{}
-                                 : frame::assign_roles(transport.size(), options.projectors, options.compositors)),
-        writer_(options.is_volume ? 0 : roles_.assembler()),
-        writes_(transport.rank() == writer_),
-        overlaps_(!options.is_volume && (transport.size() > 1 || !options.compositing_on.backends.empty())),
+        job_(job),
+        roles_(options.is_grid() ? Roles{}
+                                 : assign_roles(job.size(), settings_.ranks.projectors, settings_.ranks.compositors)),
+        writer_(options.is_grid() ? 0 : roles_.assembler()),
+        writes_(job.rank() == writer_),
+        overlaps_(!options.is_grid() && (job.size() > 1 || !settings_.mesh.device.backends.empty())),
         frames_(frames_of(options)),
-        projecting_(overlaps_ ? scene::TraceRole::projector : scene::TraceRole::both),
-        compositing_(projecting_, scene::TraceRole::compositor),
-        output_(quiet_ranks(options), frames_, transport.size()) {}
+        trace_(overlaps_ ? TraceRole::projector : TraceRole::both),
+        compositing_(trace_, TraceRole::compositor),
+        output_(quiet_ranks(options), frames_, job.size()) {
+    settings_.trace = read_.trace = trace();
+  }
 
-  scene::ExitCode run() {
+  ExitCode run() {
     agree_on_finished_frames();
-    if (overlaps_ && timed()) transport_.trace_to(&projecting_, &compositing_);
     for (std::size_t first = 0; first < frames_.size();) {
       // The frames of one step together: they share what is held.
       std::vector<std::size_t> group;
@@ -91,9 +80,9 @@ class Film final : public Sink {
     }
     skip_to(frames_.size());
     if (timed()) write_trace();
-    const std::uint8_t code = writes_ ? static_cast<std::uint8_t>(output_.finish(options_)) : 0;
-    return static_cast<scene::ExitCode>(
-        exchange::broadcast_value(transport_, writer_, exchange::MessageKind::exit_code, code));
+    std::vector<std::byte> code(1);
+    if (writes_) code[0] = static_cast<std::byte>(output_.finish(options_));
+    return static_cast<ExitCode>(job_.broadcast(writer_, code)[0]);
   }
 
   [[nodiscard]] bool wants_tiles() const override { return false; }
@@ -104,12 +93,12 @@ class Film final : public Sink {
     const std::size_t at = jobs_[rendered.number];
     frame_ms_.push_back(rendered.statistics.milliseconds);
     if (rendered.number + 1 < jobs_.size() && jobs_[rendered.number + 1] == at) return;
-    const Frame& frame = frames_[at];
+    const FilmFrame& frame = frames_[at];
     FrameRecord record;
     record.camera = camera_of(frame);
     {
-      const scene::TraceScope scope(timed() ? &compositing_ : nullptr, "write",
-                                    static_cast<std::int32_t>(jobs_before_ + rendered.number));
+      const TraceScope scope(timed() ? &compositing_ : nullptr, "write",
+                             static_cast<std::int32_t>(jobs_before_ + rendered.number));
       write_pictures(rendered.image, rendered.deep, frame, options_);
     }
     say(frame, rendered, std::move(record));
@@ -117,9 +106,9 @@ class Film final : public Sink {
 
  private:
   [[nodiscard]] bool timed() const { return !options_.timing.empty(); }
-  [[nodiscard]] scene::Trace* trace() { return timed() ? &projecting_ : nullptr; }
+  [[nodiscard]] Trace* trace() { return timed() ? &trace_ : nullptr; }
   /// Where the writing rank's own work goes.
-  [[nodiscard]] scene::Trace* writing() { return !timed() ? nullptr : overlaps_ ? &compositing_ : &projecting_; }
+  [[nodiscard]] Trace* writing() { return !timed() ? nullptr : overlaps_ ? &compositing_ : &trace_; }
 
   /// Only one rank shows progress.
   const RenderOptions& quiet_ranks(const RenderOptions& options) {
@@ -129,60 +118,52 @@ class Film final : public Sink {
 
   /// The writing rank's view of the disk holds for all.
   void agree_on_finished_frames() {
-    if (writes_) check_outputs(options_, frames_);
-    constexpr auto kind = exchange::MessageKind::finished_frames;
-    Bytes finished = exchange::begin_message(kind, frames_.size());
-    for (const Frame& frame : frames_) exchange::append(finished, std::uint8_t{frame.finished});
-    finished = exchange::broadcast(transport_, writer_, std::move(finished));
-    exchange::MessageReader reader(finished, writer_, kind);
-    for (Frame& frame : frames_) frame.finished = reader.take<std::uint8_t>() != 0;
-    reader.finish();
+    if (writes_) {
+      const std::array more = {options_.report, options_.timing};
+      const std::array inputs = {options_.input(), options_.plan.cameras, options_.read.plot3d_q,
+                                 std::filesystem::path(options_.transfer_function)};
+      check_film_outputs(frames_, more, inputs);
+    }
+    std::vector<std::byte> finished(frames_.size());
+    for (std::size_t i = 0; i < frames_.size(); ++i) finished[i] = std::byte{frames_[i].finished};
+    finished = job_.broadcast(writer_, std::move(finished));
+    for (std::size_t i = 0; i < frames_.size(); ++i) frames_[i].finished = finished[i] != std::byte{0};
   }
 
   void skip_to(std::size_t frame) {
     for (; writes_ && next_ < frame; ++next_) output_.skip(options_, frames_[next_]);
   }
 
-  [[nodiscard]] scene::Camera camera_of(const Frame& frame) const { return view_of(frame, *box_, options_.projection); }
+  [[nodiscard]] Camera camera_of(const FilmFrame& frame) const { return frame.view(*box_, options_.projection); }
 
-  void open(const Frame& frame, const ReadOptions& read) {
-    require_still_there(frame);
+  void open(const FilmFrame& frame, const ReadOptions& read) {
+    frame.require_still_there();
     session_.reset();  // the last step's memory before the next one's
     data_.reset();
-    data_.emplace(frame::open_dataset(frame.mesh.files, read, transport_, settings_.ranks, trace()));
+    data_.emplace(Dataset::open(frame.data.files, read, job_.communicator(), settings_.ranks));
     step_ = frame.step;
   }
 
   /// Makes the frame's step the one at hand.
-  void hold(const Frame& frame) {
+  void hold(const FilmFrame& frame) {
     if (!box_) {
       open(frames_.front(), read_);
       box_ = data_->bounds();
       tets_ = data_->tet_count();
       later_read_ = read_of_later_steps(read_, *data_);
       loaded_ = transfer_function_of(*data_, options_);
-      if (writes_) output_.describe(Description(*data_), loaded_);
-      if (writes_ && overlaps_) output_.note("job", job_json(options_, transport_.size(), roles_, settings_));
+      if (writes_) output_.describe(described(*data_), loaded_);
+      if (writes_ && overlaps_) output_.note("job", job_json(settings_.ranks, job_.size(), roles_));
     }
     if (frame.step != step_) open(frame, later_read_);
     if (session_) return;
-    frame::SessionExtras extras;
-    extras.projecting = trace();
-    extras.compositing = timed() ? &compositing_ : nullptr;
-    extras.compositing_on = options_.compositing_on;
-    extras.bounded = options_.settings.bounded;
-    extras.keep_cost = options_.show_balance;
-    extras.first_frame = static_cast<std::uint32_t>(jobs_before_);
-    session_.emplace(frame::make_session(*data_, settings_, transport_, extras));
-  }
-
-  [[nodiscard]] FrameSettings frame_settings() const {
-    return {options_.deep, options_.settings.deep_accuracy, options_.is_volume && options_.verify > 0};
+    settings_.ranks.first_frame = static_cast<std::uint32_t>(jobs_before_);
+    session_.emplace(*data_, settings_, job_.communicator());
   }
 
   void make_one_by_one(const std::vector<std::size_t>& group) {
     for (const std::size_t at : group) {
-      const Frame& frame = frames_[at];
+      const FilmFrame& frame = frames_[at];
       FrameRecord record;
       record.camera = camera_of(frame);
       if (trace() != nullptr) trace()->set_frame(frame.number);
@@ -193,11 +174,11 @@ class Film final : public Sink {
         // The last repetition's span holds the writing too.
         if (trace() != nullptr && i > 0) trace()->add_frame(frame.number, frame_begin);
         if (trace() != nullptr) frame_begin = trace()->now_us();
-        rendered = session_->render({record.camera, frame.size}, loaded_.function, frame_settings());
+        rendered = session_->render({record.camera, frame.size}, loaded_.function, options_.frame);
         frame_ms_.push_back(rendered.statistics.milliseconds);
       }
       if (writes_) {
-        const scene::TraceScope scope(trace(), "write");
+        const TraceScope scope(trace(), "write");
         write(rendered, frame, record.camera);
       }
       if (trace() != nullptr) trace()->add_frame(frame.number, frame_begin);
@@ -213,30 +194,27 @@ class Film final : public Sink {
         jobs_.push_back(at);
         views.push_back({camera_of(frames_[at]), frames_[at].size});
       }
-    session_->render(views, loaded_.function, frame_settings(), *this);
+    session_->render(views, loaded_.function, options_.frame, *this);
     jobs_before_ += jobs_.size();
   }
 
-  void write(const RenderedFrame& rendered, const Frame& frame, const scene::Camera& camera) const {
+  void write(const RenderedFrame& rendered, const FilmFrame& frame, const Camera& camera) const {
     if (!options_.show_balance) return write_pictures(rendered.image, rendered.deep, frame, options_);
-    const frame::GridBalance balance = frame::balance_of(*session_, loaded_.function);
-    scene::Image shown = rendered.image;
-    draw_bricks(shown, camera, data_->grid_geometry(), balance.bricks, balance.split);
-    const scene::Image cost = cost_picture(balance.cost, frame.size, balance.split);
-    Frame of_volume = frame, of_cost = frame;
+    const BalancePictures shown = session_->balance_pictures(rendered, {camera, frame.size}, loaded_.function);
+    FilmFrame of_volume = frame, of_cost = frame;
     const auto half = static_cast<std::ptrdiff_t>(frame.outputs.size() / 2);
     of_volume.outputs.erase(of_volume.outputs.begin() + half, of_volume.outputs.end());
     of_cost.outputs.erase(of_cost.outputs.begin(), of_cost.outputs.begin() + half);
-    write_pictures(shown, rendered.deep, of_volume, options_);
-    write_pictures(cost, rendered.deep, of_cost, options_);
+    write_pictures(shown.bricks, rendered.deep, of_volume, options_);
+    write_pictures(shown.cost, rendered.deep, of_cost, options_);
   }
 
   /// On the writing rank, of a frame that has been written.
-  void say(const Frame& frame, const RenderedFrame& rendered, FrameRecord record) {
+  void say(const FilmFrame& frame, const RenderedFrame& rendered, FrameRecord record) {
     record.statistics = rendered.statistics;
     record.frame_ms = std::exchange(frame_ms_, {});
     if (options_.verify > 0) {
-      const scene::TraceScope scope(writing(), "verify");
+      const TraceScope scope(writing(), "verify");
       record.verification = session_->verify(rendered, {record.camera, frame.size}, loaded_.function,
                                              static_cast<std::size_t>(options_.verify));
     }
@@ -247,43 +225,42 @@ class Film final : public Sink {
   }
 
   void write_trace() {
-    transport_.trace_to(nullptr, nullptr);
-    io::TraceRun traced;
-    std::string process = fmt::format("rank {}", transport_.rank());
+    session_.reset();  // its spans end before they are written
+    TraceRun traced;
+    std::string process = fmt::format("rank {}", job_.rank());
     if (box_) traced = trace_run(options_, tets_, frames_.front(), output_.rendered());
-    if (options_.is_volume) {
-      traced.ranks = transport_.size();
-      traced.rasterizer.clear();
-      traced.integrator = method_word(options_.volume_settings.method);
+    if (options_.is_grid()) {
+      traced.ranks = job_.size();
+      traced.integrator = method_word(settings_.integrator.kind);
     } else if (overlaps_) {
       traced = trace_run(options_, tets_, frames_.front(), output_.rendered());
-      traced.ranks = transport_.size();
+      traced.ranks = job_.size();
       traced.projectors = static_cast<int>(roles_.projectors.size());
       traced.compositors = static_cast<int>(roles_.compositors.size());
-      traced.exchange = exchange_word(options_.exchange);
-      const bool projects = roles_.projects(transport_.rank()), composites = roles_.composites(transport_.rank());
+      traced.exchange = exchange_word(settings_.ranks.exchange);
+      const bool projects = roles_.projects(job_.rank()), composites = roles_.composites(job_.rank());
       process += projects && composites ? " projector + compositor" : projects ? " projector" : " compositor";
     }
-    write_rank_traces(transport_, writer_, projecting_, process, traced, options_.timing);
+    tessera::write_trace(trace_, process, traced, options_.timing, job_.communicator(), writer_);
   }
 
   const RenderOptions& options_;
   RenderOptions quiet_ = options_;
-  exchange::Transport& transport_;
-  const frame::Roles roles_;  ///< of a mesh
+  Job& job_;
+  Settings settings_ = options_.settings;
+  ReadOptions read_ = options_.read;
+  const Roles roles_;  ///< of a mesh
   const int writer_;
   const bool writes_, overlaps_;
-  std::vector<Frame> frames_;
-  scene::Trace projecting_, compositing_;
+  std::vector<FilmFrame> frames_;
+  Trace trace_, compositing_;
   RunOutput output_;
 
-  const Settings settings_ = session_settings(options_);
-  const ReadOptions read_ = read_options(options_);
   ReadOptions later_read_;  ///< of the steps after the first
   std::optional<Dataset> data_;
   std::optional<Session> session_;
-  std::size_t step_ = 0;           ///< of data_
-  std::optional<scene::Box> box_;  ///< of the first step; none until something is read
+  std::size_t step_ = 0;    ///< of data_
+  std::optional<Box> box_;  ///< of the first step; none until something is read
   std::uint64_t tets_ = 0;
   LoadedTransferFunction loaded_;
 
@@ -295,9 +272,6 @@ class Film final : public Sink {
 
 }  // namespace
 
-scene::ExitCode render(const RenderOptions& options, exchange::Transport& transport) {
-  if (options.is_volume) refuse_mesh_options(options);
-  return Film(options, transport).run();
-}
+ExitCode render(const RenderOptions& options, Job& job) { return Film(options, job).run(); }
 
 }  // namespace tessera::apps

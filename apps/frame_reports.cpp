@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "io/atomic_file.hpp"
+#include "tessera/output_file.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -34,7 +34,7 @@ void FrameReports::add(const Json& frame) {
 }
 
 void FrameReports::write(const Json& report, const std::filesystem::path& path) const {
-  io::AtomicFile file(path);
+  AtomicFile file(path);
   std::string head = text_of(report, indent);
   head.resize(head.size() - 2);  // the newline and the bracket that end it
   file.write(head);

@@ -5,12 +5,12 @@
 #include <map>
 
 #include "apps/argument_values.hpp"
-#include "apps/convert_command.hpp"
-#include "apps/output_check.hpp"
+#include "datasets/arrays.hpp"
 #include "datasets/generate.hpp"
 #include "datasets/volumes.hpp"
-#include "io/volume_writer.hpp"
-#include "scene/error.hpp"
+#include "tessera/error.hpp"
+#include "tessera/output_file.hpp"
+#include "tessera/write.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -39,27 +39,27 @@ void generate(const std::string& kind, const std::filesystem::path& output, cons
   for (const auto& parameter : parameters) {
     const auto equals = parameter.find('=');
     if (equals == std::string::npos || equals == 0)
-      throw scene::bad_input(fmt::format("generate: '{}' is no parameter; write NAME=VALUE", parameter));
+      throw bad_input(fmt::format("generate: '{}' is no parameter; write NAME=VALUE", parameter));
     const auto name = parameter.substr(0, equals);
     if (!values.emplace(name, parse_number(name, parameter.substr(equals + 1))).second)
-      throw scene::bad_input(fmt::format("generate: {} is given twice; give it once", name));
+      throw bad_input(fmt::format("generate: {} is given twice; give it once", name));
   }
-  if (io::is_volume_output(output)) {
-    check_output_file(output, {});
+  if (is_grid_output(output)) {
+    check_output(output, {});
     const auto volume = datasets::generate_volume(kind, values);
-    io::write_volume(*volume, output);
+    write_grid(*volume, output);
     const auto& points = volume->geometry().points;
     if (!quiet)
       fmt::print(stderr, "{}: {} of {}x{}x{} {} samples\n", output.string(), kind, points[0], points[1], points[2],
-                 scene::name_of(volume->grid().type));
+                 name_of(volume->grid().type));
     return;
   }
   check_mesh_output(output, {});
-  const auto mesh = datasets::generate(kind, values);
+  const MeshArrays mesh = datasets::arrays_of(datasets::generate(kind, values));
   write_mesh(mesh, output);
   if (!quiet)
-    fmt::print(stderr, "{}: {} with {} tets, {} points, field {}\n", output.string(), kind, mesh.tets.size(),
-               mesh.positions.size(), mesh.field_name);
+    fmt::print(stderr, "{}: {} with {} tets, {} points, field {}\n", output.string(), kind, mesh.tets.size() / 4,
+               mesh.points.size() / 3, mesh.field_name);
 }
 
 }  // namespace tessera::apps

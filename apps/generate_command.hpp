@@ -7,7 +7,7 @@
 namespace tessera::apps {
 
 /// `tessera generate KIND OUT [NAME=VALUE ...]`: a mesh of datasets/, written as .tets or .vtu. One line on stderr
-/// unless `quiet`. Throws scene::Error for an unknown kind or parameter, with the list.
+/// unless `quiet`. Throws Error for an unknown kind or parameter, with the list.
 void generate(const std::string& kind, const std::filesystem::path& output, const std::vector<std::string>& parameters,
               bool quiet);
 

@@ -3,38 +3,50 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "apps/report.hpp"
-#include "apps/session_options.hpp"
-#include "frame/mesh_input.hpp"
-#include "tessera/mesh_check.hpp"
 
 namespace tessera::apps {
 namespace {
 
-void print_text(const std::filesystem::path& input, const Description& file, const LoadedTransferFunction& loaded) {
-  const auto& counts = file.counts;
-  const auto& box = file.box;
+std::string triple(const glm::dvec3& v) { return fmt::format("({:.9g} {:.9g} {:.9g})", v.x, v.y, v.z); }
+
+std::string lattice_line(const GridGeometry& g) {
+  std::string line = fmt::format("{}x{}x{} points, origin {}", g.points[0], g.points[1], g.points[2], triple(g.origin));
+  if (g.rectilinear())
+    line += ", rectilinear";
+  else
+    line += fmt::format(", spacing {}", triple(g.spacing));
+  if (g.direction != glm::dmat3(1.0))
+    line += fmt::format(", axes {} {} {}", triple(g.direction[0]), triple(g.direction[1]), triple(g.direction[2]));
+  return line;
+}
+
+void print_text(const std::filesystem::path& input, const analysis::Description& data,
+                const LoadedTransferFunction& loaded, const Camera& view) {
   fmt::print("file      {}\n", input.string());
-  fmt::print("format    {}\n", file.format);
-  fmt::print("cells     {}\n", cells_line(counts));
-  fmt::print("points    {}, {} of them in no cell kept\n", counts.points_read, counts.points_unused);
-  fmt::print("bounds    ({:.9g} {:.9g} {:.9g}) to ({:.9g} {:.9g} {:.9g}), diagonal {:.6g}\n", box.low.x, box.low.y,
-             box.low.z, box.high.x, box.high.y, box.high.z, frame::diagonal(box));
+  fmt::print("format    {}\n", data.format);
+  if (data.is_mesh) {
+    fmt::print("cells     {}\n", cells_line(data.counts));
+    fmt::print("points    {}, {} of them in no cell kept\n", data.counts.points_read, data.counts.points_unused);
+  } else {
+    fmt::print("lattice   {}\n", lattice_line(data.geometry));
+    fmt::print("samples   {}\n", samples_line(data));
+  }
+  fmt::print("bounds    {} to {}, diagonal {:.6g}\n", triple(data.box.low), triple(data.box.high), diagonal(data.box));
   std::size_t widest = 0;
-  for (const auto& field : file.fields) widest = std::max(widest, field.name.size());
+  for (const auto& field : data.fields) widest = std::max(widest, field.name.size());
   const char* title = "fields";
-  for (const auto& field : file.fields) {
+  for (const auto& field : data.fields) {
     fmt::print("{:<9} {:<{}}  {:<5}  {:<7} x {}  {:.6g} to {:.6g}{}\n", title, field.name, widest,
-               field.association == scene::Association::point ? "point" : "cell", field.type, field.components,
-               field.low, field.high, field.nan_count > 0 ? fmt::format(", {} NaN", field.nan_count) : "");
+               analysis::word(field.association), field.type, field.components, field.low, field.high,
+               field.nan_count > 0 ? fmt::format(", {} NaN", field.nan_count) : "");
     title = "";
   }
-  const auto& range = file.range;
-  const auto view = scene::frame_box(box, scene::ImageSize{});
-  fmt::print("renders   field {}, {:.6g} to {:.6g}; {}; view {}\n", file.field_name, range[0], range[1],
+  fmt::print("renders   field {}, {:.6g} to {:.6g}; {}; view {}\n", data.field_name, data.range[0], data.range[1],
              transfer_function_line(loaded), view_line(view));
-  for (const auto& note : file.notes) fmt::print("note      {}\n", note);
+  for (const auto& note : data.notes) fmt::print("note      {}\n", note);
 }
 
 void print_finding(const char* name, const MeshCheck::Finding& finding, const std::string& more = "",
@@ -64,55 +76,25 @@ void print_check(const MeshCheck& check) {
   fmt::print("  {:<21} {} right-handed, {} left-handed\n", "orientation", check.right_handed, check.left_handed);
 }
 
-nlohmann::ordered_json finding_json(const MeshCheck::Finding& finding) {
-  nlohmann::ordered_json places = nlohmann::ordered_json::array();
-  for (const auto& place : finding.places) {
-    nlohmann::ordered_json json = {{"id", place.cell}};
-    if (place.other != place.cell) json["other"] = place.other;
-    json["at"] = {place.at.x, place.at.y, place.at.z};
-    if (place.value > 0) json["value"] = place.value;
-    places.push_back(json);
-  }
-  return {{"count", finding.count}, {"places", places}};
-}
-
-nlohmann::ordered_json check_json(const MeshCheck& check) {
-  nlohmann::ordered_json json = {{"tets", check.tets}, {"points", check.points}, {"clean", check.clean()}};
-  json["overlaps"] = finding_json(check.overlaps);
-  json["overlaps"]["cells"] = check.overlapping_cells;
-  json["overlaps"]["more"] = check.more_overlaps;
-  json["folded"] = finding_json(check.inverted);
-  json["non_conforming_faces"] = finding_json(check.non_conforming_faces);
-  json["flat"] = finding_json(check.flat);
-  json["slivers"] = finding_json(check.slivers);
-  json["slivers"]["above_1e4"] = check.slivers_1e4;
-  json["slivers"]["above_1e6"] = check.slivers_1e6;
-  json["slivers"]["worst_aspect"] = check.worst_aspect;
-  json["duplicate_points"] = finding_json(check.duplicate_points);
-  json["right_handed"] = check.right_handed;
-  json["left_handed"] = check.left_handed;
-  return json;
-}
-
 }  // namespace
 
-void info(const std::filesystem::path& input, const io::MeshOptions& options, bool as_json, bool check) {
-  const Dataset data = Dataset::open(input, read_options(options));
+void info(const std::filesystem::path& input, const ReadOptions& options, bool as_json, bool check) {
+  const Dataset data = Dataset::open(input, options);
   std::optional<MeshCheck> checked;
   if (check) checked = data.check();
-  const Description file(data);
+  const analysis::Description description = described(data);
   const auto loaded = transfer_function_of(data, RenderOptions{});
+  const ImageSize size;
+  const Camera view = data.default_camera(size);
   if (!as_json) {
-    print_text(input, file, loaded);
+    print_text(input, description, loaded, view);
     if (checked) print_check(*checked);
     return;
   }
-
-  auto json = data_json(input, file);
-  const scene::ImageSize size;
-  json["renders"] = {{"transfer_function", transfer_function_json(loaded)},
-                     {"view", view_json(data.default_camera(size), size)}};
-  if (checked) json["check"] = check_json(*checked);
+  auto json = analysis::data_json(input, description);
+  json["renders"] = {{"transfer_function", analysis::transfer_function_json(loaded)},
+                     {"view", analysis::view_json(view, size)}};
+  if (checked) json["check"] = analysis::check_json(*checked);
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 

@@ -1,5 +1,5 @@
 // The `tessera` program: subcommands over the libraries. Everything that goes wrong ends here, in one line on stderr
-// and an exit status (scene::ExitCode).
+// and an exit status (ExitCode).
 
 #include <fmt/format.h>
 
@@ -9,10 +9,8 @@
 #include <cstdlib>
 #include <exception>
 #include <iostream>
-#include <new>
 #include <optional>
 #include <sstream>
-#include <string_view>
 
 #include "apps/argument_values.hpp"
 #include "apps/chart_command.hpp"
@@ -20,51 +18,38 @@
 #include "apps/film.hpp"
 #include "apps/generate_command.hpp"
 #include "apps/info_command.hpp"
-#include "apps/job.hpp"
-#include "apps/one_line.hpp"
 #include "apps/render_options.hpp"
 #include "apps/setting_words.hpp"
 #include "apps/stall_options.hpp"
 #include "apps/timing_command.hpp"
-#include "apps/volume_input.hpp"
 #include "apps/volume_options.hpp"
-#include "exchange/instruction_sets.hpp"
-#include "io/atomic_file.hpp"
-#include "io/time_series.hpp"
-#include "scene/error.hpp"
-#include "scene/start_thread.hpp"
+#include "tessera/input_file.hpp"
+#include "tessera/job.hpp"
+#include "tessera/output_file.hpp"
 #include "tessera/version.hpp"
 
 namespace tessera::apps {
 namespace {
 
-using scene::ExitCode;
-
 /// One line whatever the message holds: file names may contain line breaks, and libraries' messages do. Nothing if the
 /// run's line has been said. Settings are options in it.
-int fail(const scene::Error& error) {
-  if (!may_speak()) return static_cast<int>(error.code());
+int fail(const Error& error) {
   std::string line = "tessera: ";
   for (const char c : with_options(error.what())) line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
   while (line.ends_with(' ')) line.pop_back();
-  fmt::print(stderr, "{}\n", line);
-  std::fflush(stderr);
-  hold_one_line();
+  Job::say_once(line);
   return static_cast<int>(error.code());
 }
 
 /// Whether a rectilinear grid, which is a volume, is asked for as the mesh that it is too.
 bool to_mesh(const std::filesystem::path& input, const std::filesystem::path& output) {
   const auto extension = output.extension();
-  return (extension == ".vtu" || extension == ".tets" || extension == ".pvtu") && io::is_mesh_file(input);
+  return (extension == ".vtu" || extension == ".tets" || extension == ".pvtu") && is_mesh_name(input);
 }
 
 ExitCode run(int argc, char** argv, Job& job) {
-  exchange::Transport& transport = job.transport();
-  if (transport.size() > 1) {
-    speak_when_ended(transport);
-    exchange::agree_instruction_sets(transport);
-  }
+  job.answer_termination();
+  job.agree_instruction_sets();
 
   CLI::App app("Tessera renders scientific volumes: unstructured meshes and regular grids, exactly, on the CPU.",
                "tessera");
@@ -125,44 +110,42 @@ ExitCode run(int argc, char** argv, Job& job) {
   // CLI11 would only say that a subcommand is missing.
   if (argc > 1 && argv[1][0] != '-' &&
       app.get_subcommands([&](const CLI::App* command) { return command->get_name() == argv[1]; }).empty())
-    throw scene::bad_input(
+    throw bad_input(
         fmt::format("arguments: '{}' is no command; use render, info, convert, generate, chart or timing", argv[1]));
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version
     std::ostringstream unheard;
-    app.exit(asked, job.is_first() ? std::cout : unheard, job.is_first() ? std::cerr : unheard);
+    app.exit(asked, job.rank() == 0 ? std::cout : unheard, job.rank() == 0 ? std::cerr : unheard);
     return ExitCode::complete;
   } catch (const CLI::ParseError& error) {
     std::string help = "tessera --help";
     for (const CLI::App* command : app.get_subcommands({}))
       if (argc > 1 && command->get_name() == argv[1]) help = fmt::format("tessera {} --help", argv[1]);
-    throw scene::bad_input(fmt::format("arguments: {}; see {}", error.what(), help));
+    throw bad_input(fmt::format("arguments: {}; see {}", error.what(), help));
   }
 
   if (*render_command) {
     const RenderOptions options = render_options(words);
     if (const auto stalls = stall_settings(stall_words, words.quiet)) job.watch_stalls(*stalls);
-    return render(options, transport);
+    if (options.is_grid()) refuse_mesh_options(words, options);
+    return render(options, job);
   }
-  if (!job.is_first()) return ExitCode::complete;  // the other commands are for one process
+  if (job.rank() != 0) return ExitCode::complete;  // the other commands are for one process
   if (*info_command) {
-    if (check && is_volume_input(words)) {
-      io::require_input(words.input);
-      throw scene::bad_input("--check: is for meshes, and the input is a volume; leave it out");
+    const bool is_grid = is_grid_input(words);
+    if (check && is_grid) {
+      require_input(words.input);
+      throw bad_input("--check: is for meshes, and the input is a volume; leave it out");
     }
-    if (is_volume_input(words))
-      volume_info(words.input, volume_options(words), as_json);
-    else
-      info(words.input, mesh_options(words), as_json, check);
+    info(words.input, is_grid ? volume_options(words) : mesh_options(words), as_json, check);
   }
-  if (*convert_command) io::require_input(words.input);
-  if (*convert_command && is_volume_input(words) && !to_mesh(words.input, mesh_output))
-    convert_volume(words.input, mesh_output, volume_options(words), parse_count("--block", block, 8, 1024),
-                   words.quiet);
+  if (*convert_command) require_input(words.input);
+  if (*convert_command && is_grid_input(words) && !to_mesh(words.input, mesh_output))
+    convert_grid(words.input, mesh_output, volume_options(words), parse_count("--block", block, 8, 1024), words.quiet);
   else if (*convert_command)
-    convert(words.input, mesh_output, mesh_options(words), parse_count("--subdivide", subdivide, 0, 8),
-            convert_pieces(pieces, pieces_partition), words.quiet);
+    convert_mesh(words.input, mesh_output, mesh_options(words), parse_count("--subdivide", subdivide, 0, 8),
+                 convert_pieces(pieces, pieces_partition), words.quiet);
   if (*chart_command) chart(words, chart_words);
   if (*timing_command) timing({traces.begin(), traces.end()}, csv, figure);
   if (*generate_command) generate(kind, mesh_output, parameters, words.quiet);
@@ -174,26 +157,18 @@ ExitCode run(int argc, char** argv, Job& job) {
 
 namespace {
 
-using tessera::scene::Error;
-using tessera::scene::ErrorCode;
-using tessera::scene::ExitCode;
+using tessera::Error;
+using tessera::ErrorCode;
+using tessera::apps::ExitCode;
 
 /// What any exception is to the user.
 Error as_error() {
   try {
     throw;
-  } catch (const tessera::io::OutputFault& fault) {
+  } catch (const tessera::OutputFault& fault) {
     return fault.since_changed();  // every command has looked at its outputs before it began
-  } catch (const Error& error) {
-    return error;
-  } catch (const std::bad_alloc&) {
-    return {ErrorCode::system_failure,
-            "memory: this run needs more than there is; make --size smaller or use a machine with more"};
-  } catch (const std::exception& error) {
-    if (const auto of_threads = tessera::scene::thread_fault(error)) return *of_threads;
-    return {ErrorCode::system_failure, fmt::format("unexpected: {}; please report", error.what())};
   } catch (...) {
-    return {ErrorCode::system_failure, "unexpected: unknown exception; please report"};
+    return tessera::error_of(std::current_exception());
   }
 }
 
@@ -211,9 +186,10 @@ Error as_error() {
 int main(int argc, char** argv) {
   using tessera::apps::fail;
   std::set_terminate(on_terminate);
-  std::optional<tessera::apps::Job> job;
+  std::optional<tessera::Job> job;
   try {
-    job.emplace([](const Error& error) { fail(error); });
+    constexpr auto remedy = "finished pictures stay, and the same command with --resume goes on from there";
+    job.emplace(tessera::JobVoice{"tessera", remedy, [](const Error& error) { fail(error); }});
   } catch (...) {
     return fail(as_error());
   }
@@ -224,7 +200,7 @@ int main(int argc, char** argv) {
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
       throw Error(ErrorCode::system_failure, "standard output: cannot be written; make room or close the pipe later");
   } catch (...) {
-    job->transport().fail(as_error());
+    job->fail(as_error());
   }
   if (const std::optional<Error> error = job->finish()) return static_cast<int>(error->code());
   return static_cast<int>(code);

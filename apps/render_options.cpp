@@ -9,20 +9,22 @@
 
 #include "apps/argument_values.hpp"
 #include "apps/compositing_options.hpp"
+#include "apps/report.hpp"
+#include "apps/setting_words.hpp"
 #include "apps/volume_options.hpp"
-#include "io/image_deep_exr.hpp"
-#include "scene/error.hpp"
+#include "tessera/error.hpp"
+#include "tessera/input_file.hpp"
 
 namespace tessera::apps {
 namespace {
 
 constexpr int no_limit = std::numeric_limits<int>::max();
 
-scene::Integrator chosen_integrator(const RenderWords& words) {
+Integrator mesh_integrator(const RenderWords& words) {
   const double accuracy = words.accuracy.empty() ? 1e-4 : parse_positive("--accuracy", words.accuracy);
   const auto integrator = parse_integrator("--integrator", words.integrator, accuracy);
-  if (!words.accuracy.empty() && integrator.kind != scene::IntegratorKind::automatic)
-    throw scene::bad_input(
+  if (!words.accuracy.empty() && integrator.kind != IntegratorKind::automatic)
+    throw bad_input(
         fmt::format("--accuracy: has no effect with --integrator {}; leave one of the two out", words.integrator));
   return integrator;
 }
@@ -32,23 +34,24 @@ int thread_count(const RenderWords& words) {
   return words.threads.empty() ? 0 : parse_count("--threads", words.threads, 1, 1024);
 }
 
-frame::RenderSettings render_settings(const RenderWords& words, bool for_volume) {
+/// What meshes and grids share, and what is of meshes.
+void set_common(const RenderWords& words, RenderOptions& options) {
   check_word("--emission", words.emission, {"absorption", "independent"});
   check_word("--rasterizer", words.rasterizer, {"planes", "scanline"});
-  frame::RenderSettings settings;
-  if (!for_volume) settings.integrator = chosen_integrator(words);
-  if (words.rasterizer == "scanline") settings.rasterizer = frame::Rasterizer::scanline;
-  if (words.emission == "independent") settings.emission = scene::Emission::independent;
-  if (!words.deep_accuracy.empty()) settings.deep_accuracy = parse_positive("--deep-accuracy", words.deep_accuracy);
+  Settings& settings = options.settings;
+  if (!options.is_grid()) settings.integrator = mesh_integrator(words);
+  if (words.rasterizer == "scanline") settings.mesh.rasterizer = Rasterizer::scanline;
+  if (words.emission == "independent") settings.emission = Emission::independent;
+  if (!words.deep_accuracy.empty())
+    options.frame.deep_accuracy = parse_positive("--deep-accuracy", words.deep_accuracy);
   settings.threads = thread_count(words);
-  if (!words.tile_size.empty()) settings.tile_size = parse_count("--tile-size", words.tile_size, 1, 1024);
+  if (!words.tile_size.empty()) settings.mesh.tile_size = parse_count("--tile-size", words.tile_size, 1, 1024);
   if (!words.memory.empty()) settings.memory_bytes = parse_bytes("--memory", words.memory);
-  return settings;
 }
 
-io::ImageFileOptions image_options(const RenderWords& words) {
+ImageFileOptions image_options(const RenderWords& words) {
   check_word("--png-bits", words.png_bits, {"8", "16"});
-  io::ImageFileOptions image;
+  ImageFileOptions image;
   image.half = words.half;
   image.png_bits = words.png_bits == "16" ? 16 : 8;
   image.encode_srgb = words.blend != "display";
@@ -57,6 +60,30 @@ io::ImageFileOptions image_options(const RenderWords& words) {
     image.background = glm::dvec3(color[0], color[1], color[2]);
   }
   return image;
+}
+
+/// Jobs of several ranks, and devices.
+void set_ranks(const RenderWords& words, bool merges, RenderOptions& options) {
+  Settings& settings = options.settings;
+  RankSettings& ranks = settings.ranks;
+  if (!words.projectors.empty()) ranks.projectors = parse_count("--projectors", words.projectors, 1, no_limit);
+  if (!words.compositors.empty()) ranks.compositors = parse_count("--compositors", words.compositors, 1, no_limit);
+  if (!words.exchange.empty()) check_word("--exchange", words.exchange, {"runs", "segments"});
+  settings.mesh.device = device_settings(words, options.is_grid());
+  if (words.exchange.empty() && (settings.mesh.rasterizer == Rasterizer::scanline || options.frame.deep ||
+                                 !settings.mesh.device.backends.empty()))
+    // The paper's do not touch; deep samples are cut within segments; a device that only got runs had nothing to do.
+    ranks.exchange = Exchange::segments;
+  if (words.exchange == "segments" || !merges) ranks.exchange = Exchange::segments;
+  if (words.exchange == "runs" && !merges)
+    throw bad_input("--without merging: is --exchange segments, but runs were asked for; leave one of the two out");
+  check_word("--partition", words.partition, {"curve", "file", "random"});
+  if (words.partition == "file") ranks.partition.kind = PartitionKind::file;
+  if (words.partition == "random") ranks.partition.kind = PartitionKind::random;
+  if (!words.frames_in_flight.empty())
+    ranks.frames_in_flight = parse_count("--frames-in-flight", words.frames_in_flight, 1, 64);
+  if (!words.seed.empty())
+    ranks.tile_seed = ranks.partition.seed = static_cast<std::uint64_t>(parse_count("--seed", words.seed, 0, no_limit));
 }
 
 }  // namespace
@@ -79,8 +106,9 @@ void add_mesh_options(CLI::App& command, RenderWords& words) {
   add_volume_options(command, words);
 }
 
-io::MeshOptions mesh_options(const RenderWords& words) {
-  io::MeshOptions mesh;
+ReadOptions mesh_options(const RenderWords& words) {
+  ReadOptions mesh;
+  mesh.grid_as_mesh = true;
   mesh.field = words.field;
   mesh.smooth = words.smooth;
   mesh.plot3d_q = words.q;
@@ -180,78 +208,94 @@ void add_render_options(CLI::App& command, RenderWords& words) {
 
 RenderOptions render_options(const RenderWords& words) {
   RenderOptions options;
-  options.input = words.input;
-  options.more_inputs = {words.more_inputs.begin(), words.more_inputs.end()};
-  options.outputs.assign(words.outputs.begin(), words.outputs.end());
-  options.mesh = mesh_options(words);
+  FilmPlan& plan = options.plan;
+  plan.inputs = {words.input};
+  plan.inputs.insert(plan.inputs.end(), words.more_inputs.begin(), words.more_inputs.end());
+  plan.outputs.assign(words.outputs.begin(), words.outputs.end());
+  options.read = mesh_options(words);
 
   options.transfer_function = words.transfer_function;
   if (words.rescale && words.transfer_function.empty())
-    throw scene::bad_input("--rescale: is for a --transfer-function file; name one, or leave it out");
-  if (!words.unit_distance.empty()) options.unit_distance = parse_positive("--unit-distance", words.unit_distance);
-  options.opacity_scale = parse_positive("--opacity-scale", words.opacity_scale);
+    throw bad_input("--rescale: is for a --transfer-function file; name one, or leave it out");
+  if (!words.unit_distance.empty())
+    options.function.unit_distance = parse_positive("--unit-distance", words.unit_distance);
+  options.function.opacity_scale = parse_positive("--opacity-scale", words.opacity_scale);
   check_word("--blend", words.blend, {"linear", "display"});
-  options.rescale = words.rescale;
-  options.display_blend = words.blend == "display";
+  options.function.rescale = words.rescale;
+  options.function.display_colors = words.blend == "display";
 
-  options.camera_file = words.camera;
-  if (!words.orbit.empty()) options.orbit = parse_count("--orbit", words.orbit, 1, 1'000'000);
-  if (!words.size.empty()) options.size = parse_size("--size", words.size);
+  plan.cameras = words.camera;
+  if (!words.orbit.empty()) plan.orbit = parse_count("--orbit", words.orbit, 1, 1'000'000);
+  if (!words.size.empty()) plan.size = parse_size("--size", words.size);
   if (!words.projection.empty()) {
     check_word("--projection", words.projection, {"orthographic", "perspective"});
     if (!words.camera.empty())
-      throw scene::bad_input("--projection: has no effect with --camera, whose file says it; leave one of the two out");
-    if (words.projection == "perspective") options.projection = scene::ProjectionKind::perspective;
+      throw bad_input("--projection: has no effect with --camera, whose file says it; leave one of the two out");
+    if (words.projection == "perspective") options.projection = ProjectionKind::perspective;
   }
 
-  options.is_volume = is_volume_input(words);
-  options.settings = render_settings(words, options.is_volume);
+  plan.grids = is_grid_input(words);
+  set_common(words, options);
+  Settings& settings = options.settings;
   const WithoutWords without = parse_without("--without", words.without);
   options.without = words.without;
-  options.settings.use = without.use;
-  options.settings.integrator.terminates = without.use.termination;
-  if (options.is_volume) {
-    options.volume = volume_options(words);
-    options.volume_settings = volume_settings(words, options.settings);
-    options.balance = balance_settings(words);
-    options.show_balance = !words.show.empty();
+  settings.use = without.use;
+  settings.integrator.terminates = without.use.termination;
+  if (plan.grids) {
+    const int threads = options.read.threads;
+    options.read = volume_options(words);
+    options.read.threads = threads;
+    set_grid(words, settings);
+    set_balance(words, settings.ranks);
+    options.show_balance = options.frame.keep_cost = !words.show.empty();
     refuse_mesh_words(words);
   } else {
     refuse_volume_options(words);
   }
-  options.deep = std::ranges::any_of(options.outputs, io::is_deep_name);
-  if (!options.deep && !words.deep_accuracy.empty())
-    throw scene::bad_input("--deep-accuracy: is for a deep picture; name one with -o FILE.deep.exr, or leave it out");
+  options.frame.deep = std::ranges::any_of(plan.outputs, is_deep_name);
+  if (!options.frame.deep && !words.deep_accuracy.empty())
+    throw bad_input("--deep-accuracy: is for a deep picture; name one with -o FILE.deep.exr, or leave it out");
   options.image = image_options(words);
-  if (!words.projectors.empty()) options.projectors = parse_count("--projectors", words.projectors, 1, no_limit);
-  if (!words.compositors.empty()) options.compositors = parse_count("--compositors", words.compositors, 1, no_limit);
-  if (!words.exchange.empty()) check_word("--exchange", words.exchange, {"runs", "segments"});
-  options.compositing_on = compositing_settings(words, options.is_volume);
-  options.settings.bounded = !composites_as_printed(options.compositing_on);
-  if (words.exchange.empty() && (options.settings.rasterizer == frame::Rasterizer::scanline || options.deep ||
-                                 !options.compositing_on.backends.empty()))
-    // The paper's do not touch; deep samples are cut within segments; a device that only got runs had nothing to do.
-    options.exchange = frame::Exchange::segments;
-  if (words.exchange == "segments" || !without.merging) options.exchange = frame::Exchange::segments;
-  if (words.exchange == "runs" && !without.merging)
-    throw scene::bad_input(
-        "--without merging: is --exchange segments, but runs were asked for; leave one of the two out");
-  check_word("--partition", words.partition, {"curve", "file", "random"});
-  if (words.partition == "file") options.partition.kind = projection::PartitionKind::file;
-  if (words.partition == "random") options.partition.kind = projection::PartitionKind::random;
-  if (!words.frames_in_flight.empty())
-    options.frames_in_flight = parse_count("--frames-in-flight", words.frames_in_flight, 1, 64);
-  if (!words.seed.empty())
-    options.tile_seed = options.partition.seed =
-        static_cast<std::uint64_t>(parse_count("--seed", words.seed, 0, no_limit));
-  options.resume = words.resume;
+  set_ranks(words, without.merging, options);
+  plan.resume = words.resume;
   if (!words.repeat.empty()) options.repeat = parse_count("--repeat", words.repeat, 1, no_limit);
+  if (options.repeat > 0) settings.ranks.frames_in_flight = 1;  // a time is of one frame alone
   if (!words.verify.empty()) options.verify = parse_count("--verify", words.verify, 1, no_limit);
+  options.frame.keep_uncertainty = plan.grids && options.verify > 0;
   options.report = words.report;
   options.timing = words.timing;
   options.quiet = words.quiet;
   options.progress = !words.quiet && (words.progress || isatty(STDERR_FILENO) == 1);
   return options;
+}
+
+void refuse_mesh_options(const RenderWords& words, const RenderOptions& options) {
+  const auto refuse = [&](const char* option) {
+    require_input(options.input());
+    throw bad_input(fmt::format("{}: is for meshes, and the input is a volume; leave it out", option));
+  };
+  const ReadOptions& read = mesh_options(words);
+  if (options.frame.deep && takes_steps(options.settings.integrator))
+    throw bad_input(
+        fmt::format("deep picture: --integrator {} gives a step other light than its parts; use auto or "
+                    "exact",
+                    method_word(options.settings.integrator.kind)));
+  if (options.frame.deep && options.settings.grid.shading)
+    throw bad_input("deep picture: it is not shaded; leave --shade out");
+  if (options.frame.deep && options.show_balance)
+    throw bad_input("deep picture: --show balance draws none; name an .exr, .png or .pfm");
+  if (options.settings.mesh.rasterizer != Rasterizer::planes) refuse("--rasterizer");
+  if (read.smooth) refuse("--smooth");
+  if (read.max_volume) refuse("--max-volume");
+  if (read.time_step) refuse("--time-step");
+  if (!read.plot3d_q.empty()) refuse("--q");
+}
+
+LoadedTransferFunction transfer_function_of(const Dataset& data, const RenderOptions& options) {
+  LoadedTransferFunction loaded = data.transfer_function(options.transfer_function, options.function);
+  loaded.name = with_options(loaded.name);
+  loaded.unit_distance_source = with_options(loaded.unit_distance_source);
+  return loaded;
 }
 
 }  // namespace tessera::apps

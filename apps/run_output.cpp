@@ -4,9 +4,7 @@
 
 #include <algorithm>
 
-#include "io/atomic_file.hpp"
-#include "io/image_deep_exr.hpp"
-#include "scene/threads.hpp"
+#include "tessera/output_file.hpp"
 #include "tessera/version.hpp"
 
 namespace tessera::apps {
@@ -24,30 +22,27 @@ std::string frame_ms_line(std::vector<double> times) {
 }
 
 void write_json(const Json& json, const std::filesystem::path& path) {
-  io::AtomicFile file(path);
   // A file name need not be UTF-8; JSON must.
-  file.write(json.dump(2, ' ', false, Json::error_handler_t::replace));
-  file.write("\n");
-  file.commit();
+  write_text(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-RunOutput::RunOutput(const RenderOptions& options, const std::vector<Frame>& frames, int ranks)
+RunOutput::RunOutput(const RenderOptions& options, const std::vector<FilmFrame>& frames, int ranks)
     : frames_(frames),
       progress_(options.progress, frames.size()),
       report_{{"program", "tessera"}, {"version", TESSERA_VERSION}, {"method", method_json(options, ranks)}},
       frame_reports_(!options.report.empty()) {}
 
-void RunOutput::describe(Description data, LoadedTransferFunction transfer_function) {
+void RunOutput::describe(analysis::Description data, LoadedTransferFunction transfer_function) {
   data_ = std::move(data);
   transfer_function_ = std::move(transfer_function);
 }
 
-void RunOutput::skip(const RenderOptions& options, const Frame& frame) {
+void RunOutput::skip(const RenderOptions& options, const FilmFrame& frame) {
   if (frame_reports_.kept()) frame_reports_.add(frame_json(options, frame, nullptr));
   progress_.update(++done_, rendered_);
 }
 
-void RunOutput::add(const RenderOptions& options, const Frame& frame, const FrameRecord& record) {
+void RunOutput::add(const RenderOptions& options, const FilmFrame& frame, const FrameRecord& record) {
   if (frame_reports_.kept()) frame_reports_.add(frame_json(options, frame, &record));
   if (rendered_ == 0 && !options.quiet) {
     progress_.clear();
@@ -65,44 +60,43 @@ void RunOutput::add(const RenderOptions& options, const Frame& frame, const Fram
   progress_.update(++done_, ++rendered_);
 }
 
-scene::ExitCode RunOutput::finish(const RenderOptions& options) {
+ExitCode RunOutput::finish(const RenderOptions& options) {
   progress_.clear();
   if (data_) {
-    report_[data_->is_mesh ? "mesh" : "volume"] = data_json(options.input, *data_);
-    report_["transfer_function"] = transfer_function_json(*transfer_function_);
+    report_[data_->is_mesh ? "mesh" : "volume"] = analysis::data_json(options.input(), *data_);
+    report_["transfer_function"] = analysis::transfer_function_json(*transfer_function_);
   } else if (!options.quiet) {
-    fmt::print(stderr, "{}: all {} frames are there already, nothing rendered\n", options.input.string(),
+    fmt::print(stderr, "{}: all {} frames are there already, nothing rendered\n", options.input().string(),
                frames_.size());
   }
   if (!options.report.empty()) frame_reports_.write(report_, options.report);
-  return met_ ? scene::ExitCode::complete : scene::ExitCode::accuracy_not_met;
+  return met_ ? ExitCode::complete : ExitCode::accuracy_not_met;
 }
 
-void write_pictures(const scene::Image& image, const scene::DeepImage& deep, const Frame& frame,
-                    const RenderOptions& options) {
+void write_pictures(const Image& image, const DeepImage& deep, const FilmFrame& frame, const RenderOptions& options) {
   try {
     for (const auto& output : frame.outputs) {
-      if (io::is_deep_name(output))
-        io::write_deep_exr(deep, output);
+      if (is_deep_name(output))
+        write_deep_image(deep, output);
       else
-        io::write_image(image, output, options.image);
+        write_image(image, output, options.image);
     }
-  } catch (const io::OutputFault& fault) {
+  } catch (const OutputFault& fault) {
     throw fault.since_changed();
   }
 }
 
-io::TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const Frame& frame, std::size_t rendered) {
+TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const FilmFrame& frame, std::size_t rendered) {
   const Json method = method_json(options, 1);
-  io::TraceRun traced;
+  TraceRun traced;
   traced.version = TESSERA_VERSION;
-  traced.input = options.input.string();
+  traced.input = options.input().string();
   traced.tets = tets;
   traced.frames = static_cast<int>(rendered) * std::max(options.repeat, 1);
   traced.width = frame.size.width;
   traced.height = frame.size.height;
-  traced.threads = scene::threads_for(options.settings.threads);
-  traced.rasterizer = method.value("rasterizer", "planes");
+  traced.threads = threads_for(options.settings.threads);
+  traced.rasterizer = method.value("rasterizer", "");
   traced.integrator = method.at("integrator");
   return traced;
 }

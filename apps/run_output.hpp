@@ -3,11 +3,12 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "apps/frame_list.hpp"
+#include "apps/exit_code.hpp"
 #include "apps/frame_reports.hpp"
 #include "apps/progress.hpp"
 #include "apps/report.hpp"
-#include "io/chrome_trace.hpp"
+#include "tessera/film.hpp"
+#include "tessera/trace_file.hpp"
 
 namespace tessera::apps {
 
@@ -16,27 +17,27 @@ namespace tessera::apps {
 class RunOutput {
  public:
   /// `options` for what is shown; `ranks` of the job.
-  RunOutput(const RenderOptions& options, const std::vector<Frame>& frames, int ranks);
+  RunOutput(const RenderOptions& options, const std::vector<FilmFrame>& frames, int ranks);
 
   /// What the run line and the report say of the data; before the first add().
-  void describe(Description data, LoadedTransferFunction transfer_function);
+  void describe(analysis::Description data, LoadedTransferFunction transfer_function);
   /// More for the report's head, like the job's shape.
   void note(const char* name, nlohmann::ordered_json value) { report_[name] = std::move(value); }
 
   /// A frame that --resume left alone.
-  void skip(const RenderOptions& options, const Frame& frame);
+  void skip(const RenderOptions& options, const FilmFrame& frame);
   /// A frame that was rendered and written.
-  void add(const RenderOptions& options, const Frame& frame, const FrameRecord& record);
+  void add(const RenderOptions& options, const FilmFrame& frame, const FrameRecord& record);
 
   /// Writes the report, if asked. Complete, or accuracy_not_met.
-  scene::ExitCode finish(const RenderOptions& options);
+  ExitCode finish(const RenderOptions& options);
 
   [[nodiscard]] std::size_t rendered() const { return rendered_; }
 
  private:
-  const std::vector<Frame>& frames_;
+  const std::vector<FilmFrame>& frames_;
   Progress progress_;
-  std::optional<Description> data_;
+  std::optional<analysis::Description> data_;
   std::optional<LoadedTransferFunction> transfer_function_;
   nlohmann::ordered_json report_;
   FrameReports frame_reports_;
@@ -44,10 +45,9 @@ class RunOutput {
   std::size_t done_ = 0, rendered_ = 0;
 };
 
-/// Writes a frame's pictures, deep ones from `deep`. Throws scene::Error(system_failure) if that cannot be done any
-/// more, as check_outputs() found it could.
-void write_pictures(const scene::Image& image, const scene::DeepImage& deep, const Frame& frame,
-                    const RenderOptions& options);
+/// Writes a frame's pictures, deep ones from `deep`. Throws Error(system_failure) if that cannot be done any
+/// more, as check_film_outputs() found it could.
+void write_pictures(const Image& image, const DeepImage& deep, const FilmFrame& frame, const RenderOptions& options);
 
 /// `frame_ms median X min Y`, milliseconds. The median of an even number is the mean of the middle two.
 std::string frame_ms_line(std::vector<double> times);
@@ -56,6 +56,6 @@ std::string frame_ms_line(std::vector<double> times);
 void write_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
 
 /// What a trace says of the run it is of.
-io::TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const Frame& frame, std::size_t rendered);
+TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const FilmFrame& frame, std::size_t rendered);
 
 }  // namespace tessera::apps

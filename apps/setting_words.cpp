@@ -9,80 +9,23 @@ namespace {
 
 // Written down, and not asked of CLI11, for an error may come before the options are declared and on any thread. A test
 // compares it with what --help says.
-constexpr std::array<std::string_view, 74> settings = {"accuracy",
-                                                       "backend",
-                                                       "background",
-                                                       "balance",
-                                                       "balance_resolution",
-                                                       "balance_weights",
-                                                       "blend",
-                                                       "block",
-                                                       "brick_size",
-                                                       "budget_seconds",
-                                                       "cache",
-                                                       "camera",
-                                                       "check",
-                                                       "compositor",
-                                                       "compositors",
-                                                       "csv",
-                                                       "deep_accuracy",
-                                                       "dims",
-                                                       "egl_device",
-                                                       "emission",
-                                                       "endian",
-                                                       "exchange",
-                                                       "field",
-                                                       "figure",
-                                                       "framebuffer",
-                                                       "frames_in_flight",
-                                                       "half",
-                                                       "help",
-                                                       "integrator",
-                                                       "json",
-                                                       "light",
-                                                       "max_volume",
-                                                       "memory",
-                                                       "on_stall",
-                                                       "opacity_scale",
-                                                       "orbit",
-                                                       "origin",
-                                                       "output",
-                                                       "partition",
-                                                       "peer",
-                                                       "pieces",
-                                                       "pixels",
-                                                       "png_bits",
-                                                       "preload",
-                                                       "progress",
-                                                       "projection",
-                                                       "projectors",
-                                                       "q",
-                                                       "quiet",
-                                                       "rasterizer",
-                                                       "repeat",
-                                                       "report",
-                                                       "rescale",
-                                                       "resume",
-                                                       "seed",
-                                                       "shade",
-                                                       "show",
-                                                       "size",
-                                                       "skip",
-                                                       "smooth",
-                                                       "spacing",
-                                                       "stall_timeout",
-                                                       "step",
-                                                       "subdivide",
-                                                       "threads",
-                                                       "tile_size",
-                                                       "time_step",
-                                                       "timing",
-                                                       "transfer_function",
-                                                       "type",
-                                                       "unit_distance",
-                                                       "verify",
-                                                       "version",
-                                                       "without"};
+constexpr std::string_view setting_names =
+    "accuracy backend background balance balance_resolution balance_weights blend block brick_size budget_seconds "
+    "cache camera check compositor compositors csv deep_accuracy dims egl_device emission endian exchange field "
+    "figure framebuffer frames_in_flight half help integrator json light max_volume memory on_stall opacity_scale "
+    "orbit origin output partition peer pieces pixels png_bits preload progress projection projectors q quiet "
+    "rasterizer repeat report rescale resume seed shade show size skip smooth spacing stall_timeout step "
+    "subdivide threads tile_size time_step timing transfer_function type unit_distance verify version without";
+
+constexpr auto settings = [] {
+  std::array<std::string_view, std::ranges::count(setting_names, ' ') + 1> words;
+  std::string_view rest = setting_names;
+  for (std::string_view& word : words) {
+    word = rest.substr(0, rest.find(' '));
+    rest.remove_prefix(std::min(word.size() + 1, rest.size()));
+  }
+  return words;
+}();
 static_assert(std::ranges::is_sorted(settings));
 
 /// A setting's name is a word of the sentence: not a part of a file's name, nor quoted.

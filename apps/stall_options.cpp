@@ -7,7 +7,7 @@
 #include "apps/argument_values.hpp"
 #include "apps/compositing_options.hpp"
 #include "apps/setting_words.hpp"
-#include "scene/error.hpp"
+#include "tessera/error.hpp"
 
 namespace tessera::apps {
 
@@ -21,21 +21,21 @@ void add_stall_options(CLI::App& command, StallWords& words) {
       ->type_name("wait|abort");
 }
 
-std::optional<exchange::StallSettings> stall_settings(const StallWords& words, bool quiet) {
+std::optional<StallSettings> stall_settings(const StallWords& words, bool quiet) {
   check_word("--on-stall", words.on_stall, {"wait", "abort"});
-  exchange::StallSettings settings;
+  StallSettings settings;
   settings.ends_run = words.on_stall == "abort";
   if (words.timeout == "0") {
     if (settings.ends_run)
-      throw scene::bad_input("--on-stall abort: --stall-timeout 0 looks for no stall; leave one of the two out");
+      throw bad_input("--on-stall abort: --stall-timeout 0 looks for no stall; leave one of the two out");
     return std::nullopt;
   }
   if (!words.timeout.empty()) {
     const double seconds = parse_positive("--stall-timeout", words.timeout);
     constexpr double least = 0.2, most = 1e6;
     if (seconds < least || seconds > most)
-      throw scene::bad_input(fmt::format("--stall-timeout: '{}' is not 0 or {} to {:.0f} seconds; give one of these",
-                                         words.timeout, least, most));
+      throw bad_input(fmt::format("--stall-timeout: '{}' is not 0 or {} to {:.0f} seconds; give one of these",
+                                  words.timeout, least, most));
     settings.timeout = std::chrono::milliseconds(static_cast<std::int64_t>(1000 * seconds));
   }
   if (!quiet)

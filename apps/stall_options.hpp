@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "exchange/heartbeats.hpp"
+#include "tessera/job.hpp"
 
 namespace tessera::apps {
 
@@ -17,7 +17,7 @@ struct StallWords {
 void add_stall_options(CLI::App& command, StallWords& words);
 
 /// What they say; nothing if no rank is to be looked after. Notices go to stderr, one line each, unless `quiet`. Throws
-/// scene::Error(bad_input).
-std::optional<exchange::StallSettings> stall_settings(const StallWords& words, bool quiet);
+/// Error(bad_input).
+std::optional<StallSettings> stall_settings(const StallWords& words, bool quiet);
 
 }  // namespace tessera::apps

@@ -5,9 +5,8 @@
 #include "analysis/timing_breakdown.hpp"
 #include "analysis/timing_figure.hpp"
 #include "analysis/timing_text.hpp"
-#include "apps/output_check.hpp"
-#include "io/atomic_file.hpp"
-#include "io/chrome_trace_reader.hpp"
+#include "tessera/output_file.hpp"
+#include "tessera/trace_file.hpp"
 
 namespace tessera::apps {
 
@@ -16,21 +15,17 @@ void timing(const std::vector<std::filesystem::path>& traces, const std::filesys
   if (!figure.empty()) analysis::check_figure_path(figure);
   for (const auto& trace : traces)
     for (const auto& output : {csv, figure})
-      if (!output.empty()) check_output_file(output, trace);
+      if (!output.empty()) check_output(output, trace);
 
   std::vector<analysis::RunTime> runs;
   runs.reserve(traces.size());
-  for (const auto& trace : traces) runs.push_back(analysis::break_down(io::read_chrome_trace(trace), trace.string()));
+  for (const auto& trace : traces) runs.push_back(analysis::break_down(read_trace(trace), trace.string()));
 
   for (const analysis::RunTime& run : runs) fmt::print("{}\n", analysis::breakdown_text(run));
   if (runs.size() > 1) fmt::print("{}\n", analysis::scaling_text(runs));
   fmt::print("{}", analysis::reading_text());
 
-  if (!csv.empty()) {
-    io::AtomicFile file(csv);
-    file.write(analysis::breakdown_csv(runs));
-    file.commit();
-  }
+  if (!csv.empty()) write_text(csv, analysis::breakdown_csv(runs));
   if (!figure.empty()) analysis::write_figure(runs, figure);
 }
 

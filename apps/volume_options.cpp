@@ -6,8 +6,9 @@
 #include <limits>
 
 #include "apps/argument_values.hpp"
-#include "io/time_series.hpp"
-#include "scene/error.hpp"
+#include "apps/report.hpp"
+#include "tessera/error.hpp"
+#include "tessera/input_file.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -20,7 +21,7 @@ std::array<T, 3> three(const std::string& option, const std::string& text, char 
   std::size_t at = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t stop = k < 2 ? text.find(separator, at) : text.size();
-    if (stop == std::string::npos) throw scene::bad_input(fmt::format("{}: '{}' is not {}", option, text, allowed));
+    if (stop == std::string::npos) throw bad_input(fmt::format("{}: '{}' is not {}", option, text, allowed));
     values[k] = parse(text.substr(at, stop - at));
     at = stop + 1;
   }
@@ -83,8 +84,8 @@ void add_volume_render_options(CLI::App& command, RenderWords& words) {
       ->type_name("balance");
 }
 
-io::VolumeOptions volume_options(const RenderWords& words) {
-  io::VolumeOptions options;
+ReadOptions volume_options(const RenderWords& words) {
+  ReadOptions options;
   options.field = words.field;
   if (!words.dims.empty())
     options.dims =
@@ -92,107 +93,96 @@ io::VolumeOptions volume_options(const RenderWords& words) {
           return std::int64_t{parse_count("--dims", word, 1, std::numeric_limits<int>::max())};
         });
   if (!words.type.empty()) {
-    options.type = io::parse_sample_type(words.type);
+    options.type = sample_type_named(words.type);
     if (!options.type)
-      throw scene::bad_input(fmt::format(
+      throw bad_input(fmt::format(
           "--type: '{}' is unknown; use int8, uint8, int16, uint16, int32, uint32, float32 or float64", words.type));
   }
   if (!words.spacing.empty()) options.spacing = vector("--spacing", words.spacing, true);
   if (!words.origin.empty()) options.origin = vector("--origin", words.origin, false);
   if (!words.endian.empty() && words.endian != "little" && words.endian != "big")
-    throw scene::bad_input(fmt::format("--endian: '{}' is unknown; use little or big", words.endian));
+    throw bad_input(fmt::format("--endian: '{}' is unknown; use little or big", words.endian));
   options.big_endian = words.endian == "big";
   if (!words.skip.empty())
     options.skip = static_cast<std::uint64_t>(parse_count("--skip", words.skip, 0, std::numeric_limits<int>::max()));
   return options;
 }
 
-bool is_volume_input(const RenderWords& words) {
-  return volume_options(words).describes_raw() || io::is_volume(words.input);
+bool is_grid_input(const RenderWords& words) {
+  return volume_options(words).describes_raw() || opens_as_grid(words.input);
 }
 
-volume::RenderSettings volume_settings(const RenderWords& words, const frame::RenderSettings& common) {
-  volume::RenderSettings settings;
-  settings.use = common.use;
+void set_grid(const RenderWords& words, Settings& settings) {
   const std::string& method = words.integrator;
-  if (method == "auto")
-    settings.method = volume::Method::automatic;
-  else if (method == "exact")
-    settings.method = volume::Method::exact;
-  else if (method == "sampled")
-    settings.method = volume::Method::sampled;
-  else if (method == "preintegrated")
-    settings.method = volume::Method::preintegrated;
-  else
-    throw scene::bad_input(
+  Integrator& integrator = settings.integrator;
+  GridSettings& grid = settings.grid;
+  const auto kinds = {IntegratorKind::automatic, IntegratorKind::exact, IntegratorKind::sampled,
+                      IntegratorKind::preintegrated};
+  const auto* const kind = std::ranges::find_if(kinds, [&](IntegratorKind k) { return method == method_word(k); });
+  if (kind == kinds.end())
+    throw bad_input(
         fmt::format("--integrator: '{}' is none for volumes; use auto, exact, sampled or preintegrated", method));
+  integrator.kind = *kind;
   if (!words.accuracy.empty()) {
-    if (settings.method != volume::Method::automatic)
-      throw scene::bad_input(
-          fmt::format("--accuracy: has no effect with --integrator {}; leave one of the two out", method));
-    settings.accuracy = parse_positive("--accuracy", words.accuracy);
+    if (integrator.kind != IntegratorKind::automatic)
+      throw bad_input(fmt::format("--accuracy: has no effect with --integrator {}; leave one of the two out", method));
+    integrator.accuracy = parse_positive("--accuracy", words.accuracy);
   }
   if (!words.step.empty()) {
-    if (settings.method != volume::Method::sampled && settings.method != volume::Method::preintegrated)
-      throw scene::bad_input(
+    if (!takes_steps(settings.integrator))
+      throw bad_input(
           fmt::format("--step: has no effect with --integrator {}; use sampled or preintegrated, or "
                       "leave it out",
                       method));
-    settings.step = parse_positive("--step", words.step);
+    grid.step = parse_positive("--step", words.step);
   }
-  if (words.shade) settings.shading.emplace();
+  if (words.shade) grid.shading.emplace();
   if (!words.light.empty()) {
-    if (!words.shade) throw scene::bad_input("--light: has no effect without --shade; add it, or leave --light out");
+    if (!words.shade) throw bad_input("--light: has no effect without --shade; add it, or leave --light out");
     constexpr std::string_view world = "world:";
-    settings.shading->camera_light = !words.light.starts_with(world);
-    settings.shading->to_light =
-        vector("--light", words.light.substr(settings.shading->camera_light ? 0 : world.size()), false);
-    if (settings.shading->to_light == glm::dvec3(0))
-      throw scene::bad_input("--light: 0,0,0 is no direction; say which way the light lies");
+    grid.shading->camera_light = !words.light.starts_with(world);
+    grid.shading->to_light =
+        vector("--light", words.light.substr(grid.shading->camera_light ? 0 : world.size()), false);
+    if (grid.shading->to_light == glm::dvec3(0))
+      throw bad_input("--light: 0,0,0 is no direction; say which way the light lies");
   }
-  if (!words.brick_size.empty()) settings.brick_size = parse_count("--brick-size", words.brick_size, 2, 1 << 20);
+  if (!words.brick_size.empty()) grid.brick_size = parse_count("--brick-size", words.brick_size, 2, 1 << 20);
   if (words.cache == "proximity")
-    settings.cache = volume::CachePolicy::proximity;
+    grid.cache = CachePolicy::proximity;
   else if (!words.cache.empty() && words.cache != "lru")
-    throw scene::bad_input(fmt::format("--cache: '{}' is unknown; use lru or proximity", words.cache));
+    throw bad_input(fmt::format("--cache: '{}' is unknown; use lru or proximity", words.cache));
   if (!words.preload.empty()) {
-    if (settings.cache != volume::CachePolicy::proximity)
-      throw scene::bad_input("--preload: has no effect without --cache proximity; add it, or leave --preload out");
-    settings.preload_limit = parse_count("--preload", words.preload, 0, 1 << 20);
+    if (grid.cache != CachePolicy::proximity)
+      throw bad_input("--preload: has no effect without --cache proximity; add it, or leave --preload out");
+    grid.preload_limit = parse_count("--preload", words.preload, 0, 1 << 20);
   }
-  settings.emission = common.emission;
-  settings.threads = common.threads;
-  settings.memory_bytes = common.memory_bytes;
-  return settings;
 }
 
-frame::SortFirstSettings balance_settings(const RenderWords& words) {
-  frame::SortFirstSettings settings;
-  constexpr std::pair<const char*, frame::Balance> known[] = {{"accurate", frame::Balance::accurate},
-                                                              {"backface", frame::Balance::backface},
-                                                              {"splatting", frame::Balance::splatting},
-                                                              {"previous", frame::Balance::previous},
-                                                              {"even", frame::Balance::even}};
+void set_balance(const RenderWords& words, RankSettings& ranks) {
+  constexpr std::pair<const char*, Balance> known[] = {{"accurate", Balance::accurate},
+                                                       {"backface", Balance::backface},
+                                                       {"splatting", Balance::splatting},
+                                                       {"previous", Balance::previous},
+                                                       {"even", Balance::even}};
   const auto* const found =
       std::ranges::find_if(known, [&](const auto& choice) { return words.balance == choice.first; });
   if (found != std::end(known))
-    settings.balance = found->second;
+    ranks.balance = found->second;
   else if (!words.balance.empty())
-    throw scene::bad_input(
+    throw bad_input(
         fmt::format("--balance: '{}' is unknown; use accurate, backface, splatting, previous or even", words.balance));
   if (!words.balance_resolution.empty()) {
-    settings.resolution = parse_positive("--balance-resolution", words.balance_resolution);
-    if (settings.resolution > 1 || settings.resolution < 1e-3)
-      throw scene::bad_input(fmt::format("--balance-resolution: {} is not from 0.001 to 1", words.balance_resolution));
+    ranks.balance_resolution = parse_positive("--balance-resolution", words.balance_resolution);
+    if (ranks.balance_resolution > 1 || ranks.balance_resolution < 1e-3)
+      throw bad_input(fmt::format("--balance-resolution: {} is not from 0.001 to 1", words.balance_resolution));
   }
   if (!words.show.empty() && words.show != "balance")
-    throw scene::bad_input(fmt::format("--show: '{}' is unknown; use balance", words.show));
+    throw bad_input(fmt::format("--show: '{}' is unknown; use balance", words.show));
   for (std::size_t at = 0; !words.balance_weights.empty() && at <= words.balance_weights.size();) {
     const std::size_t stop = std::min(words.balance_weights.find(',', at), words.balance_weights.size());
-    settings.weights.push_back(parse_positive("--balance-weights", words.balance_weights.substr(at, stop - at)));
+    ranks.balance_weights.push_back(parse_positive("--balance-weights", words.balance_weights.substr(at, stop - at)));
     at = stop + 1;
   }
-  return settings;
 }
 
 void refuse_mesh_words(const RenderWords& words) {
@@ -205,8 +195,8 @@ void refuse_mesh_words(const RenderWords& words) {
                                                 {"--tile-size", !words.tile_size.empty()}};
   for (const auto& [option, is_given] : given)
     if (is_given) {
-      io::require_input(words.input);  // one that is not there is neither
-      throw scene::bad_input(fmt::format("{}: is for meshes, and the input is a volume; leave it out", option));
+      require_input(words.input);  // one that is not there is neither
+      throw bad_input(fmt::format("{}: is for meshes, and the input is a volume; leave it out", option));
     }
 }
 
@@ -223,8 +213,8 @@ void refuse_volume_options(const RenderWords& words) {
                                                 {"--show", !words.show.empty()}};
   for (const auto& [option, is_given] : given)
     if (is_given) {
-      io::require_input(words.input);  // one that is not there is neither
-      throw scene::bad_input(fmt::format("{}: is for volumes, and the input is a mesh; leave it out", option));
+      require_input(words.input);  // one that is not there is neither
+      throw bad_input(fmt::format("{}: is for volumes, and the input is a mesh; leave it out", option));
     }
 }
 

@@ -11,16 +11,16 @@ void add_volume_options(CLI::App& command, RenderWords& words);
 /// The options of `tessera render` that are for volumes only.
 void add_volume_render_options(CLI::App& command, RenderWords& words);
 
-io::VolumeOptions volume_options(const RenderWords& words);
+ReadOptions volume_options(const RenderWords& words);
 
 /// Whether the input of these words is a volume: by its content, or because .raw options describe it.
-bool is_volume_input(const RenderWords& words);
+bool is_grid_input(const RenderWords& words);
 
-/// How a volume is rendered. Throws scene::Error(bad_input) naming the option.
-volume::RenderSettings volume_settings(const RenderWords& words, const frame::RenderSettings& common);
+/// Sets how a volume is rendered: all but what it shares with meshes. Throws Error(bad_input) naming the option.
+void set_grid(const RenderWords& words, Settings& settings);
 
-/// How a volume's picture is split between ranks. Throws as volume_settings().
-frame::SortFirstSettings balance_settings(const RenderWords& words);
+/// Sets how a volume's picture is split between ranks. Throws as set_grid().
+void set_balance(const RenderWords& words, RankSettings& ranks);
 
 /// Throws if an option of jobs that render meshes is given.
 void refuse_mesh_words(const RenderWords& words);

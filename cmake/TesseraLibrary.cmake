@@ -17,7 +17,7 @@ foreach(folder ${folders})
     list(APPEND links ${linked})
   endif()
 endforeach()
-list(FILTER links EXCLUDE REGEX "^(tessera|glm::|nlohmann_json::)")
+list(FILTER links EXCLUDE REGEX "^(\\$<LINK_ONLY:)?(tessera|glm::|nlohmann_json::)")
 list(REMOVE_DUPLICATES links)
 
 function(tessera_whole_library kind)

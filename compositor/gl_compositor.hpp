@@ -8,14 +8,11 @@
 #include "compositor/gl_fragments.hpp"
 #include "gl/platform.hpp"
 #include "scene/trace.hpp"
+#include "tessera/settings.hpp"
 
 namespace tessera::compositor {
 
-/// How a device composites.
-enum class GlMethod {
-  compute,   ///< compute shaders on storage buffers
-  fragment,  ///< as Juliachs et al. 2007, 4.3: scanline by scanline in textures
-};
+using tessera::GlMethod;
 
 /// Faults that tests ask for.
 enum class GlFault { none, lost, memory };

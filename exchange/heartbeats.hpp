@@ -1,24 +1,17 @@
 #pragma once
 
 #include <chrono>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "exchange/stall_watch.hpp"
 #include "exchange/transport.hpp"
+#include "tessera/job.hpp"
 
 namespace tessera::exchange {
 
-/// What is done about a rank that is silent: its process is stopped, or its machine hangs.
-struct StallSettings {
-  std::chrono::milliseconds timeout = std::chrono::seconds(120);  ///< of silence, more than 0
-  bool ends_run = false;  ///< by an error that names the rank; else it is waited for
-  /// Tells the user of a rank that is waited for, and of its return; from a thread of the transport's own. May be
-  /// empty.
-  std::function<void(const std::string& words)> say;
-};
+using tessera::StallSettings;
 
 /// One rank's part in finding ranks that have stopped: what it tells the others, and what it makes of their silence.
 ///

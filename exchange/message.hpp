@@ -21,7 +21,7 @@ namespace tessera::exchange {
 static_assert(std::endian::native == std::endian::little, "messages are little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 7;         ///< the next one whenever a message changes
+inline constexpr std::uint16_t wire_version = 8;         ///< the next one whenever a message changes
 
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
@@ -69,9 +69,8 @@ enum class MessageKind : std::uint16_t {
   row_costs = 33,         ///< i32 x0, y0, x1, y1 of the map's region, list of u64
   column_costs = 34,      ///< the same, a list of u64 for each map row that was asked for
   seconds = 35,           ///< f64 processor time of the last frame
-  finished_frames = 36,   ///< u8 of each frame
-  exit_code = 37,         ///< u8
-  process_on_host = 38,   ///< apps/one_line.cpp
+  of_job = 36,            ///< list of bytes: the caller's own (tessera/job.hpp)
+  process_on_host = 38,   ///< exchange/one_line.cpp
   // The transport's own.
   fault = 40,    ///< a rank to rank 0, I have failed: u8 ErrorCode, text
   verdict = 41,  ///< the run's error to all: u8 ErrorCode, text

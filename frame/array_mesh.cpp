@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <type_traits>
@@ -80,6 +81,10 @@ void check_shapes(const MeshArrays& a) {
     throw scene::bad_input(
         fmt::format("mesh: {} offsets for {} cells; give one more than cells", a.offsets.size(), a.types.size()));
   const std::size_t cells = as_tets ? a.tets.size() / 4 : a.types.size();
+  if (!a.original_cells.empty() &&
+      (a.original_cells.type() != NumberType::uint64 || a.original_cells.size() != cells || !as_tets))
+    throw scene::bad_input(fmt::format("mesh: {} original cells for {} cells; give tets, and a uint64 of each",
+                                       a.original_cells.size(), cells));
   const bool of_points = a.association == Association::point;
   const std::size_t wanted = of_points ? points : cells;
   if (a.scalars.size() != wanted)
@@ -87,7 +92,7 @@ void check_shapes(const MeshArrays& a) {
                                        of_points ? "points" : "cells"));
 }
 
-/// The arrays as they stand, if the renderer can take them so.
+/// The arrays as they stand, if they are laid out as the renderer wants them.
 std::optional<scene::TetMeshView> borrowed(const MeshArrays& a) {
   if (a.points.type() != NumberType::float64 || a.scalars.type() != NumberType::float64 ||
       a.tets.type() != NumberType::uint32 || !a.types.empty())
@@ -98,15 +103,16 @@ std::optional<scene::TetMeshView> borrowed(const MeshArrays& a) {
   mesh.tets = {static_cast<const scene::Tet*>(a.tets.data()), a.tets.size() / 4};
   mesh.scalars = a.scalars.as<double>();
   mesh.association = a.association;
-  const auto finite = [](double v) { return std::isfinite(v); };
+  mesh.original_cell = a.original_cells.as<std::uint64_t>();
   for (const scene::Tet& tet : mesh.tets)
     for (const std::uint32_t v : tet)
       if (v >= mesh.positions.size()) return std::nullopt;  // said by the conversion
-  const auto coordinates = a.points.as<double>();
-  if (!std::all_of(coordinates.begin(), coordinates.end(), finite) ||
-      !std::all_of(mesh.scalars.begin(), mesh.scalars.end(), finite))
-    return std::nullopt;
   return mesh;
+}
+
+bool all_finite(const MeshArrays& a) {
+  const auto finite = [](double v) { return std::isfinite(v); };
+  return std::ranges::all_of(a.points.as<double>(), finite) && std::ranges::all_of(a.scalars.as<double>(), finite);
 }
 
 io::CellBlock block_of(const MeshArrays& a) {
@@ -145,7 +151,7 @@ ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty) {
     return {nothing, nullptr, {}, {}};
   }
   ArrayMesh result;
-  if (const auto mesh = borrowed(arrays); mesh && !mesh->tets.empty()) {
+  if (const auto mesh = borrowed(arrays); mesh && !mesh->tets.empty() && all_finite(arrays)) {
     result.mesh = *mesh;
     result.owner = arrays.owner;
     result.counts.cells_read = result.counts.tets_made = mesh->tets.size();
@@ -162,6 +168,29 @@ ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty) {
   result.notes = file->notes;
   result.owner = std::move(file);
   return result;
+}
+
+ArrayMesh mesh_to_write(const MeshArrays& arrays) {
+  check_shapes(arrays);
+  ArrayMesh result;
+  if (const auto mesh = borrowed(arrays); mesh && !mesh->tets.empty())
+    result.mesh = *mesh;
+  else
+    result = mesh_of_arrays(arrays, false);
+  result.mesh.field_name = arrays.field_name;
+  return result;
+}
+
+MeshArrays arrays_of(const scene::TetMeshView& mesh, std::string field_name, std::shared_ptr<const void> owner) {
+  MeshArrays arrays;
+  arrays.points = ArrayView(mesh.positions);
+  arrays.tets = ArrayView(mesh.tets.data(), 4 * mesh.tets.size(), NumberType::uint32);
+  arrays.scalars = ArrayView(mesh.scalars);
+  arrays.association = mesh.association;
+  arrays.field_name = std::move(field_name);
+  arrays.original_cells = ArrayView(mesh.original_cell);
+  arrays.owner = std::move(owner);
+  return arrays;
 }
 
 }  // namespace tessera::frame

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "io/mesh_reader.hpp"
 #include "scene/tet_mesh.hpp"
@@ -19,5 +20,11 @@ struct ArrayMesh {
 /// Borrows the arrays where they are laid out as the renderer wants them and nothing is blank, else converts them as a
 /// file's. `may_be_empty`: of a part. Throws Error(bad_input) naming array and place.
 ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty);
+
+/// The same for who only writes it: borrowed whatever its numbers are.
+ArrayMesh mesh_to_write(const MeshArrays& arrays);
+
+/// A mesh that is there already, as a caller has it: borrowed from `owner`.
+MeshArrays arrays_of(const scene::TetMeshView& mesh, std::string field_name, std::shared_ptr<const void> owner);
 
 }  // namespace tessera::frame

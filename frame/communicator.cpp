@@ -28,6 +28,10 @@ Communicator Communicator::of_handle(int fortran_handle) {
 int Communicator::rank() const { return state_->rank; }
 int Communicator::size() const { return state_->size; }
 
+void run_ranks(int ranks, const std::function<void(const Communicator&)>& work) {
+  exchange::run_ranks(ranks, [&](exchange::Transport& transport) { work(frame::communicator_over(transport)); });
+}
+
 namespace frame {
 
 Communicator communicator_over(exchange::Transport& transport) {

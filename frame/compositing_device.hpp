@@ -11,13 +11,7 @@
 
 namespace tessera::frame {
 
-/// Where a compositor works.
-enum class Backend {
-  cpu,
-  automatic,  ///< a GPU through EGL, if one answers; else the CPU
-  osmesa,
-  egl
-};
+using tessera::Backend;
 
 /// How all compositors of a job work.
 struct CompositingSettings {

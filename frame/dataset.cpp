@@ -15,10 +15,10 @@
 #include "frame/render.hpp"
 #include "frame/roles.hpp"
 #include "frame/scan_together.hpp"
-#include "frame/session_extras.hpp"
 #include "io/volume_reader.hpp"
 #include "scene/error.hpp"
 #include "scene/threads.hpp"
+#include "tessera/input_file.hpp"
 
 namespace tessera {
 namespace {
@@ -39,7 +39,7 @@ void check_grid_options(const std::filesystem::path& file, const ReadOptions& op
 }
 
 void check_mesh_options(const std::filesystem::path& file, const ReadOptions& options) {
-  if (volume_options(options).describes_raw())
+  if (options.describes_raw())
     throw scene::bad_input(
         fmt::format("{}: `dims`, `type`, `spacing`, `origin`, `endian` and `skip` are for .raw files; leave them out",
                     file.string()));
@@ -86,20 +86,15 @@ void take_description(io::MeshFile&& file, Dataset::State& state) {
   state.counts = file.counts;
 }
 
-/// Makes a mesh the state's own, its corners in the order that needs no copy.
-void keep(scene::TetMesh mesh, int threads, scene::Trace* trace, Dataset::State& state) {
+/// Makes a mesh the state's own, its corners in the order that needs no copy unless theirs is to be kept.
+void keep(scene::TetMesh mesh, const ReadOptions& options, scene::Trace* trace, Dataset::State& state) {
   frame::RenderSettings settings;
-  settings.threads = threads;
+  settings.threads = options.threads;
   settings.trace = trace;
-  frame::order_corners(mesh, settings);
+  if (!options.keep_corners) frame::order_corners(mesh, settings);
   auto kept = std::make_shared<const scene::TetMesh>(std::move(mesh));
   state.mesh = *kept;
   state.owner = std::move(kept);
-}
-
-bool opens_as_grid(std::span<const std::filesystem::path> files, const ReadOptions& options) {
-  if (files.empty()) throw scene::bad_input("input: no file is named; name one");
-  return files.size() == 1 && !options.grid_as_mesh && io::is_volume(files.front());
 }
 
 FieldInfo only_field(const std::string& name, Association association, const char* type,
@@ -178,36 +173,65 @@ Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOp
   return open(files, options, Communicator());
 }
 
+namespace {
+
+/// Spans of messages go to a face of the reader's trace while this lives.
+class TracedMessages {
+ public:
+  TracedMessages(exchange::Transport& transport, Trace* trace) : transport_(transport) {
+    if (trace == nullptr || transport.size() == 1) return;
+    face_.emplace(*trace, TraceRole::projector);
+    transport_.trace_to(&*face_, nullptr);
+  }
+  ~TracedMessages() {
+    if (face_) transport_.trace_to(nullptr, nullptr);
+  }
+  TracedMessages(const TracedMessages&) = delete;
+  TracedMessages& operator=(const TracedMessages&) = delete;
+
+  /// The face, or `alone` of one process.
+  [[nodiscard]] Trace* face(Trace* alone) { return face_ ? &*face_ : alone; }
+
+ private:
+  exchange::Transport& transport_;
+  std::optional<Trace> face_;
+};
+
+}  // namespace
+
 Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOptions& options,
                       const Communicator& communicator, const RankSettings& ranks) {
   const std::shared_ptr<exchange::Transport> transport = communicator.state().connect();
-  return frame::open_dataset(files, options, *transport, ranks, nullptr);
-}
-
-Dataset frame::open_dataset(std::span<const std::filesystem::path> files, const ReadOptions& options,
-                            exchange::Transport& transport, const RankSettings& ranks, scene::Trace* trace) {
-  return together(transport, [&] {
-    std::shared_ptr<Dataset::State> state;
-    if (opens_as_grid(files, options)) {
-      state = opened_grid(files.front(), options, transport, trace);
+  return together(*transport, [&] {
+    std::shared_ptr<State> state;
+    if (files.empty()) throw scene::bad_input("input: no file is named; name one");
+    if (files.size() == 1 && opens_as_grid(files.front(), options)) {
+      state = opened_grid(files.front(), options, *transport, options.trace);
       complete_grid(*state);
     } else {
       check_mesh_options(files.front(), options);
-      state = std::make_shared<Dataset::State>();
-      const Roles roles = assign_roles(transport.size(), ranks.projectors, ranks.compositors);
-      DistributedMesh mesh = read_distributed(transport, files, mesh_options(options), ranks.partition,
-                                              roles.projectors, options.threads, trace);
+      state = std::make_shared<State>();
+      TracedMessages traced(*transport, options.trace);
+      Trace* const trace = traced.face(options.trace);
+      const Roles roles = assign_roles(transport->size(), ranks.projectors, ranks.compositors);
+      frame::DistributedMesh mesh = frame::read_distributed(*transport, files, frame::mesh_options(options),
+                                                            ranks.partition, roles.projectors, options.threads, trace);
       take_description(std::move(mesh.description), *state);
       state->facts = mesh.facts;
-      state->ranks = transport.size();
+      state->ranks = transport->size();
       state->global_tet = std::move(mesh.part.global_tet);
-      keep(std::move(mesh.part.mesh), options.threads, trace, *state);
+      keep(std::move(mesh.part.mesh), options, trace, *state);
     }
     state->source = files.front().string();
     state->files.assign(files.begin(), files.end());
     state->options = options;
+    state->options.trace = nullptr;  // which need not live as long
     return Dataset(std::move(state));
   });
+}
+
+bool opens_as_grid(const std::filesystem::path& file, const ReadOptions& options) {
+  return !options.grid_as_mesh && io::is_volume(file);
 }
 
 Dataset Dataset::of(const MeshArrays& arrays) {
@@ -226,7 +250,6 @@ Dataset Dataset::of(const MeshArrays& arrays) {
 }
 
 Dataset Dataset::of(const GridArrays& arrays) {
-  auto state = std::make_shared<State>();
   scene::Grid grid;
   grid.geometry = arrays.geometry;
   grid.type = sample_type_of(arrays.samples.type());
@@ -234,14 +257,20 @@ Dataset Dataset::of(const GridArrays& arrays) {
   grid.field_name = arrays.field_name;
   const std::span bytes(static_cast<const std::byte*>(arrays.samples.data()),
                         arrays.samples.size() * scene::size_of(grid.type));
-  state->samples = std::make_shared<const scene::MemorySource>(std::move(grid), bytes, arrays.owner, "grid");
+  return of(std::make_shared<const scene::MemorySource>(std::move(grid), bytes, arrays.owner, "grid"));
+}
+
+Dataset Dataset::of(std::shared_ptr<const SampleSource> samples) {
+  auto state = std::make_shared<State>();
+  state->samples = std::move(samples);
   state->ranges = std::make_shared<const volume::CellRanges>(*state->samples, 0);
   if (state->ranges->range.empty())
     throw scene::bad_input("grid: none of its samples is finite; give a field that has values");
   complete_grid(*state);
   state->source = "grid";
   state->format = "arrays";
-  state->fields = {only_field(state->field_name, state->facts.association, word(arrays.samples.type()), state->facts)};
+  state->fields = {
+      only_field(state->field_name, state->facts.association, name_of(state->samples->grid().type), state->facts)};
   state->fields.front().nan_count = state->ranges->range.blanks;
   return Dataset(std::move(state));
 }
@@ -279,6 +308,11 @@ const std::string& Dataset::format() const { return state_->format; }
 const std::string& Dataset::source() const { return state_->source; }
 std::uint64_t Dataset::tet_count() const { return state_->facts.tets; }
 const MeshCounts& Dataset::mesh_counts() const { return state_->counts; }
+
+MeshArrays Dataset::mesh_arrays() const {
+  if (is_grid()) throw scene::bad_input(state_->source + ": is a grid, which has no tets; ask meshes for them");
+  return frame::arrays_of(state_->mesh, state_->field_name, state_);
+}
 
 const GridGeometry& Dataset::grid_geometry() const {
   if (is_mesh()) throw scene::bad_input(state_->source + ": is a mesh, which has no lattice; ask grids for it");

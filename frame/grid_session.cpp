@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "exchange/collectives.hpp"
+#include "frame/balance_picture.hpp"
 #include "frame/brick_memory.hpp"
 #include "frame/deep_rows.hpp"
 #include "frame/run_error.hpp"
@@ -51,12 +52,8 @@ const char* name_of(IntegratorKind kind) {
 /// A grid, by any number of processes.
 class GridByRays final : public Session::State {
  public:
-  GridByRays(Dataset dataset, const Settings& settings, std::shared_ptr<exchange::Transport> transport,
-             const frame::SessionExtras& extras)
-      : State(std::move(dataset), settings, extras),
-        transport_(std::move(transport)),
-        trace_(extras.projecting),
-        keeps_cost_(extras.keep_cost) {
+  GridByRays(Dataset dataset, const Settings& settings, std::shared_ptr<exchange::Transport> transport)
+      : State(std::move(dataset), settings), transport_(std::move(transport)), trace_(settings.trace) {
     check();
     make_renderer({});
     make_sort_first();
@@ -65,8 +62,8 @@ class GridByRays final : public Session::State {
   std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
                      Sink& sink, const std::stop_token& stop) override {
     if (settings.deep) check_deep(settings);
-    if (settings.keep_uncertainty != keeps_uncertainty_) {
-      keeps_uncertainty_ = settings.keep_uncertainty;
+    if (settings.keep_uncertainty != keeps_uncertainty_ || settings.keep_cost != keeps_cost_) {
+      keeps_uncertainty_ = settings.keep_uncertainty, keeps_cost_ = settings.keep_cost;
       make_sort_first();
     }
     for (std::size_t i = 0; i < views.size(); ++i) {
@@ -95,8 +92,14 @@ class GridByRays final : public Session::State {
 
   [[nodiscard]] bool assembles() const override { return transport_->rank() == 0; }
 
-  [[nodiscard]] frame::GridBalance balance(const TransferFunction& function) const {
-    return {split_, cost_, renderer_->visible_bricks(function)};
+  [[nodiscard]] BalancePictures balance_pictures(const RenderedFrame& frame, const View& view,
+                                                 const TransferFunction& function) const override {
+    if (!keeps_cost_ || !renderer_)
+      throw scene::bad_input("balance: the last frame did not keep its cost; ask for it in the frame's settings");
+    BalancePictures pictures{frame.image, frame::cost_picture(cost_, view.size, split_)};
+    frame::draw_bricks(pictures.bricks, view.camera, data().samples->geometry(), renderer_->visible_bricks(function),
+                       split_);
+    return pictures;
   }
 
  private:
@@ -197,13 +200,12 @@ class GridByRays final : public Session::State {
 
   std::shared_ptr<exchange::Transport> transport_;
   scene::Trace* trace_;
-  const bool keeps_cost_;
   RenderedFrame made_;  ///< on its way to the sink
   volume::ImageSplit split_;
   volume::CostMap cost_;
   const std::uint64_t resident_ = frame::resident_bytes();
   std::optional<volume::Renderer> renderer_;
-  bool keeps_uncertainty_ = false;
+  bool keeps_uncertainty_ = false, keeps_cost_ = false;
   std::optional<frame::SortFirst> sort_first_;
 };
 
@@ -212,13 +214,8 @@ class GridByRays final : public Session::State {
 namespace frame {
 
 std::unique_ptr<Session::State> grid_by_rays(Dataset dataset, const Settings& settings,
-                                             std::shared_ptr<exchange::Transport> transport,
-                                             const SessionExtras& extras) {
-  return std::make_unique<GridByRays>(std::move(dataset), settings, std::move(transport), extras);
-}
-
-GridBalance balance_of(const Session& session, const TransferFunction& function) {
-  return dynamic_cast<const GridByRays&>(session.state()).balance(function);
+                                             std::shared_ptr<exchange::Transport> transport) {
+  return std::make_unique<GridByRays>(std::move(dataset), settings, std::move(transport));
 }
 
 }  // namespace frame

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <glm/geometric.hpp>
-
 #include "colormaps/presets.hpp"
 #include "io/time_series.hpp"
 #include "io/transfer_function_file.hpp"
@@ -25,13 +22,6 @@ io::MeshFile read_input(const std::filesystem::path& input, const io::MeshOption
 
 io::MeshFile read_input(std::span<const std::filesystem::path> files, const io::MeshOptions& options) {
   return files.size() == 1 ? read_input(files.front(), options) : io::read_mesh(files, options);
-}
-
-double diagonal(const scene::Box& box) {
-  if (box.empty()) return 0;
-  const glm::dvec3 extent = box.high - box.low;
-  const double longest = std::max({extent.x, extent.y, extent.z});
-  return longest > 0 ? glm::length(extent / longest) * longest : 0;  // 1e-200 must not underflow when squared
 }
 
 double default_unit_distance(const scene::MeshFacts& facts) {

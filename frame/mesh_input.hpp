@@ -17,8 +17,7 @@ io::MeshFile read_input(const std::filesystem::path& input, const io::MeshOption
 /// Several files are the pieces of one mesh.
 io::MeshFile read_input(std::span<const std::filesystem::path> files, const io::MeshOptions& options);
 
-/// Length of a box's diagonal, world units; 0 if it has no extent.
-double diagonal(const scene::Box& box);
+using tessera::diagonal;
 
 /// The length over which an opacity holds where neither file nor user says it, world units: a tenth of the mesh's mean
 /// thickness, so that the presets' ramps (0.03 to 0.2) make an average ray 0.26 to 0.89 opaque, in plates and scattered

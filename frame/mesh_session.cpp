@@ -41,9 +41,9 @@ FrameStatistics statistics_of(const frame::FrameStatistics& s, double millisecon
 /// A mesh, by this process.
 class MeshAlone final : public Session::State {
  public:
-  MeshAlone(Dataset dataset, const Settings& settings, const frame::SessionExtras& extras)
-      : State(std::move(dataset), settings, extras),
-        renderer_(data().prepared(settings.threads, extras.projecting), data().facts, traced(settings, extras)) {
+  MeshAlone(Dataset dataset, const Settings& settings)
+      : State(std::move(dataset), settings),
+        renderer_(data().prepared(settings.threads, settings.trace), data().facts, traced(settings)) {
     check_method(settings);
     frame::assign_roles(1, settings.ranks.projectors, settings.ranks.compositors);  // of one rank there are not more
   }
@@ -74,9 +74,9 @@ class MeshAlone final : public Session::State {
   }
 
  private:
-  static frame::RenderSettings traced(const Settings& settings, const frame::SessionExtras& extras) {
+  static frame::RenderSettings traced(const Settings& settings) {
     frame::RenderSettings mesh = frame::mesh_settings(settings);
-    mesh.trace = extras.projecting;
+    mesh.trace = settings.trace;
     return mesh;
   }
 
@@ -86,16 +86,15 @@ class MeshAlone final : public Session::State {
 /// A mesh, by several processes.
 class MeshOnRanks final : public Session::State {
  public:
-  MeshOnRanks(Dataset dataset, const Settings& settings, std::shared_ptr<exchange::Transport> transport,
-              const frame::SessionExtras& extras)
-      : State(std::move(dataset), settings, extras),
+  MeshOnRanks(Dataset dataset, const Settings& settings, std::shared_ptr<exchange::Transport> transport)
+      : State(std::move(dataset), settings),
         distributed_(frame::distributed_settings(settings, transport->size())),
         transport_(std::move(transport)) {
     check_method(settings);
-    distributed_.projecting = extras.projecting;
-    distributed_.compositing = extras.compositing;
-    distributed_.compositing_on = extras.compositing_on;
-    distributed_.first_frame = extras.first_frame;
+    if (settings.trace != nullptr) {
+      distributed_.projecting = &projecting_.emplace(*settings.trace, TraceRole::projector);
+      distributed_.compositing = &compositing_.emplace(*settings.trace, TraceRole::compositor);
+    }
     const Dataset::State& state = data();
     if (distributed_.exchange == Exchange::segments && state.facts.tets > 0xffffffffull)
       throw scene::bad_input(
@@ -113,6 +112,12 @@ class MeshOnRanks final : public Session::State {
       throw error;
     }
     renderer_.emplace(*transport_, distributed_, [this](std::size_t) { return part(); });
+    if (projecting_) transport_->trace_to(&*projecting_, &*compositing_);
+  }
+
+  ~MeshOnRanks() override {
+    renderer_.reset();
+    if (projecting_) transport_->trace_to(nullptr, nullptr);
   }
 
   std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
@@ -203,6 +208,7 @@ class MeshOnRanks final : public Session::State {
 
   frame::DistributedSettings distributed_;
   std::shared_ptr<exchange::Transport> transport_;
+  std::optional<Trace> projecting_, compositing_;  ///< faces of the caller's trace
   std::optional<frame::DistributedRenderer> renderer_;
 };
 
@@ -210,14 +216,13 @@ class MeshOnRanks final : public Session::State {
 
 namespace frame {
 
-std::unique_ptr<Session::State> mesh_alone(Dataset dataset, const Settings& settings, const SessionExtras& extras) {
-  return std::make_unique<MeshAlone>(std::move(dataset), settings, extras);
+std::unique_ptr<Session::State> mesh_alone(Dataset dataset, const Settings& settings) {
+  return std::make_unique<MeshAlone>(std::move(dataset), settings);
 }
 
 std::unique_ptr<Session::State> mesh_on_ranks(Dataset dataset, const Settings& settings,
-                                              std::shared_ptr<exchange::Transport> transport,
-                                              const SessionExtras& extras) {
-  return std::make_unique<MeshOnRanks>(std::move(dataset), settings, std::move(transport), extras);
+                                              std::shared_ptr<exchange::Transport> transport) {
+  return std::make_unique<MeshOnRanks>(std::move(dataset), settings, std::move(transport));
 }
 
 }  // namespace frame

@@ -1,18 +1,34 @@
 // The public functions that read and write files, by io/'s.
+#include <fmt/format.h>
+
+#include "frame/array_mesh.hpp"
 #include "frame/dataset.hpp"
 #include "io/camera_file.hpp"
 #include "io/image_deep_exr.hpp"
 #include "io/image_file.hpp"
+#include "io/input_file.hpp"
+#include "io/json_text.hpp"
+#include "io/mesh_parts.hpp"
 #include "io/mesh_reader.hpp"
+#include "io/pvtu_writer.hpp"
+#include "io/time_series.hpp"
+#include "io/volume_reader.hpp"
 #include "io/volume_writer.hpp"
+#include "projection/partition.hpp"
+#include "projection/planes_rasterizer.hpp"
 #include "scene/error.hpp"
+#include "scene/threads.hpp"
 #include "tessera/image_file.hpp"
+#include "tessera/input_file.hpp"
+#include "tessera/output_file.hpp"
+#include "tessera/statistics.hpp"
 #include "tessera/view.hpp"
 #include "tessera/write.hpp"
 
 namespace tessera {
 
 std::vector<CameraFile> read_cameras(const std::filesystem::path& file) { return io::read_cameras(file); }
+std::string camera_json(const CameraFile& camera) { return io::camera_json(camera); }
 void write_camera(const CameraFile& camera, const std::filesystem::path& file) { io::write_camera(camera, file); }
 
 void write_image(const Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
@@ -25,6 +41,27 @@ void write_deep_image(const DeepImage& image, const std::filesystem::path& file)
   io::write_deep_exr(image, file);
 }
 
+bool is_deep_name(const std::filesystem::path& file) { return io::is_deep_name(file); }
+void check_image_path(const std::filesystem::path& file) { io::check_image_path(file); }
+
+bool is_mesh_name(const std::filesystem::path& file) { return io::is_mesh_file(file); }
+void require_input(const std::filesystem::path& input) { io::require_input(input); }
+void require_grid(const std::filesystem::path& file) { io::require_volume(file); }
+void require_mesh(const std::filesystem::path& file) { io::require_mesh_file(file); }
+std::string read_text(const std::filesystem::path& file) { return io::read_beginning(file, io::require_file(file)); }
+void check_json(std::string_view text, const std::string& source) { io::parse_json(text, source); }
+std::optional<SampleType> sample_type_named(const std::string& name) { return io::parse_sample_type(name); }
+
+namespace {
+
+void write_tets_of(const scene::TetMeshView& mesh, const std::filesystem::path& file) {
+  if (file.extension() == ".tets") return io::write_tets(mesh, file);
+  if (file.extension() == ".vtu") return io::write_vtu(mesh, file);
+  throw scene::bad_input(file.string() + ": is no name of a mesh that can be written; choose .vtu or .tets");
+}
+
+}  // namespace
+
 void write_mesh(const Dataset& mesh, const std::filesystem::path& file) {
   const Dataset::State& state = mesh.state();
   if (mesh.is_grid()) throw scene::bad_input(state.source + ": is a grid, no mesh; use write_grid");
@@ -32,18 +69,76 @@ void write_mesh(const Dataset& mesh, const std::filesystem::path& file) {
     throw scene::bad_input(state.source + ": this rank has a part of the mesh; open it on one rank to write it");
   scene::TetMeshView view = state.mesh;
   view.field_name = state.field_name;
-  if (file.extension() == ".tets") return io::write_tets(view, file);
-  if (file.extension() == ".vtu") return io::write_vtu(view, file);
-  throw scene::bad_input(file.string() + ": is no name of a mesh that can be written; choose .vtu or .tets");
+  write_tets_of(view, file);
+}
+
+void write_mesh(const MeshArrays& mesh, const std::filesystem::path& file) {
+  write_tets_of(frame::mesh_to_write(mesh).mesh, file);
+}
+
+void write_mesh_pieces(const MeshArrays& arrays, const std::filesystem::path& file, int pieces,
+                       const Partition& partition) {
+  const frame::ArrayMesh mesh = frame::mesh_to_write(arrays);
+  const std::vector<std::uint32_t> part_of = projection::parts_of_whole(mesh.mesh, partition, pieces);
+  std::vector<std::vector<std::uint32_t>> tets(static_cast<std::size_t>(pieces));
+  for (std::size_t t = 0; t < part_of.size(); ++t) tets[part_of[t]].push_back(static_cast<std::uint32_t>(t));
+  io::PvtuWriter writer(file, mesh.mesh);
+  for (auto& piece : tets) {
+    writer.add(scene::subset(mesh.mesh, piece));
+    piece = {};
+  }
+  writer.commit();
+}
+
+void check_mesh_output(const std::filesystem::path& file, const std::filesystem::path& input,
+                       std::optional<int> pieces) {
+  const auto extension = file.extension();
+  if (!pieces) {
+    if (extension == ".pvtu")
+      throw scene::bad_input(
+          fmt::format("{}: one mesh in pieces is what convert `pieces` writes; choose .vtu or .tets", file.string()));
+    if (extension != ".vtu" && extension != ".tets")
+      throw scene::bad_input(
+          fmt::format("{}: '{}' is no mesh format to write; choose .vtu or .tets", file.string(), extension.string()));
+    return check_output(file, input);
+  }
+  if (extension != ".pvtu") throw scene::bad_input(fmt::format("{}: `pieces` writes a .pvtu; name one", file.string()));
+  std::vector<std::filesystem::path> inputs = {input};
+  if (io::readable_in_parts(input, {}) && input.extension() != ".tets") {
+    const auto read = io::pvtu_pieces(input);
+    inputs.insert(inputs.end(), read.begin(), read.end());
+  }
+  for (const auto& one : inputs) {
+    check_output(file, one);
+    for (int p = 0; p < *pieces; ++p) {
+      const auto name = io::pvtu_piece_name(file, p);
+      std::error_code absent;
+      if (std::filesystem::exists(name, absent)) check_output(name, one);
+    }
+  }
 }
 
 void write_grid(const Dataset& grid, const std::filesystem::path& file, int block) {
   const Dataset::State& state = grid.state();
   if (grid.is_mesh()) throw scene::bad_input(state.source + ": is a mesh, no grid; use write_mesh");
+  write_grid(*state.samples, file, block);
+}
+
+void write_grid(const SampleSource& grid, const std::filesystem::path& file, int block) {
   if (!io::is_volume_output(file))
     throw scene::bad_input(file.string() +
                            ": is no name of a grid that can be written; choose .vti, .vtr, .nrrd, .raw or .bricks");
-  io::write_volume(*state.samples, file, block);
+  io::write_volume(grid, file, block);
 }
+
+bool is_grid_output(const std::filesystem::path& file) { return io::is_volume_output(file); }
+
+SampleType written_type(const Dataset& grid) {
+  if (grid.is_mesh()) throw scene::bad_input(grid.source() + ": is a mesh, which has no samples; ask grids for it");
+  return io::written_type(grid.state().samples->grid());
+}
+
+int threads_for(int asked) { return scene::threads_for(asked); }
+std::string instruction_set() { return projection::instruction_set(); }
 
 }  // namespace tessera

@@ -63,12 +63,11 @@ Verification public_form(const reference::Verification& v) {
 }
 
 std::unique_ptr<Session::State> make_state(Dataset dataset, const Settings& settings,
-                                           std::shared_ptr<exchange::Transport> transport,
-                                           const frame::SessionExtras& extras) {
-  if (dataset.is_grid()) return frame::grid_by_rays(std::move(dataset), settings, std::move(transport), extras);
-  if (transport->size() == 1 && extras.compositing_on.backends.empty())
-    return frame::mesh_alone(std::move(dataset), settings, extras);
-  return frame::mesh_on_ranks(std::move(dataset), settings, std::move(transport), extras);
+                                           std::shared_ptr<exchange::Transport> transport) {
+  if (dataset.is_grid()) return frame::grid_by_rays(std::move(dataset), settings, std::move(transport));
+  if (transport->size() == 1 && settings.mesh.device.backends.empty())
+    return frame::mesh_alone(std::move(dataset), settings);
+  return frame::mesh_on_ranks(std::move(dataset), settings, std::move(transport));
 }
 
 }  // namespace
@@ -76,7 +75,7 @@ std::unique_ptr<Session::State> make_state(Dataset dataset, const Settings& sett
 Session::Session(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 Session::Session(Dataset dataset, const Settings& settings, const Communicator& communicator)
-    : Session(make_state(std::move(dataset), settings, communicator.state().connect(), {})) {}
+    : Session(make_state(std::move(dataset), settings, communicator.state().connect())) {}
 
 Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
@@ -101,7 +100,7 @@ bool Session::assembles() const { return state_->assembles(); }
 
 std::optional<double> Session::promised_error() const {
   return dataset().is_grid() ? frame::promised_error(frame::grid_settings(settings()))
-                             : frame::promised_error(state_->mesh_settings());
+                             : frame::promised_error(frame::mesh_settings(settings()));
 }
 
 Verification Session::verify(const RenderedFrame& frame, const View& view, const TransferFunction& transfer_function,
@@ -113,7 +112,7 @@ Verification Session::verify(const RenderedFrame& frame, const View& view, const
   if (dataset().is_grid())
     return public_form(frame::verify(frame.image, *data.samples, view.camera, transfer_function,
                                      frame::grid_settings(settings()), frame.uncertainty, count));
-  const frame::RenderSettings settings = state_->mesh_settings();
+  const frame::RenderSettings settings = frame::mesh_settings(this->settings());
   if (data.ranks == 1)
     return public_form(frame::verify(frame.image, data.mesh, view.camera, transfer_function, settings, count));
   if (data.files.empty())
@@ -122,15 +121,15 @@ Verification Session::verify(const RenderedFrame& frame, const View& view, const
   return public_form(frame::verify(frame.image, whole.mesh, view.camera, transfer_function, settings, count));
 }
 
-const Dataset& Session::dataset() const { return state_->dataset(); }
-const Settings& Session::settings() const { return state_->settings(); }
-
-namespace frame {
-
-Session make_session(Dataset dataset, const Settings& settings, exchange::Transport& transport,
-                     const SessionExtras& extras) {
-  return Session(make_state(std::move(dataset), settings, {std::shared_ptr<void>(), &transport}, extras));
+BalancePictures Session::State::balance_pictures(const RenderedFrame&, const View&, const TransferFunction&) const {
+  throw scene::bad_input("balance: pictures are of grids, and the data set is a mesh; leave them out");
 }
 
-}  // namespace frame
+BalancePictures Session::balance_pictures(const RenderedFrame& frame, const View& view,
+                                          const TransferFunction& transfer_function) const {
+  return state_->balance_pictures(frame, view, transfer_function);
+}
+
+const Dataset& Session::dataset() const { return state_->dataset(); }
+const Settings& Session::settings() const { return state_->settings(); }
 }  // namespace tessera

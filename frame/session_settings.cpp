@@ -32,6 +32,8 @@ RenderSettings mesh_settings(const Settings& s) {
   settings.threads = s.threads;
   settings.tile_size = s.mesh.tile_size;
   settings.memory_bytes = s.memory_bytes;
+  // As Juliachs et al. 2007 printed it: the error is only reported.
+  settings.bounded = s.mesh.device.backends.empty() || s.mesh.device.method != GlMethod::fragment;
   return settings;
 }
 
@@ -60,12 +62,24 @@ SortFirstSettings sort_first_settings(const Settings& s) {
   return settings;
 }
 
+CompositingSettings compositing_settings(const DeviceSettings& s) {
+  CompositingSettings settings;
+  settings.backends = s.backends;
+  settings.gl.method = s.method;
+  settings.gl.half = s.half;
+  settings.gl.by_local_rank = s.by_local_rank;
+  settings.gl.egl_device.number = s.egl_device;
+  return settings;
+}
+
 DistributedSettings distributed_settings(const Settings& s, int ranks) {
   DistributedSettings settings;
   settings.render = mesh_settings(s);
   settings.roles = assign_roles(ranks, s.ranks.projectors, s.ranks.compositors);
   settings.exchange = s.ranks.exchange;
   settings.frames_in_flight = s.ranks.frames_in_flight;
+  settings.compositing_on = compositing_settings(s.mesh.device);
+  settings.first_frame = s.ranks.first_frame;
   settings.tile_seed = s.ranks.tile_seed;
   return settings;
 }

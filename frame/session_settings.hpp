@@ -16,6 +16,9 @@ volume::RenderSettings grid_settings(const Settings& settings);
 
 SortFirstSettings sort_first_settings(const Settings& settings);
 
+/// Of a mesh: on several ranks, or on devices.
+CompositingSettings compositing_settings(const DeviceSettings& settings);
+
 /// `ranks`: of the job.
 DistributedSettings distributed_settings(const Settings& settings, int ranks);
 

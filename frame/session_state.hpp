@@ -9,7 +9,6 @@
 
 #include "exchange/transport.hpp"
 #include "frame/dataset.hpp"
-#include "frame/session_extras.hpp"
 #include "frame/session_settings.hpp"
 #include "scene/frame_watch.hpp"
 #include "tessera/session.hpp"
@@ -19,8 +18,7 @@ namespace tessera {
 /// How a kind of data is rendered by a number of processes.
 class TESSERA_HIDDEN Session::State {
  public:
-  State(Dataset dataset, const Settings& settings, const frame::SessionExtras& extras)
-      : dataset_(std::move(dataset)), settings_(settings), bounded_(extras.bounded) {}
+  State(Dataset dataset, const Settings& settings) : dataset_(std::move(dataset)), settings_(settings) {}
   virtual ~State() = default;
   State(const State&) = delete;
   State& operator=(const State&) = delete;
@@ -31,11 +29,9 @@ class TESSERA_HIDDEN Session::State {
 
   [[nodiscard]] const Dataset& dataset() const { return dataset_; }
   [[nodiscard]] const Settings& settings() const { return settings_; }
-  [[nodiscard]] frame::RenderSettings mesh_settings() const {
-    frame::RenderSettings settings = frame::mesh_settings(settings_);
-    settings.bounded = bounded_;
-    return settings;
-  }
+  /// Of grids.
+  [[nodiscard]] virtual BalancePictures balance_pictures(const RenderedFrame& frame, const View& view,
+                                                         const TransferFunction& function) const;
 
  protected:
   [[nodiscard]] const Dataset::State& data() const { return dataset_.state(); }
@@ -43,20 +39,17 @@ class TESSERA_HIDDEN Session::State {
  private:
   Dataset dataset_;
   Settings settings_;
-  bool bounded_;
 };
 
 namespace frame {
 
 /// Of a mesh: by this process alone, or by all ranks.
-std::unique_ptr<Session::State> mesh_alone(Dataset dataset, const Settings& settings, const SessionExtras& extras);
+std::unique_ptr<Session::State> mesh_alone(Dataset dataset, const Settings& settings);
 std::unique_ptr<Session::State> mesh_on_ranks(Dataset dataset, const Settings& settings,
-                                              std::shared_ptr<exchange::Transport> transport,
-                                              const SessionExtras& extras);
+                                              std::shared_ptr<exchange::Transport> transport);
 /// Of a grid, by any number of ranks.
 std::unique_ptr<Session::State> grid_by_rays(Dataset dataset, const Settings& settings,
-                                             std::shared_ptr<exchange::Transport> transport,
-                                             const SessionExtras& extras);
+                                             std::shared_ptr<exchange::Transport> transport);
 
 /// What a caller's sink threw, told apart from errors of the run: it stops a frame and harms nothing.
 struct SinkFailure {

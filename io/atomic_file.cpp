@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <system_error>
 
-namespace tessera::io {
+namespace tessera {
 namespace {
 
 namespace fs = std::filesystem;
@@ -40,9 +40,13 @@ bool user_can_mend(int error_number) {
 
 }  // namespace
 
-scene::Error OutputFault::since_changed() const {
-  if (code() == scene::ErrorCode::system_failure) return *this;
-  return {scene::ErrorCode::system_failure, subject(), problem(),
+OutputFault::OutputFault(ErrorCode code, const fs::path& target, const std::string& fault, const char* remedy)
+    : Error(code, target.string(), fault, remedy) {}
+OutputFault::~OutputFault() = default;
+
+Error OutputFault::since_changed() const {
+  if (code() == ErrorCode::system_failure) return *this;
+  return {ErrorCode::system_failure, subject(), problem(),
           "it could be written when the run began, see what has removed or closed the folder since"};
 }
 
@@ -50,7 +54,7 @@ void check_writable(const fs::path& target) {
   try {
     const AtomicFile probe(target);  // never committed: leaves no trace
   } catch (const OutputFault& fault) {
-    throw scene::Error(fault);
+    throw Error(fault);
   }
 }
 
@@ -60,7 +64,7 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)) {
   if (::stat(target_.c_str(), &present) == 0) {
     if (S_ISDIR(present.st_mode)) fail(EISDIR, "cannot be written");
     if (!S_ISREG(present.st_mode))
-      throw OutputFault(scene::ErrorCode::bad_input, target_, "is not a regular file",
+      throw OutputFault(ErrorCode::bad_input, target_, "is not a regular file",
                         "outputs are replaced as a whole, name a file");
   } else if (errno != ENOENT) {
     fail(errno, "cannot be written");
@@ -161,10 +165,28 @@ void AtomicFile::fail(int error_number, const char* doing) const {
     default:
       break;
   }
-  const OutputFault fault(user_can_mend(error_number) ? scene::ErrorCode::bad_input : scene::ErrorCode::system_failure,
-                          target_, fmt::format("{}: {}", doing, std::generic_category().message(error_number)), remedy);
+  const OutputFault fault(user_can_mend(error_number) ? ErrorCode::bad_input : ErrorCode::system_failure, target_,
+                          fmt::format("{}: {}", doing, std::generic_category().message(error_number)), remedy);
   if (begun_ && user_can_mend(error_number)) throw fault.since_changed();
   throw fault;
 }
 
-}  // namespace tessera::io
+void write_text(const fs::path& target, std::string_view text) {
+  AtomicFile file(target);
+  file.write(text);
+  file.commit();
+}
+
+void check_not_input(const fs::path& target, const fs::path& input) {
+  std::error_code absent;  // either of them missing: not the same file
+  if (!input.empty() && fs::equivalent(target, input, absent))
+    throw bad_input(
+        fmt::format("{}: is an input of this run and would be overwritten; choose another name", target.string()));
+}
+
+void check_output(const fs::path& target, const fs::path& input) {
+  check_not_input(target, input);
+  check_writable(target);
+}
+
+}  // namespace tessera

@@ -1,64 +1,12 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <string>
-#include <string_view>
-
 #include "scene/error.hpp"
+#include "tessera/output_file.hpp"
 
 namespace tessera::io {
 
-/// An output cannot be written. Whose fault it is depends on when: Error(bad_input) where the user can mend it (no such
-/// folder, no permission, the target is a folder or device), as long as nothing has been begun; who has found before
-/// that it could be written calls since_changed().
-class OutputFault : public scene::Error {
- public:
-  OutputFault(scene::ErrorCode code, const std::filesystem::path& target, const std::string& fault, const char* remedy)
-      : Error(code, target.string(), fault, remedy) {}
-  /// The same as Error(system_failure): something has removed or closed the folder since.
-  [[nodiscard]] scene::Error since_changed() const;
-};
-
-/// Before a run: begins such a file as AtomicFile is, and leaves it. Throws a plain Error, which is not OutputFault, so
-/// that a run's own faults can be told from those that were there before it.
-void check_writable(const std::filesystem::path& target);
-
-/// An output file that appears whole, by rename, or not at all.
-///
-/// Writing goes to a nameless file in the target's folder (O_TMPFILE), so that even a killed process leaves nothing;
-/// where the file system has no such thing, to `.tessera-PID-N.part` beside the target, removed by the destructor.
-/// Only commit() makes the target appear, or replaces it, after fsync. Throws OutputFault: bad_input only from the
-/// constructor, system_failure for a full or failing disk and for whatever happens after the constructor. The messages
-/// name the target.
-class AtomicFile {
- public:
-  explicit AtomicFile(std::filesystem::path target);
-  ~AtomicFile();
-  AtomicFile(const AtomicFile&) = delete;
-  AtomicFile& operator=(const AtomicFile&) = delete;
-
-  void write(const void* bytes, std::size_t count);
-  void write(std::string_view text) { write(text.data(), text.size()); }
-  /// Position of the next byte, counted from the beginning; going back overwrites (OpenEXR's line table).
-  void seek(std::uint64_t position);
-  [[nodiscard]] std::uint64_t position() const { return position_; }
-
-  void commit();
-
-  /// For libraries that open their output by name: where they may write until commit(). Costs the nameless file its
-  /// advantage: a killed process leaves the `.part` behind.
-  std::filesystem::path named_part();
-
- private:
-  void open_named();
-  [[noreturn]] void fail(int error_number, const char* doing) const;
-
-  std::filesystem::path target_, part_;  ///< part_ empty while nameless
-  int descriptor_ = -1;
-  bool begun_ = false;
-  std::uint64_t position_ = 0;
-};
+using tessera::AtomicFile;
+using tessera::check_writable;
+using tessera::OutputFault;
 
 }  // namespace tessera::io

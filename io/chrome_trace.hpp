@@ -6,25 +6,13 @@
 #include <string>
 
 #include "scene/trace.hpp"
+#include "tessera/trace_file.hpp"
 
 /// Chrome's trace-event JSON, which Perfetto and chrome://tracing open and `tessera timing` reads: one file for all
 /// ranks and threads of a run. docs/FORMATS.md has every field.
 namespace tessera::io {
 
-/// What was run, for readers of its trace: the file's `otherData`. Words left empty and numbers left 0 are not written.
-struct TraceRun {
-  std::string version;                  ///< of the program
-  std::string input;                    ///< mesh file as it was named
-  std::uint64_t tets = 0;               ///< of the whole mesh, rendered a frame
-  int frames = 0;                       ///< rendered, repetitions counted
-  int width = 0, height = 0;            ///< pixels
-  int ranks = 1;                        ///< processes
-  int projectors = 0, compositors = 0;  ///< ranks that have the role; 0 and 0: one process does both
-  int threads = 0;                      ///< a rank
-  std::string exchange;                 ///< segments, runs
-  std::string rasterizer, integrator;   ///< as the command line names them
-  bool operator==(const TraceRun&) const = default;
-};
+using tessera::TraceRun;
 
 /// One rank's events as the text of a JSON array, so that ranks can send theirs to the one that writes.
 ///

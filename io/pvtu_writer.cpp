@@ -45,8 +45,8 @@ std::filesystem::path pvtu_piece_name(const std::filesystem::path& file, int pie
   return file.parent_path() / fmt::format("{}_{:04}.vtu", file.stem().string(), piece);
 }
 
-PvtuWriter::PvtuWriter(std::filesystem::path file, const scene::TetMesh& like) : file_(std::move(file)) {
-  const std::string name = like.field_name.empty() ? "scalar" : xml_text(like.field_name);
+PvtuWriter::PvtuWriter(std::filesystem::path file, const scene::TetMeshView& like) : file_(std::move(file)) {
+  const std::string name = like.field_name.empty() ? "scalar" : xml_text(std::string(like.field_name));
   const std::string scalar = fmt::format("      <PDataArray type=\"Float64\" Name=\"{}\"/>\n", name);
   const bool point = like.association == scene::Association::point;
   std::string cell = point ? "" : scalar;

@@ -20,7 +20,7 @@ std::filesystem::path pvtu_piece_name(const std::filesystem::path& file, int pie
 class PvtuWriter {
  public:
   /// `like` gives the field's name and association, and whether original cells are numbered.
-  PvtuWriter(std::filesystem::path file, const scene::TetMesh& like);
+  PvtuWriter(std::filesystem::path file, const scene::TetMeshView& like);
   ~PvtuWriter();
   PvtuWriter(const PvtuWriter&) = delete;
   PvtuWriter& operator=(const PvtuWriter&) = delete;

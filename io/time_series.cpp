@@ -121,12 +121,6 @@ std::vector<TimeStep> read_pvd(const std::filesystem::path& input) {
 
 }  // namespace
 
-bool is_time_series(const std::filesystem::path& input) {
-  if (is_pvd(input)) return true;
-  std::error_code absent;
-  return pattern_of(input.filename().string()).has_value() && !std::filesystem::exists(input, absent);
-}
-
 void require_input(const std::filesystem::path& input) {
   if (is_time_series(input))
     read_time_series(input);
@@ -134,13 +128,29 @@ void require_input(const std::filesystem::path& input) {
     require_file(input);
 }
 
+}  // namespace tessera::io
+
+namespace tessera {
+
+bool is_time_series(const std::filesystem::path& input) {
+  if (io::is_pvd(input)) return true;
+  std::error_code absent;
+  return io::pattern_of(input.filename().string()).has_value() && !std::filesystem::exists(input, absent);
+}
+
 std::vector<TimeStep> read_time_series(const std::filesystem::path& input) {
-  if (is_pvd(input)) return read_pvd(input);
-  const auto pattern = pattern_of(input.filename().string());
+  if (io::is_pvd(input)) return io::read_pvd(input);
+  const auto pattern = io::pattern_of(input.filename().string());
   if (!pattern)
     throw scene::bad_input(
         fmt::format("{}: is no time series; give a .pvd, or a name with %04d for the number", input.string()));
-  return read_pattern(input, *pattern);
+  return io::read_pattern(input, *pattern);
 }
 
-}  // namespace tessera::io
+std::optional<std::string> numbered_name(const std::string& pattern, int number) {
+  const auto parts = io::pattern_of(pattern);
+  if (!parts) return std::nullopt;
+  return fmt::format("{}{:0{}}{}", parts->before, number, parts->width, parts->after);
+}
+
+}  // namespace tessera

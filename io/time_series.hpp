@@ -1,30 +1,17 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
-#include <vector>
+
+#include "tessera/time_series.hpp"
 
 namespace tessera::io {
 
-/// One mesh of a film.
-struct TimeStep {
-  double time = 0;  ///< as the .pvd gives it; else the number in the name, or the place in a list
-  std::vector<std::filesystem::path> files;  ///< at least one; several are pieces of one mesh
-};
-
-/// Whether the name stands for several meshes: a .pvd, or a file name with `%d` or `%04d` that is not a file itself.
-bool is_time_series(const std::filesystem::path& input);
+using tessera::is_time_series;
+using tessera::read_time_series;
+using tessera::TimeStep;
 
 /// Throws Error(bad_input) unless the input is there: a file, or of a time series at least one step. For what must not
 /// be said of a file that is not there, such as that it is a mesh.
 void require_input(const std::filesystem::path& input);
-
-/// The steps of a film in the order of time; not all of their files need exist.
-///
-/// .pvd (ParaView's): <VTKFile type="Collection"> with <DataSet timestep= part= file=>; relative paths are against the
-/// .pvd's folder, entries of one timestep are its parts. Pattern: the files there are whose name the pattern gives for
-/// some number, by number; gaps are fine. Throws Error(bad_input) in one line for a missing, malformed or huge .pvd,
-/// one that lists nothing, and a pattern without a file.
-std::vector<TimeStep> read_time_series(const std::filesystem::path& input);
 
 }  // namespace tessera::io

@@ -6,22 +6,12 @@
 #include <vector>
 
 #include "scene/camera.hpp"
+#include "tessera/reference.hpp"
 
 namespace tessera::reference {
 
-/// What a ray sees.
-struct Pixel {
-  double r = 0, g = 0, b = 0, a = 0;  ///< linear RGB premultiplied by a; a = 1 - transmittance
-  double z = 0;                       ///< planar depth where a begins to grow; infinite if a is 0
-  double length = 0;                  ///< world length of the ray inside the mesh (overlapping cells count each)
-  std::size_t segments = 0;
-};
-
-/// A pixel of the image; (0, 0) is the top left.
-struct PixelIndex {
-  int x, y;
-  bool operator==(const PixelIndex&) const = default;
-};
+using Pixel = tessera::ReferencePixel;
+using tessera::PixelIndex;
 
 /// A truth that pictures are judged against: what a ray through any place of the picture sees, in double precision.
 class RayReference {
@@ -45,8 +35,6 @@ class RayReference {
 /// All pixels of an image, row-major.
 std::vector<PixelIndex> all_pixels(scene::ImageSize size);
 
-/// `count` different pixels, each set equally likely, row-major; all of them if there are no more. The same seed gives
-/// the same pixels everywhere.
-std::vector<PixelIndex> random_pixels(scene::ImageSize size, std::size_t count, std::uint64_t seed);
+using tessera::random_pixels;
 
 }  // namespace tessera::reference

@@ -178,10 +178,14 @@ std::vector<PixelIndex> all_pixels(scene::ImageSize size) {
   return pixels;
 }
 
-std::vector<PixelIndex> random_pixels(scene::ImageSize size, std::size_t count, std::uint64_t seed) {
+}  // namespace tessera::reference
+
+namespace tessera {
+
+std::vector<PixelIndex> random_pixels(ImageSize size, std::size_t count, std::uint64_t seed) {
   const std::uint64_t width = static_cast<std::uint64_t>(size.width);
   const std::uint64_t total = width * static_cast<std::uint64_t>(size.height);
-  if (count >= total) return all_pixels(size);
+  if (count >= total) return reference::all_pixels(size);
   // Floyd's choice of a subset: Bentley, Floyd, "A Sample of Brilliance", CACM 1987. The remainder's bias is below
   // 2^-32 for any image.
   std::mt19937_64 random(seed);
@@ -190,8 +194,8 @@ std::vector<PixelIndex> random_pixels(scene::ImageSize size, std::size_t count, 
     if (!chosen.insert(random() % (last + 1)).second) chosen.insert(last);
   std::vector<PixelIndex> pixels;
   for (const std::uint64_t i : chosen) pixels.push_back({static_cast<int>(i % width), static_cast<int>(i / width)});
-  std::sort(pixels.begin(), pixels.end(), row_major_less);
+  std::sort(pixels.begin(), pixels.end(), reference::row_major_less);
   return pixels;
 }
 
-}  // namespace tessera::reference
+}  // namespace tessera

@@ -74,6 +74,13 @@ ViewBasis view_basis(const Camera& camera) {
   return {right, glm::cross(right, forward), forward};
 }
 
+double diagonal(const Box& box) {
+  if (box.empty()) return 0;
+  const glm::dvec3 extent = box.high - box.low;
+  const double longest = std::max({extent.x, extent.y, extent.z});
+  return longest > 0 ? glm::length(extent / longest) * longest : 0;  // 1e-200 must not underflow when squared
+}
+
 Camera frame_box(const Box& box, ImageSize size, ProjectionKind projection, bool turning) {
   Camera camera;
   camera.projection = projection;

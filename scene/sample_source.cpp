@@ -69,32 +69,6 @@ void convert_samples(const std::byte* source, SampleType from, std::int64_t stri
   });
 }
 
-SampleSource::SampleSource(Grid grid, std::string source) : grid_(std::move(grid)), source_(std::move(source)) {
-  validate(grid_, source_);
-}
-
-void SampleSource::read(const SampleBox& box, const SampleLayout& layout, std::span<std::byte> destination) const {
-  const GridIndex n = geometry().samples();
-  for (std::size_t a = 0; a < 3; ++a)
-    if (box.low[a] < 0 || box.high[a] > n[a] || box.low[a] > box.high[a])
-      throw bad_input(fmt::format("{}: samples {} to {} along {} are asked for, it has {}; please report", source_,
-                                  box.low[a], box.high[a], "xyz"[a], n[a]));
-  if (box.count() == 0) return;
-  if (layout.type != grid_.type && !is_float(layout.type))
-    throw bad_input(fmt::format("{}: {} samples are asked for as {}; please report", source_, name_of(grid_.type),
-                                name_of(layout.type)));
-  SampleLayout pitched = layout;
-  if (pitched.row_pitch == 0) pitched.row_pitch = box.extent(0);
-  if (pitched.slice_pitch == 0) pitched.slice_pitch = pitched.row_pitch * box.extent(1);
-  const std::int64_t needed =
-      (box.extent(2) - 1) * pitched.slice_pitch + (box.extent(1) - 1) * pitched.row_pitch + box.extent(0);
-  if (pitched.row_pitch < box.extent(0) || pitched.slice_pitch < pitched.row_pitch ||
-      static_cast<std::uint64_t>(needed) * size_of(layout.type) > destination.size())
-    throw bad_input(
-        fmt::format("{}: {} samples do not fit {} bytes; please report", source_, needed, destination.size()));
-  read_samples(box, pitched, destination.data());
-}
-
 MemorySource::MemorySource(Grid grid, std::span<const std::byte> bytes, std::shared_ptr<const void> owner,
                            std::string source, std::optional<ComponentChoice> choice, bool swapped, bool from_file)
     : SampleSource(std::move(grid), std::move(source)),
@@ -212,3 +186,35 @@ ValueRange value_range(const SampleSource& source) {
 }
 
 }  // namespace tessera::scene
+
+namespace tessera {
+
+SampleSource::~SampleSource() = default;
+
+SampleSource::SampleSource(Grid grid, std::string source) : grid_(std::move(grid)), source_(std::move(source)) {
+  validate(grid_, source_);
+}
+
+void SampleSource::read(const SampleBox& box, const SampleLayout& layout, std::span<std::byte> destination) const {
+  const GridIndex n = geometry().samples();
+  for (std::size_t a = 0; a < 3; ++a)
+    if (box.low[a] < 0 || box.high[a] > n[a] || box.low[a] > box.high[a])
+      throw bad_input(fmt::format("{}: samples {} to {} along {} are asked for, it has {}; please report", source_,
+                                  box.low[a], box.high[a], "xyz"[a], n[a]));
+  if (box.count() == 0) return;
+  if (layout.type != grid_.type && !is_float(layout.type))
+    throw bad_input(fmt::format("{}: {} samples are asked for as {}; please report", source_, name_of(grid_.type),
+                                name_of(layout.type)));
+  SampleLayout pitched = layout;
+  if (pitched.row_pitch == 0) pitched.row_pitch = box.extent(0);
+  if (pitched.slice_pitch == 0) pitched.slice_pitch = pitched.row_pitch * box.extent(1);
+  const std::int64_t needed =
+      (box.extent(2) - 1) * pitched.slice_pitch + (box.extent(1) - 1) * pitched.row_pitch + box.extent(0);
+  if (pitched.row_pitch < box.extent(0) || pitched.slice_pitch < pitched.row_pitch ||
+      static_cast<std::uint64_t>(needed) * size_of(layout.type) > destination.size())
+    throw bad_input(
+        fmt::format("{}: {} samples do not fit {} bytes; please report", source_, needed, destination.size()));
+  read_samples(box, pitched, destination.data());
+}
+
+}  // namespace tessera

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <new>
 #include <string>
 #include <string_view>
 
@@ -36,3 +37,23 @@ std::optional<Error> thread_fault(const std::exception& fault) {
 }
 
 }  // namespace tessera::scene
+
+namespace tessera {
+
+Error error_of(const std::exception_ptr& thrown) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const Error& error) {
+    return error;
+  } catch (const std::bad_alloc&) {
+    return {ErrorCode::system_failure,
+            "memory: this run needs more than there is; make `size` smaller or use a machine with more"};
+  } catch (const std::exception& fault) {
+    if (const auto of_threads = scene::thread_fault(fault)) return *of_threads;
+    return {ErrorCode::system_failure, fmt::format("unexpected: {}; please report", fault.what())};
+  } catch (...) {
+    return {ErrorCode::system_failure, "unexpected: unknown exception; please report"};
+  }
+}
+
+}  // namespace tessera

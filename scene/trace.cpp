@@ -7,7 +7,7 @@
 #include <thread>
 #include <unordered_map>
 
-namespace tessera::scene {
+namespace tessera {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -113,6 +113,8 @@ void TraceScope::end() {
   mine.spans.push_back(span);
 }
 
+namespace scene {
+
 namespace {
 
 std::uint64_t processor_ticks() {
@@ -155,4 +157,5 @@ void StageTimer::end() {
   }
 }
 
-}  // namespace tessera::scene
+}  // namespace scene
+}  // namespace tessera

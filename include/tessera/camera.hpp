@@ -58,6 +58,9 @@ struct Box {
   bool operator==(const Box&) const = default;
 };
 
+/// Length of a box's diagonal, world units; 0 if it has no extent.
+TESSERA_EXPORT double diagonal(const Box& box);
+
 /// A view of the whole box from a fixed oblique direction, with a small margin; the longest side of the box lies across
 /// the picture. A flat, thin or one-point box still gives a valid camera. Perspective: 30 degrees, the eye as near as
 /// the box allows, always outside of it. `turning`: wide enough for the box at every turn of orbit().

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "tessera/export.hpp"
@@ -31,5 +32,9 @@ class TESSERA_EXPORT Communicator {
  private:
   std::shared_ptr<const State> state_;
 };
+
+/// Runs `work` once a rank, each on a thread of its own, with a communicator of these threads, and returns when all
+/// have: a job's shape without MPI. An exception of one rank ends the run for all; the run's one error is thrown here.
+TESSERA_EXPORT void run_ranks(int ranks, const std::function<void(const Communicator&)>& work);
 
 }  // namespace tessera

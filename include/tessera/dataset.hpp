@@ -17,6 +17,7 @@
 #include "tessera/field_info.hpp"
 #include "tessera/grid.hpp"
 #include "tessera/mesh_check.hpp"
+#include "tessera/sample_source.hpp"
 #include "tessera/settings.hpp"
 #include "tessera/transfer_function.hpp"
 
@@ -42,9 +43,14 @@ struct ReadOptions {
   std::optional<glm::dvec3> spacing{}, origin{};
   bool big_endian = false;
   std::uint64_t skip = 0;  ///< bytes before the first sample
+  /// Whether one of these is given.
+  [[nodiscard]] bool describes_raw() const { return dims || type || spacing || origin || big_endian || skip > 0; }
 
   /// Of a rectilinear grid, which is a mesh too: its voxels as hexahedra.
   bool grid_as_mesh = false;
+  /// Meshes: tets keep their corners' order, for who writes them again. A session then keeps a copy, 16 bytes a tet.
+  bool keep_corners = false;
+  Trace* trace = nullptr;  ///< where the time of reading goes; null: nowhere
 };
 
 /// A mesh in the caller's arrays.
@@ -63,6 +69,9 @@ struct MeshArrays {
   ArrayView scalars;  ///< one a point, or one a cell
   Association association = Association::point;
   std::string field_name = "scalar";
+  /// Of `tets`: uint64, one each, the cell of another mesh that it was made of, tets of one cell next to each other.
+  /// Empty: it is its own. Written by write_mesh; no picture depends on it.
+  ArrayView original_cells{};
   /// Keeps the arrays alive for as long as the data set needs them; null: the caller sees to that.
   std::shared_ptr<const void> owner;
 };
@@ -104,6 +113,8 @@ class TESSERA_EXPORT Dataset {
   /// finite sample, is one too.
   static Dataset of(const MeshArrays& arrays);
   static Dataset of(const GridArrays& arrays);
+  /// Of samples that are read where they are needed, all of them once at first for their range.
+  static Dataset of(std::shared_ptr<const SampleSource> samples);
   /// Of a mesh in parts, one a rank, as a simulation has it: every cell on one rank, ghosts left out; a rank may have
   /// none. Cells are numbered rank after rank. Collective; the communicator must be the session's, where every rank
   /// projects what it has.
@@ -130,6 +141,9 @@ class TESSERA_EXPORT Dataset {
   /// Meshes, else zero.
   [[nodiscard]] std::uint64_t tet_count() const;
   [[nodiscard]] const MeshCounts& mesh_counts() const;
+  /// The tets as they are rendered, on several ranks this one's: float64 points and scalars, uint32 tets, borrowed from
+  /// this data set and kept by it. Throws Error(bad_input) for a grid.
+  [[nodiscard]] MeshArrays mesh_arrays() const;
   /// Grids. Throws Error(bad_input) for a mesh.
   [[nodiscard]] const GridGeometry& grid_geometry() const;
   [[nodiscard]] SampleType sample_type() const;

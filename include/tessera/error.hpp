@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -50,5 +51,12 @@ class TESSERA_EXPORT Error : public std::runtime_error {
   ErrorCode code_;
   std::size_t subject_end_ = 0, problem_begin_ = 0, problem_end_ = 0, remedy_begin_ = 0;  ///< places in what()
 };
+
+/// The most frequent one: a file or a setting is wrong. The line as Error's first constructor takes it.
+inline Error bad_input(const std::string& line) { return {ErrorCode::bad_input, line}; }
+
+/// What any exception is to the user: itself if it is an Error, else Error(system_failure): no more memory, no more
+/// threads, or unexpected.
+TESSERA_EXPORT Error error_of(const std::exception_ptr& thrown);
 
 }  // namespace tessera

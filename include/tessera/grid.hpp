@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ enum class SampleType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32
 TESSERA_EXPORT std::size_t size_of(SampleType type);
 /// "uint8", "float32", ...
 TESSERA_EXPORT const char* name_of(SampleType type);
+/// The type of that name (float and double too); none if there is none.
+TESSERA_EXPORT std::optional<SampleType> sample_type_named(const std::string& name);
 TESSERA_EXPORT bool is_float(SampleType type);
 /// Whether single precision holds every number of the type.
 TESSERA_EXPORT bool fits_float(SampleType type);

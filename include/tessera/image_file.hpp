@@ -28,4 +28,10 @@ TESSERA_EXPORT Image read_image(const std::filesystem::path& file);
 /// Writes a deep picture as OpenEXR, .exr. Throws as write_image.
 TESSERA_EXPORT void write_deep_image(const DeepImage& image, const std::filesystem::path& file);
 
+/// Whether a picture of this name is deep: it ends in `.deep.exr` (upper or lower case).
+TESSERA_EXPORT bool is_deep_name(const std::filesystem::path& file);
+
+/// Before any rendering: throws Error(bad_input) unless write_image knows the extension and could create this file now.
+TESSERA_EXPORT void check_image_path(const std::filesystem::path& file);
+
 }  // namespace tessera

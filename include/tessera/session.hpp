@@ -16,6 +16,16 @@
 
 namespace tessera {
 
+/// Who rendered what of a grid's picture, and what it was thought to cost (Moloney 2008, Figures 1.2, 4.1, 4.4).
+struct BalancePictures {
+  /// The picture, dimmed, on black, and over it the outlines of the bricks that the transfer function shows, each pixel
+  /// of a line in the colour of the process that rendered it. White lines where rectangles of processes meet.
+  Image bricks;
+  /// The cost of each pixel: black where nothing is to be done, over blue, red and yellow to white at the dearest
+  /// pixel; the same white lines. Opaque.
+  Image cost;
+};
+
 /// Renders one data set many times. Prepares once; renders one frame at a time. Several sessions may run at once, on
 /// one data set too. Threads are the session's own share of the process (Settings::threads); it prints nothing and
 /// changes nothing of the process.
@@ -58,6 +68,11 @@ class TESSERA_EXPORT Session {
   /// which are then read once more.
   [[nodiscard]] Verification verify(const RenderedFrame& frame, const View& view,
                                     const TransferFunction& transfer_function, std::size_t count) const;
+
+  /// Of a grid's last frame, rendered with FrameSettings::keep_cost, on the rank that assembles: see BalancePictures.
+  /// Throws Error(bad_input) for a mesh.
+  [[nodiscard]] BalancePictures balance_pictures(const RenderedFrame& frame, const View& view,
+                                                 const TransferFunction& transfer_function) const;
 
   [[nodiscard]] const Dataset& dataset() const;
   [[nodiscard]] const Settings& settings() const;

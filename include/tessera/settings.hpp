@@ -4,11 +4,14 @@
 #include <optional>
 #include <vector>
 
+#include "tessera/export.hpp"
 #include "tessera/mechanisms.hpp"
 #include "tessera/optical_model.hpp"
 #include "tessera/shading.hpp"
 
 namespace tessera {
+
+class Trace;
 
 /// How cells of a mesh become ray segments.
 enum class Rasterizer {
@@ -54,10 +57,34 @@ enum class CachePolicy {
 /// How much memory a brick at the volume's high end takes (Moloney 2008, Table 6.2).
 enum class EdgeBricks { variable, fixed };
 
+/// Where ray segments of meshes are sorted and composited.
+enum class Backend {
+  cpu,
+  automatic,  ///< a GPU through EGL, if one answers; else the CPU
+  osmesa,     ///< OpenGL by Mesa in software, in this process
+  egl         ///< OpenGL by a device without a surface: a GPU, or Mesa's software device
+};
+
+/// How an OpenGL device composites.
+enum class GlMethod {
+  compute,   ///< compute shaders on storage buffers
+  fragment,  ///< as Juliachs et al. 2007, 4.3: scanline by scanline in textures; no error is promised
+};
+
+/// Of compositors that work on OpenGL devices. A process alone is one compositor.
+struct DeviceSettings {
+  std::vector<Backend> backends{};  ///< one of all compositors, or one each, in their order; none: the CPU
+  GlMethod method = GlMethod::compute;
+  bool half = true;                 ///< fragment: a framebuffer of 16-bit floats, as the paper's; false: 32-bit
+  std::optional<int> egl_device{};  ///< egl: by EGL's own number; none: the first hardware device, else the first
+  bool by_local_rank = false;       ///< egl: ranks of one machine take its devices in turn
+};
+
 /// Of meshes alone.
 struct MeshSettings {
   Rasterizer rasterizer = Rasterizer::planes;
   int tile_size = 32;  ///< pixels a side, 1 to 1024; changes no bit of the picture
+  DeviceSettings device;
 };
 
 /// Of regular and rectilinear grids alone.
@@ -79,10 +106,25 @@ struct RankSettings {
   Partition partition;
   int frames_in_flight = 2;               ///< frames a projector may be ahead of the assembled picture, at least 1
   std::uint64_t tile_seed = 1;            ///< of the map from tiles to compositors
+  std::uint32_t first_frame = 0;          ///< meshes: the number that traces and messages give a session's first frame
   Balance balance = Balance::accurate;    ///< grids
   double balance_resolution = 0.5;        ///< grids: of the cost map, map pixels an image pixel along each axis
   std::vector<double> balance_weights{};  ///< grids: how much of the work each rank should get; empty: equal
 };
+
+/// Which ranks project and which composite a mesh. The first compositor assembles the pictures.
+struct TESSERA_EXPORT Roles {
+  std::vector<int> projectors, compositors;
+  [[nodiscard]] bool projects(int rank) const;
+  [[nodiscard]] bool composites(int rank) const;
+  [[nodiscard]] int assembler() const { return compositors.front(); }
+};
+
+/// The roles of so many ranks by RankSettings::projectors and compositors, N and P of them. N + P ranks: ranks 0 .. N-1
+/// project, the others composite. max(N, P) ranks: both start at rank 0 and share. With one number given the other
+/// takes what is left, or shares if nothing is; with none every rank does both. Throws Error(bad_input) for numbers
+/// that fit neither way.
+TESSERA_EXPORT Roles assign_roles(int ranks, std::optional<int> projectors, std::optional<int> compositors);
 
 /// How a session renders: one vocabulary for meshes and grids, one process and many. Of what changes the picture there
 /// are the integrator, the emission, the shading, the rasterizer and the grid's step; nothing else changes it by more
@@ -97,6 +139,9 @@ struct Settings {
   MeshSettings mesh;
   GridSettings grid;
   RankSettings ranks;
+  /// Where the session's times go; null: nowhere. It must outlive the session. Of a mesh on several ranks, or on a
+  /// device, spans say for which role the rank worked.
+  Trace* trace = nullptr;
 };
 
 /// Of one frame.
@@ -107,6 +152,8 @@ struct FrameSettings {
   double deep_accuracy = 1e-3;
   /// Grids: what verify() looks at first, see RenderedFrame::uncertainty.
   bool keep_uncertainty = false;
+  /// Grids: what Session::balance_pictures() draws.
+  bool keep_cost = false;
 };
 
 }  // namespace tessera

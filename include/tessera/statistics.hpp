@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tessera/export.hpp"
 #include "tessera/frame_counters.hpp"
 #include "tessera/pixel_rect.hpp"
 
@@ -20,6 +21,11 @@ struct GridCounters {
   std::uint64_t bytes_loaded = 0, bytes_resident = 0, peak_bytes = 0;   ///< of bricks; the last two at the end
   std::uint64_t blank_samples = 0;                                      ///< of the whole volume (NaN, infinite)
 };
+
+/// The instruction set that kernels of this process run on.
+TESSERA_EXPORT std::string instruction_set();
+/// How many threads work gets that asks for so many; 0: all cores.
+TESSERA_EXPORT int threads_for(int asked);
 
 /// What happened in one frame, on all ranks together.
 struct FrameStatistics {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "tessera/camera.hpp"
@@ -22,5 +23,7 @@ TESSERA_EXPORT std::vector<CameraFile> read_cameras(const std::filesystem::path&
 
 /// Writes one view as JSON, every double in the shortest form that reads back the same. Appears by rename.
 TESSERA_EXPORT void write_camera(const CameraFile& camera, const std::filesystem::path& file);
+/// What write_camera writes.
+TESSERA_EXPORT std::string camera_json(const CameraFile& camera);
 
 }  // namespace tessera

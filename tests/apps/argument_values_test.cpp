@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "apps/frame_list.hpp"
-#include "scene/error.hpp"
+#include "tessera/error.hpp"
+#include "tessera/time_series.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -16,20 +16,20 @@ TEST(ArgumentValues, SizesInMemoryTakePowersOf1024) {
   EXPECT_EQ(parse_bytes("--memory", "1.5G"), 3ull << 29);
   EXPECT_EQ(parse_bytes("--memory", "2097152"), 2ull << 20);
   for (const char* text : {"", "G", "-1G", "1X", "1k", "1 G", "1e30", "nan", "1023K"})
-    EXPECT_THROW(parse_bytes("--memory", text), scene::Error) << text;
+    EXPECT_THROW(parse_bytes("--memory", text), Error) << text;
 }
 
 TEST(ArgumentValues, ColorsAreNamesOrThreeNumbers) {
   EXPECT_EQ(parse_color("--background", "white"), (std::array<float, 3>{1, 1, 1}));
   EXPECT_EQ(parse_color("--background", "0.25,0,2"), (std::array<float, 3>{0.25f, 0, 2}));
   for (const char* text : {"", "1", "1,2", "1,2,3,4", "1,,2", "1,2,", "inf,0,0", "1,2,x", "-0.1,0,0", "White"})
-    EXPECT_THROW(parse_color("--background", text), scene::Error) << text;
+    EXPECT_THROW(parse_color("--background", text), Error) << text;
 }
 
 TEST(ArgumentValues, SizesAreTwoWholeNumbers) {
-  EXPECT_EQ(parse_size("--size", "640x480"), (scene::ImageSize{640, 480}));
+  EXPECT_EQ(parse_size("--size", "640x480"), (ImageSize{640, 480}));
   for (const char* text : {"640", "640x", "x480", "640X480", "640x480x3", "6.4x4", "-1x1", "0x1", "65537x1", " 1x1"})
-    EXPECT_THROW(parse_size("--size", text), scene::Error) << text;
+    EXPECT_THROW(parse_size("--size", text), Error) << text;
 }
 
 TEST(FrameNames, OneNumberPatternIsReplacedAndOtherPercentSignsStay) {

@@ -35,10 +35,10 @@ TEST(DeltaE, AgreesWithThePublishedPairs) {
 }
 
 TEST(ChartMeasure, ErrorsAreOfThePixelsLookedAt) {
-  scene::Image image({2, 2});
+  Image image({2, 2});
   image.rgba = {0, 0, 0, 0, 0.5f, 0.5f, 0.5f, 1, 9, 9, 9, 9, 0.25f, 0, 0, 0.25f};
-  const std::vector<reference::PixelIndex> pixels = {{0, 0}, {1, 0}, {1, 1}};
-  std::vector<reference::Pixel> truths(3);
+  const std::vector<PixelIndex> pixels = {{0, 0}, {1, 0}, {1, 1}};
+  std::vector<ReferencePixel> truths(3);
   truths[1] = {0.5, 0.25, 0.5, 1};
   truths[2] = {0.25, 0, 0, 0.5};
   const analysis::ChartError error = analysis::chart_error(image, pixels, truths);
@@ -100,7 +100,7 @@ TEST(Chart, AMeshGivesEveryMethodAPlaceOrAReason) {
     }
   }
   for (const char* family :
-       {"planes, auto", "planes, preintegrated", "planes, partial", "scanline, sampled", "two ranks, every other cell"})
+       {"planes, auto", "planes, preintegrated", "planes, partial", "scanline, sampled", "two ranks, random cells"})
     EXPECT_TRUE(families.count(family) == 1) << family;
   std::ifstream csv(folder / "c.csv");
   std::size_t lines = 0;

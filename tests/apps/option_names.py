@@ -39,8 +39,8 @@ def in_literals(pattern, source):
 
 
 def settings_known(tree):
-    table = (tree / "apps/setting_words.cpp").read_text(encoding="utf-8").split("settings = {")[1].split("}")[0]
-    return set(re.findall(r'"([a-z_]+)"', table))
+    table = (tree / "apps/setting_words.cpp").read_text(encoding="utf-8").split("setting_names =")[1].split(";")[0]
+    return set("".join(re.findall(r'"([a-z_ ]+)"', table)).split())
 
 
 def main():

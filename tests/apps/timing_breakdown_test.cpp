@@ -9,9 +9,6 @@
 namespace tessera::apps {
 namespace {
 
-using io::FileSpan;
-using scene::TraceRole;
-
 /// Times in files are rounded to a nanosecond, a few hundred of them are summed.
 constexpr double rounding_us = 1;
 
@@ -34,7 +31,7 @@ analysis::ProcessTime share(const std::vector<FileSpan>& spans) {
 analysis::RunTime run_of(const TracedPipeline& pipeline) {
   const Folder folder;
   pipeline.write(folder / "trace.json");
-  return analysis::break_down(io::read_chrome_trace(folder / "trace.json"), "trace.json");
+  return analysis::break_down(read_trace(folder / "trace.json"), "trace.json");
 }
 
 void expect_stage(const analysis::RoleTime& role, const std::string& name, double ms_a_frame, double cpu_ms_a_frame,
@@ -188,7 +185,7 @@ TEST(Breakdown, OverlapIsTheBytesMovedInTimeAndTheFramesUnderWayTogether) {
 }
 
 TEST(Breakdown, OneProcessForBothHasNoExchange) {
-  io::TraceFile trace;
+  TraceFile trace;
   trace.stages = {"frame", "wait", "project", "sort", "integrate"};
   trace.spans = {span(frame, 0, 0, 100), span(project, 0, 0, 100)};
   const analysis::RunTime run = analysis::break_down(trace, "a");
@@ -201,7 +198,7 @@ TEST(Breakdown, OneProcessForBothHasNoExchange) {
 }
 
 TEST(Breakdown, SpansWithoutARoleGoToTheOneThatDoesSuchWork) {
-  io::TraceFile trace;
+  TraceFile trace;
   trace.stages = {"read", "write", "project", "composite"};
   const auto add = [&](std::uint16_t stage, int rank, TraceRole role) {
     FileSpan made = span(static_cast<Stage>(stage), stage, 10.0 * stage, 10);
@@ -221,7 +218,7 @@ TEST(Breakdown, SpansWithoutARoleGoToTheOneThatDoesSuchWork) {
 }
 
 TEST(Breakdown, ARankHasTheRolesThatItMadeFramesIn) {
-  io::TraceFile trace;
+  TraceFile trace;
   trace.stages = {"frame", "wait", "project", "sort"};
   for (const auto& [stage, role] :
        {std::pair{project, TraceRole::projector}, std::pair{frame, TraceRole::compositor}}) {

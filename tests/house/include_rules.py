@@ -5,8 +5,8 @@ Every folder may include its own headers, the public ones (tessera/) and scene/;
 compiler holds targets to what they link (cmake/TesseraTarget.cmake); this holds the links to the design: a folder that
 links another without being meant to fails here. Foreign headers that one place alone may know are in ONLY_IN.
 
-Says file:line of every include that is not allowed, and of the header lists in TO_GO every line that is no longer
-needed; exit status 1 if there is one. Says too, without failing, which allowances of MAY_INCLUDE nobody uses.
+Says file:line of every include that is not allowed; exit status 1 if there is one. Says too, without failing, which
+allowances of MAY_INCLUDE nobody uses.
 
     include_rules.py SOURCE_TREE
 """
@@ -33,42 +33,14 @@ MAY_INCLUDE = {
     "frame": {"compositor", "sorting", "projection", "volume", "integrals", "exchange", "gl", "io", "colormaps",
               "reference"},
     "datasets": set(),
-    "analysis": set(),  # and TO_GO
-    "apps": {"analysis"},  # and TO_GO
+    "analysis": set(),
+    "apps": {"analysis", "datasets"},
     "examples": set(),
     "bench": None,
     "tests": None,
 }
 # These may not even include scene/.
 PUBLIC_ONLY = {"include", "examples", "analysis", "apps"}
-
-# What callers of the library still take from inside it. Only the public API and, for apps/, analysis/ are meant to
-# remain: lines leave these lists, none are added.
-TO_GO = {
-    "analysis": """
-        io/atomic_file.hpp io/chrome_trace_reader.hpp io/input_file.hpp io/json_text.hpp
-        reference/ray_reference.hpp
-        scene/error.hpp scene/image.hpp
-    """,
-    "apps": """
-        datasets/generate.hpp datasets/modify.hpp datasets/volumes.hpp
-        exchange/collectives.hpp exchange/heartbeats.hpp exchange/instruction_sets.hpp exchange/loopback_transport.hpp
-        exchange/mpi_transport.hpp exchange/transport.hpp
-        frame/compositing_device.hpp frame/dataset.hpp frame/distributed.hpp frame/mesh_input.hpp frame/render.hpp
-        frame/roles.hpp frame/session_extras.hpp frame/sort_first.hpp frame/verify.hpp
-        io/atomic_file.hpp io/camera_file.hpp io/chrome_trace.hpp io/chrome_trace_reader.hpp io/image_deep_exr.hpp
-        io/image_file.hpp io/mesh_parts.hpp io/mesh_reader.hpp io/pvtu_writer.hpp io/time_series.hpp
-        io/transfer_function_file.hpp io/volume_reader.hpp io/volume_writer.hpp
-        projection/partition.hpp projection/pixel_space.hpp projection/planes_rasterizer.hpp
-        projection/scanline_rasterizer.hpp
-        reference/grid_reference.hpp reference/reference.hpp
-        scene/camera.hpp scene/error.hpp scene/grid.hpp scene/image.hpp scene/mechanisms.hpp scene/mesh_facts.hpp
-        scene/optical_model.hpp scene/sample_source.hpp scene/start_thread.hpp scene/tet_mesh.hpp scene/threads.hpp
-        scene/trace.hpp
-        volume/image_split.hpp volume/render.hpp
-    """,
-}
-TO_GO = {folder: set(headers.split()) for folder, headers in TO_GO.items()}
 
 # Foreign headers, and the folders or files that alone may include them. Tests of io/ write VTK's files by VTK.
 ONLY_IN = [
@@ -101,7 +73,7 @@ def allowed(folder, header):
         return True
     if of == "scene" and folder not in PUBLIC_ONLY:
         return True
-    return of in MAY_INCLUDE[folder] or header in TO_GO.get(folder, ())
+    return of in MAY_INCLUDE[folder]
 
 
 def unknown_folders(tree):
@@ -118,23 +90,19 @@ def main():
         files.add(file)
         of = header.split("/")[0]
         if of in MAY_INCLUDE or of == "tessera":
-            used[folder] |= {of, header}
+            used[folder].add(of)
             if not allowed(folder, header):
                 also = sorted({"tessera"} | MAY_INCLUDE[folder] | (set() if folder in PUBLIC_ONLY else {"scene"}))
                 faults.append(f'{file}:{line}: includes "{header}"; {folder}/ may include {", ".join(also)}')
         for pattern, places in ONLY_IN:
             if re.match(pattern, header) and not file.startswith(tuple(places)):
                 faults.append(f"{file}:{line}: includes {header}; only {' and '.join(places)} may")
-    for folder, headers in TO_GO.items():
-        for header in sorted(headers - used[folder]):
-            faults.append(f"{folder}/ no longer includes {header}: take it out of TO_GO")
     for fault in faults:
         print(fault)
     for folder, others in MAY_INCLUDE.items():
         if unused := sorted((others or set()) - used[folder]):
             print(f"note: {folder}/ may include {', '.join(unused)} and does not")
-    left = ", ".join(f"{len(headers)} of {folder}/" for folder, headers in TO_GO.items())
-    print(f"{len(files)} files, {len(faults)} includes against the rules; to go: {left}")
+    print(f"{len(files)} files, {len(faults)} includes against the rules")
     return 1 if faults or not files else 0
 
 

@@ -1,10 +1,13 @@
-#include "apps/rank_traces.hpp"
+#include "tessera/trace_file.hpp"
 
 #include <limits>
 
 #include "exchange/collectives.hpp"
+#include "frame/communicator.hpp"
+#include "io/chrome_trace.hpp"
+#include "io/chrome_trace_reader.hpp"
 
-namespace tessera::apps {
+namespace tessera {
 namespace {
 
 using exchange::Bytes;
@@ -15,7 +18,7 @@ constexpr int pings = 8;
 
 /// The writer's clock less this rank's, in microseconds: from the quickest of a few exchanges, whose error is at most
 /// half its duration.
-double clock_offset(exchange::Transport& transport, int writer, const scene::Trace& trace) {
+double clock_offset(exchange::Transport& transport, int writer, const Trace& trace) {
   double offset = 0, quickest = std::numeric_limits<double>::infinity();
   for (int i = 0; i < pings; ++i) {
     const double asked = trace.now_us();
@@ -31,8 +34,15 @@ double clock_offset(exchange::Transport& transport, int writer, const scene::Tra
 
 }  // namespace
 
-void write_rank_traces(exchange::Transport& transport, int writer, const scene::Trace& trace,
-                       const std::string& process_name, const io::TraceRun& run, const std::filesystem::path& file) {
+void write_trace(const Trace& trace, const TraceRun& run, const std::filesystem::path& file) {
+  const std::string events = io::chrome_trace_events(trace, 0, "rank 0");
+  io::write_chrome_trace(std::span(&events, 1), run, file);
+}
+
+void write_trace(const Trace& trace, const std::string& process_name, const TraceRun& run,
+                 const std::filesystem::path& file, const Communicator& communicator, int writer) {
+  const std::shared_ptr<exchange::Transport> connection = communicator.state().connect();
+  exchange::Transport& transport = *connection;
   const int self = transport.rank();
   if (self != writer) {
     const double offset = clock_offset(transport, writer, trace);
@@ -58,4 +68,6 @@ void write_rank_traces(exchange::Transport& transport, int writer, const scene::
   io::write_chrome_trace(events, run, file);
 }
 
-}  // namespace tessera::apps
+TraceFile read_trace(const std::filesystem::path& file) { return io::read_chrome_trace(file); }
+
+}  // namespace tessera

@@ -2,14 +2,17 @@
 
 #include <sys/types.h>
 
-namespace tessera::apps {
+#include <string>
+
+namespace tessera::exchange {
 
 /// A child process that lives while MPI starts. MPI ends a process that it cannot start, by _exit() with words of its
 /// own; then the child says what the user can do, in the run's line. Without a second process nobody is left to.
 class StartWitness {
  public:
-  /// Before MPI starts and before there are threads. Does nothing if the system gives no process.
-  StartWitness();
+  /// `program` begins the line. Before MPI starts and before there are threads. Does nothing if the system gives no
+  /// process.
+  explicit StartWitness(const std::string& program);
   /// This process goes on: the child ends without a word.
   ~StartWitness();
   StartWitness(const StartWitness&) = delete;
@@ -20,4 +23,4 @@ class StartWitness {
   int to_child_ = -1;
 };
 
-}  // namespace tessera::apps
+}  // namespace tessera::exchange

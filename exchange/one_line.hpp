@@ -3,7 +3,7 @@
 #include "exchange/transport.hpp"
 
 /// A run that fails says so in one line, whichever of its ranks' processes say it: who is to speak asks first.
-namespace tessera::apps {
+namespace tessera::exchange {
 
 /// True for the first that asks, of all ranks on this machine from share_one_line() on. Before that of those that ask
 /// while the first still runs, see name_one_line(); of this process if it is alone. For signal handlers too.
@@ -16,6 +16,6 @@ void name_one_line();
 void hold_one_line();
 
 /// Collective. Returns whether this is the machine of rank 0.
-bool share_one_line(exchange::Transport& transport);
+bool share_one_line(Transport& transport);
 
-}  // namespace tessera::apps
+}  // namespace tessera::exchange

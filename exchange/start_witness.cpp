@@ -1,4 +1,4 @@
-#include "apps/start_witness.hpp"
+#include "exchange/start_witness.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -10,19 +10,19 @@
 #include <cerrno>
 #include <string>
 
-#include "apps/one_line.hpp"
+#include "exchange/one_line.hpp"
 
-namespace tessera::apps {
+namespace tessera::exchange {
 namespace {
 
-std::string words() {
+std::string words(const std::string& program) {
   rlimit space{};
   getrlimit(RLIMIT_AS, &space);
   const std::string remedy =
       space.rlim_cur == RLIM_INFINITY
           ? std::string("see the settings of MPI and of this machine")
           : fmt::format("a rank may use {} MiB of address space (ulimit -v), raise that limit", space.rlim_cur >> 20);
-  return fmt::format("tessera: MPI: a rank ended while MPI started, its words are above; {}\n", remedy);
+  return fmt::format("{}: MPI: a rank ended while MPI started, its words are above; {}\n", program, remedy);
 }
 
 /// Returns when the other end has written or is gone: whether it has written.
@@ -36,14 +36,14 @@ bool is_told(int descriptor) {
 
 }  // namespace
 
-StartWitness::StartWitness() {
+StartWitness::StartWitness(const std::string& program) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) return;
   child_ = fork();
   if (child_ == 0) {
     close(ends[1]);
     if (!is_told(ends[0]) && may_speak()) {
-      const std::string line = words();
+      const std::string line = words(program);
       const ssize_t ignored = write(STDERR_FILENO, line.data(), line.size());
       static_cast<void>(ignored);
       hold_one_line();
@@ -64,4 +64,4 @@ StartWitness::~StartWitness() {
   if (child_ > 0) waitpid(child_, nullptr, 0);
 }
 
-}  // namespace tessera::apps
+}  // namespace tessera::exchange

@@ -1,3 +1,5 @@
+#include "exchange/termination.hpp"
+
 #include <fmt/format.h>
 #include <sys/prctl.h>
 #include <sys/time.h>
@@ -12,17 +14,17 @@
 #include <string>
 #include <string_view>
 
-#include "apps/job.hpp"
-#include "apps/one_line.hpp"
+#include "exchange/one_line.hpp"
 
 // What a signal handler may touch: plain memory filled before the handler is installed, lock-free atomics, and system
 // calls.
-namespace tessera::apps {
+namespace tessera::exchange {
 namespace {
 
 bool speaks_for_the_lost = true;  ///< on the first rank's machine
 std::array<pid_t, 2> launchers{};
 int rank_of_run = 0, size_of_run = 1;
+std::string remedy_of_run, line_of_run;
 std::atomic<bool> is_ending = false, asked_to_end = false;
 
 extern "C" void on_termination(int signal, siginfo_t* from, void* /*context*/) {
@@ -36,14 +38,11 @@ extern "C" void on_termination(int signal, siginfo_t* from, void* /*context*/) {
   const bool from_launcher = from->si_pid == launchers[0] || from->si_pid == launchers[1];
   if (signal == SIGTERM && !from_launcher && !asked_to_end.exchange(true)) return;
   if (!is_ending && speaks_for_the_lost && may_speak()) {
-    constexpr std::string_view words =
-        "tessera: the run was ended from outside or has lost a rank (the launcher says which); finished pictures stay, "
-        "and the same command with --resume goes on from there\n";
-    const ssize_t ignored = write(STDERR_FILENO, words.data(), words.size());
+    const ssize_t ignored = write(STDERR_FILENO, line_of_run.data(), line_of_run.size());
     static_cast<void>(ignored);
     hold_one_line();
   }
-  _exit(static_cast<int>(scene::ExitCode::system_failure));
+  _exit(static_cast<int>(scene::ErrorCode::system_failure));
 }
 
 pid_t parent_of(pid_t process) {
@@ -66,7 +65,10 @@ std::array<pid_t, 2> find_launchers() {
 
 }  // namespace
 
-void speak_when_ended(exchange::Transport& transport) {
+void answer_termination(Transport& transport, const std::string& program, const std::string& remedy) {
+  remedy_of_run = remedy;
+  line_of_run = fmt::format("{}: the run was ended from outside or has lost a rank (the launcher says which); {}\n",
+                            program, remedy);
   rank_of_run = transport.rank(), size_of_run = transport.size();
   speaks_for_the_lost = share_one_line(transport);
   launchers = find_launchers();
@@ -81,11 +83,10 @@ void speak_when_ended(exchange::Transport& transport) {
 std::optional<scene::Error> ended_from_outside() {
   if (!asked_to_end) return std::nullopt;
   return scene::Error(scene::ErrorCode::system_failure,
-                      fmt::format("the run was ended from outside (rank {} of {} got SIGTERM); finished pictures stay, "
-                                  "and the same command with --resume goes on from there",
-                                  rank_of_run, size_of_run));
+                      fmt::format("the run was ended from outside (rank {} of {} got SIGTERM); {}", rank_of_run,
+                                  size_of_run, remedy_of_run));
 }
 
 void expect_end() { is_ending = true; }
 
-}  // namespace tessera::apps
+}  // namespace tessera::exchange

@@ -1,4 +1,4 @@
-#include "apps/one_line.hpp"
+#include "exchange/one_line.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 
 #include "exchange/collectives.hpp"
 
-namespace tessera::apps {
+namespace tessera::exchange {
 namespace {
 
 /// Memory that all ranks of a machine share.
@@ -89,12 +89,12 @@ void hold_one_line() {
   nanosleep(&moment, nullptr);
 }
 
-bool share_one_line(exchange::Transport& transport) {
+bool share_one_line(Transport& transport) {
   Neighbour self;
   gethostname(self.host.data(), self.host.size() - 1);
   self.process = getpid();
   Spoken* shared = make_spoken(self);
-  const auto all = exchange::gather_values(transport, exchange::MessageKind::process_on_host, self);
+  const auto all = gather_values(transport, MessageKind::process_on_host, self);
   bool with_first = true;
   for (std::size_t rank = 0; rank < all.size(); ++rank) {
     const Neighbour& other = all[rank];
@@ -111,4 +111,4 @@ bool share_one_line(exchange::Transport& transport) {
   return with_first;
 }
 
-}  // namespace tessera::apps
+}  // namespace tessera::exchange

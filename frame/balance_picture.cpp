@@ -1,4 +1,4 @@
-#include "apps/balance_picture.hpp"
+#include "frame/balance_picture.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "projection/pixel_space.hpp"
 
-namespace tessera::apps {
+namespace tessera::frame {
 namespace {
 
 using Rgb = glm::dvec3;
@@ -139,9 +139,4 @@ scene::Image cost_picture(const volume::CostMap& cost, scene::ImageSize size, co
   return image;
 }
 
-std::filesystem::path cost_name(const std::filesystem::path& picture) {
-  std::filesystem::path name = picture;
-  return name.replace_extension().concat(".cost").concat(picture.extension().string());
-}
-
-}  // namespace tessera::apps
+}  // namespace tessera::frame

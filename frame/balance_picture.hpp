@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <filesystem>
 #include <glm/vec3.hpp>
 #include <span>
 
@@ -10,8 +9,8 @@
 #include "scene/image.hpp"
 #include "volume/image_split.hpp"
 
-/// `--show balance`: who rendered what, and what it was thought to cost (Moloney 2008, Figures 1.2, 4.1, 4.4).
-namespace tessera::apps {
+/// What tessera::BalancePictures shows.
+namespace tessera::frame {
 
 /// Draws the outlines of `bricks` (low and high corners in index space) over the picture, dimmed, on black; each pixel
 /// of a line in the colour of the process that rendered it. Where rectangles meet there is a white line.
@@ -22,7 +21,4 @@ void draw_bricks(scene::Image& image, const scene::Camera& camera, const scene::
 /// dearest pixel, and white lines where rectangles meet. Opaque.
 scene::Image cost_picture(const volume::CostMap& cost, scene::ImageSize size, const volume::ImageSplit& split);
 
-/// Where the cost map of a picture goes: `a.png` gives `a.cost.png`.
-std::filesystem::path cost_name(const std::filesystem::path& picture);
-
-}  // namespace tessera::apps
+}  // namespace tessera::frame

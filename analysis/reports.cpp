@@ -1,0 +1,214 @@
+#include "analysis/reports.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "tessera/view.hpp"
+
+namespace tessera::analysis {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json vector_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+Json fields_json(const Description& data) {
+  Json fields = Json::array();
+  for (const auto& field : data.fields)
+    fields.push_back({{"name", field.name},
+                      {"association", word(field.association)},
+                      {"components", field.components},
+                      {"type", field.type},
+                      {"range", {field.low, field.high}},
+                      {"nan", field.nan_count}});
+  return fields;
+}
+
+Json tally_json(const Verification::Tally& tally) {
+  return {{"pixels", tally.pixels},
+          {"max_error", tally.max_error},
+          {"over_bound", tally.over_bound},
+          {"excused", tally.excused}};
+}
+
+Json finding_json(const MeshCheck::Finding& finding) {
+  Json places = Json::array();
+  for (const auto& place : finding.places) {
+    Json json = {{"id", place.cell}};
+    if (place.other != place.cell) json["other"] = place.other;
+    json["at"] = {place.at.x, place.at.y, place.at.z};
+    if (place.value > 0) json["value"] = place.value;
+    places.push_back(json);
+  }
+  return {{"count", finding.count}, {"places", places}};
+}
+
+Json mesh_counters_json(const FrameStatistics& statistics) {
+  Json json;
+  for (const FrameCounter& counter : frame_counters)
+    if (const std::uint64_t count = statistics.mesh.*counter.member; count > 0 || !counter.if_any)
+      json[std::string(counter.name)] = count;
+  return json;
+}
+
+Json grid_counters_json(const FrameStatistics& statistics) {
+  const GridCounters& s = statistics.grid;
+  Json json = {{"rays", s.rays},
+               {"voxels_visited", s.voxels_visited},
+               {"samples", s.samples},
+               {"pixels_in_double_precision", s.pixels_again},
+               {"bricks_total", s.bricks_total},
+               {"bricks_invisible", s.bricks_invisible},
+               {"brick_hits", s.brick_hits},
+               {"bricks_loaded", s.bricks_loaded},
+               {"bricks_evicted", s.bricks_evicted},
+               {"bytes_loaded", s.bytes_loaded},
+               {"bytes_resident", s.bytes_resident},
+               {"peak_bytes", s.peak_bytes},
+               {"blank_samples", s.blank_samples}};
+  if (statistics.mesh.deep_samples > 0) json["deep_samples"] = statistics.mesh.deep_samples;
+  return json;
+}
+
+}  // namespace
+
+const char* word(Association association) { return association == Association::point ? "point" : "cell"; }
+
+const char* word(Balance balance) {
+  constexpr std::array words = {"accurate", "backface", "splatting", "previous", "even"};
+  return words[static_cast<std::size_t>(balance)];
+}
+
+Description::Description(const Dataset& data)
+    : is_mesh(data.is_mesh()),
+      format(data.format()),
+      field_name(data.field_name()),
+      association(data.association()),
+      box(data.bounds()),
+      range(data.range()),
+      fields(data.fields().begin(), data.fields().end()),
+      notes(data.notes().begin(), data.notes().end()),
+      counts(data.mesh_counts()),
+      scale(data.scale()),
+      shift(data.shift()),
+      blanks(data.blank_samples()) {
+  if (is_mesh) return;
+  geometry = data.grid_geometry();
+  type = data.sample_type();
+}
+
+Json data_json(const std::filesystem::path& input, const Description& data) {
+  Json json = {{"file", input.string()}, {"format", data.format}};
+  if (data.is_mesh) {
+    const MeshCounts& counts = data.counts;
+    json["cells"] = {{"read", counts.cells_read},
+                     {"ghost", counts.cells_ghost},
+                     {"hidden", counts.cells_hidden},
+                     {"nan", counts.cells_nan},
+                     {"not_volumetric", counts.cells_not_volumetric},
+                     {"zero_volume", counts.cells_zero_volume},
+                     {"tangled", counts.cells_tangled},
+                     {"quadratic", counts.cells_quadratic}};
+    json["tets"] = counts.tets_made;
+    json["tets_collapsed"] = counts.tets_collapsed;
+    json["points"] = {{"read", counts.points_read}, {"unused", counts.points_unused}};
+  } else {
+    const GridGeometry& g = data.geometry;
+    json["points"] = g.points;
+    json["rectilinear"] = g.rectilinear();
+    json["origin"] = vector_json(g.origin);
+    json["spacing"] = vector_json(g.spacing);
+    json["direction"] = {vector_json(g.direction[0]), vector_json(g.direction[1]), vector_json(g.direction[2])};
+  }
+  json["bounds"] = {vector_json(data.box.low), vector_json(data.box.high)};
+  if (!data.is_mesh) {
+    json["type"] = name_of(data.type);
+    json["scale"] = data.scale;
+    json["shift"] = data.shift;
+  }
+  json["field"] = {{"name", data.field_name}, {"association", word(data.association)}, {"range", data.range}};
+  if (!data.is_mesh) json["field"]["blank"] = data.blanks;
+  json["fields"] = fields_json(data);
+  json["notes"] = data.notes;
+  return json;
+}
+
+Json transfer_function_json(const LoadedTransferFunction& loaded) {
+  Json knots = Json::array();
+  for (const auto& knot : loaded.function.knots())
+    knots.push_back({knot.value, knot.color.x, knot.color.y, knot.color.z, knot.extinction});
+  Json json = {{"name", loaded.name}};
+  if (loaded.unit_distance)
+    json["unit_distance"] = {{"value", *loaded.unit_distance}, {"source", loaded.unit_distance_source}};
+  json["knots"] = knots;
+  return json;
+}
+
+Json view_json(const Camera& camera, ImageSize size) { return Json::parse(tessera::camera_json({camera, size})); }
+
+double deviation(const std::vector<double>& work) {
+  const double sum = std::accumulate(work.begin(), work.end(), 0.0);
+  if (!(sum > 0)) return 0;
+  const auto [least, most] = std::minmax_element(work.begin(), work.end());
+  return (*most - *least) * static_cast<double>(work.size()) / sum;
+}
+
+Json counters_json(const FrameStatistics& statistics, bool is_grid) {
+  return is_grid ? grid_counters_json(statistics) : mesh_counters_json(statistics);
+}
+
+Json balance_json(Balance balance, const FrameStatistics& statistics) {
+  Json processes = Json::array();
+  for (std::size_t rank = 0; rank < statistics.samples.size(); ++rank) {
+    const PixelRect& r = statistics.rectangles[rank];
+    processes.push_back({{"rectangle", {r.x0, r.y0, r.x1, r.y1}},
+                         {"samples", statistics.samples[rank]},
+                         {"cpu_ms", 1e3 * statistics.cpu_seconds[rank]}});
+  }
+  return {{"method", word(balance)},
+          {"samples_deviation", deviation({statistics.samples.begin(), statistics.samples.end()})},
+          {"cpu_deviation", deviation(statistics.cpu_seconds)},
+          {"processes", processes}};
+}
+
+Json verification_json(const Verification& v) {
+  Json json = {{"pixels", v.pixels_checked},
+               {"max_error", v.max_error},
+               {"rms_error", v.rms_error},
+               {"max_error_not_excused", v.max_error_not_excused},
+               {"worst_pixel", {v.worst_x, v.worst_y}},
+               {"worst_value", v.worst_value},
+               {"worst_reference", v.worst_reference},
+               {"worst_chosen", v.worst_reason},
+               {"over_bound", v.over_bound},
+               {"excused", v.excused},
+               {"met", v.met},
+               {"random", tally_json(v.tallies.front())}};
+  Json chosen = Json::object();
+  for (const Verification::Tally& tally : std::span(v.tallies).subspan(1)) chosen[tally.reason] = tally_json(tally);
+  json["chosen"] = std::move(chosen);
+  if (v.bound) json["bound"] = *v.bound;
+  return json;
+}
+
+Json check_json(const MeshCheck& check) {
+  Json json = {{"tets", check.tets}, {"points", check.points}, {"clean", check.clean()}};
+  json["overlaps"] = finding_json(check.overlaps);
+  json["overlaps"]["cells"] = check.overlapping_cells;
+  json["overlaps"]["more"] = check.more_overlaps;
+  json["folded"] = finding_json(check.inverted);
+  json["non_conforming_faces"] = finding_json(check.non_conforming_faces);
+  json["flat"] = finding_json(check.flat);
+  json["slivers"] = finding_json(check.slivers);
+  json["slivers"]["above_1e4"] = check.slivers_1e4;
+  json["slivers"]["above_1e6"] = check.slivers_1e6;
+  json["slivers"]["worst_aspect"] = check.worst_aspect;
+  json["duplicate_points"] = finding_json(check.duplicate_points);
+  json["right_handed"] = check.right_handed;
+  json["left_handed"] = check.left_handed;
+  return json;
+}
+
+}  // namespace tessera::analysis

@@ -1,0 +1,157 @@
+#include "tessera/film.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+
+#include "tessera/error.hpp"
+#include "tessera/image_file.hpp"
+#include "tessera/input_file.hpp"
+#include "tessera/output_file.hpp"
+#include "tessera/view.hpp"
+
+namespace tessera {
+namespace {
+
+constexpr std::size_t max_frames = 10'000'000;
+
+/// An image of memory's size would be killed half-way by the kernel, with no line that says why.
+void check_fits_memory(ImageSize size) {
+  const double needed = 20.0 * size.width * size.height;
+  const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  if (needed > memory)
+    throw Error(ErrorCode::system_failure,
+                fmt::format("`size`: a {}x{} picture takes {:.0f} GiB, this machine has {:.0f}; make it smaller",
+                            size.width, size.height, needed / (1 << 30), memory / (1 << 30)));
+}
+
+std::vector<FilmFrame> views(const FilmPlan& plan) {
+  std::vector<FilmFrame> frames;
+  if (plan.cameras.empty()) {
+    FilmFrame frame;
+    frame.size = plan.size.value_or(ImageSize{});
+    frames.push_back(frame);
+  } else {
+    for (const auto& view : read_cameras(plan.cameras)) {
+      FilmFrame frame;
+      frame.camera = view.camera;
+      frame.size = plan.size.value_or(view.size.value_or(ImageSize{}));
+      frames.push_back(frame);
+    }
+  }
+  if (plan.orbit > 0) {
+    if (frames.size() != 1)
+      throw bad_input(fmt::format("{}: `orbit` turns one view, the file holds {}; give a file with one",
+                                  plan.cameras.string(), frames.size()));
+    const FilmFrame first = frames.front();
+    frames.assign(static_cast<std::size_t>(plan.orbit), first);
+    for (std::size_t i = 0; i < frames.size(); ++i)
+      frames[i].turn = static_cast<double>(i) / static_cast<double>(frames.size());
+  }
+  return frames;
+}
+
+std::vector<TimeStep> steps(const FilmPlan& plan) {
+  if (plan.inputs.empty()) throw bad_input("input: no file is named; name one");
+  if (plan.inputs.size() == 1 && is_time_series(plan.inputs.front())) return read_time_series(plan.inputs.front());
+  std::vector<TimeStep> steps;
+  for (const auto& input : plan.inputs) steps.push_back({static_cast<double>(steps.size()), {input}});
+  for (const auto& step : steps)
+    if (steps.size() > 1 && is_time_series(step.files.front()))
+      throw bad_input(fmt::format("{}: is a time series in a list of meshes; give it alone, or meshes only",
+                                  step.files.front().string()));
+  return steps;
+}
+
+}  // namespace
+
+bool is_series(const FilmPlan& plan) { return plan.inputs.size() > 1 || is_time_series(plan.inputs.front()); }
+
+std::vector<FilmFrame> plan_film(const FilmPlan& plan) {
+  const auto views_of_each = views(plan);
+  std::vector<FilmFrame> frames;
+  const auto series = steps(plan);
+  if (series.size() * views_of_each.size() > max_frames)
+    throw bad_input(fmt::format("{}: {} time steps of {} views are more than {} frames; render them in parts",
+                                plan.inputs.front().string(), series.size(), views_of_each.size(), max_frames));
+  for (std::size_t step = 0; step < series.size(); ++step)
+    for (FilmFrame frame : views_of_each) {
+      frame.number = static_cast<int>(frames.size());
+      frame.step = step;
+      frame.data = series[step];
+      frames.push_back(std::move(frame));
+    }
+  for (const auto& output : plan.outputs)
+    for (auto& frame : frames) {
+      const auto numbered = numbered_name(output.string(), frame.number);
+      frame.outputs.emplace_back(numbered.value_or(output.string()));
+      if (!numbered && frames.size() > 1)
+        throw bad_input(fmt::format("{}: {} frames need a numbered name; write {}_%04d{}", output.string(),
+                                    frames.size(), (output.parent_path() / output.stem()).string(),
+                                    output.extension().string()));
+    }
+  if (plan.resume)
+    for (auto& frame : frames)
+      frame.finished = std::all_of(frame.outputs.begin(), frame.outputs.end(), [](const auto& output) {
+        std::error_code ignored;  // unreadable folder: not finished, and the check of outputs says why
+        return std::filesystem::is_regular_file(output, ignored);
+      });
+  // A film should not end at its last step for want of a file. The first step is looked at for all others.
+  if (is_series(plan))
+    for (const auto& frame : frames)
+      if (!frame.finished)
+        for (const auto& file : frame.data.files) plan.grids ? require_grid(file) : require_mesh(file);
+  return frames;
+}
+
+Camera FilmFrame::view(const Box& box, ProjectionKind default_projection) const {
+  const Camera seen = camera ? *camera : frame_box(box, size, default_projection, turn.has_value());
+  return turn ? tessera::orbit(seen, *turn) : seen;
+}
+
+void FilmFrame::require_still_there() const {
+  if (step == 0) return;
+  for (const auto& file : data.files) {
+    std::error_code unreadable;  // then reading says why
+    if (!std::filesystem::exists(file, unreadable) && !unreadable)
+      throw Error(
+          ErrorCode::system_failure,
+          fmt::format("{}: was there when the run began and is gone; bring it back and use `resume`", file.string()));
+  }
+}
+
+void check_film_outputs(std::span<const FilmFrame> frames, std::span<const std::filesystem::path> more,
+                        std::span<const std::filesystem::path> inputs) {
+  std::set<std::filesystem::path> names;
+  const auto check_new = [&](const std::filesystem::path& output) {
+    if (!names.insert(output.lexically_normal()).second)
+      throw bad_input(fmt::format("{}: is named twice as an output; choose two names", output.string()));
+    for (const auto& input : inputs) check_not_input(output, input);
+  };
+
+  std::set<std::filesystem::path> folders;
+  for (const FilmFrame& frame : frames) {
+    validate(frame.size);
+    check_fits_memory(frame.size);
+    for (const auto& output : frame.outputs) {
+      check_new(output);
+      for (const auto& file : frame.data.files) check_not_input(output, file);
+      if (frame.finished) continue;
+      // Asking the file system once a folder and length of name is enough, but for names that exist.
+      std::error_code unknown;
+      const std::string kind = fmt::format("{}{}", output.filename().native().size(), output.extension().string());
+      if (folders.insert(output.parent_path() / kind).second || std::filesystem::exists(output, unknown) || unknown)
+        check_image_path(output);
+    }
+  }
+  for (const auto& output : more)
+    if (!output.empty()) {
+      check_new(output);
+      check_writable(output);
+    }
+}
+
+}  // namespace tessera

@@ -1,0 +1,97 @@
+#include "tessera/job.hpp"
+
+#include <fmt/format.h>
+
+#include <csignal>
+#include <cstdio>
+#include <memory>
+
+#include "exchange/collectives.hpp"
+#include "exchange/instruction_sets.hpp"
+#include "exchange/loopback_transport.hpp"
+#include "exchange/mpi_transport.hpp"
+#include "exchange/one_line.hpp"
+#include "exchange/start_witness.hpp"
+#include "exchange/termination.hpp"
+#include "frame/communicator.hpp"
+
+namespace tessera {
+
+struct Job::State {
+  JobVoice voice;
+  std::unique_ptr<exchange::LoopbackNetwork> alone;
+  std::unique_ptr<exchange::MpiTransport> mpi;
+
+  exchange::Transport& transport() {
+    if (mpi) return *mpi;
+    return alone->rank(0);
+  }
+};
+
+Job::Job(JobVoice voice) : state_(std::make_unique<State>(State{std::move(voice), nullptr, nullptr})) {
+  if (exchange::launched_by_mpi()) {
+    // A launcher that goes while MPI starts closes its sockets: an error of a write, not the death of a rank by a
+    // signal of which nobody says a word.
+    std::signal(SIGPIPE, SIG_IGN);
+    exchange::name_one_line();
+    const exchange::StartWitness witness(state_->voice.program);
+    state_->mpi = std::make_unique<exchange::MpiTransport>(
+        exchange::MpiTransport::Hooks{state_->voice.speak, exchange::expect_end, exchange::ended_from_outside});
+  } else {
+    state_->alone = std::make_unique<exchange::LoopbackNetwork>(1);
+  }
+}
+
+Job::~Job() = default;
+
+int Job::rank() const { return state_->transport().rank(); }
+int Job::size() const { return state_->transport().size(); }
+Communicator Job::communicator() { return frame::communicator_over(state_->transport()); }
+
+void Job::answer_termination() {
+  if (size() > 1) exchange::answer_termination(state_->transport(), state_->voice.program, state_->voice.remedy);
+}
+
+void Job::watch_stalls(const StallSettings& settings) {
+  if (state_->mpi) state_->mpi->watch_stalls(settings);
+}
+
+void Job::agree_instruction_sets() {
+  if (size() > 1) exchange::agree_instruction_sets(state_->transport());
+}
+
+std::vector<std::byte> Job::broadcast(int root, std::vector<std::byte> bytes) {
+  constexpr auto kind = exchange::MessageKind::of_job;
+  exchange::Bytes message = exchange::begin_message(kind, bytes.size());
+  exchange::append_list(message, bytes);
+  message = exchange::broadcast(state_->transport(), root, std::move(message));
+  exchange::MessageReader reader(message, root, kind);
+  bytes = reader.take_list<std::byte>();
+  reader.finish();
+  return bytes;
+}
+
+void Job::fail(const Error& error) { state_->transport().fail(error); }
+
+std::optional<Error> Job::finish() {
+  if (state_->mpi) {
+    exchange::expect_end();
+    return state_->mpi->finish();
+  }
+  try {
+    state_->alone->rank(0).check();
+    return std::nullopt;
+  } catch (const Error& error) {
+    state_->voice.speak(error);
+    return error;
+  }
+}
+
+void Job::say_once(const std::string& line) {
+  if (!exchange::may_speak()) return;
+  fmt::print(stderr, "{}\n", line);
+  std::fflush(stderr);
+  exchange::hold_one_line();
+}
+
+}  // namespace tessera

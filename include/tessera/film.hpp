@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tessera/camera.hpp"
+#include "tessera/export.hpp"
+#include "tessera/time_series.hpp"
+
+namespace tessera {
+
+/// The pictures that a run is to make: each time step of the inputs in each view.
+struct FilmPlan {
+  std::vector<std::filesystem::path> inputs;  ///< one mesh, grid or time series; or several of the first two, as steps
+  bool grids = false;                         ///< what the inputs are
+  std::filesystem::path cameras;              ///< a view or a list of views (read_cameras); empty: the default view
+  int orbit = 0;                              ///< frames of one turn of one view round its up axis; 0: none
+  std::optional<ImageSize> size;              ///< wins over the camera file's
+  /// At least one, several for one frame in several formats; of several frames with `%d` or `%0Nd` for their number.
+  std::vector<std::filesystem::path> outputs;
+  bool resume = false;  ///< frames whose pictures are all there count as finished
+};
+
+/// One picture of a plan, before any data is read.
+struct TESSERA_EXPORT FilmFrame {
+  int number = 0;                ///< from 0; what %d in a name stands for
+  std::size_t step = 0;          ///< of the time series; 0 without one
+  TimeStep data;                 ///< that step
+  std::optional<Camera> camera;  ///< none: the view that frames the data, known once it is read
+  std::optional<double> turn;    ///< 0..1: of an orbit round the view's up axis
+  ImageSize size;
+  std::vector<std::filesystem::path> outputs;
+  bool finished = false;  ///< resumed, and all its pictures exist: to be left alone
+
+  /// The frame's view. `box` is the data's; of a time series the first step's, so that the view stands still.
+  [[nodiscard]] Camera view(const Box& box, ProjectionKind default_projection) const;
+  /// Of a series' later steps, before they are read: throws Error(system_failure) if a file that plan_film() saw is
+  /// gone.
+  void require_still_there() const;
+};
+
+/// Whether the plan's input is a time series, be it of one step.
+TESSERA_EXPORT bool is_series(const FilmPlan& plan);
+
+/// The frames of a plan: all views of the first step, then of the second. Frame 0 is always of the first step. Throws
+/// Error(bad_input) if an input that is to be read is not there, if several frames would share one name, if an orbit is
+/// asked of several views, or for what read_cameras() refuses.
+TESSERA_EXPORT std::vector<FilmFrame> plan_film(const FilmPlan& plan);
+
+/// Before any reading or rendering: can all pictures of the frames that are not finished be written, and the `more`
+/// files beside them? Throws Error(bad_input) for an unknown extension, a folder that is missing or closed to us, two
+/// outputs of one name, or an output that is one of the frames' data or of the `inputs` (empty ones count for nothing);
+/// Error(system_failure) if a picture cannot fit in this machine's memory.
+TESSERA_EXPORT void check_film_outputs(std::span<const FilmFrame> frames, std::span<const std::filesystem::path> more,
+                                       std::span<const std::filesystem::path> inputs);
+
+}  // namespace tessera

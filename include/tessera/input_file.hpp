@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "tessera/dataset.hpp"
+#include "tessera/export.hpp"
+
+/// What a file is, before it is opened as a data set (docs/FORMATS.md).
+namespace tessera {
+
+/// Whether Dataset::open would make a grid of it: by what it begins with, so that a .vtk may be a mesh or a grid and a
+/// name may be wrong; by its name where it is not there or is .raw.
+TESSERA_EXPORT bool opens_as_grid(const std::filesystem::path& file, const ReadOptions& options = {});
+
+/// Whether its extension is one of a mesh. Rectilinear grids have one that is: they can be opened as either. Does not
+/// look at the file.
+TESSERA_EXPORT bool is_mesh_name(const std::filesystem::path& file);
+
+/// Throws Error(bad_input) unless the input is there: a file, or of a time series at least one step. For what must not
+/// be said of a file that is not there, such as that it is a mesh.
+TESSERA_EXPORT void require_input(const std::filesystem::path& input);
+
+/// Throws Error(bad_input) if the file is not there, or by its name or beginning no grid (no mesh). Does not read it.
+TESSERA_EXPORT void require_grid(const std::filesystem::path& file);
+TESSERA_EXPORT void require_mesh(const std::filesystem::path& file);
+
+/// All of a file. Throws Error(bad_input) unless it is a readable regular file that is not empty.
+TESSERA_EXPORT std::string read_text(const std::filesystem::path& file);
+
+/// Throws Error(bad_input, "SOURCE: line L, column C: ...") unless `text` is JSON that reads as it is meant: no key
+/// twice in one object, no number beyond double's range, at most 64 levels.
+TESSERA_EXPORT void check_json(std::string_view text, const std::string& source);
+
+}  // namespace tessera

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "tessera/camera.hpp"
+#include "tessera/dataset.hpp"
+#include "tessera/export.hpp"
+#include "tessera/settings.hpp"
+#include "tessera/transfer_function.hpp"
+#include "tessera/view.hpp"
+
+namespace tessera {
+
+/// What a ray sees.
+struct ReferencePixel {
+  double r = 0, g = 0, b = 0, a = 0;  ///< linear RGB premultiplied by a; a = 1 - transmittance
+  double z = 0;                       ///< planar depth where a begins to grow; infinite if a is 0
+  double length = 0;                  ///< world length of the ray inside the mesh (overlapping cells count each)
+  std::size_t segments = 0;
+};
+
+/// A pixel of the image; (0, 0) is the top left.
+struct PixelIndex {
+  int x, y;
+  bool operator==(const PixelIndex&) const = default;
+};
+
+/// The truth that pictures are judged against, as Session::verify() does: what rays of one view see, in double
+/// precision and by code that shares nothing with the renderers. Slow: a ray meets every tet or voxel on its way.
+class TESSERA_EXPORT Reference {
+ public:
+  /// Of the settings the emission and a grid's shading count. Throws Error(bad_input) for an invalid view, an empty
+  /// transfer function, or a mesh of which this rank has a part.
+  Reference(Dataset dataset, const View& view, const TransferFunction& transfer_function,
+            const Settings& settings = {});
+  ~Reference();
+  Reference(const Reference&) = delete;
+  Reference& operator=(const Reference&) = delete;
+
+  /// The rays through the centres of `wanted`, in that order. `threads` 0: all cores.
+  [[nodiscard]] std::vector<ReferencePixel> pixels(std::span<const PixelIndex> wanted, int threads = 0) const;
+
+ private:
+  struct State;
+  std::unique_ptr<const State> state_;
+};
+
+/// `count` different pixels, each set equally likely, row-major; all of them if there are no more. The same seed gives
+/// the same pixels everywhere.
+TESSERA_EXPORT std::vector<PixelIndex> random_pixels(ImageSize size, std::size_t count, std::uint64_t seed);
+
+}  // namespace tessera
