@@ -22,16 +22,6 @@ std::filesystem::path cost_name(const std::filesystem::path& picture) {
   return name.replace_extension().concat(".cost").concat(picture.extension().string());
 }
 
-/// How later steps of a time series are read: their field is the one that was chosen for the first step. A field that
-/// varies in one step and not in the next would else make the film jump to another.
-ReadOptions read_of_later_steps(ReadOptions options, const Dataset& first) {
-  if (first.is_grid() || !options.field.empty() || first.fields().empty()) return options;
-  options.field = first.field_name();
-  // Smoothing has made point data of cell data, so only the name is sure.
-  if (!options.smooth) options.field = (first.association() == Association::point ? "point:" : "cell:") + options.field;
-  return options;
-}
-
 /// With --show balance every picture has its cost map beside it.
 std::vector<FilmFrame> frames_of(const RenderOptions& options) {
   std::vector<FilmFrame> frames = plan_film(options.plan);

@@ -123,6 +123,14 @@ void FilmFrame::require_still_there() const {
   }
 }
 
+ReadOptions read_of_later_steps(ReadOptions options, const Dataset& first) {
+  if (first.is_grid() || !options.field.empty() || first.fields().empty()) return options;
+  options.field = first.field_name();
+  // Smoothing has made point data of cell data, so only the name is sure.
+  if (!options.smooth) options.field = (first.association() == Association::point ? "point:" : "cell:") + options.field;
+  return options;
+}
+
 void check_film_outputs(std::span<const FilmFrame> frames, std::span<const std::filesystem::path> more,
                         std::span<const std::filesystem::path> inputs) {
   std::set<std::filesystem::path> names;

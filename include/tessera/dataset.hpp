@@ -27,13 +27,13 @@ namespace tessera {
 struct ReadOptions {
   /// Scalar to render: "" (the reader's choice, said in the notes), "NAME", "NAME:mag", "NAME:x", "NAME:0", each with
   /// an optional "point:" or "cell:" before it. A vector with no component named gives its magnitude.
-  std::string field;
+  std::string field{};
   int threads = 0;  ///< that make tets of cells, or scan samples; 0: all cores
 
   // Meshes.
   bool smooth = false;                     ///< average cell data to the points, weighted by tet volume
-  std::filesystem::path plot3d_q;          ///< PLOT3D solution file; empty: found beside the grid file by its name
-  std::optional<double> max_volume;        ///< surfaces only: largest tet TetGen makes, world units cubed
+  std::filesystem::path plot3d_q{};        ///< PLOT3D solution file; empty: found beside the grid file by its name
+  std::optional<double> max_volume{};      ///< surfaces only: largest tet TetGen makes, world units cubed
   std::optional<std::size_t> time_step{};  ///< Exodus: step counted from 0; default the last one
 
   // A .raw file says nothing of itself, but perhaps by its name: NAME_WxHxD_TYPE.raw. These win over the name, and are

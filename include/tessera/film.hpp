@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tessera/camera.hpp"
+#include "tessera/dataset.hpp"
 #include "tessera/export.hpp"
 #include "tessera/time_series.hpp"
 
@@ -49,6 +50,10 @@ TESSERA_EXPORT bool is_series(const FilmPlan& plan);
 /// Error(bad_input) if an input that is to be read is not there, if several frames would share one name, if an orbit is
 /// asked of several views, or for what read_cameras() refuses.
 TESSERA_EXPORT std::vector<FilmFrame> plan_film(const FilmPlan& plan);
+
+/// How later steps of a time series are read: their field is the one that was chosen for the first step. A field that
+/// varies in one step and not in the next would else make the film jump to another.
+TESSERA_EXPORT ReadOptions read_of_later_steps(ReadOptions options, const Dataset& first);
 
 /// Before any reading or rendering: can all pictures of the frames that are not finished be written, and the `more`
 /// files beside them? Throws Error(bad_input) for an unknown extension, a folder that is missing or closed to us, two

@@ -1,0 +1,420 @@
+// What callers get from the public headers and the whole library, and nothing else: films, traces, samples of their
+// own, a mesh's arrays, the reference, ranks without MPI.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <new>
+#include <numeric>
+#include <set>
+
+#include "tessera/tessera.hpp"
+
+namespace tessera {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of this process, gone at the end.
+class Folder {
+ public:
+  Folder() : path_(fs::temp_directory_path() / ("tessera_callers_" + std::to_string(getpid()))) {
+    fs::create_directories(path_);
+  }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  [[nodiscard]] fs::path operator/(const char* name) const { return path_ / name; }
+  fs::path touch(const char* name) const {
+    std::ofstream(path_ / name) << "x";
+    return path_ / name;
+  }
+
+ private:
+  fs::path path_;
+};
+
+/// A box of n^3 cubes, each cut into six tets; the scalar bends.
+struct Cubes {
+  explicit Cubes(int n) {
+    const auto point = [n](int i, int j, int k) { return static_cast<std::uint32_t>(i + (n + 1) * (j + (n + 1) * k)); };
+    for (int k = 0; k <= n; ++k)
+      for (int j = 0; j <= n; ++j)
+        for (int i = 0; i <= n; ++i) {
+          points.insert(points.end(), {1.0 * i, 1.0 * j, 1.0 * k});
+          scalars.push_back(i * j - 0.5 * k * i);
+        }
+    constexpr int ways[6][2] = {{1, 3}, {1, 5}, {2, 3}, {2, 6}, {4, 5}, {4, 6}};
+    for (int k = 0; k < n; ++k)
+      for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i, ++cubes)
+          for (const auto& way : ways) {
+            const auto corner = [&](int bits) {
+              return point(i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2 & 1));
+            };
+            tets.insert(tets.end(), {corner(0), corner(way[0]), corner(way[1]), corner(7)});
+            cube_of.push_back(cubes);
+          }
+  }
+  [[nodiscard]] MeshArrays arrays() const {
+    MeshArrays arrays;
+    arrays.points = points, arrays.tets = tets, arrays.scalars = scalars;
+    return arrays;
+  }
+  std::vector<double> points, scalars;
+  std::vector<std::uint32_t> tets;
+  std::vector<std::uint64_t> cube_of;
+  std::uint64_t cubes = 0;
+};
+
+constexpr std::int64_t side = 21;
+constexpr ImageSize size{61, 47};
+
+float wave(std::int64_t i, std::int64_t j, std::int64_t k) {
+  return std::sin(0.31f * static_cast<float>(i)) * std::cos(0.23f * static_cast<float>(j)) +
+         0.02f * static_cast<float>(k);
+}
+
+Grid wave_grid() {
+  Grid grid;
+  grid.geometry.points = {side, side, side};
+  return grid;
+}
+
+/// Samples that are computed where they are read.
+class Waves final : public SampleSource {
+ public:
+  Waves() : SampleSource(wave_grid(), "waves") {}
+
+ private:
+  void read_samples(const SampleBox& box, const SampleLayout& layout, std::byte* destination) const override {
+    for (std::int64_t k = box.low[2]; k < box.high[2]; ++k)
+      for (std::int64_t j = box.low[1]; j < box.high[1]; ++j)
+        for (std::int64_t i = box.low[0]; i < box.high[0]; ++i) {
+          const float value = wave(i, j, k);
+          const double wide = value;
+          const auto at = static_cast<std::size_t>((k - box.low[2]) * layout.slice_pitch +
+                                                   (j - box.low[1]) * layout.row_pitch + (i - box.low[0]));
+          if (layout.type == SampleType::float64)
+            std::memcpy(destination + 8 * at, &wide, 8);
+          else
+            std::memcpy(destination + 4 * at, &value, 4);
+        }
+  }
+};
+
+Image picture_of(const Dataset& data, const Settings& settings = {}) {
+  return Session(data, settings).render({data.default_camera(size), size}, data.transfer_function().function).image;
+}
+
+Settings on_one_thread() {
+  Settings settings;
+  settings.threads = 1;
+  return settings;
+}
+
+TEST(CallersSamples, GiveThePictureOfTheSameSamplesInMemory) {
+  std::vector<float> samples;
+  for (std::int64_t k = 0; k < side; ++k)
+    for (std::int64_t j = 0; j < side; ++j)
+      for (std::int64_t i = 0; i < side; ++i) samples.push_back(wave(i, j, k));
+  GridArrays arrays;
+  arrays.geometry = wave_grid().geometry;
+  arrays.samples = samples;
+  const Dataset in_memory = Dataset::of(arrays), computed = Dataset::of(std::make_shared<const Waves>());
+  EXPECT_EQ(computed.range(), in_memory.range());
+  EXPECT_EQ(computed.fields().front().type, "float32");
+  const Image picture = picture_of(computed);
+  EXPECT_GT(*std::ranges::max_element(picture.rgba), 0.05f);
+  EXPECT_EQ(picture.rgba, picture_of(in_memory).rgba);
+}
+
+TEST(CallersReference, PicturesKeepThePromiseAgainstIt) {
+  const Cubes cubes(3);
+  const Dataset data = Dataset::of(cubes.arrays());
+  Settings settings;
+  settings.integrator.kind = IntegratorKind::exact;
+  Session session(data, settings);
+  const View view{data.default_camera(size), size};
+  const TransferFunction function = data.transfer_function().function;
+  const Image picture = session.render(view, function).image;
+  const auto pixels = random_pixels(size, 200, 3);
+  const auto truth = Reference(data, view, function, settings).pixels(pixels, 1);
+  ASSERT_EQ(truth.size(), 200u);
+  double worst = 0, largest = 0;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const float* const rgba = &picture.rgba[4 * picture.index(pixels[i].x, pixels[i].y)];
+    const double right[] = {truth[i].r, truth[i].g, truth[i].b, truth[i].a};
+    for (int c = 0; c < 4; ++c) worst = std::max(worst, std::abs(rgba[c] - right[c]));
+    largest = std::max(largest, truth[i].a);
+  }
+  EXPECT_GT(largest, 0.1);  // there is something to see
+  EXPECT_LE(worst, session.promised_error().value());
+}
+
+TEST(CallersRanks, ThreadsMakeThePictureOfOneProcess) {
+  const Cubes cubes(4);
+  const Dataset data = Dataset::of(cubes.arrays());
+  Settings settings = on_one_thread();
+  settings.ranks.exchange = Exchange::segments;
+  const Image alone = picture_of(data, settings);
+  Image together;
+  std::set<int> ranks;
+  std::mutex mutex;
+  run_ranks(3, [&](const Communicator& communicator) {
+    Session session(data, settings, communicator);
+    RenderedFrame frame = session.render({data.default_camera(size), size}, data.transfer_function().function);
+    const std::lock_guard lock(mutex);
+    ranks.insert(communicator.rank());
+    EXPECT_EQ(communicator.size(), 3);
+    if (session.assembles()) together = std::move(frame.image);
+  });
+  EXPECT_EQ(ranks, (std::set{0, 1, 2}));
+  EXPECT_EQ(together.rgba, alone.rgba);
+  EXPECT_THROW(run_ranks(2,
+                         [](const Communicator& c) {
+                           if (c.rank() == 1) throw bad_input("rank: of no use");
+                         }),
+               Error);
+}
+
+TEST(CallersMesh, ArraysComeBackAsTheyAre) {
+  const Cubes cubes(2);
+  const Dataset data = Dataset::of(cubes.arrays());
+  const MeshArrays back = data.mesh_arrays();
+  EXPECT_EQ(back.points.data(), cubes.points.data());
+  EXPECT_EQ(back.tets.data(), cubes.tets.data());
+  EXPECT_EQ(back.tets.size(), cubes.tets.size());
+  EXPECT_EQ(back.scalars.as<double>().size(), cubes.scalars.size());
+  EXPECT_EQ(back.field_name, "scalar");
+  EXPECT_THROW(static_cast<void>(Dataset::of(std::make_shared<const Waves>()).mesh_arrays()), Error);
+}
+
+TEST(CallersMesh, ArraysAreWrittenAsTheyAre) {
+  const Folder folder;
+  Cubes cubes(2);
+  // Files round to float; these coordinates and scalars are floats.
+  write_mesh(cubes.arrays(), folder / "mesh.tets");
+  ReadOptions keep;
+  keep.keep_corners = true;
+  const Dataset read = Dataset::open(folder / "mesh.tets", keep);
+  const auto tets = read.mesh_arrays().tets.as<std::uint32_t>();
+  EXPECT_TRUE(std::ranges::equal(tets, cubes.tets));
+  EXPECT_TRUE(std::ranges::equal(read.mesh_arrays().scalars.as<double>(), cubes.scalars));
+
+  MeshArrays wrong = cubes.arrays();
+  cubes.cube_of.pop_back();
+  wrong.original_cells = cubes.cube_of;
+  EXPECT_THROW(write_mesh(wrong, folder / "wrong.tets"), Error);
+  EXPECT_THROW(write_mesh(cubes.arrays(), folder / "mesh.obj"), Error);
+}
+
+#ifdef TESSERA_VTK
+TEST(CallersMesh, PiecesAreOneMeshThatNumbersItsOriginalCells) {
+  const Folder folder;
+  const Cubes cubes(3);
+  MeshArrays arrays = cubes.arrays();
+  arrays.original_cells = cubes.cube_of;
+  write_mesh_pieces(arrays, folder / "mesh.pvtu", 4);
+  const Dataset read = Dataset::open(folder / "mesh.pvtu", {.field = "scalar"});
+  EXPECT_EQ(read.tet_count(), cubes.tets.size() / 4);
+  const auto fields = read.fields();
+  const auto cells = std::ranges::find(fields, "OriginalCellId", &FieldInfo::name);
+  ASSERT_NE(cells, fields.end());
+  EXPECT_EQ(cells->association, Association::cell);
+  EXPECT_EQ(cells->high, static_cast<double>(cubes.cubes - 1));
+  // What is read may not be written over.
+  EXPECT_THROW(check_mesh_output(folder / "mesh.pvtu", folder / "mesh.pvtu", 2), Error);
+  EXPECT_NO_THROW(check_mesh_output(folder / "other.pvtu", folder / "mesh.pvtu", 2));
+  EXPECT_THROW(check_mesh_output(folder / "other.vtu", folder / "mesh.pvtu", 2), Error);
+}
+#endif
+
+TEST(CallersTrace, HoldsASessionsStagesAndIsReadAgain) {
+  const Folder folder;
+  const Cubes cubes(3);
+  const Dataset data = Dataset::of(cubes.arrays());
+  Trace trace;
+  Settings settings = on_one_thread();
+  settings.trace = &trace;
+  trace.set_frame(7);
+  picture_of(data, settings);
+  const auto spans = trace.spans();
+  const auto projects =
+      std::ranges::find_if(spans, [](const TraceSpan& s) { return s.stage == std::string("project"); });
+  ASSERT_NE(projects, spans.end());
+  EXPECT_EQ(projects->frame, 7);
+  TraceRun run;
+  run.input = "cubes";
+  run.width = size.width;
+  write_trace(trace, run, folder / "trace.json");
+  const TraceFile read = read_trace(folder / "trace.json");
+  EXPECT_EQ(read.run, run);
+  EXPECT_EQ(read.spans.size(), spans.size());
+  EXPECT_TRUE(std::ranges::any_of(read.stages, [](const std::string& stage) { return stage == "project"; }));
+}
+
+TEST(CallersTrace, RanksSpansGoIntoOneFileWithTheirRoles) {
+  const Folder folder;
+  const Cubes cubes(3);
+  const Dataset data = Dataset::of(cubes.arrays());
+  run_ranks(2, [&](const Communicator& communicator) {
+    Trace trace;
+    {
+      Settings settings = on_one_thread();
+      settings.trace = &trace;
+      Session session(data, settings, communicator);
+      session.render({data.default_camera(size), size}, data.transfer_function().function);
+    }
+    write_trace(trace, "rank " + std::to_string(communicator.rank()), {}, folder / "trace.json", communicator, 1);
+  });
+  const TraceFile read = read_trace(folder / "trace.json");
+  for (const int rank : {0, 1})
+    for (const TraceRole role : {TraceRole::projector, TraceRole::compositor})
+      EXPECT_TRUE(std::ranges::any_of(read.spans, [&](const FileSpan& s) { return s.rank == rank && s.role == role; }))
+          << rank;
+}
+
+TEST(CallersBalance, PicturesAreOfAFrameThatKeptItsCost) {
+  const Dataset data = Dataset::of(std::make_shared<const Waves>());
+  Session session(data);
+  const View view{data.default_camera(size), size};
+  const TransferFunction function = data.transfer_function().function;
+  RenderedFrame frame = session.render(view, function);
+  EXPECT_THROW(static_cast<void>(session.balance_pictures(frame, view, function)), Error);
+  frame = session.render(view, function, {.keep_cost = true});
+  const BalancePictures pictures = session.balance_pictures(frame, view, function);
+  EXPECT_EQ(pictures.bricks.size, size);
+  const std::size_t middle = 4 * pictures.cost.index(size.width / 2, size.height / 2), corner = 0;
+  EXPECT_GT(pictures.cost.rgba[middle], 0.0f);  // dear
+  EXPECT_EQ(pictures.cost.rgba[corner], 0.0f);  // nothing is there
+  EXPECT_EQ(pictures.cost.rgba[corner + 3], 1.0f);
+  EXPECT_NE(pictures.bricks.rgba, frame.image.rgba);
+  const Cubes cubes(1);
+  const Session of_mesh(Dataset::of(cubes.arrays()));
+  EXPECT_THROW(static_cast<void>(of_mesh.balance_pictures(frame, view, function)), Error);
+}
+
+TEST(CallersDevice, WhatNoErrorIsPromisedOfSaysSo) {
+  const Cubes cubes(1);
+  const Dataset data = Dataset::of(cubes.arrays());
+  EXPECT_TRUE(Session(data).promised_error().has_value());
+  Settings settings;
+  settings.mesh.device.method = GlMethod::fragment;
+  EXPECT_TRUE(Session(data, settings).promised_error().has_value());  // no device is asked for
+}
+
+TEST(CallersFilm, StepsTimesViewsAreNumberedAndFinishedOnesKnown) {
+  const Folder folder;
+  FilmPlan plan;
+  plan.inputs = {folder.touch("a.tets"), folder.touch("b.tets")};
+  plan.orbit = 2;
+  plan.size = size;
+  plan.outputs = {folder / "f_%02d.png", folder / "f_%02d.pfm"};
+  plan.resume = true;
+  folder.touch("f_00.png"), folder.touch("f_00.pfm"), folder.touch("f_02.png");
+  const auto frames = plan_film(plan);
+  ASSERT_EQ(frames.size(), 4u);
+  EXPECT_TRUE(is_series(plan));
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(frames[i].number, static_cast<int>(i));
+    EXPECT_EQ(frames[i].step, i / 2);
+    EXPECT_EQ(frames[i].data.files.front(), plan.inputs[i / 2]);
+    EXPECT_EQ(frames[i].turn.value(), i % 2 == 0 ? 0.0 : 0.5);
+    EXPECT_EQ(frames[i].finished, i == 0) << i;  // of frame 2 one picture is missing
+  }
+  EXPECT_EQ(frames[3].outputs[1], folder / "f_03.pfm");
+  // Half a turn: the eye on the other side, the view still on the box.
+  const Box box{{0, 0, 0}, {2, 2, 2}};
+  const Camera first = frames[0].view(box, ProjectionKind::orthographic);
+  const Camera turned = frames[1].view(box, ProjectionKind::orthographic);
+  EXPECT_EQ(first.focal_point, turned.focal_point);
+  EXPECT_NEAR(first.position.x - 1, 1 - turned.position.x, 1e-12);
+
+  EXPECT_NO_THROW(frames[3].require_still_there());
+  fs::remove(plan.inputs[1]);
+  EXPECT_THROW(frames[3].require_still_there(), Error);
+  EXPECT_THROW(plan_film(plan), Error);
+}
+
+TEST(CallersFilm, LaterStepsHaveTheFieldOfTheFirst) {
+  Cubes cubes(1);
+  const Dataset of_points = Dataset::of(cubes.arrays());
+  EXPECT_EQ(read_of_later_steps({}, of_points).field, "point:scalar");
+  EXPECT_EQ(read_of_later_steps({.smooth = true}, of_points).field, "scalar");
+  EXPECT_EQ(read_of_later_steps({.field = "p"}, of_points).field, "p");
+  cubes.scalars.resize(6);
+  MeshArrays arrays = cubes.arrays();
+  arrays.association = Association::cell;
+  EXPECT_EQ(read_of_later_steps({}, Dataset::of(arrays)).field, "cell:scalar");
+}
+
+TEST(CallersFilm, NamesThatCannotBeAreRefusedBeforeRendering) {
+  const Folder folder;
+  FilmPlan plan;
+  plan.inputs = {folder.touch("a.tets")};
+  plan.outputs = {folder / "one.png"};
+  auto frames = plan_film(plan);
+  EXPECT_NO_THROW(check_film_outputs(frames, {}, {}));
+  const auto refused = [&](std::vector<fs::path> more, std::vector<fs::path> inputs) {
+    EXPECT_THROW(check_film_outputs(frames, more, inputs), Error);
+  };
+  refused({folder / "one.png"}, {});                    // named twice
+  refused({folder / "nowhere" / "report.json"}, {});    // no such folder
+  refused({folder / "a.tets"}, {plan.inputs.front()});  // an input
+  frames.front().outputs = {folder / "one.gif"};
+  refused({}, {});
+  frames.front().outputs = {plan.inputs.front()};
+  refused({}, {});
+  plan.orbit = 3;
+  EXPECT_THROW(plan_film(plan), Error);  // three frames of one name
+  plan.inputs.clear();
+  EXPECT_THROW(plan_film(plan), Error);
+}
+
+TEST(CallersJob, OneProcessIsAJobToo) {
+  int spoken = 0;
+  Job job({"test", "start again", [&](const Error&) { ++spoken; }});
+  EXPECT_EQ(job.rank(), 0);
+  EXPECT_EQ(job.size(), 1);
+  EXPECT_EQ(job.communicator().size(), 1);
+  EXPECT_EQ(job.broadcast(0, {std::byte{5}}), std::vector{std::byte{5}});
+  job.fail(bad_input("thing: is wrong; mend it"));
+  job.fail(bad_input("thing: is wrong again"));
+  const auto error = job.finish();
+  ASSERT_TRUE(error);
+  EXPECT_STREQ(error->what(), "thing: is wrong; mend it");
+  EXPECT_EQ(spoken, 1);
+}
+
+TEST(CallersErrors, AnyExceptionHasAnError) {
+  const auto of = [](const auto& thrown) { return error_of(std::make_exception_ptr(thrown)); };
+  EXPECT_STREQ(of(bad_input("a: b; c")).what(), "a: b; c");
+  EXPECT_EQ(of(bad_input("a: b; c")).code(), ErrorCode::bad_input);
+  EXPECT_EQ(of(std::bad_alloc()).subject(), "memory");
+  EXPECT_EQ(of(std::bad_alloc()).code(), ErrorCode::system_failure);
+  EXPECT_STREQ(of(std::runtime_error("odd")).what(), "unexpected: odd; please report");
+  EXPECT_EQ(of(5).code(), ErrorCode::system_failure);
+}
+
+TEST(CallersFiles, TextIsWrittenWholeAndJsonMeansWhatItSays) {
+  const Folder folder;
+  write_text(folder / "a.json", R"({"a": 1, "b": [2]})");
+  EXPECT_NO_THROW(check_json(read_text(folder / "a.json"), "a.json"));
+  EXPECT_THROW(check_json(R"({"a": 1, "a": 2})", "twice"), Error);
+  EXPECT_THROW(check_json("{", "short"), Error);
+  EXPECT_THROW(static_cast<void>(read_text(folder / "none.json")), Error);
+  EXPECT_THROW(write_text(folder / "nowhere" / "a.json", "x"), OutputFault);
+  EXPECT_THROW(check_output(folder / "a.json", folder / "a.json"), Error);
+  { const AtomicFile begun(folder / "b.json"); }
+  EXPECT_FALSE(fs::exists(folder / "b.json"));  // never committed
+}
+
+}  // namespace
+}  // namespace tessera
