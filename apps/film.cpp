@@ -147,7 +147,6 @@ class Film final : public Sink {
     }
     if (frame.step != step_) open(frame, later_read_);
     if (session_) return;
-    settings_.ranks.first_frame = static_cast<std::uint32_t>(jobs_before_);
     session_.emplace(*data_, settings_, job_.communicator());
   }
 

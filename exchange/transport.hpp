@@ -73,11 +73,20 @@ class Transport {
   /// Null: nowhere. The faces must outlive the transport or be taken back.
   virtual void trace_to(scene::Trace* projecting, scene::Trace* compositing) = 0;
 
+  /// Numbers so many more frames, alike on all ranks: the first one's number, in messages and traces. Sessions that
+  /// share a transport, one after the other, never meet each other's numbers. Not while a frame is under way.
+  std::uint32_t number_frames(std::size_t count) {
+    return std::exchange(frames_, frames_ + static_cast<std::uint32_t>(count));
+  }
+
   /// Bytes and messages sent so far on a channel, not counting those to itself.
   struct Traffic {
     std::uint64_t bytes = 0, messages = 0;
   };
   [[nodiscard]] virtual Traffic sent(Channel channel) const = 0;
+
+ private:
+  std::uint32_t frames_ = 0;
 };
 
 }  // namespace tessera::exchange

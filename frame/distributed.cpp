@@ -107,9 +107,10 @@ class DistributedRenderer::State {
       opened_ = true;
     }
     exchange::barrier(transport_);  // a frame's time does not count reading
-    const DistributedRun run{transport_, settings_,  jobs, function, device_, std::chrono::steady_clock::now(),
-                             stop,       next_frame_};
-    next_frame_ += static_cast<std::uint32_t>(jobs.size());
+    const DistributedRun run{transport_, settings_,
+                             jobs,       function,
+                             device_,    std::chrono::steady_clock::now(),
+                             stop,       transport_.number_frames(jobs.size())};
     std::exception_ptr of_caller;
     std::vector<std::function<void()>> parts;
     if (loaded_)
@@ -159,7 +160,6 @@ class DistributedRenderer::State {
   std::optional<std::size_t> number_;  ///< of the mesh that was loaded last
   CompositingDevice device_;
   bool opened_ = false;
-  std::uint32_t next_frame_ = settings_.first_frame;
 };
 
 DistributedRenderer::DistributedRenderer(exchange::Transport& transport, DistributedSettings settings, MeshOf mesh_of)

@@ -24,7 +24,6 @@ struct DistributedSettings {
   CompositingSettings compositing_on;
   bool deep = false;                    ///< deep pictures too (Renderer::render); they need raw segments
   int frames_in_flight = 2;             ///< frames a projector may be ahead of the assembled picture, at least 1
-  std::uint32_t first_frame = 0;        ///< number of the first frame, in messages and traces
   std::uint64_t tile_seed = 1;          ///< of the tile map
   scene::Trace* projecting = nullptr;   ///< face of this rank's trace for its projector; null: no timing
   scene::Trace* compositing = nullptr;  ///< for its compositor

@@ -79,7 +79,6 @@ DistributedSettings distributed_settings(const Settings& s, int ranks) {
   settings.exchange = s.ranks.exchange;
   settings.frames_in_flight = s.ranks.frames_in_flight;
   settings.compositing_on = compositing_settings(s.mesh.device);
-  settings.first_frame = s.ranks.first_frame;
   settings.tile_seed = s.ranks.tile_seed;
   return settings;
 }

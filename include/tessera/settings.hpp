@@ -106,7 +106,6 @@ struct RankSettings {
   Partition partition;
   int frames_in_flight = 2;               ///< frames a projector may be ahead of the assembled picture, at least 1
   std::uint64_t tile_seed = 1;            ///< of the map from tiles to compositors
-  std::uint32_t first_frame = 0;          ///< meshes: the number that traces and messages give a session's first frame
   Balance balance = Balance::accurate;    ///< grids
   double balance_resolution = 0.5;        ///< grids: of the cost map, map pixels an image pixel along each axis
   std::vector<double> balance_weights{};  ///< grids: how much of the work each rank should get; empty: equal
@@ -140,7 +139,8 @@ struct Settings {
   GridSettings grid;
   RankSettings ranks;
   /// Where the session's times go; null: nowhere. It must outlive the session. Of a mesh on several ranks, or on a
-  /// device, spans say for which role the rank worked.
+  /// device, spans say for which role the rank worked and number the frames from 0 (of sessions over one Job, one after
+  /// the other, on from the last one's); other spans have the number that Trace::set_frame() gave.
   Trace* trace = nullptr;
 };
 
