@@ -131,7 +131,7 @@ class MpiTransport::Engine {
   /// What was sent before is on the old faces when this returns.
   void trace_to(scene::Trace* projecting, scene::Trace* compositing) {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return queue_.empty() && !posting_; });
+    changed_.wait(lock, [&] { return (queue_.empty() && !posting_) || ended_; });
     projecting_ = projecting;
     compositing_ = compositing;
   }
@@ -194,6 +194,11 @@ class MpiTransport::Engine {
       if (queue_.empty()) changed_.wait_for(lock, nap);
     }
     given_up_ ? port_.abandon() : port_.finish();
+    {
+      const std::lock_guard lock(mutex_);
+      ended_ = true;  // what is queued stays there
+    }
+    changed_.notify_all();
   }
 
   /// Hands queued messages to MPI.
@@ -379,7 +384,7 @@ class MpiTransport::Engine {
   std::deque<Outgoing> queue_;
   std::optional<scene::Error> own_fault_, start_error_;
   std::optional<StallSettings> stalls_;  ///< until the engine has begun to watch
-  bool started_ = false, finishing_ = false, fault_told_ = false, working_ = false;
+  bool started_ = false, ended_ = false, finishing_ = false, fault_told_ = false, working_ = false;
 
   // The engine's thread alone.
   MpiPort port_;
