@@ -42,7 +42,7 @@ seen_through() {  # seen_through FILE [DEPTH]
 
 changed() {
   local base minutes=6 list done_list status=0 file left
-  if ! git rev-parse -q --verify HEAD~1 >/dev/null; then
+  if ! git rev-parse -q --verify HEAD~1 >/dev/null 2>&1; then
     echo "lint.sh: no history to compare with; tidied nothing"
     return
   fi
