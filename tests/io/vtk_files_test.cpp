@@ -44,7 +44,8 @@ TEST_F(VtkFiles, AMixedVtuKeepsItsFacesAndLinearField) {
 }
 
 TEST_F(VtkFiles, PiecesOfAPvtuAgreeOnTheFacesBetweenThem) {
-  // Cells scattered over three pieces at random, as a partition with no sense would; piece 0 holds some of piece 1 as ghosts.
+  // Cells scattered over three pieces at random, as a partition with no sense would; piece 0 holds some of piece 1 as
+  // ghosts.
   const CellBlock whole = testing::mixed_mesh(4, 9, false);
   std::vector<CellBlock> pieces(3);
   std::uint64_t ghosts = 0;
