@@ -54,20 +54,8 @@ Json mesh_counters_json(const FrameStatistics& statistics) {
 }
 
 Json grid_counters_json(const FrameStatistics& statistics) {
-  const GridCounters& s = statistics.grid;
-  Json json = {{"rays", s.rays},
-               {"voxels_visited", s.voxels_visited},
-               {"samples", s.samples},
-               {"pixels_in_double_precision", s.pixels_again},
-               {"bricks_total", s.bricks_total},
-               {"bricks_invisible", s.bricks_invisible},
-               {"brick_hits", s.brick_hits},
-               {"bricks_loaded", s.bricks_loaded},
-               {"bricks_evicted", s.bricks_evicted},
-               {"bytes_loaded", s.bytes_loaded},
-               {"bytes_resident", s.bytes_resident},
-               {"peak_bytes", s.peak_bytes},
-               {"blank_samples", s.blank_samples}};
+  Json json;
+  for (const GridCounter& counter : grid_counters) json[std::string(counter.name)] = statistics.grid.*counter.member;
   if (statistics.mesh.deep_samples > 0) json["deep_samples"] = statistics.mesh.deep_samples;
   return json;
 }

@@ -30,7 +30,7 @@ FrameStatistics statistics_of(const frame::FinishedVolumeFrame& frame, const cha
   statistics.integrator = integrator;
   statistics.milliseconds = frame.frame_ms;
   for (int process = 0; process < frame.split.processes(); ++process) {
-    const volume::PixelRegion r = frame.split.region(process);
+    const scene::PixelRect r = frame.split.region(process);
     statistics.rectangles.push_back({r.x0, r.y0, r.x1, r.y1});
   }
   statistics.samples = frame.samples;
@@ -105,7 +105,7 @@ class GridByRays final : public Session::State {
  private:
   void make_sort_first() {
     frame::SortFirstSettings sort_first = frame::sort_first_settings(settings());
-    sort_first.keep_doubts = keeps_uncertainty_;
+    sort_first.keep_error_bounds = keeps_uncertainty_;
     sort_first.keep_cost = keeps_cost_;
     sort_first.trace = trace_;
     sort_first_.emplace(*transport_, std::move(sort_first));
@@ -167,7 +167,7 @@ class GridByRays final : public Session::State {
     if (finished) {
       frame.statistics = statistics_of(*finished, name_of(this->settings().integrator.kind));
       frame.image = std::move(finished->image);
-      frame.uncertainty = std::move(finished->doubts);
+      frame.uncertainty = std::move(finished->error_bounds);
       split_ = std::move(finished->split);
       cost_ = std::move(finished->cost);
     }

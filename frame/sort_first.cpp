@@ -26,20 +26,19 @@ using exchange::Channel;
 using exchange::message_of;
 using exchange::MessageKind;
 using exchange::MessageReader;
+using scene::PixelRect;
 using volume::CostMap;
 using volume::ImageSplit;
-using volume::PixelRegion;
 
 /// What travels before the pixels of a rank's rectangle.
 struct RegionHeader {
   std::uint64_t frame;
-  PixelRegion region;
-  std::uint64_t rays, voxels_visited, samples, pixels_again, bricks_total, bricks_invisible, brick_hits, bricks_loaded,
-      bricks_evicted, bytes_loaded, bytes_resident, peak_bytes, blank_samples;
+  PixelRect region;
+  GridCounters counters;
   double cpu_seconds;
   std::uint64_t stopped;  ///< 1: no pixels follow
 };
-static_assert(sizeof(RegionHeader) == 18 * 8);
+static_assert(sizeof(RegionHeader) == sizeof(GridCounters) + 5 * 8);
 
 double process_cpu_seconds() {
   timespec t{};
@@ -47,7 +46,7 @@ double process_cpu_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-PixelRegion scaled(const PixelRegion& r, double resolution, scene::ImageSize map, scene::ImageSize image) {
+PixelRect scaled(const PixelRect& r, double resolution, scene::ImageSize map, scene::ImageSize image) {
   const auto edge = [&](int v, int length, int map_length) {
     return v == length ? map_length : std::min(map_length, static_cast<int>(std::floor(v * resolution)));
   };
@@ -93,7 +92,7 @@ class SortFirst::State {
     std::exception_ptr thrown;
     scene::FrameWatch here(relayed.token());
     if (watch->wants_tiles() && transport_.rank() == 0)
-      here.listen([&](const scene::PixelRect& rect, const scene::Image& image) {
+      here.listen([&](const PixelRect& rect, const scene::Image& image) {
         try {
           watch->finished(rect, image);
         } catch (...) {
@@ -118,18 +117,18 @@ class SortFirst::State {
     const auto begin = std::chrono::steady_clock::now();
     const ImageSplit split = [&] {
       const scene::TraceScope timing(settings_.trace, "partition", static_cast<std::int32_t>(number));
-      look(renderer, function, job, watch);
+      sample_work(renderer, function, job, watch);
       return split_of(renderer, function, job);
     }();
-    const PixelRegion mine = split.region(transport_.rank());
+    const PixelRect mine = split.region(transport_.rank());
     const double cpu_before = process_cpu_seconds();
     volume::RenderStatistics statistics;
-    std::vector<float> doubts;
+    std::vector<float> error_bounds;
     scene::Image image;
     bool stopped = false;
     try {
       image = renderer.render(job.camera, job.size, function, &statistics, mine,
-                              settings_.keep_doubts ? &doubts : nullptr, &watch);
+                              settings_.keep_error_bounds ? &error_bounds : nullptr, &watch);
     } catch (const scene::FrameStopped&) {
       stopped = true;
     }
@@ -137,25 +136,9 @@ class SortFirst::State {
     if (settings_.balance == Balance::previous) share_times(cpu);
     last_split_ = split;
     last_size_ = job.size;
-    RegionHeader header{number,
-                        mine,
-                        statistics.rays,
-                        statistics.voxels_visited,
-                        statistics.samples,
-                        statistics.pixels_again,
-                        statistics.bricks_total,
-                        statistics.bricks_invisible,
-                        statistics.brick_hits,
-                        statistics.bricks_loaded,
-                        statistics.bricks_evicted,
-                        statistics.bytes_loaded,
-                        statistics.bytes_resident,
-                        statistics.peak_bytes,
-                        statistics.blank_samples,
-                        cpu,
-                        stopped ? 1u : 0u};
+    RegionHeader header{number, mine, statistics, cpu, stopped ? 1u : 0u};
     if (transport_.rank() != 0) {
-      send(header, image, doubts);
+      send(header, image, error_bounds);
       return std::nullopt;
     }
     FinishedVolumeFrame finished;
@@ -163,7 +146,7 @@ class SortFirst::State {
     finished.stopped = stopped;
     if (stopped) image = scene::Image(job.size);
     finished.image = std::move(image);
-    finished.doubts = std::move(doubts);
+    finished.error_bounds = std::move(error_bounds);
     finished.statistics = statistics;
     finished.split = split;
     finished.cost = std::move(cost_);
@@ -183,7 +166,7 @@ class SortFirst::State {
   }
 
   /// On rank 0, of pixels that came from another.
-  static void tell(scene::FrameWatch& watch, const scene::PixelRect& rect, FinishedVolumeFrame& finished) {
+  static void tell(scene::FrameWatch& watch, const PixelRect& rect, FinishedVolumeFrame& finished) {
     if (finished.stopped || watch.stopped()) return;
     try {
       watch.finished(rect, finished.image);
@@ -195,23 +178,23 @@ class SortFirst::State {
   ImageSplit split_of(const volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job) {
     const int processes = transport_.size();
     const Balance balance = settings_.balance;
-    const auto cost_of = [&](std::optional<PixelRegion> part) {
+    const auto cost_of = [&](std::optional<PixelRect> part) {
       return renderer.cost_map(job.camera, job.size, function, method_of(balance), settings_.resolution, part,
                                rates_ ? &*rates_ : nullptr);
     };
     const bool by_times = balance == Balance::previous && !times_.empty();
     if (settings_.keep_cost && transport_.rank() == 0) cost_ = by_times ? map_of_times(job.size) : cost_of({});
     if (processes == 1) return {{0, job.size.height}, {{0, job.size.width}}};
-    const PixelRegion area = volume::footprint(job.camera, job.size, renderer.geometry());
+    const PixelRect area = volume::footprint(job.camera, job.size, renderer.geometry());
     if (by_times) return volume::split(map_of_times(job.size), job.size, weights_, volume::region_grain);
     if (balance == Balance::even || balance == Balance::previous) return volume::even_split(processes, job.size, area);
 
     const scene::ImageSize map = volume::map_size(job.size, settings_.resolution);
-    const PixelRegion map_area = scaled(area, settings_.resolution, map, job.size);
+    const PixelRect map_area = scaled(area, settings_.resolution, map, job.size);
     const bool has_last = last_split_.has_value() && last_size_ == job.size;
-    const PixelRegion part = has_last
-                                 ? scaled(last_split_->region(transport_.rank()), settings_.resolution, map, job.size)
-                                 : volume::even_split(processes, map, map_area).region(transport_.rank());
+    const PixelRect part = has_last
+                               ? scaled(last_split_->region(transport_.rank()), settings_.resolution, map, job.size)
+                               : volume::even_split(processes, map, map_area).region(transport_.rank());
     const CostMap costs = cost_of(part);
     const volume::SummedArea table(costs);
     volume::SplitSearch search(job.size, settings_.resolution, map, weights_, volume::region_grain);
@@ -219,18 +202,18 @@ class SortFirst::State {
     return search.find_columns(gather_columns(volume::SplitSearch::column_sums(costs, table, search.map_rows())));
   }
 
-  /// What a look at every 32nd ray teaches of the work that this view takes: each rank looks at the rectangle it had in
-  /// the frame before, whose bricks it holds. Collective.
-  void look(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
-            scene::FrameWatch& watch) {
+  /// What a pilot pass of every 32nd ray teaches of the work that this view takes: each rank casts those of the
+  /// rectangle it had in the frame before, whose bricks it holds. Collective.
+  void sample_work(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
+                   scene::FrameWatch& watch) {
     if ((transport_.size() == 1 && !settings_.keep_cost) || settings_.balance != Balance::accurate) return;
     const bool has_last = last_split_.has_value() && last_size_ == job.size;
-    const PixelRegion area = volume::footprint(job.camera, job.size, renderer.geometry());
-    const PixelRegion part = has_last ? last_split_->region(transport_.rank())
-                                      : volume::even_split(transport_.size(), job.size, area).region(transport_.rank());
+    const PixelRect area = volume::footprint(job.camera, job.size, renderer.geometry());
+    const PixelRect part = has_last ? last_split_->region(transport_.rank())
+                                    : volume::even_split(transport_.size(), job.size, area).region(transport_.rank());
     volume::WorkTally tally(renderer.geometry().voxels());
     try {
-      renderer.look(job.camera, job.size, function, tally, part, &watch);
+      renderer.sample_work(job.camera, job.size, function, tally, part, &watch);
     } catch (const scene::FrameStopped&) {
       // The others wait for what this rank has learnt; the picture is dropped all the same.
     }
@@ -245,7 +228,7 @@ class SortFirst::State {
     for (const Bytes& of_rank : exchange::gather_all(transport_, std::move(bytes))) {
       MessageReader reader(of_rank, static_cast<int>(all.size()), MessageKind::row_costs);
       volume::RowSums& part = all.emplace_back();
-      part.region = reader.take<PixelRegion>();
+      part.region = reader.take<PixelRect>();
       part.rows = reader.take_list<std::uint64_t>();
       reader.finish();
     }
@@ -259,7 +242,7 @@ class SortFirst::State {
     for (const Bytes& of_rank : exchange::gather_all(transport_, std::move(bytes))) {
       MessageReader reader(of_rank, static_cast<int>(all.size()), MessageKind::column_costs);
       volume::ColumnSums& part = all.emplace_back();
-      part.region = reader.take<PixelRegion>();
+      part.region = reader.take<PixelRect>();
       part.columns.resize(own.columns.size());
       for (auto& columns : part.columns) {
         columns = reader.take_list<std::uint64_t>();
@@ -281,7 +264,7 @@ class SortFirst::State {
     map.region = {0, 0, map.size.width, map.size.height};
     map.cost.assign(static_cast<std::size_t>(map.size.width) * static_cast<std::size_t>(map.size.height), 0);
     for (int rank = 0; rank < transport_.size(); ++rank) {
-      const PixelRegion r = scaled(last_split_->region(rank), settings_.resolution, map.size, last_size_);
+      const PixelRect r = scaled(last_split_->region(rank), settings_.resolution, map.size, last_size_);
       const double pixels = std::max(1.0, static_cast<double>(r.x1 - r.x0) * (r.y1 - r.y0));
       const double nanoseconds = 1e9 * times_[static_cast<std::size_t>(rank)] / pixels;
       for (int y = r.y0; y < std::min(r.y1, map.size.height); ++y)
@@ -292,14 +275,14 @@ class SortFirst::State {
     return map;
   }
 
-  void send(const RegionHeader& header, const scene::Image& image, const std::vector<float>& doubts) {
+  void send(const RegionHeader& header, const scene::Image& image, const std::vector<float>& error_bounds) {
     Bytes bytes = message_of(MessageKind::region, header);
-    const PixelRegion& r = header.region;
+    const PixelRect& r = header.region;
     for (int y = r.y0; y < r.y1 && header.stopped == 0; ++y) {
       const auto width = static_cast<std::size_t>(r.x1 - r.x0);
       append_values(bytes, std::span(image.rgba).subspan(4 * image.index(r.x0, y), 4 * width));
       append_values(bytes, std::span(image.depth).subspan(image.index(r.x0, y), width));
-      if (!doubts.empty()) append_values(bytes, std::span(doubts).subspan(image.index(r.x0, y), width));
+      if (!error_bounds.empty()) append_values(bytes, std::span(error_bounds).subspan(image.index(r.x0, y), width));
     }
     transport_.send(0, Channel::tiles, std::move(bytes), static_cast<std::int32_t>(header.frame));
   }
@@ -307,7 +290,7 @@ class SortFirst::State {
   void place(const exchange::Message& message, FinishedVolumeFrame& finished, scene::FrameWatch& watch) {
     MessageReader reader(message, MessageKind::region);
     const auto header = reader.take<RegionHeader>();
-    const PixelRegion& r = header.region;
+    const PixelRect& r = header.region;
     const scene::ImageSize size = finished.image.size;
     if (header.frame != finished.frame || r.x0 < 0 || r.y0 < 0 || r.x1 > size.width || r.y1 > size.height)
       reader.refuse("is a rectangle of another picture");
@@ -316,18 +299,13 @@ class SortFirst::State {
       const auto width = static_cast<std::size_t>(r.x1 - r.x0);
       reader.take_values(std::span(finished.image.rgba).subspan(4 * finished.image.index(r.x0, y), 4 * width));
       reader.take_values(std::span(finished.image.depth).subspan(finished.image.index(r.x0, y), width));
-      if (!finished.doubts.empty())
-        reader.take_values(std::span(finished.doubts).subspan(finished.image.index(r.x0, y), width));
+      if (!finished.error_bounds.empty())
+        reader.take_values(std::span(finished.error_bounds).subspan(finished.image.index(r.x0, y), width));
     }
     reader.finish();
     if (header.stopped == 0) tell(watch, {r.x0, r.y0, r.x1, r.y1}, finished);
-    volume::RenderStatistics& s = finished.statistics;
-    s.rays += header.rays, s.voxels_visited += header.voxels_visited, s.samples += header.samples;
-    s.pixels_again += header.pixels_again;
-    s.brick_hits += header.brick_hits, s.bricks_loaded += header.bricks_loaded;
-    s.bricks_evicted += header.bricks_evicted, s.bytes_loaded += header.bytes_loaded;
-    s.bytes_resident += header.bytes_resident, s.peak_bytes += header.peak_bytes;
-    finished.samples[static_cast<std::size_t>(message.from)] = header.samples;
+    finished.statistics += header.counters;
+    finished.samples[static_cast<std::size_t>(message.from)] = header.counters.samples;
     finished.cpu_seconds[static_cast<std::size_t>(message.from)] = header.cpu_seconds;
   }
 

@@ -22,7 +22,8 @@ struct SortFirstSettings {
   double resolution = 0.5;      ///< of the cost map, map pixels an image pixel along each axis
   std::vector<double> weights;  ///< how much of the work each rank should get; empty: equal
   bool keep_cost = false;       ///< rank 0 finds the cost of the whole picture too, to be shown
-  bool keep_doubts = false;     ///< rank 0 gets each pixel's doubt (volume::Renderer::render) too; alike on all ranks
+  bool keep_error_bounds =
+      false;  ///< rank 0 gets each pixel's error bound (volume::Renderer::render) too; alike on all ranks
   scene::Trace* trace = nullptr;
 };
 
@@ -35,13 +36,13 @@ struct VolumeJob {
 struct FinishedVolumeFrame {
   std::size_t frame;
   scene::Image image;
-  volume::RenderStatistics statistics;  ///< of all ranks: sums, but `bricks_total`, `bricks_invisible`, `blank_samples`
+  volume::RenderStatistics statistics;  ///< of all ranks, put together as tessera::grid_counters says
   volume::ImageSplit split;
   std::vector<std::uint64_t> samples;  ///< of each rank
   std::vector<double> cpu_seconds;     ///< of each rank's rendering, all its threads
   double frame_ms;                     ///< from when all ranks were ready to the picture in memory, split included
   volume::CostMap cost;                ///< of the whole picture, if SortFirstSettings::keep_cost
-  std::vector<float> doubts;           ///< by pixel, if SortFirstSettings::keep_doubts
+  std::vector<float> error_bounds;     ///< by pixel, if SortFirstSettings::keep_error_bounds
   bool stopped = false;                ///< the image lacks pixels
 };
 

@@ -47,11 +47,12 @@ class Collector {
   reference::Suspects found_;
 };
 
-/// Pixels in doubt but not cast again are the least sure; those cast again are exact so far as is known.
-SuspicionMap suspicion_of(std::span<const float> doubts, double tolerance) {
-  SuspicionMap map(doubts.begin(), doubts.end());
-  for (float& doubt : map)
-    if (doubt > tolerance) doubt = static_cast<float>(tolerance / 16);
+/// Pixels with a large error bound that were not cast again are the least sure; those cast again are exact so far as is
+/// known.
+SuspicionMap suspicion_of(std::span<const float> error_bounds, double tolerance) {
+  SuspicionMap map(error_bounds.begin(), error_bounds.end());
+  for (float& bound : map)
+    if (bound > tolerance) bound = static_cast<float>(tolerance / 16);
   return map;
 }
 
@@ -125,7 +126,7 @@ reference::Suspects suspects(const scene::Image& image, const scene::TetMeshView
 
 reference::Suspects suspects(const scene::Image& image, const scene::SampleSource& source, const scene::Camera& camera,
                              const scene::TransferFunction& transfer_function, const volume::RenderSettings& settings,
-                             std::span<const float> doubts, std::size_t count) {
+                             std::span<const float> error_bounds, std::size_t count) {
   if (checks_all(image.size, count)) return {};
   Collector collector(image.size, count);
   const double least = least_suspicious(promised_error(settings));
@@ -136,7 +137,7 @@ reference::Suspects suspects(const scene::Image& image, const scene::SampleSourc
   collector.add(Suspicion::step, scene.step);
   collector.add(Suspicion::border, scene.border);
   collector.add(Suspicion::tie, scene.tie);
-  collector.add(Suspicion::doubt, suspicion_of(doubts, least));
+  collector.add(Suspicion::doubt, suspicion_of(error_bounds, least));
   reference::Suspects found = collector.take();
   // Pictures of rectilinear grids are made that very way.
   if (source.geometry().rectilinear() || !promised_error(settings)) return found;
@@ -155,9 +156,9 @@ reference::Verification verify(const scene::Image& image, const scene::TetMeshVi
 
 reference::Verification verify(const scene::Image& image, const scene::SampleSource& source,
                                const scene::Camera& camera, const scene::TransferFunction& transfer_function,
-                               const volume::RenderSettings& settings, std::span<const float> doubts,
+                               const volume::RenderSettings& settings, std::span<const float> error_bounds,
                                std::size_t count) {
-  const reference::Suspects where = suspects(image, source, camera, transfer_function, settings, doubts, count);
+  const reference::Suspects where = suspects(image, source, camera, transfer_function, settings, error_bounds, count);
   const reference::GridReference reference(source, camera, image.size, transfer_function, settings.emission,
                                            settings.shading);
   return reference::verify(image, reference, promised_error(settings), count, where, settings.threads);

@@ -30,10 +30,10 @@ reference::Suspects suspects(const scene::Image& image, const scene::TetMeshView
                              const scene::TransferFunction& transfer_function, const RenderSettings& settings,
                              std::size_t count);
 
-/// `doubts`: by pixel, of volume::Renderer::render; empty if there are none.
+/// `error_bounds`: by pixel, of volume::Renderer::render; empty if there are none.
 reference::Suspects suspects(const scene::Image& image, const scene::SampleSource& source, const scene::Camera& camera,
                              const scene::TransferFunction& transfer_function, const volume::RenderSettings& settings,
-                             std::span<const float> doubts, std::size_t count);
+                             std::span<const float> error_bounds, std::size_t count);
 
 /// Checks `count` pixels of a finished picture against the reference: a third at random, the rest of its suspects.
 reference::Verification verify(const scene::Image& image, const scene::TetMeshView& mesh, const scene::Camera& camera,
@@ -41,7 +41,7 @@ reference::Verification verify(const scene::Image& image, const scene::TetMeshVi
                                std::size_t count);
 reference::Verification verify(const scene::Image& image, const scene::SampleSource& source,
                                const scene::Camera& camera, const scene::TransferFunction& transfer_function,
-                               const volume::RenderSettings& settings, std::span<const float> doubts,
+                               const volume::RenderSettings& settings, std::span<const float> error_bounds,
                                std::size_t count);
 
 }  // namespace tessera::frame

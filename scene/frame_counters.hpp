@@ -7,5 +7,8 @@ namespace tessera::scene {
 using tessera::frame_counters;
 using tessera::FrameCounter;
 using tessera::FrameCounters;
+using tessera::grid_counters;
+using tessera::GridCounter;
+using tessera::GridCounters;
 
 }  // namespace tessera::scene

@@ -106,7 +106,7 @@ class PacketCast {
         current_(current),
         counts_(counts),
         before_(before),
-        has_steps_(chunk.frame.doubt != nullptr && !chunk.frame.doubt->step.empty()) {
+        has_steps_(chunk.frame.error_bound != nullptr && !chunk.frame.error_bound->step.empty()) {
     const DF d;
     const VF zero = HN::Zero(d);
     progress_ = {zero, HN::Set(d, 1.0f), zero, zero, zero, zero};
@@ -399,8 +399,8 @@ class PacketCast {
       if (!HN::AllFalse(d, apart))
         cast_voxels<false>(frame_, chunk_.axes, lookup_, lanes_, path, window,
                            uniform && has_steps_ ? &current_.uniform() : nullptr, apart, progress_, notes_, counts_);
-      if (HWY_UNLIKELY(frame_.doubt != nullptr && frame_.doubt->ends))
-        note_ends(*frame_.doubt, lookup_, line, path, there, lanes_.length, before, light, progress_, notes_);
+      if (HWY_UNLIKELY(frame_.error_bound != nullptr && frame_.error_bound->ends))
+        note_ends(*frame_.error_bound, lookup_, line, path, there, lanes_.length, before, light, progress_, notes_);
     }
   }
 
@@ -445,7 +445,7 @@ HWY_NOINLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int r
   add(rays.green, progress.green);
   add(rays.blue, progress.blue);
   HN::StoreU(HN::Mul(before, progress.transmittance), d, rays.transmittance + ray);
-  add(rays.doubt, cast.notes_.doubt);
+  add(rays.error_bound, cast.notes_.error_bound);
   const VF rough = HN::Mul(HN::Mul(before, before), cast.notes_.rough);
   HN::StoreU(HN::Add(rough, HN::LoadU(d, rays.rough + ray)), d, rays.rough + ray);
   if (!HN::AllFalse(d, HN::AndNot(seen_before, cast.notes_.seen))) {

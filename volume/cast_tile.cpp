@@ -114,7 +114,7 @@ HWY_INLINE void cast_rays(const FrameView& frame, const RayAxes& axes, std::uint
     for (int p = 0; p < TileRays::packets; ++p) {
       const auto first_k = static_cast<double>(k);
       reach[p].any = false;
-      if (frame.tally != nullptr && (wanted >> p & 1) == 0) continue;  // a look's light does not matter
+      if (frame.tally != nullptr && (wanted >> p & 1) == 0) continue;  // a pilot pass makes no light
       reach[p] = reach_of(frame, rays, p, first_k, first_k + slabs);
       if (!reach[p].any) continue;
       tile.any = true;
@@ -142,8 +142,8 @@ HWY_INLINE void cast_rays(const FrameView& frame, const RayAxes& axes, std::uint
   }
 }
 
-/// The packets of a tile that a look casts: the first `count` of an ordered dither, shifted from tile to tile.
-HWY_INLINE std::uint64_t looked_at(int tile_x, int tile_y, int count) {
+/// The packets of a tile that a pilot pass casts: the first `count` of an ordered dither, shifted from tile to tile.
+HWY_INLINE std::uint64_t pilot_packets_of(int tile_x, int tile_y, int count) {
   std::uint64_t packets = 0;
   for (int p = 0; p < TileRays::packets; ++p) {
     const int x = (p + 3 * tile_x + 5 * tile_y) % 8, y = (p / 8 + 5 * tile_x + 2 * tile_y) % 8;
@@ -154,13 +154,13 @@ HWY_INLINE std::uint64_t looked_at(int tile_x, int tile_y, int count) {
   return packets;
 }
 
-void cast_tile_here(const FrameView& frame, int x0, int y0, const PixelRegion& region, TileMemory& memory,
-                    scene::Image* image, TileCounts& counts, float* doubts) {
+void cast_tile_here(const FrameView& frame, int x0, int y0, const scene::PixelRect& region, TileMemory& memory,
+                    scene::Image* image, TileCounts& counts, float* error_bounds) {
   TileRays& rays = memory.rays;
   for (int r = 0; r < TileRays::count; ++r) {
     rays.alpha[r] = rays.red[r] = rays.green[r] = rays.blue[r] = 0;
     rays.transmittance[r] = 1;
-    rays.doubt[r] = rays.rough[r] = 0;
+    rays.error_bound[r] = rays.rough[r] = 0;
     rays.carried[r] = std::numeric_limits<float>::quiet_NaN();
     rays.first_k[r] = std::numeric_limits<double>::quiet_NaN();
   }
@@ -173,7 +173,7 @@ void cast_tile_here(const FrameView& frame, int x0, int y0, const PixelRegion& r
         y + TileRays::packet_side > region.y0)
       wanted |= std::uint64_t{1} << p;
   }
-  if (frame.tally != nullptr) wanted &= looked_at(x0 / TileRays::side, y0 / TileRays::side, frame.looked_packets);
+  if (frame.tally != nullptr) wanted &= pilot_packets_of(x0 / TileRays::side, y0 / TileRays::side, frame.pilot_packets);
   const unsigned codes = axis_codes(*frame.rays, x0, y0);
   for (int code = 0; code < 6; ++code) {
     if ((codes >> code & 1) == 0) continue;
@@ -183,10 +183,10 @@ void cast_tile_here(const FrameView& frame, int x0, int y0, const PixelRegion& r
       const int x = x0 + TileRays::pixel_x(r), y = y0 + TileRays::pixel_y(r);
       if (x < region.x0 || x >= region.x1 || y < region.y0 || y >= region.y1 || !(rays.k_in[r] < rays.k_out[r]))
         continue;
-      const float doubt = rays.doubt[r] + std::sqrt(rays.rough[r]);
-      if (doubts != nullptr) doubts[image->index(x, y)] = doubt;
-      if (!(doubt <= frame.doubt_tolerance)) {
-        memory.doubtful.push_back({x, y});
+      const float error_bound = rays.error_bound[r] + std::sqrt(rays.rough[r]);
+      if (error_bounds != nullptr) error_bounds[image->index(x, y)] = error_bound;
+      if (!(error_bound <= frame.error_tolerance)) {
+        memory.uncertain.push_back({x, y});
         continue;
       }
       const std::size_t pixel = image->index(x, y);
@@ -206,9 +206,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tessera::volume {
 HWY_EXPORT(cast_tile_here);
-void cast_tile(const FrameView& frame, int x0, int y0, const PixelRegion& region, TileMemory& memory,
-               scene::Image* image, TileCounts& counts, float* doubts) {
-  HWY_DYNAMIC_DISPATCH(cast_tile_here)(frame, x0, y0, region, memory, image, counts, doubts);
+void cast_tile(const FrameView& frame, int x0, int y0, const scene::PixelRect& region, TileMemory& memory,
+               scene::Image* image, TileCounts& counts, float* error_bounds) {
+  HWY_DYNAMIC_DISPATCH(cast_tile_here)(frame, x0, y0, region, memory, image, counts, error_bounds);
 }
 }  // namespace tessera::volume
 #endif  // HWY_ONCE

@@ -32,7 +32,7 @@ struct Outline {
 class Costs {
  public:
   Costs(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,
-        const CostSettings& settings, const PixelRegion& region)
+        const CostSettings& settings, const scene::PixelRect& region)
       : geometry_(geometry),
         settings_(settings),
         region_(region),
@@ -273,7 +273,7 @@ class Costs {
 
   const scene::GridGeometry& geometry_;
   const CostSettings& settings_;
-  PixelRegion region_;
+  scene::PixelRect region_;
   PixelView space_;
   PixelRays rays_;
   bool perspective_;
@@ -307,7 +307,7 @@ scene::ImageSize map_size(scene::ImageSize image, double resolution) {
           std::max(1, static_cast<int>(std::ceil(image.height * resolution)))};
 }
 
-PixelRegion footprint(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry) {
+scene::PixelRect footprint(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry) {
   const PixelView space(camera, image);
   const scene::GridIndex voxels = geometry.voxels();
   glm::dvec2 low(1e300), high(-1e300);
@@ -327,11 +327,11 @@ PixelRegion footprint(const scene::Camera& camera, scene::ImageSize image, const
 }
 
 CostMap cost_map(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,
-                 const VisibleCells& cells, const CostSettings& settings, std::optional<PixelRegion> region) {
+                 const VisibleCells& cells, const CostSettings& settings, std::optional<scene::PixelRect> region) {
   CostMap map;
   map.resolution = settings.resolution;
   map.size = map_size(image, settings.resolution);
-  map.region = region.value_or(PixelRegion{0, 0, map.size.width, map.size.height});
+  map.region = region.value_or(scene::PixelRect{0, 0, map.size.width, map.size.height});
   map.cost.assign(
       static_cast<std::size_t>(std::max(0, map.width())) * static_cast<std::size_t>(std::max(0, map.height())), 0);
   if (map.cost.empty()) return map;

@@ -36,7 +36,7 @@ struct CostSettings {
   double resolution = 0.5;  ///< map pixels an image pixel along each axis, in (0, 1]; 0.5 is the thesis's "quarter"
   /// What a stretch of ray costs: the voxels it crosses (exact integrals), or else its length (samples at steps).
   bool by_voxels = true;
-  /// accurate, not null: samples a slab as a look has taught, and rays end where they let nothing through.
+  /// accurate, not null: samples a slab as a pilot pass has taught, and rays end where they let nothing through.
   const WorkRates* learned = nullptr;
   double length_unit = 1;   ///< world units, of the optical depths learned
   double most_depth = 1e9;  ///< optical depth at which rays end
@@ -49,7 +49,7 @@ std::vector<CostBox> visible_boxes(const VisibleCells& cells, const scene::GridI
 scene::ImageSize map_size(scene::ImageSize image, double resolution);
 
 /// The image pixels that the volume may cover; all of them if it reaches behind the eye.
-PixelRegion footprint(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry);
+scene::PixelRect footprint(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry);
 
 /// The cost of the map pixels of `region` (default: all), in 1/64 voxels (or mean voxel sides).
 ///
@@ -63,6 +63,6 @@ PixelRegion footprint(const scene::Camera& camera, scene::ImageSize image, const
 /// Throws Error(bad_input) for a resolution out of range. Uses the calling thread's arena.
 CostMap cost_map(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,
                  const VisibleCells& cells, const CostSettings& settings,
-                 std::optional<PixelRegion> region = std::nullopt);
+                 std::optional<scene::PixelRect> region = std::nullopt);
 
 }  // namespace tessera::volume

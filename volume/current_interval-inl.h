@@ -65,16 +65,16 @@ class CurrentInterval {
     high_ = table_.column(LaneTable::edge)[n + 1];
     guarded_low_ = held_low_ = low_, guarded_high_ = held_high_ = high_;
     uniform_.ramp = uniform_.ramp_steady = uniform_.ramp_color = 0;
-    if (frame_.doubt != nullptr) {
-      const LaneDoubt& doubt = *frame_.doubt;
-      if (!doubt.step.empty() && doubt.step[n] > 0) guarded_low_ += doubt.noise;
-      if (!doubt.step.empty() && doubt.step[n + 1] > 0) guarded_high_ -= doubt.noise;
+    if (frame_.error_bound != nullptr) {
+      const LaneErrorBound& bound = *frame_.error_bound;
+      if (!bound.step.empty() && bound.step[n] > 0) guarded_low_ += bound.noise;
+      if (!bound.step.empty() && bound.step[n + 1] > 0) guarded_high_ -= bound.noise;
       // Samples that lanes hold exactly are on their side of a step, and so is the field where they all are.
-      if (doubt.sharp[n] == 0) held_low_ = guarded_low_;
-      if (doubt.sharp[n + 1] == 0) held_high_ = guarded_high_;
-      if (!doubt.ramp.empty() && doubt.ramp[n] > 0)
-        uniform_.ramp = doubt.ramp[n], uniform_.ramp_steady = doubt.steady * doubt.ramp[n],
-        uniform_.ramp_color = doubt.ramp_color[n];
+      if (bound.sharp[n] == 0) held_low_ = guarded_low_;
+      if (bound.sharp[n + 1] == 0) held_high_ = guarded_high_;
+      if (!bound.ramp.empty() && bound.ramp[n] > 0)
+        uniform_.ramp = bound.ramp[n], uniform_.ramp_steady = bound.steady * bound.ramp[n],
+        uniform_.ramp_color = bound.ramp_color[n];
     }
     clear_ = true;
     for (int c = 0; c < LaneTable::column_count; ++c) {

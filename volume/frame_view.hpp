@@ -10,7 +10,7 @@
 #include "scene/grid.hpp"
 #include "volume/brick_cache.hpp"
 #include "volume/cell_ranges.hpp"
-#include "volume/lane_doubt.hpp"
+#include "volume/lane_error_bound.hpp"
 #include "volume/learned_work.hpp"
 #include "volume/preintegrated_table.hpp"
 #include "volume/render.hpp"
@@ -57,13 +57,13 @@ struct FrameView {
   float least_transmittance;  ///< a ray that lets less through is done
   float piece_tolerance;      ///< largest error of one piece of a ray, linear RGBA
   float largest_color;
-  const LaneDoubt* doubt = nullptr;                   ///< null: none that matters
-  float doubt_tolerance = 0;                          ///< a ray that may err more is cast again
+  const LaneErrorBound* error_bound = nullptr;        ///< null: none that matters
+  float error_tolerance = 0;                          ///< a ray that may err more is cast again
   double step = 0;                                    ///< sampled, preintegrated: length in the table's unit; else 0
   const PreintegratedTable* preintegrated = nullptr;  ///< null: sampled
   const ShadingView* shading = nullptr;               ///< null: none
-  WorkTally* tally = nullptr;                         ///< not null: a look that counts where work would be
-  int looked_packets = 0;                             ///< of each tile
+  WorkTally* tally = nullptr;                         ///< not null: a pilot pass, which counts where work would be
+  int pilot_packets = 0;                              ///< of each tile
   scene::Trace* trace;
 };
 

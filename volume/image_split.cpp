@@ -59,7 +59,7 @@ int ImageSplit::processes() const {
   return count;
 }
 
-PixelRegion ImageSplit::region(int process) const {
+scene::PixelRect ImageSplit::region(int process) const {
   std::size_t row = 0;
   for (; process >= static_cast<int>(columns[row].size()) - 1; ++row)
     process -= static_cast<int>(columns[row].size()) - 1;
@@ -75,7 +75,7 @@ std::vector<int> columns_of_rows(int processes, scene::ImageSize size) {
   return columns;
 }
 
-ImageSplit even_split(int processes, scene::ImageSize size, const PixelRegion& area) {
+ImageSplit even_split(int processes, scene::ImageSize size, const scene::PixelRect& area) {
   const std::vector<int> per_row = columns_of_rows(processes, size);
   const auto edge = [](int low, int high, int part, int parts) {
     return low + static_cast<int>(static_cast<std::int64_t>(high - low) * part / parts);

@@ -14,7 +14,7 @@ namespace tessera::volume {
 struct CostMap {
   double resolution = 1;            ///< map pixels an image pixel, along each axis
   scene::ImageSize size{0, 0};      ///< of the whole map
-  PixelRegion region;               ///< the part of it that is here, map pixels
+  scene::PixelRect region{};        ///< the part of it that is here, map pixels
   std::vector<std::uint32_t> cost;  ///< row by row in the region
 
   [[nodiscard]] int width() const { return region.x1 - region.x0; }
@@ -43,7 +43,7 @@ struct ImageSplit {
   std::vector<std::vector<int>> columns;  ///< of each row: edges from 0 to the width
 
   [[nodiscard]] int processes() const;
-  [[nodiscard]] PixelRegion region(int process) const;
+  [[nodiscard]] scene::PixelRect region(int process) const;
 };
 
 /// How many columns each row has, for `processes` rectangles that are not far from square.
@@ -51,7 +51,7 @@ std::vector<int> columns_of_rows(int processes, scene::ImageSize size);
 
 /// `area` in equal rectangles, as rows of columns: where nothing is known of the cost. Rectangles at the rim of `area`
 /// reach to the picture's.
-ImageSplit even_split(int processes, scene::ImageSize size, const PixelRegion& area);
+ImageSplit even_split(int processes, scene::ImageSize size, const scene::PixelRect& area);
 
 /// What a process says of its part of the map: the two stages of the parallel search (Moloney 2008, Figure 4.3), in
 /// which only sums along edges travel.
@@ -59,11 +59,11 @@ ImageSplit even_split(int processes, scene::ImageSize size, const PixelRegion& a
 ///   second   for each map row in which a row of rectangles begins: the cost above it of each of its columns
 /// All processes gather both and find the same edges. A split by one process is the same with one part.
 struct RowSums {
-  PixelRegion region;               ///< of the map
+  scene::PixelRect region{};        ///< of the map
   std::vector<std::uint64_t> rows;  ///< of the region
 };
 struct ColumnSums {
-  PixelRegion region;
+  scene::PixelRect region{};
   std::vector<std::vector<std::uint64_t>> columns;  ///< of the region's columns, for each of the map rows asked for
 };
 

@@ -59,9 +59,9 @@ void WorkRates::learn(std::span<const std::uint64_t> tally) {
     for (std::size_t cell = 0; cell < rates.size(); ++cell) {
       const Rates& prior = l + 1 < levels.size() ? above[over(level, levels[l + 1], cell)] : above[0];
       const Sums& sums = level.sums[cell];
-      constexpr double doubt = 16;  // slabs: what two rays find in a small cell
-      rates[cell].samples = (sums.samples + doubt * prior.samples) / (sums.slabs + doubt);
-      rates[cell].depth = (sums.depth + doubt * prior.depth) / (sums.slabs + doubt);
+      constexpr double prior_slabs = 16;  // what two rays find in a small cell
+      rates[cell].samples = (sums.samples + prior_slabs * prior.samples) / (sums.slabs + prior_slabs);
+      rates[cell].depth = (sums.depth + prior_slabs * prior.depth) / (sums.slabs + prior_slabs);
     }
     above = std::move(rates);
   }

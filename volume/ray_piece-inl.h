@@ -15,7 +15,7 @@
 //           and its products with the odd and even part leave |c'| (k l)^2 (|p_3| / 120 + k l |b| / 90).
 //           Where that exceeds the tolerance the stretch is halved: the bound falls to an eighth at least.
 // Knots     A stretch that leaves its interval is cut where the cubic crosses the knot: between extrema it is monotone,
-//           Newton's method, kept in its bracket, finds the place, near a touch only to 3e-4 (lane_doubt.hpp).
+//           Newton's method, kept in its bracket, finds the place, near a touch only to 3e-4 (lane_error_bound.hpp).
 
 #if defined(TESSERA_VOLUME_RAY_PIECE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_RAY_PIECE_INL_H_
@@ -47,10 +47,10 @@ struct Piece {
 
 /// What is noted of each ray on its way.
 struct RayNotes {
-  VF first;  ///< where light begins, in slabs from the chunk's first
-  MF seen;   ///< whether it has
-  VF doubt;  ///< errors that may be (lane_doubt.hpp), as seen from the chunk's front
-  VF rough;  ///< squares of those that roundings make, each its own
+  VF first;        ///< where light begins, in slabs from the chunk's first
+  MF seen;         ///< whether it has
+  VF error_bound;  ///< errors that may be (lane_error_bound.hpp), as seen from the chunk's front
+  VF rough;        ///< squares of those that roundings make, each its own
 };
 
 HWY_INLINE void note_first_light(const Progress& progress, VF place, RayNotes& notes) {
@@ -66,7 +66,7 @@ struct UniformLookup {
   float row[LaneTable::column_count];
   bool independent, has_clear = false;
   float product_bound, shadow_bound;    ///< 0.1 |k' c'| and 0.03 |k'|^2 c
-  float ramp, ramp_steady, ramp_color;  ///< LaneDoubt's
+  float ramp, ramp_steady, ramp_color;  ///< LaneErrorBound's
   float dimming_bound, extinction;      ///< |c'| k^2 (independent emission: |c'| k) and k, at most in the interval
   HWY_INLINE VF at(int column, Index) const { return HN::Set(DF(), row[column]); }
 };
@@ -171,23 +171,23 @@ HWY_INLINE VF extinction_at(const Lookup& table, typename Lookup::Index index, V
   return HN::Add(half, half);
 }
 
-/// A row of LaneDoubt at intervals or edges of the lanes that are wanted; zero elsewhere.
-HWY_INLINE VF doubt_row(const std::vector<float>& row, VI at, MF wanted) {
+/// A row of LaneErrorBound at intervals or edges of the lanes that are wanted; zero elsewhere.
+HWY_INLINE VF bound_row(const std::vector<float>& row, VI at, MF wanted) {
   const DF d;
   return HN::IfThenElseZero(wanted,
                             HN::GatherIndex(d, row.data(), HN::IfThenElseZero(HN::RebindMask(DI(), wanted), at)));
 }
 
 /// Notes what a stretch errs by the ramps of its intervals. Of an opaque one the colour's error is seen at its front.
-HWY_INLINE void note_ramps(VI interval, MF wanted, VF length, const LaneDoubt& doubt, VF before, VF behind,
+HWY_INLINE void note_ramps(VI interval, MF wanted, VF length, const LaneErrorBound& bound, VF before, VF behind,
                            RayNotes& notes) {
-  if (doubt.ramp.empty()) return;
+  if (bound.ramp.empty()) return;
   const DF d;
   const VF through = HN::Mul(length, behind);
-  const VF color = HN::Mul(HN::Sub(before, behind), doubt_row(doubt.ramp_color, interval, wanted));
-  const VF ramp = HN::Mul(through, doubt_row(doubt.ramp, interval, wanted)), error = HN::Max(ramp, color);
+  const VF color = HN::Mul(HN::Sub(before, behind), bound_row(bound.ramp_color, interval, wanted));
+  const VF ramp = HN::Mul(through, bound_row(bound.ramp, interval, wanted)), error = HN::Max(ramp, color);
   notes.rough = HN::MulAdd(error, error, notes.rough);
-  notes.doubt = HN::MulAdd(ramp, HN::Set(d, doubt.steady), notes.doubt);
+  notes.error_bound = HN::MulAdd(ramp, HN::Set(d, bound.steady), notes.error_bound);
 }
 HWY_INLINE void note_ramps(const UniformLookup& table, VF length, VF before, VF behind, RayNotes& notes) {
   const DF d;
@@ -195,7 +195,7 @@ HWY_INLINE void note_ramps(const UniformLookup& table, VF length, VF before, VF 
   const VF color = HN::Mul(HN::Sub(before, behind), HN::Set(d, table.ramp_color));
   const VF error = HN::Max(HN::Mul(through, HN::Set(d, table.ramp)), color);
   notes.rough = HN::MulAdd(error, error, notes.rough);
-  notes.doubt = HN::MulAdd(through, HN::Set(d, table.ramp_steady), notes.doubt);
+  notes.error_bound = HN::MulAdd(through, HN::Set(d, table.ramp_steady), notes.error_bound);
 }
 
 /// Where lanes cannot tell on which side of a step the cubic is: for how long, and the steps' edges.
@@ -205,13 +205,13 @@ struct Touch {
   VF length;
 };
 
-/// Near v: at `s`, the stretch's beginning, an end of an interval, a turn, or a crossing. Field and place are in doubt
+/// Near v: at `s`, the stretch's beginning, an end of an interval, a turn, or a crossing. Field and place are uncertain
 /// by noise / |slope|, or where the cubic is level by the root of 2 noise / |its second derivative|. False if nowhere.
 template <class Lookup>
 HWY_INLINE bool touches(const Lookup& table, typename Lookup::Index index, VI interval, MF active,
-                        const LaneDoubt& doubt, const Cubic& c, VF v, VF s, VF length, Touch& touch) {
+                        const LaneErrorBound& bound, const Cubic& c, VF v, VF s, VF length, Touch& touch) {
   const DF d;
-  const VF noise = HN::Set(d, doubt.noise);
+  const VF noise = HN::Set(d, bound.noise);
   const VI below = HN::Zero(DI()), above = HN::Set(DI(), 1);
   const VF from_low = HN::Abs(HN::Sub(s, table.edge(interval, index, below))),
            from_high = HN::Abs(HN::Sub(table.edge(interval, index, above), s));
@@ -228,7 +228,7 @@ HWY_INLINE bool touches(const Lookup& table, typename Lookup::Index index, VI in
 }
 
 /// What a stretch may err, as seen from where its light is measured.
-struct StretchDoubt {
+struct StretchErrors {
   VF steps, ramps;
   VF left;  ///< by pieces that were not made small enough
 };
@@ -248,13 +248,13 @@ struct Excess {
     square = HN::MulAdd(w, HN::MulAdd(a[0], a[0], HN::MulAdd(a[1], a[1], HN::Mul(a[2], a[2]))), square);
   }
   /// Of the whole stretch, by the depths alone.
-  HWY_INLINE VF error(const Progress& e, const LaneDoubt& doubt) const {
+  HWY_INLINE VF error(const Progress& e, const LaneErrorBound& bound) const {
     const DF d;
     const VF across = HN::MulAdd(red, e.red, HN::MulAdd(green, e.green, HN::Mul(blue, e.blue)));
     const VF light = HN::MulAdd(e.red, e.red, HN::MulAdd(e.green, e.green, HN::Mul(e.blue, e.blue)));
     const VF squares = HN::MulAdd(depth, light, HN::NegMulAdd(HN::Set(d, 2.0f), across, square));
     const VF inside = HN::Sqrt(HN::Mul(depth, HN::Max(HN::Zero(d), squares)));
-    const VF behind = HN::Mul(HN::Mul(depth, e.transmittance), HN::Set(d, doubt.brightest));
+    const VF behind = HN::Mul(HN::Mul(depth, e.transmittance), HN::Set(d, bound.brightest));
     return HN::Add(inside, behind);
   }
 };
@@ -270,41 +270,41 @@ HWY_INLINE void colors_at(const Lookup& table, typename Lookup::Index index, VF 
 
 /// Adds what a step may err that the cubic is at v on, or nearly.
 template <bool closely, class Lookup>
-HWY_NOINLINE void add_step_doubt(const Lookup& table, typename Lookup::Index index, VI interval, MF active,
-                                 const LaneDoubt& doubt, const Cubic& c, VF v, VF s, VF stretch_length,
-                                 const Progress& progress, StretchDoubt& sum, Excess& excess) {
+HWY_NOINLINE void add_step_error(const Lookup& table, typename Lookup::Index index, VI interval, MF active,
+                                 const LaneErrorBound& bound, const Cubic& c, VF v, VF s, VF stretch_length,
+                                 const Progress& progress, StretchErrors& sum, Excess& excess) {
   const DF d;
   const VF most_depth = HN::Set(d, 1e3f), behind = progress.transmittance;
   Touch touch;
-  if (!touches(table, index, interval, active, doubt, c, v, s, stretch_length, touch)) return;
-  const auto row = [&](const std::vector<float>& of) HWY_ATTR { return doubt_row(of, touch.edge, touch.near); };
-  const VF weight = row(doubt.step);
+  if (!touches(table, index, interval, active, bound, c, v, s, stretch_length, touch)) return;
+  const auto row = [&](const std::vector<float>& of) HWY_ATTR { return bound_row(of, touch.edge, touch.near); };
+  const VF weight = row(bound.step);
   if (!closely) {
-    const VF error = HN::Min(HN::Mul(touch.length, weight), HN::Set(d, doubt.most));
+    const VF error = HN::Min(HN::Mul(touch.length, weight), HN::Set(d, bound.most));
     sum.steps = HN::MulAdd(error, behind, sum.steps);
   } else {
     const VF length_there = HN::IfThenElseZero(HN::Gt(weight, HN::Zero(d)), touch.length);
-    const VF w = HN::Min(HN::Mul(length_there, row(doubt.step_extinction)), most_depth);
-    const VF color[3] = {row(doubt.step_red), row(doubt.step_green), row(doubt.step_blue)};
+    const VF w = HN::Min(HN::Mul(length_there, row(bound.step_extinction)), most_depth);
+    const VF color[3] = {row(bound.step_red), row(bound.step_green), row(bound.step_blue)};
     excess.add(w, behind, color, progress);
-    excess.beside_steps = HN::MulAdd(HN::Mul(length_there, row(doubt.step_light)), behind, excess.beside_steps);
+    excess.beside_steps = HN::MulAdd(HN::Mul(length_there, row(bound.step_light)), behind, excess.beside_steps);
   }
 }
 
 /// Adds what a piece of a ramp errs, closely: of `length`, to which `before` got through.
 template <class Lookup>
 HWY_NOINLINE void add_ramp_excess(const Lookup& table, typename Lookup::Index index, VI interval, MF steep,
-                                  const LaneDoubt& doubt, VF s_end, VF length, VF before, const Progress& progress,
+                                  const LaneErrorBound& bound, VF s_end, VF length, VF before, const Progress& progress,
                                   Excess& excess) {
   const DF d;
   const VF most_depth = HN::Set(d, 1e3f), behind = progress.transmittance;
-  const VF w = HN::Min(HN::Mul(length, doubt_row(doubt.ramp_extinction, interval, steep)), most_depth);
+  const VF w = HN::Min(HN::Mul(length, bound_row(bound.ramp_extinction, interval, steep)), most_depth);
   VF color[3];
   colors_at(table, index, s_end, color);
   excess.add(w, behind, color, progress);
   excess.ramps = HN::Add(excess.ramps, w);
   const VF seen = table.independent ? HN::Mul(length, before) : HN::Sub(before, behind);
-  excess.beside_ramps = HN::MulAdd(seen, doubt_row(doubt.ramp_color, interval, steep), excess.beside_ramps);
+  excess.beside_ramps = HN::MulAdd(seen, bound_row(bound.ramp_color, interval, steep), excess.beside_ramps);
 }
 
 /// A stretch is halved no more often; 4096 of an optical depth of 1e4 are still thin.
@@ -313,14 +313,14 @@ constexpr int most_halvings = 12;
 /// Stretches that cross knots, are rough, or whose lanes are in different intervals, and what they may err: a bound, or
 /// `closely`, where `progress` is that of the stretch alone. NaN samples are blank.
 template <bool closely, class Lookup>
-HWY_NOINLINE StretchDoubt walk_cubic(const Lookup& table, const FrameView& frame, const Piece& piece,
-                                     Progress& progress, RayNotes& notes, std::uint64_t& pieces) {
+HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& frame, const Piece& piece,
+                                      Progress& progress, RayNotes& notes, std::uint64_t& pieces) {
   const DF d;
   const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f), half = HN::Set(d, 0.5f);
   MF active = HN::And(HN::Gt(piece.length, zero), HN::Eq(piece.s_mid, piece.s_mid));
-  StretchDoubt doubt{zero, zero, zero};
+  StretchErrors errors{zero, zero, zero};
   Excess excess{zero, zero, zero, zero, zero, zero, zero, zero};
-  if (HN::AllFalse(d, active)) return doubt;
+  if (HN::AllFalse(d, active)) return errors;
   const VF s_0 = HN::IfThenElseZero(active, piece.s_0), s_mid = HN::IfThenElseZero(active, piece.s_mid),
            s_1 = HN::IfThenElseZero(active, piece.s_1), p_3 = HN::IfThenElseZero(active, piece.p_3);
   Cubic c;
@@ -338,8 +338,9 @@ HWY_NOINLINE StretchDoubt walk_cubic(const Lookup& table, const FrameView& frame
     find_extrema(c, turn_1, turn_2);
 
   const VF per_tolerance = HN::Set(d, 1 / frame.piece_tolerance);
-  const bool has_steps = frame.doubt != nullptr && !frame.doubt->step.empty();
-  const float* const ramps = frame.doubt != nullptr && !frame.doubt->ramp.empty() ? frame.doubt->ramp.data() : nullptr;
+  const bool has_steps = frame.error_bound != nullptr && !frame.error_bound->step.empty();
+  const float* const ramps =
+      frame.error_bound != nullptr && !frame.error_bound->ramp.empty() ? frame.error_bound->ramp.data() : nullptr;
   VF v = zero, s = s_0;
   // Each round ends at a knot, an extremum, a halving or the stretch's end; knots are few but for wild functions.
   for (int round = 0; round < 4096; ++round) {
@@ -385,7 +386,7 @@ HWY_NOINLINE StretchDoubt walk_cubic(const Lookup& table, const FrameView& frame
         // What is left is noted as it is seen.
         const VF error =
             HN::Mul(roughness(length, m, cubed, HN::Sub(s_end, s), bounds), HN::Set(d, frame.piece_tolerance));
-        doubt.left = HN::MulAdd(HN::IfThenElseZero(rough, HN::Min(error, one)), progress.transmittance, doubt.left);
+        errors.left = HN::MulAdd(HN::IfThenElseZero(rough, HN::Min(error, one)), progress.transmittance, errors.left);
         break;
       }
       end = HN::IfThenElse(rough, HN::MulAdd(half, extent, v), end);
@@ -393,21 +394,21 @@ HWY_NOINLINE StretchDoubt walk_cubic(const Lookup& table, const FrameView& frame
     }
     pieces += HN::CountTrue(d, active);
     if (HWY_UNLIKELY(round == 0 && has_steps))
-      add_step_doubt<closely>(table, index, interval, active, *frame.doubt, c, v, s, piece.length, progress, doubt,
-                              excess);
+      add_step_error<closely>(table, index, interval, active, *frame.error_bound, c, v, s, piece.length, progress,
+                              errors, excess);
     const VF before = progress.transmittance;
     CL::lanes::add_piece<false>(table, index, HN::Add(s, m), HN::Add(s_end, m), HN::Sub(s_end, s), length, progress);
     note_first_light(progress, HN::MulAdd(v, piece.extent, piece.begin), notes);
     if (HWY_UNLIKELY(has_steps))
-      add_step_doubt<closely>(table, index, interval, active, *frame.doubt, c, end, s_end, piece.length, progress,
-                              doubt, excess);
+      add_step_error<closely>(table, index, interval, active, *frame.error_bound, c, end, s_end, piece.length, progress,
+                              errors, excess);
     if (ramps != nullptr) {
       // Lanes that are done have an interval and no length.
       const VF ramp = HN::GatherIndex(d, ramps, interval);
       if (!closely)
-        doubt.ramps = HN::MulAdd(HN::Mul(length, before), ramp, doubt.ramps);
+        errors.ramps = HN::MulAdd(HN::Mul(length, before), ramp, errors.ramps);
       else if (const MF steep = HN::And(active, HN::Gt(ramp, zero)); !HN::AllFalse(d, steep))
-        add_ramp_excess(table, index, interval, steep, *frame.doubt, s_end, length, before, progress, excess);
+        add_ramp_excess(table, index, interval, steep, *frame.error_bound, s_end, length, before, progress, excess);
     }
     v = HN::IfThenElse(active, end, v);
     s = HN::IfThenElse(active, s_end, s);
@@ -415,16 +416,16 @@ HWY_NOINLINE StretchDoubt walk_cubic(const Lookup& table, const FrameView& frame
     if (HN::AllFalse(d, active)) break;
   }
   // Rounds that do not do.
-  doubt.left = HN::Add(doubt.left, HN::IfThenElseZero(active, progress.transmittance));
+  errors.left = HN::Add(errors.left, HN::IfThenElseZero(active, progress.transmittance));
   if (closely) {
     // Depths that differ are told apart by how much; light beside them is each one's own.
-    const VF error = excess.error(progress, *frame.doubt), most_error = HN::Set(d, frame.doubt->most);
+    const VF error = excess.error(progress, *frame.error_bound), most_error = HN::Set(d, frame.error_bound->most);
     const VF share = HN::Div(excess.ramps, HN::Max(excess.depth, HN::Set(d, 1e-30f)));
     const VF of_ramps = HN::Mul(error, share);
-    doubt.ramps = HN::Min(most_error, HN::Add(of_ramps, excess.beside_ramps));
-    doubt.steps = HN::Min(most_error, HN::Add(HN::Sub(error, of_ramps), excess.beside_steps));
+    errors.ramps = HN::Min(most_error, HN::Add(of_ramps, excess.beside_ramps));
+    errors.steps = HN::Min(most_error, HN::Add(HN::Sub(error, of_ramps), excess.beside_steps));
   }
-  return doubt;
+  return errors;
 }
 
 /// Adds stretches that cross knots, are rough, or whose lanes are in different intervals, and notes what they may err.
@@ -433,22 +434,22 @@ HWY_INLINE void add_any(const Lookup& table, const FrameView& frame, const Piece
                         RayNotes& notes, std::uint64_t& pieces) {
   const DF d;
   const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f), before = progress.transmittance;
-  StretchDoubt doubt = walk_cubic<false>(table, frame, piece, progress, notes, pieces);
-  if (HWY_LIKELY(frame.doubt == nullptr)) return;
-  const MF matters = HN::Gt(HN::Add(doubt.steps, doubt.ramps), HN::Set(d, frame.doubt->matters));
+  StretchErrors errors = walk_cubic<false>(table, frame, piece, progress, notes, pieces);
+  if (HWY_LIKELY(frame.error_bound == nullptr)) return;
+  const MF matters = HN::Gt(HN::Add(errors.steps, errors.ramps), HN::Set(d, frame.error_bound->matters));
   if (HWY_UNLIKELY(!HN::AllFalse(d, matters))) {
     Progress alone{zero, one, zero, zero, zero, zero};
     RayNotes none{zero, HN::Eq(zero, zero), zero, zero};
     std::uint64_t again = 0;
-    const StretchDoubt close = walk_cubic<true>(table, frame, piece, alone, none, again);
+    const StretchErrors close = walk_cubic<true>(table, frame, piece, alone, none, again);
     const auto less = [&](VF far, VF near) HWY_ATTR { return HN::Min(far, HN::Mul(before, near)); };
-    const VF ramps = less(doubt.ramps, close.ramps);
-    doubt.steps = HN::Min(HN::Add(doubt.steps, HN::Sub(doubt.ramps, ramps)), HN::Mul(before, close.steps));
-    doubt.ramps = ramps;
+    const VF ramps = less(errors.ramps, close.ramps);
+    errors.steps = HN::Min(HN::Add(errors.steps, HN::Sub(errors.ramps, ramps)), HN::Mul(before, close.steps));
+    errors.ramps = ramps;
   }
-  const VF steady = HN::Set(d, frame.doubt->steady);
-  notes.doubt = HN::Add(notes.doubt, HN::Add(doubt.left, HN::MulAdd(doubt.ramps, steady, doubt.steps)));
-  notes.rough = HN::MulAdd(doubt.ramps, doubt.ramps, notes.rough);
+  const VF steady = HN::Set(d, frame.error_bound->steady);
+  notes.error_bound = HN::Add(notes.error_bound, HN::Add(errors.left, HN::MulAdd(errors.ramps, steady, errors.steps)));
+  notes.rough = HN::MulAdd(errors.ramps, errors.ramps, notes.rough);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -93,7 +93,7 @@ ShadingView shading_view(const scene::Shading& s, const scene::Camera& camera, c
 
 /// Distance of every brick's centre to the cone round the view frustum (Moloney 2008, 3.3), world units, 0 inside. In
 /// orthographic views the cone is a cylinder.
-std::vector<float> cone_distances(const scene::Camera& camera, scene::ImageSize size, const PixelRegion& region,
+std::vector<float> cone_distances(const scene::Camera& camera, scene::ImageSize size, const scene::PixelRect& region,
                                   const scene::GridGeometry& geometry, const BrickLayout& layout) {
   const scene::ViewBasis basis = scene::view_basis(camera);
   const bool perspective = camera.projection == scene::ProjectionKind::perspective;
@@ -124,7 +124,7 @@ std::vector<float> cone_distances(const scene::Camera& camera, scene::ImageSize 
 }
 
 /// Tiles along a curve that stays in one place for long, so that neighbours find each other's bricks.
-std::vector<std::pair<int, int>> tiles_of(const PixelRegion& region) {
+std::vector<std::pair<int, int>> tiles_of(const scene::PixelRect& region) {
   std::vector<std::pair<int, int>> tiles;
   const int side = TileRays::side;
   for (int y = region.y0 / side * side; y < region.y1; y += side)
@@ -143,12 +143,12 @@ std::vector<std::pair<int, int>> tiles_of(const PixelRegion& region) {
 }
 
 /// The pixels of a tile that are in the region.
-scene::PixelRect tile_rect(const std::pair<int, int>& tile, const PixelRegion& region) {
+scene::PixelRect tile_rect(const std::pair<int, int>& tile, const scene::PixelRect& region) {
   return {std::max(tile.first, region.x0), std::max(tile.second, region.y0),
           std::min(tile.first + TileRays::side, region.x1), std::min(tile.second + TileRays::side, region.y1)};
 }
 
-PixelRegion within(scene::ImageSize size, const std::optional<PixelRegion>& region) {
+scene::PixelRect within(scene::ImageSize size, const std::optional<scene::PixelRect>& region) {
   if (!region) return {0, 0, size.width, size.height};
   return {std::max(0, region->x0), std::max(0, region->y0), std::min(size.width, region->x1),
           std::min(size.height, region->y1)};
@@ -164,11 +164,11 @@ struct Cast {
 
 /// Pixels of a map, each with its ray's planes of the lattice.
 CostMap cost_of_planes(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,
-                       double resolution, const std::optional<PixelRegion>& region) {
+                       double resolution, const std::optional<scene::PixelRect>& region) {
   CostMap map;
   map.resolution = resolution;
   map.size = map_size(image, resolution);
-  map.region = region.value_or(PixelRegion{0, 0, map.size.width, map.size.height});
+  map.region = region.value_or(scene::PixelRect{0, 0, map.size.width, map.size.height});
   const VoxelRays rays(camera, image, geometry);
   for (int y = map.region.y0; y < map.region.y1; ++y)
     for (int x = map.region.x0; x < map.region.x1; ++x)
@@ -218,10 +218,11 @@ struct Renderer::State {
   [[nodiscard]] double accuracy() const { return settings.method == Method::exact ? 2e-6 : settings.accuracy; }
 
   void cast(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
-            const PixelRegion& wanted, WorkTally* tally, scene::Image* image, float* doubts, scene::FrameWatch& watch,
-            Cast& result);
-  void cast_rectilinear(const scene::Camera& camera, const scene::TransferFunction& function, const PixelRegion& wanted,
-                        scene::Image& image, scene::FrameWatch& watch, Cast& result) const;
+            const scene::PixelRect& wanted, WorkTally* tally, scene::Image* image, float* error_bounds,
+            scene::FrameWatch& watch, Cast& result);
+  void cast_rectilinear(const scene::Camera& camera, const scene::TransferFunction& function,
+                        const scene::PixelRect& wanted, scene::Image& image, scene::FrameWatch& watch,
+                        Cast& result) const;
   void cast_again(const scene::Camera& camera, const scene::TransferFunction& function,
                   const std::vector<std::uint8_t>& visible, const std::vector<std::array<int, 2>>& pixels,
                   scene::Image& image, const std::stop_token& stop, Cast& result) const;
@@ -294,8 +295,8 @@ std::vector<std::array<glm::dvec3, 2>> Renderer::visible_bricks(
 
 /// The rays of the pixels `wanted`: an image, or a tally.
 void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
-                           const scene::TransferFunction& transfer_function, const PixelRegion& wanted,
-                           WorkTally* tally, scene::Image* image, float* doubts, scene::FrameWatch& watch,
+                           const scene::TransferFunction& transfer_function, const scene::PixelRect& wanted,
+                           WorkTally* tally, scene::Image* image, float* error_bounds, scene::FrameWatch& watch,
                            Cast& result) {
   const PixelRays rays(camera, size, source.geometry());
   const integrals::LaneTable table = table_of(transfer_function);
@@ -327,20 +328,21 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
     frame.least_transmittance = least_transmittance(transfer_function);
     frame.piece_tolerance = static_cast<float>(accuracy() / 64);
     frame.largest_color = static_cast<float>(std::max(1e-30, transfer_function.max_color()));
-    LaneDoubt doubt;
+    LaneErrorBound error_bound;
     if (settings.method != Method::sampled && settings.method != Method::preintegrated && tally == nullptr) {
-      frame.doubt_tolerance = static_cast<float>(std::max(accuracy(), 1e-5) / 2);
-      doubt = LaneDoubt(transfer_function, table, ranges,
-                        {frame.cell_data, frame.largest_color, brightest(transfer_function), frame.doubt_tolerance,
-                         longest_in_voxel(source.geometry()) / length_unit, length_unit});
-      if (doubt.any()) frame.doubt = &doubt;
+      frame.error_tolerance = static_cast<float>(std::max(accuracy(), 1e-5) / 2);
+      error_bound =
+          LaneErrorBound(transfer_function, table, ranges,
+                         {frame.cell_data, frame.largest_color, brightest(transfer_function), frame.error_tolerance,
+                          longest_in_voxel(source.geometry()) / length_unit, length_unit});
+      if (error_bound.any()) frame.error_bound = &error_bound;
     }
     frame.lanes = ranges.lanes;
     frame.lanes.whole = in_steps() || !table.has_steps;
     frame.tally = tally;
     // A thousand packets or more, whatever the picture's size.
     const double tiles_in_picture = static_cast<double>(size.width) * size.height / (TileRays::side * TileRays::side);
-    frame.looked_packets = static_cast<int>(std::clamp(1024 / tiles_in_picture, 2.0, 32.0));
+    frame.pilot_packets = static_cast<int>(std::clamp(1024 / tiles_in_picture, 2.0, 32.0));
     frame.trace = settings.trace;
 
     std::optional<PreintegratedTable> preintegrated;
@@ -375,20 +377,20 @@ void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
           for (std::size_t n = some.begin(); n != some.end(); ++n) {
             watch.check();
             TileMemory& memory = *memories.local();
-            const std::size_t doubtful_before = memory.doubtful.size();
-            cast_tile(frame, tiles[n].first, tiles[n].second, wanted, memory, image, tile_counts.local(), doubts);
+            const std::size_t uncertain_before = memory.uncertain.size();
+            cast_tile(frame, tiles[n].first, tiles[n].second, wanted, memory, image, tile_counts.local(), error_bounds);
             if (image == nullptr || !watch.wants_tiles()) continue;
-            if (memory.doubtful.size() == doubtful_before)
+            if (memory.uncertain.size() == uncertain_before)
               watch.finished(tile_rect(tiles[n], wanted), *image);
             else
               late_tiles.local().push_back(n);
           }
         },
         tbb::auto_partitioner());
-    std::vector<std::array<int, 2>> doubtful;
+    std::vector<std::array<int, 2>> uncertain;
     for (const auto& memory : memories)
-      doubtful.insert(doubtful.end(), memory->doubtful.begin(), memory->doubtful.end());
-    if (!doubtful.empty()) cast_again(camera, transfer_function, visible, doubtful, *image, watch.stop(), result);
+      uncertain.insert(uncertain.end(), memory->uncertain.begin(), memory->uncertain.end());
+    if (!uncertain.empty()) cast_again(camera, transfer_function, visible, uncertain, *image, watch.stop(), result);
     for (const auto& late : late_tiles)
       for (const std::size_t n : late) watch.finished(tile_rect(tiles[n], wanted), *image);
     for (const TileCounts& c : tile_counts) {
@@ -410,7 +412,7 @@ void Renderer::State::cast_again(const scene::Camera& camera, const scene::Trans
 }
 
 void Renderer::State::cast_rectilinear(const scene::Camera& camera, const scene::TransferFunction& function,
-                                       const PixelRegion& wanted, scene::Image& image, scene::FrameWatch& watch,
+                                       const scene::PixelRect& wanted, scene::Image& image, scene::FrameWatch& watch,
                                        Cast& result) const {
   const integrals::LaneTable table = table_of(function);
   tbb::task_arena arena(scene::threads_for(settings.threads));
@@ -429,13 +431,14 @@ void Renderer::State::cast_rectilinear(const scene::Camera& camera, const scene:
 
 scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size,
                               const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
-                              std::optional<PixelRegion> region, std::vector<float>* doubts, scene::FrameWatch* watch) {
+                              std::optional<scene::PixelRect> region, std::vector<float>* error_bounds,
+                              scene::FrameWatch* watch) {
   scene::validate(camera);
   scene::validate(size);
   State& state = *state_;
   const RenderSettings& settings = state.settings;
   const scene::TraceScope frame_scope(settings.trace, "frame");
-  const PixelRegion wanted = within(size, region);
+  const scene::PixelRect wanted = within(size, region);
   state.end_preload();
   const BrickCache::Counts before = state.counts_before;
   const bool near_ones = settings.cache == CachePolicy::proximity;
@@ -445,14 +448,14 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   if (watch == nullptr) watch = &nobody;
   watch->check();
   scene::Image image(size);
-  if (doubts != nullptr) doubts->assign(image.depth.size(), 0.0f);
+  if (error_bounds != nullptr) error_bounds->assign(image.depth.size(), 0.0f);
   Cast cast;
   const bool rectilinear = state.source.geometry().rectilinear();
   if (rectilinear)
     state.cast_rectilinear(camera, transfer_function, wanted, image, *watch, cast);
   else
-    state.cast(camera, size, transfer_function, wanted, nullptr, &image, doubts == nullptr ? nullptr : doubts->data(),
-               *watch, cast);
+    state.cast(camera, size, transfer_function, wanted, nullptr, &image,
+               error_bounds == nullptr ? nullptr : error_bounds->data(), *watch, cast);
   const BrickCache::Counts after = state.bricks.counts();
   state.counts_before = after;
   if (near_ones && settings.preload_limit > 0 && !rectilinear) state.begin_preload(cast.brick_visible);
@@ -475,9 +478,9 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   return image;
 }
 
-void Renderer::look(const scene::Camera& camera, scene::ImageSize size,
-                    const scene::TransferFunction& transfer_function, WorkTally& tally,
-                    std::optional<PixelRegion> region, scene::FrameWatch* watch) {
+void Renderer::sample_work(const scene::Camera& camera, scene::ImageSize size,
+                           const scene::TransferFunction& transfer_function, WorkTally& tally,
+                           std::optional<scene::PixelRect> region, scene::FrameWatch* watch) {
   scene::validate(camera);
   scene::validate(size);
   if (state_->source.geometry().rectilinear()) return;
@@ -489,7 +492,7 @@ void Renderer::look(const scene::Camera& camera, scene::ImageSize size,
 
 CostMap Renderer::cost_map(const scene::Camera& camera, scene::ImageSize size,
                            const scene::TransferFunction& transfer_function, CostMethod method, double resolution,
-                           std::optional<PixelRegion> region, const WorkRates* learned) const {
+                           std::optional<scene::PixelRect> region, const WorkRates* learned) const {
   const State& state = *state_;
   const scene::GridGeometry& geometry = state.source.geometry();
   if (geometry.rectilinear()) return cost_of_planes(camera, size, geometry, resolution, region);

@@ -13,6 +13,7 @@
 #include "scene/image.hpp"
 #include "scene/mechanisms.hpp"
 #include "scene/optical_model.hpp"
+#include "scene/pixel_rect.hpp"
 #include "scene/sample_source.hpp"
 #include "scene/shading.hpp"
 #include "scene/trace.hpp"
@@ -55,11 +56,6 @@ struct RenderStatistics : GridCounters {
   std::string instruction_set;  ///< of the kernels that ran
 };
 
-/// Pixels x0 <= x < x1, y0 <= y < y1.
-struct PixelRegion {
-  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-};
-
 /// Regions that begin and end at multiples of this many pixels share no work with their neighbours.
 inline constexpr int region_grain = 4;
 
@@ -88,26 +84,28 @@ class Renderer {
 
   /// The composited image in memory; only the pixels of `region` if there is one, the others stay empty. Throws
   /// Error(bad_input) for an invalid camera or size; Error(system_failure) if the budget does not hold the bricks that
-  /// the threads need at one time. `doubts` gets, by pixel, what float lanes may err there in linear RGBA, so far as
-  /// they add it up (lane_doubt.hpp); above half the accuracy asked a pixel was cast again in double precision. Zero
-  /// where no ray was cast, and all over rectilinear grids. `watch` hears of finished tiles of the region; once it is
-  /// asked to stop, render() throws scene::FrameStopped within a tile of rays, and can be called again.
+  /// the threads need at one time. `error_bounds` gets, by pixel, what float lanes may err there in linear RGBA, so far
+  /// as they add it up (lane_error_bound.hpp); above half the accuracy asked a pixel was cast again in double
+  /// precision. Zero where no ray was cast, and all over rectilinear grids. `watch` hears of finished tiles of the
+  /// region; once it is asked to stop, render() throws scene::FrameStopped within a tile of rays, and can be called
+  /// again.
   scene::Image render(const scene::Camera& camera, scene::ImageSize size,
                       const scene::TransferFunction& transfer_function, RenderStatistics* statistics = nullptr,
-                      std::optional<PixelRegion> region = std::nullopt, std::vector<float>* doubts = nullptr,
+                      std::optional<scene::PixelRect> region = std::nullopt, std::vector<float>* error_bounds = nullptr,
                       scene::FrameWatch* watch = nullptr);
 
-  /// Casts every 32nd ray of the picture (more of a small one), or of a region of it, and counts where in the volume
-  /// the work was (learned_work.hpp); makes no light. As render() otherwise.
-  void look(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
-            WorkTally& tally, std::optional<PixelRegion> region = std::nullopt, scene::FrameWatch* watch = nullptr);
+  /// The pilot pass: casts every 32nd ray of the picture (more of a small one), or of a region of it, and counts where
+  /// in the volume the work was (learned_work.hpp); makes no light. As render() otherwise.
+  void sample_work(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
+                   WorkTally& tally, std::optional<scene::PixelRect> region = std::nullopt,
+                   scene::FrameWatch* watch = nullptr);
 
   /// What each pixel will cost, for the split of the image between processes (cost_map.hpp): from the cells of 8^3
-  /// voxels that the transfer function shows, and from what a look has taught, if given. `region`: in map
-  /// pixels.
+  /// voxels that the transfer function shows, and from what a pilot pass has taught, if given. `region`: in
+  /// map pixels.
   [[nodiscard]] CostMap cost_map(const scene::Camera& camera, scene::ImageSize size,
                                  const scene::TransferFunction& transfer_function, CostMethod method, double resolution,
-                                 std::optional<PixelRegion> region = std::nullopt,
+                                 std::optional<scene::PixelRect> region = std::nullopt,
                                  const WorkRates* learned = nullptr) const;
 
   /// Of the whole volume, blank samples left out.

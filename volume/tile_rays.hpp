@@ -23,9 +23,9 @@ struct TileRays {
   // Light gathered so far, and the k at which it began; NaN until then.
   alignas(64) float alpha[count], transmittance[count], red[count], green[count], blue[count];
   alignas(64) double first_k[count];
-  alignas(64) float doubt[count];    ///< errors that may be (lane_doubt.hpp), linear RGBA
-  alignas(64) float rough[count];    ///< squares of those that roundings make, each its own
-  alignas(64) float carried[count];  ///< preintegrated: the field at the last step's end
+  alignas(64) float error_bound[count];  ///< errors that may be (lane_error_bound.hpp), linear RGBA
+  alignas(64) float rough[count];        ///< squares of those that roundings make, each its own
+  alignas(64) float carried[count];      ///< preintegrated: the field at the last step's end
 
   static constexpr int pixel_x(int ray) {
     return ray / packet_rays % (side / packet_side) * packet_side + ray % packet_side;

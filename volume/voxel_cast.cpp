@@ -176,7 +176,7 @@ class VoxelCaster {
 
 VoxelCastCounts cast_voxel_by_voxel(const scene::SampleSource& source, const scene::Camera& camera,
                                     const scene::TransferFunction& function, const VoxelCastSettings& settings,
-                                    const PixelRegion& region, scene::Image& image, scene::FrameWatch& watch) {
+                                    const scene::PixelRect& region, scene::Image& image, scene::FrameWatch& watch) {
   VoxelCaster caster(source, camera, function, settings, image);
   constexpr int side = 32;
   if (region.x0 < region.x1 && region.y0 < region.y1)

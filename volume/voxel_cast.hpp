@@ -17,7 +17,7 @@
 namespace tessera::volume {
 
 /// Pictures of rectilinear grids, whose rays are not straight in index space, so that the caster's lanes are of no use,
-/// and pixels that float lanes leave in doubt (lane_doubt.hpp): pixel by pixel along a VoxelWalk, each line
+/// and pixels of which float lanes are not sure (lane_error_bound.hpp): pixel by pixel along a VoxelWalk, each line
 /// integrated exactly in double precision.
 ///
 /// Error   below 1e-5, whatever the spacings; what the walk may leave out (WalkSettings::tolerance, least) comes on
@@ -36,7 +36,7 @@ struct VoxelCastCounts {
 /// is asked for a stop at each, see volume::Renderer::render.
 VoxelCastCounts cast_voxel_by_voxel(const scene::SampleSource& source, const scene::Camera& camera,
                                     const scene::TransferFunction& function, const VoxelCastSettings& settings,
-                                    const PixelRegion& region, scene::Image& image, scene::FrameWatch& watch);
+                                    const scene::PixelRect& region, scene::Image& image, scene::FrameWatch& watch);
 
 /// Casts the pixels (x, y) of a list anew, in place of what `image` has there. Throws scene::FrameStopped once `stop`
 /// is asked for.

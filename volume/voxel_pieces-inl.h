@@ -73,12 +73,12 @@ HWY_INLINE VF place_noise(VF k) { return HN::Mul(HN::Add(k, HN::Set(DF(), 2.0f))
 /// little of the matter at its front (scalar line.s_0), behind which there is the slab's own light, and of that at its
 /// back. `before` and `light`: what got through, and had been gathered, in front.
 template <class Lookup>
-HWY_NOINLINE void note_ends(const LaneDoubt& doubt, const Lookup& lookup, const Line& line, const SlabPath& path,
+HWY_NOINLINE void note_ends(const LaneErrorBound& bound, const Lookup& lookup, const Line& line, const SlabPath& path,
                             MF there, VF slab_length, VF before, const VF (&light)[3], const Progress& progress,
                             RayNotes& notes) {
   const DF d;
   const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f), behind = progress.transmittance;
-  const VF off = HN::Mul(place_noise(path.k), slab_length), brightest = HN::Set(d, doubt.brightest);
+  const VF off = HN::Mul(place_noise(path.k), slab_length), brightest = HN::Set(d, bound.brightest);
   const MF good = HN::And(there, HN::Eq(line.rho, line.rho));
   const auto at = [&](VF s, MF ends, bool front) HWY_ATTR {
     const VF scalar = HN::IfThenElseZero(good, s);
@@ -98,8 +98,8 @@ HWY_NOINLINE void note_ends(const LaneDoubt& doubt, const Lookup& lookup, const 
     const VF seen = front ? before : behind;
     const VF error =
         HN::MulAdd(extinction_at(lookup, index, scalar), HN::MulAdd(behind, brightest, differs), HN::Mul(sent, seen));
-    const VF noted = HN::Min(HN::Mul(error, off), HN::Mul(seen, HN::Set(d, doubt.most)));
-    notes.doubt = HN::Add(notes.doubt, HN::IfThenElseZero(HN::And(good, ends), noted));
+    const VF noted = HN::Min(HN::Mul(error, off), HN::Mul(seen, HN::Set(d, bound.most)));
+    notes.error_bound = HN::Add(notes.error_bound, HN::IfThenElseZero(HN::And(good, ends), noted));
   };
   at(line.s_0, HN::Gt(path.from, zero), true);
   at(line.s_1, HN::Lt(path.to, one), false);
@@ -107,9 +107,9 @@ HWY_NOINLINE void note_ends(const LaneDoubt& doubt, const Lookup& lookup, const 
 
 /// The same for stretch n of cell data, which begins and ends at planes of its voxel: `piece`.
 template <class Lookup>
-HWY_NOINLINE void note_planes(const LaneDoubt& doubt, const Lookup& lookup, const Lanes& lanes, const SlabPath& path,
-                              int n, const Piece& piece, MF there, VF before, const Progress& progress,
-                              RayNotes& notes) {
+HWY_NOINLINE void note_planes(const LaneErrorBound& bound, const Lookup& lookup, const Lanes& lanes,
+                              const SlabPath& path, int n, const Piece& piece, MF there, VF before,
+                              const Progress& progress, RayNotes& notes) {
   const DF d;
   const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f), behind = progress.transmittance;
   const Stretch& stretch = path.stretches[n];
@@ -132,7 +132,7 @@ HWY_NOINLINE void note_planes(const LaneDoubt& doubt, const Lookup& lookup, cons
   const VF both = HN::Mul(HN::Add(HN::IfThenElseZero(HN::Gt(stretch.begin, zero), front),
                                   HN::IfThenElseZero(HN::Lt(stretch.end, one), back)),
                           lanes.length);
-  const VF extinction = extinction_at(lookup, index, scalar), brightest = HN::Set(d, doubt.brightest);
+  const VF extinction = extinction_at(lookup, index, scalar), brightest = HN::Set(d, bound.brightest);
   VF error = HN::Mul(HN::Mul(extinction, behind), brightest);
   if (lookup.independent) {
     const VF from = HN::Sub(scalar, lookup.at(LaneTable::base, index));
@@ -142,8 +142,8 @@ HWY_NOINLINE void note_planes(const LaneDoubt& doubt, const Lookup& lookup, cons
                                       lookup.at(LaneTable::red + 2 * c, index)));
     error = HN::Mul(HN::MulAdd(extinction, brightest, sent), before);
   }
-  const VF noted = HN::Min(HN::Mul(error, both), HN::Mul(before, HN::Set(d, doubt.most)));
-  notes.doubt = HN::Add(notes.doubt, HN::IfThenElseZero(good, noted));
+  const VF noted = HN::Min(HN::Mul(error, both), HN::Mul(before, HN::Set(d, bound.most)));
+  notes.error_bound = HN::Add(notes.error_bound, HN::IfThenElseZero(good, noted));
 }
 
 /// Voxel by voxel, for the lanes that are `wanted`.
@@ -194,15 +194,15 @@ HWY_NOINLINE void cast_voxels(const FrameView& frame, const RayAxes& axes, const
       if (HWY_UNLIKELY(uniform->ramp > 0))
         note_ramps(*uniform, piece.length, before, HN::Mul(lit_part ? before : one, target.transmittance), notes);
     } else {
-      const VF through = lit_part ? before : one, doubt = notes.doubt, rough = notes.rough;
-      notes.doubt = notes.rough = zero;
+      const VF through = lit_part ? before : one, error_bound = notes.error_bound, rough = notes.rough;
+      notes.error_bound = notes.rough = zero;
       add_any(lookup, frame, piece, target, notes, counts.samples);
-      notes.doubt = HN::MulAdd(through, notes.doubt, doubt);
+      notes.error_bound = HN::MulAdd(through, notes.error_bound, error_bound);
       notes.rough = HN::MulAdd(HN::Mul(through, through), notes.rough, rough);
     }
-    if (cell_data && HWY_UNLIKELY(frame.doubt != nullptr && frame.doubt->ends))
-      note_planes(*frame.doubt, lookup, lanes, path, static_cast<int>(&stretch - path.stretches), piece, there, before,
-                  progress, notes);
+    if (cell_data && HWY_UNLIKELY(frame.error_bound != nullptr && frame.error_bound->ends))
+      note_planes(*frame.error_bound, lookup, lanes, path, static_cast<int>(&stretch - path.stretches), piece, there,
+                  before, progress, notes);
     if (lit_part) {
       put_behind(part, lit, progress);
       // Within the stretch light is measured from its own front.
@@ -301,7 +301,7 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
       torn = HN::Or(torn, HN::AndNot(HN::Eq(p.s_mid, p.s_mid), HN::And(there[k], HN::Eq(shape, shape))));
   }
   if (HWY_UNLIKELY(has_blanks && !HN::AllFalse(d, torn)))
-    notes.doubt = HN::Add(notes.doubt, HN::IfThenElseZero(torn, HN::Set(d, 1e9f)));
+    notes.error_bound = HN::Add(notes.error_bound, HN::IfThenElseZero(torn, HN::Set(d, 1e9f)));
 #if HWY_TARGET <= HWY_AVX3
   if (HN::AllTrue(d, HN::Or(notes.seen, HN::Not(wanted)))) {
     constexpr std::size_t lanes_each = HN::MaxLanes(DF()), most = 4 * lanes_each;
@@ -329,7 +329,7 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
       RayNotes here{zero, HN::Eq(zero, zero), zero, zero};
       add_any(lookup, frame, piece, part, here, counts.samples);
       const VF parts[8] = {part.alpha, part.transmittance, part.optical_depth, part.red,
-                           part.green, part.blue,          here.doubt,         here.rough};
+                           part.green, part.blue,          here.error_bound,   here.rough};
       for (int c = 0; c < 8; ++c) HN::Store(parts[c], d, light[c] + n_0);
     }
     for (std::size_t k = 0; k < 3; ++k) {
@@ -343,7 +343,7 @@ HWY_NOINLINE void cast_stretches(const FrameView& frame, const Lookup& lookup, V
       progress.red = HN::MulAdd(through, part(3), progress.red);
       progress.green = HN::MulAdd(through, part(4), progress.green);
       progress.blue = HN::MulAdd(through, part(5), progress.blue);
-      notes.doubt = HN::MulAdd(through, part(6), notes.doubt);
+      notes.error_bound = HN::MulAdd(through, part(6), notes.error_bound);
       notes.rough = HN::MulAdd(HN::Mul(through, through), part(7), notes.rough);
     }
     return;
@@ -382,9 +382,9 @@ HWY_NOINLINE MF cast_mixed(const FrameView& frame, const Lookup& lookup, const L
       HN::Mul(HN::Mul(dimming, color_slope), HN::Mul(line.rho, HN::Set(d, 1 / (9 * frame.piece_tolerance))));
   MF together =
       HN::And(HN::And(there, HN::Lt(high, edge)), HN::Le(HN::MulAdd(spread, scale, dimmed), HN::Set(d, 1.0f)));
-  if (frame.doubt != nullptr && !frame.doubt->step.empty()) {
+  if (frame.error_bound != nullptr && !frame.error_bound->step.empty()) {
     // What may touch a step is looked at as a cubic.
-    const VF noise = HN::Set(d, frame.doubt->noise), low_edge = lookup.edge(interval, index, HN::Zero(DI()));
+    const VF noise = HN::Set(d, frame.error_bound->noise), low_edge = lookup.edge(interval, index, HN::Zero(DI()));
     const MF above = HN::Ge(HN::Sub(low, low_edge), noise);
     together = HN::And(together, HN::And(above, HN::Ge(HN::Sub(edge, high), noise)));
   }
@@ -395,8 +395,8 @@ HWY_NOINLINE MF cast_mixed(const FrameView& frame, const Lookup& lookup, const L
                                 kept(line.span), kept(length), progress);
     counts.samples += HN::CountTrue(d, together);
     note_first_light(progress, begin, notes);
-    if (frame.doubt != nullptr)
-      note_ramps(interval, together, kept(length), *frame.doubt, before, progress.transmittance, notes);
+    if (frame.error_bound != nullptr)
+      note_ramps(interval, together, kept(length), *frame.error_bound, before, progress.transmittance, notes);
   }
   return HN::AndNot(together, there);
 }

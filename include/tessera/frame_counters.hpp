@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 #include <type_traits>
@@ -30,15 +31,38 @@ struct FrameCounters {
   FrameCounters& operator+=(const FrameCounters& other);
 };
 
+/// What a frame of a grid took, counted. Processes send it as it stands (frame/sort_first.hpp); grid_counters is the
+/// list of them.
+struct GridCounters {
+  std::uint64_t rays = 0;
+  std::uint64_t voxels_visited = 0;
+  std::uint64_t samples = 0;
+  std::uint64_t pixels_again = 0;
+  std::uint64_t bricks_total = 0;
+  std::uint64_t bricks_invisible = 0;
+  std::uint64_t brick_hits = 0;
+  std::uint64_t bricks_loaded = 0;
+  std::uint64_t bricks_evicted = 0;
+  std::uint64_t bytes_loaded = 0;
+  std::uint64_t bytes_resident = 0;
+  std::uint64_t peak_bytes = 0;
+  std::uint64_t blank_samples = 0;
+
+  GridCounters& operator+=(const GridCounters& other);
+};
+
 /// A counter's name in reports, how those of several processes are put together, and what it counts.
-struct FrameCounter {
+template <class Counters>
+struct Counter {
   enum class Together { sum, largest };
   std::string_view name;
-  std::uint64_t FrameCounters::*member;
+  std::uint64_t Counters::*member;
   Together together;
   bool if_any;  ///< reports leave it out where it is 0
   std::string_view meaning;
 };
+using FrameCounter = Counter<FrameCounters>;
+using GridCounter = Counter<GridCounters>;
 
 /// All of them, in the order of reports. tets_total is the sum of the four that follow.
 inline constexpr std::array<FrameCounter, 15> frame_counters{{
@@ -69,14 +93,50 @@ inline constexpr std::array<FrameCounter, 15> frame_counters{{
      "of the messages they went in, those to the same process included"},
     {"exchange_messages", &FrameCounters::exchange_messages, FrameCounter::Together::sum, true, "how many"},
 }};
+/// All of a grid's, in the order of reports. What is the same on all processes is put together as the largest.
+inline constexpr std::array<GridCounter, 13> grid_counters{{
+    {"rays", &GridCounters::rays, GridCounter::Together::sum, false, "rays that meet the volume"},
+    {"voxels_visited", &GridCounters::voxels_visited, GridCounter::Together::sum, false,
+     "stretches of rays in one voxel that were evaluated"},
+    {"samples", &GridCounters::samples, GridCounter::Together::sum, false, "pieces integrated, or samples taken"},
+    {"pixels_in_double_precision", &GridCounters::pixels_again, GridCounter::Together::sum, false,
+     "pixels cast again in double precision"},
+    {"bricks_total", &GridCounters::bricks_total, GridCounter::Together::largest, false, "bricks of the volume"},
+    {"bricks_invisible", &GridCounters::bricks_invisible, GridCounter::Together::largest, false,
+     "of them, those never loaded: the transfer function is zero over all of their samples"},
+    {"brick_hits", &GridCounters::brick_hits, GridCounter::Together::sum, false, "uses that found a brick in memory"},
+    {"bricks_loaded", &GridCounters::bricks_loaded, GridCounter::Together::sum, false, "uses that did not"},
+    {"bricks_evicted", &GridCounters::bricks_evicted, GridCounter::Together::sum, false,
+     "bricks that made room for others"},
+    {"bytes_loaded", &GridCounters::bytes_loaded, GridCounter::Together::sum, false, "of bricks, read from the source"},
+    {"bytes_resident", &GridCounters::bytes_resident, GridCounter::Together::sum, false,
+     "of bricks, in memory at the end"},
+    {"peak_bytes", &GridCounters::peak_bytes, GridCounter::Together::sum, false,
+     "of bricks, most in memory since the start"},
+    {"blank_samples", &GridCounters::blank_samples, GridCounter::Together::largest, false,
+     "of the whole volume: not a number, or infinite"},
+}};
 static_assert(sizeof(FrameCounters) == frame_counters.size() * sizeof(std::uint64_t), "a counter is not in the list");
-static_assert(std::is_trivially_copyable_v<FrameCounters>, "processes send it as it stands");
+static_assert(sizeof(GridCounters) == grid_counters.size() * sizeof(std::uint64_t), "a counter is not in the list");
+static_assert(std::is_trivially_copyable_v<FrameCounters> && std::is_trivially_copyable_v<GridCounters>,
+              "processes send them as they stand");
+
+/// `sums` and `others`, each counter as its list says.
+template <class Counters, std::size_t count>
+void add_counters(const std::array<Counter<Counters>, count>& list, const Counters& others, Counters& sums) {
+  for (const Counter<Counters>& c : list) {
+    const std::uint64_t mine = sums.*c.member, theirs = others.*c.member;
+    sums.*c.member = c.together == Counter<Counters>::Together::sum ? mine + theirs : std::max(mine, theirs);
+  }
+}
 
 inline FrameCounters& FrameCounters::operator+=(const FrameCounters& other) {
-  for (const FrameCounter& c : frame_counters) {
-    const std::uint64_t mine = this->*c.member, theirs = other.*c.member;
-    this->*c.member = c.together == FrameCounter::Together::sum ? mine + theirs : std::max(mine, theirs);
-  }
+  add_counters(frame_counters, other, *this);
+  return *this;
+}
+
+inline GridCounters& GridCounters::operator+=(const GridCounters& other) {
+  add_counters(grid_counters, other, *this);
   return *this;
 }
 

@@ -87,6 +87,28 @@ TEST(SortFirst, AnyNumberOfProcessesAndAnyBalanceGivesTheBitsOfOne) {
     }
 }
 
+TEST(SortFirst, EveryCounterIsThatOfAllRanksTogether) {
+  // Without a pilot pass, whose bricks would be in memory already.
+  SortFirstSettings settings;
+  settings.balance = Balance::even;
+  const std::vector<VolumeJob> jobs{orbit(1)[0]};
+  const auto frames = render(3, settings, jobs);
+  ASSERT_EQ(frames.size(), 1u);
+  const auto source = ball();
+  volume::RenderSettings alone;
+  alone.threads = 1;
+  GridCounters together;
+  for (int rank = 0; rank < 3; ++rank) {
+    volume::Renderer renderer(*source, alone);
+    volume::RenderStatistics part;
+    renderer.render(jobs[0].camera, jobs[0].size, haze(), &part, frames[0].split.region(rank));
+    EXPECT_GT(part.samples, 0u) << rank;
+    together += part;
+  }
+  for (const GridCounter& counter : grid_counters)
+    EXPECT_EQ(frames[0].statistics.*counter.member, together.*counter.member) << counter.name;
+}
+
 /// (largest - least) / mean.
 double deviation(const std::vector<std::uint64_t>& samples) {
   const auto [least, most] = std::minmax_element(samples.begin(), samples.end());

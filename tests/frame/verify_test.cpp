@@ -89,10 +89,10 @@ Scene of_grid(std::unique_ptr<scene::MemorySource> source, const scene::Camera& 
   volume::RenderSettings settings;
   settings.threads = 2;
   Scene scene;
-  std::vector<float> doubts;
-  scene.image = volume::Renderer(*kept, settings).render(camera, size, function, nullptr, std::nullopt, &doubts);
+  std::vector<float> error_bounds;
+  scene.image = volume::Renderer(*kept, settings).render(camera, size, function, nullptr, std::nullopt, &error_bounds);
   scene.suspects = [=](const scene::Image& image) {
-    return suspects(image, *kept, camera, function, settings, doubts, looked_at);
+    return suspects(image, *kept, camera, function, settings, error_bounds, looked_at);
   };
   return scene;
 }
@@ -275,7 +275,7 @@ TEST(Verify, LooksAtTheSamePixelsOnAnyNumberOfRanksAndThreads) {
       {{0, {0, 0, 1}, 0}, {0.4999, {0, 1, 1}, 0}, {0.5, {1, 1, 0}, 500}, {0.5001, {0, 1, 1}, 0}, {1, {1, 1, 1}, 1}});
   const std::vector<VolumeJob> jobs{{oblique(1.6), {101, 67}}};
   std::vector<std::vector<ChosenPixel>> choices;
-  std::vector<std::vector<float>> doubts;
+  std::vector<std::vector<float>> error_bounds;
   for (const int ranks : {1, 3})
     for (const int threads : {1, 3})
       exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
@@ -283,17 +283,18 @@ TEST(Verify, LooksAtTheSamePixelsOnAnyNumberOfRanksAndThreads) {
         settings.threads = threads;
         volume::Renderer renderer(*source, settings);
         SortFirstSettings balance;
-        balance.keep_doubts = true;
+        balance.keep_error_bounds = true;
         render_sort_first(transport, balance, jobs, function, renderer, [&](FinishedVolumeFrame frame) {
           choices.push_back(reference::choose_pixels(
-              {101, 67}, 500, suspects(frame.image, *source, jobs[0].camera, function, settings, frame.doubts, 500)));
-          doubts.push_back(frame.doubts);
+              {101, 67}, 500,
+              suspects(frame.image, *source, jobs[0].camera, function, settings, frame.error_bounds, 500)));
+          error_bounds.push_back(frame.error_bounds);
         });
       });
   ASSERT_EQ(choices.size(), 4u);
-  EXPECT_GT(*std::max_element(doubts[0].begin(), doubts[0].end()), 0.0f);
+  EXPECT_GT(*std::max_element(error_bounds[0].begin(), error_bounds[0].end()), 0.0f);
   for (std::size_t i = 1; i < choices.size(); ++i) {
-    EXPECT_EQ(doubts[i], doubts[0]);
+    EXPECT_EQ(error_bounds[i], error_bounds[0]);
     ASSERT_EQ(choices[i].size(), choices[0].size());
     for (std::size_t n = 0; n < choices[0].size(); ++n) {
       EXPECT_EQ(choices[i][n].at, choices[0][n].at);

@@ -56,7 +56,7 @@ std::vector<double> work_of(const CostMap& full, const ImageSplit& split) {
   const SummedArea table(full);
   std::vector<double> work;
   for (int process = 0; process < split.processes(); ++process) {
-    const PixelRegion r = split.region(process);
+    const scene::PixelRect r = split.region(process);
     work.push_back(static_cast<double>(table.sum(r.x1, r.y1) + table.sum(r.x0, r.y0) - table.sum(r.x0, r.y1) -
                                        table.sum(r.x1, r.y0)));
   }
@@ -73,7 +73,7 @@ void expect_tiling(const ImageSplit& split, int processes, scene::ImageSize size
   ASSERT_EQ(split.processes(), processes);
   std::vector<int> owners(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height));
   for (int process = 0; process < processes; ++process) {
-    const PixelRegion r = split.region(process);
+    const scene::PixelRect r = split.region(process);
     for (int y = r.y0; y < r.y1; ++y)
       for (int x = r.x0; x < r.x1; ++x)
         ++owners[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width) + static_cast<std::size_t>(x)];
@@ -152,7 +152,7 @@ TEST(Balance, SplitsTileThePictureInProportionToTheWeights) {
     const double all = std::accumulate(weights.begin(), weights.end(), 0.0);
     const double total = std::accumulate(map.cost.begin(), map.cost.end(), 0.0);
     for (int p = 0; p < processes; ++p) {
-      const PixelRegion r = found.region(p);
+      const scene::PixelRect r = found.region(p);
       double mine = 0;
       for (int y = r.y0; y < r.y1; ++y)
         for (int x = r.x0; x < r.x1; ++x)
@@ -172,7 +172,7 @@ TEST(Balance, TheTwoStageSearchInPartsFindsTheSplitOfOneProcess) {
     const CostMap whole = renderer.cost_map(camera, image, haze(), CostMethod::accurate, 0.5);
     const ImageSplit expected = split(whole, image, std::vector<double>(6, 1.0), region_grain);
     // As in the first frame: each process finds the cost of an even tile of the map.
-    const PixelRegion area = footprint(camera, image, source->geometry());
+    const scene::PixelRect area = footprint(camera, image, source->geometry());
     const ImageSplit tiles = even_split(6, whole.size, {area.x0 / 2, area.y0 / 2, area.x1 / 2, area.y1 / 2});
     expect_tiling(tiles, 6, whole.size);
     std::vector<CostMap> maps;

@@ -230,7 +230,7 @@ TEST(VolumeCaster, ARegionHasThePixelsOfTheWhole) {
   const Volume v = make_volume({37, 30, 26}, Field::smooth);
   const scene::Image whole = render(v, view("oblique"), smooth_function());
   volume::Renderer renderer(*v.source, {});
-  const volume::PixelRegion region{13, 7, 61, 50};
+  const scene::PixelRect region{13, 7, 61, 50};
   const scene::Image part = renderer.render(view("oblique"), size, smooth_function(), nullptr, region);
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x) {

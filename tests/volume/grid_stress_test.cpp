@@ -126,7 +126,7 @@ TEST(GridStress, RaysThatTouchAStepAreCastAgain) {
       const scene::Image other = volume::Renderer(*source, settings).render(camera, all, function);
       EXPECT_EQ(other.rgba, image.rgba);
       EXPECT_EQ(other.depth, image.depth);
-      const volume::PixelRegion region{8, 12, 40, 64};
+      const scene::PixelRect region{8, 12, 40, 64};
       const scene::Image part = volume::Renderer(*source, settings).render(camera, all, function, nullptr, region);
       for (int y = region.y0; y < region.y1; ++y)
         for (std::size_t n = 4 * image.index(region.x0, y); n < 4 * image.index(region.x1 - 1, y) + 4; ++n)

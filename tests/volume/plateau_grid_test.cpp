@@ -102,8 +102,8 @@ TEST(PlateauGrid, RegionsHaveTheBitsOfTheWhole) {
     const scene::Image whole = renderer.render(camera, size, function);
     for (int i = 0; i < 6; ++i) {
       const int x = static_cast<int>(random() % 22) * 4, y = static_cast<int>(random() % 18) * 4;
-      const volume::PixelRegion region{x, y, std::min(x + 4 + 4 * static_cast<int>(random() % 9), size.width),
-                                       std::min(y + 4 + 4 * static_cast<int>(random() % 9), size.height)};
+      const scene::PixelRect region{x, y, std::min(x + 4 + 4 * static_cast<int>(random() % 9), size.width),
+                                    std::min(y + 4 + 4 * static_cast<int>(random() % 9), size.height)};
       const scene::Image part = renderer.render(camera, size, function, nullptr, region);
       for (int v = region.y0; v < region.y1; ++v)
         for (int u = region.x0; u < region.x1; ++u)

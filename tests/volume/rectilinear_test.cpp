@@ -151,8 +151,8 @@ TEST(Rectilinear, RegionsThreadsAndWhatIsSkippedShowInNoBit) {
   s.use.culling = s.use.skipping = false;
   volume::Renderer renderer(*source, s);
   scene::Image pieces(size);
-  for (const volume::PixelRegion& part :
-       {volume::PixelRegion{0, 0, 20, 53}, volume::PixelRegion{20, 0, 61, 28}, volume::PixelRegion{20, 28, 61, 53}}) {
+  for (const scene::PixelRect& part :
+       {scene::PixelRect{0, 0, 20, 53}, scene::PixelRect{20, 0, 61, 28}, scene::PixelRect{20, 28, 61, 53}}) {
     const scene::Image image = renderer.render(camera, size, steep(), nullptr, part);
     for (int y = part.y0; y < part.y1; ++y)
       for (int x = part.x0; x < part.x1; ++x)

@@ -8,8 +8,8 @@
 
 namespace tessera::volume {
 
-/// What LaneDoubt is told of a frame.
-struct DoubtSettings {
+/// What LaneErrorBound is told of a frame.
+struct ErrorBoundSettings {
   bool cell_data = false;
   double largest_color = 1;
   double brightest = 1;  ///< light that may come along a ray
@@ -33,7 +33,7 @@ struct DoubtSettings {
 ///         is alike (measured over random grids and where peaks are narrow, docs/ACCURACY.md).
 ///         Those of the knots are the same at each crossing.
 /// Ends    where a ray enters or leaves dense matter at a plane of the volume, of cell data or of the view.
-struct LaneDoubt {
+struct LaneErrorBound {
   /// By edge of the table (LaneTable::edge), as long as a row of it: the light and opacity, per unit of length, that
   /// differ between its two sides; 0 where that is too little to matter. Empty: no edge is a step.
   std::vector<float> step;
@@ -55,9 +55,9 @@ struct LaneDoubt {
   float noise = 0;      ///< of the field in float lanes, lane scalars
   float matters = 0;    ///< what a voxel may err before it is looked at closely
 
-  LaneDoubt() = default;
-  LaneDoubt(const scene::TransferFunction& function, const integrals::LaneTable& table, const CellRanges& ranges,
-            const DoubtSettings& settings);
+  LaneErrorBound() = default;
+  LaneErrorBound(const scene::TransferFunction& function, const integrals::LaneTable& table, const CellRanges& ranges,
+                 const ErrorBoundSettings& settings);
 
   [[nodiscard]] bool any() const { return ends || !step.empty() || !ramp.empty(); }
 
@@ -65,8 +65,9 @@ struct LaneDoubt {
   void find_noise(const CellRanges& ranges, bool cell_data);
   void find_sharp_edges(const integrals::LaneTable& table, const LaneSamples& lanes);
   void find_steps(const scene::TransferFunction& function, const integrals::LaneTable& table,
-                  const DoubtSettings& settings);
-  void find_ramps(const integrals::LaneTable& table, const std::vector<double>& moved, const DoubtSettings& settings);
+                  const ErrorBoundSettings& settings);
+  void find_ramps(const integrals::LaneTable& table, const std::vector<double>& moved,
+                  const ErrorBoundSettings& settings);
 };
 
 }  // namespace tessera::volume

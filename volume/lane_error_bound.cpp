@@ -1,4 +1,4 @@
-#include "volume/lane_doubt.hpp"
+#include "volume/lane_error_bound.hpp"
 
 #include <algorithm>
 #include <array>
@@ -82,8 +82,8 @@ std::span<const scene::Knot> knots_at(const scene::TransferFunction& function, c
 
 }  // namespace
 
-LaneDoubt::LaneDoubt(const scene::TransferFunction& function, const LaneTable& table, const CellRanges& ranges,
-                     const DoubtSettings& settings)
+LaneErrorBound::LaneErrorBound(const scene::TransferFunction& function, const LaneTable& table,
+                               const CellRanges& ranges, const ErrorBoundSettings& settings)
     : brightest(bounded(std::max(1.0, settings.brightest))), matters(bounded(settings.least / 64)) {
   find_noise(ranges, settings.cell_data);
   most = table.emission != scene::Emission::independent ? bounded(std::max(1.0, settings.largest_color)) : 1e18f;
@@ -100,7 +100,7 @@ LaneDoubt::LaneDoubt(const scene::TransferFunction& function, const LaneTable& t
   ends = 4e-6 * densest * settings.longest > settings.least;
 }
 
-void LaneDoubt::find_noise(const CellRanges& ranges, bool cell_data) {
+void LaneErrorBound::find_noise(const CellRanges& ranges, bool cell_data) {
   double reach = 0, steepest = 0;
   for (std::size_t n = 0; n < ranges.count(); ++n) {
     const double low = ranges.low[n], high = ranges.high[n];
@@ -113,13 +113,13 @@ void LaneDoubt::find_noise(const CellRanges& ranges, bool cell_data) {
   noise = bounded(cell_data ? (ranges.lanes.exact ? 0x1p-23 : 0x1p-22) * reach : 0x1p-23 * reach + 5e-7 * steepest);
 }
 
-void LaneDoubt::find_sharp_edges(const LaneTable& table, const LaneSamples& lanes) {
+void LaneErrorBound::find_sharp_edges(const LaneTable& table, const LaneSamples& lanes) {
   sharp.assign(table.stride, 0);
   for (std::size_t e = 1; e <= table.knot_count; ++e) sharp[e] = lanes.exact && table.is_step[e] != 0;
 }
 
-void LaneDoubt::find_steps(const scene::TransferFunction& function, const LaneTable& table,
-                           const DoubtSettings& settings) {
+void LaneErrorBound::find_steps(const scene::TransferFunction& function, const LaneTable& table,
+                                const ErrorBoundSettings& settings) {
   const float* const edges = table.column(LaneTable::edge);
   const bool independent = table.emission == scene::Emission::independent;
   for (std::vector<float>* each : {&step, &step_extinction, &step_red, &step_green, &step_blue, &step_light})
@@ -155,7 +155,8 @@ void LaneDoubt::find_steps(const scene::TransferFunction& function, const LaneTa
   step = those_above(settings.least / settings.longest, std::move(step));
 }
 
-void LaneDoubt::find_ramps(const LaneTable& table, const std::vector<double>& moved, const DoubtSettings& settings) {
+void LaneErrorBound::find_ramps(const LaneTable& table, const std::vector<double>& moved,
+                                const ErrorBoundSettings& settings) {
   const float* const edges = table.column(LaneTable::edge);
   const bool independent = table.emission == scene::Emission::independent;
   for (std::vector<float>* each : {&ramp, &ramp_extinction, &ramp_color}) each->assign(table.stride, 0.0f);
