@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "reference/mesh_suspicion.hpp"
 #include "reference/reference.hpp"
 #include "scene/threads.hpp"
+#include "volume/image_sink.hpp"
 #include "volume/voxel_cast.hpp"
 
 namespace tessera::frame {
@@ -73,7 +75,14 @@ SuspicionMap second_opinion(const scene::Image& image, const scene::SampleSource
   const double bound = promised_error(settings).value_or(1e-4);
   const volume::VoxelCastSettings cast{{settings.emission, bound / 1000, bound / 64}, settings.shading};
   tbb::task_arena arena(scene::threads_for(settings.threads));
-  arena.execute([&] { volume::cast_voxel_by_voxel(source, camera, function, cast, pixels, again); });
+  arena.execute([&] {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    std::vector<volume::UncertainRay> rays;
+    for (const auto& [x, y] : pixels) rays.push_back({x, y, -infinity, infinity, 0});
+    scene::FrameWatch nobody;
+    volume::ImageSink sink(again, nullptr, nobody);
+    volume::VoxelCaster(source, camera, image.size, function, cast).cast(rays, sink);
+  });
   SuspicionMap map(image.depth.size(), 0.0f);
   for (const auto& [x, y] : pixels)
     for (std::size_t pixel = image.index(x, y), c = 0; c < 4; ++c)

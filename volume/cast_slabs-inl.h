@@ -33,13 +33,16 @@ struct PacketSlabs {
   HWY_ALIGN int i_window[slabs], j_window[slabs], front[slabs], back[slabs], border[slabs];
   HWY_ALIGN float origin[slabs];
 
-  HWY_INLINE PacketSlabs(const Reach& reach, int voxels_i, int voxels_j) {
-    for (int n = 0; n < slabs; ++n) slab_range(reach.x_low, reach.x_high, n, voxels_i, i_first[n], i_last[n]);
-    for (int n = 0; n < slabs; ++n) slab_range(reach.y_low, reach.y_high, n, voxels_j, j_first[n], j_last[n]);
+  HWY_INLINE PacketSlabs(const Reach& reach, const ChunkBox& box) {
+    for (int n = 0; n < slabs; ++n)
+      slab_range(reach.x_low, reach.x_high, n, box.i_low, box.i_last, i_first[n], i_last[n]);
+    for (int n = 0; n < slabs; ++n)
+      slab_range(reach.y_low, reach.y_high, n, box.j_low, box.j_last, j_first[n], j_last[n]);
     for (int n = 0; n < slabs; ++n) {
       widest_i = std::max(widest_i, i_last[n] - i_first[n]);
       widest_j = std::max(widest_j, j_last[n] - j_first[n]);
-      border[n] = i_first[n] <= 0 || i_last[n] >= voxels_i - 1 || j_first[n] <= 0 || j_last[n] >= voxels_j - 1;
+      border[n] =
+          i_first[n] <= box.i_low || i_last[n] >= box.i_last || j_first[n] <= box.j_low || j_last[n] >= box.j_last;
     }
   }
 
@@ -80,7 +83,7 @@ struct GroupWork {
     const auto middle = [&](const float(&low)[2], const float(&high)[2]) {
       return static_cast<std::int64_t>(0.5f * ((low[0] + high[0]) * (1 - along) + (low[1] + high[1]) * along));
     };
-    const std::int64_t k = std::min<std::int64_t>(chunk.first_k + first + 4,
+    const std::int64_t k = std::min<std::int64_t>(chunk.box.first_k + first + 4,
                                                   chunk.frame.voxels[static_cast<std::size_t>(chunk.axes.k)] - 1);
     std::int64_t place[3];
     place[chunk.axes.i] = middle(reach.x_low, reach.x_high);
@@ -121,16 +124,16 @@ class PacketCast {
     const DF d;
     const bool tallies = frame_.tally != nullptr;
     GroupWork work{};
-    for (int n = 0; n < chunk_.slabs; n += SlabLines::most) {
+    for (int n = 0; n < chunk_.box.slabs; n += SlabLines::most) {
       if (HWY_UNLIKELY(tallies)) {
         if (n > 0) work.add_to(chunk_, lanes_, reach, n, progress_, counts_);
         work = {n, lanes_.k_out, progress_.optical_depth, counts_.samples};
       }
       if (!go_on(n)) break;
       if (frame_.some_hidden && !any_visible_ahead(n)) continue;
-      group(n, std::min(n + SlabLines::most, chunk_.slabs));
+      group(n, std::min(n + SlabLines::most, chunk_.box.slabs));
     }
-    if (HWY_UNLIKELY(tallies)) work.add_to(chunk_, lanes_, reach, chunk_.slabs, progress_, counts_);
+    if (HWY_UNLIKELY(tallies)) work.add_to(chunk_, lanes_, reach, chunk_.box.slabs, progress_, counts_);
     counts_.voxels_visited += static_cast<std::uint64_t>(HN::GetLane(HN::SumOfLanes(d, crossings_)));
   }
 
@@ -161,7 +164,7 @@ class PacketCast {
   HWY_INLINE bool any_visible_ahead(int n) const {
     const int m = n + SlabLines::most - 1;
     const std::int64_t end_k = frame_.voxels[static_cast<std::size_t>(chunk_.axes.k)];
-    const std::int64_t k_first = chunk_.first_k + n, k_last = std::min(chunk_.first_k + m, end_k - 1);
+    const std::int64_t k_first = chunk_.box.first_k + n, k_last = std::min(chunk_.box.first_k + m, end_k - 1);
     std::int64_t low[3], high[3];
     low[chunk_.axes.i] = std::min(slabs_.i_first[n], slabs_.i_first[m]);
     high[chunk_.axes.i] = std::max(slabs_.i_last[n], slabs_.i_last[m]);
@@ -449,7 +452,7 @@ HWY_NOINLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int r
   const VF rough = HN::Mul(HN::Mul(before, before), cast.notes_.rough);
   HN::StoreU(HN::Add(rough, HN::LoadU(d, rays.rough + ray)), d, rays.rough + ray);
   if (!HN::AllFalse(d, HN::AndNot(seen_before, cast.notes_.seen))) {
-    const auto first_k = static_cast<double>(chunk.first_k);
+    const auto first_k = static_cast<double>(chunk.box.first_k);
     HWY_ALIGN float place[most];
     HN::Store(HN::IfThenElse(seen_before, HN::Set(d, -1.0f), cast.notes_.first), d, place);
     for (std::size_t l = 0; l < lane_count; ++l)
@@ -461,16 +464,15 @@ template <bool cell_data, CL::TableForm form>
 HWY_NOINLINE void cast_chunk_as(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
   const CL::Lookup<form> lookup(*chunk.frame.table);
   CurrentInterval current(*chunk.frame.table, chunk.frame);
-  const int voxels_i = static_cast<int>(chunk.frame.voxels[static_cast<std::size_t>(chunk.axes.i)]),
-            voxels_j = static_cast<int>(chunk.frame.voxels[static_cast<std::size_t>(chunk.axes.j)]);
   for (int packet = 0; packet < TileRays::packets; ++packet) {
     const Reach& reach = chunk.reach[packet];
     if (!reach.any) continue;
-    PacketSlabs slabs(reach, voxels_i, voxels_j);
+    PacketSlabs slabs(reach, chunk.box);
     // Begins where this packet does: what others find must not change its bits.
-    current.begin_at(*chunk.block.at(0, slabs.i_first[0], slabs.j_first[0]));
+    const int first = chunk.box.first_slab;
+    current.begin_at(*chunk.block.at(first, slabs.i_first[first], slabs.j_first[first]));
     const auto cast = [&]<class Window>() HWY_ATTR {
-      slabs.template place_windows<Window>(chunk.block, chunk.slabs);
+      slabs.template place_windows<Window>(chunk.block, chunk.box.slabs);
       for (int lane = 0; lane < TileRays::packet_rays; lane += static_cast<int>(HN::Lanes(DF())))
         cast_lanes<cell_data, Window>(chunk, lookup, packet * TileRays::packet_rays + lane, reach, slabs, current, rays,
                                       counts);

@@ -31,9 +31,9 @@ HWY_INLINE Reach reach_of(const FrameView& frame, const TileRays& rays, int pack
   bool any = false;
   for (std::size_t r = first; r < first + TileRays::packet_rays; r += HN::Lanes(d)) {
     const auto through = HN::PromoteTo(d, HN::LoadU(HN::Rebind<float, decltype(d)>(), rays.transmittance + r));
-    const auto here = HN::And(
-        HN::And(HN::Lt(HN::Load(d, rays.k_in + r), HN::Set(d, last_k)), HN::Gt(HN::Load(d, rays.k_out + r), k_0)),
-        HN::Ge(through, HN::Set(d, static_cast<double>(frame.least_transmittance))));
+    const auto here =
+        HN::And(HN::And(HN::Lt(HN::Load(d, rays.from + r), HN::Set(d, last_k)), HN::Gt(HN::Load(d, rays.to + r), k_0)),
+                HN::Ge(through, HN::Set(d, static_cast<double>(frame.least_transmittance))));
     any = any || !HN::AllFalse(d, here);
     const auto widen = [&](const double* a, const double* b, auto k, auto& low, auto& high) HWY_ATTR {
       const auto place = HN::MulAdd(HN::Load(d, b + r), k, HN::Load(d, a + r));
@@ -59,16 +59,16 @@ HWY_INLINE Reach reach_of(const FrameView& frame, const TileRays& rays, int pack
 }
 
 /// Lays out slabs and slices round all that the packets may meet; false if the transfer function hides all of it.
-HWY_INLINE bool lay_out(const FrameView& frame, const RayAxes& axes, const Reach& tile, std::int64_t first_k, int slabs,
-                        int slices, SlabBlock& block) {
+HWY_INLINE bool lay_out(const FrameView& frame, const RayAxes& axes, const Reach& tile, const ChunkBox& box,
+                        SlabBlock& block) {
   const auto ia = static_cast<std::size_t>(axes.i), ja = static_cast<std::size_t>(axes.j),
              ka = static_cast<std::size_t>(axes.k);
-  const int corner = frame.cell_data ? 0 : 1;
+  const int corner = frame.cell_data ? 0 : 1, slabs = box.slabs, slices = slabs + corner;
   std::int64_t low[3] = {1 << 30, 1 << 30, 1 << 30}, high[3] = {-1, -1, -1};
   for (int n = 0; n < slabs; ++n) {
     const auto s = static_cast<std::size_t>(n);
-    slab_range(tile.x_low, tile.x_high, n, static_cast<int>(frame.voxels[ia]), block.slab_i[s], block.slab_i_last[s]);
-    slab_range(tile.y_low, tile.y_high, n, static_cast<int>(frame.voxels[ja]), block.slab_j[s], block.slab_j_last[s]);
+    slab_range(tile.x_low, tile.x_high, n, box.i_low, box.i_last, block.slab_i[s], block.slab_i_last[s]);
+    slab_range(tile.y_low, tile.y_high, n, box.j_low, box.j_last, block.slab_j[s], block.slab_j_last[s]);
     low[ia] = std::min<std::int64_t>(low[ia], block.slab_i[s]);
     high[ia] = std::max<std::int64_t>(high[ia], block.slab_i_last[s]);
     low[ja] = std::min<std::int64_t>(low[ja], block.slab_j[s]);
@@ -76,8 +76,9 @@ HWY_INLINE bool lay_out(const FrameView& frame, const RayAxes& axes, const Reach
     block.slab_i_last[s] = std::max(block.slab_i_last[s] + corner, block.slab_i[s] + 7);
     block.slab_j_last[s] = std::max(block.slab_j_last[s] + corner, block.slab_j[s] + 7);
   }
-  low[ka] = axes.mirrored ? frame.voxels[ka] - first_k - slabs : first_k;
-  high[ka] = low[ka] + slabs - 1;
+  const std::int64_t first = box.first_k + box.first_slab, last = box.first_k + slabs - 1;
+  low[ka] = axes.mirrored ? frame.voxels[ka] - 1 - last : first;
+  high[ka] = axes.mirrored ? frame.voxels[ka] - 1 - first : last;
   if (!any_visible(frame, low, high)) return false;
   block.pitch = block.rows = 0;
   for (int n = 0; n < slices; ++n) {
@@ -94,28 +95,41 @@ HWY_INLINE bool lay_out(const FrameView& frame, const RayAxes& axes, const Reach
   return true;
 }
 
-/// Packets that `wanted` leaves out are laid out, as what others find must not depend on them, but not cast.
-HWY_INLINE void cast_rays(const FrameView& frame, const RayAxes& axes, std::uint64_t wanted, TileMemory& memory,
-                          TileCounts& counts) {
-  TileRays& rays = memory.rays;
+/// Rays of one axis code through a chunk of the volume. Packets that `wanted` leaves out are laid out, as what others
+/// find must not depend on them, but not cast.
+HWY_INLINE void cast_rays(const FrameView& frame, const RayAxes& axes, const VoxelBox& voxels, std::uint64_t wanted,
+                          TileRays& rays, TileMemory& memory, TileCounts& counts) {
   double first = 1e30, last = -1e30;
   for (int r = 0; r < TileRays::count; ++r) {
-    if (!(rays.k_in[r] < rays.k_out[r])) continue;
-    first = std::min(first, rays.k_in[r]), last = std::max(last, rays.k_out[r]);
-    counts.rays += wanted >> (r / TileRays::packet_rays) & 1;
+    if (!(rays.from[r] < rays.to[r])) continue;
+    first = std::min(first, rays.from[r]), last = std::max(last, rays.to[r]);
   }
-  const std::int64_t end_k = frame.voxels[static_cast<std::size_t>(axes.k)];
   if (!(first < last)) return;
+  const auto ia = static_cast<std::size_t>(axes.i), ja = static_cast<std::size_t>(axes.j),
+             ka = static_cast<std::size_t>(axes.k);
+  const std::int64_t begin_k = axes.mirrored ? frame.voxels[ka] - voxels.high[ka] : voxels.low[ka],
+                     end_k = axes.mirrored ? frame.voxels[ka] - voxels.low[ka] : voxels.high[ka];
+  ChunkBox box{0,
+               0,
+               0,
+               static_cast<int>(voxels.low[ia]),
+               static_cast<int>(voxels.high[ia]) - 1,
+               static_cast<int>(voxels.low[ja]),
+               static_cast<int>(voxels.high[ja]) - 1,
+               voxels.low,
+               voxels.high};
   Reach reach[TileRays::packets];
   for (std::int64_t k = static_cast<std::int64_t>(first) / SlabBlock::slabs * SlabBlock::slabs;
        k < end_k && static_cast<double>(k) < last; k += SlabBlock::slabs) {
-    const int slabs = static_cast<int>(std::min<std::int64_t>(SlabBlock::slabs, end_k - k));
+    box.first_k = k;
+    box.first_slab = static_cast<int>(std::max<std::int64_t>(0, begin_k - k));
+    box.slabs = static_cast<int>(std::min<std::int64_t>(SlabBlock::slabs, end_k - k));
     Reach tile{{1e30f, 1e30f}, {-1e30f, -1e30f}, {1e30f, 1e30f}, {-1e30f, -1e30f}, false};
     for (int p = 0; p < TileRays::packets; ++p) {
       const auto first_k = static_cast<double>(k);
       reach[p].any = false;
       if (frame.tally != nullptr && (wanted >> p & 1) == 0) continue;  // a pilot pass makes no light
-      reach[p] = reach_of(frame, rays, p, first_k, first_k + slabs);
+      reach[p] = reach_of(frame, rays, p, first_k, first_k + box.slabs);
       if (!reach[p].any) continue;
       tile.any = true;
       for (int e = 0; e < 2; ++e) {
@@ -125,16 +139,15 @@ HWY_INLINE void cast_rays(const FrameView& frame, const RayAxes& axes, std::uint
         tile.y_high[e] = std::max(tile.y_high[e], reach[p].y_high[e]);
       }
     }
-    const int slices = slabs + (frame.cell_data ? 0 : 1);
-    if (!tile.any || !lay_out(frame, axes, tile, k, slabs, slices, memory.block)) continue;
+    if (!tile.any || !lay_out(frame, axes, tile, box, memory.block)) continue;
     bool any = false;
     for (int p = 0; p < TileRays::packets; ++p) {
       reach[p].any = reach[p].any && (wanted >> p & 1) != 0;
       any = any || reach[p].any;
     }
     if (!any) continue;
-    fill_block(frame, axes, k, slices, memory.row, memory.block);
-    const ChunkView chunk{frame, axes, memory.block, k, slabs, reach};
+    fill_block(frame, axes, box, memory.row, memory.block);
+    const ChunkView chunk{frame, axes, memory.block, box, reach};
     if (frame.step > 0 && frame.tally == nullptr)
       sample_chunk(chunk, rays, counts);
     else
@@ -142,61 +155,15 @@ HWY_INLINE void cast_rays(const FrameView& frame, const RayAxes& axes, std::uint
   }
 }
 
-/// The packets of a tile that a pilot pass casts: the first `count` of an ordered dither, shifted from tile to tile.
-HWY_INLINE std::uint64_t pilot_packets_of(int tile_x, int tile_y, int count) {
-  std::uint64_t packets = 0;
-  for (int p = 0; p < TileRays::packets; ++p) {
-    const int x = (p + 3 * tile_x + 5 * tile_y) % 8, y = (p / 8 + 5 * tile_x + 2 * tile_y) % 8;
-    int order = 0;
-    for (int bit = 0; bit < 3; ++bit) order = order << 2 | ((x ^ y) >> bit & 1) << 1 | (y >> bit & 1);
-    if (order < count) packets |= std::uint64_t{1} << p;
-  }
-  return packets;
+void cast_rays_here(const FrameView& frame, const RayAxes& axes, const VoxelBox& voxels, std::uint64_t wanted,
+                    TileRays& rays, TileMemory& memory, TileCounts& counts) {
+  cast_rays(frame, axes, voxels, wanted, rays, memory, counts);
 }
 
-void cast_tile_here(const FrameView& frame, int x0, int y0, const scene::PixelRect& region, TileMemory& memory,
-                    scene::Image* image, TileCounts& counts, float* error_bounds) {
-  TileRays& rays = memory.rays;
-  for (int r = 0; r < TileRays::count; ++r) {
-    rays.alpha[r] = rays.red[r] = rays.green[r] = rays.blue[r] = 0;
-    rays.transmittance[r] = 1;
-    rays.error_bound[r] = rays.rough[r] = 0;
-    rays.carried[r] = std::numeric_limits<float>::quiet_NaN();
-    rays.first_k[r] = std::numeric_limits<double>::quiet_NaN();
-  }
-  static_assert(TileRays::packets == 64);
-  std::uint64_t wanted = 0;
-  for (int p = 0; p < TileRays::packets; ++p) {
-    const int x = x0 + TileRays::pixel_x(p * TileRays::packet_rays),
-              y = y0 + TileRays::pixel_y(p * TileRays::packet_rays);
-    if (x < region.x1 && x + TileRays::packet_side > region.x0 && y < region.y1 &&
-        y + TileRays::packet_side > region.y0)
-      wanted |= std::uint64_t{1} << p;
-  }
-  if (frame.tally != nullptr) wanted &= pilot_packets_of(x0 / TileRays::side, y0 / TileRays::side, frame.pilot_packets);
-  const unsigned codes = axis_codes(*frame.rays, x0, y0);
-  for (int code = 0; code < 6; ++code) {
-    if ((codes >> code & 1) == 0) continue;
-    set_up_rays(frame, x0, y0, code, rays);
-    cast_rays(frame, RayAxes::of(code), wanted, memory, counts);
-    for (int r = 0; image != nullptr && r < TileRays::count; ++r) {
-      const int x = x0 + TileRays::pixel_x(r), y = y0 + TileRays::pixel_y(r);
-      if (x < region.x0 || x >= region.x1 || y < region.y0 || y >= region.y1 || !(rays.k_in[r] < rays.k_out[r]))
-        continue;
-      const float error_bound = rays.error_bound[r] + std::sqrt(rays.rough[r]);
-      if (error_bounds != nullptr) error_bounds[image->index(x, y)] = error_bound;
-      if (!(error_bound <= frame.error_tolerance)) {
-        memory.uncertain.push_back({x, y});
-        continue;
-      }
-      const std::size_t pixel = image->index(x, y);
-      float* const rgba = &image->rgba[4 * pixel];
-      rgba[0] = std::max(0.0f, rays.red[r]), rgba[1] = std::max(0.0f, rays.green[r]);
-      rgba[2] = std::max(0.0f, rays.blue[r]), rgba[3] = std::min(1.0f, std::max(0.0f, rays.alpha[r]));
-      if (rgba[3] > 0 && rays.first_k[r] >= 0)
-        image->depth[pixel] = static_cast<float>(rays.depth_0[r] + rays.depth_k[r] * rays.first_k[r]);
-    }
-  }
+unsigned axis_codes_here(const PixelRays& rays, int x0, int y0) { return axis_codes(rays, x0, y0); }
+
+void set_up_here(const FrameView& frame, int x0, int y0, int code, TileRays& rays) {
+  set_up_rays(frame, x0, y0, code, rays);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -205,10 +172,24 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace tessera::volume {
-HWY_EXPORT(cast_tile_here);
-void cast_tile(const FrameView& frame, int x0, int y0, const scene::PixelRect& region, TileMemory& memory,
-               scene::Image* image, TileCounts& counts, float* error_bounds) {
-  HWY_DYNAMIC_DISPATCH(cast_tile_here)(frame, x0, y0, region, memory, image, counts, error_bounds);
+
+HWY_EXPORT(cast_rays_here);
+HWY_EXPORT(axis_codes_here);
+HWY_EXPORT(set_up_here);
+
+void cast_tile(const FrameView& frame, const VoxelBox& chunk, TileState& tile, TileMemory& memory, TileCounts& counts) {
+  for (int code = 0; code < RayAxes::codes; ++code)
+    if ((tile.codes() >> code & 1) != 0 && tile.enter(frame, chunk, code)) HWY_DYNAMIC_DISPATCH(cast_rays_here)
+  (frame, RayAxes::of(code), chunk, tile.wanted(), tile.rays(code), memory, counts);
 }
+
+unsigned axis_codes_of_tile(const PixelRays& rays, int x0, int y0) {
+  return HWY_DYNAMIC_DISPATCH(axis_codes_here)(rays, x0, y0);
+}
+
+void set_up_tile(const FrameView& frame, int x0, int y0, int code, TileRays& rays) {
+  HWY_DYNAMIC_DISPATCH(set_up_here)(frame, x0, y0, code, rays);
+}
+
 }  // namespace tessera::volume
 #endif  // HWY_ONCE

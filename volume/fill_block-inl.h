@@ -210,66 +210,53 @@ struct Target {
   }
 };
 
-}  // namespace fill
+/// One block being filled: what samples it takes, and of which the transfer function shows something.
+class BlockFill {
+ public:
+  HWY_INLINE BlockFill(const FrameView& frame, const RayAxes& axes, const ChunkBox& box, SlabBlock& block)
+      : frame_(frame),
+        axes_(axes),
+        box_(box),
+        block_(block),
+        shared_(frame.cell_data ? 0 : 1),
+        slices_(box.slabs + static_cast<int>(shared_)),
+        target_{frame, axes, block, box.first_k, slices_} {
+    const auto ia = static_cast<std::size_t>(axes.i), ja = static_cast<std::size_t>(axes.j),
+               ka = static_cast<std::size_t>(axes.k);
+    low_[ia] = *std::min_element(block.low_i.begin(), block.low_i.begin() + slices_);
+    low_[ja] = *std::min_element(block.low_j.begin(), block.low_j.begin() + slices_);
+    high_[ia] = *std::max_element(block.low_i.begin(), block.low_i.begin() + slices_) + block.pitch - 1;
+    high_[ja] = *std::max_element(block.low_j.begin(), block.low_j.begin() + slices_) + block.rows - 1;
+    high_[ia] = std::min<std::int64_t>(high_[ia], box.i_last + shared_);
+    high_[ja] = std::min<std::int64_t>(high_[ja], box.j_last + shared_);
+    const std::int64_t first = box.first_k + box.first_slab, last = box.first_k + slices_ - 1;
+    low_[ka] = axes.mirrored ? frame.samples[ka] - 1 - last : first;
+    high_[ka] = axes.mirrored ? frame.samples[ka] - 1 - first : last;
+    first_cell_ = std::max<std::int64_t>(0, cell_of(0, low_[0]) - shared_);
+    last_cell_ = cell_of(0, high_[0]);
+    some_hidden_ = any_hidden();
+  }
 
-/// Fills the block, whose slices have been laid out, with slices first_k .. first_k + slices - 1.
-HWY_NOINLINE void fill_block(const FrameView& frame, const RayAxes& axes, std::int64_t first_k, int slices,
-                             std::vector<float>& row_memory, SlabBlock& block) {
-  using namespace fill;
-  const Target target{frame, axes, block, first_k, slices};
-  const scene::GridIndex &samples = frame.samples, &cells = frame.ranges->cells;
-  const auto ia = static_cast<std::size_t>(axes.i), ja = static_cast<std::size_t>(axes.j),
-             ka = static_cast<std::size_t>(axes.k);
-  // The native box round all slices.
-  std::int64_t low[3], high[3];
-  low[ia] = *std::min_element(block.low_i.begin(), block.low_i.begin() + slices);
-  low[ja] = *std::min_element(block.low_j.begin(), block.low_j.begin() + slices);
-  high[ia] = *std::max_element(block.low_i.begin(), block.low_i.begin() + slices) + block.pitch - 1;
-  high[ja] = *std::max_element(block.low_j.begin(), block.low_j.begin() + slices) + block.rows - 1;
-  low[ka] = axes.mirrored ? samples[ka] - first_k - slices : first_k;
-  high[ka] = low[ka] + slices - 1;
-  for (std::size_t a = 0; a < 3; ++a) high[a] = std::min(high[a], samples[a] - 1);
-
-  constexpr std::int64_t side = CellRanges::side;
-  const std::int64_t shared = frame.cell_data ? 0 : 1;
-  const auto cell_of = [&](std::size_t axis, std::int64_t sample)
-                           HWY_ATTR { return std::min(sample / side, cells[axis] - 1); };
-  // Which cells along x are seen by a row of samples: its own and, on a shared plane, the cell before it.
-  const std::int64_t first_cell = std::max<std::int64_t>(0, cell_of(0, low[0]) - shared),
-                     last_cell = cell_of(0, high[0]);
-  const auto seen = [&](std::int64_t a, std::int64_t y, std::int64_t z) HWY_ATTR {
-    const std::int64_t b = cell_of(1, y), c = cell_of(2, z);
-    const std::int64_t b0 = shared != 0 && y % side == 0 && b > 0 ? b - 1 : b;
-    const std::int64_t c0 = shared != 0 && z % side == 0 && c > 0 ? c - 1 : c;
-    for (std::int64_t cc = c0; cc <= c; ++cc)
-      for (std::int64_t bb = b0; bb <= b; ++bb)
-        if (frame.visible[a + cells[0] * (bb + cells[1] * cc)] != 0) return true;
-    return false;
-  };
-  const std::int64_t all_low[3] = {std::max<std::int64_t>(0, low[0] - shared),
-                                   std::max<std::int64_t>(0, low[1] - shared),
-                                   std::max<std::int64_t>(0, low[2] - shared)};
-  bool some_hidden = false;
-  for (std::int64_t c = all_low[2] / side; c <= cell_of(2, high[2]) && !some_hidden; ++c)
-    for (std::int64_t b = all_low[1] / side; b <= cell_of(1, high[1]) && !some_hidden; ++b)
-      for (std::int64_t a = first_cell; a <= last_cell && !some_hidden; ++a)
-        some_hidden = frame.visible[a + cells[0] * (b + cells[1] * c)] == 0;
-  // Where blanks lie between two hidden cells what is between their values may show: there all is blank.
-  const bool has_blanks = frame.ranges->range.blanks > 0;
-  if (some_hidden) {
+  /// Gives what is hidden its cells' smallest values.
+  HWY_INLINE void fill_hidden() const {
+    if (!some_hidden_) return;
+    const scene::GridIndex& cells = frame_.ranges->cells;
+    const auto ia = static_cast<std::size_t>(axes_.i), ja = static_cast<std::size_t>(axes_.j),
+               ka = static_cast<std::size_t>(axes_.k);
+    // Where blanks lie between two hidden cells what is between their values may show: there all is blank.
+    const bool has_blanks = frame_.ranges->range.blanks > 0;
     const std::int64_t stride[3] = {1, cells[0], cells[0] * cells[1]};
-    for (int n = 0; n < slices; ++n) {
+    for (int n = box_.first_slab; n < slices_; ++n) {
       const auto s = static_cast<std::size_t>(n);
-      const std::int64_t k = axes.mirrored ? samples[ka] - 1 - (first_k + n) : first_k + n;
-      const std::int64_t columns = std::min<std::int64_t>(block.pitch, samples[ia] - block.low_i[s]),
-                         rows = std::min<std::int64_t>(block.rows, samples[ja] - block.low_j[s]);
+      const std::int64_t k = axes_.mirrored ? frame_.samples[ka] - 1 - (box_.first_k + n) : box_.first_k + n;
+      const std::int64_t columns = columns_of(n), rows = rows_of(n);
       for (std::int64_t j = 0; j < rows; ++j) {
         const float* const hidden =
-            frame.ranges->low.data() + stride[ka] * cell_of(ka, k) + stride[ja] * cell_of(ja, block.low_j[s] + j);
-        float* const to = block.slice(n) + j * block.pitch;
+            frame_.ranges->low.data() + stride[ka] * cell_of(ka, k) + stride[ja] * cell_of(ja, block_.low_j[s] + j);
+        float* const to = block_.slice(n) + j * block_.pitch;
         for (std::int64_t i = 0; i < columns;) {
-          const std::int64_t a = cell_of(ia, block.low_i[s] + i),
-                             end = a == cells[ia] - 1 ? columns : std::min(columns, (a + 1) * side - block.low_i[s]);
+          const std::int64_t a = cell_of(ia, block_.low_i[s] + i),
+                             end = a == cells[ia] - 1 ? columns : std::min(columns, (a + 1) * side - block_.low_i[s]);
           const float value = has_blanks ? std::numeric_limits<float>::quiet_NaN() : hidden[stride[ia] * a];
           std::fill(to + i, to + end, value);
           i = end;
@@ -278,91 +265,176 @@ HWY_NOINLINE void fill_block(const FrameView& frame, const RayAxes& axes, std::i
     }
   }
 
-  const BrickLayout& layout = frame.bricks->layout();
-  const scene::SampleType type = frame.bricks->source().grid().type;
-  scene::GridIndex first_brick, last_brick;
-  for (std::size_t a = 0; a < 3; ++a) {
-    // A sample that two bricks share is taken from either; the lower one may be the only one that is seen.
-    first_brick[a] = layout.brick_of(a, std::max<std::int64_t>(0, low[a] - shared));
-    last_brick[a] = layout.brick_of(a, high[a]);
+  /// Takes what is seen from the bricks of the box.
+  HWY_INLINE void take_bricks(std::vector<float>& row_memory) const {
+    const BrickLayout& layout = frame_.bricks->layout();
+    scene::GridIndex first, last;
+    for (std::size_t a = 0; a < 3; ++a) {
+      // A sample that two bricks share is taken from either; the lower one may be the only one that is seen.
+      first[a] =
+          std::max(layout.brick_of(a, std::max<std::int64_t>(0, low_[a] - shared_)), layout.brick_of(a, box_.low[a]));
+      last[a] = std::min(layout.brick_of(a, high_[a]), layout.brick_of(a, box_.high[a] - 1));
+    }
+    for (std::int64_t bz = first[2]; bz <= last[2]; ++bz)
+      for (std::int64_t by = first[1]; by <= last[1]; ++by)
+        for (std::int64_t bx = first[0]; bx <= last[0]; ++bx) {
+          const scene::GridIndex place{bx, by, bz};
+          if (frame_.brick_visible[layout.number(place)] == 0) continue;
+          if (!some_hidden_ && axes_.k != 0)
+            take_all_of(place);
+          else
+            take_seen_of(place, row_memory);
+        }
   }
-  for (std::int64_t bz = first_brick[2]; bz <= last_brick[2]; ++bz)
-    for (std::int64_t by = first_brick[1]; by <= last_brick[1]; ++by)
-      for (std::int64_t bx = first_brick[0]; bx <= last_brick[0]; ++bx) {
-        const scene::GridIndex place{bx, by, bz};
-        if (frame.brick_visible[layout.number(place)] == 0) continue;
-        const scene::SampleBox box = layout.box(place);
-        const scene::GridIndex room = layout.room(place);
-        std::int64_t from[3], to[3];
-        for (std::size_t a = 0; a < 3; ++a) {
-          from[a] = std::max(low[a], box.low[a]);
-          to[a] = std::min(high[a], box.high[a] - 1);
-        }
-        const std::byte* bytes = nullptr;
-        const std::int64_t in_brick = room[0] * room[1] * room[2];
-        if (!some_hidden && axes.k != 0) {
-          if (!target.any_in(from, to)) continue;
-          bytes = frame.bricks->acquire(layout.number(place), frame.trace);
-          with_type(type, [&](auto kind) HWY_ATTR {
-            using T = decltype(kind);
-            const auto* const brick = reinterpret_cast<const T*>(bytes);
-            target.rows_in(
-                from, to, [&](std::int64_t x, std::int64_t y, std::int64_t z, std::int64_t count, float* out) HWY_ATTR {
-                  const std::int64_t at = ((z - box.low[2]) * room[1] + (y - box.low[1])) * room[0] + (x - box.low[0]);
-                  convert(brick + at, count, in_brick - at, frame.lanes, out);
-                });
-          });
-          frame.bricks->release(layout.number(place));
-          continue;
-        }
-        for (std::int64_t z = from[2]; z <= to[2]; ++z)
-          for (std::int64_t y = from[1]; y <= to[1]; ++y) {
-            std::int64_t x = from[0];
-            while (x <= to[0]) {
-              // A run of samples that belong to seen cells: [8a, 8a + 8] each.
-              std::int64_t end = to[0];
-              if (some_hidden) {
-                const std::int64_t a = cell_of(0, x);
-                if (!seen(a, y, z) && !(shared != 0 && x % side == 0 && a > 0 && seen(a - 1, y, z))) {
-                  x = std::max(x + 1, a == cells[0] - 1 ? to[0] + 1 : a * side + side);
-                  continue;
-                }
-                if (!seen(a, y, z)) {
-                  end = x;
-                } else {
-                  end = std::min(to[0], a == cells[0] - 1 ? to[0] : a * side + side - 1 + shared);
-                }
-              }
-              if (bytes == nullptr) bytes = frame.bricks->acquire(layout.number(place), frame.trace);
-              const std::int64_t row_start = ((z - box.low[2]) * room[1] + (y - box.low[1])) * room[0] - box.low[0];
-              if (axes.k != 0) {
-                target.row(y, z, x, end, [&](std::int64_t xa, std::int64_t xb, float* out) HWY_ATTR {
-                  convert_any(bytes, type, row_start + xa, xb - xa + 1, in_brick, frame.lanes, out);
-                });
-              } else {
-                row_memory.resize(static_cast<std::size_t>(end - x + 1));
-                convert_any(bytes, type, row_start + x, end - x + 1, in_brick, frame.lanes, row_memory.data());
-                target.row(y, z, x, end, [&](std::int64_t xa, std::int64_t, float* out) HWY_ATTR {
-                  *out = row_memory[static_cast<std::size_t>(xa - x)];
-                });
-              }
-              x = end + 1;
-            }
-          }
-        if (bytes != nullptr) frame.bricks->release(layout.number(place));
-      }
 
-  // Columns and rows beyond the volume repeat its last ones.
-  for (int n = 0; n < slices; ++n) {
-    const auto s = static_cast<std::size_t>(n);
-    const std::int64_t columns = std::min<std::int64_t>(block.pitch, samples[ia] - block.low_i[s]),
-                       rows = std::min<std::int64_t>(block.rows, samples[ja] - block.low_j[s]);
-    float* const slice = block.slice(n);
-    for (std::int64_t j = 0; j < rows && columns < block.pitch; ++j)
-      std::fill(slice + j * block.pitch + columns, slice + (j + 1) * block.pitch, slice[j * block.pitch + columns - 1]);
-    for (std::int64_t j = rows; j < block.rows; ++j)
-      std::copy_n(slice + (rows - 1) * block.pitch, block.pitch, slice + j * block.pitch);
+  /// Columns and rows beyond the box repeat its last ones.
+  HWY_INLINE void repeat_last() const {
+    for (int n = box_.first_slab; n < slices_; ++n) {
+      const std::int64_t columns = columns_of(n), rows = rows_of(n);
+      float* const slice = block_.slice(n);
+      for (std::int64_t j = 0; j < rows && columns < block_.pitch; ++j)
+        std::fill(slice + j * block_.pitch + columns, slice + (j + 1) * block_.pitch,
+                  slice[j * block_.pitch + columns - 1]);
+      for (std::int64_t j = rows; j < block_.rows; ++j)
+        std::copy_n(slice + (rows - 1) * block_.pitch, block_.pitch, slice + j * block_.pitch);
+    }
   }
+
+ private:
+  static constexpr std::int64_t side = CellRanges::side;
+
+  /// Columns and rows of a slice that are the box's own.
+  [[nodiscard]] HWY_INLINE std::int64_t columns_of(int n) const {
+    return std::min<std::int64_t>(block_.pitch, box_.i_last + 1 + shared_ - block_.low_i[static_cast<std::size_t>(n)]);
+  }
+  [[nodiscard]] HWY_INLINE std::int64_t rows_of(int n) const {
+    return std::min<std::int64_t>(block_.rows, box_.j_last + 1 + shared_ - block_.low_j[static_cast<std::size_t>(n)]);
+  }
+
+  [[nodiscard]] HWY_INLINE std::int64_t cell_of(std::size_t axis, std::int64_t sample) const {
+    return std::min(sample / side, frame_.ranges->cells[axis] - 1);
+  }
+  /// Whether a row of samples sees a cell along x: its own and, on a shared plane, the cell before it.
+  [[nodiscard]] HWY_INLINE bool seen(std::int64_t a, std::int64_t y, std::int64_t z) const {
+    const scene::GridIndex& cells = frame_.ranges->cells;
+    const std::int64_t b = cell_of(1, y), c = cell_of(2, z);
+    const std::int64_t b0 = shared_ != 0 && y % side == 0 && b > 0 ? b - 1 : b;
+    const std::int64_t c0 = shared_ != 0 && z % side == 0 && c > 0 ? c - 1 : c;
+    for (std::int64_t cc = c0; cc <= c; ++cc)
+      for (std::int64_t bb = b0; bb <= b; ++bb)
+        if (frame_.visible[a + cells[0] * (bb + cells[1] * cc)] != 0) return true;
+    return false;
+  }
+  [[nodiscard]] HWY_INLINE bool any_hidden() const {
+    const scene::GridIndex& cells = frame_.ranges->cells;
+    for (std::int64_t c = std::max<std::int64_t>(0, low_[2] - shared_) / side; c <= cell_of(2, high_[2]); ++c)
+      for (std::int64_t b = std::max<std::int64_t>(0, low_[1] - shared_) / side; b <= cell_of(1, high_[1]); ++b)
+        for (std::int64_t a = first_cell_; a <= last_cell_; ++a)
+          if (frame_.visible[a + cells[0] * (b + cells[1] * c)] == 0) return true;
+    return false;
+  }
+
+  /// The block's samples in a brick.
+  HWY_INLINE void part_in(const scene::SampleBox& brick, std::int64_t (&from)[3], std::int64_t (&to)[3]) const {
+    for (std::size_t a = 0; a < 3; ++a) {
+      from[a] = std::max(low_[a], brick.low[a]);
+      to[a] = std::min(high_[a], brick.high[a] - 1);
+    }
+  }
+
+  /// A brick none of whose cells is hidden; not for the x axis as k.
+  HWY_INLINE void take_all_of(const scene::GridIndex& place) const {
+    const BrickLayout& layout = frame_.bricks->layout();
+    const scene::SampleBox brick = layout.box(place);
+    const scene::GridIndex room = layout.room(place);
+    std::int64_t from[3], to[3];
+    part_in(brick, from, to);
+    if (!target_.any_in(from, to)) return;
+    const std::int64_t in_brick = room[0] * room[1] * room[2];
+    const std::byte* const bytes = frame_.bricks->acquire(layout.number(place), frame_.trace);
+    with_type(frame_.bricks->source().grid().type, [&](auto kind) HWY_ATTR {
+      using T = decltype(kind);
+      const auto* const samples = reinterpret_cast<const T*>(bytes);
+      target_.rows_in(
+          from, to, [&](std::int64_t x, std::int64_t y, std::int64_t z, std::int64_t count, float* out) HWY_ATTR {
+            const std::int64_t at = ((z - brick.low[2]) * room[1] + (y - brick.low[1])) * room[0] + (x - brick.low[0]);
+            convert(samples + at, count, in_brick - at, frame_.lanes, out);
+          });
+    });
+    frame_.bricks->release(layout.number(place));
+  }
+
+  /// Of a brick's samples those that are seen. It is not acquired if none is.
+  HWY_INLINE void take_seen_of(const scene::GridIndex& place, std::vector<float>& row_memory) const {
+    const BrickLayout& layout = frame_.bricks->layout();
+    const scene::SampleType type = frame_.bricks->source().grid().type;
+    const scene::SampleBox brick = layout.box(place);
+    const scene::GridIndex room = layout.room(place);
+    std::int64_t from[3], to[3];
+    part_in(brick, from, to);
+    const std::int64_t in_brick = room[0] * room[1] * room[2];
+    const std::byte* bytes = nullptr;
+    for (std::int64_t z = from[2]; z <= to[2]; ++z)
+      for (std::int64_t y = from[1]; y <= to[1]; ++y) {
+        std::int64_t x = from[0];
+        while (x <= to[0]) {
+          // A run of samples that belong to seen cells: [8a, 8a + 8] each.
+          std::int64_t end = to[0];
+          if (some_hidden_ && !next_run(y, z, to[0], x, end)) continue;
+          if (bytes == nullptr) bytes = frame_.bricks->acquire(layout.number(place), frame_.trace);
+          const std::int64_t row_start = ((z - brick.low[2]) * room[1] + (y - brick.low[1])) * room[0] - brick.low[0];
+          if (axes_.k != 0) {
+            target_.row(y, z, x, end, [&](std::int64_t xa, std::int64_t xb, float* out) HWY_ATTR {
+              convert_any(bytes, type, row_start + xa, xb - xa + 1, in_brick, frame_.lanes, out);
+            });
+          } else {
+            row_memory.resize(static_cast<std::size_t>(end - x + 1));
+            convert_any(bytes, type, row_start + x, end - x + 1, in_brick, frame_.lanes, row_memory.data());
+            target_.row(y, z, x, end, [&](std::int64_t xa, std::int64_t, float* out) HWY_ATTR {
+              *out = row_memory[static_cast<std::size_t>(xa - x)];
+            });
+          }
+          x = end + 1;
+        }
+      }
+    if (bytes != nullptr) frame_.bricks->release(layout.number(place));
+  }
+
+  /// Whether the row's sample x is seen: then [x, end] are; else x becomes the next that may be.
+  HWY_INLINE bool next_run(std::int64_t y, std::int64_t z, std::int64_t last, std::int64_t& x,
+                           std::int64_t& end) const {
+    const std::int64_t a = cell_of(0, x), cells_x = frame_.ranges->cells[0];
+    const bool own = seen(a, y, z);
+    if (!own && !(shared_ != 0 && x % side == 0 && a > 0 && seen(a - 1, y, z))) {
+      x = std::max(x + 1, a == cells_x - 1 ? last + 1 : a * side + side);
+      return false;
+    }
+    end = !own ? x : std::min(last, a == cells_x - 1 ? last : a * side + side - 1 + shared_);
+    return true;
+  }
+
+  const FrameView& frame_;
+  const RayAxes axes_;
+  const ChunkBox& box_;
+  SlabBlock& block_;
+  const std::int64_t shared_;
+  const int slices_;
+  const Target target_;
+  std::int64_t low_[3], high_[3];        ///< samples that the block takes, the native box round all slices
+  std::int64_t first_cell_, last_cell_;  ///< along x
+  bool some_hidden_;
+};
+
+}  // namespace fill
+
+/// Fills the block, whose slabs and slices have been laid out, with the slices of a box of voxels. Nothing is read but
+/// bricks that hold voxels of the box.
+HWY_NOINLINE void fill_block(const FrameView& frame, const RayAxes& axes, const ChunkBox& box,
+                             std::vector<float>& row_memory, SlabBlock& block) {
+  const fill::BlockFill filling(frame, axes, box, block);
+  filling.fill_hidden();
+  filling.take_bricks(row_memory);
+  filling.repeat_last();
 }
 
 }  // namespace HWY_NAMESPACE

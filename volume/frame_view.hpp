@@ -70,6 +70,12 @@ struct FrameView {
 /// Sums over tiles.
 struct TileCounts {
   std::uint64_t rays = 0, voxels_visited = 0, samples = 0;
+  std::uint64_t again = 0;  ///< rays in double precision
+
+  TileCounts& operator+=(const TileCounts& other) {
+    rays += other.rays, voxels_visited += other.voxels_visited, samples += other.samples, again += other.again;
+    return *this;
+  }
 };
 
 }  // namespace tessera::volume

@@ -70,4 +70,12 @@ struct LaneErrorBound {
                   const ErrorBoundSettings& settings);
 };
 
+/// A ray whose light float lanes are not sure of, to be cast again in double precision (voxel_cast.hpp) between two
+/// planar depths, or wherever it is in the volume: from -infinity to infinity.
+struct UncertainRay {
+  int x, y;
+  double z_begin, z_end;
+  float error_bound;
+};
+
 }  // namespace tessera::volume

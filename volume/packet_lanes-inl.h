@@ -35,16 +35,17 @@ struct Reach {
   bool any;
 };
 
-/// Lowest and highest voxel that rays in slab n may be in along an axis of `voxels` voxels.
-HWY_INLINE void slab_range(const float (&low)[2], const float (&high)[2], int n, int voxels, int& first, int& last) {
+/// Lowest and highest voxel of [least, most] that rays in slab n may be in along an axis.
+HWY_INLINE void slab_range(const float (&low)[2], const float (&high)[2], int n, int least, int most, int& first,
+                           int& last) {
   constexpr float each = 1.0f / SlabBlock::slabs, slack = 2e-3f;
   const float l0 = low[0] + (low[1] - low[0]) * (each * static_cast<float>(n)),
               l1 = low[0] + (low[1] - low[0]) * (each * static_cast<float>(n + 1)),
               h0 = high[0] + (high[1] - high[0]) * (each * static_cast<float>(n)),
               h1 = high[0] + (high[1] - high[0]) * (each * static_cast<float>(n + 1));
-  const float end = static_cast<float>(voxels - 1);
-  first = static_cast<int>(std::min(std::max(std::min(l0, l1) - slack, 0.0f), end));
-  last = static_cast<int>(std::min(std::max(std::max(h0, h1) + slack, 0.0f), end));
+  const float begin = static_cast<float>(least), end = static_cast<float>(most);
+  first = static_cast<int>(std::min(std::max(std::min(l0, l1) - slack, begin), end));
+  last = static_cast<int>(std::min(std::max(std::max(h0, h1) + slack, begin), end));
 }
 
 /// What a chunk's slabs share.
@@ -52,8 +53,7 @@ struct ChunkView {
   const FrameView& frame;
   const RayAxes axes;
   const SlabBlock& block;
-  std::int64_t first_k;
-  int slabs;           ///< that lie in the volume
+  const ChunkBox& box;
   const Reach* reach;  ///< by packet
 };
 
@@ -62,7 +62,7 @@ struct Lanes {
   VF bx, by, per_bx, per_by;            ///< slopes and their inverses
   VF x, y;                              ///< at the chunk's first plane, relative to voxel (i, j)
   VF i, j;                              ///< of that voxel, relative to (i_base, j_base)
-  VF i_least, i_most, j_least, j_most;  ///< voxels of the volume, relative to (i, j)
+  VF i_least, i_most, j_least, j_most;  ///< voxels of the box, relative to (i, j)
   VF k_in, k_out;                       ///< relative to the chunk's first plane
   VF light_view;                        ///< shading: cosine between light and view
   VF length, bends;                     ///< of the ray per slab; bx by
@@ -135,9 +135,8 @@ HWY_INLINE Lanes lanes_of(const ChunkView& chunk, int ray, int i_base, int j_bas
   const FrameView& frame = chunk.frame;
   constexpr std::size_t most = HN::MaxLanes(DF());
   const std::size_t lane_count = HN::Lanes(d);
-  const int voxels_i = static_cast<int>(frame.voxels[static_cast<std::size_t>(chunk.axes.i)]),
-            voxels_j = static_cast<int>(frame.voxels[static_cast<std::size_t>(chunk.axes.j)]);
-  const auto first_k = static_cast<double>(chunk.first_k);
+  const ChunkBox& box = chunk.box;
+  const auto first_k = static_cast<double>(box.first_k);
   Lanes lanes;
   const VF one = HN::Set(d, 1.0f);
   // In double up to here.
@@ -162,17 +161,17 @@ HWY_INLINE Lanes lanes_of(const ChunkView& chunk, int ray, int i_base, int j_bas
       HN::Store(HN::DemoteTo(dh, HN::Min(HN::Max(relative, HN::Set(dd, -1.0)), HN::Set(dd, SlabBlock::slabs + 4.0))),
                 dh, out + l);
     };
-    end(rays.k_in, k_in);
-    end(rays.k_out, k_out);
+    end(rays.from, k_in);
+    end(rays.to, k_out);
   }
   lanes.bx = HN::Load(d, bx), lanes.by = HN::Load(d, by);
   lanes.per_bx = HN::Div(one, lanes.bx), lanes.per_by = HN::Div(one, lanes.by);
   lanes.x = HN::Load(d, x), lanes.y = HN::Load(d, y);
   lanes.i = HN::Load(d, i), lanes.j = HN::Load(d, j);
-  lanes.i_least = HN::Sub(HN::Set(d, static_cast<float>(-i_base)), lanes.i);
-  lanes.j_least = HN::Sub(HN::Set(d, static_cast<float>(-j_base)), lanes.j);
-  lanes.i_most = HN::Add(lanes.i_least, HN::Set(d, static_cast<float>(voxels_i - 1)));
-  lanes.j_most = HN::Add(lanes.j_least, HN::Set(d, static_cast<float>(voxels_j - 1)));
+  lanes.i_least = HN::Sub(HN::Set(d, static_cast<float>(box.i_low - i_base)), lanes.i);
+  lanes.j_least = HN::Sub(HN::Set(d, static_cast<float>(box.j_low - j_base)), lanes.j);
+  lanes.i_most = HN::Add(lanes.i_least, HN::Set(d, static_cast<float>(box.i_last - box.i_low)));
+  lanes.j_most = HN::Add(lanes.j_least, HN::Set(d, static_cast<float>(box.j_last - box.j_low)));
   lanes.k_in = HN::Load(d, k_in), lanes.k_out = HN::Load(d, k_out);
   lanes.length = HN::LoadU(d, rays.length_k + ray);
   lanes.light_view = frame.shading != nullptr ? HN::LoadU(d, rays.light_view + ray) : one;

@@ -2,27 +2,21 @@
 
 #include <fmt/format.h>
 #include <hwy/targets.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-#include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <atomic>
-#include <bit>
 #include <cmath>
 #include <glm/glm.hpp>
-#include <span>
-#include <thread>
 #include <utility>
 
 #include "scene/error.hpp"
-#include "scene/start_thread.hpp"
 #include "scene/threads.hpp"
 #include "volume/cell_ranges.hpp"
 #include "volume/cost_map.hpp"
-#include "volume/frame_view.hpp"
-#include "volume/tile_caster.hpp"
+#include "volume/frame_cast.hpp"
+#include "volume/image_sink.hpp"
+#include "volume/renderer_state.hpp"
+#include "volume/view_cone.hpp"
 #include "volume/voxel_cast.hpp"
 
 namespace tessera::volume {
@@ -53,114 +47,11 @@ void check(const RenderSettings& settings, const scene::GridGeometry& geometry) 
         "`integrator`: pre-integration needs emission in proportion to extinction; use sampled or exact");
 }
 
-/// World units; a power of two near the mean voxel's side.
-double length_unit_of(double voxel_side) { return std::ldexp(1.0, std::ilogb(voxel_side)); }
-
-/// World units: the side of a cube as large as a mean voxel.
-double voxel_side_of(const scene::GridGeometry& geometry) {
-  double volume = std::abs(glm::determinant(geometry.direction));
-  for (std::size_t a = 0; a < 3; ++a)
-    volume *= (geometry.lattice(a, geometry.points[a] - 1) - geometry.lattice(a, 0)) /
-              static_cast<double>(geometry.points[a] - 1);
-  return std::cbrt(volume);
-}
-
-/// World units: no ray goes further in one voxel of a regular grid.
-double longest_in_voxel(const scene::GridGeometry& geometry) {
-  double sides = 0;
-  for (int a = 0; a < 3; ++a) sides += glm::length(geometry.direction[a]) * std::abs(geometry.spacing[a]);
-  return sides;
-}
-
-ShadingView shading_view(const scene::Shading& s, const scene::Camera& camera, const scene::GridGeometry& geometry,
-                         double voxel_side) {
-  ShadingView view{s.ambient, s.diffuse, s.specular, s.shininess, voxel_side, {}, {}, {}};
-  const scene::ViewBasis basis = scene::view_basis(camera);
-  const glm::dvec3 l = glm::normalize(s.to_light);
-  const glm::dvec3 light = s.camera_light ? basis.right * l.x + basis.up * l.y - basis.forward * l.z : l;
-  view.light_eye[0] = glm::dot(light, basis.right), view.light_eye[1] = glm::dot(light, basis.up);
-  view.light_eye[2] = -glm::dot(light, basis.forward);
-  const glm::dmat3 to_local = scene::world_to_local(geometry);
-  glm::dvec3 rows[3];
-  for (int a = 0; a < 3; ++a)
-    rows[a] = glm::dvec3(to_local[0][a], to_local[1][a], to_local[2][a]) * (voxel_side / geometry.spacing[a]);
-  for (int a = 0; a < 3; ++a) {
-    view.light[a] = glm::dot(rows[a], light);
-    for (int b = 0; b < 3; ++b) view.metric[a][b] = glm::dot(rows[a], rows[b]);
-  }
-  return view;
-}
-
-/// Distance of every brick's centre to the cone round the view frustum (Moloney 2008, 3.3), world units, 0 inside. In
-/// orthographic views the cone is a cylinder.
-std::vector<float> cone_distances(const scene::Camera& camera, scene::ImageSize size, const scene::PixelRect& region,
-                                  const scene::GridGeometry& geometry, const BrickLayout& layout) {
-  const scene::ViewBasis basis = scene::view_basis(camera);
-  const bool perspective = camera.projection == scene::ProjectionKind::perspective;
-  const double half_height = perspective ? std::tan(glm::radians(camera.view_angle / 2)) : camera.parallel_scale;
-  const double pixel = 2 * half_height / size.height;
-  const glm::dvec2 middle{(region.x0 + region.x1) / 2.0 - size.width / 2.0,
-                          size.height / 2.0 - (region.y0 + region.y1) / 2.0};
-  const glm::dvec3 shift = (basis.right * middle.x + basis.up * middle.y) * pixel;
-  const double radius = 0.5 * pixel * std::hypot(region.x1 - region.x0, region.y1 - region.y0);
-  const glm::dvec3 apex = perspective ? camera.position : camera.position + shift;
-  const glm::dvec3 axis = perspective ? glm::normalize(basis.forward + shift) : basis.forward;
-  const double slope = perspective ? radius : 0, across = perspective ? 0 : radius;
-  std::vector<float> distances(layout.count());
-  for (std::size_t brick = 0; brick < distances.size(); ++brick) {
-    const scene::SampleBox box = layout.box(layout.place(brick));
-    glm::dvec3 centre;
-    for (int a = 0; a < 3; ++a)
-      centre[a] =
-          0.5 * static_cast<double>(box.low[static_cast<std::size_t>(a)] + box.high[static_cast<std::size_t>(a)] - 1);
-    const glm::dvec3 from_apex = scene::world_of_index(geometry, centre) - apex;
-    const double along = glm::dot(from_apex, axis), off = glm::length(from_apex - axis * along);
-    const double outside = (off - across - slope * along) / std::sqrt(1 + slope * slope);
-    // Behind the apex the apex itself is nearest.
-    distances[brick] =
-        static_cast<float>(perspective && along + slope * off < 0 ? glm::length(from_apex) : std::max(0.0, outside));
-  }
-  return distances;
-}
-
-/// Tiles along a curve that stays in one place for long, so that neighbours find each other's bricks.
-std::vector<std::pair<int, int>> tiles_of(const scene::PixelRect& region) {
-  std::vector<std::pair<int, int>> tiles;
-  const int side = TileRays::side;
-  for (int y = region.y0 / side * side; y < region.y1; y += side)
-    for (int x = region.x0 / side * side; x < region.x1; x += side) tiles.emplace_back(x, y);
-  const auto spread = [](std::uint32_t n) {
-    std::uint64_t bits = 0;
-    for (int b = 0; b < 16; ++b) bits |= static_cast<std::uint64_t>(n >> b & 1) << 2 * b;
-    return bits;
-  };
-  const auto place = [&](const std::pair<int, int>& tile) {
-    return spread(static_cast<std::uint32_t>(tile.first / side)) |
-           spread(static_cast<std::uint32_t>(tile.second / side)) << 1;
-  };
-  std::sort(tiles.begin(), tiles.end(), [&](const auto& a, const auto& b) { return place(a) < place(b); });
-  return tiles;
-}
-
-/// The pixels of a tile that are in the region.
-scene::PixelRect tile_rect(const std::pair<int, int>& tile, const scene::PixelRect& region) {
-  return {std::max(tile.first, region.x0), std::max(tile.second, region.y0),
-          std::min(tile.first + TileRays::side, region.x1), std::min(tile.second + TileRays::side, region.y1)};
-}
-
 scene::PixelRect within(scene::ImageSize size, const std::optional<scene::PixelRect>& region) {
   if (!region) return {0, 0, size.width, size.height};
   return {std::max(0, region->x0), std::max(0, region->y0), std::min(size.width, region->x1),
           std::min(size.height, region->y1)};
 }
-
-/// What a cast gives beside its light.
-struct Cast {
-  std::vector<std::uint8_t> brick_visible;
-  TileCounts counts;
-  std::uint64_t blocks_read = 0, block_bytes = 0;  ///< rectilinear grids
-  std::uint64_t pixels_again = 0;                  ///< in double precision
-};
 
 /// Pixels of a map, each with its ray's planes of the lattice.
 CostMap cost_of_planes(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,
@@ -179,84 +70,10 @@ CostMap cost_of_planes(const scene::Camera& camera, scene::ImageSize image, cons
 
 }  // namespace
 
-struct Renderer::State {
-  State(const scene::SampleSource& source_, const RenderSettings& settings_, std::shared_ptr<const CellRanges> ranges_)
-      : source(source_),
-        settings(settings_),
-        ranges_owner(std::move(ranges_)),
-        ranges(*ranges_owner),
-        bricks(source_, BrickLayout(source_.geometry(), settings_.brick_size, settings_.edge_bricks),
-               settings_.memory_bytes, settings_.cache) {}
-
-  [[nodiscard]] bool in_steps() const {
-    return settings.method == Method::sampled || settings.method == Method::preintegrated;
-  }
-  [[nodiscard]] integrals::LaneTable table_of(const scene::TransferFunction& function) const {
-    return {function,          ranges.lanes.origin,
-            ranges.lanes.unit, length_unit,
-            settings.emission, in_steps() ? integrals::StepRounding::nearest : integrals::StepRounding::up};
-  }
-
-  /// A ray that lets less through is done.
-  [[nodiscard]] float least_transmittance(const scene::TransferFunction& function) const {
-    if (!settings.use.termination) return 0;
-    if (settings.method == Method::sampled || settings.method == Method::preintegrated) return 1e-6f;
-    return static_cast<float>(std::min(0.25, accuracy() / 4 / std::max(1.0, brightest(function))));
-  }
-  /// Light that may come along a ray.
-  [[nodiscard]] double brightest(const scene::TransferFunction& function) const {
-    if (settings.emission != scene::Emission::independent) return function.max_color();
-    const scene::Box box = scene::bounds(source.geometry());
-    return function.max_color() * glm::length(box.high - box.low);
-  }
-  /// Of a cast in double precision; `visible` must outlive it.
-  [[nodiscard]] VoxelCastSettings voxel_settings(const scene::TransferFunction& function,
-                                                 std::span<const std::uint8_t> visible) const {
-    return {{settings.emission, WalkSettings().tolerance, static_cast<double>(least_transmittance(function)), visible},
-            settings.shading};
-  }
-  [[nodiscard]] double accuracy() const { return settings.method == Method::exact ? 2e-6 : settings.accuracy; }
-
-  void cast(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
-            const scene::PixelRect& wanted, WorkTally* tally, scene::Image* image, float* error_bounds,
-            scene::FrameWatch& watch, Cast& result);
-  void cast_rectilinear(const scene::Camera& camera, const scene::TransferFunction& function,
-                        const scene::PixelRect& wanted, scene::Image& image, scene::FrameWatch& watch,
-                        Cast& result) const;
-  void cast_again(const scene::Camera& camera, const scene::TransferFunction& function,
-                  const std::vector<std::uint8_t>& visible, const std::vector<std::array<int, 2>>& pixels,
-                  scene::Image& image, const std::stop_token& stop, Cast& result) const;
-
-  /// Bricks near the view, while the picture is gathered and written; the next frame ends it.
-  void begin_preload(std::vector<std::uint8_t> wanted) {
-    stop_preload = false;
-    preloading = scene::start_thread([this, wanted = std::move(wanted)] {
-      const scene::TraceScope scope(settings.trace, "prepare");
-      bricks.preload(settings.preload_limit, wanted, stop_preload, settings.trace);
-    });
-  }
-  void end_preload() {
-    if (!preloading.joinable()) return;
-    stop_preload = true;
-    preloading.join();
-  }
-  ~State() { end_preload(); }
-
-  const scene::SampleSource& source;
-  RenderSettings settings;
-  double voxel_side = voxel_side_of(source.geometry()), length_unit = length_unit_of(voxel_side);
-  std::shared_ptr<const CellRanges> ranges_owner;
-  const CellRanges& ranges;
-  BrickCache bricks;
-  BrickCache::Counts counts_before;  ///< as the last frame's statistics ended: loads ahead count for the next one
-  std::atomic<bool> stop_preload = false;
-  std::thread preloading;
-};
-
 Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& settings,
                    std::shared_ptr<const CellRanges> ranges) {
   check(settings, source.geometry());
-  state_ = std::make_unique<State>(source, settings, std::move(ranges));
+  state_ = std::make_unique<RendererState>(source, settings, std::move(ranges));
 }
 
 Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& settings, CellRanges ranges)
@@ -264,7 +81,8 @@ Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& sett
 
 Renderer::Renderer(const scene::SampleSource& source, const RenderSettings& settings) {
   check(settings, source.geometry());
-  state_ = std::make_unique<State>(source, settings, std::make_shared<const CellRanges>(source, settings.threads));
+  state_ =
+      std::make_unique<RendererState>(source, settings, std::make_shared<const CellRanges>(source, settings.threads));
 }
 
 Renderer::~Renderer() = default;
@@ -275,7 +93,7 @@ const scene::GridGeometry& Renderer::geometry() const { return state_->source.ge
 
 std::vector<std::array<glm::dvec3, 2>> Renderer::visible_bricks(
     const scene::TransferFunction& transfer_function) const {
-  const State& state = *state_;
+  const RendererState& state = *state_;
   const integrals::LaneTable table = state.table_of(transfer_function);
   const BrickLayout& layout = state.bricks.layout();
   const std::vector<std::uint8_t> shown =
@@ -293,141 +111,50 @@ std::vector<std::array<glm::dvec3, 2>> Renderer::visible_bricks(
   return boxes;
 }
 
-/// The rays of the pixels `wanted`: an image, or a tally.
-void Renderer::State::cast(const scene::Camera& camera, scene::ImageSize size,
-                           const scene::TransferFunction& transfer_function, const scene::PixelRect& wanted,
-                           WorkTally* tally, scene::Image* image, float* error_bounds, scene::FrameWatch& watch,
-                           Cast& result) {
-  const PixelRays rays(camera, size, source.geometry());
-  const integrals::LaneTable table = table_of(transfer_function);
-  std::vector<std::uint8_t> visible;
-  tbb::task_arena arena(scene::threads_for(settings.threads));
+namespace {
+
+/// What a cast gives beside its light.
+struct Cast {
+  std::vector<std::uint8_t> brick_visible;
+  TileCounts counts;
+  std::uint64_t blocks_read = 0, block_bytes = 0;  ///< rectilinear grids
+};
+
+Cast cast_regular(RendererState& state, const scene::Camera& camera, scene::ImageSize size,
+                  const scene::TransferFunction& function, const scene::PixelRect& wanted, FragmentSink& sink,
+                  const std::stop_token& stop) {
+  Cast cast;
+  tbb::task_arena arena(scene::threads_for(state.settings.threads));
   arena.execute([&] {
-    {
-      const scene::TraceScope scope(settings.trace, "cull");
-      // A step between two values may show what neither of them shows, so pre-integration needs the true ones.
-      visible = settings.method == Method::preintegrated ? std::vector<std::uint8_t>(ranges.count(), 1)
-                                                         : visible_cells(ranges, table);
-      if (!settings.use.culling || !settings.use.skipping)
-        show_more(ranges, bricks.layout(), !settings.use.culling, !settings.use.skipping, visible);
-      result.brick_visible = volume::visible_bricks(ranges, visible, bricks.layout());
-    }
-    FrameView frame{};
-    frame.rays = &rays;
-    frame.table = &table;
-    frame.ranges = &ranges;
-    frame.visible = visible.data();
-    frame.some_hidden = std::find(visible.begin(), visible.end(), 0) != visible.end();
-    frame.some_clear = any_clear(ranges, table);
-    frame.brick_visible = result.brick_visible.data();
-    frame.bricks = &bricks;
-    frame.voxels = source.geometry().voxels();
-    frame.samples = source.geometry().samples();
-    frame.cell_data = source.geometry().association == scene::Association::cell;
-    frame.length_unit = length_unit;
-    frame.least_transmittance = least_transmittance(transfer_function);
-    frame.piece_tolerance = static_cast<float>(accuracy() / 64);
-    frame.largest_color = static_cast<float>(std::max(1e-30, transfer_function.max_color()));
-    LaneErrorBound error_bound;
-    if (settings.method != Method::sampled && settings.method != Method::preintegrated && tally == nullptr) {
-      frame.error_tolerance = static_cast<float>(std::max(accuracy(), 1e-5) / 2);
-      error_bound =
-          LaneErrorBound(transfer_function, table, ranges,
-                         {frame.cell_data, frame.largest_color, brightest(transfer_function), frame.error_tolerance,
-                          longest_in_voxel(source.geometry()) / length_unit, length_unit});
-      if (error_bound.any()) frame.error_bound = &error_bound;
-    }
-    frame.lanes = ranges.lanes;
-    frame.lanes.whole = in_steps() || !table.has_steps;
-    frame.tally = tally;
-    // A thousand packets or more, whatever the picture's size.
-    const double tiles_in_picture = static_cast<double>(size.width) * size.height / (TileRays::side * TileRays::side);
-    frame.pilot_packets = static_cast<int>(std::clamp(1024 / tiles_in_picture, 2.0, 32.0));
-    frame.trace = settings.trace;
-
-    std::optional<PreintegratedTable> preintegrated;
-    if (settings.method == Method::sampled || settings.method == Method::preintegrated)
-      frame.step = settings.step * voxel_side / length_unit;
-    if (settings.method == Method::preintegrated && tally == nullptr) {
-      const auto lane_of = [&](double value) {
-        return integrals::lane_scalar(value, ranges.lanes.origin, ranges.lanes.unit);
-      };
-      const scene::ValueRange& range = ranges.range;
-      const float low = range.empty() ? 0.0f : lane_of(range.low), high = range.empty() ? 0.0f : lane_of(range.high);
-      preintegrated.emplace(table, low, high, static_cast<float>(frame.step),
-                            PreintegratedTable::size_for(table, low, high));
-      frame.preintegrated = &*preintegrated;
-    }
-
-    ShadingView shading;
-    if (settings.shading) {
-      shading = shading_view(*settings.shading, camera, source.geometry(), voxel_side);
-      frame.shading = &shading;
-    }
-
-    const auto tiles = tiles_of(wanted);
-    tbb::enumerable_thread_specific<std::unique_ptr<TileMemory>> memories(
-        [] { return std::make_unique<TileMemory>(); });
-    tbb::enumerable_thread_specific<TileCounts> tile_counts;
-    tbb::enumerable_thread_specific<std::vector<std::size_t>> late_tiles;  // finished by cast_again()
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, tiles.size(), 1),
-        [&](const auto& some) {
-          const scene::TraceScope scope(settings.trace, tally == nullptr ? "project" : "partition");
-          for (std::size_t n = some.begin(); n != some.end(); ++n) {
-            watch.check();
-            TileMemory& memory = *memories.local();
-            const std::size_t uncertain_before = memory.uncertain.size();
-            cast_tile(frame, tiles[n].first, tiles[n].second, wanted, memory, image, tile_counts.local(), error_bounds);
-            if (image == nullptr || !watch.wants_tiles()) continue;
-            if (memory.uncertain.size() == uncertain_before)
-              watch.finished(tile_rect(tiles[n], wanted), *image);
-            else
-              late_tiles.local().push_back(n);
-          }
-        },
-        tbb::auto_partitioner());
-    std::vector<std::array<int, 2>> uncertain;
-    for (const auto& memory : memories)
-      uncertain.insert(uncertain.end(), memory->uncertain.begin(), memory->uncertain.end());
-    if (!uncertain.empty()) cast_again(camera, transfer_function, visible, uncertain, *image, watch.stop(), result);
-    for (const auto& late : late_tiles)
-      for (const std::size_t n : late) watch.finished(tile_rect(tiles[n], wanted), *image);
-    for (const TileCounts& c : tile_counts) {
-      result.counts.rays += c.rays;
-      result.counts.voxels_visited += c.voxels_visited;
-      result.counts.samples += c.samples;
-    }
+    const FrameSetup setup(state, camera, size, function, nullptr);
+    VoxelCaster in_double(state.source, camera, size, function, state.voxel_settings(function, setup.visible()));
+    cast.counts = cast_frame(setup, wanted, &sink, &in_double, stop);
+    cast.brick_visible = setup.brick_visible();
   });
+  return cast;
 }
 
-/// Pixels of which float lanes are not sure.
-void Renderer::State::cast_again(const scene::Camera& camera, const scene::TransferFunction& function,
-                                 const std::vector<std::uint8_t>& visible,
-                                 const std::vector<std::array<int, 2>>& pixels, scene::Image& image,
-                                 const std::stop_token& stop, Cast& result) const {
-  const scene::TraceScope scope(settings.trace, "project");
-  cast_voxel_by_voxel(source, camera, function, voxel_settings(function, visible), pixels, image, stop);
-  result.pixels_again = pixels.size();
-}
-
-void Renderer::State::cast_rectilinear(const scene::Camera& camera, const scene::TransferFunction& function,
-                                       const scene::PixelRect& wanted, scene::Image& image, scene::FrameWatch& watch,
-                                       Cast& result) const {
-  const integrals::LaneTable table = table_of(function);
-  tbb::task_arena arena(scene::threads_for(settings.threads));
+Cast cast_rectilinear(RendererState& state, const scene::Camera& camera, scene::ImageSize size,
+                      const scene::TransferFunction& function, const scene::PixelRect& wanted, FragmentSink& sink,
+                      const std::stop_token& stop) {
+  Cast cast;
+  const integrals::LaneTable table = state.table_of(function);
+  tbb::task_arena arena(scene::threads_for(state.settings.threads));
   arena.execute([&] {
-    std::vector<std::uint8_t> visible = visible_cells(ranges, table);
-    show_more(ranges, bricks.layout(), !settings.use.culling, !settings.use.skipping, visible);
-    result.brick_visible = volume::visible_bricks(ranges, visible, bricks.layout());
-    const scene::TraceScope scope(settings.trace, "project");
-    const VoxelCastCounts counts =
-        cast_voxel_by_voxel(source, camera, function, voxel_settings(function, visible), wanted, image, watch);
-    result.counts.rays = counts.rays, result.counts.voxels_visited = counts.voxels;
-    result.counts.samples = counts.lines;
-    result.blocks_read = counts.blocks_read, result.block_bytes = counts.bytes_read;
+    const std::vector<std::uint8_t> visible = state.visible_to_walks(table);
+    cast.brick_visible = visible_bricks(state.ranges, visible, state.bricks.layout());
+    const scene::TraceScope scope(state.settings.trace, "project");
+    VoxelCaster caster(state.source, camera, size, function, state.voxel_settings(function, visible));
+    caster.cast(wanted, sink, stop);
+    const VoxelCastCounts counts = caster.counts();
+    cast.counts.rays = counts.rays, cast.counts.voxels_visited = counts.voxels;
+    cast.counts.samples = counts.lines;
+    cast.blocks_read = counts.blocks_read, cast.block_bytes = counts.bytes_read;
   });
+  return cast;
 }
+
+}  // namespace
 
 scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size,
                               const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
@@ -435,7 +162,7 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
                               scene::FrameWatch* watch) {
   scene::validate(camera);
   scene::validate(size);
-  State& state = *state_;
+  RendererState& state = *state_;
   const RenderSettings& settings = state.settings;
   const scene::TraceScope frame_scope(settings.trace, "frame");
   const scene::PixelRect wanted = within(size, region);
@@ -449,13 +176,10 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   watch->check();
   scene::Image image(size);
   if (error_bounds != nullptr) error_bounds->assign(image.depth.size(), 0.0f);
-  Cast cast;
+  ImageSink sink(image, error_bounds == nullptr ? nullptr : error_bounds->data(), *watch);
   const bool rectilinear = state.source.geometry().rectilinear();
-  if (rectilinear)
-    state.cast_rectilinear(camera, transfer_function, wanted, image, *watch, cast);
-  else
-    state.cast(camera, size, transfer_function, wanted, nullptr, &image,
-               error_bounds == nullptr ? nullptr : error_bounds->data(), *watch, cast);
+  const auto cast_by = rectilinear ? cast_rectilinear : cast_regular;
+  const Cast cast = cast_by(state, camera, size, transfer_function, wanted, sink, watch->stop());
   const BrickCache::Counts after = state.bricks.counts();
   state.counts_before = after;
   if (near_ones && settings.preload_limit > 0 && !rectilinear) state.begin_preload(cast.brick_visible);
@@ -469,7 +193,7 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
     s.bricks_evicted = after.evictions - before.evictions, s.bytes_loaded = after.bytes_loaded - before.bytes_loaded;
     s.bytes_resident = after.bytes, s.peak_bytes = after.peak_bytes;
     if (rectilinear) s.bricks_loaded = cast.blocks_read, s.bytes_loaded = cast.block_bytes;
-    s.pixels_again = cast.pixels_again;
+    s.pixels_again = cast.counts.again;
     s.blank_samples = state.ranges.range.blanks;
     const std::int64_t sets = hwy::SupportedTargets() & HWY_TARGETS;
     s.instruction_set = hwy::TargetName(sets & -sets);
@@ -484,16 +208,17 @@ void Renderer::sample_work(const scene::Camera& camera, scene::ImageSize size,
   scene::validate(camera);
   scene::validate(size);
   if (state_->source.geometry().rectilinear()) return;
-  Cast unused;
-  scene::FrameWatch nobody;
-  state_->cast(camera, size, transfer_function, within(size, region), &tally, nullptr, nullptr,
-               watch == nullptr ? nobody : *watch, unused);
+  tbb::task_arena arena(scene::threads_for(state_->settings.threads));
+  arena.execute([&] {
+    const FrameSetup setup(*state_, camera, size, transfer_function, &tally);
+    cast_frame(setup, within(size, region), nullptr, nullptr, watch == nullptr ? std::stop_token() : watch->stop());
+  });
 }
 
 CostMap Renderer::cost_map(const scene::Camera& camera, scene::ImageSize size,
                            const scene::TransferFunction& transfer_function, CostMethod method, double resolution,
                            std::optional<scene::PixelRect> region, const WorkRates* learned) const {
-  const State& state = *state_;
+  const RendererState& state = *state_;
   const scene::GridGeometry& geometry = state.source.geometry();
   if (geometry.rectilinear()) return cost_of_planes(camera, size, geometry, resolution, region);
   const std::vector<std::uint8_t> visible = visible_cells(state.ranges, state.table_of(transfer_function));

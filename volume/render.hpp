@@ -61,6 +61,7 @@ inline constexpr int region_grain = 4;
 
 struct CellRanges;
 struct CostMap;
+struct RendererState;
 class WorkTally;
 class WorkRates;
 enum class CostMethod;
@@ -117,8 +118,8 @@ class Renderer {
       const scene::TransferFunction& transfer_function) const;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  friend class ChunkCast;
+  std::unique_ptr<RendererState> state_;
 };
 
 }  // namespace tessera::volume

@@ -57,8 +57,9 @@ template <bool cell_data>
 HWY_INLINE VF field_in_block(const ChunkView& chunk, const std::int32_t* slice_offsets, const Lanes& lanes, VF k,
                              MF active) {
   const DF d;
-  const VF zero = HN::Zero(d);
-  const VF plane = HN::Min(HN::Max(HN::Floor(k), zero), HN::Set(d, static_cast<float>(chunk.slabs - 1)));
+  const VF first = HN::Set(d, static_cast<float>(chunk.box.first_slab)),
+           last = HN::Set(d, static_cast<float>(chunk.box.slabs - 1));
+  const VF plane = HN::Min(HN::Max(HN::Floor(k), first), last);
   const VF x = HN::MulAdd(k, lanes.bx, lanes.x), y = HN::MulAdd(k, lanes.by, lanes.y);
   const VF i = HN::Min(HN::Max(HN::Floor(x), lanes.i_least), lanes.i_most),
            j = HN::Min(HN::Max(HN::Floor(y), lanes.j_least), lanes.j_most);
@@ -118,22 +119,26 @@ HWY_INLINE void sample_lanes(const ChunkView& chunk, const Lookup& lookup, const
   const Lanes lanes = lanes_of(chunk, ray, 0, 0, rays);
   HWY_ALIGN float begin[most], each[most], last[most], steps[most], final_step[most], entry[most];
   bool some_enter = false;
-  const double from = static_cast<double>(chunk.first_k), to = from + chunk.slabs;
-  const bool final_chunk = chunk.first_k + chunk.slabs >= frame.voxels[static_cast<std::size_t>(chunk.axes.k)];
+  const double from = static_cast<double>(chunk.box.first_k), to = from + chunk.box.slabs;
+  const bool final_chunk = chunk.box.first_k + chunk.box.slabs >= frame.voxels[static_cast<std::size_t>(chunk.axes.k)];
   std::int64_t longest = 0;
   for (std::size_t l = 0; l < HN::Lanes(d); ++l) {
     const std::size_t r = static_cast<std::size_t>(ray) + l;
     begin[l] = each[l] = last[l] = 0, steps[l] = 0, final_step[l] = entry[l] = -1;
-    if (!(rays.k_in[r] < rays.k_out[r]) || rays.transmittance[r] < frame.least_transmittance) continue;
+    if (!(rays.from[r] < rays.to[r]) || rays.transmittance[r] < frame.least_transmittance) continue;
     const RaySteps s(rays.k_in[r], rays.k_out[r], frame.step / static_cast<double>(rays.length_k[r]));
     const bool at_end = table != nullptr;
-    const std::int64_t first_step = s.before(from, at_end), end_step = final_chunk ? s.count : s.before(to, at_end);
+    // Chunks share the steps of a ray by planes, boxes by where the ray goes from one to the next.
+    const std::int64_t first_step = s.before(rays.from[r] > rays.k_in[r] ? std::max(from, rays.from[r]) : from, at_end),
+                       end_step = rays.to[r] < rays.k_out[r] ? s.before(std::min(to, rays.to[r]), at_end)
+                                  : final_chunk              ? s.count
+                                                             : s.before(to, at_end);
     steps[l] = static_cast<float>(end_step - first_step);
     longest = std::max(longest, end_step - first_step);
     begin[l] = static_cast<float>(s.k_in + static_cast<double>(first_step) * s.each - from);
     each[l] = static_cast<float>(s.each), last[l] = static_cast<float>(s.last);
     if (end_step == s.count) final_step[l] = static_cast<float>(s.count - 1 - first_step);
-    if (rays.k_in[r] >= from && rays.k_in[r] < to)
+    if (rays.k_in[r] >= from && rays.k_in[r] < to && rays.from[r] <= rays.k_in[r])
       entry[l] = static_cast<float>(rays.k_in[r] - from), some_enter = true;
   }
   if (table != nullptr && some_enter) {
@@ -223,7 +228,7 @@ HWY_NOINLINE void sample_chunk_as(const ChunkView& chunk, TileRays& rays, TileCo
   const CL::Lookup<form> lookup(*chunk.frame.table);
   // From lattice numbers to places in the block, slice by slice.
   HWY_ALIGN std::int32_t slice_offsets[SlabBlock::slices + 1];
-  const int slices = chunk.slabs + (cell_data ? 0 : 1);
+  const int slices = chunk.box.slabs + (cell_data ? 0 : 1);
   for (int n = 0; n < slices; ++n)
     slice_offsets[n] = static_cast<std::int32_t>(chunk.block.at(n, 0, 0) - chunk.block.samples.data());
   for (int packet = 0; packet < TileRays::packets; ++packet) {

@@ -5,13 +5,23 @@
 #include <cstdint>
 #include <vector>
 
+#include "scene/grid.hpp"
+
 namespace tessera::volume {
+
+/// What a chunk of 32 slabs has of the box of voxels that is cast: all that kernels know of either.
+struct ChunkBox {
+  std::int64_t first_k;              ///< of the chunk, whatever the box
+  int first_slab, slabs;             ///< those of the box are [first_slab, slabs)
+  int i_low, i_last, j_low, j_last;  ///< voxels of the box, the last included
+  scene::GridIndex low, high;        ///< the whole box, along the volume's own axes
+};
 
 /// The samples that one tile's rays need on their way through a chunk of 32 slabs of voxels, as lane scalars.
 ///
 /// Slices   slice n lies at k = first_k + n (point data: lattice planes 0..32; cell data: voxels 0..31). It holds
 ///          columns i of [low_i[n], low_i[n] + pitch) and rows j of [low_j[n], low_j[n] + rows): slices slide along
-///          with the rays. Columns and rows beyond the volume repeat its last ones.
+///          with the rays. Columns and rows beyond the box repeat its last ones; slices in front of it hold nothing.
 /// Slabs    slab n lies between slices n and n + 1. Samples slab_i[n] <= i <= slab_i_last[n], and so for j, are in both
 ///          slices; they hold all that the tile's rays meet, and at least 8 columns and rows.
 /// Chunks   chunk c begins at k = 32 c, whatever bricks there are.

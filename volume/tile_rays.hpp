@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 namespace tessera::volume {
 
-/// The rays of one tile of 32x32 pixels, as lanes see them. Tiles and packets lie on fixed places of the image.
+/// The rays of one tile of 32x32 pixels, as lanes see them, and what they have gathered. Tiles and packets lie on fixed
+/// places of the image.
 ///
 /// Order    packet by packet, a packet being 4x4 pixels: ray = packet * 16 + (y % 4) * 4 + x % 4.
 /// Axes     k is the axis along which rays move most, mirrored where they move down, so that k grows along every ray;
@@ -16,16 +18,35 @@ struct TileRays {
   static constexpr int packet_rays = packet_side * packet_side, packets = side * side / packet_rays;
   static constexpr int count = side * side;
 
-  alignas(64) double ax[count], bx[count], ay[count], by[count], k_in[count], k_out[count];
+  // Where they are, for the whole frame.
+  alignas(64) double ax[count], bx[count], ay[count], by[count];
+  alignas(64) double k_in[count], k_out[count];       ///< what of it is in the volume and in view
   alignas(64) double depth_0[count], depth_k[count];  ///< planar depth = depth_0 + depth_k * k, world units
   alignas(64) float length_k[count];                  ///< length of the ray per k, in the table's unit
   alignas(64) float light_view[count];                ///< shading: cosine between the light and the view
-  // Light gathered so far, and the k at which it began; NaN until then.
+  // How far they have come.
+  alignas(64) double from[count], to[count];        ///< the part of [k_in, k_out] that is to be cast now
+  alignas(64) double begun[count], reached[count];  ///< the parts that have been, from the first to the last
+  // The light of those parts, and the k at which it began; NaN until then.
   alignas(64) float alpha[count], transmittance[count], red[count], green[count], blue[count];
   alignas(64) double first_k[count];
-  alignas(64) float error_bound[count];  ///< errors that may be (lane_error_bound.hpp), linear RGBA
-  alignas(64) float rough[count];        ///< squares of those that roundings make, each its own
-  alignas(64) float carried[count];      ///< preintegrated: the field at the last step's end
+  alignas(64) float error_bound[count];    ///< of the light (lane_error_bound.hpp), linear RGBA, steady errors
+  alignas(64) float rough[count];          ///< squares of those that roundings make, each its own
+  alignas(64) float carried[count];        ///< preintegrated: the field at the last step's end
+  alignas(64) float passed[count];         ///< what came through the parts whose light has been handed out before
+  alignas(64) std::uint8_t closed[count];  ///< 1: the caller wants no more of it
+
+  /// No light yet, of no part.
+  void clear_light() {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    for (int r = 0; r < count; ++r) {
+      alpha[r] = red[r] = green[r] = blue[r] = 0;
+      transmittance[r] = 1;
+      error_bound[r] = rough[r] = 0;
+      first_k[r] = nan;
+      begun[r] = std::numeric_limits<double>::infinity();
+    }
+  }
 
   static constexpr int pixel_x(int ray) {
     return ray / packet_rays % (side / packet_side) * packet_side + ray % packet_side;
@@ -33,12 +54,19 @@ struct TileRays {
   static constexpr int pixel_y(int ray) {
     return ray / packet_rays / (side / packet_side) * packet_side + ray % packet_rays / packet_side;
   }
+  /// The ray of a pixel, counted from the tile's first.
+  static constexpr int ray_of(int x, int y) {
+    return (y / packet_side * (side / packet_side) + x / packet_side) * packet_rays + y % packet_side * packet_side +
+           x % packet_side;
+  }
 };
 
 /// What TileRays::k and its neighbours i, j are in the volume.
 struct RayAxes {
   int i = 0, j = 1, k = 2;
   bool mirrored = false;  ///< k counts down from the last lattice point
+
+  static constexpr int codes = 6;
 
   [[nodiscard]] static RayAxes of(int code) {
     const int k = code / 2;

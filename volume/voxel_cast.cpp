@@ -10,9 +10,11 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <memory>
+#include <vector>
 
 #include "integrals/segment_batch.hpp"
 #include "integrals/segment_integrator.hpp"
+#include "scene/frame_watch.hpp"
 
 namespace tessera::volume {
 namespace {
@@ -73,20 +75,16 @@ class VoxelPixels final : public WalkSink {
     places_.resize(together);
   }
 
-  void cast(const VoxelRay& ray, float* rgba, float& depth) {
+  /// Adds what a ray meets behind what `sum` has.
+  void add(const VoxelRay& ray, RaySum& sum) {
     if (!(ray.begin < ray.end)) return;
     ++counts_.rays;
     ray_ = &ray;
-    red_ = green_ = blue_ = optical_depth_ = 0;
-    transmittance_ = 1;
-    first_ = std::numeric_limits<double>::infinity();
+    sum_ = sum;
     batch_.size = 0;
     walk_.walk(ray, *this);
     put();
-    const auto channel = [](double v) { return static_cast<float>(std::max(0.0, v)); };
-    rgba[0] = channel(red_), rgba[1] = channel(green_), rgba[2] = channel(blue_);
-    rgba[3] = channel(-std::expm1(-optical_depth_));
-    if (rgba[3] > 0) depth = static_cast<float>(first_);
+    sum = sum_;
   }
 
   void enter(const VoxelStretch& stretch) override {
@@ -99,7 +97,7 @@ class VoxelPixels final : public WalkSink {
     batch_.scalar_front[n] = k_0, batch_.scalar_back[n] = k_1;
     lights_[n] = light_, places_[n] = {z0, z1};
   }
-  [[nodiscard]] double transmittance() const override { return transmittance_; }
+  [[nodiscard]] double transmittance() const override { return sum_.transmittance; }
 
   [[nodiscard]] VoxelCastCounts counts() const {
     VoxelCastCounts counts = counts_;
@@ -117,14 +115,14 @@ class VoxelPixels final : public WalkSink {
     for (std::size_t n = 0; n < batch_.size; ++n) {
       const VoxelLight& light = lights_[n];
       const double white = light.white > 0 ? -light.white * std::expm1(-batch_.optical_depth[n]) : 0;
-      red_ += transmittance_ * (light.own * batch_.red[n] + white);
-      green_ += transmittance_ * (light.own * batch_.green[n] + white);
-      blue_ += transmittance_ * (light.own * batch_.blue[n] + white);
-      optical_depth_ += batch_.optical_depth[n];
-      transmittance_ *= batch_.transmittance[n];
-      if (std::isinf(first_) && batch_.optical_depth[n] > 0)
+      sum_.red += sum_.transmittance * (light.own * batch_.red[n] + white);
+      sum_.green += sum_.transmittance * (light.own * batch_.green[n] + white);
+      sum_.blue += sum_.transmittance * (light.own * batch_.blue[n] + white);
+      sum_.optical_depth += batch_.optical_depth[n];
+      sum_.transmittance *= batch_.transmittance[n];
+      if (std::isinf(sum_.first) && batch_.optical_depth[n] > 0)
         if (const auto u = integrator_.first_visible(batch_.scalar_front[n], batch_.scalar_back[n]))
-          first_ = places_[n][0] + (places_[n][1] - places_[n][0]) * *u;
+          sum_.first = places_[n][0] + (places_[n][1] - places_[n][0]) * *u;
     }
     counts_.lines += batch_.size;
     batch_.size = 0;
@@ -138,68 +136,119 @@ class VoxelPixels final : public WalkSink {
   std::vector<std::array<double, 2>> places_;
   const VoxelRay* ray_ = nullptr;
   VoxelLight light_;
-  double red_ = 0, green_ = 0, blue_ = 0, optical_depth_ = 0, transmittance_ = 1, first_ = 0;
+  RaySum sum_;
   VoxelCastCounts counts_;
-};
-
-/// Pixels of a picture by several threads.
-class VoxelCaster {
- public:
-  VoxelCaster(const scene::SampleSource& source, const scene::Camera& camera, const scene::TransferFunction& function,
-              const VoxelCastSettings& settings, scene::Image& image)
-      : rays_(camera, image.size, source.geometry()), image_(image), pixels_([&source, &camera, &function, &settings] {
-          return std::make_unique<VoxelPixels>(source, camera, function, settings);
-        }) {}
-
-  void cast(int x, int y) {
-    const std::size_t n = image_.index(x, y);
-    pixels_.local()->cast(rays_.ray(x + 0.5, y + 0.5), &image_.rgba[4 * n], image_.depth[n]);
-  }
-
-  [[nodiscard]] VoxelCastCounts counts() const {
-    VoxelCastCounts sum;
-    for (const auto& mine : pixels_) {
-      const VoxelCastCounts c = mine->counts();
-      sum.rays += c.rays, sum.voxels += c.voxels, sum.lines += c.lines;
-      sum.blocks_read += c.blocks_read, sum.bytes_read += c.bytes_read;
-    }
-    return sum;
-  }
-
- private:
-  VoxelRays rays_;
-  scene::Image& image_;
-  tbb::enumerable_thread_specific<std::unique_ptr<VoxelPixels>> pixels_;
 };
 
 }  // namespace
 
-VoxelCastCounts cast_voxel_by_voxel(const scene::SampleSource& source, const scene::Camera& camera,
-                                    const scene::TransferFunction& function, const VoxelCastSettings& settings,
-                                    const scene::PixelRect& region, scene::Image& image, scene::FrameWatch& watch) {
-  VoxelCaster caster(source, camera, function, settings, image);
-  constexpr int side = 32;
-  if (region.x0 < region.x1 && region.y0 < region.y1)
-    tbb::parallel_for(
-        tbb::blocked_range2d<int>(region.y0, region.y1, side, region.x0, region.x1, side), [&](const auto& tile) {
-          watch.check();
-          for (int y = tile.rows().begin(); y != tile.rows().end(); ++y)
-            for (int x = tile.cols().begin(); x != tile.cols().end(); ++x) caster.cast(x, y);
-          watch.finished({tile.cols().begin(), tile.rows().begin(), tile.cols().end(), tile.rows().end()}, image);
-        });
-  return caster.counts();
+RayFragment RaySum::fragment(int x, int y, double z_back, float bound) const {
+  const auto channel = [](double v) { return static_cast<float>(std::max(0.0, v)); };
+  return {x,
+          y,
+          static_cast<float>(first),
+          static_cast<float>(z_back),
+          channel(red),
+          channel(green),
+          channel(blue),
+          channel(-std::expm1(-optical_depth)),
+          bound};
 }
 
-VoxelCastCounts cast_voxel_by_voxel(const scene::SampleSource& source, const scene::Camera& camera,
-                                    const scene::TransferFunction& function, const VoxelCastSettings& settings,
-                                    std::span<const std::array<int, 2>> pixels, scene::Image& image,
-                                    const std::stop_token& stop) {
-  VoxelCaster caster(source, camera, function, settings, image);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), 16), [&](const auto& some) {
+struct VoxelCaster::State {
+  State(const scene::SampleSource& source, const scene::Camera& camera_, scene::ImageSize size,
+        const scene::TransferFunction& function_, const VoxelCastSettings& settings_)
+      : geometry(source.geometry()),
+        camera(camera_),
+        function(function_),
+        settings(settings_),
+        rays(camera_, size, source.geometry()),
+        pixels([this, &source] { return std::make_unique<VoxelPixels>(source, camera, function, settings); }) {}
+
+  const scene::GridGeometry& geometry;
+  const scene::Camera camera;
+  const scene::TransferFunction& function;
+  const VoxelCastSettings settings;
+  VoxelRays rays;
+  tbb::enumerable_thread_specific<std::unique_ptr<VoxelPixels>> pixels;
+};
+
+VoxelCaster::VoxelCaster(const scene::SampleSource& source, const scene::Camera& camera, scene::ImageSize size,
+                         const scene::TransferFunction& function, const VoxelCastSettings& settings)
+    : state_(std::make_unique<State>(source, camera, size, function, settings)) {}
+VoxelCaster::~VoxelCaster() = default;
+
+VoxelRay VoxelCaster::ray(int x, int y) const { return state_->rays.ray(x + 0.5, y + 0.5); }
+
+VoxelRay VoxelCaster::part_in(const VoxelBox& chunk, const VoxelRay& ray) const {
+  const scene::GridGeometry& geometry = state_->geometry;
+  VoxelRay part = ray;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int axis = static_cast<int>(a);
+    const std::int64_t last = geometry.points[a] - 1;
+    const double low = geometry.lattice(a, chunk.low[a]), high = geometry.lattice(a, chunk.high[a]);
+    if (ray.step[axis] == 0) {
+      const double place = ray.origin[axis] + ray.aside[axis];
+      if (place < low || (place >= high && chunk.high[a] < last)) part.end = part.begin;
+      continue;
+    }
+    const bool up = ray.step[axis] > 0;
+    const double at_low = (low - ray.origin[axis]) / ray.step[axis],
+                 at_high = (high - ray.origin[axis]) / ray.step[axis];
+    // The ray ends at the volume's first and last planes.
+    if (chunk.low[a] > 0) (up ? part.begin : part.end) = up ? std::max(part.begin, at_low) : std::min(part.end, at_low);
+    if (chunk.high[a] < last)
+      (up ? part.end : part.begin) = up ? std::min(part.end, at_high) : std::max(part.begin, at_high);
+  }
+  return part;
+}
+
+void VoxelCaster::add(const VoxelRay& ray, RaySum& sum) { state_->pixels.local()->add(ray, sum); }
+
+void VoxelCaster::cast(const scene::PixelRect& region, FragmentSink& sink, const std::stop_token& stop) {
+  if (region.empty()) return;
+  constexpr int side = 32;
+  tbb::parallel_for(tbb::blocked_range2d<int>(region.y0, region.y1, side, region.x0, region.x1, side),
+                    [&](const auto& tile) {
+                      scene::throw_if_stopped(stop);
+                      std::vector<RayFragment> fragments;
+                      for (int y = tile.rows().begin(); y != tile.rows().end(); ++y)
+                        for (int x = tile.cols().begin(); x != tile.cols().end(); ++x) {
+                          const VoxelRay through = ray(x, y);
+                          if (!(through.begin < through.end)) continue;
+                          RaySum sum;
+                          add(through, sum);
+                          fragments.push_back(sum.fragment(x, y, through.end, 0));
+                        }
+                      sink.take(fragments);
+                      sink.finished({tile.cols().begin(), tile.rows().begin(), tile.cols().end(), tile.rows().end()});
+                    });
+}
+
+void VoxelCaster::cast(std::span<const UncertainRay> rays, FragmentSink& sink, const std::stop_token& stop) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size(), 16), [&](const auto& some) {
     scene::throw_if_stopped(stop);
-    for (std::size_t n = some.begin(); n != some.end(); ++n) caster.cast(pixels[n][0], pixels[n][1]);
+    std::vector<RayFragment> fragments;
+    for (std::size_t n = some.begin(); n != some.end(); ++n) {
+      VoxelRay through = ray(rays[n].x, rays[n].y);
+      through.begin = std::max(through.begin, rays[n].z_begin), through.end = std::min(through.end, rays[n].z_end);
+      if (!(through.begin < through.end)) continue;
+      RaySum sum;
+      add(through, sum);
+      fragments.push_back(sum.fragment(rays[n].x, rays[n].y, through.end, rays[n].error_bound));
+    }
+    sink.take(fragments);
   });
-  return caster.counts();
+}
+
+VoxelCastCounts VoxelCaster::counts() const {
+  VoxelCastCounts sum;
+  for (const auto& mine : state_->pixels) {
+    const VoxelCastCounts c = mine->counts();
+    sum.rays += c.rays, sum.voxels += c.voxels, sum.lines += c.lines;
+    sum.blocks_read += c.blocks_read, sum.bytes_read += c.bytes_read;
+  }
+  return sum;
 }
 
 double planes_crossed(const VoxelRay& ray, const scene::GridGeometry& geometry) {

@@ -1,0 +1,74 @@
+#include "volume/frame_cast.hpp"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "scene/frame_watch.hpp"
+#include "volume/tile_caster.hpp"
+#include "volume/tile_order.hpp"
+
+namespace tessera::volume {
+namespace {
+
+/// One thread's part.
+struct Worker {
+  TileState tile;
+  TileMemory memory;
+  TileCounts counts;
+  std::vector<RayFragment> fragments;   ///< of one tile
+  std::vector<UncertainRay> uncertain;  ///< of all its tiles
+  std::vector<scene::PixelRect> late;   ///< pixels of tiles that have some
+};
+
+}  // namespace
+
+TileCounts cast_frame(const FrameSetup& setup, const scene::PixelRect& wanted, FragmentSink* sink,
+                      VoxelCaster* in_double, const std::stop_token& stop) {
+  const FrameView& frame = setup.view();
+  const VoxelBox all{{0, 0, 0}, frame.voxels};
+  const auto tiles = tiles_of(wanted);
+  tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers([] { return std::make_unique<Worker>(); });
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, tiles.size(), 1),
+      [&](const auto& some) {
+        const scene::TraceScope scope(frame.trace, frame.tally == nullptr ? "project" : "partition");
+        for (std::size_t n = some.begin(); n != some.end(); ++n) {
+          scene::throw_if_stopped(stop);
+          Worker& worker = *workers.local();
+          worker.tile.begin(frame, tiles[n].first, tiles[n].second, wanted, worker.counts);
+          cast_tile(frame, all, worker.tile, worker.memory, worker.counts);
+          if (sink == nullptr) continue;
+          const std::size_t uncertain_before = worker.uncertain.size();
+          worker.fragments.clear();
+          worker.tile.fragments(frame, worker.fragments, worker.uncertain);
+          sink->take(worker.fragments);
+          if (worker.uncertain.size() == uncertain_before)
+            sink->finished(worker.tile.pixels());
+          else
+            worker.late.push_back(worker.tile.pixels());
+        }
+      },
+      tbb::auto_partitioner());
+  TileCounts counts;
+  std::vector<UncertainRay> uncertain;
+  for (const auto& worker : workers) {
+    uncertain.insert(uncertain.end(), worker->uncertain.begin(), worker->uncertain.end());
+    counts += worker->counts;
+  }
+  if (!uncertain.empty()) {
+    const scene::TraceScope scope(frame.trace, "project");
+    in_double->cast(uncertain, *sink, stop);
+    counts.again = uncertain.size();
+  }
+  for (const auto& worker : workers)
+    for (const scene::PixelRect& pixels : worker->late) sink->finished(pixels);
+  return counts;
+}
+
+}  // namespace tessera::volume

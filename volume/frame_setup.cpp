@@ -1,0 +1,115 @@
+#include "volume/frame_setup.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+
+#include "volume/tile_rays.hpp"
+
+namespace tessera::volume {
+namespace {
+
+/// World units: no ray goes further in one voxel of a regular grid.
+double longest_in_voxel(const scene::GridGeometry& geometry) {
+  double sides = 0;
+  for (int a = 0; a < 3; ++a) sides += glm::length(geometry.direction[a]) * std::abs(geometry.spacing[a]);
+  return sides;
+}
+
+ShadingView shading_view(const scene::Shading& s, const scene::Camera& camera, const scene::GridGeometry& geometry,
+                         double voxel_side) {
+  ShadingView view{s.ambient, s.diffuse, s.specular, s.shininess, voxel_side, {}, {}, {}};
+  const scene::ViewBasis basis = scene::view_basis(camera);
+  const glm::dvec3 l = glm::normalize(s.to_light);
+  const glm::dvec3 light = s.camera_light ? basis.right * l.x + basis.up * l.y - basis.forward * l.z : l;
+  view.light_eye[0] = glm::dot(light, basis.right), view.light_eye[1] = glm::dot(light, basis.up);
+  view.light_eye[2] = -glm::dot(light, basis.forward);
+  const glm::dmat3 to_local = scene::world_to_local(geometry);
+  glm::dvec3 rows[3];
+  for (int a = 0; a < 3; ++a)
+    rows[a] = glm::dvec3(to_local[0][a], to_local[1][a], to_local[2][a]) * (voxel_side / geometry.spacing[a]);
+  for (int a = 0; a < 3; ++a) {
+    view.light[a] = glm::dot(rows[a], light);
+    for (int b = 0; b < 3; ++b) view.metric[a][b] = glm::dot(rows[a], rows[b]);
+  }
+  return view;
+}
+
+}  // namespace
+
+double length_unit_of(double voxel_side) { return std::ldexp(1.0, std::ilogb(voxel_side)); }
+
+double voxel_side_of(const scene::GridGeometry& geometry) {
+  double volume = std::abs(glm::determinant(geometry.direction));
+  for (std::size_t a = 0; a < 3; ++a)
+    volume *= (geometry.lattice(a, geometry.points[a] - 1) - geometry.lattice(a, 0)) /
+              static_cast<double>(geometry.points[a] - 1);
+  return std::cbrt(volume);
+}
+
+FrameSetup::FrameSetup(RendererState& state, const scene::Camera& camera, scene::ImageSize size,
+                       const scene::TransferFunction& function, WorkTally* tally)
+    : rays_(camera, size, state.source.geometry()), table_(state.table_of(function)) {
+  find_visible(state);
+  const scene::GridGeometry& geometry = state.source.geometry();
+  view_.rays = &rays_;
+  view_.table = &table_;
+  view_.ranges = &state.ranges;
+  view_.visible = visible_.data();
+  view_.some_hidden = std::find(visible_.begin(), visible_.end(), 0) != visible_.end();
+  view_.some_clear = any_clear(state.ranges, table_);
+  view_.brick_visible = brick_visible_.data();
+  view_.bricks = &state.bricks;
+  view_.voxels = geometry.voxels();
+  view_.samples = geometry.samples();
+  view_.cell_data = geometry.association == scene::Association::cell;
+  view_.length_unit = state.length_unit;
+  view_.least_transmittance = state.least_transmittance(function);
+  view_.piece_tolerance = static_cast<float>(state.accuracy() / 64);
+  view_.largest_color = static_cast<float>(std::max(1e-30, function.max_color()));
+  view_.lanes = state.ranges.lanes;
+  view_.lanes.whole = state.in_steps() || !table_.has_steps;
+  view_.tally = tally;
+  // A thousand packets or more, whatever the picture's size.
+  const double tiles_in_picture = static_cast<double>(size.width) * size.height / (TileRays::side * TileRays::side);
+  view_.pilot_packets = static_cast<int>(std::clamp(1024 / tiles_in_picture, 2.0, 32.0));
+  view_.trace = state.settings.trace;
+  set_up_method(state, function);
+  if (state.settings.shading)
+    view_.shading = &shading_.emplace(shading_view(*state.settings.shading, camera, geometry, state.voxel_side));
+}
+
+void FrameSetup::find_visible(RendererState& state) {
+  const RenderSettings& settings = state.settings;
+  const scene::TraceScope scope(settings.trace, "cull");
+  // A step between two values may show what neither of them shows, so pre-integration needs the true ones.
+  visible_ = settings.method == Method::preintegrated ? std::vector<std::uint8_t>(state.ranges.count(), 1)
+                                                      : visible_cells(state.ranges, table_);
+  if (!settings.use.culling || !settings.use.skipping)
+    show_more(state.ranges, state.bricks.layout(), !settings.use.culling, !settings.use.skipping, visible_);
+  brick_visible_ = visible_bricks(state.ranges, visible_, state.bricks.layout());
+}
+
+/// What only some methods have.
+void FrameSetup::set_up_method(const RendererState& state, const scene::TransferFunction& function) {
+  if (state.in_steps()) {
+    view_.step = state.settings.step * state.voxel_side / state.length_unit;
+  } else if (view_.tally == nullptr) {
+    view_.error_tolerance = static_cast<float>(std::max(state.accuracy(), 1e-5) / 2);
+    error_bound_ =
+        LaneErrorBound(function, table_, state.ranges,
+                       {view_.cell_data, view_.largest_color, state.brightest(function), view_.error_tolerance,
+                        longest_in_voxel(state.source.geometry()) / state.length_unit, state.length_unit});
+    if (error_bound_.any()) view_.error_bound = &error_bound_;
+  }
+  if (state.settings.method != Method::preintegrated || view_.tally != nullptr) return;
+  const LaneSamples& lanes = state.ranges.lanes;
+  const auto lane_of = [&](double value) { return integrals::lane_scalar(value, lanes.origin, lanes.unit); };
+  const scene::ValueRange& range = state.ranges.range;
+  const float low = range.empty() ? 0.0f : lane_of(range.low), high = range.empty() ? 0.0f : lane_of(range.high);
+  preintegrated_.emplace(table_, low, high, static_cast<float>(view_.step),
+                         PreintegratedTable::size_for(table_, low, high));
+  view_.preintegrated = &*preintegrated_;
+}
+
+}  // namespace tessera::volume

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "volume/frame_view.hpp"
+#include "volume/lane_error_bound.hpp"
+#include "volume/preintegrated_table.hpp"
+#include "volume/renderer_state.hpp"
+
+namespace tessera::volume {
+
+/// All that the tiles of one frame of a regular grid share, made once a frame; view() points into it.
+class FrameSetup {
+ public:
+  /// A valid camera and size. `tally`: of a pilot pass; null for a picture. Uses the calling thread's arena. `state`
+  /// and `tally` must outlive it.
+  FrameSetup(RendererState& state, const scene::Camera& camera, scene::ImageSize size,
+             const scene::TransferFunction& function, WorkTally* tally);
+  FrameSetup(const FrameSetup&) = delete;
+  FrameSetup& operator=(const FrameSetup&) = delete;
+
+  [[nodiscard]] const FrameView& view() const { return view_; }
+  /// By cell of 8^3 voxels, and by brick: whether something of it shows.
+  [[nodiscard]] const std::vector<std::uint8_t>& visible() const { return visible_; }
+  [[nodiscard]] const std::vector<std::uint8_t>& brick_visible() const { return brick_visible_; }
+
+ private:
+  void find_visible(RendererState& state);
+  void set_up_method(const RendererState& state, const scene::TransferFunction& function);
+
+  PixelRays rays_;
+  integrals::LaneTable table_;
+  std::vector<std::uint8_t> visible_, brick_visible_;
+  LaneErrorBound error_bound_;
+  std::optional<PreintegratedTable> preintegrated_;
+  std::optional<ShadingView> shading_;
+  FrameView view_{};
+};
+
+}  // namespace tessera::volume

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "integrals/lane_table.hpp"
+#include "scene/start_thread.hpp"
+#include "volume/brick_cache.hpp"
+#include "volume/cell_ranges.hpp"
+#include "volume/render.hpp"
+#include "volume/voxel_cast.hpp"
+
+namespace tessera::volume {
+
+/// World units: the side of a cube as large as a mean voxel.
+double voxel_side_of(const scene::GridGeometry& geometry);
+/// World units: a power of two near the mean voxel's side.
+double length_unit_of(double voxel_side);
+
+/// What a Renderer keeps from frame to frame.
+struct RendererState {
+  RendererState(const scene::SampleSource& source_, const RenderSettings& settings_,
+                std::shared_ptr<const CellRanges> ranges_)
+      : source(source_),
+        settings(settings_),
+        ranges_owner(std::move(ranges_)),
+        ranges(*ranges_owner),
+        bricks(source_, BrickLayout(source_.geometry(), settings_.brick_size, settings_.edge_bricks),
+               settings_.memory_bytes, settings_.cache) {}
+
+  [[nodiscard]] bool in_steps() const {
+    return settings.method == Method::sampled || settings.method == Method::preintegrated;
+  }
+  [[nodiscard]] integrals::LaneTable table_of(const scene::TransferFunction& function) const {
+    return {function,          ranges.lanes.origin,
+            ranges.lanes.unit, length_unit,
+            settings.emission, in_steps() ? integrals::StepRounding::nearest : integrals::StepRounding::up};
+  }
+
+  /// A ray that lets less through is done.
+  [[nodiscard]] float least_transmittance(const scene::TransferFunction& function) const {
+    if (!settings.use.termination) return 0;
+    if (settings.method == Method::sampled || settings.method == Method::preintegrated) return 1e-6f;
+    return static_cast<float>(std::min(0.25, accuracy() / 4 / std::max(1.0, brightest(function))));
+  }
+  /// Light that may come along a ray.
+  [[nodiscard]] double brightest(const scene::TransferFunction& function) const {
+    if (settings.emission != scene::Emission::independent) return function.max_color();
+    const scene::Box box = scene::bounds(source.geometry());
+    return function.max_color() * glm::length(box.high - box.low);
+  }
+  /// Of a cast in double precision; `visible` must outlive it.
+  [[nodiscard]] VoxelCastSettings voxel_settings(const scene::TransferFunction& function,
+                                                 std::span<const std::uint8_t> visible) const {
+    return {{settings.emission, WalkSettings().tolerance, static_cast<double>(least_transmittance(function)), visible},
+            settings.shading};
+  }
+  [[nodiscard]] double accuracy() const { return settings.method == Method::exact ? 2e-6 : settings.accuracy; }
+
+  /// By cell: what a cast in double precision of a whole frame has to walk through.
+  [[nodiscard]] std::vector<std::uint8_t> visible_to_walks(const integrals::LaneTable& table) const {
+    std::vector<std::uint8_t> visible = visible_cells(ranges, table);
+    show_more(ranges, bricks.layout(), !settings.use.culling, !settings.use.skipping, visible);
+    return visible;
+  }
+
+  /// Bricks near the view, while the picture is gathered and written; the next frame ends it.
+  void begin_preload(std::vector<std::uint8_t> wanted) {
+    stop_preload = false;
+    preloading = scene::start_thread([this, wanted = std::move(wanted)] {
+      const scene::TraceScope scope(settings.trace, "prepare");
+      bricks.preload(settings.preload_limit, wanted, stop_preload, settings.trace);
+    });
+  }
+  void end_preload() {
+    if (!preloading.joinable()) return;
+    stop_preload = true;
+    preloading.join();
+  }
+  ~RendererState() { end_preload(); }
+
+  const scene::SampleSource& source;
+  RenderSettings settings;
+  double voxel_side = voxel_side_of(source.geometry()), length_unit = length_unit_of(voxel_side);
+  std::shared_ptr<const CellRanges> ranges_owner;
+  const CellRanges& ranges;
+  BrickCache bricks;
+  BrickCache::Counts counts_before;  ///< as the last frame's statistics ended: loads ahead count for the next one
+  std::atomic<bool> stop_preload = false;
+  std::thread preloading;
+};
+
+}  // namespace tessera::volume
