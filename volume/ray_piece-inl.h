@@ -307,6 +307,61 @@ HWY_NOINLINE void add_ramp_excess(const Lookup& table, typename Lookup::Index in
   excess.beside_ramps = HN::MulAdd(seen, bound_row(bound.ramp_color, interval, steep), excess.beside_ramps);
 }
 
+/// The cubic through a piece's ends and middle; zero where lanes are not active.
+HWY_INLINE Cubic cubic_of(const Piece& piece, MF active) {
+  const DF d;
+  const VF s_0 = HN::IfThenElseZero(active, piece.s_0), s_mid = HN::IfThenElseZero(active, piece.s_mid),
+           s_1 = HN::IfThenElseZero(active, piece.s_1), p_3 = HN::IfThenElseZero(active, piece.p_3);
+  Cubic c;
+  c.p_0 = s_0;
+  c.p_3 = p_3;
+  const VF bend = HN::Sub(HN::Add(s_0, s_1), HN::Add(s_mid, s_mid));
+  c.p_2 = HN::NegMulAdd(HN::Set(d, 1.5f), p_3, HN::Add(bend, bend));
+  c.p_1 = HN::Sub(HN::Sub(HN::Sub(s_1, s_0), c.p_2), p_3);
+  return c;
+}
+
+/// Whether a cubic does not turn in [0, 1] for certain: its slope's Bezier coefficients are of one sign.
+HWY_INLINE MF is_monotone(const Cubic& c) {
+  const DF d;
+  const VF zero = HN::Zero(d);
+  const VF d_1 = HN::Add(c.p_1, c.p_2), d_2 = HN::Add(d_1, HN::MulAdd(HN::Set(d, 3.0f), c.p_3, c.p_2));
+  const VF least = HN::Min(c.p_1, HN::Min(d_1, d_2)), most = HN::Max(c.p_1, HN::Max(d_1, d_2));
+  return HN::Not(HN::And(HN::Lt(least, zero), HN::Gt(most, zero)));
+}
+
+template <class Lookup>
+HWY_INLINE VF color_slope_of(const Lookup& table, typename Lookup::Index index) {
+  return HN::Max(
+      HN::Max(HN::Abs(table.at(LaneTable::red_slope, index)), HN::Abs(table.at(LaneTable::green_slope, index))),
+      HN::Abs(table.at(LaneTable::blue_slope, index)));
+}
+
+/// Bounds that hold in all of an interval; extinction and dimming are the caller's.
+template <class Lookup>
+HWY_INLINE RoughnessBounds bounds_of(const Lookup& table, typename Lookup::Index index, VF color_slope,
+                                     float largest_color, VF per_tolerance) {
+  const DF d;
+  const VF slope = HN::Mul(HN::Set(d, 2.0f), HN::Abs(table.at(LaneTable::half_extinction_slope, index)));
+  RoughnessBounds bounds;
+  bounds.product = HN::Mul(HN::Set(d, 0.1f), HN::Mul(slope, color_slope));
+  if (table.independent) bounds.product = HN::Zero(d);
+  bounds.product = HN::Mul(bounds.product, per_tolerance);
+  bounds.shadow = HN::Mul(HN::Mul(HN::Mul(slope, slope), HN::Set(d, 0.03f * largest_color)), per_tolerance);
+  return bounds;
+}
+
+/// Depths that differ are told apart by how much; light beside them is each one's own.
+HWY_INLINE void set_close_errors(const Excess& excess, const Progress& progress, const LaneErrorBound& bound,
+                                 StretchErrors& errors) {
+  const DF d;
+  const VF error = excess.error(progress, bound), most_error = HN::Set(d, bound.most);
+  const VF share = HN::Div(excess.ramps, HN::Max(excess.depth, HN::Set(d, 1e-30f)));
+  const VF of_ramps = HN::Mul(error, share);
+  errors.ramps = HN::Min(most_error, HN::Add(of_ramps, excess.beside_ramps));
+  errors.steps = HN::Min(most_error, HN::Add(HN::Sub(error, of_ramps), excess.beside_steps));
+}
+
 /// A stretch is halved no more often; 4096 of an optical depth of 1e4 are still thin.
 constexpr int most_halvings = 12;
 
@@ -321,21 +376,10 @@ HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& fram
   StretchErrors errors{zero, zero, zero};
   Excess excess{zero, zero, zero, zero, zero, zero, zero, zero};
   if (HN::AllFalse(d, active)) return errors;
-  const VF s_0 = HN::IfThenElseZero(active, piece.s_0), s_mid = HN::IfThenElseZero(active, piece.s_mid),
-           s_1 = HN::IfThenElseZero(active, piece.s_1), p_3 = HN::IfThenElseZero(active, piece.p_3);
-  Cubic c;
-  c.p_0 = s_0;
-  c.p_3 = p_3;
-  const VF bend = HN::Sub(HN::Add(s_0, s_1), HN::Add(s_mid, s_mid));
-  c.p_2 = HN::NegMulAdd(HN::Set(d, 1.5f), p_3, HN::Add(bend, bend));
-  c.p_1 = HN::Sub(HN::Sub(HN::Sub(s_1, s_0), c.p_2), p_3);
-
-  // Monotone if the slope's Bezier coefficients are of one sign.
-  const VF d_1 = HN::Add(c.p_1, c.p_2), d_2 = HN::Add(d_1, HN::MulAdd(HN::Set(d, 3.0f), p_3, c.p_2));
-  const VF least = HN::Min(c.p_1, HN::Min(d_1, d_2)), most = HN::Max(c.p_1, HN::Max(d_1, d_2));
+  const Cubic c = cubic_of(piece, active);
+  const VF s_0 = c.p_0, s_1 = HN::IfThenElseZero(active, piece.s_1), p_3 = c.p_3;
   VF turn_1 = one, turn_2 = one;
-  if (!HN::AllFalse(d, HN::And(active, HN::And(HN::Lt(least, zero), HN::Gt(most, zero)))))
-    find_extrema(c, turn_1, turn_2);
+  if (!HN::AllFalse(d, HN::AndNot(is_monotone(c), active))) find_extrema(c, turn_1, turn_2);
 
   const VF per_tolerance = HN::Set(d, 1 / frame.piece_tolerance);
   const bool has_steps = frame.error_bound != nullptr && !frame.error_bound->step.empty();
@@ -358,15 +402,8 @@ HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& fram
       end = HN::IfThenElse(crosses, at_knot, end);
       s_end = HN::IfThenElse(crosses, knot, s_end);
     }
-    const VF slope = HN::Mul(HN::Set(d, 2.0f), HN::Abs(table.at(LaneTable::half_extinction_slope, index)));
-    const VF color_slope = HN::Max(
-        HN::Max(HN::Abs(table.at(LaneTable::red_slope, index)), HN::Abs(table.at(LaneTable::green_slope, index))),
-        HN::Abs(table.at(LaneTable::blue_slope, index)));
-    RoughnessBounds bounds;
-    bounds.product = HN::Mul(HN::Set(d, 0.1f), HN::Mul(slope, color_slope));
-    if (table.independent) bounds.product = zero;
-    bounds.product = HN::Mul(bounds.product, per_tolerance);
-    bounds.shadow = HN::Mul(HN::Mul(HN::Mul(slope, slope), HN::Set(d, 0.03f * frame.largest_color)), per_tolerance);
+    const VF color_slope = color_slope_of(table, index);
+    RoughnessBounds bounds = bounds_of(table, index, color_slope, frame.largest_color, per_tolerance);
     // What is dimmed already needs no care: behind 14 optical depths any of it is right.
     const VF seen = HN::Mul(per_tolerance, HN::Mul(color_slope, progress.transmittance));
     VF extent, m, length;
@@ -417,14 +454,7 @@ HWY_NOINLINE StretchErrors walk_cubic(const Lookup& table, const FrameView& fram
   }
   // Rounds that do not do.
   errors.left = HN::Add(errors.left, HN::IfThenElseZero(active, progress.transmittance));
-  if (closely) {
-    // Depths that differ are told apart by how much; light beside them is each one's own.
-    const VF error = excess.error(progress, *frame.error_bound), most_error = HN::Set(d, frame.error_bound->most);
-    const VF share = HN::Div(excess.ramps, HN::Max(excess.depth, HN::Set(d, 1e-30f)));
-    const VF of_ramps = HN::Mul(error, share);
-    errors.ramps = HN::Min(most_error, HN::Add(of_ramps, excess.beside_ramps));
-    errors.steps = HN::Min(most_error, HN::Add(HN::Sub(error, of_ramps), excess.beside_steps));
-  }
+  if (closely) set_close_errors(excess, progress, *frame.error_bound, errors);
   return errors;
 }
 

@@ -65,6 +65,32 @@ HWY_NOINLINE bool crosses_planes(const PixelRays& rays, int x0, int y0, int axis
   return std::max(least, -most) > 4 * in_plane_within * largest;
 }
 
+/// Puts rays a + b k that run in a plane of the lattice beside it, by `side`; `reach`: farthest of k from their origin.
+template <class V>
+HWY_INLINE void keep_side(V reach, double side, V& a, V& b) {
+  namespace HN = hwy::HWY_NAMESPACE;
+  const HN::DFromV<V> d;
+  const V plane = HN::Round(a), within = HN::Set(d, in_plane_within);
+  const auto in_plane = HN::And(HN::Lt(HN::Mul(HN::Abs(b), reach), within), HN::Lt(HN::Abs(HN::Sub(a, plane)), within));
+  a = HN::IfThenElse(in_plane, HN::Add(plane, HN::Set(d, side)), a);
+  b = HN::IfThenElse(in_plane, HN::Zero(d), b);
+}
+
+/// Cuts [in, out] to where a + b k is in [0, end].
+template <class V>
+HWY_INLINE void clip(V a, V b, double end, V& in, V& out) {
+  namespace HN = hwy::HWY_NAMESPACE;
+  const HN::DFromV<V> d;
+  const V zero = HN::Zero(d), one = HN::Set(d, 1.0), last = HN::Set(d, end);
+  const auto level = HN::Eq(b, zero);
+  const auto outside = HN::And(level, HN::Or(HN::Lt(a, zero), HN::Gt(a, last)));
+  const V per_b = HN::Div(one, HN::IfThenElse(level, one, b));
+  const V first = HN::Mul(HN::Neg(a), per_b), second = HN::Mul(HN::Sub(last, a), per_b);
+  in = HN::Max(in, HN::IfThenElse(level, in, HN::Min(first, second)));
+  out = HN::Min(out, HN::IfThenElse(level, out, HN::Max(first, second)));
+  out = HN::IfThenElse(outside, HN::Set(d, -1.0), out);
+}
+
 /// Lays the tile's rays of one axis code out for the kernels; those of others are empty. The light is left alone.
 HWY_NOINLINE void set_up_rays(const FrameView& frame, int x0, int y0, int code, TileRays& out) {
   const PixelRays& rays = *frame.rays;
@@ -104,29 +130,13 @@ HWY_NOINLINE void set_up_rays(const FrameView& frame, int x0, int y0, int code, 
     auto bx = HN::Mul(di, per_k), by = HN::Mul(dj, per_k);
     auto ax = HN::NegMulAdd(ok, bx, origin(axes.i)), ay = HN::NegMulAdd(ok, by, origin(axes.j));
     const auto reach = HN::Max(HN::Abs(ok), HN::Abs(HN::Sub(set(end_k), ok)));
-    const auto keep_side = [&](auto& a, auto& b, int axis) HWY_ATTR {
-      const auto plane = HN::Round(a);
-      const auto in_plane = HN::And(HN::Lt(HN::Mul(HN::Abs(b), reach), set(in_plane_within)),
-                                    HN::Lt(HN::Abs(HN::Sub(a, plane)), set(in_plane_within)));
-      a = HN::IfThenElse(in_plane, HN::Add(plane, set(side_of_plane(rays, perspective, axis))), a);
-      b = HN::IfThenElse(in_plane, zero, b);
-    };
-    if (level_i) keep_side(ax, bx, axes.i);
-    if (level_j) keep_side(ay, by, axes.j);
+    if (level_i) keep_side(reach, side_of_plane(rays, perspective, axes.i), ax, bx);
+    if (level_j) keep_side(reach, side_of_plane(rays, perspective, axes.j), ay, by);
     auto in = HN::Max(zero, HN::MulAdd(set(rays.near_depth), dk, ok));
     auto out_k = set(end_k);
     if (std::isfinite(rays.far_depth)) out_k = HN::Min(out_k, HN::MulAdd(set(rays.far_depth), dk, ok));
-    const auto clip = [&](auto a, auto b, double end) HWY_ATTR {
-      const auto level = HN::Eq(b, zero);
-      const auto outside = HN::And(level, HN::Or(HN::Lt(a, zero), HN::Gt(a, set(end))));
-      const auto per_b = HN::Div(one, HN::IfThenElse(level, one, b));
-      const auto first = HN::Mul(HN::Neg(a), per_b), second = HN::Mul(HN::Sub(set(end), a), per_b);
-      in = HN::Max(in, HN::IfThenElse(level, in, HN::Min(first, second)));
-      out_k = HN::Min(out_k, HN::IfThenElse(level, out_k, HN::Max(first, second)));
-      out_k = HN::IfThenElse(outside, set(-1.0), out_k);
-    };
-    clip(ax, bx, end_i);
-    clip(ay, by, end_j);
+    clip(ax, bx, end_i, in, out_k);
+    clip(ay, by, end_j, in, out_k);
     const auto kept = HN::And(here, HN::Lt(in, out_k));
     const auto tx = HN::Mul(HN::Sub(px, set(rays.tangent_x0)), set(rays.tangent_step)),
                ty = HN::Mul(HN::Sub(py, set(rays.tangent_y0)), set(rays.tangent_step));

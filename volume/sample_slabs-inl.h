@@ -108,100 +108,139 @@ HWY_INLINE void look_up(const PreintegratedTable& table, VF front, VF back, VF (
   }
 }
 
+/// The steps of a packet's lanes [ray, ray + Lanes()) whose places are in a chunk, relative to its first plane.
+struct ChunkSteps {
+  static constexpr std::size_t most = HN::MaxLanes(DF());
+  HWY_ALIGN float begin[most], each[most], last[most], count[most];
+  HWY_ALIGN float final_step[most];  ///< number of the ray's last step; -1 if it is not in the chunk
+  HWY_ALIGN float entry[most];       ///< where the ray enters the volume; -1 if not in the chunk
+  std::int64_t longest = 0;          ///< most of count
+  bool some_enter = false;
+
+  HWY_INLINE ChunkSteps(const ChunkView& chunk, int ray, const TileRays& rays) {
+    const FrameView& frame = chunk.frame;
+    const double from = static_cast<double>(chunk.box.first_k), to = from + chunk.box.slabs;
+    const bool final_chunk =
+        chunk.box.first_k + chunk.box.slabs >= frame.voxels[static_cast<std::size_t>(chunk.axes.k)];
+    for (std::size_t l = 0; l < HN::Lanes(DF()); ++l) {
+      const std::size_t r = static_cast<std::size_t>(ray) + l;
+      begin[l] = each[l] = last[l] = 0, count[l] = 0, final_step[l] = entry[l] = -1;
+      if (!(rays.from[r] < rays.to[r]) || rays.transmittance[r] < frame.least_transmittance) continue;
+      const RaySteps s(rays.k_in[r], rays.k_out[r], frame.step / static_cast<double>(rays.length_k[r]));
+      const bool at_end = frame.preintegrated != nullptr;
+      // Chunks share the steps of a ray by planes, boxes by where the ray goes from one to the next.
+      const std::int64_t first_step =
+          s.before(rays.from[r] > rays.k_in[r] ? std::max(from, rays.from[r]) : from, at_end);
+      const std::int64_t end_step = rays.to[r] < rays.k_out[r] ? s.before(std::min(to, rays.to[r]), at_end)
+                                    : final_chunk              ? s.count
+                                                               : s.before(to, at_end);
+      count[l] = static_cast<float>(end_step - first_step);
+      longest = std::max(longest, end_step - first_step);
+      begin[l] = static_cast<float>(s.k_in + static_cast<double>(first_step) * s.each - from);
+      each[l] = static_cast<float>(s.each), last[l] = static_cast<float>(s.last);
+      if (end_step == s.count) final_step[l] = static_cast<float>(s.count - 1 - first_step);
+      if (rays.k_in[r] >= from && rays.k_in[r] < to && rays.from[r] <= rays.k_in[r])
+        entry[l] = static_cast<float>(rays.k_in[r] - from), some_enter = true;
+    }
+  }
+};
+
+/// Optical depth of a step, and its light relative to what passes.
+struct StepLight {
+  VF depth, color[3];
+};
+
+/// Of a step with scalar s all along, as long as `extent` in k; nothing where s is blank or lanes are not active.
+template <class Lookup>
+HWY_INLINE StepLight sampled_step(const Lookup& lookup, VF s, VF extent, VF length_k, MF active) {
+  const DF d;
+  const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f);
+  const MF good = HN::And(active, HN::Eq(s, s));
+  const VF scalar = HN::IfThenElseZero(good, s);
+  const auto index = lookup.index(lookup.locate(scalar, HN::Eq(zero, zero)), good);
+  const VF off = HN::Sub(scalar, lookup.at(LaneTable::base, index));
+  const VF kappa = HN::Max(zero, HN::MulAdd(lookup.at(LaneTable::half_extinction_slope, index), off,
+                                            lookup.at(LaneTable::half_extinction, index)));
+  const VF length = HN::IfThenElseZero(good, HN::Mul(extent, length_k));
+  StepLight light;
+  light.depth = HN::Mul(HN::Add(kappa, kappa), length);
+  const VF opacity = HN::Sub(one, HN::Exp(d, HN::Neg(light.depth)));
+  // Independent emission: the mean transmittance of the step, 1 where it is thin.
+  const VF mean = HN::IfThenElse(HN::Lt(light.depth, HN::Set(d, 1e-3f)),
+                                 HN::NegMulAdd(HN::Set(d, 0.5f), light.depth, one), HN::Div(opacity, light.depth));
+  const VF weight = lookup.independent ? HN::Mul(length, mean) : opacity;
+  for (int c = 0; c < 3; ++c)
+    light.color[c] = HN::Mul(weight, HN::MulAdd(lookup.at(LaneTable::red_slope + 2 * c, index), off,
+                                                lookup.at(LaneTable::red + 2 * c, index)));
+  return light;
+}
+
+/// Of a step between two scalars by the table; of those that are the ray's last and shorter, as the table is made.
+template <class Lookup>
+HWY_INLINE StepLight preintegrated_step(const PreintegratedTable& table, const Lookup& lookup, VF front, VF back,
+                                        VF length, MF active, MF last) {
+  const DF d;
+  // Blank samples give NaN, at either end.
+  const MF good = HN::And(active, HN::And(HN::Eq(back, back), HN::Eq(front, front)));
+  VF found[4];
+  look_up(table, HN::IfThenElseZero(good, front), HN::IfThenElseZero(good, back), found);
+  StepLight light;
+  light.depth = HN::IfThenElseZero(good, found[0]);
+  for (int c = 0; c < 3; ++c) light.color[c] = HN::IfThenElseZero(good, found[c + 1]);
+  // The last step is shorter than the table's, and its light is no share of theirs: integrated as the table is.
+  const MF final_one = HN::And(good, last);
+  if (!HN::AllFalse(d, final_one)) {
+    const CL::Light exact = CL::integrate_lanes(lookup, length, front, back, final_one);
+    light.depth = HN::IfThenElse(final_one, exact.optical_depth, light.depth);
+    const VF own[] = {exact.red, exact.green, exact.blue};
+    for (int c = 0; c < 3; ++c) light.color[c] = HN::IfThenElse(final_one, own[c], light.color[c]);
+  }
+  return light;
+}
+
 template <bool cell_data, class Lookup>
 HWY_INLINE void sample_lanes(const ChunkView& chunk, const Lookup& lookup, const std::int32_t* slice_offsets, int ray,
                              TileRays& rays, TileCounts& counts) {
   const DF d;
-  const FrameView& frame = chunk.frame;
-  const PreintegratedTable* const table = frame.preintegrated;
-  constexpr std::size_t most = HN::MaxLanes(DF());
+  const PreintegratedTable* const table = chunk.frame.preintegrated;
   const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f);
   const Lanes lanes = lanes_of(chunk, ray, 0, 0, rays);
-  HWY_ALIGN float begin[most], each[most], last[most], steps[most], final_step[most], entry[most];
-  bool some_enter = false;
-  const double from = static_cast<double>(chunk.box.first_k), to = from + chunk.box.slabs;
-  const bool final_chunk = chunk.box.first_k + chunk.box.slabs >= frame.voxels[static_cast<std::size_t>(chunk.axes.k)];
-  std::int64_t longest = 0;
-  for (std::size_t l = 0; l < HN::Lanes(d); ++l) {
-    const std::size_t r = static_cast<std::size_t>(ray) + l;
-    begin[l] = each[l] = last[l] = 0, steps[l] = 0, final_step[l] = entry[l] = -1;
-    if (!(rays.from[r] < rays.to[r]) || rays.transmittance[r] < frame.least_transmittance) continue;
-    const RaySteps s(rays.k_in[r], rays.k_out[r], frame.step / static_cast<double>(rays.length_k[r]));
-    const bool at_end = table != nullptr;
-    // Chunks share the steps of a ray by planes, boxes by where the ray goes from one to the next.
-    const std::int64_t first_step = s.before(rays.from[r] > rays.k_in[r] ? std::max(from, rays.from[r]) : from, at_end),
-                       end_step = rays.to[r] < rays.k_out[r] ? s.before(std::min(to, rays.to[r]), at_end)
-                                  : final_chunk              ? s.count
-                                                             : s.before(to, at_end);
-    steps[l] = static_cast<float>(end_step - first_step);
-    longest = std::max(longest, end_step - first_step);
-    begin[l] = static_cast<float>(s.k_in + static_cast<double>(first_step) * s.each - from);
-    each[l] = static_cast<float>(s.each), last[l] = static_cast<float>(s.last);
-    if (end_step == s.count) final_step[l] = static_cast<float>(s.count - 1 - first_step);
-    if (rays.k_in[r] >= from && rays.k_in[r] < to && rays.from[r] <= rays.k_in[r])
-      entry[l] = static_cast<float>(rays.k_in[r] - from), some_enter = true;
-  }
-  if (table != nullptr && some_enter) {
-    const VF place = HN::Load(d, entry);
+  const ChunkSteps steps(chunk, ray, rays);
+  if (table != nullptr && steps.some_enter) {
+    const VF place = HN::Load(d, steps.entry);
     const MF enters = HN::Ge(place, zero);
     const VF front = field_in_block<cell_data>(chunk, slice_offsets, lanes, place, enters);
     HN::StoreU(HN::IfThenElse(enters, front, HN::LoadU(d, rays.carried + ray)), d, rays.carried + ray);
   }
-  if (longest == 0) return;
-  const VF step_begin = HN::Load(d, begin), step_each = HN::Load(d, each), step_last = HN::Load(d, last),
-           step_count = HN::Load(d, steps), step_final = HN::Load(d, final_step);
+  if (steps.longest == 0) return;
+  const VF step_begin = HN::Load(d, steps.begin), step_each = HN::Load(d, steps.each),
+           step_last = HN::Load(d, steps.last), step_count = HN::Load(d, steps.count),
+           step_final = HN::Load(d, steps.final_step);
   VF through = HN::LoadU(d, rays.transmittance + ray), alpha = HN::LoadU(d, rays.alpha + ray);
   VF light[3] = {HN::LoadU(d, rays.red + ray), HN::LoadU(d, rays.green + ray), HN::LoadU(d, rays.blue + ray)};
   VF carried = HN::LoadU(d, rays.carried + ray);
-  const VF least = HN::Set(d, frame.least_transmittance);
+  const VF least = HN::Set(d, chunk.frame.least_transmittance);
   RayNotes notes{HN::Set(d, -1.0f), HN::Gt(alpha, zero), zero, zero};
-  for (std::int64_t m = 0; m < longest; ++m) {
+  for (std::int64_t m = 0; m < steps.longest; ++m) {
     const VF number = HN::Set(d, static_cast<float>(m));
     const MF active = HN::And(HN::Lt(number, step_count), HN::Ge(through, least));
     if (HN::AllFalse(d, active)) break;
     counts.samples += HN::CountTrue(d, active);
-    const VF extent = HN::IfThenElse(HN::Eq(number, step_final), step_last, step_each);
+    const MF last = HN::Eq(number, step_final);
+    const VF extent = HN::IfThenElse(last, step_last, step_each);
     const VF k = HN::MulAdd(number, step_each, step_begin);
-    VF depth, color[3];  // optical depth, and light relative to what passes
+    StepLight step;
     if (table == nullptr) {
       const VF s =
           field_in_block<cell_data>(chunk, slice_offsets, lanes, HN::MulAdd(extent, HN::Set(d, 0.5f), k), active);
-      const MF good = HN::And(active, HN::Eq(s, s));
-      const VF scalar = HN::IfThenElseZero(good, s);
-      const auto index = lookup.index(lookup.locate(scalar, HN::Eq(zero, zero)), good);
-      const VF off = HN::Sub(scalar, lookup.at(LaneTable::base, index));
-      const VF kappa = HN::Max(zero, HN::MulAdd(lookup.at(LaneTable::half_extinction_slope, index), off,
-                                                lookup.at(LaneTable::half_extinction, index)));
-      const VF length = HN::IfThenElseZero(good, HN::Mul(extent, lanes.length));
-      depth = HN::Mul(HN::Add(kappa, kappa), length);
-      const VF opacity = HN::Sub(one, HN::Exp(d, HN::Neg(depth)));
-      // Independent emission: the mean transmittance of the step, 1 where it is thin.
-      const VF mean = HN::IfThenElse(HN::Lt(depth, HN::Set(d, 1e-3f)), HN::NegMulAdd(HN::Set(d, 0.5f), depth, one),
-                                     HN::Div(opacity, depth));
-      const VF weight = lookup.independent ? HN::Mul(length, mean) : opacity;
-      for (int c = 0; c < 3; ++c)
-        color[c] = HN::Mul(weight, HN::MulAdd(lookup.at(LaneTable::red_slope + 2 * c, index), off,
-                                              lookup.at(LaneTable::red + 2 * c, index)));
+      step = sampled_step(lookup, s, extent, lanes.length, active);
     } else {
       const VF back = field_in_block<cell_data>(chunk, slice_offsets, lanes, HN::Add(k, extent), active);
-      // Blank samples give NaN, at either end.
-      const MF good = HN::And(active, HN::And(HN::Eq(back, back), HN::Eq(carried, carried)));
-      VF found[4];
-      look_up(*table, HN::IfThenElseZero(good, carried), HN::IfThenElseZero(good, back), found);
-      depth = HN::IfThenElseZero(good, found[0]);
-      for (int c = 0; c < 3; ++c) color[c] = HN::IfThenElseZero(good, found[c + 1]);
-      // The last step is shorter than the table's, and its light is no share of theirs: integrated as the table is.
-      const MF final_one = HN::And(good, HN::Eq(number, step_final));
-      if (!HN::AllFalse(d, final_one)) {
-        const CL::Light exact = CL::integrate_lanes(lookup, HN::Mul(extent, lanes.length), carried, back, final_one);
-        depth = HN::IfThenElse(final_one, exact.optical_depth, depth);
-        const VF own[] = {exact.red, exact.green, exact.blue};
-        for (int c = 0; c < 3; ++c) color[c] = HN::IfThenElse(final_one, own[c], color[c]);
-      }
+      step = preintegrated_step(*table, lookup, carried, back, HN::Mul(extent, lanes.length), active, last);
       carried = HN::IfThenElse(active, back, carried);
     }
-    for (int c = 0; c < 3; ++c) light[c] = HN::MulAdd(through, color[c], light[c]);
-    const VF hidden = HN::Mul(through, HN::Sub(one, HN::Exp(d, HN::Neg(depth))));
+    for (int c = 0; c < 3; ++c) light[c] = HN::MulAdd(through, step.color[c], light[c]);
+    const VF hidden = HN::Mul(through, HN::Sub(one, HN::Exp(d, HN::Neg(step.depth))));
     alpha = HN::Add(alpha, hidden);
     through = HN::Sub(through, hidden);
     const MF now = HN::AndNot(notes.seen, HN::Gt(alpha, zero));
@@ -214,12 +253,12 @@ HWY_INLINE void sample_lanes(const ChunkView& chunk, const Lookup& lookup, const
   HN::StoreU(light[1], d, rays.green + ray);
   HN::StoreU(light[2], d, rays.blue + ray);
   HN::StoreU(carried, d, rays.carried + ray);
-  HWY_ALIGN float place[most];
+  HWY_ALIGN float place[HN::MaxLanes(DF())];
   HN::Store(notes.first, d, place);
   for (std::size_t l = 0; l < HN::Lanes(d); ++l) {
     double& first_k = rays.first_k[static_cast<std::size_t>(ray) + l];
     if (std::isnan(first_k) && rays.alpha[static_cast<std::size_t>(ray) + l] > 0)
-      first_k = std::max(0.0, from + static_cast<double>(place[l]));
+      first_k = std::max(0.0, static_cast<double>(chunk.box.first_k) + static_cast<double>(place[l]));
   }
 }
 

@@ -171,6 +171,7 @@ struct VoxelAt {
 
 /// The field of slab n of the chunk into place m of `lines`, but for its back plane. `pitch` elements of a slice lie
 /// between rows; `voxels` counts, lane by lane, the voxels that live lanes visit.
+// Long: three voxels share corners, differences and places along the ray; in parts, each would be given most of them.
 template <class Window>
 HWY_INLINE void find_line(const MirroredLanes& lanes, const Window& window, const WindowPlace& place,
                           std::ptrdiff_t pitch, int n, int m, SlabLines& lines, VF& voxels) {
