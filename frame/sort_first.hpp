@@ -47,8 +47,8 @@ struct FinishedVolumeFrame {
 };
 
 /// Renders pictures of volumes with all ranks of `transport` (sort first): each casts the rays of one rectangle through
-/// its own renderer of the same volume, rank 0 gathers (Moloney 2008, 6.3.2). A single rank casts all and splits
-/// nothing.
+/// its own renderer of the same volume, rank 0 gathers (Moloney, "Ray Coherence in Parallel Volume Rendering", SFU
+/// 2008, 6.3.2). A single rank casts all and splits nothing.
 ///
 /// The split is found by all ranks together in two stages (volume/image_split.hpp): each finds the cost of the
 /// rectangle it had in the frame before, of an even tile in the first one. The bits of the picture are those of one

@@ -146,12 +146,12 @@ reference::Suspects suspects(const scene::Image& image, const scene::SampleSourc
   collector.add(Suspicion::step, scene.step);
   collector.add(Suspicion::border, scene.border);
   collector.add(Suspicion::tie, scene.tie);
-  collector.add(Suspicion::doubt, suspicion_of(error_bounds, least));
+  collector.add(Suspicion::estimate, suspicion_of(error_bounds, least));
   reference::Suspects found = collector.take();
   // Pictures of rectilinear grids are made that very way.
   if (source.geometry().rectilinear() || !promised_error(settings)) return found;
   const SuspicionMap again = second_opinion(image, source, camera, transfer_function, settings, found, count);
-  found[static_cast<std::size_t>(Suspicion::doubt)] = reference::ranked(again, image.size, count);
+  found[static_cast<std::size_t>(Suspicion::estimate)] = reference::ranked(again, image.size, count);
   return found;
 }
 

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <limits>
-#include <numbers>
 
 #include "projection/project_lanes.hpp"
 
@@ -17,49 +15,39 @@ double on_grid(double pixel) {
   return std::isfinite(scaled) ? std::nearbyint(scaled) / cells : pixel;
 }
 
-}  // namespace
-
-PixelSpace::PixelSpace(const scene::Camera& camera, scene::ImageSize size) : size_(size) {
+scene::PixelView checked_view(const scene::Camera& camera, scene::ImageSize size) {
   scene::validate(camera);
   scene::validate(size);
-  basis_ = scene::view_basis(camera);
-  position_ = camera.position;
-  perspective_ = camera.projection == scene::ProjectionKind::perspective;
-  const double half_height = 0.5 * size.height;
-  pixels_per_unit_ =
-      half_height / (perspective_ ? std::tan(camera.view_angle * (std::numbers::pi / 360)) : camera.parallel_scale);
-  near_ = camera.clipping_range ? std::max(0.0, camera.clipping_range->near_distance) : 0;
-  far_ = camera.clipping_range ? camera.clipping_range->far_distance : std::numeric_limits<double>::infinity();
+  return {camera, size};
 }
 
+}  // namespace
+
+PixelSpace::PixelSpace(const scene::Camera& camera, scene::ImageSize size)
+    : view_(checked_view(camera, size)),
+      size_(size),
+      near_(camera.clipping_range ? std::max(0.0, camera.clipping_range->near_distance) : 0),
+      far_(camera.clipping_range ? camera.clipping_range->far_distance : std::numeric_limits<double>::infinity()) {}
+
 PixelVertex PixelSpace::project(const glm::dvec3& p_world) const {
-  const glm::dvec3 p = p_world - position_;
-  const double across = glm::dot(basis_.right, p), upward = glm::dot(basis_.up, p), depth = glm::dot(basis_.forward, p);
-  const double half_width = 0.5 * size_.width, half_height = 0.5 * size_.height;
-  if (!perspective_)
-    return {on_grid(half_width + across * pixels_per_unit_), on_grid(half_height - upward * pixels_per_unit_), 1,
-            depth};
-  return {half_width * depth + across * pixels_per_unit_, half_height * depth - upward * pixels_per_unit_, depth,
-          depth};
+  PixelVertex v = view_.project(p_world);
+  if (!view_.perspective) v.x = on_grid(v.x), v.y = on_grid(v.y);
+  return v;
 }
 
 void PixelSpace::project(std::span<const glm::dvec3> p_world, std::span<PixelVertex> out) const {
-  const LinearMap map{{position_.x, position_.y, position_.z},
-                      {basis_.right.x, basis_.right.y, basis_.right.z},
-                      {basis_.up.x, basis_.up.y, basis_.up.z},
-                      {basis_.forward.x, basis_.forward.y, basis_.forward.z},
-                      0.5 * size_.width,
-                      0.5 * size_.height,
-                      pixels_per_unit_,
-                      perspective_};
+  const auto& [right, up, forward] = view_.basis;
+  const glm::dvec3& position = view_.position;
+  const LinearMap map{{position.x, position.y, position.z},
+                      {right.x, right.y, right.z},
+                      {up.x, up.y, up.z},
+                      {forward.x, forward.y, forward.z},
+                      view_.half_width,
+                      view_.half_height,
+                      view_.pixels_per_unit,
+                      view_.perspective};
   const std::size_t done = project_lanes(map, p_world, out);
   for (std::size_t i = done; i < p_world.size(); ++i) out[i] = project(p_world[i]);
-}
-
-double PixelSpace::length_per_depth(double x, double y) const {
-  if (!perspective_) return 1;
-  const double tx = (x - 0.5 * size_.width) / pixels_per_unit_, ty = (y - 0.5 * size_.height) / pixels_per_unit_;
-  return std::sqrt(1 + tx * tx + ty * ty);
 }
 
 }  // namespace tessera::projection

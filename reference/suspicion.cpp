@@ -49,7 +49,7 @@ void spread(std::vector<std::size_t>& pixels, int width) {
 }  // namespace
 
 const char* name_of(Suspicion suspicion) {
-  constexpr std::array<const char*, suspicions> names{"edge", "outlier", "block", "plateau", "doubt",
+  constexpr std::array<const char*, suspicions> names{"edge", "outlier", "block", "plateau", "estimate",
                                                       "step", "border",  "tie",   "depth"};
   return names[static_cast<std::size_t>(suspicion)];
 }

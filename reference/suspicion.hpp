@@ -15,15 +15,15 @@ namespace tessera::reference {
 /// Why a pixel is looked at rather than another. Of a picture (image_suspicion.hpp), of a scene (mesh_suspicion.hpp,
 /// grid_suspicion.hpp), of the renderer that made the picture.
 enum class Suspicion {
-  edge,     ///< differs much from a neighbour
-  outlier,  ///< does not fit what its neighbours lead up to, along any direction
-  block,    ///< in a 4x4 block that stands out against what is around it: one packet of rays
-  plateau,  ///< one of many of one colour: a pixel of each
-  doubt,    ///< the renderer's own estimate of the error is large, or another way of its own comes out otherwise
-  step,     ///< light there hangs on roundings of the field: steps, steep ramps
-  border,   ///< at blank (NaN) samples of a grid
-  tie,      ///< the ray passes through an edge, a vertex or a face seen edge-on, or very nearly does
-  depth     ///< light there hangs on roundings of depth: dense, thin matter
+  edge,      ///< differs much from a neighbour
+  outlier,   ///< does not fit what its neighbours lead up to, along any direction
+  block,     ///< in a 4x4 block that stands out against what is around it: one packet of rays
+  plateau,   ///< one of many of one colour: a pixel of each
+  estimate,  ///< the renderer's own estimate of the error is large, or another way of its own comes out otherwise
+  step,      ///< light there hangs on roundings of the field: steps, steep ramps
+  border,    ///< at blank (NaN) samples of a grid
+  tie,       ///< the ray passes through an edge, a vertex or a face seen edge-on, or very nearly does
+  depth      ///< light there hangs on roundings of depth: dense, thin matter
 };
 inline constexpr std::size_t suspicions = 9;
 

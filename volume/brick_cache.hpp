@@ -18,7 +18,8 @@
 
 namespace tessera::volume {
 
-/// Bricks in memory, loaded from the source as they are asked for, within a budget of bytes (Moloney 2008, 3.3).
+/// Bricks in memory, loaded from the source as they are asked for, within a budget of bytes (Moloney, "Ray Coherence in
+/// Parallel Volume Rendering", SFU 2008, 3.3).
 ///
 /// Samples  as stored; i fastest, rows and slices as far apart as BrickLayout::room() says.
 /// Threads  any number. A thread holds at most one brick at a time: acquire() may wait until another lets go of its

@@ -10,7 +10,8 @@
 
 namespace tessera::volume {
 
-/// How a volume is cut into bricks of size^3 voxels (Moloney 2008, 3.2). Bricks at the high ends hold what is left.
+/// How a volume is cut into bricks of size^3 voxels (Moloney, "Ray Coherence in Parallel Volume Rendering", SFU 2008,
+/// 3.2). Bricks at the high ends hold what is left.
 ///
 /// Numbers  brick (a, b, c) is number a + bricks[0] * (b + bricks[1] * c).
 /// Samples  point data: voxels of a brick and one sample more along each axis, which it shares with its neighbour. Cell

@@ -10,8 +10,8 @@
 #include <numbers>
 
 #include "scene/error.hpp"
+#include "scene/pixel_view.hpp"
 #include "volume/frame_view.hpp"
-#include "volume/pixel_view.hpp"
 
 namespace tessera::volume {
 namespace {
@@ -51,7 +51,7 @@ class Costs {
     for (int c = 0; c < 8; ++c) {
       const glm::dvec3 index((c & 1) != 0 ? box.high.x : box.low.x, (c & 2) != 0 ? box.high.y : box.low.y,
                              (c & 4) != 0 ? box.high.z : box.low.z);
-      const PixelView::Place v = space_.project(scene::world_of_index(geometry_, index));
+      const scene::PixelPlace v = space_.project(scene::world_of_index(geometry_, index));
       o.behind_eye = o.behind_eye || !(v.w > 0) || !(v.depth > rays_.near_depth);
       o.corner[static_cast<std::size_t>(c)] = glm::dvec2(v.x, v.y) / v.w * settings_.resolution;
       low = glm::min(low, o.corner[static_cast<std::size_t>(c)]);
@@ -62,7 +62,7 @@ class Costs {
     o.x0 = std::max(region_.x0, first(low.x)), o.x1 = std::min(region_.x1, first(high.x) + 1);
     o.y0 = std::max(region_.y0, first(low.y)), o.y1 = std::min(region_.y1, first(high.y) + 1);
     const glm::dvec3 centre = scene::world_of_index(geometry_, 0.5 * (box.low + box.high));
-    const PixelView::Place v = space_.project(centre);
+    const scene::PixelPlace v = space_.project(centre);
     const glm::dvec3 extent = box.high - box.low;
     const double world = mean_voxel_ * mean_voxel_ * mean_voxel_ * extent.x * extent.y * extent.z;
     const double pixel = map_pixel_ * (perspective_ ? v.depth : 1);
@@ -274,7 +274,7 @@ class Costs {
   const scene::GridGeometry& geometry_;
   const CostSettings& settings_;
   scene::PixelRect region_;
-  PixelView space_;
+  scene::PixelView space_;
   PixelRays rays_;
   bool perspective_;
   double mean_voxel_, map_pixel_;  // world units; the latter at depth one under perspective
@@ -308,13 +308,13 @@ scene::ImageSize map_size(scene::ImageSize image, double resolution) {
 }
 
 scene::PixelRect footprint(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry) {
-  const PixelView space(camera, image);
+  const scene::PixelView space(camera, image);
   const scene::GridIndex voxels = geometry.voxels();
   glm::dvec2 low(1e300), high(-1e300);
   for (int c = 0; c < 8; ++c) {
     const glm::dvec3 index((c & 1) * static_cast<double>(voxels[0]), (c >> 1 & 1) * static_cast<double>(voxels[1]),
                            (c >> 2) * static_cast<double>(voxels[2]));
-    const PixelView::Place v = space.project(scene::world_of_index(geometry, index));
+    const scene::PixelPlace v = space.project(scene::world_of_index(geometry, index));
     if (!(v.w > 0) || !(v.depth > 0)) return {0, 0, image.width, image.height};
     low = glm::min(low, glm::dvec2(v.x, v.y) / v.w);
     high = glm::max(high, glm::dvec2(v.x, v.y) / v.w);

@@ -13,7 +13,8 @@
 
 namespace tessera::volume {
 
-/// How the cost of a pixel is found from the boxes behind it (Moloney 2008, 4.1).
+/// How the cost of a pixel is found from the boxes behind it (Moloney, "Ray Coherence in Parallel Volume Rendering",
+/// SFU 2008, 4.1).
 enum class CostMethod {
   accurate,  ///< each ray's way through what the caster visits of it
   backface,  ///< back faces alone, a weight at each corner, linear between

@@ -36,8 +36,8 @@ class SummedArea {
   std::vector<std::uint64_t> sums_;
 };
 
-/// A picture cut into rows of columns, one rectangle a process (Moloney 2008, 4.2): a row may have any number of
-/// columns, so any number of processes works.
+/// A picture cut into rows of columns, one rectangle a process (Moloney, "Ray Coherence in Parallel Volume Rendering",
+/// SFU 2008, 4.2): a row may have any number of columns, so any number of processes works.
 struct ImageSplit {
   std::vector<int> rows;                  ///< edges in image pixels, from 0 to the height
   std::vector<std::vector<int>> columns;  ///< of each row: edges from 0 to the width

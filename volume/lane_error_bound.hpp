@@ -39,10 +39,10 @@ struct LaneErrorBound {
   std::vector<float> step;
   /// Of the edges where `step` is not 0: difference of extinction, colour of the denser side, and the light that
   /// differs beside.
+  std::vector<float> step_extinction, step_red, step_green, step_blue, step_light;
   /// By edge: whether lanes and edge are exact, so that where all of a voxel's samples are on one side of the edge, or
   /// on it, so is the field: it is never beyond its samples.
   std::vector<std::uint8_t> sharp;
-  std::vector<float> step_extinction, step_red, step_green, step_blue, step_light;
   /// By interval of the table: error of light and opacity per unit of length that a voxel's rounding makes; 0 and empty
   /// as above.
   std::vector<float> ramp;

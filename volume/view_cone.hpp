@@ -10,7 +10,8 @@
 namespace tessera::volume {
 
 /// By brick: distance of its centre to the cone round the view frustum of a region's pixels, world units, 0 inside
-/// (Moloney, "Ray Coherence in Parallel Volume Rendering", 2008, 3.3). In orthographic views the cone is a cylinder.
+/// (Moloney, "Ray Coherence in Parallel Volume Rendering", SFU 2008, 3.3). In orthographic views the cone is a
+/// cylinder.
 std::vector<float> cone_distances(const scene::Camera& camera, scene::ImageSize size, const scene::PixelRect& region,
                                   const scene::GridGeometry& geometry, const BrickLayout& layout);
 
