@@ -419,21 +419,12 @@ HWY_NOINLINE void cast_chunk_as(const ChunkView& chunk, TileRays& rays, TileCoun
   }
 }
 
+template <CL::TableForm form>
 HWY_INLINE void cast_chunk(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
-  const auto as = [&]<CL::TableForm form>() HWY_ATTR {
-    if (chunk.frame.cell_data)
-      cast_chunk_as<true, form>(chunk, rays, counts);
-    else
-      cast_chunk_as<false, form>(chunk, rays, counts);
-  };
-  switch (CL::form_of(*chunk.frame.table)) {
-    case CL::TableForm::one_vector:
-      return as.template operator()<CL::TableForm::one_vector>();
-    case CL::TableForm::two_vectors:
-      return as.template operator()<CL::TableForm::two_vectors>();
-    case CL::TableForm::many:
-      return as.template operator()<CL::TableForm::many>();
-  }
+  if (chunk.frame.cell_data)
+    cast_chunk_as<true, form>(chunk, rays, counts);
+  else
+    cast_chunk_as<false, form>(chunk, rays, counts);
 }
 
 }  // namespace HWY_NAMESPACE

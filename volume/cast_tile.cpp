@@ -10,10 +10,9 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "volume/cast_slabs-inl.h"
 #include "volume/fill_block-inl.h"
+#include "volume/packet_lanes-inl.h"
 #include "volume/ray_setup-inl.h"
-#include "volume/sample_slabs-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
@@ -95,6 +94,19 @@ HWY_INLINE bool lay_out(const FrameView& frame, const RayAxes& axes, const Reach
   return true;
 }
 
+HWY_INLINE void cast_by_form(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
+  // A pilot pass counts the work of exact integrals.
+  if (chunk.frame.step > 0 && chunk.frame.tally == nullptr) return cast_chunk_in_steps(chunk, rays, counts);
+  switch (CL::form_of(*chunk.frame.table)) {
+    case CL::TableForm::one_vector:
+      return cast_chunk_one_vector(chunk, rays, counts);
+    case CL::TableForm::two_vectors:
+      return cast_chunk_two_vectors(chunk, rays, counts);
+    case CL::TableForm::many:
+      return cast_chunk_many(chunk, rays, counts);
+  }
+}
+
 /// Rays of one axis code through a chunk of the volume. Packets that `wanted` leaves out are laid out, as what others
 /// find must not depend on them, but not cast.
 HWY_INLINE void cast_rays(const FrameView& frame, const RayAxes& axes, const VoxelBox& voxels, std::uint64_t wanted,
@@ -148,10 +160,7 @@ HWY_INLINE void cast_rays(const FrameView& frame, const RayAxes& axes, const Vox
     if (!any) continue;
     fill_block(frame, axes, box, memory.row, memory.block);
     const ChunkView chunk{frame, axes, memory.block, box, reach};
-    if (frame.step > 0 && frame.tally == nullptr)
-      sample_chunk(chunk, rays, counts);
-    else
-      cast_chunk(chunk, rays, counts);
+    cast_by_form(chunk, rays, counts);
   }
 }
 

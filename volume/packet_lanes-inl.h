@@ -19,21 +19,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "volume/frame_view.hpp"
-#include "volume/slab_block.hpp"
-#include "volume/tile_rays.hpp"
+#include "volume/chunk_view.hpp"
 #include "volume/windows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tessera::volume {
 namespace HWY_NAMESPACE {
-
-/// Where a group of rays may be at both ends of a chunk: bounds of (x, y), voxels. The rays being straight, bounds in
-/// between are straight, too.
-struct Reach {
-  float x_low[2], x_high[2], y_low[2], y_high[2];
-  bool any;
-};
 
 /// Lowest and highest voxel of [least, most] that rays in slab n may be in along an axis.
 HWY_INLINE void slab_range(const float (&low)[2], const float (&high)[2], int n, int least, int most, int& first,
@@ -47,15 +38,6 @@ HWY_INLINE void slab_range(const float (&low)[2], const float (&high)[2], int n,
   first = static_cast<int>(std::min(std::max(std::min(l0, l1) - slack, begin), end));
   last = static_cast<int>(std::min(std::max(std::max(h0, h1) + slack, begin), end));
 }
-
-/// What a chunk's slabs share.
-struct ChunkView {
-  const FrameView& frame;
-  const RayAxes axes;
-  const SlabBlock& block;
-  const ChunkBox& box;
-  const Reach* reach;  ///< by packet
-};
 
 /// A packet's lanes at one chunk.
 struct Lanes {

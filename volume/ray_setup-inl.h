@@ -53,7 +53,7 @@ HWY_INLINE double side_of_plane(const PixelRays& rays, bool perspective, int axi
 }
 
 /// Whether no ray of the tile runs in a plane across an axis: none is nearly level with it.
-HWY_NOINLINE bool crosses_planes(const PixelRays& rays, int x0, int y0, int axis) {
+HWY_NOINLINE inline bool crosses_planes(const PixelRays& rays, int x0, int y0, int axis) {
   double least = 0, most = 0, largest = 0;
   for (int corner = 0; corner < 4; ++corner) {
     const double px = x0 + (corner % 2) * TileRays::side, py = y0 + (corner / 2) * TileRays::side;
@@ -92,7 +92,7 @@ HWY_INLINE void clip(V a, V b, double end, V& in, V& out) {
 }
 
 /// Lays the tile's rays of one axis code out for the kernels; those of others are empty. The light is left alone.
-HWY_NOINLINE void set_up_rays(const FrameView& frame, int x0, int y0, int code, TileRays& out) {
+HWY_NOINLINE inline void set_up_rays(const FrameView& frame, int x0, int y0, int code, TileRays& out) {
   const PixelRays& rays = *frame.rays;
   const RayAxes axes = RayAxes::of(code);
   const double end_i = static_cast<double>(frame.voxels[static_cast<std::size_t>(axes.i)]),

@@ -24,7 +24,7 @@ void expect_right(const std::string& what, const scene::SampleSource& source, co
   for (const char* from : {"oblique", "from -x", "from y", "perspective"}) {
     const scene::Camera camera = view(from);
     const reference::GridReference truth(source, camera, size, function, settings.emission, settings.shading);
-    const auto pixels = reference::random_pixels(size, 200, 3);
+    const auto pixels = reference::random_pixels(size, 60, 3);
     int sets = 0;
     for_each_instruction_set([&](const char* name) {
       volume::RenderStatistics statistics;

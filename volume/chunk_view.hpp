@@ -1,0 +1,35 @@
+#pragma once
+
+#include "volume/frame_view.hpp"
+#include "volume/slab_block.hpp"
+#include "volume/tile_rays.hpp"
+
+namespace tessera::volume {
+
+/// Where a group of rays may be at both ends of a chunk: bounds of (x, y), voxels. The rays being straight, bounds in
+/// between are straight, too.
+struct Reach {
+  float x_low[2], x_high[2], y_low[2], y_high[2];
+  bool any;
+};
+
+/// What a chunk's slabs share.
+struct ChunkView {
+  const FrameView& frame;
+  const RayAxes axes;
+  const SlabBlock& block;
+  const ChunkBox& box;
+  const Reach* reach;  ///< by packet
+};
+
+// The kernels of one chunk of 32 slabs, on the best instruction set: what each packet that `reach` has gathers in it.
+// Three for exact integrals, by how many vectors hold a column of the transfer function's table
+// (integrals/integrate_lanes-inl.h), and one for steps. They are sources of their own because they take long to
+// compile.
+
+void cast_chunk_one_vector(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
+void cast_chunk_two_vectors(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
+void cast_chunk_many(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
+void cast_chunk_in_steps(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
+
+}  // namespace tessera::volume
