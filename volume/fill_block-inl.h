@@ -430,7 +430,7 @@ class BlockFill {
 /// Fills the block, whose slabs and slices have been laid out, with the slices of a box of voxels. Nothing is read but
 /// bricks that hold voxels of the box.
 HWY_NOINLINE inline void fill_block(const FrameView& frame, const RayAxes& axes, const ChunkBox& box,
-                             std::vector<float>& row_memory, SlabBlock& block) {
+                                    std::vector<float>& row_memory, SlabBlock& block) {
   const fill::BlockFill filling(frame, axes, box, block);
   filling.fill_hidden();
   filling.take_bricks(row_memory);
