@@ -269,7 +269,6 @@ struct Corners {
 /// width and height together; cells too far off to be set up become irregular.
 HWY_INLINE V set_up_box(const Corners& corners, const scene::PixelRect& rect, int square_x, int square_y, int from,
                         M& irregular, CellBatch& batch) {
-  const D d;
   const hn::Rebind<std::int32_t, D> di32;
   const auto number = [](double v) HWY_ATTR { return hn::Set(D(), v); };
   const V(&x)[4] = corners.x, (&y)[4] = corners.y;

@@ -219,10 +219,11 @@ TEST(ChunkCast, RaysThatAreNotSureAreCastAgainWithinTheirChunk) {
 TEST(ChunkCast, ARayThatGoesOnHasTheBitsOfOneInOneGo) {
   const Volume points = make_volume({65, 65, 65}, Field::smooth), cells = make_volume({64, 64, 64}, Field::noise, true);
   const std::pair<const char*, std::size_t> ways[] = {{"oblique", 2}, {"from -x", 0}, {"from y", 1}, {"along z", 2}};
-  for (const auto& [name, axis] : ways) {
+  for (const auto& way : ways) {
+    const char* const name = way.first;  // clang 14 lets no lambda have a structured binding
     const scene::Camera camera = view(name);
     scene::GridIndex sides{64, 64, 64};
-    sides[axis] = 32;
+    sides[way.second] = 32;
     const auto check = [&](const Volume& v, const volume::RenderSettings& settings, const char* what) {
       const std::vector<VoxelBox> chunks = boxes_front_to_back(v.grid.geometry, sides, camera);
       ASSERT_EQ(chunks.size(), 2u);
