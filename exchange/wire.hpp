@@ -17,15 +17,17 @@
 ///
 /// Records of a part:
 ///   runs       RunRecord each
-///   chains     ChainHeader and `links` ChainLinks each: segments of one pixel that touch end to end. Where one ends
+///   chains, chains_of_cells  ChainHeader and `links` ChainLinks each: segments of one pixel that touch end to end.
+///   Where one ends
 ///              the next begins, at the same depth and scalar, so 24 bytes a segment carry all of it in double
 ///              precision: the compositor's picture has the bits of a single process's. Scalars of cell data are the
 ///              same at both ends of a link and are not shared with the next.
 ///   lattice    LatticeHeader and `segments` LatticeSegments each: segments of one pixel in any order, on the frame's
-///              integer lattice, 16 bytes each: the compositor's picture has the bits of a single process's.
+///              integer lattice, 16 bytes each (projection/segment_windows.hpp: front, back, scalars): the compositor's
+///              picture has the bits of a single process's.
 ///   lattice_runs  RunsHeader, `runs` LatticeRuns and `segments` LatticeSegments each: runs of one pixel. A run of one
 ///              segment is that segment, 16 bytes, integrated by the compositor.
-///   tuples     TupleRecord each, in the order of their cells: Juliachs et al. 2007, 4.1
+///   tuples     TupleRecord each (compositor/tuple_record.hpp), in the order of their cells: Juliachs et al. 2007, 4.1
 namespace tessera::exchange {
 
 enum class RecordKind : std::uint8_t {

@@ -17,6 +17,7 @@
 #include "integrals/segment_batch.hpp"
 #include "integrals/segment_integrator.hpp"
 #include "scene/error.hpp"
+#include "scene/frame_watch.hpp"
 #include "scene/threads.hpp"
 #include "volume/voxel_walk.hpp"
 
@@ -84,7 +85,8 @@ class DeepPixels final : public volume::WalkSink {
 }  // namespace
 
 scene::DeepImage deep_image(const scene::SampleSource& source, const scene::Camera& camera, scene::ImageSize size,
-                            const scene::TransferFunction& function, const DeepSettings& settings, int y0, int y1) {
+                            const scene::TransferFunction& function, const DeepSettings& settings, int y0, int y1,
+                            const std::stop_token& stop) {
   scene::validate(camera);
   scene::validate(size);
   if (!(settings.accuracy >= 1e-6 && settings.accuracy <= 1))
@@ -102,12 +104,14 @@ scene::DeepImage deep_image(const scene::SampleSource& source, const scene::Came
       rect.x1 = std::min(rect.x0 + side, size.width), rect.y1 = std::min(rect.y0 + side, y1);
       std::vector<std::uint32_t> counts;
       std::vector<scene::DeepImageSample> samples;
-      for (int y = rect.y0; y < rect.y1; ++y)
+      for (int y = rect.y0; y < rect.y1; ++y) {
+        scene::throw_if_stopped(stop);
         for (int x = rect.x0; x < rect.x1; ++x) {
           const std::size_t before = samples.size();
           pixels.local()->add(rays.ray(x + 0.5, y + 0.5), samples);
           counts.push_back(static_cast<std::uint32_t>(samples.size() - before));
         }
+      }
       collector.add(rect, std::move(counts), std::move(samples));
     });
   });

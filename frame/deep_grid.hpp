@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <stop_token>
 
 #include "scene/camera.hpp"
 #include "scene/deep_image.hpp"
@@ -28,8 +29,10 @@ struct DeepSettings {
 /// Cost      about twenty times the caster's. Samples are read in blocks of 16^3 voxels, 256 of them kept a thread: 10
 ///           MB.
 ///
-/// Throws Error(bad_input) for an accuracy out of range, Error(system_failure) if memory does not hold the samples.
+/// Throws Error(bad_input) for an accuracy out of range, Error(system_failure) if memory does not hold the samples,
+/// scene::FrameStopped within a row of 32 rays of each thread once `stop` is asked for.
 scene::DeepImage deep_image(const scene::SampleSource& source, const scene::Camera& camera, scene::ImageSize size,
-                            const scene::TransferFunction& function, const DeepSettings& settings, int y0, int y1);
+                            const scene::TransferFunction& function, const DeepSettings& settings, int y0, int y1,
+                            const std::stop_token& stop = {});
 
 }  // namespace tessera::frame

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "exchange/collectives.hpp"
+#include "frame/reduce.hpp"
+#include "scene/frame_watch.hpp"
 
 namespace tessera::frame {
 namespace {
@@ -49,12 +51,21 @@ void append(const Bytes& bytes, int from, std::size_t pixels, scene::DeepImage& 
 std::optional<scene::DeepImage> deep_rows(exchange::Transport& transport, const scene::SampleSource& source,
                                           const scene::Camera& camera, scene::ImageSize size,
                                           const scene::TransferFunction& function, const DeepSettings& settings,
-                                          std::int32_t number) {
+                                          std::int32_t number, const std::stop_token& stop) {
   // Bands would be taken for tiles of the flat picture by a rank 0 that still puts that together.
   exchange::barrier(transport);
   const int rank = transport.rank(), ranks = transport.size();
   const auto row = [&](int r) { return first_row(r, ranks, size.height); };
-  scene::DeepImage own = deep_image(source, camera, size, function, settings, row(rank), row(rank + 1));
+  scene::DeepImage own;
+  bool stopped = false;
+  try {
+    own = deep_image(source, camera, size, function, settings, row(rank), row(rank + 1), stop);
+  } catch (const scene::FrameStopped&) {
+    stopped = true;
+  }
+  // A rank that was done before the stop came goes with the others.
+  if (ranks > 1) stopped = reduce_all(transport, {stopped ? 1u : 0u}, Reduction::sum)[0] > 0;
+  if (stopped) throw scene::FrameStopped();
   if (ranks == 1) return own;
   Bytes bytes = packed(own, row(rank), row(rank + 1));
   own = {};

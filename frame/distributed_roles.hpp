@@ -7,7 +7,7 @@
 #include "frame/distributed.hpp"
 #include "frame/frame_projector.hpp"
 
-/// The three parts of a distributed run, each a loop on a thread of its own; render_distributed() starts those that a
+/// The three parts of a distributed run, each a loop on a thread of its own; DistributedRenderer starts those that a
 /// rank has. All throw the run's error.
 namespace tessera::frame {
 

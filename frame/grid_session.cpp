@@ -154,13 +154,16 @@ class GridByRays final : public Session::State {
     }
     if (agreed(of_sink || (finished && finished->stopped))) return false;
     std::optional<DeepImage> deep;
-    if (settings.deep) {
-      const scene::TraceScope timing(trace_, "project");
-      deep = frame::deep_rows(
-          *transport_, *data().samples, view.camera, view.size, function,
-          {settings.deep_accuracy, this->settings().emission, this->settings().threads, this->settings().memory_bytes},
-          static_cast<std::int32_t>(number));
-    }
+    if (settings.deep) try {
+        const scene::TraceScope timing(trace_, "project");
+        frame::StopRelay::Run relayed(sort_first_->relay(), stop);
+        deep = frame::deep_rows(*transport_, *data().samples, view.camera, view.size, function,
+                                {settings.deep_accuracy, this->settings().emission, this->settings().threads,
+                                 this->settings().memory_bytes},
+                                static_cast<std::int32_t>(number), relayed.token());
+      } catch (const scene::FrameStopped&) {
+        return false;
+      }
     RenderedFrame& frame = made_;
     frame = {};
     frame.number = number;

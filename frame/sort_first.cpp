@@ -106,6 +106,8 @@ class SortFirst::State {
     return finished;
   }
 
+  StopRelay& relay() { return relay_; }
+
  private:
   std::optional<FinishedVolumeFrame> make(volume::Renderer& renderer, const scene::TransferFunction& function,
                                           const VolumeJob& job, std::size_t number, scene::FrameWatch& watch) {
@@ -322,6 +324,8 @@ class SortFirst::State {
 SortFirst::SortFirst(exchange::Transport& transport, SortFirstSettings settings)
     : state_(std::make_unique<State>(transport, std::move(settings))) {}
 SortFirst::~SortFirst() = default;
+
+StopRelay& SortFirst::relay() { return state_->relay(); }
 
 std::optional<FinishedVolumeFrame> SortFirst::render(volume::Renderer& renderer,
                                                      const scene::TransferFunction& function, const VolumeJob& job,

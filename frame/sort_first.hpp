@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "exchange/transport.hpp"
+#include "frame/stop_relay.hpp"
 #include "scene/frame_watch.hpp"
 #include "scene/grid.hpp"
 #include "tessera/settings.hpp"
@@ -70,6 +71,9 @@ class SortFirst {
   std::optional<FinishedVolumeFrame> render(volume::Renderer& renderer, const scene::TransferFunction& function,
                                             const VolumeJob& job, std::size_t number,
                                             scene::FrameWatch* watch = nullptr);
+
+  /// Carries stops between the ranks, for what follows a picture. Not while render() runs.
+  StopRelay& relay();
 
  private:
   class State;

@@ -35,8 +35,8 @@ struct SegmentStream {
 };
 
 /// A short list of segments for each pixel of a rectangle: what is in flight between rasterizer and compositor. Lists
-/// are in order of arrival; when one is full, what is final in all of them is sorted, composited and removed (LIMITS:
-/// windows of 64 stay in the second-level cache and cost a tenth of sorting whole lists).
+/// are in order of arrival; when one is full, what is final in all of them is sorted, composited and removed. Windows
+/// of 64 segments stay in the second-level cache and cost a tenth of sorting whole lists.
 class SegmentWindows {
  public:
   static constexpr int side = 32;                          ///< of the square that rectangles lie in, pixels

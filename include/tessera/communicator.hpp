@@ -18,7 +18,8 @@ class TESSERA_EXPORT Communicator {
   /// This process alone.
   Communicator();
   /// Of an MPI communicator by its Fortran handle (MPI_Comm_c2f). Throws Error(bad_input) if MPI has not been
-  /// initialised, or without MPI_THREAD_MULTIPLE; Error(system_failure) in a build without MPI.
+  /// initialised; Error(system_failure) in a build without MPI. Sessions and data sets of more than one rank throw
+  /// Error(bad_input) without MPI_THREAD_MULTIPLE.
   static Communicator of_handle(int fortran_handle);
 
   [[nodiscard]] int rank() const;

@@ -60,7 +60,8 @@ class TESSERA_EXPORT Session {
   [[nodiscard]] bool assembles() const;
 
   /// The largest error that is promised, in linear RGBA against exact arithmetic: of meshes 2e-5 for exact, of grids
-  /// 1e-5; what was asked for automatic; none for the other methods, and with the scanline rasterizer.
+  /// 1e-5; what was asked for automatic; none for the other methods, the scanline
+  /// rasterizer and GlMethod::fragment.
   [[nodiscard]] std::optional<double> promised_error() const;
 
   /// Checks `count` pixels of a finished picture against a double-precision reference: a third at random, the rest

@@ -41,11 +41,11 @@ struct Partition {
 
 /// How the picture of a grid is split between processes (Moloney 2008, chapter 4).
 enum class Balance {
-  accurate,  ///< by what each pixel will cost, as a look at every 32nd ray tells
-  backface,
-  splatting,
-  previous,  ///< by the CPU times of the frame before, each spread evenly over its rectangle; to compare with
-  even       ///< equal rectangles of the volume's bounding box
+  accurate,   ///< by what each pixel will cost, as a pilot pass of every 32nd ray tells
+  backface,   ///< by the back faces of boxes of 8^3 voxels that show
+  splatting,  ///< by spheres as wide as those boxes
+  previous,   ///< by the CPU times of the frame before, each spread evenly over its rectangle; to compare with
+  even        ///< equal rectangles of the volume's bounding box
 };
 
 /// What the brick cache throws out first (Moloney 2008, 3.3).

@@ -14,6 +14,7 @@
 #include "frame/communicator.hpp"
 #include "frame/dataset.hpp"
 #include "scene/error.hpp"
+#include "tessera/communicator.hpp"
 
 namespace tessera {
 namespace {
@@ -183,6 +184,26 @@ TEST_P(AnyKind, AStopEndsTheFrameAndTheNextHasTheSameBits) {
   std::stop_source before;
   before.request_stop();
   EXPECT_TRUE(session.render(view_of(data), function, {}, nullptr, before.get_token()).stopped);
+}
+
+/// The deep picture of a grid is a pass of its own after the flat one: a stop in it counts, too, on any rank.
+TEST(Session, AStopAfterTheLastTileEndsTheDeepPictureOfAGrid) {
+  const Dataset data = dataset(Kind::grid);
+  const TransferFunction function = data.transfer_function("plasma").function;
+  for (const int ranks : {1, 3})
+    run_ranks(ranks, [&](const Communicator& communicator) {
+      Session session(data, {}, communicator);
+      FrameSettings deep;
+      deep.deep = true;
+      Pixels all;
+      const RenderedFrame whole = session.render(view_of(data), function, deep, &all);
+      EXPECT_FALSE(whole.stopped);
+      StopAt sink(all.tiles);
+      EXPECT_TRUE(session.render(view_of(data), function, deep, &sink, sink.source.get_token()).stopped);
+      const RenderedFrame next = session.render(view_of(data), function, deep);
+      EXPECT_EQ(next.deep.begin, whole.deep.begin);
+      EXPECT_TRUE(same_bits(next.image, whole.image));
+    });
 }
 
 TEST_P(AnyKind, StopsAtAnyTimeReturnAtOnce) {
