@@ -119,7 +119,7 @@ const char* method_word(IntegratorKind kind) {
 }
 
 std::string method_line(const Integrator& integrator) {
-  const std::string word = method_word(integrator.kind);
+  std::string word = method_word(integrator.kind);
   if (integrator.kind == IntegratorKind::sampled) return fmt::format("{}:{}", word, integrator.samples);
   if (integrator.kind == IntegratorKind::preintegrated) return fmt::format("{}:{}", word, integrator.table_size);
   if (integrator.kind == IntegratorKind::automatic) return fmt::format("{} to {:g}", word, integrator.accuracy);

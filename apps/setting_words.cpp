@@ -63,6 +63,7 @@ std::string with_options(std::string_view text) {
 
 std::vector<std::string> with_options(const std::vector<std::string>& notes) {
   std::vector<std::string> worded;
+  worded.reserve(notes.size());
   for (const std::string& note : notes) worded.push_back(with_options(note));
   return worded;
 }

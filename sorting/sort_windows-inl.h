@@ -74,6 +74,7 @@ HWY_INLINE std::size_t sort_windows(const projection::LatticeSegment* list, std:
   const std::size_t lanes = hn::Lanes(d);
   const KeyVec count = hn::LoadU(d, reinterpret_cast<const std::int32_t*>(counts));
   const auto most = static_cast<std::size_t>(hn::GetLane(hn::MaxOfLanes(d, count)));
+  if (most == 0) return 0;
   const std::size_t chunks = (most + sort_chunk - 1) / sort_chunk;
   const std::size_t rows = chunks * sort_chunk;
   if (order.keys.size() < rows * lanes) order.keys.resize(rows * lanes), order.slots.resize(rows * lanes);
