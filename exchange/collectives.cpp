@@ -18,6 +18,7 @@ std::vector<Bytes> split(const Message& joined, int ranks) {
   MessageReader reader(joined, MessageKind::gathered);
   if (reader.take<std::uint64_t>() != static_cast<std::uint64_t>(ranks)) reader.refuse_kind();
   std::vector<Bytes> messages;
+  messages.reserve(static_cast<std::size_t>(ranks));
   for (int rank = 0; rank < ranks; ++rank) messages.push_back(reader.take_list<std::byte>());
   reader.finish();
   return messages;
