@@ -82,7 +82,6 @@ class MeshMethods final : public MethodList {
     method.settings.mesh.device.backends = {Backend::osmesa};
     method.settings.mesh.device.method = gl;
     method.settings.mesh.device.half = half;
-    method.settings.ranks.exchange = Exchange::segments;
   }
 };
 

@@ -39,7 +39,8 @@ std::string options_text(const analysis::ChartMethod& method, bool is_grid) {
   if (method.by_slices) return "--renderer slice";
   const Settings& s = method.settings;
   if (method.ranks > 1)
-    return fmt::format("mpirun -n {}, --exchange {} --partition random", method.ranks, exchange_word(s.ranks.exchange));
+    return fmt::format("mpirun -n {}, --exchange {} --partition random", method.ranks,
+                       exchange_word(exchange_of(s, false)));
   std::vector<std::string> words;
   if (!s.mesh.device.backends.empty()) {
     const bool fragment = s.mesh.device.method == GlMethod::fragment;

@@ -143,7 +143,7 @@ class Film final : public Sink {
       later_read_ = read_of_later_steps(read_, *data_);
       loaded_ = transfer_function_of(*data_, options_);
       if (writes_) output_.describe(described(*data_), loaded_);
-      if (writes_ && overlaps_) output_.note("job", job_json(settings_.ranks, job_.size(), roles_));
+      if (writes_ && overlaps_) output_.note("job", job_json(options_, job_.size(), roles_));
     }
     if (frame.step != step_) open(frame, later_read_);
     if (session_) return;
@@ -226,7 +226,7 @@ class Film final : public Sink {
       traced.ranks = job_.size();
       traced.projectors = static_cast<int>(roles_.projectors.size());
       traced.compositors = static_cast<int>(roles_.compositors.size());
-      traced.exchange = exchange_word(settings_.ranks.exchange);
+      traced.exchange = exchange_word(exchange_of(settings_, options_.frame.deep));
       const bool projects = roles_.projects(job_.rank()), composites = roles_.composites(job_.rank());
       process += projects && composites ? " projector + compositor" : projects ? " projector" : " compositor";
     }

@@ -70,11 +70,8 @@ void set_ranks(const RenderWords& words, bool merges, RenderOptions& options) {
   if (!words.compositors.empty()) ranks.compositors = parse_count("--compositors", words.compositors, 1, no_limit);
   if (!words.exchange.empty()) check_word("--exchange", words.exchange, {"runs", "segments"});
   settings.mesh.device = device_settings(words, options.is_grid());
-  if (words.exchange.empty() && (settings.mesh.rasterizer == Rasterizer::scanline || options.frame.deep ||
-                                 !settings.mesh.device.backends.empty()))
-    // The paper's do not touch; deep samples are cut within segments; a device that only got runs had nothing to do.
-    ranks.exchange = Exchange::segments;
   if (words.exchange == "segments" || !merges) ranks.exchange = Exchange::segments;
+  if (words.exchange == "runs") ranks.exchange = Exchange::runs;
   if (words.exchange == "runs" && !merges)
     throw bad_input("--without merging: is --exchange segments, but runs were asked for; leave one of the two out");
   check_word("--partition", words.partition, {"curve", "file", "random"});
@@ -176,7 +173,10 @@ void add_render_options(CLI::App& command, RenderWords& words) {
       ->type_name("N");
   command.add_option("--compositors", words.compositors, "under mpirun: ranks that composite (default: all)")
       ->type_name("P");
-  command.add_option("--exchange", words.exchange, "under mpirun: what projectors send (default: runs)")
+  command
+      .add_option(
+          "--exchange", words.exchange,
+          "under mpirun: what projectors send (default: runs; segments for deep pictures, scanline and devices)")
       ->type_name("runs|segments");
   command.add_option("--partition", words.partition, "under mpirun: which rank gets which cells (default: curve)")
       ->type_name("curve|file|random");

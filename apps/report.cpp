@@ -100,12 +100,13 @@ Json method_json(const RenderOptions& options, int ranks) {
   return options.is_grid() ? grid_method_json(options, ranks) : mesh_method_json(options);
 }
 
-Json job_json(const RankSettings& settings, int ranks, const Roles& roles) {
+Json job_json(const RenderOptions& options, int ranks, const Roles& roles) {
   constexpr std::array partitions = {"file", "curve", "random"};
+  const RankSettings& settings = options.settings.ranks;
   return {{"ranks", ranks},
           {"projectors", roles.projectors},
           {"compositors", roles.compositors},
-          {"exchange", exchange_word(settings.exchange)},
+          {"exchange", exchange_word(exchange_of(options.settings, options.frame.deep))},
           {"partition", partitions[static_cast<std::size_t>(settings.partition.kind)]},
           {"frames_in_flight", settings.frames_in_flight},
           {"seed", settings.tile_seed}};

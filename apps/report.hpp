@@ -29,7 +29,7 @@ analysis::Description described(const Dataset& data);
 nlohmann::ordered_json method_json(const RenderOptions& options, int ranks);
 
 /// The shape of a job that renders a mesh.
-nlohmann::ordered_json job_json(const RankSettings& settings, int ranks, const Roles& roles);
+nlohmann::ordered_json job_json(const RenderOptions& options, int ranks, const Roles& roles);
 
 /// A frame's number, pictures, view, times, counters, balance and verification; without a record, that it was skipped.
 nlohmann::ordered_json frame_json(const RenderOptions& options, const FilmFrame& frame, const FrameRecord* record);

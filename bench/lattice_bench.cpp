@@ -94,8 +94,7 @@ struct Stages {
 };
 
 void run_tiles(Frame& f, Stages& stages) {
-  const integrals::LaneTable table(f.function, f.lattice.scalar_origin, f.lattice.scalar_unit, f.lattice.depth_unit,
-                                   scene::Emission::absorption);
+  const integrals::LaneTable table(f.function, f.lattice, scene::Emission::absorption);
   const compositor::WindowRules rules{&table, 0};
   const auto state = std::make_unique<compositor::WindowState>();
   projection::SegmentWindows windows;

@@ -1,6 +1,6 @@
 // How long a frame goes on after it was asked to stop, at random times, through the public interface:
-//   stop_times FILE [STOPS] [WIDTH] [compute|fragment]   prints milliseconds at 50, 95, 99 and 100 per cent of the
-//   stops mpirun -n 4 stop_times ...                           of ranks in turn one asks, and the last to return counts
+//   stop_times FILE [STOPS] [WIDTH] [compute|fragment]   prints ms at 50, 95, 99 and 100 per cent of the stops
+//   mpirun -n 4 stop_times ...   ranks in turn ask, and the last to return counts
 // A third word has OpenGL (OSMesa) composite. Ends with status 1 if a frame after a stop has other bits than one that
 // was not.
 #include <algorithm>

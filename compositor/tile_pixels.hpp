@@ -28,7 +28,7 @@ struct PixelValue {
 ///   ended, end_runs()                 runs: those that show and have ended; ends all
 ///   keep_open()                       runs: until the next start() no pixel closes, as what hides it may lie behind it
 ///
-/// Two texts, as each encoding has arithmetic of its own: here lists of doubles, on the lattice 16 pixels a vector
+/// Two sources, as each encoding has arithmetic of its own: here lists of doubles, on the lattice 16 pixels a vector
 /// (window_kernel.hpp). compositor/README.md says what the second gains.
 template <class Encoding>
 class TilePixels;

@@ -125,8 +125,7 @@ class CompositorLoop {
         reader.finish();
         if (begin.stopped != 0) to.stopped = true;
         if (!to.table && begin.lattice.depth_unit > 0)
-          to.table.emplace(run_.function, begin.lattice.scalar_origin, begin.lattice.scalar_unit,
-                           begin.lattice.depth_unit, run_.settings.render.emission);
+          to.table.emplace(run_.function, begin.lattice, run_.settings.render.emission);
         if (to.collector.has_all_begins())
           for (auto& [tile, merge] : to.merges) schedule(to, tile);
         break;
@@ -210,9 +209,7 @@ class CompositorLoop {
       const bool on_lattice = of.collector.lattice().depth_unit > 0;
       if (run_.device.device != nullptr && of.units.depth_unit == 0) {
         of.units = on_lattice ? of.collector.lattice() : compositor::device_units(run_.function, longest_ray);
-        if (!of.table)
-          of.table.emplace(run_.function, of.units.scalar_origin, of.units.scalar_unit, of.units.depth_unit,
-                           run_.settings.render.emission);
+        if (!of.table) of.table.emplace(run_.function, of.units, run_.settings.render.emission);
       }
       all = waiting.all;
       lock.unlock();

@@ -88,9 +88,10 @@ class DistributedRenderer::State {
     if (settings_.roles.projects(transport.rank())) loaded_.emplace(settings_, mesh_of_);
   }
 
-  void set_deep(bool deep, double accuracy) {
+  void set_deep(bool deep, double accuracy, Exchange exchange) {
     DistributedSettings settings = settings_;
     settings.deep = deep;
+    settings.exchange = exchange;
     settings.render.deep_accuracy = accuracy;
     check(settings);
     settings_ = std::move(settings);
@@ -166,7 +167,9 @@ DistributedRenderer::DistributedRenderer(exchange::Transport& transport, Distrib
     : state_(std::make_unique<State>(transport, std::move(settings), std::move(mesh_of))) {}
 DistributedRenderer::~DistributedRenderer() = default;
 
-void DistributedRenderer::set_deep(bool deep, double accuracy) { state_->set_deep(deep, accuracy); }
+void DistributedRenderer::set_deep(bool deep, double accuracy, Exchange exchange) {
+  state_->set_deep(deep, accuracy, exchange);
+}
 
 void DistributedRenderer::render(std::span<const FrameJob> jobs, const scene::TransferFunction& function,
                                  const DistributedCallbacks& callbacks, const std::stop_token& stop) {

@@ -88,8 +88,9 @@ class DistributedRenderer {
   /// Throws the run's error, on every rank.
   void render(std::span<const FrameJob> jobs, const scene::TransferFunction& function,
               const DistributedCallbacks& callbacks, const std::stop_token& stop = {});
-  /// Of later lists. Throws Error(bad_input) where the settings cannot do it.
-  void set_deep(bool deep, double accuracy);
+  /// Of later lists: whether deep pictures are made, and what is sent. Throws Error(bad_input) where the settings
+  /// cannot do it.
+  void set_deep(bool deep, double accuracy, Exchange exchange);
 
  private:
   class State;

@@ -96,9 +96,7 @@ class MeshOnRanks final : public Session::State {
       distributed_.compositing = &compositing_.emplace(*settings.trace, TraceRole::compositor);
     }
     const Dataset::State& state = data();
-    if (distributed_.exchange == Exchange::segments && state.facts.tets > 0xffffffffull)
-      throw scene::bad_input(
-          fmt::format("`exchange` segments: {} tets are more than 2^32; use runs", state.facts.tets));
+    check_exchange(distributed_.exchange);
     const auto projects = [&](int rank) { return distributed_.roles.projects(rank); };
     if (state.ranks > 1 && state.ranks != transport_->size())
       throw scene::bad_input(fmt::format("{}: was opened by {} ranks, the session has {}; give both one communicator",
@@ -122,7 +120,9 @@ class MeshOnRanks final : public Session::State {
 
   std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
                      Sink& sink, const std::stop_token& stop) override {
-    renderer_->set_deep(settings.deep, settings.deep_accuracy);
+    const Exchange exchange = exchange_of(this->settings(), settings.deep);
+    check_exchange(exchange);
+    renderer_->set_deep(settings.deep, settings.deep_accuracy, exchange);
     std::vector<frame::FrameJob> jobs;
     for (const View& view : views) jobs.push_back({view.camera, view.size, 0});
     std::size_t complete = 0;
@@ -163,6 +163,13 @@ class MeshOnRanks final : public Session::State {
   [[nodiscard]] bool assembles() const override { return transport_->rank() == distributed_.roles.assembler(); }
 
  private:
+  /// Raw segments are sent with the number of their tet, in 32 bits.
+  void check_exchange(Exchange exchange) const {
+    if (exchange == Exchange::segments && data().facts.tets > 0xffffffffull)
+      throw scene::bad_input(
+          fmt::format("`exchange` segments: {} tets are more than 2^32; use runs", data().facts.tets));
+  }
+
   /// What this rank projects: the part it was opened with, or its share of the whole that every rank has.
   frame::ProjectorMesh part() {
     const Dataset::State& state = data();

@@ -45,8 +45,7 @@ class FrameSinks {
                integrals::opacity_weight(run.function.max_color(), mesh.diagonal, settings_.render.emission)} {
     if (!settings_.deep) lattice_ = lattice_of(space_, mesh.box, mesh.scalar_range, run.function, settings_.render);
     if (!lattice_) return;
-    table_.emplace(run.function, lattice_->scalar_origin, lattice_->scalar_unit, lattice_->depth_unit,
-                   settings_.render.emission);
+    table_.emplace(run.function, *lattice_, settings_.render.emission);
     scene_.table = &*table_;
     scene_.lattice = *lattice_;
   }

@@ -94,8 +94,7 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
                 : lattice_of(space, state_->projector.box(), state_->scalar_range, transfer_function, settings);
   std::optional<integrals::LaneTable> table;
   if (lattice) {
-    table.emplace(transfer_function, lattice->scalar_origin, lattice->scalar_unit, lattice->depth_unit,
-                  settings.emission);
+    table.emplace(transfer_function, *lattice, settings.emission);
     scene.table = &*table;
     scene.lattice = *lattice;
     task.lattice = &*lattice;

@@ -22,6 +22,20 @@ volume::Method method_of(IntegratorKind kind) {
 }
 
 }  // namespace
+}  // namespace tessera::frame
+
+namespace tessera {
+
+Exchange exchange_of(const Settings& settings, bool deep) {
+  if (settings.ranks.exchange) return *settings.ranks.exchange;
+  const bool wants_segments =
+      settings.mesh.rasterizer == Rasterizer::scanline || deep || !settings.mesh.device.backends.empty();
+  return wants_segments ? Exchange::segments : Exchange::runs;
+}
+
+}  // namespace tessera
+
+namespace tessera::frame {
 
 RenderSettings mesh_settings(const Settings& s) {
   RenderSettings settings;
@@ -76,7 +90,7 @@ DistributedSettings distributed_settings(const Settings& s, int ranks) {
   DistributedSettings settings;
   settings.render = mesh_settings(s);
   settings.roles = assign_roles(ranks, s.ranks.projectors, s.ranks.compositors);
-  settings.exchange = s.ranks.exchange;
+  settings.exchange = exchange_of(s, false);
   settings.frames_in_flight = s.ranks.frames_in_flight;
   settings.compositing_on = compositing_settings(s.mesh.device);
   settings.tile_seed = s.ranks.tile_seed;

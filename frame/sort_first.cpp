@@ -333,17 +333,4 @@ std::optional<FinishedVolumeFrame> SortFirst::render(volume::Renderer& renderer,
   return state_->render(renderer, function, job, number, watch);
 }
 
-void render_sort_first(exchange::Transport& transport, const SortFirstSettings& settings,
-                       std::span<const VolumeJob> jobs, const scene::TransferFunction& function,
-                       volume::Renderer& renderer, const std::function<void(FinishedVolumeFrame)>& done) {
-  try {
-    SortFirst run(transport, settings);
-    for (std::size_t number = 0; number < jobs.size(); ++number)
-      if (auto finished = run.render(renderer, function, jobs[number], number)) done(std::move(*finished));
-  } catch (const scene::Error& error) {
-    transport.fail(error);
-  }
-  transport.check();
-}
-
 }  // namespace tessera::frame

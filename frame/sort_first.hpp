@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -79,11 +78,5 @@ class SortFirst {
   class State;
   std::unique_ptr<State> state_;
 };
-
-/// A list of pictures of one volume. Each rank calls this with the same arguments but for `done`, which runs on rank 0,
-/// in order. Throws the run's error, on every rank.
-void render_sort_first(exchange::Transport& transport, const SortFirstSettings& settings,
-                       std::span<const VolumeJob> jobs, const scene::TransferFunction& function,
-                       volume::Renderer& renderer, const std::function<void(FinishedVolumeFrame)>& done);
 
 }  // namespace tessera::frame

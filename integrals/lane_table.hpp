@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "scene/lattice.hpp"
 #include "scene/optical_model.hpp"
 #include "scene/transfer_function.hpp"
 
@@ -53,6 +54,9 @@ struct LaneTable {
   /// `scalar_unit` and `length_unit` are powers of two.
   LaneTable(const scene::TransferFunction& function, double scalar_origin, double scalar_unit, double length_unit,
             scene::Emission emission, StepRounding steps = StepRounding::nearest);
+  /// Of segments on a lattice, whose steps of depth are the lengths' unit.
+  LaneTable(const scene::TransferFunction& function, const scene::Lattice& lattice, scene::Emission emission)
+      : LaneTable(function, lattice.scalar_origin, lattice.scalar_unit, lattice.depth_unit, emission) {}
 
   [[nodiscard]] const float* column(int c) const { return rows.data() + static_cast<std::size_t>(c) * stride; }
 

@@ -56,8 +56,8 @@ struct ScanlineBuffers {
 /// - Segments are cut at the clipping range.
 /// - A flat cell, whose faces have no front and back, makes none.
 ///
-/// Four lanes through Highway rather than SSE intrinsics: one text for every processor, dispatched as `planes` is, with
-/// masks and compiler flags of the newest instruction set but never more than the paper's four lanes.
+/// Four lanes through Highway rather than SSE intrinsics: one source for every processor, dispatched as `planes` is,
+/// with masks and compiler flags of the newest instruction set but never more than the paper's four lanes.
 ///
 /// Takes cells as rasterize_planes() does; at most one segment a cell and pixel. Requires fits_scanline(). Writes stay
 /// inside the buffers whatever the coordinates are.

@@ -11,7 +11,7 @@
 namespace tessera::sorting {
 
 /// Ray segments on their way from a rasterizer into pixels are written in one of two encodings. What does not depend on
-/// numbers (tile renderer, sinks, mergers) is one text over both, with these names:
+/// numbers (tile renderer, sinks, mergers) is one source over both, with these names:
 ///
 ///   Store  where segments wait, by pixel, until what is final of them is taken
 ///   Depth  along the view direction; `end` lies behind all

@@ -41,7 +41,7 @@ class Renderer;
 ///          places where their fragment begins and ends, when it is emitted.
 /// Threads  advance() and emit() use those of the renderer's settings; one call at a time, and none while the renderer
 ///          renders.
-/// Memory   140 bytes a pixel of the region (rectilinear: 300), 280 where rays of one tile differ in their main axis.
+/// Memory   150 bytes a pixel of the region, twice that in tiles whose rays differ in their main axis.
 class ChunkCast {
  public:
   /// The rays of a whole picture, or of a region of it. The renderer must outlive the cast. Throws Error(bad_input) for

@@ -21,7 +21,7 @@ namespace tessera::volume {
 /// A tile is one thread's at a time.
 ///
 /// Axes     rays of one tile may have several (TileRays): there is a TileRays for each, and a ray is in one of them.
-/// Memory   140 KB for each of these, mostly one; begin() uses what there is again.
+/// Memory   150 KB for each of these, mostly one; begin() uses what there is again.
 class TileState {
  public:
   /// The tile whose first pixel is (x0, y0), multiples of 32; of its pixels those in `region` count. A pilot pass

@@ -102,7 +102,7 @@ struct RankSettings {
   /// Meshes: how many ranks project and composite. N + P ranks: the first N project, the others composite; max(N, P)
   /// ranks: both start at rank 0 and share. One number given: the other takes what is left. None: every rank does both.
   std::optional<int> projectors, compositors;
-  Exchange exchange = Exchange::runs;
+  std::optional<Exchange> exchange;  ///< meshes; nothing: see exchange_of()
   Partition partition;
   int frames_in_flight = 2;               ///< frames a projector may be ahead of the assembled picture, at least 1
   std::uint64_t tile_seed = 1;            ///< of the map from tiles to compositors
@@ -110,6 +110,13 @@ struct RankSettings {
   double balance_resolution = 0.5;        ///< grids: of the cost map, map pixels an image pixel along each axis
   std::vector<double> balance_weights{};  ///< grids: how much of the work each rank should get; empty: equal
 };
+
+struct Settings;
+
+/// What projectors send: RankSettings::exchange, or where that says nothing runs, but segments with the scanline
+/// rasterizer (whose segments do not touch), with deep pictures (whose samples are cut within segments) and with a
+/// device (which would find runs composited already).
+TESSERA_EXPORT Exchange exchange_of(const Settings& settings, bool deep);
 
 /// Which ranks project and which composite a mesh. The first compositor assembles the pictures.
 struct TESSERA_EXPORT Roles {

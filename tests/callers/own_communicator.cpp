@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cubes.hpp"
 #include "tessera/mpi.hpp"
 #include "tessera/tessera.hpp"
 
@@ -21,36 +22,6 @@ void expect(bool holds, const char* what) {
   std::fprintf(stderr, "own_communicator: %s\n", what);
 }
 
-/// A box of n^3 cubes, each cut into six tets.
-struct Mesh {
-  explicit Mesh(int n) {
-    const auto point = [n](int i, int j, int k) { return static_cast<std::uint32_t>(i + (n + 1) * (j + (n + 1) * k)); };
-    for (int k = 0; k <= n; ++k)
-      for (int j = 0; j <= n; ++j)
-        for (int i = 0; i <= n; ++i) {
-          points.insert(points.end(), {1.0 * i, 1.0 * j, 1.0 * k});
-          scalars.push_back(i * j - 0.5 * k * i);
-        }
-    constexpr int ways[6][2] = {{1, 3}, {1, 5}, {2, 3}, {2, 6}, {4, 5}, {4, 6}};
-    for (int k = 0; k < n; ++k)
-      for (int j = 0; j < n; ++j)
-        for (int i = 0; i < n; ++i)
-          for (const auto& way : ways) {
-            const auto corner = [&](int bits) {
-              return point(i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2 & 1));
-            };
-            tets.insert(tets.end(), {corner(0), corner(way[0]), corner(way[1]), corner(7)});
-          }
-  }
-  [[nodiscard]] tessera::MeshArrays arrays() const {
-    tessera::MeshArrays arrays;
-    arrays.points = points, arrays.tets = tets, arrays.scalars = scalars;
-    return arrays;
-  }
-  std::vector<double> points, scalars;
-  std::vector<std::uint32_t> tets;
-};
-
 class StopAtFirstTile final : public tessera::Sink {
  public:
   void tile(const tessera::Tile& /*tile*/) override { source.request_stop(); }
@@ -58,7 +29,7 @@ class StopAtFirstTile final : public tessera::Sink {
 };
 
 void render(MPI_Comm two, int rank) {
-  const Mesh mesh(12);
+  const tessera::Cubes mesh(12);
   const tessera::Dataset data = tessera::Dataset::of(mesh.arrays());
   const tessera::View view{data.default_camera({160, 120}), {160, 120}};
   const tessera::TransferFunction function = data.transfer_function("viridis").function;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstring>
 #include <random>
 #include <thread>
 
@@ -510,6 +511,30 @@ TEST(GridArrays, AreNeverCopiedAndChecked) {
   const std::vector<float> blank(1000, NAN);
   EXPECT_NE(error_of([&] { Dataset::of(grid_arrays(blank, 10)); }).find("finite"), std::string::npos);
   EXPECT_NE(error_of([&] { static_cast<void>(data.check()); }).find("grid"), std::string::npos);
+}
+
+TEST(SessionOnRanks, SendsSegmentsByItselfWhereRunsCannotDo) {
+  const Cube cube(4);
+  const Dataset data = Dataset::of(cube.arrays());
+  const TransferFunction function = data.transfer_function().function;
+  FrameSettings deep;
+  deep.deep = true;
+  const RenderedFrame alone = Session(data).render(view_of(data), function, deep);
+  exchange::run_ranks(2, [&](exchange::Transport& transport) {
+    Settings settings;
+    settings.threads = 1;
+    Session session(data, settings, frame::communicator_over(transport));
+    const RenderedFrame frame = session.render(view_of(data), function, deep);
+    if (session.assembles()) {
+      ASSERT_EQ(frame.deep.begin, alone.deep.begin);
+      EXPECT_EQ(std::memcmp(frame.deep.samples.data(), alone.deep.samples.data(),
+                            alone.deep.samples.size() * sizeof(DeepImageSample)),
+                0);
+    }
+    settings.ranks.exchange = Exchange::runs;
+    Session runs(data, settings, frame::communicator_over(transport));
+    EXPECT_THROW(static_cast<void>(runs.render(view_of(data), function, deep)), Error);
+  });
 }
 
 TEST(DatasetParts, AreOneMeshOverRanks) {

@@ -1,5 +1,3 @@
-#include "frame/sort_first.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <numeric>
 
 #include "exchange/loopback_transport.hpp"
+#include "frame/render_sort_first.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::frame {

@@ -10,7 +10,7 @@
 #include <random>
 
 #include "exchange/loopback_transport.hpp"
-#include "frame/sort_first.hpp"
+#include "frame/render_sort_first.hpp"
 #include "reference/reference.hpp"
 #include "reference/small_meshes.hpp"
 

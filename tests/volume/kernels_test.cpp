@@ -40,6 +40,8 @@ void expect_right(const std::string& what, const scene::SampleSource& source, co
   }
 }
 
+// Bounds are what is promised of one process (docs/ACCURACY.md): exact 1e-5 in float32, automatic its accuracy, 1e-4
+// by default.
 volume::RenderSettings by(volume::Method method) {
   volume::RenderSettings s;
   s.method = method;
