@@ -11,6 +11,11 @@ if(TESSERA_APPS)
   install(TARGETS tessera_program)
 endif()
 
+# Where the library looks for it, from wherever it lies itself.
+if(TARGET tessera_read)
+  install(TARGETS tessera_read RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/tessera)
+endif()
+
 if(NOT TARGET tessera::tessera)
   return()
 endif()
@@ -33,18 +38,11 @@ foreach(kind shared static)
     install(EXPORT tessera_${kind} FILE tessera-${kind}.cmake NAMESPACE tessera:: DESTINATION ${package})
   endif()
 endforeach()
-set(vtk_modules ${links})
-list(FILTER vtk_modules INCLUDE REGEX "^VTK::")
-list(TRANSFORM vtk_modules REPLACE "^VTK::" "")
-list(JOIN vtk_modules " " vtk_modules)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/tesseraConfig.cmake.in ${PROJECT_BINARY_DIR}/package/tesseraConfig.cmake
                               INSTALL_DESTINATION ${package} NO_SET_AND_CHECK_MACRO)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/tesseraConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/package/tesseraConfig.cmake ${PROJECT_BINARY_DIR}/package/tesseraConfigVersion.cmake
         DESTINATION ${package})
-if(TESSERA_TETGEN)
-  install(FILES ${CMAKE_CURRENT_LIST_DIR}/FindTetGen.cmake DESTINATION ${package})
-endif()
 
 # tessera.pc. Its libraries are told by -lNAME, taken from the files that CMake's targets stand for.
 function(tessera_link_flags result)

@@ -26,6 +26,9 @@ function(tessera_whole_library kind)
   add_library(tessera::${kind} ALIAS tessera_${kind})
   set_target_properties(tessera_${kind} PROPERTIES OUTPUT_NAME tessera EXPORT_NAME ${kind} LINKER_LANGUAGE CXX)
   target_compile_features(tessera_${kind} INTERFACE cxx_std_20)
+  if(TARGET tessera_read) # which it starts
+    add_dependencies(tessera_${kind} tessera_read)
+  endif()
   target_include_directories(
     tessera_${kind} INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
                               $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include/generated>)

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <functional>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "io/number_tally.hpp"
 #include "scene/tet_mesh.hpp"
 
 namespace tessera::io {
@@ -22,7 +24,8 @@ struct BlockField {
   int components = 1;
   std::string type;  ///< "float", "int64", ...
   std::size_t tuples = 0;
-  bool active = false;  ///< the file marks it as its scalars or vectors
+  bool active = false;                 ///< the file marks it as its scalars or vectors
+  std::optional<NumberTally> tally{};  ///< where it is known without reading
   /// Writes tuples [first, first + out.size()) of one component, or their magnitude, as doubles.
   std::function<void(int component, std::size_t first, std::span<double> out)> read;
 };

@@ -21,22 +21,24 @@ using scene::Association;
 const char* word(Association a) { return a == Association::point ? "point" : "cell"; }
 
 void include_range(const BlockField& field, FieldTally& tally) {
-  FieldSummary& summary = tally.summary;
-  std::array<double, 4096> chunk;
-  const int component = field.components == 1 ? 0 : magnitude;
-  for (std::size_t first = 0; first < field.tuples; first += chunk.size()) {
-    const std::size_t n = std::min(chunk.size(), field.tuples - first);
-    field.read(component, first, std::span(chunk.data(), n));
-    for (std::size_t k = 0; k < n; ++k) {
-      if (!std::isfinite(chunk[k])) {
-        ++summary.nan_count;
-        continue;
-      }
-      summary.low = tally.any_finite ? std::min(summary.low, chunk[k]) : chunk[k];
-      summary.high = tally.any_finite ? std::max(summary.high, chunk[k]) : chunk[k];
-      tally.any_finite = true;
+  NumberTally numbers;
+  if (field.tally) {
+    numbers = *field.tally;
+  } else {
+    std::array<double, 4096> chunk;
+    const int component = field.components == 1 ? 0 : magnitude;
+    for (std::size_t first = 0; first < field.tuples; first += chunk.size()) {
+      const std::span some(chunk.data(), std::min(chunk.size(), field.tuples - first));
+      field.read(component, first, some);
+      numbers.add(some);
     }
   }
+  FieldSummary& summary = tally.summary;
+  summary.nan_count += numbers.not_finite;
+  if (!numbers.any_finite) return;
+  summary.low = tally.any_finite ? std::min(summary.low, numbers.low) : numbers.low;
+  summary.high = tally.any_finite ? std::max(summary.high, numbers.high) : numbers.high;
+  tally.any_finite = true;
 }
 
 bool varies(const FieldSummary& f) {

@@ -18,8 +18,8 @@ struct MeshBlocks {
   std::string format;
 };
 
-/// Whether this build has VTK's readers and writers (CMake option TESSERA_VTK). Without them read_vtk_xml(),
-/// read_vtk_legacy(), read_exodus(), read_plot3d(), read_vtk_grid(), read_stl() and write_vtu() throw Error(bad_input).
+/// Whether this build has VTK's readers (CMake option TESSERA_VTK), in the helper program. Without them read_vtk_xml(),
+/// read_vtk_legacy(), read_exodus(), read_plot3d(), read_vtk_grid() and read_stl() throw Error(bad_input).
 bool has_vtk();
 
 /// VTK's XML files: .vtu .pvtu .vts .pvts .vtr .pvtr. The pieces of a .pvtu are a block each, their points not merged.
@@ -40,7 +40,6 @@ MeshBlocks read_vtk_legacy(const std::filesystem::path& file);
 
 /// Exodus II: all element blocks, nodal and element variables at one time step (default the last). Nodes are moved by
 /// the file's displacements, if it has some, as ParaView does. Variables NAME_x NAME_y NAME_z become one vector NAME.
-/// Through Exodus's own library: VTK's reader believes what is in a damaged file.
 MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t> time_step);
 
 /// PLOT3D grid and solution; the binary layout is found from the file's size. `q_file` may be empty: then it is looked

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,21 +25,21 @@ struct Surface {
   std::vector<std::vector<double>> attributes;
 };
 
-/// Tets inside a surface. Points of the surface come first.
-struct FilledSurface {
-  std::vector<glm::dvec3> points;
-  std::vector<std::uint32_t> tets;       ///< four a tet
-  std::vector<std::uint32_t> triangles;  ///< three a boundary or facet triangle
-};
-
-/// Whether this build links TetGen (CMake option TESSERA_TETGEN).
+/// Whether this build has TetGen (CMake option TESSERA_TETGEN): the helper program links it, nothing else does.
 bool can_fill_surfaces();
 
-/// Fills a closed surface by TetGen (Si, "TetGen, a Delaunay-Based Quality Tetrahedral Mesh Generator", ACM TOMS 2015)
-/// with tets of at most `max_volume` and radius-edge ratio 2, or with none but the surface's own points where that can
-/// be. Throws Error(bad_input, "SOURCE: ...") if the surface is not
-/// closed, cuts itself or TetGen gives up, and always without TESSERA_TETGEN.
-FilledSurface fill_surface(const Surface& surface, std::optional<double> max_volume, const std::string& source);
+/// A surface filled by TetGen (Si, "TetGen, a Delaunay-Based Quality Tetrahedral Mesh Generator", ACM TOMS 2015) with
+/// tets of at most `max_volume` and radius-edge ratio 2, and the fields that go with it.
+struct FilledMesh {
+  std::vector<glm::dvec3> points;
+  std::vector<std::uint32_t> tets;              ///< four a tet
+  std::vector<double> depth;                    ///< at the points: distance to the surface, world units
+  std::vector<std::vector<double>> attributes;  ///< the surface's, at the points
+};
+
+/// By the helper. Throws Error(bad_input, "SOURCE: ...") if the surface is not closed, cuts itself or TetGen gives up,
+/// and always without TESSERA_TETGEN.
+FilledMesh fill_surface(const Surface& surface, double max_volume, const std::string& source);
 
 /// Makes points at one place one point, drops polygons that this collapses. What STL has no other way to say.
 void merge_coincident_points(Surface& surface);
@@ -51,8 +50,5 @@ void require_closed(const Surface& surface, const std::string& source);
 
 /// Volume inside, from the polygons' signed cones; right if all polygons turn one way, else too small.
 double enclosed_volume(const Surface& surface);
-
-/// Gives points from number `known` on the mean of their neighbours in the tets, ring after ring.
-void fill_unknown(const FilledSurface& mesh, std::size_t known, std::vector<double>& values);
 
 }  // namespace tessera::io

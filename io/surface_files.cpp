@@ -10,7 +10,6 @@
 #include "io/ply_file.hpp"
 #include "io/stl_file.hpp"
 #include "io/surface.hpp"
-#include "io/surface_fields.hpp"
 #include "io/tetgen_files.hpp"
 #include "scene/error.hpp"
 
@@ -77,19 +76,15 @@ MeshBlocks read_surface(const std::filesystem::path& file, std::optional<double>
   if (!(volume > 0))
     throw scene::bad_input(fmt::format("{}: the surface is flat, it encloses nothing; give a closed one", source));
   const double largest = max_volume.value_or(volume / default_tets);
-  FilledSurface filled = fill_surface(surface, largest, source);
+  FilledMesh filled = fill_surface(surface, largest, source);
   result.notes.push_back(fmt::format("surface of {} points and {} facets filled with {} tets of at most {:.4g}{}",
                                      surface.points.size(), surface.facets.size(), filled.tets.size() / 4, largest,
                                      max_volume ? "" : " (`max_volume` sets it)"));
   CellBlock block;
-  if (!surface.attributes.empty()) {
-    std::vector<std::vector<double>> attributes =
-        spread_attributes(surface, fill_surface(surface, std::nullopt, source), filled);
-    for (std::size_t a = 0; a < attributes.size(); ++a)
-      block.fields.push_back(
-          field_of_values(attribute_names[a], "double", scene::Association::point, 1, std::move(attributes[a])));
-  }
-  block.fields.push_back(field_of_values("depth", "double", scene::Association::point, 1, depth_below_surface(filled)));
+  for (std::size_t a = 0; a < filled.attributes.size(); ++a)
+    block.fields.push_back(
+        field_of_values(attribute_names[a], "double", scene::Association::point, 1, std::move(filled.attributes[a])));
+  block.fields.push_back(field_of_values("depth", "double", scene::Association::point, 1, std::move(filled.depth)));
   result.notes.emplace_back("field 'depth' is the distance to the surface, world units");
   block.positions = std::move(filled.points);
   block.tets.resize(filled.tets.size() / 4);

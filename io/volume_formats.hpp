@@ -10,8 +10,6 @@
 #include "io/volume_reader.hpp"
 #include "scene/error.hpp"
 
-class vtkDataArray;
-
 namespace tessera::io {
 
 /// What a header says of one array of samples and of where its bytes are.
@@ -50,12 +48,6 @@ bool looks_like_vtk_grid(std::string_view beginning);
 
 /// Whether a word is somewhere in the text in quotes: an XML attribute's value.
 bool has_quoted(std::string_view text, std::string_view word);
-
-/// VTK fills what an XML file that is cut short lacks with zeros, and says nothing. Throws Error(bad_input).
-void require_xml_end(const std::filesystem::path& file);
-
-/// Half a last place, relative, of what an array stores; 0 of whole numbers.
-double rounding_of(vtkDataArray& array);
 
 /// Spacing and direction from what one step of the index along each axis is in the world.
 void set_axes(scene::GridGeometry& geometry, const std::array<glm::dvec3, 3>& steps);

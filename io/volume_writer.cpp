@@ -10,6 +10,7 @@
 #include "io/atomic_file.hpp"
 #include "io/brick_file.hpp"
 #include "io/input_file.hpp"
+#include "io/xml_elements.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -49,21 +50,6 @@ void write_values(const scene::SampleSource& source, AtomicFile& out) {
     }
     out.write(bytes.data(), bytes.size());
   }
-}
-
-std::string xml_escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&')
-      result += "&amp;";
-    else if (c == '<')
-      result += "&lt;";
-    else if (c == '"')
-      result += "&quot;";
-    else
-      result += c;
-  }
-  return result;
 }
 
 /// VTK XML with one appended raw array; of a rectilinear grid with its coordinates inline.

@@ -4,17 +4,17 @@
 #include "io/input_file.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/stl_file.hpp"
-#include "io/surface_fields.hpp"
 #include "io/volume_formats.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
 namespace {
 
-[[noreturn]] void refuse(const std::filesystem::path& file, const char* instead = "convert it to another format") {
+[[noreturn]] void refuse(const std::filesystem::path& file) {
   throw scene::bad_input(
-      fmt::format("{}: {} files need VTK, which this build leaves out; build with TESSERA_VTK=ON, or {}", file.string(),
-                  lower_extension(file), instead));
+      fmt::format("{}: {} files need VTK, which this build leaves out; build with TESSERA_VTK=ON, or convert it to "
+                  "another format",
+                  file.string(), lower_extension(file)));
 }
 
 }  // namespace
@@ -27,7 +27,6 @@ MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::siz
 MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem::path&) { refuse(file); }
 VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions&) { refuse(file); }
 Surface read_stl(const std::string& source) { refuse(source); }
-void write_vtu(const scene::TetMeshView&, const std::filesystem::path& file) { refuse(file, "write .tets"); }
 
 // Read whole, by read_vtk_xml().
 bool is_pvtu(const std::filesystem::path&) { return false; }

@@ -1,85 +1,146 @@
 #include <fmt/format.h>
-#include <vtkCellArray.h>
-#include <vtkCellData.h>
-#include <vtkDoubleArray.h>
-#include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkTypeInt64Array.h>
-#include <vtkUnstructuredGrid.h>
-#include <vtkXMLUnstructuredGridWriter.h>
+#include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <cstring>
+#include <functional>
+#include <new>
+#include <vector>
 
 #include "io/atomic_file.hpp"
 #include "io/mesh_reader.hpp"
-#include "io/vtk_session.hpp"
-#include "scene/error.hpp"
+#include "io/xml_elements.hpp"
 
 namespace tessera::io {
 namespace {
 
-vtkNew<vtkUnstructuredGrid> grid_of(const scene::TetMeshView& mesh) {
-  vtkNew<vtkUnstructuredGrid> grid;
-  vtkNew<vtkDoubleArray> xyz;
-  xyz->SetNumberOfComponents(3);
-  xyz->SetNumberOfTuples(static_cast<vtkIdType>(mesh.positions.size()));
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v)
-    for (int k = 0; k < 3; ++k) xyz->SetTypedComponent(static_cast<vtkIdType>(v), k, mesh.positions[v][k]);
-  vtkNew<vtkPoints> points;
-  points->SetData(xyz);
-  grid->SetPoints(points);
+/// One array in words and how many numbers it has; `fill` gives those from `first` on as bytes.
+struct WrittenArray {
+  std::string attributes;  ///< of its <DataArray>
+  std::size_t numbers, number_size;
+  std::function<void(std::size_t first, std::size_t count, std::byte* to)> fill;
+};
 
-  const auto tets = static_cast<vtkIdType>(mesh.tets.size());
-  vtkNew<vtkTypeInt64Array> offsets, connectivity;
-  offsets->SetNumberOfValues(tets + 1);
-  connectivity->SetNumberOfValues(4 * tets);
-  for (vtkIdType t = 0; t <= tets; ++t) offsets->SetValue(t, 4 * t);
-  for (vtkIdType t = 0; t < tets; ++t)
-    for (int k = 0; k < 4; ++k) connectivity->SetValue(4 * t + k, mesh.tets[static_cast<std::size_t>(t)][k]);
-  vtkNew<vtkCellArray> cells;
-  cells->SetData(offsets, connectivity);
-  grid->SetCells(VTK_TETRA, cells);
-
-  vtkNew<vtkDoubleArray> scalars;
-  scalars->SetName(mesh.field_name.empty() ? "scalar" : std::string(mesh.field_name).c_str());
-  scalars->SetNumberOfValues(static_cast<vtkIdType>(mesh.scalars.size()));
-  std::copy(mesh.scalars.begin(), mesh.scalars.end(), scalars->GetPointer(0));
-  if (mesh.association == scene::Association::point)
-    grid->GetPointData()->SetScalars(scalars);
-  else
-    grid->GetCellData()->SetScalars(scalars);
-  if (!mesh.original_cell.empty()) {
-    vtkNew<vtkTypeInt64Array> original;
-    original->SetName("OriginalCellId");
-    original->SetNumberOfValues(tets);
-    std::copy(mesh.original_cell.begin(), mesh.original_cell.end(), original->GetPointer(0));
-    grid->GetCellData()->AddArray(original);
-  }
-  return grid;
+template <class T, class Of>
+WrittenArray array_of(std::string attributes, std::size_t numbers, const Of& of) {
+  return {std::move(attributes), numbers, sizeof(T), [of](std::size_t first, std::size_t count, std::byte* to) {
+            for (std::size_t k = 0; k < count; ++k) {
+              const T number = of(first + k);
+              std::memcpy(to + k * sizeof(T), &number, sizeof(T));
+            }
+          }};
 }
+
+/// VTK's compressed form (its "VTK XML Formats" wiki page): number of blocks, their size, the size of a last one that
+/// is not full or 0, the compressed size of each, all uint64; then the blocks, zlib.
+void write_compressed(const WrittenArray& array, AtomicFile& out) {
+  constexpr std::size_t block_bytes = 1 << 18;
+  const std::size_t numbers_a_block = block_bytes / array.number_size,
+                    blocks = (array.numbers + numbers_a_block - 1) / numbers_a_block;
+  std::vector<std::uint64_t> head(3 + blocks, 0);
+  head[0] = blocks, head[1] = block_bytes;
+  head[2] = array.numbers % numbers_a_block * array.number_size;
+  const std::uint64_t start = out.position();
+  out.write(head.data(), head.size() * sizeof head[0]);
+  std::vector<std::byte> plain(block_bytes);
+  std::vector<Bytef> packed(::compressBound(block_bytes));
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const std::size_t first = b * numbers_a_block, count = std::min(numbers_a_block, array.numbers - first);
+    array.fill(first, count, plain.data());
+    uLongf size = packed.size();
+    if (::compress2(packed.data(), &size, reinterpret_cast<const Bytef*>(plain.data()), count * array.number_size,
+                    Z_DEFAULT_COMPRESSION) != Z_OK)
+      throw std::bad_alloc();  // all that can fail
+    head[3 + b] = size;
+    out.write(packed.data(), size);
+  }
+  const std::uint64_t end = out.position();
+  out.seek(start);
+  out.write(head.data(), head.size() * sizeof head[0]);
+  out.seek(end);
+}
+
+/// A file's text with its arrays' places left open.
+class VtuText {
+ public:
+  void add(std::string_view text) { text_ += text; }
+  /// `section` holds the arrays from `first` to `last`.
+  void add_section(const char* opening, const char* closing, std::span<const WrittenArray> arrays) {
+    text_ += fmt::format("      <{}>\n", opening);
+    for (const WrittenArray& array : arrays) {
+      text_ += fmt::format("        <DataArray {} format=\"appended\" offset=\"", array.attributes);
+      places_.push_back(text_.size());
+      text_.append(width, ' ');
+      text_ += "\"/>\n";
+    }
+    text_ += fmt::format("      </{}>\n", closing);
+  }
+  void write(AtomicFile& out) const { out.write(text_); }
+  /// Enters where the next array begins.
+  void enter(std::size_t array, std::uint64_t offset, AtomicFile& out) const {
+    const std::uint64_t end = out.position();
+    out.seek(places_[array]);
+    out.write(fmt::format("{:0{}}", offset, width));
+    out.seek(end);
+  }
+
+ private:
+  static constexpr std::size_t width = 15;
+  std::string text_;
+  std::vector<std::size_t> places_;
+};
 
 }  // namespace
 
 void write_vtu(const scene::TetMeshView& mesh, const std::filesystem::path& file) {
+  const std::size_t points = mesh.positions.size(), tets = mesh.tets.size();
+  const std::array<WrittenArray, 1> places{
+      array_of<double>("type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"", 3 * points,
+                       [&](std::size_t k) { return mesh.positions[k / 3][static_cast<int>(k % 3)]; })};
+  const std::array<WrittenArray, 3> cells{
+      array_of<std::int64_t>("type=\"Int64\" Name=\"connectivity\"", 4 * tets,
+                             [&](std::size_t k) { return std::int64_t{mesh.tets[k / 4][k % 4]}; }),
+      array_of<std::int64_t>("type=\"Int64\" Name=\"offsets\"", tets,
+                             [](std::size_t k) { return static_cast<std::int64_t>(4 * (k + 1)); }),
+      array_of<std::uint8_t>("type=\"UInt8\" Name=\"types\"", tets, [](std::size_t) { return std::uint8_t{10}; })};
+  const std::string name = xml_escaped(mesh.field_name.empty() ? "scalar" : std::string(mesh.field_name));
+  const WrittenArray scalars = array_of<double>(fmt::format("type=\"Float64\" Name=\"{}\"", name), mesh.scalars.size(),
+                                                [&](std::size_t k) { return mesh.scalars[k]; });
+  const bool at_points = mesh.association == scene::Association::point;
+  std::vector<WrittenArray> point_data, cell_data;
+  (at_points ? point_data : cell_data).push_back(scalars);
+  if (!mesh.original_cell.empty())
+    cell_data.push_back(array_of<std::int64_t>("type=\"Int64\" Name=\"OriginalCellId\"", tets, [&](std::size_t k) {
+      return static_cast<std::int64_t>(mesh.original_cell[k]);
+    }));
+
+  VtuText text;
+  text.add(fmt::format(
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n  <UnstructuredGrid>\n    <Piece "
+      "NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
+      points, tets));
+  const std::string active = fmt::format(" Scalars=\"{}\"", name);
+  text.add_section(("PointData" + (at_points ? active : std::string())).c_str(), "PointData", point_data);
+  text.add_section(("CellData" + (at_points ? std::string() : active)).c_str(), "CellData", cell_data);
+  text.add_section("Points", "Points", places);
+  text.add_section("Cells", "Cells", cells);
+  text.add("    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n   _");
+
   AtomicFile out(file);
-  const std::string part = out.named_part().string();
-  const vtkNew<vtkUnstructuredGrid> grid = grid_of(mesh);
-  try {
-    with_quiet_vtk(file.string(), "check the disk", [&] {
-      vtkNew<vtkXMLUnstructuredGridWriter> writer;
-      writer->SetFileName(part.c_str());
-      writer->SetInputData(grid);
-      writer->SetDataModeToAppended();
-      writer->EncodeAppendedDataOff();
-      writer->SetCompressorTypeToZLib();
-      if (writer->Write() == 0)
-        throw scene::bad_input(fmt::format("{}: it cannot be written; check the disk", file.string()));
-    });
-  } catch (const scene::Error& e) {  // what cannot be written is the system's fault, not the mesh's
-    throw scene::Error(scene::ErrorCode::system_failure, e.what());
-  }
+  text.write(out);
+  const std::uint64_t start = out.position();
+  std::size_t number = 0;
+  for (const std::span<const WrittenArray> section :
+       {std::span<const WrittenArray>(point_data), std::span<const WrittenArray>(cell_data),
+        std::span<const WrittenArray>(places), std::span<const WrittenArray>(cells)})
+    for (const WrittenArray& array : section) {
+      text.enter(number++, out.position() - start, out);
+      write_compressed(array, out);
+    }
+  out.write("\n  </AppendedData>\n</VTKFile>\n");
   out.commit();
 }
 

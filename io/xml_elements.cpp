@@ -24,6 +24,7 @@ struct Walk {
 
 void XMLCALL on_start(void* user, const XML_Char* name, const XML_Char** attributes) {
   Walk& walk = *static_cast<Walk*>(user);
+  if (walk.fault) return;
   try {
     XmlElement element{name, walk.parents, {}};
     for (; *attributes != nullptr; attributes += 2) element.attributes.emplace(attributes[0], attributes[1]);
@@ -35,7 +36,11 @@ void XMLCALL on_start(void* user, const XML_Char* name, const XML_Char** attribu
   }
 }
 
-void XMLCALL on_end(void* user, const XML_Char* /*name*/) { static_cast<Walk*>(user)->parents.pop_back(); }
+void XMLCALL on_end(void* user, const XML_Char* /*name*/) {
+  Walk& walk = *static_cast<Walk*>(user);
+  // Of an empty element's two events expat still sends the second after it was stopped at the first.
+  if (!walk.fault) walk.parents.pop_back();
+}
 
 }  // namespace
 
@@ -63,6 +68,21 @@ void each_xml_element(std::string_view text, const std::string& source,
                                          XML_ErrorString(XML_GetErrorCode(parser.get()))));
     if (last) return;
   }
+}
+
+std::string xml_escaped(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '&')
+      result += "&amp;";
+    else if (c == '<')
+      result += "&lt;";
+    else if (c == '"')
+      result += "&quot;";
+    else
+      result += c;
+  }
+  return result;
 }
 
 }  // namespace tessera::io

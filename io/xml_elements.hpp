@@ -23,4 +23,7 @@ struct XmlElement {
 void each_xml_element(std::string_view text, const std::string& source,
                       const std::function<void(const XmlElement&)>& visit);
 
+/// Text as the value of an attribute in double quotes.
+std::string xml_escaped(std::string_view text);
+
 }  // namespace tessera::io

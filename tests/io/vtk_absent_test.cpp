@@ -14,8 +14,6 @@ TEST(WithoutVtk, WhatNeedsItIsRefusedByNameWithTheOptionThatBringsIt) {
                            {std::string(name) + ": ", " files need VTK", "TESSERA_VTK=ON"});
   test::expect_bad_input([&] { open_volume(folder.write("v.vti", "<VTKFile type=\"ImageData\">")); },
                          {"v.vti: .vti files need VTK", "TESSERA_VTK=ON"});
-  test::expect_bad_input([&] { write_vtu({}, folder / "w.vtu"); }, {"w.vtu: .vtu files need VTK"});
-  EXPECT_FALSE(std::filesystem::exists(folder / "w.vtu"));
 }
 
 }  // namespace

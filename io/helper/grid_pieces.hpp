@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
+class vtkDataObject;
 class vtkDataSet;
 
-namespace tessera::io {
+namespace tessera::io::helper {
 
 enum class GridKind { image, rectilinear, structured };
 
@@ -20,9 +21,13 @@ enum class GridKind { image, rectilinear, structured };
 /// Pieces may overlap (ghost levels, or planes of points that they share); the last one's samples hold. Origin and
 /// spacing are the parallel file's; the direction, which VTK 9.1 leaves out there, is the first piece's that has one.
 /// Throws Error(bad_input) in one line if the pieces do not fill the whole, or one is missing, damaged, of another
-/// kind, smaller than the whole says, or has other arrays or coordinates than the ones before. The counts in the files
-/// have been checked before (check_vtk_xml).
+/// kind, smaller than the whole says, or has other arrays or coordinates than the ones before.
 vtkSmartPointer<vtkDataSet> read_grid_pieces(const std::filesystem::path& file, GridKind kind,
                                              std::vector<std::string>& notes);
 
-}  // namespace tessera::io
+/// One of VTK's XML files, by the `type` of its <VTKFile>; not one in pieces. The pieces within it have to fill the
+/// whole. Throws Error(bad_input).
+vtkSmartPointer<vtkDataObject> read_xml_file(const std::filesystem::path& file, const std::string& type,
+                                             std::string& warning);
+
+}  // namespace tessera::io::helper

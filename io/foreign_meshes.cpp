@@ -1,27 +1,16 @@
+// Meshes in other programs' formats, read by the helper.
 #include <fmt/format.h>
-#include <vtkCellData.h>
-#include <vtkDataObject.h>
-#include <vtkDataSet.h>
-#include <vtkDataSetReader.h>
-#include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkSmartPointer.h>
-#include <vtkXMLRectilinearGridReader.h>
-#include <vtkXMLStructuredGridReader.h>
-#include <vtkXMLUnstructuredGridReader.h>
 
 #include <algorithm>
 #include <array>
+#include <nlohmann/json.hpp>
 
-#include "io/grid_pieces.hpp"
+#include "io/foreign_file.hpp"
 #include "io/input_file.hpp"
-#include "io/mapped_file.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/mesh_parts.hpp"
+#include "io/plot3d_layout.hpp"
 #include "io/text_file.hpp"
-#include "io/vtk_blocks.hpp"
-#include "io/vtk_checks.hpp"
-#include "io/vtk_session.hpp"
 #include "io/xml_elements.hpp"
 #include "scene/error.hpp"
 
@@ -53,21 +42,6 @@ std::string xml_type(const std::filesystem::path& file) {
   return close == std::string::npos ? "" : text.substr(open + 1, close - open - 1);
 }
 
-vtkSmartPointer<vtkXMLReader> make_xml_reader(const std::string& type) {
-  vtkXMLReader* reader = nullptr;
-  if (type == "UnstructuredGrid") reader = vtkXMLUnstructuredGridReader::New();
-  if (type == "StructuredGrid") reader = vtkXMLStructuredGridReader::New();
-  if (type == "RectilinearGrid") reader = vtkXMLRectilinearGridReader::New();
-  return vtkSmartPointer<vtkXMLReader>::Take(reader);
-}
-
-void add_warning(const std::string& warning, std::vector<std::string>& notes) {
-  if (warning.empty()) return;
-  std::string note = "VTK warns: " + warning;
-  // Once, though all pieces may give rise to it.
-  if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
-}
-
 constexpr const char* parallel_type = "PUnstructuredGrid";
 
 const XmlKind* kind_of(const std::string& type) {
@@ -83,18 +57,20 @@ MeshBlocks named_format(const XmlKind& kind, const std::string& extension) {
   return result;
 }
 
-vtkSmartPointer<vtkDataObject> read_xml(const std::string& source, const std::string& type,
-                                        std::vector<std::string>& notes) {
-  vtkSmartPointer<vtkDataObject> data;
-  const std::string warning = with_quiet_vtk(source, "the file is truncated or damaged, write it anew", [&] {
-    const auto reader = make_xml_reader(type);
-    reader->SetFileName(source.c_str());
-    reader->Update();
-    data = reader->GetOutputDataObject(0);
-  });
-  if (!data) throw scene::bad_input(fmt::format("{}: nothing can be read; write it anew", source));
-  add_warning(warning, notes);
-  return data;
+/// Once, though all pieces may give rise to it.
+void add_notes(const std::vector<std::string>& more, std::vector<std::string>& notes) {
+  for (const std::string& note : more)
+    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+}
+
+/// All of a file that the helper reads in one go.
+MeshBlocks read_foreign(const std::filesystem::path& file, nlohmann::json request) {
+  const ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(), file, std::move(request));
+  MeshBlocks result;
+  result.format = opened.contents.format;
+  result.notes = opened.contents.notes;
+  result.blocks = blocks_of(opened, result.notes);
+  return result;
 }
 
 }  // namespace
@@ -114,16 +90,10 @@ MeshBlocks read_vtk_xml(const std::filesystem::path& file) {
 
   // Pieces one by one, so that the whole reads as its parts do, and faults name the piece.
   if (type == parallel_type) return read_pvtu_pieces(file, pvtu_pieces(file));
-  check_vtk_xml(file);
   MeshBlocks result = named_format(*kind, extension);
-  vtkSmartPointer<vtkDataObject> data;
-  if (type == "PRectilinearGrid")
-    data = read_grid_pieces(file, GridKind::rectilinear, result.notes);
-  else if (type == "PStructuredGrid")
-    data = read_grid_pieces(file, GridKind::structured, result.notes);
-  else
-    data = read_xml(source, type, result.notes);
-  result.blocks = blocks_from_vtk(*data, source, result.notes);
+  MeshBlocks read = read_foreign(file, {{"reader", "vtk_xml"}, {"type", type}});
+  add_notes(read.notes, result.notes);
+  result.blocks = std::move(read.blocks);
   return result;
 }
 
@@ -144,6 +114,7 @@ std::vector<std::filesystem::path> pvtu_pieces(const std::filesystem::path& file
 
 MeshBlocks read_pvtu_pieces(const std::filesystem::path& file, std::span<const std::filesystem::path> pieces) {
   MeshBlocks result = named_format(*kind_of(parallel_type), lower_extension(file));
+  std::shared_ptr<HelperProcess> helper;
   for (const std::filesystem::path& piece : pieces) {
     const std::string source = piece.string(), type = xml_type(piece);
     if (type != "UnstructuredGrid")
@@ -153,9 +124,10 @@ MeshBlocks read_pvtu_pieces(const std::filesystem::path& file, std::span<const s
                        : fmt::format("{}: it is a piece of {} and its type is '{}', not 'UnstructuredGrid'; write both "
                                      "anew",
                                      source, file.string(), type));
-    check_vtk_xml(piece);
-    const auto data = read_xml(source, type, result.notes);
-    for (CellBlock& block : blocks_from_vtk(*data, source, result.notes)) {
+    if (!helper) helper = std::make_shared<HelperProcess>();
+    const ForeignFile opened = open_foreign(helper, piece, {{"reader", "vtk_xml"}, {"type", type}});
+    add_notes(opened.contents.notes, result.notes);
+    for (CellBlock& block : blocks_of(opened, result.notes)) {
       block.source = source;
       result.blocks.push_back(std::move(block));
     }
@@ -164,22 +136,44 @@ MeshBlocks read_pvtu_pieces(const std::filesystem::path& file, std::span<const s
 }
 
 MeshBlocks read_vtk_legacy(const std::filesystem::path& file) {
-  const std::string source = file.string();
   if (!read_beginning(file, 64).starts_with("# vtk DataFile Version"))
+    throw scene::bad_input(fmt::format(
+        "{}: it does not begin with '# vtk DataFile Version'; check that it is a legacy VTK file", file.string()));
+  return read_foreign(file, {{"reader", "vtk_legacy"}});
+}
+
+MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t> time_step) {
+  const std::string magic = read_beginning(file, 8);
+  if (!magic.starts_with("CDF") && !magic.starts_with("\x89HDF\r\n\x1a\n"))
     throw scene::bad_input(
-        fmt::format("{}: it does not begin with '# vtk DataFile Version'; check that it is a legacy VTK file", source));
-  check_vtk_legacy(MappedFile(file).text(), source);
-  MeshBlocks result;
-  vtkSmartPointer<vtkDataObject> data;
-  const std::string warning = with_quiet_vtk(source, "the file is truncated or damaged, write it anew", [&] {
-    vtkNew<vtkDataSetReader> reader;
-    read_all_arrays(*reader, source);
-    data = reader->GetOutputDataObject(0);
-  });
-  if (!data) throw scene::bad_input(fmt::format("{}: it holds no VTK data set; give a mesh", source));
-  add_warning(warning, result.notes);
-  result.format = fmt::format("legacy VTK ({})", data->GetClassName());
-  result.blocks = blocks_from_vtk(*data, source, result.notes);
+        fmt::format("{}: it is neither NetCDF nor HDF5; check that it is an Exodus file", file.string()));
+  nlohmann::json request{{"reader", "exodus"}};
+  if (time_step) request["time_step"] = *time_step;
+  return read_foreign(file, std::move(request));
+}
+
+MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem::path& q_file) {
+  const Plot3dLayout layout = detect_plot3d(file);
+  const std::filesystem::path q = q_file.empty() ? find_plot3d_solution(file) : q_file;
+  std::vector<std::string> notes;
+  if (q.empty())
+    notes.emplace_back("no solution (Q) file lies beside the grid: it has no field; name one by `q`");
+  else if (const std::uint64_t left = check_plot3d_solution(q, layout); left > 0)
+    notes.push_back(fmt::format("{} bytes after the solution in {} are not used", left, q.filename().string()));
+  notes.push_back(
+      fmt::format("PLOT3D: {} grid{}, {}-endian {}, {}, {}{}", layout.grids.size(), layout.grids.size() == 1 ? "" : "s",
+                  layout.big_endian ? "big" : "little", layout.double_precision ? "float64" : "float32",
+                  layout.record_marks ? "with record marks" : "no record marks", layout.iblank ? "IBLANK" : "no IBLANK",
+                  q.empty() ? "" : fmt::format(", solution {}", q.filename().string())));
+  MeshBlocks result = read_foreign(file, {{"reader", "plot3d"},
+                                          {"q", q.string()},
+                                          {"big_endian", layout.big_endian},
+                                          {"record_marks", layout.record_marks},
+                                          {"multi_grid", layout.multi_grid},
+                                          {"double_precision", layout.double_precision},
+                                          {"iblank", layout.iblank}});
+  result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
+  if (result.blocks.size() == 1) result.blocks[0].name.clear();
   return result;
 }
 

@@ -1,4 +1,4 @@
-#include "io/vtk_session.hpp"
+#include "io/helper/vtk_session.hpp"
 
 #include <fmt/format.h>
 #include <vtkDataSetReader.h>
@@ -14,7 +14,7 @@
 
 #include "scene/error.hpp"
 
-namespace tessera::io {
+namespace tessera::io::helper {
 namespace {
 
 /// The first error and the first warning that VTK had to say, each on one line.
@@ -89,6 +89,9 @@ std::string with_quiet_vtk(const std::string& source, const std::string& remedy,
   } catch (const std::length_error&) {
     throw scene::bad_input(fmt::format("{}: it gives impossible sizes; {}", source, remedy));
   }
+  // What a file that is cut short gives VTK's legacy reader to say is a warning to it.
+  if (quiet.trap->error.empty() && quiet.trap->warning.find("Error reading") != std::string::npos)
+    throw scene::bad_input(fmt::format("{}: it ends before its data do; {}", source, remedy));
   if (!quiet.trap->error.empty()) throw scene::bad_input(fmt::format("{}: {}; {}", source, quiet.trap->error, remedy));
   return quiet.trap->warning;
 }
@@ -105,4 +108,4 @@ void read_all_arrays(vtkDataSetReader& reader, const std::string& source) {
   reader.Update();
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::io::helper

@@ -5,7 +5,7 @@
 
 class vtkDataSetReader;
 
-namespace tessera::io {
+namespace tessera::io::helper {
 
 /// Runs one read or write by VTK with VTK's messages caught instead of printed, and returns what it warned of.
 ///
@@ -18,4 +18,4 @@ std::string with_quiet_vtk(const std::string& source, const std::string& remedy,
 /// with_quiet_vtk().
 void read_all_arrays(vtkDataSetReader& reader, const std::string& source);
 
-}  // namespace tessera::io
+}  // namespace tessera::io::helper

@@ -7,9 +7,9 @@
 #include <numeric>
 #include <optional>
 
-#include "io/surface_fields.hpp"
+#include "io/helper/surface_fields.hpp"
 
-namespace tessera::io {
+namespace tessera::io::helper {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -174,4 +174,4 @@ std::vector<std::vector<double>> spread_attributes(const Surface& surface, const
   return result;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::io::helper

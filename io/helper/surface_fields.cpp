@@ -1,4 +1,4 @@
-#include "io/surface_fields.hpp"
+#include "io/helper/surface_fields.hpp"
 
 #include <vtkCellArray.h>
 #include <vtkCellLocator.h>
@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tessera::io {
+namespace tessera::io::helper {
 namespace {
 
 vtkNew<vtkPoints> vtk_points(const std::vector<glm::dvec3>& positions) {
@@ -86,4 +86,4 @@ std::vector<std::vector<double>> spread_attributes(const Surface& surface, const
   return result;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::io::helper

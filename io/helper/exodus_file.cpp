@@ -8,16 +8,17 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
+#include "io/helper/netcdf_size.hpp"
+#include "io/helper/readers.hpp"
 #include "io/input_file.hpp"
-#include "io/mapped_file.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/tuple_length.hpp"
-#include "io/vtk_checks.hpp"
 #include "scene/error.hpp"
 
-namespace tessera::io {
+namespace tessera::io::helper {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -31,7 +32,12 @@ class ExodusFile {
       id_ = -1;
       fail("it cannot be opened as a NetCDF file, which Exodus files are");
     }
+    const std::uint64_t least = least_netcdf_bytes(id_), size = require_file(file);
     nc_close(id_);
+    if (size < least) {
+      id_ = -1;
+      fail(fmt::format("it has {} bytes of at least {}", size, least));
+    }
     ex_opts(0);  // the library keeps its words to itself
     int double_size = sizeof(double), file_size = 0;
     float version = 0;
@@ -185,6 +191,9 @@ class Reading {
     const bool compressed = !read_beginning(path, 3).starts_with("CDF");
     most_values_ = require_file(path) * (compressed ? 1040 : 1);
     file_->require(ex_get_init_ext(file_->id(), &init_), "the header");
+    if (init_.num_dim == 1 || init_.num_dim == 2)
+      throw scene::bad_input(fmt::format("{}: it is {}-dimensional, so there is no volume in it; give a mesh in space",
+                                         source_, init_.num_dim));
     if (init_.num_dim != 3) file_->fail(fmt::format("its points have {} coordinates, not 3", init_.num_dim));
     check_count("nodes", init_.num_nodes, 3);
     check_count("elements", init_.num_elem, 1);
@@ -348,13 +357,16 @@ class Reading {
 
 }  // namespace
 
-MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t> time_step) {
-  const std::string magic = read_beginning(file, 8);
-  if (!magic.starts_with("CDF") && !magic.starts_with("\x89HDF\r\n\x1a\n"))
-    throw scene::bad_input(
-        fmt::format("{}: it is neither NetCDF nor HDF5; check that it is an Exodus file", file.string()));
-  if (magic.starts_with("CDF")) check_netcdf_classic(MappedFile(file).text(), file.string());
-  return Reading(file, time_step).take();
+ForeignContents read_exodus(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  allow_for(file);
+  std::optional<std::size_t> time_step;
+  if (const auto step = request.find("time_step"); step != request.end()) time_step = step->get<std::size_t>();
+  MeshBlocks read = Reading(file, time_step).take();
+  ForeignContents contents;
+  for (CellBlock& block : read.blocks) contents.parts.push_back(hold_block(holdings, std::move(block)));
+  contents.notes = std::move(read.notes);
+  contents.format = std::move(read.format);
+  return contents;
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::io::helper

@@ -1,4 +1,4 @@
-#include "io/grid_pieces.hpp"
+#include "io/helper/grid_pieces.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,25 +14,22 @@
 #include <vtkRectilinearGrid.h>
 #include <vtkStructuredGrid.h>
 #include <vtkUnsignedCharArray.h>
-#include <vtkXMLImageDataReader.h>
-#include <vtkXMLRectilinearGridReader.h>
-#include <vtkXMLStructuredGridReader.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <sstream>
 
+#include "io/helper/extents.hpp"
+#include "io/helper/readers.hpp"
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
 #include "io/volume_formats.hpp"
-#include "io/vtk_session.hpp"
 #include "io/xml_elements.hpp"
 
-namespace tessera::io {
+namespace tessera::io::helper {
 namespace {
 
 /// What the kinds of grids are called.
@@ -50,9 +47,6 @@ KindWords words_of(GridKind kind) {
   }
   return {"PStructuredGrid", "StructuredGrid", ".vts"};
 }
-
-/// Points, first and last along each axis; between them are the cells.
-using Extent = std::array<int, 6>;
 
 struct Piece {
   std::filesystem::path file;
@@ -76,46 +70,9 @@ std::optional<std::array<T, count>> numbers_of(const std::string& text) {
   return numbers;
 }
 
-bool holds(const Extent& extent, const Extent& part) {
-  for (std::size_t a = 0; a < 3; ++a)
-    if (part[2 * a] < extent[2 * a] || part[2 * a + 1] > extent[2 * a + 1]) return false;
-  return true;
-}
-
-double cells_in(const Extent& extent) {
-  double cells = 1;
-  for (std::size_t a = 0; a < 3; ++a)
-    cells *= std::max(0.0, static_cast<double>(extent[2 * a + 1]) - static_cast<double>(extent[2 * a]));
-  return cells;
-}
-
-/// Cells that lie in a piece, however the pieces overlap.
-double cells_covered(std::span<const Piece> pieces) {
-  // The boxes between all planes at which pieces begin or end: few, as pieces lie in rows.
-  std::array<std::vector<int>, 3> planes;
-  double boxes = 1, sum = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (const Piece& piece : pieces) planes[a].insert(planes[a].end(), {piece.extent[2 * a], piece.extent[2 * a + 1]});
-    std::sort(planes[a].begin(), planes[a].end());
-    planes[a].erase(std::unique(planes[a].begin(), planes[a].end()), planes[a].end());
-    boxes *= static_cast<double>(planes[a].size());
-  }
-  for (const Piece& piece : pieces) sum += cells_in(piece.extent);
-  if (boxes * static_cast<double>(pieces.size()) > 1e9) return sum;  // thousands of pieces in no rows: by their sizes
-  double covered = 0;
-  for (std::size_t k = 1; k < planes[2].size(); ++k)
-    for (std::size_t j = 1; j < planes[1].size(); ++j)
-      for (std::size_t i = 1; i < planes[0].size(); ++i) {
-        const Extent box{planes[0][i - 1], planes[0][i],     planes[1][j - 1],
-                         planes[1][j],     planes[2][k - 1], planes[2][k]};
-        if (std::any_of(pieces.begin(), pieces.end(), [&](const Piece& piece) { return holds(piece.extent, box); }))
-          covered += cells_in(box);
-      }
-  return covered;
-}
-
 /// Reads the parallel file alone.
 WholeGrid read_whole(const std::filesystem::path& file, GridKind kind) {
+  allow_for(file);
   const MappedFile mapped(file);
   WholeGrid whole;
   const auto extent_of = [&](const XmlElement& element, const char* name) {
@@ -147,37 +104,32 @@ WholeGrid read_whole(const std::filesystem::path& file, GridKind kind) {
                                       fmt::join(whole.extent, " ")));
     whole.pieces.push_back(piece);
   });
-  const double cells = cells_in(whole.extent), covered = cells_covered(whole.pieces);
+  std::vector<Extent> extents;
+  for (const Piece& piece : whole.pieces) extents.push_back(piece.extent);
+  const double cells = cells_in(whole.extent), covered = cells_covered(extents);
   if (cells == 0)
     throw scene::bad_input(fmt::format("{}: it has no cells, being flat or empty; give a volume", file.string()));
   if (covered < cells) throw damaged(file, fmt::format("its pieces have {:.0f} of its {:.0f} cells", covered, cells));
   return whole;
 }
 
-vtkSmartPointer<vtkXMLReader> reader_of(GridKind kind) {
-  if (kind == GridKind::image) return vtkSmartPointer<vtkXMLImageDataReader>::New();
-  if (kind == GridKind::rectilinear) return vtkSmartPointer<vtkXMLRectilinearGridReader>::New();
-  return vtkSmartPointer<vtkXMLStructuredGridReader>::New();
-}
-
 vtkSmartPointer<vtkDataSet> read_piece(const std::filesystem::path& piece, const std::filesystem::path& file,
                                        GridKind kind, std::vector<std::string>& notes) {
-  const std::string source = piece.string();
   if (!has_quoted(read_beginning(piece, 4096), words_of(kind).piece))
-    throw scene::bad_input(fmt::format("{}: it is a piece of {} and no {}; write them anew", source, file.string(),
-                                       words_of(kind).extension));
-  require_xml_end(piece);
-  vtkSmartPointer<vtkDataSet> data;
-  const std::string warning = with_quiet_vtk(source, "the file is truncated or damaged, write it anew", [&] {
-    const vtkSmartPointer<vtkXMLReader> reader = reader_of(kind);
-    reader->SetFileName(source.c_str());
-    reader->Update();
-    data = vtkDataSet::SafeDownCast(reader->GetOutputDataObject(0));
-  });
-  if (!data) throw scene::bad_input(fmt::format("{}: nothing can be read; write it anew", source));
+    throw scene::bad_input(fmt::format("{}: it is a piece of {} and no {}; write them anew", piece.string(),
+                                       file.string(), words_of(kind).extension));
+  std::string warning;
+  vtkSmartPointer<vtkDataSet> data = vtkDataSet::SafeDownCast(read_xml_file(piece, words_of(kind).piece, warning));
+  if (!data) throw scene::bad_input(fmt::format("{}: nothing can be read; write it anew", piece.string()));
   const std::string note = "VTK warns: " + warning;
   if (!warning.empty() && std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
   return data;
+}
+
+/// Half a last place, relative, of what an array stores; 0 of whole numbers.
+double rounding_of(vtkDataArray& array) {
+  if (array.GetDataType() == VTK_FLOAT) return 0x1p-24;
+  return array.GetDataType() == VTK_DOUBLE ? 0x1p-53 : 0;
 }
 
 Extent extent_of(vtkDataSet& data) {
@@ -390,4 +342,4 @@ vtkSmartPointer<vtkDataSet> read_grid_pieces(const std::filesystem::path& file, 
   return assembly.finished();
 }
 
-}  // namespace tessera::io
+}  // namespace tessera::io::helper

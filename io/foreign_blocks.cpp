@@ -1,0 +1,291 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "io/foreign_file.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+using scene::Association;
+
+/// A field's numbers: with the helper until they are read, here from then on.
+class FetchedArray {
+ public:
+  FetchedArray(const ForeignFile& file, ForeignArray array)
+      : helper_(file.helper), source_(file.source), array_(std::move(array)) {}
+  ~FetchedArray() {
+    if (!fetched_) helper_->drop(std::span(&array_.number, 1));
+  }
+  FetchedArray(const FetchedArray&) = delete;
+  FetchedArray& operator=(const FetchedArray&) = delete;
+
+  void read(int component, std::size_t first, std::span<double> out) {
+    std::call_once(once_, [&] {
+      bytes_ = helper_->take(array_, source_);
+      fetched_ = true;
+    });
+    read_tuples(bytes_.bytes(), array_.type, array_.components, component, first, out);
+  }
+
+ private:
+  std::shared_ptr<HelperProcess> helper_;
+  std::string source_;
+  ForeignArray array_;
+  std::once_flag once_;
+  SharedBytes bytes_;
+  bool fetched_ = false;
+};
+
+void copy_points(const ForeignFile& file, const ForeignArray& points, CellBlock& block, const std::string& where) {
+  if (points.components != 3)
+    throw scene::bad_input(fmt::format("{}: its points have {} coordinates; give x y z", where, points.components));
+  const SharedBytes shared = file.helper->take(points, where);
+  block.positions.resize(points.tuples);
+  with_number_type(points.type, [&](auto zero) {
+    const auto p = shared.as<decltype(zero)>();
+    for (std::size_t v = 0; v < block.positions.size(); ++v)
+      block.positions[v] = {static_cast<double>(p[3 * v]), static_cast<double>(p[3 * v + 1]),
+                            static_cast<double>(p[3 * v + 2])};
+  });
+}
+
+/// Offsets and connectivity of either width, checked.
+template <class Offset, class Index>
+void copy_cells(std::span<const Offset> offsets, std::span<const Index> connectivity, CellBlock& block,
+                const std::string& where) {
+  const std::size_t cells = block.types.size();
+  if (offsets.size() != cells + 1 || offsets[0] != 0 ||
+      static_cast<std::uint64_t>(offsets[cells]) > connectivity.size())
+    throw scene::bad_input(
+        fmt::format("{}: cell offsets do not fit the {} cells and {} connectivity entries; the file "
+                    "is damaged, write it anew",
+                    where, cells, connectivity.size()));
+  bool all_tets = true;
+  for (std::size_t c = 0; c < cells; ++c) {
+    if (offsets[c + 1] < offsets[c])
+      throw scene::bad_input(
+          fmt::format("{}: the offset of cell {} is {}, less than the one before, {}; the file is "
+                      "damaged, write it anew",
+                      where, c, offsets[c + 1], offsets[c]));
+    all_tets = all_tets && block.types[c] == 10 && offsets[c + 1] - offsets[c] == 4;
+  }
+  const auto used = static_cast<std::size_t>(offsets[cells]);
+  all_tets ? block.tets.resize(cells) : block.connectivity.resize(used);
+  const auto points = static_cast<std::int64_t>(block.positions.size());
+  for (std::size_t k = 0; k < used; ++k) {
+    const auto v = static_cast<std::int64_t>(connectivity[k]);
+    if (v < 0 || v >= points) {
+      const auto cell = std::upper_bound(offsets.begin(), offsets.end(), static_cast<Offset>(k)) - offsets.begin() - 1;
+      throw scene::bad_input(
+          fmt::format("{}: cell {} uses point {}, the file holds {}; write cells and points from "
+                      "one mesh",
+                      where, cell, v, points));
+    }
+    (all_tets ? block.tets[k / 4][k % 4] : block.connectivity[k]) = static_cast<std::uint32_t>(v);
+  }
+  if (all_tets) {
+    block.types = {};
+  } else {
+    block.offsets.assign(offsets.begin(), offsets.end());
+  }
+}
+
+void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, CellBlock& block,
+                            const std::string& where) {
+  if (!part.types || !part.offsets || !part.connectivity) return;
+  if (part.types->type != NumberType::uint8 || part.types->tuples + 1 != part.offsets->tuples)
+    throw scene::bad_input(fmt::format("{}: {} cell types for {} cells; the file is damaged, write it anew", where,
+                                       part.types->tuples, part.offsets->tuples == 0 ? 0 : part.offsets->tuples - 1));
+  const SharedBytes types = file.helper->take(*part.types, where);
+  block.types.assign(types.as<std::uint8_t>().begin(), types.as<std::uint8_t>().end());
+  const SharedBytes offsets = file.helper->take(*part.offsets, where),
+                    connectivity = file.helper->take(*part.connectivity, where);
+  const auto are = [&](NumberType of_offsets, NumberType of_points) {
+    return part.offsets->type == of_offsets && part.connectivity->type == of_points;
+  };
+  if (are(NumberType::int64, NumberType::int64))
+    copy_cells(offsets.as<std::int64_t>(), connectivity.as<std::int64_t>(), block, where);
+  else if (are(NumberType::int32, NumberType::int32))
+    copy_cells(offsets.as<std::int32_t>(), connectivity.as<std::int32_t>(), block, where);
+  else if (are(NumberType::uint64, NumberType::uint32))
+    copy_cells(offsets.as<std::uint64_t>(), connectivity.as<std::uint32_t>(), block, where);
+  else
+    throw scene::bad_input(fmt::format("{}: its cells are lists of no known width; write it anew", where));
+}
+
+/// The hexahedra between n[0] x n[1] x n[2] points; a flat grid gives faces or lines, which are counted and skipped.
+void add_grid_cells(const std::array<std::int64_t, 3>& n, CellBlock& block, const std::string& where) {
+  std::uint64_t points = 1;
+  for (const std::int64_t side : n)
+    if (__builtin_mul_overflow(points, static_cast<std::uint64_t>(std::max<std::int64_t>(side, 0)), &points))
+      points = std::numeric_limits<std::uint64_t>::max();
+  if (points != block.positions.size())
+    throw scene::bad_input(fmt::format("{}: {} x {} x {} points are promised, {} are there; the file is damaged", where,
+                                       n[0], n[1], n[2], block.positions.size()));
+  if (points == 0) return;
+  if (points > std::numeric_limits<std::uint32_t>::max())
+    throw scene::bad_input(
+        fmt::format("{}: {} points in one block; split it into blocks below 2^32 points", where, points));
+  std::size_t cells = 1;
+  for (const std::int64_t side : n) cells *= static_cast<std::size_t>(std::max<std::int64_t>(side - 1, 1));
+  if (n[0] < 2 || n[1] < 2 || n[2] < 2) {
+    block.types.assign(cells, 9);
+    block.offsets.assign(cells + 1, 0);
+    return;
+  }
+  block.types.assign(cells, 12);
+  block.offsets.resize(cells + 1);
+  for (std::size_t c = 0; c <= cells; ++c) block.offsets[c] = 8 * c;
+  block.connectivity.reserve(8 * cells);
+  const auto row = static_cast<std::uint32_t>(n[0]), slice = row * static_cast<std::uint32_t>(n[1]);
+  for (std::uint32_t k = 0; k + 1 < n[2]; ++k)
+    for (std::uint32_t j = 0; j + 1 < n[1]; ++j)
+      for (std::uint32_t i = 0; i + 1 < n[0]; ++i) {
+        const std::uint32_t v = i + row * j + slice * k;
+        const std::uint32_t corner[8] = {v,         v + 1,         v + 1 + row,         v + row,
+                                         v + slice, v + 1 + slice, v + 1 + row + slice, v + row + slice};
+        block.connectivity.insert(block.connectivity.end(), corner, corner + 8);
+      }
+}
+
+std::array<std::int64_t, 3> points_along(const ForeignPart& part) {
+  std::array<std::int64_t, 3> n{};
+  for (std::size_t a = 0; a < 3; ++a) n[a] = part.extent[2 * a + 1] - part.extent[2 * a] + 1;
+  return n;
+}
+
+void add_rectilinear_points(const ForeignFile& file, const ForeignPart& part, CellBlock& block,
+                            const std::string& where) {
+  std::array<std::vector<double>, 3> axis;
+  for (std::size_t a = 0; a < 3 && a < part.coordinates.size(); ++a) {
+    const ForeignArray& array = part.coordinates[a];
+    axis[a].resize(array.tuples);
+    read_tuples(file.helper->take(array, where).bytes(), array.type, array.components, 0, 0, axis[a]);
+  }
+  const auto n = points_along(part);
+  for (std::size_t a = 0; a < 3; ++a)
+    if (static_cast<std::int64_t>(axis[a].size()) != n[a])
+      throw scene::bad_input(fmt::format("{}: {} x {} x {} coordinates for {} x {} x {} points; the file is damaged",
+                                         where, axis[0].size(), axis[1].size(), axis[2].size(), n[0], n[1], n[2]));
+  block.positions.reserve(axis[0].size() * axis[1].size() * axis[2].size());
+  for (const double c : axis[2])
+    for (const double b : axis[1])
+      for (const double a : axis[0]) block.positions.emplace_back(a, b, c);
+}
+
+CellBlock block_of(const ForeignFile& file, const ForeignPart& part) {
+  CellBlock block;
+  block.name = part.name;
+  const std::string where = part.name.empty() ? file.source : fmt::format("{}: block '{}'", file.source, part.name);
+  switch (part.kind) {
+    case ForeignPart::Kind::unstructured:
+      if (part.points) copy_points(file, *part.points, block, where);
+      add_unstructured_cells(file, part, block, where);
+      break;
+    case ForeignPart::Kind::structured:
+      if (part.points) copy_points(file, *part.points, block, where);
+      add_grid_cells(points_along(part), block, where);
+      break;
+    case ForeignPart::Kind::rectilinear:
+      add_rectilinear_points(file, part, block, where);
+      add_grid_cells(points_along(part), block, where);
+      break;
+    case ForeignPart::Kind::image:
+      throw scene::bad_input(fmt::format(
+          "{}: it is a regular grid (image data), no mesh; render, info and convert take it as a volume", where));
+    case ForeignPart::Kind::surface:
+      throw scene::bad_input(fmt::format("{}: it holds a surface, no cells of volume; give a mesh", where));
+  }
+  block.point_ghost = ghost_bits(file, part.point_fields, block.positions.size());
+  block.cell_ghost = ghost_bits(file, part.cell_fields, block.cell_count());
+  add_foreign_fields(file, part, Association::point, block.positions.size(), block, where);
+  add_foreign_fields(file, part, Association::cell, block.cell_count(), block, where);
+  return block;
+}
+
+}  // namespace
+
+ForeignFile open_foreign(std::shared_ptr<HelperProcess> helper, const std::filesystem::path& file,
+                         nlohmann::json request) {
+  request["do"] = "open";
+  request["version"] = helper_version;
+  request["file"] = file.string();
+  ForeignFile opened;
+  opened.helper = std::move(helper);
+  opened.source = file.string();
+  const nlohmann::json reply = opened.helper->call(request, opened.source);
+  try {
+    opened.contents = contents_of(reply.at("contents").get_binary());
+  } catch (const std::exception&) {
+    throw scene::bad_input(
+        fmt::format("{}: its reader says nothing sensible of it; it is damaged, write it anew", opened.source));
+  }
+  return opened;
+}
+
+BlockField foreign_field(const ForeignFile& file, const ForeignArray& array, Association association) {
+  BlockField field;
+  field.name = array.name;
+  field.association = association;
+  field.components = array.components;
+  field.type = name_of(array.type);
+  field.tuples = array.tuples;
+  field.active = array.active;
+  field.tally = array.tally;
+  field.read = [fetched = std::make_shared<FetchedArray>(file, array)](
+                   int component, std::size_t first, std::span<double> out) { fetched->read(component, first, out); };
+  return field;
+}
+
+void add_foreign_fields(const ForeignFile& file, const ForeignPart& part, Association association, std::size_t expected,
+                        CellBlock& block, const std::string& where) {
+  const bool point = association == Association::point;
+  for (const ForeignArray& array : point ? part.point_fields : part.cell_fields) {
+    if (array.tuples != expected)
+      throw scene::bad_input(fmt::format("{}: field '{}' has {} values for {} {}s; write it anew", where, array.name,
+                                         array.tuples, expected, point ? "point" : "cell"));
+    block.fields.push_back(foreign_field(file, array, association));
+  }
+}
+
+std::vector<std::uint8_t> ghost_bits(const ForeignFile& file, const std::vector<ForeignArray>& fields, std::size_t n) {
+  const auto read = [&](const char* name) {
+    std::vector<std::uint8_t> bits;
+    const auto array =
+        std::find_if(fields.begin(), fields.end(), [&](const ForeignArray& a) { return a.name == name; });
+    if (array == fields.end() || array->components != 1 || array->tuples != n) return bits;
+    std::vector<double> values(n);
+    read_tuples(file.helper->take(*array, file.source, true).bytes(), array->type, 1, 0, 0, values);
+    for (const double value : values)
+      bits.push_back(value >= 0 && value < 256 ? static_cast<std::uint8_t>(value) : std::uint8_t{0});
+    return bits;
+  };
+  std::vector<std::uint8_t> bits = read("vtkGhostType");
+  if (bits.empty()) {
+    bits = read("vtkGhostLevels");
+    for (std::uint8_t& level : bits) level = level > 0 ? 1 : 0;
+  }
+  return bits;
+}
+
+std::vector<CellBlock> blocks_of(const ForeignFile& file, std::vector<std::string>& notes) {
+  std::vector<CellBlock> blocks;
+  std::size_t surfaces = 0;
+  for (const ForeignPart& part : file.contents.parts) {
+    if (part.kind == ForeignPart::Kind::surface && file.contents.parts.size() > 1) {
+      ++surfaces;
+      continue;
+    }
+    blocks.push_back(block_of(file, part));
+  }
+  if (surfaces > 0) notes.push_back(fmt::format("{} blocks are surfaces and are left out", surfaces));
+  return blocks;
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/number_tally.hpp"
+
+namespace tessera::io {
+
+/// What the helper program (helper/README.md) says of a file that it has read with somebody else's library. The numbers
+/// stay there until they are asked for, an array at a time.
+
+enum class NumberType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+
+std::size_t size_of(NumberType type);
+
+/// As fields are listed: int8, uint8, ..., float, double.
+const char* name_of(NumberType type);
+
+/// Calls `use` with a zero of the C++ type.
+template <class Use>
+auto with_number_type(NumberType type, const Use& use) {
+  switch (type) {
+    case NumberType::int8:
+      return use(std::int8_t{});
+    case NumberType::uint8:
+      return use(std::uint8_t{});
+    case NumberType::int16:
+      return use(std::int16_t{});
+    case NumberType::uint16:
+      return use(std::uint16_t{});
+    case NumberType::int32:
+      return use(std::int32_t{});
+    case NumberType::uint32:
+      return use(std::uint32_t{});
+    case NumberType::int64:
+      return use(std::int64_t{});
+    case NumberType::uint64:
+      return use(std::uint64_t{});
+    case NumberType::float32:
+      return use(float{});
+    case NumberType::float64:
+      break;
+  }
+  return use(double{});
+}
+
+/// Tuples [first, first + out.size()) of an array as doubles: one component, or their lengths (`magnitude`,
+/// cell_block.hpp). The bytes hold them all, aligned as the type wants.
+void read_tuples(std::span<const std::byte> bytes, NumberType type, int components, int component, std::size_t first,
+                 std::span<double> out);
+
+/// An array that the helper holds.
+struct ForeignArray {
+  std::uint64_t number = 0;  ///< what it is asked for by
+  std::string name{};
+  NumberType type = NumberType::float64;
+  int components = 1;
+  std::uint64_t tuples = 0;
+  bool active = false;  ///< the file marks it as its scalars or vectors
+  NumberTally tally{};  ///< of fields
+
+  [[nodiscard]] std::uint64_t bytes() const { return tuples * static_cast<std::uint64_t>(components) * size_of(type); }
+};
+
+/// One data set of a file.
+///
+/// unstructured  points, types (uint8), offsets (cells + 1) and connectivity; VTK's cell types
+/// surface       points; offsets and connectivity of its polygons
+/// structured    points, extent
+/// rectilinear   three arrays of coordinates, extent
+/// image         extent, origin of index 0, spacing, direction (row by row)
+struct ForeignPart {
+  enum class Kind : std::uint8_t { unstructured, surface, structured, rectilinear, image };
+
+  Kind kind = Kind::unstructured;
+  std::string name;                      ///< empty if it is the only one
+  std::array<std::int64_t, 6> extent{};  ///< first and last point along each axis
+  std::array<double, 3> origin{}, spacing{};
+  std::array<double, 9> direction{};
+  std::optional<ForeignArray> points, types, offsets, connectivity;
+  std::vector<ForeignArray> coordinates;  ///< three of a rectilinear grid, none of others
+  std::vector<ForeignArray> point_fields, cell_fields;
+};
+
+struct ForeignContents {
+  std::vector<ForeignPart> parts;
+  std::vector<std::string> notes;
+  std::string format;
+};
+
+/// As bytes (CBOR, RFC 8949) and back. contents_of() throws std::exception for bytes of anything else.
+std::vector<std::uint8_t> bytes_of(const ForeignContents& contents);
+ForeignContents contents_of(std::span<const std::uint8_t> bytes);
+
+}  // namespace tessera::io

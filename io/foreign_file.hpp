@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "io/cell_block.hpp"
+#include "io/foreign_data.hpp"
+#include "io/helper_process.hpp"
+
+namespace tessera::io {
+
+/// A file that the helper holds open. Copies share it.
+struct ForeignFile {
+  std::shared_ptr<HelperProcess> helper;
+  std::string source;  ///< for messages
+  ForeignContents contents;
+};
+
+/// Has the helper read a file. `request` names the reader and what it is told (helper/readers.hpp); the file is added.
+/// Throws Error(bad_input) in one line.
+ForeignFile open_foreign(std::shared_ptr<HelperProcess> helper, const std::filesystem::path& file,
+                         nlohmann::json request);
+
+/// A field whose numbers are fetched when it is first read, and forgotten with the last copy.
+BlockField foreign_field(const ForeignFile& file, const ForeignArray& array, scene::Association association);
+
+/// Adds the fields of a part's points or cells. Throws Error(bad_input) for one that has not `expected` tuples.
+void add_foreign_fields(const ForeignFile& file, const ForeignPart& part, scene::Association association,
+                        std::size_t expected, CellBlock& block, const std::string& where);
+
+/// The parts as blocks, every offset and index checked, which readers do not. Structured, curvilinear and rectilinear
+/// grids become hexahedra. Empty parts are left out, and so are surfaces beside volumes, for which `notes` has a line.
+/// Throws Error(bad_input) naming the cell at fault, and for images (regular grids).
+std::vector<CellBlock> blocks_of(const ForeignFile& file, std::vector<std::string>& notes);
+
+/// Bits of vtkGhostType for each point or cell; the older vtkGhostLevels (0 is one's own) becomes "duplicate". Empty if
+/// the part has neither.
+std::vector<std::uint8_t> ghost_bits(const ForeignFile& file, const std::vector<ForeignArray>& fields, std::size_t n);
+
+}  // namespace tessera::io

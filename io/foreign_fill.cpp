@@ -1,0 +1,34 @@
+#include <nlohmann/json.hpp>
+
+#include "io/foreign_numbers.hpp"
+#include "io/surface.hpp"
+#include "io/surface_message.hpp"
+
+namespace tessera::io {
+
+bool can_fill_surfaces() { return true; }
+
+FilledMesh fill_surface(const Surface& surface, double max_volume, const std::string& source) {
+  const auto helper = std::make_shared<HelperProcess>(HelperTask{"filling it by TetGen", "mend the surface"});
+  const ForeignFile opened =
+      open_foreign(helper, source, {{"reader", "fill"}, {"surface", json_of(surface)}, {"max_volume", max_volume}});
+  if (opened.contents.parts.size() != 1) refuse_surface(source);
+  const ForeignPart& part = opened.contents.parts.front();
+  FilledMesh filled;
+  if (!part.points || part.points->components != 3 || part.points->type != NumberType::float64 || !part.connectivity ||
+      part.connectivity->type != NumberType::uint32 || part.connectivity->tuples % 4 != 0 ||
+      part.point_fields.size() != 1 + surface.attributes.size())
+    refuse_surface(source);
+  filled.points = numbers_of<glm::dvec3>(opened, *part.points);
+  filled.tets = numbers_of<std::uint32_t>(opened, *part.connectivity);
+  for (const std::uint32_t v : filled.tets)
+    if (v >= filled.points.size()) refuse_surface(source);
+  for (const ForeignArray& field : part.point_fields)
+    if (field.type != NumberType::float64 || field.tuples != filled.points.size()) refuse_surface(source);
+  filled.depth = numbers_of<double>(opened, part.point_fields.front());
+  for (std::size_t a = 1; a < part.point_fields.size(); ++a)
+    filled.attributes.push_back(numbers_of<double>(opened, part.point_fields[a]));
+  return filled;
+}
+
+}  // namespace tessera::io

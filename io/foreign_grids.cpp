@@ -1,0 +1,211 @@
+// Regular and rectilinear grids in VTK's formats, read by the helper.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "io/field_choice.hpp"
+#include "io/foreign_file.hpp"
+#include "io/input_file.hpp"
+#include "io/volume_formats.hpp"
+
+namespace tessera::io {
+namespace {
+
+using scene::Association;
+using scene::SampleType;
+
+/// The same type; none for 64-bit integers.
+std::optional<SampleType> stored_type(NumberType type) {
+  switch (type) {
+    case NumberType::int8:
+      return SampleType::int8;
+    case NumberType::uint8:
+      return SampleType::uint8;
+    case NumberType::int16:
+      return SampleType::int16;
+    case NumberType::uint16:
+      return SampleType::uint16;
+    case NumberType::int32:
+      return SampleType::int32;
+    case NumberType::uint32:
+      return SampleType::uint32;
+    case NumberType::float32:
+      return SampleType::float32;
+    case NumberType::float64:
+      return SampleType::float64;
+    case NumberType::int64:
+    case NumberType::uint64:
+      break;
+  }
+  return std::nullopt;
+}
+
+void set_image_geometry(const ForeignPart& image, scene::GridGeometry& g) {
+  std::array<glm::dvec3, 3> steps;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    steps[axis] =
+        glm::dvec3(image.direction[axis], image.direction[3 + axis], image.direction[6 + axis]) * image.spacing[axis];
+  set_axes(g, steps);
+  g.origin = {image.origin[0], image.origin[1], image.origin[2]};
+  for (std::size_t axis = 0; axis < 3; ++axis)  // origin is that of index 0, which need not be in the extent
+    if (image.extent[2 * axis] != 0) g.origin += steps[axis] * static_cast<double>(image.extent[2 * axis]);
+}
+
+/// Half a last place, relative, of what an array stores; 0 of whole numbers.
+double rounding_of(const ForeignArray& array) {
+  if (array.type == NumberType::float32) return 0x1p-24;
+  return array.type == NumberType::float64 ? 0x1p-53 : 0;
+}
+
+/// Coordinates of an axis; falling ones are turned over by a mirrored direction.
+void set_coordinates(const ForeignFile& file, const ForeignArray& array, int axis, scene::GridGeometry& g) {
+  const auto a = static_cast<std::size_t>(axis);
+  if (static_cast<std::int64_t>(array.tuples) != g.points[a] || array.components != 1)
+    throw damaged(file.source,
+                  fmt::format("it has {} coordinates along {} for {} points", array.tuples, "xyz"[a], g.points[a]));
+  std::vector<double> c(array.tuples);
+  read_tuples(file.helper->take(array, file.source).bytes(), array.type, 1, 0, 0, c);
+  if (c.size() > 1 && c.back() < c.front()) {
+    for (double& x : c) x = -x;
+    g.direction[axis] = -g.direction[axis];
+  }
+  g.coordinates[a] = std::move(c);
+}
+
+/// Makes a rectilinear grid regular whose coordinates are even but for their rounding: many writers know no other kind,
+/// and regular grids are cast much faster.
+void make_regular_if_even(const ForeignPart& grid, scene::GridGeometry& g) {
+  glm::dvec3 first(0), spacing(1);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::vector<double>& c = g.coordinates[a];
+    if (c.size() < 2 || !(c.back() > c.front())) return;
+    const double step = (c.back() - c.front()) / static_cast<double>(c.size() - 1);
+    // Both ends are rounded, the sums and products of writer and reader by a few places of a double more.
+    const double rounding = 2 * rounding_of(grid.coordinates[a]) + 0x1p-50;
+    const double most = std::min(rounding * std::max(std::abs(c.front()), std::abs(c.back())), 1e-3 * step);
+    for (std::size_t i = 0; i < c.size(); ++i)
+      if (!(std::abs(c[i] - (c.front() + step * static_cast<double>(i))) <= most)) return;
+    first[static_cast<int>(a)] = c.front(), spacing[static_cast<int>(a)] = step;
+  }
+  g.origin += g.direction * first;
+  g.spacing = spacing;
+  g.coordinates = {};
+}
+
+scene::GridGeometry geometry_of(const ForeignFile& file, const ForeignPart& part) {
+  scene::GridGeometry g;
+  for (std::size_t a = 0; a < 3; ++a) g.points[a] = part.extent[2 * a + 1] - part.extent[2 * a] + 1;
+  if (part.kind == ForeignPart::Kind::image) {
+    set_image_geometry(part, g);
+  } else if (part.kind == ForeignPart::Kind::rectilinear && part.coordinates.size() == 3) {
+    for (int axis = 0; axis < 3; ++axis)
+      set_coordinates(file, part.coordinates[static_cast<std::size_t>(axis)], axis, g);
+    make_regular_if_even(part, g);
+  } else {
+    throw scene::bad_input(fmt::format("{}: it holds no regular or rectilinear grid; give a volume", file.source));
+  }
+  return g;
+}
+
+/// Indices of samples that the file hides, by vtkGhostType: hidden points (2), or hidden cells (32) of cell data.
+std::vector<std::size_t> hidden_samples(const ForeignFile& file, const ForeignPart& part, Association association,
+                                        const scene::GridGeometry& g, std::vector<std::string>& notes) {
+  std::vector<std::size_t> hidden;
+  const bool point = association == Association::point;
+  const auto bits_of = [&](const std::vector<ForeignArray>& fields) {
+    const auto ghost =
+        std::find_if(fields.begin(), fields.end(), [](const ForeignArray& a) { return a.name == "vtkGhostType"; });
+    return ghost == fields.end() ? std::vector<std::uint8_t>() : ghost_bits(file, fields, ghost->tuples);
+  };
+  const auto samples = static_cast<std::size_t>(g.all_samples().count());
+  const std::vector<std::uint8_t> bits = bits_of(point ? part.point_fields : part.cell_fields);
+  for (std::size_t k = 0; k < std::min(bits.size(), samples); ++k)
+    if ((bits[k] & (point ? 2 : 32)) != 0) hidden.push_back(k);
+  if (point) {
+    const std::vector<std::uint8_t> cells = bits_of(part.cell_fields);
+    if (std::any_of(cells.begin(), cells.end(), [](std::uint8_t b) { return (b & 32) != 0; }))
+      notes.emplace_back("hidden cells are shown: they apply to cell data only");
+  }
+  return hidden;
+}
+
+std::unique_ptr<scene::MemorySource> source_of(const ForeignFile& file, const ForeignPart& part,
+                                               const FieldChoice& choice, const BlockField& field, scene::Grid grid,
+                                               std::vector<std::string>& notes) {
+  const auto& arrays = choice.association == Association::point ? part.point_fields : part.cell_fields;
+  const auto array =
+      std::find_if(arrays.begin(), arrays.end(), [&](const ForeignArray& a) { return a.name == choice.name; });
+  const auto hidden = hidden_samples(file, part, choice.association, grid.geometry, notes);
+  const std::optional<SampleType> plain = array == arrays.end() ? std::nullopt : stored_type(array->type);
+  const SampleType type = plain.value_or(SampleType::float64);
+  // Floats hold numbers of up to 16 bits, and magnitudes of floats.
+  const bool narrow = scene::size_of(type) < 4 || type == SampleType::float32;
+  if (plain && hidden.empty()) {
+    auto owner = std::make_shared<const SharedBytes>(file.helper->take(*array, file.source));
+    grid.type = choice.component != magnitude ? type : narrow ? SampleType::float32 : SampleType::float64;
+    const std::span<const std::byte> payload = owner->bytes();
+    return std::make_unique<scene::MemorySource>(
+        std::move(grid), payload, std::move(owner), file.source,
+        scene::ComponentChoice{field.components, choice.component == magnitude ? -1 : choice.component, type});
+  }
+  std::vector<double> values(field.tuples);
+  field.read(choice.component, 0, values);
+  for (const std::size_t k : hidden) values[k] = std::numeric_limits<double>::quiet_NaN();
+  if (!hidden.empty()) notes.push_back(fmt::format("{} hidden samples are blank", hidden.size()));
+  if (narrow)
+    return scene::MemorySource::of(std::move(grid), std::vector<float>(values.begin(), values.end()), file.source);
+  return scene::MemorySource::of(std::move(grid), std::move(values), file.source);
+}
+
+/// What the file is called in VTK XML; none if it is a legacy one.
+const char* xml_type_of(std::string_view beginning) {
+  if (beginning.starts_with("# vtk DataFile")) return nullptr;
+  for (const char* type : {"PImageData", "PRectilinearGrid", "ImageData"})
+    if (has_quoted(beginning, type)) return type;
+  return "RectilinearGrid";
+}
+
+}  // namespace
+
+VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions& options) {
+  const std::string source = file.string();
+  const char* const type = xml_type_of(read_beginning(file, 4096));
+  nlohmann::json request{{"reader", type != nullptr ? "vtk_xml" : "vtk_legacy"}};
+  if (type != nullptr) request["type"] = type;
+  const ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(), file, std::move(request));
+  if (opened.contents.parts.size() != 1)
+    throw scene::bad_input(fmt::format("{}: it holds no one grid; give a volume", source));
+  const ForeignPart& part = opened.contents.parts.front();
+  VolumeFile result;
+  result.notes = opened.contents.notes;
+  scene::Grid grid;
+  grid.geometry = geometry_of(opened, part);
+  result.format = fmt::format("{} ({})", type != nullptr ? "VTK XML" : "legacy VTK",
+                              grid.geometry.rectilinear() ? "rectilinear grid" : "image data");
+
+  CellBlock block;  // only its fields are of use
+  std::size_t points = 1, cells = 1;
+  for (const std::int64_t n : grid.geometry.points) {
+    points *= static_cast<std::size_t>(std::max<std::int64_t>(n, 0));
+    cells *= static_cast<std::size_t>(std::max<std::int64_t>(n - 1, 1));
+  }
+  add_foreign_fields(opened, part, Association::point, points, block, source);
+  add_foreign_fields(opened, part, Association::cell, cells, block, source);
+  if (block.fields.empty()) throw scene::bad_input(fmt::format("{}: it has no field; write one with it", source));
+  const std::vector<std::vector<FieldTally>> tallies = {tally_fields(std::span(&block, 1))};
+  result.fields = summarize_fields(tallies);
+  const FieldChoice choice = choose_field(options.field, result.fields, source);
+  result.notes.insert(result.notes.end(), choice.notes.begin(), choice.notes.end());
+  const BlockField* field = find_field(block, choice.name, choice.association);
+  if (!field) throw scene::bad_input(fmt::format("{}: none of its fields can be shown; name one with `field`", source));
+  grid.geometry.association = choice.association;
+  grid.field_name = choice.label;
+  scene::validate(grid, source);  // before an array is taken for samples that a flat grid has not
+  result.source = source_of(opened, part, choice, *field, std::move(grid), result.notes);
+  return result;
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "io/cell_block.hpp"
+#include "io/foreign_data.hpp"
+
+namespace tessera::io::helper {
+
+/// The arrays of the files that were opened, until they are taken or dropped.
+class Holdings {
+ public:
+  /// Writes all of an array's bytes into a file; false if it cannot.
+  using Write = std::function<bool(int file)>;
+
+  /// Numbers the array and keeps what writes it.
+  ForeignArray hold(ForeignArray array, Write write);
+
+  /// Of numbers that stay where they are for as long as `owner` lives.
+  ForeignArray hold(ForeignArray array, const void* numbers, std::shared_ptr<const void> owner);
+
+  /// Null if there is none of this number.
+  [[nodiscard]] const Write* find(std::uint64_t number) const;
+  void drop(std::uint64_t number) { held_.erase(number); }
+
+ private:
+  std::map<std::uint64_t, Write> held_;
+  std::uint64_t next_ = 0;
+};
+
+/// A vector's numbers, which the holdings then own. They say how many tuples there are.
+template <class T>
+ForeignArray hold_vector(Holdings& holdings, ForeignArray array, std::vector<T> numbers) {
+  array.tuples = numbers.size() * sizeof(T) / (static_cast<std::size_t>(array.components) * size_of(array.type));
+  auto kept = std::make_shared<const std::vector<T>>(std::move(numbers));
+  const void* const start = kept->data();
+  return holdings.hold(std::move(array), start, std::move(kept));
+}
+
+/// A block as its reader made it. Its fields are read when they are asked for, twice: once for their ranges.
+ForeignPart hold_block(Holdings& holdings, CellBlock block);
+
+}  // namespace tessera::io::helper

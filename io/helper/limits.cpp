@@ -1,0 +1,58 @@
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+
+#include "io/helper/readers.hpp"
+#include "io/input_file.hpp"
+
+namespace tessera::io::helper {
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool is_sanitized = true;  // address space is what sanitizers need most of
+#else
+constexpr bool is_sanitized = false;
+#endif
+
+std::uint64_t address_space_in_use() {
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+double processor_seconds() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec);
+}
+
+void set_soft_limit(decltype(RLIMIT_AS) what, std::uint64_t value) {
+  rlimit limit{};
+  if (::getrlimit(what, &limit) != 0) return;
+  limit.rlim_cur = std::min<std::uint64_t>(value, limit.rlim_max);
+  ::setrlimit(what, &limit);
+}
+
+/// Whether its bytes may stand for a thousand times as many.
+bool may_be_compressed(const std::filesystem::path& file) {
+  const std::string beginning = read_beginning(file, 4096);
+  return beginning.find("compressor=") != std::string::npos || beginning.starts_with("\x89HDF") ||
+         beginning.starts_with("\x1f\x8b");
+}
+
+}  // namespace
+
+void allow_for(const std::filesystem::path& file) {
+  const std::uint64_t size = require_file(file);
+  // Text of one digit and a blank becomes a double and an index, which readers hold twice; deflate packs 1032 to 1.
+  const std::uint64_t factor = may_be_compressed(file) ? 1100 : 24;
+  if (!is_sanitized) set_soft_limit(RLIMIT_AS, address_space_in_use() + (256ull << 20) + factor * size);
+  // Slow readers take 2 MB/s of text; what is compressed, ten times as long.
+  const double seconds = 15 + static_cast<double>(size) / (factor > 24 ? 2e5 : 2e6);
+  set_soft_limit(RLIMIT_CPU, static_cast<std::uint64_t>(processor_seconds() + seconds * (is_sanitized ? 10 : 1)) + 1);
+}
+
+}  // namespace tessera::io::helper

@@ -1,0 +1,113 @@
+// tessera-read: reads files with other people's libraries, in a process of its own, for a Tessera library that started
+// it (io/helper_process.hpp) and speaks to it over descriptor 3.
+//
+// Requests  {"do": "open", "version", "file", "reader": a name below, ...}   -> {"contents"} (io/foreign_data.hpp)
+//           {"do": "take", "array": number, "keep": bool}                    -> {} and a file with its numbers
+//           {"do": "drop", "arrays": [numbers]}                              -> nothing
+// Failures  {"error": {"line", "code"}} instead.
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "io/clean_errors.hpp"
+#include "io/helper/readers.hpp"
+#include "io/helper_messages.hpp"
+#include "io/input_file.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io::helper {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int socket_to_caller = 3;
+
+struct Reader {
+  std::string_view name;
+  ForeignContents (*read)(Holdings&, const std::filesystem::path&, const Json&);
+};
+constexpr std::array readers = {
+#ifdef TESSERA_VTK
+    Reader{"vtk_xml", read_vtk_xml}, Reader{"vtk_legacy", read_vtk_legacy}, Reader{"plot3d", read_plot3d},
+    Reader{"stl", read_stl},         Reader{"exodus", read_exodus},
+#endif
+#ifdef TESSERA_TETGEN
+    Reader{"fill", fill_surface},
+#endif
+};
+
+Json open(Holdings& holdings, const Json& request) {
+  const auto file = request.at("file").get<std::string>();
+  if (const int version = request.at("version").get<int>(); version != helper_version)
+    throw scene::Error(scene::ErrorCode::system_failure, "tessera-read",
+                       fmt::format("it is of another version, {}, than the library, {}", helper_version, version),
+                       "install both anew");
+  const auto name = request.at("reader").get<std::string>();
+  for (const Reader& reader : readers)
+    if (name == reader.name) return {{"contents", Json::binary(bytes_of(reader.read(holdings, file, request)))}};
+  throw scene::Error(scene::ErrorCode::system_failure, "tessera-read", fmt::format("it was built without {}", name),
+                     "install it as the library");
+}
+
+/// A file without a name that holds an array's numbers.
+Descriptor file_of(const Holdings::Write& write) {
+  Descriptor file(::memfd_create("tessera", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  if (!file.is_open() || !write(file.get())) throw std::bad_alloc();
+  return file;
+}
+
+Json error_json(const scene::Error& error) {
+  return {{"error", {{"line", error.what()}, {"code", static_cast<int>(error.code())}}}};
+}
+
+/// Answers one request. False if the caller is gone.
+bool answer(Holdings& holdings, const Json& request) {
+  const auto asked = request.at("do").get<std::string>();
+  if (asked == "drop") {
+    for (const Json& array : request.at("arrays")) holdings.drop(array.get<std::uint64_t>());
+    return true;
+  }
+  const std::string source = request.value("file", std::string("the file"));
+  Json reply = Json::object();
+  Descriptor file;
+  try {
+    if (asked == "open") {
+      reply = open(holdings, request);
+    } else {
+      const auto number = request.at("array").get<std::uint64_t>();
+      if (const Holdings::Write* write = holdings.find(number)) file = file_of(*write);
+      if (!request.at("keep").get<bool>()) holdings.drop(number);
+    }
+  } catch (const scene::Error& error) {
+    reply = error_json(error);
+  } catch (const std::bad_alloc&) {
+    reply =
+        error_json(scene::bad_input(fmt::format("{}: reading it wants more memory than a file of its size can need, or "
+                                                "than there is; it is damaged, or read it "
+                                                "on a larger machine",
+                                                source)));
+  } catch (const std::exception&) {
+    reply = error_json(scene::bad_input(fmt::format("{}: it cannot be read; it is damaged, write it anew", source)));
+  }
+  return send_message(socket_to_caller, Json::to_cbor(reply), file.get());
+}
+
+int serve() {
+  const rlimit no_core{0, 0};
+  ::setrlimit(RLIMIT_CORE, &no_core);
+  Holdings holdings;
+  while (const std::optional<HelperMessage> message = receive_message(socket_to_caller))
+    if (!answer(holdings, Json::from_cbor(message->bytes))) break;
+  ::_exit(0);  // whatever damaged files have done to memory, nothing needs it any more
+}
+
+}  // namespace
+}  // namespace tessera::io::helper
+
+int main() { return tessera::io::helper::serve(); }

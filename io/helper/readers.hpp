@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+
+#include "io/foreign_data.hpp"
+#include "io/helper/holdings.hpp"
+#include "io/surface.hpp"
+
+/// What the helper reads, each with the words of a request beside its file. All throw Error(bad_input) in one line.
+namespace tessera::io::helper {
+
+/// VTK's XML files but unstructured grids in pieces; `type` is that of <VTKFile>. The pieces of the others have to fill
+/// the whole.
+ForeignContents read_vtk_xml(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+
+/// Legacy VTK, all its arrays.
+ForeignContents read_vtk_legacy(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+
+/// PLOT3D; `q` is the solution file or empty, the rest is the layout (io/plot3d_layout.hpp).
+ForeignContents read_plot3d(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+
+/// STL surfaces.
+ForeignContents read_stl(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+
+/// Exodus II: all element blocks, nodal and element variables at `time_step`, counted from 0, or the last one. Nodes
+/// are moved by the file's displacements, if it has some, as ParaView does. Variables NAME_x NAME_y NAME_z become one
+/// vector NAME.
+ForeignContents read_exodus(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+
+/// Fills a surface by TetGen (io/surface.hpp).
+ForeignContents fill_surface(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+
+/// More memory and time for a file that is about to be read.
+void allow_for(const std::filesystem::path& file);
+
+}  // namespace tessera::io::helper

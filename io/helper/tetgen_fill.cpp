@@ -1,0 +1,156 @@
+// The one file that sees TetGen, which is under the AGPL-3.0; compiled only with TESSERA_TETGEN.
+#include <fmt/format.h>
+
+#define TETLIBRARY
+// The header's terminatetetgen frees the mesh, then throws; the mesh's destructor frees it again, which crashes. The
+// library calls that function through the dynamic linker, so the one defined below takes its place, which it has to be
+// visible for.
+#define terminatetetgen tetgen_header_terminatetetgen
+#include <tetgen.h>
+#undef terminatetetgen
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <glm/common.hpp>
+#include <nlohmann/json.hpp>
+
+#include "io/helper/readers.hpp"
+#include "io/helper/surface_fields.hpp"
+#include "io/surface_message.hpp"
+#include "scene/error.hpp"
+
+__attribute__((visibility("default"))) void terminatetetgen(tetgenmesh*, int reason) { throw reason; }
+
+namespace tessera::io::helper {
+namespace {
+
+/// TetGen's words for the numbers it throws (terminatetetgen in tetgen.h).
+const char* reason(int thrown) {
+  switch (thrown) {
+    case 1:
+      return "memory ran out";
+    case 3:
+      return "the surface cuts itself";
+    case 4:
+      return "a feature is too small for its tolerance";
+    case 5:
+      return "two faces nearly coincide";
+    case 10:
+      return "the input is not valid";
+    default:
+      return "it failed inside";
+  }
+}
+
+/// Takes a surface to the unit box round the origin and back, by a power of two: TetGen's tolerances are not made for
+/// metre-size cells at coordinates of 7e6.
+struct Frame {
+  glm::dvec3 centre{0};
+  double scale = 1;
+
+  explicit Frame(const Surface& surface) {
+    glm::dvec3 low(1e300), high(-1e300);
+    for (const glm::dvec3& p : surface.points) low = glm::min(low, p), high = glm::max(high, p);
+    centre = 0.5 * low + 0.5 * high;
+    const glm::dvec3 side = high - low;
+    int exponent = 0;
+    std::frexp(std::max({side.x, side.y, side.z}), &exponent);
+    scale = std::ldexp(1.0, -exponent);
+  }
+  [[nodiscard]] glm::dvec3 in(const glm::dvec3& p) const { return (p - centre) * scale; }
+  [[nodiscard]] glm::dvec3 out(const glm::dvec3& p) const { return p / scale + centre; }
+};
+
+/// tetgenio frees its arrays by delete[], so they are made by new[].
+void copy_in(const Surface& surface, const Frame& frame, tetgenio& in) {
+  const auto put = [&](REAL* list, std::size_t at, const glm::dvec3& p_world) {
+    const glm::dvec3 p = frame.in(p_world);
+    for (int k = 0; k < 3; ++k) list[3 * at + static_cast<std::size_t>(k)] = p[k];
+  };
+  in.numberofpoints = static_cast<int>(surface.points.size());
+  in.pointlist = new REAL[3 * surface.points.size()];
+  for (std::size_t v = 0; v < surface.points.size(); ++v) put(in.pointlist, v, surface.points[v]);
+  in.facetlist = new tetgenio::facet[surface.facets.size()];
+  for (std::size_t f = 0; f < surface.facets.size(); ++f) {
+    const Facet& from = surface.facets[f];
+    tetgenio::facet& to = in.facetlist[f];
+    tetgenio::init(&to);
+    in.numberoffacets = static_cast<int>(f) + 1;
+    to.polygonlist = new tetgenio::polygon[from.polygons.size()];
+    for (const Polygon& polygon : from.polygons) {
+      tetgenio::polygon& corners = to.polygonlist[to.numberofpolygons++];
+      tetgenio::init(&corners);
+      corners.vertexlist = new int[polygon.size()];
+      corners.numberofvertices = static_cast<int>(polygon.size());
+      std::copy(polygon.begin(), polygon.end(), corners.vertexlist);
+    }
+    if (!from.holes.empty()) {
+      to.holelist = new REAL[3 * from.holes.size()];
+      for (const glm::dvec3& hole : from.holes) put(to.holelist, static_cast<std::size_t>(to.numberofholes++), hole);
+    }
+  }
+  if (!surface.cavities.empty()) {
+    in.holelist = new REAL[3 * surface.cavities.size()];
+    for (const glm::dvec3& cavity : surface.cavities)
+      put(in.holelist, static_cast<std::size_t>(in.numberofholes++), cavity);
+  }
+}
+
+}  // namespace
+
+FilledSurface fill(const Surface& surface, std::optional<double> max_volume, const std::string& source) {
+  if (surface.points.size() > static_cast<std::size_t>(INT32_MAX) / 8)
+    throw scene::bad_input(
+        fmt::format("{}: {} points are too many for TetGen; coarsen the surface", source, surface.points.size()));
+  const Frame frame(surface);
+  tetgenbehavior wishes;
+  // p: fill a closed complex, q: quality, z: count from 0, Q: quiet
+  std::string switches = max_volume ? "pq2.0zQ" : "pzQ";
+  wishes.parse_commandline(switches.data());
+  if (max_volume) {
+    wishes.fixedvolume = 1;  // -a
+    wishes.maxvolume = *max_volume * frame.scale * frame.scale * frame.scale;
+  }
+  auto* in = new tetgenio;  // never freed: after a failure TetGen's own frees may crash, and the process soon ends
+  auto* out = new tetgenio;
+  copy_in(surface, frame, *in);
+  try {
+    tetrahedralize(&wishes, in, out);
+  } catch (int thrown) {
+    throw scene::bad_input(
+        fmt::format("{}: TetGen cannot fill the surface: {}; mend the surface", source, reason(thrown)));
+  }
+  FilledSurface filled;
+  const auto points = static_cast<std::size_t>(out->numberofpoints);
+  for (std::size_t v = 0; v < points; ++v) {  // TetGen keeps the surface's points first
+    const REAL* const p = out->pointlist + 3 * v;
+    filled.points.push_back(v < surface.points.size() ? surface.points[v] : frame.out({p[0], p[1], p[2]}));
+  }
+  filled.tets.assign(out->tetrahedronlist,
+                     out->tetrahedronlist + 4 * static_cast<std::size_t>(out->numberoftetrahedra));
+  filled.triangles.assign(out->trifacelist, out->trifacelist + 3 * static_cast<std::size_t>(out->numberoftrifaces));
+  if (filled.tets.empty())
+    throw scene::bad_input(
+        fmt::format("{}: TetGen finds nothing inside the surface: it is not closed; close its holes", source));
+  return filled;
+}
+
+ForeignContents fill_surface(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  const std::string source = file.string();
+  const Surface surface = surface_of(request.at("surface"));
+  FilledSurface filled = fill(surface, request.at("max_volume").get<double>(), source);
+  ForeignPart part;
+  const auto add = [&](std::vector<double> values) {
+    part.point_fields.push_back(hold_vector(holdings, {}, std::move(values)));
+  };
+  add(depth_below_surface(filled));
+  if (!surface.attributes.empty())
+    for (std::vector<double>& values : spread_attributes(surface, fill(surface, std::nullopt, source), filled))
+      add(std::move(values));
+  part.points = hold_vector(holdings, {.components = 3}, std::move(filled.points));
+  part.connectivity = hold_vector(holdings, {.type = NumberType::uint32}, std::move(filled.tets));
+  return {.parts = {std::move(part)}, .notes = {}, .format = "TetGen"};
+}
+
+}  // namespace tessera::io::helper

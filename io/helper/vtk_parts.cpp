@@ -1,0 +1,198 @@
+#include "io/helper/vtk_parts.hpp"
+
+#include <fmt/format.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkCompositeDataIterator.h>
+#include <vtkCompositeDataSet.h>
+#include <vtkDataArray.h>
+#include <vtkDataSet.h>
+#include <vtkImageData.h>
+#include <vtkInformation.h>
+#include <vtkMatrix3x3.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkRectilinearGrid.h>
+#include <vtkSmartPointer.h>
+#include <vtkStructuredGrid.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <algorithm>
+#include <array>
+
+#include "scene/error.hpp"
+
+namespace tessera::io::helper {
+namespace {
+
+/// Bits, of which VTK packs eight into a byte, become bytes.
+NumberType type_of(int vtk_type) {
+  switch (vtk_type) {
+    case VTK_CHAR:
+    case VTK_SIGNED_CHAR:
+      return NumberType::int8;
+    case VTK_UNSIGNED_CHAR:
+    case VTK_BIT:
+      return NumberType::uint8;
+    case VTK_SHORT:
+      return NumberType::int16;
+    case VTK_UNSIGNED_SHORT:
+      return NumberType::uint16;
+    case VTK_INT:
+      return NumberType::int32;
+    case VTK_UNSIGNED_INT:
+      return NumberType::uint32;
+    case VTK_LONG:
+    case VTK_LONG_LONG:
+    case VTK_ID_TYPE:
+      return NumberType::int64;
+    case VTK_UNSIGNED_LONG:
+    case VTK_UNSIGNED_LONG_LONG:
+      return NumberType::uint64;
+    case VTK_FLOAT:
+      return NumberType::float32;
+    default:
+      return NumberType::float64;
+  }
+}
+
+/// The same numbers, one tuple after the other in memory.
+vtkSmartPointer<vtkDataArray> plain(vtkDataArray& array) {
+  if (array.HasStandardMemoryLayout() && array.GetDataType() != VTK_BIT) return &array;
+  const int type = array.GetDataType() == VTK_BIT ? VTK_UNSIGNED_CHAR : array.GetDataType();
+  auto copy = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(type));
+  copy->DeepCopy(&array);
+  copy->SetName(array.GetName());
+  return copy;
+}
+
+ForeignArray hold(Holdings& holdings, vtkDataArray& given) {
+  const vtkSmartPointer<vtkDataArray> array = plain(given);
+  ForeignArray held;
+  held.type = type_of(array->GetDataType());
+  held.components = std::max(array->GetNumberOfComponents(), 1);
+  held.tuples = static_cast<std::uint64_t>(std::max<vtkIdType>(array->GetNumberOfTuples(), 0));
+  return holdings.hold(std::move(held), array->GetVoidPointer(0),
+                       std::make_shared<const vtkSmartPointer<vtkDataArray>>(array));
+}
+
+std::optional<ForeignArray> hold_any(Holdings& holdings, vtkDataArray* array) {
+  return array != nullptr ? std::optional(hold(holdings, *array)) : std::nullopt;
+}
+
+NumberTally tally_of(vtkDataArray& given) {
+  const vtkSmartPointer<vtkDataArray> array = plain(given);
+  const NumberType type = type_of(array->GetDataType());
+  const int components = array->GetNumberOfComponents();
+  const auto tuples = static_cast<std::size_t>(array->GetNumberOfTuples());
+  const std::span bytes(static_cast<const std::byte*>(array->GetVoidPointer(0)),
+                        tuples * static_cast<std::size_t>(components) * size_of(type));
+  NumberTally tally;
+  std::array<double, 4096> some;
+  for (std::size_t first = 0; first < tuples; first += some.size()) {
+    const std::span chunk(some.data(), std::min(some.size(), tuples - first));
+    read_tuples(bytes, type, components, components == 1 ? 0 : magnitude, first, chunk);
+    tally.add(chunk);
+  }
+  return tally;
+}
+
+std::vector<ForeignArray> hold_fields(Holdings& holdings, vtkDataSetAttributes& attributes, const char* unnamed) {
+  std::vector<ForeignArray> fields;
+  for (int k = 0; k < attributes.GetNumberOfArrays(); ++k) {
+    vtkDataArray* const array = attributes.GetArray(k);  // null for arrays of strings
+    if (array == nullptr || array->GetNumberOfComponents() < 1) continue;
+    ForeignArray field = hold(holdings, *array);
+    const char* const name = array->GetName();
+    field.name = name != nullptr && *name != '\0' ? name : fmt::format("{}{}", unnamed, k);
+    field.active = array == attributes.GetScalars() || array == attributes.GetVectors();
+    field.tally = tally_of(*array);
+    fields.push_back(std::move(field));
+  }
+  return fields;
+}
+
+std::optional<ForeignArray> hold_points(Holdings& holdings, vtkPoints* points) {
+  return points != nullptr ? hold_any(holdings, points->GetData()) : std::nullopt;
+}
+
+template <class Grid>
+void set_extent(Grid& grid, ForeignPart& part) {
+  std::array<int, 6> extent{};
+  grid.GetExtent(extent.data());
+  std::copy(extent.begin(), extent.end(), part.extent.begin());
+}
+
+void set_cells(Holdings& holdings, vtkCellArray* cells, ForeignPart& part) {
+  if (cells == nullptr) return;
+  part.offsets = hold_any(holdings, cells->GetOffsetsArray());
+  part.connectivity = hold_any(holdings, cells->GetConnectivityArray());
+}
+
+ForeignPart part_of(Holdings& holdings, vtkDataSet& data, const std::string& name, const std::string& source) {
+  ForeignPart part;
+  part.name = name;
+  if (auto* unstructured = vtkUnstructuredGrid::SafeDownCast(&data)) {
+    part.points = hold_points(holdings, unstructured->GetPoints());
+    if (unstructured->GetCells() != nullptr && unstructured->GetCellTypesArray() != nullptr) {
+      part.types = hold_any(holdings, unstructured->GetCellTypesArray());
+      set_cells(holdings, unstructured->GetCells(), part);
+    }
+  } else if (auto* surface = vtkPolyData::SafeDownCast(&data)) {
+    part.kind = ForeignPart::Kind::surface;
+    part.points = hold_points(holdings, surface->GetPoints());
+    set_cells(holdings, surface->GetPolys(), part);
+  } else if (auto* curvilinear = vtkStructuredGrid::SafeDownCast(&data)) {
+    part.kind = ForeignPart::Kind::structured;
+    set_extent(*curvilinear, part);
+    part.points = hold_points(holdings, curvilinear->GetPoints());
+  } else if (auto* rectilinear = vtkRectilinearGrid::SafeDownCast(&data)) {
+    part.kind = ForeignPart::Kind::rectilinear;
+    set_extent(*rectilinear, part);
+    for (vtkDataArray* axis :
+         {rectilinear->GetXCoordinates(), rectilinear->GetYCoordinates(), rectilinear->GetZCoordinates()})
+      part.coordinates.push_back(axis != nullptr ? hold(holdings, *axis) : ForeignArray());
+  } else if (auto* image = vtkImageData::SafeDownCast(&data)) {
+    part.kind = ForeignPart::Kind::image;
+    set_extent(*image, part);
+    std::copy_n(image->GetOrigin(), 3, part.origin.begin());
+    std::copy_n(image->GetSpacing(), 3, part.spacing.begin());
+    std::copy_n(image->GetDirectionMatrix()->GetData(), 9, part.direction.begin());
+  } else {
+    throw scene::bad_input(
+        fmt::format("{}: it holds {}, no cells of volume; give a mesh", source, data.GetClassName()));
+  }
+  part.point_fields = hold_fields(holdings, *data.GetPointData(), "point");
+  part.cell_fields = hold_fields(holdings, *data.GetCellData(), "cell");
+  return part;
+}
+
+std::string block_name(vtkCompositeDataIterator& iterator) {
+  if (iterator.HasCurrentMetaData())
+    if (const char* name = iterator.GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME())) return name;
+  return fmt::format("{}", iterator.GetCurrentFlatIndex());
+}
+
+}  // namespace
+
+std::vector<ForeignPart> parts_of(Holdings& holdings, vtkDataObject& data, const std::string& source) {
+  std::vector<ForeignPart> parts;
+  if (auto* set = vtkDataSet::SafeDownCast(&data)) {
+    parts.push_back(part_of(holdings, *set, "", source));
+    return parts;
+  }
+  auto* composite = vtkCompositeDataSet::SafeDownCast(&data);
+  if (composite == nullptr)
+    throw scene::bad_input(fmt::format("{}: it holds {}, no mesh; give a mesh", source, data.GetClassName()));
+  const auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
+  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem()) {
+    auto* set = vtkDataSet::SafeDownCast(iterator->GetCurrentDataObject());
+    if (set != nullptr && set->GetNumberOfCells() > 0)
+      parts.push_back(part_of(holdings, *set, block_name(*iterator), source));
+  }
+  return parts;
+}
+
+}  // namespace tessera::io::helper

@@ -1,0 +1,183 @@
+#include <fmt/format.h>
+#include <vtkDataObject.h>
+#include <vtkDataSetReader.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkMultiBlockPLOT3DReader.h>
+#include <vtkNew.h>
+#include <vtkPolyData.h>
+#include <vtkSTLReader.h>
+#include <vtkSmartPointer.h>
+#include <vtkXMLImageDataReader.h>
+#include <vtkXMLRectilinearGridReader.h>
+#include <vtkXMLStructuredGridReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "io/helper/extents.hpp"
+#include "io/helper/grid_pieces.hpp"
+#include "io/helper/readers.hpp"
+#include "io/helper/vtk_parts.hpp"
+#include "io/helper/vtk_session.hpp"
+#include "io/mapped_file.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io::helper {
+namespace {
+
+constexpr const char* write_anew = "the file is truncated or damaged, write it anew";
+
+/// A reader of structured data that says what pieces the file has.
+template <class Reader>
+class WithPieces final : public Reader {
+ public:
+  static WithPieces* New() {
+    auto* const made = new WithPieces;
+    made->InitializeObjectBase();
+    return made;
+  }
+
+  /// After UpdateInformation(). VTK leaves what no piece holds as memory happened to be.
+  void require_whole(const std::string& source) const {
+    Extent whole{};
+    std::copy_n(this->WholeExtent, 6, whole.begin());
+    std::vector<Extent> pieces(static_cast<std::size_t>(std::max(this->NumberOfPieces, 0)));
+    for (std::size_t n = 0; n < pieces.size(); ++n) {
+      std::copy_n(this->PieceExtents + 6 * n, 6, pieces[n].begin());
+      if (cells_in(pieces[n]) > 0 && !holds(whole, pieces[n]))
+        throw scene::bad_input(fmt::format("{}: piece {} has the points {}, the whole has {}; {}", source, n,
+                                           words_of(pieces[n]), words_of(whole), write_anew));
+    }
+    const double cells = cells_in(whole), covered = cells_covered(pieces);
+    if (covered < cells)
+      throw scene::bad_input(fmt::format("{}: its pieces have {:.0f} of its {:.0f} cells, of the points {} only {}; {}",
+                                         source, covered, cells, words_of(whole), words_of(box_of(pieces)),
+                                         write_anew));
+  }
+};
+
+template <class Reader>
+vtkSmartPointer<vtkDataObject> read_structured(const std::string& source) {
+  const auto reader = vtkSmartPointer<WithPieces<Reader>>::Take(WithPieces<Reader>::New());
+  reader->SetFileName(source.c_str());
+  reader->UpdateInformation();
+  reader->require_whole(source);
+  reader->Update();
+  return reader->GetOutputDataObject(0);
+}
+
+vtkSmartPointer<vtkDataObject> read_unstructured(const std::string& source) {
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  reader->SetFileName(source.c_str());
+  reader->Update();
+  return reader->GetOutputDataObject(0);
+}
+
+vtkSmartPointer<vtkDataObject> read_xml(const std::string& source, const std::string& type) {
+  if (type == "ImageData") return read_structured<vtkXMLImageDataReader>(source);
+  if (type == "RectilinearGrid") return read_structured<vtkXMLRectilinearGridReader>(source);
+  if (type == "StructuredGrid") return read_structured<vtkXMLStructuredGridReader>(source);
+  return read_unstructured(source);
+}
+
+ForeignContents contents_of_data(Holdings& holdings, vtkDataObject* data, const std::string& source,
+                                 const std::string& warning) {
+  if (data == nullptr) throw scene::bad_input(fmt::format("{}: nothing can be read; write it anew", source));
+  ForeignContents contents;
+  if (!warning.empty()) contents.notes.push_back("VTK warns: " + warning);
+  contents.parts = parts_of(holdings, *data, source);
+  return contents;
+}
+
+}  // namespace
+
+vtkSmartPointer<vtkDataObject> read_xml_file(const std::filesystem::path& file, const std::string& type,
+                                             std::string& warning) {
+  allow_for(file);
+  // VTK fills what a file that is cut short lacks with zeros, and says nothing.
+  {
+    const MappedFile mapped(file);
+    const std::string_view text = mapped.text(),
+                           end = text.substr(text.size() - std::min<std::size_t>(text.size(), 1024));
+    if (end.find("</VTKFile") == std::string_view::npos)
+      throw scene::bad_input(fmt::format("{}: it does not end with </VTKFile>; {}", file.string(), write_anew));
+  }
+  vtkSmartPointer<vtkDataObject> data;
+  warning = with_quiet_vtk(file.string(), write_anew, [&] { data = read_xml(file.string(), type); });
+  return data;
+}
+
+ForeignContents read_vtk_xml(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  const auto type = request.at("type").get<std::string>();
+  std::vector<std::string> warnings;
+  std::string warning;
+  vtkSmartPointer<vtkDataObject> data;
+  if (type == "PImageData")
+    data = read_grid_pieces(file, GridKind::image, warnings);
+  else if (type == "PRectilinearGrid")
+    data = read_grid_pieces(file, GridKind::rectilinear, warnings);
+  else if (type == "PStructuredGrid")
+    data = read_grid_pieces(file, GridKind::structured, warnings);
+  else
+    data = read_xml_file(file, type, warning);
+  ForeignContents contents = contents_of_data(holdings, data, file.string(), warning);
+  contents.notes.insert(contents.notes.end(), warnings.begin(), warnings.end());
+  return contents;
+}
+
+ForeignContents read_vtk_legacy(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json&) {
+  allow_for(file);
+  const std::string source = file.string();
+  vtkSmartPointer<vtkDataObject> data;
+  const std::string warning = with_quiet_vtk(source, write_anew, [&] {
+    vtkNew<vtkDataSetReader> reader;
+    read_all_arrays(*reader, source);
+    data = reader->GetOutputDataObject(0);
+  });
+  ForeignContents contents = contents_of_data(holdings, data, source, warning);
+  contents.format = fmt::format("legacy VTK ({})", data->GetClassName());
+  return contents;
+}
+
+ForeignContents read_plot3d(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  allow_for(file);
+  const std::string source = file.string();
+  const auto q = request.at("q").get<std::string>();
+  if (!q.empty()) allow_for(q);
+  vtkSmartPointer<vtkDataObject> data;
+  with_quiet_vtk(source, "grid or solution file is damaged, write it anew", [&] {
+    vtkNew<vtkMultiBlockPLOT3DReader> reader;
+    reader->SetXYZFileName(source.c_str());
+    if (!q.empty()) reader->SetQFileName(q.c_str());
+    reader->BinaryFileOn();
+    reader->AutoDetectFormatOff();
+    reader->SetByteOrder(request.at("big_endian").get<bool>() ? vtkMultiBlockPLOT3DReader::FILE_BIG_ENDIAN
+                                                              : vtkMultiBlockPLOT3DReader::FILE_LITTLE_ENDIAN);
+    reader->SetHasByteCount(request.at("record_marks").get<bool>());
+    reader->SetMultiGrid(request.at("multi_grid").get<bool>());
+    reader->SetDoublePrecision(request.at("double_precision").get<bool>());
+    reader->SetIBlanking(request.at("iblank").get<bool>());
+    reader->Update();
+    data = reader->GetOutputDataObject(0);
+  });
+  ForeignContents contents = contents_of_data(holdings, data, source, "");
+  contents.format = "PLOT3D";
+  return contents;
+}
+
+ForeignContents read_stl(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json&) {
+  allow_for(file);
+  const std::string source = file.string();
+  vtkSmartPointer<vtkDataObject> data;
+  with_quiet_vtk(source, "the file is truncated, damaged or of another kind, write it anew", [&] {
+    vtkNew<vtkSTLReader> reader;
+    reader->MergingOff();  // done by merge_coincident_points
+    reader->SetFileName(source.c_str());
+    reader->Update();
+    data = reader->GetOutput();
+  });
+  return contents_of_data(holdings, data, source, "");
+}
+
+}  // namespace tessera::io::helper

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace tessera::io {
+
+/// What goes over the socket between a process and its helper program: a count of bytes (uint64, this machine's order),
+/// the bytes, and at most one file descriptor beside them.
+///
+/// Bytes   CBOR. Requests and replies are in helper_process.cpp and helper/main.cpp.
+/// Arrays  are files without a name (memfd_create), sealed by who receives them, so that they cannot shrink while they
+///         are mapped.
+
+/// Of the protocol. The helper says it first; another one's is refused.
+inline constexpr int helper_version = 1;
+
+/// Closes what it holds.
+class Descriptor {
+ public:
+  Descriptor() = default;
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor();
+  Descriptor(Descriptor&& other) noexcept : number_(other.release()) {}
+  Descriptor& operator=(Descriptor&& other) noexcept;
+
+  [[nodiscard]] int get() const { return number_; }
+  [[nodiscard]] bool is_open() const { return number_ >= 0; }
+  int release();
+
+ private:
+  int number_ = -1;
+};
+
+struct HelperMessage {
+  std::vector<std::uint8_t> bytes;
+  Descriptor file;
+};
+
+/// False if the other side is gone.
+bool send_message(int socket, std::span<const std::uint8_t> bytes, int file = -1);
+
+/// Nothing if the other side is gone, or sends what is no message.
+std::optional<HelperMessage> receive_message(int socket);
+
+/// Writes all of it; false if it cannot.
+bool write_all(int file, const void* bytes, std::size_t count);
+
+}  // namespace tessera::io

@@ -1,0 +1,233 @@
+#include "io/helper_process.hpp"
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* program_name = "tessera-read";
+
+/// The file that this code was loaded from: the library, or the program that has it linked in.
+std::filesystem::path own_file() {
+  Dl_info info{};
+  std::error_code unknown;
+  if (::dladdr(reinterpret_cast<const void*>(&own_file), &info) != 0 && info.dli_fname != nullptr) {
+    const std::filesystem::path file = std::filesystem::canonical(info.dli_fname, unknown);
+    if (!unknown) return file;  // a program's name need not be one that leads to it
+  }
+  return std::filesystem::read_symlink("/proc/self/exe", unknown);
+}
+
+bool is_program(const std::filesystem::path& file) { return ::access(file.c_str(), X_OK) == 0; }
+
+std::filesystem::path find_helper() {
+  std::error_code unknown;
+  for (std::filesystem::path start : {own_file(), std::filesystem::read_symlink("/proc/self/exe", unknown)})
+    for (int levels = 0; levels < 5 && start.has_relative_path(); ++levels) {
+      start = start.parent_path();
+      if (std::filesystem::path file = start / "libexec/tessera" / program_name; is_program(file)) return file;
+    }
+  const std::filesystem::path installed = std::filesystem::path(TESSERA_LIBEXEC) / program_name;
+  return is_program(installed) ? installed : std::filesystem::path();
+}
+
+/// The caller's environment without what would have the helper take itself for a rank.
+std::vector<char*> helper_environment() {
+  std::vector<char*> kept;
+  for (char** entry = environ; entry != nullptr && *entry != nullptr; ++entry) {
+    const std::string_view text = *entry;
+    const auto begins = [&](std::string_view prefix) { return text.starts_with(prefix); };
+    if (!begins("OMPI_") && !begins("PMIX_") && !begins("PRTE_") && !begins("PMI_") && !begins("HYDRA_"))
+      kept.push_back(*entry);
+  }
+  kept.push_back(nullptr);
+  return kept;
+}
+
+/// posix_spawn's descriptions, which have to be destroyed.
+struct SpawnPlan {
+  posix_spawn_file_actions_t files;
+  posix_spawnattr_t attributes;
+  SpawnPlan() {
+    ::posix_spawn_file_actions_init(&files);
+    ::posix_spawnattr_init(&attributes);
+  }
+  ~SpawnPlan() {
+    ::posix_spawn_file_actions_destroy(&files);
+    ::posix_spawnattr_destroy(&attributes);
+  }
+  SpawnPlan(const SpawnPlan&) = delete;
+  SpawnPlan& operator=(const SpawnPlan&) = delete;
+};
+
+[[noreturn]] void fail_to_start(const std::string& why) {
+  throw scene::Error(scene::ErrorCode::system_failure, program_name, why,
+                     "it reads files of other programs' formats; install it with the library");
+}
+
+/// The words for a process's end; no subject yet.
+std::string words_of_end(int status, bool known, const HelperTask& task) {
+  if (!known || !WIFSIGNALED(status)) return fmt::format("{} ended in failure; {}", task.words, task.remedy);
+  switch (WTERMSIG(status)) {
+    case SIGXCPU:
+      return fmt::format("{} takes longer than its size can explain; {}", task.words, task.remedy);
+    case SIGKILL:
+      return fmt::format("{} was killed from outside, perhaps for want of memory; use a larger machine", task.words);
+    default:
+      return fmt::format("{} crashed ({}); {}", task.words, ::strsignal(WTERMSIG(status)), task.remedy);
+  }
+}
+
+}  // namespace
+
+SharedBytes::SharedBytes(const Descriptor& file, std::uint64_t count) : size_(static_cast<std::size_t>(count)) {
+  struct stat facts {};
+  if (!file.is_open() || ::fcntl(file.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE) != 0 ||
+      ::fstat(file.get(), &facts) != 0 || static_cast<std::uint64_t>(facts.st_size) != count)
+    throw std::invalid_argument("an array of another size");
+  if (size_ == 0) return;
+  void* const start = ::mmap(nullptr, size_, PROT_READ, MAP_SHARED, file.get(), 0);
+  if (start == MAP_FAILED) throw std::bad_alloc();
+  start_ = start;
+}
+
+SharedBytes::~SharedBytes() {
+  if (start_ != nullptr) ::munmap(start_, size_);
+}
+
+SharedBytes::SharedBytes(SharedBytes&& other) noexcept
+    : start_(std::exchange(other.start_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+
+SharedBytes& SharedBytes::operator=(SharedBytes&& other) noexcept {
+  std::swap(start_, other.start_);
+  std::swap(size_, other.size_);
+  return *this;
+}
+
+std::filesystem::path helper_program() { return find_helper(); }
+
+HelperProcess::HelperProcess(HelperTask task) : task_(std::move(task)) {
+  const std::filesystem::path program = find_helper();
+  if (program.empty()) fail_to_start("it is not where the library or program is installed");
+  std::array<int, 2> ends{};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    fail_to_start(fmt::format("there is no socket for it: {}", std::strerror(errno)));
+  socket_ = Descriptor(ends[0]);
+  const Descriptor theirs(ends[1]);
+
+  constexpr int helper_end = 3;  // helper/main.cpp
+  SpawnPlan plan;
+  // First of all: it may be one of those that follow, where the caller has closed them.
+  ::posix_spawn_file_actions_adddup2(&plan.files, theirs.get(), helper_end);
+  for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    ::posix_spawn_file_actions_addopen(&plan.files, standard, "/dev/null", O_RDWR, 0);
+  ::posix_spawn_file_actions_addclosefrom_np(&plan.files, helper_end + 1);
+  sigset_t none, all;
+  ::sigemptyset(&none);
+  ::sigfillset(&all);
+  ::posix_spawnattr_setsigmask(&plan.attributes, &none);
+  ::posix_spawnattr_setsigdefault(&plan.attributes, &all);
+  ::posix_spawnattr_setflags(&plan.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+  std::string name = program.string();
+  std::array<char*, 2> arguments{name.data(), nullptr};
+  pid_t process = -1;
+  if (const int error = ::posix_spawn(&process, name.c_str(), &plan.files, &plan.attributes, arguments.data(),
+                                      helper_environment().data());
+      error != 0)
+    fail_to_start(fmt::format("{} cannot be started: {}", name, std::strerror(error)));
+  process_ = process;
+}
+
+HelperProcess::~HelperProcess() {
+  socket_ = Descriptor();  // which is how it knows that it may end
+  while (process_ >= 0 && ::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
+  }
+}
+
+void HelperProcess::report_death(const std::string& subject) {
+  if (death_.empty()) {
+    socket_ = Descriptor();
+    int status = 0;
+    pid_t ended = -1;
+    while ((ended = ::waitpid(process_, &status, 0)) < 0 && errno == EINTR) {
+    }
+    death_ = words_of_end(status, ended == process_, task_);
+    process_ = -1;
+  }
+  throw scene::bad_input(fmt::format("{}: {}", subject, death_));
+}
+
+HelperMessage HelperProcess::exchange(const Json& request, const std::string& subject) {
+  const std::lock_guard lock(mutex_);
+  if (!death_.empty() || !send_message(socket_.get(), Json::to_cbor(request))) report_death(subject);
+  std::optional<HelperMessage> reply = receive_message(socket_.get());
+  if (!reply) report_death(subject);
+  return std::move(*reply);
+}
+
+Json HelperProcess::call(const Json& request, const std::string& subject) {
+  const HelperMessage reply = exchange(request, subject);
+  Json json;
+  std::string line;
+  int code = 0;
+  try {
+    json = Json::from_cbor(reply.bytes);
+    if (const auto error = json.find("error"); error != json.end()) {
+      line = error->at("line").get<std::string>();
+      code = error->at("code").get<int>();
+    }
+  } catch (const Json::exception&) {
+    throw scene::bad_input(
+        fmt::format("{}: its reader gives no sensible answer; the file is damaged, write it anew", subject));
+  }
+  if (code != 0)
+    throw scene::Error(code == static_cast<int>(scene::ErrorCode::system_failure) ? scene::ErrorCode::system_failure
+                                                                                  : scene::ErrorCode::bad_input,
+                       line);
+  return json;
+}
+
+SharedBytes HelperProcess::take(const ForeignArray& array, const std::string& subject, bool keep) {
+  const HelperMessage reply = exchange({{"do", "take"}, {"array", array.number}, {"keep", keep}}, subject);
+  try {
+    return {reply.file, array.bytes()};
+  } catch (const std::invalid_argument&) {
+    throw scene::bad_input(
+        fmt::format("{}: its array '{}' cannot be read; the file is damaged, write it anew", subject, array.name));
+  }
+}
+
+void HelperProcess::drop(std::span<const std::uint64_t> arrays) noexcept {
+  try {
+    const std::lock_guard lock(mutex_);
+    if (death_.empty())
+      static_cast<void>(send_message(
+          socket_.get(),
+          Json::to_cbor({{"do", "drop"}, {"arrays", std::vector<std::uint64_t>(arrays.begin(), arrays.end())}})));
+  } catch (const std::exception&) {  // then it keeps them a little longer
+  }
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/foreign_data.hpp"
+#include "io/helper_messages.hpp"
+
+namespace tessera::io {
+
+/// Memory that the helper has filled: mapped from a file without a name, the same bytes for as long as this lives.
+class SharedBytes {
+ public:
+  SharedBytes() = default;
+  /// Throws std::bad_alloc if it cannot be mapped, std::invalid_argument unless it holds `count` bytes.
+  SharedBytes(const Descriptor& file, std::uint64_t count);
+  ~SharedBytes();
+  SharedBytes(SharedBytes&& other) noexcept;
+  SharedBytes& operator=(SharedBytes&& other) noexcept;
+
+  [[nodiscard]] std::span<const std::byte> bytes() const { return {static_cast<const std::byte*>(start_), size_}; }
+  /// As numbers, of which there are as many as fit.
+  template <class T>
+  [[nodiscard]] std::span<const T> as() const {
+    return {static_cast<const T*>(start_), size_ / sizeof(T)};
+  }
+
+ private:
+  void* start_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+/// What a helper is for, in the words of the error that its death becomes: "FILE: WORDS crashed (...); REMEDY".
+struct HelperTask {
+  std::string words = "reading it", remedy = "the file is damaged, write it anew";
+};
+
+/// A running helper program (helper/README.md): a process of its own in which other people's readers, and TetGen, may
+/// crash, print and ask for memory. It ends with this object.
+///
+/// Found    as libexec/tessera/tessera-read in a folder above the library or program this code is in, else where it was
+///          to be installed.
+/// Started  by posix_spawn: nothing of the caller's process is copied. It inherits no file and, of the environment,
+///          nothing that MPI launchers set; what it prints goes nowhere.
+/// Limits   of memory and processor time, by the sizes of the files it opens; it sets them itself.
+/// Threads  calls wait for each other.
+class HelperProcess {
+ public:
+  /// Throws Error(system_failure) if there is none or it cannot be started.
+  explicit HelperProcess(HelperTask task = {});
+  ~HelperProcess();
+  HelperProcess(const HelperProcess&) = delete;
+  HelperProcess& operator=(const HelperProcess&) = delete;
+
+  /// Sends a request and waits. Throws the helper's own error, or Error(bad_input, "SUBJECT: ...") if it died of it;
+  /// then every later call throws that too.
+  nlohmann::json call(const nlohmann::json& request, const std::string& subject);
+
+  /// The helper's array, which it then has no more, unless it is to `keep` it. Throws as call().
+  SharedBytes take(const ForeignArray& array, const std::string& subject, bool keep = false);
+
+  /// Has the helper forget arrays that nobody will ask for. Throws nothing.
+  void drop(std::span<const std::uint64_t> arrays) noexcept;
+
+  /// Its process, for tests; -1 once it has died.
+  [[nodiscard]] int process() const { return process_; }
+
+ private:
+  HelperMessage exchange(const nlohmann::json& request, const std::string& subject);
+  [[noreturn]] void report_death(const std::string& subject);
+
+  HelperTask task_;
+  std::mutex mutex_;
+  int process_ = -1;
+  Descriptor socket_;
+  std::string death_;  ///< what it died of, without the subject
+};
+
+/// Where the helper program is, for messages and tests; empty if there is none.
+std::filesystem::path helper_program();
+
+}  // namespace tessera::io
