@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -87,17 +88,34 @@ struct SpawnPlan {
                      "it reads files of other programs' formats; install it with the library");
 }
 
-/// The words for a process's end; no subject yet.
-std::string words_of_end(int status, bool known, const HelperTask& task) {
-  if (!known || !WIFSIGNALED(status)) return fmt::format("{} ended in failure; {}", task.words, task.remedy);
+/// Whether this process may have less memory than there is, and its children no more.
+bool is_limited() {
+  rlimit limit{};
+  return ::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+}
+
+/// What became of a process. `status` is waitpid's, if it is `known`.
+HelperDeath death_of(int status, bool known, bool has_begun, const HelperTask& task) {
+  using enum scene::ErrorCode;
+  if (!has_begun)
+    return {system_failure,
+            fmt::format("{} cannot be begun: {} ends as soon as it is started; see whether it runs, and "
+                        "give it more memory",
+                        task.words, program_name)};
+  if (!known || !WIFSIGNALED(status))
+    return {bad_input, fmt::format("{} ended in failure; {}", task.words, task.remedy)};
   switch (WTERMSIG(status)) {
     case SIGXCPU:
-      return fmt::format("{} takes longer than its size can explain; {}", task.words, task.remedy);
+      return {bad_input, fmt::format("{} takes longer than its size can explain; {}", task.words, task.remedy)};
     case SIGKILL:
-      return fmt::format("{} was killed from outside, perhaps for want of memory; use a larger machine", task.words);
+      return {system_failure,
+              fmt::format("{} was killed from outside, perhaps for want of memory; use a larger machine", task.words)};
     default:
-      return fmt::format("{} crashed ({}); {}", task.words, ::strsignal(WTERMSIG(status)), task.remedy);
+      break;
   }
+  const std::string words = fmt::format("{} crashed ({})", task.words, ::strsignal(WTERMSIG(status)));
+  if (is_limited()) return {system_failure, words + ", perhaps for want of memory; raise the limit of address space"};
+  return {bad_input, fmt::format("{}; {}", words, task.remedy)};
 }
 
 }  // namespace
@@ -167,21 +185,23 @@ HelperProcess::~HelperProcess() {
 }
 
 void HelperProcess::report_death(const std::string& subject) {
-  if (death_.empty()) {
+  if (!death_) {
     socket_ = Descriptor();
     int status = 0;
     pid_t ended = -1;
     while ((ended = ::waitpid(process_, &status, 0)) < 0 && errno == EINTR) {
     }
-    death_ = words_of_end(status, ended == process_, task_);
+    death_ = death_of(status, ended == process_, has_begun_, task_);
     process_ = -1;
   }
-  throw scene::bad_input(fmt::format("{}: {}", subject, death_));
+  throw scene::Error(death_->code, fmt::format("{}: {}", subject, death_->words));
 }
 
 HelperMessage HelperProcess::exchange(const Json& request, const std::string& subject) {
   const std::lock_guard lock(mutex_);
-  if (!death_.empty() || !send_message(socket_.get(), Json::to_cbor(request))) report_death(subject);
+  if (death_) report_death(subject);
+  if (!has_begun_) has_begun_ = receive_message(socket_.get()).has_value();
+  if (!has_begun_ || !send_message(socket_.get(), Json::to_cbor(request))) report_death(subject);
   std::optional<HelperMessage> reply = receive_message(socket_.get());
   if (!reply) report_death(subject);
   return std::move(*reply);
@@ -222,7 +242,7 @@ SharedBytes HelperProcess::take(const ForeignArray& array, const std::string& su
 void HelperProcess::drop(std::span<const std::uint64_t> arrays) noexcept {
   try {
     const std::lock_guard lock(mutex_);
-    if (death_.empty())
+    if (!death_)
       static_cast<void>(send_message(
           socket_.get(),
           Json::to_cbor({{"do", "drop"}, {"arrays", std::vector<std::uint64_t>(arrays.begin(), arrays.end())}})));

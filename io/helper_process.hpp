@@ -6,12 +6,14 @@
 #include <memory>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "io/foreign_data.hpp"
 #include "io/helper_messages.hpp"
+#include "scene/error.hpp"
 
 namespace tessera::io {
 
@@ -40,6 +42,12 @@ class SharedBytes {
 /// What a helper is for, in the words of the error that its death becomes: "FILE: WORDS crashed (...); REMEDY".
 struct HelperTask {
   std::string words = "reading it", remedy = "the file is damaged, write it anew";
+};
+
+/// What a helper died of, without the subject.
+struct HelperDeath {
+  scene::ErrorCode code;
+  std::string words;
 };
 
 /// A running helper program (helper/README.md): a process of its own in which other people's readers, and TetGen, may
@@ -80,7 +88,8 @@ class HelperProcess {
   std::mutex mutex_;
   int process_ = -1;
   Descriptor socket_;
-  std::string death_;  ///< what it died of, without the subject
+  bool has_begun_ = false;            ///< it has said that it is there
+  std::optional<HelperDeath> death_;  ///< once it is dead
 };
 
 /// Where the helper program is, for messages and tests; empty if there is none.

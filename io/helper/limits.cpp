@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -29,12 +30,17 @@ double processor_seconds() {
   return static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec);
 }
 
-void set_soft_limit(decltype(RLIMIT_AS) what, std::uint64_t value) {
+/// False if less is all that this process may have.
+bool set_soft_limit(decltype(RLIMIT_AS) what, std::uint64_t value) {
   rlimit limit{};
-  if (::getrlimit(what, &limit) != 0) return;
+  if (::getrlimit(what, &limit) != 0) return true;
   limit.rlim_cur = std::min<std::uint64_t>(value, limit.rlim_max);
   ::setrlimit(what, &limit);
+  return limit.rlim_cur == value;
 }
+
+/// Of the last file.
+bool had_enough_memory = true;
 
 /// Whether its bytes may stand for a thousand times as many.
 bool may_be_compressed(const std::filesystem::path& file) {
@@ -49,10 +55,18 @@ void allow_for(const std::filesystem::path& file) {
   const std::uint64_t size = require_file(file);
   // Text of one digit and a blank becomes a double and an index, which readers hold twice; deflate packs 1032 to 1.
   const std::uint64_t factor = may_be_compressed(file) ? 1100 : 24;
-  if (!is_sanitized) set_soft_limit(RLIMIT_AS, address_space_in_use() + (256ull << 20) + factor * size);
+  if (!is_sanitized)
+    had_enough_memory = set_soft_limit(RLIMIT_AS, address_space_in_use() + (256ull << 20) + factor * size);
   // Slow readers take 2 MB/s of text; what is compressed, ten times as long.
   const double seconds = 15 + static_cast<double>(size) / (factor > 24 ? 2e5 : 2e6);
   set_soft_limit(RLIMIT_CPU, static_cast<std::uint64_t>(processor_seconds() + seconds * (is_sanitized ? 10 : 1)) + 1);
+}
+
+scene::Error memory_error(const std::string& source) {
+  if (had_enough_memory)
+    return scene::bad_input(fmt::format(
+        "{}: it asks for more memory than a file of its size can need; its counts are damaged, write it anew", source));
+  return {scene::ErrorCode::system_failure, source, "memory ran out", "use a larger machine or a part of the data"};
 }
 
 }  // namespace tessera::io::helper

@@ -1,6 +1,7 @@
 // tessera-read: reads files with other people's libraries, in a process of its own, for a Tessera library that started
 // it (io/helper_process.hpp) and speaks to it over descriptor 3.
 //
+// First     {} from the helper: it runs.
 // Requests  {"do": "open", "version", "file", "reader": a name below, ...}   -> {"contents"} (io/foreign_data.hpp)
 //           {"do": "take", "array": number, "keep": bool}                    -> {} and a file with its numbers
 //           {"do": "drop", "arrays": [numbers]}                              -> nothing
@@ -87,11 +88,7 @@ bool answer(Holdings& holdings, const Json& request) {
   } catch (const scene::Error& error) {
     reply = error_json(error);
   } catch (const std::bad_alloc&) {
-    reply =
-        error_json(scene::bad_input(fmt::format("{}: reading it wants more memory than a file of its size can need, or "
-                                                "than there is; it is damaged, or read it "
-                                                "on a larger machine",
-                                                source)));
+    reply = error_json(memory_error(source));
   } catch (const std::exception&) {
     reply = error_json(scene::bad_input(fmt::format("{}: it cannot be read; it is damaged, write it anew", source)));
   }
@@ -102,6 +99,7 @@ int serve() {
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
   Holdings holdings;
+  if (!send_message(socket_to_caller, Json::to_cbor(Json::object()))) ::_exit(0);
   while (const std::optional<HelperMessage> message = receive_message(socket_to_caller))
     if (!answer(holdings, Json::from_cbor(message->bytes))) break;
   ::_exit(0);  // whatever damaged files have done to memory, nothing needs it any more

@@ -6,6 +6,7 @@
 #include "io/foreign_data.hpp"
 #include "io/helper/holdings.hpp"
 #include "io/surface.hpp"
+#include "scene/error.hpp"
 
 /// What the helper reads, each with the words of a request beside its file. All throw Error(bad_input) in one line.
 namespace tessera::io::helper {
@@ -33,5 +34,9 @@ ForeignContents fill_surface(Holdings& holdings, const std::filesystem::path& fi
 
 /// More memory and time for a file that is about to be read.
 void allow_for(const std::filesystem::path& file);
+
+/// What to say where memory ran out: the file is damaged, if it had all that its size can explain, else the machine is
+/// too small.
+scene::Error memory_error(const std::string& source);
 
 }  // namespace tessera::io::helper

@@ -12,6 +12,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "io/helper/readers.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -82,10 +83,7 @@ std::string with_quiet_vtk(const std::string& source, const std::string& remedy,
   try {
     work();
   } catch (const std::bad_alloc&) {
-    throw scene::bad_input(
-        fmt::format("{}: it asks for more memory than there is; its counts are damaged, or read it "
-                    "on a larger machine",
-                    source));
+    throw memory_error(source);
   } catch (const std::length_error&) {
     throw scene::bad_input(fmt::format("{}: it gives impossible sizes; {}", source, remedy));
   }

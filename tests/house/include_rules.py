@@ -45,8 +45,8 @@ PUBLIC_ONLY = {"include", "examples", "analysis", "apps"}
 # Foreign headers, and the folders or files that alone may include them. Tests of io/ write VTK's files by VTK.
 ONLY_IN = [
     (r"mpi\.h$", ["exchange/", "include/tessera/mpi.hpp"]),
-    (r"vtk", ["io/", "tests/io/"]),
-    (r"tetgen\.h$", ["io/tetgen_fill.cpp"]),
+    (r"vtk", ["io/helper/", "tests/io/"]),
+    (r"tetgen\.h$", ["io/helper/tetgen_fill.cpp"]),
     (r"CLI/", ["apps/"]),
     (r"(GL|EGL|KHR)/", ["gl/"]),
     (r"cairo", ["analysis/"]),
