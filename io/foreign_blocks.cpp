@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <limits>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -55,68 +56,80 @@ void copy_points(const ForeignFile& file, const ForeignArray& points, CellBlock&
   });
 }
 
-/// Offsets and connectivity of either width, checked.
-template <class Offset, class Index>
-void copy_cells(std::span<const Offset> offsets, std::span<const Index> connectivity, CellBlock& block,
+[[noreturn]] void refuse_corner(std::size_t cell, std::uint32_t corner, std::size_t points, const std::string& where) {
+  throw scene::bad_input(
+      fmt::format("{}: cell {} uses {}, the file holds {} points; write cells and points from one mesh", where, cell,
+                  corner == UINT32_MAX ? "a point of no possible number" : fmt::format("point {}", corner), points));
+}
+
+/// Offsets of either width and corners, checked.
+template <class Offset>
+void copy_cells(std::span<const Offset> offsets, std::span<const std::uint32_t> corners, CellBlock& block,
                 const std::string& where) {
   const std::size_t cells = block.types.size();
-  if (offsets.size() != cells + 1 || offsets[0] != 0 ||
-      static_cast<std::uint64_t>(offsets[cells]) > connectivity.size())
+  if (offsets.size() != cells + 1 || offsets[0] != 0 || static_cast<std::uint64_t>(offsets[cells]) > corners.size())
     throw scene::bad_input(
         fmt::format("{}: cell offsets do not fit the {} cells and {} connectivity entries; the file "
                     "is damaged, write it anew",
-                    where, cells, connectivity.size()));
-  bool all_tets = true;
-  for (std::size_t c = 0; c < cells; ++c) {
+                    where, cells, corners.size()));
+  for (std::size_t c = 0; c < cells; ++c)
     if (offsets[c + 1] < offsets[c])
       throw scene::bad_input(
           fmt::format("{}: the offset of cell {} is {}, less than the one before, {}; the file is "
                       "damaged, write it anew",
                       where, c, offsets[c + 1], offsets[c]));
-    all_tets = all_tets && block.types[c] == 10 && offsets[c + 1] - offsets[c] == 4;
-  }
-  const auto used = static_cast<std::size_t>(offsets[cells]);
-  all_tets ? block.tets.resize(cells) : block.connectivity.resize(used);
-  const auto points = static_cast<std::int64_t>(block.positions.size());
-  for (std::size_t k = 0; k < used; ++k) {
-    const auto v = static_cast<std::int64_t>(connectivity[k]);
-    if (v < 0 || v >= points) {
+  const std::span used = corners.first(static_cast<std::size_t>(offsets[cells]));
+  const std::size_t points = block.positions.size();
+  for (std::size_t k = 0; k < used.size(); ++k)
+    if (used[k] >= points) {
       const auto cell = std::upper_bound(offsets.begin(), offsets.end(), static_cast<Offset>(k)) - offsets.begin() - 1;
-      throw scene::bad_input(
-          fmt::format("{}: cell {} uses point {}, the file holds {}; write cells and points from "
-                      "one mesh",
-                      where, cell, v, points));
+      refuse_corner(static_cast<std::size_t>(cell), used[k], points, where);
     }
-    (all_tets ? block.tets[k / 4][k % 4] : block.connectivity[k]) = static_cast<std::uint32_t>(v);
-  }
-  if (all_tets) {
-    block.types = {};
-  } else {
-    block.offsets.assign(offsets.begin(), offsets.end());
-  }
+  block.connectivity.assign(used.begin(), used.end());
+  block.offsets.assign(offsets.begin(), offsets.end());
+}
+
+void copy_tets(std::span<const scene::Tet> tets, CellBlock& block, const std::string& where) {
+  std::uint32_t largest = 0;
+  for (const scene::Tet& tet : tets) largest = std::max({largest, tet[0], tet[1], tet[2], tet[3]});
+  const std::size_t points = block.positions.size();
+  for (std::size_t t = 0; t < tets.size() && largest >= points; ++t)
+    for (const std::uint32_t corner : tets[t])
+      if (corner >= points) refuse_corner(t, corner, points, where);
+  block.tets.assign(tets.begin(), tets.end());
 }
 
 void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, CellBlock& block,
                             const std::string& where) {
-  if (!part.types || !part.offsets || !part.connectivity) return;
-  if (part.types->type != NumberType::uint8 || part.types->tuples + 1 != part.offsets->tuples)
+  if (!part.connectivity) return;
+  if (part.connectivity->type != NumberType::uint32)
+    throw scene::bad_input(fmt::format("{}: its cells are lists of no known width; write it anew", where));
+  const SharedBytes connectivity = file.helper->take(*part.connectivity, where);
+  if (!part.types && part.connectivity->components == 4) return copy_tets(connectivity.as<scene::Tet>(), block, where);
+  if (!part.types || !part.offsets || part.types->type != NumberType::uint8 ||
+      part.types->tuples + 1 != part.offsets->tuples)
     throw scene::bad_input(fmt::format("{}: {} cell types for {} cells; the file is damaged, write it anew", where,
-                                       part.types->tuples, part.offsets->tuples == 0 ? 0 : part.offsets->tuples - 1));
-  const SharedBytes types = file.helper->take(*part.types, where);
+                                       part.types ? part.types->tuples : 0,
+                                       part.offsets && part.offsets->tuples > 0 ? part.offsets->tuples - 1 : 0));
+  const SharedBytes types = file.helper->take(*part.types, where), offsets = file.helper->take(*part.offsets, where);
   block.types.assign(types.as<std::uint8_t>().begin(), types.as<std::uint8_t>().end());
-  const SharedBytes offsets = file.helper->take(*part.offsets, where),
-                    connectivity = file.helper->take(*part.connectivity, where);
-  const auto are = [&](NumberType of_offsets, NumberType of_points) {
-    return part.offsets->type == of_offsets && part.connectivity->type == of_points;
-  };
-  if (are(NumberType::int64, NumberType::int64))
-    copy_cells(offsets.as<std::int64_t>(), connectivity.as<std::int64_t>(), block, where);
-  else if (are(NumberType::int32, NumberType::int32))
-    copy_cells(offsets.as<std::int32_t>(), connectivity.as<std::int32_t>(), block, where);
-  else if (are(NumberType::uint64, NumberType::uint32))
-    copy_cells(offsets.as<std::uint64_t>(), connectivity.as<std::uint32_t>(), block, where);
+  const auto corners = connectivity.as<std::uint32_t>();
+  if (part.offsets->type == NumberType::int64)
+    copy_cells(offsets.as<std::int64_t>(), corners, block, where);
+  else if (part.offsets->type == NumberType::uint64)
+    copy_cells(offsets.as<std::uint64_t>(), corners, block, where);
+  else if (part.offsets->type == NumberType::int32)
+    copy_cells(offsets.as<std::int32_t>(), corners, block, where);
   else
     throw scene::bad_input(fmt::format("{}: its cells are lists of no known width; write it anew", where));
+  // Tets in a file of mixed cells were looked for there; Exodus blocks come as they are.
+  const bool all_tets = std::all_of(block.types.begin(), block.types.end(), [](std::uint8_t t) { return t == 10; });
+  for (std::size_t c = 0; all_tets && c < block.types.size(); ++c)
+    if (block.offsets[c] != 4 * c) return;
+  if (!all_tets || block.connectivity.size() != 4 * block.types.size()) return;
+  block.tets.resize(block.types.size());
+  std::memcpy(block.tets.data(), block.connectivity.data(), block.connectivity.size() * sizeof(std::uint32_t));
+  block.types = {}, block.offsets = {}, block.connectivity = {};
 }
 
 /// The hexahedra between n[0] x n[1] x n[2] points; a flat grid gives faces or lines, which are counted and skipped.

@@ -70,7 +70,8 @@ struct ForeignArray {
 
 /// One data set of a file.
 ///
-/// unstructured  points, types (uint8), offsets (cells + 1) and connectivity; VTK's cell types
+/// unstructured  points, connectivity (uint32, the largest of which stands for what it cannot hold); of tets alone a
+///               tuple of four each, of others types (uint8, VTK's) and offsets (cells + 1)
 /// surface       points; offsets and connectivity of its polygons
 /// structured    points, extent
 /// rectilinear   three arrays of coordinates, extent

@@ -14,21 +14,21 @@ Surface read_stl(const std::string& source) {
   Surface surface;
   if (!part.points || !part.offsets || !part.connectivity) return surface;
   if (part.points->type != NumberType::float32 || part.points->components != 3 ||
-      part.offsets->type != NumberType::int64 || part.connectivity->type != NumberType::int64)
+      part.offsets->type != NumberType::int64 || part.connectivity->type != NumberType::uint32)
     refuse_surface(source);
   for (const auto numbers = numbers_of<glm::vec3>(opened, *part.points); const glm::vec3& p : numbers)
     surface.points.emplace_back(p);
-  const auto offsets = numbers_of<std::int64_t>(opened, *part.offsets),
-             corners = numbers_of<std::int64_t>(opened, *part.connectivity);
+  const auto offsets = numbers_of<std::int64_t>(opened, *part.offsets);
+  const auto corners = numbers_of<std::uint32_t>(opened, *part.connectivity);
   for (std::size_t c = 0; c + 1 < offsets.size(); ++c) {
     if (offsets[c] < 0 || offsets[c + 1] < offsets[c] || static_cast<std::uint64_t>(offsets[c + 1]) > corners.size())
       refuse_surface(source);
     Polygon polygon;
     for (auto k = static_cast<std::size_t>(offsets[c]); k < static_cast<std::size_t>(offsets[c + 1]); ++k) {
-      if (corners[k] < 0 || static_cast<std::uint64_t>(corners[k]) >= surface.points.size())
+      if (corners[k] >= surface.points.size())
         throw scene::bad_input(fmt::format("{}: face {} uses point {}, the file holds {}; write it anew", source, c,
                                            corners[k], surface.points.size()));
-      polygon.push_back(static_cast<std::uint32_t>(corners[k]));
+      polygon.push_back(corners[k]);
     }
     surface.facets.push_back({{std::move(polygon)}, {}});
   }

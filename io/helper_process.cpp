@@ -126,7 +126,7 @@ SharedBytes::SharedBytes(const Descriptor& file, std::uint64_t count) : size_(st
       ::fstat(file.get(), &facts) != 0 || static_cast<std::uint64_t>(facts.st_size) != count)
     throw std::invalid_argument("an array of another size");
   if (size_ == 0) return;
-  void* const start = ::mmap(nullptr, size_, PROT_READ, MAP_SHARED, file.get(), 0);
+  void* const start = ::mmap(nullptr, size_, PROT_READ, MAP_SHARED | MAP_POPULATE, file.get(), 0);
   if (start == MAP_FAILED) throw std::bad_alloc();
   start_ = start;
 }

@@ -21,7 +21,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 
+#include "io/helper_messages.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -125,10 +127,53 @@ void set_extent(Grid& grid, ForeignPart& part) {
   std::copy(extent.begin(), extent.end(), part.extent.begin());
 }
 
-void set_cells(Holdings& holdings, vtkCellArray* cells, ForeignPart& part) {
-  if (cells == nullptr) return;
-  part.offsets = hold_any(holdings, cells->GetOffsetsArray());
-  part.connectivity = hold_any(holdings, cells->GetConnectivityArray());
+/// Writes indices as uint32, those that it cannot hold as its largest.
+template <class Index>
+bool write_indices(const Index* indices, std::size_t count, int file) {
+  std::vector<std::uint32_t> some(std::min<std::size_t>(count, 1 << 16));
+  for (std::size_t first = 0; first < count; first += some.size()) {
+    const std::size_t n = std::min(some.size(), count - first);
+    for (std::size_t k = 0; k < n; ++k) {
+      const auto index = static_cast<std::uint64_t>(indices[first + k]);  // a negative one becomes huge
+      some[k] = static_cast<std::uint32_t>(std::min<std::uint64_t>(index, UINT32_MAX));
+    }
+    if (!write_all(file, some.data(), n * sizeof some[0])) return false;
+  }
+  return true;
+}
+
+/// Points of cells, half the bytes of VTK's.
+ForeignArray hold_indices(Holdings& holdings, vtkDataArray& array, int components) {
+  ForeignArray held;
+  held.type = NumberType::uint32;
+  held.components = components;
+  const auto count = static_cast<std::size_t>(array.GetNumberOfValues()) / static_cast<std::size_t>(components) *
+                     static_cast<std::size_t>(components);
+  held.tuples = count / static_cast<std::size_t>(components);
+  return holdings.hold(std::move(held), [owner = vtkSmartPointer<vtkDataArray>(&array), count](int file) {
+    const void* const numbers = owner->GetVoidPointer(0);
+    return owner->GetDataTypeSize() == 8 ? write_indices(static_cast<const std::int64_t*>(numbers), count, file)
+                                         : write_indices(static_cast<const std::int32_t*>(numbers), count, file);
+  });
+}
+
+/// Whether all cells are tets, one after the other, as most large meshes have them.
+bool are_tets(vtkUnsignedCharArray& types, vtkCellArray& cells) {
+  const vtkIdType count = types.GetNumberOfValues();
+  if (count == 0 || cells.GetNumberOfCells() != count || cells.GetNumberOfConnectivityIds() != 4 * count) return false;
+  const unsigned char* const type = types.GetPointer(0);
+  if (std::any_of(type, type + count, [](unsigned char t) { return t != VTK_TETRA; })) return false;
+  const auto in_steps = [count](const auto* offsets) {
+    for (vtkIdType c = 0; c <= count; ++c)
+      if (offsets->GetValue(c) != 4 * c) return false;
+    return true;
+  };
+  return cells.IsStorage64Bit() ? in_steps(cells.GetOffsetsArray64()) : in_steps(cells.GetOffsetsArray32());
+}
+
+void set_cells(Holdings& holdings, vtkCellArray& cells, ForeignPart& part) {
+  part.offsets = hold_any(holdings, cells.GetOffsetsArray());
+  part.connectivity = hold_indices(holdings, *cells.GetConnectivityArray(), 1);
 }
 
 ForeignPart part_of(Holdings& holdings, vtkDataSet& data, const std::string& name, const std::string& source) {
@@ -136,14 +181,18 @@ ForeignPart part_of(Holdings& holdings, vtkDataSet& data, const std::string& nam
   part.name = name;
   if (auto* unstructured = vtkUnstructuredGrid::SafeDownCast(&data)) {
     part.points = hold_points(holdings, unstructured->GetPoints());
-    if (unstructured->GetCells() != nullptr && unstructured->GetCellTypesArray() != nullptr) {
-      part.types = hold_any(holdings, unstructured->GetCellTypesArray());
-      set_cells(holdings, unstructured->GetCells(), part);
+    vtkUnsignedCharArray* const types = unstructured->GetCellTypesArray();
+    vtkCellArray* const cells = unstructured->GetCells();
+    if (cells != nullptr && types != nullptr && are_tets(*types, *cells)) {
+      part.connectivity = hold_indices(holdings, *cells->GetConnectivityArray(), 4);
+    } else if (cells != nullptr && types != nullptr) {
+      part.types = hold_any(holdings, types);
+      set_cells(holdings, *cells, part);
     }
   } else if (auto* surface = vtkPolyData::SafeDownCast(&data)) {
     part.kind = ForeignPart::Kind::surface;
     part.points = hold_points(holdings, surface->GetPoints());
-    set_cells(holdings, surface->GetPolys(), part);
+    if (surface->GetPolys() != nullptr) set_cells(holdings, *surface->GetPolys(), part);
   } else if (auto* curvilinear = vtkStructuredGrid::SafeDownCast(&data)) {
     part.kind = ForeignPart::Kind::structured;
     set_extent(*curvilinear, part);
