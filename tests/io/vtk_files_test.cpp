@@ -266,7 +266,8 @@ TEST_F(VtkFiles, WrongIndicesAreToldByCell) {
   block.connectivity[20] = 4'000'000'000u;
   EXPECT_NE(error("i.vtu", testing::vtu_text(block)).find("uses point 4000000000"), std::string::npos);
   const std::string start = "Name=\"connectivity\" NumberOfComponents=\"1\" format=\"ascii\">\n";
-  EXPECT_NE(error("n.vtu", with(good(), start, start + "-7 ")).find("cell 0 uses a point of no possible number"), std::string::npos);
+  EXPECT_NE(error("n.vtu", with(good(), start, start + "-7 ")).find("cell 0 uses a point of no possible number"),
+            std::string::npos);
 }
 
 TEST_F(VtkFiles, WrongOffsetsTypesAndCountsAreTold) {
