@@ -35,7 +35,7 @@ std::filesystem::path own_file() {
   Dl_info info{};
   std::error_code unknown;
   if (::dladdr(reinterpret_cast<const void*>(&own_file), &info) != 0 && info.dli_fname != nullptr) {
-    const std::filesystem::path file = std::filesystem::canonical(info.dli_fname, unknown);
+    std::filesystem::path file = std::filesystem::canonical(info.dli_fname, unknown);
     if (!unknown) return file;  // a program's name need not be one that leads to it
   }
   return std::filesystem::read_symlink("/proc/self/exe", unknown);

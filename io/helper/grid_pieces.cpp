@@ -302,7 +302,7 @@ class Assembly {
         const int first = whole_.extent[2 * a], last = whole_.extent[2 * a + 1];
         coordinates_[a] = vtkSmartPointer<vtkDataArray>::Take(own[a]->NewInstance());
         coordinates_[a]->SetNumberOfTuples(vtkIdType{last} - first + 1);
-        known_[a].resize(static_cast<std::size_t>(last - first + 1));
+        known_[a].resize(static_cast<std::size_t>(vtkIdType{last} - first + 1));
       }
       for (int i = piece.extent[2 * a]; i <= piece.extent[2 * a + 1]; ++i) {
         const int at = i - whole_.extent[2 * a];

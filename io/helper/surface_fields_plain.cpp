@@ -1,5 +1,6 @@
 // Built in place of surface_fields.cpp with TESSERA_VTK=OFF: the same fields by a tree of boxes of our own.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>

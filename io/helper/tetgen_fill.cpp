@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <glm/common.hpp>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "io/helper/readers.hpp"
 #include "io/helper/surface_fields.hpp"
@@ -61,6 +62,12 @@ struct Frame {
   [[nodiscard]] glm::dvec3 in(const glm::dvec3& p) const { return (p - centre) * scale; }
   [[nodiscard]] glm::dvec3 out(const glm::dvec3& p) const { return p / scale + centre; }
 };
+
+tetgenio* keep_for_good() {
+  static std::vector<tetgenio*> kept;
+  kept.push_back(new tetgenio);
+  return kept.back();
+}
 
 /// tetgenio frees its arrays by delete[], so they are made by new[].
 void copy_in(const Surface& surface, const Frame& frame, tetgenio& in) {
@@ -112,8 +119,9 @@ FilledSurface fill(const Surface& surface, std::optional<double> max_volume, con
     wishes.fixedvolume = 1;  // -a
     wishes.maxvolume = *max_volume * frame.scale * frame.scale * frame.scale;
   }
-  auto* in = new tetgenio;  // never freed: after a failure TetGen's own frees may crash, and the process soon ends
-  auto* out = new tetgenio;
+  // Never freed: after a failure TetGen's own frees may crash, and the process soon ends.
+  tetgenio* const in = keep_for_good();
+  tetgenio* const out = keep_for_good();
   copy_in(surface, frame, *in);
   try {
     tetrahedralize(&wishes, in, out);
