@@ -88,7 +88,8 @@ void set_ranks(const RenderWords& words, bool merges, RenderOptions& options) {
 void add_mesh_options(CLI::App& command, RenderWords& words) {
   command
       .add_option("INPUT", words.input,
-                  "mesh: .vtu .pvtu .vtk .ex2 .xyz .ele .tets .stl ...; volume: .vti .pvti .vtr .pvtr .vtk .mhd .nrrd "
+                  "mesh: .vtu .pvtu .vtk .vtm .foam .case .cgns .ex2 .ele .tets .stl ...; volume: .vti .pvti .vtr "
+                  ".pvtr .vtk .mhd .nrrd "
                   ".nii .nii.gz .raw")
       ->required();
   command
@@ -98,7 +99,9 @@ void add_mesh_options(CLI::App& command, RenderWords& words) {
   command.add_option("--q", words.q, "PLOT3D solution file, if it is not beside the grid")->type_name("FILE");
   command.add_option("--max-volume", words.max_volume, "surfaces: largest tetrahedron TetGen fills them with")
       ->type_name("VOLUME");
-  command.add_option("--time-step", words.time_step, "Exodus: step counted from 0 (default: the last)")
+  command
+      .add_option("--time-step", words.time_step,
+                  "Exodus, OpenFOAM, EnSight ...: step counted from 0 (default: the last)")
       ->type_name("STEP");
   add_volume_options(command, words);
 }

@@ -192,7 +192,20 @@ void add_rectilinear_points(const ForeignFile& file, const ForeignPart& part, Ce
       for (const double a : axis[0]) block.positions.emplace_back(a, b, c);
 }
 
-CellBlock block_of(const ForeignFile& file, const ForeignPart& part) {
+void add_image_points(const ForeignPart& image, CellBlock& block) {
+  const auto& d = image.direction;
+  for (std::int64_t k = image.extent[4]; k <= image.extent[5]; ++k)
+    for (std::int64_t j = image.extent[2]; j <= image.extent[3]; ++j)
+      for (std::int64_t i = image.extent[0]; i <= image.extent[1]; ++i) {
+        const double x = image.spacing[0] * static_cast<double>(i), y = image.spacing[1] * static_cast<double>(j),
+                     z = image.spacing[2] * static_cast<double>(k);
+        block.positions.emplace_back(image.origin[0] + d[0] * x + d[1] * y + d[2] * z,
+                                     image.origin[1] + d[3] * x + d[4] * y + d[5] * z,
+                                     image.origin[2] + d[6] * x + d[7] * y + d[8] * z);
+      }
+}
+
+CellBlock block_of(const ForeignFile& file, const ForeignPart& part, GridsAre grids) {
   CellBlock block;
   block.name = part.name;
   const std::string where = part.name.empty() ? file.source : fmt::format("{}: block '{}'", file.source, part.name);
@@ -210,8 +223,12 @@ CellBlock block_of(const ForeignFile& file, const ForeignPart& part) {
       add_grid_cells(points_along(part), block, where);
       break;
     case ForeignPart::Kind::image:
-      throw scene::bad_input(fmt::format(
-          "{}: it is a regular grid (image data), no mesh; render, info and convert take it as a volume", where));
+      if (grids == GridsAre::volumes)
+        throw scene::bad_input(fmt::format(
+            "{}: it is a regular grid (image data), no mesh; render, info and convert take it as a volume", where));
+      add_image_points(part, block);
+      add_grid_cells(points_along(part), block, where);
+      break;
     case ForeignPart::Kind::surface:
       throw scene::bad_input(fmt::format("{}: it holds a surface, no cells of volume; give a mesh", where));
   }
@@ -287,7 +304,7 @@ std::vector<std::uint8_t> ghost_bits(const ForeignFile& file, const std::vector<
   return bits;
 }
 
-std::vector<CellBlock> blocks_of(const ForeignFile& file, std::vector<std::string>& notes) {
+std::vector<CellBlock> blocks_of(const ForeignFile& file, std::vector<std::string>& notes, GridsAre grids) {
   std::vector<CellBlock> blocks;
   std::size_t surfaces = 0;
   for (const ForeignPart& part : file.contents.parts) {
@@ -295,7 +312,7 @@ std::vector<CellBlock> blocks_of(const ForeignFile& file, std::vector<std::strin
       ++surfaces;
       continue;
     }
-    blocks.push_back(block_of(file, part));
+    blocks.push_back(block_of(file, part, grids));
   }
   if (surfaces > 0) notes.push_back(fmt::format("{} blocks are surfaces and are left out", surfaces));
   return blocks;

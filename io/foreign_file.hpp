@@ -32,10 +32,14 @@ BlockField foreign_field(const ForeignFile& file, const ForeignArray& array, sce
 void add_foreign_fields(const ForeignFile& file, const ForeignPart& part, scene::Association association,
                         std::size_t expected, CellBlock& block, const std::string& where);
 
+/// Whether regular grids among the parts are refused, since they are better cast as volumes, or become cells.
+enum class GridsAre { volumes, hexahedra };
+
 /// The parts as blocks, every offset and index checked, which readers do not. Structured, curvilinear and rectilinear
 /// grids become hexahedra. Empty parts are left out, and so are surfaces beside volumes, for which `notes` has a line.
 /// Throws Error(bad_input) naming the cell at fault, and for images (regular grids).
-std::vector<CellBlock> blocks_of(const ForeignFile& file, std::vector<std::string>& notes);
+std::vector<CellBlock> blocks_of(const ForeignFile& file, std::vector<std::string>& notes,
+                                 GridsAre grids = GridsAre::volumes);
 
 /// Bits of vtkGhostType for each point or cell; the older vtkGhostLevels (0 is one's own) becomes "duplicate". Empty if
 /// the part has neither.

@@ -63,6 +63,60 @@ void add_notes(const std::vector<std::string>& more, std::vector<std::string>& n
     if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
 }
 
+bool lists_blocks(const std::string& type) {
+  return type == "vtkMultiBlockDataSet" || type == "vtkPartitionedDataSetCollection" || type == "vtkPartitionedDataSet";
+}
+
+/// A data set that a multi-block file lists.
+struct ListedBlock {
+  std::string name;
+  std::filesystem::path file;
+};
+
+std::vector<ListedBlock> listed_blocks(const std::filesystem::path& file) {
+  std::vector<ListedBlock> blocks;
+  each_xml_element(read_text_file(file), file.string(), [&](const XmlElement& element) {
+    if (element.name != "DataSet") return;
+    const std::string *listed = element.find("file"), *name = element.find("name");
+    if (listed == nullptr || listed->empty()) return;  // a block that is empty, as some of a rank's are
+    blocks.push_back(
+        {name != nullptr && !name->empty() ? *name : std::to_string(blocks.size()), file.parent_path() / *listed});
+  });
+  return blocks;
+}
+
+/// The volumes among a multi-block file's data sets, each read by itself, so that faults name the file.
+MeshBlocks read_blocks_of(const std::filesystem::path& file) {
+  MeshBlocks result;
+  result.format = "VTK XML multi-block";
+  const auto helper = std::make_shared<HelperProcess>();
+  std::size_t surfaces = 0;
+  for (const ListedBlock& listed : listed_blocks(file)) {
+    const std::string type = xml_type(listed.file);
+    if (type == "PolyData" || type == "PPolyData") {
+      ++surfaces;
+      continue;
+    }
+    if (type == parallel_type) {
+      for (CellBlock& block : read_pvtu_pieces(listed.file, pvtu_pieces(listed.file)).blocks) {
+        block.name = listed.name;
+        result.blocks.push_back(std::move(block));
+      }
+      continue;
+    }
+    if (kind_of(type) == nullptr && type != "ImageData" && type != "PImageData")
+      throw scene::bad_input(fmt::format("{}: it is a block of {} and its type is '{}', no mesh or grid; leave it out",
+                                         listed.file.string(), file.string(), type));
+    ForeignFile opened = open_foreign(helper, listed.file, {{"reader", "vtk_xml"}, {"type", type}});
+    add_notes(opened.contents.notes, result.notes);
+    for (ForeignPart& part : opened.contents.parts) part.name = listed.name;
+    for (CellBlock& block : blocks_of(opened, result.notes, GridsAre::hexahedra))
+      result.blocks.push_back(std::move(block));
+  }
+  if (surfaces > 0) result.notes.push_back(fmt::format("{} blocks are surfaces and are left out", surfaces));
+  return result;
+}
+
 /// All of a file that the helper reads in one go.
 MeshBlocks read_foreign(const std::filesystem::path& file, nlohmann::json request) {
   const ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(), file, std::move(request));
@@ -86,6 +140,7 @@ MeshBlocks read_vtk_xml(const std::filesystem::path& file) {
   if (type == "ImageData" || type == "PImageData")
     throw scene::bad_input(fmt::format(
         "{}: it is a regular grid (image data), no mesh; render, info and convert take it as a volume", source));
+  if (lists_blocks(type)) return read_blocks_of(file);
   if (!kind) throw scene::bad_input(fmt::format("{}: its type is '{}'; give a mesh", source, type));
 
   // Pieces one by one, so that the whole reads as its parts do, and faults name the piece.
@@ -150,6 +205,19 @@ MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::siz
   nlohmann::json request{{"reader", "exodus"}};
   if (time_step) request["time_step"] = *time_step;
   return read_foreign(file, std::move(request));
+}
+
+MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader,
+                            std::optional<std::size_t> time_step) {
+  nlohmann::json request{{"reader", reader}};
+  if (time_step) request["time_step"] = *time_step;
+  const ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(), file, std::move(request));
+  MeshBlocks result;
+  result.format = opened.contents.format;
+  result.notes = opened.contents.notes;
+  result.blocks = blocks_of(opened, result.notes, GridsAre::hexahedra);
+  if (result.blocks.size() == 1) result.blocks[0].name.clear();
+  return result;
 }
 
 MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem::path& q_file) {

@@ -22,7 +22,8 @@ struct MeshBlocks {
 /// read_vtk_legacy(), read_exodus(), read_plot3d(), read_vtk_grid() and read_stl() throw Error(bad_input).
 bool has_vtk();
 
-/// VTK's XML files: .vtu .pvtu .vts .pvts .vtr .pvtr. The pieces of a .pvtu are a block each, their points not merged.
+/// VTK's XML files: .vtu .pvtu .vts .pvts .vtr .pvtr, and lists of them (.vtm .vtpc). The pieces of a .pvtu are a block
+/// each, their points not merged.
 MeshBlocks read_vtk_xml(const std::filesystem::path& file);
 
 /// Whether a file that begins as VTK XML does is an unstructured grid in pieces, whatever its name.
@@ -41,6 +42,11 @@ MeshBlocks read_vtk_legacy(const std::filesystem::path& file);
 /// Exodus II: all element blocks, nodal and element variables at one time step (default the last). Nodes are moved by
 /// the file's displacements, if it has some, as ParaView does. Variables NAME_x NAME_y NAME_z become one vector NAME.
 MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t> time_step);
+
+/// A file of a solver, by the name of a reader in helper/main.cpp: all blocks, all arrays, one time step, by default
+/// the last.
+MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader,
+                            std::optional<std::size_t> time_step);
 
 /// PLOT3D grid and solution; the binary layout is found from the file's size. `q_file` may be empty: then it is looked
 /// for beside the grid by its name, and if there is none the mesh has no field. IBLANK 0 hides a point's cells.

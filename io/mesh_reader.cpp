@@ -18,28 +18,67 @@ namespace tessera::io {
 namespace {
 
 /// Families of files that are read alike.
-enum class Family { none, vtk_xml, vtk_legacy, exodus, plot3d, tetgen, surface, tets };
+enum class Family { none, vtk_xml, vtk_legacy, exodus, plot3d, tetgen, surface, tets, solver };
 
 struct Extension {
   const char* text;
   Family family;
+  const char* reader = "";  ///< of solvers' files: read_solver_file()
 };
 constexpr std::array extensions = {
-    Extension{".vtu", Family::vtk_xml},    Extension{".pvtu", Family::vtk_xml}, Extension{".vts", Family::vtk_xml},
-    Extension{".pvts", Family::vtk_xml},   Extension{".vtr", Family::vtk_xml},  Extension{".pvtr", Family::vtk_xml},
-    Extension{".vtk", Family::vtk_legacy}, Extension{".ex2", Family::exodus},   Extension{".exo", Family::exodus},
-    Extension{".exii", Family::exodus},    Extension{".e", Family::exodus},     Extension{".g", Family::exodus},
-    Extension{".xyz", Family::plot3d},     Extension{".p3d", Family::plot3d},   Extension{".x", Family::plot3d},
-    Extension{".bin", Family::plot3d},     Extension{".node", Family::tetgen},  Extension{".ele", Family::tetgen},
-    Extension{".stl", Family::surface},    Extension{".ply", Family::surface},  Extension{".poly", Family::surface},
-    Extension{".smesh", Family::surface},  Extension{".tets", Family::tets},
+    Extension{".vtu", Family::vtk_xml},
+    Extension{".pvtu", Family::vtk_xml},
+    Extension{".vts", Family::vtk_xml},
+    Extension{".pvts", Family::vtk_xml},
+    Extension{".vtr", Family::vtk_xml},
+    Extension{".pvtr", Family::vtk_xml},
+    Extension{".vtk", Family::vtk_legacy},
+    Extension{".ex2", Family::exodus},
+    Extension{".exo", Family::exodus},
+    Extension{".exii", Family::exodus},
+    Extension{".e", Family::exodus},
+    Extension{".g", Family::exodus},
+    Extension{".xyz", Family::plot3d},
+    Extension{".p3d", Family::plot3d},
+    Extension{".x", Family::plot3d},
+    Extension{".bin", Family::plot3d},
+    Extension{".node", Family::tetgen},
+    Extension{".ele", Family::tetgen},
+    Extension{".stl", Family::surface},
+    Extension{".ply", Family::surface},
+    Extension{".poly", Family::surface},
+    Extension{".smesh", Family::surface},
+    Extension{".tets", Family::tets},
+    Extension{".vtm", Family::vtk_xml},
+    Extension{".vtmb", Family::vtk_xml},
+    Extension{".vtpc", Family::vtk_xml},
+    Extension{".vtpd", Family::vtk_xml},
+    Extension{".foam", Family::solver, "openfoam"},
+    Extension{".case", Family::solver, "ensight"},
+    Extension{".encas", Family::solver, "ensight"},
+    Extension{".cgns", Family::solver, "cgns"},
+    Extension{".vtkhdf", Family::solver, "vtk_hdf"},
+    Extension{".inp", Family::solver, "avs_ucd"},
+    Extension{".ucd", Family::solver, "avs_ucd"},
+    Extension{".cas", Family::solver, "fluent"},
+    Extension{".neu", Family::solver, "gambit"},
+    Extension{".tec", Family::solver, "tecplot"},
 };
 
-Family family_of(const std::filesystem::path& file) {
+const Extension* extension_of(const std::filesystem::path& file) {
   const std::string extension = lower_extension(file);
-  const auto e = std::find_if(extensions.begin(), extensions.end(),
-                              [&](const Extension& known) { return extension == known.text; });
-  return e == extensions.end() ? Family::none : e->family;
+  const auto* e = std::find_if(extensions.begin(), extensions.end(),
+                               [&](const Extension& known) { return extension == known.text; });
+  return e == extensions.end() ? nullptr : e;
+}
+
+Family family_of(const std::filesystem::path& file) {
+  const Extension* const known = extension_of(file);
+  return known == nullptr ? Family::none : known->family;
+}
+
+bool has_time_steps(const std::filesystem::path& file) {
+  return family_of(file) == Family::exodus || family_of(file) == Family::solver;
 }
 
 std::string known_extensions() {
@@ -74,6 +113,8 @@ MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& opt
       return read_surface(file, options.max_volume);
     case Family::tets:
       return blocks_of_tets(parse_tets(MappedFile(file).bytes(), file.string()));
+    case Family::solver:
+      return read_solver_file(file, extension_of(file)->reader, options.time_step);
     case Family::none:
       break;
   }
@@ -105,7 +146,7 @@ MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options
   require_file(file);
   return with_clean_errors(source, [&] {
     MeshBlocks read = read_blocks(file, options);
-    if (family_of(file) != Family::exodus) require_no_time_step(options, source);
+    if (!has_time_steps(file)) require_no_time_step(options, source);
     MeshFile result = assemble_mesh(std::move(read.blocks), options, source);
     result.format = std::move(read.format);
     result.notes.insert(result.notes.begin(), read.notes.begin(), read.notes.end());
@@ -121,7 +162,7 @@ MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptio
     require_file(file);
     with_clean_errors(source, [&] {
       MeshBlocks read = read_blocks(file, options);
-      if (family_of(file) != Family::exodus) require_no_time_step(options, source);
+      if (!has_time_steps(file)) require_no_time_step(options, source);
       if (all.format.empty()) all.format = read.format;
       for (CellBlock& block : read.blocks) {
         if (block.source.empty()) block.source = source;

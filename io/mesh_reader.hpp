@@ -21,7 +21,7 @@ struct MeshOptions {
   bool smooth = false;                     ///< average cell data to the points, weighted by tet volume
   std::filesystem::path plot3d_q;          ///< PLOT3D solution file; empty: found beside the grid file by its name
   std::optional<double> max_volume;        ///< surfaces only: largest tet TetGen makes, world units cubed
-  std::optional<std::size_t> time_step{};  ///< Exodus: step counted from 0; default the last one
+  std::optional<std::size_t> time_step{};  ///< Exodus, OpenFOAM, EnSight, CGNS: counted from 0; default the last
   int threads = 1;                         ///< that make tets of cells; 0: all cores
 };
 
@@ -38,10 +38,11 @@ struct MeshFile {
 };
 
 /// Reads a mesh by its name's extension: .vtu .pvtu .vts .pvts .vtr .pvtr .vtk, Exodus (.ex2 .e .exo .exii .g), PLOT3D
-/// (.xyz .p3d .x .bin), TetGen (.node .ele), .tets, and surfaces filled by TetGen (.stl .ply .poly .smesh).
-/// Cells other than tets are split so that neighbours agree on every shared face by position, whatever piece they come
-/// from. Throws Error(bad_input) in one line for a missing, truncated, malformed or empty file, an unknown field, or if
-/// no cell is left; Error(system_failure) if memory runs out. Never leaves VTK's own messages on stderr.
+/// (.xyz .p3d .x .bin), solvers' files (.foam .case .cgns .vtkhdf .cas .neu .inp .ucd .tec), lists of VTK's (.vtm
+/// .vtpc), TetGen (.node .ele), .tets, and surfaces filled by TetGen (.stl .ply .poly .smesh). Cells other than tets
+/// are split so that neighbours agree on every shared face by position, whatever piece they come from. Throws
+/// Error(bad_input) in one line for a missing, truncated, malformed or empty file, an unknown field, or if no cell is
+/// left; Error(system_failure) if memory runs out. Never leaves VTK's own messages on stderr.
 MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options = {});
 
 /// Reads several files as the pieces of one mesh, their points not merged. Each has to have the chosen field. Throws as

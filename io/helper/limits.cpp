@@ -49,17 +49,32 @@ bool may_be_compressed(const std::filesystem::path& file) {
          beginning.starts_with("\x1f\x8b");
 }
 
-}  // namespace
-
-void allow_for(const std::filesystem::path& file) {
-  const std::uint64_t size = require_file(file);
+/// Memory and time for so many bytes of files.
+void allow(std::uint64_t size, bool is_compressed) {
   // Text of one digit and a blank becomes a double and an index, which readers hold twice; deflate packs 1032 to 1.
-  const std::uint64_t factor = may_be_compressed(file) ? 1100 : 24;
+  const std::uint64_t factor = is_compressed ? 1100 : 24;
   if (!is_sanitized)
     had_enough_memory = set_soft_limit(RLIMIT_AS, address_space_in_use() + (256ull << 20) + factor * size);
   // Slow readers take 2 MB/s of text; what is compressed, ten times as long.
-  const double seconds = 15 + static_cast<double>(size) / (factor > 24 ? 2e5 : 2e6);
+  const double seconds = 15 + static_cast<double>(size) / (is_compressed ? 2e5 : 2e6);
   set_soft_limit(RLIMIT_CPU, static_cast<std::uint64_t>(processor_seconds() + seconds * (is_sanitized ? 10 : 1)) + 1);
+}
+
+}  // namespace
+
+void allow_for(const std::filesystem::path& file) { allow(require_file(file), may_be_compressed(file)); }
+
+void allow_for_folder(const std::filesystem::path& folder) {
+  std::uint64_t bytes = 0;
+  std::error_code error;
+  std::filesystem::recursive_directory_iterator entry(folder, error);
+  for (std::size_t files = 0; !error && entry != std::filesystem::recursive_directory_iterator() && files < 1000000;
+       ++files) {
+    std::error_code unknown;
+    if (entry->is_regular_file(unknown)) bytes += entry->file_size(unknown);
+    entry.increment(error);
+  }
+  allow(std::min<std::uint64_t>(bytes, 1ull << 42), false);
 }
 
 scene::Error memory_error(const std::string& source) {

@@ -29,11 +29,28 @@ ForeignContents read_stl(Holdings& holdings, const std::filesystem::path& file, 
 /// vector NAME.
 ForeignContents read_exodus(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
+/// OpenFOAM: the case that the file lies in, which may be empty. Put together, or as its processors left it.
+ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+
+/// EnSight 6 and Gold, by the .case file.
+ForeignContents read_ensight(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+
+ForeignContents read_cgns(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+
+ForeignContents read_vtk_hdf(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+ForeignContents read_avs_ucd(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+ForeignContents read_fluent(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+ForeignContents read_gambit(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+ForeignContents read_tecplot(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+
 /// Fills a surface by TetGen (io/surface.hpp).
 ForeignContents fill_surface(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
 /// More memory and time for a file that is about to be read.
 void allow_for(const std::filesystem::path& file);
+
+/// For all that lies in a folder and below: of formats that are many files.
+void allow_for_folder(const std::filesystem::path& folder);
 
 /// What to say where memory ran out: the file is damaged, if it had all that its size can explain, else the machine is
 /// too small.

@@ -1,0 +1,149 @@
+// What solvers write, by VTK's readers: all cell and point arrays, one time step.
+#include <fmt/format.h>
+#include <vtkAVSucdReader.h>
+#include <vtkCGNSReader.h>
+#include <vtkDataObject.h>
+#include <vtkDummyController.h>
+#include <vtkEnSightReader.h>
+#include <vtkFLUENTReader.h>
+#include <vtkGAMBITReader.h>
+#include <vtkGenericEnSightReader.h>
+#include <vtkHDFReader.h>
+#include <vtkNew.h>
+#include <vtkPOpenFOAMReader.h>
+#include <vtkSmartPointer.h>
+#include <vtkTecplotReader.h>
+
+#include <nlohmann/json.hpp>
+
+#include "io/gzip.hpp"
+#include "io/helper/readers.hpp"
+#include "io/helper/time_steps.hpp"
+#include "io/helper/vtk_parts.hpp"
+#include "io/helper/vtk_session.hpp"
+#include "io/input_file.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io::helper {
+namespace {
+
+constexpr const char* write_anew = "the file is truncated or damaged, write it anew";
+
+/// Reads with a reader that is ready but for its file's arrays, which `choose` turns on once they are known.
+template <class Reader, class Choose>
+ForeignContents read_by(Holdings& holdings, Reader& reader, const std::filesystem::path& file,
+                        const nlohmann::json& request, const char* format, const Choose& choose) {
+  const std::string source = file.string();
+  ForeignContents contents;
+  contents.format = format;
+  const std::string warning = with_quiet_vtk(source, write_anew, [&] {
+    reader.UpdateInformation();
+    choose();
+    update_at_step(reader, request, source, contents.notes);
+  });
+  if (!warning.empty()) contents.notes.push_back("VTK warns: " + warning);
+  vtkDataObject* const data = reader.GetOutputDataObject(0);
+  if (data == nullptr) throw scene::bad_input(fmt::format("{}: nothing can be read; write it anew", source));
+  contents.parts = parts_of(holdings, *data, source);
+  if (contents.parts.empty())
+    throw scene::bad_input(fmt::format("{}: it holds no cells; check how it was written", source));
+  return contents;
+}
+
+/// A reader of one file that reads all of it anyway.
+template <class Reader>
+ForeignContents read_plainly(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request,
+                             const char* format) {
+  vtkNew<Reader> reader;
+  reader->SetFileName(file.c_str());
+  return read_by(holdings, *reader, file, request, format, [] {});
+}
+
+/// Whether a case's lists have 64-bit integers, which its files say of themselves ("arch").
+bool has_wide_labels(const std::filesystem::path& folder) {
+  std::error_code unknown;
+  for (const char* part : {".", "processor0"})
+    for (const char* name : {"owner", "owner.gz"}) {
+      const std::filesystem::path file = folder / part / "constant" / "polyMesh" / name;
+      if (!std::filesystem::is_regular_file(file, unknown)) continue;
+      const std::string beginning = read_beginning(file, 4096);
+      if (beginning.starts_with("\x1f\x8b")) {
+        const auto text = inflate_beginning(std::as_bytes(std::span(beginning)), 2048);
+        return std::string_view(reinterpret_cast<const char*>(text.data()), text.size()).find("label=64") !=
+               std::string_view::npos;
+      }
+      return beginning.find("label=64") != std::string::npos;
+    }
+  return false;
+}
+
+}  // namespace
+
+ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  allow_for_folder(folder);
+  vtkNew<vtkPOpenFOAMReader> reader;
+  const vtkNew<vtkDummyController> alone;  // it takes the parts of a case for processes' and asks who it is
+  reader->SetController(alone);
+  reader->SetFileName(file.c_str());
+  // processor0, processor1, ...: written by parallel runs, and not put together since.
+  std::error_code unknown;
+  const bool is_whole = std::filesystem::exists(folder / "constant" / "polyMesh", unknown);
+  const bool is_decomposed = std::filesystem::exists(folder / "processor0", unknown) ||
+                             std::filesystem::exists(folder / "processors", unknown);
+  reader->SetCaseType(!is_whole && is_decomposed ? vtkPOpenFOAMReader::DECOMPOSED_CASE
+                                                 : vtkPOpenFOAMReader::RECONSTRUCTED_CASE);
+  reader->SetUse64BitLabels(has_wide_labels(folder));
+  reader->CreateCellToPointOff();
+  reader->DecomposePolyhedraOn();
+  return read_by(holdings, *reader, file, request, "OpenFOAM case", [&] {
+    reader->EnableAllCellArrays();
+    reader->EnableAllPointArrays();
+  });
+}
+
+ForeignContents read_ensight(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  allow_for_folder(file.has_parent_path() ? file.parent_path() : std::filesystem::path("."));
+  vtkNew<vtkGenericEnSightReader> reader;
+  reader->SetCaseFileName(file.c_str());
+  reader->ReadAllVariablesOn();
+  return read_by(holdings, *reader, file, request, "EnSight", [] {});
+}
+
+ForeignContents read_cgns(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  allow_for(file);
+  vtkNew<vtkCGNSReader> reader;
+  reader->SetFileName(file.c_str());
+  return read_by(holdings, *reader, file, request, "CGNS", [&] {
+    reader->EnableAllBases();
+    reader->EnableAllPointArrays();
+    reader->EnableAllCellArrays();
+  });
+}
+
+ForeignContents read_vtk_hdf(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  allow_for(file);
+  return read_plainly<vtkHDFReader>(holdings, file, request, "VTKHDF");
+}
+
+ForeignContents read_avs_ucd(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  allow_for(file);
+  return read_plainly<vtkAVSucdReader>(holdings, file, request, "AVS UCD");
+}
+
+ForeignContents read_fluent(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  allow_for_folder(file.has_parent_path() ? file.parent_path() : std::filesystem::path("."));  // its .dat beside it
+  return read_plainly<vtkFLUENTReader>(holdings, file, request, "Fluent");
+}
+
+ForeignContents read_gambit(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  allow_for(file);
+  return read_plainly<vtkGAMBITReader>(holdings, file, request, "GAMBIT");
+}
+
+ForeignContents read_tecplot(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  allow_for(file);
+  return read_plainly<vtkTecplotReader>(holdings, file, request, "Tecplot (text)");
+}
+
+}  // namespace tessera::io::helper

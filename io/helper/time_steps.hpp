@@ -1,0 +1,19 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "io/foreign_data.hpp"
+
+class vtkAlgorithm;
+
+namespace tessera::io::helper {
+
+/// Has a reader that knows its file's time steps read one: the request's `time_step`, counted from 0, or the last. A
+/// note says which, if there are several. Within with_quiet_vtk(). Throws Error(bad_input) for a step that there is
+/// not.
+void update_at_step(vtkAlgorithm& reader, const nlohmann::json& request, const std::string& source,
+                    std::vector<std::string>& notes);
+
+}  // namespace tessera::io::helper

@@ -1,0 +1,231 @@
+// Files of solvers and lists of blocks: a cube of hexahedra written as each has it, with a field that is linear in
+// space.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <functional>
+#include <utility>
+
+#include "io/mesh_checks.hpp"
+#include "io/mesh_reader.hpp"
+#include "io/temporary_folder.hpp"
+
+namespace tessera::io {
+namespace {
+
+using testing::message_of;
+
+double field_at(const glm::dvec3& p) { return p.x + 2 * p.y + 3 * p.z; }
+
+/// [0, n]^3 in cubes.
+struct Cubes {
+  explicit Cubes(int side) : n(side) {
+    for (int k = 0; k <= n; ++k)
+      for (int j = 0; j <= n; ++j)
+        for (int i = 0; i <= n; ++i) points.emplace_back(i, j, k);
+    for (int k = 0; k < n; ++k)
+      for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i)
+          cells.push_back({point(i, j, k), point(i + 1, j, k), point(i + 1, j + 1, k), point(i, j + 1, k),
+                           point(i, j, k + 1), point(i + 1, j, k + 1), point(i + 1, j + 1, k + 1),
+                           point(i, j + 1, k + 1)});
+  }
+  [[nodiscard]] int point(int i, int j, int k) const { return i + (n + 1) * (j + (n + 1) * k); }
+
+  int n;
+  std::vector<glm::dvec3> points;
+  std::vector<std::array<int, 8>> cells;
+};
+
+std::string joined(const std::array<int, 8>& corners, int first) {
+  std::string text;
+  for (const int v : corners) text += fmt::format(" {}", v + first);
+  return text + "\n";
+}
+
+std::string avs_ucd(const Cubes& cubes) {
+  std::string text = fmt::format("{} {} 1 0 0\n", cubes.points.size(), cubes.cells.size());
+  for (std::size_t v = 0; v < cubes.points.size(); ++v)
+    text += fmt::format("{} {} {} {}\n", v + 1, cubes.points[v].x, cubes.points[v].y, cubes.points[v].z);
+  for (std::size_t c = 0; c < cubes.cells.size(); ++c)
+    text += fmt::format("{} 1 hex", c + 1) + joined(cubes.cells[c], 1);
+  text += "1 1\ntemperature, K\n";
+  for (std::size_t v = 0; v < cubes.points.size(); ++v)
+    text += fmt::format("{} {}\n", v + 1, field_at(cubes.points[v]));
+  return text;
+}
+
+std::string tecplot(const Cubes& cubes) {
+  std::string text = fmt::format(
+      "TITLE = \"t\"\nVARIABLES = \"X\", \"Y\", \"Z\", \"T\"\nZONE T=\"z\", N={}, E={}, F=FEPOINT, ET=BRICK\n",
+      cubes.points.size(), cubes.cells.size());
+  for (const glm::dvec3& p : cubes.points) text += fmt::format("{} {} {} {}\n", p.x, p.y, p.z, field_at(p));
+  for (const auto& cell : cubes.cells) text += joined(cell, 1);
+  return text;
+}
+
+std::string foam_head(const char* kind, const std::string& object) {
+  return fmt::format(
+      "FoamFile\n{{\n version 2.0;\n format ascii;\n arch \"LSB;label=32;scalar=64\";\n class {};\n object {};\n}}\n",
+      kind, object);
+}
+
+/// Cells of one part of the cubes (all where `keep` says so) as an OpenFOAM mesh with fields at the times 0 and 1: `p`
+/// is the number of the cell among all, and 1000 at time 1.
+void write_foam(const std::filesystem::path& folder, const Cubes& cubes, const std::function<bool(int)>& keep) {
+  const int n = cubes.n;
+  std::vector<int> local(cubes.cells.size(), -1), kept;
+  for (int c = 0; c < static_cast<int>(local.size()); ++c)
+    if (keep(c)) local[static_cast<std::size_t>(c)] = static_cast<int>(kept.size()), kept.push_back(c);
+  struct Face {
+    int owner, neighbour;
+    std::array<int, 4> corners;
+  };
+  std::vector<Face> faces;
+  constexpr int sides[6][4] = {{1, 2, 6, 5}, {3, 7, 6, 2}, {4, 5, 6, 7}, {0, 4, 7, 3}, {0, 1, 5, 4}, {0, 3, 2, 1}};
+  const std::array<int, 6> steps{1, n, n * n, -1, -n, -n * n};
+  for (const int c : kept) {
+    const std::array<int, 3> at{c % n, c / n % n, c / (n * n)};
+    for (std::size_t side = 0; side < 6; ++side) {
+      const std::size_t axis = side % 3;
+      const bool inside = side < 3 ? at[axis] + 1 < n : at[axis] > 0;
+      const int other = inside ? local[static_cast<std::size_t>(c + steps[side])] : -1;
+      if (side >= 3 && other >= 0) continue;  // the other cell's
+      Face face{local[static_cast<std::size_t>(c)], other, {}};
+      for (std::size_t k = 0; k < 4; ++k)
+        face.corners[k] = cubes.cells[static_cast<std::size_t>(c)][static_cast<std::size_t>(sides[side][k])];
+      faces.push_back(face);
+    }
+  }
+  std::stable_sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
+    if ((a.neighbour >= 0) != (b.neighbour >= 0)) return a.neighbour >= 0;
+    return a.neighbour >= 0 && std::pair(a.owner, a.neighbour) < std::pair(b.owner, b.neighbour);
+  });
+  const auto inner = static_cast<std::size_t>(
+      std::count_if(faces.begin(), faces.end(), [](const Face& f) { return f.neighbour >= 0; }));
+
+  const auto mesh = folder / "constant" / "polyMesh";
+  const auto write = [](const std::filesystem::path& file, const std::string& text) {
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file) << text;
+  };
+  std::string points = foam_head("vectorField", "points") + fmt::format("{}\n(\n", cubes.points.size());
+  for (const glm::dvec3& p : cubes.points) points += fmt::format("({} {} {})\n", p.x, p.y, p.z);
+  std::string corners = foam_head("faceList", "faces") + fmt::format("{}\n(\n", faces.size());
+  std::string owners = foam_head("labelList", "owner") + fmt::format("{}\n(\n", faces.size());
+  std::string neighbours = foam_head("labelList", "neighbour") + fmt::format("{}\n(\n", inner);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const auto& v = faces[f].corners;
+    corners += fmt::format("4({} {} {} {})\n", v[0], v[1], v[2], v[3]);
+    owners += fmt::format("{}\n", faces[f].owner);
+    if (f < inner) neighbours += fmt::format("{}\n", faces[f].neighbour);
+  }
+  write(mesh / "points", points + ")\n");
+  write(mesh / "faces", corners + ")\n");
+  write(mesh / "owner", owners + ")\n");
+  write(mesh / "neighbour", neighbours + ")\n");
+  write(mesh / "boundary", foam_head("polyBoundaryMesh", "boundary") +
+                               fmt::format("1\n(\nwalls\n{{\n type wall;\n nFaces {};\n startFace {};\n}}\n)\n",
+                                           faces.size() - inner, inner));
+  for (const int time : {0, 1}) {
+    std::string p =
+        foam_head("volScalarField", "p") +
+        fmt::format("dimensions [0 2 -2 0 0 0 0];\ninternalField nonuniform List<scalar> {}\n(\n", kept.size());
+    for (const int c : kept) p += fmt::format("{}\n", time == 0 ? c : 1000);
+    write(folder / std::to_string(time) / "p", p + ")\n;\nboundaryField\n{\n walls\n {\n  type zeroGradient;\n }\n}\n");
+  }
+}
+
+void write_control(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder / "system");
+  std::ofstream(folder / "system" / "controlDict")
+      << foam_head("dictionary", "controlDict")
+      << "startFrom startTime;\nstartTime 0;\nendTime 1;\ndeltaT 1;\nwriteControl timeStep;\nwriteInterval 1;\n";
+  std::ofstream(folder / "case.foam").flush();  // empty, as users make it
+}
+
+void expect_cube(const MeshFile& file, int n) {
+  scene::validate(file.mesh, "cube");
+  EXPECT_NEAR(testing::volume(file.mesh), n * n * n, 1e-5 * n * n * n);
+  EXPECT_EQ(file.counts.cells_read, static_cast<std::uint64_t>(n * n * n));
+  if (file.mesh.association != scene::Association::point) return;
+  for (std::size_t v = 0; v < file.mesh.positions.size(); ++v)
+    EXPECT_NEAR(file.mesh.scalars[v], field_at(file.mesh.positions[v]), 1e-5);  // their readers make floats
+}
+
+TEST(SolverFiles, AvsUcdAndTecplotAreReadAsTheyAre) {
+  const test::TemporaryFolder folder;
+  const Cubes cubes(3);
+  expect_cube(read_mesh(folder.write("m.inp", avs_ucd(cubes))), 3);
+  expect_cube(read_mesh(folder.write("m.tec", tecplot(cubes))), 3);
+}
+
+TEST(SolverFiles, AnOpenFoamCaseIsReadAtItsLastTimeOrTheOneAskedFor) {
+  const test::TemporaryFolder folder;
+  const Cubes cubes(3);
+  write_foam(folder.path(), cubes, [](int) { return true; });
+  write_control(folder.path());
+  const MeshFile last = read_mesh(folder / "case.foam");
+  expect_cube(last, 3);
+  EXPECT_EQ(last.mesh.field_name, "p");
+  EXPECT_EQ(last.mesh.scalars.front(), 1000);
+  MeshOptions first;
+  first.time_step = 0;
+  const MeshFile begin = read_mesh(folder / "case.foam", first);
+  for (std::size_t t = 0; t < begin.mesh.tets.size(); ++t) {
+    glm::dvec3 centre(0);
+    for (const std::uint32_t v : begin.mesh.tets[t]) centre += 0.25 * begin.mesh.positions[v];
+    const glm::ivec3 at(centre);
+    EXPECT_EQ(begin.mesh.scalars[t], at.x + 3 * (at.y + 3 * at.z)) << "a value at the wrong cell";
+  }
+  first.time_step = 2;
+  EXPECT_NE(message_of([&] { read_mesh(folder / "case.foam", first); }).find("there is no time step 2"),
+            std::string::npos);
+}
+
+TEST(SolverFiles, ADecomposedOpenFoamCaseIsReadWhole) {
+  const test::TemporaryFolder folder;
+  const Cubes cubes(4);
+  for (const int part : {0, 1}) {
+    const auto own = folder / ("processor" + std::to_string(part));
+    write_foam(own, cubes, [&](int c) { return (c / 32) == part; });
+  }
+  write_control(folder.path());
+  const MeshFile whole = read_mesh(folder / "case.foam");
+  expect_cube(whole, 4);
+  EXPECT_EQ(whole.mesh.scalars.front(), 1000);
+}
+
+TEST(SolverFiles, AMultiBlockFilesVolumesAreDrawnTogether) {
+  const test::TemporaryFolder folder;
+  folder.write("a.vtu", testing::vtu_text(testing::mixed_mesh(2, 1, false)));
+  folder.write(
+      "b.vti",
+      "<VTKFile type=\"ImageData\" version=\"0.1\" byte_order=\"LittleEndian\"><ImageData WholeExtent=\"0 1 0 1 0 "
+      "1\" Origin=\"5 0 0\" Spacing=\"1 1 2\"><Piece Extent=\"0 1 0 1 0 1\"><PointData><DataArray type=\"Float64\" "
+      "Name=\"f\" format=\"ascii\">5 6 7 8 11 12 13 14</DataArray></PointData></Piece></ImageData></VTKFile>");
+  folder.write("s.vtp", "<VTKFile type=\"PolyData\"></VTKFile>");
+  const auto list = [&](const std::string& blocks) {
+    return folder.write("m.vtm", "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet>" +
+                                     blocks + "</vtkMultiBlockDataSet></VTKFile>");
+  };
+  const std::string both =
+      "<DataSet index=\"0\" name=\"fluid\" file=\"a.vtu\"/><Block index=\"1\"><DataSet index=\"0\" "
+      "file=\"b.vti\"/></Block>";
+  const MeshFile file = read_mesh(list(both + "<DataSet index=\"2\" file=\"s.vtp\"/><DataSet index=\"3\"/>"));
+  EXPECT_NEAR(testing::volume(file.mesh), 3, 1e-12);
+  EXPECT_EQ(file.mesh.field_name, "f");
+  for (std::size_t v = 0; v < file.mesh.positions.size(); ++v)
+    EXPECT_DOUBLE_EQ(file.mesh.scalars[v], field_at(file.mesh.positions[v]));
+  EXPECT_NE(std::find(file.notes.begin(), file.notes.end(), "1 blocks are surfaces and are left out"),
+            file.notes.end());
+  EXPECT_NE(
+      message_of([&] { read_mesh(list(both + "<DataSet index=\"2\" file=\"gone.vtu\"/>")); }).find("gone.vtu: there"),
+      std::string::npos);
+}
+
+}  // namespace
+}  // namespace tessera::io
