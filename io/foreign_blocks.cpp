@@ -126,7 +126,7 @@ void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, Ce
   const bool all_tets = std::all_of(block.types.begin(), block.types.end(), [](std::uint8_t t) { return t == 10; });
   for (std::size_t c = 0; all_tets && c < block.types.size(); ++c)
     if (block.offsets[c] != 4 * c) return;
-  if (!all_tets || block.connectivity.size() != 4 * block.types.size()) return;
+  if (!all_tets || block.types.empty() || block.connectivity.size() != 4 * block.types.size()) return;
   block.tets.resize(block.types.size());
   std::memcpy(block.tets.data(), block.connectivity.data(), block.connectivity.size() * sizeof(std::uint32_t));
   block.types = {}, block.offsets = {}, block.connectivity = {};

@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "io/helper_messages.hpp"
 #include "scene/error.hpp"
@@ -220,7 +221,10 @@ ForeignPart part_of(Holdings& holdings, vtkDataSet& data, const std::string& nam
 
 std::string block_name(vtkCompositeDataIterator& iterator) {
   if (iterator.HasCurrentMetaData())
-    if (const char* name = iterator.GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME())) return name;
+    if (const char* name = iterator.GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME())) {
+      const std::string_view text = name;  // EnSight's are filled up with blanks
+      return std::string(text.substr(0, text.find_last_not_of(' ') + 1));
+    }
   return fmt::format("{}", iterator.GetCurrentFlatIndex());
 }
 

@@ -38,6 +38,12 @@ class MessageTrap : public vtkOutputWindow {
     if (!first.empty() || !text) return;
     std::string message = text;
     if (const std::size_t at = message.find("): "); at != std::string::npos) message.erase(0, at + 3);
+    // Where the reader lies in memory says nothing to anybody, and another thing each time.
+    for (std::size_t at = 0; (at = message.find("(0x", at)) != std::string::npos;) {
+      const std::size_t end = message.find(')', at);
+      if (end == std::string::npos) break;
+      message.erase(at, end + 1 - at);
+    }
     for (const unsigned char c : message) {
       const char plain = std::isprint(c) ? static_cast<char>(c) : ' ';
       if (plain != ' ' || (!first.empty() && first.back() != ' ')) first += plain;
@@ -90,6 +96,8 @@ std::string with_quiet_vtk(const std::string& source, const std::string& remedy,
   // What a file that is cut short gives VTK's legacy reader to say is a warning to it.
   if (quiet.trap->error.empty() && quiet.trap->warning.find("Error reading") != std::string::npos)
     throw scene::bad_input(fmt::format("{}: it ends before its data do; {}", source, remedy));
+  // Some readers begin with the file's name themselves.
+  if (quiet.trap->error.starts_with(source + ": ")) quiet.trap->error.erase(0, source.size() + 2);
   if (!quiet.trap->error.empty()) throw scene::bad_input(fmt::format("{}: {}; {}", source, quiet.trap->error, remedy));
   return quiet.trap->warning;
 }
