@@ -76,7 +76,7 @@ TEST(Helper, ItsDeathIsOneLineAboutTheFileAndStaysSo) {
     int signal;
     const char* words;
   } deaths[] = {
-      {SIGSEGV, "crashed"}, {SIGABRT, "crashed"}, {SIGXCPU, "takes longer"}, {SIGKILL, "killed from outside"}};
+      {SIGILL, "crashed"}, {SIGABRT, "crashed"}, {SIGXCPU, "takes longer"}, {SIGKILL, "killed from outside"}};
   for (const auto& death : deaths) {
     const auto helper = std::make_shared<HelperProcess>();
     ForeignFile opened = open_foreign(helper, file, {{"reader", "vtk_xml"}, {"type", "UnstructuredGrid"}});
@@ -178,7 +178,9 @@ TEST(Helper, ASmallFileThatPromisesMuchCostsLittle) {
   text.replace(at, text.find('"', at) - at, "3999999999");
   const auto file = folder.write("m.vtu", text);
   EXPECT_NE(message_of([&] { read_mesh(file); }), "");
+#ifndef __SANITIZE_ADDRESS__  // which has address space without a limit, and memory of its own
   EXPECT_LT(children_kib(), 600 << 10);
+#endif
 }
 
 TEST(Helper, CountsMayHaveASign) {
