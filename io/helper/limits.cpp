@@ -56,7 +56,7 @@ void allow(std::uint64_t size, bool is_compressed) {
   if (!is_sanitized)
     had_enough_memory = set_soft_limit(RLIMIT_AS, address_space_in_use() + (256ull << 20) + factor * size);
   // Slow readers take 2 MB/s of text; what is compressed, ten times as long.
-  const double seconds = 15 + static_cast<double>(size) / (is_compressed ? 2e5 : 2e6);
+  const double seconds = 8 + static_cast<double>(size) / (is_compressed ? 2e5 : 2e6);
   set_soft_limit(RLIMIT_CPU, static_cast<std::uint64_t>(processor_seconds() + seconds * (is_sanitized ? 10 : 1)) + 1);
 }
 
