@@ -9,13 +9,14 @@
 #include <vector>
 
 #include "io/number_tally.hpp"
+#include "tessera/array.hpp"
 
 namespace tessera::io {
 
 /// What the helper program (helper/README.md) says of a file that it has read with somebody else's library. The numbers
 /// stay there until they are asked for, an array at a time.
 
-enum class NumberType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+using tessera::NumberType;
 
 std::size_t size_of(NumberType type);
 

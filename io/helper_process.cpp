@@ -16,6 +16,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
@@ -43,6 +44,7 @@ std::filesystem::path own_file() {
 
 bool is_program(const std::filesystem::path& file) { return ::access(file.c_str(), X_OK) == 0; }
 
+/// Empty if there is none.
 std::filesystem::path find_helper() {
   std::error_code unknown;
   for (std::filesystem::path start : {own_file(), std::filesystem::read_symlink("/proc/self/exe", unknown)})
@@ -143,8 +145,6 @@ SharedBytes& SharedBytes::operator=(SharedBytes&& other) noexcept {
   std::swap(size_, other.size_);
   return *this;
 }
-
-std::filesystem::path helper_program() { return find_helper(); }
 
 HelperProcess::HelperProcess(HelperTask task) : task_(std::move(task)) {
   const std::filesystem::path program = find_helper();

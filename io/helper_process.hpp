@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
@@ -57,7 +56,7 @@ struct HelperDeath {
 ///          to be installed.
 /// Started  by posix_spawn: nothing of the caller's process is copied. It inherits no file and, of the environment,
 ///          nothing that MPI launchers set; what it prints goes nowhere.
-/// Limits   of memory and processor time, by the sizes of the files it opens; it sets them itself.
+/// Limits   of memory and processor time, by the sizes of the files it opens, which it sets itself; none for filling.
 /// Threads  calls wait for each other.
 class HelperProcess {
  public:
@@ -91,8 +90,5 @@ class HelperProcess {
   bool has_begun_ = false;            ///< it has said that it is there
   std::optional<HelperDeath> death_;  ///< once it is dead
 };
-
-/// Where the helper program is, for messages and tests; empty if there is none.
-std::filesystem::path helper_program();
 
 }  // namespace tessera::io

@@ -43,7 +43,8 @@ ForeignContents read_fluent(Holdings& holdings, const std::filesystem::path& fil
 ForeignContents read_gambit(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 ForeignContents read_tecplot(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
-/// Fills a surface by TetGen (io/surface.hpp).
+/// Fills a surface by TetGen (io/surface.hpp), without limits: how long that takes and how much memory follows from the
+/// volume asked for, not from a file.
 ForeignContents fill_surface(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
 /// More memory and time for a file that is about to be read.
