@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "colormaps/color_map_tables.hpp"
 #include "colormaps/function_options.hpp"
@@ -78,7 +79,7 @@ LoadedTransferFunction preset(std::string_view name, const TransferFunctionOptio
   const auto variant = std::ranges::find(variants, variant_name, &Variant::name);
   if (table == nullptr || variant == variants.end()) {
     std::vector<std::string_view> known;
-    for (const Variant& v : variants) known.push_back(v.name);
+    std::ranges::transform(variants, std::back_inserter(known), &Variant::name);
     throw scene::bad_input(
         fmt::format("{}: no such preset; write COLOURS or COLOURS:OPACITY with colours {} and "
                     "opacity {}",

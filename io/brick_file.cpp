@@ -223,9 +223,7 @@ BrickHeader parse_brick_header(const std::string& text, const std::filesystem::p
     g.origin = vector_of_json(json.at("origin"));
     g.spacing = vector_of_json(json.at("spacing"));
     const BrickJson& direction = json.at("direction");
-    for (int column = 0; column < 3; ++column)
-      for (int row = 0; row < 3; ++row)
-        g.direction[column][row] = direction.at(static_cast<std::size_t>(3 * column + row));
+    for (std::size_t k = 0; k < 9; ++k) g.direction[static_cast<int>(k / 3)][static_cast<int>(k % 3)] = direction.at(k);
     g.coordinates = json.at("coordinates").get<std::array<std::vector<double>, 3>>();
     const auto type = parse_sample_type(json.at("type").get<std::string>());
     if (!type) throw damaged(file, fmt::format("its type is {}", quote(json.at("type").get<std::string>())));

@@ -49,6 +49,7 @@ void write_rows(Imf::OutputFile& output, const scene::Image& image, const std::f
     // A slice's base is where pixel (0, 0) would be, before the buffer: computed as an integer, since a pointer may not
     // point there, and never used.
     const auto base = [&](const void* first, std::size_t row_bytes) {
+      // NOLINTNEXTLINE(performance-no-int-to-ptr)
       return reinterpret_cast<char*>(reinterpret_cast<std::uintptr_t>(first) -
                                      row_bytes * static_cast<std::uintptr_t>(begin));
     };
@@ -109,6 +110,7 @@ scene::Image read_exr(const std::filesystem::path& file) {
     const auto base = [&](const float* first, std::size_t floats_per_pixel) {
       const auto offset = (static_cast<std::int64_t>(window.min.y) * width + window.min.x) *
                           static_cast<std::int64_t>(floats_per_pixel * sizeof(float));
+      // NOLINTNEXTLINE(performance-no-int-to-ptr): as above
       return reinterpret_cast<char*>(reinterpret_cast<std::uintptr_t>(first) - static_cast<std::uintptr_t>(offset));
     };
     Imf::FrameBuffer frame;

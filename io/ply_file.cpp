@@ -92,7 +92,7 @@ class PlyParser {
 
   std::vector<std::string_view> header_words() {
     const std::size_t end = text_.find('\n', at_);
-    if (end == std::string_view::npos || end > 1 << 20) fail("its header does not end");
+    if (end > 1 << 20) fail("its header does not end");  // npos too
     std::string_view line = text_.substr(at_, end - at_);
     at_ = end + 1;
     std::vector<std::string_view> words;
@@ -188,7 +188,7 @@ class PlyParser {
     if (!(length >= 0) || length > static_cast<double>(text_.size() - at_))
       fail(fmt::format("a list of element {} has the length {}", face, length));
     Polygon polygon;
-    for (double k = 0; k < length; ++k) {
+    for (std::size_t k = 0; static_cast<double>(k) < length; ++k) {
       const double v = number(property.type);
       if (!wanted) continue;
       if (!(v >= 0 && v < 4294967295.0 && v == std::floor(v))) fail(fmt::format("face {} uses vertex {}", face, v));

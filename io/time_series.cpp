@@ -65,6 +65,7 @@ std::vector<TimeStep> read_pattern(const std::filesystem::path& input, const Pat
                                        fmt::format("{}{:0{}}{}", pattern.before, 1, pattern.width, pattern.after)));
   std::sort(found.begin(), found.end());
   std::vector<TimeStep> steps;
+  steps.reserve(found.size());
   for (auto& [number, file] : found) steps.push_back({static_cast<double>(number), {std::move(file)}});
   return steps;
 }

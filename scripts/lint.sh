@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # lint.sh format   says which sources clang-format would change (lint.sh fix changes them)
-# lint.sh tidy     runs clang-tidy (.clang-tidy) over the folders of our own algorithms, headers included by way of their
-#                  sources; needs build/release configured. Files that include VTK are left out: its headers take minutes
-#                  and the warnings are not ours.
+# lint.sh tidy     runs clang-tidy (.clang-tidy) over the sources, headers included by way of them; needs build/release
+#                  configured. Tests are left out, and io/helper, which includes VTK: its headers take minutes and the
+#                  warnings are not ours.
 # lint.sh changed  tidies only what differs from where this branch left the main one (with nothing of its own: what the
 #                  last commit changed), for at most 6 minutes: it names what it did not come to
 # lint.sh          format and tidy
@@ -11,7 +11,8 @@ cd "$(dirname "$0")/.."
 
 # With what -inl.h files hold: kernels, compiled once per instruction set.
 sources() { git ls-files --cached --others --exclude-standard -- '*.cpp' '*.hpp' '*.h'; }
-ours='^(scene|colormaps|integrals|exchange|projection|sorting|compositor|frame|reference|volume|analysis|apps)/'
+# The folders, and after them io without io/helper.
+ours='^((scene|colormaps|integrals|exchange|projection|sorting|compositor|frame|reference|volume|analysis|apps|gl|datasets)/.*|io/[^/]*)'
 
 format() { sources | xargs -r clang-format-14 --style=file "$@"; }
 
@@ -24,7 +25,7 @@ tidy_files() {  # tidy_files < LIST: as many at once as there are cores; says on
     tidy "${one_set[@]}" 2> >(grep -v 'warnings\? generated' >&2)
 }
 
-tidy() { sources | grep -E "$ours.*\.cpp\$" | tidy_files >/dev/null; }
+tidy() { sources | grep -E "$ours\.cpp\$" | tidy_files >/dev/null; }
 
 # The source through which a changed file is seen: itself, or for a header a source that includes it, the one of its
 # name if that does; by way of other headers if need be.
@@ -34,7 +35,7 @@ seen_through() {  # seen_through FILE [DEPTH]
     *.cpp) echo "$file" && return ;;
   esac
   [ "$depth" -lt 4 ] || return 0
-  includers=$(sources | grep -E "$ours" | xargs -r grep -lF "#include \"${file#include/}\"" || true)
+  includers=$(sources | grep -E "$ours\$" | xargs -r grep -lF "#include \"${file#include/}\"" || true)
   own=${file%.*}.cpp
   includer=$({ grep -xF "$own" <<<"$includers" || grep '\.cpp$' <<<"$includers" || echo "$includers"; } | head -1)
   [ -z "$includer" ] || seen_through "$includer" $((depth + 1))
@@ -52,7 +53,7 @@ changed() {
   {
     git diff --name-only --diff-filter=d "$base"
     git ls-files --others --exclude-standard
-  } | grep -E '\.(cpp|hpp|h)$' | while read -r file; do seen_through "$file"; done | grep -E "$ours" | sort -u >"$list" || true
+  } | grep -E '\.(cpp|hpp|h)$' | while read -r file; do seen_through "$file"; done | grep -E "$ours\$" | sort -u >"$list" || true
   if [ ! -s "$list" ]; then
     echo "lint.sh: no source changed since $(git rev-parse --short "$base"); tidied nothing"
   else
