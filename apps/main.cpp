@@ -2,18 +2,15 @@
 // and an exit status (ExitCode).
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <optional>
 #include <sstream>
-#include <string_view>
 
 #include "apps/argument_values.hpp"
 #include "apps/chart_command.hpp"
@@ -184,22 +181,11 @@ Error as_error() {
   std::_Exit(static_cast<int>(error.code()));
 }
 
-/// A library that gives up: Open MPI's reader of help texts, where memory has run out, which leaves nobody a word.
-extern "C" void on_abort(int /*signal*/) {
-  constexpr std::string_view line =
-      "tessera: a library gave up, most likely because memory ran out; use a larger machine, fewer ranks or threads, "
-      "or "
-      "a part of the data\n";
-  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line.data(), line.size());
-  std::_Exit(static_cast<int>(ErrorCode::system_failure));
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   using tessera::apps::fail;
   std::set_terminate(on_terminate);
-  std::signal(SIGABRT, on_abort);  // Open MPI leaves a handler in place
   std::optional<tessera::Job> job;
   try {
     constexpr auto remedy = "finished pictures stay, and the same command with --resume goes on from there";

@@ -1,10 +1,13 @@
 #include "tessera/job.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
+#include <string_view>
 
 #include "exchange/collectives.hpp"
 #include "exchange/instruction_sets.hpp"
@@ -16,6 +19,22 @@
 #include "frame/communicator.hpp"
 
 namespace tessera {
+
+namespace {
+
+/// A library that gives up: Open MPI's reader of its own words, where memory has run out, which leaves nobody a line.
+extern "C" void on_abort(int /*signal*/) {
+  if (exchange::may_speak()) {
+    constexpr std::string_view line =
+        "tessera: a library gave up, most likely because memory ran out; use a larger machine, fewer ranks or threads, "
+        "or a part of the data\n";
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line.data(), line.size());
+    exchange::hold_one_line();
+  }
+  std::_Exit(static_cast<int>(ErrorCode::system_failure));
+}
+
+}  // namespace
 
 struct Job::State {
   JobVoice voice;
@@ -33,6 +52,7 @@ Job::Job(JobVoice voice) : state_(std::make_unique<State>(State{std::move(voice)
     // A launcher that goes while MPI starts closes its sockets: an error of a write, not the death of a rank by a
     // signal of which nobody says a word.
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGABRT, on_abort);  // which Open MPI leaves in place
     exchange::name_one_line();
     const exchange::StartWitness witness(state_->voice.program);
     state_->mpi = std::make_unique<exchange::MpiTransport>(

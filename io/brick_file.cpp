@@ -184,6 +184,12 @@ class BrickSource final : public scene::SampleSource {
 };
 
 BrickJson json_of_vector(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+/// A whole number as such, not 1e38, which no integer holds. Throws BrickJson's exception for anything else.
+std::int64_t whole_number(const BrickJson& json) {
+  return json.is_number_integer() ? json.get<std::int64_t>() : json.get_ref<const std::int64_t&>();
+}
+
 glm::dvec3 vector_of_json(const BrickJson& json) { return {json.at(0), json.at(1), json.at(2)}; }
 
 BrickJson brick_header_of(const scene::Grid& grid, int side, const scene::ValueRange& range) {
@@ -218,7 +224,7 @@ BrickHeader parse_brick_header(const std::string& text, const std::filesystem::p
   try {
     const BrickJson json = parse_json(text, file.string());
     scene::GridGeometry& g = header.grid.geometry;
-    g.points = json.at("points").get<GridIndex>();
+    for (std::size_t axis = 0; axis < 3; ++axis) g.points[axis] = whole_number(json.at("points").at(axis));
     if (json.at("association") == "cell") g.association = scene::Association::cell;
     g.origin = vector_of_json(json.at("origin"));
     g.spacing = vector_of_json(json.at("spacing"));
@@ -231,8 +237,8 @@ BrickHeader parse_brick_header(const std::string& text, const std::filesystem::p
     header.grid.scale = json.at("scale");
     header.grid.shift = json.at("shift");
     header.grid.field_name = json.at("field");
-    header.side = json.at("block");
-    header.range = {json.at("low"), json.at("high"), json.at("blanks")};
+    header.side = whole_number(json.at("block"));
+    header.range = {json.at("low"), json.at("high"), static_cast<std::uint64_t>(whole_number(json.at("blanks")))};
   } catch (const BrickJson::exception&) {
     throw damaged(file, "its header lacks a word or a number");
   }

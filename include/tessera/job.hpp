@@ -36,7 +36,8 @@ struct JobVoice {
 ///
 /// One thread of the job's own speaks MPI. The first error of a rank is the run's: every rank throws it, and one tells
 /// the user. A rank that cannot end in an orderly way within five seconds after that speaks and ends its process. What
-/// a job does to its process: under a launcher SIGPIPE is ignored from the beginning.
+/// a job does to its process: under a launcher SIGPIPE is ignored from the beginning, and SIGABRT, by which libraries
+/// give up, ends it with a line.
 class TESSERA_EXPORT Job {
  public:
   /// Starts MPI under a launcher. Should MPI end the process as it starts, a child of it says so in a line on stderr.

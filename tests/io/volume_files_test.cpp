@@ -1,9 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <random>
+#include <string>
 #include <tuple>
 
 #include "io/mesh_checks.hpp"
@@ -468,6 +472,30 @@ TEST_F(VolumeFiles, WhatIsWrittenReadsBackTheSame) {
     if (name.ends_with(".raw")) continue;
     const glm::dvec3 corner = scene::world_of_index(back.source->geometry(), {20, 9, 16});
     EXPECT_LT(glm::length(corner - scene::world_of_index(source->geometry(), {20, 9, 16})), 1e-9);
+  }
+}
+
+TEST_F(VolumeFiles, ABrickFileWhoseCountsAreNoWholeNumbersIsRefused) {
+  write_volume(*scene::MemorySource::of(wavy_grid(), wavy_values()), folder / "a.bricks", 8);
+  std::ifstream in(folder / "a.bricks", std::ios::binary);
+  const std::string intact(std::istreambuf_iterator<char>(in), {});
+  std::uint64_t length = 0;
+  std::memcpy(&length, intact.data() + 8, sizeof length);
+  for (const char* word : {"\"block\":", "\"blanks\":", "\"points\":["}) {
+    std::string header = intact.substr(16, length);
+    const std::size_t at = header.find(word);
+    ASSERT_NE(at, std::string::npos) << word;
+    const std::size_t number = at + std::string_view(word).size();
+    header.replace(number, header.find_first_of(",]}", number) - number, "1e38");
+    const std::uint64_t longer = header.size();
+    std::ofstream out(folder / "b.bricks", std::ios::binary);
+    out.write(intact.data(), 8).write(reinterpret_cast<const char*>(&longer), sizeof longer);
+    out << header << intact.substr(16 + length);
+    out.close();
+    EXPECT_EQ(io::testing::message_of([&] { open_volume(folder / "b.bricks"); }),
+              (folder / "b.bricks").string() +
+                  ": its header lacks a word or a number; the file is truncated or damaged, write it anew")
+        << word;
   }
 }
 
