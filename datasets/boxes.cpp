@@ -63,9 +63,11 @@ scene::TetMesh graded(int n, double volume_ratio) {
   const double growth = std::pow(std::cbrt(volume_ratio), 1.0 / (half - 1));
   std::vector<double> at(static_cast<std::size_t>(n) + 1, 0.0);
   double sum = 0, edge = 1;
-  for (int i = 1; i <= half; ++i, edge *= growth) at[static_cast<std::size_t>(half + i)] = sum += edge;
+  for (int i = 1; i <= half; ++i, edge *= growth)
+    at[static_cast<std::size_t>(half) + static_cast<std::size_t>(i)] = sum += edge;
   for (int i = 1; i <= half; ++i) {
-    const auto high = static_cast<std::size_t>(half + i), low = static_cast<std::size_t>(half - i);
+    const auto middle = static_cast<std::size_t>(half), away = static_cast<std::size_t>(i);
+    const std::size_t high = middle + away, low = middle - away;
     at[high] /= sum;
     at[low] = -at[high];
   }

@@ -81,7 +81,9 @@ scene::TetMesh shells(int count, int levels, int layers) {
   const std::size_t side = 2 * n + 1;
   std::vector<std::uint32_t> known(side * side * 2, ~0u);
   const auto vertex = [&](const glm::ivec3& q) {
-    const auto shifted = [&](int c) { return static_cast<std::size_t>(c + static_cast<int>(n)); };
+    const auto shifted = [&](int c) {
+      return static_cast<std::size_t>(std::int64_t{c} + static_cast<std::int64_t>(n));
+    };
     std::uint32_t& index = known[(shifted(q.x) * side + shifted(q.y)) * 2 + (q.z < 0 ? 1 : 0)];
     if (index == ~0u) {
       index = static_cast<std::uint32_t>(directions.size());

@@ -22,6 +22,7 @@ scene::Knot random_knot(Random& random, double value, double extinction) {
 /// `n` increasing values strictly inside (0, 1), unevenly spaced.
 std::vector<double> places(Random& random, int n) {
   std::vector<double> at;
+  at.reserve(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) at.push_back((i + random.uniform(0.1, 0.9)) / n);
   return at;
 }
@@ -35,6 +36,7 @@ scene::TransferFunction smooth_knots(int knots, std::array<double, 2> range, dou
   at.front() = 0;
   if (knots > 1) at.back() = 1;
   std::vector<scene::Knot> out;
+  out.reserve(at.size());
   for (const double u : at) out.push_back(random_knot(random, range[0] + (range[1] - range[0]) * u, extinction));
   if (std::none_of(out.begin(), out.end(), [](const scene::Knot& k) { return k.extinction > 0; }))
     out.back().extinction = extinction;

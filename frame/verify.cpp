@@ -78,6 +78,7 @@ SuspicionMap second_opinion(const scene::Image& image, const scene::SampleSource
   arena.execute([&] {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     std::vector<volume::UncertainRay> rays;
+    rays.reserve(pixels.size());
     for (const auto& [x, y] : pixels) rays.push_back({x, y, -infinity, infinity, 0});
     scene::FrameWatch nobody;
     volume::ImageSink sink(again, nullptr, nobody);

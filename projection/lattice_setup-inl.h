@@ -345,7 +345,7 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
   V order[4];
   for (int i = 0; i < 4; ++i) order[i] = perspective ? hn::Neg(corners.w[i]) : corners.z[i];
   if constexpr (perspective) {
-    for (int i = 0; i < 4; ++i) irregular = hn::Or(irregular, hn::Not(hn::Gt(corners.w[i], zero)));
+    for (const V& w : corners.w) irregular = hn::Or(irregular, hn::Not(hn::Gt(w, zero)));
     irregular = hn::Or(irregular, hn::Gt(corners.most_weight(), hn::Mul(corners.least_weight(), number(16))));
   }
   const V span = set_up_box(corners, rect, square_x, square_y, from, irregular, batch);

@@ -23,7 +23,7 @@ void raise_ties(const glm::dvec3& a, const glm::dvec3& b, scene::ImageSize size,
   const double first = std::max(0.0, std::ceil(from[u] - tying_distance));
   const double last = std::min(sides[u] - 1.0, std::floor(to[u] + tying_distance));
   const double length = to[u] - from[u], slope = length > 0 ? (to[v] - from[v]) / length : 0;
-  for (double at = first; at <= last; ++at) {
+  for (double at = first; at <= last; ++at) {  // NOLINT(clang-analyzer-security.FloatLoopCounter): whole numbers
     const double across = from[v] + (std::clamp(at, from[u], to[u]) - from[u]) * slope;
     const double centre = std::nearbyint(across), away = across - centre;
     if (!(std::abs(away) <= tying_distance) || !(centre >= 0 && centre < sides[v])) continue;

@@ -193,6 +193,7 @@ std::vector<PixelIndex> random_pixels(ImageSize size, std::size_t count, std::ui
   for (std::uint64_t last = total - count; last < total; ++last)
     if (!chosen.insert(random() % (last + 1)).second) chosen.insert(last);
   std::vector<PixelIndex> pixels;
+  pixels.reserve(chosen.size());
   for (const std::uint64_t i : chosen) pixels.push_back({static_cast<int>(i % width), static_cast<int>(i / width)});
   std::sort(pixels.begin(), pixels.end(), reference::row_major_less);
   return pixels;

@@ -16,6 +16,7 @@ Verification verify(const scene::Image& image, const RayReference& reference, st
                     std::size_t count, const Suspects& suspects, int threads) {
   const std::vector<ChosenPixel> pixels = choose_pixels(image.size, count, suspects);
   std::vector<PixelIndex> places;
+  places.reserve(pixels.size());
   for (const ChosenPixel& pixel : pixels) places.push_back(pixel.at);
   // Without a bound no pixel is over it, so none is looked at for an excuse.
   const double most = bound.value_or(std::numeric_limits<double>::infinity());

@@ -104,6 +104,7 @@ Camera frame_box(const Box& box, ImageSize size, ProjectionKind projection, bool
   camera.view_up = upward;
 
   std::vector<glm::dvec3> outline;  // offsets from the centre that have to be in the picture
+  outline.reserve(8);
   for (int corner = 0; corner < 8; ++corner)
     outline.emplace_back((corner & 1) ? half.x : -half.x, (corner & 2) ? half.y : -half.y,
                          (corner & 4) ? half.z : -half.z);

@@ -56,7 +56,8 @@ HWY_INLINE double side_of_plane(const PixelRays& rays, bool perspective, int axi
 HWY_NOINLINE inline bool crosses_planes(const PixelRays& rays, int x0, int y0, int axis) {
   double least = 0, most = 0, largest = 0;
   for (int corner = 0; corner < 4; ++corner) {
-    const double px = x0 + (corner % 2) * TileRays::side, py = y0 + (corner / 2) * TileRays::side;
+    const int right = corner % 2, down = corner / 2;
+    const double px = x0 + right * TileRays::side, py = y0 + down * TileRays::side;
     const glm::dvec3 d = rays.direction + px * rays.direction_x + py * rays.direction_y;
     least = corner == 0 ? d[axis] : std::min(least, d[axis]), most = corner == 0 ? d[axis] : std::max(most, d[axis]);
     largest = std::max({largest, std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});

@@ -54,6 +54,7 @@ std::vector<VoxelBox> boxes_front_to_back(const scene::GridGeometry& geometry, c
       }
   std::stable_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) { return a.steps < b.steps; });
   std::vector<VoxelBox> boxes;
+  boxes.reserve(placed.size());
   for (const Placed& one : placed) boxes.push_back(one.box);
   return boxes;
 }
