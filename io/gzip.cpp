@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "io/helper_messages.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -61,6 +62,50 @@ std::vector<std::byte> inflate(std::span<const std::byte> stream, std::uint64_t 
                     "write it anew",
                     source, written, count));
   return out;
+}
+
+std::uint64_t inflate_to(int file, std::span<const std::byte> stream, std::uint64_t most, const std::string& source) {
+  constexpr std::size_t most_in = std::numeric_limits<uInt>::max(), chunk = 1 << 20;
+  constexpr int either_header = 15 + 32;
+  const auto fail = [&](scene::ErrorCode code, const std::string& what, const char* remedy) {
+    return scene::Error(code, source, what, remedy);
+  };
+  struct Stream {
+    z_stream z{};
+    Stream() {
+      if (inflateInit2(&z, either_header) != Z_OK) throw std::bad_alloc();
+    }
+    ~Stream() { inflateEnd(&z); }
+  } state;
+  z_stream& z = state.z;
+  std::vector<std::byte> out(chunk);
+  std::uint64_t written = 0;
+  std::size_t at = 0;
+  bool ended = false;
+  // Members follow one another; what follows the last one is padding, as gzip itself takes it.
+  while (!ended || (at < stream.size() && stream[at] == std::byte{0x1f})) {
+    const auto in_now = static_cast<uInt>(std::min(most_in, stream.size() - at));
+    z.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(stream.data() + at));
+    z.avail_in = in_now;
+    z.next_out = reinterpret_cast<Bytef*>(out.data());
+    z.avail_out = static_cast<uInt>(chunk);
+    const int result = ::inflate(&z, Z_NO_FLUSH);
+    at += in_now - z.avail_in;
+    const std::size_t made = chunk - z.avail_out;
+    written += made;
+    if (written > most)
+      throw fail(scene::ErrorCode::system_failure, fmt::format("it holds more than {} bytes inflated", most),
+                 "inflate it to a disk, use a larger machine or a part of the data");
+    if (!write_all(file, out.data(), made))
+      throw fail(scene::ErrorCode::system_failure, "memory ran out", "use a larger machine or a part of the data");
+    ended = result == Z_STREAM_END;
+    if (!ended && result != Z_OK)  // Z_BUF_ERROR where the stream ends
+      throw fail(scene::ErrorCode::bad_input,
+                 fmt::format("its compressed bytes end or break, {} come out of them", written),
+                 "the file is truncated or damaged, write it anew");
+    if (ended && inflateReset(&z) != Z_OK) break;
+  }
+  return written;
 }
 
 }  // namespace tessera::io

@@ -11,6 +11,7 @@
 #include "io/clean_errors.hpp"
 #include "io/field_choice.hpp"
 #include "io/gzip.hpp"
+#include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
 #include "io/stored_samples.hpp"
@@ -23,13 +24,23 @@ namespace {
 /// What kind of volume a file begins as.
 enum class VolumeKind { none, vtk, meta_image, nrrd, nifti, bricks };
 
+/// Of NIfTI files gzip is a part of the format, so that they are inflated as they are read; others are inflated first.
 VolumeKind volume_kind_of(const std::filesystem::path& file) {
-  const std::string beginning = read_beginning(file, 4096);
+  std::string beginning = read_beginning(file, 4096);
+  if (looks_like_gzip(beginning)) {
+    const auto inner = inflate_beginning(std::as_bytes(std::span(beginning)), 4096);
+    beginning.assign(reinterpret_cast<const char*>(inner.data()), inner.size());
+  }
   if (looks_like_bricks(beginning)) return VolumeKind::bricks;
   if (looks_like_vtk_grid(beginning)) return VolumeKind::vtk;
   if (looks_like_nrrd(beginning)) return VolumeKind::nrrd;
   if (looks_like_meta_image(beginning)) return VolumeKind::meta_image;
   return looks_like_nifti(file) ? VolumeKind::nifti : VolumeKind::none;
+}
+
+/// The name that counts where the beginning says nothing: x.raw of x.raw.gz.
+std::filesystem::path without_gz(const std::filesystem::path& file) {
+  return lower_extension(file) == ".gz" ? file.parent_path() / file.stem() : file;
 }
 
 struct VolumePayload {
@@ -156,8 +167,8 @@ VolumeFile open_described(const std::filesystem::path& file, VolumeKind kind, co
     case VolumeKind::none:
       break;
   }
-  const std::string extension = lower_extension(file);
-  if (extension == ".nii" || extension == ".gz") return open_stored(read_nifti_header(file), options, source);
+  const std::string extension = lower_extension(without_gz(file));
+  if (extension == ".nii") return open_stored(read_nifti_header(file), options, source);
   throw scene::bad_input(fmt::format("{}: it does not begin as a {} does; check what it is", source,
                                      extension.empty() ? "volume" : extension.substr(1)));
 }
@@ -189,7 +200,7 @@ bool is_volume(const std::filesystem::path& file) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(file, unknown) || std::filesystem::file_size(file, unknown) == 0 || unknown)
     return is_volume_file(file);
-  if (lower_extension(file) == ".raw") return true;
+  if (lower_extension(without_gz(file)) == ".raw") return true;
   if (volume_kind_of(file) != VolumeKind::none) return true;
   // A damaged one is told as what it was meant to be. .vtr and .pvtr are among the meshes' names too: VTK XML of
   // another kind is one.
@@ -208,16 +219,27 @@ VolumeFile open_unscanned_volume(const std::filesystem::path& file, const Volume
   const std::string source = file.string();
   require_file(file);
   return with_clean_errors(source, [&] {
-    const std::string extension = lower_extension(file);
+    const std::filesystem::path name = without_gz(file);
     const VolumeKind kind = volume_kind_of(file);
-    const bool raw = kind == VolumeKind::none && (extension == ".raw" || options.describes_raw());
+    const bool raw = kind == VolumeKind::none && (lower_extension(name) == ".raw" || options.describes_raw());
     if (!raw && options.describes_raw())
       throw scene::bad_input(
           fmt::format("{}: `dims`, `type`, `spacing`, `origin`, `endian` and `skip` are for .raw files; this one says "
                       "them itself",
                       source));
-    return raw ? open_stored(describe_raw(file, options), options, source)
-               : open_described(file, kind, options, source);
+    const auto open = [&](const std::filesystem::path& content) {
+      if (!raw) return open_described(content, kind, options, source);
+      StoredVolume volume = describe_raw(name, options);
+      volume.payload = content;
+      return open_stored(std::move(volume), options, source);
+    };
+    if (kind == VolumeKind::nifti || (kind == VolumeKind::none && !raw) || !looks_like_gzip(read_beginning(file, 2)))
+      return open(file);
+    const InflatedFile inflated(file);
+    VolumeFile volume = inflated.read(open);
+    for (std::string& note : volume.notes) note = inflated.renamed(std::move(note));
+    volume.format += ", gzip";
+    return volume;
   });
 }
 

@@ -53,6 +53,7 @@ void require_volume(const std::filesystem::path& file);
 ///       first axis of components is allowed; content "old min" and the measurement frame mean nothing here.
 ///   .nii .nii.gz (NIfTI-1 and 2): sform, else qform, else the spacing alone; slope and intercept apply.
 ///   .raw: described by the options or by its name, mapped. .bricks: what write_bricks made, read brick by brick.
+///   A gzip file of any of these is inflated into memory first, whatever its name.
 ///
 /// World coordinates are the file's own (NIfTI's point right, anterior, up; MetaImage's and NRRD's whatever they say).
 /// Headers are compared with the file's size before memory is asked for. Throws Error(bad_input) in one line for a

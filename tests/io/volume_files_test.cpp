@@ -13,6 +13,7 @@
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/volume_bytes.hpp"
+#include "io/volume_checks.hpp"
 #include "io/volume_reader.hpp"
 #include "io/volume_writer.hpp"
 #include "io/vtk_or_skip.hpp"
@@ -23,17 +24,12 @@ namespace {
 using scene::Association;
 using scene::GridIndex;
 using scene::SampleType;
+using test::all_samples;
 using test::bytes_of;
 using test::counting;
 using test::put;
 
 const std::filesystem::path volumes = std::filesystem::path(TESSERA_SOURCE_DIR) / ".." / "shared" / "data" / "volumes";
-
-std::vector<double> all_samples(const scene::SampleSource& source) {
-  std::vector<double> values(static_cast<std::size_t>(source.geometry().all_samples().count()));
-  source.read(source.geometry().all_samples(), std::span<double>(values));
-  return values;
-}
 
 /// Files in every format that is written, and that this build reads again.
 std::vector<std::string> names_written() {

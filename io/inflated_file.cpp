@@ -1,0 +1,59 @@
+#include "io/inflated_file.hpp"
+
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <new>
+
+#include "io/gzip.hpp"
+#include "io/input_file.hpp"
+#include "io/mapped_file.hpp"
+
+namespace tessera::io {
+namespace {
+
+/// Memory that can be had without swapping: past it the system ends processes instead of refusing.
+std::uint64_t available_memory() {
+  std::ifstream facts("/proc/meminfo");
+  std::string word;
+  while (facts >> word)
+    if (word == "MemAvailable:") {
+      std::uint64_t kilobytes = 0;
+      if (facts >> kilobytes) return kilobytes * 1024;
+      break;
+    }
+  return UINT64_MAX;
+}
+
+}  // namespace
+
+InflatedFile::InflatedFile(const std::filesystem::path& file)
+    : file_(file), descriptor_(::memfd_create("tessera", MFD_CLOEXEC)) {
+  if (!descriptor_.is_open()) throw std::bad_alloc();
+  const MappedFile mapped(file);
+  if (inflate_to(descriptor_.get(), mapped.bytes(), available_memory() / 10 * 9, file.string()) == 0)
+    throw scene::bad_input(fmt::format("{}: it holds nothing; write it anew", file.string()));
+  // By number, since the helper opens it too.
+  path_ = fmt::format("/proc/{}/fd/{}", ::getpid(), descriptor_.get());
+}
+
+std::filesystem::path InflatedFile::inner_name() const {
+  return lower_extension(file_) == ".gz" ? file_.parent_path() / file_.stem() : file_;
+}
+
+std::string InflatedFile::renamed(std::string line) const {
+  const std::string from = path_.string(), to = file_.string();
+  for (std::size_t at = line.find(from); at != std::string::npos; at = line.find(from, at + to.size()))
+    line.replace(at, from.size(), to);
+  return line;
+}
+
+scene::Error InflatedFile::renamed(const scene::Error& error) const {
+  return scene::with_subject(scene::Error(error.code(), renamed(std::string(error.what()))), file_.string());
+}
+
+}  // namespace tessera::io
