@@ -16,6 +16,7 @@
 #include "apps/chart_command.hpp"
 #include "apps/convert_command.hpp"
 #include "apps/film.hpp"
+#include "apps/formats_command.hpp"
 #include "apps/generate_command.hpp"
 #include "apps/info_command.hpp"
 #include "apps/render_options.hpp"
@@ -44,7 +45,7 @@ int fail(const Error& error) {
 /// Whether a rectilinear grid, which is a volume, is asked for as the mesh that it is too.
 bool to_mesh(const std::filesystem::path& input, const std::filesystem::path& output) {
   const auto extension = output.extension();
-  return (extension == ".vtu" || extension == ".tets" || extension == ".pvtu") && is_mesh_name(input);
+  return (extension == ".vtu" || extension == ".tets" || extension == ".pvtu") && opens_as_mesh(input);
 }
 
 ExitCode run(int argc, char** argv, Job& job) {
@@ -107,11 +108,15 @@ ExitCode run(int argc, char** argv, Job& job) {
   timing_command->add_option("--csv", csv, "the same figures as a table")->type_name("FILE");
   timing_command->add_option("--figure", figure, "stacked bars, .svg or .png")->type_name("FILE");
 
+  auto* formats_command =
+      app.add_subcommand("formats", "List the formats of files that are read, and known ones that are not");
+  formats_command->add_flag("--json", as_json, "for machines");
+
   // CLI11 would only say that a subcommand is missing.
   if (argc > 1 && argv[1][0] != '-' &&
       app.get_subcommands([&](const CLI::App* command) { return command->get_name() == argv[1]; }).empty())
-    throw bad_input(
-        fmt::format("arguments: '{}' is no command; use render, info, convert, generate, chart or timing", argv[1]));
+    throw bad_input(fmt::format(
+        "arguments: '{}' is no command; use render, info, convert, generate, chart, timing or formats", argv[1]));
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version
@@ -147,6 +152,7 @@ ExitCode run(int argc, char** argv, Job& job) {
     convert_mesh(words.input, mesh_output, mesh_options(words), parse_count("--subdivide", subdivide, 0, 8),
                  convert_pieces(pieces, pieces_partition), words.quiet);
   if (*chart_command) chart(words, chart_words);
+  if (*formats_command) formats(as_json);
   if (*timing_command) timing({traces.begin(), traces.end()}, csv, figure);
   if (*generate_command) generate(kind, mesh_output, parameters, words.quiet);
   return ExitCode::complete;

@@ -5,15 +5,11 @@
 #include "colormaps/presets.hpp"
 #include "io/time_series.hpp"
 #include "io/transfer_function_file.hpp"
-#include "io/volume_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::frame {
 
 io::MeshFile read_input(const std::filesystem::path& input, const io::MeshOptions& options) {
-  if (io::is_volume_file(input) && !io::is_mesh_file(input))
-    throw scene::bad_input(fmt::format(
-        "{}: is a regular grid by its name, no mesh; give a mesh, or write .vti, .nrrd or .bricks", input.string()));
   if (io::is_time_series(input))
     throw scene::bad_input(
         fmt::format("{}: is a time series, which only render takes; give one of its meshes", input.string()));

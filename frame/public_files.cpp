@@ -44,7 +44,7 @@ void write_deep_image(const DeepImage& image, const std::filesystem::path& file)
 bool is_deep_name(const std::filesystem::path& file) { return io::is_deep_name(file); }
 void check_image_path(const std::filesystem::path& file) { io::check_image_path(file); }
 
-bool is_mesh_name(const std::filesystem::path& file) { return io::is_mesh_file(file); }
+bool opens_as_mesh(const std::filesystem::path& file) { return io::is_mesh_file(file); }
 void require_input(const std::filesystem::path& input) { io::require_input(input); }
 void require_grid(const std::filesystem::path& file) { io::require_volume(file); }
 void require_mesh(const std::filesystem::path& file) { io::require_mesh_file(file); }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/field_choice.hpp"
+#include "io/file_beginnings.hpp"
 #include "io/foreign_file.hpp"
 #include "io/input_file.hpp"
 #include "io/volume_formats.hpp"
@@ -160,21 +161,13 @@ std::unique_ptr<scene::MemorySource> source_of(const ForeignFile& file, const Fo
   return scene::MemorySource::of(std::move(grid), std::move(values), file.source);
 }
 
-/// What the file is called in VTK XML; none if it is a legacy one.
-const char* xml_type_of(std::string_view beginning) {
-  if (beginning.starts_with("# vtk DataFile")) return nullptr;
-  for (const char* type : {"PImageData", "PRectilinearGrid", "ImageData"})
-    if (has_quoted(beginning, type)) return type;
-  return "RectilinearGrid";
-}
-
 }  // namespace
 
 VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions& options) {
   const std::string source = file.string();
-  const char* const type = xml_type_of(read_beginning(file, 4096));
-  nlohmann::json request{{"reader", type != nullptr ? "vtk_xml" : "vtk_legacy"}};
-  if (type != nullptr) request["type"] = type;
+  const std::string type = vtk_xml_type(read_beginning(file, 4096));  // empty of a legacy one
+  nlohmann::json request{{"reader", type.empty() ? "vtk_legacy" : "vtk_xml"}};
+  if (!type.empty()) request["type"] = type;
   const ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(), file, std::move(request));
   if (opened.contents.parts.size() != 1)
     throw scene::bad_input(fmt::format("{}: it holds no one grid; give a volume", source));
@@ -183,7 +176,7 @@ VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions&
   result.notes = opened.contents.notes;
   scene::Grid grid;
   grid.geometry = geometry_of(opened, part);
-  result.format = fmt::format("{} ({})", type != nullptr ? "VTK XML" : "legacy VTK",
+  result.format = fmt::format("{} ({})", type.empty() ? "legacy VTK" : "VTK XML",
                               grid.geometry.rectilinear() ? "rectilinear grid" : "image data");
 
   CellBlock block;  // only its fields are of use

@@ -5,6 +5,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "io/file_beginnings.hpp"
 #include "io/foreign_file.hpp"
 #include "io/input_file.hpp"
 #include "io/mesh_formats.hpp"
@@ -30,17 +31,7 @@ constexpr std::array xml_kinds = {
 };
 
 /// The value of `type` in <VTKFile type="...">; empty if the file does not begin like VTK XML.
-std::string xml_type(const std::filesystem::path& file) {
-  const std::string text = read_beginning(file, 4096);
-  const std::size_t element = text.find("<VTKFile");
-  if (element == std::string::npos) return "";
-  const std::size_t end = text.find('>', element), key = text.find("type", element);
-  if (key == std::string::npos || key > end) return "";
-  const std::size_t open = text.find_first_of("\"'", key);
-  if (open == std::string::npos) return "";
-  const std::size_t close = text.find(text[open], open + 1);
-  return close == std::string::npos ? "" : text.substr(open + 1, close - open - 1);
-}
+std::string xml_type(const std::filesystem::path& file) { return vtk_xml_type(read_beginning(file, 4096)); }
 
 constexpr const char* parallel_type = "PUnstructuredGrid";
 
@@ -52,7 +43,7 @@ const XmlKind* kind_of(const std::string& type) {
 MeshBlocks named_format(const XmlKind& kind, const std::string& extension) {
   MeshBlocks result;
   result.format = kind.words;
-  if (extension != kind.extension)
+  if (!extension.empty() && extension != kind.extension)
     result.notes.push_back(fmt::format("the file is a {}, read as {}", extension.substr(1), kind.words));
   return result;
 }
@@ -135,8 +126,7 @@ MeshBlocks read_vtk_xml(const std::filesystem::path& file) {
   const std::string source = file.string(), extension = lower_extension(file), type = xml_type(file);
   const XmlKind* const kind = kind_of(type);
   if (type.empty())
-    throw scene::bad_input(fmt::format("{}: it does not begin as a VTK XML file does; check that it is a {}", source,
-                                       extension.substr(1)));
+    throw scene::bad_input(fmt::format("{}: it does not begin as a VTK XML file does; check that it is one", source));
   if (type == "ImageData" || type == "PImageData")
     throw scene::bad_input(fmt::format(
         "{}: it is a regular grid (image data), no mesh; render, info and convert take it as a volume", source));

@@ -16,8 +16,10 @@ std::uint64_t require_file(const std::filesystem::path& file) {
   const auto status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status))
     throw scene::bad_input(fmt::format("{}: there is no such file; check the name", file.string()));
+  if (is_input_folder(file)) return 0;
   if (std::filesystem::is_directory(status))
-    throw scene::bad_input(fmt::format("{}: it is a directory; name a file in it", file.string()));
+    throw scene::bad_input(
+        fmt::format("{}: it is a directory; name a file in it, or the folder of an OpenFOAM case", file.string()));
   if (!std::ifstream(file, std::ios::binary))
     throw scene::bad_input(fmt::format("{}: it cannot be opened; check its permissions", file.string()));
   const std::uintmax_t size = std::filesystem::file_size(file, error);
@@ -36,6 +38,13 @@ std::string read_beginning(const std::filesystem::path& file, std::size_t limit)
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(in.gcount()));
   return text;
+}
+
+bool is_input_folder(const std::filesystem::path& folder) {
+  std::error_code unknown;
+  return std::filesystem::is_directory(folder, unknown) &&
+         (std::filesystem::is_regular_file(folder / "system" / "controlDict", unknown) ||
+          std::filesystem::is_directory(folder / "constant" / "polyMesh", unknown));
 }
 
 std::string lower_extension(const std::filesystem::path& file) {

@@ -7,7 +7,11 @@
 
 namespace tessera::io {
 
-/// Throws Error(bad_input) unless `file` is a readable regular file that is not empty; returns its bytes' number.
+/// Whether a folder stands for a file: an OpenFOAM case (system/controlDict or constant/polyMesh in it) is one.
+bool is_input_folder(const std::filesystem::path& folder);
+
+/// Throws Error(bad_input) unless `file` is a readable regular file that is not empty, or a folder that stands for one;
+/// returns its bytes' number, of a folder 0.
 std::uint64_t require_file(const std::filesystem::path& file);
 
 /// The first bytes of a file, at most `limit`. Throws as require_file.

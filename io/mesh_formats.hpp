@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/cell_block.hpp"
+#include "io/file_kinds.hpp"
 
 namespace tessera::io {
 
@@ -54,7 +55,7 @@ MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem:
 
 /// A surface (.stl .ply .poly .smesh) filled by TetGen with tets of at most `max_volume`, or of a 30,000th of what it
 /// encloses. Point fields: "depth", the distance to the surface in world units, after the file's own attributes.
-MeshBlocks read_surface(const std::filesystem::path& file, std::optional<double> max_volume);
+MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::optional<double> max_volume);
 
 /// TetGen's mesh; either file's name finds the other.
 MeshBlocks read_node_ele(const std::filesystem::path& file);

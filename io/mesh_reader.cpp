@@ -7,6 +7,9 @@
 #include <memory>
 
 #include "io/clean_errors.hpp"
+#include "io/file_kinds.hpp"
+#include "io/gzip.hpp"
+#include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
 #include "io/mesh_assembly.hpp"
@@ -17,108 +20,54 @@
 namespace tessera::io {
 namespace {
 
-/// Families of files that are read alike.
-enum class Family { none, vtk_xml, vtk_legacy, exodus, plot3d, tetgen, surface, tets, solver };
-
-struct Extension {
-  const char* text;
-  Family family;
-  const char* reader = "";  ///< of solvers' files: read_solver_file()
-};
-constexpr std::array extensions = {
-    Extension{".vtu", Family::vtk_xml},
-    Extension{".pvtu", Family::vtk_xml},
-    Extension{".vts", Family::vtk_xml},
-    Extension{".pvts", Family::vtk_xml},
-    Extension{".vtr", Family::vtk_xml},
-    Extension{".pvtr", Family::vtk_xml},
-    Extension{".vtk", Family::vtk_legacy},
-    Extension{".ex2", Family::exodus},
-    Extension{".exo", Family::exodus},
-    Extension{".exii", Family::exodus},
-    Extension{".e", Family::exodus},
-    Extension{".g", Family::exodus},
-    Extension{".xyz", Family::plot3d},
-    Extension{".p3d", Family::plot3d},
-    Extension{".x", Family::plot3d},
-    Extension{".bin", Family::plot3d},
-    Extension{".node", Family::tetgen},
-    Extension{".ele", Family::tetgen},
-    Extension{".stl", Family::surface},
-    Extension{".ply", Family::surface},
-    Extension{".poly", Family::surface},
-    Extension{".smesh", Family::surface},
-    Extension{".tets", Family::tets},
-    Extension{".vtm", Family::vtk_xml},
-    Extension{".vtmb", Family::vtk_xml},
-    Extension{".vtpc", Family::vtk_xml},
-    Extension{".vtpd", Family::vtk_xml},
-    Extension{".foam", Family::solver, "openfoam"},
-    Extension{".case", Family::solver, "ensight"},
-    Extension{".encas", Family::solver, "ensight"},
-    Extension{".cgns", Family::solver, "cgns"},
-    Extension{".vtkhdf", Family::solver, "vtk_hdf"},
-    Extension{".inp", Family::solver, "avs_ucd"},
-    Extension{".ucd", Family::solver, "avs_ucd"},
-    Extension{".cas", Family::solver, "fluent"},
-    Extension{".neu", Family::solver, "gambit"},
-    Extension{".tec", Family::solver, "tecplot"},
-};
-
-const Extension* extension_of(const std::filesystem::path& file) {
-  const std::string extension = lower_extension(file);
-  const auto* e = std::find_if(extensions.begin(), extensions.end(),
-                               [&](const Extension& known) { return extension == known.text; });
-  return e == extensions.end() ? nullptr : e;
-}
-
-Family family_of(const std::filesystem::path& file) {
-  const Extension* const known = extension_of(file);
-  return known == nullptr ? Family::none : known->family;
-}
-
 bool has_time_steps(const std::filesystem::path& file) {
-  return family_of(file) == Family::exodus || family_of(file) == Family::solver;
+  const FormatRow* const row = format_of(file);
+  return row != nullptr && row->has_time_steps;
 }
 
-std::string known_extensions() {
-  std::string text;
-  for (const Extension& e : extensions) text += fmt::format("{}{}", text.empty() ? "" : " ", e.text);
-  return text;
-}
-
-[[noreturn]] void refuse_extension(const std::filesystem::path& file) {
-  const std::string extension = lower_extension(file);
-  for (const char* volume : {".vti", ".pvti", ".mhd", ".mha", ".nrrd", ".nhdr", ".nii", ".gz", ".raw"})
-    if (extension == volume)
-      throw scene::bad_input(fmt::format(
-          "{}: it is a regular grid, no mesh; render, info and convert take it as a volume", file.string()));
-  throw scene::bad_input(fmt::format("{}: no mesh format has the extension '{}'; known are {}", file.string(),
-                                     file.extension().string(), known_extensions()));
-}
-
-MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& options) {
-  switch (family_of(file)) {
-    case Family::vtk_xml:
+MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row, const MeshOptions& options) {
+  switch (row.kind) {
+    case FileKind::vtk_xml:
       return read_vtk_xml(file);
-    case Family::vtk_legacy:
+    case FileKind::vtk_legacy:
       return read_vtk_legacy(file);
-    case Family::exodus:
+    case FileKind::vtk_grid:
+      if (row.holds == FileHolds::grid) refuse_as_mesh(file);
+      return read_beginning(file, 8).starts_with("# vtk") ? read_vtk_legacy(file) : read_vtk_xml(file);
+    case FileKind::exodus:
       return read_exodus(file, options.time_step);
-    case Family::plot3d:
+    case FileKind::hdf5:
+      return read_solver_file(file, "hdf5", options.time_step);
+    case FileKind::solver:
+      return read_solver_file(file, row.reader, options.time_step);
+    case FileKind::plot3d:
       return read_plot3d(file, options.plot3d_q);
-    case Family::tetgen:
+    case FileKind::tetgen_mesh:
       return read_node_ele(file);
-    case Family::surface:
-      return read_surface(file, options.max_volume);
-    case Family::tets:
+    case FileKind::stl:
+    case FileKind::ply:
+    case FileKind::tetgen_surface:
+      return read_surface(file, row.kind, options.max_volume);
+    case FileKind::tets:
       return blocks_of_tets(parse_tets(MappedFile(file).bytes(), file.string()));
-    case Family::solver:
-      return read_solver_file(file, extension_of(file)->reader, options.time_step);
-    case Family::none:
-      break;
+    default:
+      refuse_as_mesh(file);
   }
-  refuse_extension(file);
+}
+
+/// What is in a gzip file is read under another name, which nobody is to hear of.
+MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& options) {
+  const FormatRow* const row = format_of(file);
+  if (row == nullptr) refuse_as_mesh(file);
+  if (std::filesystem::is_directory(file) || !looks_like_gzip(read_beginning(file, 2)))
+    return read_content(file, *row, options);
+  const InflatedFile inflated(file);
+  MeshBlocks read =
+      inflated.read([&](const std::filesystem::path& content) { return read_content(content, *row, options); });
+  for (std::string& note : read.notes) note = inflated.renamed(std::move(note));
+  for (CellBlock& block : read.blocks) block.source = inflated.renamed(std::move(block.source));
+  read.format += ", gzip";
+  return read;
 }
 
 }  // namespace
@@ -136,10 +85,14 @@ MeshBlocks blocks_of_tets(scene::TetMesh mesh) {
 
 void require_mesh_file(const std::filesystem::path& file) {
   require_file(file);
-  if (!is_mesh_file(file)) refuse_extension(file);
+  if (!is_mesh_file(file)) refuse_as_mesh(file);
 }
 
-bool is_mesh_file(const std::filesystem::path& file) { return family_of(file) != Family::none; }
+bool is_mesh_file(const std::filesystem::path& file) {
+  const FormatRow* const row = format_of(file);
+  return row != nullptr &&
+         (row->holds == FileHolds::mesh || row->holds == FileHolds::surface || row->holds == FileHolds::grid_or_mesh);
+}
 
 MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options) {
   const std::string source = file.string();

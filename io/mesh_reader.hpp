@@ -37,22 +37,22 @@ struct MeshFile {
   std::string format;              ///< "VTK XML unstructured grid", "PLOT3D", "TetGen .node/.ele", ...
 };
 
-/// Reads a mesh by its name's extension: .vtu .pvtu .vts .pvts .vtr .pvtr .vtk, Exodus (.ex2 .e .exo .exii .g), PLOT3D
-/// (.xyz .p3d .x .bin), solvers' files (.foam .case .cgns .vtkhdf .cas .neu .inp .ucd .tec), lists of VTK's (.vtm
-/// .vtpc), TetGen (.node .ele), .tets, and surfaces filled by TetGen (.stl .ply .poly .smesh). Cells other than tets
-/// are split so that neighbours agree on every shared face by position, whatever piece they come from. Throws
-/// Error(bad_input) in one line for a missing, truncated, malformed or empty file, an unknown field, or if no cell is
-/// left; Error(system_failure) if memory runs out. Never leaves VTK's own messages on stderr.
+/// Reads a mesh of any format of io/file_kinds.cpp, told by what it begins with, then by its name; or a gzip file of
+/// one, inflated into memory. Surfaces are filled by TetGen. Cells other than tets are split so that neighbours agree
+/// on every shared face by position, whatever piece they come from. Throws Error(bad_input) in one line for a missing,
+/// truncated, malformed or empty file, an unknown format or field, or if no cell is left; Error(system_failure) if
+/// memory runs out. Never leaves VTK's own messages on stderr.
 MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options = {});
 
 /// Reads several files as the pieces of one mesh, their points not merged. Each has to have the chosen field. Throws as
 /// read_mesh.
 MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptions& options = {});
 
-/// Throws Error(bad_input) if the file is not there or has an extension that read_mesh does not know. Does not read it.
+/// Throws Error(bad_input) if the file is not there or read_mesh does not know its format. Does not read it.
 void require_mesh_file(const std::filesystem::path& file);
 
-/// Whether read_mesh knows the extension (upper or lower case). Does not look at the file.
+/// Whether read_mesh knows the format: by what the file begins with, or by its name where that says nothing or it is
+/// not there. Rectilinear grids are volumes too.
 bool is_mesh_file(const std::filesystem::path& file);
 
 /// Writes a .tets file: float32 coordinates and point scalars, so doubles are rounded. Appears by rename. Throws

@@ -48,28 +48,32 @@ double box_volume(const Surface& surface) {
 
 }  // namespace
 
-MeshBlocks read_surface(const std::filesystem::path& file, std::optional<double> max_volume) {
-  const std::string source = file.string(), extension = lower_extension(file);
+MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::optional<double> max_volume) {
+  const std::string source = file.string();
   if (max_volume && !(*max_volume > 0))
     throw scene::bad_input(fmt::format("{}: the largest tet volume is {}; give a positive one", source, *max_volume));
   std::vector<std::string> attribute_names;
   Surface surface;
-  if (extension == ".stl") {
+  const char* words = "";
+  if (kind == FileKind::stl) {
+    words = "stl";
     surface = read_stl(source);
-  } else if (extension == ".ply") {
+  } else if (kind == FileKind::ply) {
+    words = "ply";
     PlySurface ply = parse_ply(MappedFile(file).text(), source);
     surface = std::move(ply.surface);
     attribute_names = std::move(ply.attribute_names);
   } else {
+    words = lower_extension(file) == ".smesh" ? "smesh" : "poly";
     surface = read_poly(file, source);
     for (std::size_t a = 0; a < surface.attributes.size(); ++a)
       attribute_names.push_back(fmt::format("attribute{}", a));
   }
-  if (extension == ".stl" || extension == ".ply") merge_coincident_points(surface);
+  if (kind != FileKind::tetgen_surface) merge_coincident_points(surface);
   require_sound(surface, source);
 
   MeshBlocks result;
-  result.format = fmt::format("surface ({}) filled by TetGen", extension.substr(1));
+  result.format = fmt::format("surface ({}) filled by TetGen", words);
   double volume = enclosed_volume(surface);
   // Facets that turn both ways cancel; the box is then the only measure.
   if (!(volume > 1e-3 * box_volume(surface))) volume = box_volume(surface);

@@ -43,11 +43,6 @@ VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions&
 bool looks_like_nifti(const std::filesystem::path& file);
 bool looks_like_nrrd(std::string_view beginning);
 bool looks_like_meta_image(std::string_view beginning);
-/// VTK XML image data or rectilinear grid, or legacy VTK of one; other kinds of VTK are meshes.
-bool looks_like_vtk_grid(std::string_view beginning);
-
-/// Whether a word is somewhere in the text in quotes: an XML attribute's value.
-bool has_quoted(std::string_view text, std::string_view word);
 
 /// Spacing and direction from what one step of the index along each axis is in the world.
 void set_axes(scene::GridGeometry& geometry, const std::array<glm::dvec3, 3>& steps);

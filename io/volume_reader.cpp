@@ -10,12 +10,12 @@
 #include "io/brick_file.hpp"
 #include "io/clean_errors.hpp"
 #include "io/field_choice.hpp"
+#include "io/file_kinds.hpp"
 #include "io/gzip.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
 #include "io/stored_samples.hpp"
-#include "io/volume_file.hpp"
 #include "io/volume_formats.hpp"
 
 namespace tessera::io {
@@ -26,16 +26,25 @@ enum class VolumeKind { none, vtk, meta_image, nrrd, nifti, bricks };
 
 /// Of NIfTI files gzip is a part of the format, so that they are inflated as they are read; others are inflated first.
 VolumeKind volume_kind_of(const std::filesystem::path& file) {
-  std::string beginning = read_beginning(file, 4096);
-  if (looks_like_gzip(beginning)) {
-    const auto inner = inflate_beginning(std::as_bytes(std::span(beginning)), 4096);
-    beginning.assign(reinterpret_cast<const char*>(inner.data()), inner.size());
+  const FormatRow* const row = format_begun(file);
+  switch (row == nullptr ? FileKind::unread : row->kind) {
+    case FileKind::bricks:
+      return VolumeKind::bricks;
+    case FileKind::vtk_grid:
+      return VolumeKind::vtk;
+    case FileKind::nrrd:
+      return VolumeKind::nrrd;
+    case FileKind::meta_image:
+      return VolumeKind::meta_image;
+    case FileKind::nifti:
+      return VolumeKind::nifti;
+    default:
+      return VolumeKind::none;
   }
-  if (looks_like_bricks(beginning)) return VolumeKind::bricks;
-  if (looks_like_vtk_grid(beginning)) return VolumeKind::vtk;
-  if (looks_like_nrrd(beginning)) return VolumeKind::nrrd;
-  if (looks_like_meta_image(beginning)) return VolumeKind::meta_image;
-  return looks_like_nifti(file) ? VolumeKind::nifti : VolumeKind::none;
+}
+
+bool holds_grid(const FormatRow* row) {
+  return row != nullptr && (row->holds == FileHolds::grid || row->holds == FileHolds::grid_or_mesh);
 }
 
 /// The name that counts where the beginning says nothing: x.raw of x.raw.gz.
@@ -198,14 +207,8 @@ void set_axes(scene::GridGeometry& geometry, const std::array<glm::dvec3, 3>& st
 
 bool is_volume(const std::filesystem::path& file) {
   std::error_code unknown;
-  if (!std::filesystem::is_regular_file(file, unknown) || std::filesystem::file_size(file, unknown) == 0 || unknown)
-    return is_volume_file(file);
-  if (lower_extension(without_gz(file)) == ".raw") return true;
-  if (volume_kind_of(file) != VolumeKind::none) return true;
-  // A damaged one is told as what it was meant to be. .vtr and .pvtr are among the meshes' names too: VTK XML of
-  // another kind is one.
-  if (is_mesh_file(file) && read_beginning(file, 4096).find("<VTKFile") != std::string::npos) return false;
-  return is_volume_file(file);
+  if (lower_extension(without_gz(file)) == ".raw" && !std::filesystem::is_directory(file, unknown)) return true;
+  return holds_grid(format_of(file));
 }
 
 void require_volume(const std::filesystem::path& file) {

@@ -11,10 +11,11 @@ namespace tessera::io {
 namespace {
 
 [[noreturn]] void refuse(const std::filesystem::path& file) {
+  const FormatRow* const row = format_of(file);
   throw scene::bad_input(
       fmt::format("{}: {} files need VTK, which this build leaves out; build with TESSERA_VTK=ON, or convert it to "
                   "another format",
-                  file.string(), lower_extension(file)));
+                  file.string(), row != nullptr ? row->name : lower_extension(file)));
 }
 
 }  // namespace

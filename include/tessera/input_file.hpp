@@ -14,9 +14,9 @@ namespace tessera {
 /// name may be wrong; by its name where it is not there or is .raw.
 TESSERA_EXPORT bool opens_as_grid(const std::filesystem::path& file, const ReadOptions& options = {});
 
-/// Whether its extension is one of a mesh. Rectilinear grids have one that is: they can be opened as either. Does not
-/// look at the file.
-TESSERA_EXPORT bool is_mesh_name(const std::filesystem::path& file);
+/// Whether it can be opened as a mesh: by what it begins with, by its name where that says nothing or it is not there.
+/// Rectilinear grids can be opened as either.
+TESSERA_EXPORT bool opens_as_mesh(const std::filesystem::path& file);
 
 /// Throws Error(bad_input) unless the input is there: a file, or of a time series at least one step. For what must not
 /// be said of a file that is not there, such as that it is a mesh.

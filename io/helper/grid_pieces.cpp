@@ -22,6 +22,7 @@
 #include <optional>
 #include <sstream>
 
+#include "io/file_beginnings.hpp"
 #include "io/helper/extents.hpp"
 #include "io/helper/readers.hpp"
 #include "io/input_file.hpp"
@@ -115,7 +116,7 @@ WholeGrid read_whole(const std::filesystem::path& file, GridKind kind) {
 
 vtkSmartPointer<vtkDataSet> read_piece(const std::filesystem::path& piece, const std::filesystem::path& file,
                                        GridKind kind, std::vector<std::string>& notes) {
-  if (!has_quoted(read_beginning(piece, 4096), words_of(kind).piece))
+  if (vtk_xml_type(read_beginning(piece, 4096)) != words_of(kind).piece)
     throw scene::bad_input(fmt::format("{}: it is a piece of {} and no {}; write them anew", piece.string(),
                                        file.string(), words_of(kind).extension));
   std::string warning;

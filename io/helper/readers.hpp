@@ -29,7 +29,11 @@ ForeignContents read_stl(Holdings& holdings, const std::filesystem::path& file, 
 /// vector NAME.
 ForeignContents read_exodus(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
-/// OpenFOAM: the case that the file lies in, which may be empty. Put together, or as its processors left it.
+/// HDF5, by what is in it: Exodus, CGNS or VTKHDF.
+ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+
+/// OpenFOAM: the case that a folder is or a file lies in, which may be empty. Put together, or as its processors left
+/// it.
 ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
 /// EnSight 6 and Gold, by the .case file.

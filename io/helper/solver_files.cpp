@@ -77,10 +77,31 @@ bool has_wide_labels(const std::filesystem::path& folder) {
   return false;
 }
 
+bool is_case(const std::filesystem::path& folder) {
+  std::error_code unknown;
+  return is_input_folder(folder) || std::filesystem::exists(folder / "processor0", unknown) ||
+         std::filesystem::exists(folder / "processors", unknown);
+}
+
+/// The folder of the case that a file or folder is of: the one that it is in, or one of those above.
+std::filesystem::path case_of(const std::filesystem::path& named) {
+  std::error_code unknown;
+  if (std::filesystem::is_directory(named, unknown)) return named;
+  const std::filesystem::path own = named.has_parent_path() ? named.parent_path() : std::filesystem::path(".");
+  std::filesystem::path folder = own;
+  for (int level = 0; level < 4; ++level) {
+    if (is_case(folder)) return folder;
+    folder /= "..";
+  }
+  return own;
+}
+
 }  // namespace
 
-ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
-  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::path& named, const nlohmann::json& request) {
+  const std::filesystem::path folder = case_of(named);
+  // The reader takes the case from a name in its folder, and asks for no such file.
+  const std::filesystem::path file = is_case(folder) ? folder / "case.foam" : named;
   allow_for_folder(folder);
   vtkNew<vtkPOpenFOAMReader> reader;
   const vtkNew<vtkDummyController> alone;  // it takes the parts of a case for processes' and asks who it is

@@ -20,8 +20,6 @@ namespace tessera::io {
 VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions& /*options*/) {
   throw damaged(file, "it is VTK's");
 }
-bool looks_like_vtk_grid(std::string_view /*beginning*/) { return false; }
-bool is_mesh_file(const std::filesystem::path& /*file*/) { return false; }  // none of the names here is a mesh's
 
 }  // namespace tessera::io
 

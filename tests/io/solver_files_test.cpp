@@ -161,6 +161,8 @@ TEST(SolverFiles, AvsUcdAndTecplotAreReadAsTheyAre) {
   const Cubes cubes(3);
   expect_cube(read_mesh(folder.write("m.inp", avs_ucd(cubes))), 3);
   expect_cube(read_mesh(folder.write("m.tec", tecplot(cubes))), 3);
+  expect_cube(read_mesh(folder.write("ucd.tec", avs_ucd(cubes))), 3);
+  expect_cube(read_mesh(folder.write("tecplot.dat", tecplot(cubes))), 3);
 }
 
 TEST(SolverFiles, AnOpenFoamCaseIsReadAtItsLastTimeOrTheOneAskedFor) {
@@ -170,6 +172,9 @@ TEST(SolverFiles, AnOpenFoamCaseIsReadAtItsLastTimeOrTheOneAskedFor) {
   write_control(folder.path());
   const MeshFile last = read_mesh(folder / "case.foam");
   expect_cube(last, 3);
+  for (const auto& other :
+       {folder.path(), folder / "system" / "controlDict", folder / "constant" / "polyMesh" / "points"})
+    EXPECT_EQ(read_mesh(other).mesh.scalars, last.mesh.scalars) << other;
   EXPECT_EQ(last.mesh.field_name, "p");
   EXPECT_EQ(last.mesh.scalars.front(), 1000);
   MeshOptions first;

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tessera/export.hpp"
+
+namespace tessera {
+
+/// What a file of a format holds.
+enum class FileHolds : std::uint8_t {
+  mesh,
+  surface,       ///< closed: it is filled with tets
+  grid,          ///< regular or rectilinear: a volume
+  grid_or_mesh,  ///< a grid, which Dataset::open gives as a mesh if asked (ReadOptions::grid_as_mesh)
+  series,        ///< a list of files, one a time step (tessera/time_series.hpp)
+  not_read       ///< known, so that it can be refused by its name
+};
+
+/// One format of files, as the reader itself knows it.
+struct FileFormat {
+  std::string name;                     ///< "VTK XML unstructured grid", "NRRD", ...
+  std::vector<std::string> extensions;  ///< in lower case, with the dot; may be empty
+  FileHolds holds = FileHolds::mesh;
+  std::string remark;              ///< what applies, and limits; of what is not read, why
+  bool told_by_beginning = false;  ///< a wrong name does no harm
+  std::string left_out;            ///< what this build lacks to read it ("VTK"); empty if it reads it
+};
+
+/// All formats, those that are not read last.
+TESSERA_EXPORT std::vector<FileFormat> file_formats();
+
+}  // namespace tessera

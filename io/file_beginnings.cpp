@@ -1,0 +1,217 @@
+#include "io/file_beginnings.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <optional>
+#include <vector>
+
+#include "io/brick_file.hpp"
+#include "io/volume_formats.hpp"
+
+namespace tessera::io {
+namespace {
+
+constexpr std::string_view blanks = " \t\r\n\v\f";
+
+std::string_view without_blanks(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+bool is_text(std::string_view text) { return text.find('\0') == std::string_view::npos; }
+
+/// The first `count` lines that are neither blank nor begin with `comment`; the last of what is cut off may be short.
+std::vector<std::string_view> first_lines(std::string_view text, char comment, std::size_t count) {
+  std::vector<std::string_view> lines;
+  while (!text.empty() && lines.size() < count) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = without_blanks(text.substr(0, end));
+    if (!line.empty() && line.front() != comment) lines.push_back(line);
+    text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
+  }
+  return lines;
+}
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  for (line = without_blanks(line); !line.empty();) {
+    const std::size_t end = std::min(line.find_first_of(blanks), line.size());
+    words.push_back(line.substr(0, end));
+    line = without_blanks(line.substr(end));
+  }
+  return words;
+}
+
+bool is_count(std::string_view word) {
+  return !word.empty() && word.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// Whether a line is KEY and then `after`, blanks between, upper or lower case.
+bool is_key(std::string_view line, std::string_view key, char after) {
+  if (line.size() < key.size() ||
+      !std::equal(key.begin(), key.end(), line.begin(), [](char a, char b) { return a == (b & ~0x20); }))
+    return false;
+  const std::string_view rest = without_blanks(line.substr(key.size()));
+  return rest.starts_with(after);
+}
+
+bool is_xml_of(const FileBeginning& file, std::initializer_list<std::string_view> types) {
+  const std::string type = vtk_xml_type(file.text);
+  return !type.empty() && std::find(types.begin(), types.end(), type) != types.end();
+}
+
+bool is_legacy_of(const FileBeginning& file, std::initializer_list<std::string_view> types) {
+  const std::string type = vtk_legacy_type(file.text);
+  return !type.empty() && std::find(types.begin(), types.end(), type) != types.end();
+}
+
+}  // namespace
+
+std::string vtk_xml_type(std::string_view text) {
+  const std::size_t element = text.find("<VTKFile");
+  if (element == std::string_view::npos || !without_blanks(text.substr(0, element + 1)).starts_with('<')) return "";
+  const std::size_t end = text.find('>', element), key = text.find("type", element);
+  if (key == std::string_view::npos || key > end) return "";
+  const std::size_t open = text.find_first_of("\"'", key);
+  if (open == std::string_view::npos) return "";
+  const std::size_t close = text.find(text[open], open + 1);
+  return std::string(close == std::string_view::npos ? std::string_view() : text.substr(open + 1, close - open - 1));
+}
+
+std::string vtk_legacy_type(std::string_view text) {
+  if (!text.starts_with("# vtk DataFile")) return "";
+  const std::size_t at = text.find("DATASET");
+  if (at == std::string_view::npos) return "";
+  const auto words = words_of(text.substr(at + 7, 60));
+  return words.empty() ? "" : std::string(words.front());
+}
+
+bool begins_as_vtu(const FileBeginning& file) { return is_xml_of(file, {"UnstructuredGrid", "PUnstructuredGrid"}); }
+bool begins_as_vts(const FileBeginning& file) { return is_xml_of(file, {"StructuredGrid", "PStructuredGrid"}); }
+bool begins_as_vtk_list(const FileBeginning& file) {
+  return is_xml_of(file, {"vtkMultiBlockDataSet", "vtkPartitionedDataSetCollection", "vtkPartitionedDataSet"});
+}
+bool begins_as_vtp(const FileBeginning& file) { return is_xml_of(file, {"PolyData"}); }
+bool begins_as_vti(const FileBeginning& file) { return is_xml_of(file, {"ImageData", "PImageData"}); }
+bool begins_as_vtr(const FileBeginning& file) { return is_xml_of(file, {"RectilinearGrid", "PRectilinearGrid"}); }
+bool begins_as_pvd(const FileBeginning& file) { return is_xml_of(file, {"Collection"}); }
+bool begins_as_other_vtk_xml(const FileBeginning& file) { return file.text.find("<VTKFile") != std::string_view::npos; }
+
+bool begins_as_legacy_mesh(const FileBeginning& file) {
+  return file.text.starts_with("# vtk DataFile") && !begins_as_legacy_grid(file);
+}
+bool begins_as_legacy_grid(const FileBeginning& file) {
+  return is_legacy_of(file, {"STRUCTURED_POINTS", "RECTILINEAR_GRID"});
+}
+
+/// Classic NetCDF lists its dimensions first.
+bool begins_as_exodus(const FileBeginning& file) {
+  return file.text.starts_with("CDF") &&
+         (file.text.find("num_nodes") != std::string_view::npos || file.text.find("num_dim") != std::string_view::npos);
+}
+bool begins_as_hdf5(const FileBeginning& file) { return file.text.starts_with("\x89HDF\r\n\x1a\n"); }
+/// Four bytes before it are "@(#)" with the highest bit of some set.
+bool begins_as_adf(const FileBeginning& file) {
+  return file.text.size() > 4 && file.text.substr(4).starts_with("ADF Database Version");
+}
+
+bool begins_as_openfoam(const FileBeginning& file) {
+  const std::size_t word = file.text.find("FoamFile");
+  return word != std::string_view::npos && without_blanks(file.text.substr(word + 8)).starts_with('{');
+}
+
+bool begins_as_ensight(const FileBeginning& file) {
+  const auto lines = first_lines(file.text, '#', 2);
+  return is_text(file.text) && lines.size() == 2 && lines[0] == "FORMAT" &&
+         without_blanks(lines[1]).starts_with("type:");
+}
+
+bool begins_as_gmsh(const FileBeginning& file) {
+  const auto lines = first_lines(file.text, '\0', 1);
+  if (lines.empty()) return false;
+  if (lines[0] == "$MeshFormat" || lines[0] == "$NOD") return true;
+  return lines[0] == "$Comments" && file.text.find("$MeshFormat") != std::string_view::npos;
+}
+
+bool begins_as_su2(const FileBeginning& file) {
+  if (!is_text(file.text)) return false;
+  const auto lines = first_lines(file.text, '%', 1);
+  return !lines.empty() && (is_key(lines[0], "NDIME", '=') || is_key(lines[0], "NZONE", '='));
+}
+
+bool begins_as_fluent(const FileBeginning& file) {
+  const std::string_view text = without_blanks(file.text);
+  if (!text.starts_with('(')) return false;
+  const auto words = words_of(text.substr(1, 40));
+  // Sections: a comment, a header, dimensions, the machine that wrote it.
+  return words.size() > 1 && is_count(words[0]) && words[0].size() <= 2 &&
+         (words[1].front() == '"' || words[1].front() == '(' || (words[0] == "2" && words[1].front() == '3'));
+}
+
+bool begins_as_gambit(const FileBeginning& file) {
+  const auto lines = first_lines(file.text, '\0', 1);
+  return !lines.empty() && lines[0].starts_with("CONTROL INFO");
+}
+
+bool begins_as_avs_ucd(const FileBeginning& file) {
+  if (!is_text(file.text)) return false;
+  const auto lines = first_lines(file.text, '#', 2);
+  if (lines.size() < 2) return false;
+  const auto counts = words_of(lines[0]), point = words_of(lines[1]);
+  return counts.size() == 5 && std::all_of(counts.begin(), counts.end(), is_count) && point.size() == 4 &&
+         is_count(point[0]);
+}
+
+bool begins_as_tecplot(const FileBeginning& file) {
+  if (!is_text(file.text)) return false;
+  const auto lines = first_lines(file.text, '#', 1);
+  return !lines.empty() && (is_key(lines[0], "TITLE", '=') || is_key(lines[0], "VARIABLES", '='));
+}
+
+bool begins_as_stl(const FileBeginning& file) {
+  if (file.text.size() >= 84) {
+    std::uint32_t faces = 0;
+    std::memcpy(&faces, file.text.data() + 80, sizeof faces);
+    if (faces > 0 && file.size == 84 + 50 * std::uint64_t{faces}) return true;
+  }
+  const std::string_view text = without_blanks(file.text);
+  if (!text.starts_with("solid") || !is_text(file.text)) return false;
+  const auto lines = first_lines(text, '\0', 2);
+  return lines.size() == 2 && lines[1].starts_with("facet");
+}
+
+bool begins_as_ply(const FileBeginning& file) {
+  return file.text.starts_with("ply\n") || file.text.starts_with("ply\r") || file.text.starts_with("ply ");
+}
+
+bool begins_as_brick_file(const FileBeginning& file) { return looks_like_bricks(file.text); }
+bool begins_as_nrrd(const FileBeginning& file) { return looks_like_nrrd(file.text); }
+bool begins_as_meta_image(const FileBeginning& file) { return looks_like_meta_image(file.text); }
+bool begins_as_nifti(const FileBeginning& file) { return looks_like_nifti(file.file); }
+
+bool begins_as_xdmf(const FileBeginning& file) {
+  return without_blanks(file.text).starts_with('<') && file.text.find("<Xdmf") != std::string_view::npos;
+}
+bool begins_as_binary_tecplot(const FileBeginning& file) { return file.text.starts_with("#!TDV"); }
+
+bool begins_as_abaqus(const FileBeginning& file) {
+  if (!is_text(file.text)) return false;
+  const auto lines = first_lines(file.text, '\0', 1);
+  if (lines.empty() || !lines[0].starts_with('*')) return false;
+  std::string word(lines[0].substr(0, 9));
+  std::transform(word.begin(), word.end(), word.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
+  return word.starts_with("*heading") || word.starts_with("*node") || word.starts_with("**");
+}
+
+bool begins_as_medit(const FileBeginning& file) {
+  return without_blanks(file.text.substr(0, 64)).starts_with("MeshVersionFormatted");
+}
+bool begins_as_netgen(const FileBeginning& file) {
+  const auto lines = first_lines(file.text, '#', 1);
+  return !lines.empty() && lines[0] == "mesh3d";
+}
+bool begins_as_nek5000(const FileBeginning& file) { return file.text.starts_with("#std "); }
+
+}  // namespace tessera::io

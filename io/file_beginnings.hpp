@@ -1,0 +1,49 @@
+#pragma once
+
+#include "io/file_kinds.hpp"
+
+/// Whether a file begins as one of a format does. None says yes to a file of another format of the table.
+namespace tessera::io {
+
+/// The `type` of <VTKFile type="...">, or else empty.
+std::string vtk_xml_type(std::string_view beginning);
+/// The word after DATASET of legacy VTK, or else empty.
+std::string vtk_legacy_type(std::string_view beginning);
+
+bool begins_as_vtu(const FileBeginning& file);
+bool begins_as_vts(const FileBeginning& file);
+bool begins_as_vtk_list(const FileBeginning& file);
+bool begins_as_vtp(const FileBeginning& file);
+bool begins_as_vti(const FileBeginning& file);
+bool begins_as_vtr(const FileBeginning& file);
+bool begins_as_pvd(const FileBeginning& file);
+bool begins_as_other_vtk_xml(const FileBeginning& file);
+bool begins_as_legacy_mesh(const FileBeginning& file);
+bool begins_as_legacy_grid(const FileBeginning& file);
+bool begins_as_exodus(const FileBeginning& file);
+bool begins_as_hdf5(const FileBeginning& file);
+bool begins_as_adf(const FileBeginning& file);
+bool begins_as_openfoam(const FileBeginning& file);
+bool begins_as_ensight(const FileBeginning& file);
+bool begins_as_fluent(const FileBeginning& file);
+bool begins_as_gambit(const FileBeginning& file);
+bool begins_as_avs_ucd(const FileBeginning& file);
+bool begins_as_tecplot(const FileBeginning& file);
+bool begins_as_stl(const FileBeginning& file);
+bool begins_as_ply(const FileBeginning& file);
+bool begins_as_brick_file(const FileBeginning& file);
+bool begins_as_nrrd(const FileBeginning& file);
+bool begins_as_meta_image(const FileBeginning& file);
+bool begins_as_nifti(const FileBeginning& file);
+
+// Not read.
+bool begins_as_gmsh(const FileBeginning& file);
+bool begins_as_su2(const FileBeginning& file);
+bool begins_as_xdmf(const FileBeginning& file);
+bool begins_as_binary_tecplot(const FileBeginning& file);
+bool begins_as_abaqus(const FileBeginning& file);
+bool begins_as_medit(const FileBeginning& file);
+bool begins_as_netgen(const FileBeginning& file);
+bool begins_as_nek5000(const FileBeginning& file);
+
+}  // namespace tessera::io

@@ -1,0 +1,177 @@
+#include "io/file_kinds.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "io/file_beginnings.hpp"
+#include "io/gzip.hpp"
+#include "io/input_file.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+constexpr const char* filled = "closed; filled with tets, field depth beside its own";
+constexpr const char* pieces = "pieces fill the whole and have the same arrays";
+constexpr auto unlisted = FormatRow::Listed::no;
+
+/// A file is of the first row that it begins as; rows of one beginning are in the order in which they are asked.
+constexpr std::array rows = {
+    FormatRow{FileKind::vtk_xml, "VTK XML unstructured grid", ".vtu .pvtu", FileHolds::mesh, Needs::vtk,
+              "pieces appended, ghost cells dropped; ranks read pieces", begins_as_vtu},
+    FormatRow{FileKind::vtk_xml, "VTK XML curvilinear grid", ".vts .pvts", FileHolds::mesh, Needs::vtk, pieces,
+              begins_as_vts},
+    FormatRow{FileKind::vtk_xml, "VTK XML multi-block", ".vtm .vtmb .vtpc .vtpd", FileHolds::mesh, Needs::vtk,
+              "all volumes among them; surfaces left out", begins_as_vtk_list},
+    FormatRow{FileKind::vtk_legacy, "legacy VTK unstructured or curvilinear grid", ".vtk", FileHolds::mesh, Needs::vtk,
+              "text or binary", begins_as_legacy_mesh},
+    FormatRow{FileKind::exodus, "Exodus II", ".ex2 .exo .exii .e .g", FileHolds::mesh, Needs::vtk,
+              "NetCDF or HDF5; all element blocks; nodes moved by a vector dis...", begins_as_exodus, "", true},
+    FormatRow{FileKind::solver, "OpenFOAM case", ".foam", FileHolds::mesh, Needs::vtk,
+              "the case's folder or a file in it; also decomposed; polyhedra split", begins_as_openfoam, "openfoam",
+              true},
+    FormatRow{FileKind::solver, "EnSight 6 or Gold", ".case .encas", FileHolds::mesh, Needs::vtk, "all parts",
+              begins_as_ensight, "ensight", true},
+    FormatRow{FileKind::solver, "CGNS", ".cgns", FileHolds::mesh, Needs::vtk, "HDF5 or ADF", begins_as_adf, "cgns",
+              true},
+    FormatRow{FileKind::solver, "VTKHDF", ".vtkhdf", FileHolds::mesh, Needs::vtk,
+              "unstructured grids; image data as hexahedra", nullptr, "vtk_hdf", true},
+    FormatRow{FileKind::hdf5, "HDF5", "", FileHolds::mesh, Needs::vtk, "", begins_as_hdf5, "", true, unlisted},
+    FormatRow{FileKind::solver, "Fluent", ".cas", FileHolds::mesh, Needs::vtk, "text or binary, no HDF5",
+              begins_as_fluent, "fluent", true},
+    FormatRow{FileKind::solver, "GAMBIT", ".neu", FileHolds::mesh, Needs::vtk, "", begins_as_gambit, "gambit", true},
+    FormatRow{FileKind::solver, "AVS UCD", ".inp .ucd", FileHolds::mesh, Needs::vtk, "text; binary by its name",
+              begins_as_avs_ucd, "avs_ucd", true},
+    FormatRow{FileKind::solver, "Tecplot", ".tec", FileHolds::mesh, Needs::vtk, "text", begins_as_tecplot, "tecplot",
+              true},
+    FormatRow{FileKind::plot3d, "PLOT3D", ".xyz .p3d .x .bin", FileHolds::mesh, Needs::vtk,
+              "the solution beside it, or `q`; IBLANK 0 hides", nullptr},
+    FormatRow{FileKind::tetgen_mesh, "TetGen mesh", ".node .ele", FileHolds::mesh, Needs::nothing,
+              "either name finds the other", nullptr},
+    FormatRow{FileKind::tets, "raw tetrahedra", ".tets", FileHolds::mesh, Needs::nothing,
+              "bytes in docs/FORMATS.md; ranks read ranges", nullptr},
+    FormatRow{FileKind::stl, "STL", ".stl", FileHolds::surface, Needs::vtk_and_tetgen, filled, begins_as_stl},
+    FormatRow{FileKind::ply, "PLY", ".ply", FileHolds::surface, Needs::tetgen, filled, begins_as_ply},
+    FormatRow{FileKind::tetgen_surface, "TetGen surface", ".poly .smesh", FileHolds::surface, Needs::tetgen, filled,
+              nullptr},
+    FormatRow{FileKind::vtk_grid, "VTK XML image data", ".vti .pvti", FileHolds::grid, Needs::vtk, pieces,
+              begins_as_vti},
+    FormatRow{FileKind::vtk_grid, "VTK XML rectilinear grid", ".vtr .pvtr", FileHolds::grid_or_mesh, Needs::vtk, pieces,
+              begins_as_vtr},
+    FormatRow{FileKind::vtk_grid, "legacy VTK structured points or rectilinear grid", ".vtk", FileHolds::grid_or_mesh,
+              Needs::vtk, "text or binary", begins_as_legacy_grid},
+    FormatRow{FileKind::meta_image, "MetaImage", ".mhd .mha", FileHolds::grid, Needs::nothing,
+              "raw, compressed or text; one file of samples", begins_as_meta_image},
+    FormatRow{FileKind::nrrd, "NRRD", ".nrrd .nhdr", FileHolds::grid, Needs::nothing,
+              "raw, gzip, text or hex; one file of samples", begins_as_nrrd},
+    FormatRow{FileKind::nifti, "NIfTI", ".nii", FileHolds::grid, Needs::nothing, "NIfTI-1 and -2, three dimensions",
+              begins_as_nifti},
+    FormatRow{FileKind::bricks, "bricks", ".bricks", FileHolds::grid, Needs::nothing, "what convert writes",
+              begins_as_brick_file},
+    FormatRow{FileKind::raw, "raw samples", ".raw", FileHolds::grid, Needs::nothing,
+              "described by `dims` and `type`, or NAME_WxHxD_TYPE.raw", nullptr},
+    FormatRow{FileKind::pvd, "ParaView collection", ".pvd", FileHolds::series, Needs::nothing, "of any meshes or grids",
+              begins_as_pvd},
+    FormatRow{FileKind::unread, "VTK surface", ".vtp", FileHolds::not_read, Needs::nothing,
+              "give a mesh, or a closed surface as .stl or .ply", begins_as_vtp, "", false, unlisted},
+    FormatRow{FileKind::unread, "XDMF", ".xdmf .xmf", FileHolds::not_read, Needs::nothing,
+              "VTK's reader is not packaged; save it as .vtu in ParaView", begins_as_xdmf},
+    FormatRow{FileKind::unread, "Tecplot binary", ".plt .szplt", FileHolds::not_read, Needs::nothing,
+              "its library is not free; write text, CGNS or .vtu", begins_as_binary_tecplot},
+    FormatRow{FileKind::unread, "Abaqus or Ansys input", ".cdb", FileHolds::not_read, Needs::nothing,
+              "VTK has no reader; convert it to .vtu with meshio", begins_as_abaqus},
+    FormatRow{FileKind::unread, "Abaqus or Ansys results", ".odb .rst .rth", FileHolds::not_read, Needs::nothing,
+              "their libraries are not free; export Exodus, EnSight or .vtu", nullptr},
+    FormatRow{FileKind::unread, "Nek5000", ".nek5000", FileHolds::not_read, Needs::nothing,
+              "VTK's reader is not packaged; save it as .vtu in ParaView", begins_as_nek5000},
+    FormatRow{FileKind::unread, "Medit", ".mesh .meshb", FileHolds::not_read, Needs::nothing,
+              "VTK has no reader; convert it to .vtu with meshio", begins_as_medit},
+    FormatRow{FileKind::unread, "Netgen", ".vol", FileHolds::not_read, Needs::nothing,
+              "VTK has no reader; convert it to .vtu with meshio", begins_as_netgen},
+    FormatRow{FileKind::unread, "Gmsh", ".msh", FileHolds::not_read, Needs::nothing,
+              "no reader yet; have gmsh write .vtk", begins_as_gmsh},
+    FormatRow{FileKind::unread, "SU2", ".su2", FileHolds::not_read, Needs::nothing,
+              "no reader yet; convert it to .vtu with meshio", begins_as_su2},
+    FormatRow{FileKind::unread, "MED", ".med .rmed", FileHolds::not_read, Needs::nothing,
+              "VTK has no reader; write .vtu with ParaVis or meshio", nullptr},
+};
+
+/// VTK XML of a kind that no row has: its reader says what it holds.
+constexpr FormatRow other_vtk_xml{FileKind::vtk_xml, "VTK XML", "", FileHolds::mesh, Needs::vtk, "", nullptr};
+
+bool has_extension(const FormatRow& row, const std::string& extension) {
+  std::string_view rest = row.extensions;
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find(' '), rest.size());
+    if (rest.substr(0, end) == extension) return true;
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return false;
+}
+
+bool is_vtk(const FormatRow& row) {
+  return row.kind == FileKind::vtk_xml || row.kind == FileKind::vtk_legacy || row.kind == FileKind::vtk_grid;
+}
+
+const FormatRow& row_of_cases() {
+  return *std::find_if(rows.begin(), rows.end(), [](const FormatRow& r) { return r.begins == begins_as_openfoam; });
+}
+
+}  // namespace
+
+std::span<const FormatRow> format_rows() { return rows; }
+
+const FormatRow* format_named(const std::filesystem::path& file) {
+  const bool compressed = lower_extension(file) == ".gz";
+  const std::string extension = lower_extension(compressed ? file.stem() : file);
+  if (extension.empty()) return nullptr;
+  const auto* row =
+      std::find_if(rows.begin(), rows.end(), [&](const FormatRow& r) { return has_extension(r, extension); });
+  return row == rows.end() ? nullptr : row;
+}
+
+const FormatRow* format_begun(const std::filesystem::path& file) {
+  std::error_code unknown;
+  if (is_input_folder(file)) return &row_of_cases();
+  if (!std::filesystem::is_regular_file(file, unknown) || std::filesystem::file_size(file, unknown) == 0 || unknown)
+    return nullptr;
+  constexpr std::size_t length = 4096;
+  std::string text = read_beginning(file, length);
+  std::uint64_t size = std::filesystem::file_size(file, unknown);
+  if (looks_like_gzip(text)) {
+    const auto inner = inflate_beginning(std::as_bytes(std::span(text)), length);
+    text.assign(reinterpret_cast<const char*>(inner.data()), inner.size());
+    size = 0;
+  }
+  const FileBeginning beginning{file, text, size};
+  for (const FormatRow& row : rows)
+    if (row.begins != nullptr && row.begins(beginning)) return &row;
+  // VTK XML of a kind that no row has: damaged, or its reader says what it holds.
+  const FormatRow* const named = format_named(file);
+  if (!begins_as_other_vtk_xml(beginning) || (named != nullptr && is_vtk(*named))) return nullptr;
+  return &other_vtk_xml;
+}
+
+const FormatRow* format_of(const std::filesystem::path& file) {
+  const FormatRow* const begun = format_begun(file);
+  return begun != nullptr ? begun : format_named(file);
+}
+
+void refuse_as_mesh(const std::filesystem::path& file) {
+  const FormatRow* const row = format_of(file);
+  if (row == nullptr)
+    throw scene::bad_input(fmt::format(
+        "{}: it neither begins as a file of a known format nor has a name of one; `tessera formats` lists them",
+        file.string()));
+  if (row->kind == FileKind::unread)
+    throw scene::bad_input(fmt::format("{}: it is {}, which is not read; {}", file.string(), row->name, row->remark));
+  if (row->holds == FileHolds::series)
+    throw scene::bad_input(
+        fmt::format("{}: is a time series, which only render takes; give one of its meshes", file.string()));
+  throw scene::bad_input(
+      fmt::format("{}: it is a regular grid, no mesh; render, info and convert take it as a volume", file.string()));
+}
+
+}  // namespace tessera::io

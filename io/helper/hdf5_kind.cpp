@@ -1,0 +1,79 @@
+// HDF5 says nothing at its beginning of what is in it.
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include <nlohmann/json.hpp>
+
+#include "io/helper/readers.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io::helper {
+namespace {
+
+/// An open file of the library's, closed with this.
+class Hdf5File {
+ public:
+  explicit Hdf5File(const std::filesystem::path& file) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // it would print
+    id_ = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  }
+  ~Hdf5File() {
+    if (is_open()) H5Fclose(id_);
+  }
+  Hdf5File(const Hdf5File&) = delete;
+  Hdf5File& operator=(const Hdf5File&) = delete;
+
+  [[nodiscard]] bool is_open() const { return id_ >= 0; }
+  [[nodiscard]] bool has(const char* name) const { return H5Lexists(id_, name, H5P_DEFAULT) > 0; }
+  [[nodiscard]] bool has_attribute(const char* name) const { return H5Aexists(id_, name) > 0; }
+
+ private:
+  hid_t id_ = H5I_INVALID_HID;
+};
+
+}  // namespace
+
+ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  allow_for(file);
+  enum class Kind { unknown, vtk, cgns, exodus, fluent, minc, med } kind = Kind::unknown;
+  {
+    const Hdf5File opened(file);
+    if (!opened.is_open())
+      throw scene::bad_input(fmt::format(
+          "{}: it begins as HDF5 and cannot be opened; it is truncated or damaged, write it anew", file.string()));
+    if (opened.has("VTKHDF"))
+      kind = Kind::vtk;
+    else if (opened.has("CGNSLibraryVersion"))
+      kind = Kind::cgns;
+    else if (opened.has_attribute("floating_point_word_size") || opened.has("num_nodes"))
+      kind = Kind::exodus;
+    else if (opened.has("meshes") && opened.has("settings"))
+      kind = Kind::fluent;
+    else if (opened.has("minc-2.0"))
+      kind = Kind::minc;
+    else if (opened.has("ENS_MAA"))
+      kind = Kind::med;
+  }
+  const auto refuse = [&](const char* what, const char* remedy) {
+    return scene::bad_input(fmt::format("{}: it is HDF5 and holds {}; {}", file.string(), what, remedy));
+  };
+  switch (kind) {
+    case Kind::vtk:
+      return read_vtk_hdf(holdings, file, request);
+    case Kind::cgns:
+      return read_cgns(holdings, file, request);
+    case Kind::exodus:
+      return read_exodus(holdings, file, request);
+    case Kind::fluent:
+      throw refuse("a Fluent case, which is read as text only", "export CGNS, EnSight or a .cas without HDF5");
+    case Kind::minc:
+      throw refuse("a MINC 2 volume, which is not read", "convert it with mnc2nii or minc2nrrd");
+    case Kind::med:
+      throw refuse("a MED mesh, which is not read", "write .vtu with ParaVis or meshio");
+    case Kind::unknown:
+      break;
+  }
+  throw refuse("neither Exodus nor CGNS nor VTKHDF", "give the program that wrote it another format to write");
+}
+
+}  // namespace tessera::io::helper

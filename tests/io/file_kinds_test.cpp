@@ -1,0 +1,127 @@
+// What a file is, is told from what it begins with, then from its name.
+#include "io/file_kinds.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "io/mesh_checks.hpp"
+#include "io/mesh_reader.hpp"
+#include "io/temporary_folder.hpp"
+#include "io/volume_reader.hpp"
+
+namespace tessera::io {
+namespace {
+
+using testing::message_of;
+
+class FileKinds : public ::testing::Test {
+ protected:
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder / name, std::ios::binary) << text;
+    return folder / name;
+  }
+  std::string name_of(const std::string& file, const std::string& text) const {
+    const FormatRow* const row = format_of(write(file, text));
+    return row == nullptr ? "" : row->name;
+  }
+  test::TemporaryFolder folder;
+};
+
+struct Beginning {
+  const char *format, *text;
+};
+const Beginning beginnings[] = {
+    {"VTK XML unstructured grid", "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\">"},
+    {"VTK XML curvilinear grid", "<VTKFile version='1.0' type='StructuredGrid'>"},
+    {"VTK XML multi-block", "<VTKFile type=\"vtkMultiBlockDataSet\">"},
+    {"VTK XML image data", "<VTKFile type=\"ImageData\">"},
+    {"VTK XML rectilinear grid", "<VTKFile type=\"PRectilinearGrid\">"},
+    {"ParaView collection", "<VTKFile type=\"Collection\">"},
+    {"legacy VTK unstructured or curvilinear grid",
+     "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\n"},
+    {"legacy VTK structured points or rectilinear grid",
+     "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\n"},
+    {"HDF5", "\x89HDF\r\n\x1a\n"},
+    {"CGNS",
+     "\xc0\xa8\xa3\xa9"
+     "ADF Database Version A02011>"},
+    {"OpenFOAM case", "/* C++ */\nFoamFile\n{\n version 2.0;"},
+    {"EnSight 6 or Gold", "# made\nFORMAT\ntype: ensight gold\n"},
+    {"Fluent", "(0 \"grid written by\")\n(2 3)\n"},
+    {"GAMBIT", "        CONTROL INFO 2.4.6\n** GAMBIT NEUTRAL FILE\n"},
+    {"AVS UCD", "# comment\n8 1 1 0 0\n1 0 0 0\n"},
+    {"Tecplot", "TITLE = \"a\"\nVARIABLES = \"X\"\n"},
+    {"STL", "solid cube\n facet normal 0 0 1\n"},
+    {"PLY", "ply\nformat ascii 1.0\n"},
+    {"NRRD", "NRRD0004\ntype: short\n"},
+    {"MetaImage", "ObjectType = Image\nNDims = 3\n"},
+    {"Gmsh", "$MeshFormat\n4.1 0 8\n"},
+    {"SU2", "% mesh\nNDIME= 3\n"},
+    {"XDMF", "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">"},
+    {"Abaqus or Ansys input", "*HEADING\nmodel\n"},
+};
+
+TEST_F(FileKinds, TheBeginningWinsOverTheName) {
+  for (const Beginning& b : beginnings)
+    for (const char* name : {"x", "x.dat", "x.ply", "x.vtu", "x.nrrd", "x.cas"})
+      EXPECT_EQ(name_of(name, b.text), b.format) << name;
+}
+
+TEST_F(FileKinds, ClassicNetCdfIsExodusByItsDimensions) {
+  EXPECT_EQ(name_of("x.dat", std::string("CDF\1\0\0\0\0\0\0\0\12", 12) + "num_nodes"), "Exodus II");
+  EXPECT_EQ(name_of("x.dat", std::string("CDF\1\0\0\0\0\0\0\0\12", 12) + "latitude"), "");
+}
+
+TEST_F(FileKinds, BinaryStlIsToldByItsSize) {
+  std::string text(84 + 50, '\0');
+  text[80] = 1;
+  EXPECT_EQ(name_of("x.dat", text), "STL");
+  EXPECT_EQ(name_of("y.dat", text + '\0'), "");
+}
+
+TEST_F(FileKinds, TheNameCountsWhereTheBeginningSaysNothing) {
+  EXPECT_EQ(name_of("a.XYZ", "abc"), "PLOT3D");
+  EXPECT_EQ(name_of("a.tets", "abc"), "raw tetrahedra");
+  EXPECT_EQ(name_of("a.node", "4 3 0 0\n1 0 0 0\n"), "TetGen mesh");
+  EXPECT_EQ(name_of("a.vtu", "Dear reader"), "VTK XML unstructured grid");
+  EXPECT_EQ(name_of("a.vti", "<VTKFile"), "VTK XML image data");
+  EXPECT_EQ(format_of(folder / "absent.nii.gz")->kind, FileKind::nifti);
+  EXPECT_EQ(format_of(folder / "absent.dat"), nullptr);
+}
+
+TEST_F(FileKinds, WhatIsNotKnownOrNotReadIsTold) {
+  EXPECT_NE(message_of([&] { read_mesh(write("x.dat", "Dear reader,")); }).find("`tessera formats` lists them"),
+            std::string::npos);
+  EXPECT_NE(message_of([&] { read_mesh(write("x.vtu", "<Xdmf>")); }).find("it is XDMF, which is not read"),
+            std::string::npos);
+  EXPECT_FALSE(is_mesh_file(write("x.vtu", "<Xdmf>")));
+  EXPECT_FALSE(is_volume(write("x.vti", "ply\nformat ascii 1.0\n")));
+}
+
+TEST_F(FileKinds, AFolderIsACaseOrRefused) {
+  std::filesystem::create_directories(folder / "case" / "system");
+  EXPECT_EQ(format_of(folder / "case"), nullptr);
+  write("case/system/controlDict", "FoamFile\n{\n}\n");
+  ASSERT_NE(format_of(folder / "case"), nullptr);
+  EXPECT_STREQ(format_of(folder / "case")->reader, "openfoam");
+  EXPECT_FALSE(is_volume(folder / "case"));
+}
+
+TEST_F(FileKinds, EveryExtensionBelongsToOneKindOfData) {
+  // .vtk alone is a mesh's and a grid's.
+  std::map<std::string, int> rows;
+  for (const FileFormat& format : file_formats()) {
+    EXPECT_FALSE(format.name.empty());
+    for (const std::string& extension : format.extensions) {
+      EXPECT_TRUE(extension.starts_with('.')) << format.name;
+      ++rows[extension];
+    }
+  }
+  for (const auto& [extension, count] : rows) EXPECT_EQ(count, extension == ".vtk" ? 2 : 1) << extension;
+}
+
+}  // namespace
+}  // namespace tessera::io
