@@ -36,10 +36,10 @@ void print_text(const std::vector<FileFormat>& all) {
     ending_width = std::max(ending_width, fmt::format("{}", fmt::join(format.extensions, " ")).size());
   }
   for (const FileFormat& format : all)
-    fmt::print("{:<{}}  {:<{}}  {:<14}  {}{}\n", format.name, name_width,
+    fmt::print("{:<{}}  {:<{}}  {:<14}  {}{}{}\n", format.name, name_width,
                fmt::format("{}", fmt::join(format.extensions, " ")), ending_width, word(format.holds),
-               format.left_out.empty() ? "" : fmt::format("left out of this build, needs {}; ", format.left_out),
-               with_options(format.remark));
+               format.left_out.empty() ? "" : fmt::format("left out of this build, needs {}", format.left_out),
+               format.left_out.empty() || format.remark.empty() ? "" : "; ", with_options(format.remark));
   fmt::print(
       "\nWhat a file is, is seen from what it begins with, then from its name (of PLOT3D, TetGen's files, .tets, .raw "
       "from the name alone).\nA .gz of a format that is one file is looked into.\n");

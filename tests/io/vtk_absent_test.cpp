@@ -13,7 +13,7 @@ TEST(WithoutVtk, WhatNeedsItIsRefusedByNameWithTheOptionThatBringsIt) {
     test::expect_bad_input([&] { read_mesh(folder.write(name, "<VTKFile type=\"UnstructuredGrid\">")); },
                            {std::string(name) + ": ", " files need VTK", "TESSERA_VTK=ON"});
   test::expect_bad_input([&] { open_volume(folder.write("v.vti", "<VTKFile type=\"ImageData\">")); },
-                         {"v.vti: .vti files need VTK", "TESSERA_VTK=ON"});
+                         {"v.vti: VTK XML image data files need VTK", "TESSERA_VTK=ON"});
 }
 
 }  // namespace
