@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/foreign_file.hpp"
+#include "io/large_vector.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -43,16 +44,23 @@ class FetchedArray {
   bool fetched_ = false;
 };
 
+template <class T>
+std::span<const T> numbers_in(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T)};
+}
+
 void copy_points(const ForeignFile& file, const ForeignArray& points, CellBlock& block, const std::string& where) {
   if (points.components != 3)
     throw scene::bad_input(fmt::format("{}: its points have {} coordinates; give x y z", where, points.components));
-  const SharedBytes shared = file.helper->take(points, where);
-  block.positions.resize(points.tuples);
+  reserve_large(block.positions, points.tuples);
   with_number_type(points.type, [&](auto zero) {
-    const auto p = shared.as<decltype(zero)>();
-    for (std::size_t v = 0; v < block.positions.size(); ++v)
-      block.positions[v] = {static_cast<double>(p[3 * v]), static_cast<double>(p[3 * v + 1]),
-                            static_cast<double>(p[3 * v + 2])};
+    using Number = decltype(zero);
+    file.helper->stream(points, where, [&](std::span<const std::byte> tuples) {
+      const auto p = numbers_in<Number>(tuples);
+      for (std::size_t k = 0; k + 2 < p.size(); k += 3)
+        block.positions.emplace_back(static_cast<double>(p[k]), static_cast<double>(p[k + 1]),
+                                     static_cast<double>(p[k + 2]));
+    });
   });
 }
 
@@ -62,41 +70,59 @@ void copy_points(const ForeignFile& file, const ForeignArray& points, CellBlock&
                   corner == UINT32_MAX ? "a point of no possible number" : fmt::format("point {}", corner), points));
 }
 
-/// Offsets of either width and corners, checked.
-template <class Offset>
-void copy_cells(std::span<const Offset> offsets, std::span<const std::uint32_t> corners, CellBlock& block,
-                const std::string& where) {
+/// Offsets and corners as they came, checked.
+void check_cells(CellBlock& block, const std::string& where) {
   const std::size_t cells = block.types.size();
-  if (offsets.size() != cells + 1 || offsets[0] != 0 || static_cast<std::uint64_t>(offsets[cells]) > corners.size())
+  const auto& offsets = block.offsets;
+  if (offsets.size() != cells + 1 || offsets[0] != 0 || offsets[cells] > block.connectivity.size())
     throw scene::bad_input(
         fmt::format("{}: cell offsets do not fit the {} cells and {} connectivity entries; the file "
                     "is damaged, write it anew",
-                    where, cells, corners.size()));
+                    where, cells, block.connectivity.size()));
   for (std::size_t c = 0; c < cells; ++c)
-    if (offsets[c + 1] < offsets[c])
+    if (static_cast<std::int64_t>(offsets[c + 1]) < static_cast<std::int64_t>(offsets[c]))
       throw scene::bad_input(
           fmt::format("{}: the offset of cell {} is {}, less than the one before, {}; the file is "
                       "damaged, write it anew",
-                      where, c, offsets[c + 1], offsets[c]));
-  const std::span used = corners.first(static_cast<std::size_t>(offsets[cells]));
+                      where, c, static_cast<std::int64_t>(offsets[c + 1]), static_cast<std::int64_t>(offsets[c])));
+  block.connectivity.resize(offsets[cells]);
   const std::size_t points = block.positions.size();
-  for (std::size_t k = 0; k < used.size(); ++k)
-    if (used[k] >= points) {
-      const auto cell = std::upper_bound(offsets.begin(), offsets.end(), static_cast<Offset>(k)) - offsets.begin() - 1;
-      refuse_corner(static_cast<std::size_t>(cell), used[k], points, where);
+  for (std::size_t k = 0; k < block.connectivity.size(); ++k)
+    if (block.connectivity[k] >= points) {
+      const auto cell = std::upper_bound(offsets.begin(), offsets.end(), k) - offsets.begin() - 1;
+      refuse_corner(static_cast<std::size_t>(cell), block.connectivity[k], points, where);
     }
-  block.connectivity.assign(used.begin(), used.end());
-  block.offsets.assign(offsets.begin(), offsets.end());
 }
 
-void copy_tets(std::span<const scene::Tet> tets, CellBlock& block, const std::string& where) {
+void check_tets(std::span<const scene::Tet> tets, std::size_t points, const std::string& where) {
   std::uint32_t largest = 0;
   for (const scene::Tet& tet : tets) largest = std::max({largest, tet[0], tet[1], tet[2], tet[3]});
-  const std::size_t points = block.positions.size();
   for (std::size_t t = 0; t < tets.size() && largest >= points; ++t)
     for (const std::uint32_t corner : tets[t])
       if (corner >= points) refuse_corner(t, corner, points, where);
-  block.tets.assign(tets.begin(), tets.end());
+}
+
+/// All of an array whose tuples are `Stored`, as what they are in memory.
+template <class Stored, class T>
+void copy_numbers(const ForeignFile& file, const ForeignArray& array, std::vector<T>& to, const std::string& where) {
+  reserve_large(to, array.bytes() / sizeof(Stored));
+  file.helper->stream(array, where, [&](std::span<const std::byte> tuples) {
+    const auto numbers = numbers_in<Stored>(tuples);
+    to.insert(to.end(), numbers.begin(), numbers.end());
+  });
+}
+
+void copy_offsets(const ForeignFile& file, const ForeignArray& offsets, CellBlock& block, const std::string& where) {
+  switch (offsets.type) {
+    case NumberType::int64:
+      return copy_numbers<std::int64_t>(file, offsets, block.offsets, where);
+    case NumberType::uint64:
+      return copy_numbers<std::uint64_t>(file, offsets, block.offsets, where);
+    case NumberType::int32:
+      return copy_numbers<std::int32_t>(file, offsets, block.offsets, where);
+    default:
+      throw scene::bad_input(fmt::format("{}: its cells are lists of no known width; write it anew", where));
+  }
 }
 
 void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, CellBlock& block,
@@ -104,24 +130,19 @@ void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, Ce
   if (!part.connectivity) return;
   if (part.connectivity->type != NumberType::uint32)
     throw scene::bad_input(fmt::format("{}: its cells are lists of no known width; write it anew", where));
-  const SharedBytes connectivity = file.helper->take(*part.connectivity, where);
-  if (!part.types && part.connectivity->components == 4) return copy_tets(connectivity.as<scene::Tet>(), block, where);
+  if (!part.types && part.connectivity->components == 4) {
+    copy_numbers<scene::Tet>(file, *part.connectivity, block.tets, where);
+    return check_tets(block.tets, block.positions.size(), where);
+  }
   if (!part.types || !part.offsets || part.types->type != NumberType::uint8 ||
       part.types->tuples + 1 != part.offsets->tuples)
     throw scene::bad_input(fmt::format("{}: {} cell types for {} cells; the file is damaged, write it anew", where,
                                        part.types ? part.types->tuples : 0,
                                        part.offsets && part.offsets->tuples > 0 ? part.offsets->tuples - 1 : 0));
-  const SharedBytes types = file.helper->take(*part.types, where), offsets = file.helper->take(*part.offsets, where);
-  block.types.assign(types.as<std::uint8_t>().begin(), types.as<std::uint8_t>().end());
-  const auto corners = connectivity.as<std::uint32_t>();
-  if (part.offsets->type == NumberType::int64)
-    copy_cells(offsets.as<std::int64_t>(), corners, block, where);
-  else if (part.offsets->type == NumberType::uint64)
-    copy_cells(offsets.as<std::uint64_t>(), corners, block, where);
-  else if (part.offsets->type == NumberType::int32)
-    copy_cells(offsets.as<std::int32_t>(), corners, block, where);
-  else
-    throw scene::bad_input(fmt::format("{}: its cells are lists of no known width; write it anew", where));
+  copy_numbers<std::uint8_t>(file, *part.types, block.types, where);
+  copy_offsets(file, *part.offsets, block, where);
+  copy_numbers<std::uint32_t>(file, *part.connectivity, block.connectivity, where);
+  check_cells(block, where);
   // Tets in a file of mixed cells were looked for there; Exodus blocks come as they are.
   const bool all_tets = std::all_of(block.types.begin(), block.types.end(), [](std::uint8_t t) { return t == 10; });
   for (std::size_t c = 0; all_tets && c < block.types.size(); ++c)

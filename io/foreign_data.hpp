@@ -66,7 +66,8 @@ struct ForeignArray {
   bool active = false;  ///< the file marks it as its scalars or vectors
   NumberTally tally{};  ///< of fields
 
-  [[nodiscard]] std::uint64_t bytes() const { return tuples * static_cast<std::uint64_t>(components) * size_of(type); }
+  [[nodiscard]] std::size_t tuple_bytes() const { return static_cast<std::size_t>(components) * size_of(type); }
+  [[nodiscard]] std::uint64_t bytes() const { return tuples * tuple_bytes(); }
 };
 
 /// One data set of a file.

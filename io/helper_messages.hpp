@@ -14,10 +14,10 @@ namespace tessera::io {
 ///
 /// Bytes   CBOR. Requests and replies are in helper_process.cpp and helper/main.cpp.
 /// Arrays  are files without a name (memfd_create), sealed by who receives them, so that they cannot shrink while they
-///         are mapped.
+///         are mapped; or go in parts through a window, which is such a file too, and stays.
 
 /// Of the protocol. The helper says it first; another one's is refused.
-inline constexpr int helper_version = 1;
+inline constexpr int helper_version = 2;
 
 /// Closes what it holds.
 class Descriptor {

@@ -15,6 +15,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -30,6 +31,9 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* program_name = "tessera-read";
+
+/// Of the window. One slot is used while the other is filled; both stay in the processor's cache.
+constexpr std::size_t slots = 2, slot_bytes = 2 << 20;
 
 /// The file that this code was loaded from: the library, or the program that has it linked in.
 std::filesystem::path own_file() {
@@ -58,7 +62,10 @@ std::filesystem::path find_helper() {
 
 /// The caller's environment without what would have the helper take itself for a rank.
 std::vector<char*> helper_environment() {
+  // Large pages for malloc (glibc 2.35): readers fill hundreds of megabytes once, and most of that is page faults.
+  static char tunables[] = "GLIBC_TUNABLES=glibc.malloc.hugetlb=1";
   std::vector<char*> kept;
+  if (::getenv("GLIBC_TUNABLES") == nullptr) kept.push_back(tunables);
   for (char** entry = environ; entry != nullptr && *entry != nullptr; ++entry) {
     const std::string_view text = *entry;
     const auto begins = [&](std::string_view prefix) { return text.starts_with(prefix); };
@@ -133,6 +140,19 @@ SharedBytes::SharedBytes(const Descriptor& file, std::uint64_t count) : size_(st
   start_ = start;
 }
 
+SharedBytes SharedBytes::made(std::size_t count, Descriptor& file) {
+  file = Descriptor(::memfd_create("tessera", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  if (!file.is_open() || ::ftruncate(file.get(), static_cast<off_t>(count)) != 0 ||
+      ::fcntl(file.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
+    throw std::bad_alloc();
+  SharedBytes made;
+  void* const start = ::mmap(nullptr, count, PROT_READ, MAP_SHARED, file.get(), 0);
+  if (start == MAP_FAILED) throw std::bad_alloc();
+  made.start_ = start;
+  made.size_ = count;
+  return made;
+}
+
 SharedBytes::~SharedBytes() {
   if (start_ != nullptr) ::munmap(start_, size_);
 }
@@ -199,16 +219,26 @@ void HelperProcess::report_death(const std::string& subject) {
 
 HelperMessage HelperProcess::exchange(const Json& request, const std::string& subject) {
   const std::lock_guard lock(mutex_);
+  send(request, subject);
+  return receive(subject);
+}
+
+void HelperProcess::send(const Json& request, const std::string& subject, int file) {
   if (death_) report_death(subject);
   if (!has_begun_) has_begun_ = receive_message(socket_.get()).has_value();
-  if (!has_begun_ || !send_message(socket_.get(), Json::to_cbor(request))) report_death(subject);
+  if (!has_begun_ || !send_message(socket_.get(), Json::to_cbor(request), file)) report_death(subject);
+}
+
+HelperMessage HelperProcess::receive(const std::string& subject) {
   std::optional<HelperMessage> reply = receive_message(socket_.get());
   if (!reply) report_death(subject);
   return std::move(*reply);
 }
 
-Json HelperProcess::call(const Json& request, const std::string& subject) {
-  const HelperMessage reply = exchange(request, subject);
+namespace {
+
+/// What a reply says. Throws what went wrong, in its line.
+Json content_of(const HelperMessage& reply, const std::string& subject) {
   Json json;
   std::string line;
   int code = 0;
@@ -227,6 +257,60 @@ Json HelperProcess::call(const Json& request, const std::string& subject) {
                                                                                   : scene::ErrorCode::bad_input,
                        line);
   return json;
+}
+
+}  // namespace
+
+Json HelperProcess::call(const Json& request, const std::string& subject) {
+  return content_of(exchange(request, subject), subject);
+}
+
+void HelperProcess::open_window(const std::string& subject) {
+  Descriptor file;
+  SharedBytes window = SharedBytes::made(slots * slot_bytes, file);
+  send({{"do", "window"}, {"slot", slot_bytes}}, subject, file.get());
+  content_of(receive(subject), subject);
+  window_ = std::move(window);
+}
+
+void HelperProcess::stream(const ForeignArray& array, const std::string& subject,
+                           const std::function<void(std::span<const std::byte> tuples)>& use) {
+  const std::size_t tuple = array.tuple_bytes();
+  if (tuple > slot_bytes) return use(take(array, subject).bytes());
+  const std::uint64_t at_once = slot_bytes / tuple, parts = (array.tuples + at_once - 1) / at_once;
+  const auto count_of = [&](std::uint64_t part) { return std::min(at_once, array.tuples - part * at_once); };
+  {
+    const std::lock_guard lock(mutex_);
+    if (window_.bytes().empty()) open_window(subject);
+    std::uint64_t asked = 0, came = 0;
+    const auto ask = [&] {
+      send({{"do", "put"},
+            {"array", array.number},
+            {"first", asked * at_once},
+            {"count", count_of(asked)},
+            {"slot", asked % slots}},
+           subject);
+      ++asked;
+    };
+    const auto await = [&] {
+      const HelperMessage reply = receive(subject);
+      ++came;
+      content_of(reply, subject);
+    };
+    try {
+      while (asked < std::min<std::uint64_t>(parts, slots)) ask();
+      for (std::uint64_t part = 0; part < parts; ++part) {
+        await();
+        use(window_.bytes().subspan(part % slots * slot_bytes, count_of(part) * tuple));
+        if (asked < parts) ask();
+      }
+    } catch (...) {
+      for (; came < asked && !death_; ++came)
+        if (!receive_message(socket_.get())) break;
+      throw;
+    }
+  }
+  drop(std::span(&array.number, 1));
 }
 
 SharedBytes HelperProcess::take(const ForeignArray& array, const std::string& subject, bool keep) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
@@ -22,6 +23,8 @@ class SharedBytes {
   SharedBytes() = default;
   /// Throws std::bad_alloc if it cannot be mapped, std::invalid_argument unless it holds `count` bytes.
   SharedBytes(const Descriptor& file, std::uint64_t count);
+  /// Memory that another process may fill and change, and not shrink, by `file`.
+  static SharedBytes made(std::size_t count, Descriptor& file);
   ~SharedBytes();
   SharedBytes(SharedBytes&& other) noexcept;
   SharedBytes& operator=(SharedBytes&& other) noexcept;
@@ -73,6 +76,12 @@ class HelperProcess {
   /// The helper's array, which it then has no more, unless it is to `keep` it. Throws as call().
   SharedBytes take(const ForeignArray& array, const std::string& subject, bool keep = false);
 
+  /// Gives `use` all tuples of the helper's array in turn, while the helper makes the next ones ready; then the helper
+  /// has the array no more. The bytes are the helper's to change: `use` copies them first and looks at its copy. Throws
+  /// as call().
+  void stream(const ForeignArray& array, const std::string& subject,
+              const std::function<void(std::span<const std::byte> tuples)>& use);
+
   /// Has the helper forget arrays that nobody will ask for. Throws nothing.
   void drop(std::span<const std::uint64_t> arrays) noexcept;
 
@@ -81,12 +90,16 @@ class HelperProcess {
 
  private:
   HelperMessage exchange(const nlohmann::json& request, const std::string& subject);
+  void send(const nlohmann::json& request, const std::string& subject, int file = -1);
+  HelperMessage receive(const std::string& subject);
+  void open_window(const std::string& subject);
   [[noreturn]] void report_death(const std::string& subject);
 
   HelperTask task_;
   std::mutex mutex_;
   int process_ = -1;
   Descriptor socket_;
+  SharedBytes window_;                ///< of slots for stream(); empty until it is needed
   bool has_begun_ = false;            ///< it has said that it is there
   std::optional<HelperDeath> death_;  ///< once it is dead
 };

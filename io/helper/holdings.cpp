@@ -1,28 +1,26 @@
 #include "io/helper/holdings.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
-
-#include "io/helper_messages.hpp"
 
 namespace tessera::io::helper {
 namespace {
 
 constexpr std::size_t tuples_at_once = 1 << 16;
 
-/// Writes a field of doubles tuple by tuple.
-bool write_field(const BlockField& field, int file) {
+/// A field's doubles tuple by tuple.
+void read_field(const BlockField& field, std::uint64_t first, std::uint64_t count, std::byte* out) {
   const auto components = static_cast<std::size_t>(field.components);
-  std::vector<double> plane(std::min(field.tuples, tuples_at_once)), tuples(plane.size() * components);
-  for (std::size_t first = 0; first < field.tuples; first += plane.size()) {
-    const std::size_t n = std::min(plane.size(), field.tuples - first);
+  std::vector<double> plane(std::min<std::size_t>(count, tuples_at_once));
+  for (std::size_t done = 0; done < count; done += plane.size()) {
+    const std::size_t n = std::min<std::size_t>(plane.size(), count - done);
     for (std::size_t c = 0; c < components; ++c) {
-      field.read(static_cast<int>(c), first, std::span(plane).first(n));
-      for (std::size_t k = 0; k < n; ++k) tuples[k * components + c] = plane[k];
+      field.read(static_cast<int>(c), first + done, std::span(plane).first(n));
+      for (std::size_t k = 0; k < n; ++k)
+        std::memcpy(out + ((done + k) * components + c) * sizeof(double), &plane[k], sizeof(double));
     }
-    if (!write_all(file, tuples.data(), n * components * sizeof(double))) return false;
   }
-  return true;
 }
 
 ForeignArray hold_field(Holdings& holdings, const BlockField& field) {
@@ -38,24 +36,28 @@ ForeignArray hold_field(Holdings& holdings, const BlockField& field) {
     field.read(field.components == 1 ? 0 : magnitude, first, chunk);
     array.tally.add(chunk);
   }
-  return holdings.hold(std::move(array), [field](int file) { return write_field(field, file); });
+  return holdings.hold(std::move(array), [field](std::uint64_t first, std::uint64_t count, std::byte* out) {
+    read_field(field, first, count, out);
+  });
 }
 
 }  // namespace
 
-ForeignArray Holdings::hold(ForeignArray array, Write write) {
+ForeignArray Holdings::hold(ForeignArray array, Read read) {
   array.number = next_++;
-  held_.emplace(array.number, std::move(write));
+  held_.emplace(array.number, Held{array, std::move(read)});
   return array;
 }
 
 ForeignArray Holdings::hold(ForeignArray array, const void* numbers, std::shared_ptr<const void> owner) {
-  const std::uint64_t bytes = array.bytes();
-  return hold(std::move(array),
-              [numbers, bytes, owner = std::move(owner)](int file) { return write_all(file, numbers, bytes); });
+  const std::size_t tuple = array.tuple_bytes();
+  return hold(std::move(array), [start = static_cast<const std::byte*>(numbers), tuple, owner = std::move(owner)](
+                                    std::uint64_t first, std::uint64_t count, std::byte* out) {
+    if (count > 0) std::memcpy(out, start + first * tuple, count * tuple);
+  });
 }
 
-const Holdings::Write* Holdings::find(std::uint64_t number) const {
+const Holdings::Held* Holdings::find(std::uint64_t number) const {
   const auto found = held_.find(number);
   return found == held_.end() ? nullptr : &found->second;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -15,21 +16,25 @@ namespace tessera::io::helper {
 /// The arrays of the files that were opened, until they are taken or dropped.
 class Holdings {
  public:
-  /// Writes all of an array's bytes into a file; false if it cannot.
-  using Write = std::function<bool(int file)>;
+  /// Copies tuples [first, first + count) to `out`.
+  using Read = std::function<void(std::uint64_t first, std::uint64_t count, std::byte* out)>;
+  struct Held {
+    ForeignArray array;
+    Read read;
+  };
 
-  /// Numbers the array and keeps what writes it.
-  ForeignArray hold(ForeignArray array, Write write);
+  /// Numbers the array and keeps what reads it.
+  ForeignArray hold(ForeignArray array, Read read);
 
   /// Of numbers that stay where they are for as long as `owner` lives.
   ForeignArray hold(ForeignArray array, const void* numbers, std::shared_ptr<const void> owner);
 
   /// Null if there is none of this number.
-  [[nodiscard]] const Write* find(std::uint64_t number) const;
+  [[nodiscard]] const Held* find(std::uint64_t number) const;
   void drop(std::uint64_t number) { held_.erase(number); }
 
  private:
-  std::map<std::uint64_t, Write> held_;
+  std::map<std::uint64_t, Held> held_;
   std::uint64_t next_ = 0;
 };
 

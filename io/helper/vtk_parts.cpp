@@ -22,9 +22,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <string_view>
 
-#include "io/helper_messages.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -128,19 +128,14 @@ void set_extent(Grid& grid, ForeignPart& part) {
   std::copy(extent.begin(), extent.end(), part.extent.begin());
 }
 
-/// Writes indices as uint32, those that it cannot hold as its largest.
+/// Indices as uint32, those that it cannot hold as its largest.
 template <class Index>
-bool write_indices(const Index* indices, std::size_t count, int file) {
-  std::vector<std::uint32_t> some(std::min<std::size_t>(count, 1 << 16));
-  for (std::size_t first = 0; first < count; first += some.size()) {
-    const std::size_t n = std::min(some.size(), count - first);
-    for (std::size_t k = 0; k < n; ++k) {
-      const auto index = static_cast<std::uint64_t>(indices[first + k]);  // a negative one becomes huge
-      some[k] = static_cast<std::uint32_t>(std::min<std::uint64_t>(index, UINT32_MAX));
-    }
-    if (!write_all(file, some.data(), n * sizeof some[0])) return false;
+void narrow_indices(const Index* indices, std::size_t count, std::byte* out) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto index = static_cast<std::uint64_t>(indices[k]);  // a negative one becomes huge
+    const auto narrow = static_cast<std::uint32_t>(std::min<std::uint64_t>(index, UINT32_MAX));
+    std::memcpy(out + k * sizeof narrow, &narrow, sizeof narrow);
   }
-  return true;
 }
 
 /// Points of cells, half the bytes of VTK's.
@@ -151,10 +146,14 @@ ForeignArray hold_indices(Holdings& holdings, vtkDataArray& array, int component
   const auto count = static_cast<std::size_t>(array.GetNumberOfValues()) / static_cast<std::size_t>(components) *
                      static_cast<std::size_t>(components);
   held.tuples = count / static_cast<std::size_t>(components);
-  return holdings.hold(std::move(held), [owner = vtkSmartPointer<vtkDataArray>(&array), count](int file) {
+  const auto width = static_cast<std::size_t>(components);
+  return holdings.hold(std::move(held), [owner = vtkSmartPointer<vtkDataArray>(&array), width](
+                                            std::uint64_t first, std::uint64_t tuples, std::byte* out) {
     const void* const numbers = owner->GetVoidPointer(0);
-    return owner->GetDataTypeSize() == 8 ? write_indices(static_cast<const std::int64_t*>(numbers), count, file)
-                                         : write_indices(static_cast<const std::int32_t*>(numbers), count, file);
+    if (owner->GetDataTypeSize() == 8)
+      narrow_indices(static_cast<const std::int64_t*>(numbers) + first * width, tuples * width, out);
+    else
+      narrow_indices(static_cast<const std::int32_t*>(numbers) + first * width, tuples * width, out);
   });
 }
 

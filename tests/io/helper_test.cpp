@@ -8,7 +8,10 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <stdexcept>
 #include <thread>
+#include <vector>
 
 #include "io/foreign_file.hpp"
 #include "io/helper_process.hpp"
@@ -96,6 +99,30 @@ TEST(Helper, ItsDeathIsOneLineAboutTheFileAndStaysSo) {
     }
     EXPECT_EQ(helper->process(), -1) << "its process is left unreaped";
   }
+}
+
+TEST(Helper, StreamsAnArrayInPartsAndGoesOnAfterAnExceptionInOne) {
+  const test::TemporaryFolder folder;
+  constexpr int n = 110;  // floats of more than two slots of the window
+  const auto helper = std::make_shared<HelperProcess>();
+  const ForeignFile opened = open_foreign(helper, folder.write("v.vti", image_text(n, "0 109 0 109 0 109")),
+                                          {{"reader", "vtk_xml"}, {"type", "ImageData"}});
+  const ForeignArray& samples = opened.contents.parts.at(0).point_fields.at(0);
+  int parts = 0;
+  EXPECT_THROW(helper->stream(samples, "v.vti",
+                              [&](std::span<const std::byte>) {
+                                if (++parts == 2) throw std::runtime_error("the caller's own");
+                              }),
+               std::runtime_error);
+  std::vector<float> got;
+  helper->stream(samples, "v.vti", [&](std::span<const std::byte> tuples) {
+    const auto* const first = reinterpret_cast<const float*>(tuples.data());
+    got.insert(got.end(), first, first + tuples.size() / sizeof(float));
+  });
+  ASSERT_EQ(got.size(), std::size_t{n} * n * n);
+  for (std::size_t k = 0; k < got.size(); ++k) ASSERT_EQ(got[k], static_cast<float>(k % 7)) << k;
+  EXPECT_THROW(helper->stream(samples, "v.vti", [](std::span<const std::byte>) {}), scene::Error)
+      << "it still has what it has given away";
 }
 
 TEST(Helper, EndsWithItsObject) {
