@@ -101,7 +101,7 @@ void add_mesh_options(CLI::App& command, RenderWords& words) {
       ->type_name("VOLUME");
   command
       .add_option("--time-step", words.time_step,
-                  "Exodus, OpenFOAM, EnSight ...: step counted from 0 (default: the last)")
+                  "Exodus, OpenFOAM, EnSight, Gmsh ...: step counted from 0 (default: the last)")
       ->type_name("STEP");
   add_volume_options(command, words);
 }

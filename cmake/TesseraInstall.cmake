@@ -12,8 +12,9 @@ if(TESSERA_APPS)
 endif()
 
 # Where the library looks for it, from wherever it lies itself.
-if(TARGET tessera_read)
-  install(TARGETS tessera_read RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/tessera)
+get_property(helpers GLOBAL PROPERTY tessera_helper_programs)
+if(helpers)
+  install(TARGETS ${helpers} RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/tessera)
 endif()
 
 if(NOT TARGET tessera::tessera)
@@ -22,7 +23,7 @@ endif()
 
 # What there is, in the words of find_package(tessera COMPONENTS ...).
 set(tessera_components)
-foreach(part shared static vtk mpi gl cairo tetgen apps)
+foreach(part shared static vtk mpi gl cairo tetgen gmsh apps)
   string(TOUPPER TESSERA_${part} option)
   if(${option})
     list(APPEND tessera_components ${part})

@@ -26,8 +26,9 @@ function(tessera_whole_library kind)
   add_library(tessera::${kind} ALIAS tessera_${kind})
   set_target_properties(tessera_${kind} PROPERTIES OUTPUT_NAME tessera EXPORT_NAME ${kind} LINKER_LANGUAGE CXX)
   target_compile_features(tessera_${kind} INTERFACE cxx_std_20)
-  if(TARGET tessera_read) # which it starts
-    add_dependencies(tessera_${kind} tessera_read)
+  get_property(helpers GLOBAL PROPERTY tessera_helper_programs)
+  if(helpers) # which it starts
+    add_dependencies(tessera_${kind} ${helpers})
   endif()
   target_include_directories(
     tessera_${kind} INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>

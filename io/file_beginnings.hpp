@@ -27,6 +27,8 @@ bool begins_as_openfoam(const FileBeginning& file);
 bool begins_as_ensight(const FileBeginning& file);
 bool begins_as_fluent(const FileBeginning& file);
 bool begins_as_gambit(const FileBeginning& file);
+bool begins_as_gmsh(const FileBeginning& file);
+bool begins_as_medit(const FileBeginning& file);
 bool begins_as_avs_ucd(const FileBeginning& file);
 bool begins_as_tecplot(const FileBeginning& file);
 bool begins_as_stl(const FileBeginning& file);
@@ -37,12 +39,10 @@ bool begins_as_meta_image(const FileBeginning& file);
 bool begins_as_nifti(const FileBeginning& file);
 
 // Not read.
-bool begins_as_gmsh(const FileBeginning& file);
 bool begins_as_su2(const FileBeginning& file);
 bool begins_as_xdmf(const FileBeginning& file);
 bool begins_as_binary_tecplot(const FileBeginning& file);
 bool begins_as_abaqus(const FileBeginning& file);
-bool begins_as_medit(const FileBeginning& file);
 bool begins_as_netgen(const FileBeginning& file);
 bool begins_as_nek5000(const FileBeginning& file);
 

@@ -13,6 +13,7 @@ const char* left_out(Needs needs) {
   const bool vtk = needs == Needs::vtk || needs == Needs::vtk_and_tetgen;
   const bool tetgen = needs == Needs::tetgen || needs == Needs::vtk_and_tetgen;
   if (vtk && !has_vtk()) return "VTK";
+  if (needs == Needs::gmsh && !has_gmsh()) return "Gmsh";
   return tetgen && !can_fill_surfaces() ? "TetGen" : "";
 }
 

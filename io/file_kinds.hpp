@@ -18,6 +18,7 @@ enum class FileKind : std::uint8_t {
   exodus,      ///< NetCDF; in HDF5 see hdf5
   hdf5,        ///< Exodus, CGNS or VTKHDF: the helper looks
   solver,      ///< FormatRow::reader
+  gmsh,        ///< what Gmsh's library reads; FormatRow::reader
   plot3d,
   tetgen_mesh,     ///< .node and .ele
   tetgen_surface,  ///< .poly and .smesh
@@ -40,7 +41,7 @@ struct FileBeginning {
   std::uint64_t size = 0;  ///< of the whole; 0 if it is compressed
 };
 
-enum class Needs : std::uint8_t { nothing, vtk, tetgen, vtk_and_tetgen };
+enum class Needs : std::uint8_t { nothing, vtk, tetgen, vtk_and_tetgen, gmsh };
 
 /// A row of the one table of formats. What is listed, what a name means and what a beginning means all come from it.
 struct FormatRow {
@@ -51,7 +52,7 @@ struct FormatRow {
   Needs needs;
   const char* remark;                    ///< what applies, limits; why it is not read
   bool (*begins)(const FileBeginning&);  ///< null: nothing tells it but its name
-  const char* reader = "";               ///< of FileKind::solver: one of helper/main.cpp
+  const char* reader = "";               ///< of FileKind::solver and gmsh: one of helper/main.cpp, helper/gmsh_main.cpp
   bool has_time_steps = false;           ///< ReadOptions::time_step applies
   enum class Listed : bool { no, yes } listed = Listed::yes;
 };

@@ -30,8 +30,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* program_name = "tessera-read";
-
 /// Of the window. One slot is used while the other is filled; both stay in the processor's cache.
 constexpr std::size_t slots = 2, slot_bytes = 2 << 20;
 
@@ -49,7 +47,7 @@ std::filesystem::path own_file() {
 bool is_program(const std::filesystem::path& file) { return ::access(file.c_str(), X_OK) == 0; }
 
 /// Empty if there is none.
-std::filesystem::path find_helper() {
+std::filesystem::path find_helper(const char* program_name) {
   std::error_code unknown;
   for (std::filesystem::path start : {own_file(), std::filesystem::read_symlink("/proc/self/exe", unknown)})
     for (int levels = 0; levels < 5 && start.has_relative_path(); ++levels) {
@@ -92,8 +90,8 @@ struct SpawnPlan {
   SpawnPlan& operator=(const SpawnPlan&) = delete;
 };
 
-[[noreturn]] void fail_to_start(const std::string& why) {
-  throw scene::Error(scene::ErrorCode::system_failure, program_name, why,
+[[noreturn]] void fail_to_start(const char* program, const std::string& why) {
+  throw scene::Error(scene::ErrorCode::system_failure, program, why,
                      "it reads files of other programs' formats; install it with the library");
 }
 
@@ -110,7 +108,7 @@ HelperDeath death_of(int status, bool known, bool has_begun, const HelperTask& t
     return {system_failure,
             fmt::format("{} cannot be begun: {} ends as soon as it is started; see whether it runs, and "
                         "give it more memory",
-                        task.words, program_name)};
+                        task.words, task.program)};
   if (!known || !WIFSIGNALED(status))
     return {bad_input, fmt::format("{} ended in failure; {}", task.words, task.remedy)};
   switch (WTERMSIG(status)) {
@@ -167,11 +165,11 @@ SharedBytes& SharedBytes::operator=(SharedBytes&& other) noexcept {
 }
 
 HelperProcess::HelperProcess(HelperTask task) : task_(std::move(task)) {
-  const std::filesystem::path program = find_helper();
-  if (program.empty()) fail_to_start("it is not where the library or program is installed");
+  const std::filesystem::path program = find_helper(task_.program);
+  if (program.empty()) fail_to_start(task_.program, "it is not where the library or program is installed");
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
-    fail_to_start(fmt::format("there is no socket for it: {}", std::strerror(errno)));
+    fail_to_start(task_.program, fmt::format("there is no socket for it: {}", std::strerror(errno)));
   socket_ = Descriptor(ends[0]);
   const Descriptor theirs(ends[1]);
 
@@ -194,7 +192,7 @@ HelperProcess::HelperProcess(HelperTask task) : task_(std::move(task)) {
   if (const int error = ::posix_spawn(&process, name.c_str(), &plan.files, &plan.attributes, arguments.data(),
                                       helper_environment().data());
       error != 0)
-    fail_to_start(fmt::format("{} cannot be started: {}", name, std::strerror(error)));
+    fail_to_start(task_.program, fmt::format("{} cannot be started: {}", name, std::strerror(error)));
   process_ = process;
 }
 

@@ -41,9 +41,11 @@ class SharedBytes {
   std::size_t size_ = 0;
 };
 
-/// What a helper is for, in the words of the error that its death becomes: "FILE: WORDS crashed (...); REMEDY".
+/// What a helper is for, in the words of the error that its death becomes: "FILE: WORDS crashed (...); REMEDY". And
+/// which of the programs it is.
 struct HelperTask {
   std::string words = "reading it", remedy = "the file is damaged, write it anew";
+  const char* program = "tessera-read";
 };
 
 /// What a helper died of, without the subject.
@@ -55,7 +57,7 @@ struct HelperDeath {
 /// A running helper program (helper/README.md): a process of its own in which other people's readers, and TetGen, may
 /// crash, print and ask for memory. It ends with this object.
 ///
-/// Found    as libexec/tessera/tessera-read in a folder above the library or program this code is in, else where it was
+/// Found    as libexec/tessera/PROGRAM in a folder above the library or program this code is in, else where it was
 ///          to be installed.
 /// Started  by posix_spawn: nothing of the caller's process is copied. It inherits no file and, of the environment,
 ///          nothing that MPI launchers set; what it prints goes nowhere.

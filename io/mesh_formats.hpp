@@ -49,6 +49,13 @@ MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::siz
 MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader,
                             std::optional<std::size_t> time_step);
 
+/// Whether this build has Gmsh's library (CMake option TESSERA_GMSH), in a helper program of its own.
+bool has_gmsh();
+
+/// What Gmsh's library reads, by the name of a reader in helper/gmsh_main.cpp: a block a physical group, one time step,
+/// by default the last. Without the library throws Error(bad_input).
+MeshBlocks read_by_gmsh(const std::filesystem::path& file, const char* reader, std::optional<std::size_t> time_step);
+
 /// PLOT3D grid and solution; the binary layout is found from the file's size. `q_file` may be empty: then it is looked
 /// for beside the grid by its name, and if there is none the mesh has no field. IBLANK 0 hides a point's cells.
 MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem::path& q_file);

@@ -40,6 +40,8 @@ MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row,
       return read_solver_file(file, "hdf5", options.time_step);
     case FileKind::solver:
       return read_solver_file(file, row.reader, options.time_step);
+    case FileKind::gmsh:
+      return read_by_gmsh(file, row.reader, options.time_step);
     case FileKind::plot3d:
       return read_plot3d(file, options.plot3d_q);
     case FileKind::tetgen_mesh:

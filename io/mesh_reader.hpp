@@ -21,7 +21,7 @@ struct MeshOptions {
   bool smooth = false;                     ///< average cell data to the points, weighted by tet volume
   std::filesystem::path plot3d_q;          ///< PLOT3D solution file; empty: found beside the grid file by its name
   std::optional<double> max_volume;        ///< surfaces only: largest tet TetGen makes, world units cubed
-  std::optional<std::size_t> time_step{};  ///< Exodus, OpenFOAM, EnSight, CGNS: counted from 0; default the last
+  std::optional<std::size_t> time_step{};  ///< files of several: counted from 0; default the last
   int threads = 1;                         ///< that make tets of cells; 0: all cores
 };
 

@@ -46,6 +46,7 @@ PUBLIC_ONLY = {"include", "examples", "analysis", "apps"}
 ONLY_IN = [
     (r"mpi\.h$", ["exchange/", "include/tessera/mpi.hpp"]),
     (r"vtk", ["io/helper/", "tests/io/"]),
+    (r"gmsh\.h$", ["io/helper/gmsh_"]),
     (r"tetgen\.h$", ["io/helper/tetgen_fill.cpp"]),
     (r"CLI/", ["apps/"]),
     (r"(GL|EGL|KHR)/", ["gl/"]),

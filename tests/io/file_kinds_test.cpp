@@ -59,6 +59,7 @@ const Beginning beginnings[] = {
     {"NRRD", "NRRD0004\ntype: short\n"},
     {"MetaImage", "ObjectType = Image\nNDims = 3\n"},
     {"Gmsh", "$MeshFormat\n4.1 0 8\n"},
+    {"Medit", "MeshVersionFormatted 2\n"},
     {"SU2", "% mesh\nNDIME= 3\n"},
     {"XDMF", "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">"},
     {"Abaqus or Ansys input", "*HEADING\nmodel\n"},

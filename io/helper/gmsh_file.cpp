@@ -1,0 +1,130 @@
+#include "io/helper/gmsh_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <gmsh.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "io/helper/gmsh_blocks.hpp"
+#include "io/helper/readers.hpp"
+#include "io/helper_messages.hpp"
+#include "io/input_file.hpp"
+#include "scene/error.hpp"
+#include "scene/quote.hpp"
+
+namespace tessera::io::helper {
+namespace {
+
+/// The first error in Gmsh's log; the name that it was given is replaced by the file's.
+std::string first_error(const std::string& given, const std::string& source) {
+  std::vector<std::string> log;
+  gmsh::logger::get(log);
+  for (std::string& line : log) {
+    constexpr std::string_view mark = "Error: ";
+    if (!line.starts_with(mark)) continue;
+    line.erase(0, mark.size());
+    if (const std::size_t at = line.find(given); at != std::string::npos) line.replace(at, given.size(), source);
+    return scene::quote(line.substr(0, 160));
+  }
+  return "";
+}
+
+void merge(const std::string& given, const std::string& source) {
+  static bool is_ready = false;
+  if (!is_ready) {
+    gmsh::initialize(0, nullptr, false);
+    gmsh::option::setNumber("General.Terminal", 0);
+    gmsh::option::setNumber("General.NumThreads", 1);
+    is_ready = true;
+  }
+  gmsh::clear();
+  allow_for(source);  // after the library, whose own size is none of the file's
+  gmsh::logger::start();
+  bool failed = false;
+  try {
+    gmsh::merge(given);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (...) {  // Gmsh throws what it likes
+    failed = true;
+  }
+  const std::string error = first_error(given, source);
+  gmsh::logger::stop();
+  if (failed || !error.empty())
+    throw scene::bad_input(fmt::format("{}: {}; the file is truncated or damaged, write it anew", source,
+                                       error.empty() ? "Gmsh cannot read it" : "Gmsh says " + error));
+}
+
+/// Gmsh does not mind a file that ends between two sections.
+void require_last_section(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  const std::streamoff size = in.tellg();
+  std::string end(static_cast<std::size_t>(std::min<std::streamoff>(size, 256)), '\0');
+  in.seekg(size - static_cast<std::streamoff>(end.size()));
+  in.read(end.data(), static_cast<std::streamsize>(end.size()));
+  const std::size_t last = end.find_last_not_of(" \t\r\n");
+  end.resize(last == std::string::npos ? 0 : last + 1);
+  const std::size_t line = end.find_last_of("\r\n");
+  const std::string_view words = std::string_view(end).substr(line == std::string::npos ? 0 : line + 1);
+  if (!words.starts_with("$End") && words != "$ENDELM" && words != "$ENDNOD")
+    throw scene::bad_input(fmt::format(
+        "{}: it does not end with the end of a section, $End...; it is truncated, write it anew", file.string()));
+}
+
+ForeignContents contents_of_model(Holdings& holdings, const std::string& source, const nlohmann::json& request,
+                                  const char* format) {
+  ForeignContents contents;
+  contents.format = format;
+  std::optional<std::size_t> time_step;
+  if (const auto step = request.find("time_step"); step != request.end()) time_step = step->get<std::size_t>();
+  const std::vector<GmshView> views = gmsh_views(time_step, source, contents.notes);
+  for (CellBlock& block : gmsh_blocks(views, source, contents.notes))
+    contents.parts.push_back(hold_block(holdings, std::move(block)));
+  gmsh::clear();
+  if (contents.parts.empty())
+    throw scene::bad_input(fmt::format(
+        "{}: it holds no cells of volume; give a mesh of tetrahedra, hexahedra, prisms or pyramids", source));
+  return contents;
+}
+
+}  // namespace
+
+ForeignContents read_gmsh(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  const std::string source = file.string(), beginning = read_beginning(file, 16);
+  if (!beginning.starts_with("$MeshFormat") && !beginning.starts_with("$NOD") && !beginning.starts_with("$Comments"))
+    throw scene::bad_input(fmt::format("{}: it does not begin with $MeshFormat; write it anew", source));
+  require_last_section(file);
+  // By a name without an extension, since one of another format would be believed.
+  const Descriptor opened(::open(source.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!opened.is_open()) throw scene::bad_input(fmt::format("{}: it cannot be opened; check its rights", source));
+  merge(fmt::format("/proc/self/fd/{}", opened.get()), source);
+  return contents_of_model(holdings, source, request, "Gmsh");
+}
+
+ForeignContents read_by_gmsh(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  struct Format {
+    const char *extension, *words;
+  };
+  // As Gmsh knows them: in no other mixture of capitals.
+  constexpr std::array formats = {
+      Format{".mesh", "Medit"},           Format{".meshb", "Medit"}, Format{".unv", "I-DEAS universal"},
+      Format{".bdf", "Nastran"},          Format{".nas", "Nastran"}, Format{".MESH", "Medit"},
+      Format{".UNV", "I-DEAS universal"}, Format{".BDF", "Nastran"}, Format{".NAS", "Nastran"}};
+  const std::string source = file.string(), extension = file.extension().string();
+  const auto* const format =
+      std::find_if(formats.begin(), formats.end(), [&](const Format& f) { return extension == f.extension; });
+  if (format == formats.end())
+    throw scene::bad_input(fmt::format(
+        "{}: Gmsh's library knows such files by their names alone; unpack it, if it is packed, and have its name end "
+        "in .mesh, .meshb, .unv, .bdf or .nas",
+        source));
+  merge(source, source);
+  return contents_of_model(holdings, source, request, format->words);
+}
+
+}  // namespace tessera::io::helper

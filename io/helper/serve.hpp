@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string_view>
+
+#include "io/helper/holdings.hpp"
+
+namespace tessera::io::helper {
+
+/// What a helper program reads with, by the name that a request gives.
+struct Reader {
+  std::string_view name;
+  ForeignContents (*read)(Holdings&, const std::filesystem::path&, const nlohmann::json& request);
+};
+
+/// Answers the requests of the library that started this process, over descriptor 3, and ends with it:
+///
+/// First     {} from the helper: it runs.
+/// Requests  {"do": "open", "version", "file", "reader": a name, ...}        -> {"contents"} (io/foreign_data.hpp)
+///           {"do": "take", "array": number, "keep": bool}                   -> {} and a file with its numbers
+///           {"do": "window", "slot": bytes} and a file of some slots        -> {}
+///           {"do": "put", "array": number, "first", "count", "slot": index} -> {}; those tuples are in that slot
+///           {"do": "drop", "arrays": [numbers]}                             -> nothing
+/// Failures  {"error": {"line", "code"}} instead.
+[[noreturn]] void serve(std::span<const Reader> readers);
+
+}  // namespace tessera::io::helper
