@@ -208,6 +208,9 @@ bool begins_as_abaqus(const FileBeginning& file) {
 bool begins_as_medit(const FileBeginning& file) {
   return without_blanks(file.text.substr(0, 64)).starts_with("MeshVersionFormatted");
 }
+bool begins_as_mfem(const FileBeginning& file) {
+  return file.text.starts_with("MFEM ") && first_lines(file.text, '#', 1)[0].find("mesh v") != std::string_view::npos;
+}
 bool begins_as_netgen(const FileBeginning& file) {
   const auto lines = first_lines(file.text, '#', 1);
   return !lines.empty() && lines[0] == "mesh3d";

@@ -43,6 +43,7 @@ bool begins_as_su2(const FileBeginning& file);
 bool begins_as_xdmf(const FileBeginning& file);
 bool begins_as_binary_tecplot(const FileBeginning& file);
 bool begins_as_abaqus(const FileBeginning& file);
+bool begins_as_mfem(const FileBeginning& file);
 bool begins_as_netgen(const FileBeginning& file);
 bool begins_as_nek5000(const FileBeginning& file);
 

@@ -94,6 +94,8 @@ constexpr std::array rows = {
               "their libraries are not free; export Exodus, EnSight or .vtu", nullptr},
     FormatRow{FileKind::unread, "Nek5000", ".nek5000", FileHolds::not_read, Needs::nothing,
               "VTK's reader is not packaged; save it as .vtu in ParaView", begins_as_nek5000},
+    FormatRow{FileKind::unread, "MFEM", "", FileHolds::not_read, Needs::nothing,
+              "its library is not packaged; have MFEM write .vtu", begins_as_mfem},
     FormatRow{FileKind::unread, "Netgen", ".vol", FileHolds::not_read, Needs::nothing,
               "VTK has no reader; convert it to .vtu with meshio", begins_as_netgen},
     FormatRow{FileKind::unread, "SU2", ".su2", FileHolds::not_read, Needs::nothing,

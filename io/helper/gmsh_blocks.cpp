@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <new>
 
 #include "io/helper/gmsh_cells.hpp"
 #include "scene/error.hpp"
@@ -55,7 +56,17 @@ class CellTypes {
     std::string name;
     int dimension = 0, order = 0, nodes = 0, corners = 0;
     std::vector<double> places;
-    gmsh::model::mesh::getElementProperties(type, name, dimension, order, nodes, places, corners);
+    try {
+      gmsh::model::mesh::getElementProperties(type, name, dimension, order, nodes, places, corners);
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (...) {  // it knows no places in prisms of the third order and above
+      if (type == 90 || type == 91 || (type >= 106 && type <= 117)) {
+        name = "Prism", corners = nodes = 6;
+        found->second = gmsh_cell(1, 6, std::vector<double>(18));
+        found->second.by_corners = true;
+      }
+    }
     if (corners >= 4 && corners <= 8 && corners != 7 && places.size() == 3 * static_cast<std::size_t>(nodes))
       found->second = gmsh_cell(order, static_cast<std::size_t>(corners), places);
     if (found->second.by_corners)

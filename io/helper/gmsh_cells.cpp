@@ -3,6 +3,8 @@
 #include <vtkCell.h>
 #include <vtkCellType.h>
 #include <vtkGenericCell.h>
+#include <vtkHigherOrderHexahedron.h>
+#include <vtkHigherOrderWedge.h>
 #include <vtkIdList.h>
 #include <vtkNonLinearCell.h>
 #include <vtkPoints.h>
@@ -50,7 +52,12 @@ std::vector<glm::dvec3> vtk_places(int type, std::size_t nodes) {
   const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
   cell->Points->SetNumberOfPoints(static_cast<vtkIdType>(nodes));
   cell->PointIds->SetNumberOfIds(static_cast<vtkIdType>(nodes));
-  if (!cell->IsLinear()) cell->Initialize();  // Lagrange cells find their order
+  // What Lagrange cells are not told, they print about.
+  if (auto* hexahedron = vtkHigherOrderHexahedron::SafeDownCast(cell))
+    hexahedron->SetUniformOrderFromNumPoints(static_cast<vtkIdType>(nodes));
+  if (auto* wedge = vtkHigherOrderWedge::SafeDownCast(cell))
+    wedge->SetUniformOrderFromNumPoints(static_cast<vtkIdType>(nodes));
+  if (!cell->IsLinear()) cell->Initialize();
   const double* const p = cell->GetParametricCoords();
   std::vector<glm::dvec3> places;
   for (std::size_t k = 0; p != nullptr && k < nodes; ++k) places.emplace_back(p[3 * k], p[3 * k + 1], p[3 * k + 2]);

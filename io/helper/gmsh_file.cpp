@@ -15,7 +15,6 @@
 #include "io/helper_messages.hpp"
 #include "io/input_file.hpp"
 #include "scene/error.hpp"
-#include "scene/quote.hpp"
 
 namespace tessera::io::helper {
 namespace {
@@ -29,7 +28,10 @@ std::string first_error(const std::string& given, const std::string& source) {
     if (!line.starts_with(mark)) continue;
     line.erase(0, mark.size());
     if (const std::size_t at = line.find(given); at != std::string::npos) line.replace(at, given.size(), source);
-    return scene::quote(line.substr(0, 160));
+    line.resize(std::min<std::size_t>(line.size(), 160));
+    for (char& c : line)  // it may quote anything
+      if (c < ' ' || c > '~') c = '?';
+    return line;
   }
   return "";
 }
@@ -76,6 +78,15 @@ void require_last_section(const std::filesystem::path& file) {
         "{}: it does not end with the end of a section, $End...; it is truncated, write it anew", file.string()));
 }
 
+/// Text, or a 1 of either byte order.
+bool begins_as_medit(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first != std::string_view::npos && text.substr(first).starts_with("MeshVersionFormatted")) return true;
+  return text.starts_with(std::string_view("\1\0\0\0", 4)) || text.starts_with(std::string_view("\0\0\0\1", 4));
+}
+
+constexpr const char* medit = "Medit";
+
 ForeignContents contents_of_model(Holdings& holdings, const std::string& source, const nlohmann::json& request,
                                   const char* format) {
   ForeignContents contents;
@@ -112,9 +123,9 @@ ForeignContents read_by_gmsh(Holdings& holdings, const std::filesystem::path& fi
   };
   // As Gmsh knows them: in no other mixture of capitals.
   constexpr std::array formats = {
-      Format{".mesh", "Medit"},           Format{".meshb", "Medit"}, Format{".unv", "I-DEAS universal"},
-      Format{".bdf", "Nastran"},          Format{".nas", "Nastran"}, Format{".MESH", "Medit"},
-      Format{".UNV", "I-DEAS universal"}, Format{".BDF", "Nastran"}, Format{".NAS", "Nastran"}};
+      Format{".mesh", medit},    Format{".meshb", medit}, Format{".unv", "I-DEAS universal"}, Format{".bdf", "Nastran"},
+      Format{".nas", "Nastran"}, Format{".MESH", medit},  Format{".UNV", "I-DEAS universal"}, Format{".BDF", "Nastran"},
+      Format{".NAS", "Nastran"}};
   const std::string source = file.string(), extension = file.extension().string();
   const auto* const format =
       std::find_if(formats.begin(), formats.end(), [&](const Format& f) { return extension == f.extension; });
@@ -123,6 +134,8 @@ ForeignContents read_by_gmsh(Holdings& holdings, const std::filesystem::path& fi
         "{}: Gmsh's library knows such files by their names alone; unpack it, if it is packed, and have its name end "
         "in .mesh, .meshb, .unv, .bdf or .nas",
         source));
+  if (format->words == medit && !begins_as_medit(read_beginning(file, 64)))
+    throw scene::bad_input(fmt::format("{}: it does not begin as a Medit mesh does; check what it is", source));
   merge(source, source);
   return contents_of_model(holdings, source, request, format->words);
 }

@@ -60,6 +60,7 @@ const Beginning beginnings[] = {
     {"MetaImage", "ObjectType = Image\nNDims = 3\n"},
     {"Gmsh", "$MeshFormat\n4.1 0 8\n"},
     {"Medit", "MeshVersionFormatted 2\n"},
+    {"MFEM", "MFEM mesh v1.0\n"},
     {"SU2", "% mesh\nNDIME= 3\n"},
     {"XDMF", "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">"},
     {"Abaqus or Ansys input", "*HEADING\nmodel\n"},

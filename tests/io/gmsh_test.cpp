@@ -305,6 +305,27 @@ TEST_F(Gmsh, ThirdOrderTetrahedraComeInVtksOrder) {
   EXPECT_EQ(cell_points(read.blocks[0]), vtks);
 }
 
+TEST_F(Gmsh, ThirdOrderHexahedraComeInVtksOrder) {
+  // Edges in thirds, as both have them; faces and inside are elsewhere.
+  const Points corners = {{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}, {0, 0, 3}, {3, 0, 3}, {3, 3, 3}, {0, 3, 3}};
+  const auto thirds = [&](Points& points, const Edges& edges) {
+    for (const auto& [a, b] : edges)
+      for (const double t : {1.0, 2.0}) points.push_back(((3 - t) * corners[a] + t * corners[b]) / 3.0);
+  };
+  Points theirs = corners, vtks = corners;
+  thirds(theirs, {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 5}, {2, 3}, {2, 6}, {3, 7}, {4, 5}, {4, 7}, {5, 6}, {6, 7}});
+  thirds(vtks, {{0, 1}, {1, 2}, {3, 2}, {0, 3}, {4, 5}, {5, 6}, {7, 6}, {4, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}});
+  // Only where the edges' nodes go is looked at here: those of faces and inside may lie anywhere.
+  for (int k = 0; k < 32; ++k) theirs.emplace_back(1.5, 1.5, 1.5 + 0.01 * k);
+  const MeshBlocks read = read_by_gmsh(folder.write("a.msh", one_cell(92, theirs)), "gmsh", {});
+  ASSERT_EQ(read.blocks.size(), 1u);
+  EXPECT_EQ(read.blocks[0].types[0], 72);
+  Points points = cell_points(read.blocks[0]);
+  ASSERT_EQ(points.size(), 64u);
+  points.resize(32);
+  EXPECT_EQ(points, vtks);
+}
+
 TEST_F(Gmsh, MeditIsReadByItsName) {
   std::string text = "MeshVersionFormatted 2\nDimension 3\nVertices\n12\n";
   for (const glm::dvec3& p : two_cubes()) text += fmt::format("{} {} {} 0\n", p.x, p.y, p.z);
