@@ -29,6 +29,7 @@ bool begins_as_fluent(const FileBeginning& file);
 bool begins_as_gambit(const FileBeginning& file);
 bool begins_as_gmsh(const FileBeginning& file);
 bool begins_as_medit(const FileBeginning& file);
+bool begins_as_su2(const FileBeginning& file);
 bool begins_as_avs_ucd(const FileBeginning& file);
 bool begins_as_tecplot(const FileBeginning& file);
 bool begins_as_stl(const FileBeginning& file);
@@ -39,7 +40,6 @@ bool begins_as_meta_image(const FileBeginning& file);
 bool begins_as_nifti(const FileBeginning& file);
 
 // Not read.
-bool begins_as_su2(const FileBeginning& file);
 bool begins_as_xdmf(const FileBeginning& file);
 bool begins_as_binary_tecplot(const FileBeginning& file);
 bool begins_as_abaqus(const FileBeginning& file);

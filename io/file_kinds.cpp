@@ -54,6 +54,8 @@ constexpr std::array rows = {
               "by_gmsh"},
     FormatRow{FileKind::gmsh, "Nastran bulk data", ".bdf .nas", FileHolds::mesh, Needs::gmsh, "meshes; by its name",
               nullptr, "by_gmsh"},
+    FormatRow{FileKind::su2, "SU2", ".su2", FileHolds::mesh, Needs::nothing, "meshes of 3 dimensions; zones are blocks",
+              begins_as_su2},
     FormatRow{FileKind::plot3d, "PLOT3D", ".xyz .p3d .x .bin", FileHolds::mesh, Needs::vtk,
               "the solution beside it, or `q`; IBLANK 0 hides", nullptr},
     FormatRow{FileKind::tetgen_mesh, "TetGen mesh", ".node .ele", FileHolds::mesh, Needs::nothing,
@@ -98,8 +100,6 @@ constexpr std::array rows = {
               "its library is not packaged; have MFEM write .vtu", begins_as_mfem},
     FormatRow{FileKind::unread, "Netgen", ".vol", FileHolds::not_read, Needs::nothing,
               "VTK has no reader; convert it to .vtu with meshio", begins_as_netgen},
-    FormatRow{FileKind::unread, "SU2", ".su2", FileHolds::not_read, Needs::nothing,
-              "no reader yet; convert it to .vtu with meshio", begins_as_su2},
     FormatRow{FileKind::unread, "MED", ".med .rmed", FileHolds::not_read, Needs::nothing,
               "VTK has no reader; write .vtu with ParaVis or meshio", nullptr},
 };

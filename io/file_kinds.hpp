@@ -19,6 +19,7 @@ enum class FileKind : std::uint8_t {
   hdf5,        ///< Exodus, CGNS or VTKHDF: the helper looks
   solver,      ///< FormatRow::reader
   gmsh,        ///< what Gmsh's library reads; FormatRow::reader
+  su2,
   plot3d,
   tetgen_mesh,     ///< .node and .ele
   tetgen_surface,  ///< .poly and .smesh

@@ -14,6 +14,7 @@
 #include "io/mapped_file.hpp"
 #include "io/mesh_assembly.hpp"
 #include "io/mesh_formats.hpp"
+#include "io/su2_file.hpp"
 #include "io/tets_file.hpp"
 #include "scene/error.hpp"
 
@@ -42,6 +43,8 @@ MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row,
       return read_solver_file(file, row.reader, options.time_step);
     case FileKind::gmsh:
       return read_by_gmsh(file, row.reader, options.time_step);
+    case FileKind::su2:
+      return {parse_su2(MappedFile(file).text(), file.string()), {}, "SU2"};
     case FileKind::plot3d:
       return read_plot3d(file, options.plot3d_q);
     case FileKind::tetgen_mesh:

@@ -1,3 +1,5 @@
+#include "io/helper/serve.hpp"
+
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -14,7 +16,6 @@
 
 #include "io/clean_errors.hpp"
 #include "io/helper/readers.hpp"
-#include "io/helper/serve.hpp"
 #include "io/helper_messages.hpp"
 #include "io/input_file.hpp"
 #include "scene/error.hpp"
@@ -35,8 +36,8 @@ Json open(std::span<const Reader> readers, Holdings& holdings, const Json& reque
   const auto name = request.at("reader").get<std::string>();
   for (const Reader& reader : readers)
     if (name == reader.name) return {{"contents", Json::binary(bytes_of(reader.read(holdings, file, request)))}};
-  throw scene::Error(scene::ErrorCode::system_failure, "the helper program", fmt::format("it was built without {}", name),
-                     "install it as the library");
+  throw scene::Error(scene::ErrorCode::system_failure, "the helper program",
+                     fmt::format("it was built without {}", name), "install it as the library");
 }
 
 /// A file without a name that holds an array's numbers.
@@ -85,7 +86,8 @@ Json error_json(const scene::Error& error) {
 }
 
 /// Answers one request. False if the caller is gone.
-bool answer(std::span<const Reader> readers, Holdings& holdings, Window& window, const Json& request, const Descriptor& given) {
+bool answer(std::span<const Reader> readers, Holdings& holdings, Window& window, const Json& request,
+            const Descriptor& given) {
   const auto asked = request.at("do").get<std::string>();
   if (asked == "drop") {
     for (const Json& array : request.at("arrays")) holdings.drop(array.get<std::uint64_t>());

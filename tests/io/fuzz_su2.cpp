@@ -1,0 +1,20 @@
+// Any text is zones of cells whose indices hold, or is refused in one line.
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "fuzz_check.hpp"
+#include "io/su2_file.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace tessera;
+  test::parse_or_refuse([&] {
+    for (const io::CellBlock& block : io::parse_su2({reinterpret_cast<const char*>(data), size}, "f.su2")) {
+      test::require(block.offsets.size() == block.types.size() + 1);
+      test::require(block.offsets.back() == block.connectivity.size());
+      for (std::size_t c = 0; c < block.types.size(); ++c) test::require(block.offsets[c] <= block.offsets[c + 1]);
+      for (const std::uint32_t v : block.connectivity) test::require(v < block.positions.size());
+    }
+  });
+  return 0;
+}
