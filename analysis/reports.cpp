@@ -78,6 +78,7 @@ Description::Description(const Dataset& data)
       range(data.range()),
       fields(data.fields().begin(), data.fields().end()),
       notes(data.notes().begin(), data.notes().end()),
+      blocks(data.blocks().begin(), data.blocks().end()),
       counts(data.mesh_counts()),
       scale(data.scale()),
       shift(data.shift()),
@@ -119,6 +120,7 @@ Json data_json(const std::filesystem::path& input, const Description& data) {
   json["field"] = {{"name", data.field_name}, {"association", word(data.association)}, {"range", data.range}};
   if (!data.is_mesh) json["field"]["blank"] = data.blanks;
   json["fields"] = fields_json(data);
+  if (!data.blocks.empty()) json["blocks"] = data.blocks;
   json["notes"] = data.notes;
   return json;
 }

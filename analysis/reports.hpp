@@ -25,7 +25,7 @@ struct Description {
   Box box;
   std::array<double, 2> range;
   std::vector<FieldInfo> fields;
-  std::vector<std::string> notes;
+  std::vector<std::string> notes, blocks;
   MeshCounts counts;      ///< meshes
   GridGeometry geometry;  ///< grids, and so on
   SampleType type{};

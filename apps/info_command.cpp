@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 
 #include "apps/report.hpp"
 
@@ -43,6 +44,14 @@ void print_text(const std::filesystem::path& input, const analysis::Description&
                analysis::word(field.association), field.type, field.components, field.low, field.high,
                field.nan_count > 0 ? fmt::format(", {} NaN", field.nan_count) : "");
     title = "";
+  }
+  if (data.blocks.size() > 1) {
+    constexpr std::size_t most = 200;
+    std::string list;
+    for (const auto& name : std::span(data.blocks).first(std::min(data.blocks.size(), most)))
+      list += (list.empty() ? "" : ", ") + name;
+    if (data.blocks.size() > most) list += fmt::format(" and {} more (--json has all)", data.blocks.size() - most);
+    fmt::print("blocks    {}\n", list);
   }
   fmt::print("renders   field {}, {:.6g} to {:.6g}; {}; view {}\n", data.field_name, data.range[0], data.range[1],
              transfer_function_line(loaded), view_line(view));

@@ -83,8 +83,8 @@ ExitCode run(int argc, char** argv, Job& job) {
                               "which piece a cell goes to: curve (compact, the default), file (order kept), random");
   std::string subdivide = "0";
   convert_command->add_option("--subdivide", subdivide, "of a mesh: times every tetrahedron is cut into eight");
-  std::string block = "64";
-  convert_command->add_option("--block", block, ".bricks: samples a side of a block (default 64)");
+  convert_command->get_option("--block")->description(
+      "of a mesh in blocks: write this one alone; may be repeated; of .bricks: samples a side of a block (default 64)");
   convert_command->add_flag("--quiet", words.quiet, "nothing on stderr but errors");
 
   auto* generate_command = app.add_subcommand("generate", "Make a mesh or a volume");
@@ -146,11 +146,15 @@ ExitCode run(int argc, char** argv, Job& job) {
     info(words.input, is_grid ? volume_options(words) : mesh_options(words), as_json, check);
   }
   if (*convert_command) require_input(words.input);
-  if (*convert_command && is_grid_input(words) && !to_mesh(words.input, mesh_output))
-    convert_grid(words.input, mesh_output, volume_options(words), parse_count("--block", block, 8, 1024), words.quiet);
-  else if (*convert_command)
+  if (*convert_command && is_grid_input(words) && !to_mesh(words.input, mesh_output)) {
+    ReadOptions options = volume_options(words);
+    const std::string side = options.blocks.empty() ? "64" : options.blocks.back();
+    options.blocks.clear();
+    convert_grid(words.input, mesh_output, options, parse_count("--block", side, 8, 1024), words.quiet);
+  } else if (*convert_command) {
     convert_mesh(words.input, mesh_output, mesh_options(words), parse_count("--subdivide", subdivide, 0, 8),
                  convert_pieces(pieces, pieces_partition), words.quiet);
+  }
   if (*chart_command) chart(words, chart_words);
   if (*formats_command) formats(as_json);
   if (*timing_command) timing({traces.begin(), traces.end()}, csv, figure);

@@ -103,6 +103,11 @@ void add_mesh_options(CLI::App& command, RenderWords& words) {
       .add_option("--time-step", words.time_step,
                   "Exodus, OpenFOAM, EnSight, Gmsh ...: step counted from 0 (default: the last)")
       ->type_name("STEP");
+  command
+      .add_option("--block", words.blocks,
+                  "files in blocks: draw this one alone, of those that info lists; may be repeated")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
   add_volume_options(command, words);
 }
 
@@ -115,6 +120,7 @@ ReadOptions mesh_options(const RenderWords& words) {
   if (!words.max_volume.empty()) mesh.max_volume = parse_positive("--max-volume", words.max_volume);
   if (!words.time_step.empty())
     mesh.time_step = static_cast<std::size_t>(parse_count("--time-step", words.time_step, 0, no_limit));
+  mesh.blocks = words.blocks;
   mesh.threads = thread_count(words);
   return mesh;
 }
@@ -291,6 +297,7 @@ void refuse_mesh_options(const RenderWords& words, const RenderOptions& options)
   if (read.smooth) refuse("--smooth");
   if (read.max_volume) refuse("--max-volume");
   if (read.time_step) refuse("--time-step");
+  if (!read.blocks.empty()) refuse("--block");
   if (!read.plot3d_q.empty()) refuse("--q");
 }
 

@@ -87,6 +87,7 @@ void add_volume_render_options(CLI::App& command, RenderWords& words) {
 ReadOptions volume_options(const RenderWords& words) {
   ReadOptions options;
   options.field = words.field;
+  options.blocks = words.blocks;
   if (!words.dims.empty())
     options.dims =
         three<std::int64_t>("--dims", words.dims, 'x', "three sizes; write WxHxD", [](const std::string& word) {

@@ -35,6 +35,7 @@ void check_grid_options(const std::filesystem::path& file, const ReadOptions& op
   if (options.smooth) refuse("smooth");
   if (options.max_volume) refuse("max_volume");
   if (options.time_step) refuse("time_step");
+  if (!options.blocks.empty()) refuse("block");
   if (!options.plot3d_q.empty()) refuse("plot3d_q");
 }
 
@@ -82,6 +83,7 @@ void take_description(io::MeshFile&& file, Dataset::State& state) {
   state.field_name = std::move(file.mesh.field_name);
   state.fields = std::move(file.fields);
   state.notes = std::move(file.notes);
+  state.blocks = std::move(file.blocks);
   state.format = std::move(file.format);
   state.counts = file.counts;
 }
@@ -150,7 +152,7 @@ auto together(exchange::Transport& transport, const Work& work) {
 namespace frame {
 
 io::MeshOptions mesh_options(const ReadOptions& o) {
-  return {o.field, o.smooth, o.plot3d_q, o.max_volume, o.time_step, o.threads};
+  return {o.field, o.smooth, o.plot3d_q, o.max_volume, o.time_step, o.threads, o.blocks};
 }
 
 }  // namespace frame
@@ -304,6 +306,7 @@ Association Dataset::association() const { return state_->facts.association; }
 const std::string& Dataset::field_name() const { return state_->field_name; }
 std::span<const FieldInfo> Dataset::fields() const { return state_->fields; }
 std::span<const std::string> Dataset::notes() const { return state_->notes; }
+std::span<const std::string> Dataset::blocks() const { return state_->blocks; }
 const std::string& Dataset::format() const { return state_->format; }
 const std::string& Dataset::source() const { return state_->source; }
 std::uint64_t Dataset::tet_count() const { return state_->facts.tets; }

@@ -18,7 +18,7 @@ namespace tessera {
 struct TESSERA_HIDDEN Dataset::State {
   std::string source, format, field_name;
   std::vector<FieldInfo> fields;
-  std::vector<std::string> notes;
+  std::vector<std::string> notes, blocks;
   scene::MeshFacts facts;  ///< of the whole; grids have no tets
   MeshCounts counts;
   /// Files that the whole mesh can be read from again, by one rank that verifies; none: arrays.

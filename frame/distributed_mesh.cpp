@@ -87,6 +87,7 @@ Bytes message_of(const io::MeshFile& file) {
   append(message, std::uint64_t{file.fields.size()});
   for (const io::FieldSummary& f : file.fields) append_field(message, f);
   append_texts(message, file.notes);
+  append_texts(message, file.blocks);
   append_text(message, file.format);
   append_text(message, file.mesh.field_name);
   append(message, static_cast<std::uint8_t>(file.mesh.association));
@@ -98,6 +99,7 @@ io::MeshFile description_in(MessageReader& reader) {
   file.counts = reader.take<io::MeshCounts>();
   for (auto left = reader.take<std::uint64_t>(); left > 0; --left) file.fields.push_back(take_field(reader));
   file.notes = take_texts(reader);
+  file.blocks = take_texts(reader);
   file.format = reader.take_text();
   file.mesh.field_name = reader.take_text();
   file.mesh.association = take_association(reader);

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "io/block_choice.hpp"
 #include "io/foreign_file.hpp"
 #include "io/large_vector.hpp"
 #include "scene/error.hpp"
@@ -277,6 +278,12 @@ ForeignFile open_foreign(std::shared_ptr<HelperProcess> helper, const std::files
     throw scene::bad_input(
         fmt::format("{}: its reader says nothing sensible of it; it is damaged, write it anew", opened.source));
   }
+  ForeignContents& contents = opened.contents;
+  if (!contents.block_names.empty()) return opened;  // the reader has seen to it
+  for (const ForeignPart& part : contents.parts)
+    if (part.kind != ForeignPart::Kind::surface) contents.block_names.push_back(part.name);
+  const BlockChoice choice = request.value("blocks", BlockChoice());
+  std::erase_if(contents.parts, [&](const ForeignPart& part) { return !is_chosen(choice, part.name); });
   return opened;
 }
 
@@ -335,7 +342,10 @@ std::vector<CellBlock> blocks_of(const ForeignFile& file, std::vector<std::strin
     }
     blocks.push_back(block_of(file, part, grids));
   }
-  if (surfaces > 0) notes.push_back(fmt::format("{} blocks are surfaces and are left out", surfaces));
+  if (surfaces > 0)
+    notes.push_back(fmt::format("{} left out", surfaces == 1
+                                                   ? "1 block is a surface and is"
+                                                   : fmt::format("{} blocks are surfaces and are", surfaces)));
   return blocks;
 }
 

@@ -117,7 +117,10 @@ void read_tuples(std::span<const std::byte> bytes, NumberType type, int componen
 std::vector<std::uint8_t> bytes_of(const ForeignContents& contents) {
   Json parts = Json::array();
   for (const ForeignPart& part : contents.parts) parts.push_back(json_of(part));
-  return Json::to_cbor({{"parts", std::move(parts)}, {"notes", contents.notes}, {"format", contents.format}});
+  return Json::to_cbor({{"parts", std::move(parts)},
+                        {"notes", contents.notes},
+                        {"format", contents.format},
+                        {"block_names", contents.block_names}});
 }
 
 ForeignContents contents_of(std::span<const std::uint8_t> bytes) {
@@ -126,6 +129,7 @@ ForeignContents contents_of(std::span<const std::uint8_t> bytes) {
   for (const Json& part : json.at("parts")) contents.parts.push_back(part_of(part));
   json.at("notes").get_to(contents.notes);
   json.at("format").get_to(contents.format);
+  json.at("block_names").get_to(contents.block_names);
   return contents;
 }
 

@@ -95,6 +95,7 @@ struct ForeignContents {
   std::vector<ForeignPart> parts;
   std::vector<std::string> notes;
   std::string format;
+  std::vector<std::string> block_names{};  ///< of all blocks, where parts are not the blocks; empty: of the parts
 };
 
 /// As bytes (CBOR, RFC 8949) and back. contents_of() throws std::exception for bytes of anything else.

@@ -20,7 +20,8 @@ struct ForeignFile {
 };
 
 /// Has the helper read a file. `request` names the reader and what it is told (helper/readers.hpp); the file is added.
-/// Throws Error(bad_input) in one line.
+/// Of the parts those that its "blocks", names, do not mean are left out; contents.block_names are of all. Throws
+/// Error(bad_input) in one line.
 ForeignFile open_foreign(std::shared_ptr<HelperProcess> helper, const std::filesystem::path& file,
                          nlohmann::json request);
 

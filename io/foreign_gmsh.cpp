@@ -8,8 +8,9 @@ namespace tessera::io {
 
 bool has_gmsh() { return true; }
 
-MeshBlocks read_by_gmsh(const std::filesystem::path& file, const char* reader, std::optional<std::size_t> time_step) {
-  nlohmann::json request{{"reader", reader}};
+MeshBlocks read_by_gmsh(const std::filesystem::path& file, const char* reader, std::optional<std::size_t> time_step,
+                        const BlockChoice& choice) {
+  nlohmann::json request{{"reader", reader}, {"blocks", choice}};
   if (time_step) request["time_step"] = *time_step;
   HelperTask task;
   task.program = "tessera-read-gmsh";
@@ -17,6 +18,7 @@ MeshBlocks read_by_gmsh(const std::filesystem::path& file, const char* reader, s
   MeshBlocks result;
   result.format = opened.contents.format;
   result.notes = opened.contents.notes;
+  result.block_names = opened.contents.block_names;
   result.blocks = blocks_of(opened, result.notes);
   return result;
 }

@@ -64,30 +64,42 @@ struct ListedBlock {
   std::filesystem::path file;
 };
 
+/// The data sets in their order. A name is the path of the names of the blocks around it and its own.
 std::vector<ListedBlock> listed_blocks(const std::filesystem::path& file) {
   std::vector<ListedBlock> blocks;
+  std::vector<std::string> path;  // by depth
   each_xml_element(read_text_file(file), file.string(), [&](const XmlElement& element) {
+    const std::string* const own = element.find("name");
+    path.resize(element.parents.size());
+    path.push_back(own != nullptr ? *own : "");
     if (element.name != "DataSet") return;
-    const std::string *listed = element.find("file"), *name = element.find("name");
+    const std::string* const listed = element.find("file");
     if (listed == nullptr || listed->empty()) return;  // a block that is empty, as some of a rank's are
-    blocks.push_back(
-        {name != nullptr && !name->empty() ? *name : std::to_string(blocks.size()), file.parent_path() / *listed});
+    std::string name;
+    for (const std::string& word : path)
+      if (!word.empty()) name += (name.empty() ? "" : "/") + word;
+    blocks.push_back({name.empty() ? std::to_string(blocks.size()) : name, file.parent_path() / *listed});
   });
   return blocks;
 }
 
 /// The volumes among a multi-block file's data sets, each read by itself, so that faults name the file.
-MeshBlocks read_blocks_of(const std::filesystem::path& file) {
+MeshBlocks read_blocks_of(const std::filesystem::path& file, const BlockChoice& choice) {
   MeshBlocks result;
   result.format = "VTK XML multi-block";
   const auto helper = std::make_shared<HelperProcess>();
   std::size_t surfaces = 0;
   for (const ListedBlock& listed : listed_blocks(file)) {
+    if (!is_chosen(choice, listed.name)) {  // nor looked into, so that it may be a surface
+      result.block_names.push_back(listed.name);
+      continue;
+    }
     const std::string type = xml_type(listed.file);
     if (type == "PolyData" || type == "PPolyData") {
       ++surfaces;
       continue;
     }
+    result.block_names.push_back(listed.name);
     if (type == parallel_type) {
       for (CellBlock& block : read_pvtu_pieces(listed.file, pvtu_pieces(listed.file)).blocks) {
         block.name = listed.name;
@@ -104,7 +116,10 @@ MeshBlocks read_blocks_of(const std::filesystem::path& file) {
     for (CellBlock& block : blocks_of(opened, result.notes, GridsAre::hexahedra))
       result.blocks.push_back(std::move(block));
   }
-  if (surfaces > 0) result.notes.push_back(fmt::format("{} blocks are surfaces and are left out", surfaces));
+  if (surfaces > 0)
+    result.notes.push_back(fmt::format("{} left out", surfaces == 1
+                                                          ? "1 block is a surface and is"
+                                                          : fmt::format("{} blocks are surfaces and are", surfaces)));
   return result;
 }
 
@@ -114,6 +129,7 @@ MeshBlocks read_foreign(const std::filesystem::path& file, nlohmann::json reques
   MeshBlocks result;
   result.format = opened.contents.format;
   result.notes = opened.contents.notes;
+  result.block_names = opened.contents.block_names;
   result.blocks = blocks_of(opened, result.notes);
   return result;
 }
@@ -122,7 +138,7 @@ MeshBlocks read_foreign(const std::filesystem::path& file, nlohmann::json reques
 
 bool has_vtk() { return true; }
 
-MeshBlocks read_vtk_xml(const std::filesystem::path& file) {
+MeshBlocks read_vtk_xml(const std::filesystem::path& file, const BlockChoice& choice) {
   const std::string source = file.string(), extension = lower_extension(file), type = xml_type(file);
   const XmlKind* const kind = kind_of(type);
   if (type.empty())
@@ -130,7 +146,7 @@ MeshBlocks read_vtk_xml(const std::filesystem::path& file) {
   if (type == "ImageData" || type == "PImageData")
     throw scene::bad_input(fmt::format(
         "{}: it is a regular grid (image data), no mesh; render, info and convert take it as a volume", source));
-  if (lists_blocks(type)) return read_blocks_of(file);
+  if (lists_blocks(type)) return read_blocks_of(file, choice);
   if (!kind) throw scene::bad_input(fmt::format("{}: its type is '{}'; give a mesh", source, type));
 
   // Pieces one by one, so that the whole reads as its parts do, and faults name the piece.
@@ -187,26 +203,27 @@ MeshBlocks read_vtk_legacy(const std::filesystem::path& file) {
   return read_foreign(file, {{"reader", "vtk_legacy"}});
 }
 
-MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t> time_step) {
+MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t> time_step,
+                       const BlockChoice& choice) {
   const std::string magic = read_beginning(file, 8);
   if (!magic.starts_with("CDF") && !magic.starts_with("\x89HDF\r\n\x1a\n"))
     throw scene::bad_input(
         fmt::format("{}: it is neither NetCDF nor HDF5; check that it is an Exodus file", file.string()));
-  nlohmann::json request{{"reader", "exodus"}};
+  nlohmann::json request{{"reader", "exodus"}, {"blocks", choice}};
   if (time_step) request["time_step"] = *time_step;
   return read_foreign(file, std::move(request));
 }
 
-MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader,
-                            std::optional<std::size_t> time_step) {
-  nlohmann::json request{{"reader", reader}};
+MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader, std::optional<std::size_t> time_step,
+                            const BlockChoice& choice) {
+  nlohmann::json request{{"reader", reader}, {"blocks", choice}};
   if (time_step) request["time_step"] = *time_step;
   const ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(), file, std::move(request));
   MeshBlocks result;
   result.format = opened.contents.format;
   result.notes = opened.contents.notes;
+  result.block_names = opened.contents.block_names;
   result.blocks = blocks_of(opened, result.notes, GridsAre::hexahedra);
-  if (result.blocks.size() == 1) result.blocks[0].name.clear();
   return result;
 }
 
@@ -231,7 +248,6 @@ MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem:
                                           {"double_precision", layout.double_precision},
                                           {"iblank", layout.iblank}});
   result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
-  if (result.blocks.size() == 1) result.blocks[0].name.clear();
   return result;
 }
 

@@ -7,16 +7,18 @@
 #include <string>
 #include <vector>
 
+#include "io/block_choice.hpp"
 #include "io/cell_block.hpp"
 #include "io/file_kinds.hpp"
 
 namespace tessera::io {
 
-/// What a file holds before its cells are split.
+/// What a file holds before its cells are split. Readers that take a choice of blocks read no others.
 struct MeshBlocks {
   std::vector<CellBlock> blocks;
   std::vector<std::string> notes;
   std::string format;
+  std::vector<std::string> block_names{};  ///< of all, those too that were not chosen; empty: of `blocks`
 };
 
 /// Whether this build has VTK's readers (CMake option TESSERA_VTK), in the helper program. Without them read_vtk_xml(),
@@ -25,7 +27,7 @@ bool has_vtk();
 
 /// VTK's XML files: .vtu .pvtu .vts .pvts .vtr .pvtr, and lists of them (.vtm .vtpc). The pieces of a .pvtu are a block
 /// each, their points not merged.
-MeshBlocks read_vtk_xml(const std::filesystem::path& file);
+MeshBlocks read_vtk_xml(const std::filesystem::path& file, const BlockChoice& choice = {});
 
 /// Whether a file that begins as VTK XML does is an unstructured grid in pieces, whatever its name.
 bool is_pvtu(const std::filesystem::path& file);
@@ -42,19 +44,21 @@ MeshBlocks read_vtk_legacy(const std::filesystem::path& file);
 
 /// Exodus II: all element blocks, nodal and element variables at one time step (default the last). Nodes are moved by
 /// the file's displacements, if it has some, as ParaView does. Variables NAME_x NAME_y NAME_z become one vector NAME.
-MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t> time_step);
+MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t> time_step,
+                       const BlockChoice& choice = {});
 
 /// A file of a solver, by the name of a reader in helper/main.cpp: all blocks, all arrays, one time step, by default
 /// the last.
-MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader,
-                            std::optional<std::size_t> time_step);
+MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader, std::optional<std::size_t> time_step,
+                            const BlockChoice& choice = {});
 
 /// Whether this build has Gmsh's library (CMake option TESSERA_GMSH), in a helper program of its own.
 bool has_gmsh();
 
 /// What Gmsh's library reads, by the name of a reader in helper/gmsh_main.cpp: a block a physical group, one time step,
 /// by default the last. Without the library throws Error(bad_input).
-MeshBlocks read_by_gmsh(const std::filesystem::path& file, const char* reader, std::optional<std::size_t> time_step);
+MeshBlocks read_by_gmsh(const std::filesystem::path& file, const char* reader, std::optional<std::size_t> time_step,
+                        const BlockChoice& choice = {});
 
 /// PLOT3D grid and solution; the binary layout is found from the file's size. `q_file` may be empty: then it is looked
 /// for beside the grid by its name, and if there is none the mesh has no field. IBLANK 0 hides a point's cells.

@@ -25,7 +25,7 @@ bool is_tets(const std::filesystem::path& file) { return lower_extension(file) =
 
 bool readable_in_parts(const std::filesystem::path& file, const MeshOptions& options) {
   require_file(file);
-  if (options.smooth) return false;
+  if (options.smooth || !options.blocks.empty()) return false;
   return is_tets(file) || (lower_extension(file) == ".pvtu" && is_pvtu(file));
 }
 

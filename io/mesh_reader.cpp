@@ -29,20 +29,20 @@ bool has_time_steps(const std::filesystem::path& file) {
 MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row, const MeshOptions& options) {
   switch (row.kind) {
     case FileKind::vtk_xml:
-      return read_vtk_xml(file);
+      return read_vtk_xml(file, options.blocks);
     case FileKind::vtk_legacy:
       return read_vtk_legacy(file);
     case FileKind::vtk_grid:
       if (row.holds == FileHolds::grid) refuse_as_mesh(file);
       return read_beginning(file, 8).starts_with("# vtk") ? read_vtk_legacy(file) : read_vtk_xml(file);
     case FileKind::exodus:
-      return read_exodus(file, options.time_step);
+      return read_exodus(file, options.time_step, options.blocks);
     case FileKind::hdf5:
-      return read_solver_file(file, "hdf5", options.time_step);
+      return read_solver_file(file, "hdf5", options.time_step, options.blocks);
     case FileKind::solver:
-      return read_solver_file(file, row.reader, options.time_step);
+      return read_solver_file(file, row.reader, options.time_step, options.blocks);
     case FileKind::gmsh:
-      return read_by_gmsh(file, row.reader, options.time_step);
+      return read_by_gmsh(file, row.reader, options.time_step, options.blocks);
     case FileKind::su2:
       return {parse_su2(MappedFile(file).text(), file.string()), {}, "SU2"};
     case FileKind::plot3d:
@@ -60,15 +60,29 @@ MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row,
   }
 }
 
+/// Leaves the chosen blocks, if they were not all that was read, and the names of all.
+MeshBlocks chosen_blocks(MeshBlocks read, const BlockChoice& choice) {
+  if (read.block_names.empty())
+    for (const CellBlock& block : read.blocks) read.block_names.push_back(block.name);
+  read.block_names = distinct_names(std::move(read.block_names));
+  if (!choice.empty())
+    std::erase_if(read.blocks, [&](const CellBlock& block) {
+      return !block.name.empty() && !is_chosen(choice, block.name);  // those of no name were chosen by their reader
+    });
+  if (read.blocks.size() == 1 && read.block_names.size() <= 1) read.blocks.front().name.clear();
+  return read;
+}
+
 /// What is in a gzip file is read under another name, which nobody is to hear of.
 MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& options) {
   const FormatRow* const row = format_of(file);
   if (row == nullptr) refuse_as_mesh(file);
   if (std::filesystem::is_directory(file) || !looks_like_gzip(read_beginning(file, 2)))
-    return read_content(file, *row, options);
+    return chosen_blocks(read_content(file, *row, options), options.blocks);
   const InflatedFile inflated(file);
-  MeshBlocks read =
-      inflated.read([&](const std::filesystem::path& content) { return read_content(content, *row, options); });
+  MeshBlocks read = inflated.read([&](const std::filesystem::path& content) {
+    return chosen_blocks(read_content(content, *row, options), options.blocks);
+  });
   for (std::string& note : read.notes) note = inflated.renamed(std::move(note));
   for (CellBlock& block : read.blocks) block.source = inflated.renamed(std::move(block.source));
   read.format += ", gzip";
@@ -105,8 +119,10 @@ MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options
   return with_clean_errors(source, [&] {
     MeshBlocks read = read_blocks(file, options);
     if (!has_time_steps(file)) require_no_time_step(options, source);
+    require_blocks(options.blocks, read.block_names, source);
     MeshFile result = assemble_mesh(std::move(read.blocks), options, source);
     result.format = std::move(read.format);
+    result.blocks = std::move(read.block_names);
     result.notes.insert(result.notes.begin(), read.notes.begin(), read.notes.end());
     return result;
   });
@@ -122,6 +138,7 @@ MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptio
       MeshBlocks read = read_blocks(file, options);
       if (!has_time_steps(file)) require_no_time_step(options, source);
       if (all.format.empty()) all.format = read.format;
+      all.block_names.insert(all.block_names.end(), read.block_names.begin(), read.block_names.end());
       for (CellBlock& block : read.blocks) {
         if (block.source.empty()) block.source = source;
         all.blocks.push_back(std::move(block));
@@ -133,8 +150,11 @@ MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptio
   }
   const std::string source = files.empty() ? "mesh" : files.front().string();
   return with_clean_errors(source, [&] {
+    all.block_names = distinct_names(std::move(all.block_names));
+    require_blocks(options.blocks, all.block_names, source);
     MeshFile result = assemble_mesh(std::move(all.blocks), options, source);
     result.format = fmt::format("{} files: {}", files.size(), all.format);
+    result.blocks = std::move(all.block_names);
     result.notes.insert(result.notes.begin(), all.notes.begin(), all.notes.end());
     return result;
   });

@@ -23,6 +23,8 @@ struct MeshOptions {
   std::optional<double> max_volume;        ///< surfaces only: largest tet TetGen makes, world units cubed
   std::optional<std::size_t> time_step{};  ///< files of several: counted from 0; default the last
   int threads = 1;                         ///< that make tets of cells; 0: all cores
+  /// Of files in blocks: names of those to read (io/block_choice.hpp); none: all.
+  std::vector<std::string> blocks{};
 };
 
 using tessera::MeshCounts;
@@ -33,8 +35,9 @@ struct MeshFile {
   scene::TetMesh mesh;
   MeshCounts counts;
   std::vector<FieldSummary> fields;
-  std::vector<std::string> notes;  ///< one line each: what was chosen, or odd about the file
-  std::string format;              ///< "VTK XML unstructured grid", "PLOT3D", "TetGen .node/.ele", ...
+  std::vector<std::string> notes;   ///< one line each: what was chosen, or odd about the file
+  std::vector<std::string> blocks;  ///< names of all that the file has, read or not
+  std::string format;               ///< "VTK XML unstructured grid", "PLOT3D", "TetGen .node/.ele", ...
 };
 
 /// Reads a mesh of any format of io/file_kinds.cpp, told by what it begins with, then by its name; or a gzip file of

@@ -22,10 +22,13 @@ namespace {
 
 bool has_vtk() { return false; }
 
-MeshBlocks read_vtk_xml(const std::filesystem::path& file) { refuse(file); }
+MeshBlocks read_vtk_xml(const std::filesystem::path& file, const BlockChoice&) { refuse(file); }
 MeshBlocks read_vtk_legacy(const std::filesystem::path& file) { refuse(file); }
-MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t>) { refuse(file); }
-MeshBlocks read_solver_file(const std::filesystem::path& file, const char*, std::optional<std::size_t>) {
+MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t>, const BlockChoice&) {
+  refuse(file);
+}
+MeshBlocks read_solver_file(const std::filesystem::path& file, const char*, std::optional<std::size_t>,
+                            const BlockChoice&) {
   refuse(file);
 }
 MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem::path&) { refuse(file); }

@@ -35,6 +35,9 @@ struct ReadOptions {
   std::filesystem::path plot3d_q{};        ///< PLOT3D solution file; empty: found beside the grid file by its name
   std::optional<double> max_volume{};      ///< surfaces only: largest tet TetGen makes, world units cubed
   std::optional<std::size_t> time_step{};  ///< files of several: counted from 0; default the last
+  /// Files in blocks: names of those to read; none: all. Of a block that is in another ("fluid/internalMesh") the
+  /// beginning or the end will do.
+  std::vector<std::string> blocks{};
 
   // A .raw file says nothing of itself, but perhaps by its name: NAME_WxHxD_TYPE.raw. These win over the name, and are
   // refused for other files.
@@ -133,6 +136,8 @@ class TESSERA_EXPORT Dataset {
   [[nodiscard]] std::span<const FieldInfo> fields() const;
   /// One line each: what was chosen or applied, or odd about the file.
   [[nodiscard]] std::span<const std::string> notes() const;
+  /// Names of a file's blocks (ReadOptions::blocks), of those too that were not read.
+  [[nodiscard]] std::span<const std::string> blocks() const;
   /// "VTK XML unstructured grid", "NRRD", ...; "arrays" of the caller's.
   [[nodiscard]] const std::string& format() const;
   /// What messages call it: the file, or "mesh" or "grid".

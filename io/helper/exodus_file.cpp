@@ -185,8 +185,8 @@ BlockField make_field(const Variable& variable, scene::Association association, 
 /// Reads one file; a class so that its parts share the open file and the counts.
 class Reading {
  public:
-  Reading(const std::filesystem::path& path, std::optional<std::size_t> time_step)
-      : source_(path.string()), file_(std::make_shared<ExodusFile>(path)) {
+  Reading(const std::filesystem::path& path, std::optional<std::size_t> time_step, BlockChoice choice)
+      : source_(path.string()), choice_(std::move(choice)), file_(std::make_shared<ExodusFile>(path)) {
     // HDF5 compresses: then a value may take less than a byte. NetCDF classic does not.
     const bool compressed = !read_beginning(path, 3).starts_with("CDF");
     most_values_ = require_file(path) * (compressed ? 1040 : 1);
@@ -234,7 +234,8 @@ class Reading {
       info.id = id;
       info.type = EX_ELEM_BLOCK;
       file_->require(ex_get_block_param(file_->id(), &info), "an element block");
-      if (info.num_entry == 0) {
+      result_.block_names.push_back(block_name(id));
+      if (info.num_entry == 0 || !is_chosen(choice_, result_.block_names.back())) {
         blocks_.push_back({id, block_.types.size(), 0});
         continue;
       }
@@ -247,6 +248,13 @@ class Reading {
       check_count("elements", info.num_entry, 1);
       add_block(id, info, type);
     }
+  }
+
+  [[nodiscard]] std::string block_name(std::int64_t id) const {
+    std::array<char, 256> name{};
+    ex_get_name(file_->id(), EX_ELEM_BLOCK, id, name.data());  // where it fails there is none
+    const std::string text(name.data(), ::strnlen(name.data(), name.size()));
+    return text.empty() ? fmt::format("block {}", id) : text;
   }
 
   void add_block(std::int64_t id, const ex_block& info, std::uint8_t type) {
@@ -346,6 +354,7 @@ class Reading {
   }
 
   std::string source_;
+  BlockChoice choice_;
   std::shared_ptr<ExodusFile> file_;  // the fields keep it open
   ex_init_params init_{};
   std::uint64_t most_values_ = 0;
@@ -361,11 +370,12 @@ ForeignContents read_exodus(Holdings& holdings, const std::filesystem::path& fil
   allow_for(file);
   std::optional<std::size_t> time_step;
   if (const auto step = request.find("time_step"); step != request.end()) time_step = step->get<std::size_t>();
-  MeshBlocks read = Reading(file, time_step).take();
+  MeshBlocks read = Reading(file, time_step, request.value("blocks", BlockChoice())).take();
   ForeignContents contents;
   for (CellBlock& block : read.blocks) contents.parts.push_back(hold_block(holdings, std::move(block)));
   contents.notes = std::move(read.notes);
   contents.format = std::move(read.format);
+  contents.block_names = std::move(read.block_names);
   return contents;
 }
 

@@ -10,6 +10,9 @@
 #include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkMatrix3x3.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkPartitionedDataSet.h>
+#include <vtkPartitionedDataSetCollection.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
@@ -218,13 +221,36 @@ ForeignPart part_of(Holdings& holdings, vtkDataSet& data, const std::string& nam
   return part;
 }
 
-std::string block_name(vtkCompositeDataIterator& iterator) {
-  if (iterator.HasCurrentMetaData())
-    if (const char* name = iterator.GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME())) {
-      const std::string_view text = name;  // EnSight's are filled up with blanks
-      return std::string(text.substr(0, text.find_last_not_of(' ') + 1));
+using Names = std::map<const vtkDataObject*, std::string>;
+
+/// The names of the data sets of a tree, each a path of those around it.
+void add_names(vtkDataObject* data, const std::string& path, Names& names) {
+  const auto add = [&](unsigned count, const auto& child, const auto& about) {
+    for (unsigned k = 0; k < count; ++k) {
+      vtkInformation* const facts = about(k);
+      const char* const name = facts != nullptr ? facts->Get(vtkCompositeDataSet::NAME()) : nullptr;
+      std::string_view own = name != nullptr ? name : "";
+      own = own.substr(0, own.find_last_not_of(' ') + 1);  // EnSight's are filled up with blanks
+      if (own.empty())
+        add_names(child(k), path, names);
+      else
+        add_names(child(k), path.empty() ? std::string(own) : fmt::format("{}/{}", path, own), names);
     }
-  return fmt::format("{}", iterator.GetCurrentFlatIndex());
+  };
+  if (auto* blocks = vtkMultiBlockDataSet::SafeDownCast(data))
+    add(
+        blocks->GetNumberOfBlocks(), [&](unsigned k) { return blocks->GetBlock(k); },
+        [&](unsigned k) { return blocks->HasMetaData(k) != 0 ? blocks->GetMetaData(k) : nullptr; });
+  else if (auto* collection = vtkPartitionedDataSetCollection::SafeDownCast(data))
+    add(
+        collection->GetNumberOfPartitionedDataSets(), [&](unsigned k) { return collection->GetPartitionedDataSet(k); },
+        [&](unsigned k) { return collection->HasMetaData(k) != 0 ? collection->GetMetaData(k) : nullptr; });
+  else if (auto* pieces = vtkPartitionedDataSet::SafeDownCast(data))
+    add(
+        pieces->GetNumberOfPartitions(), [&](unsigned k) { return pieces->GetPartitionAsDataObject(k); },
+        [&](unsigned k) { return pieces->HasMetaData(k) != 0 ? pieces->GetMetaData(k) : nullptr; });
+  else if (data != nullptr && !path.empty())
+    names.emplace(data, path);
 }
 
 }  // namespace
@@ -239,10 +265,15 @@ std::vector<ForeignPart> parts_of(Holdings& holdings, vtkDataObject& data, const
   if (composite == nullptr)
     throw scene::bad_input(fmt::format("{}: it holds {}, no mesh; give a mesh", source, data.GetClassName()));
   const auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
+  Names names;
+  add_names(&data, "", names);
   for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem()) {
     auto* set = vtkDataSet::SafeDownCast(iterator->GetCurrentDataObject());
-    if (set != nullptr && set->GetNumberOfCells() > 0)
-      parts.push_back(part_of(holdings, *set, block_name(*iterator), source));
+    if (set == nullptr || set->GetNumberOfCells() == 0) continue;
+    const auto name = names.find(set);
+    parts.push_back(part_of(holdings, *set,
+                            name != names.end() ? name->second : fmt::format("{}", iterator->GetCurrentFlatIndex()),
+                            source));
   }
   return parts;
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
@@ -29,6 +30,26 @@ TEST(Info, SaysWhatTheFileHoldsForPeopleAndForMachines) {
   EXPECT_EQ(json.at("points").at("read"), 125);
   EXPECT_EQ(json.at("fields").size(), 1u);
   EXPECT_TRUE(json.at("renders").at("view").contains("parallel_scale"));
+}
+
+TEST(Info, ListsTheBlocksThatBlockChoosesFrom) {
+  const Folder folder;
+  const auto zone = [](int number, int x) {
+    return "IZONE= " + std::to_string(number) + "\nNDIME= 3\nNELEM= 1\n10 0 1 2 3\nNPOIN= 4\n" + std::to_string(x) +
+           " 0 0\n9 0 0\n9 1 0\n9 0 1\n";
+  };
+  const auto mesh = folder / "a.su2";
+  std::ofstream(mesh) << "NZONE= 2\n" << zone(1, 0) << zone(2, 5);
+  const auto text = tessera({"info", mesh, "--block", "zone 2"});
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_NE(text.out.find("blocks    zone 1, zone 2\n"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("1 of 1 cells"), std::string::npos) << text.out;
+  const auto both = tessera({"info", mesh, "--json", "--block", "zone 2", "--block", "zone 1"});
+  ASSERT_EQ(both.status, 0) << both.err;
+  EXPECT_EQ(nlohmann::json::parse(both.out).at("tets"), 2);
+  const auto none = tessera({"convert", mesh, folder / "b.tets", "--block", "zone 3"});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_NE(none.err.find("no block 'zone 3'; it has 'zone 1', 'zone 2'"), std::string::npos) << none.err;
 }
 
 TEST(Convert, KeepsThePicture) {

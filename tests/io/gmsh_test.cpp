@@ -163,6 +163,9 @@ TEST_F(Gmsh, PhysicalGroupsAreBlocksAndAField) {
     EXPECT_EQ(read.blocks[0].name, "left");
     EXPECT_EQ(read.blocks[1].name, "right");
     EXPECT_EQ(read.blocks[1].positions.size(), 8u);
+    MeshOptions options;
+    options.blocks = {"right"};
+    EXPECT_NEAR(testing::volume(read_mesh(folder / "a.msh", options).mesh), 1, 1e-12);
     const MeshFile mesh = read_mesh(folder / "a.msh");
     EXPECT_EQ(mesh.mesh.field_name, "PhysicalGroupId");
     for (std::size_t t = 0; t < mesh.mesh.tets.size(); ++t) {

@@ -225,8 +225,17 @@ TEST(SolverFiles, AMultiBlockFilesVolumesAreDrawnTogether) {
   EXPECT_EQ(file.mesh.field_name, "f");
   for (std::size_t v = 0; v < file.mesh.positions.size(); ++v)
     EXPECT_DOUBLE_EQ(file.mesh.scalars[v], field_at(file.mesh.positions[v]));
-  EXPECT_NE(std::find(file.notes.begin(), file.notes.end(), "1 blocks are surfaces and are left out"),
-            file.notes.end());
+  EXPECT_NE(std::find(file.notes.begin(), file.notes.end(), "1 block is a surface and is left out"), file.notes.end());
+  EXPECT_EQ(file.blocks, (std::vector<std::string>{"fluid", "1"}));
+  MeshOptions options;
+  options.blocks = {"solid"};
+  // The block that is not asked for is not even there.
+  const std::string nested =
+      "<Block index=\"0\" name=\"fluid\"><DataSet index=\"0\" name=\"inner\" file=\"gone.vtu\"/></Block><Block "
+      "index=\"1\" name=\"solid\"><DataSet index=\"0\" name=\"inner\" file=\"b.vti\"/></Block>";
+  const MeshFile solid = read_mesh(list(nested), options);
+  EXPECT_NEAR(testing::volume(solid.mesh), 2, 1e-12);
+  EXPECT_EQ(solid.blocks, (std::vector<std::string>{"fluid/inner", "solid/inner"}));
   EXPECT_NE(
       message_of([&] { read_mesh(list(both + "<DataSet index=\"2\" file=\"gone.vtu\"/>")); }).find("gone.vtu: there"),
       std::string::npos);

@@ -1,0 +1,55 @@
+#include "io/block_choice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <unordered_set>
+
+#include "scene/error.hpp"
+#include "scene/quote.hpp"
+
+namespace tessera::io {
+namespace {
+
+std::string list(std::span<const std::string> blocks) {
+  constexpr std::size_t most = 12;  // of a line that is to be read
+  std::string text;
+  for (const std::string& block : blocks.first(std::min(blocks.size(), most)))
+    text += (text.empty() ? "" : ", ") + scene::quote(block);
+  if (blocks.size() > most) text += fmt::format(" and {} more, which `tessera info` lists", blocks.size() - most);
+  return text;
+}
+
+}  // namespace
+
+bool means_block(std::string_view name, std::string_view block) {
+  if (name == block) return true;
+  if (name.empty() || name.size() >= block.size()) return false;
+  return (block.starts_with(name) && block[name.size()] == '/') ||
+         (block.ends_with(name) && block[block.size() - name.size() - 1] == '/');
+}
+
+bool is_chosen(const BlockChoice& choice, std::string_view block) {
+  return choice.empty() ||
+         std::any_of(choice.begin(), choice.end(), [&](const std::string& name) { return means_block(name, block); });
+}
+
+void require_blocks(const BlockChoice& choice, std::span<const std::string> blocks, const std::string& source) {
+  for (const std::string& name : choice) {
+    if (std::any_of(blocks.begin(), blocks.end(), [&](const std::string& block) { return means_block(name, block); }))
+      continue;
+    if (blocks.empty())
+      throw scene::bad_input(fmt::format("{}: there is no block {}: it is not made of named blocks; leave `block` out",
+                                         source, scene::quote(name)));
+    throw scene::bad_input(
+        fmt::format("{}: there is no block {}; it has {}", source, scene::quote(name), list(blocks)));
+  }
+}
+
+std::vector<std::string> distinct_names(std::vector<std::string> names) {
+  std::unordered_set<std::string> known{""};
+  std::erase_if(names, [&](const std::string& name) { return !known.insert(name).second; });
+  return names;
+}
+
+}  // namespace tessera::io
