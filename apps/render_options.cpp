@@ -128,7 +128,7 @@ ReadOptions mesh_options(const RenderWords& words) {
 void add_render_options(CLI::App& command, RenderWords& words) {
   add_mesh_options(command, words);
   command.add_option("MORE", words.more_inputs,
-                     "more meshes: a time series, as is INPUT alone if it is a .pvd or mesh_%04d.vtu");
+                     "more meshes: a time series, as is INPUT alone if it is a .pvd, a .series or mesh_%04d.vtu");
   command
       .add_option("-o,--output", words.outputs,
                   "picture: .exr .png .pfm .deep.exr; frame_%04d.exr numbers several frames; may be repeated")

@@ -97,6 +97,10 @@ bool begins_as_vtp(const FileBeginning& file) { return is_xml_of(file, {"PolyDat
 bool begins_as_vti(const FileBeginning& file) { return is_xml_of(file, {"ImageData", "PImageData"}); }
 bool begins_as_vtr(const FileBeginning& file) { return is_xml_of(file, {"RectilinearGrid", "PRectilinearGrid"}); }
 bool begins_as_pvd(const FileBeginning& file) { return is_xml_of(file, {"Collection"}); }
+bool begins_as_file_series(const FileBeginning& file) {
+  return without_blanks(file.text).starts_with('{') &&
+         file.text.find("\"file-series-version\"") != std::string_view::npos;
+}
 bool begins_as_other_vtk_xml(const FileBeginning& file) { return file.text.find("<VTKFile") != std::string_view::npos; }
 
 bool begins_as_legacy_mesh(const FileBeginning& file) {

@@ -17,6 +17,7 @@ bool begins_as_vtp(const FileBeginning& file);
 bool begins_as_vti(const FileBeginning& file);
 bool begins_as_vtr(const FileBeginning& file);
 bool begins_as_pvd(const FileBeginning& file);
+bool begins_as_file_series(const FileBeginning& file);
 bool begins_as_other_vtk_xml(const FileBeginning& file);
 bool begins_as_legacy_mesh(const FileBeginning& file);
 bool begins_as_legacy_grid(const FileBeginning& file);

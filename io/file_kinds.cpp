@@ -84,6 +84,8 @@ constexpr std::array rows = {
               "described by `dims` and `type`, or NAME_WxHxD_TYPE.raw", nullptr},
     FormatRow{FileKind::pvd, "ParaView collection", ".pvd", FileHolds::series, Needs::nothing, "of any meshes or grids",
               begins_as_pvd},
+    FormatRow{FileKind::pvd, "ParaView file series", ".series", FileHolds::series, Needs::nothing,
+              "of any meshes or grids", begins_as_file_series},
     FormatRow{FileKind::unread, "VTK surface", ".vtp", FileHolds::not_read, Needs::nothing,
               "give a mesh, or a closed surface as .stl or .ply", begins_as_vtp, "", false, unlisted},
     FormatRow{FileKind::unread, "XDMF", ".xdmf .xmf", FileHolds::not_read, Needs::nothing,

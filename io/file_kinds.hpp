@@ -26,7 +26,7 @@ enum class FileKind : std::uint8_t {
   stl,
   ply,
   tets,
-  pvd,
+  pvd,  ///< and .series
   meta_image,
   nrrd,
   nifti,

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <charconv>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "io/input_file.hpp"
+#include "io/json_text.hpp"
 #include "io/text_file.hpp"
 #include "io/xml_elements.hpp"
 #include "scene/error.hpp"
@@ -47,6 +49,7 @@ std::optional<Pattern> pattern_of(const std::string& name) {
   return std::nullopt;
 }
 
+bool is_file_series(const std::filesystem::path& input) { return lower_extension(input) == ".series"; }
 bool is_pvd(const std::filesystem::path& input) { return lower_extension(input) == ".pvd"; }
 
 std::vector<TimeStep> read_pattern(const std::filesystem::path& input, const Pattern& pattern) {
@@ -122,6 +125,31 @@ std::vector<TimeStep> read_pvd(const std::filesystem::path& input) {
 
 }  // namespace
 
+std::vector<TimeStep> parse_file_series(std::string_view text, const std::filesystem::path& input) {
+  const std::string source = input.string();
+  const nlohmann::json json = parse_json(text, source);
+  const auto files = json.is_object() ? json.find("files") : json.end();
+  if (!json.is_object() || files == json.end() || !files->is_array())
+    throw scene::bad_input(
+        fmt::format("{}: it has no list \"files\"; check that it is a ParaView file series", source));
+  if (files->empty()) throw scene::bad_input(fmt::format("{}: it lists no file; write it anew", source));
+  std::vector<TimeStep> steps;
+  for (const nlohmann::json& entry : *files) {
+    const auto fail = [&](const char* what) {
+      return scene::bad_input(fmt::format("{}: entry {} of \"files\" {}; write it anew", source, steps.size(), what));
+    };
+    const auto name = entry.is_object() ? entry.find("name") : entry.end();
+    if (!entry.is_object() || name == entry.end() || !name->is_string() || name->get<std::string>().empty())
+      throw fail("has no \"name\"");
+    const auto time = entry.find("time");
+    if (time != entry.end() && !time->is_number()) throw fail("has a \"time\" that is no number");
+    steps.push_back({time == entry.end() ? static_cast<double>(steps.size()) : time->get<double>(),
+                     {input.parent_path() / name->get<std::string>()}});
+  }
+  std::stable_sort(steps.begin(), steps.end(), [](const TimeStep& a, const TimeStep& b) { return a.time < b.time; });
+  return steps;
+}
+
 void require_input(const std::filesystem::path& input) {
   if (is_time_series(input))
     read_time_series(input);
@@ -134,17 +162,21 @@ void require_input(const std::filesystem::path& input) {
 namespace tessera {
 
 bool is_time_series(const std::filesystem::path& input) {
-  if (io::is_pvd(input)) return true;
+  if (io::is_pvd(input) || io::is_file_series(input)) return true;
   std::error_code absent;
   return io::pattern_of(input.filename().string()).has_value() && !std::filesystem::exists(input, absent);
 }
 
 std::vector<TimeStep> read_time_series(const std::filesystem::path& input) {
   if (io::is_pvd(input)) return io::read_pvd(input);
+  if (io::is_file_series(input)) {
+    io::require_file(input);
+    return io::parse_file_series(io::read_text_file(input), input);
+  }
   const auto pattern = io::pattern_of(input.filename().string());
   if (!pattern)
-    throw scene::bad_input(
-        fmt::format("{}: is no time series; give a .pvd, or a name with %04d for the number", input.string()));
+    throw scene::bad_input(fmt::format(
+        "{}: is no time series; give a .pvd or .series, or a name with %04d for the number", input.string()));
   return io::read_pattern(input, *pattern);
 }
 

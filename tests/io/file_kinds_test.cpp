@@ -40,6 +40,7 @@ const Beginning beginnings[] = {
     {"VTK XML image data", "<VTKFile type=\"ImageData\">"},
     {"VTK XML rectilinear grid", "<VTKFile type=\"PRectilinearGrid\">"},
     {"ParaView collection", "<VTKFile type=\"Collection\">"},
+    {"ParaView file series", "{ \"file-series-version\" : \"1.0\", \"files\" : [] }"},
     {"legacy VTK unstructured or curvilinear grid",
      "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\n"},
     {"legacy VTK structured points or rectilinear grid",

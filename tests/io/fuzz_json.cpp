@@ -1,4 +1,4 @@
-// Any text is a ParaView colour map, a JSON camera, or refused in one line.
+// Any text is a ParaView colour map, a ParaView file series, a JSON camera, or refused in one line.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -7,11 +7,13 @@
 #include "fuzz_check.hpp"
 #include "io/camera_file.hpp"
 #include "io/paraview_color_map.hpp"
+#include "io/time_series.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tessera;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   test::parse_or_refuse([&] { io::parse_json_cameras(text, "f"); });
+  test::parse_or_refuse([&] { test::require(!io::parse_file_series(text, "f").empty()); });
   test::parse_or_refuse([&] {
     colormaps::TransferFunctionOptions options;
     options.field_range = {-3, 1e6};

@@ -47,6 +47,30 @@ TEST(TimeSeries, WhatIsOneIsSeenByTheName) {
   EXPECT_FALSE(is_time_series(folder.write("real_%d.vtu", "x")));  // a file of that very name
 }
 
+TEST(TimeSeries, AFileSeriesGivesTimesInOrder) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.write("a.vtk.series",
+                                 R"({"file-series-version": "1.0", "files": [
+      {"name": "b.vtk", "time": 2.5}, {"name": "sub/a.vtk", "time": -1}, {"name": "/elsewhere/c.vtk", "time": 3e1},
+      {"name": "again.vtk", "time": 2.5}]})");
+  EXPECT_TRUE(is_time_series(file));
+  const auto steps = read_time_series(file);
+  EXPECT_EQ(names(steps), (Names{"a.vtk", "b.vtk", "again.vtk", "c.vtk"}));
+  EXPECT_EQ(times(steps), (Times{-1, 2.5, 2.5, 30}));
+  EXPECT_EQ(steps[0].files[0], folder / "sub/a.vtk");
+  EXPECT_EQ(steps[3].files[0], "/elsewhere/c.vtk");
+  EXPECT_EQ(times(read_time_series(folder.write("b.series", R"({"files": [{"name": "a"}, {"name": "b"}]})"))),
+            (Times{0, 1}));
+  const auto refuse = [&](const std::string& text, const std::vector<std::string>& parts) {
+    test::expect_bad_input([&] { read_time_series(folder.write("c.series", text)); }, parts);
+  };
+  refuse("{\"files\": [", {"c.series", "line 1", "not valid JSON"});
+  refuse("[]", {"no list \"files\""});
+  refuse("{\"files\": []}", {"lists no file"});
+  refuse("{\"files\": [{\"name\": \"a\"}, {\"time\": 1}]}", {"entry 1", "\"name\""});
+  refuse("{\"files\": [{\"name\": \"a\", \"time\": \"1\"}]}", {"entry 0", "\"time\""});
+}
+
 TEST(TimeSeries, APvdGivesTimesAndParts) {
   const test::TemporaryFolder folder;
   const auto file =
