@@ -93,7 +93,9 @@ bool begins_as_vts(const FileBeginning& file) { return is_xml_of(file, {"Structu
 bool begins_as_vtk_list(const FileBeginning& file) {
   return is_xml_of(file, {"vtkMultiBlockDataSet", "vtkPartitionedDataSetCollection", "vtkPartitionedDataSet"});
 }
-bool begins_as_vtp(const FileBeginning& file) { return is_xml_of(file, {"PolyData"}); }
+bool begins_as_vtk_surface(const FileBeginning& file) {
+  return is_xml_of(file, {"PolyData"}) || is_legacy_of(file, {"POLYDATA"});
+}
 bool begins_as_vti(const FileBeginning& file) { return is_xml_of(file, {"ImageData", "PImageData"}); }
 bool begins_as_vtr(const FileBeginning& file) { return is_xml_of(file, {"RectilinearGrid", "PRectilinearGrid"}); }
 bool begins_as_pvd(const FileBeginning& file) { return is_xml_of(file, {"Collection"}); }
@@ -104,7 +106,7 @@ bool begins_as_file_series(const FileBeginning& file) {
 bool begins_as_other_vtk_xml(const FileBeginning& file) { return file.text.find("<VTKFile") != std::string_view::npos; }
 
 bool begins_as_legacy_mesh(const FileBeginning& file) {
-  return file.text.starts_with("# vtk DataFile") && !begins_as_legacy_grid(file);
+  return file.text.starts_with("# vtk DataFile") && !begins_as_legacy_grid(file) && !begins_as_vtk_surface(file);
 }
 bool begins_as_legacy_grid(const FileBeginning& file) {
   return is_legacy_of(file, {"STRUCTURED_POINTS", "RECTILINEAR_GRID"});

@@ -63,6 +63,8 @@ constexpr std::array rows = {
     FormatRow{FileKind::tets, "raw tetrahedra", ".tets", FileHolds::mesh, Needs::nothing,
               "bytes in docs/FORMATS.md; ranks read ranges", nullptr},
     FormatRow{FileKind::stl, "STL", ".stl", FileHolds::surface, Needs::vtk_and_tetgen, filled, begins_as_stl},
+    FormatRow{FileKind::vtk_surface, "VTK surface", ".vtp", FileHolds::surface, Needs::vtk_and_tetgen, filled,
+              begins_as_vtk_surface},
     FormatRow{FileKind::ply, "PLY", ".ply", FileHolds::surface, Needs::tetgen, filled, begins_as_ply},
     FormatRow{FileKind::tetgen_surface, "TetGen surface", ".poly .smesh", FileHolds::surface, Needs::tetgen, filled,
               nullptr},
@@ -86,8 +88,6 @@ constexpr std::array rows = {
               begins_as_pvd},
     FormatRow{FileKind::pvd, "ParaView file series", ".series", FileHolds::series, Needs::nothing,
               "of any meshes or grids", begins_as_file_series},
-    FormatRow{FileKind::unread, "VTK surface", ".vtp", FileHolds::not_read, Needs::nothing,
-              "give a mesh, or a closed surface as .stl or .ply", begins_as_vtp, "", false, unlisted},
     FormatRow{FileKind::unread, "XDMF", ".xdmf .xmf", FileHolds::not_read, Needs::nothing,
               "VTK's reader is not packaged; save it as .vtu in ParaView", begins_as_xdmf},
     FormatRow{FileKind::unread, "Tecplot binary", ".plt .szplt", FileHolds::not_read, Needs::nothing,
@@ -120,7 +120,8 @@ bool has_extension(const FormatRow& row, const std::string& extension) {
 }
 
 bool is_vtk(const FormatRow& row) {
-  return row.kind == FileKind::vtk_xml || row.kind == FileKind::vtk_legacy || row.kind == FileKind::vtk_grid;
+  return row.kind == FileKind::vtk_xml || row.kind == FileKind::vtk_legacy || row.kind == FileKind::vtk_grid ||
+         row.kind == FileKind::vtk_surface;
 }
 
 const FormatRow& row_of_cases() {

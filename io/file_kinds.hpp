@@ -24,6 +24,7 @@ enum class FileKind : std::uint8_t {
   tetgen_mesh,     ///< .node and .ele
   tetgen_surface,  ///< .poly and .smesh
   stl,
+  vtk_surface,
   ply,
   tets,
   pvd,  ///< and .series

@@ -64,8 +64,8 @@ MeshBlocks read_by_gmsh(const std::filesystem::path& file, const char* reader, s
 /// for beside the grid by its name, and if there is none the mesh has no field. IBLANK 0 hides a point's cells.
 MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem::path& q_file);
 
-/// A surface (.stl .ply .poly .smesh) filled by TetGen with tets of at most `max_volume`, or of a 30,000th of what it
-/// encloses. Point fields: "depth", the distance to the surface in world units, after the file's own attributes.
+/// A surface (.stl .vtp .ply .poly .smesh) filled by TetGen with tets of at most `max_volume`, or of a 30,000th of what
+/// it encloses. Point fields: "depth", the distance to the surface in world units, after the file's own attributes.
 MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::optional<double> max_volume);
 
 /// TetGen's mesh; either file's name finds the other.

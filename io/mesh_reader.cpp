@@ -50,6 +50,7 @@ MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row,
     case FileKind::tetgen_mesh:
       return read_node_ele(file);
     case FileKind::stl:
+    case FileKind::vtk_surface:
     case FileKind::ply:
     case FileKind::tetgen_surface:
       return read_surface(file, row.kind, options.max_volume);

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <utility>
 
+#include "io/foreign_surfaces.hpp"
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/ply_file.hpp"
-#include "io/stl_file.hpp"
 #include "io/surface.hpp"
 #include "io/tetgen_files.hpp"
 #include "scene/error.hpp"
@@ -52,12 +52,19 @@ MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::o
   const std::string source = file.string();
   if (max_volume && !(*max_volume > 0))
     throw scene::bad_input(fmt::format("{}: the largest tet volume is {}; give a positive one", source, *max_volume));
+  MeshBlocks result;
   std::vector<std::string> attribute_names;
   Surface surface;
   const char* words = "";
   if (kind == FileKind::stl) {
     words = "stl";
     surface = read_stl(source);
+  } else if (kind == FileKind::vtk_surface) {
+    words = "vtk";
+    VtkSurface read = read_vtk_surface(source);
+    surface = std::move(read.surface);
+    attribute_names = std::move(read.attribute_names);
+    result.notes = std::move(read.notes);
   } else if (kind == FileKind::ply) {
     words = "ply";
     PlySurface ply = parse_ply(MappedFile(file).text(), source);
@@ -72,7 +79,6 @@ MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::o
   if (kind != FileKind::tetgen_surface) merge_coincident_points(surface);
   require_sound(surface, source);
 
-  MeshBlocks result;
   result.format = fmt::format("surface ({}) filled by TetGen", words);
   double volume = enclosed_volume(surface);
   // Facets that turn both ways cancel; the box is then the only measure.

@@ -1,9 +1,9 @@
 // Built in place of what needs VTK with TESSERA_VTK=OFF.
 #include <fmt/format.h>
 
+#include "io/foreign_surfaces.hpp"
 #include "io/input_file.hpp"
 #include "io/mesh_formats.hpp"
-#include "io/stl_file.hpp"
 #include "io/volume_formats.hpp"
 #include "scene/error.hpp"
 
@@ -34,6 +34,7 @@ MeshBlocks read_solver_file(const std::filesystem::path& file, const char*, std:
 MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem::path&) { refuse(file); }
 VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions&) { refuse(file); }
 Surface read_stl(const std::string& source) { refuse(source); }
+VtkSurface read_vtk_surface(const std::string& source) { refuse(source); }
 
 // Read whole, by read_vtk_xml().
 bool is_pvtu(const std::filesystem::path&) { return false; }

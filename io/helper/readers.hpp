@@ -24,6 +24,9 @@ ForeignContents read_plot3d(Holdings& holdings, const std::filesystem::path& fil
 /// STL surfaces.
 ForeignContents read_stl(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
+/// VTK surfaces, XML or legacy; strips as triangles after the other polygons.
+ForeignContents read_vtk_surface(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+
 /// Exodus II: all element blocks, nodal and element variables at `time_step`, counted from 0, or the last one. Nodes
 /// are moved by the file's displacements, if it has some, as ParaView does. Variables NAME_x NAME_y NAME_z become one
 /// vector NAME.

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
+#include <vtkCellArray.h>
 #include <vtkDataObject.h>
 #include <vtkDataSetReader.h>
+#include <vtkIdList.h>
 #include <vtkMultiBlockDataSet.h>
 #include <vtkMultiBlockPLOT3DReader.h>
 #include <vtkNew.h>
@@ -8,11 +10,13 @@
 #include <vtkSTLReader.h>
 #include <vtkSmartPointer.h>
 #include <vtkXMLImageDataReader.h>
+#include <vtkXMLPolyDataReader.h>
 #include <vtkXMLRectilinearGridReader.h>
 #include <vtkXMLStructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "io/helper/extents.hpp"
@@ -20,6 +24,7 @@
 #include "io/helper/readers.hpp"
 #include "io/helper/vtk_parts.hpp"
 #include "io/helper/vtk_session.hpp"
+#include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
 #include "scene/error.hpp"
 
@@ -74,10 +79,36 @@ vtkSmartPointer<vtkDataObject> read_unstructured(const std::string& source) {
   return reader->GetOutputDataObject(0);
 }
 
+vtkSmartPointer<vtkDataObject> read_surface(const std::string& source) {
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(source.c_str());
+  reader->Update();
+  return reader->GetOutputDataObject(0);
+}
+
+/// A surface's triangle strips become polygons as the others are. Each second triangle of one turns the other way.
+void add_strips(vtkPolyData& surface) {
+  vtkCellArray* const strips = surface.GetStrips();
+  if (strips == nullptr || strips->GetNumberOfCells() == 0) return;
+  vtkNew<vtkCellArray> polygons;
+  if (surface.GetPolys() != nullptr) polygons->DeepCopy(surface.GetPolys());
+  vtkNew<vtkIdList> strip;
+  for (vtkIdType s = 0; s < strips->GetNumberOfCells(); ++s) {
+    strips->GetCellAtId(s, strip);
+    for (vtkIdType k = 0; k + 2 < strip->GetNumberOfIds(); ++k) {
+      const std::array<vtkIdType, 3> triangle = {strip->GetId(k + k % 2), strip->GetId(k + 1 - k % 2),
+                                                 strip->GetId(k + 2)};
+      polygons->InsertNextCell(3, triangle.data());
+    }
+  }
+  surface.SetPolys(polygons);
+}
+
 vtkSmartPointer<vtkDataObject> read_xml(const std::string& source, const std::string& type) {
   if (type == "ImageData") return read_structured<vtkXMLImageDataReader>(source);
   if (type == "RectilinearGrid") return read_structured<vtkXMLRectilinearGridReader>(source);
   if (type == "StructuredGrid") return read_structured<vtkXMLStructuredGridReader>(source);
+  if (type == "PolyData") return read_surface(source);
   return read_unstructured(source);
 }
 
@@ -178,6 +209,24 @@ ForeignContents read_stl(Holdings& holdings, const std::filesystem::path& file, 
     data = reader->GetOutput();
   });
   return contents_of_data(holdings, data, source, "");
+}
+
+ForeignContents read_vtk_surface(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json&) {
+  const std::string source = file.string();
+  std::string warning;
+  vtkSmartPointer<vtkDataObject> data;
+  if (read_beginning(file, 5) == "# vtk") {
+    allow_for(file);
+    warning = with_quiet_vtk(source, write_anew, [&] {
+      vtkNew<vtkDataSetReader> reader;
+      read_all_arrays(*reader, source);
+      data = reader->GetOutputDataObject(0);
+    });
+  } else {
+    data = read_xml_file(file, "PolyData", warning);
+  }
+  if (auto* surface = vtkPolyData::SafeDownCast(data)) add_strips(*surface);
+  return contents_of_data(holdings, data, source, warning);
 }
 
 }  // namespace tessera::io::helper
