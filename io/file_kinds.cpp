@@ -57,7 +57,7 @@ constexpr std::array rows = {
     FormatRow{FileKind::su2, "SU2", ".su2", FileHolds::mesh, Needs::nothing, "meshes of 3 dimensions; zones are blocks",
               begins_as_su2},
     FormatRow{FileKind::plot3d, "PLOT3D", ".xyz .p3d .x .bin", FileHolds::mesh, Needs::vtk,
-              "the solution beside it, or `q`; IBLANK 0 hides", nullptr},
+              "text or binary; the solution beside it, or `q`; IBLANK 0 hides", nullptr},
     FormatRow{FileKind::tetgen_mesh, "TetGen mesh", ".node .ele", FileHolds::mesh, Needs::nothing,
               "either name finds the other", nullptr},
     FormatRow{FileKind::tets, "raw tetrahedra", ".tets", FileHolds::mesh, Needs::nothing,

@@ -234,14 +234,19 @@ MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem:
   if (q.empty())
     notes.emplace_back("no solution (Q) file lies beside the grid: it has no field; name one by `q`");
   else if (const std::uint64_t left = check_plot3d_solution(q, layout); left > 0)
-    notes.push_back(fmt::format("{} bytes after the solution in {} are not used", left, q.filename().string()));
-  notes.push_back(
-      fmt::format("PLOT3D: {} grid{}, {}-endian {}, {}, {}{}", layout.grids.size(), layout.grids.size() == 1 ? "" : "s",
-                  layout.big_endian ? "big" : "little", layout.double_precision ? "float64" : "float32",
-                  layout.record_marks ? "with record marks" : "no record marks", layout.iblank ? "IBLANK" : "no IBLANK",
-                  q.empty() ? "" : fmt::format(", solution {}", q.filename().string())));
+    notes.push_back(fmt::format("{} {} after the solution in {} are not used", left,
+                                layout.is_text ? "numbers" : "bytes", q.filename().string()));
+  const std::string stored = layout.is_text
+                                 ? "text"
+                                 : fmt::format("{}-endian {}, {}", layout.big_endian ? "big" : "little",
+                                               layout.double_precision ? "float64" : "float32",
+                                               layout.record_marks ? "with record marks" : "no record marks");
+  notes.push_back(fmt::format("PLOT3D: {} grid{}, {}, {}{}", layout.grids.size(), layout.grids.size() == 1 ? "" : "s",
+                              stored, layout.iblank ? "IBLANK" : "no IBLANK",
+                              q.empty() ? "" : fmt::format(", solution {}", q.filename().string())));
   MeshBlocks result = read_foreign(file, {{"reader", "plot3d"},
                                           {"q", q.string()},
+                                          {"text", layout.is_text},
                                           {"big_endian", layout.big_endian},
                                           {"record_marks", layout.record_marks},
                                           {"multi_grid", layout.multi_grid},

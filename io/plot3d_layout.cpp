@@ -9,6 +9,8 @@
 #include <string>
 
 #include "io/input_file.hpp"
+#include "io/mapped_file.hpp"
+#include "io/plot3d_text.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -122,9 +124,13 @@ bool is_text(const std::filesystem::path& file) {
 
 Plot3dLayout detect_plot3d(const std::filesystem::path& grid_file) {
   const std::uint64_t size = require_file(grid_file);
-  if (is_text(grid_file))
-    throw scene::bad_input(
-        fmt::format("{}: it is text; PLOT3D is read from binary files, convert it", grid_file.string()));
+  if (is_text(grid_file)) {
+    if (const auto layout = plot3d_text_layout(MappedFile(grid_file).text(), grid_file.string())) return *layout;
+    throw scene::bad_input(fmt::format(
+        "{}: no layout of a three-dimensional PLOT3D grid gives the numbers that are in it; it is truncated "
+        "or of another kind (the solution goes with `q`)",
+        grid_file.string()));
+  }
   std::ifstream in(grid_file, std::ios::binary);
   for (unsigned bits = 0; bits < 32; ++bits) {
     Plot3dLayout layout{(bits & 1) == 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0, (bits & 16) != 0, {}};
@@ -138,6 +144,11 @@ Plot3dLayout detect_plot3d(const std::filesystem::path& grid_file) {
 
 std::uint64_t check_plot3d_solution(const std::filesystem::path& q_file, const Plot3dLayout& layout) {
   const std::uint64_t size = require_file(q_file);
+  if (layout.is_text) {
+    if (is_text(q_file)) return check_plot3d_text_solution(MappedFile(q_file).text(), layout, q_file.string());
+    throw scene::bad_input(
+        fmt::format("{}: it is binary, and the grid file is text; give both in one form", q_file.string()));
+  }
   std::ifstream in(q_file, std::ios::binary);
   Walk walk(in, size, layout);
   if (walk.dimensions() != layout.grids || !walk.good)

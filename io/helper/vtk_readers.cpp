@@ -181,7 +181,7 @@ ForeignContents read_plot3d(Holdings& holdings, const std::filesystem::path& fil
     vtkNew<vtkMultiBlockPLOT3DReader> reader;
     reader->SetXYZFileName(source.c_str());
     if (!q.empty()) reader->SetQFileName(q.c_str());
-    reader->BinaryFileOn();
+    reader->SetBinaryFile(!request.at("text").get<bool>());
     reader->AutoDetectFormatOff();
     reader->SetByteOrder(request.at("big_endian").get<bool>() ? vtkMultiBlockPLOT3DReader::FILE_BIG_ENDIAN
                                                               : vtkMultiBlockPLOT3DReader::FILE_LITTLE_ENDIAN);

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -108,6 +109,102 @@ TEST(Plot3d, EveryLayoutIsFoundAndReadWithoutAnOption) {
     options.field = "Momentum";
     EXPECT_EQ(read_mesh(file, options).mesh.scalars.front(), 3);
   }
+}
+
+/// The same as text, five numbers a line.
+class TextWriter {
+ public:
+  std::string text;
+  template <class T>
+  void number(T n) {
+    text += fmt::format("{}{}", n, ++numbers_ % 5 == 0 ? "\n" : "  ");
+  }
+  void dimensions(const Plot3dLayout& layout) {
+    if (layout.multi_grid) number(layout.grids.size());
+    for (const auto& grid : layout.grids)
+      for (const std::int32_t n : grid) number(n);
+  }
+
+ private:
+  int numbers_ = 0;
+};
+
+std::string grid_text(const Plot3dLayout& layout) {
+  TextWriter w;
+  w.dimensions(layout);
+  for (std::size_t g = 0; g < layout.grids.size(); ++g) {
+    const auto& n = layout.grids[g];
+    for (int axis = 0; axis < 3; ++axis)
+      for (int k = 0; k < n[2]; ++k)
+        for (int j = 0; j < n[1]; ++j)
+          for (int i = 0; i < n[0]; ++i)
+            w.number(axis == 0 ? i + 0.1 + 10.0 * static_cast<double>(g) : axis == 1 ? j : k);
+    for (int v = 0; layout.iblank && v < n[0] * n[1] * n[2]; ++v) w.number(v == 0 ? 0 : 1);
+  }
+  return w.text;
+}
+
+/// Density is the number of the point in its grid and a tenth.
+std::string solution_text(const Plot3dLayout& layout) {
+  TextWriter w;
+  w.dimensions(layout);
+  for (const auto& n : layout.grids) {
+    for (const double x : {0.5, 1.0, 1e5, 0.0}) w.number(x);
+    for (int plane = 0; plane < 5; ++plane)
+      for (int v = 0; v < n[0] * n[1] * n[2]; ++v) w.number(plane == 0 ? v + 0.1 : plane == 1 ? 1 : 2);
+  }
+  return w.text;
+}
+
+TEST(Plot3d, TextIsReadInEveryLayout) {
+  for (unsigned bits = 0; bits < 4; ++bits) {
+    Plot3dLayout layout;
+    layout.multi_grid = (bits & 1) != 0, layout.iblank = (bits & 2) != 0;
+    layout.grids = {{4, 3, 5}};
+    if (layout.multi_grid) layout.grids.push_back({2, 6, 3});
+    SCOPED_TRACE(bits);
+    const test::TemporaryFolder folder;
+    const auto file = folder.write("grid.xyz", grid_text(layout));
+    folder.write("grid.q", solution_text(layout));
+    const Plot3dLayout found = detect_plot3d(file);
+    EXPECT_TRUE(found.is_text);
+    EXPECT_EQ(found.multi_grid, layout.multi_grid);
+    EXPECT_EQ(found.iblank, layout.iblank);
+    EXPECT_EQ(found.grids, layout.grids);
+    const MeshFile read = read_mesh(file);
+    EXPECT_EQ(read.counts.cells_read, layout.multi_grid ? 24u + 10u : 24u);
+    EXPECT_EQ(read.counts.cells_hidden, layout.iblank ? layout.grids.size() : 0u);
+    EXPECT_EQ(read.mesh.positions[1].x, 1.1);  // as a double
+    for (std::size_t v = 0; v < 60; ++v) EXPECT_EQ(read.mesh.scalars[v], static_cast<double>(v) + 0.1);
+  }
+}
+
+TEST(Plot3d, TextThatVtkWouldMisreadIsRefused) {
+  Plot3dLayout layout;
+  layout.grids = {{3, 3, 3}};
+  const std::string grid = grid_text(layout), solution = solution_text(layout);
+  const test::TemporaryFolder folder;
+  const auto refuse = [&](const std::string& text, const std::vector<std::string>& parts) {
+    test::expect_bad_input([&] { read_mesh(folder.write("g.xyz", text)); }, parts);
+  };
+  const auto with = [&](const std::string& word) {
+    std::string text = grid;
+    return text.replace(text.find("2.1"), 3, word);
+  };
+  refuse(with("2*1.0"), {"g.xyz: line 2", "'2*1.0'", "repeated"});
+  refuse(with("1.0D+00"), {"g.xyz: line 2", "'1.0D+00'", "with E"});
+  refuse(with("x"), {"g.xyz: line 2", "'x'", "no number"});
+  refuse(with("1 2"), {"g.xyz: no layout"});
+  refuse(grid.substr(0, grid.size() / 2), {"g.xyz: no layout"});
+  layout.iblank = true;
+  std::string blanked = grid_text(layout);
+  refuse(blanked.replace(blanked.rfind('1'), 1, "1.5"), {"'1.5'", "IBLANK"});
+  layout.iblank = false;
+  const auto file = folder.write("h.xyz", grid);
+  folder.write("h.q", solution.substr(0, solution.size() / 2));
+  test::expect_bad_input([&] { read_mesh(file); }, {"h.q: it has"});
+  folder.write("h.q", solution_bytes(layout));
+  test::expect_bad_input([&] { read_mesh(file); }, {"h.q: it is binary"});
 }
 
 TEST(Plot3d, IBlankZeroHidesTheCellsOfItsPoint) {
