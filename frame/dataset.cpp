@@ -15,6 +15,7 @@
 #include "frame/render.hpp"
 #include "frame/roles.hpp"
 #include "frame/scan_together.hpp"
+#include "io/foreign_data.hpp"
 #include "io/volume_reader.hpp"
 #include "scene/error.hpp"
 #include "scene/threads.hpp"
@@ -108,29 +109,6 @@ const char* word(NumberType type) {
   constexpr const char* words[] = {"int8",   "uint8", "int16",  "uint16",  "int32",
                                    "uint32", "int64", "uint64", "float32", "float64"};
   return words[static_cast<std::size_t>(type)];
-}
-
-SampleType sample_type_of(NumberType type) {
-  switch (type) {
-    case NumberType::int8:
-      return SampleType::int8;
-    case NumberType::uint8:
-      return SampleType::uint8;
-    case NumberType::int16:
-      return SampleType::int16;
-    case NumberType::uint16:
-      return SampleType::uint16;
-    case NumberType::int32:
-      return SampleType::int32;
-    case NumberType::uint32:
-      return SampleType::uint32;
-    case NumberType::float32:
-      return SampleType::float32;
-    case NumberType::float64:
-      return SampleType::float64;
-    default:
-      throw scene::bad_input("grid: samples are 64-bit integers; give float64");
-  }
 }
 
 /// This rank's error ends the run for all, and the run's one error is thrown on each.
@@ -254,7 +232,9 @@ Dataset Dataset::of(const MeshArrays& arrays) {
 Dataset Dataset::of(const GridArrays& arrays) {
   scene::Grid grid;
   grid.geometry = arrays.geometry;
-  grid.type = sample_type_of(arrays.samples.type());
+  const std::optional<SampleType> type = io::sample_type_of(arrays.samples.type());
+  if (!type) throw scene::bad_input("grid: samples are 64-bit integers; give float64");
+  grid.type = *type;
   grid.scale = arrays.scale, grid.shift = arrays.shift;
   grid.field_name = arrays.field_name;
   const std::span bytes(static_cast<const std::byte*>(arrays.samples.data()),

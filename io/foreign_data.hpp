@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/number_tally.hpp"
+#include "scene/grid.hpp"
 #include "tessera/array.hpp"
 
 namespace tessera::io {
@@ -19,6 +20,9 @@ namespace tessera::io {
 using tessera::NumberType;
 
 std::size_t size_of(NumberType type);
+
+/// The same type of samples; none for 64-bit integers.
+std::optional<scene::SampleType> sample_type_of(NumberType type);
 
 /// As fields are listed: int8, uint8, ..., float, double.
 const char* name_of(NumberType type);

@@ -9,6 +9,7 @@
 #include "io/field_choice.hpp"
 #include "io/file_beginnings.hpp"
 #include "io/foreign_file.hpp"
+#include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/volume_formats.hpp"
 
@@ -17,32 +18,6 @@ namespace {
 
 using scene::Association;
 using scene::SampleType;
-
-/// The same type; none for 64-bit integers.
-std::optional<SampleType> stored_type(NumberType type) {
-  switch (type) {
-    case NumberType::int8:
-      return SampleType::int8;
-    case NumberType::uint8:
-      return SampleType::uint8;
-    case NumberType::int16:
-      return SampleType::int16;
-    case NumberType::uint16:
-      return SampleType::uint16;
-    case NumberType::int32:
-      return SampleType::int32;
-    case NumberType::uint32:
-      return SampleType::uint32;
-    case NumberType::float32:
-      return SampleType::float32;
-    case NumberType::float64:
-      return SampleType::float64;
-    case NumberType::int64:
-    case NumberType::uint64:
-      break;
-  }
-  return std::nullopt;
-}
 
 void set_image_geometry(const ForeignPart& image, scene::GridGeometry& g) {
   std::array<glm::dvec3, 3> steps;
@@ -140,7 +115,7 @@ std::unique_ptr<scene::MemorySource> source_of(const ForeignFile& file, const Fo
   const auto array =
       std::find_if(arrays.begin(), arrays.end(), [&](const ForeignArray& a) { return a.name == choice.name; });
   const auto hidden = hidden_samples(file, part, choice.association, grid.geometry, notes);
-  const std::optional<SampleType> plain = array == arrays.end() ? std::nullopt : stored_type(array->type);
+  const std::optional<SampleType> plain = array == arrays.end() ? std::nullopt : sample_type_of(array->type);
   const SampleType type = plain.value_or(SampleType::float64);
   // Floats hold numbers of up to 16 bits, and magnitudes of floats.
   const bool narrow = scene::size_of(type) < 4 || type == SampleType::float32;
@@ -166,6 +141,7 @@ std::unique_ptr<scene::MemorySource> source_of(const ForeignFile& file, const Fo
 VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions& options) {
   const std::string source = file.string();
   const std::string type = vtk_xml_type(read_beginning(file, 4096));  // empty of a legacy one
+  if (type.starts_with('P')) require_beside_others(file);
   nlohmann::json request{{"reader", type.empty() ? "vtk_legacy" : "vtk_xml"}};
   if (!type.empty()) request["type"] = type;
   const ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(), file, std::move(request));

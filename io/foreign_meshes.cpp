@@ -7,6 +7,7 @@
 
 #include "io/file_beginnings.hpp"
 #include "io/foreign_file.hpp"
+#include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/mesh_parts.hpp"
@@ -67,6 +68,7 @@ struct ListedBlock {
 /// The data sets in their order. A name is the path of the names of the blocks around it and its own.
 std::vector<ListedBlock> listed_blocks(const std::filesystem::path& file) {
   std::vector<ListedBlock> blocks;
+  require_beside_others(file);
   std::vector<std::string> path;  // by depth
   each_xml_element(read_text_file(file), file.string(), [&](const XmlElement& element) {
     const std::string* const own = element.find("name");
@@ -151,6 +153,7 @@ MeshBlocks read_vtk_xml(const std::filesystem::path& file, const BlockChoice& ch
 
   // Pieces one by one, so that the whole reads as its parts do, and faults name the piece.
   if (type == parallel_type) return read_pvtu_pieces(file, pvtu_pieces(file));
+  if (type.starts_with('P')) require_beside_others(file);
   MeshBlocks result = named_format(*kind, extension);
   MeshBlocks read = read_foreign(file, {{"reader", "vtk_xml"}, {"type", type}});
   add_notes(read.notes, result.notes);
@@ -163,6 +166,7 @@ bool is_pvtu(const std::filesystem::path& file) { return xml_type(file) == paral
 std::vector<std::filesystem::path> pvtu_pieces(const std::filesystem::path& file) {
   const std::string source = file.string();
   std::vector<std::filesystem::path> pieces;
+  require_beside_others(file);
   each_xml_element(read_text_file(file), source, [&](const XmlElement& element) {
     if (element.name != "Piece") return;
     const std::string* name = element.find("Source");
@@ -216,6 +220,8 @@ MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::siz
 
 MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader, std::optional<std::size_t> time_step,
                             const BlockChoice& choice) {
+  const std::string_view name = reader;
+  if (name == "openfoam" || name == "ensight") require_beside_others(file);
   nlohmann::json request{{"reader", reader}, {"blocks", choice}};
   if (time_step) request["time_step"] = *time_step;
   const ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(), file, std::move(request));
@@ -232,7 +238,9 @@ MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem:
   const std::filesystem::path q = q_file.empty() ? find_plot3d_solution(file) : q_file;
   std::vector<std::string> notes;
   if (q.empty())
-    notes.emplace_back("no solution (Q) file lies beside the grid: it has no field; name one by `q`");
+    notes.emplace_back(is_inflated(file)
+                           ? "beside a gzip file no solution (Q) is looked for: it has no field; name one by `q`"
+                           : "no solution (Q) file lies beside the grid: it has no field; name one by `q`");
   else if (const std::uint64_t left = check_plot3d_solution(q, layout); left > 0)
     notes.push_back(fmt::format("{} {} after the solution in {} are not used", left,
                                 layout.is_text ? "numbers" : "bytes", q.filename().string()));

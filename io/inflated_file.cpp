@@ -52,6 +52,19 @@ std::string InflatedFile::renamed(std::string line) const {
   return line;
 }
 
+bool is_inflated(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  return name.starts_with("/proc/") && file.parent_path().filename() == "fd";
+}
+
+void require_beside_others(const std::filesystem::path& file) {
+  if (is_inflated(file))
+    throw scene::bad_input(
+        fmt::format("{}: it goes with other files, which cannot be found from within a gzip file; unpack it with "
+                    "gunzip",
+                    file.string()));
+}
+
 scene::Error InflatedFile::renamed(const scene::Error& error) const {
   return scene::with_subject(scene::Error(error.code(), renamed(std::string(error.what()))), file_.string());
 }

@@ -40,4 +40,10 @@ class InflatedFile {
   Descriptor descriptor_;
 };
 
+/// Whether a name is one that InflatedFile gave, beside which nothing lies.
+bool is_inflated(const std::filesystem::path& file);
+
+/// For files that others lie beside: throws Error(bad_input) for one that was in a gzip file.
+void require_beside_others(const std::filesystem::path& file);
+
 }  // namespace tessera::io

@@ -44,7 +44,8 @@ bool is_input_folder(const std::filesystem::path& folder) {
   std::error_code unknown;
   return std::filesystem::is_directory(folder, unknown) &&
          (std::filesystem::is_regular_file(folder / "system" / "controlDict", unknown) ||
-          std::filesystem::is_directory(folder / "constant" / "polyMesh", unknown));
+          std::filesystem::is_directory(folder / "constant" / "polyMesh", unknown) ||
+          std::filesystem::is_directory(folder / "processor0" / "constant" / "polyMesh", unknown));
 }
 
 std::string lower_extension(const std::filesystem::path& file) {

@@ -7,7 +7,8 @@
 
 namespace tessera::io {
 
-/// Whether a folder stands for a file: an OpenFOAM case (system/controlDict or constant/polyMesh in it) is one.
+/// Whether a folder stands for a file: an OpenFOAM case (system/controlDict or constant/polyMesh in it, or the latter
+/// in processor0) is one.
 bool is_input_folder(const std::filesystem::path& folder);
 
 /// Throws Error(bad_input) unless `file` is a readable regular file that is not empty, or a folder that stands for one;

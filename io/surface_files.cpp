@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "io/foreign_surfaces.hpp"
+#include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
 #include "io/mesh_formats.hpp"
@@ -104,6 +105,7 @@ MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::o
 }
 
 MeshBlocks read_node_ele(const std::filesystem::path& file) {
+  require_beside_others(file);
   std::filesystem::path node_file = file, ele_file = file;
   // The partner's extension in the same case: A.NODE goes with A.ELE.
   const bool upper = file.extension().string() != lower_extension(file);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include "io/mesh_reader.hpp"
 #include "io/volume_bytes.hpp"
 #include "io/volume_checks.hpp"
 #include "io/vtk_or_skip.hpp"
@@ -74,6 +75,23 @@ TEST_F(GzipVolumes, DamagedOnesAreRefusedByTheirOwnName) {
   expect_no_volume(write("short.nrrd.gz", nrrd.substr(0, nrrd.size() - 1)), "short.nrrd.gz: 4x3x2 samples of 1 int16");
   expect_no_volume(write("a_4x3x2_int16.raw.gz", "abc"), "48 bytes, the file has 3");
   expect_no_volume(write("text.gz", "no volume"), "does not begin");
+}
+
+TEST_F(GzipVolumes, WhatGoesWithOtherFilesIsToBeUnpacked) {
+  folder.write("d.raw", std::string(64, 'a'));
+  const std::string nhdr = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: raw\ndata file: d.raw\n";
+  const std::string mhd =
+      "ObjectType = Image\nNDims = 3\nDimSize = 4 4 4\nElementType = MET_UCHAR\nElementDataFile = d.raw\n";
+  expect_no_volume(write("a.nhdr.gz", nhdr), "a.nhdr.gz: it goes with other files");
+  expect_no_volume(write("a.mhd.gz", mhd), "unpack it");
+  for (const auto& [name, text] : {std::pair{"a.node.gz", "4 3 0 0\n"},
+                                   {"a.case.gz", "FORMAT\ntype: ensight gold\n"},
+                                   {"a.foam.gz", "FoamFile\n{\n}\n"},
+                                   {"a.pvtu.gz", "<VTKFile type=\"PUnstructuredGrid\"></VTKFile>"},
+                                   {"a.vtm.gz", "<VTKFile type=\"vtkMultiBlockDataSet\"></VTKFile>"}}) {
+    if (std::string_view(name) != "a.node.gz" && !has_vtk()) continue;
+    test::expect_bad_input([&] { read_mesh(write(name, text)); }, {name, "it goes with other files", "unpack it"});
+  }
 }
 
 }  // namespace
