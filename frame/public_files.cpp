@@ -105,7 +105,7 @@ void check_mesh_output(const std::filesystem::path& file, const std::filesystem:
   if (extension != ".pvtu") throw scene::bad_input(fmt::format("{}: `pieces` writes a .pvtu; name one", file.string()));
   std::vector<std::filesystem::path> inputs = {input};
   if (io::readable_in_parts(input, {}) && input.extension() != ".tets") {
-    const auto read = io::pvtu_pieces(input);
+    const auto read = io::files_of_parts(input);
     inputs.insert(inputs.end(), read.begin(), read.end());
   }
   for (const auto& one : inputs) {

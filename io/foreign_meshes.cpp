@@ -9,11 +9,9 @@
 #include "io/foreign_file.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
+#include "io/listed_pieces.hpp"
 #include "io/mesh_formats.hpp"
-#include "io/mesh_parts.hpp"
 #include "io/plot3d_layout.hpp"
-#include "io/text_file.hpp"
-#include "io/xml_elements.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -24,7 +22,6 @@ struct XmlKind {
 };
 constexpr std::array xml_kinds = {
     XmlKind{".vtu", "UnstructuredGrid", "VTK XML unstructured grid"},
-    XmlKind{".pvtu", "PUnstructuredGrid", "VTK XML parallel unstructured grid"},
     XmlKind{".vts", "StructuredGrid", "VTK XML structured grid"},
     XmlKind{".pvts", "PStructuredGrid", "VTK XML parallel structured grid"},
     XmlKind{".vtr", "RectilinearGrid", "VTK XML rectilinear grid"},
@@ -33,8 +30,6 @@ constexpr std::array xml_kinds = {
 
 /// The value of `type` in <VTKFile type="...">; empty if the file does not begin like VTK XML.
 std::string xml_type(const std::filesystem::path& file) { return vtk_xml_type(read_beginning(file, 4096)); }
-
-constexpr const char* parallel_type = "PUnstructuredGrid";
 
 const XmlKind* kind_of(const std::string& type) {
   const auto* kind = std::find_if(xml_kinds.begin(), xml_kinds.end(), [&](const XmlKind& k) { return type == k.type; });
@@ -46,82 +41,6 @@ MeshBlocks named_format(const XmlKind& kind, const std::string& extension) {
   result.format = kind.words;
   if (!extension.empty() && extension != kind.extension)
     result.notes.push_back(fmt::format("the file is a {}, read as {}", extension.substr(1), kind.words));
-  return result;
-}
-
-/// Once, though all pieces may give rise to it.
-void add_notes(const std::vector<std::string>& more, std::vector<std::string>& notes) {
-  for (const std::string& note : more)
-    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
-}
-
-bool lists_blocks(const std::string& type) {
-  return type == "vtkMultiBlockDataSet" || type == "vtkPartitionedDataSetCollection" || type == "vtkPartitionedDataSet";
-}
-
-/// A data set that a multi-block file lists.
-struct ListedBlock {
-  std::string name;
-  std::filesystem::path file;
-};
-
-/// The data sets in their order. A name is the path of the names of the blocks around it and its own.
-std::vector<ListedBlock> listed_blocks(const std::filesystem::path& file) {
-  std::vector<ListedBlock> blocks;
-  require_beside_others(file);
-  std::vector<std::string> path;  // by depth
-  each_xml_element(read_text_file(file), file.string(), [&](const XmlElement& element) {
-    const std::string* const own = element.find("name");
-    path.resize(element.parents.size());
-    path.push_back(own != nullptr ? *own : "");
-    if (element.name != "DataSet") return;
-    const std::string* const listed = element.find("file");
-    if (listed == nullptr || listed->empty()) return;  // a block that is empty, as some of a rank's are
-    std::string name;
-    for (const std::string& word : path)
-      if (!word.empty()) name += (name.empty() ? "" : "/") + word;
-    blocks.push_back({name.empty() ? std::to_string(blocks.size()) : name, file.parent_path() / *listed});
-  });
-  return blocks;
-}
-
-/// The volumes among a multi-block file's data sets, each read by itself, so that faults name the file.
-MeshBlocks read_blocks_of(const std::filesystem::path& file, const BlockChoice& choice) {
-  MeshBlocks result;
-  result.format = "VTK XML multi-block";
-  const auto helper = std::make_shared<HelperProcess>();
-  std::size_t surfaces = 0;
-  for (const ListedBlock& listed : listed_blocks(file)) {
-    if (!is_chosen(choice, listed.name)) {  // nor looked into, so that it may be a surface
-      result.block_names.push_back(listed.name);
-      continue;
-    }
-    const std::string type = xml_type(listed.file);
-    if (type == "PolyData" || type == "PPolyData") {
-      ++surfaces;
-      continue;
-    }
-    result.block_names.push_back(listed.name);
-    if (type == parallel_type) {
-      for (CellBlock& block : read_pvtu_pieces(listed.file, pvtu_pieces(listed.file)).blocks) {
-        block.name = listed.name;
-        result.blocks.push_back(std::move(block));
-      }
-      continue;
-    }
-    if (kind_of(type) == nullptr && type != "ImageData" && type != "PImageData")
-      throw scene::bad_input(fmt::format("{}: it is a block of {} and its type is '{}', no mesh or grid; leave it out",
-                                         listed.file.string(), file.string(), type));
-    ForeignFile opened = open_foreign(helper, listed.file, {{"reader", "vtk_xml"}, {"type", type}});
-    add_notes(opened.contents.notes, result.notes);
-    for (ForeignPart& part : opened.contents.parts) part.name = listed.name;
-    for (CellBlock& block : blocks_of(opened, result.notes, GridsAre::hexahedra))
-      result.blocks.push_back(std::move(block));
-  }
-  if (surfaces > 0)
-    result.notes.push_back(fmt::format("{} left out", surfaces == 1
-                                                          ? "1 block is a surface and is"
-                                                          : fmt::format("{} blocks are surfaces and are", surfaces)));
   return result;
 }
 
@@ -148,55 +67,18 @@ MeshBlocks read_vtk_xml(const std::filesystem::path& file, const BlockChoice& ch
   if (type == "ImageData" || type == "PImageData")
     throw scene::bad_input(fmt::format(
         "{}: it is a regular grid (image data), no mesh; render, info and convert take it as a volume", source));
-  if (lists_blocks(type)) return read_blocks_of(file, choice);
+  if (lists_pieces(file)) {
+    // Pieces one by one, so that the whole reads as its parts do, and faults name the piece.
+    const PieceList list = piece_list(file, choice);
+    return read_pieces(list, 0, list.pieces.size());
+  }
   if (!kind) throw scene::bad_input(fmt::format("{}: its type is '{}'; give a mesh", source, type));
 
-  // Pieces one by one, so that the whole reads as its parts do, and faults name the piece.
-  if (type == parallel_type) return read_pvtu_pieces(file, pvtu_pieces(file));
   if (type.starts_with('P')) require_beside_others(file);
   MeshBlocks result = named_format(*kind, extension);
   MeshBlocks read = read_foreign(file, {{"reader", "vtk_xml"}, {"type", type}});
   add_notes(read.notes, result.notes);
   result.blocks = std::move(read.blocks);
-  return result;
-}
-
-bool is_pvtu(const std::filesystem::path& file) { return xml_type(file) == parallel_type; }
-
-std::vector<std::filesystem::path> pvtu_pieces(const std::filesystem::path& file) {
-  const std::string source = file.string();
-  std::vector<std::filesystem::path> pieces;
-  require_beside_others(file);
-  each_xml_element(read_text_file(file), source, [&](const XmlElement& element) {
-    if (element.name != "Piece") return;
-    const std::string* name = element.find("Source");
-    if (!name || name->empty())
-      throw scene::bad_input(fmt::format("{}: piece {} has no Source; write it anew", source, pieces.size()));
-    pieces.push_back(file.parent_path() / *name);
-  });
-  return pieces;
-}
-
-MeshBlocks read_pvtu_pieces(const std::filesystem::path& file, std::span<const std::filesystem::path> pieces) {
-  MeshBlocks result = named_format(*kind_of(parallel_type), lower_extension(file));
-  std::shared_ptr<HelperProcess> helper;
-  for (const std::filesystem::path& piece : pieces) {
-    const std::string source = piece.string(), type = xml_type(piece);
-    if (type != "UnstructuredGrid")
-      throw scene::bad_input(
-          type.empty() ? fmt::format("{}: it is a piece of {} and does not begin as a VTK XML file does; write it anew",
-                                     source, file.string())
-                       : fmt::format("{}: it is a piece of {} and its type is '{}', not 'UnstructuredGrid'; write both "
-                                     "anew",
-                                     source, file.string(), type));
-    if (!helper) helper = std::make_shared<HelperProcess>();
-    const ForeignFile opened = open_foreign(helper, piece, {{"reader", "vtk_xml"}, {"type", type}});
-    add_notes(opened.contents.notes, result.notes);
-    for (CellBlock& block : blocks_of(opened, result.notes)) {
-      block.source = source;
-      result.blocks.push_back(std::move(block));
-    }
-  }
   return result;
 }
 

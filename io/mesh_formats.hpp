@@ -21,6 +21,9 @@ struct MeshBlocks {
   std::vector<std::string> block_names{};  ///< of all, those too that were not chosen; empty: of `blocks`
 };
 
+/// Adds the notes that are not there yet: all pieces of a file may give rise to one.
+void add_notes(const std::vector<std::string>& more, std::vector<std::string>& notes);
+
 /// Whether this build has VTK's readers (CMake option TESSERA_VTK), in the helper program. Without them read_vtk_xml(),
 /// read_vtk_legacy(), read_exodus(), read_plot3d(), read_vtk_grid() and read_stl() throw Error(bad_input).
 bool has_vtk();
@@ -28,13 +31,6 @@ bool has_vtk();
 /// VTK's XML files: .vtu .pvtu .vts .pvts .vtr .pvtr, and lists of them (.vtm .vtpc). The pieces of a .pvtu are a block
 /// each, their points not merged.
 MeshBlocks read_vtk_xml(const std::filesystem::path& file, const BlockChoice& choice = {});
-
-/// Whether a file that begins as VTK XML does is an unstructured grid in pieces, whatever its name.
-bool is_pvtu(const std::filesystem::path& file);
-
-/// Some pieces of the .pvtu `file`, a block each, whose `source` is the piece's file. Throws Error(bad_input) that
-/// names the piece at fault.
-MeshBlocks read_pvtu_pieces(const std::filesystem::path& file, std::span<const std::filesystem::path> pieces);
 
 /// The tets of a .tets file, or a range of them, with their field "scalar".
 MeshBlocks blocks_of_tets(scene::TetMesh mesh);

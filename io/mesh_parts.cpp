@@ -5,6 +5,7 @@
 
 #include "io/clean_errors.hpp"
 #include "io/input_file.hpp"
+#include "io/listed_pieces.hpp"
 #include "io/mapped_file.hpp"
 #include "io/mesh_assembly.hpp"
 #include "io/mesh_formats.hpp"
@@ -25,8 +26,16 @@ bool is_tets(const std::filesystem::path& file) { return lower_extension(file) =
 
 bool readable_in_parts(const std::filesystem::path& file, const MeshOptions& options) {
   require_file(file);
-  if (options.smooth || !options.blocks.empty()) return false;
-  return is_tets(file) || (lower_extension(file) == ".pvtu" && is_pvtu(file));
+  if (options.smooth) return false;
+  return is_tets(file) ? options.blocks.empty()
+                       : !std::filesystem::is_directory(file) && has_vtk() && lists_pieces(file);
+}
+
+std::vector<std::filesystem::path> files_of_parts(const std::filesystem::path& file) {
+  std::vector<std::filesystem::path> files;
+  if (!is_tets(file))
+    for (const ListedPiece& piece : piece_list(file, {}).pieces) files.push_back(piece.file);
+  return files;
 }
 
 struct MeshPartReading::State {
@@ -63,11 +72,14 @@ struct MeshPartReading::State {
     blocks = blocks_of_tets(std::move(range.mesh));
   }
 
-  void read_pieces(int part, int parts) {
-    const std::vector<std::filesystem::path> pieces = pvtu_pieces(file);
-    const std::uint64_t first = first_of_part(pieces.size(), part, parts),
-                        last = first_of_part(pieces.size(), part + 1, parts);
-    blocks = read_pvtu_pieces(file, std::span(pieces).subspan(first, last - first));
+  void read_listed(int part, int parts) {
+    const PieceList list = piece_list(file, options.blocks);
+    blocks = read_pieces(list, first_of_part(list.pieces.size(), part, parts),
+                         first_of_part(list.pieces.size(), part + 1, parts));
+    blocks.block_names = distinct_names(std::move(blocks.block_names));
+    require_blocks(options.blocks, blocks.block_names, file.string());
+    if (list.pieces.size() == 1 && blocks.block_names.size() <= 1)  // as read_mesh calls it
+      for (CellBlock& block : blocks.blocks) block.name.clear();
     tallies = tally_fields(blocks.blocks);
   }
 };
@@ -79,7 +91,7 @@ MeshPartReading::MeshPartReading(std::filesystem::path file, const MeshOptions& 
   const std::string source = state_->file.string();
   with_clean_errors(source, [&] {
     require_no_time_step(options, source);
-    is_tets(state_->file) ? state_->read_tets(part, parts) : state_->read_pieces(part, parts);
+    is_tets(state_->file) ? state_->read_tets(part, parts) : state_->read_listed(part, parts);
   });
 }
 
@@ -92,6 +104,7 @@ MeshFilePart MeshPartReading::finish(std::span<const std::vector<FieldTally>> ta
   return with_clean_errors(source, [&] {
     MeshFilePart part;
     part.format = std::move(state_->blocks.format);
+    part.blocks = std::move(state_->blocks.block_names);
     part.fields = summarize_fields(tallies_of_all);
     const FieldChoice choice = choose_field(state_->options.field, part.fields, source);
     part.choice_notes = choice.notes;
@@ -119,14 +132,12 @@ MeshFile joined(const MeshFilePart& own, std::span<const PartSummary> summaries,
   MeshFile whole;
   whole.format = own.format;
   whole.fields = own.fields;
+  whole.blocks = own.blocks;
   whole.mesh.field_name = own.mesh.field_name;
   whole.mesh.association = own.mesh.association;
   std::vector<std::uint64_t> used;
-  const auto add = [&](const std::vector<std::string>& notes) {
-    // What every part finds in the file that all read, one says.
-    for (const std::string& note : notes)
-      if (std::find(whole.notes.begin(), whole.notes.end(), note) == whole.notes.end()) whole.notes.push_back(note);
-  };
+  // What every part finds in the file that all read, one says.
+  const auto add = [&](const std::vector<std::string>& notes) { add_notes(notes, whole.notes); };
   for (const PartSummary& part : summaries) {
     whole.counts += part.counts;
     add(part.reading_notes);

@@ -23,13 +23,13 @@
 /// read_mesh's counts, fields and notes.
 namespace tessera::io {
 
-/// Whether the file can be read in parts: .pvtu, whose pieces are divided over the parts, and .tets, whose tets are.
-/// Not if it is to be smoothed, which needs all cells round a point. Throws Error(bad_input) if there is no such file.
+/// Whether the file can be read in parts: .pvtu, whose pieces are divided over the parts, VTK's lists of blocks (.vtm
+/// .vtpc), whose files are, and .tets, whose tets are. Not if it is to be smoothed, which needs all cells round a
+/// point. Throws Error(bad_input) if there is no such file.
 bool readable_in_parts(const std::filesystem::path& file, const MeshOptions& options);
 
-/// The pieces of a .pvtu in its order, their paths as the file gives them, relative ones against its folder. They need
-/// not exist. Throws Error(bad_input).
-std::vector<std::filesystem::path> pvtu_pieces(const std::filesystem::path& file);
+/// The files that such a file lists; none of .tets. Throws Error(bad_input).
+std::vector<std::filesystem::path> files_of_parts(const std::filesystem::path& file);
 
 /// What a part knows beside its mesh. Small, but for `used_points`.
 struct PartSummary {
@@ -45,6 +45,7 @@ struct MeshFilePart {
   PartSummary summary;
   std::vector<FieldSummary> fields;       ///< of the whole
   std::vector<std::string> choice_notes;  ///< on the field, the same on all parts
+  std::vector<std::string> blocks;        ///< the names of all, the same on all parts
   std::string format;
 };
 

@@ -92,6 +92,11 @@ MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& opt
 
 }  // namespace
 
+void add_notes(const std::vector<std::string>& more, std::vector<std::string>& notes) {
+  for (const std::string& note : more)
+    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+}
+
 MeshBlocks blocks_of_tets(scene::TetMesh mesh) {
   CellBlock block;
   block.positions = std::move(mesh.positions);
@@ -144,9 +149,7 @@ MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptio
         if (block.source.empty()) block.source = source;
         all.blocks.push_back(std::move(block));
       }
-      for (std::string& note : read.notes)
-        if (std::find(all.notes.begin(), all.notes.end(), note) == all.notes.end())
-          all.notes.push_back(std::move(note));
+      add_notes(read.notes, all.notes);
     });
   }
   const std::string source = files.empty() ? "mesh" : files.front().string();

@@ -3,6 +3,7 @@
 
 #include "io/foreign_surfaces.hpp"
 #include "io/input_file.hpp"
+#include "io/listed_pieces.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/volume_formats.hpp"
 #include "scene/error.hpp"
@@ -37,8 +38,8 @@ Surface read_stl(const std::string& source) { refuse(source); }
 VtkSurface read_vtk_surface(const std::string& source) { refuse(source); }
 
 // Read whole, by read_vtk_xml().
-bool is_pvtu(const std::filesystem::path&) { return false; }
-std::vector<std::filesystem::path> pvtu_pieces(const std::filesystem::path& file) { refuse(file); }
-MeshBlocks read_pvtu_pieces(const std::filesystem::path& file, std::span<const std::filesystem::path>) { refuse(file); }
+bool lists_pieces(const std::filesystem::path&) { return false; }
+PieceList piece_list(const std::filesystem::path& file, const BlockChoice&) { refuse(file); }
+MeshBlocks read_pieces(const PieceList&, std::size_t, std::size_t) { return {}; }
 
 }  // namespace tessera::io

@@ -74,6 +74,7 @@ void expect_as_whole(const std::filesystem::path& file, const MeshOptions& optio
     EXPECT_EQ(read.whole.fields, whole.fields);
     EXPECT_EQ(read.whole.notes, whole.notes);
     EXPECT_EQ(read.whole.format, whole.format);
+    EXPECT_EQ(read.whole.blocks, whole.blocks);
     EXPECT_EQ(read.whole.mesh.field_name, whole.mesh.field_name);
     EXPECT_EQ(read.whole.mesh.association, whole.mesh.association);
   }
@@ -145,6 +146,34 @@ TEST_F(MeshParts, GhostsAndEmptyPiecesAreAsInTheWhole) {
   EXPECT_EQ(read_mesh(file).counts.cells_ghost, 3u);
   EXPECT_EQ(read_mesh(file).counts.cells_hidden, 3u);
   expect_as_whole(file);
+}
+
+TEST_F(MeshParts, ListsOfBlocksAreReadInParts) {
+  TESSERA_VTK_OR_SKIP();
+  write_pieces({piece_at(1), piece_at(2)});  // m.pvtu
+  folder.write("first.vtu", testing::vtu_text(piece_at(0)));
+  CellBlock last = piece_at(3);
+  last.fields.pop_back();  // its cells are blanked where "cells" is drawn
+  folder.write("last.vtu", testing::vtu_text(last));
+  folder.write("skin.vtp", "<VTKFile type=\"PolyData\">");  // not looked into further
+  const auto file = folder.write("m.vtm",
+                                 "<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet>"
+                                 "<DataSet name=\"a\" file=\"first.vtu\"/><DataSet name=\"skin\" file=\"skin.vtp\"/>"
+                                 "<Block name=\"middle\"><DataSet name=\"b\" file=\"m.pvtu\"/></Block>"
+                                 "<DataSet name=\"c\" file=\"last.vtu\"/></vtkMultiBlockDataSet></VTKFile>");
+  const MeshFile whole = read_mesh(file);
+  EXPECT_EQ(whole.blocks, (std::vector<std::string>{"a", "middle/b", "c"}));
+  EXPECT_GT(whole.counts.tets_made, read_mesh(folder / "m.pvtu").counts.tets_made);
+  expect_as_whole(file);
+  MeshOptions options;
+  options.field = "cells";
+  expect_as_whole(file, options);
+  options.field = "piece";
+  options.blocks = {"b", "c"};
+  EXPECT_LT(read_mesh(file, options).counts.tets_made, whole.counts.tets_made);
+  expect_as_whole(file, options);
+  options.blocks = {"d"};
+  EXPECT_EQ(message_of([&] { read_in_parts(file, 2, options); }), message_of([&] { read_mesh(file, options); }));
 }
 
 TEST_F(MeshParts, NeighbouringPiecesAgreeOnTheirFaces) {

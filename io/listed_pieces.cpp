@@ -1,0 +1,146 @@
+#include "io/listed_pieces.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "io/file_beginnings.hpp"
+#include "io/foreign_file.hpp"
+#include "io/inflated_file.hpp"
+#include "io/input_file.hpp"
+#include "io/text_file.hpp"
+#include "io/xml_elements.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+/// Empty if the file does not begin as VTK XML does.
+std::string type_of(const std::filesystem::path& file) { return vtk_xml_type(read_beginning(file, 4096)); }
+
+bool is_any_of(std::string_view type, std::span<const std::string_view> types) {
+  return std::find(types.begin(), types.end(), type) != types.end();
+}
+
+constexpr std::string_view in_pieces = "PUnstructuredGrid";
+constexpr std::array<std::string_view, 3> lists = {"vtkMultiBlockDataSet", "vtkPartitionedDataSetCollection",
+                                                   "vtkPartitionedDataSet"};
+constexpr std::array<std::string_view, 2> surfaces = {"PolyData", "PPolyData"};
+constexpr std::array<std::string_view, 7> volumes = {"UnstructuredGrid", "StructuredGrid",   "PStructuredGrid",
+                                                     "RectilinearGrid",  "PRectilinearGrid", "ImageData",
+                                                     "PImageData"};
+
+void add_pieces_of_whole(const std::filesystem::path& file, const std::string& block, PieceList& list) {
+  const std::string source = file.string();
+  std::size_t count = 0;
+  each_xml_element(read_text_file(file), source, [&](const XmlElement& element) {
+    if (element.name != "Piece") return;
+    const std::string* const name = element.find("Source");
+    if (name == nullptr || name->empty())
+      throw scene::bad_input(fmt::format("{}: piece {} has no Source; write it anew", source, count));
+    list.pieces.push_back({file.parent_path() / *name, source, block, ""});
+    ++count;
+  });
+}
+
+void add_block(ListedPiece listed, const BlockChoice& choice, PieceList& list, std::size_t& surfaces_left_out) {
+  if (!is_chosen(choice, listed.block)) {  // nor looked into, so that it may be a surface
+    list.block_names.push_back(listed.block);
+    return;
+  }
+  listed.type = type_of(listed.file);
+  if (is_any_of(listed.type, surfaces)) {
+    ++surfaces_left_out;
+    return;
+  }
+  list.block_names.push_back(listed.block);
+  if (listed.type == in_pieces) return add_pieces_of_whole(listed.file, listed.block, list);
+  if (!is_any_of(listed.type, volumes))
+    throw scene::bad_input(fmt::format("{}: it is a block of {} and its type is '{}', no mesh or grid; leave it out",
+                                       listed.file.string(), listed.list, listed.type));
+  list.pieces.push_back(std::move(listed));
+}
+
+void add_blocks(const std::filesystem::path& file, const BlockChoice& choice, PieceList& list) {
+  std::vector<std::string> path;  // of names, by depth
+  std::size_t count = 0, surfaces_left_out = 0;
+  each_xml_element(read_text_file(file), file.string(), [&](const XmlElement& element) {
+    const std::string* const own = element.find("name");
+    path.resize(element.parents.size());
+    path.push_back(own != nullptr ? *own : "");
+    if (element.name != "DataSet") return;
+    const std::string* const listed = element.find("file");
+    if (listed == nullptr || listed->empty()) return;  // a block that is empty, as some of a rank's are
+    std::string name;
+    for (const std::string& word : path)
+      if (!word.empty()) name += (name.empty() ? "" : "/") + word;
+    if (name.empty()) name = std::to_string(count);
+    ++count;
+    add_block({file.parent_path() / *listed, file.string(), std::move(name), ""}, choice, list, surfaces_left_out);
+  });
+  if (surfaces_left_out > 0)
+    list.notes.push_back(fmt::format(
+        "{} left out", surfaces_left_out == 1 ? "1 block is a surface and is"
+                                              : fmt::format("{} blocks are surfaces and are", surfaces_left_out)));
+}
+
+void require_piece(const ListedPiece& piece, const std::string& type) {
+  const std::string source = piece.file.string();
+  if (type.empty())
+    throw scene::bad_input(fmt::format(
+        "{}: it is a piece of {} and does not begin as a VTK XML file does; write it anew", source, piece.list));
+  if (type != "UnstructuredGrid")
+    throw scene::bad_input(
+        fmt::format("{}: it is a piece of {} and its type is '{}', not 'UnstructuredGrid'; write both anew", source,
+                    piece.list, type));
+}
+
+}  // namespace
+
+bool lists_pieces(const std::filesystem::path& file) {
+  const std::string type = type_of(file);
+  return type == in_pieces || is_any_of(type, lists);
+}
+
+PieceList piece_list(const std::filesystem::path& file, const BlockChoice& choice) {
+  require_beside_others(file);
+  PieceList list;
+  if (type_of(file) != in_pieces) {
+    list.format = "VTK XML multi-block";
+    add_blocks(file, choice, list);
+    return list;
+  }
+  list.format = "VTK XML parallel unstructured grid";
+  if (const std::string extension = lower_extension(file); !extension.empty() && extension != ".pvtu")
+    list.notes.push_back(fmt::format("the file is a {}, read as {}", extension.substr(1), list.format));
+  add_pieces_of_whole(file, "", list);
+  return list;
+}
+
+MeshBlocks read_pieces(const PieceList& list, std::size_t first, std::size_t last) {
+  MeshBlocks result{{}, list.notes, list.format, list.block_names};
+  std::shared_ptr<HelperProcess> helper;
+  for (std::size_t k = first; k < last; ++k) {
+    const ListedPiece& piece = list.pieces[k];
+    const bool of_whole = piece.type.empty();
+    const std::string type = of_whole ? type_of(piece.file) : piece.type;
+    if (of_whole) require_piece(piece, type);
+    if (!helper) helper = std::make_shared<HelperProcess>();
+    ForeignFile opened = open_foreign(helper, piece.file, {{"reader", "vtk_xml"}, {"type", type}});
+    add_notes(opened.contents.notes, result.notes);
+    if (!of_whole)
+      for (ForeignPart& part : opened.contents.parts) part.name = piece.block;
+    for (CellBlock& block : blocks_of(opened, result.notes, GridsAre::hexahedra)) {
+      block.name = piece.block;
+      if (of_whole) block.source = piece.file.string();
+      result.blocks.push_back(std::move(block));
+    }
+  }
+  return result;
+}
+
+}  // namespace tessera::io
