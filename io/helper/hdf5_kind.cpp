@@ -6,6 +6,7 @@
 
 #include "io/helper/readers.hpp"
 #include "scene/error.hpp"
+#include "scene/quote.hpp"
 
 namespace tessera::io::helper {
 namespace {
@@ -27,6 +28,36 @@ class Hdf5File {
   [[nodiscard]] bool has(const char* name) const { return H5Lexists(id_, name, H5P_DEFAULT) > 0; }
   [[nodiscard]] bool has_attribute(const char* name) const { return H5Aexists(id_, name) > 0; }
 
+  /// The text of a group's attribute; empty if it has none of a fixed length.
+  [[nodiscard]] std::string text_of(const char* group, const char* name) const {
+    const hid_t attribute = H5Aopen_by_name(id_, group, name, H5P_DEFAULT, H5P_DEFAULT);
+    if (attribute < 0) return "";
+    const hid_t type = H5Aget_type(attribute);
+    std::string text;
+    constexpr std::size_t most = 256;
+    if (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 && H5Tget_size(type) <= most &&
+        H5Aget_storage_size(attribute) <= most) {
+      text.resize(most);
+      if (H5Aread(attribute, type, text.data()) < 0) text.clear();
+    }
+    H5Tclose(type);
+    H5Aclose(attribute);
+    return text.substr(0, text.find('\0'));
+  }
+
+  /// A group's attribute that is one number, or `otherwise`.
+  [[nodiscard]] long number_of(const char* group, const char* name, long otherwise) const {
+    const hid_t attribute = H5Aopen_by_name(id_, group, name, H5P_DEFAULT, H5P_DEFAULT);
+    if (attribute < 0) return otherwise;
+    const hid_t space = H5Aget_space(attribute);
+    long number = otherwise;
+    if (H5Sget_simple_extent_npoints(space) != 1 || H5Aread(attribute, H5T_NATIVE_LONG, &number) < 0)
+      number = otherwise;
+    H5Sclose(space);
+    H5Aclose(attribute);
+    return number;
+  }
+
  private:
   hid_t id_ = H5I_INVALID_HID;
 };
@@ -35,15 +66,19 @@ class Hdf5File {
 
 ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   allow_for(file);
+  std::string vtk_type;
+  bool has_steps = false;
   enum class Kind { unknown, vtk, cgns, exodus, fluent, minc, med } kind = Kind::unknown;
   {
     const Hdf5File opened(file);
     if (!opened.is_open())
       throw scene::bad_input(fmt::format(
           "{}: it begins as HDF5 and cannot be opened; it is truncated or damaged, write it anew", file.string()));
-    if (opened.has("VTKHDF"))
+    if (opened.has("VTKHDF")) {
       kind = Kind::vtk;
-    else if (opened.has("CGNSLibraryVersion"))
+      vtk_type = opened.text_of("VTKHDF", "Type");
+      has_steps = opened.has("VTKHDF/Steps") && opened.number_of("VTKHDF/Steps", "NSteps", 2) != 1;
+    } else if (opened.has("CGNSLibraryVersion"))
       kind = Kind::cgns;
     else if (opened.has_attribute("floating_point_word_size") || opened.has("num_nodes"))
       kind = Kind::exodus;
@@ -59,6 +94,11 @@ ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file,
   };
   switch (kind) {
     case Kind::vtk:
+      if (!vtk_type.empty() && vtk_type != "UnstructuredGrid" && vtk_type != "ImageData")
+        throw refuse(fmt::format("VTKHDF of the type {}, which VTK 9.1 does not read", scene::quote(vtk_type)).c_str(),
+                     "save it as .vtu, .vtm or .vtp in ParaView");
+      if (has_steps)  // it would take them for pieces of one mesh
+        throw refuse("VTKHDF with time steps, which VTK 9.1 does not know", "save its steps as .pvd in ParaView");
       return read_vtk_hdf(holdings, file, request);
     case Kind::cgns:
       return read_cgns(holdings, file, request);
