@@ -151,9 +151,10 @@ bool begins_as_fluent(const FileBeginning& file) {
   const std::string_view text = without_blanks(file.text);
   if (!text.starts_with('(')) return false;
   const auto words = words_of(text.substr(1, 40));
-  // Sections: a comment, a header, dimensions, the machine that wrote it.
+  // Sections: a comment, whose quotes some leave out, a header, dimensions, the machine that wrote it.
   return words.size() > 1 && is_count(words[0]) && words[0].size() <= 2 &&
-         (words[1].front() == '"' || words[1].front() == '(' || (words[0] == "2" && words[1].front() == '3'));
+         (words[0] == "0" || words[1].front() == '"' || words[1].front() == '(' ||
+          (words[0] == "2" && words[1].front() == '3'));
 }
 
 bool begins_as_gambit(const FileBeginning& file) {

@@ -106,7 +106,10 @@ MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reade
   if (name == "openfoam" || name == "ensight") require_beside_others(file);
   nlohmann::json request{{"reader", reader}, {"blocks", choice}};
   if (time_step) request["time_step"] = *time_step;
-  const ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(), file, std::move(request));
+  HelperTask task;
+  if (name == "fluent")  // good ones make it crash
+    task.remedy = "it is damaged, or of a kind that VTK's reader does not know: export CGNS or EnSight";
+  const ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(std::move(task)), file, std::move(request));
   MeshBlocks result;
   result.format = opened.contents.format;
   result.notes = opened.contents.notes;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <vtkAVSucdReader.h>
 #include <vtkCGNSReader.h>
+#include <vtkCommand.h>
 #include <vtkDataObject.h>
 #include <vtkDummyController.h>
 #include <vtkEnSightReader.h>
@@ -14,6 +15,7 @@
 #include <vtkSmartPointer.h>
 #include <vtkTecplotReader.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "io/gzip.hpp"
@@ -96,6 +98,22 @@ std::filesystem::path case_of(const std::filesystem::path& named) {
   return own;
 }
 
+/// The first error of a Fluent reader but for its not finding values, without which a case is a mesh all the same.
+class FluentErrors : public vtkCommand {
+ public:
+  static FluentErrors* New() { return new FluentErrors; }
+  void Execute(vtkObject*, unsigned long, void* words) override {
+    const std::string_view text = words != nullptr ? static_cast<const char*>(words) : "";
+    if (!first.empty() || text.find("Could not open data file") != std::string_view::npos) return;
+    const std::size_t message = text.find("): ");
+    for (const char c : text.substr(message == std::string_view::npos ? 0 : message + 3, 200))
+      first += c >= ' ' && c <= '~' ? c : ' ';
+    if (first.empty()) first = "VTK reports an error";
+  }
+
+  std::string first;
+};
+
 }  // namespace
 
 ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::path& named, const nlohmann::json& request) {
@@ -153,8 +171,29 @@ ForeignContents read_avs_ucd(Holdings& holdings, const std::filesystem::path& fi
 }
 
 ForeignContents read_fluent(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
-  allow_for_folder(file.has_parent_path() ? file.parent_path() : std::filesystem::path("."));  // its .dat beside it
-  return read_plainly<vtkFLUENTReader>(holdings, file, request, "Fluent");
+  // Its values lie beside it, by the name with which VTK looks for them.
+  std::string data = file.string();
+  data.replace(data.size() - std::min<std::size_t>(data.size(), 3), std::string::npos, "dat");
+  std::error_code unknown;
+  const bool has_data = std::filesystem::is_regular_file(data, unknown);
+  has_data ? allow_for_folder(file.has_parent_path() ? file.parent_path() : std::filesystem::path("."))
+           : allow_for(file);
+  vtkNew<vtkFLUENTReader> reader;
+  vtkNew<FluentErrors> errors;
+  reader->AddObserver(vtkCommand::ErrorEvent, errors);
+  reader->SetFileName(file.c_str());
+  ForeignContents contents;
+  try {
+    contents = read_by(holdings, *reader, file, request, "Fluent", [&] { reader->EnableAllCellArrays(); });
+  } catch (const scene::Error&) {  // most often by its memory, for it does not mind where a file ends
+    throw scene::bad_input(fmt::format("{}: VTK's reader cannot read it; export CGNS or EnSight", file.string()));
+  }
+  if (!errors->first.empty())
+    throw scene::bad_input(fmt::format("{}: {}; {}", file.string(), errors->first, write_anew));
+  std::erase_if(contents.notes,
+                [](const std::string& note) { return note.find("open dat file") != std::string::npos; });
+  if (!has_data) contents.notes.emplace_back("no .dat file lies beside the case: it has no field");
+  return contents;
 }
 
 ForeignContents read_gambit(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {

@@ -51,6 +51,7 @@ const Beginning beginnings[] = {
      "ADF Database Version A02011>"},
     {"OpenFOAM case", "/* C++ */\nFoamFile\n{\n version 2.0;"},
     {"EnSight 6 or Gold", "# made\nFORMAT\ntype: ensight gold\n"},
+    {"Fluent", "(0 machine configuration:)\n(4 (60 0 0 1 2 4 4))\n"},
     {"Fluent", "(0 \"grid written by\")\n(2 3)\n"},
     {"GAMBIT", "        CONTROL INFO 2.4.6\n** GAMBIT NEUTRAL FILE\n"},
     {"AVS UCD", "# comment\n8 1 1 0 0\n1 0 0 0\n"},

@@ -7,6 +7,7 @@
 #include <array>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <utility>
 
 #include "io/mesh_checks.hpp"
@@ -65,6 +66,41 @@ std::string tecplot(const Cubes& cubes) {
   for (const glm::dvec3& p : cubes.points) text += fmt::format("{} {} {} {}\n", p.x, p.y, p.z, field_at(p));
   for (const auto& cell : cubes.cells) text += joined(cell, 1);
   return text;
+}
+
+/// Faces with the cells on both sides, as Fluent has them, all numbers from 1 and hexadecimal.
+std::string fluent(const Cubes& cubes) {
+  std::string text =
+      fmt::format("(0 \"cubes\")\n(2 3)\n(10 (0 1 {0:x} 0 3))\n(10 (1 1 {0:x} 1 3)(\n", cubes.points.size());
+  for (const glm::dvec3& p : cubes.points) text += fmt::format("{} {} {}\n", p.x, p.y, p.z);
+  text += fmt::format("))\n(12 (0 1 {0:x} 0))\n(12 (2 1 {0:x} 1 4))\n", cubes.cells.size());
+  // By its corners: the corners as the first cell has them, outward, and the cells.
+  std::map<std::array<int, 4>, std::pair<std::array<int, 4>, std::vector<std::size_t>>> faces;
+  constexpr std::array<std::array<std::size_t, 4>, 6> sides = {
+      {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {2, 3, 7, 6}, {1, 2, 6, 5}, {0, 4, 7, 3}}};
+  for (std::size_t c = 0; c < cubes.cells.size(); ++c)
+    for (const auto& side : sides) {
+      std::array<int, 4> corners{};
+      for (std::size_t k = 0; k < 4; ++k) corners[k] = cubes.cells[c][side[k]];
+      std::array<int, 4> key = corners;
+      std::sort(key.begin(), key.end());
+      auto& face = faces[key];
+      if (face.second.empty()) face.first = corners;
+      face.second.push_back(c + 1);
+    }
+  std::array<std::string, 2> lines;  // of faces between cells and of walls
+  std::array<std::size_t, 2> counts{};
+  for (const auto& [key, face] : faces) {
+    const std::size_t wall = face.second.size() == 1 ? 1 : 0;
+    // The right-hand rule has the face's normal point to its first cell.
+    const auto& v = face.first;
+    lines[wall] += fmt::format("{:x} {:x} {:x} {:x} {:x} {:x}\n", v[3] + 1, v[2] + 1, v[1] + 1, v[0] + 1,
+                               face.second[0], wall == 1 ? 0 : face.second[1]);
+    ++counts[wall];
+  }
+  text += fmt::format("(13 (0 1 {:x} 0))\n(13 (3 1 {:x} 2 4)(\n{}))\n", faces.size(), counts[0], lines[0]);
+  text += fmt::format("(13 (4 {:x} {:x} 3 4)(\n{}))\n", counts[0] + 1, faces.size(), lines[1]);
+  return text + "(45 (2 fluid fluid)())\n(45 (3 interior inside)())\n(45 (4 wall walls)())\n";
 }
 
 std::string foam_head(const char* kind, const std::string& object) {
@@ -163,6 +199,31 @@ TEST(SolverFiles, AvsUcdAndTecplotAreReadAsTheyAre) {
   expect_cube(read_mesh(folder.write("m.tec", tecplot(cubes))), 3);
   expect_cube(read_mesh(folder.write("ucd.tec", avs_ucd(cubes))), 3);
   expect_cube(read_mesh(folder.write("tecplot.dat", tecplot(cubes))), 3);
+}
+
+TEST(SolverFiles, AFluentCaseIsAMeshWithTheValuesBesideItIfAny) {
+  const test::TemporaryFolder folder;
+  const Cubes cubes(3);
+  const auto file = folder.write("a.cas", fluent(cubes));
+  const MeshFile alone = read_mesh(file);
+  EXPECT_NEAR(testing::volume(alone.mesh), 27, 1e-5);
+  EXPECT_EQ(alone.counts.cells_read, 27u);
+  EXPECT_NE(std::find(alone.notes.begin(), alone.notes.end(), "no .dat file lies beside the case: it has no field"),
+            alone.notes.end());
+  // Temperature, a value a cell.
+  std::string data = fmt::format("(0 \"values\")\n(300 (3 2 1 0 0 1 {})\n(", cubes.cells.size());
+  for (std::size_t c = 0; c < cubes.cells.size(); ++c) data += fmt::format("{}\n", 300 + c);
+  folder.write("a.dat", data + "))\n");
+  const MeshFile read = read_mesh(file);
+  expect_cube(read, 3);
+  EXPECT_EQ(read.mesh.field_name, "TEMPERATURE");
+  for (std::size_t t = 0; t < read.mesh.tets.size(); ++t) {
+    glm::dvec3 centre(0);
+    for (const std::uint32_t v : read.mesh.tets[t]) centre += 0.25 * read.mesh.positions[v];
+    const glm::ivec3 at(centre);
+    EXPECT_EQ(read.mesh.scalars[t], 300 + at.x + 3 * (at.y + 3 * at.z));
+  }
+  test::expect_bad_input([&] { read_mesh(folder.write("b.cas", fluent(cubes).substr(0, 900))); }, {"b.cas"});
 }
 
 TEST(SolverFiles, AnOpenFoamCaseIsReadAtItsLastTimeOrTheOneAskedFor) {
