@@ -17,6 +17,9 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <string_view>
+#include <vector>
 
 #include "io/gzip.hpp"
 #include "io/helper/readers.hpp"
@@ -61,21 +64,36 @@ ForeignContents read_plainly(Holdings& holdings, const std::filesystem::path& fi
   return read_by(holdings, *reader, file, request, format, [] {});
 }
 
+/// The meshes of a case, or of one of its processors: of all regions, if it has several.
+std::vector<std::filesystem::path> meshes_of(const std::filesystem::path& folder) {
+  std::error_code unknown;
+  std::vector<std::filesystem::path> meshes;
+  const auto add = [&](const std::filesystem::path& of) {
+    if (std::filesystem::is_directory(of / "polyMesh", unknown)) meshes.push_back(of / "polyMesh");
+  };
+  add(folder / "constant");
+  for (std::filesystem::directory_iterator entry(folder / "constant", unknown), end; !unknown && entry != end;
+       entry.increment(unknown))
+    add(entry->path());
+  return meshes;
+}
+
 /// Whether a case's lists have 64-bit integers, which its files say of themselves ("arch").
 bool has_wide_labels(const std::filesystem::path& folder) {
   std::error_code unknown;
   for (const char* part : {".", "processor0"})
-    for (const char* name : {"owner", "owner.gz"}) {
-      const std::filesystem::path file = folder / part / "constant" / "polyMesh" / name;
-      if (!std::filesystem::is_regular_file(file, unknown)) continue;
-      const std::string beginning = read_beginning(file, 4096);
-      if (beginning.starts_with("\x1f\x8b")) {
-        const auto text = inflate_beginning(std::as_bytes(std::span(beginning)), 2048);
-        return std::string_view(reinterpret_cast<const char*>(text.data()), text.size()).find("label=64") !=
-               std::string_view::npos;
+    for (const std::filesystem::path& mesh : meshes_of(folder / part))
+      for (const char* name : {"owner", "owner.gz"}) {
+        const std::filesystem::path file = mesh / name;
+        if (!std::filesystem::is_regular_file(file, unknown)) continue;
+        const std::string beginning = read_beginning(file, 4096);
+        if (beginning.starts_with("\x1f\x8b")) {
+          const auto text = inflate_beginning(std::as_bytes(std::span(beginning)), 2048);
+          return std::string_view(reinterpret_cast<const char*>(text.data()), text.size()).find("label=64") !=
+                 std::string_view::npos;
+        }
+        return beginning.find("label=64") != std::string::npos;
       }
-      return beginning.find("label=64") != std::string::npos;
-    }
   return false;
 }
 
@@ -127,7 +145,7 @@ ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::path& n
   reader->SetFileName(file.c_str());
   // processor0, processor1, ...: written by parallel runs, and not put together since.
   std::error_code unknown;
-  const bool is_whole = std::filesystem::exists(folder / "constant" / "polyMesh", unknown);
+  const bool is_whole = !meshes_of(folder).empty();
   const bool is_decomposed = std::filesystem::exists(folder / "processor0", unknown) ||
                              std::filesystem::exists(folder / "processors", unknown);
   reader->SetCaseType(!is_whole && is_decomposed ? vtkPOpenFOAMReader::DECOMPOSED_CASE

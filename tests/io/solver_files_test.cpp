@@ -269,6 +269,28 @@ TEST(SolverFiles, ADecomposedOpenFoamCaseIsReadWhole) {
   expect_cube(read_mesh(folder.path()), 4);
 }
 
+TEST(SolverFiles, RegionsOfAnOpenFoamCaseAreBlocks) {
+  const test::TemporaryFolder folder;
+  int side = 1;
+  for (const char* region : {"fluid", "solid"}) {
+    const Cubes cubes(++side);
+    write_foam(folder / "made", cubes, [](int) { return true; });
+    std::filesystem::create_directories(folder / "constant" / region);
+    std::filesystem::rename(folder / "made" / "constant" / "polyMesh", folder / "constant" / region / "polyMesh");
+    for (const char* time : {"0", "1"}) {
+      std::filesystem::create_directories(folder / time);
+      std::filesystem::rename(folder / "made" / time, folder / time / region);
+    }
+  }
+  write_control(folder.path());
+  const MeshFile all = read_mesh(folder / "case.foam");
+  EXPECT_EQ(all.blocks, (std::vector<std::string>{"fluid/internalMesh", "solid/internalMesh"}));
+  EXPECT_EQ(all.counts.cells_read, 8u + 27u);
+  MeshOptions options;
+  options.blocks = {"solid"};
+  EXPECT_EQ(read_mesh(folder / "case.foam", options).counts.cells_read, 27u);
+}
+
 TEST(SolverFiles, AMultiBlockFilesVolumesAreDrawnTogether) {
   const test::TemporaryFolder folder;
   folder.write("a.vtu", testing::vtu_text(testing::mixed_mesh(2, 1, false)));
