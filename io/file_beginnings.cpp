@@ -93,6 +93,9 @@ bool begins_as_vts(const FileBeginning& file) { return is_xml_of(file, {"Structu
 bool begins_as_vtk_list(const FileBeginning& file) {
   return is_xml_of(file, {"vtkMultiBlockDataSet", "vtkPartitionedDataSetCollection", "vtkPartitionedDataSet"});
 }
+bool begins_as_vtk_amr(const FileBeginning& file) {
+  return is_xml_of(file, {"vtkOverlappingAMR", "vtkNonOverlappingAMR", "vtkHierarchicalBoxDataSet"});
+}
 bool begins_as_vtk_surface(const FileBeginning& file) {
   return is_xml_of(file, {"PolyData"}) || is_legacy_of(file, {"POLYDATA"});
 }

@@ -25,6 +25,8 @@ constexpr std::array rows = {
               begins_as_vts},
     FormatRow{FileKind::vtk_xml, "VTK XML multi-block", ".vtm .vtmb .vtpc .vtpd", FileHolds::mesh, Needs::vtk,
               "all volumes among them; surfaces left out", begins_as_vtk_list},
+    FormatRow{FileKind::amr, "VTK XML AMR", ".vth .vthb", FileHolds::mesh, Needs::vtk,
+              "overlapping or not; finest cells; `smooth` continuous across levels", begins_as_vtk_amr},
     FormatRow{FileKind::vtk_legacy, "legacy VTK unstructured or curvilinear grid", ".vtk", FileHolds::mesh, Needs::vtk,
               "text or binary", begins_as_legacy_mesh},
     FormatRow{FileKind::exodus, "Exodus II", ".ex2 .exo .exii .e .g", FileHolds::mesh, Needs::vtk,

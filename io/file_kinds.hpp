@@ -14,6 +14,7 @@ namespace tessera::io {
 enum class FileKind : std::uint8_t {
   vtk_xml,     ///< meshes, and lists of data sets
   vtk_legacy,  ///< meshes
+  amr,         ///< VTK XML lists of the blocks of several levels
   vtk_grid,    ///< image data and rectilinear grids, XML or legacy
   exodus,      ///< NetCDF; in HDF5 see hdf5
   hdf5,        ///< Exodus, CGNS or VTKHDF: the helper looks

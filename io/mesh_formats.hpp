@@ -10,6 +10,7 @@
 #include "io/block_choice.hpp"
 #include "io/cell_block.hpp"
 #include "io/file_kinds.hpp"
+#include "io/mesh_reader.hpp"
 
 namespace tessera::io {
 
@@ -19,6 +20,7 @@ struct MeshBlocks {
   std::vector<std::string> notes;
   std::string format;
   std::vector<std::string> block_names{};  ///< of all, those too that were not chosen; empty: of `blocks`
+  std::vector<FieldSummary> fields{};      ///< of the file, where the blocks have the chosen one alone, as options ask
 };
 
 /// Adds the notes that are not there yet: all pieces of a file may give rise to one.
@@ -55,6 +57,11 @@ bool has_gmsh();
 /// by default the last. Without the library throws Error(bad_input).
 MeshBlocks read_by_gmsh(const std::filesystem::path& file, const char* reader, std::optional<std::size_t> time_step,
                         const BlockChoice& choice = {});
+
+/// VTK's lists of the blocks of a mesh with levels of refinement (.vth .vthb). Cells that finer ones cover are left
+/// out; the chosen field alone is read. Cell data are voxels; point data and `smooth` are cells that meet across levels
+/// (amr_cells.hpp).
+MeshBlocks read_amr(const std::filesystem::path& file, const MeshOptions& options);
 
 /// PLOT3D grid and solution; the binary layout is found from the file's size. `q_file` may be empty: then it is looked
 /// for beside the grid by its name, and if there is none the mesh has no field. IBLANK 0 hides a point's cells.

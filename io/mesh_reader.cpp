@@ -56,6 +56,8 @@ MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row,
       return read_surface(file, row.kind, options.max_volume);
     case FileKind::tets:
       return blocks_of_tets(parse_tets(MappedFile(file).bytes(), file.string()));
+    case FileKind::amr:
+      return read_amr(file, options);
     default:
       refuse_as_mesh(file);
   }
@@ -88,6 +90,16 @@ MeshBlocks read_blocks(const std::filesystem::path& file, const MeshOptions& opt
   for (CellBlock& block : read.blocks) block.source = inflated.renamed(std::move(block.source));
   read.format += ", gzip";
   return read;
+}
+
+/// What is left to be chosen of blocks.
+MeshOptions options_after(const MeshBlocks& read, MeshOptions options) {
+  if (read.fields.empty()) return options;
+  options.smooth = false;
+  options.field.clear();
+  for (const CellBlock& block : read.blocks)
+    for (const BlockField& field : block.fields) options.field = field.name;
+  return options;
 }
 
 }  // namespace
@@ -126,7 +138,8 @@ MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options
     MeshBlocks read = read_blocks(file, options);
     if (!has_time_steps(file)) require_no_time_step(options, source);
     require_blocks(options.blocks, read.block_names, source);
-    MeshFile result = assemble_mesh(std::move(read.blocks), options, source);
+    MeshFile result = assemble_mesh(std::move(read.blocks), options_after(read, options), source);
+    if (!read.fields.empty()) result.fields = std::move(read.fields);
     result.format = std::move(read.format);
     result.blocks = std::move(read.block_names);
     result.notes.insert(result.notes.begin(), read.notes.begin(), read.notes.end());
@@ -143,6 +156,8 @@ MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptio
     with_clean_errors(source, [&] {
       MeshBlocks read = read_blocks(file, options);
       if (!has_time_steps(file)) require_no_time_step(options, source);
+      if (!read.fields.empty())
+        throw scene::bad_input(fmt::format("{}: a mesh with levels is read by itself only; give it alone", source));
       if (all.format.empty()) all.format = read.format;
       all.block_names.insert(all.block_names.end(), read.block_names.begin(), read.block_names.end());
       for (CellBlock& block : read.blocks) {

@@ -32,6 +32,7 @@ MeshBlocks read_solver_file(const std::filesystem::path& file, const char*, std:
                             const BlockChoice&) {
   refuse(file);
 }
+MeshBlocks read_amr(const std::filesystem::path& file, const MeshOptions&) { refuse(file); }
 MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem::path&) { refuse(file); }
 VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions&) { refuse(file); }
 Surface read_stl(const std::string& source) { refuse(source); }
