@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <mutex>
 #include <new>
 #include <numeric>
@@ -370,6 +371,89 @@ TEST(CallersErrors, AnyExceptionHasAnError) {
   EXPECT_STREQ(of(std::runtime_error("odd")).what(), "unexpected: odd; please report");
   EXPECT_EQ(of(5).code(), ErrorCode::system_failure);
 }
+
+#ifdef TESSERA_VTK
+/// A block of `n` cells of size 1 / `parts` from cell `first` on, along each axis: a file of VTK's structured grids or
+/// regular ones, with a point field p that is linear and a cell field c of the finest cells of `cell_at`.
+void write_block(const fs::path& file, bool structured, int parts, int first, int n,
+                 const std::function<double(std::array<double, 3>)>& cell_at) {
+  std::ofstream out(file);
+  out.precision(17);
+  const char* const kind = structured ? "StructuredGrid" : "ImageData";
+  const double spacing = 1.0 / parts, low = spacing * first;
+  const std::string extent = "0 " + std::to_string(n);
+  const std::string extents = extent + " " + extent + " " + extent;
+  const auto each = [&](int count, double offset, const auto& write) {
+    for (int k = 0; k < count; ++k)
+      for (int j = 0; j < count; ++j)
+        for (int i = 0; i < count; ++i)
+          write(std::array{low + spacing * (i + offset), low + spacing * (j + offset), low + spacing * (k + offset)});
+  };
+  out << "<VTKFile type=\"" << kind << "\" version=\"0.1\" byte_order=\"LittleEndian\"><" << kind << " WholeExtent=\""
+      << extents << "\" Origin=\"" << low << ' ' << low << ' ' << low << "\" Spacing=\"" << spacing << ' ' << spacing
+      << ' ' << spacing << "\"><Piece Extent=\"" << extents
+      << "\"><PointData><DataArray type=\"Float64\" Name=\"p\" format=\"ascii\">";
+  each(n + 1, 0, [&](const auto& at) { out << 1 + 2 * at[0] - 3 * at[1] + 0.5 * at[2] << ' '; });
+  out << "</DataArray></PointData><CellData><DataArray type=\"Float64\" Name=\"c\" format=\"ascii\">";
+  each(n, 0.5, [&](const auto& at) { out << cell_at(at) << ' '; });
+  out << "</DataArray></CellData>";
+  if (structured) {
+    out << "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">";
+    each(n + 1, 0, [&](const auto& at) { out << at[0] << ' ' << at[1] << ' ' << at[2] << ' '; });
+    out << "</DataArray></Points>";
+  }
+  out << "</Piece></" << kind << "></VTKFile>";
+}
+
+TEST(CallersLevels, MakeThePictureOfTheFinestGridEverywhere) {
+  const Folder folder;
+  // Cells of a block a side: 4 in units, 4 of half a unit, 4 of a quarter, where one corner jumps by two levels.
+  struct Block {
+    int level, parts, first, n;
+  };
+  const Block blocks[] = {{0, 1, 0, 4}, {1, 2, 2, 4}, {2, 4, 6, 4}, {2, 4, 12, 4}};
+  const auto value_at = [&](std::array<double, 3> at) {
+    const Block* deepest = blocks;
+    for (const Block& block : blocks)
+      if (std::ranges::all_of(
+              at, [&](double x) { return x * block.parts > block.first && x * block.parts < block.first + block.n; }))
+        deepest = &block;
+    double value = 0;
+    for (int a = 0; a < 3; ++a)
+      value +=
+          (a + 1) * std::sin(3 * (std::floor(at[static_cast<std::size_t>(a)] * deepest->parts) + 0.5) / deepest->parts);
+    return value;
+  };
+  std::string list;
+  for (const Block& block : blocks) {
+    const std::string name = "level" + std::to_string(&block - blocks) + ".vti";
+    write_block(folder / name.c_str(), false, block.parts, block.first, block.n, value_at);
+    list += "<Block level=\"" + std::to_string(block.level) + "\"><DataSet index=\"0\" file=\"" + name + "\"/></Block>";
+  }
+  std::ofstream(folder / "levels.vthb")
+      << "<VTKFile type=\"vtkNonOverlappingAMR\" version=\"1.1\"><vtkNonOverlappingAMR>" << list
+      << "</vtkNonOverlappingAMR></VTKFile>";
+  write_block(folder / "finest.vts", true, 4, 0, 16, value_at);
+
+  for (const char* const name : {"p", "c"}) {
+    ReadOptions options;
+    options.field = name;
+    const Dataset levels = Dataset::open(folder / "levels.vthb", options);
+    const Dataset finest = Dataset::open(folder / "finest.vts", options);
+    Settings settings;
+    settings.integrator.kind = IntegratorKind::exact;
+    Session first(levels, settings), second(finest, settings);
+    const View view{finest.default_camera(size), size};
+    const TransferFunction function = finest.transfer_function().function;
+    const Image picture = first.render(view, function).image, expected = second.render(view, function).image;
+    double worst = 0;
+    for (std::size_t i = 0; i < picture.rgba.size(); ++i)
+      worst = std::max(worst, std::abs(double{picture.rgba[i]} - double{expected.rgba[i]}));
+    EXPECT_GT(*std::ranges::max_element(expected.rgba), 0.1f) << name;
+    EXPECT_LE(worst, first.promised_error().value() + second.promised_error().value()) << name;
+  }
+}
+#endif
 
 TEST(CallersFiles, TextIsWrittenWholeAndJsonMeansWhatItSays) {
   const Folder folder;
