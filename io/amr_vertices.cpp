@@ -1,15 +1,10 @@
 #include "io/amr_vertices.hpp"
 
+#include "io/mix_bits.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
 namespace {
-
-std::uint64_t mix(std::uint64_t h) {  // finalizer of MurmurHash3 (Appleby, 2011, public domain)
-  h = (h ^ (h >> 33)) * 0xff51afd7ed558ccdull;
-  h = (h ^ (h >> 33)) * 0xc4ceb9fe1a85ec53ull;
-  return h ^ (h >> 33);
-}
 
 std::uint64_t hash_of(const AmrIndex& p) {
   const auto word = [](std::int32_t n) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(n)); };

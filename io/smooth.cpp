@@ -6,15 +6,10 @@
 #include <vector>
 
 #include "io/mesh_assembly.hpp"
+#include "io/mix_bits.hpp"
 
 namespace tessera::io {
 namespace {
-
-std::uint64_t mix(std::uint64_t h) {  // finalizer of MurmurHash3 (Appleby, 2011, public domain)
-  h = (h ^ (h >> 33)) * 0xff51afd7ed558ccdull;
-  h = (h ^ (h >> 33)) * 0xc4ceb9fe1a85ec53ull;
-  return h ^ (h >> 33);
-}
 
 /// For each used vertex, the first used vertex at the same position. Open addressing, linear probing.
 std::vector<std::uint32_t> first_at_same_position(const scene::TetMesh& mesh) {

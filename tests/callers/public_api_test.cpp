@@ -374,7 +374,7 @@ TEST(CallersErrors, AnyExceptionHasAnError) {
 
 #ifdef TESSERA_VTK
 /// A block of `n` cells of size 1 / `parts` from cell `first` on, along each axis: a file of VTK's structured grids or
-/// regular ones, with a point field p that is linear and a cell field c of the finest cells of `cell_at`.
+/// regular ones, with a point field p that is linear and a cell field c, `cell_at` of the cells' centres.
 void write_block(const fs::path& file, bool structured, int parts, int first, int n,
                  const std::function<double(std::array<double, 3>)>& cell_at) {
   std::ofstream out(file);

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+
+namespace tessera::io {
+
+/// Spreads the bits of a key for a hash table: the finalizer of MurmurHash3 (Appleby, 2011, public domain).
+constexpr std::uint64_t mix(std::uint64_t h) {
+  h = (h ^ (h >> 33)) * 0xff51afd7ed558ccdull;
+  h = (h ^ (h >> 33)) * 0xc4ceb9fe1a85ec53ull;
+  return h ^ (h >> 33);
+}
+
+}  // namespace tessera::io
