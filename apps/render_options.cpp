@@ -101,7 +101,7 @@ void add_mesh_options(CLI::App& command, RenderWords& words) {
       ->type_name("VOLUME");
   command
       .add_option("--time-step", words.time_step,
-                  "Exodus, OpenFOAM, EnSight, Gmsh ...: step counted from 0 (default: the last)")
+                  "Exodus, OpenFOAM, 4-D NIfTI, NRRD ...: step counted from 0 (default: the last)")
       ->type_name("STEP");
   command
       .add_option("--block", words.blocks,
@@ -118,8 +118,7 @@ ReadOptions mesh_options(const RenderWords& words) {
   mesh.smooth = words.smooth;
   mesh.plot3d_q = words.q;
   if (!words.max_volume.empty()) mesh.max_volume = parse_positive("--max-volume", words.max_volume);
-  if (!words.time_step.empty())
-    mesh.time_step = static_cast<std::size_t>(parse_count("--time-step", words.time_step, 0, no_limit));
+  mesh.time_step = time_step_of(words);
   mesh.blocks = words.blocks;
   mesh.threads = thread_count(words);
   return mesh;
@@ -296,7 +295,6 @@ void refuse_mesh_options(const RenderWords& words, const RenderOptions& options)
   if (options.settings.mesh.rasterizer != Rasterizer::planes) refuse("--rasterizer");
   if (read.smooth) refuse("--smooth");
   if (read.max_volume) refuse("--max-volume");
-  if (read.time_step) refuse("--time-step");
   if (!read.blocks.empty()) refuse("--block");
   if (!read.plot3d_q.empty()) refuse("--q");
 }

@@ -84,9 +84,15 @@ void add_volume_render_options(CLI::App& command, RenderWords& words) {
       ->type_name("balance");
 }
 
+std::optional<std::size_t> time_step_of(const RenderWords& words) {
+  if (words.time_step.empty()) return std::nullopt;
+  return static_cast<std::size_t>(parse_count("--time-step", words.time_step, 0, std::numeric_limits<int>::max()));
+}
+
 ReadOptions volume_options(const RenderWords& words) {
   ReadOptions options;
   options.field = words.field;
+  options.time_step = time_step_of(words);
   options.blocks = words.blocks;
   if (!words.dims.empty())
     options.dims =

@@ -25,7 +25,7 @@ namespace tessera {
 namespace {
 
 io::VolumeOptions volume_options(const ReadOptions& o) {
-  return {o.field, o.dims, o.type, o.spacing, o.origin, o.big_endian, o.skip};
+  return {o.field, o.dims, o.type, o.spacing, o.origin, o.big_endian, o.skip, o.time_step};
 }
 
 void check_grid_options(const std::filesystem::path& file, const ReadOptions& options) {
@@ -35,7 +35,6 @@ void check_grid_options(const std::filesystem::path& file, const ReadOptions& op
   };
   if (options.smooth) refuse("smooth");
   if (options.max_volume) refuse("max_volume");
-  if (options.time_step) refuse("time_step");
   if (!options.blocks.empty()) refuse("block");
   if (!options.plot3d_q.empty()) refuse("plot3d_q");
 }

@@ -33,10 +33,10 @@ auto with_clean_errors(const std::string& source, const Work& work) {
 }
 
 /// Throws Error(bad_input) if a time step is asked of a file that has none.
-inline void require_no_time_step(const MeshOptions& options, const std::string& source) {
-  if (options.time_step.value_or(0) > 0)
+inline void require_no_time_step(std::optional<std::size_t> time_step, const std::string& source) {
+  if (time_step.value_or(0) > 0)
     throw scene::bad_input(
-        fmt::format("{}: there is no time step {}, the file has none; leave it out", source, *options.time_step));
+        fmt::format("{}: there is no time step {}, the file has none; leave it out", source, *time_step));
 }
 
 }  // namespace tessera::io

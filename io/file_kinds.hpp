@@ -32,6 +32,7 @@ enum class FileKind : std::uint8_t {
   meta_image,
   nrrd,
   nifti,
+  analyze,  ///< 7.5, or a NIfTI pair named by its .img
   bricks,
   raw,
   unread  ///< known, and not read

@@ -90,4 +90,47 @@ std::filesystem::path header_path(std::string_view text, const std::filesystem::
   return path;
 }
 
+std::vector<std::filesystem::path> header_slices(std::string_view text, std::string_view lines, std::uint64_t most,
+                                                 const std::filesystem::path& file, const char* what) {
+  std::vector<std::filesystem::path> slices;
+  const auto add = [&](std::string_view name) {
+    if (slices.size() >= most)
+      throw damaged(file, fmt::format("{} names more files than the {} slices there are", what, most));
+    slices.push_back(header_path(name, file, what));
+  };
+  if (text.starts_with("LIST")) {
+    while (!lines.empty()) {
+      const std::size_t stop = std::min(lines.find('\n'), lines.size());
+      const std::string_view name = trimmed(lines.substr(0, stop));
+      lines.remove_prefix(std::min(stop + 1, lines.size()));
+      if (!name.empty()) add(name);
+    }
+    if (slices.empty()) throw damaged(file, fmt::format("{} is a list, and no names follow", what));
+    return slices;
+  }
+  const std::size_t percent = text.find('%');
+  if (percent == std::string_view::npos) return slices;
+  const std::size_t letter = text.find_first_not_of("0123456789", percent + 1);
+  const std::size_t blank = text.find_first_of(" \t", percent);
+  const std::string_view digits = text.substr(percent + 1, letter - std::min(letter, percent + 1));
+  if (letter == std::string_view::npos || text[letter] != 'd' || blank == std::string_view::npos || digits.size() > 2)
+    throw damaged(file, fmt::format("{} is {}, no 'NAME%03d.raw FIRST LAST STEP'", what, quote(text)));
+  const std::vector<std::string_view> words = header_words_of(text.substr(blank));
+  if (words.size() < 2 || words.size() > 4)
+    throw damaged(file, fmt::format("{} is {}, without its first and last number", what, quote(text)));
+  constexpr std::int64_t highest = 1'000'000'000;
+  const std::int64_t first = header_count(words[0], 0, highest, file, what);
+  const std::int64_t last = header_count(words[1], 0, highest, file, what);
+  const std::int64_t step = words.size() > 2 ? header_count(words[2], -highest, highest, file, what) : 1;
+  if (step == 0 || (last - first) / step < 0)
+    throw damaged(file, fmt::format("{} counts from {} to {} in steps of {}", what, first, last, step));
+  const std::size_t width = digits.empty() ? 0 : static_cast<std::size_t>(std::stoi(std::string(digits)));
+  for (std::int64_t k = first; step > 0 ? k <= last : k >= last; k += step) {
+    std::string number = std::to_string(k);
+    if (number.size() < width) number.insert(0, width - number.size(), digits.front() == '0' ? '0' : ' ');
+    add(fmt::format("{}{}{}", text.substr(0, percent), number, text.substr(letter + 1, blank - letter - 1)));
+  }
+  return slices;
+}
+
 }  // namespace tessera::io

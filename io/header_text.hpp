@@ -31,4 +31,10 @@ scene::GridIndex header_counts(std::string_view text, const std::filesystem::pat
 /// The file of samples that a header names, beside it or by an absolute path. It is there.
 std::filesystem::path header_path(std::string_view text, const std::filesystem::path& file, const char* what);
 
+/// The files of a volume's slices: of "LIST", whose names follow one a line in `lines`; of "PATTERN FIRST LAST [STEP]",
+/// with one %d or %03d for the number. Empty if the text names one file. Words after LIST, and a last number after the
+/// step, say the dimensions of a file, which its part of the samples says as well. At most `most`, which are there.
+std::vector<std::filesystem::path> header_slices(std::string_view text, std::string_view lines, std::uint64_t most,
+                                                 const std::filesystem::path& file, const char* what);
+
 }  // namespace tessera::io

@@ -90,7 +90,7 @@ MeshPartReading::MeshPartReading(std::filesystem::path file, const MeshOptions& 
   state_->options = options;
   const std::string source = state_->file.string();
   with_clean_errors(source, [&] {
-    require_no_time_step(options, source);
+    require_no_time_step(options.time_step, source);
     is_tets(state_->file) ? state_->read_tets(part, parts) : state_->read_listed(part, parts);
   });
 }

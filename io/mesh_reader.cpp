@@ -136,7 +136,7 @@ MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options
   require_file(file);
   return with_clean_errors(source, [&] {
     MeshBlocks read = read_blocks(file, options);
-    if (!has_time_steps(file)) require_no_time_step(options, source);
+    if (!has_time_steps(file)) require_no_time_step(options.time_step, source);
     require_blocks(options.blocks, read.block_names, source);
     MeshFile result = assemble_mesh(std::move(read.blocks), options_after(read, options), source);
     if (!read.fields.empty()) result.fields = std::move(read.fields);
@@ -155,7 +155,7 @@ MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptio
     require_file(file);
     with_clean_errors(source, [&] {
       MeshBlocks read = read_blocks(file, options);
-      if (!has_time_steps(file)) require_no_time_step(options, source);
+      if (!has_time_steps(file)) require_no_time_step(options.time_step, source);
       if (!read.fields.empty())
         throw scene::bad_input(fmt::format("{}: a mesh with levels is read by itself only; give it alone", source));
       if (all.format.empty()) all.format = read.format;

@@ -89,26 +89,27 @@ void read_samples_of(const MetaHeader& header, const std::filesystem::path& file
 }
 
 /// Axes, origin, and what a sample stands for.
-void read_grid(const MetaHeader& header, const std::filesystem::path& file, StoredVolume& volume) {
+void read_grid(const MetaHeader& header, std::size_t axes, const std::filesystem::path& file, StoredVolume& volume) {
   const auto reals = [&](const char* what, const std::string& value, std::size_t count) {
     return header_numbers(value, count, file, what);
   };
   scene::GridGeometry& g = volume.grid.geometry;
   glm::dvec3 spacing(1);
   if (const auto* value = header.find({"ElementSpacing", "ElementSize"})) {
-    const auto s = reals("ElementSpacing", *value, 3);
+    const auto s = reals("ElementSpacing", *value, axes);
     spacing = {s[0], s[1], s[2]};
   }
   std::array<glm::dvec3, 3> steps = {glm::dvec3(spacing.x, 0, 0), glm::dvec3(0, spacing.y, 0),
                                      glm::dvec3(0, 0, spacing.z)};
   if (const auto* value = header.find({"TransformMatrix", "Rotation", "Orientation"})) {
-    const auto m = reals("TransformMatrix", *value, 9);
+    const auto m = reals("TransformMatrix", *value, axes * axes);
     for (std::size_t axis = 0; axis < 3; ++axis)
-      steps[axis] = glm::dvec3(m[3 * axis], m[3 * axis + 1], m[3 * axis + 2]) * spacing[static_cast<int>(axis)];
+      steps[axis] =
+          glm::dvec3(m[axes * axis], m[axes * axis + 1], m[axes * axis + 2]) * spacing[static_cast<int>(axis)];
   }
   set_axes(g, steps);
   if (const auto* value = header.find({"Offset", "Position", "Origin"})) {
-    const auto o = reals("Offset", *value, 3);
+    const auto o = reals("Offset", *value, axes);
     g.origin = {o[0], o[1], o[2]};
   }
   if (const auto* value = header.find({"ElementToIntensityFunctionSlope"}))
@@ -120,13 +121,17 @@ void read_grid(const MetaHeader& header, const std::filesystem::path& file, Stor
         fmt::format("values are {:.9g} * sample + {:.9g}, as its header says", volume.grid.scale, volume.grid.shift));
 }
 
-/// Where the samples are.
-void read_payload(const MetaHeader& header, const std::filesystem::path& file, StoredVolume& volume) {
+/// Where the samples are; `lines` follow the header.
+void read_payload(const MetaHeader& header, std::string_view lines, const std::filesystem::path& file,
+                  StoredVolume& volume) {
   const std::string& payload = *header.find({"ElementDataFile"});
-  if (payload.starts_with("LIST") || payload.find('%') != std::string::npos)
-    throw scene::bad_input(fmt::format("{}: its slices are in several files; write one", file.string()));
+  const scene::GridIndex& n = volume.grid.geometry.points;
+  const auto most = static_cast<std::uint64_t>(n[2]) * static_cast<std::uint64_t>(n[1]) * volume.steps;
+  volume.slices = header_slices(payload, lines, most, file, "ElementDataFile");
   const bool local = payload == "LOCAL" || payload == "Local" || payload == "local";
-  volume.payload = local ? file : header_path(payload, file, "ElementDataFile");
+  volume.payload = local                   ? file
+                   : volume.slices.empty() ? header_path(payload, file, "ElementDataFile")
+                                           : volume.slices.front();
   volume.offset = local ? header.end : 0;
   if (const auto* value = header.find({"HeaderSize"}); value && !local) {
     if (*value == "-1" && volume.coding == StoredVolume::Coding::text)
@@ -156,15 +161,21 @@ StoredVolume read_meta_image_header(const std::filesystem::path& file) {
         fmt::format("{}: it holds a {}, not an image; give a volume", file.string(), quote(*object)));
   const auto* dimensions = header.find({"NDims"});
   if (!dimensions) throw damaged(file, "its header has no NDims");
-  if (const auto count = header_count(*dimensions, 1, 99, file, "NDims"); count != 3)
-    throw scene::bad_input(fmt::format("{}: it has {} dimensions; a volume has three", file.string(), count));
+  const auto count = header_count(*dimensions, 1, 99, file, "NDims");
+  if (count != 3 && count != 4)
+    throw scene::bad_input(
+        fmt::format("{}: it has {} dimensions; a volume has three, or four with time", file.string(), count));
+  const auto axes = static_cast<std::size_t>(count);
   const auto* size = header.find({"DimSize"});
   if (!size) throw damaged(file, "its header has no DimSize");
-  volume.grid.geometry.points = header_counts(*size, file, "DimSize");
+  const auto sizes = header_count_list(*size, file, "DimSize");
+  if (sizes.size() != axes) throw damaged(file, fmt::format("it has {} sizes for {} dimensions", sizes.size(), axes));
+  volume.grid.geometry.points = {sizes[0], sizes[1], sizes[2]};
+  if (axes == 4) volume.steps = static_cast<std::uint64_t>(sizes[3]);
 
   read_samples_of(header, file, volume);
-  read_grid(header, file, volume);
-  read_payload(header, file, volume);
+  read_grid(header, axes, file, volume);
+  read_payload(header, std::string_view(text).substr(header.end), file, volume);
   return volume;
 }
 

@@ -19,13 +19,9 @@ namespace {
 
 constexpr std::size_t header_size_1 = 348, header_size_2 = 540;
 
-bool is_gzip(std::span<const std::byte> bytes) {
-  return bytes.size() > 2 && bytes[0] == std::byte{0x1f} && bytes[1] == std::byte{0x8b};
-}
-
 /// Up to 540 bytes, out of a gzip stream if it is one.
 std::vector<std::byte> header_bytes(const MappedFile& file) {
-  if (is_gzip(file.bytes())) return inflate_beginning(file.bytes(), header_size_2);
+  if (looks_like_gzip(file.text())) return inflate_beginning(file.bytes(), header_size_2);
   const auto first = file.bytes().subspan(0, std::min(file.bytes().size(), header_size_2));
   return {first.begin(), first.end()};
 }
@@ -39,13 +35,29 @@ class NiftiHeader {
       const auto size = get<std::int32_t>(0);
       if (size == static_cast<std::int32_t>(header_size_1) && magic(344, "n+1")) version_ = 1;
       if (size == static_cast<std::int32_t>(header_size_1) && magic(344, "ni1")) version_ = 1, separate_ = true;
+      if (size == static_cast<std::int32_t>(header_size_2) && bytes_.size() >= header_size_2 && magic(4, "ni2"))
+        version_ = 2, separate_ = true;
       if (size == static_cast<std::int32_t>(header_size_2) && bytes_.size() >= header_size_2 && magic(4, "n+2"))
         version_ = 2;
       if (version_ != 0) return;
     }
   }
 
+  /// 0: none of NIfTI.
   [[nodiscard]] int version() const { return version_; }
+  /// Analyze 7.5: the same size, dimensions, types and spacing, and no magic word.
+  [[nodiscard]] bool is_analyze() {
+    if (version_ != 0 || bytes_.size() < header_size_1) return false;
+    for (const bool swapped : {false, true}) {
+      swapped_ = swapped;
+      const auto dimensions = get<std::int16_t>(40);
+      if (get<std::int32_t>(0) == static_cast<std::int32_t>(header_size_1) && dimensions >= 1 && dimensions <= 7) {
+        version_ = 1, separate_ = true;
+        return true;
+      }
+    }
+    return false;
+  }
   [[nodiscard]] bool separate() const { return separate_; }
   [[nodiscard]] bool swapped() const { return swapped_; }
   [[nodiscard]] std::int64_t dim(std::size_t k) const {
@@ -145,6 +157,87 @@ void set_nifti_geometry(const NiftiHeader& header, const std::filesystem::path& 
       throw damaged(file, fmt::format("the spacing along {} is {}", "xyz"[axis], g.spacing[axis]));
 }
 
+/// Sizes, steps and components.
+void set_nifti_dimensions(const NiftiHeader& header, const std::filesystem::path& file, StoredVolume& volume) {
+  const std::int64_t dimensions = header.dim(0);
+  if (dimensions < 1 || dimensions > 7) throw damaged(file, fmt::format("its header says {} dimensions", dimensions));
+  for (std::size_t k = 1; k <= static_cast<std::size_t>(dimensions); ++k) {
+    if (header.dim(k) < 1) throw damaged(file, fmt::format("dimension {} is {}", k, header.dim(k)));
+    if (k > 5 && header.dim(k) > 1)
+      throw scene::bad_input(fmt::format(
+          "{}: it has {} dimensions, dimension {} holds {}; a volume has three, time and components, write one alone",
+          file.string(), dimensions, k, header.dim(k)));
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    volume.grid.geometry.points[axis] = static_cast<std::int64_t>(axis) < dimensions ? header.dim(axis + 1) : 1;
+  if (dimensions >= 4) volume.steps = static_cast<std::uint64_t>(header.dim(4));
+  if (dimensions < 5 || header.dim(5) == 1) return;
+  // Components of a sample lie further apart than its steps.
+  if (volume.components > 1 || volume.steps > 1 || header.dim(5) > 64)
+    throw scene::bad_input(fmt::format(
+        "{}: dimension 5 holds {} components beside {} steps; of those, write one alone, with at most 64 components",
+        file.string(), header.dim(5), volume.steps));
+  volume.components = static_cast<int>(header.dim(5));
+  volume.planar = true;
+}
+
+void set_nifti_type(const NiftiHeader& header, const std::filesystem::path& file, StoredVolume& volume) {
+  const auto* type = std::find_if(nifti_types.begin(), nifti_types.end(),
+                                  [&](const NiftiType& known) { return known.code == header.datatype(); });
+  if (type == nifti_types.end())
+    throw scene::bad_input(
+        fmt::format("{}: its data type {} is none that is read; write integers or 32 or 64-bit floats", file.string(),
+                    header.datatype()));
+  volume.number = type->type;
+  volume.components = type->components;
+  volume.wide = type->wide;
+  volume.swapped = header.swapped();
+}
+
+/// The file of samples of a header of its own: x.img of x.hdr, packed or not.
+std::filesystem::path image_beside(const std::filesystem::path& header) {
+  std::filesystem::path stem = header;
+  if (lower_extension(stem) == ".gz") stem.replace_extension();
+  const bool capitals = stem.extension() == ".HDR";
+  stem.replace_extension(capitals ? ".IMG" : ".img");
+  for (const char* end : {"", ".gz"}) {
+    std::filesystem::path image = stem;
+    image += end;
+    std::error_code unknown;
+    if (std::filesystem::is_regular_file(image, unknown)) return image;
+  }
+  throw scene::bad_input(fmt::format("{}: its samples are in {}, which is not there; put it beside the header",
+                                     header.string(), stem.filename().string()));
+}
+
+/// x.hdr of x.img; any other name is the header's.
+std::filesystem::path header_beside(const std::filesystem::path& file) {
+  std::filesystem::path stem = file;
+  if (lower_extension(stem) == ".gz") stem.replace_extension();
+  if (lower_extension(stem) != ".img") return file;
+  stem.replace_extension(stem.extension() == ".IMG" ? ".HDR" : ".hdr");
+  for (const char* end : {"", ".gz"}) {
+    std::filesystem::path header = stem;
+    header += end;
+    std::error_code unknown;
+    if (std::filesystem::is_regular_file(header, unknown)) return header;
+  }
+  throw scene::bad_input(fmt::format("{}: its header {} is not there; put it beside the samples", file.string(),
+                                     stem.filename().string()));
+}
+
+void set_nifti_payload(const NiftiHeader& header, const std::filesystem::path& file, StoredVolume& volume) {
+  const double offset = header.vox_offset();
+  if (!(offset >= 0 && offset < 1e9)) throw damaged(file, fmt::format("its samples begin at byte {}", offset));
+  // A single file never has them inside its header; old writers left 0.
+  const double least =
+      header.separate() ? 0 : static_cast<double>(header.version() == 1 ? header_size_1 : header_size_2) + 4;
+  volume.offset = static_cast<std::uint64_t>(std::max(offset, least));
+  volume.payload = header.separate() ? image_beside(file) : file;
+  require_file(volume.payload);
+  volume.compressed = volume.compressed_whole = looks_like_gzip(read_beginning(volume.payload, 2));
+}
+
 }  // namespace
 
 bool looks_like_nifti(const std::filesystem::path& file) {
@@ -154,38 +247,21 @@ bool looks_like_nifti(const std::filesystem::path& file) {
   return bytes.size() >= 20 && NiftiHeader(header_bytes(mapped)).version() != 0;
 }
 
+bool looks_like_analyze(const std::filesystem::path& file) {
+  const std::filesystem::path stem = lower_extension(file) == ".gz" ? file.stem() : file;
+  if (lower_extension(stem) != ".hdr") return false;  // its bytes alone do not tell
+  return NiftiHeader(header_bytes(MappedFile(file))).is_analyze();
+}
+
 StoredVolume read_nifti_header(const std::filesystem::path& file) {
   const MappedFile mapped(file);
   const NiftiHeader header(header_bytes(mapped));
   if (header.version() == 0)
     throw damaged(file, "it does not begin with a whole NIfTI header (348 or 540 bytes with its magic word)");
-  if (header.separate())
-    throw scene::bad_input(
-        fmt::format("{}: its samples are in another file (.hdr and .img); write one .nii", file.string()));
   StoredVolume volume;
   volume.format = fmt::format("NIfTI-{}", header.version());
-  const std::int64_t dimensions = header.dim(0);
-  if (dimensions < 1 || dimensions > 7) throw damaged(file, fmt::format("its header says {} dimensions", dimensions));
-  for (std::size_t k = 1; k <= static_cast<std::size_t>(dimensions); ++k) {
-    if (header.dim(k) < 1) throw damaged(file, fmt::format("dimension {} is {}", k, header.dim(k)));
-    if (k > 3 && header.dim(k) > 1)
-      throw scene::bad_input(
-          fmt::format("{}: it has {} dimensions, dimension {} holds {}; a volume has three, write one of them alone",
-                      file.string(), dimensions, k, header.dim(k)));
-  }
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    volume.grid.geometry.points[axis] = static_cast<std::int64_t>(axis) < dimensions ? header.dim(axis + 1) : 1;
-  const auto* type = std::find_if(nifti_types.begin(), nifti_types.end(),
-                                  [&](const NiftiType& known) { return known.code == header.datatype(); });
-  if (type == nifti_types.end())
-    throw scene::bad_input(
-        fmt::format("{}: its data type {} is none that is read; write integers or 32 or 64-bit "
-                    "floats",
-                    file.string(), header.datatype()));
-  volume.number = type->type;
-  volume.components = type->components;
-  volume.wide = type->wide;
-  volume.swapped = header.swapped();
+  set_nifti_type(header, file, volume);
+  set_nifti_dimensions(header, file, volume);
   if (header.slope() != 0 && std::isfinite(header.slope()) && std::isfinite(header.intercept())) {
     volume.grid.scale = header.slope();
     volume.grid.shift = header.intercept();
@@ -194,13 +270,28 @@ StoredVolume read_nifti_header(const std::filesystem::path& file) {
           fmt::format("values are {:.9g} * sample + {:.9g}, as its header says", volume.grid.scale, volume.grid.shift));
   }
   set_nifti_geometry(header, file, volume);
-  const double offset = header.vox_offset();
-  if (!(offset >= 0 && offset < 1e9)) throw damaged(file, fmt::format("its samples begin at byte {}", offset));
-  // A single file never has them inside its header; old writers left 0.
-  const double least = header.version() == 1 ? header_size_1 : header_size_2;
-  volume.offset = static_cast<std::uint64_t>(std::max(offset, least + 4));
-  volume.payload = file;
-  volume.compressed = volume.compressed_whole = is_gzip(mapped.bytes());
+  set_nifti_payload(header, file, volume);
+  return volume;
+}
+
+StoredVolume read_analyze_header(const std::filesystem::path& file) {
+  const std::filesystem::path header_file = header_beside(file);
+  require_file(header_file);
+  NiftiHeader header(header_bytes(MappedFile(header_file)));
+  if (header.version() != 0) return read_nifti_header(header_file);
+  if (!header.is_analyze())
+    throw damaged(header_file, "it does not begin as an Analyze 7.5 or NIfTI header does (its size, 348, first)");
+  StoredVolume volume;
+  volume.format = "Analyze 7.5";
+  set_nifti_type(header, header_file, volume);
+  set_nifti_dimensions(header, header_file, volume);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    // Many writers leave spacings out, and some say them with a sign.
+    const double spacing = std::abs(header.pixdim(axis + 1));
+    volume.grid.geometry.spacing[static_cast<int>(axis)] = spacing > 0 && std::isfinite(spacing) ? spacing : 1;
+  }
+  volume.notes.emplace_back("Analyze 7.5 says nothing of left and right: the axes are the file's");
+  set_nifti_payload(header, header_file, volume);
   return volume;
 }
 

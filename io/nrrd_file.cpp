@@ -136,10 +136,48 @@ std::uint64_t after_lines(const std::filesystem::path& payload, std::uint64_t of
   return offset;
 }
 
-/// Spacing and origin along `axes`, whose first is a component axis if there are four.
-void set_nrrd_geometry(const NrrdFields& fields, std::size_t axes, const std::filesystem::path& file,
+/// Which of the axes are those of space: three next to each other.
+struct NrrdAxes {
+  std::size_t count = 3;
+  std::size_t skip = 0;        ///< before those of space: none or one
+  bool first_is_time = false;  ///< the one before is of steps, not of components
+
+  [[nodiscard]] bool has_time_last() const { return count > skip + 3; }
+};
+
+/// The words of `kinds`, else "none" among `space directions` tell; without either a short first of four axes is of
+/// components, else the last is of time.
+NrrdAxes axes_of(const NrrdFields& fields, const std::vector<std::int64_t>& sizes, const std::filesystem::path& file) {
+  NrrdAxes axes{.count = sizes.size()};
+  if (axes.count == 3) return axes;
+  if (axes.count != 4 && axes.count != 5)
+    throw scene::bad_input(
+        fmt::format("{}: it has {} dimensions; a volume has three, before them components and after "
+                    "them time",
+                    file.string(), axes.count));
+  axes.skip = axes.count == 5 || sizes[0] <= 16 ? 1 : 0;
+  if (const auto* directions = fields.find("spacedirections")) {
+    const auto vectors = space_vectors_of(*directions, file);
+    if (vectors.size() == axes.count && axes.count == 4) axes.skip = vectors.front() ? 0 : 1;
+  }
+  if (const auto* kinds = fields.find("kinds")) {
+    std::vector<std::string> words;
+    for (std::string_view rest = trimmed(*kinds); !rest.empty();) {
+      const std::size_t stop = std::min(rest.find_first_of(" \t"), rest.size());
+      words.push_back(lower_words(rest.substr(0, stop)));
+      rest = trimmed(rest.substr(stop));
+    }
+    const auto is_space = [](const std::string& w) { return w == "domain" || w == "space"; };
+    if (words.size() == axes.count && axes.count == 4 && words.front() != "???" && words.front() != "none")
+      axes.skip = is_space(words.front()) ? 0 : 1;
+    axes.first_is_time = words.size() == axes.count && axes.skip == 1 && (words[0] == "list" || words[0] == "time");
+  }
+  return axes;
+}
+
+void set_nrrd_geometry(const NrrdFields& fields, const NrrdAxes& about, const std::filesystem::path& file,
                        StoredVolume& volume) {
-  const std::size_t skip = axes - 3;
+  const std::size_t axes = about.count, skip = about.skip;
   scene::GridGeometry& g = volume.grid.geometry;
   if (const auto* directions = fields.find("spacedirections")) {
     const auto vectors = space_vectors_of(*directions, file);
@@ -185,13 +223,22 @@ StoredVolume read_nrrd_header(const std::filesystem::path& file) {
   const auto dimension = header_count(required_field(fields, "dimension", file), 1, 16, file, "dimension");
   if (sizes.size() != static_cast<std::size_t>(dimension))
     throw damaged(file, fmt::format("it has {} sizes for {} dimensions", sizes.size(), dimension));
-  const bool components = dimension == 4 && sizes[0] <= 16;
-  if (dimension != 3 && !components)
-    throw scene::bad_input(fmt::format("{}: it has {} dimensions; a volume has three, or four with components first",
-                                       file.string(), dimension));
-  const std::size_t skip = components ? 1 : 0;
-  if (components) volume.components = static_cast<int>(sizes[0]);
-  volume.grid.geometry.points = {sizes[skip], sizes[skip + 1], sizes[skip + 2]};
+  const NrrdAxes axes = axes_of(fields, sizes, file);
+  if (axes.has_time_last()) volume.steps = static_cast<std::uint64_t>(sizes.back());
+  if (axes.skip == 1) {
+    if (axes.first_is_time && axes.has_time_last())
+      throw scene::bad_input(
+          fmt::format("{}: its first axis is a list and its last one time; write one of them alone", file.string()));
+    if (sizes[0] > (axes.first_is_time ? 1 << 16 : 64))
+      throw scene::bad_input(
+          fmt::format("{}: its first axis holds {} of a sample; write at most 64 components", file.string(), sizes[0]));
+    volume.interleaved_steps = axes.first_is_time && sizes[0] > 1;
+    if (axes.first_is_time)
+      volume.steps = static_cast<std::uint64_t>(sizes[0]);
+    else
+      volume.components = static_cast<int>(sizes[0]);
+  }
+  for (std::size_t a = 0; a < 3; ++a) volume.grid.geometry.points[a] = sizes[axes.skip + a];
 
   const std::string type = lower_words(required_field(fields, "type", file));
   const auto* known = std::find_if(nrrd_type_names.begin(), nrrd_type_names.end(),
@@ -217,17 +264,20 @@ StoredVolume read_nrrd_header(const std::filesystem::path& file) {
   if (!endian && scene::size_of(volume.number) > 1 && volume.coding != StoredVolume::Coding::text)
     throw damaged(file, "its header has no field 'endian'");
   volume.swapped = endian && (lower_words(*endian) == "big") != (std::endian::native == std::endian::big);
-  set_nrrd_geometry(fields, sizes.size(), file, volume);
+  set_nrrd_geometry(fields, axes, file, volume);
 
   volume.payload = file;
   volume.offset = fields.end;
   if (const auto* detached = fields.find("datafile")) {
-    if (detached->starts_with("LIST") || detached->find('%') != std::string::npos)
-      throw scene::bad_input(fmt::format("{}: its slices are in several files; write one", file.string()));
-    volume.payload = header_path(*detached, file, "data file");
+    const auto most = static_cast<std::uint64_t>(sizes.back()) * static_cast<std::uint64_t>(sizes[sizes.size() - 2]);
+    volume.slices = header_slices(*detached, std::string_view(text).substr(fields.end), most, file, "data file");
+    volume.payload = volume.slices.empty() ? header_path(*detached, file, "data file") : volume.slices.front();
     volume.offset = 0;
   }
-  if (const auto* lines = fields.find("lineskip"))
+  const auto* lines = fields.find("lineskip");
+  if (lines && !volume.slices.empty() && *lines != "0")
+    throw scene::bad_input(fmt::format("{}: 'line skip' is for one file of samples; leave it out", file.string()));
+  if (lines)
     volume.offset = after_lines(volume.payload, volume.offset, header_count(*lines, 0, 1 << 20, file, "line skip"));
   if (const auto* bytes = fields.find("byteskip")) {
     // Lines are skipped before a gzip stream begins, bytes after it is inflated.

@@ -17,12 +17,16 @@ struct StoredVolume {
   scene::Grid grid;  ///< geometry, scale, shift; type and name follow from the choice of a component
   scene::SampleType number = scene::SampleType::uint8;  ///< of each component
   int components = 1;
-  bool swapped = false;           ///< bytes are of the other order than this machine's
-  std::filesystem::path payload;  ///< the file itself, or another
-  std::uint64_t offset = 0;       ///< of the payload in it
-  bool at_end = false;            ///< instead of an offset: the payload ends with the file
-  bool exact_size = false;        ///< the file must end with the payload
-  bool compressed = false;        ///< gzip or zlib from `offset` on; with `compressed_whole` from the beginning
+  bool planar = false;                        ///< all samples of a component together, not all components of a sample
+  std::uint64_t steps = 1;                    ///< volumes in the payload, one after the other
+  bool interleaved_steps = false;             ///< instead, a sample of each step together; one component
+  bool swapped = false;                       ///< bytes are of the other order than this machine's
+  std::filesystem::path payload;              ///< the file itself, or another
+  std::vector<std::filesystem::path> slices;  ///< instead of one payload: files of equal parts of it, in order
+  std::uint64_t offset = 0;                   ///< of the payload in it, or of its part in each of them
+  bool at_end = false;                        ///< instead of an offset: the payload ends with the file
+  bool exact_size = false;                    ///< the file must end with the payload
+  bool compressed = false;  ///< gzip or zlib from `offset` on; with `compressed_whole` from the beginning
   bool compressed_whole = false;
   std::uint64_t skip_inflated = 0;  ///< compressed: bytes before the samples in what comes out
   enum class Coding { binary, text, hex } coding = Coding::binary;
@@ -32,6 +36,8 @@ struct StoredVolume {
 };
 
 StoredVolume read_nifti_header(const std::filesystem::path& file);
+/// An Analyze 7.5 header, or the .img beside one.
+StoredVolume read_analyze_header(const std::filesystem::path& file);
 StoredVolume read_nrrd_header(const std::filesystem::path& file);
 StoredVolume read_meta_image_header(const std::filesystem::path& file);
 StoredVolume describe_raw(const std::filesystem::path& file, const VolumeOptions& options);
@@ -41,6 +47,7 @@ VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions&
 
 /// Whether the beginning of a file is that of the format.
 bool looks_like_nifti(const std::filesystem::path& file);
+bool looks_like_analyze(const std::filesystem::path& file);
 bool looks_like_nrrd(std::string_view beginning);
 bool looks_like_meta_image(std::string_view beginning);
 

@@ -1,7 +1,6 @@
 #include "io/volume_reader.hpp"
 
 #include <fmt/format.h>
-#include <sys/mman.h>
 
 #include <algorithm>
 #include <cctype>
@@ -14,7 +13,7 @@
 #include "io/gzip.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
-#include "io/mapped_file.hpp"
+#include "io/stored_payload.hpp"
 #include "io/stored_samples.hpp"
 #include "io/volume_formats.hpp"
 
@@ -22,7 +21,7 @@ namespace tessera::io {
 namespace {
 
 /// What kind of volume a file begins as.
-enum class VolumeKind { none, vtk, meta_image, nrrd, nifti, bricks };
+enum class VolumeKind { none, vtk, meta_image, nrrd, nifti, analyze, bricks };
 
 /// Of NIfTI files gzip is a part of the format, so that they are inflated as they are read; others are inflated first.
 VolumeKind volume_kind_of(const std::filesystem::path& file) {
@@ -38,6 +37,8 @@ VolumeKind volume_kind_of(const std::filesystem::path& file) {
       return VolumeKind::meta_image;
     case FileKind::nifti:
       return VolumeKind::nifti;
+    case FileKind::analyze:
+      return VolumeKind::analyze;
     default:
       return VolumeKind::none;
   }
@@ -52,68 +53,34 @@ std::filesystem::path without_gz(const std::filesystem::path& file) {
   return lower_extension(file) == ".gz" ? file.parent_path() / file.stem() : file;
 }
 
-struct VolumePayload {
-  std::span<const std::byte> bytes;
-  std::shared_ptr<const void> owner;
-  bool from_file = false;
-};
-
-VolumePayload payload_of(const StoredVolume& volume, std::uint64_t needed) {
-  const std::string source = volume.payload.string();
-  const std::uint64_t size = require_file(volume.payload);
-  auto mapped = std::make_shared<const MappedFile>(volume.payload);
-  if (volume.compressed) {
-    const std::uint64_t skip = volume.compressed_whole ? 0 : volume.offset;
-    const std::uint64_t before = (volume.compressed_whole ? volume.offset : 0) + volume.skip_inflated;
-    if (skip > size) throw damaged(volume.payload, fmt::format("its samples begin at byte {} of {}", skip, size));
-    auto bytes =
-        std::make_shared<const std::vector<std::byte>>(inflate(mapped->bytes().subspan(skip), before + needed, source));
-    return {std::span<const std::byte>(*bytes).subspan(before), bytes, false};
-  }
-  if (volume.coding != StoredVolume::Coding::binary) {
-    if (volume.offset > size)
-      throw damaged(volume.payload, fmt::format("its samples begin at byte {} of {}", volume.offset, size));
-    const std::string_view text = mapped->text().substr(volume.offset);
-    auto bytes = std::make_shared<const std::vector<std::byte>>(
-        volume.coding == StoredVolume::Coding::hex
-            ? bytes_of_hex(text, needed, source)
-            : samples_of_text(text, needed / scene::size_of(volume.number), volume.number, source));
-    return {std::span<const std::byte>(*bytes), bytes, false};
-  }
-  if (volume.at_end && needed <= size) return {mapped->bytes().subspan(size - needed), mapped, true};
-  if (volume.offset > size || needed > size - volume.offset || (volume.exact_size && needed != size - volume.offset)) {
-    const scene::GridIndex& n = volume.grid.geometry.points;
-    throw scene::bad_input(fmt::format(
-        "{}: {}x{}x{} samples of {} {} are {} bytes, the file has {}{}; {}", source, n[0], n[1], n[2],
-        volume.components, scene::name_of(volume.number), needed, size > volume.offset ? size - volume.offset : 0,
-        volume.offset > 0 ? fmt::format(" after its first {}", volume.offset) : "",
-        volume.exact_size ? "give the right dimensions and type" : "the file is truncated, write it anew"));
-  }
-  return {mapped->bytes().subspan(volume.offset, needed), mapped, true};
-}
-
-/// Counts of bytes that a header asks for, in arithmetic that a damaged one cannot overflow.
-std::uint64_t bytes_needed(const StoredVolume& volume, const std::string& source) {
-  std::uint64_t needed = scene::size_of(volume.number) * static_cast<std::uint64_t>(volume.components);
-  for (const std::int64_t n : volume.grid.geometry.points)
-    if (__builtin_mul_overflow(needed, static_cast<std::uint64_t>(n), &needed) || needed > (1ull << 62))
-      throw scene::bad_input(fmt::format(
-          "{}: its header asks for more samples than can be addressed; it is damaged, write it anew", source));
-  return needed;
-}
-
 void list_range(const scene::ValueRange& range, FieldSummary& field) {
   field.low = range.empty() ? 0 : range.low;
   field.high = range.empty() ? 0 : range.high;
   field.nan_count = range.blanks;
 }
 
+/// The step that is wanted, with a note of what there is.
+std::size_t step_of(StoredVolume& volume, const VolumeOptions& options, const std::string& source) {
+  if (volume.steps == 1) {
+    require_no_time_step(options.time_step, source);
+    return 0;
+  }
+  const std::size_t step = options.time_step.value_or(volume.steps - 1);
+  if (step >= volume.steps)
+    throw scene::bad_input(
+        fmt::format("{}: there is no time step {}, the file has {}; count from 0", source, step, volume.steps));
+  volume.notes.push_back(fmt::format("time step {} of 0 to {}{}", step, volume.steps - 1,
+                                     options.time_step ? "" : " (the last is the default)"));
+  return step;
+}
+
 /// Fields, choice and source of one array of samples.
 VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const std::string& source) {
-  const std::uint64_t needed = bytes_needed(volume, source);
   scene::validate(volume.grid, source);
-  VolumePayload payload = payload_of(volume, needed);
+  const std::size_t step = step_of(volume, options, source);
+  VolumePayload payload = payload_of(volume, step, source);
   if (volume.coding == StoredVolume::Coding::text) volume.swapped = false;
+  if (volume.planar && volume.components > 1) payload = interleaved(volume, payload);
   if (volume.wide != StoredVolume::Wide::no) {
     if (volume.coding != StoredVolume::Coding::text) {
       const bool is_signed = volume.wide == StoredVolume::Wide::int64;
@@ -146,10 +113,12 @@ VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const 
                         source, grid.shift));
       grid.scale = std::abs(grid.scale);
     }
-    return std::make_unique<scene::MemorySource>(
-        std::move(grid), payload.bytes, payload.owner, source,
-        scene::ComponentChoice{volume.components, component == magnitude ? -1 : component, volume.number},
-        volume.swapped, payload.from_file);
+    const scene::ComponentChoice of_tuple =
+        volume.interleaved_steps
+            ? scene::ComponentChoice{static_cast<int>(volume.steps), static_cast<int>(step), volume.number}
+            : scene::ComponentChoice{volume.components, component == magnitude ? -1 : component, volume.number};
+    return std::make_unique<scene::MemorySource>(std::move(grid), payload.bytes, payload.owner, source, of_tuple,
+                                                 volume.swapped, payload.from_file);
   };
   result.source = source_with(choice.component);
   field.low = 1, field.high = 0;  // the source's
@@ -164,8 +133,10 @@ VolumeFile open_described(const std::filesystem::path& file, VolumeKind kind, co
                           const std::string& source) {
   switch (kind) {
     case VolumeKind::vtk:
+      require_no_time_step(options.time_step, source);
       return read_vtk_grid(file, options);
     case VolumeKind::bricks:
+      require_no_time_step(options.time_step, source);
       return open_bricks(file, options);
     case VolumeKind::meta_image:
       return open_stored(read_meta_image_header(file), options, source);
@@ -173,10 +144,13 @@ VolumeFile open_described(const std::filesystem::path& file, VolumeKind kind, co
       return open_stored(read_nrrd_header(file), options, source);
     case VolumeKind::nifti:
       return open_stored(read_nifti_header(file), options, source);
+    case VolumeKind::analyze:
+      return open_stored(read_analyze_header(file), options, source);
     case VolumeKind::none:
       break;
   }
   const std::string extension = lower_extension(without_gz(file));
+  if (extension == ".img" || extension == ".hdr") return open_stored(read_analyze_header(file), options, source);
   if (extension == ".nii") return open_stored(read_nifti_header(file), options, source);
   throw scene::bad_input(fmt::format("{}: it does not begin as a {} does; check what it is", source,
                                      extension.empty() ? "volume" : extension.substr(1)));
@@ -236,7 +210,8 @@ VolumeFile open_unscanned_volume(const std::filesystem::path& file, const Volume
       volume.payload = content;
       return open_stored(std::move(volume), options, source);
     };
-    if (kind == VolumeKind::nifti || (kind == VolumeKind::none && !raw) || !looks_like_gzip(read_beginning(file, 2)))
+    if (kind == VolumeKind::nifti || kind == VolumeKind::analyze || (kind == VolumeKind::none && !raw) ||
+        !looks_like_gzip(read_beginning(file, 2)))
       return open(file);
     const InflatedFile inflated(file);
     VolumeFile volume = inflated.read(open);

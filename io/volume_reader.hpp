@@ -21,7 +21,8 @@ struct VolumeOptions {
   std::optional<scene::SampleType> type{};
   std::optional<glm::dvec3> spacing{}, origin{};
   bool big_endian = false;
-  std::uint64_t skip = 0;  ///< bytes before the first sample
+  std::uint64_t skip = 0;                  ///< bytes before the first sample
+  std::optional<std::size_t> time_step{};  ///< as MeshOptions::time_step
 
   /// Whether one of the .raw options is given.
   [[nodiscard]] bool describes_raw() const { return dims || type || spacing || origin || big_endian || skip > 0; }
@@ -50,15 +51,17 @@ void require_volume(const std::filesystem::path& file);
 ///       curvilinear .vtk is a mesh. 64-bit integers become doubles. Hidden samples are blank.
 ///   .mhd .mha: origin, spacing, orientation, slope and offset apply; raw (mapped), compressed or text.
 ///   .nrrd .nhdr: space origin and directions, else axis minimums and spacings; raw (mapped), gzip, ascii or hex. A
-///       first axis of components is allowed; content "old min" and the measurement frame mean nothing here.
-///   .nii .nii.gz (NIfTI-1 and 2): sform, else qform, else the spacing alone; slope and intercept apply.
+///       first axis of components is allowed; content "old min" and the measurement frame mean nothing here. Slices in
+///       several files (LIST, NAME%03d), here and of MetaImage, are put together in memory.
+///   .nii .nii.gz (NIfTI-1 and 2), or in two files .hdr and .img: sform, else qform, else the spacing alone; slope and
+///       intercept apply. Analyze 7.5 (.hdr and .img): spacing alone, for it says nothing else reliably.
 ///   .raw: described by the options or by its name, mapped. .bricks: what write_bricks made, read brick by brick.
 ///   A gzip file of any of these is inflated into memory first, whatever its name.
 ///
 /// World coordinates are the file's own (NIfTI's point right, anterior, up; MetaImage's and NRRD's whatever they say).
 /// Headers are compared with the file's size before memory is asked for. Throws Error(bad_input) in one line for a
-/// missing, truncated, malformed or flat file, for four or more dimensions, for an encoding or type not known, for an
-/// unknown field, or if no sample is finite.
+/// missing, truncated, malformed or flat file, for more dimensions than three, time and components, for an encoding or
+/// type not known, for an unknown field or time step, or if no sample is finite.
 VolumeFile open_volume(const std::filesystem::path& file, const VolumeOptions& options = {});
 
 /// The same without its range and what follows from that, for those who scan the samples themselves and then call

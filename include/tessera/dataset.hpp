@@ -28,13 +28,13 @@ struct ReadOptions {
   /// Scalar to render: "" (the reader's choice, said in the notes), "NAME", "NAME:mag", "NAME:x", "NAME:0", each with
   /// an optional "point:" or "cell:" before it. A vector with no component named gives its magnitude.
   std::string field{};
-  int threads = 0;  ///< that make tets of cells, or scan samples; 0: all cores
+  int threads = 0;                         ///< that make tets of cells, or scan samples; 0: all cores
+  std::optional<std::size_t> time_step{};  ///< files of several: counted from 0; default the last
 
   // Meshes.
-  bool smooth = false;                     ///< average cell data to the points, weighted by tet volume
-  std::filesystem::path plot3d_q{};        ///< PLOT3D solution file; empty: found beside the grid file by its name
-  std::optional<double> max_volume{};      ///< surfaces only: largest tet TetGen makes, world units cubed
-  std::optional<std::size_t> time_step{};  ///< files of several: counted from 0; default the last
+  bool smooth = false;                 ///< average cell data to the points, weighted by tet volume
+  std::filesystem::path plot3d_q{};    ///< PLOT3D solution file; empty: found beside the grid file by its name
+  std::optional<double> max_volume{};  ///< surfaces only: largest tet TetGen makes, world units cubed
   /// Files in blocks: names of those to read; none: all. Of a block that is in another ("fluid/internalMesh") the
   /// beginning or the end will do.
   std::vector<std::string> blocks{};

@@ -146,8 +146,8 @@ TEST_F(VolumeFiles, NiftiOfTheOtherByteOrderReadsTheSame) {
 
 TEST_F(VolumeFiles, NiftiOfMoreDimensionsTooManySamplesOrTooFewBytesIsRefused) {
   std::string file = test::nifti();
-  put<std::int16_t>(file, 40, 5), put<std::int16_t>(file, 50, 3);
-  expect_refused(folder.write("five.nii", file), "5 dimensions");
+  put<std::int16_t>(file, 40, 6), put<std::int16_t>(file, 52, 3);
+  expect_refused(folder.write("six.nii", file), "6 dimensions");
   file = test::nifti();
   put<std::int16_t>(file, 40, 5);  // of one each: still a volume
   EXPECT_NO_THROW(open_volume(folder.write("ones.nii", file)));
@@ -220,7 +220,7 @@ TEST_F(VolumeFiles, NrrdFaultsAreNamed) {
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 9000 9000 9000\nencoding: text\n"), "of 729000000000 numbers");
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\nline skip: 9\n"), "fewer lines");
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: LIST\na.raw\nb.raw"),
-                 "several files");
+                 "'a.raw', and there is no such file");
   expect_refused(with("type: uint16\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n"), "'endian'");
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 3\nencoding: raw\n"), "12 bytes, the file has 8");
   expect_refused(with("type: uint8\ndimension: 3\nsizes: 2 2 2\nspacings: 1 0 1\nencoding: raw\n"), "along y is 0");

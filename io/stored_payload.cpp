@@ -1,0 +1,120 @@
+#include "io/stored_payload.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+#include "io/gzip.hpp"
+#include "io/input_file.hpp"
+#include "io/mapped_file.hpp"
+#include "io/stored_samples.hpp"
+
+namespace tessera::io {
+namespace {
+
+/// Bytes of one step, in arithmetic that a damaged header cannot overflow, nor all steps' together.
+std::uint64_t bytes_needed(const StoredVolume& volume, const std::string& source) {
+  std::uint64_t needed = scene::size_of(volume.number) * static_cast<std::uint64_t>(volume.components);
+  std::uint64_t all = 0;
+  bool is_too_large = false;
+  for (const std::int64_t n : volume.grid.geometry.points)
+    is_too_large = is_too_large || __builtin_mul_overflow(needed, static_cast<std::uint64_t>(n), &needed);
+  is_too_large = is_too_large || __builtin_mul_overflow(needed, volume.steps, &all) || all > (1ull << 62);
+  if (is_too_large)
+    throw scene::bad_input(fmt::format(
+        "{}: its header asks for more samples than can be addressed; it is damaged, write it anew", source));
+  return needed;
+}
+
+/// What is wanted of a file of samples: bytes [first, first + count) of the `all` that it holds.
+struct Wanted {
+  std::uint64_t first, count, all;
+};
+
+/// Whose file is too small.
+scene::Error too_few(const StoredVolume& volume, const Wanted& wanted, std::uint64_t has, const std::string& source) {
+  const scene::GridIndex& n = volume.grid.geometry.points;
+  const std::string after = volume.offset > 0 ? fmt::format(" after its first {}", volume.offset) : "";
+  if (!volume.slices.empty())
+    return scene::bad_input(
+        fmt::format("{}: its part of the samples is {} bytes, the file has {}{}; the file is truncated, write it anew",
+                    source, wanted.all, has, after));
+  return scene::bad_input(fmt::format(
+      "{}: {}x{}x{} samples of {} {}{} are {} bytes, the file has {}{}; {}", source, n[0], n[1], n[2],
+      volume.components, scene::name_of(volume.number),
+      volume.steps > 1 ? fmt::format(", of {} steps,", volume.steps) : "", wanted.first + wanted.count, has, after,
+      volume.exact_size ? "give the right dimensions and type" : "the file is truncated, write it anew"));
+}
+
+VolumePayload payload_of_file(const StoredVolume& volume, const std::filesystem::path& file, const Wanted& wanted) {
+  const std::string source = file.string();
+  const std::uint64_t size = require_file(file), end = wanted.first + wanted.count;
+  auto mapped = std::make_shared<const MappedFile>(file);
+  const auto kept = [&](std::vector<std::byte> unpacked, std::uint64_t before) {
+    auto bytes = std::make_shared<const std::vector<std::byte>>(std::move(unpacked));
+    return VolumePayload{std::span<const std::byte>(*bytes).subspan(before), bytes, false};
+  };
+  if (volume.compressed) {
+    const std::uint64_t skip = volume.compressed_whole ? 0 : volume.offset;
+    const std::uint64_t before = (volume.compressed_whole ? volume.offset : 0) + volume.skip_inflated;
+    if (skip > size) throw damaged(file, fmt::format("its samples begin at byte {} of {}", skip, size));
+    return kept(inflate(mapped->bytes().subspan(skip), before + end, source), before + wanted.first);
+  }
+  if (volume.coding != StoredVolume::Coding::binary) {
+    if (volume.offset > size)
+      throw damaged(file, fmt::format("its samples begin at byte {} of {}", volume.offset, size));
+    const std::string_view text = mapped->text().substr(volume.offset);
+    return kept(volume.coding == StoredVolume::Coding::hex
+                    ? bytes_of_hex(text, end, source)
+                    : samples_of_text(text, end / scene::size_of(volume.number), volume.number, source),
+                wanted.first);
+  }
+  if (volume.at_end && wanted.all <= size)
+    return {mapped->bytes().subspan(size - wanted.all + wanted.first, wanted.count), mapped, true};
+  if (volume.offset > size || end > size - volume.offset || (volume.exact_size && end != size - volume.offset))
+    throw too_few(volume, wanted, size > volume.offset ? size - volume.offset : 0, source);
+  return {mapped->bytes().subspan(volume.offset + wanted.first, wanted.count), mapped, true};
+}
+
+/// Files of equal parts, one after the other.
+VolumePayload payload_of_slices(const StoredVolume& volume, const Wanted& wanted, const std::string& source) {
+  const std::uint64_t files = volume.slices.size();
+  if (wanted.all % files != 0)
+    throw scene::bad_input(
+        fmt::format("{}: it lists {} files for {} bytes of samples, which are no equal parts; list all its slices",
+                    source, files, wanted.all));
+  const std::uint64_t part = wanted.all / files;
+  auto bytes = std::make_shared<std::vector<std::byte>>();
+  for (std::uint64_t k = wanted.first / part; k * part < wanted.first + wanted.count; ++k) {
+    const std::uint64_t first = std::max(wanted.first, k * part) - k * part;
+    const std::uint64_t last = std::min(wanted.first + wanted.count, (k + 1) * part) - k * part;
+    const VolumePayload slice = payload_of_file(volume, volume.slices[k], {first, last - first, part});
+    // All at once only where the files can hold it: text and gzip tell as they are read.
+    if (k * part <= wanted.first && slice.from_file) bytes->reserve(std::min(wanted.count, files * part));
+    bytes->insert(bytes->end(), slice.bytes.begin(), slice.bytes.end());
+  }
+  return {std::span<const std::byte>(*bytes), bytes, false};
+}
+
+}  // namespace
+
+VolumePayload payload_of(const StoredVolume& volume, std::size_t step, const std::string& source) {
+  const std::uint64_t needed = bytes_needed(volume, source), all = needed * volume.steps;
+  const Wanted wanted = volume.interleaved_steps ? Wanted{0, all, all} : Wanted{step * needed, needed, all};
+  return volume.slices.empty() ? payload_of_file(volume, volume.payload, wanted)
+                               : payload_of_slices(volume, wanted, source);
+}
+
+VolumePayload interleaved(const StoredVolume& volume, const VolumePayload& planar) {
+  const std::size_t width = scene::size_of(volume.number), components = static_cast<std::size_t>(volume.components);
+  const std::size_t plane = planar.bytes.size() / components, samples = plane / width;
+  auto bytes = std::make_shared<std::vector<std::byte>>(planar.bytes.size());
+  for (std::size_t k = 0; k < samples; ++k)
+    for (std::size_t c = 0; c < components; ++c)
+      std::memcpy(bytes->data() + (k * components + c) * width, planar.bytes.data() + c * plane + k * width, width);
+  return {std::span<const std::byte>(*bytes), bytes, false};
+}
+
+}  // namespace tessera::io

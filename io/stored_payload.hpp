@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "io/volume_formats.hpp"
+
+namespace tessera::io {
+
+/// The samples of a volume, where they lie in the file or, if they had to be unpacked or put together, in memory.
+struct VolumePayload {
+  std::span<const std::byte> bytes;
+  std::shared_ptr<const void> owner;
+  bool from_file = false;
+};
+
+/// The samples of one step of a volume; with interleaved steps, of all. They are as many as the header says. Throws
+/// Error(bad_input) for files that hold fewer, before memory is asked for that they could not fill.
+VolumePayload payload_of(const StoredVolume& volume, std::size_t step, const std::string& source);
+
+/// The tuples of a volume whose components lie one after the other, each tuple together.
+VolumePayload interleaved(const StoredVolume& volume, const VolumePayload& planar);
+
+}  // namespace tessera::io
