@@ -1,0 +1,144 @@
+// tessera-read-dicom: reads DICOM files by GDCM, as tessera-read does other formats. A program of its own, since that
+// library and what it needs take a while to load.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "io/helper/dicom_series.hpp"
+#include "io/helper/holdings.hpp"
+#include "io/helper/readers.hpp"
+#include "io/helper/serve.hpp"
+#include "io/input_file.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io::helper {
+namespace {
+
+/// Slices beside each other; a folder without any, those in the folders below.
+std::vector<DicomSlice> slices_in(const std::filesystem::path& folder) {
+  constexpr std::size_t most_files = 200000;
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    files.push_back(entry->path());
+  std::vector<DicomSlice> slices;
+  const auto add = [&](const std::filesystem::path& file) {
+    std::error_code unknown;
+    if (!std::filesystem::is_regular_file(file, unknown) || std::filesystem::file_size(file, unknown) < 132) return;
+    if (file.filename() == "DICOMDIR") return;  // a list of the others
+    if (auto slice = read_dicom_header(file)) slices.push_back(std::move(*slice));
+  };
+  std::sort(files.begin(), files.end());
+  for (const auto& file : files) add(file);
+  if (!slices.empty()) return slices;
+  std::vector<std::filesystem::path> below;
+  for (std::filesystem::recursive_directory_iterator entry(folder, error), end;
+       !error && entry != end && below.size() < most_files; entry.increment(error))
+    below.push_back(entry->path());
+  std::sort(below.begin(), below.end());
+  for (const auto& file : below) add(file);
+  return slices;
+}
+
+template <class T>
+ForeignArray held_as(Holdings& holdings, NumberType type, const std::vector<double>& values, const NumberTally& tally) {
+  ForeignArray array{.name = "samples", .type = type};
+  array.tally = tally;
+  return hold_vector(holdings, std::move(array), std::vector<T>(values.begin(), values.end()));
+}
+
+/// In the smallest type that holds all values: whole numbers, else floats.
+ForeignArray hold_samples(Holdings& holdings, const DicomVolume& volume) {
+  std::vector<double> values;
+  for (const DicomSlice& slice : volume.slices) {
+    const std::vector<double> part = read_dicom_samples(slice);
+    values.insert(values.end(), part.begin(), part.end());
+  }
+  NumberTally tally;
+  tally.add(values);
+  const bool is_whole = std::all_of(values.begin(), values.end(), [](double v) { return v == std::floor(v); });
+  const auto within = [&](double low, double high) { return is_whole && tally.low >= low && tally.high <= high; };
+  if (within(0, 255)) return held_as<std::uint8_t>(holdings, NumberType::uint8, values, tally);
+  if (within(-32768, 32767)) return held_as<std::int16_t>(holdings, NumberType::int16, values, tally);
+  if (within(0, 65535)) return held_as<std::uint16_t>(holdings, NumberType::uint16, values, tally);
+  if (within(-2147483648.0, 2147483647.0)) return held_as<std::int32_t>(holdings, NumberType::int32, values, tally);
+  return held_as<float>(holdings, NumberType::float32, values, tally);
+}
+
+ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  const std::string source = file.string();
+  std::error_code unknown;
+  const bool is_folder = std::filesystem::is_directory(file, unknown);
+  std::vector<DicomSlice> slices;
+  allow_for_folder(is_folder ? file : file.parent_path().empty() ? "." : file.parent_path());
+  if (is_folder) {
+    slices = slices_in(file);
+  } else {
+    const std::optional<DicomSlice> one = read_dicom_header(file);
+    if (!one)
+      throw scene::bad_input(
+          fmt::format("{}: GDCM finds no pictures in it; give a folder or a file of slices", source));
+    if (one->frames > 1) {
+      slices.push_back(*one);
+    } else {
+      slices = slices_in(file.parent_path().empty() ? "." : file.parent_path());
+      for (DicomSlice& slice : slices)
+        if (std::filesystem::equivalent(slice.file, file, unknown)) slice.file = file;
+    }
+  }
+  if (slices.empty())
+    throw scene::bad_input(fmt::format("{}: none of its files is a DICOM picture; give a folder of slices", source));
+  std::optional<std::size_t> time_step;
+  if (const auto step = request.find("time_step"); step != request.end()) time_step = step->get<std::size_t>();
+  DicomVolume volume = volume_of(std::move(slices), file, time_step, source);
+  const DicomSlice& first = volume.slices.front();
+
+  ForeignContents contents;
+  contents.format = fmt::format("DICOM{}{}", first.modality.empty() ? "" : " ", first.modality);
+  contents.notes = std::move(volume.notes);
+  const auto is_scaled = [](const DicomSlice& s) { return s.slope != 1 || s.intercept != 0; };
+  if (std::any_of(volume.slices.begin(), volume.slices.end(), is_scaled)) {
+    const bool are_alike = std::all_of(volume.slices.begin(), volume.slices.end(), [&](const DicomSlice& s) {
+      return s.slope == first.slope && s.intercept == first.intercept;
+    });
+    contents.notes.push_back(are_alike ? fmt::format("values are {:.9g} * sample + {:.9g}, as its header says",
+                                                     first.slope, first.intercept)
+                                       : "slices have scales of their own, which apply");
+  }
+  if (!first.unit.empty()) contents.notes.push_back("values are in " + first.unit);
+  ForeignPart& part = contents.parts.emplace_back();
+  const auto depth = static_cast<std::int64_t>(volume.slices.size()) * first.frames;
+  part.extent = {0, first.columns - 1, 0, first.rows - 1, 0, depth - 1};
+  part.origin = {volume.origin.x, volume.origin.y, volume.origin.z};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double length = glm::length(volume.steps[axis]);
+    part.spacing[axis] = length;
+    for (int k = 0; k < 3; ++k) part.direction[static_cast<std::size_t>(3 * k) + axis] = volume.steps[axis][k] / length;
+  }
+  part.kind = ForeignPart::Kind::image;
+  if (!volume.places.empty()) {
+    part.kind = ForeignPart::Kind::rectilinear;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::vector<double> c = volume.places;
+      if (axis < 2) {
+        c.resize(static_cast<std::size_t>(axis == 0 ? first.columns : first.rows));
+        for (std::size_t k = 0; k < c.size(); ++k) c[k] = part.spacing[axis] * static_cast<double>(k);
+      }
+      part.coordinates.push_back(hold_vector(holdings, {.type = NumberType::float64}, std::move(c)));
+    }
+  }
+  part.point_fields.push_back(hold_samples(holdings, volume));
+  return contents;
+}
+
+}  // namespace
+}  // namespace tessera::io::helper
+
+int main() {
+  using namespace tessera::io::helper;
+  constexpr Reader readers[] = {{"dicom", read_dicom}};
+  serve(readers);
+}

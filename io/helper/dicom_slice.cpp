@@ -1,0 +1,212 @@
+#include "io/helper/dicom_slice.hpp"
+
+#include <fmt/format.h>
+#include <gdcmAttribute.h>
+#include <gdcmImage.h>
+#include <gdcmImageHelper.h>
+#include <gdcmImageReader.h>
+#include <gdcmReader.h>
+#include <gdcmTrace.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <glm/geometric.hpp>
+#include <set>
+
+#include "scene/error.hpp"
+
+namespace tessera::io::helper {
+namespace {
+
+constexpr const char* write_anew = "the file is truncated or damaged, write it anew or leave it out";
+
+/// A text element, without the blanks that fill it up; empty if there is none.
+std::string text_of(const gdcm::DataSet& data, std::uint16_t group, std::uint16_t element) {
+  const gdcm::Tag tag(group, element);
+  if (!data.FindDataElement(tag)) return "";
+  const gdcm::ByteValue* const value = data.GetDataElement(tag).GetByteValue();
+  if (value == nullptr) return "";
+  std::string text(value->GetPointer(), value->GetLength());
+  const std::size_t last = text.find_last_not_of(std::string_view(" \0", 2));
+  text.resize(last == std::string::npos ? 0 : last + 1);
+  return text.substr(std::min(text.find_first_not_of(' '), text.size()));
+}
+
+/// Decimal strings, with backslashes between; fewer than there are words if one is no number.
+std::vector<double> numbers_of(const std::string& text) {
+  std::vector<double> numbers;
+  std::string_view rest = text;
+  while (!rest.empty()) {
+    const std::size_t stop = std::min(rest.find('\\'), rest.size());
+    std::string_view word = rest.substr(0, stop);
+    rest.remove_prefix(std::min(stop + 1, rest.size()));
+    word.remove_prefix(std::min(word.find_first_not_of(" +"), word.size()));
+    double value = 0;
+    if (std::from_chars(word.data(), word.data() + word.size(), value).ec != std::errc() || !std::isfinite(value))
+      break;
+    numbers.push_back(value);
+  }
+  return numbers;
+}
+
+std::optional<double> number_of(const gdcm::DataSet& data, std::uint16_t group, std::uint16_t element) {
+  const std::vector<double> numbers = numbers_of(text_of(data, group, element));
+  return numbers.empty() ? std::nullopt : std::optional(numbers.front());
+}
+
+/// Seconds of HHMMSS.FFFFFF.
+double seconds_of(double clock) {
+  const double hours = std::floor(clock / 1e4), minutes = std::floor(clock / 100) - 100 * hours;
+  return hours * 3600 + minutes * 60 + std::fmod(clock, 100);
+}
+
+/// What orders slices of one place: the first of these that the file has.
+double time_of(const gdcm::DataSet& data) {
+  if (const auto index = number_of(data, 0x0020, 0x0100)) return *index;    // temporal position identifier
+  if (const auto trigger = number_of(data, 0x0018, 0x1060)) return *trigger;  // of the heart
+  if (const auto acquired = number_of(data, 0x0008, 0x0032)) return seconds_of(*acquired);
+  if (const auto content = number_of(data, 0x0008, 0x0033)) return seconds_of(*content);
+  return 0;
+}
+
+void set_place(const gdcm::File& file, DicomSlice& slice) {
+  const gdcm::DataSet& data = file.GetDataSet();
+  const std::vector<double> spacing = gdcm::ImageHelper::GetSpacingValue(file);
+  for (std::size_t k = 0; k < std::min<std::size_t>(spacing.size(), 3); ++k)
+    if (spacing[k] > 0 && std::isfinite(spacing[k])) slice.spacing[static_cast<int>(k)] = spacing[k];
+  const bool is_placed = slice.frames > 1 || numbers_of(text_of(data, 0x0020, 0x0032)).size() == 3;
+  const std::vector<double> origin = gdcm::ImageHelper::GetOriginValue(file);
+  const std::vector<double> axes = gdcm::ImageHelper::GetDirectionCosinesValue(file);
+  if (axes.size() == 6) {
+    const glm::dvec3 row(axes[0], axes[1], axes[2]), column(axes[3], axes[4], axes[5]);
+    const double across = glm::length(glm::cross(row, column));
+    if (std::isfinite(across) && across > 0.9) slice.row = glm::normalize(row), slice.column = glm::normalize(column);
+  }
+  if (is_placed && origin.size() >= 3 &&
+      std::all_of(origin.begin(), origin.begin() + 3, [](double x) { return std::isfinite(x); })) {
+    slice.position = {origin[0], origin[1], origin[2]};
+    slice.has_position = true;
+  }
+}
+
+bool set_samples(const gdcm::File& file, DicomSlice& slice) {
+  const gdcm::PixelFormat format = gdcm::ImageHelper::GetPixelFormatValue(file);
+  const std::vector<unsigned> sizes = gdcm::ImageHelper::GetDimensionsValue(file);
+  if (sizes.size() < 2 || sizes[0] == 0 || sizes[1] == 0) return false;
+  slice.columns = sizes[0], slice.rows = sizes[1];
+  slice.frames = sizes.size() > 2 ? std::max<std::int64_t>(sizes[2], 1) : 1;
+  slice.components = format.GetSamplesPerPixel();
+  const std::vector<double> rescale = gdcm::ImageHelper::GetRescaleInterceptSlopeValue(file);
+  if (rescale.size() == 2 && std::isfinite(rescale[0]) && std::isfinite(rescale[1]) && rescale[1] != 0)
+    slice.intercept = rescale[0], slice.slope = rescale[1];
+  const double a = slice.slope * static_cast<double>(format.GetMin()) + slice.intercept;
+  const double b = slice.slope * static_cast<double>(format.GetMax()) + slice.intercept;
+  slice.low = std::min(a, b), slice.high = std::max(a, b);
+  return true;
+}
+
+/// Samples of a type as doubles; of integers of which only `bits` are used, the others are something else's.
+template <class T>
+void append_samples(const std::vector<char>& bytes, int bits, std::vector<double>& out) {
+  const int spare = std::is_integral_v<T> ? static_cast<int>(sizeof(T) * 8) - bits : 0;
+  for (std::size_t k = 0; k + sizeof(T) <= bytes.size(); k += sizeof(T)) {
+    T sample;
+    std::memcpy(&sample, bytes.data() + k, sizeof(T));
+    if constexpr (std::is_integral_v<T>)
+      if (spare > 0 && spare < static_cast<int>(sizeof(T) * 8)) {
+        using Unsigned = std::make_unsigned_t<T>;
+        sample = static_cast<T>(static_cast<T>(static_cast<Unsigned>(static_cast<Unsigned>(sample) << spare)) >> spare);
+      }
+    out.push_back(static_cast<double>(sample));
+  }
+}
+
+}  // namespace
+
+glm::dvec3 DicomSlice::normal() const { return glm::normalize(glm::cross(row, column)); }
+
+std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
+  gdcm::Trace::WarningOff(), gdcm::Trace::ErrorOff(), gdcm::Trace::DebugOff();
+  try {
+    gdcm::Reader reader;
+    reader.SetFileName(file.c_str());
+    const gdcm::Tag samples(0x7fe0, 0x0010), after(0x7fe0, 0x0011);
+    if (!reader.ReadUpToTag(after, {samples})) return std::nullopt;
+    const gdcm::DataSet& data = reader.GetFile().GetDataSet();
+    // Rows and columns; a DICOMDIR, a report or a plan has none.
+    if (!data.FindDataElement(gdcm::Tag(0x0028, 0x0010)) || !data.FindDataElement(gdcm::Tag(0x0028, 0x0011)))
+      return std::nullopt;
+    DicomSlice slice;
+    slice.file = file;
+    slice.series = text_of(data, 0x0020, 0x000e);
+    slice.modality = text_of(data, 0x0008, 0x0060);
+    slice.unit = text_of(data, 0x0028, 0x1054);
+    if (slice.unit.empty()) slice.unit = text_of(data, 0x0054, 0x1001);
+    if (slice.unit.empty() && slice.modality == "RTDOSE") slice.unit = text_of(data, 0x3004, 0x0002);
+    if (!set_samples(reader.GetFile(), slice)) return std::nullopt;
+    set_place(reader.GetFile(), slice);
+    slice.number = static_cast<std::int64_t>(std::clamp(number_of(data, 0x0020, 0x0013).value_or(0), -1e9, 1e9));
+    slice.time = time_of(data);
+    return slice;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+}
+
+std::vector<double> read_dicom_samples(const DicomSlice& slice) {
+  const std::string source = slice.file.string();
+  const auto refuse = [&](const char* what) {
+    return scene::bad_input(fmt::format("{}: {}; {}", source, what, write_anew));
+  };
+  gdcm::ImageReader reader;
+  reader.SetFileName(slice.file.c_str());
+  if (!reader.Read()) throw refuse("GDCM cannot read its samples");
+  const gdcm::Image& image = reader.GetImage();
+  const gdcm::PixelFormat& format = image.GetPixelFormat();
+  const auto samples = static_cast<std::size_t>(slice.columns * slice.rows * slice.frames);
+  if (image.GetBufferLength() != samples * format.GetPixelSize() || format.GetSamplesPerPixel() != 1)
+    throw refuse("its samples are not as many as its header says");
+  std::vector<char> bytes(image.GetBufferLength());
+  if (!image.GetBuffer(bytes.data())) throw refuse("GDCM cannot unpack its samples");
+  std::vector<double> values;
+  values.reserve(samples);
+  const int bits = format.GetBitsStored();
+  switch (format.GetScalarType()) {
+    case gdcm::PixelFormat::UINT8:
+      append_samples<std::uint8_t>(bytes, bits, values);
+      break;
+    case gdcm::PixelFormat::INT8:
+      append_samples<std::int8_t>(bytes, bits, values);
+      break;
+    case gdcm::PixelFormat::UINT16:
+      append_samples<std::uint16_t>(bytes, bits, values);
+      break;
+    case gdcm::PixelFormat::INT16:
+      append_samples<std::int16_t>(bytes, bits, values);
+      break;
+    case gdcm::PixelFormat::UINT32:
+      append_samples<std::uint32_t>(bytes, bits, values);
+      break;
+    case gdcm::PixelFormat::INT32:
+      append_samples<std::int32_t>(bytes, bits, values);
+      break;
+    case gdcm::PixelFormat::FLOAT32:
+      append_samples<float>(bytes, bits, values);
+      break;
+    case gdcm::PixelFormat::FLOAT64:
+      append_samples<double>(bytes, bits, values);
+      break;
+    default:
+      throw scene::bad_input(fmt::format("{}: its samples are of {} bits, which are not read; write 8, 16 or 32",
+                                         source, format.GetBitsAllocated()));
+  }
+  if (values.size() != samples) throw refuse("its samples are not as many as its header says");
+  for (double& value : values) value = slice.slope * value + slice.intercept;
+  return values;
+}
+
+}  // namespace tessera::io::helper

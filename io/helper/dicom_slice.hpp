@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tessera::io::helper {
+
+/// What the header of one DICOM file says of its pictures: one, or the frames of several. Positions are millimetres in
+/// the patient's frame: x to the left, y to the back, z to the head (DICOM PS3.3, C.7.6.2).
+struct DicomSlice {
+  std::filesystem::path file;
+  std::string series;               ///< its unique identifier
+  std::string modality, unit;       ///< may be empty
+  std::int64_t columns = 0, rows = 0, frames = 1;
+  int components = 1;               ///< 3: colours
+  bool has_position = false;        ///< else by its number in the series
+  glm::dvec3 position{0}, row{1, 0, 0}, column{0, 1, 0};
+  glm::dvec3 spacing{1};            ///< between columns, rows and, of frames or as thickness, slices
+  double slope = 1, intercept = 0;  ///< value = slope * sample + intercept
+  double low = 0, high = 0;         ///< of all samples that it may hold
+  std::int64_t number = 0;          ///< in the series
+  double time = 0;                  ///< whatever tells slices of one place apart; 0 without
+
+  [[nodiscard]] glm::dvec3 normal() const;
+};
+
+/// None if the file is no DICOM file with pictures, or its header cannot be read. Samples are not read.
+std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file);
+
+/// Values of all samples, frame by frame, row by row. Throws Error(bad_input) in one line.
+std::vector<double> read_dicom_samples(const DicomSlice& slice);
+
+}  // namespace tessera::io::helper
