@@ -200,6 +200,7 @@ bool begins_as_brick_file(const FileBeginning& file) { return looks_like_bricks(
 bool begins_as_nrrd(const FileBeginning& file) { return looks_like_nrrd(file.text); }
 bool begins_as_meta_image(const FileBeginning& file) { return looks_like_meta_image(file.text); }
 bool begins_as_nifti(const FileBeginning& file) { return looks_like_nifti(file.file); }
+bool begins_as_dicom(const FileBeginning& file) { return looks_like_dicom(file.text); }
 bool begins_as_analyze(const FileBeginning& file) { return looks_like_analyze(file.file); }
 
 bool begins_as_xdmf(const FileBeginning& file) {

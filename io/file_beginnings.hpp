@@ -40,6 +40,7 @@ bool begins_as_brick_file(const FileBeginning& file);
 bool begins_as_nrrd(const FileBeginning& file);
 bool begins_as_meta_image(const FileBeginning& file);
 bool begins_as_nifti(const FileBeginning& file);
+bool begins_as_dicom(const FileBeginning& file);
 bool begins_as_analyze(const FileBeginning& file);
 
 // Not read.

@@ -5,6 +5,7 @@
 #include "io/file_kinds.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/surface.hpp"
+#include "io/volume_formats.hpp"
 
 namespace tessera::io {
 namespace {
@@ -14,6 +15,7 @@ const char* left_out(Needs needs) {
   const bool tetgen = needs == Needs::tetgen || needs == Needs::vtk_and_tetgen;
   if (vtk && !has_vtk()) return "VTK";
   if (needs == Needs::gmsh && !has_gmsh()) return "Gmsh";
+  if (needs == Needs::dicom && !has_dicom()) return "GDCM";
   return tetgen && !can_fill_surfaces() ? "TetGen" : "";
 }
 

@@ -84,6 +84,8 @@ constexpr std::array rows = {
               "NIfTI-1 and -2, also .hdr with .img; time", begins_as_nifti, "", true},
     FormatRow{FileKind::analyze, "Analyze 7.5", ".hdr .img", FileHolds::grid, Needs::nothing,
               "header and samples; either name finds the other", begins_as_analyze, "", true},
+    FormatRow{FileKind::dicom, "DICOM", ".dcm .dicom .ima", FileHolds::grid, Needs::dicom,
+              "a folder of slices, one of its files, or frames; time", begins_as_dicom, "", true},
     FormatRow{FileKind::bricks, "bricks", ".bricks", FileHolds::grid, Needs::nothing, "what convert writes",
               begins_as_brick_file},
     FormatRow{FileKind::raw, "raw samples", ".raw", FileHolds::grid, Needs::nothing,
@@ -128,8 +130,10 @@ bool is_vtk(const FormatRow& row) {
          row.kind == FileKind::vtk_surface;
 }
 
-const FormatRow& row_of_cases() {
-  return *std::find_if(rows.begin(), rows.end(), [](const FormatRow& r) { return r.begins == begins_as_openfoam; });
+/// Of a folder.
+const FormatRow& row_of_folder(const std::filesystem::path& folder) {
+  const auto begins = is_case_folder(folder) ? begins_as_openfoam : begins_as_dicom;
+  return *std::find_if(rows.begin(), rows.end(), [&](const FormatRow& r) { return r.begins == begins; });
 }
 
 }  // namespace
@@ -147,7 +151,7 @@ const FormatRow* format_named(const std::filesystem::path& file) {
 
 const FormatRow* format_begun(const std::filesystem::path& file) {
   std::error_code unknown;
-  if (is_input_folder(file)) return &row_of_cases();
+  if (is_input_folder(file)) return &row_of_folder(file);
   if (!std::filesystem::is_regular_file(file, unknown) || std::filesystem::file_size(file, unknown) == 0 || unknown)
     return nullptr;
   constexpr std::size_t length = 4096;

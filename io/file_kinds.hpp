@@ -33,6 +33,7 @@ enum class FileKind : std::uint8_t {
   nrrd,
   nifti,
   analyze,  ///< 7.5, or a NIfTI pair named by its .img
+  dicom,    ///< a file, or a folder of them
   bricks,
   raw,
   unread  ///< known, and not read
@@ -45,7 +46,7 @@ struct FileBeginning {
   std::uint64_t size = 0;  ///< of the whole; 0 if it is compressed
 };
 
-enum class Needs : std::uint8_t { nothing, vtk, tetgen, vtk_and_tetgen, gmsh };
+enum class Needs : std::uint8_t { nothing, vtk, tetgen, vtk_and_tetgen, gmsh, dicom };
 
 /// A row of the one table of formats. What is listed, what a name means and what a beginning means all come from it.
 struct FormatRow {
@@ -64,7 +65,7 @@ struct FormatRow {
 std::span<const FormatRow> format_rows();
 
 /// What a file is: by what it begins with; where that tells nothing, or the file is not there, by its name; null if
-/// that tells nothing either. A folder is an OpenFOAM case or nothing.
+/// that tells nothing either. A folder is an OpenFOAM case, of DICOM files, or nothing.
 const FormatRow* format_of(const std::filesystem::path& file);
 
 /// By what it begins with alone; null if that tells nothing.

@@ -1,4 +1,6 @@
-// Regular and rectilinear grids in VTK's formats, read by the helper.
+// Regular and rectilinear grids that a helper holds.
+#include "io/foreign_grids.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,9 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "io/field_choice.hpp"
-#include "io/file_beginnings.hpp"
-#include "io/foreign_file.hpp"
-#include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/volume_formats.hpp"
 
@@ -77,6 +76,11 @@ scene::GridGeometry geometry_of(const ForeignFile& file, const ForeignPart& part
   if (part.kind == ForeignPart::Kind::image) {
     set_image_geometry(part, g);
   } else if (part.kind == ForeignPart::Kind::rectilinear && part.coordinates.size() == 3) {
+    g.origin = {part.origin[0], part.origin[1], part.origin[2]};
+    if (std::any_of(part.direction.begin(), part.direction.end(), [](double x) { return x != 0; }))
+      for (int axis = 0; axis < 3; ++axis)
+        for (int row = 0; row < 3; ++row)
+          g.direction[axis][row] = part.direction[static_cast<std::size_t>(3 * row + axis)];
     for (int axis = 0; axis < 3; ++axis)
       set_coordinates(file, part.coordinates[static_cast<std::size_t>(axis)], axis, g);
     make_regular_if_even(part, g);
@@ -138,22 +142,16 @@ std::unique_ptr<scene::MemorySource> source_of(const ForeignFile& file, const Fo
 
 }  // namespace
 
-VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions& options) {
-  const std::string source = file.string();
-  const std::string type = vtk_xml_type(read_beginning(file, 4096));  // empty of a legacy one
-  if (type.starts_with('P')) require_beside_others(file);
-  nlohmann::json request{{"reader", type.empty() ? "vtk_legacy" : "vtk_xml"}};
-  if (!type.empty()) request["type"] = type;
-  const ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(), file, std::move(request));
+VolumeFile grid_of(const ForeignFile& opened, const VolumeOptions& options) {
   if (opened.contents.parts.size() != 1)
-    throw scene::bad_input(fmt::format("{}: it holds no one grid; give a volume", source));
+    throw scene::bad_input(fmt::format("{}: it holds no one grid; give a volume", opened.source));
+  const std::string& source = opened.source;
   const ForeignPart& part = opened.contents.parts.front();
   VolumeFile result;
   result.notes = opened.contents.notes;
   scene::Grid grid;
   grid.geometry = geometry_of(opened, part);
-  result.format = fmt::format("{} ({})", type.empty() ? "legacy VTK" : "VTK XML",
-                              grid.geometry.rectilinear() ? "rectilinear grid" : "image data");
+  result.format = opened.contents.format;
 
   CellBlock block;  // only its fields are of use
   std::size_t points = 1, cells = 1;

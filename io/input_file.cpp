@@ -19,7 +19,8 @@ std::uint64_t require_file(const std::filesystem::path& file) {
   if (is_input_folder(file)) return 0;
   if (std::filesystem::is_directory(status))
     throw scene::bad_input(
-        fmt::format("{}: it is a directory; name a file in it, or the folder of an OpenFOAM case", file.string()));
+        fmt::format("{}: it is a directory; name a file in it, or the folder of an OpenFOAM case or of DICOM files",
+                    file.string()));
   if (!std::ifstream(file, std::ios::binary))
     throw scene::bad_input(fmt::format("{}: it cannot be opened; check its permissions", file.string()));
   const std::uintmax_t size = std::filesystem::file_size(file, error);
@@ -40,12 +41,37 @@ std::string read_beginning(const std::filesystem::path& file, std::size_t limit)
   return text;
 }
 
-bool is_input_folder(const std::filesystem::path& folder) {
+bool is_case_folder(const std::filesystem::path& folder) {
   std::error_code unknown;
   return std::filesystem::is_directory(folder, unknown) &&
          (std::filesystem::is_regular_file(folder / "system" / "controlDict", unknown) ||
           std::filesystem::is_directory(folder / "constant" / "polyMesh", unknown) ||
           std::filesystem::is_directory(folder / "processor0" / "constant" / "polyMesh", unknown));
+}
+
+bool looks_like_dicom(std::string_view beginning) {
+  return beginning.size() >= 132 && beginning.substr(128, 4) == "DICM";
+}
+
+bool is_input_folder(const std::filesystem::path& folder) {
+  if (is_case_folder(folder)) return true;
+  // In many folders the slices lie one or two levels below, and other files beside them.
+  constexpr int most = 1000;
+  constexpr int deepest = 4;
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) return false;
+  std::filesystem::recursive_directory_iterator entry(folder, error);
+  for (int files = 0; !error && files < most && entry != std::filesystem::recursive_directory_iterator(); ++files) {
+    std::error_code unknown;
+    if (entry.depth() >= deepest) entry.disable_recursion_pending();
+    if (entry->is_regular_file(unknown)) {
+      std::string text(132, '\0');
+      std::ifstream in(entry->path(), std::ios::binary);
+      if (in.read(text.data(), 132) && looks_like_dicom(text)) return true;
+    }
+    entry.increment(error);
+  }
+  return false;
 }
 
 std::string lower_extension(const std::filesystem::path& file) {

@@ -4,11 +4,18 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace tessera::io {
 
-/// Whether a folder stands for a file: an OpenFOAM case (system/controlDict or constant/polyMesh in it, or the latter
-/// in processor0) is one.
+/// Whether a folder is an OpenFOAM case: system/controlDict or constant/polyMesh in it, or the latter in processor0.
+bool is_case_folder(const std::filesystem::path& folder);
+
+/// Whether a file begins as DICOM files do, with DICM after 128 bytes of anything.
+bool looks_like_dicom(std::string_view beginning);
+
+/// Whether a folder stands for a file: an OpenFOAM case, or one with a DICOM file among its first thousand, at most
+/// four levels below.
 bool is_input_folder(const std::filesystem::path& folder);
 
 /// Throws Error(bad_input) unless `file` is a readable regular file that is not empty, or a folder that stands for one;

@@ -45,6 +45,10 @@ StoredVolume describe_raw(const std::filesystem::path& file, const VolumeOptions
 /// .vti .pvti .vtr .pvtr .vtk by VTK.
 VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions& options);
 
+/// DICOM: a folder of slices, or one of its files, or frames in one file.
+VolumeFile read_dicom(const std::filesystem::path& file, const VolumeOptions& options);
+bool has_dicom();
+
 /// Whether the beginning of a file is that of the format.
 bool looks_like_nifti(const std::filesystem::path& file);
 bool looks_like_analyze(const std::filesystem::path& file);

@@ -21,7 +21,7 @@ namespace tessera::io {
 namespace {
 
 /// What kind of volume a file begins as.
-enum class VolumeKind { none, vtk, meta_image, nrrd, nifti, analyze, bricks };
+enum class VolumeKind { none, vtk, meta_image, nrrd, nifti, analyze, dicom, bricks };
 
 /// Of NIfTI files gzip is a part of the format, so that they are inflated as they are read; others are inflated first.
 VolumeKind volume_kind_of(const std::filesystem::path& file) {
@@ -39,6 +39,8 @@ VolumeKind volume_kind_of(const std::filesystem::path& file) {
       return VolumeKind::nifti;
     case FileKind::analyze:
       return VolumeKind::analyze;
+    case FileKind::dicom:
+      return VolumeKind::dicom;
     default:
       return VolumeKind::none;
   }
@@ -146,11 +148,14 @@ VolumeFile open_described(const std::filesystem::path& file, VolumeKind kind, co
       return open_stored(read_nifti_header(file), options, source);
     case VolumeKind::analyze:
       return open_stored(read_analyze_header(file), options, source);
+    case VolumeKind::dicom:
+      return read_dicom(file, options);
     case VolumeKind::none:
       break;
   }
   const std::string extension = lower_extension(without_gz(file));
   if (extension == ".img" || extension == ".hdr") return open_stored(read_analyze_header(file), options, source);
+  if (extension == ".dcm" || extension == ".dicom" || extension == ".ima") return read_dicom(file, options);
   if (extension == ".nii") return open_stored(read_nifti_header(file), options, source);
   throw scene::bad_input(fmt::format("{}: it does not begin as a {} does; check what it is", source,
                                      extension.empty() ? "volume" : extension.substr(1)));
@@ -210,8 +215,8 @@ VolumeFile open_unscanned_volume(const std::filesystem::path& file, const Volume
       volume.payload = content;
       return open_stored(std::move(volume), options, source);
     };
-    if (kind == VolumeKind::nifti || kind == VolumeKind::analyze || (kind == VolumeKind::none && !raw) ||
-        !looks_like_gzip(read_beginning(file, 2)))
+    if (is_input_folder(file) || kind == VolumeKind::nifti || kind == VolumeKind::analyze ||
+        (kind == VolumeKind::none && !raw) || !looks_like_gzip(read_beginning(file, 2)))
       return open(file);
     const InflatedFile inflated(file);
     VolumeFile volume = inflated.read(open);

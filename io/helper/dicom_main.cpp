@@ -73,7 +73,8 @@ ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& file
   std::error_code unknown;
   const bool is_folder = std::filesystem::is_directory(file, unknown);
   std::vector<DicomSlice> slices;
-  allow_for_folder(is_folder ? file : file.parent_path().empty() ? "." : file.parent_path());
+  const std::filesystem::path folder = is_folder ? file : file.parent_path().empty() ? "." : file.parent_path();
+  allow_for_folder(folder);
   if (is_folder) {
     slices = slices_in(file);
   } else {
@@ -84,7 +85,7 @@ ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& file
     if (one->frames > 1) {
       slices.push_back(*one);
     } else {
-      slices = slices_in(file.parent_path().empty() ? "." : file.parent_path());
+      slices = slices_in(folder);
       for (DicomSlice& slice : slices)
         if (std::filesystem::equivalent(slice.file, file, unknown)) slice.file = file;
     }
@@ -95,6 +96,8 @@ ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& file
   if (const auto step = request.find("time_step"); step != request.end()) time_step = step->get<std::size_t>();
   DicomVolume volume = volume_of(std::move(slices), file, time_step, source);
   const DicomSlice& first = volume.slices.front();
+  allow_for_folder(
+      folder, std::any_of(volume.slices.begin(), volume.slices.end(), [](const DicomSlice& s) { return s.is_packed; }));
 
   ForeignContents contents;
   contents.format = fmt::format("DICOM{}{}", first.modality.empty() ? "" : " ", first.modality);
@@ -104,9 +107,9 @@ ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& file
     const bool are_alike = std::all_of(volume.slices.begin(), volume.slices.end(), [&](const DicomSlice& s) {
       return s.slope == first.slope && s.intercept == first.intercept;
     });
-    contents.notes.push_back(are_alike ? fmt::format("values are {:.9g} * sample + {:.9g}, as its header says",
-                                                     first.slope, first.intercept)
-                                       : "slices have scales of their own, which apply");
+    contents.notes.push_back(
+        are_alike ? fmt::format("values are {:.9g} * sample + {:.9g}, as its header says", first.slope, first.intercept)
+                  : "slices have scales of their own, which apply");
   }
   if (!first.unit.empty()) contents.notes.push_back("values are in " + first.unit);
   ForeignPart& part = contents.parts.emplace_back();

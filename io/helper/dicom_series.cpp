@@ -53,9 +53,10 @@ std::vector<DicomSlice> chosen_group(std::vector<DicomSlice> slices, const std::
     chosen = std::max_element(groups.begin(), groups.end(),
                               [&](const auto& a, const auto& b) { return samples_of(a) < samples_of(b); });
   if (chosen->front().components != 1)
-    throw scene::bad_input(fmt::format("{}: its pictures are coloured, of {} numbers a sample, no values of a volume; "
-                                       "give a series of one number a sample",
-                                       source, chosen->front().components));
+    throw scene::bad_input(
+        fmt::format("{}: its pictures are coloured, of {} numbers a sample, no values of a volume; "
+                    "give a series of one number a sample",
+                    source, chosen->front().components));
   if (groups.size() > 1)
     notes.push_back(fmt::format("of {} stacks of slices this is one of {}; name one of its files for another",
                                 groups.size(), chosen->size() * static_cast<std::size_t>(chosen->front().frames)));
@@ -135,8 +136,8 @@ void set_places(DicomVolume& volume) {
   }
   const double tilt = glm::length(glm::cross(glm::normalize(whole), normal));
   if (tilt > 1e-3)
-    volume.notes.push_back(
-        fmt::format("slices are shifted against each other, by {:.1f} degrees", std::asin(std::min(tilt, 1.0)) * 57.29577951308232));
+    volume.notes.push_back(fmt::format("slices are shifted against each other, by {:.1f} degrees",
+                                       std::asin(std::min(tilt, 1.0)) * 57.29577951308232));
 }
 
 }  // namespace
@@ -144,18 +145,19 @@ void set_places(DicomVolume& volume) {
 DicomVolume volume_of(std::vector<DicomSlice> slices, const std::filesystem::path& named,
                       std::optional<std::size_t> time_step, const std::string& source) {
   DicomVolume volume;
-  volume.slices = slices_of_step(chosen_group(std::move(slices), named, source, volume.notes), time_step, source,
-                                 volume.notes);
+  volume.slices =
+      slices_of_step(chosen_group(std::move(slices), named, source, volume.notes), time_step, source, volume.notes);
   const DicomSlice& first = volume.slices.front();
   volume.origin = first.position;
   volume.steps = {first.row * first.spacing.x, first.column * first.spacing.y, first.normal() * first.spacing.z};
   if (volume.slices.size() == 1 && first.frames == 1)
-    throw scene::bad_input(fmt::format("{}: it is a single slice, without others of its series beside it; give a "
-                                       "folder of slices",
-                                       source));
+    throw scene::bad_input(
+        fmt::format("{}: it is a single slice, without others of its series beside it; give a "
+                    "folder of slices",
+                    source));
   if (!first.has_position)
-    volume.notes.push_back(fmt::format("its files do not say where slices are: by their numbers, {:.4g} mm apart",
-                                       first.spacing.z));
+    volume.notes.push_back(
+        fmt::format("its files do not say where slices are: by their numbers, {:.4g} mm apart", first.spacing.z));
   else if (volume.slices.size() > 1)
     set_places(volume);
   return volume;

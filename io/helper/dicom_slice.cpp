@@ -64,7 +64,7 @@ double seconds_of(double clock) {
 
 /// What orders slices of one place: the first of these that the file has.
 double time_of(const gdcm::DataSet& data) {
-  if (const auto index = number_of(data, 0x0020, 0x0100)) return *index;    // temporal position identifier
+  if (const auto index = number_of(data, 0x0020, 0x0100)) return *index;      // temporal position identifier
   if (const auto trigger = number_of(data, 0x0018, 0x1060)) return *trigger;  // of the heart
   if (const auto acquired = number_of(data, 0x0008, 0x0032)) return seconds_of(*acquired);
   if (const auto content = number_of(data, 0x0008, 0x0033)) return seconds_of(*content);
@@ -98,6 +98,9 @@ bool set_samples(const gdcm::File& file, DicomSlice& slice) {
   slice.columns = sizes[0], slice.rows = sizes[1];
   slice.frames = sizes.size() > 2 ? std::max<std::int64_t>(sizes[2], 1) : 1;
   slice.components = format.GetSamplesPerPixel();
+  slice.is_packed = file.GetHeader().GetDataSetTransferSyntax().IsEncapsulated();
+  slice.bytes = static_cast<std::uint64_t>(slice.columns * slice.rows) * static_cast<std::uint64_t>(slice.frames) *
+                format.GetPixelSize();
   const std::vector<double> rescale = gdcm::ImageHelper::GetRescaleInterceptSlopeValue(file);
   if (rescale.size() == 2 && std::isfinite(rescale[0]) && std::isfinite(rescale[1]) && rescale[1] != 0)
     slice.intercept = rescale[0], slice.slope = rescale[1];
@@ -162,6 +165,9 @@ std::vector<double> read_dicom_samples(const DicomSlice& slice) {
   const auto refuse = [&](const char* what) {
     return scene::bad_input(fmt::format("{}: {}; {}", source, what, write_anew));
   };
+  // Of packed ones the limits of memory tell.
+  if (!slice.is_packed && slice.bytes > std::filesystem::file_size(slice.file))
+    throw refuse("it is smaller than the samples that its header speaks of");
   gdcm::ImageReader reader;
   reader.SetFileName(slice.file.c_str());
   if (!reader.Read()) throw refuse("GDCM cannot read its samples");

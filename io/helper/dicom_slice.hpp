@@ -14,11 +14,13 @@ namespace tessera::io::helper {
 /// the patient's frame: x to the left, y to the back, z to the head (DICOM PS3.3, C.7.6.2).
 struct DicomSlice {
   std::filesystem::path file;
-  std::string series;               ///< its unique identifier
-  std::string modality, unit;       ///< may be empty
+  std::string series;          ///< its unique identifier
+  std::string modality, unit;  ///< may be empty
   std::int64_t columns = 0, rows = 0, frames = 1;
-  int components = 1;               ///< 3: colours
-  bool has_position = false;        ///< else by its number in the series
+  int components = 1;         ///< 3: colours
+  bool is_packed = false;     ///< its samples are compressed
+  std::uint64_t bytes = 0;    ///< of its samples, unpacked
+  bool has_position = false;  ///< else by its number in the series
   glm::dvec3 position{0}, row{1, 0, 0}, column{0, 1, 0};
   glm::dvec3 spacing{1};            ///< between columns, rows and, of frames or as thickness, slices
   double slope = 1, intercept = 0;  ///< value = slope * sample + intercept

@@ -64,7 +64,7 @@ void allow(std::uint64_t size, bool is_compressed) {
 
 void allow_for(const std::filesystem::path& file) { allow(require_file(file), may_be_compressed(file)); }
 
-void allow_for_folder(const std::filesystem::path& folder) {
+void allow_for_folder(const std::filesystem::path& folder, bool is_compressed) {
   std::uint64_t bytes = 0;
   std::error_code error;
   std::filesystem::recursive_directory_iterator entry(folder, error);
@@ -74,7 +74,7 @@ void allow_for_folder(const std::filesystem::path& folder) {
     if (entry->is_regular_file(unknown)) bytes += entry->file_size(unknown);
     entry.increment(error);
   }
-  allow(std::min<std::uint64_t>(bytes, 1ull << 42), false);
+  allow(std::min<std::uint64_t>(bytes, 1ull << 42), is_compressed);
 }
 
 scene::Error memory_error(const std::string& source) {

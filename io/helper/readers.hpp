@@ -58,7 +58,7 @@ ForeignContents fill_surface(Holdings& holdings, const std::filesystem::path& fi
 void allow_for(const std::filesystem::path& file);
 
 /// For all that lies in a folder and below: of formats that are many files.
-void allow_for_folder(const std::filesystem::path& folder);
+void allow_for_folder(const std::filesystem::path& folder, bool is_compressed = false);
 
 /// What to say where memory ran out: the file is damaged, if it had all that its size can explain, else the machine is
 /// too small.

@@ -99,7 +99,7 @@ bool has_wide_labels(const std::filesystem::path& folder) {
 
 bool is_case(const std::filesystem::path& folder) {
   std::error_code unknown;
-  return is_input_folder(folder) || std::filesystem::exists(folder / "processor0", unknown) ||
+  return is_case_folder(folder) || std::filesystem::exists(folder / "processor0", unknown) ||
          std::filesystem::exists(folder / "processors", unknown);
 }
 

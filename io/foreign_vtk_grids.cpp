@@ -1,0 +1,23 @@
+// Regular and rectilinear grids in VTK's formats, read by the helper.
+#include <fmt/format.h>
+
+#include "io/file_beginnings.hpp"
+#include "io/foreign_grids.hpp"
+#include "io/inflated_file.hpp"
+#include "io/input_file.hpp"
+#include "io/volume_formats.hpp"
+
+namespace tessera::io {
+
+VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions& options) {
+  const std::string type = vtk_xml_type(read_beginning(file, 4096));  // empty of a legacy one
+  if (type.starts_with('P')) require_beside_others(file);
+  nlohmann::json request{{"reader", type.empty() ? "vtk_legacy" : "vtk_xml"}};
+  if (!type.empty()) request["type"] = type;
+  VolumeFile result = grid_of(open_foreign(std::make_shared<HelperProcess>(), file, std::move(request)), options);
+  result.format = fmt::format("{} ({})", type.empty() ? "legacy VTK" : "VTK XML",
+                              result.source->geometry().rectilinear() ? "rectilinear grid" : "image data");
+  return result;
+}
+
+}  // namespace tessera::io
