@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/brick_file.hpp"
+#include "io/input_file.hpp"
 #include "io/volume_formats.hpp"
 
 namespace tessera::io {

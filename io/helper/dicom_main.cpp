@@ -6,7 +6,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
+#include <span>
 
+#include "io/helper/dicom_headers.hpp"
 #include "io/helper/dicom_series.hpp"
 #include "io/helper/holdings.hpp"
 #include "io/helper/readers.hpp"
@@ -24,23 +26,23 @@ std::vector<DicomSlice> slices_in(const std::filesystem::path& folder) {
   std::error_code error;
   for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
     files.push_back(entry->path());
-  std::vector<DicomSlice> slices;
-  const auto add = [&](const std::filesystem::path& file) {
-    std::error_code unknown;
-    if (!std::filesystem::is_regular_file(file, unknown) || std::filesystem::file_size(file, unknown) < 132) return;
-    if (file.filename() == "DICOMDIR") return;  // a list of the others
-    if (auto slice = read_dicom_header(file)) slices.push_back(std::move(*slice));
+  const auto slices_among = [](std::vector<std::filesystem::path>& found) {
+    std::erase_if(found, [](const std::filesystem::path& file) {
+      std::error_code unknown;
+      // A DICOMDIR is a list of the others.
+      return !std::filesystem::is_regular_file(file, unknown) || std::filesystem::file_size(file, unknown) < 132 ||
+             file.filename() == "DICOMDIR";
+    });
+    std::sort(found.begin(), found.end());
+    return read_dicom_headers(found);
   };
-  std::sort(files.begin(), files.end());
-  for (const auto& file : files) add(file);
+  std::vector<DicomSlice> slices = slices_among(files);
   if (!slices.empty()) return slices;
   std::vector<std::filesystem::path> below;
   for (std::filesystem::recursive_directory_iterator entry(folder, error), end;
        !error && entry != end && below.size() < most_files; entry.increment(error))
     below.push_back(entry->path());
-  std::sort(below.begin(), below.end());
-  for (const auto& file : below) add(file);
-  return slices;
+  return slices_among(below);
 }
 
 template <class T>
@@ -78,12 +80,12 @@ ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& file
   if (is_folder) {
     slices = slices_in(file);
   } else {
-    const std::optional<DicomSlice> one = read_dicom_header(file);
-    if (!one)
+    const std::vector<DicomSlice> one = read_dicom_headers(std::span(&file, 1));
+    if (one.empty())
       throw scene::bad_input(
           fmt::format("{}: GDCM finds no pictures in it; give a folder or a file of slices", source));
-    if (one->frames > 1) {
-      slices.push_back(*one);
+    if (one.front().frames > 1) {
+      slices = one;
     } else {
       slices = slices_in(folder);
       for (DicomSlice& slice : slices)

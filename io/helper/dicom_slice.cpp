@@ -13,8 +13,8 @@
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
-#include <set>
 
+#include "io/mapped_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -135,8 +135,8 @@ std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
   try {
     gdcm::Reader reader;
     reader.SetFileName(file.c_str());
-    const gdcm::Tag samples(0x7fe0, 0x0010), after(0x7fe0, 0x0011);
-    if (!reader.ReadUpToTag(after, {samples})) return std::nullopt;
+    // It stops at the samples, (7fe0, 0010), so that a file that ends in them still says what it is.
+    if (!reader.ReadUpToTag(gdcm::Tag(0x7fe0, 0x0001))) return std::nullopt;
     const gdcm::DataSet& data = reader.GetFile().GetDataSet();
     // Rows and columns; a DICOMDIR, a report or a plan has none.
     if (!data.FindDataElement(gdcm::Tag(0x0028, 0x0010)) || !data.FindDataElement(gdcm::Tag(0x0028, 0x0011)))
@@ -176,6 +176,11 @@ std::vector<double> read_dicom_samples(const DicomSlice& slice) {
   const auto samples = static_cast<std::size_t>(slice.columns * slice.rows * slice.frames);
   if (image.GetBufferLength() != samples * format.GetPixelSize() || format.GetSamplesPerPixel() != 1)
     throw refuse("its samples are not as many as its header says");
+  // GDCM minds neither samples that end early nor packed ones without their last mark.
+  const gdcm::ByteValue* const raw = image.GetDataElement().GetByteValue();
+  if (slice.is_packed ? MappedFile(slice.file).text().find("\xfe\xff\xdd\xe0") == std::string_view::npos
+                      : raw == nullptr || raw->GetLength() < slice.bytes)
+    throw refuse("it ends before its samples do");
   std::vector<char> bytes(image.GetBufferLength());
   if (!image.GetBuffer(bytes.data())) throw refuse("GDCM cannot unpack its samples");
   std::vector<double> values;

@@ -1,0 +1,196 @@
+// DICOM series, written here byte by byte (PS3.5, explicit little-endian elements).
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/file_kinds.hpp"
+#include "io/temporary_folder.hpp"
+#include "io/volume_bytes.hpp"
+#include "io/volume_checks.hpp"
+#include "io/volume_formats.hpp"
+#include "io/volume_reader.hpp"
+
+namespace tessera::io {
+namespace {
+
+using scene::GridIndex;
+using test::all_samples;
+using test::expect_no_volume;
+using test::has_note;
+
+std::string little(std::uint32_t value, int bytes) {
+  std::string text;
+  for (int k = 0; k < bytes; ++k) text += static_cast<char>((value >> (8 * k)) & 0xff);
+  return text;
+}
+
+std::string element(std::uint32_t group, std::uint32_t number, const std::string& kind, std::string value) {
+  if (value.size() % 2 != 0) value += kind == "UI" ? '\0' : ' ';
+  const bool is_long = kind == "OW" || kind == "OB";
+  return little(group, 2) + little(number, 2) + kind + (is_long ? std::string(2, '\0') : "") +
+         little(static_cast<std::uint32_t>(value.size()), is_long ? 4 : 2) + value;
+}
+
+struct Slice {
+  double z = 0;
+  double shift = 0;  ///< to the left
+  std::string series = "1.2.3";
+  int number = 1;
+  double slope = 1, intercept = 0;
+  int time = 0;  ///< 0: none said
+  int columns = 4, rows = 3, colours = 1;
+  std::vector<std::int16_t> samples;
+};
+
+constexpr const char* ct_storage = "1.2.840.10008.5.1.4.1.1.2";
+
+std::string dicom(const Slice& s) {
+  const std::string about = element(2, 2, "UI", ct_storage) + element(2, 3, "UI", fmt::format("1.2.{}", s.number)) +
+                            element(2, 0x10, "UI", "1.2.840.10008.1.2.1");
+  std::string data = element(8, 0x16, "UI", ct_storage) + element(8, 0x60, "CS", "CT") +
+                     element(0x18, 0x50, "DS", "2") + element(0x20, 0xe, "UI", s.series) +
+                     element(0x20, 0x13, "IS", fmt::format("{}", s.number)) +
+                     element(0x20, 0x32, "DS", fmt::format("{}\\-20\\{}", 10 + s.shift, s.z)) +
+                     element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0");
+  if (s.time > 0) data += element(0x20, 0x100, "IS", fmt::format("{}", s.time));
+  data += element(0x28, 2, "US", little(static_cast<std::uint32_t>(s.colours), 2)) +
+          element(0x28, 4, "CS", s.colours == 1 ? "MONOCHROME2" : "RGB");
+  if (s.colours > 1) data += element(0x28, 6, "US", little(0, 2));
+  data += element(0x28, 0x10, "US", little(static_cast<std::uint32_t>(s.rows), 2)) +
+          element(0x28, 0x11, "US", little(static_cast<std::uint32_t>(s.columns), 2)) +
+          element(0x28, 0x30, "DS", "0.75\\0.5") + element(0x28, 0x100, "US", little(s.colours == 1 ? 16 : 8, 2)) +
+          element(0x28, 0x101, "US", little(s.colours == 1 ? 16 : 8, 2)) +
+          element(0x28, 0x102, "US", little(s.colours == 1 ? 15 : 7, 2)) +
+          element(0x28, 0x103, "US", little(s.colours == 1 ? 1 : 0, 2)) +
+          element(0x28, 0x1052, "DS", fmt::format("{}", s.intercept)) +
+          element(0x28, 0x1053, "DS", fmt::format("{}", s.slope)) + element(0x28, 0x1054, "LO", "HU");
+  const std::string samples = s.colours == 1
+                                  ? test::bytes_of(s.samples)
+                                  : std::string(static_cast<std::size_t>(s.columns * s.rows * s.colours), 'c');
+  return std::string(128, '\0') + "DICM" + element(2, 0, "UL", little(static_cast<std::uint32_t>(about.size()), 4)) +
+         about + data + element(0x7fe0, 0x10, "OW", samples);
+}
+
+/// Samples first, first + 1, ...
+std::vector<std::int16_t> twelve(int first) {
+  std::vector<std::int16_t> samples;
+  for (int k = 0; k < 12; ++k) samples.push_back(static_cast<std::int16_t>(first + k));
+  return samples;
+}
+
+class Dicom : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!has_dicom()) GTEST_SKIP() << "this build is without GDCM";
+  }
+  std::filesystem::path write(const std::string& name, const Slice& slice) { return folder.write(name, dicom(slice)); }
+  test::TemporaryFolder folder;
+};
+
+TEST_F(Dicom, AFolderOfSlicesIsOneVolumeInTheOrderOfTheirPlaces) {
+  // Named and numbered in another order than they lie in.
+  const double z[] = {5, 3, 7};
+  for (int k = 0; k < 3; ++k)
+    write(fmt::format("{}.dcm", k), {.z = z[k], .number = 3 - k, .intercept = -1000, .samples = twelve(100 * k)});
+  folder.write("notes.txt", std::string(200, 'x'));
+  EXPECT_TRUE(is_volume(folder.path()));
+  for (const auto& input : {folder.path(), folder / "1.dcm"}) {
+    const VolumeFile volume = open_volume(input);
+    const scene::GridGeometry& g = volume.source->geometry();
+    EXPECT_EQ(g.points, (GridIndex{4, 3, 3}));
+    EXPECT_EQ(g.origin, glm::dvec3(10, -20, 3));
+    EXPECT_EQ(g.spacing, glm::dvec3(0.5, 0.75, 2));
+    EXPECT_EQ(g.direction, glm::dmat3(1));
+    const std::vector<double> samples = all_samples(*volume.source);
+    EXPECT_EQ(samples[0], 100 - 1000);
+    EXPECT_EQ(samples[12 + 5], 5 - 1000);
+    EXPECT_EQ(samples[24 + 11], 211 - 1000);
+    EXPECT_EQ(volume.range, (scene::ValueRange{-1000, -789, 0}));
+    EXPECT_EQ(volume.fields.front().low, -1000);
+    EXPECT_EQ(volume.source->grid().type, scene::SampleType::int16);
+    EXPECT_TRUE(has_note(volume, "1 * sample + -1000"));
+    EXPECT_TRUE(has_note(volume, "HU"));
+    EXPECT_EQ(volume.format, "DICOM CT");
+  }
+}
+
+TEST_F(Dicom, GapsAreToldAndKeptAndTiltedStacksAreSheared) {
+  const double z[] = {0, 2, 6, 8};
+  for (int k = 0; k < 4; ++k) write(fmt::format("{}.dcm", k), {.z = z[k], .number = k, .samples = twelve(k)});
+  const VolumeFile gap = open_volume(folder.path());
+  EXPECT_TRUE(gap.source->geometry().rectilinear());
+  EXPECT_TRUE(has_note(gap, "2 to 4 mm apart, the widest gap after 1.dcm; there 1 slice may be missing"));
+  const scene::Box box = scene::bounds(gap.source->geometry());
+  EXPECT_EQ(box.low, glm::dvec3(10, -20, 0));
+  EXPECT_EQ(box.high, glm::dvec3(11.5, -18.5, 8));
+  EXPECT_EQ(gap.source->geometry().coordinates[2], (std::vector<double>{0, 2, 6, 8}));
+  for (int k = 0; k < 4; ++k)
+    write(fmt::format("{}.dcm", k), {.z = 2.0 * k, .shift = 2.0 * k, .number = k, .samples = twelve(k)});
+  const VolumeFile tilted = open_volume(folder.path());
+  EXPECT_FALSE(tilted.source->geometry().rectilinear());
+  EXPECT_NEAR(tilted.source->geometry().spacing.z, std::sqrt(8.0), 1e-12);
+  EXPECT_NEAR(tilted.source->geometry().direction[2].x, std::sqrt(0.5), 1e-12);
+  EXPECT_TRUE(has_note(tilted, "by 45.0 degrees"));
+}
+
+TEST_F(Dicom, SlicesScaleEachByItsOwnHeader) {
+  for (int k = 0; k < 2; ++k) write(fmt::format("{}.dcm", k), {.z = 1.0 * k, .slope = 0.5 + k, .samples = twelve(1)});
+  const VolumeFile volume = open_volume(folder.path());
+  const std::vector<double> samples = all_samples(*volume.source);
+  EXPECT_EQ(samples[0], 0.5);
+  EXPECT_EQ(samples[12], 1.5);
+  EXPECT_EQ(volume.source->grid().type, scene::SampleType::float32);
+  EXPECT_TRUE(has_note(volume, "scales of their own"));
+}
+
+TEST_F(Dicom, SlicesOfOnePlaceAreTimeSteps) {
+  for (int k = 0; k < 6; ++k)
+    write(fmt::format("{}.dcm", k), {.z = 1.0 * (k / 3), .number = k, .time = 1 + k % 3, .samples = twelve(100 * k)});
+  const VolumeFile last = open_volume(folder.path());
+  EXPECT_EQ(last.source->geometry().points, (GridIndex{4, 3, 2}));
+  EXPECT_EQ(all_samples(*last.source)[0], 200);
+  EXPECT_EQ(all_samples(*last.source)[12], 500);
+  EXPECT_TRUE(has_note(last, "time step 2 of 0 to 2"));
+  const VolumeFile first = open_volume(folder.path(), {.time_step = 0});
+  EXPECT_EQ(all_samples(*first.source)[12], 300);
+  expect_no_volume(folder.path(), "no time step 3, the series has 3", {.time_step = 3});
+}
+
+TEST_F(Dicom, OfSeveralSeriesTheLargestOrTheNamedOneIsShown) {
+  for (int k = 0; k < 5; ++k)
+    write(fmt::format("{}.dcm", k), {.z = 1.0 * k, .series = k < 3 ? "1.1" : "1.2", .samples = twelve(k)});
+  write("scout.dcm", {.series = "1.1", .columns = 3, .rows = 4, .samples = twelve(50)});
+  for (int k = 0; k < 9; ++k) write(fmt::format("rgb{}.dcm", k), {.z = 1.0 * k, .colours = 3, .samples = {}});
+  const VolumeFile largest = open_volume(folder.path());
+  EXPECT_EQ(largest.source->geometry().points, (GridIndex{4, 3, 3}));
+  EXPECT_TRUE(has_note(largest, "of 4 stacks of slices this is one of 3"));
+  EXPECT_EQ(all_samples(*open_volume(folder / "4.dcm").source)[0], 3);
+  expect_no_volume(folder / "rgb1.dcm", "coloured");
+  expect_no_volume(folder / "scout.dcm", "single slice");
+}
+
+TEST_F(Dicom, DamagedFilesAreNamedAndOtherFilesLeftOut) {
+  for (int k = 0; k < 3; ++k) write(fmt::format("{}.dcm", k), {.z = 1.0 * k, .samples = twelve(k)});
+  folder.write("plan.dcm", std::string(128, '\0') + "DICM" + element(2, 0x10, "UI", "1.2.840.10008.1.2.1"));
+  EXPECT_EQ(open_volume(folder.path()).source->geometry().points, (GridIndex{4, 3, 3}));
+  expect_no_volume(folder / "plan.dcm", "plan.dcm");
+  const std::string whole = dicom({.z = 1, .samples = twelve(1)});
+  folder.write("1.dcm", whole.substr(0, whole.size() - 10));
+  expect_no_volume(folder.path(), "1.dcm: it ends before its samples do");
+  // Any one byte of a header.
+  for (std::size_t at = 132; at < whole.size(); at += 3) {
+    std::string damaged = whole;
+    damaged[at] = static_cast<char>(damaged[at] ^ 0x55);
+    folder.write("1.dcm", damaged);
+    const test::Fault fault = test::fault_of([&] { open_volume(folder.path()); });
+    EXPECT_EQ(fault.message.find('\n'), std::string::npos) << fault.message;
+    EXPECT_TRUE(fault.message.empty() || fault.code == scene::ErrorCode::bad_input) << fault.message;
+  }
+  expect_no_volume(folder.write("text.dcm", std::string(200, 'x')), "GDCM finds no pictures");
+}
+
+}  // namespace
+}  // namespace tessera::io
