@@ -35,7 +35,7 @@ nlohmann::json json_of(const DicomSlice& s) {
   return nlohmann::json::array({binary(s.series), binary(s.modality), binary(s.unit), s.columns, s.rows, s.frames,
                                 s.components, s.is_packed, s.bytes, s.has_position, three_of(s.position),
                                 three_of(s.row), three_of(s.column), three_of(s.spacing), s.slope, s.intercept,
-                                s.number, s.time});
+                                s.number, s.time, s.samples_end});
 }
 
 DicomSlice slice_of(const nlohmann::json& j, const std::filesystem::path& file) {
@@ -47,7 +47,8 @@ DicomSlice slice_of(const nlohmann::json& j, const std::filesystem::path& file) 
   j.at(9).get_to(s.has_position);
   s.position = vector_of(j.at(10)), s.row = vector_of(j.at(11)), s.column = vector_of(j.at(12));
   s.spacing = vector_of(j.at(13));
-  j.at(14).get_to(s.slope), j.at(15).get_to(s.intercept), j.at(16).get_to(s.number), j.at(17).get_to(s.time);
+  j.at(14).get_to(s.slope), j.at(15).get_to(s.intercept), j.at(16).get_to(s.number), j.at(17).get_to(s.time),
+      j.at(18).get_to(s.samples_end);
   return s;
 }
 

@@ -12,6 +12,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <glm/geometric.hpp>
 
 #include "io/mapped_file.hpp"
@@ -133,10 +134,11 @@ glm::dvec3 DicomSlice::normal() const { return glm::normalize(glm::cross(row, co
 std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
   gdcm::Trace::WarningOff(), gdcm::Trace::ErrorOff(), gdcm::Trace::DebugOff();
   try {
+    std::ifstream in(file, std::ios::binary);
     gdcm::Reader reader;
-    reader.SetFileName(file.c_str());
-    // It stops at the samples, (7fe0, 0010), so that a file that ends in them still says what it is.
-    if (!reader.ReadUpToTag(gdcm::Tag(0x7fe0, 0x0001))) return std::nullopt;
+    reader.SetStream(in);
+    // It skips the samples and stops there, so that a file that ends in them still says what it is.
+    if (!reader.ReadUpToTag(gdcm::Tag(0x7fe0, 0x0001), {gdcm::Tag(0x7fe0, 0x0010)})) return std::nullopt;
     const gdcm::DataSet& data = reader.GetFile().GetDataSet();
     // Rows and columns; a DICOMDIR, a report or a plan has none.
     if (!data.FindDataElement(gdcm::Tag(0x0028, 0x0010)) || !data.FindDataElement(gdcm::Tag(0x0028, 0x0011)))
@@ -149,6 +151,8 @@ std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
     if (slice.unit.empty()) slice.unit = text_of(data, 0x0054, 0x1001);
     if (slice.unit.empty() && slice.modality == "RTDOSE") slice.unit = text_of(data, 0x3004, 0x0002);
     if (!set_samples(reader.GetFile(), slice)) return std::nullopt;
+    if (reader.GetFile().GetHeader().GetDataSetTransferSyntax() != gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian)
+      slice.samples_end = static_cast<std::uint64_t>(std::max<std::streamoff>(in.tellg(), 0));
     set_place(reader.GetFile(), slice);
     slice.number = static_cast<std::int64_t>(std::clamp(number_of(data, 0x0020, 0x0013).value_or(0), -1e9, 1e9));
     slice.time = time_of(data);
@@ -165,9 +169,11 @@ std::vector<double> read_dicom_samples(const DicomSlice& slice) {
   const auto refuse = [&](const char* what) {
     return scene::bad_input(fmt::format("{}: {}; {}", source, what, write_anew));
   };
-  // Of packed ones the limits of memory tell.
-  if (!slice.is_packed && slice.bytes > std::filesystem::file_size(slice.file))
-    throw refuse("it is smaller than the samples that its header speaks of");
+  // GDCM minds neither samples that end early nor packed ones without their last mark.
+  const MappedFile mapped(slice.file);
+  if (slice.samples_end > 0 && (slice.is_packed ? mapped.text().find("\xfe\xff\xdd\xe0") == std::string_view::npos
+                                                : mapped.text().size() < std::max(slice.samples_end, slice.bytes)))
+    throw refuse("it ends before its samples do");
   gdcm::ImageReader reader;
   reader.SetFileName(slice.file.c_str());
   if (!reader.Read()) throw refuse("GDCM cannot read its samples");
@@ -176,11 +182,6 @@ std::vector<double> read_dicom_samples(const DicomSlice& slice) {
   const auto samples = static_cast<std::size_t>(slice.columns * slice.rows * slice.frames);
   if (image.GetBufferLength() != samples * format.GetPixelSize() || format.GetSamplesPerPixel() != 1)
     throw refuse("its samples are not as many as its header says");
-  // GDCM minds neither samples that end early nor packed ones without their last mark.
-  const gdcm::ByteValue* const raw = image.GetDataElement().GetByteValue();
-  if (slice.is_packed ? MappedFile(slice.file).text().find("\xfe\xff\xdd\xe0") == std::string_view::npos
-                      : raw == nullptr || raw->GetLength() < slice.bytes)
-    throw refuse("it ends before its samples do");
   std::vector<char> bytes(image.GetBufferLength());
   if (!image.GetBuffer(bytes.data())) throw refuse("GDCM cannot unpack its samples");
   std::vector<double> values;

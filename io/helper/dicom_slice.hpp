@@ -17,10 +17,11 @@ struct DicomSlice {
   std::string series;          ///< its unique identifier
   std::string modality, unit;  ///< may be empty
   std::int64_t columns = 0, rows = 0, frames = 1;
-  int components = 1;         ///< 3: colours
-  bool is_packed = false;     ///< its samples are compressed
-  std::uint64_t bytes = 0;    ///< of its samples, unpacked
-  bool has_position = false;  ///< else by its number in the series
+  int components = 1;             ///< 3: colours
+  bool is_packed = false;         ///< its samples are compressed
+  std::uint64_t samples_end = 0;  ///< where they end in the file, if not packed; 0 if all of it is deflated
+  std::uint64_t bytes = 0;        ///< of its samples, unpacked
+  bool has_position = false;      ///< else by its number in the series
   glm::dvec3 position{0}, row{1, 0, 0}, column{0, 1, 0};
   glm::dvec3 spacing{1};            ///< between columns, rows and, of frames or as thickness, slices
   double slope = 1, intercept = 0;  ///< value = slope * sample + intercept
