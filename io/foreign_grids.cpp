@@ -78,9 +78,8 @@ scene::GridGeometry geometry_of(const ForeignFile& file, const ForeignPart& part
   } else if (part.kind == ForeignPart::Kind::rectilinear && part.coordinates.size() == 3) {
     g.origin = {part.origin[0], part.origin[1], part.origin[2]};
     if (std::any_of(part.direction.begin(), part.direction.end(), [](double x) { return x != 0; }))
-      for (int axis = 0; axis < 3; ++axis)
-        for (int row = 0; row < 3; ++row)
-          g.direction[axis][row] = part.direction[static_cast<std::size_t>(3 * row + axis)];
+      for (std::size_t k = 0; k < 9; ++k)
+        g.direction[static_cast<int>(k % 3)][static_cast<int>(k / 3)] = part.direction[k];
     for (int axis = 0; axis < 3; ++axis)
       set_coordinates(file, part.coordinates[static_cast<std::size_t>(axis)], axis, g);
     make_regular_if_even(part, g);

@@ -55,10 +55,13 @@ void require_volume(const std::filesystem::path& file);
 ///       several files (LIST, NAME%03d), here and of MetaImage, are put together in memory.
 ///   .nii .nii.gz (NIfTI-1 and 2), or in two files .hdr and .img: sform, else qform, else the spacing alone; slope and
 ///       intercept apply. Analyze 7.5 (.hdr and .img): spacing alone, for it says nothing else reliably.
+///   DICOM, a folder, one of its files or frames in one: by GDCM, all of it in memory. Position, orientation, spacing,
+///       rescale; the slices of one series by their places. Uneven ones are a rectilinear grid.
 ///   .raw: described by the options or by its name, mapped. .bricks: what write_bricks made, read brick by brick.
 ///   A gzip file of any of these is inflated into memory first, whatever its name.
 ///
-/// World coordinates are the file's own (NIfTI's point right, anterior, up; MetaImage's and NRRD's whatever they say).
+/// World coordinates are the file's own (NIfTI's point right, anterior, up, DICOM's left,
+/// back, up; MetaImage's and NRRD's whatever they say).
 /// Headers are compared with the file's size before memory is asked for. Throws Error(bad_input) in one line for a
 /// missing, truncated, malformed or flat file, for more dimensions than three, time and components, for an encoding or
 /// type not known, for an unknown field or time step, or if no sample is finite.
