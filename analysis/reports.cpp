@@ -78,6 +78,7 @@ Description::Description(const Dataset& data)
       range(data.range()),
       fields(data.fields().begin(), data.fields().end()),
       notes(data.notes().begin(), data.notes().end()),
+      warnings(data.warnings()),
       blocks(data.blocks().begin(), data.blocks().end()),
       counts(data.mesh_counts()),
       scale(data.scale()),
@@ -122,6 +123,7 @@ Json data_json(const std::filesystem::path& input, const Description& data) {
   json["fields"] = fields_json(data);
   if (!data.blocks.empty()) json["blocks"] = data.blocks;
   json["notes"] = data.notes;
+  json["warnings"] = data.warnings;
   return json;
 }
 

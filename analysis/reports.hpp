@@ -25,7 +25,7 @@ struct Description {
   Box box;
   std::array<double, 2> range;
   std::vector<FieldInfo> fields;
-  std::vector<std::string> notes, blocks;
+  std::vector<std::string> notes, warnings, blocks;
   MeshCounts counts;      ///< meshes
   GridGeometry geometry;  ///< grids, and so on
   SampleType type{};
@@ -33,7 +33,7 @@ struct Description {
   std::uint64_t blanks = 0;
 };
 
-/// File, format, what it is made of, bounds, chosen field, all fields, notes.
+/// File, format, what it is made of, bounds, chosen field, all fields, notes, warnings.
 nlohmann::ordered_json data_json(const std::filesystem::path& input, const Description& data);
 
 /// Name, unit distance and its source, knots.

@@ -142,7 +142,7 @@ class Film final : public Sink {
       tets_ = data_->tet_count();
       later_read_ = read_of_later_steps(read_, *data_);
       loaded_ = transfer_function_of(*data_, options_);
-      if (writes_) output_.describe(described(*data_), loaded_);
+      if (writes_) output_.describe(options_, described(*data_), loaded_);
       if (writes_ && overlaps_) output_.note("job", job_json(options_, job_.size(), roles_));
     }
     if (frame.step != step_) open(frame, later_read_);

@@ -55,6 +55,7 @@ void print_text(const std::filesystem::path& input, const analysis::Description&
   }
   fmt::print("renders   field {}, {:.6g} to {:.6g}; {}; view {}\n", data.field_name, data.range[0], data.range[1],
              transfer_function_line(loaded), view_line(view));
+  for (const auto& warning : data.warnings) fmt::print("warning   {}\n", warning);
   for (const auto& note : data.notes) fmt::print("note      {}\n", note);
 }
 

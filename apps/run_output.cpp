@@ -32,7 +32,13 @@ RunOutput::RunOutput(const RenderOptions& options, const std::vector<FilmFrame>&
       report_{{"program", "tessera"}, {"version", TESSERA_VERSION}, {"method", method_json(options, ranks)}},
       frame_reports_(!options.report.empty()) {}
 
-void RunOutput::describe(analysis::Description data, LoadedTransferFunction transfer_function) {
+void RunOutput::describe(const RenderOptions& options, analysis::Description data,
+                         LoadedTransferFunction transfer_function) {
+  if (!options.quiet)
+    for (const std::string& warning : data.warnings) {
+      progress_.clear();
+      fmt::print(stderr, "tessera: warning: {}: {}\n", options.input().string(), warning);
+    }
   data_ = std::move(data);
   transfer_function_ = std::move(transfer_function);
 }

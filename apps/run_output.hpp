@@ -20,7 +20,7 @@ class RunOutput {
   RunOutput(const RenderOptions& options, const std::vector<FilmFrame>& frames, int ranks);
 
   /// What the run line and the report say of the data; before the first add().
-  void describe(analysis::Description data, LoadedTransferFunction transfer_function);
+  void describe(const RenderOptions& options, analysis::Description data, LoadedTransferFunction transfer_function);
   /// More for the report's head, like the job's shape.
   void note(const char* name, nlohmann::ordered_json value) { report_[name] = std::move(value); }
 

@@ -16,6 +16,7 @@
 #include "frame/roles.hpp"
 #include "frame/scan_together.hpp"
 #include "io/foreign_data.hpp"
+#include "io/mesh_assembly.hpp"
 #include "io/volume_reader.hpp"
 #include "scene/error.hpp"
 #include "scene/threads.hpp"
@@ -285,6 +286,7 @@ Association Dataset::association() const { return state_->facts.association; }
 const std::string& Dataset::field_name() const { return state_->field_name; }
 std::span<const FieldInfo> Dataset::fields() const { return state_->fields; }
 std::span<const std::string> Dataset::notes() const { return state_->notes; }
+std::vector<std::string> Dataset::warnings() const { return io::warnings_on_cells(state_->counts); }
 std::span<const std::string> Dataset::blocks() const { return state_->blocks; }
 const std::string& Dataset::format() const { return state_->format; }
 const std::string& Dataset::source() const { return state_->source; }

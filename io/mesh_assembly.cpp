@@ -261,12 +261,19 @@ std::vector<std::string> notes_on_cells(const MeshCounts& n, const std::string& 
         "numbers, {} are collapsed to a point or face; give a mesh of volume cells or choose another field",
         source, n.cells_read, n.cells_not_volumetric, n.cells_ghost, n.cells_hidden, n.cells_nan, n.cells_zero_volume));
   std::vector<std::string> notes;
-  if (n.cells_quadratic > 0)
-    notes.push_back(
-        fmt::format("{} higher-order cells are rendered as linear ones by their corner nodes", n.cells_quadratic));
   if (n.cells_tangled > 0)
     notes.push_back(fmt::format("{} cells are so warped that their tets overlap", n.cells_tangled));
   return notes;
+}
+
+std::vector<std::string> warnings_on_cells(const MeshCounts& n) {
+  std::vector<std::string> warnings;
+  if (n.cells_quadratic > 0)
+    warnings.push_back(
+        fmt::format("{} higher-order cells are rendered as linear ones by their corner nodes, without an error bound "
+                    "for what that leaves out",
+                    n.cells_quadratic));
+  return warnings;
 }
 
 MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options, const std::string& source) {

@@ -27,6 +27,9 @@ AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const F
 /// Notes on what happened to the cells of a whole file. Throws Error(bad_input) if nothing is left to render.
 std::vector<std::string> notes_on_cells(const MeshCounts& counts, const std::string& source);
 
+/// What of the cells is drawn otherwise than the file has it, one line each.
+std::vector<std::string> warnings_on_cells(const MeshCounts& counts);
+
 /// Makes the tet mesh of all of a file's blocks: chooses the field, assembles, smooths if asked. `format` is left
 /// empty. Throws as the functions above and choose_field.
 MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options, const std::string& source);

@@ -136,6 +136,9 @@ class TESSERA_EXPORT Dataset {
   [[nodiscard]] std::span<const FieldInfo> fields() const;
   /// One line each: what was chosen or applied, or odd about the file.
   [[nodiscard]] std::span<const std::string> notes() const;
+  /// One line each: what is drawn otherwise than the file has it, so that no accuracy is promised for that; mostly
+  /// none.
+  [[nodiscard]] std::vector<std::string> warnings() const;
   /// Names of a file's blocks (ReadOptions::blocks), of those too that were not read.
   [[nodiscard]] std::span<const std::string> blocks() const;
   /// "VTK XML unstructured grid", "NRRD", ...; "arrays" of the caller's.

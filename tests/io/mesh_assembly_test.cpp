@@ -151,7 +151,11 @@ TEST(MeshAssembly, QuadraticCellsUseTheirCorners) {
   const MeshFile file = assemble(block);
   EXPECT_EQ(file.mesh.tets.front(), (scene::Tet{0, 1, 2, 3}));
   EXPECT_EQ(file.counts.cells_quadratic, 1u);
-  EXPECT_NE(file.notes.back().find("corner nodes"), std::string::npos);
+  ASSERT_EQ(warnings_on_cells(file.counts).size(), 1u);
+  EXPECT_NE(
+      warnings_on_cells(file.counts)[0].find("1 higher-order cells are rendered as linear ones by their corner nodes"),
+      std::string::npos);
+  EXPECT_TRUE(warnings_on_cells({}).empty());
 }
 
 TEST(MeshAssembly, PolyhedraAndWrongNodeCountsAreRefusedByCell) {
