@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "apps/program.hpp"
+#include "io/mesh_formats.hpp"
 #include "io/mesh_reader.hpp"
 #include "scene/mesh_facts.hpp"
 
@@ -50,6 +51,24 @@ TEST(Info, ListsTheBlocksThatBlockChoosesFrom) {
   const auto none = tessera({"convert", mesh, folder / "b.tets", "--block", "zone 3"});
   EXPECT_EQ(none.status, 2);
   EXPECT_NE(none.err.find("no block 'zone 3'; it has 'zone 1', 'zone 2'"), std::string::npos) << none.err;
+}
+
+TEST(Info, HigherOrderCellsAreWarnedOfInALineOfTheirOwn) {
+  if (!io::has_vtk()) GTEST_SKIP() << "this build is without VTK";
+  const Folder folder;
+  const auto mesh = folder / "a.vtk";
+  std::ofstream(mesh) << "# vtk DataFile Version 3.0\na\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 10 float\n"
+                         "0 0 0 1 0 0 0 1 0 0 0 1 .5 0 0 .5 .5 0 0 .5 0 0 0 .5 .5 0 .5 0 .5 .5\nCELLS 1 11\n"
+                         "10 0 1 2 3 4 5 6 7 8 9\nCELL_TYPES 1\n24\nPOINT_DATA 10\nSCALARS a float 1\n"
+                         "LOOKUP_TABLE default\n0 1 2 3 4 5 6 7 8 9\n";
+  const auto info = tessera({"info", mesh});
+  EXPECT_NE(info.out.find("\nwarning   1 higher-order cells"), std::string::npos) << info.out;
+  const auto render = tessera({"render", mesh, "-o", folder / "a.png", "--size", "16x16"});
+  EXPECT_EQ(render.status, 0) << render.err;
+  EXPECT_TRUE(render.err.starts_with("tessera: warning: ")) << render.err;
+  EXPECT_EQ(render.error_lines(), 2u) << render.err;
+  const auto quiet = tessera({"render", mesh, "-o", folder / "a.png", "--size", "16x16", "--quiet"});
+  EXPECT_EQ(quiet.err, "");
 }
 
 TEST(Convert, KeepsThePicture) {
