@@ -19,14 +19,32 @@
 namespace tessera::io::helper {
 namespace {
 
+/// Which of the files begin as DICOM and are none of the slices, for they may be missing ones.
+void note_left_out(const std::vector<std::filesystem::path>& files, const std::vector<DicomSlice>& slices,
+                   std::vector<std::string>& notes) {
+  std::size_t count = 0;
+  std::string first;
+  auto slice = slices.begin();  // in the order of the files
+  for (const std::filesystem::path& file : files) {
+    if (slice != slices.end() && slice->file == file) {
+      ++slice;
+    } else if (looks_like_dicom(read_beginning(file, 132))) {
+      if (count++ == 0) first = file.filename().string();
+    }
+  }
+  if (count > 0)
+    notes.push_back(fmt::format("{} DICOM file{} without a picture that GDCM can read left out, first {}", count,
+                                count > 1 ? "s" : "", first));
+}
+
 /// Slices beside each other; a folder without any, those in the folders below.
-std::vector<DicomSlice> slices_in(const std::filesystem::path& folder) {
+std::vector<DicomSlice> slices_in(const std::filesystem::path& folder, std::vector<std::string>& notes) {
   constexpr std::size_t most_files = 200000;
   std::vector<std::filesystem::path> files;
   std::error_code error;
   for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
     files.push_back(entry->path());
-  const auto slices_among = [](std::vector<std::filesystem::path>& found) {
+  const auto slices_among = [&notes](std::vector<std::filesystem::path>& found) {
     std::erase_if(found, [](const std::filesystem::path& file) {
       std::error_code unknown;
       // A DICOMDIR is a list of the others.
@@ -34,7 +52,9 @@ std::vector<DicomSlice> slices_in(const std::filesystem::path& folder) {
              file.filename() == "DICOMDIR";
     });
     std::sort(found.begin(), found.end());
-    return read_dicom_headers(found);
+    std::vector<DicomSlice> slices = read_dicom_headers(found);
+    if (!slices.empty()) note_left_out(found, slices, notes);
+    return slices;
   };
   std::vector<DicomSlice> slices = slices_among(files);
   if (!slices.empty()) return slices;
@@ -75,10 +95,11 @@ ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& file
   std::error_code unknown;
   const bool is_folder = std::filesystem::is_directory(file, unknown);
   std::vector<DicomSlice> slices;
+  ForeignContents contents;
   const std::filesystem::path folder = is_folder ? file : file.parent_path().empty() ? "." : file.parent_path();
   allow_for_folder(folder);
   if (is_folder) {
-    slices = slices_in(file);
+    slices = slices_in(file, contents.notes);
   } else {
     const std::vector<DicomSlice> one = read_dicom_headers(std::span(&file, 1));
     if (one.empty())
@@ -87,7 +108,7 @@ ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& file
     if (one.front().frames > 1) {
       slices = one;
     } else {
-      slices = slices_in(folder);
+      slices = slices_in(folder, contents.notes);
       for (DicomSlice& slice : slices)
         if (std::filesystem::equivalent(slice.file, file, unknown)) slice.file = file;
     }
@@ -101,9 +122,8 @@ ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& file
   allow_for_folder(
       folder, std::any_of(volume.slices.begin(), volume.slices.end(), [](const DicomSlice& s) { return s.is_packed; }));
 
-  ForeignContents contents;
   contents.format = fmt::format("DICOM{}{}", first.modality.empty() ? "" : " ", first.modality);
-  contents.notes = std::move(volume.notes);
+  contents.notes.insert(contents.notes.begin(), volume.notes.begin(), volume.notes.end());
   const auto is_scaled = [](const DicomSlice& s) { return s.slope != 1 || s.intercept != 0; };
   if (std::any_of(volume.slices.begin(), volume.slices.end(), is_scaled)) {
     const bool are_alike = std::all_of(volume.slices.begin(), volume.slices.end(), [&](const DicomSlice& s) {

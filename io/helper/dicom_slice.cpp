@@ -1,7 +1,6 @@
 #include "io/helper/dicom_slice.hpp"
 
 #include <fmt/format.h>
-#include <gdcmAttribute.h>
 #include <gdcmImage.h>
 #include <gdcmImageHelper.h>
 #include <gdcmImageReader.h>
@@ -105,9 +104,6 @@ bool set_samples(const gdcm::File& file, DicomSlice& slice) {
   const std::vector<double> rescale = gdcm::ImageHelper::GetRescaleInterceptSlopeValue(file);
   if (rescale.size() == 2 && std::isfinite(rescale[0]) && std::isfinite(rescale[1]) && rescale[1] != 0)
     slice.intercept = rescale[0], slice.slope = rescale[1];
-  const double a = slice.slope * static_cast<double>(format.GetMin()) + slice.intercept;
-  const double b = slice.slope * static_cast<double>(format.GetMax()) + slice.intercept;
-  slice.low = std::min(a, b), slice.high = std::max(a, b);
   return true;
 }
 

@@ -25,7 +25,6 @@ struct DicomSlice {
   glm::dvec3 position{0}, row{1, 0, 0}, column{0, 1, 0};
   glm::dvec3 spacing{1};            ///< between columns, rows and, of frames or as thickness, slices
   double slope = 1, intercept = 0;  ///< value = slope * sample + intercept
-  double low = 0, high = 0;         ///< of all samples that it may hold
   std::int64_t number = 0;          ///< in the series
   double time = 0;                  ///< whatever tells slices of one place apart; 0 without
 

@@ -175,7 +175,9 @@ TEST_F(Dicom, OfSeveralSeriesTheLargestOrTheNamedOneIsShown) {
 TEST_F(Dicom, DamagedFilesAreNamedAndOtherFilesLeftOut) {
   for (int k = 0; k < 3; ++k) write(fmt::format("{}.dcm", k), {.z = 1.0 * k, .samples = twelve(k)});
   folder.write("plan.dcm", std::string(128, '\0') + "DICM" + element(2, 0x10, "UI", "1.2.840.10008.1.2.1"));
-  EXPECT_EQ(open_volume(folder.path()).source->geometry().points, (GridIndex{4, 3, 3}));
+  const VolumeFile others = open_volume(folder.path());
+  EXPECT_EQ(others.source->geometry().points, (GridIndex{4, 3, 3}));
+  EXPECT_TRUE(has_note(others, "1 DICOM file without a picture that GDCM can read left out, first plan.dcm"));
   expect_no_volume(folder / "plan.dcm", "plan.dcm");
   const std::string whole = dicom({.z = 1, .samples = twelve(1)});
   folder.write("1.dcm", whole.substr(0, whole.size() - 10));
