@@ -6,6 +6,8 @@
 #include <array>
 #include <cerrno>
 #include <cstdint>
+#include <cstdio>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
@@ -52,29 +54,6 @@ DicomSlice slice_of(const nlohmann::json& j, const std::filesystem::path& file) 
   return s;
 }
 
-bool write_all(int to, const void* bytes, std::size_t count) {
-  const auto* next = static_cast<const char*>(bytes);
-  while (count > 0) {
-    const ssize_t written = ::write(to, next, count);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    next += written, count -= static_cast<std::size_t>(written);
-  }
-  return true;
-}
-
-/// False where it ends before.
-bool read_all(int from, void* bytes, std::size_t count) {
-  auto* next = static_cast<char*>(bytes);
-  while (count > 0) {
-    const ssize_t got = ::read(from, next, count);
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return false;
-    next += got, count -= static_cast<std::size_t>(got);
-  }
-  return true;
-}
-
 /// In the forked process: each file's header as its length and CBOR, of length 0 where it is no picture.
 [[noreturn]] void tell_headers(int to, std::span<const std::filesystem::path> files) {
   for (const std::filesystem::path& file : files) {
@@ -90,15 +69,17 @@ bool read_all(int from, void* bytes, std::size_t count) {
 std::size_t read_some(std::span<const std::filesystem::path> files, std::vector<DicomSlice>& slices) {
   std::array<int, 2> ends{};
   if (::pipe(ends.data()) != 0) throw std::system_error(errno, std::generic_category());
-  Descriptor in(ends[0]), out(ends[1]);
+  Descriptor out(ends[1]);
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(::fdopen(ends[0], "rb"), std::fclose);
+  const auto take = [&](void* bytes, std::size_t count) { return std::fread(bytes, 1, count, in.get()) == count; };
   const pid_t child = ::fork();
   if (child < 0) throw std::system_error(errno, std::generic_category());
   if (child == 0) tell_headers(out.get(), files);
   out = Descriptor();
   std::size_t done = 0;
-  for (std::uint32_t length = 0; done < files.size() && read_all(in.get(), &length, sizeof length); ++done) {
+  for (std::uint32_t length = 0; done < files.size() && take(&length, sizeof length); ++done) {
     std::vector<std::uint8_t> bytes(length);
-    if (!read_all(in.get(), bytes.data(), length)) break;
+    if (!take(bytes.data(), length)) break;
     if (length > 0) slices.push_back(slice_of(nlohmann::json::from_cbor(bytes), files[done]));
   }
   int status = 0;

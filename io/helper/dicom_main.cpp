@@ -65,13 +65,6 @@ std::vector<DicomSlice> slices_in(const std::filesystem::path& folder, std::vect
   return slices_among(below);
 }
 
-template <class T>
-ForeignArray held_as(Holdings& holdings, NumberType type, const std::vector<double>& values, const NumberTally& tally) {
-  ForeignArray array{.name = "samples", .type = type};
-  array.tally = tally;
-  return hold_vector(holdings, std::move(array), std::vector<T>(values.begin(), values.end()));
-}
-
 /// In the smallest type that holds all values: whole numbers, else floats.
 ForeignArray hold_samples(Holdings& holdings, const DicomVolume& volume) {
   std::vector<double> values;
@@ -83,11 +76,16 @@ ForeignArray hold_samples(Holdings& holdings, const DicomVolume& volume) {
   tally.add(values);
   const bool is_whole = std::all_of(values.begin(), values.end(), [](double v) { return v == std::floor(v); });
   const auto within = [&](double low, double high) { return is_whole && tally.low >= low && tally.high <= high; };
-  if (within(0, 255)) return held_as<std::uint8_t>(holdings, NumberType::uint8, values, tally);
-  if (within(-32768, 32767)) return held_as<std::int16_t>(holdings, NumberType::int16, values, tally);
-  if (within(0, 65535)) return held_as<std::uint16_t>(holdings, NumberType::uint16, values, tally);
-  if (within(-2147483648.0, 2147483647.0)) return held_as<std::int32_t>(holdings, NumberType::int32, values, tally);
-  return held_as<float>(holdings, NumberType::float32, values, tally);
+  const NumberType type = within(0, 255)                        ? NumberType::uint8
+                          : within(-32768, 32767)               ? NumberType::int16
+                          : within(0, 65535)                    ? NumberType::uint16
+                          : within(-2147483648.0, 2147483647.0) ? NumberType::int32
+                                                                : NumberType::float32;
+  return with_number_type(type, [&](auto zero) {
+    ForeignArray array{.name = "samples", .type = type};
+    array.tally = tally;
+    return hold_vector(holdings, std::move(array), std::vector<decltype(zero)>(values.begin(), values.end()));
+  });
 }
 
 ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {

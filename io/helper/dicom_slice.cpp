@@ -8,12 +8,14 @@
 #include <gdcmTrace.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <glm/geometric.hpp>
 
+#include "io/foreign_data.hpp"
 #include "io/mapped_file.hpp"
 #include "scene/error.hpp"
 
@@ -107,6 +109,20 @@ bool set_samples(const gdcm::File& file, DicomSlice& slice) {
   return true;
 }
 
+std::optional<NumberType> number_type_of(const gdcm::PixelFormat& format) {
+  constexpr std::array known = {std::pair(gdcm::PixelFormat::UINT8, NumberType::uint8),
+                                std::pair(gdcm::PixelFormat::INT8, NumberType::int8),
+                                std::pair(gdcm::PixelFormat::UINT16, NumberType::uint16),
+                                std::pair(gdcm::PixelFormat::INT16, NumberType::int16),
+                                std::pair(gdcm::PixelFormat::UINT32, NumberType::uint32),
+                                std::pair(gdcm::PixelFormat::INT32, NumberType::int32),
+                                std::pair(gdcm::PixelFormat::FLOAT32, NumberType::float32),
+                                std::pair(gdcm::PixelFormat::FLOAT64, NumberType::float64)};
+  for (const auto& [theirs, ours] : known)
+    if (format.GetScalarType() == theirs) return ours;
+  return std::nullopt;
+}
+
 /// Samples of a type as doubles; of integers of which only `bits` are used, the others are something else's.
 template <class T>
 void append_samples(const std::vector<char>& bytes, int bits, std::vector<double>& out) {
@@ -183,35 +199,11 @@ std::vector<double> read_dicom_samples(const DicomSlice& slice) {
   std::vector<double> values;
   values.reserve(samples);
   const int bits = format.GetBitsStored();
-  switch (format.GetScalarType()) {
-    case gdcm::PixelFormat::UINT8:
-      append_samples<std::uint8_t>(bytes, bits, values);
-      break;
-    case gdcm::PixelFormat::INT8:
-      append_samples<std::int8_t>(bytes, bits, values);
-      break;
-    case gdcm::PixelFormat::UINT16:
-      append_samples<std::uint16_t>(bytes, bits, values);
-      break;
-    case gdcm::PixelFormat::INT16:
-      append_samples<std::int16_t>(bytes, bits, values);
-      break;
-    case gdcm::PixelFormat::UINT32:
-      append_samples<std::uint32_t>(bytes, bits, values);
-      break;
-    case gdcm::PixelFormat::INT32:
-      append_samples<std::int32_t>(bytes, bits, values);
-      break;
-    case gdcm::PixelFormat::FLOAT32:
-      append_samples<float>(bytes, bits, values);
-      break;
-    case gdcm::PixelFormat::FLOAT64:
-      append_samples<double>(bytes, bits, values);
-      break;
-    default:
-      throw scene::bad_input(fmt::format("{}: its samples are of {} bits, which are not read; write 8, 16 or 32",
-                                         source, format.GetBitsAllocated()));
-  }
+  const std::optional<NumberType> type = number_type_of(format);
+  if (!type)
+    throw scene::bad_input(fmt::format("{}: its samples are of {} bits, which are not read; write 8, 16 or 32", source,
+                                       format.GetBitsAllocated()));
+  with_number_type(*type, [&](auto zero) { append_samples<decltype(zero)>(bytes, bits, values); });
   if (values.size() != samples) throw refuse("its samples are not as many as its header says");
   for (double& value : values) value = slice.slope * value + slice.intercept;
   return values;
