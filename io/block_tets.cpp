@@ -29,6 +29,7 @@ BlockCells::BlockCells(const CellBlock& block, std::span<const glm::dvec3> point
 
 void BlockCells::split(std::size_t first, std::size_t last, BlockTets& out) const {
   out.tets.clear(), out.cells.clear();
+  out.added.clear(), out.added_values.clear();
   out.counts = {};
   out.error = nullptr;
   std::vector<Tet> cell_tets;

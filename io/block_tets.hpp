@@ -16,8 +16,10 @@ namespace tessera::io {
 
 /// What some of a block's cells become.
 struct BlockTets {
-  std::vector<scene::Tet> tets;      ///< corners in the block's points
+  std::vector<scene::Tet> tets;      ///< corners in the block's points, and from their number on in `added`
   std::vector<std::uint64_t> cells;  ///< of each tet, counted in the block
+  std::vector<glm::dvec3> added;     ///< points that cells are split at beside their own
+  std::vector<double> added_values;  ///< of each of them; empty for cell data
   MeshCounts counts;                 ///< but of points, and of tets made
   std::exception_ptr error;
 };

@@ -36,11 +36,7 @@ class Assembly {
         threads_(threads) {}
 
   void reserve(std::size_t points, std::size_t tets) {
-    if (points > std::numeric_limits<std::uint32_t>::max())
-      throw scene::bad_input(
-          fmt::format("{}: {} points; one process takes at most 2^32 - 1, convert to a .pvtu of "
-                      "pieces",
-                      source_, points));
+    require_points(points);
     mesh_.positions.reserve(points);
     mesh_.tets.reserve(tets);
   }
@@ -55,7 +51,7 @@ class Assembly {
     }
     for (std::size_t v = first_point; v < mesh_.positions.size(); ++v)
       mesh_.positions[v] += 0.0;  // -0 becomes 0: coincident points get the same bits
-    counts_.points_read = mesh_.positions.size();
+    counts_.points_read += mesh_.positions.size() - first_point;
     points_ = std::span(mesh_.positions).subspan(first_point);
     first_point_ = static_cast<std::uint32_t>(first_point);
     read_values(block);
@@ -67,6 +63,7 @@ class Assembly {
     add_cells(BlockCells(block, points_, std::span(values_).subspan(point ? first_point : 0), choice_.association,
                          block.source.empty() ? source_ : block.source));
     if (block_tets_ != nullptr) take_tets();
+    take_added_points();
     block = {};
   }
 
@@ -79,6 +76,14 @@ class Assembly {
   }
 
  private:
+  void require_points(std::size_t points) const {
+    if (points > std::numeric_limits<std::uint32_t>::max())
+      throw scene::bad_input(
+          fmt::format("{}: {} points; one process takes at most 2^32 - 1, convert to a .pvtu of "
+                      "pieces",
+                      source_, points));
+  }
+
   /// Scalars of the block's points (appended to those before) or cells; NaN where the block lacks the field.
   void read_values(const CellBlock& block) {
     const bool point = choice_.association == Association::point;
@@ -165,6 +170,17 @@ class Assembly {
       append_given();
     }
     append(made.tets, [&](std::size_t t) { return made.cells[t]; });
+    if (made.added.empty()) return;
+    require_points(mesh_.positions.size() + added_points_.size() + made.added.size());
+    for (const glm::dvec3& p : made.added) added_points_.push_back(p + 0.0);
+    added_values_.insert(added_values_.end(), made.added_values.begin(), made.added_values.end());
+  }
+
+  /// The points that the block's cells were split at follow its own, which threads have looked at until now.
+  void take_added_points() {
+    mesh_.positions.insert(mesh_.positions.end(), added_points_.begin(), added_points_.end());
+    values_.insert(values_.end(), added_values_.begin(), added_values_.end());
+    added_points_.clear(), added_values_.clear();
   }
 
   /// The block's tets so far, all of which have stayed.
@@ -189,8 +205,10 @@ class Assembly {
       for (std::size_t t = 0; t < tets.size(); ++t) mesh_.original_cell.push_back(cells_before_ + cell_of(t));
     if (choice_.association == Association::cell)
       for (std::size_t t = 0; t < tets.size(); ++t) mesh_.scalars.push_back(values_[cell_of(t)]);
-    for (const Tet& t : tets)
-      mesh_.tets.push_back({t[0] + first_point_, t[1] + first_point_, t[2] + first_point_, t[3] + first_point_});
+    const auto own = static_cast<std::uint32_t>(points_.size()),
+               added = static_cast<std::uint32_t>(added_points_.size());
+    const auto corner = [&](std::uint32_t v) { return first_point_ + v + (v < own ? 0 : added); };
+    for (const Tet& t : tets) mesh_.tets.push_back({corner(t[0]), corner(t[1]), corner(t[2]), corner(t[3])});
   }
 
   /// From here on, tet and cell numbers differ.
@@ -231,6 +249,8 @@ class Assembly {
   std::vector<Tet>* block_tets_ = nullptr;  ///< of the block at hand, while those looked at are all to stay
   std::size_t as_given_ = 0;                ///< how many those are; they are not in the mesh yet
   std::vector<double> values_;              ///< of all points so far, or of the block's cells
+  std::vector<glm::dvec3> added_points_;    ///< of the block at hand
+  std::vector<double> added_values_;
   bool numbered_ = false;
 };
 
