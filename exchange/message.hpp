@@ -21,7 +21,7 @@ namespace tessera::exchange {
 static_assert(std::endian::native == std::endian::little, "messages are little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 9;         ///< the next one whenever a message changes
+inline constexpr std::uint16_t wire_version = 10;        ///< the next one whenever a message changes
 
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
@@ -55,9 +55,10 @@ enum class MessageKind : std::uint16_t {
   host = 19,              ///< text: the machine's name
   device = 20,            ///< text: the compositing device's name, empty where none composites
   read_in_parts = 21,     ///< u8: 1: all projectors read
-  field_tallies = 22,     ///< u64 fields; of each a field, u8 any_finite
-  part_summary = 23,      ///< MeshCounts, texts of reading, texts of cells, u64 words of used points
-  mesh_description = 24,  ///< MeshCounts, u64 fields, fields, u64 notes, texts, text format, text field, u8 association
+  field_tallies = 22,     ///< u64 fields; of each a field, u8 any_finite; f64 box of higher-order cells[6]
+  part_summary = 23,      ///< MeshCounts, HigherOrderCells, texts of reading, of cells, u64 words of used points
+  mesh_description = 24,  ///< MeshCounts, HigherOrderCells, u64 fields, fields, u64 notes, texts, text format, text
+                          ///< field, u8 association
   mesh_facts = 25,        ///< f64 box[6], f64 scalar range[2], u64 tets, u8 association
   mesh_volume = 26,       ///< 128-bit scene::VolumeSum
   tet_count = 27,         ///< u64
@@ -70,6 +71,7 @@ enum class MessageKind : std::uint16_t {
   column_costs = 34,      ///< the same, a list of u64 for each map row that was asked for
   seconds = 35,           ///< f64 processor time of the last frame
   of_job = 36,            ///< list of bytes: the caller's own (tessera/job.hpp)
+  higher_order = 37,      ///< u64[128]: tets by how far they are off (io/higher_order_plan.hpp)
   process_on_host = 38,   ///< exchange/one_line.cpp
   // The transport's own.
   fault = 40,    ///< a rank to rank 0, I have failed: u8 ErrorCode, text

@@ -148,7 +148,7 @@ ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty) {
   if (may_be_empty && arrays.tets.empty() && arrays.types.empty()) {
     scene::TetMeshView nothing;
     nothing.association = arrays.association;
-    return {nothing, nullptr, {}, {}};
+    return {nothing, nullptr, {}, {}, {}};
   }
   ArrayMesh result;
   if (const auto mesh = borrowed(arrays); mesh && !mesh->tets.empty() && all_finite(arrays)) {
@@ -165,6 +165,7 @@ ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty) {
   auto file = std::make_shared<io::MeshFile>(io::assemble_mesh(std::move(blocks), options, "mesh"));
   result.mesh = file->mesh;
   result.counts = file->counts;
+  result.higher_order = file->higher_order;
   result.notes = file->notes;
   result.owner = std::move(file);
   return result;

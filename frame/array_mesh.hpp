@@ -14,6 +14,7 @@ struct ArrayMesh {
   scene::TetMeshView mesh;
   std::shared_ptr<const void> owner;  ///< of the caller's arrays, or of what was made of them
   MeshCounts counts;
+  HigherOrderCells higher_order;
   std::vector<std::string> notes;
 };
 

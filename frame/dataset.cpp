@@ -87,6 +87,7 @@ void take_description(io::MeshFile&& file, Dataset::State& state) {
   state.blocks = std::move(file.blocks);
   state.format = std::move(file.format);
   state.counts = file.counts;
+  state.higher_order = file.higher_order;
 }
 
 /// Makes a mesh the state's own, its corners in the order that needs no copy unless theirs is to be kept.
@@ -130,7 +131,15 @@ auto together(exchange::Transport& transport, const Work& work) {
 namespace frame {
 
 io::MeshOptions mesh_options(const ReadOptions& o) {
-  return {o.field, o.smooth, o.plot3d_q, o.max_volume, o.time_step, o.threads, o.blocks};
+  return {o.field,
+          o.smooth,
+          o.plot3d_q,
+          o.max_volume,
+          o.time_step,
+          o.threads,
+          o.blocks,
+          o.higher_order_tolerance,
+          o.higher_order_tets};
 }
 
 }  // namespace frame
@@ -220,6 +229,7 @@ Dataset Dataset::of(const MeshArrays& arrays) {
   state->mesh = mesh.mesh;
   state->owner = std::move(mesh.owner);
   state->counts = mesh.counts;
+  state->higher_order = mesh.higher_order;
   state->notes = std::move(mesh.notes);
   state->facts = scene::facts_of(state->mesh, 0);
   state->source = "mesh";
@@ -266,6 +276,7 @@ Dataset Dataset::of_parts(const MeshArrays& part, const Communicator& communicat
     state->mesh = mesh.mesh;
     state->owner = std::move(mesh.owner);
     state->counts = mesh.counts;
+    state->higher_order = mesh.higher_order;
     state->notes = std::move(mesh.notes);
     state->facts = frame::agree_facts(*transport, state->mesh, 0);
     if (state->facts.tets == 0) throw scene::bad_input("mesh: no rank has a cell; give at least one");
@@ -286,12 +297,13 @@ Association Dataset::association() const { return state_->facts.association; }
 const std::string& Dataset::field_name() const { return state_->field_name; }
 std::span<const FieldInfo> Dataset::fields() const { return state_->fields; }
 std::span<const std::string> Dataset::notes() const { return state_->notes; }
-std::vector<std::string> Dataset::warnings() const { return io::warnings_on_cells(state_->counts); }
+std::vector<std::string> Dataset::warnings() const { return io::warnings_on_cells(state_->higher_order); }
 std::span<const std::string> Dataset::blocks() const { return state_->blocks; }
 const std::string& Dataset::format() const { return state_->format; }
 const std::string& Dataset::source() const { return state_->source; }
 std::uint64_t Dataset::tet_count() const { return state_->facts.tets; }
 const MeshCounts& Dataset::mesh_counts() const { return state_->counts; }
+const HigherOrderCells& Dataset::higher_order_cells() const { return state_->higher_order; }
 
 MeshArrays Dataset::mesh_arrays() const {
   if (is_grid()) throw scene::bad_input(state_->source + ": is a grid, which has no tets; ask meshes for them");

@@ -21,6 +21,7 @@ struct TESSERA_HIDDEN Dataset::State {
   std::vector<std::string> notes, blocks;
   scene::MeshFacts facts;  ///< of the whole; grids have no tets
   MeshCounts counts;
+  HigherOrderCells higher_order;
   /// Files that the whole mesh can be read from again, by one rank that verifies; none: arrays.
   std::vector<std::filesystem::path> files;
   ReadOptions options;

@@ -60,23 +60,26 @@ io::FieldSummary take_field(MessageReader& reader) {
   return f;
 }
 
-Bytes message_of(const std::vector<io::FieldTally>& tallies) {
+Bytes message_of(const std::vector<io::FieldTally>& tallies, const scene::Box& box) {
   Bytes message = exchange::begin_message(MessageKind::field_tallies);
   append(message, std::uint64_t{tallies.size()});
   for (const io::FieldTally& t : tallies) {
     append_field(message, t.summary);
     append(message, std::uint8_t{t.any_finite});
   }
+  append(message, box);
   return message;
 }
 
-std::vector<io::FieldTally> tallies_in(MessageReader& reader) {
+/// `box` grows by the part's.
+std::vector<io::FieldTally> tallies_in(MessageReader& reader, scene::Box& box) {
   std::vector<io::FieldTally> tallies;
   for (auto left = reader.take<std::uint64_t>(); left > 0; --left) {
     io::FieldTally tally{take_field(reader)};
     tally.any_finite = reader.take<std::uint8_t>() != 0;
     tallies.push_back(std::move(tally));
   }
+  box = io::joined(box, reader.take<scene::Box>());
   reader.finish();
   return tallies;
 }
@@ -84,6 +87,7 @@ std::vector<io::FieldTally> tallies_in(MessageReader& reader) {
 Bytes message_of(const io::MeshFile& file) {
   Bytes message = exchange::begin_message(MessageKind::mesh_description);
   append(message, file.counts);
+  append(message, file.higher_order);
   append(message, std::uint64_t{file.fields.size()});
   for (const io::FieldSummary& f : file.fields) append_field(message, f);
   append_texts(message, file.notes);
@@ -97,6 +101,7 @@ Bytes message_of(const io::MeshFile& file) {
 io::MeshFile description_in(MessageReader& reader) {
   io::MeshFile file;
   file.counts = reader.take<io::MeshCounts>();
+  file.higher_order = reader.take<io::HigherOrderCells>();
   for (auto left = reader.take<std::uint64_t>(); left > 0; --left) file.fields.push_back(take_field(reader));
   file.notes = take_texts(reader);
   file.blocks = take_texts(reader);
@@ -146,22 +151,35 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
   if (reads) reading.emplace(input, options, static_cast<int>(part), static_cast<int>(projectors.size()));
 
   std::vector<std::vector<io::FieldTally>> tallies;
-  gather(transport, MessageKind::field_tallies, message_of(reads ? reading->tallies() : std::vector<io::FieldTally>{}),
-         projectors, [&](MessageReader& reader) { tallies.push_back(tallies_in(reader)); });
+  scene::Box box = io::higher_order_box({});
+  gather(transport, MessageKind::field_tallies,
+         message_of(reads ? reading->tallies() : std::vector<io::FieldTally>{}, reads ? reading->box() : box),
+         projectors, [&](MessageReader& reader) { tallies.push_back(tallies_in(reader, box)); });
+  if (reads) reading->choose(tallies, box);
+  io::ExcessTally excess{};
+  gather(transport, MessageKind::higher_order,
+         exchange::message_of(MessageKind::higher_order, reads ? reading->excess() : excess), projectors,
+         [&](MessageReader& reader) {
+           const auto own = reader.take<io::ExcessTally>();
+           for (std::size_t bin = 0; bin < own.size(); ++bin) excess[bin] += own[bin];
+           reader.finish();
+         });
   io::MeshFilePart own;
-  if (reads) own = reading->finish(tallies);
+  if (reads) own = reading->finish(excess);
   reading.reset();
 
   const io::PartSummary& s = own.summary;
   std::vector<io::PartSummary> summaries;
   std::uint64_t words = 0, first_tet = 0;
   Bytes message = exchange::message_of(MessageKind::part_summary, s.counts);
+  append(message, s.higher_order);
   append_texts(message, s.reading_notes);
   append_texts(message, s.cell_notes);
   append(message, std::uint64_t{s.used_points.size()});
   gather(transport, MessageKind::part_summary, std::move(message), projectors, [&](MessageReader& reader) {
     io::PartSummary& summary = summaries.emplace_back();
     summary.counts = reader.take<io::MeshCounts>();
+    summary.higher_order = reader.take<io::HigherOrderCells>();
     summary.reading_notes = take_texts(reader);
     summary.cell_notes = take_texts(reader);
     words = std::max(words, reader.take<std::uint64_t>());

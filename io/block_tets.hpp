@@ -10,6 +10,7 @@
 
 #include "io/cell_block.hpp"
 #include "io/cell_split.hpp"
+#include "io/curved_cells.hpp"
 #include "io/mesh_reader.hpp"
 
 namespace tessera::io {
@@ -20,7 +21,9 @@ struct BlockTets {
   std::vector<std::uint64_t> cells;  ///< of each tet, counted in the block
   std::vector<glm::dvec3> added;     ///< points that cells are split at beside their own
   std::vector<double> added_values;  ///< of each of them; empty for cell data
-  MeshCounts counts;                 ///< but of points, and of tets made
+  std::vector<std::uint32_t> nodes;  ///< of the higher-order cells that were divided; few are corners of tets
+  HigherOrderCells curved;
+  MeshCounts counts;  ///< but of points, and of tets made
   std::exception_ptr error;
 };
 
@@ -30,16 +33,19 @@ class BlockCells {
   /// `points` and `values` are those of the block, the latter of its points or cells by `association`; `source` is for
   /// messages. All outlive this.
   BlockCells(const CellBlock& block, std::span<const glm::dvec3> points, std::span<const double> values,
-             scene::Association association, const std::string& source);
+             scene::Association association, const std::string& source, const CurvedSettings& curved = {});
 
   [[nodiscard]] std::size_t count() const { return block_.cell_count(); }
+  /// Whether some are divided into many tets each.
+  [[nodiscard]] bool divides() const { return curved_.any(); }
 
   /// Splits the cells [first, last); what was in `out` is gone. Throws Error(bad_input) for a cell that cannot be
   /// split.
   void split(std::size_t first, std::size_t last, BlockTets& out) const;
 
  private:
-  void split_cell(std::size_t c, std::vector<scene::Tet>& cell_tets, BlockTets& out) const;
+  void split_cell(std::size_t c, CurvedWork& work, std::vector<scene::Tet>& cell_tets, BlockTets& out) const;
+  void split_curved(std::size_t c, CurvedWork& work, std::vector<scene::Tet>& cell_tets, BlockTets& out) const;
   void keep_tets(std::size_t c, std::span<const scene::Tet> cell_tets, BlockTets& out) const;
   [[nodiscard]] bool hides_a_point(std::span<const std::uint32_t> corner) const;
   [[nodiscard]] bool is_finite(std::span<const std::uint32_t> corner, std::size_t c) const;
@@ -51,6 +57,7 @@ class BlockCells {
   scene::Association association_;
   const std::string& source_;
   std::array<CellShape, 256> shapes_;
+  CurvedCells curved_;
 };
 
 }  // namespace tessera::io

@@ -26,13 +26,15 @@ using scene::Tet;
 class Assembly {
  public:
   Assembly(AssembledBlocks& result, std::span<const FieldSummary> fields, const FieldChoice& choice,
-           const std::string& source, int threads)
+           const std::string& source, const HigherOrderPlan& plan, int threads)
       : notes_(result.notes),
         mesh_(result.mesh),
         counts_(result.counts),
+        higher_order_(result.higher_order),
         fields_(fields),
         choice_(choice),
         source_(source),
+        plan_(plan),
         threads_(threads) {}
 
   void reserve(std::size_t points, std::size_t tets) {
@@ -61,7 +63,7 @@ class Assembly {
     as_given_ = 0;
     const bool point = choice_.association == Association::point;
     add_cells(BlockCells(block, points_, std::span(values_).subspan(point ? first_point : 0), choice_.association,
-                         block.source.empty() ? source_ : block.source));
+                         block.source.empty() ? source_ : block.source, plan_.settings));
     if (block_tets_ != nullptr) take_tets();
     take_added_points();
     block = {};
@@ -73,6 +75,7 @@ class Assembly {
     mesh_.association = choice_.association;
     mesh_.field_name = choice_.label;
     counts_.points_unused = unused_points();
+    if (higher_order_.divided > 0) higher_order_.tolerance = plan_.tolerance;
   }
 
  private:
@@ -118,8 +121,7 @@ class Assembly {
 
   /// Appends, in the order of the cells, what threads make of some of them at a time.
   void add_cells(const BlockCells& cells) {
-    constexpr std::size_t cells_a_task = 16384;
-    const std::size_t count = cells.count();
+    const std::size_t cells_a_task = cells.divides() ? 16 : 16384, count = cells.count();
     if (count <= cells_a_task) {
       BlockTets tets;
       cells.split(0, count, tets);
@@ -161,6 +163,7 @@ class Assembly {
 
   void append(const BlockTets& made) {
     counts_ += made.counts;
+    higher_order_ += made.curved;
     if (block_tets_ != nullptr) {
       // Mostly all tets of a block stay, and then they need not be copied.
       if (made.tets.size() == made.counts.cells_read && !block_tets_->empty()) {
@@ -170,6 +173,7 @@ class Assembly {
       append_given();
     }
     append(made.tets, [&](std::size_t t) { return made.cells[t]; });
+    for (const std::uint32_t v : made.nodes) higher_order_nodes_.push_back(first_point_ + v);
     if (made.added.empty()) return;
     require_points(mesh_.positions.size() + added_points_.size() + made.added.size());
     for (const glm::dvec3& p : made.added) added_points_.push_back(p + 0.0);
@@ -233,15 +237,18 @@ class Assembly {
       tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh_.tets.size(), 65536),
                         [&](const auto& range) { mark(range.begin(), range.end()); });
     });
+    for (const std::uint32_t v : higher_order_nodes_) used[v] = 1;
     return static_cast<std::uint64_t>(std::count(used.begin(), used.end(), 0));
   }
 
   std::vector<std::string>& notes_;
   scene::TetMesh& mesh_;
   MeshCounts& counts_;
+  HigherOrderCells& higher_order_;
   std::span<const FieldSummary> fields_;
   const FieldChoice& choice_;
   const std::string& source_;
+  const HigherOrderPlan& plan_;
   int threads_;
   std::span<const glm::dvec3> points_;  ///< of the block at hand
   std::uint32_t first_point_ = 0;
@@ -251,15 +258,17 @@ class Assembly {
   std::vector<double> values_;              ///< of all points so far, or of the block's cells
   std::vector<glm::dvec3> added_points_;    ///< of the block at hand
   std::vector<double> added_values_;
+  std::vector<std::uint32_t> higher_order_nodes_;  ///< of all cells that were divided
   bool numbered_ = false;
 };
 
 }  // namespace
 
 AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const FieldSummary> fields,
-                                const FieldChoice& choice, const std::string& source, int threads) {
+                                const FieldChoice& choice, const std::string& source, const HigherOrderPlan& plan,
+                                int threads) {
   AssembledBlocks result;
-  Assembly assembly(result, fields, choice, source, threads);
+  Assembly assembly(result, fields, choice, source, plan, threads);
   std::size_t points = 0, tets = 0;
   for (const CellBlock& block : blocks) {
     points += block.positions.size();
@@ -286,13 +295,13 @@ std::vector<std::string> notes_on_cells(const MeshCounts& n, const std::string& 
   return notes;
 }
 
-std::vector<std::string> warnings_on_cells(const MeshCounts& n) {
+std::vector<std::string> warnings_on_cells(const HigherOrderCells& cells) {
   std::vector<std::string> warnings;
-  if (n.cells_quadratic > 0)
+  if (cells.by_corners > 0)
     warnings.push_back(
         fmt::format("{} higher-order cells are rendered as linear ones by their corner nodes, without an error bound "
                     "for what that leaves out",
-                    n.cells_quadratic));
+                    cells.by_corners));
   return warnings;
 }
 
@@ -303,9 +312,11 @@ MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options
   const FieldChoice choice = choose_field(options.field, file.fields, source);
   file.notes = choice.notes;
 
-  AssembledBlocks assembled = assemble_blocks(std::move(blocks), file.fields, choice, source, options.threads);
+  const HigherOrderPlan plan = plan_higher_order(blocks, options, choice, file.fields);
+  AssembledBlocks assembled = assemble_blocks(std::move(blocks), file.fields, choice, source, plan, options.threads);
   file.mesh = std::move(assembled.mesh);
   file.counts = assembled.counts;
+  file.higher_order = assembled.higher_order;
   const auto add = [&](const std::vector<std::string>& notes) {
     file.notes.insert(file.notes.end(), notes.begin(), notes.end());
   };

@@ -6,6 +6,7 @@
 
 #include "io/cell_block.hpp"
 #include "io/field_choice.hpp"
+#include "io/higher_order_plan.hpp"
 #include "io/mesh_reader.hpp"
 
 namespace tessera::io {
@@ -14,6 +15,7 @@ namespace tessera::io {
 struct AssembledBlocks {
   scene::TetMesh mesh;
   MeshCounts counts;
+  HigherOrderCells higher_order;
   std::vector<std::string> notes;
 };
 
@@ -22,13 +24,14 @@ struct AssembledBlocks {
 /// the field; other blocks without it are blanked, and a note says so. Throws Error(bad_input) in one line that begins
 /// with the block's source or `source`. The mesh and the error are the same whatever the `threads` (0: all cores).
 AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const FieldSummary> fields,
-                                const FieldChoice& choice, const std::string& source, int threads = 1);
+                                const FieldChoice& choice, const std::string& source, const HigherOrderPlan& plan,
+                                int threads = 1);
 
 /// Notes on what happened to the cells of a whole file. Throws Error(bad_input) if nothing is left to render.
 std::vector<std::string> notes_on_cells(const MeshCounts& counts, const std::string& source);
 
 /// What of the cells is drawn otherwise than the file has it, one line each.
-std::vector<std::string> warnings_on_cells(const MeshCounts& counts);
+std::vector<std::string> warnings_on_cells(const HigherOrderCells& cells);
 
 /// Makes the tet mesh of all of a file's blocks: chooses the field, assembles, smooths if asked. `format` is left
 /// empty. Throws as the functions above and choose_field.

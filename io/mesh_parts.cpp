@@ -43,6 +43,10 @@ struct MeshPartReading::State {
   MeshOptions options;
   MeshBlocks blocks;
   std::vector<FieldTally> tallies;
+  scene::Box box;  ///< of the part, then of all
+  std::vector<FieldSummary> fields;
+  FieldChoice choice;
+  CurvedSettings asked;
   // Of a .tets file:
   std::vector<std::uint32_t> file_vertex;
   std::uint64_t file_vertices = 0;
@@ -92,6 +96,7 @@ MeshPartReading::MeshPartReading(std::filesystem::path file, const MeshOptions& 
   with_clean_errors(source, [&] {
     require_no_time_step(options.time_step, source);
     is_tets(state_->file) ? state_->read_tets(part, parts) : state_->read_listed(part, parts);
+    state_->box = higher_order_box(state_->blocks.blocks);
   });
 }
 
@@ -99,19 +104,36 @@ MeshPartReading::~MeshPartReading() = default;
 
 const std::vector<FieldTally>& MeshPartReading::tallies() const { return state_->tallies; }
 
-MeshFilePart MeshPartReading::finish(std::span<const std::vector<FieldTally>> tallies_of_all) {
+const scene::Box& MeshPartReading::box() const { return state_->box; }
+
+void MeshPartReading::choose(std::span<const std::vector<FieldTally>> tallies_of_all, const scene::Box& box_of_all) {
+  const std::string source = state_->file.string();
+  with_clean_errors(source, [&] {
+    state_->fields = summarize_fields(tallies_of_all);
+    state_->choice = choose_field(state_->options.field, state_->fields, source);
+    state_->asked = asked_tolerance(state_->options, box_of_all, state_->choice, state_->fields);
+  });
+}
+
+ExcessTally MeshPartReading::excess() const {
+  return with_clean_errors(state_->file.string(),
+                           [&] { return tally_excess(state_->blocks.blocks, state_->choice, state_->asked); });
+}
+
+MeshFilePart MeshPartReading::finish(const ExcessTally& excess_of_all) {
   const std::string source = state_->file.string();
   return with_clean_errors(source, [&] {
     MeshFilePart part;
     part.format = std::move(state_->blocks.format);
     part.blocks = std::move(state_->blocks.block_names);
-    part.fields = summarize_fields(tallies_of_all);
-    const FieldChoice choice = choose_field(state_->options.field, part.fields, source);
-    part.choice_notes = choice.notes;
+    part.fields = std::move(state_->fields);
+    part.choice_notes = state_->choice.notes;
     AssembledBlocks assembled =
-        assemble_blocks(std::move(state_->blocks.blocks), part.fields, choice, source, state_->options.threads);
+        assemble_blocks(std::move(state_->blocks.blocks), part.fields, state_->choice, source,
+                        planned(state_->options, state_->asked, excess_of_all), state_->options.threads);
     part.mesh = std::move(assembled.mesh);
     part.summary.counts = assembled.counts;
+    part.summary.higher_order = assembled.higher_order;
     part.summary.cell_notes = std::move(assembled.notes);
     part.summary.reading_notes = std::move(state_->blocks.notes);
     if (is_tets(state_->file)) {
@@ -140,6 +162,7 @@ MeshFile joined(const MeshFilePart& own, std::span<const PartSummary> summaries,
   const auto add = [&](const std::vector<std::string>& notes) { add_notes(notes, whole.notes); };
   for (const PartSummary& part : summaries) {
     whole.counts += part.counts;
+    whole.higher_order += part.higher_order;
     add(part.reading_notes);
     used.resize(std::max(used.size(), part.used_points.size()), 0);
     for (std::size_t w = 0; w < part.used_points.size(); ++w) used[w] |= part.used_points[w];

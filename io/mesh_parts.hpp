@@ -8,15 +8,18 @@
 #include <vector>
 
 #include "io/field_choice.hpp"
+#include "io/higher_order_plan.hpp"
 #include "io/mesh_reader.hpp"
 
-/// A mesh file read by several processes, each a part of it. They have to agree twice: before they choose the field, on
-/// what arrays there are, and at the end on the counts. This folder knows no messages: whoever reads carries both
-/// around.
+/// A mesh file read by several processes, each a part of it. They have to agree three times: before they choose the
+/// field, on what arrays there are and where; on how finely higher-order cells are divided; and at the end on the
+/// counts. This folder knows no messages: whoever reads carries these around.
 ///
 ///     MeshPartReading reading(file, options, part, parts);
-///     tallies = reading.tallies() of all parts, in part order
-///     MeshFilePart own = reading.finish(tallies);
+///     tallies = reading.tallies() of all parts, in part order; box = reading.box() of all, joined
+///     reading.choose(tallies, box);
+///     excess = sum of reading.excess() of all parts
+///     MeshFilePart own = reading.finish(excess);
 ///     MeshFile whole = joined(own.summary of all parts, in part order, ...)
 ///
 /// The tets of all parts, one part after the other, are those that read_mesh gives, in its order; `joined` gives
@@ -38,6 +41,7 @@ struct PartSummary {
   /// how many points are unused.
   std::vector<std::uint64_t> used_points;
   std::vector<std::string> reading_notes, cell_notes;
+  HigherOrderCells higher_order;
 };
 
 struct MeshFilePart {
@@ -57,10 +61,17 @@ class MeshPartReading {
   ~MeshPartReading();
 
   [[nodiscard]] const std::vector<FieldTally>& tallies() const;
+  /// higher_order_box() of the part.
+  [[nodiscard]] const scene::Box& box() const;
 
-  /// Chooses the field, the same on all parts, and makes the tets. Once. Throws as read_mesh, but for a part in which
-  /// nothing is left to render.
-  MeshFilePart finish(std::span<const std::vector<FieldTally>> tallies_of_all);
+  /// Chooses the field, the same on all parts. Throws as choose_field.
+  void choose(std::span<const std::vector<FieldTally>> tallies_of_all, const scene::Box& box_of_all);
+
+  /// After the choice.
+  [[nodiscard]] ExcessTally excess() const;
+
+  /// Makes the tets. Once. Throws as read_mesh, but for a part in which nothing is left to render.
+  MeshFilePart finish(const ExcessTally& excess_of_all);
 
  private:
   struct State;

@@ -25,8 +25,14 @@ struct MeshOptions {
   int threads = 1;                         ///< that make tets of cells; 0: all cores
   /// Of files in blocks: names of those to read (io/block_choice.hpp); none: all.
   std::vector<std::string> blocks{};
+  /// Cells of second and higher order become tets that are this near to them: in position of the mesh's diagonal, in
+  /// value of the field's range; and about so many tets at most, else the tolerance is larger. 0 tets: by their
+  /// corners.
+  double higher_order_tolerance = 1e-5;
+  std::uint64_t higher_order_tets = std::uint64_t{1} << 23;
 };
 
+using tessera::HigherOrderCells;
 using tessera::MeshCounts;
 
 using FieldSummary = tessera::FieldInfo;
@@ -34,6 +40,7 @@ using FieldSummary = tessera::FieldInfo;
 struct MeshFile {
   scene::TetMesh mesh;
   MeshCounts counts;
+  HigherOrderCells higher_order;
   std::vector<FieldSummary> fields;
   std::vector<std::string> notes;   ///< one line each: what was chosen, or odd about the file
   std::vector<std::string> blocks;  ///< names of all that the file has, read or not

@@ -39,6 +39,12 @@ struct ReadOptions {
   /// beginning or the end will do.
   std::vector<std::string> blocks{};
 
+  /// Cells of second and higher order become tets that are this near to them: in position of the mesh's diagonal, in
+  /// value of the field's range. No more than about `higher_order_tets` are made of them, else the tolerance is larger;
+  /// Dataset::higher_order_cells() says what was reached. 0 tets: they are drawn by their corners, without a bound.
+  double higher_order_tolerance = 1e-5;
+  std::uint64_t higher_order_tets = std::uint64_t{1} << 23;
+
   // A .raw file says nothing of itself, but perhaps by its name: NAME_WxHxD_TYPE.raw. These win over the name, and are
   // refused for other files.
   std::optional<GridIndex> dims{};
@@ -149,6 +155,7 @@ class TESSERA_EXPORT Dataset {
   /// Meshes, else zero.
   [[nodiscard]] std::uint64_t tet_count() const;
   [[nodiscard]] const MeshCounts& mesh_counts() const;
+  [[nodiscard]] const HigherOrderCells& higher_order_cells() const;
   /// The tets as they are rendered, on several ranks this one's: float64 points and scalars, uint32 tets, borrowed from
   /// this data set and kept by it. Throws Error(bad_input) for a grid.
   [[nodiscard]] MeshArrays mesh_arrays() const;

@@ -30,7 +30,7 @@ struct MeshCounts {
   std::uint64_t cells_not_volumetric = 0;  ///< skipped: points, lines, faces
   std::uint64_t cells_zero_volume = 0;     ///< kept: all their tets have exactly no volume
   std::uint64_t cells_tangled = 0;         ///< kept: their tets differ in orientation, so they overlap
-  std::uint64_t cells_quadratic = 0;       ///< kept: second or higher order, rendered by their corner nodes
+  std::uint64_t cells_quadratic = 0;       ///< kept: second or higher order (HigherOrderCells)
   std::uint64_t points_read = 0;
   std::uint64_t points_unused = 0;   ///< of no tet
   std::uint64_t tets_made = 0;       ///< in the mesh
@@ -56,5 +56,29 @@ inline MeshCounts& MeshCounts::operator+=(const MeshCounts& other) {
   return *this;
 }
 static_assert(sizeof(MeshCounts) == 12 * sizeof(std::uint64_t));  // one line above for each
+
+/// What became of a mesh's cells of second and higher order.
+struct HigherOrderCells {
+  std::uint64_t divided = 0;     ///< into tets that are as near to them as the bounds below say
+  std::uint64_t by_corners = 0;  ///< drawn as linear cells by their corners, of kinds that are not divided: no bound
+  std::uint64_t tets = 0;        ///< made of those divided
+  double position_error = 0;     ///< the most that a point of a tet is away from where the cell has it, world units
+  double field_error = 0;        ///< the most that the field is off at one place, in its unit
+  double tolerance = 0;          ///< what was asked for or, where that took too many tets, what was aimed at instead
+
+  HigherOrderCells& operator+=(const HigherOrderCells& other);  ///< of another part
+  bool operator==(const HigherOrderCells&) const = default;
+};
+
+inline HigherOrderCells& HigherOrderCells::operator+=(const HigherOrderCells& other) {
+  divided += other.divided;
+  by_corners += other.by_corners;
+  tets += other.tets;
+  position_error = position_error < other.position_error ? other.position_error : position_error;
+  field_error = field_error < other.field_error ? other.field_error : field_error;
+  tolerance = tolerance < other.tolerance ? other.tolerance : tolerance;
+  return *this;
+}
+static_assert(sizeof(HigherOrderCells) == 6 * sizeof(double));  // one line above for each
 
 }  // namespace tessera

@@ -44,10 +44,18 @@ InParts read_in_parts(const std::filesystem::path& file, int parts, const MeshOp
     readings.push_back(std::make_unique<MeshPartReading>(file, options, p, parts));
     tallies.push_back(readings.back()->tallies());
   }
+  scene::Box box = higher_order_box({});
+  for (const auto& reading : readings) box = joined(box, reading->box());
+  ExcessTally excess{};
+  for (const auto& reading : readings) {
+    reading->choose(tallies, box);
+    const ExcessTally own = reading->excess();
+    for (std::size_t bin = 0; bin < own.size(); ++bin) excess[bin] += own[bin];
+  }
   InParts result;
   std::vector<PartSummary> summaries;
   for (auto& reading : readings) {
-    result.parts.push_back(reading->finish(tallies));
+    result.parts.push_back(reading->finish(excess));
     summaries.push_back(result.parts.back().summary);
   }
   result.whole = joined(result.parts.back(), summaries, file);

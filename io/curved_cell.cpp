@@ -1,0 +1,366 @@
+#include "io/curved_cell.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+
+namespace tessera::io {
+namespace {
+
+constexpr int highest_order = 100;
+using Basis = std::array<double, highest_order + 1>;
+
+/// Lagrange's polynomials of degree n for nodes 0, 1/n, ..., 1 at x.
+void lagrange(int n, double x, Basis& out) {
+  if (n == 1) {
+    out[0] = 1 - x, out[1] = x;
+    return;
+  }
+  if (n == 2) {
+    out[0] = (1 - x) * (1 - 2 * x), out[1] = 4 * x * (1 - x), out[2] = x * (2 * x - 1);
+    return;
+  }
+  for (int i = 0; i <= n; ++i) {
+    double value = 1;
+    for (int j = 0; j <= n; ++j)
+      if (j != i) value *= (n * x - j) / (i - j);
+    out[static_cast<std::size_t>(i)] = value;
+  }
+}
+
+/// Silvester's polynomials of barycentric coordinate x: product of (n x - m) / (k - m) over m < k.
+void silvester(int n, double x, Basis& out) {
+  out[0] = 1;
+  for (int k = 1; k <= n; ++k)
+    out[static_cast<std::size_t>(k)] = out[static_cast<std::size_t>(k - 1)] * (n * x - (k - 1)) / k;
+}
+
+bool lexicographic(const glm::dvec3& a, const glm::dvec3& b) {
+  if (a.x != b.x) return a.x < b.x;
+  if (a.y != b.y) return a.y < b.y;
+  return a.z < b.z;
+}
+
+glm::dvec3 position(const glm::dvec4& value) { return {value.x, value.y, value.z}; }
+
+/// The middle of an eight-node quadrilateral, by its polynomials. Sums in the order of positions, so that both cells at
+/// it get the same bits.
+glm::dvec4 middle_of_quadrilateral(std::array<glm::dvec4, 4> corners, std::array<glm::dvec4, 4> edges) {
+  const auto less = [](const glm::dvec4& a, const glm::dvec4& b) { return lexicographic(position(a), position(b)); };
+  std::sort(corners.begin(), corners.end(), less);
+  std::sort(edges.begin(), edges.end(), less);
+  glm::dvec4 corner_sum(0), edge_sum(0);
+  for (std::size_t k = 0; k < 4; ++k) corner_sum += corners[k], edge_sum += edges[k];
+  return 0.5 * edge_sum - 0.25 * corner_sum;
+}
+
+/// Weights of the 14 nodes of a quadratic pyramid's 14 functions: the inverse of their values at the nodes.
+constexpr int pyramid_nodes = 14;
+using PyramidMonomials = std::array<double, pyramid_nodes>;
+
+PyramidMonomials pyramid_monomials(const std::array<double, 3>& x) {
+  const double w = 1 - x[2], u = w > 0 ? x[0] / w : 0, v = w > 0 ? x[1] / w : 0;
+  PyramidMonomials out{};
+  std::size_t at = 0;
+  double scale = 1;
+  for (int m = 0; m <= 2; ++m, scale *= w)
+    for (int j = 0; j <= m; ++j)
+      for (int i = 0; i <= m; ++i)
+        out[at++] = scale * (i == 0 ? 1 : i == 1 ? u : u * u) * (j == 0 ? 1 : j == 1 ? v : v * v);
+  return out;
+}
+
+using PyramidMatrix = std::array<std::array<double, pyramid_nodes>, pyramid_nodes>;
+
+PyramidMatrix make_pyramid_matrix() {
+  constexpr std::size_t n = pyramid_nodes;
+  std::array<std::array<long double, 2 * n>, n> a{};
+  std::size_t row = 0;
+  for (int k = 0; k <= 2; ++k)  // the order of slots
+    for (int j = 0; j <= 2 - k; ++j)
+      for (int i = 0; i <= 2 - k; ++i, ++row) {
+        const PyramidMonomials values = pyramid_monomials({i / 2.0, j / 2.0, k / 2.0});
+        std::copy(values.begin(), values.end(), a[row].begin());
+        a[row][n + row] = 1;
+      }
+  for (std::size_t column = 0; column < n; ++column) {
+    std::size_t pivot = column;
+    for (std::size_t r = column + 1; r < n; ++r)
+      if (std::abs(a[r][column]) > std::abs(a[pivot][column])) pivot = r;
+    std::swap(a[column], a[pivot]);
+    const long double scale = 1 / a[column][column];
+    for (long double& value : a[column]) value *= scale;
+    for (std::size_t r = 0; r < n; ++r) {
+      const long double factor = a[r][column];
+      if (r == column || factor == 0) continue;
+      for (std::size_t c = 0; c < 2 * n; ++c) a[r][c] -= factor * a[column][c];
+    }
+  }
+  PyramidMatrix inverse;  // of monomial m, what node k has of it
+  for (std::size_t m = 0; m < n; ++m)
+    for (std::size_t k = 0; k < n; ++k) inverse[m][k] = static_cast<double>(a[m][n + k]);
+  return inverse;
+}
+
+glm::dvec4 evaluate_pyramid(std::span<const glm::dvec4> nodes, const std::array<double, 3>& x) {
+  static const PyramidMatrix matrix = make_pyramid_matrix();
+  const PyramidMonomials monomials = pyramid_monomials(x);
+  std::array<double, pyramid_nodes> weights{};
+  for (std::size_t m = 0; m < pyramid_nodes; ++m)
+    for (std::size_t k = 0; k < pyramid_nodes; ++k) weights[k] += monomials[m] * matrix[m][k];
+  glm::dvec4 sum(0);
+  for (std::size_t k = 0; k < pyramid_nodes; ++k) sum += weights[k] * nodes[k];
+  return sum;
+}
+
+glm::dvec4 evaluate_triangle(std::span<const glm::dvec4> nodes, int n, double u, double v) {
+  Basis a, b, c;
+  silvester(n, u, a), silvester(n, v, b), silvester(n, 1 - u - v, c);
+  glm::dvec4 sum(0);
+  std::size_t at = 0;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i + j <= n; ++i)
+      sum += a[static_cast<std::size_t>(i)] * b[static_cast<std::size_t>(j)] * c[static_cast<std::size_t>(n - i - j)] *
+             nodes[at++];
+  return sum;
+}
+
+}  // namespace
+
+void CurvedCell::set(const CurvedLattice& lattice, std::span<const glm::dvec3> positions,
+                     std::span<const double> values) {
+  lattice_ = &lattice;
+  parts_made_ = 0;
+  values_.assign(static_cast<std::size_t>(lattice.slots), glm::dvec4(0));
+  for (std::size_t k = 0; k < positions.size(); ++k) {
+    const glm::dvec3& p = positions[k];
+    node(lattice.nodes[k]) = glm::dvec4(p.x, p.y, p.z, values.empty() ? 0 : values[k]);
+  }
+  const std::size_t corners = corners_of(lattice.family).size();
+  for (std::size_t k = 0; k < corners; ++k) corner_position_[k] = positions[k];
+  corner_faces_.assign(corners, 0);
+  const auto faces = faces_of(lattice.family);
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    for (int k = 0; k < faces[f].size; ++k) corner_faces_[faces[f].corner[static_cast<std::size_t>(k)]] |= 1u << f;
+  if (positions.size() < values_.size()) add_missing_nodes();
+}
+
+/// Of serendipity cells, whose lattice is quadratic: the middles of faces, then of the cell.
+void CurvedCell::add_missing_nodes() {
+  std::vector<bool> given(values_.size(), false);
+  for (const LatticePlace& p : lattice_->nodes) given[static_cast<std::size_t>(lattice_->slot(p))] = true;
+  for (const CurvedFace& face : faces_of(lattice_->family)) {
+    if (face.size == 3) continue;
+    std::array<glm::dvec4, 4> corners, edges;
+    LatticePlace sum{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const LatticePlace a = lattice_corner(face.corner[k]), b = lattice_corner(face.corner[(k + 1) % 4]);
+      corners[k] = node(a);
+      edges[k] = node({(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2});
+      for (std::size_t x = 0; x < 3; ++x) sum[x] += a[x];
+    }
+    const LatticePlace middle = {sum[0] / 4, sum[1] / 4, sum[2] / 4};
+    if (!given[static_cast<std::size_t>(lattice_->slot(middle))])
+      node(middle) = middle_of_quadrilateral(corners, edges);
+  }
+  if (lattice_->family != CurvedFamily::hexahedron || given[static_cast<std::size_t>(lattice_->slot({1, 1, 1}))])
+    return;
+  // Transfinite interpolation of faces, edges and corners: what the functions of both serendipity hexahedra give.
+  glm::dvec4 sums[4] = {};  // of the corners, edges, faces
+  for (int k = 0; k <= 2; ++k)
+    for (int j = 0; j <= 2; ++j)
+      for (int i = 0; i <= 2; ++i)
+        sums[(i == 1) + (j == 1) + (k == 1)] += node({i, j, k}) * (i == 1 && j == 1 && k == 1 ? 0.0 : 1.0);
+  node({1, 1, 1}) = 0.5 * sums[2] - 0.25 * sums[1] + 0.125 * sums[0];
+}
+
+LatticePlace CurvedCell::lattice_corner(std::size_t corner) const {
+  const LatticePlace& p = corners_of(lattice_->family)[corner];
+  return {p[0] * lattice_->order[0], p[1] * lattice_->order[1], p[2] * lattice_->order[2]};
+}
+
+CellPlace CurvedCell::place_of_corner(std::size_t corner) const {
+  const LatticePlace& p = corners_of(lattice_->family)[corner];
+  return {p[0] * cell_unit, p[1] * cell_unit, p[2] * cell_unit};
+}
+
+bool CurvedCell::before(std::size_t corner, std::size_t other) const {
+  const glm::dvec3 &a = corner_position_[corner], &b = corner_position_[other];
+  return lexicographic(a, b) || (a == b && corner < other);
+}
+
+const CurvedCell::Part& CurvedCell::part_on(unsigned faces) {
+  for (std::size_t k = 0; k < parts_made_; ++k)
+    if (parts_[k].first == faces) return parts_[k].second;
+  if (parts_made_ == parts_.size()) parts_.emplace_back();
+  auto& [key, part] = parts_[parts_made_++];
+  key = faces;
+  part.nodes.clear();
+  part.dimensions = faces == 0 ? 3 : std::popcount(faces) == 1 ? 2 : 1;
+  if (part.dimensions == 2)
+    make_face(faces, part);
+  else if (part.dimensions == 1)
+    make_edge(faces, part);
+  return part;
+}
+
+void CurvedCell::make_edge(unsigned faces, Part& part) const {
+  std::array<std::size_t, 2> end{};
+  std::size_t found = 0;
+  for (std::size_t c = 0; c < corner_faces_.size() && found < 2; ++c)
+    if ((corner_faces_[c] & faces) == faces) end[found++] = c;
+  if (before(end[1], end[0])) std::swap(end[0], end[1]);
+  const LatticePlace a = lattice_corner(end[0]), b = lattice_corner(end[1]);
+  part.origin = place_of_corner(end[0]);
+  int n = 0;
+  for (std::size_t x = 0; x < 3; ++x)
+    if (a[x] != b[x]) {
+      n = std::abs(b[x] - a[x]);
+      part.axis[0] = static_cast<int>(x);
+      part.inverse[0] = b[x] > a[x] ? 1 : -1;
+    }
+  part.order = {n, 0};
+  for (int k = 0; k <= n; ++k)
+    part.nodes.push_back(
+        node({a[0] + k * (b[0] - a[0]) / n, a[1] + k * (b[1] - a[1]) / n, a[2] + k * (b[2] - a[2]) / n}));
+}
+
+void CurvedCell::make_face(unsigned faces, Part& part) const {
+  const CurvedFace& face = faces_of(lattice_->family)[static_cast<std::size_t>(std::countr_zero(faces))];
+  const auto size = static_cast<std::size_t>(face.size);
+  std::size_t first = 0;
+  for (std::size_t k = 1; k < size; ++k)
+    if (before(face.corner[k], face.corner[first])) first = k;
+  std::size_t next = face.corner[(first + 1) % size], last = face.corner[(first + size - 1) % size];
+  if (before(last, next)) std::swap(next, last);
+  part.triangle = size == 3;
+  part.origin = place_of_corner(face.corner[first]);
+  const LatticePlace a = lattice_corner(face.corner[first]), b = lattice_corner(next), c = lattice_corner(last);
+  // Of the face's two directions in the cell, all of whose parts are -1, 0 or 1, two axes tell them apart.
+  const auto &A = corners_of(lattice_->family)[face.corner[first]], &B = corners_of(lattice_->family)[next],
+             &C = corners_of(lattice_->family)[last];
+  for (const auto& [x, y] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}}) {
+    const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(y);
+    const int bx = B[i] - A[i], by = B[j] - A[j], cx = C[i] - A[i], cy = C[j] - A[j], determinant = bx * cy - by * cx;
+    if (determinant == 0) continue;
+    part.axis = {x, y};
+    part.inverse = {cy * determinant, -cx * determinant, -by * determinant,
+                    bx * determinant};  // determinant is 1 or -1
+    break;
+  }
+  const auto steps = [](const LatticePlace& p, const LatticePlace& q) {
+    return std::max({std::abs(q[0] - p[0]), std::abs(q[1] - p[1]), std::abs(q[2] - p[2])});
+  };
+  part.order = {steps(a, b), steps(a, c)};
+  const auto [n, m] = part.order;
+  for (int j = 0; j <= m; ++j)
+    for (int i = 0; i <= (part.triangle ? n - j : n); ++i) {
+      LatticePlace p;
+      for (std::size_t x = 0; x < 3; ++x) p[x] = a[x] + i * (b[x] - a[x]) / n + j * (c[x] - a[x]) / m;
+      part.nodes.push_back(node(p));
+    }
+}
+
+std::array<std::int32_t, 3> CurvedCell::coordinates(const Part& part, const CellPlace& place) {
+  if (part.dimensions == 3) return place;
+  const auto x = static_cast<std::size_t>(part.axis[0]), y = static_cast<std::size_t>(part.axis[1]);
+  const std::int32_t a = place[x] - part.origin[x];
+  if (part.dimensions == 1) return {part.inverse[0] * a, 0, 0};
+  const std::int32_t b = place[y] - part.origin[y];
+  return {part.inverse[0] * a + part.inverse[1] * b, part.inverse[2] * a + part.inverse[3] * b, 0};
+}
+
+glm::dvec4 CurvedCell::evaluate(const Part& part, const std::array<double, 3>& x) const {
+  if (part.dimensions == 3) return evaluate_inside(x);
+  if (part.dimensions == 2 && part.triangle) return evaluate_triangle(part.nodes, part.order[0], x[0], x[1]);
+  Basis a, b;
+  lagrange(part.order[0], x[0], a);
+  glm::dvec4 sum(0);
+  if (part.dimensions == 1) {
+    for (std::size_t k = 0; k < part.nodes.size(); ++k) sum += a[k] * part.nodes[k];
+    return sum;
+  }
+  lagrange(part.order[1], x[1], b);
+  const auto n = static_cast<std::size_t>(part.order[0]), m = static_cast<std::size_t>(part.order[1]);
+  for (std::size_t j = 0; j <= m; ++j)
+    for (std::size_t i = 0; i <= n; ++i) sum += a[i] * b[j] * part.nodes[j * (n + 1) + i];
+  return sum;
+}
+
+glm::dvec4 CurvedCell::evaluate_inside(const std::array<double, 3>& x) const {
+  const auto& n = lattice_->order;
+  if (lattice_->family == CurvedFamily::pyramid) return evaluate_pyramid(values_, x);
+  Basis a, b, c, d;
+  glm::dvec4 sum(0);
+  std::size_t at = 0;
+  if (lattice_->family == CurvedFamily::hexahedron) {
+    lagrange(n[0], x[0], a), lagrange(n[1], x[1], b), lagrange(n[2], x[2], c);
+    for (std::size_t k = 0; k <= static_cast<std::size_t>(n[2]); ++k)
+      for (std::size_t j = 0; j <= static_cast<std::size_t>(n[1]); ++j) {
+        const double bc = b[j] * c[k];
+        for (std::size_t i = 0; i <= static_cast<std::size_t>(n[0]); ++i) sum += a[i] * bc * values_[at++];
+      }
+    return sum;
+  }
+  silvester(n[0], x[0], a), silvester(n[0], x[1], b);
+  const bool is_wedge = lattice_->family == CurvedFamily::wedge;
+  silvester(n[0], is_wedge ? 1 - x[0] - x[1] : 1 - x[0] - x[1] - x[2], d);
+  if (is_wedge)
+    lagrange(n[2], x[2], c);
+  else
+    silvester(n[2], x[2], c);
+  for (int k = 0; k <= n[2]; ++k) {
+    const int left = is_wedge ? n[0] : n[0] - k;
+    for (int j = 0; j <= left; ++j)
+      for (int i = 0; i + j <= left; ++i)
+        sum += a[static_cast<std::size_t>(i)] * b[static_cast<std::size_t>(j)] * c[static_cast<std::size_t>(k)] *
+               d[static_cast<std::size_t>(left - i - j)] * values_[at++];
+  }
+  return sum;
+}
+
+glm::dvec4 CurvedCell::at(const CellPlace& place, unsigned faces) {
+  const Part& part = part_on(faces);
+  const auto x = coordinates(part, place);
+  constexpr double unit = cell_unit;
+  return evaluate(part, {x[0] / unit, x[1] / unit, x[2] / unit});
+}
+
+void CurvedCell::order(std::span<CellPlace> corners, unsigned faces) {
+  const Part& part = part_on(faces);
+  std::sort(corners.begin(), corners.end(),
+            [&](const CellPlace& a, const CellPlace& b) { return coordinates(part, a) < coordinates(part, b); });
+}
+
+int CurvedCell::degree_on(unsigned faces) {
+  const auto& n = lattice_->order;
+  const Part& part = part_on(faces);
+  if (part.dimensions == 1) return part.order[0];
+  if (part.dimensions == 2) return part.triangle ? part.order[0] : part.order[0] + part.order[1];
+  switch (lattice_->family) {
+    case CurvedFamily::tet:
+      return n[0];
+    case CurvedFamily::hexahedron:
+      return n[0] + n[1] + n[2];
+    case CurvedFamily::wedge:
+      return n[0] + n[2];
+    case CurvedFamily::pyramid:
+      return 6;  // rational: as near as a polynomial of this degree comes to them
+  }
+  return 1;
+}
+
+glm::dvec4 CurvedCell::between(std::span<const CellPlace> corners, std::span<const int> weights, int total,
+                               unsigned faces) {
+  const Part& part = part_on(faces);
+  std::array<double, 3> x{};
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const auto c = coordinates(part, corners[k]);
+    for (std::size_t a = 0; a < 3; ++a) x[a] += static_cast<double>(weights[k]) * c[a];
+  }
+  const double scale = static_cast<double>(total) * cell_unit;
+  return evaluate(part, {x[0] / scale, x[1] / scale, x[2] / scale});
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "io/curved_lattice.hpp"
+
+namespace tessera::io {
+
+/// A place in a cell: (r, s, t) in units of 2^-20, so that midpoints, and the same point told by another cell, are
+/// exact.
+using CellPlace = std::array<std::int32_t, 3>;
+inline constexpr std::int32_t cell_unit = 1 << 20;
+
+/// One higher-order cell: position and field at any of its places.
+///
+/// Functions  Lagrange's of the lattice's nodes, isoparametric: one set for position and field. Serendipity cells get
+///            the nodes they lack first, from the polynomials that they have. Pyramids' are rational: those of
+///            w^m (r/w)^i (s/w)^j, w = 1 - t, i and j <= m <= 2, which are a neighbour's quadratics on each face
+///            (Bedrosian, "Shape functions and integration formulas for three-dimensional finite element analysis",
+///            International Journal for Numerical Methods in Engineering 35, 1992).
+/// Shared     A place on a face or edge is computed from that face's or edge's nodes alone, in an order that follows
+///            from the corners' positions. So both cells at a face get the same bits, however they are numbered.
+class CurvedCell {
+ public:
+  /// The next cell, of as many positions and values as the lattice has nodes; values may be none: then the field is 0.
+  /// The lattice must outlive the cell's use.
+  void set(const CurvedLattice& lattice, std::span<const glm::dvec3> positions, std::span<const double> values);
+
+  /// Bits of the faces that a corner lies on; those of any other place are the ones that all of its neighbours in a
+  /// subdivision have in common.
+  [[nodiscard]] unsigned faces_of_corner(std::size_t corner) const { return corner_faces_[corner]; }
+  [[nodiscard]] CellPlace place_of_corner(std::size_t corner) const;
+
+  /// Position and field at a place that lies on all of these faces.
+  [[nodiscard]] glm::dvec4 at(const CellPlace& place, unsigned faces);
+
+  /// Puts the corners of a segment, triangle or tetrahedron that lies on all of `faces` into an order that both cells
+  /// at such a face find.
+  void order(std::span<CellPlace> corners, unsigned faces);
+
+  /// The degree of position and field on a straight segment, triangle or tetrahedron on all of these faces.
+  [[nodiscard]] int degree_on(unsigned faces);
+
+  /// Whether that is exact on the whole cell, whose functions are polynomials then.
+  [[nodiscard]] bool is_polynomial() const { return lattice_->family != CurvedFamily::pyramid; }
+
+  /// Position and field at sum of weights[k] corners[k] / total, for corners in `order`.
+  [[nodiscard]] glm::dvec4 between(std::span<const CellPlace> corners, std::span<const int> weights, int total,
+                                   unsigned faces);
+
+ private:
+  /// The part of the cell on some of its faces: an edge, a face, or the cell itself.
+  struct Part {
+    CellPlace origin{};            ///< of the part's own coordinates
+    std::array<int, 2> axis{};     ///< of the cell, from which they follow
+    std::array<int, 4> inverse{};  ///< of the matrix from the one to the other on those axes; all whole numbers
+    bool triangle = false;
+    int dimensions = 0;
+    std::array<int, 2> order{};
+    std::vector<glm::dvec4> nodes;
+  };
+
+  const Part& part_on(unsigned faces);
+  void make_edge(unsigned faces, Part& part) const;
+  void make_face(unsigned faces, Part& part) const;
+  void add_missing_nodes();
+  [[nodiscard]] glm::dvec4& node(const LatticePlace& p) { return values_[static_cast<std::size_t>(lattice_->slot(p))]; }
+  [[nodiscard]] const glm::dvec4& node(const LatticePlace& p) const {
+    return values_[static_cast<std::size_t>(lattice_->slot(p))];
+  }
+  [[nodiscard]] LatticePlace lattice_corner(std::size_t corner) const;
+  [[nodiscard]] bool before(std::size_t corner, std::size_t other) const;
+  /// Coordinates of the part; of the cell itself its own. In units.
+  [[nodiscard]] static std::array<std::int32_t, 3> coordinates(const Part& part, const CellPlace& place);
+  [[nodiscard]] glm::dvec4 evaluate(const Part& part, const std::array<double, 3>& x) const;
+  [[nodiscard]] glm::dvec4 evaluate_inside(const std::array<double, 3>& x) const;
+
+  const CurvedLattice* lattice_ = nullptr;
+  std::vector<glm::dvec4> values_;  ///< of the lattice's places
+  std::vector<unsigned> corner_faces_;
+  std::array<glm::dvec3, 8> corner_position_;
+  std::vector<std::pair<unsigned, Part>> parts_;  ///< those asked for, by faces
+  std::size_t parts_made_ = 0;                    ///< of this cell; the others' memory is used again
+};
+
+}  // namespace tessera::io

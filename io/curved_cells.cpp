@@ -1,0 +1,107 @@
+#include "io/curved_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "io/cell_split.hpp"
+
+namespace tessera::io {
+namespace {
+
+bool is_lagrange(std::uint8_t type) { return type >= 71 && type <= 73; }
+bool is_curved(std::uint8_t type) {
+  return (type >= 24 && type <= 27) || type == 29 || (type >= 31 && type <= 33) || is_lagrange(type);
+}
+
+/// VTK's cell array of the orders of Lagrange cells, if there is one.
+std::vector<std::array<int, 3>> degrees_in(const CellBlock& block) {
+  std::vector<std::array<int, 3>> degrees;
+  for (const BlockField& field : block.fields) {
+    if (field.name != "HigherOrderDegrees" || field.association != scene::Association::cell || field.components != 3 ||
+        field.tuples != block.cell_count())
+      continue;
+    degrees.resize(field.tuples);
+    std::vector<double> numbers(field.tuples);
+    for (int c = 0; c < 3; ++c) {
+      field.read(c, 0, numbers);
+      for (std::size_t k = 0; k < numbers.size(); ++k)
+        degrees[k][static_cast<std::size_t>(c)] =
+            numbers[k] >= 1 && numbers[k] < 1000 ? static_cast<int>(numbers[k]) : 0;
+    }
+    break;
+  }
+  return degrees;
+}
+
+}  // namespace
+
+bool has_curved_cells(const CellBlock& block) { return std::any_of(block.types.begin(), block.types.end(), is_curved); }
+
+CurvedCells::CurvedCells(const CellBlock& block, std::span<const glm::dvec3> points, std::span<const double> values,
+                         scene::Association association, const CurvedSettings& settings)
+    : block_(block),
+      points_(points),
+      values_(association == scene::Association::point ? values : std::span<const double>{}),
+      settings_(settings) {
+  if (settings.limit == 0 || !has_curved_cells(block)) return;
+  if (std::any_of(block.types.begin(), block.types.end(), is_lagrange)) degrees_ = degrees_in(block);
+  for (std::size_t c = 0; c < block.types.size(); ++c) {
+    if (!is_curved(block.types[c])) continue;
+    const Key key = key_of(c);
+    if (lattices_.contains(key)) continue;
+    const auto& [nodes, degrees] = key;
+    if (std::optional<CurvedLattice> made = curved_lattice(block.types[c], nodes, {degrees[0], degrees[1], degrees[2]}))
+      lattices_.emplace(key, std::move(*made));
+  }
+}
+
+CurvedCells::Key CurvedCells::key_of(std::size_t cell) const {
+  const std::uint8_t type = block_.types[cell];
+  const std::array<int, 3> degrees = degrees_.empty() || !is_lagrange(type) ? std::array<int, 3>{} : degrees_[cell];
+  return {block_.offsets[cell + 1] - block_.offsets[cell], {degrees[0], degrees[1], degrees[2], type}};
+}
+
+const CurvedLattice* CurvedCells::lattice(std::size_t cell) const {
+  if (lattices_.empty() || !is_curved(block_.types[cell])) return nullptr;
+  const auto found = lattices_.find(key_of(cell));
+  return found == lattices_.end() ? nullptr : &found->second;
+}
+
+std::span<const std::uint32_t> CurvedCells::nodes_of(std::size_t cell) const {
+  return std::span(block_.connectivity).subspan(block_.offsets[cell], block_.offsets[cell + 1] - block_.offsets[cell]);
+}
+
+/// The cell's nodes, and the tets of its corners.
+void CurvedCells::begin(std::size_t cell, CurvedWork& work) const {
+  work.positions.clear(), work.values.clear(), work.first.clear();
+  for (const std::uint32_t v : nodes_of(cell)) {
+    work.positions.push_back(points_[v]);
+    if (!values_.empty()) work.values.push_back(values_[v]);
+  }
+  static constexpr std::array<std::uint32_t, 8> numbers = {0, 1, 2, 3, 4, 5, 6, 7};
+  const CellShape shape = cell_shape(block_.types[cell]);
+  split_cell(shape.kind, std::span(numbers).first(static_cast<std::size_t>(shape.corners)), work.positions, work.first);
+}
+
+void CurvedCells::split(std::size_t cell, CurvedWork& work) const {
+  begin(cell, work);
+  work.splitter.split(*lattice(cell), work.positions, work.values, work.first, settings_.limit);
+}
+
+void CurvedCells::tally_excess(const std::function<void(double)>& say) const {
+  CurvedWork work(settings_.tolerance);
+  for (std::size_t c = 0; c < block_.types.size() && !lattices_.empty(); ++c) {
+    const CurvedLattice* const curved = lattice(c);
+    if (curved == nullptr) continue;
+    begin(c, work);
+    const bool is_finite =
+        std::all_of(
+            work.positions.begin(), work.positions.end(),
+            [](const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }) &&
+        std::all_of(work.values.begin(), work.values.end(), [](double v) { return std::isfinite(v); });
+    if (is_finite) work.splitter.tally_excess(*curved, work.positions, work.values, work.first, say);
+  }
+}
+
+}  // namespace tessera::io

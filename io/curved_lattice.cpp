@@ -1,0 +1,295 @@
+#include "io/curved_lattice.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::io {
+namespace {
+
+constexpr LatticePlace tet_corners[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+constexpr LatticePlace hexahedron_corners[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
+                                               {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+constexpr LatticePlace wedge_corners[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+constexpr LatticePlace pyramid_corners[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}};
+
+constexpr CurvedFace tet_faces[] = {{3, {0, 2, 1}}, {3, {0, 1, 3}}, {3, {1, 2, 3}}, {3, {0, 3, 2}}};
+constexpr CurvedFace hexahedron_faces[] = {{4, {0, 3, 2, 1}}, {4, {4, 5, 6, 7}}, {4, {0, 1, 5, 4}},
+                                           {4, {1, 2, 6, 5}}, {4, {2, 3, 7, 6}}, {4, {0, 4, 7, 3}}};
+constexpr CurvedFace wedge_faces[] = {
+    {3, {0, 1, 2}}, {3, {3, 5, 4}}, {4, {0, 3, 4, 1}}, {4, {1, 4, 5, 2}}, {4, {2, 5, 3, 0}}};
+constexpr CurvedFace pyramid_faces[] = {
+    {4, {0, 3, 2, 1}}, {3, {0, 1, 4}}, {3, {1, 2, 4}}, {3, {2, 3, 4}}, {3, {3, 0, 4}}};
+
+using Edge = std::array<int, 2>;
+constexpr Edge tet_edges[] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+constexpr Edge hexahedron_edges[] = {{0, 1}, {1, 2}, {3, 2}, {0, 3}, {4, 5}, {5, 6},
+                                     {7, 6}, {4, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+constexpr Edge wedge_edges[] = {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}};
+constexpr Edge pyramid_edges[] = {{0, 1}, {1, 2}, {3, 2}, {0, 3}, {0, 4}, {1, 4}, {2, 4}, {3, 4}};
+
+LatticePlace scaled(const LatticePlace& corner, const std::array<int, 3>& order) {
+  return {corner[0] * order[0], corner[1] * order[1], corner[2] * order[2]};
+}
+
+/// Adds nodes to a lattice in VTK's order.
+class Numbering {
+ public:
+  explicit Numbering(CurvedLattice& lattice) : lattice_(lattice) {
+    for (const LatticePlace& corner : corners_of(lattice.family)) corners_.push_back(scaled(corner, lattice.order));
+  }
+
+  void add(const LatticePlace& place) { lattice_.nodes.push_back(place); }
+  void add_corners() {
+    for (const LatticePlace& corner : corners_) add(corner);
+  }
+
+  /// The nodes between an edge's ends, from the first.
+  void add_edge(const Edge& edge) {
+    const LatticePlace &a = corners_[static_cast<std::size_t>(edge[0])],
+                       &b = corners_[static_cast<std::size_t>(edge[1])];
+    const int n = std::max({std::abs(b[0] - a[0]), std::abs(b[1] - a[1]), std::abs(b[2] - a[2])});
+    for (int k = 1; k < n; ++k)
+      add({a[0] + k * (b[0] - a[0]) / n, a[1] + k * (b[1] - a[1]) / n, a[2] + k * (b[2] - a[2]) / n});
+  }
+  void add_edges(std::span<const Edge> edges) {
+    for (const Edge& edge : edges) add_edge(edge);
+  }
+
+ private:
+  CurvedLattice& lattice_;
+  std::vector<LatticePlace> corners_;
+};
+
+/// a + u (b - a) / n + v (c - a) / n.
+LatticePlace between(const LatticePlace& a, const LatticePlace& b, const LatticePlace& c, int u, int v, int n) {
+  LatticePlace p;
+  for (std::size_t x = 0; x < 3; ++x) p[x] = a[x] + (u * (b[x] - a[x]) + v * (c[x] - a[x])) / n;
+  return p;
+}
+
+/// The nodes of a triangle of order n, corners and edges first, then those of the triangle within.
+void add_triangle(Numbering& numbering, const LatticePlace& a, const LatticePlace& b, const LatticePlace& c, int n) {
+  const auto at = [&](int u, int v) { numbering.add(between(a, b, c, u, v, n)); };
+  if (n == 0) return numbering.add(a);
+  numbering.add(a), numbering.add(b), numbering.add(c);
+  for (int k = 1; k < n; ++k) at(k, 0);
+  for (int k = 1; k < n; ++k) at(n - k, k);
+  for (int k = 1; k < n; ++k) at(0, n - k);
+  if (n >= 3)
+    add_triangle(numbering, between(a, b, c, 1, 1, n), between(a, b, c, n - 2, 1, n), between(a, b, c, 1, n - 2, n),
+                 n - 3);
+}
+
+/// The nodes of a tetrahedron with its corner at `from` and edges of n places along the axes.
+void add_tet(Numbering& numbering, const LatticePlace& from, int n) {
+  const LatticePlace corner[] = {
+      from, {from[0] + n, from[1], from[2]}, {from[0], from[1] + n, from[2]}, {from[0], from[1], from[2] + n}};
+  if (n == 0) return numbering.add(from);
+  for (const LatticePlace& p : corner) numbering.add(p);
+  for (const Edge& edge : tet_edges)
+    for (int k = 1; k < n; ++k) {
+      const LatticePlace &a = corner[edge[0]], &b = corner[edge[1]];
+      numbering.add(between(a, b, a, k, 0, n));
+    }
+  static constexpr int faces[4][3] = {{0, 1, 3}, {2, 3, 1}, {0, 3, 2}, {0, 2, 1}};
+  for (const auto& face : faces) {
+    const LatticePlace &a = corner[face[0]], &b = corner[face[1]], &c = corner[face[2]];
+    if (n >= 3)
+      add_triangle(numbering, between(a, b, c, 1, 1, n), between(a, b, c, n - 2, 1, n), between(a, b, c, 1, n - 2, n),
+                   n - 3);
+  }
+  if (n >= 4) add_tet(numbering, {from[0] + 1, from[1] + 1, from[2] + 1}, n - 4);
+}
+
+void number_lagrange_hexahedron(CurvedLattice& lattice) {
+  const auto [p, q, n] = lattice.order;
+  Numbering numbering(lattice);
+  numbering.add_corners();
+  numbering.add_edges(hexahedron_edges);
+  for (const int i : {0, p})
+    for (int k = 1; k < n; ++k)
+      for (int j = 1; j < q; ++j) numbering.add({i, j, k});
+  for (const int j : {0, q})
+    for (int k = 1; k < n; ++k)
+      for (int i = 1; i < p; ++i) numbering.add({i, j, k});
+  for (const int k : {0, n})
+    for (int j = 1; j < q; ++j)
+      for (int i = 1; i < p; ++i) numbering.add({i, j, k});
+  for (int k = 1; k < n; ++k)
+    for (int j = 1; j < q; ++j)
+      for (int i = 1; i < p; ++i) numbering.add({i, j, k});
+}
+
+void number_lagrange_wedge(CurvedLattice& lattice) {
+  const int p = lattice.order[0], n = lattice.order[2];
+  Numbering numbering(lattice);
+  numbering.add_corners();
+  numbering.add_edges(wedge_edges);
+  const auto add_triangle_inside = [&](int k) {
+    for (int j = 1; j < p; ++j)
+      for (int i = 1; i + j < p; ++i) numbering.add({i, j, k});
+  };
+  add_triangle_inside(0);
+  add_triangle_inside(n);
+  for (int k = 1; k < n; ++k)
+    for (int i = 1; i < p; ++i) numbering.add({i, 0, k});
+  for (int k = 1; k < n; ++k)
+    for (int j = 1; j < p; ++j) numbering.add({p - j, j, k});
+  for (int k = 1; k < n; ++k)
+    for (int j = p - 1; j > 0; --j) numbering.add({0, j, k});
+  for (int k = 1; k < n; ++k) add_triangle_inside(k);
+}
+
+bool is_of_lattice(const CurvedLattice& lattice, const LatticePlace& p) {
+  switch (lattice.family) {
+    case CurvedFamily::tet:
+      return p[0] + p[1] + p[2] <= lattice.order[0];
+    case CurvedFamily::hexahedron:
+      return true;
+    case CurvedFamily::wedge:
+      return p[0] + p[1] <= lattice.order[0];
+    case CurvedFamily::pyramid:
+      return p[0] + p[2] <= lattice.order[0] && p[1] + p[2] <= lattice.order[0];
+  }
+  return false;
+}
+
+void number_slots(CurvedLattice& lattice) {
+  const auto& n = lattice.order;
+  lattice.slot_of_place.assign(static_cast<std::size_t>((n[0] + 1) * (n[1] + 1) * (n[2] + 1)), -1);
+  std::size_t at = 0;
+  for (int k = 0; k <= n[2]; ++k)
+    for (int j = 0; j <= n[1]; ++j)
+      for (int i = 0; i <= n[0]; ++i, ++at)
+        if (is_of_lattice(lattice, {i, j, k})) lattice.slot_of_place[at] = lattice.slots++;
+}
+
+/// The n for which nodes_of(n) is `nodes`; 0 if there is none.
+template <class NodesOf>
+int order_with(std::size_t nodes, const NodesOf& nodes_of) {
+  for (std::size_t n = 1; nodes_of(n) <= nodes; ++n)
+    if (nodes_of(n) == nodes) return static_cast<int>(n);
+  return 0;
+}
+
+CurvedLattice quadratic(CurvedFamily family, int order_t = 2) {
+  CurvedLattice lattice;
+  lattice.family = family;
+  lattice.order = {2, 2, order_t};
+  return lattice;
+}
+
+/// Quadratic cells of VTK, whose mid-edge nodes come in rounds of their own.
+std::optional<CurvedLattice> quadratic_lattice(std::uint8_t vtk_type) {
+  static constexpr Edge hexahedron_rounds[] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
+                                               {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+  static constexpr LatticePlace face_centres[] = {{0, 1, 1}, {2, 1, 1}, {1, 0, 1}, {1, 2, 1}, {1, 1, 0}, {1, 1, 2}};
+  CurvedLattice lattice;
+  switch (vtk_type) {
+    case 25:
+    case 29:
+    case 33: {
+      lattice = quadratic(CurvedFamily::hexahedron);
+      Numbering numbering(lattice);
+      numbering.add_corners();
+      numbering.add_edges(hexahedron_rounds);
+      const int centres = vtk_type == 25 ? 0 : vtk_type == 33 ? 4 : 6;
+      for (int k = 0; k < centres; ++k) numbering.add(face_centres[k]);
+      if (vtk_type == 29) numbering.add({1, 1, 1});
+      return lattice;
+    }
+    case 26:
+    case 31:
+    case 32: {
+      lattice = quadratic(CurvedFamily::wedge, vtk_type == 31 ? 1 : 2);
+      Numbering numbering(lattice);
+      numbering.add_corners();
+      numbering.add_edges(std::span(wedge_edges).first(vtk_type == 31 ? 6 : 9));
+      if (vtk_type == 32)
+        for (const LatticePlace& p : {LatticePlace{1, 0, 1}, {1, 1, 1}, {0, 1, 1}}) numbering.add(p);
+      return lattice;
+    }
+    case 27: {
+      lattice = quadratic(CurvedFamily::pyramid);
+      Numbering numbering(lattice);
+      numbering.add_corners();
+      numbering.add_edges(std::span(pyramid_edges).first(4));
+      for (const LatticePlace& p : {LatticePlace{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}) numbering.add(p);
+      return lattice;
+    }
+    default:
+      return std::nullopt;
+  }
+}
+
+std::optional<CurvedLattice> lagrange_lattice(std::uint8_t vtk_type, std::size_t nodes,
+                                              const std::array<int, 3>& degrees) {
+  const bool given = degrees[0] > 0 && degrees[1] > 0 && degrees[2] > 0;
+  constexpr int highest = 100;  // of 10^6 nodes a cell
+  if (given && vtk_type != 71) {
+    if (std::max({degrees[0], degrees[1], degrees[2]}) > highest) return std::nullopt;
+    const std::size_t p = static_cast<std::size_t>(degrees[0]) + 1, q = static_cast<std::size_t>(degrees[1]) + 1,
+                      n = static_cast<std::size_t>(degrees[2]) + 1;
+    if (nodes != (vtk_type == 72 ? p * q * n : p * (p + 1) / 2 * n)) return std::nullopt;
+  }
+  CurvedLattice lattice;
+  if (vtk_type == 24 || vtk_type == 71) {
+    const int n = order_with(nodes, [](std::size_t k) { return (k + 1) * (k + 2) * (k + 3) / 6; });
+    lattice.family = CurvedFamily::tet;
+    lattice.order = {n, n, n};
+    Numbering numbering(lattice);
+    if (n > 0 && n <= highest) add_tet(numbering, {0, 0, 0}, n);
+  } else if (vtk_type == 72) {
+    const int n = order_with(nodes, [](std::size_t k) { return (k + 1) * (k + 1) * (k + 1); });
+    lattice.family = CurvedFamily::hexahedron;
+    lattice.order = given ? degrees : std::array{n, n, n};
+    if ((given || n > 0) && lattice.order[0] <= highest) number_lagrange_hexahedron(lattice);
+  } else if (vtk_type == 73) {
+    const int n = order_with(nodes, [](std::size_t k) { return (k + 1) * (k + 2) / 2 * (k + 1); });
+    lattice.family = CurvedFamily::wedge;
+    lattice.order = given ? std::array{degrees[0], degrees[0], degrees[2]} : std::array{n, n, n};
+    if ((given || n > 0) && lattice.order[0] <= highest) number_lagrange_wedge(lattice);
+  }
+  return lattice.nodes.empty() ? std::nullopt : std::optional(std::move(lattice));
+}
+
+}  // namespace
+
+std::optional<CurvedLattice> curved_lattice(std::uint8_t vtk_type, std::size_t nodes,
+                                            const std::array<int, 3>& degrees) {
+  std::optional<CurvedLattice> lattice = quadratic_lattice(vtk_type);
+  if (!lattice) lattice = lagrange_lattice(vtk_type, nodes, degrees);
+  if (!lattice || lattice->nodes.size() != nodes) return std::nullopt;
+  number_slots(*lattice);
+  return lattice;
+}
+
+std::span<const LatticePlace> corners_of(CurvedFamily family) {
+  switch (family) {
+    case CurvedFamily::tet:
+      return tet_corners;
+    case CurvedFamily::hexahedron:
+      return hexahedron_corners;
+    case CurvedFamily::wedge:
+      return wedge_corners;
+    case CurvedFamily::pyramid:
+      return pyramid_corners;
+  }
+  return {};
+}
+
+std::span<const CurvedFace> faces_of(CurvedFamily family) {
+  switch (family) {
+    case CurvedFamily::tet:
+      return tet_faces;
+    case CurvedFamily::hexahedron:
+      return hexahedron_faces;
+    case CurvedFamily::wedge:
+      return wedge_faces;
+    case CurvedFamily::pyramid:
+      return pyramid_faces;
+  }
+  return {};
+}
+
+}  // namespace tessera::io
