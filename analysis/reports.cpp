@@ -60,6 +60,15 @@ Json grid_counters_json(const FrameStatistics& statistics) {
   return json;
 }
 
+Json higher_order_json(const Description& data) {
+  const HigherOrderCells& cells = data.higher_order;
+  Json json = {
+      {"divided", cells.divided},     {"by_corners", cells.by_corners},         {"tets", cells.tets},
+      {"tolerance", cells.tolerance}, {"position_error", cells.position_error}, {"field_error", cells.field_error}};
+  if (data.higher_order_pixels > 0) json["pixel_error"] = data.higher_order_pixels;  // null: not bounded
+  return json;
+}
+
 }  // namespace
 
 const char* word(Association association) { return association == Association::point ? "point" : "cell"; }
@@ -81,6 +90,7 @@ Description::Description(const Dataset& data)
       warnings(data.warnings()),
       blocks(data.blocks().begin(), data.blocks().end()),
       counts(data.mesh_counts()),
+      higher_order(data.higher_order_cells()),
       scale(data.scale()),
       shift(data.shift()),
       blanks(data.blank_samples()) {
@@ -104,6 +114,7 @@ Json data_json(const std::filesystem::path& input, const Description& data) {
     json["tets"] = counts.tets_made;
     json["tets_collapsed"] = counts.tets_collapsed;
     json["points"] = {{"read", counts.points_read}, {"unused", counts.points_unused}};
+    if (counts.cells_quadratic > 0) json["higher_order"] = higher_order_json(data);
   } else {
     const GridGeometry& g = data.geometry;
     json["points"] = g.points;

@@ -26,8 +26,10 @@ struct Description {
   std::array<double, 2> range;
   std::vector<FieldInfo> fields;
   std::vector<std::string> notes, warnings, blocks;
-  MeshCounts counts;      ///< meshes
-  GridGeometry geometry;  ///< grids, and so on
+  MeshCounts counts;  ///< meshes
+  HigherOrderCells higher_order;
+  double higher_order_pixels = 0;  ///< Dataset::higher_order_error(), where a transfer function is known
+  GridGeometry geometry;           ///< grids, and so on
   SampleType type{};
   double scale = 1, shift = 0;
   std::uint64_t blanks = 0;

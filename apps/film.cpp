@@ -134,15 +134,39 @@ class Film final : public Sink {
     step_ = frame.step;
   }
 
+  /// Reads higher-order cells again, more finely, where the transfer function needs that for --accuracy. What is
+  /// right for the first step is taken for all.
+  void come_near_enough() {
+    if (options_.fixed_higher_order) return;
+    for (int again = 0; again < 2; ++again) {
+      const auto finer = finer_read(read_, *data_, loaded_.function, options_.settings.integrator.accuracy);
+      if (!finer) return;
+      read_ = *finer;
+      open(frames_.front(), read_);
+      loaded_ = transfer_function_of(*data_, options_);
+    }
+  }
+
+  /// Of the data at hand, with what its higher-order cells do to pixels.
+  [[nodiscard]] analysis::Description description() const {
+    analysis::Description data = described(*data_);
+    if (data_->higher_order_cells().divided == 0) return data;
+    const double error = data_->higher_order_error(loaded_.function), accuracy = options_.settings.integrator.accuracy;
+    data.higher_order_pixels = error;
+    if (error > accuracy) data.warnings.push_back(higher_order_warning(error, accuracy));
+    return data;
+  }
+
   /// Makes the frame's step the one at hand.
   void hold(const FilmFrame& frame) {
     if (!box_) {
       open(frames_.front(), read_);
+      loaded_ = transfer_function_of(*data_, options_);
+      come_near_enough();
       box_ = data_->bounds();
       tets_ = data_->tet_count();
       later_read_ = read_of_later_steps(read_, *data_);
-      loaded_ = transfer_function_of(*data_, options_);
-      if (writes_) output_.describe(options_, described(*data_), loaded_);
+      if (writes_) output_.describe(options_, description(), loaded_);
       if (writes_ && overlaps_) output_.note("job", job_json(options_, job_.size(), roles_));
     }
     if (frame.step != step_) open(frame, later_read_);

@@ -39,7 +39,11 @@ void set_common(const RenderWords& words, RenderOptions& options) {
   check_word("--emission", words.emission, {"absorption", "independent"});
   check_word("--rasterizer", words.rasterizer, {"planes", "scanline"});
   Settings& settings = options.settings;
-  if (!options.is_grid()) settings.integrator = mesh_integrator(words);
+  if (!options.is_grid()) {
+    settings.integrator = mesh_integrator(words);
+    // At first no nearer than needed at best; what the transfer function needs is known once the field's range is.
+    if (!options.fixed_higher_order) options.read.higher_order_tolerance = settings.integrator.accuracy;
+  }
   if (words.rasterizer == "scanline") settings.mesh.rasterizer = Rasterizer::scanline;
   if (words.emission == "independent") settings.emission = Emission::independent;
   if (!words.deep_accuracy.empty())
@@ -108,6 +112,14 @@ void add_mesh_options(CLI::App& command, RenderWords& words) {
                   "files in blocks: draw this one alone, of those that info lists; may be repeated")
       ->type_name("NAME")
       ->allow_extra_args(false);
+  command
+      .add_option("--higher-order-tolerance", words.higher_order_tolerance,
+                  "higher-order cells become tets this near to them, of diagonal and range (default: by --accuracy)")
+      ->type_name("REL");
+  command
+      .add_option("--higher-order-tets", words.higher_order_tets,
+                  "and about so many at most (default 8388608; 0: by their corners)")
+      ->type_name("N");
   add_volume_options(command, words);
 }
 
@@ -120,6 +132,11 @@ ReadOptions mesh_options(const RenderWords& words) {
   if (!words.max_volume.empty()) mesh.max_volume = parse_positive("--max-volume", words.max_volume);
   mesh.time_step = time_step_of(words);
   mesh.blocks = words.blocks;
+  if (!words.higher_order_tolerance.empty())
+    mesh.higher_order_tolerance = parse_positive("--higher-order-tolerance", words.higher_order_tolerance);
+  if (!words.higher_order_tets.empty())
+    mesh.higher_order_tets =
+        static_cast<std::uint64_t>(parse_count("--higher-order-tets", words.higher_order_tets, 0, no_limit));
   mesh.threads = thread_count(words);
   return mesh;
 }
@@ -221,6 +238,7 @@ RenderOptions render_options(const RenderWords& words) {
   plan.inputs.insert(plan.inputs.end(), words.more_inputs.begin(), words.more_inputs.end());
   plan.outputs.assign(words.outputs.begin(), words.outputs.end());
   options.read = mesh_options(words);
+  options.fixed_higher_order = !words.higher_order_tolerance.empty();
 
   options.transfer_function = words.transfer_function;
   if (words.rescale && words.transfer_function.empty())
@@ -295,6 +313,8 @@ void refuse_mesh_options(const RenderWords& words, const RenderOptions& options)
   if (options.settings.mesh.rasterizer != Rasterizer::planes) refuse("--rasterizer");
   if (read.smooth) refuse("--smooth");
   if (read.max_volume) refuse("--max-volume");
+  if (!words.higher_order_tolerance.empty()) refuse("--higher-order-tolerance");
+  if (!words.higher_order_tets.empty()) refuse("--higher-order-tets");
   if (!read.blocks.empty()) refuse("--block");
   if (!read.plot3d_q.empty()) refuse("--q");
 }

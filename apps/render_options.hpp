@@ -27,6 +27,8 @@ struct RenderOptions {
   std::string without;                                       ///< the words of --without, as given
   ImageFileOptions image;
 
+  bool fixed_higher_order = false;  ///< higher-order cells are read as `read` says, whatever --accuracy is
+
   int repeat = 0;  ///< 0: render once and print no times
   int verify = 0;  ///< pixels a frame to check against the reference; 0: none
   std::filesystem::path report, timing;
@@ -40,7 +42,7 @@ struct RenderOptions {
 
 /// The words as they stand on the command line. CLI11 keeps references to them until it has parsed.
 struct RenderWords {
-  std::string input, field, q, max_volume, time_step;
+  std::string input, field, q, max_volume, time_step, higher_order_tolerance, higher_order_tets;
   std::vector<std::string> blocks;
   std::vector<std::string> more_inputs, outputs;
   std::string transfer_function, unit_distance, opacity_scale = "1", blend = "linear";

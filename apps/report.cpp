@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -173,10 +174,20 @@ std::string cells_line(const MeshCounts& counts) {
       {counts.cells_not_volumetric, "without volume by type skipped"},
       {counts.cells_zero_volume, "of zero volume kept"},
       {counts.cells_tangled, "tangled kept"},
-      {counts.cells_quadratic, "quadratic by their corners"}};
+      {counts.cells_quadratic, "of higher order"}};
   for (const auto& [count, reason] : reasons)
     if (count > 0) line += fmt::format(", {} {}", count, reason);
   return line;
+}
+
+std::string higher_order_warning(double error, double accuracy) {
+  if (!std::isfinite(error))
+    return fmt::format(
+        "how far its higher-order cells' tets change pixels is not bounded, for the transfer function has steps");
+  return fmt::format(
+      "tets that stand for its higher-order cells may change pixels by {:.2g}, more than --accuracy {:g}; "
+      "--higher-order-tets allows more of them",
+      error, accuracy);
 }
 
 std::string view_line(const Camera& camera) {

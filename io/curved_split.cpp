@@ -37,8 +37,9 @@ void CurvedSplitter::begin(const CurvedLattice& lattice, std::span<const glm::dv
   places_.clear(), faces_.clear(), values_.clear(), edges_.clear(), face_points_.clear();
   open_.clear(), tets_.clear(), open_nets_.clear();
   error_ = {};
-  const int degree = cell_.degree_on(0);
-  net_ = cell_.is_polynomial() && degree <= highest_degree ? &bernstein_net(degree) : nullptr;
+  degree_ = std::min(cell_.degree_on(0), highest_degree);
+  net_ = &bernstein_net(degree_);
+  nets_are_exact_ = cell_.is_polynomial() && cell_.degree_on(0) == degree_;
   for (std::size_t c = 0; c < corners_; ++c) {
     places_.push_back(cell_.place_of_corner(c));
     faces_.push_back(cell_.faces_of_corner(c));
@@ -54,7 +55,7 @@ void CurvedSplitter::split(const CurvedLattice& lattice, std::span<const glm::dv
   while (!open_.empty()) {
     const Tet tet = open_.back();
     open_.pop_back();
-    if (net_ != nullptr) {
+    if (nets_are_exact_) {
       const auto net = open_nets_.end() - static_cast<std::ptrdiff_t>(net_->size());
       tet_net_.assign(net, open_nets_.end());
       open_nets_.erase(net, open_nets_.end());
@@ -69,7 +70,12 @@ void CurvedSplitter::split(const CurvedLattice& lattice, std::span<const glm::dv
 
 void CurvedSplitter::open(const Tet& tet) {
   open_.push_back(tet);
-  if (net_ == nullptr) return;
+  if (!nets_are_exact_) return;
+  make_net(tet);
+  open_nets_.insert(open_nets_.end(), tet_net_.begin(), tet_net_.end());
+}
+
+void CurvedSplitter::make_net(const Tet& tet) {
   const std::span<const glm::dvec4> off = departures(tet);
   // departures() orders the corners and leaves theirs out.
   std::array<CellPlace, 4> place;
@@ -79,19 +85,18 @@ void CurvedSplitter::open(const Tet& tet) {
   for (std::size_t k = 0; k < 4; ++k)
     for (std::size_t c = 0; c < 4; ++c)
       if (places_[tet[c]] == place[k]) at[k] = c;
-  const auto points = net_->points();
-  const int degree = cell_.degree_on(0);
-  const std::size_t first = open_nets_.size();
-  for (const auto& point : points) {
+  tet_net_.clear();
+  for (const auto& point : net_->points()) {
     glm::dvec4 straight(0);
-    for (std::size_t c = 0; c < 4; ++c) straight += static_cast<double>(point[c]) / degree * values_[tet[c]];
-    open_nets_.push_back(straight);
+    for (std::size_t c = 0; c < 4; ++c) straight += static_cast<double>(point[c]) / degree_ * values_[tet[c]];
+    tet_net_.push_back(straight);
   }
-  const auto& ordered = bernstein_form(4, degree).points;
+  if (degree_ < 2) return;
+  const auto& ordered = bernstein_form(4, degree_).points;
   for (std::size_t k = 0; k < off.size(); ++k) {
     std::array<int, 4> point{};
     for (std::size_t c = 0; c < 4; ++c) point[at[c]] = ordered[k][c];
-    open_nets_[first + net_->index(point)] += off[k];
+    tet_net_[net_->index(point)] += off[k];
   }
 }
 
@@ -142,7 +147,7 @@ std::span<const glm::dvec4> CurvedSplitter::departures(Corners corners) {
 
 std::span<const glm::dvec4> CurvedSplitter::net_departures(const Tet& tet) {
   const auto points = net_->points();
-  const double scale = 1.0 / cell_.degree_on(0);
+  const double scale = 1.0 / degree_;
   const std::array<glm::dvec4, 4> corner = {scale * values_[tet[0]], scale * values_[tet[1]], scale * values_[tet[2]],
                                             scale * values_[tet[3]]};
   coefficients_.resize(points.size());
@@ -221,7 +226,7 @@ bool CurvedSplitter::halve_worst_edge(const Tet& tet) {
     *at = halved.middle;
     open_.push_back(half);
   }
-  if (net_ == nullptr) return true;
+  if (!nets_are_exact_) return true;
   const std::size_t first = open_nets_.size(), size = net_->size();
   open_nets_.resize(first + 2 * size);
   const std::span<glm::dvec4> halves(open_nets_);
@@ -253,8 +258,9 @@ std::uint32_t CurvedSplitter::point_within(Corners corners) {
 }
 
 bool CurvedSplitter::divide_worst_face(const Tet& tet) {
-  const std::span<const glm::dvec4> inside = net_ != nullptr ? net_departures(tet) : departures(tet);
-  tet_error_ = error_of(tet, inside);
+  if (!nets_are_exact_) make_net(tet);
+  const std::span<const glm::dvec4> inside = net_departures(tet);
+  tet_error_ = error_of(inside);
   if (cell_.degree_on(faces_on(tet)) < 3) return false;  // all coefficients are edges'
   // Where all is well by a margin over rounding, a face is well too, whoever looks at it.
   const double excess = excess_of(inside);
@@ -283,20 +289,38 @@ bool CurvedSplitter::divide_worst_face(const Tet& tet) {
   return true;
 }
 
-CurvedError CurvedSplitter::error_of(const Tet& tet, std::span<const glm::dvec4> departures) const {
-  const glm::dvec4 a = values_[tet[0]], b = values_[tet[1]] - a, c = values_[tet[2]] - a, d = values_[tet[3]] - a;
-  const glm::dmat3 edges(glm::dvec3(b.x, c.x, d.x), glm::dvec3(b.y, c.y, d.y), glm::dvec3(b.z, c.z, d.z));
-  const double volume = glm::determinant(edges);
-  glm::dvec3 gradient = volume == 0 ? glm::dvec3(0) : glm::inverse(edges) * glm::dvec3(b.w, c.w, d.w);
-  if (!std::isfinite(gradient.x) || !std::isfinite(gradient.y) || !std::isfinite(gradient.z)) gradient = glm::dvec3(0);
-  CurvedError error;
-  for (const glm::dvec4& departure : departures) {
-    error.position =
-        std::max(error.position, departure.x * departure.x + departure.y * departure.y + departure.z * departure.z);
-    const double moved = glm::dot(gradient, glm::dvec3(departure.x, departure.y, departure.z));
-    error.field = std::max(error.field, std::abs(departure.w - moved));
+/// The field's gradient in space at a corner of the tet at hand, from its coefficients next to the corner, which are
+/// the derivatives along its edges. Zero where space is folded.
+glm::dvec3 CurvedSplitter::gradient_at(std::size_t corner) const {
+  const glm::dvec4& here = tet_net_[net_->corner(corner)];
+  std::array<glm::dvec4, 3> along;
+  for (std::size_t c = 0, n = 0; c < 4; ++c) {
+    if (c == corner) continue;
+    std::array<int, 4> next{};
+    next[corner] = degree_ - 1;
+    next[c] += 1;
+    along[n++] = tet_net_[net_->index(next)] - here;
   }
+  const auto& [b, c, d] = along;
+  const glm::dmat3 edges(glm::dvec3(b.x, c.x, d.x), glm::dvec3(b.y, c.y, d.y), glm::dvec3(b.z, c.z, d.z));
+  if (glm::determinant(edges) == 0) return glm::dvec3(0);
+  const glm::dvec3 gradient = glm::inverse(edges) * glm::dvec3(b.w, c.w, d.w);
+  const bool is_finite = std::isfinite(gradient.x) && std::isfinite(gradient.y) && std::isfinite(gradient.z);
+  return is_finite ? gradient : glm::dvec3(0);
+}
+
+/// At one place in space the field is off by what it is off at one place of the cell, less its slope times what the
+/// place has moved. Slopes are the cell's own: those of a thin tet say nothing of what is beside it.
+CurvedError CurvedSplitter::error_of(std::span<const glm::dvec4> departures) const {
+  CurvedError error;
+  for (const glm::dvec4& d : departures) error.position = std::max(error.position, d.x * d.x + d.y * d.y + d.z * d.z);
   error.position = std::sqrt(error.position);
+  if (tolerance_.field == std::numeric_limits<double>::infinity()) return error;
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    const glm::dvec3 slope = gradient_at(corner);
+    for (const glm::dvec4& d : departures)
+      error.field = std::max(error.field, std::abs(d.w - glm::dot(slope, glm::dvec3(d.x, d.y, d.z))));
+  }
   return error;
 }
 

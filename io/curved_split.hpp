@@ -78,6 +78,9 @@ class CurvedSplitter {
   /// Those of a tet, from its net.
   std::span<const glm::dvec4> net_departures(const scene::Tet& tet);
   void open(const scene::Tet& tet);
+  /// The coefficients of a tet, from the cell's functions: tet_net_.
+  void make_net(const scene::Tet& tet);
+  [[nodiscard]] glm::dvec3 gradient_at(std::size_t corner) const;
   [[nodiscard]] double excess_of(std::span<const glm::dvec4> departures) const;
   [[nodiscard]] unsigned faces_on(Corners corners) const;
   bool halve_worst_edge(const scene::Tet& tet);
@@ -85,7 +88,7 @@ class CurvedSplitter {
   std::uint32_t add_point(const CellPlace& place, unsigned faces);
   std::uint32_t point_within(Corners corners);
   [[nodiscard]] bool before(std::uint32_t a, std::uint32_t b) const;
-  [[nodiscard]] CurvedError error_of(const scene::Tet& tet, std::span<const glm::dvec4> departures) const;
+  [[nodiscard]] CurvedError error_of(std::span<const glm::dvec4> departures) const;
 
   CurvedTolerance tolerance_;
   CurvedCell cell_;
@@ -96,8 +99,10 @@ class CurvedSplitter {
   std::unordered_map<std::uint64_t, Edge> edges_;
   std::map<std::array<std::uint32_t, 3>, std::uint32_t> face_points_;  ///< within faces, by their corners in order
   std::vector<scene::Tet> open_, tets_;
-  /// Of polynomial cells, each open tet's coefficients, one after the other, and those of the tet at hand.
+  int degree_ = 1;  ///< of the cell, or of what stands for its functions
   const BernsteinNet* net_ = nullptr;
+  bool nets_are_exact_ = false;  ///< a half's coefficients follow from the whole's
+  /// Each open tet's coefficients, one after the other, where they are exact; those of the tet at hand.
   std::vector<glm::dvec4> open_nets_, tet_net_;
   std::vector<glm::dvec4> samples_, coefficients_;
   CurvedError error_, tet_error_;  ///< of the cell's tets so far, and of the one at hand

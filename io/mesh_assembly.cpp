@@ -280,7 +280,8 @@ AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const F
   return result;
 }
 
-std::vector<std::string> notes_on_cells(const MeshCounts& n, const std::string& source) {
+std::vector<std::string> notes_on_cells(const MeshCounts& n, const HigherOrderCells& higher_order,
+                                        const std::string& source) {
   if (n.cells_read == 0)
     throw scene::bad_input(
         fmt::format("{}: it holds no cells, nothing is left to render; check how it was written", source));
@@ -292,6 +293,10 @@ std::vector<std::string> notes_on_cells(const MeshCounts& n, const std::string& 
   std::vector<std::string> notes;
   if (n.cells_tangled > 0)
     notes.push_back(fmt::format("{} cells are so warped that their tets overlap", n.cells_tangled));
+  if (higher_order.divided > 0)
+    notes.push_back(
+        fmt::format("{} higher-order cells are drawn as {} tets, off by {:.2g} in position and {:.2g} in value at most",
+                    higher_order.divided, higher_order.tets, higher_order.position_error, higher_order.field_error));
   return notes;
 }
 
@@ -321,7 +326,7 @@ MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options
     file.notes.insert(file.notes.end(), notes.begin(), notes.end());
   };
   add(assembled.notes);
-  add(notes_on_cells(file.counts, source));
+  add(notes_on_cells(file.counts, file.higher_order, source));
   if (options.smooth) {
     if (choice.association == Association::cell)
       smooth_to_points(file.mesh);

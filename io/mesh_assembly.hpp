@@ -28,7 +28,8 @@ AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const F
                                 int threads = 1);
 
 /// Notes on what happened to the cells of a whole file. Throws Error(bad_input) if nothing is left to render.
-std::vector<std::string> notes_on_cells(const MeshCounts& counts, const std::string& source);
+std::vector<std::string> notes_on_cells(const MeshCounts& counts, const HigherOrderCells& higher_order,
+                                        const std::string& source);
 
 /// What of the cells is drawn otherwise than the file has it, one line each.
 std::vector<std::string> warnings_on_cells(const HigherOrderCells& cells);

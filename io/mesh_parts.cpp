@@ -169,7 +169,7 @@ MeshFile joined(const MeshFilePart& own, std::span<const PartSummary> summaries,
   }
   add(own.choice_notes);
   for (const PartSummary& part : summaries) add(part.cell_notes);
-  add(notes_on_cells(whole.counts, file.string()));
+  add(notes_on_cells(whole.counts, whole.higher_order, file.string()));
   if (!used.empty()) {
     whole.counts.points_unused = whole.counts.points_read;
     for (const std::uint64_t word : used) whole.counts.points_unused -= static_cast<std::uint64_t>(std::popcount(word));

@@ -156,6 +156,11 @@ class TESSERA_EXPORT Dataset {
   [[nodiscard]] std::uint64_t tet_count() const;
   [[nodiscard]] const MeshCounts& mesh_counts() const;
   [[nodiscard]] const HigherOrderCells& higher_order_cells() const;
+  /// A bound on how far a pixel's colour or opacity is off because higher-order cells are drawn as tets: by the
+  /// function's steepest slopes and largest extinction within the field's range, for any view. It leaves out rays that
+  /// meet the mesh's surface at more than 60 degrees from its normal. Infinite where the function has a step in that
+  /// range, or where cells are drawn by their corners; 0 for meshes without such cells, and grids.
+  [[nodiscard]] double higher_order_error(const TransferFunction& function) const;
   /// The tets as they are rendered, on several ranks this one's: float64 points and scalars, uint32 tets, borrowed from
   /// this data set and kept by it. Throws Error(bad_input) for a grid.
   [[nodiscard]] MeshArrays mesh_arrays() const;
@@ -190,6 +195,12 @@ class TESSERA_EXPORT Dataset {
  private:
   std::shared_ptr<const State> state_;
 };
+
+/// How to read a data set again so that higher_order_error() is about `accuracy` at most: with a smaller
+/// higher_order_tolerance than `options` have. Nothing if it is so already, or if more tets than
+/// ReadOptions::higher_order_tets, or all of them, would not do either.
+TESSERA_EXPORT std::optional<ReadOptions> finer_read(const ReadOptions& options, const Dataset& data,
+                                                     const TransferFunction& function, double accuracy);
 
 /// The names of all presets' colours, the default first.
 TESSERA_EXPORT std::vector<std::string> preset_names();
