@@ -11,11 +11,12 @@
 namespace tessera::reference {
 namespace {
 
-constexpr int most_pieces = 20000;
+constexpr int most_pieces = 4000;
 constexpr double smallest_piece = 0x1p-26;  // of the face
 constexpr double edge_tolerance = 1e-9;     // of a piece
 
-/// Whether all control points lie to one side of the ray, by more than `rounding`.
+/// Whether no crossing of a piece counts: all control points lie to one side of the ray, by more than `rounding`, or
+/// the piece is a point, or a line along the ray, to within that.
 bool misses(const std::vector<glm::dvec3>& control, double rounding) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::array<double, 4> low, high;
@@ -26,7 +27,7 @@ bool misses(const std::vector<glm::dvec3>& control, double rounding) {
   }
   for (std::size_t i = 0; i < 4; ++i)
     if (low[i] > rounding || high[i] < -rounding) return true;
-  return false;
+  return high[0] - low[0] < rounding && high[1] - low[1] < rounding;
 }
 
 /// Across the ray, the inverse of a map with these derivatives.

@@ -23,7 +23,7 @@ struct Crossing {
 ///          others are halved until the map of a piece to the plane across the ray is one to one (its derivatives'
 ///          control vectors all near their mean), where Newton's method finds its one crossing or none. Nothing is
 ///          missed that is not within rounding of a tangent: see below.
-/// Limits   pieces of less than 2^-26 of the face are dropped, and so is what is left after 20,000 pieces: faces, or
+/// Limits   pieces of less than 2^-26 of the face are dropped, and so is what is left after 4,000 pieces: faces, or
 ///          curves of them, that lie along the ray. Two crossings nearer to each other than such a piece bound no
 ///          length that counts.
 /// Source   Nishita, Sederberg, Kakimoto, "Ray Tracing Trimmed Rational Surface Patches", SIGGRAPH 1990, for the frame
