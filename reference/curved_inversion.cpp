@@ -65,13 +65,16 @@ glm::dvec3 InnerPath::place(double depth) {
 }
 
 glm::dvec3 InnerPath::follow(double from, glm::dvec3 place, double to, int halvings) {
-  constexpr int most_halvings = 12;
+  constexpr int most_halvings = 6, most_failures = 8;
   const glm::dvec3 ahead = change_of_place(point_of(cell_, place, room_), glm::dvec3(0, 0, to - from));
   const glm::dvec3 start = std::isfinite(glm::length(ahead)) ? place + ahead : place;
   if (const auto found = place_on_ray(cell_, to, start, room_);
       found && holds(cell_.basis->domain(), *found, followed_inside))
     return *found;
-  if (halvings == most_halvings) return place;
+  if (halvings == most_halvings || failures_ == most_failures) {
+    failures_ = std::min(failures_ + 1, most_failures);
+    return place;
+  }
   const double between = from + (to - from) / 2;
   return follow(between, follow(from, place, between, halvings + 1), to, halvings + 1);
 }

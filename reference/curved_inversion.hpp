@@ -27,12 +27,14 @@ class InnerPath {
   BasisValues& room() { return room_; }
 
  private:
-  /// From the place known at `from`, following the ray; in halves where a single step does not arrive in the domain.
+  /// From the place known at `from`, following the ray; in halves where a single step does not arrive in the domain. In
+  /// a folded cell, where that does not help, it stays where it came to, and soon stops trying.
   [[nodiscard]] glm::dvec3 follow(double from, glm::dvec3 place, double to, int halvings);
 
   CellOnRay cell_;
   std::map<double, glm::dvec3> known_;
   BasisValues room_;
+  int failures_ = 0;
 };
 
 /// The stretches of a ray inside a cell, front to back: between two neighbouring crossings it is inside if the point in

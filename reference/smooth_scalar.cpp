@@ -98,6 +98,7 @@ std::vector<double> SmoothScalar::turning_points() const {
 std::vector<SmoothScalar> smooth_pieces(double front, double back, double scale,
                                         const std::function<double(double depth)>& scalar) {
   constexpr int most_halvings = 30;
+  constexpr std::size_t many = 100;  // more than any scalar of a cell that is one to one needs
   const std::array<double, SmoothScalar::terms> nodes = SmoothScalar::nodes();
   std::vector<SmoothScalar> pieces;
   const auto add = [&](const auto& self, double low, double high, int halvings) -> void {
@@ -105,8 +106,8 @@ std::vector<SmoothScalar> smooth_pieces(double front, double back, double scale,
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = scalar(low + (high - low) * (1 + nodes[i]) / 2);
     const SmoothScalar piece(low, high, values, rounding_of_scale * scale);
     const double middle = low + (high - low) / 2;
-    if (piece.tail() <= std::ldexp(accuracy * scale, halvings) || halvings == most_halvings || !(middle > low) ||
-        !(middle < high)) {
+    if (piece.tail() <= std::ldexp(accuracy * scale, halvings) || halvings == most_halvings || pieces.size() > many ||
+        !(middle > low) || !(middle < high)) {
       pieces.push_back(piece);
       return;
     }

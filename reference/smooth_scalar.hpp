@@ -40,7 +40,7 @@ class SmoothScalar {
 
 /// A scalar over depths as pieces, front to back, each to about 1e-14 of `scale` (a size of its changes): halved until
 /// the series' last terms are that small. In short pieces, at a singularity or in rounding, they may be larger: the
-/// product of error and length stays.
+/// product of error and length stays. A scalar that is not smooth is left to be what it is after a hundred pieces.
 std::vector<SmoothScalar> smooth_pieces(double front, double back, double scale,
                                         const std::function<double(double depth)>& scalar);
 
