@@ -15,7 +15,8 @@ struct CellOnRay {
   const BernsteinBasis* basis = nullptr;
   std::span<const glm::dvec3> control;  ///< control points in that frame
   std::span<const double> field;        ///< control values; empty if the field is constant
-  double size = 0;                      ///< longest side of the box of `control`, or that of rounding if more
+  double size = 0;      ///< longest side of the box of `control`; more where the eye is so far that rounding is
+  double rounding = 1;  ///< how much coarser places are than from nearby: about the distance in sizes, by four
 };
 
 /// Where a place of the cell's own coordinates is in the ray's frame, and how it moves with them.

@@ -66,15 +66,16 @@ bool is_inside(bool triangle, glm::dvec2 place) {
 
 /// Newton's method from a place of the whole face.
 std::optional<glm::dvec2> crossing_near(const FacePiece& face, glm::dvec2 place) {
-  constexpr int most_steps = 40;
-  constexpr double last_step = 1e-10;
+  constexpr int most_steps = 40, few_steps = 8;
+  constexpr double last_step = 1e-10, short_step = 1e-6;
   for (int n = 0; n < most_steps; ++n) {
     const PiecePoint point = point_of(face, place);
     const glm::dvec2 step = -Preconditioner(point.along_a, point.along_b)(point.at);
     const double length = glm::length(step);
     if (!(length < 10)) return std::nullopt;
     place += step;
-    if (length < last_step) return place;
+    // Seen from very far, rounding keeps steps from becoming as short as that.
+    if (length < last_step || (n > few_steps && length < short_step)) return place;
   }
   return std::nullopt;
 }

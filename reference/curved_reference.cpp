@@ -153,11 +153,12 @@ CellOnRay CurvedReference::on_ray(const Cell& cell, const Frame& frame, std::vec
     low = glm::min(low, control.back()), high = glm::max(high, control.back());
     farthest = std::max(farthest, glm::length(from_eye));
   }
-  // Distances from the eye are rounded to 1e-16 of themselves, which tolerances of 1e-14 of the size must cover.
-  constexpr double rounding_share = 0.05;
   const glm::dvec3 sides = high - low;
-  const double size = std::max({sides.x, sides.y, sides.z, rounding_share * farthest});
-  return {&shapes_[cell.shape].basis, control, cell.field, size};
+  const double size = std::max({sides.x, sides.y, sides.z});
+  // Distances from the eye are rounded to 1e-16 of themselves, which tolerances of 1e-14 of the size must cover.
+  constexpr double size_share = 0.05, rounding_share = 0.25;
+  const double rounding = size > 0 ? std::max(1.0, rounding_share * farthest / size) : 1;
+  return {&shapes_[cell.shape].basis, control, cell.field, std::max(size, size_share * farthest), rounding};
 }
 
 std::vector<CurvedReference::Met> CurvedReference::met(double x, double y,
@@ -205,7 +206,7 @@ Pixel CurvedReference::pixel(double x, double y) const {
     } else {
       InnerPath& path = one.path;
       const auto scalar = [&path](double depth) { return field_of(path.cell(), path.place(depth), path.room()); };
-      for (const SmoothScalar& piece : smooth_pieces(front, back, one.cell->change, scalar))
+      for (const SmoothScalar& piece : smooth_pieces(front, back, one.cell->change * path.cell().rounding, scalar))
         integral.add(piece, length_per_depth, one.cell->origin);
     }
     pixel.length += one.segment.length;

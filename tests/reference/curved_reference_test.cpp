@@ -293,6 +293,24 @@ TEST(CurvedReference, EyeInsideAndClippingCutStretches) {
   EXPECT_NEAR(from_inside.pixel(x, y).length, afar[0].length - 0.25, rounding);
 }
 
+TEST(CurvedReference, IsTheSameFromAfar) {
+  CurvedMesh mesh;
+  mesh.add(named("triquadratic hexahedron"), warped, any_field);
+  const TransferFunction transfer_function({{-1, {1, 0, 0}, 0.5}, {1, {1, 1, 0}, 3}});
+  const glm::dvec3 centre(0.5), towards = glm::normalize(glm::dvec3(1, -2, 1.5));
+  const auto from = [&](double distance) {
+    return looking(centre + distance * towards, centre, ProjectionKind::orthographic, 0.9, {0, 0, 1});
+  };
+  const CurvedReference near(mesh.cells(), from(4), size, transfer_function),
+      far(mesh.cells(), from(4e5), size, transfer_function);
+  for (const PixelIndex& p : all_pixels(size)) {
+    // Positions are rounded to 1e-10, which grazing faces and the field magnify.
+    const double x = p.x + 0.4873, y = p.y + 0.5241;
+    EXPECT_NEAR(near.pixel(x, y).length, far.pixel(x, y).length, 1e-7) << x << ", " << y;
+    EXPECT_NEAR(near.pixel(x, y).r, far.pixel(x, y).r, 1e-7) << x << ", " << y;
+  }
+}
+
 TEST(CurvedReference, CellDataIsConstantInACell) {
   CurvedMesh mesh;
   mesh.add(named("quadratic tet"), warped, any_field);
