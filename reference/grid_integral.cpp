@@ -4,17 +4,13 @@
 #include <cmath>
 #include <vector>
 
+#include "reference/gauss_legendre.hpp"
+
 namespace tessera::reference {
 namespace {
 
 constexpr double largest_optical_step = 0.5;
 constexpr double depth_of_nothing = 41.45;  // exp(-41.45) < 1e-18
-
-/// Gauss-Legendre on [-1, 1], eight points: nodes +-x with weight w. Abramowitz, Stegun, table 25.4.
-constexpr std::array<std::array<double, 2>, 4> gauss{{{0.1834346424956498, 0.3626837833783620},
-                                                      {0.5255324099163290, 0.3137066458778873},
-                                                      {0.7966664774136267, 0.2223810344533745},
-                                                      {0.9602898564975363, 0.1012285362903763}}};
 
 /// Integral of a cubic from u0 to u1, about the middle so that short pieces do not cancel.
 double area(const Cubic& p, double u0, double u1) {
@@ -117,7 +113,7 @@ void GridIntegral::add_color(double length, double u0, double u1, double before,
     add_color(length, middle, u1, before + length * area(extinction, u0, middle), extinction, color, depth + 1);
     return;
   }
-  for (const auto& [x, weight] : gauss)
+  for (const auto& [x, weight] : gauss_nodes)
     for (const double side : {-x, x}) {
       const double u = u0 + (u1 - u0) * (1 + side) / 2;
       const double source = emission_ == scene::Emission::absorption ? extinction.at(u) : 1;

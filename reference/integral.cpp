@@ -4,20 +4,13 @@
 #include <cmath>
 #include <vector>
 
+#include "reference/gauss_legendre.hpp"
+
 namespace tessera::reference {
 namespace {
 
 constexpr double largest_step = 0.5;    // of optical depth
 constexpr double opaque_depth = 41.45;  // exp(-41.45) < 1e-18
-
-/// Gauss-Legendre on [-1, 1], eight points: nodes +-x with weight w. Abramowitz, Stegun, table 25.4.
-struct Node {
-  double x, weight;
-};
-constexpr std::array<Node, 4> nodes{{{0.1834346424956498, 0.3626837833783620},
-                                     {0.5255324099163290, 0.3137066458778873},
-                                     {0.7966664774136267, 0.2223810344533745},
-                                     {0.9602898564975363, 0.1012285362903763}}};
 
 double mixed(double a, double b, double u) { return a + (b - a) * u; }
 
@@ -79,7 +72,7 @@ void Integral::add_linear(double length, const Optics& a, const Optics& b) {
     if (!(end > begin)) break;  // a step too small for double's spacing at `begin`
     const double width = end - begin;
     const auto optical_depth_at = [&](double d) { return length * d * (extinction + rise * d / 2); };
-    for (const Node& node : nodes)
+    for (const GaussNode& node : gauss_nodes)
       for (const double x : {-node.x, node.x}) {
         const double d = width * (1 + x) / 2, u = begin + d;
         const double source = emission_ == scene::Emission::absorption ? extinction + rise * d : 1;

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "reference/bernstein.hpp"
+
+namespace tessera::reference {
+
+/// Where the nodes of VTK's cells lie in the cell's own coordinates, in VTK's order (9.1): corners, then nodes in
+/// edges, in faces, inside.
+///
+/// Pyramids lie in a box whose face t = 1 is the apex (its node is (0, 0, 1)): a node at height t has the r and s of
+/// the place in the base that it is seen at from the apex.
+
+/// A tet of that order (VTK's Lagrange tetrahedron; of order 2 also the quadratic one).
+std::vector<glm::dvec3> tet_nodes(int order);
+
+/// A wedge: `order` in the triangle, `order_along` between the triangles.
+std::vector<glm::dvec3> wedge_nodes(int order, int order_along);
+
+/// A hexahedron of `orders` along its axes. The first 8, 20 or 24 of those of order 2 are other types' nodes.
+std::vector<glm::dvec3> hexahedron_nodes(std::array<int, 3> orders);
+
+/// A pyramid of 19 nodes. The first 5 or 13 are other types'.
+std::vector<glm::dvec3> pyramid_nodes();
+
+}  // namespace tessera::reference

@@ -1,0 +1,336 @@
+#include "reference/curved_shapes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "reference/curved_nodes.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::reference {
+namespace {
+
+/// A polynomial over a domain.
+using Function = std::function<double(const glm::dvec3&)>;
+
+double power(double x, int n) { return n == 0 ? 1 : x * power(x, n - 1); }
+
+/// (2r - 1)^i (2s - 1)^j (2t - 1)^k: monomials about the middle, which are better conditioned.
+Function monomial(int i, int j, int k) {
+  return [=](const glm::dvec3& p) { return power(2 * p.x - 1, i) * power(2 * p.y - 1, j) * power(2 * p.z - 1, k); };
+}
+
+/// r^i s^j t^k.
+Function corner_monomial(int i, int j, int k) {
+  return [=](const glm::dvec3& p) { return power(p.x, i) * power(p.y, j) * power(p.z, k); };
+}
+
+/// Shape functions that span the whole of the basis.
+CellShape full(const BernsteinBasis& basis, std::vector<glm::dvec3> nodes) {
+  // The nodes are the lattice in another order.
+  const std::vector<glm::dvec3> lattice = basis.lattice();
+  const Matrix from_lattice = basis.from_lattice();
+  CellShape shape{basis, std::move(nodes), Matrix(basis.size(), basis.size()), basis.faces()};
+  for (std::size_t node = 0; node < shape.nodes.size(); ++node) {
+    std::size_t at = 0;
+    const auto distance = [&](std::size_t n) {
+      const glm::dvec3 d = lattice[n] - shape.nodes[node];
+      return std::abs(d.x) + std::abs(d.y) + std::abs(d.z);
+    };
+    for (std::size_t n = 0; n < lattice.size(); ++n)
+      if (distance(n) < distance(at)) at = n;
+    for (std::size_t row = 0; row < basis.size(); ++row) shape.to_bernstein(row, node) = from_lattice(row, at);
+  }
+  return shape;
+}
+
+/// Shape functions that span `space`, of as many functions as there are nodes, within the basis.
+CellShape spanned(const BernsteinBasis& basis, std::vector<glm::dvec3> nodes, const std::vector<Function>& space) {
+  const auto values_at = [&](const std::vector<glm::dvec3>& places) {
+    Matrix values(places.size(), space.size());
+    for (std::size_t i = 0; i < places.size(); ++i)
+      for (std::size_t j = 0; j < space.size(); ++j) values(i, j) = space[j](places[i]);
+    return values;
+  };
+  const Matrix at_lattice = product(values_at(basis.lattice()), inverse(values_at(nodes)));
+  return {basis, std::move(nodes), product(basis.from_lattice(), at_lattice), basis.faces()};
+}
+
+/// Control points are the nodes.
+CellShape bezier(const BernsteinBasis& basis, std::vector<glm::dvec3> nodes) {
+  CellShape shape = full(basis, std::move(nodes));
+  const std::vector<glm::dvec3> lattice = basis.lattice();
+  for (std::size_t row = 0; row < basis.size(); ++row)
+    for (std::size_t node = 0; node < basis.size(); ++node) {
+      const glm::dvec3 d = lattice[row] - shape.nodes[node];
+      shape.to_bernstein(row, node) = std::abs(d.x) + std::abs(d.y) + std::abs(d.z) < 1e-6 ? 1 : 0;
+    }
+  return shape;
+}
+
+std::vector<glm::dvec3> first(std::size_t count, std::vector<glm::dvec3> places) {
+  places.resize(count);
+  return places;
+}
+
+/// Eight-node serendipity in (r, s), with powers of t up to `most_t`.
+void add_serendipity(int most_t, std::vector<Function>& space) {
+  constexpr std::array<std::array<int, 2>, 8> exponents{
+      {{0, 0}, {1, 0}, {0, 1}, {1, 1}, {2, 0}, {0, 2}, {2, 1}, {1, 2}}};
+  for (int k = 0; k <= most_t; ++k)
+    for (const auto& e : exponents) space.push_back(monomial(e[0], e[1], k));
+}
+
+/// Of 20 nodes: the monomials whose degree is two at most if variables to the first power are not counted (Arnold,
+/// Awanou, "The Serendipity Family of Finite Elements", Foundations of Computational Mathematics 2011).
+CellShape quadratic_hexahedron() {
+  std::vector<Function> space;
+  add_serendipity(1, space);
+  for (const auto& [i, j] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) space.push_back(monomial(i, j, 2));
+  return spanned(BernsteinBasis(Domain::box, {2, 2, 2}), first(20, hexahedron_nodes({2, 2, 2})), space);
+}
+
+/// Of 24 nodes: serendipity across, quadratic along.
+CellShape biquadratic_hexahedron() {
+  std::vector<Function> space;
+  add_serendipity(2, space);
+  return spanned(BernsteinBasis(Domain::box, {2, 2, 2}), first(24, hexahedron_nodes({2, 2, 2})), space);
+}
+
+/// Of 15 nodes: quadratic in the triangle times linear along, and linear times quadratic.
+CellShape quadratic_wedge() {
+  std::vector<Function> space;
+  for (int k = 0; k < 2; ++k)
+    for (int j = 0; j <= 2; ++j)
+      for (int i = 0; i + j <= 2; ++i) space.push_back(corner_monomial(i, j, k));
+  for (const auto& [i, j] : {std::pair{0, 0}, {1, 0}, {0, 1}}) space.push_back(corner_monomial(i, j, 2));
+  return spanned(BernsteinBasis(Domain::prism, {2, 0, 2}), first(15, wedge_nodes(2, 2)), space);
+}
+
+/// The bilinear functions in the box that are one function at the apex.
+CellShape linear_pyramid() {
+  std::vector<Function> space{corner_monomial(0, 0, 0), corner_monomial(0, 0, 1)};
+  for (const auto& [i, j] : {std::pair{1, 0}, {0, 1}, {1, 1}})
+    space.push_back([=](const glm::dvec3& p) { return power(p.x, i) * power(p.y, j) * (1 - p.z); });
+  return spanned(BernsteinBasis(Domain::box, {1, 1, 1}), first(5, pyramid_nodes()), space);
+}
+
+/// Functions of x = 2r - 1, y = 2s - 1 and w = 2 - 2t, which vanishes at the apex.
+Function towards_apex(std::function<double(double x, double y, double w)> f) {
+  return [f = std::move(f)](const glm::dvec3& p) { return f(2 * p.x - 1, 2 * p.y - 1, 2 - 2 * p.z); };
+}
+
+/// What both quadratic pyramids have: quadratic on every edge, and apart from xy complete to second degree but for
+/// x^2 + y^2, which is rational.
+std::vector<Function> quadratic_pyramid_space() {
+  std::vector<Function> space;
+  for (int k = 0; k <= 2; ++k) space.push_back(corner_monomial(0, 0, k));
+  for (int k = 1; k <= 2; ++k)
+    for (const auto& [i, j] : {std::pair{1, 0}, {0, 1}, {1, 1}})
+      space.push_back(
+          towards_apex([=](double x, double y, double w) { return power(x, i) * power(y, j) * power(w, k); }));
+  space.push_back(towards_apex([](double x, double y, double w) { return x * y * y * w * w; }));
+  space.push_back(towards_apex([](double x, double y, double w) { return x * x * y * w * w; }));
+  return space;
+}
+
+/// Of 13 nodes: the serendipity hexahedron of 20 nodes with the nodes of one face at one place, corrected to be
+/// quadratic on the triangles (Felippa, "Advanced Finite Element Methods", chapter on pyramids).
+CellShape quadratic_pyramid() {
+  std::vector<Function> space = quadratic_pyramid_space();
+  space.push_back(towards_apex([](double x, double y, double w) { return (x * x - y * y) * w * w; }));
+  space.push_back(towards_apex([](double x, double y, double w) {
+    const double xx = x * x, yy = y * y;
+    return 2 * w * (xx + yy - xx * yy) - w * w * ((xx + yy) / 2 - xx * yy);
+  }));
+  return spanned(BernsteinBasis(Domain::box, {2, 2, 2}), first(13, pyramid_nodes()), space);
+}
+
+/// Of 19 nodes: bubbles on faces and inside besides.
+CellShape triquadratic_pyramid() {
+  std::vector<Function> space = quadratic_pyramid_space();
+  space.push_back(towards_apex([](double x, double y, double w) { return x * (1 - y * y) * w * w * w; }));
+  space.push_back(towards_apex([](double x, double y, double w) { return y * (1 - x * x) * w * w * w; }));
+  space.push_back(towards_apex([](double x, double y, double w) { return x * x * (1 - y * y) * w * w * w; }));
+  space.push_back(towards_apex([](double x, double y, double w) { return y * y * (1 - x * x) * w * w * w; }));
+  space.push_back(towards_apex([](double x, double, double w) { return x * x * w * w; }));
+  space.push_back(towards_apex([](double, double y, double w) { return y * y * w * w; }));
+  space.push_back(towards_apex([](double x, double y, double w) { return x * x * y * y * w * w; }));
+  space.push_back(towards_apex([](double x, double y, double w) { return w * (x * x + y * y - x * x * y * y); }));
+  return spanned(BernsteinBasis(Domain::box, {2, 2, 3}), pyramid_nodes(), space);
+}
+
+/// The tet of 15 nodes: the quadratic one, with a cubic bubble for each face and a quartic one inside.
+CellShape enriched_tet() {
+  std::vector<glm::dvec3> nodes = tet_nodes(2);
+  const double third = 1.0 / 3;
+  for (const glm::dvec3& p : {glm::dvec3(third, third, 0), glm::dvec3(third, 0, third), glm::dvec3(third, third, third),
+                              glm::dvec3(0, third, third), glm::dvec3(0.25)})
+    nodes.push_back(p);
+  std::vector<Function> space;
+  for (int k = 0; k <= 2; ++k)
+    for (int j = 0; j + k <= 2; ++j)
+      for (int i = 0; i + j + k <= 2; ++i) space.push_back(corner_monomial(i, j, k));
+  const auto last = [](const glm::dvec3& p) { return 1 - p.x - p.y - p.z; };
+  space.emplace_back([](const glm::dvec3& p) { return p.x * p.y * p.z; });
+  space.emplace_back([=](const glm::dvec3& p) { return p.x * p.y * last(p); });
+  space.emplace_back([=](const glm::dvec3& p) { return p.x * p.z * last(p); });
+  space.emplace_back([=](const glm::dvec3& p) { return p.y * p.z * last(p); });
+  space.emplace_back([=](const glm::dvec3& p) { return p.x * p.y * p.z * last(p); });
+  return spanned(BernsteinBasis(Domain::tet, {4, 4, 4}), std::move(nodes), space);
+}
+
+/// The wedge of 21 nodes: quadratic with a cubic bubble in the triangle, quadratic along.
+CellShape enriched_wedge() {
+  const std::vector<glm::dvec3> quadratic = wedge_nodes(2, 2);
+  const double third = 1.0 / 3;
+  std::vector<glm::dvec3> nodes(quadratic.begin(), quadratic.begin() + 15);
+  for (const double t : {0.0, 1.0}) nodes.emplace_back(third, third, t);
+  nodes.insert(nodes.end(), quadratic.begin() + 15, quadratic.end());
+  nodes.emplace_back(third, third, 0.5);
+  std::vector<Function> space;
+  for (int k = 0; k <= 2; ++k) {
+    for (int j = 0; j <= 2; ++j)
+      for (int i = 0; i + j <= 2; ++i) space.push_back(corner_monomial(i, j, k));
+    space.emplace_back([k](const glm::dvec3& p) { return p.x * p.y * (1 - p.x - p.y) * power(p.z, k); });
+  }
+  return spanned(BernsteinBasis(Domain::prism, {3, 0, 2}), std::move(nodes), space);
+}
+
+/// Node counts of the types that have one.
+std::size_t nodes_of(std::uint8_t vtk_type) {
+  switch (vtk_type) {
+    case 10:
+      return 4;
+    case 11:
+    case 12:
+      return 8;
+    case 13:
+      return 6;
+    case 14:
+      return 5;
+    case 24:
+      return 10;
+    case 25:
+      return 20;
+    case 26:
+      return 15;
+    case 27:
+      return 13;
+    case 29:
+      return 27;
+    case 31:
+      return 12;
+    case 32:
+      return 18;
+    case 33:
+      return 24;
+    case 37:
+      return 19;
+    default:
+      return 0;
+  }
+}
+
+CellShape fixed_shape(std::uint8_t vtk_type) {
+  switch (vtk_type) {
+    case 10:
+      return full(BernsteinBasis(Domain::tet, {1, 1, 1}), tet_nodes(1));
+    case 11: {
+      std::vector<glm::dvec3> nodes = hexahedron_nodes({1, 1, 1});
+      std::swap(nodes[2], nodes[3]);
+      std::swap(nodes[6], nodes[7]);
+      return full(BernsteinBasis(Domain::box, {1, 1, 1}), std::move(nodes));
+    }
+    case 12:
+      return full(BernsteinBasis(Domain::box, {1, 1, 1}), hexahedron_nodes({1, 1, 1}));
+    case 13:
+      return full(BernsteinBasis(Domain::prism, {1, 1, 1}), wedge_nodes(1, 1));
+    case 14:
+      return linear_pyramid();
+    case 24:
+      return full(BernsteinBasis(Domain::tet, {2, 2, 2}), tet_nodes(2));
+    case 25:
+      return quadratic_hexahedron();
+    case 26:
+      return quadratic_wedge();
+    case 27:
+      return quadratic_pyramid();
+    case 29:
+      return full(BernsteinBasis(Domain::box, {2, 2, 2}), hexahedron_nodes({2, 2, 2}));
+    case 31:
+      return full(BernsteinBasis(Domain::prism, {2, 2, 1}), wedge_nodes(2, 1));
+    case 32:
+      return full(BernsteinBasis(Domain::prism, {2, 2, 2}), wedge_nodes(2, 2));
+    case 33:
+      return biquadratic_hexahedron();
+    default:
+      return triquadratic_pyramid();
+  }
+}
+
+constexpr int highest_order = 10;
+
+}  // namespace
+
+bool without_volume(std::uint8_t vtk_type) {
+  constexpr std::array<std::uint8_t, 24> types{0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  21, 22,
+                                               23, 28, 30, 34, 35, 36, 68, 69, 70, 75, 76, 77};
+  return std::find(types.begin(), types.end(), vtk_type) != types.end();
+}
+
+CellShape cell_shape(std::uint8_t vtk_type, std::size_t nodes, std::array<int, 3> orders, const std::string& where) {
+  if (const std::size_t wanted = nodes_of(vtk_type); wanted > 0) {
+    if (nodes != wanted)
+      throw scene::bad_input(fmt::format("{}: type {} has {} nodes, this cell {}; write all of its nodes", where,
+                                         vtk_type, wanted, nodes));
+    return fixed_shape(vtk_type);
+  }
+  const bool of_tet = vtk_type == 71 || vtk_type == 78, of_hexahedron = vtk_type == 72 || vtk_type == 79,
+             of_wedge = vtk_type == 73 || vtk_type == 80, is_bezier = vtk_type >= 78;
+  if (!of_tet && !of_hexahedron && !of_wedge)
+    throw scene::bad_input(
+        fmt::format("{}: cells of type {} are not known to the reference; leave them out", where, vtk_type));
+  if (vtk_type == 71 && nodes == 15) return enriched_tet();
+  if (vtk_type == 73 && nodes == 21) return enriched_wedge();
+  const auto count = [&](const std::array<int, 3>& o) {
+    const auto [a, b, c] =
+        std::array{static_cast<std::size_t>(o[0]), static_cast<std::size_t>(o[1]), static_cast<std::size_t>(o[2])};
+    if (of_tet) return (a + 1) * (a + 2) * (a + 3) / 6;
+    if (of_wedge) return (a + 1) * (a + 2) / 2 * (c + 1);
+    return (a + 1) * (b + 1) * (c + 1);
+  };
+  if (of_tet || orders == std::array{0, 0, 0}) {
+    orders = {1, 1, 1};
+    while (orders[0] < highest_order && count(orders) < nodes) orders = {orders[0] + 1, orders[0] + 1, orders[0] + 1};
+  }
+  for (const int order : orders)
+    if (order < 1 || order > highest_order)
+      throw scene::bad_input(
+          fmt::format("{}: order {} is not one of 1 to {}; write a lower one", where, order, highest_order));
+  if (count(orders) != nodes || (of_wedge && orders[0] != orders[1]))
+    throw scene::bad_input(
+        fmt::format("{}: {} nodes do not fit type {} of orders {}, {} and {}; write the orders in "
+                    "HigherOrderDegrees",
+                    where, nodes, vtk_type, orders[0], orders[1], orders[2]));
+  const Domain domain = of_tet ? Domain::tet : of_wedge ? Domain::prism : Domain::box;
+  std::vector<glm::dvec3> places = of_tet     ? tet_nodes(orders[0])
+                                   : of_wedge ? wedge_nodes(orders[0], orders[2])
+                                              : hexahedron_nodes(orders);
+  const BernsteinBasis basis(domain, orders);
+  return is_bezier ? bezier(basis, std::move(places)) : full(basis, std::move(places));
+}
+
+std::vector<double> shape_functions(const CellShape& shape, const glm::dvec3& place) {
+  std::vector<double> values(shape.basis.size()), result(shape.nodes.size());
+  std::vector<glm::dvec3> gradients(shape.basis.size());
+  shape.basis.evaluate(place, values, gradients);
+  for (std::size_t row = 0; row < values.size(); ++row)
+    for (std::size_t node = 0; node < result.size(); ++node)
+      result[node] += values[row] * shape.to_bernstein(row, node);
+  return result;
+}
+
+}  // namespace tessera::reference

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "reference/bernstein.hpp"
+
+namespace tessera::reference {
+
+/// The shape functions of one of VTK's cell types, of given orders.
+///
+/// A type is defined here by its nodes and by the space of polynomials that its shape functions span; the functions are
+/// then those that are one at their node and zero at the others. They are kept as Bernstein coefficients: a cell's
+/// control points are `to_bernstein` times its nodes' positions, and so for the field.
+struct CellShape {
+  BernsteinBasis basis;
+  std::vector<glm::dvec3> nodes;  ///< their places in the cell's own coordinates, in VTK's order
+  Matrix to_bernstein;            ///< basis.size() x nodes.size()
+  std::vector<FacePatch> faces;
+};
+
+/// What a type, a number of nodes and orders make; `orders` are of VTK's array HigherOrderDegrees, or zeros: told from
+/// the number of nodes, as VTK does. Only Lagrange and Bezier hexahedra and wedges look at them.
+///
+/// Types   linear 10 to 14; quadratic 24 to 27, 29, 31 to 33, 37; Lagrange 71 to 73; Bezier 78 to 80, of unit weights.
+/// Of
+///         71 also the tet of 15 nodes, of 73 the wedge of 21.
+/// Throws  scene::Error(bad_input), beginning with `where`, for other types, wrong numbers of nodes, and orders
+/// above 10.
+CellShape cell_shape(std::uint8_t vtk_type, std::size_t nodes, std::array<int, 3> orders, const std::string& where);
+
+/// Whether cells of this type have no volume: vertices, lines, polygons.
+bool without_volume(std::uint8_t vtk_type);
+
+/// The shape functions at a place: one for each node.
+std::vector<double> shape_functions(const CellShape& shape, const glm::dvec3& place);
+
+}  // namespace tessera::reference

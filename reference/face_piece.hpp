@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <utility>
+#include <vector>
+
+namespace tessera::reference {
+
+/// A part of a face as a Bernstein patch of its own, over (a, b) in the unit square or triangle: control points as in
+/// FacePatch, and where the part lies in the face.
+struct FacePiece {
+  bool triangle = false;
+  int a_degree = 1, b_degree = 1;
+  glm::dvec2 origin{0}, along_a{1, 0}, along_b{0, 1};  ///< in the face's (u, v)
+  std::vector<glm::dvec3> control;
+};
+
+/// A piece's derivatives by (a, b), as their control vectors.
+struct PieceSlopes {
+  std::vector<glm::dvec3> along_a, along_b;
+};
+
+PieceSlopes slopes(const FacePiece& piece);
+
+/// Two halves: a square across the direction in which it is longer, a triangle from the side a = b = 0 to a = 1, so
+/// that halves of halves keep their shape (newest-vertex bisection).
+std::pair<FacePiece, FacePiece> halves(const FacePiece& piece);
+
+/// The point of a patch at (a, b), with its derivatives.
+struct PiecePoint {
+  glm::dvec3 at, along_a, along_b;
+};
+PiecePoint point_of(const FacePiece& piece, glm::dvec2 place);
+
+}  // namespace tessera::reference
