@@ -55,35 +55,42 @@ glm::dvec4 middle_of_quadrilateral(std::array<glm::dvec4, 4> corners, std::array
   return 0.5 * edge_sum - 0.25 * corner_sum;
 }
 
-/// Weights of the 14 nodes of a quadratic pyramid's 14 functions: the inverse of their values at the nodes.
-constexpr int pyramid_nodes = 14;
-using PyramidMonomials = std::array<double, pyramid_nodes>;
+constexpr int pyramid_nodes = 13;
+using PyramidFunctions = std::array<double, pyramid_nodes>;
 
-PyramidMonomials pyramid_monomials(const std::array<double, 3>& x) {
-  const double w = 1 - x[2], u = w > 0 ? x[0] / w : 0, v = w > 0 ? x[1] / w : 0;
-  PyramidMonomials out{};
-  std::size_t at = 0;
-  double scale = 1;
-  for (int m = 0; m <= 2; ++m, scale *= w)
-    for (int j = 0; j <= m; ++j)
-      for (int i = 0; i <= m; ++i)
-        out[at++] = scale * (i == 0 ? 1 : i == 1 ? u : u * u) * (j == 0 ? 1 : j == 1 ? v : v * v);
-  return out;
+/// A basis of the 13-node pyramid's functions, of x and y from -1 to 1 across it at any height and w from 2 at its base
+/// to 0 at its apex.
+PyramidFunctions pyramid_functions(const std::array<double, 3>& place) {
+  const double height = 1 - place[2], x = height > 0 ? 2 * place[0] / height - 1 : 0,
+               y = height > 0 ? 2 * place[1] / height - 1 : 0, w = 2 * height, ww = w * w;
+  const double squares = x * x + y * y, both = x * x * y * y;
+  return {1,
+          w,
+          ww,
+          x * w,
+          y * w,
+          x * y * w,
+          x * ww,
+          y * ww,
+          x * y * ww,
+          x * y * y * ww,
+          x * x * y * ww,
+          (x * x - y * y) * ww,
+          2 * w * (squares - both) - ww * (squares / 2 - both)};
 }
 
 using PyramidMatrix = std::array<std::array<double, pyramid_nodes>, pyramid_nodes>;
 
-PyramidMatrix make_pyramid_matrix() {
+/// Of function m, what node k has of it: the inverse of the functions' values at the nodes.
+PyramidMatrix make_pyramid_matrix(const CurvedLattice& lattice) {
   constexpr std::size_t n = pyramid_nodes;
   std::array<std::array<long double, 2 * n>, n> a{};
-  std::size_t row = 0;
-  for (int k = 0; k <= 2; ++k)  // the order of slots
-    for (int j = 0; j <= 2 - k; ++j)
-      for (int i = 0; i <= 2 - k; ++i, ++row) {
-        const PyramidMonomials values = pyramid_monomials({i / 2.0, j / 2.0, k / 2.0});
-        std::copy(values.begin(), values.end(), a[row].begin());
-        a[row][n + row] = 1;
-      }
+  for (std::size_t row = 0; row < n; ++row) {
+    const LatticePlace& p = lattice.nodes[row];
+    const PyramidFunctions values = pyramid_functions({p[0] / 2.0, p[1] / 2.0, p[2] / 2.0});
+    std::copy(values.begin(), values.end(), a[row].begin());
+    a[row][n + row] = 1;
+  }
   for (std::size_t column = 0; column < n; ++column) {
     std::size_t pivot = column;
     for (std::size_t r = column + 1; r < n; ++r)
@@ -97,20 +104,22 @@ PyramidMatrix make_pyramid_matrix() {
       for (std::size_t c = 0; c < 2 * n; ++c) a[r][c] -= factor * a[column][c];
     }
   }
-  PyramidMatrix inverse;  // of monomial m, what node k has of it
+  PyramidMatrix inverse;
   for (std::size_t m = 0; m < n; ++m)
     for (std::size_t k = 0; k < n; ++k) inverse[m][k] = static_cast<double>(a[m][n + k]);
   return inverse;
 }
 
-glm::dvec4 evaluate_pyramid(std::span<const glm::dvec4> nodes, const std::array<double, 3>& x) {
-  static const PyramidMatrix matrix = make_pyramid_matrix();
-  const PyramidMonomials monomials = pyramid_monomials(x);
-  std::array<double, pyramid_nodes> weights{};
-  for (std::size_t m = 0; m < pyramid_nodes; ++m)
-    for (std::size_t k = 0; k < pyramid_nodes; ++k) weights[k] += monomials[m] * matrix[m][k];
+glm::dvec4 evaluate_pyramid(const CurvedLattice& lattice, std::span<const glm::dvec4> values,
+                            const std::array<double, 3>& x) {
+  static const PyramidMatrix matrix = make_pyramid_matrix(lattice);
+  const PyramidFunctions functions = pyramid_functions(x);
   glm::dvec4 sum(0);
-  for (std::size_t k = 0; k < pyramid_nodes; ++k) sum += weights[k] * nodes[k];
+  for (std::size_t k = 0; k < pyramid_nodes; ++k) {
+    double weight = 0;
+    for (std::size_t m = 0; m < pyramid_nodes; ++m) weight += functions[m] * matrix[m][k];
+    sum += weight * values[static_cast<std::size_t>(lattice.slot(lattice.nodes[k]))];
+  }
   return sum;
 }
 
@@ -290,7 +299,7 @@ glm::dvec4 CurvedCell::evaluate(const Part& part, const std::array<double, 3>& x
 
 glm::dvec4 CurvedCell::evaluate_inside(const std::array<double, 3>& x) const {
   const auto& n = lattice_->order;
-  if (lattice_->family == CurvedFamily::pyramid) return evaluate_pyramid(values_, x);
+  if (lattice_->family == CurvedFamily::pyramid) return evaluate_pyramid(*lattice_, values_, x);
   Basis a, b, c, d;
   glm::dvec4 sum(0);
   std::size_t at = 0;
@@ -346,7 +355,7 @@ int CurvedCell::degree_on(unsigned faces) {
     case CurvedFamily::wedge:
       return n[0] + n[2];
     case CurvedFamily::pyramid:
-      return 6;  // rational: as near as a polynomial of this degree comes to them
+      return 4;  // rational: as near as a polynomial of this degree comes to them
   }
   return 1;
 }

@@ -21,10 +21,10 @@ inline constexpr std::int32_t cell_unit = 1 << 20;
 /// One higher-order cell: position and field at any of its places.
 ///
 /// Functions  Lagrange's of the lattice's nodes, isoparametric: one set for position and field. Serendipity cells get
-///            the nodes they lack first, from the polynomials that they have. Pyramids' are rational: those of
-///            w^m (r/w)^i (s/w)^j, w = 1 - t, i and j <= m <= 2, which are a neighbour's quadratics on each face
-///            (Bedrosian, "Shape functions and integration formulas for three-dimensional finite element analysis",
-///            International Journal for Numerical Methods in Engineering 35, 1992).
+///            the nodes they lack first, from the polynomials that they have. The pyramid's of 13 nodes, VTK's, are the
+///            serendipity hexahedron's with one face at one point, corrected to be quadratic on the triangles (Felippa,
+///            "Advanced Finite Element Methods", University of Colorado, chapter on pyramids); in (r, s, t) they are
+///            rational.
 /// Shared     A place on a face or edge is computed from that face's or edge's nodes alone, in an order that follows
 ///            from the corners' positions. So both cells at a face get the same bits, however they are numbered.
 class CurvedCell {

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "io/cell_block.hpp"
+#include "io/curved_lattice.hpp"
+
+/// Meshes of higher-order cells for tests.
+namespace tessera::io::testing {
+
+struct Kind {
+  std::uint8_t type;
+  std::size_t nodes;
+  int degree;  ///< of the polynomials in (r, s, t) that it has all of
+  std::array<int, 3> degrees{};
+};
+
+/// Of each type that is divided one, of Lagrange's several.
+extern const std::vector<Kind> kinds;
+
+using Field = std::function<double(const glm::dvec3&)>;
+using Warp = std::function<glm::dvec3(const glm::dvec3&)>;
+
+/// A node's place in its cell.
+glm::dvec3 place_of(const CurvedLattice& lattice, std::size_t node);
+
+/// The unit cube as n^3 cubes of cells of one kind, then warped: field "f" at the nodes. Each cell is numbered from a
+/// corner of its own choice where `turned`. Every cell has points of its own, so that only positions tell that cells
+/// touch.
+CellBlock warped_box(const Kind& kind, int n, const Warp& warp, const Field& field, bool turned);
+
+glm::dvec3 bent(const glm::dvec3& p);
+
+}  // namespace tessera::io::testing
