@@ -278,11 +278,23 @@ std::vector<std::string> notes_on_cells(const MeshCounts& n, const std::string& 
   if (n.tets_made == 0)
     throw scene::bad_input(fmt::format(
         "{}: nothing is left to render: of {} cells {} are no volumes, {} ghosts, {} hidden, {} hold NaN or infinite "
-        "numbers, {} are collapsed to a point or face; give a mesh of volume cells or choose another field",
-        source, n.cells_read, n.cells_not_volumetric, n.cells_ghost, n.cells_hidden, n.cells_nan, n.cells_zero_volume));
+        "numbers, {} are polyhedra whose faces do not close, {} are collapsed to a point or face; give a mesh of "
+        "volume "
+        "cells or choose another field",
+        source, n.cells_read, n.cells_not_volumetric, n.cells_ghost, n.cells_hidden, n.cells_nan, n.cells_open,
+        n.cells_zero_volume));
   std::vector<std::string> notes;
-  if (n.cells_tangled > 0)
-    notes.push_back(fmt::format("{} cells are so warped that their tets overlap", n.cells_tangled));
+  if (n.cells_tangled > n.polyhedra_tangled)
+    notes.push_back(
+        fmt::format("{} cells are so warped that their tets overlap", n.cells_tangled - n.polyhedra_tangled));
+  if (n.cells_polyhedra > 0) {
+    std::string note = fmt::format("{} polyhedra are split into tets, ", n.cells_polyhedra);
+    const std::uint64_t others = n.polyhedra_from_inside + n.polyhedra_in_pieces + n.polyhedra_tangled;
+    note += others == 0 ? "from a corner" : fmt::format("{} from a corner", n.cells_polyhedra - others);
+    if (n.polyhedra_from_inside > 0) note += fmt::format(", {} from a point inside", n.polyhedra_from_inside);
+    if (n.polyhedra_in_pieces > 0) note += fmt::format(", {} piece by piece", n.polyhedra_in_pieces);
+    notes.push_back(note);
+  }
   return notes;
 }
 
@@ -293,6 +305,13 @@ std::vector<std::string> warnings_on_cells(const MeshCounts& n) {
         fmt::format("{} higher-order cells are rendered as linear ones by their corner nodes, without an error bound "
                     "for what that leaves out",
                     n.cells_quadratic));
+  if (n.cells_open > 0)
+    warnings.push_back(fmt::format("{} polyhedra are left out: their faces are no closed surface", n.cells_open));
+  if (n.polyhedra_tangled > 0)
+    warnings.push_back(
+        fmt::format("{} polyhedra are drawn by tets that overlap: their faces cross each other, or no way was found to "
+                    "split them",
+                    n.polyhedra_tangled));
   return warnings;
 }
 
