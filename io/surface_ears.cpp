@@ -79,11 +79,13 @@ std::vector<std::vector<CornerTriangle>> parts_on_edges(std::span<const CornerTr
   return parts;
 }
 
-bool SurfaceEars::set(std::span<const glm::dvec3> p, std::span<const CornerTriangle> triangles) {
+bool SurfaceEars::set(std::span<const glm::dvec3> p, std::span<const CornerTriangle> triangles, std::uint32_t attempt) {
   if (triangles.size() > most_triangles) return false;
   p_ = p;
   triangles_.assign(triangles.begin(), triangles.end());
-  work_left_ = 2'000'000;
+  work_left_ = 500'000;
+  attempt_ = attempt;
+  chance_.seed(attempt + 1);
   cuts_left_ = 2 * triangles.size();
   return true;
 }
@@ -132,14 +134,29 @@ void SurfaceEars::list() {
         const double quality = -volume6(p, q, r, s) / (edges * std::sqrt(edges));
         const bool ends_a_corner =
             has_edge(first[2], d) && (find({first[0], first[2], d}) >= 0 || find({first[2], first[1], d}) >= 0);
-        if (quality > 1e-8) ears_.push_back({{first[0], first[1], first[2], d}, quality + (ends_a_corner ? 1 : 0)});
+        if (quality > 1e-8)
+          ears_.push_back({{first[0], first[1], first[2], d}, rank_of(quality, edges, ends_a_corner)});
       }
     }
     k = end;
   }
-  std::sort(ears_.begin(), ears_.end(), [](const Ear& a, const Ear& b) {
-    return a.quality != b.quality ? a.quality > b.quality : a.corner < b.corner;
-  });
+  std::sort(ears_.begin(), ears_.end(),
+            [](const Ear& a, const Ear& b) { return a.rank != b.rank ? a.rank > b.rank : a.corner < b.corner; });
+}
+
+/// What is taken first. Ears that take a corner with them leave fewer triangles.
+double SurfaceEars::rank_of(double quality, double edges, bool ends_a_corner) {
+  const double more = ends_a_corner ? 1 : 0;
+  switch (attempt_) {
+    case 0:
+      return quality + more;
+    case 1:
+      return -edges;
+    case 2:
+      return quality * edges * std::sqrt(edges);
+    default:
+      return more * (attempt_ % 2) + static_cast<double>(chance_()) / static_cast<double>(std::minstd_rand::max());
+  }
 }
 
 bool SurfaceEars::has_edge(std::uint32_t a, std::uint32_t b) const {

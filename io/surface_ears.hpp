@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <random>
 #include <span>
 #include <vector>
 
@@ -23,10 +24,11 @@ class SurfaceEars {
  public:
   static constexpr std::size_t most_triangles = 200;
 
-  /// `triangles` turn outward over corners `p`, which outlives this. False if they are more than `most_triangles`.
-  bool set(std::span<const glm::dvec3> p, std::span<const CornerTriangle> triangles);
+  /// `triangles` turn outward over corners `p`, which outlives this. Ears are taken in another order with every
+  /// `attempt`, those of the best shape first with 0. False if they are more than `most_triangles`.
+  bool set(std::span<const glm::dvec3> p, std::span<const CornerTriangle> triangles, std::uint32_t attempt);
 
-  /// Cuts off the ear of the best shape. False if there is none.
+  /// Cuts off the first ear. False if there is none.
   bool cut(std::array<std::uint32_t, 4>& tet);
 
   /// What is left, turning outward.
@@ -39,9 +41,10 @@ class SurfaceEars {
   };
   struct Ear {
     std::array<std::uint32_t, 4> corner;  ///< triangles 0 1 2 and 1 0 3 are the surface's
-    double quality;
+    double rank;
   };
   void list();
+  double rank_of(double quality, double edges, bool ends_a_corner);
   [[nodiscard]] bool is_free(const Ear& ear);
   [[nodiscard]] bool has_edge(std::uint32_t a, std::uint32_t b) const;
   [[nodiscard]] std::ptrdiff_t find(const CornerTriangle& triangle) const;
@@ -53,6 +56,8 @@ class SurfaceEars {
   std::vector<std::uint32_t> corners_;
   std::vector<Ear> ears_;
   std::size_t work_left_ = 0, cuts_left_ = 0;
+  std::uint32_t attempt_ = 0;
+  std::minstd_rand chance_;
 };
 
 }  // namespace tessera::io

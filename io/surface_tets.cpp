@@ -13,6 +13,8 @@ namespace {
 constexpr double by_rounding = 1e-10;
 // Triangles times apexes that are tried.
 constexpr std::size_t most_tries = 4'000'000;
+// Orders in which ears are cut.
+constexpr std::uint32_t most_attempts = 12;
 
 /// Six times the volume of the tet between a triangle that turns outward and a point, positive if that lies inside.
 double depth6(const CornerTriangle& t, const glm::dvec3& apex, std::span<const glm::dvec3> p) {
@@ -131,24 +133,39 @@ void SurfaceTets::add_cone_inside(const Triangles& part, const glm::dvec3& apex)
   fill_ = std::max(fill_, SurfaceFill::from_inside);
 }
 
-/// By a cone, if there is a point that sees all triangles.
-bool SurfaceTets::fill_star(const Triangles& part) {
+/// Whether the cone from a corner has a flat tet, over a triangle that is not itself without an area.
+bool SurfaceTets::has_flat_tets(const Triangles& part, std::uint32_t apex) const {
+  const double flat = by_rounding * volume6_;
+  return std::any_of(part.begin(), part.end(), [&](const CornerTriangle& t) {
+    return !has(t, apex) && depth6(t, p_[apex], p_) <= flat &&
+           glm::length(glm::cross(p_[t[1]] - p_[t[0]], p_[t[2]] - p_[t[0]])) > 1e-10 * size_ * size_;
+  });
+}
+
+/// By a cone, if there is a point that sees all triangles; best one that lies in the plane of none but its own, if
+/// `strictly` only by such a one.
+bool SurfaceTets::fill_star(const Triangles& part, bool strictly) {
   take_measures(part);
   const double rounding = by_rounding * volume6_;
   std::size_t tries = most_tries / part.size() + 1;
-  for (const std::uint32_t v : corners_) {
+  const std::uint32_t* second_best = nullptr;
+  for (const std::uint32_t& v : corners_) {
     if (tries-- == 0) break;
     if (wrong_side(part, p_[v], rounding) > rounding) continue;
-    add_cone(part, v);
-    return true;
-  }
-  if (wrong_side(part, mean_, rounding) <= rounding) {
-    add_cone_inside(part, mean_);
-    return true;
+    if (!has_flat_tets(part, v)) {
+      add_cone(part, v);
+      return true;
+    }
+    if (second_best == nullptr) second_best = &v;
   }
   glm::dvec3 x = mean_;
-  if (!find_kernel_point(part, x) || wrong_side(part, x, rounding) > rounding) return false;
-  add_cone_inside(part, x);
+  if (wrong_side(part, x, rounding) <= rounding ||
+      (find_kernel_point(part, x) && wrong_side(part, x, rounding) <= rounding)) {
+    add_cone_inside(part, x);
+    return true;
+  }
+  if (second_best == nullptr || strictly) return false;
+  add_cone(part, *second_best);
   return true;
 }
 
@@ -184,12 +201,14 @@ bool SurfaceTets::find_kernel_point(const Triangles& part, glm::dvec3& x) {
 void SurfaceTets::fill_part(Triangles part) {
   take_measures(part);
   if (volume6_ <= 1e-12 * noise6_) return add_cone(part, corners_[0]);  // flat
-  if (fill_star(part)) return;
+  if (fill_star(part, false)) return;
   fill_ = std::max(fill_, SurfaceFill::in_pieces);
   if (split_apart(part)) return;
   const std::size_t tets = tets_.size(), points = inside_.size();
-  if (fill_by_ears(part)) return;
-  tets_.resize(tets), inside_.resize(points);
+  for (std::uint32_t attempt = 0; attempt < most_attempts; ++attempt) {
+    if (fill_by_ears(part, attempt)) return;
+    tets_.resize(tets), inside_.resize(points);
+  }
   fill_overlapping(part);
 }
 
@@ -205,8 +224,8 @@ bool SurfaceTets::split_apart(const Triangles& part) {
   return true;
 }
 
-bool SurfaceTets::fill_by_ears(Triangles part) {
-  if (!ears_.set(p_, part)) return false;
+bool SurfaceTets::fill_by_ears(const Triangles& part, std::uint32_t attempt) {
+  if (!ears_.set(p_, part, attempt)) return false;
   LocalTet ear{};
   while (ears_.cut(ear)) {
     tets_.push_back(ear);
@@ -216,9 +235,9 @@ bool SurfaceTets::fill_by_ears(Triangles part) {
       for (Triangles& one : parts) fill_part(std::move(one));
       return true;
     }
-    if (fill_star(ears_.left())) return true;
+    if (fill_star(ears_.left(), true)) return true;
   }
-  return false;
+  return fill_star(ears_.left(), false);
 }
 
 /// From the corner, or the mean of them, that has the least on the wrong side.
