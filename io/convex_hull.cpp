@@ -33,11 +33,20 @@ class Hull {
           if (!set_plane(p_[points_[i]], p_[points_[j]], p_[points_[k]])) continue;
           const Side side = look();
           if (side == Side::holding_all) return false;
-          if (side == Side::cutting || std::find(found_.begin(), found_.end(), on_) != found_.end()) continue;
-          found_.push_back(on_);
-          add_outline(faces);
+          const auto is_same = [&](const Plane& plane) { return plane.points == on_; };
+          if (side == Side::supporting && std::none_of(found_.begin(), found_.end(), is_same))
+            found_.push_back({on_, normal_});
         }
-    return !found_.empty();
+    // Points close to each other make planes that lean, and have less of a face on them than it has.
+    std::stable_sort(found_.begin(), found_.end(),
+                     [](const Plane& a, const Plane& b) { return a.points.size() > b.points.size(); });
+    std::vector<Plane> kept;
+    for (Plane& plane : found_) {
+      if (std::any_of(kept.begin(), kept.end(), [&](const Plane& other) { return is_part(plane, other); })) continue;
+      add_outline(plane, faces);
+      kept.push_back(std::move(plane));
+    }
+    return !kept.empty();
   }
 
  private:
@@ -71,13 +80,27 @@ class Hull {
     return Side::supporting;
   }
 
+  struct Plane {
+    std::vector<std::uint32_t> points;  ///< in the order of `points_`
+    glm::dvec3 normal;
+  };
+
+  /// Whether both are one face: nearly parallel, with three points in common.
+  [[nodiscard]] bool is_part(const Plane& plane, const Plane& of) const {
+    if (glm::dot(plane.normal, of.normal) < 0.999) return false;
+    return std::count_if(plane.points.begin(), plane.points.end(), [&](std::uint32_t v) {
+             return std::find(of.points.begin(), of.points.end(), v) != of.points.end();
+           }) > 2;
+  }
+
   /// The outline of the points on the plane, by Andrew's monotone chain (1979), which keeps those on its edges.
-  void add_outline(std::vector<std::uint32_t>& faces) {
-    const glm::dvec3 other = std::abs(normal_.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-    const glm::dvec3 right = glm::normalize(glm::cross(other, normal_)), up = glm::cross(normal_, right);
+  void add_outline(const Plane& plane, std::vector<std::uint32_t>& faces) {
+    const glm::dvec3 normal = plane.normal, origin = p_[plane.points[0]];
+    const glm::dvec3 other = std::abs(normal.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 right = glm::normalize(glm::cross(other, normal)), up = glm::cross(normal, right);
     flat_.clear();
-    for (const std::uint32_t v : on_)
-      flat_.push_back({{glm::dot(p_[v] - origin_, right), glm::dot(p_[v] - origin_, up)}, v});
+    for (const std::uint32_t v : plane.points)
+      flat_.push_back({{glm::dot(p_[v] - origin, right), glm::dot(p_[v] - origin, up)}, v});
     std::sort(flat_.begin(), flat_.end(), [](const Flat& a, const Flat& b) {
       return a.place.x != b.place.x ? a.place.x < b.place.x : a.place.y < b.place.y;
     });
@@ -109,7 +132,7 @@ class Hull {
   std::span<const glm::dvec3> p_;
   double thickness_;
   std::vector<std::uint32_t> points_, on_;
-  std::vector<std::vector<std::uint32_t>> found_;
+  std::vector<Plane> found_;
   std::vector<Flat> flat_, ring_;
   glm::dvec3 normal_{0}, origin_{0};
 };
