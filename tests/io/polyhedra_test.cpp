@@ -82,7 +82,7 @@ void expect_fills_the_box(const MeshFile& file, unsigned seed, bool has_flat_fac
 
 MeshFile assemble_f(const CellBlock& block) {
   MeshOptions options;
-  options.field = "f";
+  options.field = std::string("f");
   return assemble_mesh({block}, options, "mesh");
 }
 
@@ -175,7 +175,7 @@ TEST(PolyhedronCells, InSeveralBlocksAgreeByPosition) {
       blocks.push_back(polyhedra_of(whole.positions, cells, random));
     }
     MeshOptions options;
-    options.field = "f";
+    options.field = std::string("f");
     expect_fills_the_box(assemble_mesh(blocks, options, "mesh"), seed);
   }
 }
@@ -191,7 +191,7 @@ TEST(PolyhedronCells, MeetHexahedraWedgesAndPyramids) {
       if (some.types[c] != 0) others.types[c] = 1;  // skipped there
     for (std::uint8_t& type : some.types) type = type == 0 ? 1 : type;
     MeshOptions options;
-    options.field = "f";
+    options.field = std::string("f");
     expect_fills_the_box(assemble_mesh({some, others}, options, "mesh"), seed);
   }
 }
