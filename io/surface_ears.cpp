@@ -10,6 +10,9 @@ namespace {
 
 using Tet = std::array<std::uint32_t, 4>;
 
+// Corners, edges and triangles that ears of one surface are held against, in all attempts: some 20 ms.
+constexpr std::size_t most_work = 6'000'000;
+
 std::uint64_t edge_of(std::uint64_t a, std::uint64_t b) { return a < b ? a << 32 | b : b << 32 | a; }
 
 double volume6(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& d) {
@@ -83,7 +86,7 @@ bool SurfaceEars::set(std::span<const glm::dvec3> p, std::span<const CornerTrian
   if (triangles.size() > most_triangles) return false;
   p_ = p;
   triangles_.assign(triangles.begin(), triangles.end());
-  work_left_ = 500'000;
+  if (attempt == 0) work_left_ = most_work;
   attempt_ = attempt;
   chance_.seed(attempt + 1);
   cuts_left_ = 2 * triangles.size();
@@ -94,6 +97,7 @@ bool SurfaceEars::cut(Tet& tet) {
   if (cuts_left_ == 0) return false;
   --cuts_left_;
   list();
+  work_left_ -= std::min(80 * triangles_.size(), work_left_);  // what listing and looking at what is left takes
   for (const Ear& ear : ears_) {
     if (work_left_ == 0) return false;
     if (!is_free(ear)) continue;
@@ -192,8 +196,17 @@ bool SurfaceEars::is_free(const Ear& ear) {
   }
   if (is_old_edge && !is_there[0] && !is_there[1]) return false;
   const std::array<glm::dvec3, 4> places = {p_[a], p_[b], p_[c], p_[d]};
+  glm::dvec3 low = places[0], high = low;
+  for (const glm::dvec3& p : places) low = glm::min(low, p), high = glm::max(high, p);
+  const glm::dvec3 margin = 1e-6 * (high - low) + glm::dvec3(1e-9 * glm::length(high - low));
+  low -= margin, high += margin;
+  const auto is_beside = [&](const glm::dvec3& a, const glm::dvec3& b) {
+    for (int axis = 0; axis < 3; ++axis)
+      if ((a[axis] < low[axis] && b[axis] < low[axis]) || (a[axis] > high[axis] && b[axis] > high[axis])) return true;
+    return false;
+  };
   for (const std::uint32_t v : corners_)
-    if (!holds_corner(ear.corner, v) && holds(places, p_[v])) return false;
+    if (!is_beside(p_[v], p_[v]) && !holds_corner(ear.corner, v) && holds(places, p_[v])) return false;
   for (std::size_t side = 0; side < 2; ++side) {
     if (is_there[side]) continue;
     const CornerTriangle& t = sides[side];
@@ -201,7 +214,7 @@ bool SurfaceEars::is_free(const Ear& ear) {
       if (k > 0 && edges_[k].corners == edges_[k - 1].corners) continue;
       const auto u = static_cast<std::uint32_t>(edges_[k].corners >> 32),
                  v = static_cast<std::uint32_t>(edges_[k].corners);
-      if (holds_corner(t, u) || holds_corner(t, v)) continue;
+      if (is_beside(p_[u], p_[v]) || holds_corner(t, u) || holds_corner(t, v)) continue;
       if (crosses(p_[u], p_[v], p_[t[0]], p_[t[1]], p_[t[2]])) return false;
     }
   }

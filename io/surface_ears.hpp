@@ -19,7 +19,7 @@ std::vector<std::vector<CornerTriangle>> parts_on_edges(std::span<const CornerTr
 /// more of the surface, and holds nothing else of it.
 ///
 /// Limits   not every surface has an ear (Schoenhardt's polyhedron has none), and cutting may end at one that has none.
-///          The work on one surface is bounded; after it there are no more ears.
+///          The work on one surface, all attempts together, is bounded; after it there are no more ears.
 class SurfaceEars {
  public:
   static constexpr std::size_t most_triangles = 200;

@@ -83,7 +83,7 @@ SurfaceFill SurfaceTets::fill(std::span<const glm::dvec3> p, std::span<const Cor
   p_ = p;
   tets_.clear(), inside_.clear();
   fill_ = SurfaceFill::from_corner;
-  if (!triangles.empty()) fill_part({triangles.begin(), triangles.end()});
+  if (!triangles.empty()) fill_part(Triangles(triangles.begin(), triangles.end()));
   return fill_;
 }
 
@@ -160,7 +160,7 @@ bool SurfaceTets::fill_star(const Triangles& part, bool strictly) {
   }
   glm::dvec3 x = mean_;
   if (wrong_side(part, x, rounding) <= rounding ||
-      (find_kernel_point(part, x) && wrong_side(part, x, rounding) <= rounding)) {
+      (find_kernel_point(part, strictly, x) && wrong_side(part, x, rounding) <= rounding)) {
     add_cone_inside(part, x);
     return true;
   }
@@ -171,8 +171,8 @@ bool SurfaceTets::fill_star(const Triangles& part, bool strictly) {
 
 /// Moves `x` to a point on the inner side of all triangles' planes, if it comes to one: again and again by what it lies
 /// too far out of the worst of them (Agmon, "The relaxation method for linear inequalities", Canadian Journal of
-/// Mathematics, 1954).
-bool SurfaceTets::find_kernel_point(const Triangles& part, glm::dvec3& x) {
+/// Mathematics, 1954). `soon`: or not for long.
+bool SurfaceTets::find_kernel_point(const Triangles& part, bool soon, glm::dvec3& x) {
   planes_.clear();
   for (const CornerTriangle& t : part) {
     const glm::dvec3 area = glm::cross(p_[t[1]] - p_[t[0]], p_[t[2]] - p_[t[0]]);
@@ -181,8 +181,9 @@ bool SurfaceTets::find_kernel_point(const Triangles& part, glm::dvec3& x) {
     const glm::dvec3 normal = area / length;
     planes_.push_back({normal, glm::dot(normal, p_[t[0]])});
   }
-  const int steps = part.size() > 2000 ? 20 : 100;
+  const int steps = soon ? 25 : part.size() > 2000 ? 20 : 100;
   for (const double margin : {3e-2, 3e-3, 3e-4}) {
+    if (soon && margin != 3e-3) continue;
     for (int step = 0; step < steps; ++step) {
       double least = std::numeric_limits<double>::infinity();
       const Plane* worst = nullptr;
@@ -198,7 +199,7 @@ bool SurfaceTets::find_kernel_point(const Triangles& part, glm::dvec3& x) {
   return false;
 }
 
-void SurfaceTets::fill_part(Triangles part) {
+void SurfaceTets::fill_part(const Triangles& part) {
   take_measures(part);
   if (volume6_ <= 1e-12 * noise6_) return add_cone(part, corners_[0]);  // flat
   if (fill_star(part, false)) return;
@@ -214,13 +215,13 @@ void SurfaceTets::fill_part(Triangles part) {
 
 /// Parts that hang together on edges of two triangles, one by one, if there are several, each with a volume.
 bool SurfaceTets::split_apart(const Triangles& part) {
-  std::vector<Triangles> parts = parts_on_edges(part);
+  const std::vector<Triangles> parts = parts_on_edges(part);
   if (parts.size() < 2) return false;
   for (const Triangles& one : parts) {
     take_measures(one);
     if (volume6_ < 0 && -volume6_ > 1e-12 * noise6_) return false;  // a void
   }
-  for (Triangles& one : parts) fill_part(std::move(one));
+  for (const Triangles& one : parts) fill_part(one);
   return true;
 }
 
@@ -230,9 +231,9 @@ bool SurfaceTets::fill_by_ears(const Triangles& part, std::uint32_t attempt) {
   while (ears_.cut(ear)) {
     tets_.push_back(ear);
     if (ears_.left().empty()) return true;
-    std::vector<Triangles> parts = parts_on_edges(ears_.left());
+    const std::vector<Triangles> parts = parts_on_edges(ears_.left());
     if (parts.size() > 1) {
-      for (Triangles& one : parts) fill_part(std::move(one));
+      for (const Triangles& one : parts) fill_part(one);
       return true;
     }
     if (fill_star(ears_.left(), true)) return true;

@@ -40,7 +40,7 @@ class SurfaceTets {
 
  private:
   using Triangles = std::vector<CornerTriangle>;
-  void fill_part(Triangles part);
+  void fill_part(const Triangles& part);
   bool fill_star(const Triangles& part, bool strictly);
   bool fill_by_ears(const Triangles& part, std::uint32_t attempt);
   void fill_overlapping(const Triangles& part);
@@ -48,7 +48,7 @@ class SurfaceTets {
   void take_measures(const Triangles& part);
   [[nodiscard]] double wrong_side(const Triangles& part, const glm::dvec3& apex, double enough) const;
   [[nodiscard]] bool has_flat_tets(const Triangles& part, std::uint32_t apex) const;
-  bool find_kernel_point(const Triangles& part, glm::dvec3& x);
+  bool find_kernel_point(const Triangles& part, bool soon, glm::dvec3& x);
   void add_cone(const Triangles& part, std::uint32_t apex);
   void add_cone_inside(const Triangles& part, const glm::dvec3& apex);
 
