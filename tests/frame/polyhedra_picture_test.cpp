@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <glm/vec3.hpp>
 
 #include "frame/random_cases.hpp"
 #include "frame/render.hpp"
@@ -91,6 +92,39 @@ TEST(PolyhedraPicture, IsThatOfTheBoxTheyFill) {
               first, last - 1, static_cast<std::size_t>(counts.cells_polyhedra),
               static_cast<std::size_t>(counts.polyhedra_from_inside),
               static_cast<std::size_t>(counts.polyhedra_in_pieces), worst, excused, pixels);
+}
+
+TEST(PolyhedraPicture, OfCellDataIsThatOfTheCubesTheyAreMadeOf) {
+  constexpr int n = 4;
+  std::size_t excused = 0, pixels = 0;
+  for (int number = 0; number < 10; ++number) {
+    Random random(77u + static_cast<std::uint64_t>(number));
+    std::vector<std::size_t> cell_of_cube;
+    io::MeshOptions options;
+    options.field = std::string("c");
+    const io::MeshFile file = io::assemble_mesh(
+        {io::testing::agglomerates(n, 6, 0, static_cast<unsigned>(number), &cell_of_cube)}, options, "mesh");
+    const scene::TetMesh cubes = reference::with_cell_data(
+        reference::box_of_tets(n, glm::dvec3(0), glm::dvec3(1), field_at), [&](const glm::dvec3& centre) {
+          const glm::ivec3 at(centre * static_cast<double>(n));
+          return static_cast<double>(cell_of_cube[static_cast<std::size_t>(at.x + n * (at.y + n * at.z))]);
+        });
+    const scene::Camera camera = random_camera(random);
+    std::vector<scene::Knot> knots;
+    for (int k = 0; k < 30; ++k)
+      knots.push_back({static_cast<double>(k),
+                       {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)},
+                       random.power(-1, 1)});
+    const scene::TransferFunction function{knots};
+    RenderSettings settings;
+    settings.integrator.kind = scene::IntegratorKind::exact;
+    const scene::Image image = Renderer(file.mesh, settings).render(camera, size, function);
+    const reference::Judgement judgement =
+        reference::judge(image, reference::Reference(cubes, camera, size, function), promised_error);
+    EXPECT_LE(judgement.max_error_not_excused, promised_error) << "case " << number;
+    excused += judgement.excused, pixels += judgement.pixels_checked;
+  }
+  EXPECT_LE(static_cast<double>(excused), 1e-4 * static_cast<double>(pixels) + 3);
 }
 
 }  // namespace

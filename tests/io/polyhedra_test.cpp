@@ -5,7 +5,9 @@
 #include <glm/mat3x3.hpp>
 #include <random>
 #include <set>
+#include <span>
 
+#include "io/cell_split.hpp"
 #include "io/mesh_assembly.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/polyhedral_meshes.hpp"
@@ -194,6 +196,51 @@ TEST(PolyhedronCells, MeetHexahedraWedgesAndPyramids) {
     options.field = std::string("f");
     expect_fills_the_box(assemble_mesh({some, others}, options, "mesh"), seed);
   }
+}
+
+TEST(PolyhedronCells, HexahedraThatTheirSmallestCornerDoesNotSeeAreSplitAnotherWay) {
+  int overlapping = 0;
+  for (unsigned seed = 1; seed < 6; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> move(-0.25, 0.25);
+    constexpr std::uint32_t n = 5, u = n + 1, w = u * u;
+    CellBlock block;
+    block.offsets.push_back(0);
+    std::vector<double> f;
+    for (std::uint32_t v = 0; v < w * u; ++v) {
+      glm::dvec3 p(v % u, v / u % u, v / w);
+      for (int a = 0; a < 3; ++a)
+        if (p[a] > 0 && p[a] < n) p[a] += move(random);
+      block.positions.push_back(p / static_cast<double>(n));
+      f.push_back(glm::dot(block.positions.back(), glm::dvec3(1, 2, 3)));
+    }
+    block.fields.push_back(field_of_values("f", "double", scene::Association::point, 1, std::move(f)));
+    for (std::uint32_t v = 0; v < w * u; ++v) {
+      if (v % u == n || v / u % u == n || v / w == n) continue;
+      for (const std::uint32_t corner : {v, v + 1, v + 1 + u, v + u, v + w, v + w + 1, v + w + 1 + u, v + w + u})
+        block.connectivity.push_back(corner);
+      block.types.push_back(12);
+      block.offsets.push_back(block.connectivity.size());
+    }
+    const MeshFile file = assemble_f(block);
+    // The cones that overlap, if all are from the smallest corners.
+    for (std::size_t c = 0; c < block.types.size(); ++c) {
+      scene::TetMesh cone;
+      cone.positions = block.positions;
+      split_cell(CellKind::hexahedron, std::span(block.connectivity).subspan(8 * c, 8), block.positions, cone.tets);
+      double sum = 0;
+      for (const scene::Tet& t : cone.tets) {
+        const glm::dvec3 a = block.positions[t[0]];
+        sum += glm::dot(glm::cross(block.positions[t[1]] - a, block.positions[t[2]] - a), block.positions[t[3]] - a);
+      }
+      overlapping += 6 * testing::volume(cone) > 1.00001 * std::abs(sum) ? 1 : 0;
+    }
+    EXPECT_EQ(file.counts.cells_polyhedra, 0u);
+    expect_fills_the_box(file, seed);
+    std::mt19937 again(seed);
+    EXPECT_EQ(places_of(assemble_f(as_polyhedra(block, again)).mesh), places_of(file.mesh));
+  }
+  EXPECT_GT(overlapping, 0);
 }
 
 }  // namespace

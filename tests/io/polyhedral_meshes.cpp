@@ -220,7 +220,7 @@ CellBlock voronoi_mesh(int sites, unsigned seed) {
   return polyhedra_of(std::move(points), cells, random);
 }
 
-CellBlock agglomerates(int n, int largest, double jitter, unsigned seed) {
+CellBlock agglomerates(int n, int largest, double jitter, unsigned seed, std::vector<std::size_t>* cell_of_cube) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> move(-jitter, jitter);
   const auto side = static_cast<std::uint32_t>(n + 1);
@@ -251,8 +251,14 @@ CellBlock agglomerates(int n, int largest, double jitter, unsigned seed) {
         if (j + 2 < side) pairs.emplace_back(c, c + wide);
         if (k + 2 < side) pairs.emplace_back(c, c + wide * wide);
       }
-  std::vector<Faces> cells =
-      gathered(random_groups(cubes.size(), pairs, static_cast<std::size_t>(largest), random), cubes);
+  const std::vector<std::size_t> group = random_groups(cubes.size(), pairs, static_cast<std::size_t>(largest), random);
+  std::vector<Faces> cells = gathered(group, cubes);
+  if (cell_of_cube != nullptr) {
+    const std::set<std::size_t> groups(group.begin(), group.end());
+    cell_of_cube->clear();
+    for (const std::size_t g : group)
+      cell_of_cube->push_back(static_cast<std::size_t>(std::distance(groups.begin(), groups.find(g))));
+  }
   for (Faces& cell : cells) drop_inner(cell);
   return polyhedra_of(std::move(points), cells, random, true);
 }

@@ -29,8 +29,10 @@ CellBlock as_polyhedra(const CellBlock& block, std::mt19937& random);
 CellBlock voronoi_mesh(int sites, unsigned seed);
 
 /// Cubes of an n x n x n lattice whose inner points are moved at random by up to `jitter` of an edge, joined to cells
-/// of up to `largest`, of any shape: their faces are the cubes', and warped.
-CellBlock agglomerates(int n, int largest, double jitter, unsigned seed);
+/// of up to `largest`, of any shape: their faces are the cubes', and warped. `cell_of_cube`, if given,
+/// gets the cell of each cube, x first.
+CellBlock agglomerates(int n, int largest, double jitter, unsigned seed,
+                       std::vector<std::size_t>* cell_of_cube = nullptr);
 
 /// Columns of layers over a plane map of squares, corners moved at random, joined to up to four: L, S, T and square
 /// shapes, whose lids are polygons that need not be convex.
