@@ -179,7 +179,8 @@ class Assembly {
   /// The points that the block's cells were split at follow its own, which threads have looked at until now.
   void take_added_points() {
     mesh_.positions.insert(mesh_.positions.end(), added_points_.begin(), added_points_.end());
-    values_.insert(values_.end(), added_values_.begin(), added_values_.end());
+    if (choice_.association == Association::point)
+      values_.insert(values_.end(), added_values_.begin(), added_values_.end());
     added_points_.clear(), added_values_.clear();
   }
 
