@@ -109,8 +109,14 @@ Json data_json(const std::filesystem::path& input, const Description& data) {
                      {"nan", counts.cells_nan},
                      {"not_volumetric", counts.cells_not_volumetric},
                      {"zero_volume", counts.cells_zero_volume},
+                     {"open", counts.cells_open},
                      {"tangled", counts.cells_tangled},
                      {"quadratic", counts.cells_quadratic}};
+    if (counts.cells_polyhedra > 0)
+      json["polyhedra"] = {{"kept", counts.cells_polyhedra},
+                           {"from_inside", counts.polyhedra_from_inside},
+                           {"in_pieces", counts.polyhedra_in_pieces},
+                           {"tangled", counts.polyhedra_tangled}};
     json["tets"] = counts.tets_made;
     json["tets_collapsed"] = counts.tets_collapsed;
     json["points"] = {{"read", counts.points_read}, {"unused", counts.points_unused}};

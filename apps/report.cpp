@@ -164,7 +164,7 @@ std::string samples_line(const Description& grid) {
 
 std::string cells_line(const MeshCounts& counts) {
   const std::uint64_t dropped =
-      counts.cells_ghost + counts.cells_hidden + counts.cells_nan + counts.cells_not_volumetric;
+      counts.cells_ghost + counts.cells_hidden + counts.cells_nan + counts.cells_not_volumetric + counts.cells_open;
   std::string line =
       fmt::format("{} of {} cells kept as {} tets", counts.cells_read - dropped, counts.cells_read, counts.tets_made);
   const std::pair<std::uint64_t, std::string_view> reasons[] = {
@@ -173,6 +173,7 @@ std::string cells_line(const MeshCounts& counts) {
       {counts.cells_nan, "NaN dropped"},
       {counts.cells_not_volumetric, "without volume by type skipped"},
       {counts.cells_zero_volume, "of zero volume kept"},
+      {counts.cells_open, "not closed dropped"},
       {counts.cells_tangled, "tangled kept"},
       {counts.cells_quadratic, "of higher order"}};
   for (const auto& [count, reason] : reasons)

@@ -48,9 +48,9 @@ std::vector<double> doubles_of(const ArrayView& view) {
   return with_numbers(view, [](const auto& numbers) { return std::vector<double>(numbers.begin(), numbers.end()); });
 }
 
-/// Whole numbers below `end`, or an error that names the first that is not.
+/// Whole numbers from `least` to below `end`, or an error that names the first that is not.
 template <class T>
-std::vector<T> whole_numbers(const ArrayView& view, const char* name, std::uint64_t end) {
+std::vector<T> whole_numbers(const ArrayView& view, const char* name, std::uint64_t end, std::int64_t least = 0) {
   if (!is_whole(view.type())) throw scene::bad_input(fmt::format("mesh: {} are no whole numbers; give integers", name));
   return with_numbers(view, [&](const auto& numbers) {
     std::vector<T> values;
@@ -58,9 +58,9 @@ std::vector<T> whole_numbers(const ArrayView& view, const char* name, std::uint6
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       // NOLINTNEXTLINE(bugprone-signed-char-misuse): numbers, not characters
       const auto number = static_cast<std::int64_t>(numbers[i]);
-      if (number < 0 || static_cast<std::uint64_t>(number) >= end)
-        throw scene::bad_input(
-            fmt::format("mesh: {} {} is {}; it must be 0 to {}", name, i, number, static_cast<std::int64_t>(end) - 1));
+      if (number < least || number >= static_cast<std::int64_t>(end))
+        throw scene::bad_input(fmt::format("mesh: {} {} is {}; it must be {} to {}", name, i, number, least,
+                                           static_cast<std::int64_t>(end) - 1));
       values.push_back(static_cast<T>(number));
     }
     return values;
@@ -80,6 +80,11 @@ void check_shapes(const MeshArrays& a) {
   if (!as_tets && a.offsets.size() != a.types.size() + 1)
     throw scene::bad_input(
         fmt::format("mesh: {} offsets for {} cells; give one more than cells", a.offsets.size(), a.types.size()));
+  if (as_tets && !(a.faces.empty() && a.face_locations.empty()))
+    throw scene::bad_input("mesh: faces are given for tets; give types, offsets and connectivity of polyhedra");
+  if (a.faces.empty() ? !a.face_locations.empty() : a.face_locations.size() != a.types.size())
+    throw scene::bad_input(fmt::format("mesh: {} face locations for {} cells and {} numbers of faces; give one a cell",
+                                       a.face_locations.size(), a.types.size(), a.faces.size()));
   const std::size_t cells = as_tets ? a.tets.size() / 4 : a.types.size();
   if (!a.original_cells.empty() &&
       (a.original_cells.type() != NumberType::uint64 || a.original_cells.size() != cells || !as_tets))
@@ -136,6 +141,11 @@ io::CellBlock block_of(const MeshArrays& a) {
     if (block.offsets.back() != block.connectivity.size() || block.offsets.front() != 0)
       throw scene::bad_input(fmt::format("mesh: offsets go from {} to {}; they must from 0 to connectivity's {}",
                                          block.offsets.front(), block.offsets.back(), block.connectivity.size()));
+  }
+  if (!a.faces.empty()) {
+    block.faces = whole_numbers<std::uint32_t>(a.faces, "number of faces", 1ull << 32);
+    block.face_locations = whole_numbers<std::int64_t>(a.face_locations, "face location", a.faces.size(), -1);
+    io::require_faces(block, "mesh");
   }
   block.fields.push_back(io::field_of_values(a.field_name, "double", a.association, 1, doubles_of(a.scalars)));
   return block;

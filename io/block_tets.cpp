@@ -39,13 +39,13 @@ void BlockCells::split(std::size_t first, std::size_t last, BlockTets& out) cons
   out.counts = {};
   out.curved = {};
   out.error = nullptr;
-  std::vector<Tet> cell_tets;
-  CurvedWork work(curved_.settings().tolerance);
-  for (std::size_t c = first; c < last; ++c) split_cell(c, work, cell_tets, out);
+  Workplace work{
+      .tets = {}, .faces = {}, .corners = {}, .polyhedra = {}, .curved = CurvedWork(curved_.settings().tolerance)};
+  for (std::size_t c = first; c < last; ++c) split_cell(c, work, out);
   out.counts.cells_read = last - first;
 }
 
-void BlockCells::split_cell(std::size_t c, CurvedWork& work, std::vector<Tet>& cell_tets, BlockTets& out) const {
+void BlockCells::split_cell(std::size_t c, Workplace& work, BlockTets& out) const {
   const bool all_tets = block_.types.empty();
   const std::uint8_t type = all_tets ? tetra : block_.types[c];
   const CellShape& shape = shapes_[type];
@@ -59,44 +59,59 @@ void BlockCells::split_cell(std::size_t c, CurvedWork& work, std::vector<Tet>& c
         fmt::format("{}: {} is a {}, which is not rendered; split such cells into tetrahedra "
                     "first (ParaView: Tetrahedralize)",
                     source_, place(c), cell_type_name(type)));
+  if (shape.kind == CellKind::polyhedron || shape.kind == CellKind::convex_point_set)
+    return split_polyhedron(c, shape.kind, work, out);
   if (shape.nodes ? nodes != static_cast<std::size_t>(shape.nodes) : nodes < static_cast<std::size_t>(shape.corners))
     throw scene::bad_input(fmt::format("{}: {} is a {} with {} nodes, it has to have {}; mend the cell types", source_,
                                        place(c), cell_type_name(type), nodes,
                                        shape.nodes ? shape.nodes : shape.corners));
-  const std::uint8_t ghost = block_.cell_ghost.empty() ? 0 : block_.cell_ghost[c];
-  if (ghost & duplicate_cell) {
-    ++out.counts.cells_ghost;
-    return;
-  }
   const std::uint32_t* const first = all_tets ? block_.tets[c].data() : &block_.connectivity[block_.offsets[c]];
   const bool is_curved = shape.higher_order && curved_.lattice(c) != nullptr;
   const std::span<const std::uint32_t> corner(first, is_curved ? nodes : static_cast<std::size_t>(shape.corners));
-  if ((ghost & (hidden_cell | refined_cell)) || hides_a_point(corner)) {
-    ++out.counts.cells_hidden;
-    return;
-  }
-  if (!is_finite(corner, c)) {
-    ++out.counts.cells_nan;
-    return;
-  }
+  if (is_left_out(c, corner, out)) return;
   if (shape.higher_order) ++out.counts.cells_quadratic;
-  if (is_curved) return split_curved(c, work, cell_tets, out);
+  if (is_curved) return split_curved(c, work, out);
   if (shape.higher_order) ++out.curved.by_corners;
-  cell_tets.clear();
-  io::split_cell(shape.kind, corner, points_, cell_tets);
-  keep_tets(c, cell_tets, out);
+  const bool is_prism = shape.kind == CellKind::pentagonal_prism || shape.kind == CellKind::hexagonal_prism;
+  if (is_prism) {
+    work.faces.clear();
+    append_faces(shape.kind, corner, work.faces);
+  }
+  if (!is_prism || work.polyhedra.are_fans(work.faces, points_)) {
+    work.tets.clear();
+    io::split_cell(shape.kind, corner, points_, work.tets);
+    const auto place_of = [&](std::uint32_t v) { return points_[v]; };
+    const std::size_t tets = out.tets.size();
+    const std::uint64_t collapsed = out.counts.tets_collapsed;
+    if (!keep_tets(c, work.tets, place_of, out) || shape.kind == CellKind::tet) return;
+    // Its tets overlap: one of them is no way to split it, but there may be another.
+    out.tets.resize(tets), out.cells.resize(tets);
+    out.counts.tets_collapsed = collapsed;
+    --out.counts.cells_tangled;
+    work.faces.clear();
+    append_faces(shape.kind, corner, work.faces);
+  }
+  if (work.polyhedra.split(work.faces, points_)) {
+    keep_filled(c, work.polyhedra, out);
+    return;
+  }
+  // Corners given twice may leave a surface that is not closed.
+  work.tets.clear();
+  io::split_cell(shape.kind, corner, points_, work.tets);
+  keep_tets(
+      c, work.tets, [&](std::uint32_t v) { return points_[v]; }, out);
 }
 
-void BlockCells::split_curved(std::size_t c, CurvedWork& work, std::vector<Tet>& cell_tets, BlockTets& out) const {
+void BlockCells::split_curved(std::size_t c, Workplace& work, BlockTets& out) const {
   try {
-    curved_.split(c, work);
+    curved_.split(c, work.curved);
   } catch (const std::length_error&) {
     throw scene::bad_input(
         fmt::format("{}: {} takes more than {} tets to come near to it; allow a larger difference "
                     "(`higher_order_tolerance`)",
                     source_, place(c), curved_.settings().limit));
   }
-  const CurvedSplitter& split = work.splitter;
+  const CurvedSplitter& split = work.curved.splitter;
   const std::uint32_t* const node = &block_.connectivity[block_.offsets[c]];
   out.nodes.insert(out.nodes.end(), node, &block_.connectivity[0] + block_.offsets[c + 1]);
   const auto corners = static_cast<std::uint32_t>(split.corners());
@@ -105,23 +120,91 @@ void BlockCells::split_curved(std::size_t c, CurvedWork& work, std::vector<Tet>&
     out.added.emplace_back(point.x, point.y, point.z);
     if (association_ == scene::Association::point) out.added_values.push_back(point.w);
   }
-  cell_tets.clear();
+  work.tets.clear();
   for (const Tet& tet : split.tets()) {
-    Tet& made = cell_tets.emplace_back();
+    Tet& made = work.tets.emplace_back();
     for (std::size_t k = 0; k < 4; ++k) made[k] = tet[k] < corners ? node[tet[k]] : first_added + (tet[k] - corners);
   }
   out.curved.divided += 1;
-  out.curved.tets += cell_tets.size();
+  out.curved.tets += work.tets.size();
   out.curved.position_error = std::max(out.curved.position_error, split.error().position);
   out.curved.field_error = std::max(out.curved.field_error, split.error().field);
-  keep_tets(c, cell_tets, out);
+  const auto own = static_cast<std::uint32_t>(points_.size());
+  keep_tets(
+      c, work.tets, [&](std::uint32_t v) { return v < own ? points_[v] : out.added[v - own]; }, out);
 }
 
-void BlockCells::keep_tets(std::size_t c, std::span<const Tet> cell_tets, BlockTets& out) const {
+void BlockCells::split_polyhedron(std::size_t c, CellKind kind, Workplace& work, BlockTets& out) const {
+  const bool has_faces = kind == CellKind::polyhedron;
+  if (has_faces && (block_.face_locations.empty() || block_.face_locations[c] == CellBlock::no_faces))
+    throw scene::bad_input(
+        fmt::format("{}: {} is a polyhedron without a list of its faces; write it with them", source_, place(c)));
+  work.corners.clear();
+  std::span<const std::uint32_t> faces;
+  if (has_faces) {
+    faces = faces_of(c);
+    for (std::size_t k = 0; k < faces.size(); k += faces[k] + 1)
+      for (const std::uint32_t v : faces.subspan(k + 1, faces[k])) work.corners.push_back(v);
+  } else {
+    for (std::uint64_t k = block_.offsets[c]; k < block_.offsets[c + 1]; ++k)
+      work.corners.push_back(block_.connectivity[k]);
+  }
+  if (is_left_out(c, work.corners, out)) return;
+  const auto way = has_faces ? work.polyhedra.split(faces, points_) : work.polyhedra.split_hull(work.corners, points_);
+  if (!way) {
+    ++out.counts.cells_open;
+    return;
+  }
+  ++out.counts.cells_polyhedra;
+  if (*way == SurfaceFill::from_inside) ++out.counts.polyhedra_from_inside;
+  if (*way == SurfaceFill::in_pieces) ++out.counts.polyhedra_in_pieces;
+  if (keep_filled(c, work.polyhedra, out)) ++out.counts.polyhedra_tangled;
+}
+
+/// The faces of a polyhedron, without their number.
+std::span<const std::uint32_t> BlockCells::faces_of(std::size_t c) const {
+  const auto first = static_cast<std::size_t>(block_.face_locations[c]);
+  std::size_t end = first + 1;
+  for (std::uint32_t left = block_.faces[first]; left > 0; --left) end += block_.faces[end] + 1;
+  return std::span(block_.faces).subspan(first + 1, end - first - 1);
+}
+
+/// What the splitter has made of a cell. Returns whether its tets overlap.
+bool BlockCells::keep_filled(std::size_t c, PolyhedronSplitter& filled, BlockTets& out) const {
+  const auto own = static_cast<std::uint32_t>(points_.size());
+  const auto before = static_cast<std::uint32_t>(out.added.size());
+  for (const glm::dvec3& p : filled.added()) out.added.push_back(p);
+  if (association_ == scene::Association::point) filled.add_values(values_, out.added_values);
+  const std::size_t first = out.tets.size();
+  const bool overlap = keep_tets(
+      c, filled.tets(), [&](std::uint32_t v) { return v < own ? points_[v] : out.added[before + (v - own)]; }, out);
+  for (std::size_t t = first; t < out.tets.size() && before > 0; ++t)
+    for (std::uint32_t& v : out.tets[t])
+      if (v >= own) v += before;
+  return overlap;
+}
+
+/// Whether a cell is a ghost, hidden or not finite, which is counted.
+bool BlockCells::is_left_out(std::size_t c, std::span<const std::uint32_t> corner, BlockTets& out) const {
+  const std::uint8_t ghost = block_.cell_ghost.empty() ? 0 : block_.cell_ghost[c];
+  if (ghost & duplicate_cell)
+    ++out.counts.cells_ghost;
+  else if ((ghost & (hidden_cell | refined_cell)) || hides_a_point(corner))
+    ++out.counts.cells_hidden;
+  else if (!is_finite(corner, c))
+    ++out.counts.cells_nan;
+  else
+    return false;
+  return true;
+}
+
+/// Returns whether the tets overlap.
+template <class PlaceOf>
+bool BlockCells::keep_tets(std::size_t c, std::span<const Tet> cell_tets, const PlaceOf& place_of,
+                           BlockTets& out) const {
   double positive = 0, negative = 0;
-  const auto point = [&](std::uint32_t v) { return v < points_.size() ? points_[v] : out.added[v - points_.size()]; };
   for (const Tet& tet : cell_tets) {
-    const glm::dvec3 a = point(tet[0]), b = point(tet[1]), p = point(tet[2]), q = point(tet[3]);
+    const glm::dvec3 a = place_of(tet[0]), b = place_of(tet[1]), p = place_of(tet[2]), q = place_of(tet[3]);
     // A tet with two corners at one place is flat, two of its faces are the same triangle and the other two have no
     // area: leaving it out puts its two neighbours face to face.
     if (a == b || a == p || a == q || b == p || b == q || p == q) {
@@ -134,7 +217,9 @@ void BlockCells::keep_tets(std::size_t c, std::span<const Tet> cell_tets, BlockT
     out.cells.push_back(c);
   }
   if (positive + negative == 0) ++out.counts.cells_zero_volume;
-  if (std::min(positive, negative) > 1e-9 * (positive + negative)) ++out.counts.cells_tangled;
+  if (std::min(positive, negative) <= 1e-9 * (positive + negative)) return false;
+  ++out.counts.cells_tangled;
+  return true;
 }
 
 bool BlockCells::hides_a_point(std::span<const std::uint32_t> corner) const {

@@ -12,6 +12,7 @@
 #include "io/cell_split.hpp"
 #include "io/curved_cells.hpp"
 #include "io/mesh_reader.hpp"
+#include "io/polyhedron_split.hpp"
 
 namespace tessera::io {
 
@@ -44,9 +45,21 @@ class BlockCells {
   void split(std::size_t first, std::size_t last, BlockTets& out) const;
 
  private:
-  void split_cell(std::size_t c, CurvedWork& work, std::vector<scene::Tet>& cell_tets, BlockTets& out) const;
-  void split_curved(std::size_t c, CurvedWork& work, std::vector<scene::Tet>& cell_tets, BlockTets& out) const;
-  void keep_tets(std::size_t c, std::span<const scene::Tet> cell_tets, BlockTets& out) const;
+  /// What splitting one cell after the other uses again.
+  struct Workplace {
+    std::vector<scene::Tet> tets;
+    std::vector<std::uint32_t> faces, corners;
+    PolyhedronSplitter polyhedra;
+    CurvedWork curved;
+  };
+  void split_cell(std::size_t c, Workplace& work, BlockTets& out) const;
+  void split_curved(std::size_t c, Workplace& work, BlockTets& out) const;
+  void split_polyhedron(std::size_t c, CellKind kind, Workplace& work, BlockTets& out) const;
+  bool keep_filled(std::size_t c, PolyhedronSplitter& filled, BlockTets& out) const;
+  bool is_left_out(std::size_t c, std::span<const std::uint32_t> corner, BlockTets& out) const;
+  template <class PlaceOf>
+  bool keep_tets(std::size_t c, std::span<const scene::Tet> cell_tets, const PlaceOf& place_of, BlockTets& out) const;
+  [[nodiscard]] std::span<const std::uint32_t> faces_of(std::size_t c) const;
   [[nodiscard]] bool hides_a_point(std::span<const std::uint32_t> corner) const;
   [[nodiscard]] bool is_finite(std::span<const std::uint32_t> corner, std::size_t c) const;
   [[nodiscard]] std::string place(std::size_t c) const;

@@ -38,10 +38,14 @@ BlockField field_of_values(std::string name, std::string type, scene::Associatio
 ///
 /// Shape   cell c has type types[c] (VTK's cell type number) and points connectivity[offsets[c]] up to
 ///         connectivity[offsets[c + 1]]. Where all cells are tetrahedra they may be `tets`, and the other three empty.
-///         Ghost arrays hold vtkGhostType bits for each point or cell, or are empty.
+///         A polyhedron's points are those of its faces: at face_locations[c] `faces` has their number, then of each
+///         the number of its points and these. Of other cells it is no_faces; without polyhedra both are empty. Ghost
+///         arrays hold vtkGhostType bits for each point or cell, or are empty.
 /// Holds   the reader has checked that offsets do not decrease and end at connectivity.size(), and that every index is
-///         < positions.size(). Positions and fields may hold NaN.
+///         < positions.size(), as require_faces() does for faces. Positions and fields may hold NaN.
 struct CellBlock {
+  static constexpr std::int64_t no_faces = -1;
+
   std::string name;    ///< for messages; empty if it is the only one
   std::string source;  ///< for messages: the file it comes from, if that is a piece of the file asked for
   std::vector<glm::dvec3> positions;
@@ -49,10 +53,17 @@ struct CellBlock {
   std::vector<std::uint64_t> offsets;
   std::vector<std::uint32_t> connectivity;
   std::vector<scene::Tet> tets;
+  std::vector<std::uint32_t> faces;
+  std::vector<std::int64_t> face_locations;
   std::vector<std::uint8_t> point_ghost, cell_ghost;
   std::vector<BlockField> fields;
 
   [[nodiscard]] std::size_t cell_count() const { return types.empty() ? tets.size() : types.size(); }
 };
+
+/// Checks the faces of a block's polyhedra, whose types, offsets and positions are there. Throws Error(bad_input) that
+/// begins with `where` and names the cell: for a location for all cells, counts and points in range, faces that are one
+/// cell's.
+void require_faces(const CellBlock& block, const std::string& where);
 
 }  // namespace tessera::io

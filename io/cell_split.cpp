@@ -26,6 +26,9 @@ constexpr Face hexagonal_prism_faces[] = {{6, {0, 5, 4, 3, 2, 1}}, {6, {6, 7, 8,
                                           {4, {1, 2, 8, 7}},       {4, {2, 3, 9, 8}},         {4, {3, 4, 10, 9}},
                                           {4, {4, 5, 11, 10}},     {4, {5, 0, 6, 11}}};
 
+// A voxel counts its corners x first, then y, then z.
+constexpr std::array<std::uint8_t, 8> voxel_order = {0, 1, 3, 2, 4, 5, 7, 6};
+
 std::span<const Face> faces_of(CellKind kind) {
   switch (kind) {
     case CellKind::voxel:
@@ -125,6 +128,10 @@ CellShape cell_shape(std::uint8_t vtk_type) {
       return {CellKind::pentagonal_prism, 10, 10, false};
     case 16:
       return {CellKind::hexagonal_prism, 12, 12, false};
+    case 41:
+      return {CellKind::convex_point_set, 0, 0, false};
+    case 42:
+      return {CellKind::polyhedron, 0, 0, false};
     case 24:
       return {CellKind::tet, 4, 10, true};
     case 25:
@@ -175,14 +182,20 @@ std::string cell_type_name(std::uint8_t vtk_type) {
   return fmt::format("{}{}", shape.higher_order ? "higher-order " : "", names[static_cast<int>(shape.kind)]);
 }
 
+void append_faces(CellKind kind, std::span<const std::uint32_t> corner, std::vector<std::uint32_t>& faces) {
+  for (const Face& face : faces_of(kind)) {
+    faces.push_back(static_cast<std::uint32_t>(face.size));
+    for (int k = 0; k < face.size; ++k)
+      faces.push_back(corner[kind == CellKind::voxel ? voxel_order[face.corner[k]] : face.corner[k]]);
+  }
+}
+
 void split_cell(CellKind kind, std::span<const std::uint32_t> corner, std::span<const glm::dvec3> positions,
                 std::vector<scene::Tet>& tets) {
   if (kind == CellKind::tet) {
     tets.push_back({corner[0], corner[1], corner[2], corner[3]});
     return;
   }
-  // A voxel counts its corners x first, then y, then z.
-  static constexpr std::array<std::uint8_t, 8> voxel_order = {0, 1, 3, 2, 4, 5, 7, 6};
   std::array<std::uint32_t, 12> id{};
   CornerOrder less;
   const int corners = static_cast<int>(corner.size());

@@ -20,7 +20,9 @@ enum class CellKind : std::uint8_t {
   pentagonal_prism,
   hexagonal_prism,
   not_volumetric,
-  unsupported
+  unsupported,
+  convex_point_set,
+  polyhedron
 };
 
 /// What is known of one of VTK's cell types.
@@ -31,6 +33,7 @@ struct CellShape {
   bool higher_order = false;  ///< more nodes than corners
 };
 
+/// The corners and nodes of convex point sets and polyhedra are as many as a cell has.
 CellShape cell_shape(std::uint8_t vtk_type);
 
 /// VTK's name of a type, for messages: "polyhedron"; "type 99" if it has none.
@@ -47,5 +50,9 @@ std::string cell_type_name(std::uint8_t vtk_type);
 /// 3, a pyramid 2, a pentagonal prism 9, a hexagonal prism 12. All tets of a convex cell have one orientation.
 void split_cell(CellKind kind, std::span<const std::uint32_t> corner, std::span<const glm::dvec3> positions,
                 std::vector<scene::Tet>& tets);
+
+/// Appends a cell's faces: of each the number of its corners, then these, from those given. None of a tet, a polyhedron
+/// and what is no volume.
+void append_faces(CellKind kind, std::span<const std::uint32_t> corner, std::vector<std::uint32_t>& faces);
 
 }  // namespace tessera::io

@@ -144,6 +144,13 @@ void add_unstructured_cells(const ForeignFile& file, const ForeignPart& part, Ce
   copy_offsets(file, *part.offsets, block, where);
   copy_numbers<std::uint32_t>(file, *part.connectivity, block.connectivity, where);
   check_cells(block, where);
+  if (part.faces && part.face_locations) {
+    if (part.faces->type != NumberType::uint32 || part.face_locations->type != NumberType::int64)
+      throw scene::bad_input(fmt::format("{}: its faces are lists of no known width; write it anew", where));
+    copy_numbers<std::uint32_t>(file, *part.faces, block.faces, where);
+    copy_numbers<std::int64_t>(file, *part.face_locations, block.face_locations, where);
+    require_faces(block, where);
+  }
   // Tets in a file of mixed cells were looked for there; Exodus blocks come as they are.
   const bool all_tets = std::all_of(block.types.begin(), block.types.end(), [](std::uint8_t t) { return t == 10; });
   for (std::size_t c = 0; all_tets && c < block.types.size(); ++c)

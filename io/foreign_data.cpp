@@ -61,6 +61,8 @@ Json json_of(const ForeignPart& p) {
           {"types", json_of(p.types)},
           {"offsets", json_of(p.offsets)},
           {"connectivity", json_of(p.connectivity)},
+          {"faces", json_of(p.faces)},
+          {"face_locations", json_of(p.face_locations)},
           {"coordinates", json_of(p.coordinates)},
           {"point_fields", json_of(p.point_fields)},
           {"cell_fields", json_of(p.cell_fields)}};
@@ -80,6 +82,8 @@ ForeignPart part_of(const Json& json) {
   p.types = optional_of(json.at("types"));
   p.offsets = optional_of(json.at("offsets"));
   p.connectivity = optional_of(json.at("connectivity"));
+  p.faces = optional_of(json.at("faces"));
+  p.face_locations = optional_of(json.at("face_locations"));
   p.coordinates = arrays_of(json.at("coordinates"));
   p.point_fields = arrays_of(json.at("point_fields"));
   p.cell_fields = arrays_of(json.at("cell_fields"));

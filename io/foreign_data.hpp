@@ -77,7 +77,8 @@ struct ForeignArray {
 /// One data set of a file.
 ///
 /// unstructured  points, connectivity (uint32, the largest of which stands for what it cannot hold); of tets alone a
-///               tuple of four each, of others types (uint8, VTK's) and offsets (cells + 1)
+///               tuple of four each, of others types (uint8, VTK's) and offsets (cells + 1); of polyhedra faces (uint32
+///               as connectivity) and the place of each cell's there (int64, -1 of other cells), see CellBlock
 /// surface       points; offsets and connectivity of its polygons
 /// structured    points, extent
 /// rectilinear   three arrays of coordinates, extent
@@ -90,7 +91,7 @@ struct ForeignPart {
   std::array<std::int64_t, 6> extent{};  ///< first and last point along each axis
   std::array<double, 3> origin{}, spacing{};
   std::array<double, 9> direction{};
-  std::optional<ForeignArray> points, types, offsets, connectivity;
+  std::optional<ForeignArray> points, types, offsets, connectivity, faces, face_locations;
   std::vector<ForeignArray> coordinates;  ///< three of a rectilinear grid, none of others
   std::vector<ForeignArray> point_fields, cell_fields;
 };

@@ -183,7 +183,8 @@ class Assembly {
   /// The points that the block's cells were split at follow its own, which threads have looked at until now.
   void take_added_points() {
     mesh_.positions.insert(mesh_.positions.end(), added_points_.begin(), added_points_.end());
-    values_.insert(values_.end(), added_values_.begin(), added_values_.end());
+    if (choice_.association == Association::point)
+      values_.insert(values_.end(), added_values_.begin(), added_values_.end());
     added_points_.clear(), added_values_.clear();
   }
 
@@ -288,11 +289,23 @@ std::vector<std::string> notes_on_cells(const MeshCounts& n, const HigherOrderCe
   if (n.tets_made == 0)
     throw scene::bad_input(fmt::format(
         "{}: nothing is left to render: of {} cells {} are no volumes, {} ghosts, {} hidden, {} hold NaN or infinite "
-        "numbers, {} are collapsed to a point or face; give a mesh of volume cells or choose another field",
-        source, n.cells_read, n.cells_not_volumetric, n.cells_ghost, n.cells_hidden, n.cells_nan, n.cells_zero_volume));
+        "numbers, {} are polyhedra whose faces do not close, {} are collapsed to a point or face; give a mesh of "
+        "volume "
+        "cells or choose another field",
+        source, n.cells_read, n.cells_not_volumetric, n.cells_ghost, n.cells_hidden, n.cells_nan, n.cells_open,
+        n.cells_zero_volume));
   std::vector<std::string> notes;
-  if (n.cells_tangled > 0)
-    notes.push_back(fmt::format("{} cells are so warped that their tets overlap", n.cells_tangled));
+  if (n.cells_tangled > n.polyhedra_tangled)
+    notes.push_back(
+        fmt::format("{} cells are so warped that their tets overlap", n.cells_tangled - n.polyhedra_tangled));
+  if (n.cells_polyhedra > 0) {
+    std::string note = fmt::format("{} polyhedra are split into tets, ", n.cells_polyhedra);
+    const std::uint64_t others = n.polyhedra_from_inside + n.polyhedra_in_pieces + n.polyhedra_tangled;
+    note += others == 0 ? "from a corner" : fmt::format("{} from a corner", n.cells_polyhedra - others);
+    if (n.polyhedra_from_inside > 0) note += fmt::format(", {} from a point inside", n.polyhedra_from_inside);
+    if (n.polyhedra_in_pieces > 0) note += fmt::format(", {} piece by piece", n.polyhedra_in_pieces);
+    notes.push_back(note);
+  }
   if (higher_order.divided > 0)
     notes.push_back(
         fmt::format("{} higher-order cells are drawn as {} tets, off by {:.2g} in position and {:.2g} in value at most",
@@ -300,13 +313,20 @@ std::vector<std::string> notes_on_cells(const MeshCounts& n, const HigherOrderCe
   return notes;
 }
 
-std::vector<std::string> warnings_on_cells(const HigherOrderCells& cells) {
+std::vector<std::string> warnings_on_cells(const MeshCounts& n, const HigherOrderCells& higher_order) {
   std::vector<std::string> warnings;
-  if (cells.by_corners > 0)
+  if (higher_order.by_corners > 0)
     warnings.push_back(
         fmt::format("{} higher-order cells are rendered as linear ones by their corner nodes, without an error bound "
                     "for what that leaves out",
-                    cells.by_corners));
+                    higher_order.by_corners));
+  if (n.cells_open > 0)
+    warnings.push_back(fmt::format("{} polyhedra are left out: their faces are no closed surface", n.cells_open));
+  if (n.polyhedra_tangled > 0)
+    warnings.push_back(
+        fmt::format("{} polyhedra are drawn by tets that overlap: their faces cross each other, or no way was found to "
+                    "split them",
+                    n.polyhedra_tangled));
   return warnings;
 }
 

@@ -32,7 +32,7 @@ std::vector<std::string> notes_on_cells(const MeshCounts& counts, const HigherOr
                                         const std::string& source);
 
 /// What of the cells is drawn otherwise than the file has it, one line each.
-std::vector<std::string> warnings_on_cells(const HigherOrderCells& cells);
+std::vector<std::string> warnings_on_cells(const MeshCounts& counts, const HigherOrderCells& higher_order);
 
 /// Makes the tet mesh of all of a file's blocks: chooses the field, assembles, smooths if asked. `format` is left
 /// empty. Throws as the functions above and choose_field.

@@ -24,13 +24,18 @@ struct FieldInfo {
 /// not_volumetric; what remains is split into tets.
 struct MeshCounts {
   std::uint64_t cells_read = 0;
-  std::uint64_t cells_ghost = 0;           ///< dropped: another piece's (vtkGhostType bit 1, vtkGhostLevels > 0)
-  std::uint64_t cells_hidden = 0;          ///< dropped: vtkGhostType bit 32, or a point of it hidden (2), IBLANK 0
-  std::uint64_t cells_nan = 0;             ///< blanked: a coordinate or scalar of it is missing, NaN or infinite
-  std::uint64_t cells_not_volumetric = 0;  ///< skipped: points, lines, faces
-  std::uint64_t cells_zero_volume = 0;     ///< kept: all their tets have exactly no volume
-  std::uint64_t cells_tangled = 0;         ///< kept: their tets differ in orientation, so they overlap
-  std::uint64_t cells_quadratic = 0;       ///< kept: second or higher order (HigherOrderCells)
+  std::uint64_t cells_ghost = 0;            ///< dropped: another piece's (vtkGhostType bit 1, vtkGhostLevels > 0)
+  std::uint64_t cells_hidden = 0;           ///< dropped: vtkGhostType bit 32, or a point of it hidden (2), IBLANK 0
+  std::uint64_t cells_nan = 0;              ///< blanked: a coordinate or scalar of it is missing, NaN or infinite
+  std::uint64_t cells_not_volumetric = 0;   ///< skipped: points, lines, faces
+  std::uint64_t cells_zero_volume = 0;      ///< kept: all their tets have exactly no volume
+  std::uint64_t cells_open = 0;             ///< dropped: polyhedra whose faces are no closed surface
+  std::uint64_t cells_tangled = 0;          ///< kept: their tets differ in orientation, so they overlap
+  std::uint64_t cells_quadratic = 0;        ///< kept: second or higher order (HigherOrderCells)
+  std::uint64_t cells_polyhedra = 0;        ///< kept: polyhedra and convex point sets
+  std::uint64_t polyhedra_from_inside = 0;  ///< of those: split from a point that was added inside
+  std::uint64_t polyhedra_in_pieces = 0;    ///< of those: cut into tets one by one, as no point sees all of the inside
+  std::uint64_t polyhedra_tangled = 0;      ///< of those: among cells_tangled
   std::uint64_t points_read = 0;
   std::uint64_t points_unused = 0;   ///< of no tet
   std::uint64_t tets_made = 0;       ///< in the mesh
@@ -47,15 +52,20 @@ inline MeshCounts& MeshCounts::operator+=(const MeshCounts& other) {
   cells_nan += other.cells_nan;
   cells_not_volumetric += other.cells_not_volumetric;
   cells_zero_volume += other.cells_zero_volume;
+  cells_open += other.cells_open;
   cells_tangled += other.cells_tangled;
   cells_quadratic += other.cells_quadratic;
+  cells_polyhedra += other.cells_polyhedra;
+  polyhedra_from_inside += other.polyhedra_from_inside;
+  polyhedra_in_pieces += other.polyhedra_in_pieces;
+  polyhedra_tangled += other.polyhedra_tangled;
   points_read += other.points_read;
   points_unused += other.points_unused;
   tets_made += other.tets_made;
   tets_collapsed += other.tets_collapsed;
   return *this;
 }
-static_assert(sizeof(MeshCounts) == 12 * sizeof(std::uint64_t));  // one line above for each
+static_assert(sizeof(MeshCounts) == 17 * sizeof(std::uint64_t));  // one line above for each
 
 /// What became of a mesh's cells of second and higher order.
 struct HigherOrderCells {

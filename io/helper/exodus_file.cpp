@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "io/helper/exodus_faces.hpp"
 #include "io/helper/netcdf_size.hpp"
 #include "io/helper/readers.hpp"
 #include "io/input_file.hpp"
@@ -186,10 +187,12 @@ BlockField make_field(const Variable& variable, scene::Association association, 
 class Reading {
  public:
   Reading(const std::filesystem::path& path, std::optional<std::size_t> time_step, BlockChoice choice)
-      : source_(path.string()), choice_(std::move(choice)), file_(std::make_shared<ExodusFile>(path)) {
-    // HDF5 compresses: then a value may take less than a byte. NetCDF classic does not.
-    const bool compressed = !read_beginning(path, 3).starts_with("CDF");
-    most_values_ = require_file(path) * (compressed ? 1040 : 1);
+      : source_(path.string()),
+        choice_(std::move(choice)),
+        file_(std::make_shared<ExodusFile>(path)),
+        // HDF5 compresses: then a value may take less than a byte. NetCDF classic does not.
+        most_values_(require_file(path) * (read_beginning(path, 3).starts_with("CDF") ? 1 : 1040)),
+        faces_(file_->id(), most_values_, [file = file_.get()](const std::string& what) { file->fail(what); }) {
     file_->require(ex_get_init_ext(file_->id(), &init_), "the header");
     if (init_.num_dim == 1 || init_.num_dim == 2)
       throw scene::bad_input(fmt::format("{}: it is {}-dimensional, so there is no volume in it; give a mesh in space",
@@ -248,6 +251,7 @@ class Reading {
       check_count("elements", info.num_entry, 1);
       add_block(id, info, type);
     }
+    if (!block_.faces.empty()) block_.face_locations.resize(block_.types.size(), CellBlock::no_faces);
   }
 
   [[nodiscard]] std::string block_name(std::int64_t id) const {
@@ -279,6 +283,7 @@ class Reading {
       }
     }
     for (std::size_t c = 0; c < count; ++c) block_.offsets.push_back(block_.offsets.back() + nodes);
+    if (type == 42) faces_.add(id, info, init_.num_nodes, block_);
   }
 
   void read_points() {
@@ -358,6 +363,7 @@ class Reading {
   std::shared_ptr<ExodusFile> file_;  // the fields keep it open
   ex_init_params init_{};
   std::uint64_t most_values_ = 0;
+  ExodusFaces faces_;
   int step_ = 0;
   std::vector<ElementBlock> blocks_;
   CellBlock block_;

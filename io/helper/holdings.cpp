@@ -69,6 +69,10 @@ ForeignPart hold_block(Holdings& holdings, CellBlock block) {
   part.types = hold_vector(holdings, {.type = NumberType::uint8}, std::move(block.types));
   part.offsets = hold_vector(holdings, {.type = NumberType::uint64}, std::move(block.offsets));
   part.connectivity = hold_vector(holdings, {.type = NumberType::uint32}, std::move(block.connectivity));
+  if (!block.faces.empty()) {
+    part.faces = hold_vector(holdings, {.type = NumberType::uint32}, std::move(block.faces));
+    part.face_locations = hold_vector(holdings, {.type = NumberType::int64}, std::move(block.face_locations));
+  }
   for (const BlockField& field : block.fields)
     (field.association == scene::Association::point ? part.point_fields : part.cell_fields)
         .push_back(hold_field(holdings, field));

@@ -152,7 +152,7 @@ ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::path& n
                                                  : vtkPOpenFOAMReader::RECONSTRUCTED_CASE);
   reader->SetUse64BitLabels(has_wide_labels(folder));
   reader->CreateCellToPointOff();
-  reader->DecomposePolyhedraOn();
+  reader->DecomposePolyhedraOff();  // ours are conforming, one value a cell (polyhedron_split.hpp)
   return read_by(holdings, *reader, file, request, "OpenFOAM case", [&] {
     reader->EnableAllCellArrays();
     reader->EnableAllPointArrays();

@@ -7,6 +7,7 @@
 #include <vtkCompositeDataSet.h>
 #include <vtkDataArray.h>
 #include <vtkDataSet.h>
+#include <vtkIdTypeArray.h>
 #include <vtkImageData.h>
 #include <vtkInformation.h>
 #include <vtkMatrix3x3.h>
@@ -179,6 +180,15 @@ void set_cells(Holdings& holdings, vtkCellArray& cells, ForeignPart& part) {
   part.connectivity = hold_indices(holdings, *cells.GetConnectivityArray(), 1);
 }
 
+/// Of polyhedra, if there are any.
+void set_faces(Holdings& holdings, vtkUnstructuredGrid& grid, ForeignPart& part) {
+  vtkIdTypeArray* const faces = grid.GetFaces();
+  vtkIdTypeArray* const locations = grid.GetFaceLocations();
+  if (faces == nullptr || locations == nullptr || faces->GetNumberOfValues() == 0) return;
+  part.faces = hold_indices(holdings, *faces, 1);
+  part.face_locations = hold(holdings, *locations);
+}
+
 ForeignPart part_of(Holdings& holdings, vtkDataSet& data, const std::string& name, const std::string& source) {
   ForeignPart part;
   part.name = name;
@@ -191,6 +201,7 @@ ForeignPart part_of(Holdings& holdings, vtkDataSet& data, const std::string& nam
     } else if (cells != nullptr && types != nullptr) {
       part.types = hold_any(holdings, types);
       set_cells(holdings, *cells, part);
+      set_faces(holdings, *unstructured, part);
     }
   } else if (auto* surface = vtkPolyData::SafeDownCast(&data)) {
     part.kind = ForeignPart::Kind::surface;

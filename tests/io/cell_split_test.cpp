@@ -139,7 +139,8 @@ TEST(CellShape, KnowsEveryVolumetricTypeAndRefusesTheRest) {
   EXPECT_EQ(cell_shape(25).corners, 8);
   EXPECT_TRUE(cell_shape(25).higher_order);
   EXPECT_EQ(cell_shape(5).kind, CellKind::not_volumetric);
-  EXPECT_EQ(cell_shape(42).kind, CellKind::unsupported);
+  EXPECT_EQ(cell_shape(42).kind, CellKind::polyhedron);
+  EXPECT_EQ(cell_shape(41).kind, CellKind::convex_point_set);
   EXPECT_EQ(cell_shape(255).kind, CellKind::unsupported);
   EXPECT_EQ(cell_type_name(42), "polyhedron");
 }

@@ -254,7 +254,7 @@ TEST(CurvedSplit, LoosensItsToleranceWhereThatTakesTooManyTets) {
   const MeshFile corners = assemble_mesh({warped_box(kinds[4], 2, bent, wavy, false)}, options, "mesh");
   EXPECT_EQ(corners.higher_order.by_corners, 8u);
   EXPECT_EQ(corners.mesh.tets.size() % 8, 0u);
-  EXPECT_EQ(warnings_on_cells(corners.higher_order).size(), 1u);
+  EXPECT_EQ(warnings_on_cells(corners.counts, corners.higher_order).size(), 1u);
 }
 
 TEST(CurvedSplit, FillsWhatTheCellsFill) {

@@ -141,21 +141,24 @@ TEST(MeshAssembly, FacesAndLinesAreSkippedAndCounted) {
   EXPECT_EQ(file.mesh.tets.size(), 1u);
 }
 
-TEST(MeshAssembly, QuadraticCellsUseTheirCorners) {
+TEST(MeshAssembly, HigherOrderCellsUseTheirCornersIfNoneMayBeDivided) {
   CellBlock block = row_of_tets(3);  // twelve points: enough for a ten-node tet
   block.tets.clear();
   block.types = {24};
   block.connectivity = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
   block.offsets = {0, 10};
   block.fields.pop_back();
-  const MeshFile file = assemble(block);
+  MeshOptions options;
+  options.higher_order_tets = 0;
+  const MeshFile file = assemble_mesh({block}, options, "mesh");
   EXPECT_EQ(file.mesh.tets.front(), (scene::Tet{0, 1, 2, 3}));
   EXPECT_EQ(file.counts.cells_quadratic, 1u);
-  ASSERT_EQ(warnings_on_cells(file.counts).size(), 1u);
-  EXPECT_NE(
-      warnings_on_cells(file.counts)[0].find("1 higher-order cells are rendered as linear ones by their corner nodes"),
-      std::string::npos);
-  EXPECT_TRUE(warnings_on_cells({}).empty());
+  EXPECT_EQ(file.higher_order.by_corners, 1u);
+  const std::vector<std::string> warnings = warnings_on_cells(file.counts, file.higher_order);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("1 higher-order cells are rendered as linear ones by their corner nodes"),
+            std::string::npos);
+  EXPECT_TRUE(warnings_on_cells({}, {}).empty());
 }
 
 TEST(MeshAssembly, PolyhedraAndWrongNodeCountsAreRefusedByCell) {

@@ -63,6 +63,20 @@ std::string vtu_text(const CellBlock& block) {
     types.assign(block.cell_count(), 10);
     for (std::size_t c = 1; c <= block.cell_count(); ++c) ends.push_back(4 * c);
   }
+  std::string faces;
+  if (!block.faces.empty()) {
+    // VTK has where each cell's faces end.
+    std::vector<std::int64_t> face_ends;
+    for (const std::int64_t location : block.face_locations) {
+      std::int64_t end = location;
+      if (location >= 0) {
+        const std::uint32_t count = block.faces[static_cast<std::size_t>(end++)];
+        for (std::uint32_t f = 0; f < count; ++f) end += block.faces[static_cast<std::size_t>(end)] + 1;
+      }
+      face_ends.push_back(end);
+    }
+    faces = data_array("faces", "Int64", 1, block.faces) + data_array("faceoffsets", "Int64", 1, face_ends);
+  }
   return fmt::format(
              "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
              "<UnstructuredGrid><Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
@@ -71,7 +85,7 @@ std::string vtu_text(const CellBlock& block) {
          fields_text(block, scene::Association::cell, block.cell_ghost) + "</CellData>\n<Points>\n" +
          data_array("Points", "Float64", 3, xyz) + "</Points>\n<Cells>\n" +
          data_array("connectivity", "Int64", 1, corners) + data_array("offsets", "Int64", 1, ends) +
-         data_array("types", "UInt8", 1, types) + "</Cells></Piece></UnstructuredGrid></VTKFile>\n";
+         data_array("types", "UInt8", 1, types) + faces + "</Cells></Piece></UnstructuredGrid></VTKFile>\n";
 }
 
 std::string pvtu_text(const CellBlock& block, const std::vector<std::string>& pieces) {
