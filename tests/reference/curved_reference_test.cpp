@@ -126,7 +126,7 @@ TEST(CurvedReference, AgreesWithBruteForceInAnyCell) {
   const double distance = glm::length(camera.position - camera.focal_point);
   const View view(camera, size);
   for (const TypeCase& type : all_types()) {
-    if (type.nodes > 40) continue;  // slow by force
+    if (type.nodes > 30) continue;  // slow by force
     CurvedMesh mesh;
     mesh.add(type, warped, any_field);
     const Brute brute(type, mesh);
