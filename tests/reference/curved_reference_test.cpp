@@ -220,6 +220,16 @@ TEST(CurvedReference, DoesNotMindAsWhichTypeACellIsGiven) {
     expect_same(warped_as(from), as(warped_as(from), named(from), named(to)), from + " as " + to);
 }
 
+TEST(CurvedReference, AHexahedronWithCoincidingNodesIsAWedge) {
+  CurvedMesh wedge, collapsed;
+  wedge.add(named("wedge"), warped, any_field);
+  const std::vector<glm::dvec3>& p = wedge.positions;
+  const std::vector<double>& f = wedge.scalars;
+  collapsed.add(12, {}, {p[0], p[1], p[2], p[2], p[3], p[4], p[5], p[5]});
+  collapsed.scalars = {f[0], f[1], f[2], f[2], f[3], f[4], f[5], f[5]};
+  expect_same(wedge, collapsed, "collapsed hexahedron");
+}
+
 /// Six hexahedra of one order between the surface of a cube of half side 0.3 and the unit sphere, and one in the cube.
 CurvedMesh ball_of(int order) {
   const TypeCase& type = named("Lagrange hexahedron " + std::to_string(order));
