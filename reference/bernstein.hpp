@@ -37,9 +37,8 @@ struct FacePatch {
 /// Bernstein polynomials over a domain: a basis in which any polynomial map of a cell has control points whose convex
 /// hull holds it, and whose faces have those of the cell that lie on them.
 ///
-/// Order   box: i + (n_r + 1) * (j + (n_s + 1) * k). Prism: those of the triangle (j outside, i inside), k outermost.
-/// Tet:
-///         k outermost, i innermost; i, j and k are the degrees in r, s and t.
+/// Order   k outermost, i innermost; i, j and k are the degrees in r, s and t. Of a box up to the degree in each, of a
+///         prism i + j up to that of the triangle, of a tet i + j + k up to its own.
 /// Source  Farin, "Curves and Surfaces for Computer-Aided Geometric Design", 1997, chapters 4, 15 and 17.
 class BernsteinBasis {
  public:

@@ -46,16 +46,14 @@ struct CurvedSegment {
 /// plain values of scene/.
 ///
 /// Cells    point data: geometry and field by the type's shape functions (curved_shapes.hpp). So linear hexahedra,
-/// wedges,
-///          pyramids and voxels are trilinear here, with curved faces and a field that is not linear, while `Reference`
-///          is given tets. Cell data: constant in a cell. Cells without a volume are passed over.
+///          wedges, pyramids and voxels are trilinear here, with curved faces and a field that is not linear, while
+///          `Reference` is given tets. Cell data: constant in a cell. Cells without a volume are passed over.
 /// Faces    where the ray crosses them: curved_crossing.hpp. Between crossings: curved_inversion.hpp.
 /// Light    the field as polynomials along the ray (smooth_scalar.hpp), integrated by curved_integral.hpp.
 /// Order    (front, back, cell). Cells must not overlap, nor be folded: where the map from a cell's own coordinates to
-///          space is not one to one, what is seen is finite but not defined.
-/// Ties     none: a ray exactly through an edge, a node or along a face may see the cell, or not, or a neighbour as
-/// well,
-///          over a length of rounding, or lose a stretch. Rays a little beside it are right.
+///          space is not one to one, what is seen is finite but not defined, and may take up to a second.
+/// Ties     no rule: a ray exactly through an edge or a node, or along a face, may miss a stretch, or have one of
+///          rounding's length twice. Rays a little beside it are right.
 /// Error    about 1e-12 in linear RGBA for cells of moderate shape; that of inversion grows as cells get flat.
 /// Cost     20 to 100 microseconds a cell met, more where the ray nearly touches it.
 class CurvedReference final : public RayReference {

@@ -112,8 +112,9 @@ CellShape quadratic_wedge() {
 /// The bilinear functions in the box that are one function at the apex.
 CellShape linear_pyramid() {
   std::vector<Function> space{corner_monomial(0, 0, 0), corner_monomial(0, 0, 1)};
-  for (const auto& [i, j] : {std::pair{1, 0}, {0, 1}, {1, 1}})
-    space.push_back([=](const glm::dvec3& p) { return power(p.x, i) * power(p.y, j) * (1 - p.z); });
+  space.emplace_back([](const glm::dvec3& p) { return p.x * (1 - p.z); });
+  space.emplace_back([](const glm::dvec3& p) { return p.y * (1 - p.z); });
+  space.emplace_back([](const glm::dvec3& p) { return p.x * p.y * (1 - p.z); });
   return spanned(BernsteinBasis(Domain::box, {1, 1, 1}), first(5, pyramid_nodes()), space);
 }
 
@@ -127,10 +128,11 @@ Function towards_apex(std::function<double(double x, double y, double w)> f) {
 std::vector<Function> quadratic_pyramid_space() {
   std::vector<Function> space;
   for (int k = 0; k <= 2; ++k) space.push_back(corner_monomial(0, 0, k));
-  for (int k = 1; k <= 2; ++k)
-    for (const auto& [i, j] : {std::pair{1, 0}, {0, 1}, {1, 1}})
-      space.push_back(
-          towards_apex([=](double x, double y, double w) { return power(x, i) * power(y, j) * power(w, k); }));
+  for (int k = 1; k <= 2; ++k) {
+    space.push_back(towards_apex([k](double x, double, double w) { return x * power(w, k); }));
+    space.push_back(towards_apex([k](double, double y, double w) { return y * power(w, k); }));
+    space.push_back(towards_apex([k](double x, double y, double w) { return x * y * power(w, k); }));
+  }
   space.push_back(towards_apex([](double x, double y, double w) { return x * y * y * w * w; }));
   space.push_back(towards_apex([](double x, double y, double w) { return x * x * y * w * w; }));
   return space;

@@ -29,11 +29,10 @@ struct CellShape {
 /// What a type, a number of nodes and orders make; `orders` are of VTK's array HigherOrderDegrees, or zeros: told from
 /// the number of nodes, as VTK does. Only Lagrange and Bezier hexahedra and wedges look at them.
 ///
-/// Types   linear 10 to 14; quadratic 24 to 27, 29, 31 to 33, 37; Lagrange 71 to 73; Bezier 78 to 80, of unit weights.
-/// Of
-///         71 also the tet of 15 nodes, of 73 the wedge of 21.
-/// Throws  scene::Error(bad_input), beginning with `where`, for other types, wrong numbers of nodes, and orders
-/// above 10.
+/// Types   linear 10 to 14; quadratic 24 to 27, 29, 31 to 33, 37; Lagrange 71 to 73, with the tet of 15 nodes and the
+///         wedge of 21; Bezier 78 to 80, of unit weights.
+/// Throws  scene::Error(bad_input), which begins with `where`, for other types, wrong numbers of nodes and orders above
+///         10.
 CellShape cell_shape(std::uint8_t vtk_type, std::size_t nodes, std::array<int, 3> orders, const std::string& where);
 
 /// Whether cells of this type have no volume: vertices, lines, polygons.

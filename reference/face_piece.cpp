@@ -8,11 +8,15 @@ namespace tessera::reference {
 namespace {
 
 std::size_t square_index(const FacePiece& piece, int i, int j) {
-  return static_cast<std::size_t>(i + (piece.a_degree + 1) * j);
+  const auto row = static_cast<std::size_t>(piece.a_degree) + 1;
+  return static_cast<std::size_t>(i) + row * static_cast<std::size_t>(j);
 }
 
 /// Rows of n + 1, n, n - 1 ... points.
-std::size_t triangle_index(int n, int i, int j) { return static_cast<std::size_t>(i + j * (n + 1) - j * (j - 1) / 2); }
+std::size_t triangle_index(int n, int i, int j) {
+  const int before = j * (n + 1) - j * (j - 1) / 2;
+  return static_cast<std::size_t>(before) + static_cast<std::size_t>(i);
+}
 
 glm::dvec3 middle(const glm::dvec3& a, const glm::dvec3& b) { return (a + b) * 0.5; }
 
