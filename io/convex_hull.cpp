@@ -57,7 +57,7 @@ class Hull {
     normal_ = glm::cross(b - a, c - a);
     origin_ = a;
     const double area = glm::length(normal_);
-    if (!(area > 1e-6 * edges[0] * edges[1])) return false;
+    if (!(area > 1e-6 * edges[0] * edges[1]) || !std::isfinite(area)) return false;
     normal_ /= area;
     return true;
   }

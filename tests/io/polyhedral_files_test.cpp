@@ -86,6 +86,29 @@ TEST(PolyhedralFiles, AVtuHasTheCellsThatItWasMadeOf) {
   expect_same(read_field(folder.write("m.vtu", testing::vtu_text(block)), "f"), in_memory(block, "f"));
 }
 
+TEST(PolyhedralFiles, PiecesOfAPvtuAgreeOnTheFacesBetweenThem) {
+  const test::TemporaryFolder folder;
+  const CellBlock whole = agglomerates(4, 5, 0.15, 6);
+  const std::vector<Faces> all = testing::faces_of_cells(whole);
+  std::mt19937 random(6);
+  CellBlock piece;
+  for (const std::size_t first : {0, 1}) {
+    std::vector<Faces> cells;
+    for (std::size_t c = first; c < all.size(); c += 2) cells.push_back(all[c]);
+    piece = testing::polyhedra_of(whole.positions, cells, random);
+    folder.write(fmt::format("{}.vtu", first), testing::vtu_text(piece));
+  }
+  const MeshFile read = read_field(folder.write("m.pvtu", testing::pvtu_text(piece, {"0.vtu", "1.vtu"})), "f");
+  EXPECT_EQ(read.counts.cells_polyhedra, all.size());
+  EXPECT_NEAR(testing::volume(read.mesh), 1, 1e-12);
+  for (const auto& [place, uses] : testing::count_triangles(read.mesh)) {
+    bool on_wall = false;
+    for (std::size_t a = 0; a < 3; ++a)
+      for (const double at : {0.0, 1.0}) on_wall |= place[0][a] == at && place[1][a] == at && place[2][a] == at;
+    EXPECT_TRUE(uses == 2 || (uses == 1 && on_wall));
+  }
+}
+
 TEST(PolyhedralFiles, ALegacyFileHasFacesInItsCells) {
   const test::TemporaryFolder folder;
   const CellBlock block = agglomerates(2, 3, 0.2, 3);

@@ -166,9 +166,30 @@ TEST(PolyhedronSplit, CutsUpWhatNoPointSeesAllOf) {
   EXPECT_TRUE(warnings_on_cells(file.counts, {}).empty());
 }
 
+TEST(PolyhedronSplit, AddsAPointToWhatHasNoTetsOfItsOwnCorners) {
+  // Schoenhardt's polyhedron (1928): a prism over a triangle, turned by 30 degrees until its side faces bend inward.
+  std::vector<glm::dvec3> p;
+  for (const double turn : {0.0, 1.0})
+    for (int k = 0; k < 3; ++k) {
+      const double angle = 3.141592653589793 * (2.0 / 3 * k + turn / 6);
+      p.emplace_back(std::cos(angle), std::sin(angle), turn);
+    }
+  Faces faces = {{0, 2, 1}, {3, 4, 5}};
+  double signed6 = 0;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const std::uint32_t next = (k + 1) % 3;
+    faces.push_back({k, next, next + 3});
+    faces.push_back({k, next + 3, k + 3});
+  }
+  for (const auto& face : faces) signed6 += glm::dot(glm::cross(p[face[0]], p[face[1]]), p[face[2]]);
+  std::mt19937 random(1);
+  const MeshFile file = assembled(polyhedra_of(p, {faces}, random));
+  EXPECT_EQ(file.counts.polyhedra_from_inside, 2u);
+  EXPECT_NEAR(testing::volume(file.mesh), 2 * signed6 / 6, 1e-13);
+}
+
 TEST(PolyhedronSplit, WarnsOfTetsThatOverlapWhereItFindsNoWay) {
-  // Schoenhardt's polyhedron: a prism turned until its three side faces bend inward has no tets without a point of its
-  // own, but a point inside. One with a void has neither here.
+  // A cube with a smaller one left out inside.
   std::vector<glm::dvec3> p = cube_points();
   for (const glm::dvec3& x : cube_points()) p.push_back(0.5 * x + glm::dvec3(0.25));
   Faces faces = cube_faces(), inner = cube_faces(8);
