@@ -117,13 +117,7 @@ class Smoothing {
 
   [[nodiscard]] double value_at(const AmrIndex& p) const {
     const Around around = leaves_around(p);
-    if (are_of_one_level(around)) {
-      double sum = 0;
-      int count = 0;
-      for (const std::uint32_t l : around)
-        if (l != none) sum += values_[l], ++count;
-      return sum / count;
-    }
+    if (are_of_one_level(around)) return mean_around(p, around);
     const std::uint32_t finest = *std::max_element(around.begin(), around.end(), [&](std::uint32_t a, std::uint32_t b) {
       return (a == none ? -1 : leaf(a).level) < (b == none ? -1 : leaf(b).level);
     });
@@ -145,6 +139,29 @@ class Smoothing {
       if (is_corner) sum += value_at(q);
     }
     return sum / corners;
+  }
+
+  /// Of leaves of one level around a point: their values' mean, or, where their sizes differ along an axis, the values
+  /// between their centres.
+  [[nodiscard]] double mean_around(const AmrIndex& p, const Around& around) const {
+    std::array<double, 3> higher{0.5, 0.5, 0.5};  // the weight of what lies on the higher side
+    if (!amr_.lattice.is_even()) {
+      const auto some = *std::find_if(around.begin(), around.end(), [](std::uint32_t l) { return l != none; });
+      const double half = 0.5 * size_of(some);
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double at = 0.5 * p[a], low = amr_.lattice.position(a, at - half),
+                     high = amr_.lattice.position(a, at + half);
+        higher[a] = (amr_.lattice.position(a, at) - low) / (high - low);
+      }
+    }
+    double sum = 0, weights = 0;
+    for (unsigned k = 0; k < 8; ++k) {
+      if (around[k] == none) continue;
+      double weight = 1;
+      for (std::size_t a = 0; a < 3; ++a) weight *= (k >> a & 1) != 0 ? higher[a] : 1 - higher[a];
+      sum += weight * values_[around[k]], weights += weight;
+    }
+    return sum / weights;
   }
 
   /// Of a corner where levels meet.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "io/amrex_header.hpp"
 #include "io/brick_file.hpp"
 #include "io/input_file.hpp"
 #include "io/volume_formats.hpp"
@@ -96,6 +97,10 @@ bool begins_as_vtk_list(const FileBeginning& file) {
 }
 bool begins_as_vtk_amr(const FileBeginning& file) {
   return is_xml_of(file, {"vtkOverlappingAMR", "vtkNonOverlappingAMR", "vtkHierarchicalBoxDataSet"});
+}
+bool begins_as_hyper_trees(const FileBeginning& file) { return is_xml_of(file, {"HyperTreeGrid", "PHyperTreeGrid"}); }
+bool begins_as_amrex(const FileBeginning& file) {
+  return file.file.filename() == "Header" && looks_like_amrex(file.text);
 }
 bool begins_as_vtk_surface(const FileBeginning& file) {
   return is_xml_of(file, {"PolyData"}) || is_legacy_of(file, {"POLYDATA"});

@@ -13,6 +13,8 @@ std::string vtk_legacy_type(std::string_view beginning);
 bool begins_as_vtu(const FileBeginning& file);
 bool begins_as_vts(const FileBeginning& file);
 bool begins_as_vtk_amr(const FileBeginning& file);
+bool begins_as_hyper_trees(const FileBeginning& file);
+bool begins_as_amrex(const FileBeginning& file);
 bool begins_as_vtk_list(const FileBeginning& file);
 bool begins_as_vtk_surface(const FileBeginning& file);
 bool begins_as_vti(const FileBeginning& file);

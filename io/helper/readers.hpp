@@ -18,6 +18,9 @@ ForeignContents read_vtk_xml(Holdings& holdings, const std::filesystem::path& fi
 /// Legacy VTK, all its arrays.
 ForeignContents read_vtk_legacy(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
+/// VTK's XML HyperTreeGrids: the leaves that no mask hides. A file without any has no part.
+ForeignContents read_hyper_trees(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+
 /// PLOT3D; `q` is the solution file or empty, the rest is the layout (io/plot3d_layout.hpp).
 ForeignContents read_plot3d(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
