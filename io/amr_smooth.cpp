@@ -2,7 +2,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
 
 #include "io/amr_values.hpp"
 
@@ -196,9 +198,38 @@ class Smoothing {
 
 }  // namespace
 
+namespace {
+
+/// Weights of sum 1 and mean 0 that depart least from the factors' own proportions, some perhaps below 0. False, and
+/// the weights as they were, where there are none, or only such as take a value farther from the range of the others
+/// than 1.5 times that range.
+bool weigh_by_squares(std::span<const glm::dvec3> d, std::span<const double> factor, const glm::dvec3& is_used,
+                      std::span<double> weights) {
+  glm::dmat4 moments(0);
+  for (int a = 0; a < 3; ++a) moments[a + 1][a + 1] = 1 - is_used[a];
+  for (std::size_t k = 0; k < d.size(); ++k) {
+    const glm::dvec4 v(1, d[k]);
+    moments += factor[k] * glm::outerProduct(v, v);
+  }
+  if (!(std::abs(glm::determinant(moments)) > 1e-9)) return false;
+  const glm::dvec4 multiplier = glm::inverse(moments)[0];
+  std::array<double, 8> found{};
+  double sum = -1, size = 0;
+  glm::dvec3 mean(0);
+  for (std::size_t k = 0; k < d.size(); ++k) {
+    found[k] = factor[k] * glm::dot(multiplier, glm::dvec4(1, d[k]));
+    sum += found[k], size += std::abs(found[k]), mean += found[k] * d[k];
+  }
+  if (!(size <= 4) || !(std::abs(sum) < 1e-9) || !(glm::length(mean) < 1e-9)) return false;
+  std::copy_n(found.begin(), d.size(), weights.begin());
+  return true;
+}
+
+}  // namespace
+
 void weigh_by_entropy(std::span<const glm::dvec3> offsets, std::span<double> weights) {
   // Axes along which all lie on one side are left out: there the values are continued as they are.
-  glm::dvec3 scale(0);
+  glm::dvec3 scale(0), is_used(0);
   glm::bvec3 below(false), above(false);
   for (const glm::dvec3& d : offsets)
     for (int a = 0; a < 3; ++a) {
@@ -208,9 +239,10 @@ void weigh_by_entropy(std::span<const glm::dvec3> offsets, std::span<double> wei
   std::array<glm::dvec3, 8> d{};
   std::array<double, 8> factor{};
   const std::size_t n = std::min(offsets.size(), d.size());
+  for (int a = 0; a < 3; ++a) is_used[a] = below[a] && above[a] ? 1 : 0;
   for (std::size_t k = 0; k < n; ++k) {
     factor[k] = weights[k];
-    for (int a = 0; a < 3; ++a) d[k][a] = below[a] && above[a] ? offsets[k][a] / scale[a] : 0;
+    for (int a = 0; a < 3; ++a) d[k][a] = is_used[a] > 0 ? offsets[k][a] / scale[a] : 0;
   }
   // Newton's method on the logarithm of the sum of factor exp(multiplier . d), which is convex and has its gradient 0
   // at the weights sought.
@@ -241,10 +273,14 @@ void weigh_by_entropy(std::span<const glm::dvec3> offsets, std::span<double> wei
     }
     if (!is_good()) {
       log_sum(multiplier);
-      return;
+      break;
     }
     multiplier = next, now = then;
   }
+  glm::dvec3 mean(0);
+  for (std::size_t k = 0; k < n; ++k) mean += weights[k] * d[k];
+  if (glm::length(mean) > 1e-12)  // far above what Newton's method leaves where there are such weights
+    weigh_by_squares(std::span(d).first(n), std::span(factor).first(n), is_used, weights);
 }
 
 AmrCubes smooth_cubes(const AmrLeaves& amr, std::span<const double> values) { return Smoothing(amr, values).cubes(); }

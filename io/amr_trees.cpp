@@ -102,8 +102,11 @@ class TreeLeaves {
 
   /// No two leaves begin at one place, and no tree is in two parts.
   void require_new(const AmrLeaf& leaf, const std::array<std::int64_t, 3>& grid, const ForeignPart& part) {
+    if (several_) require_own_tree(leaf, grid, part);
     if (lows_.add(leaf.low) != amr_.leaves.size()) throw unfit(part, source_);
-    if (!several_) return;
+  }
+
+  void require_own_tree(const AmrLeaf& leaf, const std::array<std::int64_t, 3>& grid, const ForeignPart& part) {
     std::int64_t root = 0;
     for (std::size_t a = 3; a-- > 0;) root = root * grid[a] + leaf.low[a] / amr_.size[0];
     const auto [owner, is_new] = owners_.emplace(root, leaf.part);
