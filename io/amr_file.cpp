@@ -10,6 +10,7 @@
 #include "io/amr_opened.hpp"
 #include "io/amr_values.hpp"
 #include "io/amrex_file.hpp"
+#include "io/clean_errors.hpp"
 #include "io/field_choice.hpp"
 #include "io/mesh_formats.hpp"
 #include "scene/error.hpp"
@@ -176,6 +177,7 @@ MeshBlocks read_amr(const std::filesystem::path& file, const char* reader, const
 }
 
 MeshBlocks read_amr(ForeignFile blocks, const MeshOptions& options) {
+  require_no_time_step(options.time_step, blocks.source);
   OpenedAmr opened;
   opened.add(std::move(blocks));
   return mesh_of(opened, options, opened.files.front().source);

@@ -15,6 +15,7 @@ bool begins_as_vts(const FileBeginning& file);
 bool begins_as_vtk_amr(const FileBeginning& file);
 bool begins_as_hyper_trees(const FileBeginning& file);
 bool begins_as_amrex(const FileBeginning& file);
+bool begins_as_enzo(const FileBeginning& file);
 bool begins_as_vtk_list(const FileBeginning& file);
 bool begins_as_vtk_surface(const FileBeginning& file);
 bool begins_as_vti(const FileBeginning& file);

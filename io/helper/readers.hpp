@@ -35,7 +35,7 @@ ForeignContents read_vtk_surface(Holdings& holdings, const std::filesystem::path
 /// vector NAME.
 ForeignContents read_exodus(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
-/// HDF5, by what is in it: Exodus, CGNS or VTKHDF.
+/// HDF5, by what is in it: Exodus, CGNS, FLASH or VTKHDF.
 ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
 /// OpenFOAM: the case that a folder is or a file lies in, which may be empty. Put together, or as its processors left
@@ -52,6 +52,10 @@ ForeignContents read_avs_ucd(Holdings& holdings, const std::filesystem::path& fi
 ForeignContents read_fluent(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 ForeignContents read_gambit(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 ForeignContents read_tecplot(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+
+/// FLASH, a file of HDF5, and Enzo, by its .hierarchy or .boundary: blocks of all levels, their cell data.
+ForeignContents read_flash(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+ForeignContents read_enzo(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
 /// Fills a surface by TetGen (io/surface.hpp), without limits: how long that takes and how much memory follows from the
 /// volume asked for, not from a file.
