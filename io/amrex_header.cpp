@@ -160,12 +160,12 @@ std::vector<AmrexFab> parse_amrex_level(std::string_view text, std::size_t field
       stored != static_cast<std::int64_t>(fields))
     words.fail(fmt::format("it has {} fields, the Header has {}; write it anew", stored, fields));
   words.word("the number of cells around a box");
-  std::vector<AmrexFab> fabs(static_cast<std::size_t>(words.count("the number of boxes", 1, most_boxes)));
+  const auto boxes = words.count("the number of boxes", 1, most_boxes);
   words.word("the number after that of boxes");
-  for (AmrexFab& fab : fabs) fab.box = words.box("a box");
+  std::vector<AmrexFab> fabs;  // which grows as boxes are found
+  for (std::int64_t n = 0; n < boxes; ++n) fabs.emplace_back().box = words.box("a box");
   words.skip(")");
-  words.count("the number of boxes' values", static_cast<std::int64_t>(fabs.size()),
-              static_cast<std::int64_t>(fabs.size()));
+  words.count("the number of boxes' values", boxes, boxes);
   for (AmrexFab& fab : fabs) {
     if (const std::string_view key = words.word("FabOnDisk:"); key != "FabOnDisk:")
       words.fail(fmt::format("{} where FabOnDisk: is wanted; write it anew", quote(key)));
