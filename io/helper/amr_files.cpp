@@ -9,13 +9,16 @@
 #include <vtkOverlappingAMR.h>
 #include <vtkUniformGrid.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <fstream>
 #include <nlohmann/json.hpp>
-#include <string_view>
+#include <sstream>
 
 #include "io/helper/readers.hpp"
 #include "io/helper/vtk_parts.hpp"
 #include "io/helper/vtk_session.hpp"
-#include "io/mapped_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -86,23 +89,51 @@ ForeignContents read_blocks(Holdings& holdings, Reader& reader, const std::strin
   return contents;
 }
 
-std::size_t count_words(std::string_view text, std::string_view word) {
-  std::size_t count = 0;
-  for (std::size_t at = 0; (at = text.find(word, at)) != std::string_view::npos; at += word.size())
-    if ((at == 0 || text[at - 1] == '\n') && text.substr(at + word.size()).starts_with(" ")) ++count;
-  return count;
+/// Whether a line says which grid comes after one of those before: Pointer: Grid[1]->NextGridThisLevel = 2.
+bool is_pointer(const std::string& line, std::size_t grids) {
+  unsigned grid = 0, next = 0;
+  int end = 0;
+  for (const char* form :
+       {"Pointer: Grid[%9u]->NextGridThisLevel = %9u %n", "Pointer: Grid[%9u]->NextGridNextLevel = %9u %n"})
+    if (std::sscanf(line.c_str(), form, &grid, &next, &end) == 2 && static_cast<std::size_t>(end) == line.size() &&
+        grid >= 1 && grid <= grids)
+      return true;
+  return false;
 }
 
-/// VTK's reader looks for a grid's lines for ever where one is missing.
+/// Whether a line is KEY = and three numbers, or one word.
+bool has_values(const std::string& line, bool three_numbers) {
+  std::istringstream words(line);
+  std::string key, equals, value;
+  words >> key >> equals;
+  if (equals != "=") return false;
+  if (!three_numbers) return static_cast<bool>(words >> value);
+  std::array<double, 3> numbers{};
+  return static_cast<bool>(words >> numbers[0] >> numbers[1] >> numbers[2]);
+}
+
+/// VTK's reader looks for what a grid lacks for ever.
 void require_grids(const std::filesystem::path& hierarchy) {
-  const MappedFile mapped(hierarchy);
-  const std::size_t grids = count_words(mapped.text(), "Grid");
-  if (grids == 0) throw scene::bad_input(fmt::format("{}: it has no grids; {}", hierarchy.string(), write_anew));
-  for (const char* line :
-       {"GridStartIndex", "GridEndIndex", "GridLeftEdge", "GridRightEdge", "BaryonFileName", "NumberOfParticles"})
-    if (const std::size_t count = count_words(mapped.text(), line); count != grids)
-      throw scene::bad_input(
-          fmt::format("{}: it has {} grids and {} lines {}; {}", hierarchy.string(), grids, count, line, write_anew));
+  constexpr std::array keys{"Grid",          "GridStartIndex", "GridEndIndex",     "GridLeftEdge",
+                            "GridRightEdge", "BaryonFileName", "NumberOfParticles"};
+  std::ifstream file(hierarchy);
+  std::size_t grids = 0, next = 0, number = 0;
+  const auto refuse = [&](const std::string& what) {
+    return scene::bad_input(fmt::format("{}: line {}: {}; {}", hierarchy.string(), number, what, write_anew));
+  };
+  for (std::string line; std::getline(file, line);) {
+    ++number;
+    const std::string key = line.substr(0, line.find(' '));
+    if (key == "Pointer:" && !is_pointer(line, grids)) throw refuse("it does not say which grid comes next");
+    const auto* const known = std::find(keys.begin(), keys.end(), key);
+    if (known == keys.end()) continue;
+    if (*known != keys[next]) throw refuse(fmt::format("{} where {} is wanted", key, keys[next]));
+    if (!has_values(line, next >= 1 && next <= 4)) throw refuse(fmt::format("{} has no values", key));
+    if (next == 0) ++grids;
+    next = (next + 1) % keys.size();
+  }
+  if (grids == 0 || next != 0)
+    throw refuse(fmt::format("the file ends after {} grids where {} is wanted", grids, keys[next]));
 }
 
 }  // namespace

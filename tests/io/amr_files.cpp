@@ -10,8 +10,10 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 #include <map>
+#include <random>
 
 #include "io/mesh_checks.hpp"
+#include "io/mesh_reader.hpp"
 
 namespace tessera::io::testing {
 namespace {
@@ -242,6 +244,28 @@ void expect_smooth(const scene::TetMesh& mesh, const AmrScene& scene, double sid
   }
   EXPECT_GE(centres, 64u);
   EXPECT_TRUE(!is_linear || inner > 100u);
+}
+
+void expect_read_or_refused(const std::filesystem::path& named, const std::filesystem::path& changed, unsigned seeds) {
+  const std::string good = test::contents(changed);
+  for (unsigned seed = 1; seed <= seeds; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    std::string bytes = good;
+    if (seed % 4 == 0) {
+      bytes.resize(random() % good.size() + 1);
+    } else {
+      for (unsigned k = 0; k < 1 + seed % 3; ++k) bytes[random() % bytes.size()] = static_cast<char>(random());
+    }
+    std::ofstream(changed, std::ios::binary) << bytes;
+    const test::Fault fault = test::fault_of([&] { scene::validate(read_mesh(named).mesh, "changed"); });
+    if (!fault.code) continue;
+    EXPECT_EQ(fault.code, scene::ErrorCode::bad_input) << fault.message;
+    EXPECT_EQ(fault.message.find('\n'), std::string::npos) << fault.message;
+    EXPECT_TRUE(fault.message.starts_with(changed.parent_path().parent_path().string())) << fault.message;
+    EXPECT_NE(fault.message.find("; "), std::string::npos) << "no remedy: " << fault.message;
+  }
+  std::ofstream(changed, std::ios::binary) << good;
 }
 
 }  // namespace tessera::io::testing

@@ -73,4 +73,8 @@ void expect_cells(const scene::TetMesh& mesh, const AmrScene& scene, double side
 void expect_smooth(const scene::TetMesh& mesh, const AmrScene& scene, double side, const Field& at, bool is_linear,
                    double tolerance);
 
+/// What `named` stands for is read, or refused in one line with a remedy, with bytes of `changed` changed at random and
+/// that file cut short; after it the file is as before.
+void expect_read_or_refused(const std::filesystem::path& named, const std::filesystem::path& changed, unsigned seeds);
+
 }  // namespace tessera::io::testing

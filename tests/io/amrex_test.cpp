@@ -116,5 +116,12 @@ TEST(Amrex, DamagesAreToldWithTheirPlace) {
   EXPECT_NE(message_of([&] { read_mesh(plot); }), "");
 }
 
+TEST(Amrex, ChangedBytesAreReadOrRefused) {
+  const test::TemporaryFolder folder;
+  const auto plot = write_amrex(folder, nested_blocks(), wavy);
+  for (const char* file : {"Header", "Level_1/Cell_H", "Level_1/Cell_D_00000"})
+    expect_read_or_refused(plot / "Header", plot / file, 200);
+}
+
 }  // namespace
 }  // namespace tessera::io

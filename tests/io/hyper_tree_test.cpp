@@ -195,6 +195,14 @@ TEST(HyperTrees, WhatIsNotReadIsToldInOneLine) {
   has(fault("<Trees>", "<Tress>"), "write it anew");
 }
 
+TEST(HyperTrees, ChangedBytesAreReadOrRefused) {
+  const test::TemporaryFolder folder;
+  for (const int version : {0, 1, 2}) {
+    const auto file = folder.write("t.htg", htg_text(deep(uneven, 2), wavy, {.version = version}));
+    expect_read_or_refused(file, file, 24);
+  }
+}
+
 TEST(HyperTrees, LevelsTooDeepForTheLatticeAreRefused) {
   const test::TemporaryFolder folder;
   TreeScene scene = deep(even, 2);

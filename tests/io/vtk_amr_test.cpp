@@ -185,6 +185,12 @@ TEST(Flash, DamagesAreOneLine) {
   EXPECT_NE(message_of([&] { read_mesh(file, options); }), "");
 }
 
+TEST(Flash, ChangedBytesAreReadOrRefused) {
+  const test::TemporaryFolder folder;
+  const auto file = write_flash(folder, oct_tree(), wavy, true);
+  expect_read_or_refused(file, file, 40);
+}
+
 /// Enzo's grids, each with the grids in it.
 struct EnzoGrid {
   Block block;
@@ -280,7 +286,7 @@ TEST(Enzo, DamagesAreOneLine) {
     return message;
   };
   folder.write("output_0003.hierarchy", good.substr(0, good.rfind("GridRightEdge")));
-  EXPECT_NE(fault().find("5 grids and 4 lines GridRightEdge"), std::string::npos) << fault();
+  EXPECT_NE(fault().find("the file ends after 5 grids where GridRightEdge is wanted"), std::string::npos) << fault();
   folder.write("output_0003.hierarchy", good);
   std::filesystem::resize_file(folder / "output_0003.cpu0000", 3000);
   EXPECT_NE(fault(), "");
@@ -288,6 +294,13 @@ TEST(Enzo, DamagesAreOneLine) {
   EXPECT_NE(fault(), "");
   std::filesystem::remove(folder / "output_0003");
   EXPECT_NE(fault().find("output_0003, which belongs to it, is not there"), std::string::npos) << fault();
+}
+
+TEST(Enzo, ChangedBytesAreReadOrRefused) {
+  const test::TemporaryFolder folder;
+  const auto file = write_enzo(folder, nested_grids(), wavy);
+  for (const char* name : {"output_0003.hierarchy", "output_0003.cpu0000", "output_0003"})
+    expect_read_or_refused(file, folder / name, 20);
 }
 
 /// A grid of VTK's own, divided about its middle, some of it masked; cells' values are their number.
