@@ -55,8 +55,8 @@ class Descent {
   /// Refuses cells of a level that is too deep for the lattice.
   void require_depth(std::size_t t, int level) const {
     std::int64_t cells = *std::max_element(forest_.roots.begin(), forest_.roots.end());
-    for (int l = 0; l < level; ++l) {
-      cells *= forest_.branching;
+    for (int l = 0; l <= level; ++l) {
+      if (l > 0) cells *= forest_.branching;
       if (cells > most_cells)
         throw scene::bad_input(
             fmt::format("{}: tree {} has cells of level {}, where the grid would be more than {} cells long; write it "
