@@ -201,8 +201,8 @@ class Smoothing {
 namespace {
 
 /// Weights of sum 1 and mean 0 that depart least from the factors' own proportions, some perhaps below 0. False, and
-/// the weights as they were, where there are none, or only such as take a value farther from the range of the others
-/// than 1.5 times that range.
+/// the weights as they were, where there are none, or only such as can take a value farther from the range of the
+/// others than that range is wide.
 bool weigh_by_squares(std::span<const glm::dvec3> d, std::span<const double> factor, const glm::dvec3& is_used,
                       std::span<double> weights) {
   glm::dmat4 moments(0);
@@ -220,7 +220,7 @@ bool weigh_by_squares(std::span<const glm::dvec3> d, std::span<const double> fac
     found[k] = factor[k] * glm::dot(multiplier, glm::dvec4(1, d[k]));
     sum += found[k], size += std::abs(found[k]), mean += found[k] * d[k];
   }
-  if (!(size <= 4) || !(std::abs(sum) < 1e-9) || !(glm::length(mean) < 1e-9)) return false;
+  if (!(size <= 3) || !(std::abs(sum) < 1e-9) || !(glm::length(mean) < 1e-9)) return false;
   std::copy_n(found.begin(), d.size(), weights.begin());
   return true;
 }
