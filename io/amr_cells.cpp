@@ -19,17 +19,15 @@ AmrIndex corner_of(const AmrCube& cube, unsigned k) {
           cube.low[2] + ((k & 4) != 0 ? cube.size : 0)};
 }
 
-glm::dvec3 place_of(const AmrLattice& lattice, int steps, const std::array<double, 3>& p) {
-  return {lattice.position(0, p[0] / steps), lattice.position(1, p[1] / steps), lattice.position(2, p[2] / steps)};
+glm::dvec3 place_of(const AmrLattice& lattice, int steps, const AmrIndex& p) {
+  const auto along = [&](std::size_t a) { return lattice.position(a, static_cast<double>(p[a]) / steps); };
+  return {along(0), along(1), along(2)};
 }
 
 std::vector<glm::dvec3> places_of(const AmrLattice& lattice, int steps, const AmrVertices& corners) {
   std::vector<glm::dvec3> places;
   places.reserve(corners.size());
-  for (std::size_t v = 0; v < corners.size(); ++v)
-    places.push_back(place_of(
-        lattice, steps,
-        {static_cast<double>(corners[v][0]), static_cast<double>(corners[v][1]), static_cast<double>(corners[v][2])}));
+  for (std::size_t v = 0; v < corners.size(); ++v) places.push_back(place_of(lattice, steps, corners[v]));
   return places;
 }
 
@@ -49,8 +47,7 @@ class Divider {
     std::array<std::uint32_t, 8> corner;
     for (unsigned k = 0; k < 8; ++k) corner[k] = cubes_.corners.find(corner_of(cube, k));
     if (!has_hanging(cube)) return add_cell(block_, voxel, corner);
-    apex_ = add_centre({cube.low[0] + 0.5 * cube.size, cube.low[1] + 0.5 * cube.size, cube.low[2] + 0.5 * cube.size},
-                       corner);
+    apex_ = add_centre(cube.low, corner_of(cube, 7), corner);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       add_face(cube.low, axis, cube.size);
       add_face(moved(cube.low, axis, cube.size), axis, cube.size);
@@ -113,18 +110,18 @@ class Divider {
       add_tet(corner[0], corner[2], corner[3]);
       return;
     }
-    std::array<double, 3> middle{};
-    for (std::size_t a = 0; a < 3; ++a) middle[a] = low[a] + (a == axis ? 0 : 0.5 * size);
     // The order of the mean is that of the axes, whichever cube's face it is.
-    const std::uint32_t centre = add_centre(middle, corner);
+    const std::uint32_t centre = add_centre(low, moved(moved(low, u, size), v, size), corner);
     for (std::size_t k = 0; k < round_.size(); ++k) add_tet(centre, round_[k], round_[(k + 1) % round_.size()]);
   }
 
-  std::uint32_t add_centre(const std::array<double, 3>& p, std::span<const std::uint32_t> corners) {
+  /// Between two corners that lie opposite each other. Where steps are uneven, the middle of the lattice lies
+  /// elsewhere.
+  std::uint32_t add_centre(const AmrIndex& low, const AmrIndex& high, std::span<const std::uint32_t> corners) {
     double sum = 0;
     for (const std::uint32_t c : corners) sum += cubes_.values[c];
     cubes_.values.push_back(sum / static_cast<double>(corners.size()));
-    block_.positions.push_back(place_of(lattice_, steps_, p));
+    block_.positions.push_back(0.5 * (place_of(lattice_, steps_, low) + place_of(lattice_, steps_, high)));
     return static_cast<std::uint32_t>(block_.positions.size() - 1);
   }
 

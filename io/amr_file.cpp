@@ -3,16 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <limits>
-#include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "io/amr_leaves.hpp"
+#include "io/amr_opened.hpp"
 #include "io/amr_values.hpp"
+#include "io/amrex_file.hpp"
+#include "io/clean_errors.hpp"
 #include "io/field_choice.hpp"
 #include "io/mesh_formats.hpp"
-#include "io/text_file.hpp"
-#include "io/xml_elements.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -22,49 +22,6 @@ using scene::Association;
 
 constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
-/// Everything of a file but its numbers, which are with the helper.
-struct OpenedAmr {
-  std::deque<ForeignFile> files;  ///< stay where they are
-  std::vector<AmrBlock> blocks;
-  std::vector<CellBlock> fields;  ///< of each block, and its name; no cells
-  std::string format;
-  std::vector<std::string> notes;
-
-  void add(ForeignFile opened) {
-    files.push_back(std::move(opened));
-    const ForeignFile& file = files.back();
-    for (const ForeignPart& part : file.contents.parts) blocks.push_back({&file, &part});
-    for (const std::string& note : file.contents.notes)
-      if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
-  }
-};
-
-/// VTK's list of blocks, each read by itself, so that faults name the file. What level a block has is seen from its
-/// spacing.
-void open_listed(const std::filesystem::path& file, OpenedAmr& amr) {
-  const auto helper = std::make_shared<HelperProcess>();
-  amr.format = "VTK XML AMR";
-  bool is_list = false;
-  each_xml_element(read_text_file(file), file.string(), [&](const XmlElement& element) {
-    if (element.name == "vtkOverlappingAMR" || element.name == "vtkNonOverlappingAMR" ||
-        element.name == "vtkHierarchicalBoxDataSet")
-      is_list = true;
-    const std::string* const listed = element.name == "DataSet" ? element.find("file") : nullptr;
-    if (listed == nullptr || listed->empty()) return;
-    const std::filesystem::path block = file.parent_path() / *listed;
-    if (amr.files.size() == 1u << 20)
-      throw scene::bad_input(fmt::format("{}: it lists more than {} blocks; write fewer", file.string(), 1u << 20));
-    ForeignFile opened = open_foreign(helper, block, {{"reader", "vtk_xml"}, {"type", "ImageData"}});
-    for (ForeignPart& part : opened.contents.parts) part.name = listed->c_str();
-    amr.add(std::move(opened));
-  });
-  if (!is_list)
-    throw scene::bad_input(
-        fmt::format("{}: it is no list of AMR blocks, vtkOverlappingAMR or vtkNonOverlappingAMR; "
-                    "check what it is",
-                    file.string()));
-}
-
 std::uint64_t product(const std::array<std::uint64_t, 3>& n) {
   std::uint64_t all = 1;
   for (const std::uint64_t side : n)
@@ -72,11 +29,8 @@ std::uint64_t product(const std::array<std::uint64_t, 3>& n) {
   return all;
 }
 
-/// Fields, whose counts are compared with the block's extent.
-CellBlock fields_of(const AmrBlock& block, const std::string& source) {
+void add_fields_of_image(const AmrBlock& block, CellBlock& fields, const std::string& source) {
   const ForeignPart& part = *block.part;
-  CellBlock fields;
-  fields.name = part.name;
   std::array<std::uint64_t, 3> points{}, cells{};
   for (std::size_t a = 0; a < 3; ++a) {
     const std::int64_t first = part.extent[2 * a], last = part.extent[2 * a + 1];
@@ -89,6 +43,17 @@ CellBlock fields_of(const AmrBlock& block, const std::string& source) {
   }
   add_foreign_fields(*block.file, part, Association::point, product(points), fields, source);
   add_foreign_fields(*block.file, part, Association::cell, product(cells), fields, source);
+}
+
+/// Fields, whose counts are compared with the block's extent, or its trees' leaves.
+CellBlock fields_of(const AmrBlock& block, const std::string& source) {
+  const ForeignPart& part = *block.part;
+  CellBlock fields;
+  fields.name = part.name;
+  if (part.kind == ForeignPart::Kind::trees)
+    add_foreign_fields(*block.file, part, Association::cell, part.types ? part.types->tuples : 0, fields, source);
+  else
+    add_fields_of_image(block, fields, source);
   if (fields.fields.empty())  // so that no extent is larger than the file explains
     throw scene::bad_input(fmt::format("{}: it has no field; write all blocks with one", source));
   return fields;
@@ -105,13 +70,14 @@ std::vector<double> numbers_in(const CellBlock& block, const FieldChoice& choice
 }
 
 /// Cell data of the leaves. Blocks without the field have none.
-std::vector<double> values_of_leaves(const OpenedAmr& opened, const AmrLeaves& amr, const FieldChoice& choice) {
+std::vector<double> values_of_leaves(std::span<const CellBlock> fields, const AmrLeaves& amr,
+                                     const FieldChoice& choice) {
   std::vector<double> values(amr.leaves.size(), no_value);
   std::vector<double> numbers;
-  std::size_t of = opened.fields.size();
+  std::size_t of = fields.size();
   for (std::size_t l = 0; l < values.size(); ++l) {  // leaves of a block follow each other
     const AmrLeaf& leaf = amr.leaves[l];
-    if (leaf.part != of) of = leaf.part, numbers = numbers_in(opened.fields[of], choice);
+    if (leaf.part != of) of = leaf.part, numbers = numbers_in(fields[of], choice);
     if (!numbers.empty()) values[l] = numbers[leaf.cell];
   }
   return values;
@@ -131,10 +97,10 @@ CellBlock smooth_block(const AmrLeaves& amr, std::span<const double> values, con
   return conforming_cells(amr.lattice, 2, smooth_cubes(amr, values), field);
 }
 
-CellBlock point_block(const OpenedAmr& opened, const AmrLeaves& amr, const FieldChoice& choice) {
+CellBlock point_block(std::span<const CellBlock> fields, const AmrLeaves& amr, const FieldChoice& choice) {
   std::vector<std::vector<double>> numbers;
-  for (std::size_t p = 0; p < opened.fields.size(); ++p) {
-    numbers.push_back(numbers_in(opened.fields[p], choice));
+  for (std::size_t p = 0; p < fields.size(); ++p) {
+    numbers.push_back(numbers_in(fields[p], choice));
     std::size_t points = 1;
     for (const std::int32_t n : amr.parts[p].cells) points *= static_cast<std::size_t>(n) + 1;
     numbers.back().resize(points, no_value);
@@ -142,7 +108,8 @@ CellBlock point_block(const OpenedAmr& opened, const AmrLeaves& amr, const Field
   return conforming_cells(amr.lattice, 1, cubes_of_points(amr, numbers), choice.label);
 }
 
-void add_notes_on(const OpenedAmr& opened, const AmrLeaves& amr, const FieldChoice& choice, MeshBlocks& result) {
+void add_notes_on(std::span<const CellBlock> fields, const AmrLeaves& amr, const FieldChoice& choice,
+                  MeshBlocks& result) {
   std::vector<std::uint64_t> of_level(amr.size.size());
   for (const AmrLeaf& leaf : amr.leaves) ++of_level[static_cast<std::size_t>(leaf.level)];
   std::string counts;
@@ -151,38 +118,35 @@ void add_notes_on(const OpenedAmr& opened, const AmrLeaves& amr, const FieldChoi
   if (amr.covered > 0)
     result.notes.push_back(fmt::format("{} cells are covered by finer ones and left out", amr.covered));
   if (amr.hidden > 0) result.notes.push_back(fmt::format("{} cells are ghosts or hidden and left out", amr.hidden));
-  for (const CellBlock& block : opened.fields)
+  for (const CellBlock& block : fields)
     if (!choice.name.empty() && find_field(block, choice.name, choice.association) == nullptr)
       result.notes.push_back(
           fmt::format("block '{}' lacks the field '{}': its cells are blanked", block.name, choice.name));
 }
 
-}  // namespace
-
-MeshBlocks read_amr(const std::filesystem::path& file, const MeshOptions& options) {
-  const std::string source = file.string();
-  OpenedAmr opened;
-  open_listed(file, opened);
-  for (const AmrBlock& block : opened.blocks)
-    opened.fields.push_back(
+MeshBlocks mesh_of(const OpenedAmr& opened, const MeshOptions& options, const std::string& source) {
+  std::vector<CellBlock> fields = opened.fields;
+  for (const AmrBlock& block : std::span(opened.blocks).subspan(fields.size()))
+    fields.push_back(
         fields_of(block, block.part->name.empty() ? source : fmt::format("{}: block '{}'", source, block.part->name)));
   MeshBlocks result;
   result.format = opened.format;
   result.notes = opened.notes;
-  const std::vector<FieldTally> tallies = tally_fields(opened.fields);
+  const std::vector<FieldTally> tallies = tally_fields(fields);
   result.fields = summarize_fields(std::span(&tallies, 1));
   if (result.fields.empty()) throw scene::bad_input(fmt::format("{}: it has no field; write one with it", source));
   const FieldChoice choice = choose_field(options.field, result.fields, source);
   result.notes.insert(result.notes.end(), choice.notes.begin(), choice.notes.end());
 
-  AmrLeaves amr = leaves_of_blocks(opened.blocks, source);
-  add_notes_on(opened, amr, choice, result);
+  const bool has_trees = !opened.blocks.empty() && opened.blocks.front().part->kind == ForeignPart::Kind::trees;
+  AmrLeaves amr = has_trees ? leaves_of_trees(opened.blocks, source) : leaves_of_blocks(opened.blocks, source);
+  add_notes_on(fields, amr, choice, result);
   if (choice.association == Association::point) {
     if (options.smooth) result.notes.emplace_back("smoothing has no effect on point data");
-    result.blocks.push_back(point_block(opened, amr, choice));
+    result.blocks.push_back(point_block(fields, amr, choice));
     return result;
   }
-  std::vector<double> values = values_of_leaves(opened, amr, choice);
+  std::vector<double> values = values_of_leaves(fields, amr, choice);
   if (!options.smooth) {
     result.blocks.push_back(voxels_of(amr.lattice, 1, cubes_of_cells(amr, std::move(values)), choice.label));
     return result;
@@ -191,6 +155,32 @@ MeshBlocks read_amr(const std::filesystem::path& file, const MeshOptions& option
     result.notes.push_back(fmt::format("{} cells without a finite number are left out", blank));
   result.blocks.push_back(smooth_block(amr, values, choice.label));
   return result;
+}
+
+}  // namespace
+
+void OpenedAmr::add(ForeignFile opened) {
+  files.push_back(std::move(opened));
+  const ForeignFile& file = files.back();
+  for (const ForeignPart& part : file.contents.parts) blocks.push_back({&file, &part});
+  for (const std::string& note : file.contents.notes)
+    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+  if (format.empty()) format = file.contents.format;
+}
+
+MeshBlocks read_amr(const std::filesystem::path& file, const char* reader, const MeshOptions& options) {
+  const std::string_view name = reader;
+  if (name == "amr_list") return mesh_of(open_amr_list(file), options, file.string());
+  if (name == "amrex") return mesh_of(open_amrex(file), options, file.string());
+  if (name == "hyper_trees") return mesh_of(open_hyper_trees(file), options, file.string());
+  return mesh_of(open_amr_by(reader, file), options, file.string());
+}
+
+MeshBlocks read_amr(ForeignFile blocks, const MeshOptions& options) {
+  require_no_time_step(options.time_step, blocks.source);
+  OpenedAmr opened;
+  opened.add(std::move(blocks));
+  return mesh_of(opened, options, opened.files.front().source);
 }
 
 }  // namespace tessera::io

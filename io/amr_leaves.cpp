@@ -12,10 +12,7 @@
 namespace tessera::io {
 namespace {
 
-/// Two cells of the finest level at the far end, and their halves, are numbers of 32 bits.
-constexpr double most_corners = 1 << 29;
-
-constexpr std::uint8_t duplicate = 1, refined = 8, hidden = 32;  // vtkGhostType of cells
+constexpr double most_corners = most_amr_corners;
 
 struct Box {
   AmrIndex low, high;
@@ -180,11 +177,7 @@ class Coverage {
             ++amr_.covered;
             continue;
           }
-          const std::uint8_t bits = ghost.empty() ? std::uint8_t{0} : ghost[c];
-          if ((bits & (duplicate | refined | hidden)) != 0) {
-            ++((bits & refined) != 0 ? amr_.covered : amr_.hidden);
-            continue;
-          }
+          if (!ghost.empty() && amr_.leaves_out(ghost[c])) continue;
           const AmrLeaf leaf{{part.low[0] + i * size, part.low[1] + j * size, part.low[2] + k * size},
                              c,
                              static_cast<std::uint32_t>(p),
@@ -270,6 +263,13 @@ class Coverage {
 
 }  // namespace
 
+bool AmrLeaves::leaves_out(std::uint8_t ghost) {
+  constexpr std::uint8_t duplicate_cell = 1, refined_cell = 8, hidden_cell = 32;  // vtkGhostType of cells
+  if ((ghost & (duplicate_cell | refined_cell | hidden_cell)) == 0) return false;
+  ++((ghost & refined_cell) != 0 ? covered : hidden);
+  return true;
+}
+
 AmrLeaves leaves_of_blocks(std::span<const AmrBlock> blocks, const std::string& source) {
   if (blocks.empty()) throw scene::bad_input(fmt::format("{}: it holds no cells; check how it was written", source));
   for (const AmrBlock& block : blocks) require_block(*block.part, source);
@@ -282,7 +282,8 @@ AmrLeaves leaves_of_blocks(std::span<const AmrBlock> blocks, const std::string& 
     const AmrIndex& n = amr.parts[p].cells;
     const std::size_t cells =
         static_cast<std::size_t>(n[0]) * static_cast<std::size_t>(n[1]) * static_cast<std::size_t>(n[2]);
-    coverage.add_leaves(p, ghost_bits(*blocks[p].file, blocks[p].part->cell_fields, cells));
+    coverage.add_leaves(p, blocks[p].file != nullptr ? ghost_bits(*blocks[p].file, blocks[p].part->cell_fields, cells)
+                                                     : std::vector<std::uint8_t>());
   }
   return amr;
 }

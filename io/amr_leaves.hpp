@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
@@ -19,9 +21,20 @@ using AmrIndex = std::array<std::int32_t, 3>;
 struct AmrLattice {
   glm::dvec3 origin{0}, spacing{1};
 
+  /// Of trees: where the coarsest cells' corners lie along each axis, each `coarsest` steps from the next; between them
+  /// steps are even. Empty of blocks, for which origin and spacing hold.
+  std::array<std::vector<double>, 3> corners{};
+  std::int32_t coarsest = 1;
+
+  [[nodiscard]] bool is_even() const { return corners[0].empty(); }
+
   /// The coordinate along an axis; n need not be whole.
   [[nodiscard]] double position(std::size_t axis, double n) const {
-    return origin[static_cast<int>(axis)] + spacing[static_cast<int>(axis)] * n;
+    if (is_even()) return origin[static_cast<int>(axis)] + spacing[static_cast<int>(axis)] * n;
+    const std::vector<double>& at = corners[axis];
+    const double cell = std::clamp(std::floor(n / coarsest), 0.0, static_cast<double>(at.size() - 2));
+    const auto c = static_cast<std::size_t>(cell);
+    return std::lerp(at[c], at[c + 1], n / coarsest - cell);
   }
 };
 
@@ -49,15 +62,25 @@ struct AmrLeaves {
   std::vector<Part> parts;
   std::vector<AmrLeaf> leaves;
   std::uint64_t covered = 0, hidden = 0;  ///< cells of the file that are not among them
+
+  /// Whether a cell with these bits of vtkGhostType is not among them, and counts it then.
+  bool leaves_out(std::uint8_t ghost);
 };
 
-/// An image (kind image of foreign_data.hpp) of cells.
+/// Of cells of the finest level along an axis: two of them at the far end, and their halves, are numbers of 32 bits.
+inline constexpr double most_amr_corners = 1 << 29;
+
+/// An image (kind image of foreign_data.hpp) of cells, or trees of them.
 struct AmrBlock {
-  const ForeignFile* file;
+  const ForeignFile* file;  ///< null if no helper holds it; then it has no ghosts
   const ForeignPart* part;
 };
 
 /// The leaves of blocks whose spacings tell their levels. Throws Error(bad_input) where levels do not nest.
 AmrLeaves leaves_of_blocks(std::span<const AmrBlock> blocks, const std::string& source);
+
+/// The leaves of trees (kind trees), in one part or several, which have one grid of coarsest cells and divide no cell
+/// of it twice. Cells that are ghosts are left out. Throws Error(bad_input) for others.
+AmrLeaves leaves_of_trees(std::span<const AmrBlock> trees, const std::string& source);
 
 }  // namespace tessera::io

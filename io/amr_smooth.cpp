@@ -2,7 +2,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
 
 #include "io/amr_values.hpp"
 
@@ -117,13 +119,7 @@ class Smoothing {
 
   [[nodiscard]] double value_at(const AmrIndex& p) const {
     const Around around = leaves_around(p);
-    if (are_of_one_level(around)) {
-      double sum = 0;
-      int count = 0;
-      for (const std::uint32_t l : around)
-        if (l != none) sum += values_[l], ++count;
-      return sum / count;
-    }
+    if (are_of_one_level(around)) return mean_around(p, around);
     const std::uint32_t finest = *std::max_element(around.begin(), around.end(), [&](std::uint32_t a, std::uint32_t b) {
       return (a == none ? -1 : leaf(a).level) < (b == none ? -1 : leaf(b).level);
     });
@@ -145,6 +141,29 @@ class Smoothing {
       if (is_corner) sum += value_at(q);
     }
     return sum / corners;
+  }
+
+  /// Of leaves of one level around a point: their values' mean, or, where their sizes differ along an axis, the values
+  /// between their centres.
+  [[nodiscard]] double mean_around(const AmrIndex& p, const Around& around) const {
+    std::array<double, 3> higher{0.5, 0.5, 0.5};  // the weight of what lies on the higher side
+    if (!amr_.lattice.is_even()) {
+      const auto some = *std::find_if(around.begin(), around.end(), [](std::uint32_t l) { return l != none; });
+      const double half = 0.5 * size_of(some);
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double at = 0.5 * p[a], low = amr_.lattice.position(a, at - half),
+                     high = amr_.lattice.position(a, at + half);
+        higher[a] = (amr_.lattice.position(a, at) - low) / (high - low);
+      }
+    }
+    double sum = 0, weights = 0;
+    for (unsigned k = 0; k < 8; ++k) {
+      if (around[k] == none) continue;
+      double weight = 1;
+      for (std::size_t a = 0; a < 3; ++a) weight *= (k >> a & 1) != 0 ? higher[a] : 1 - higher[a];
+      sum += weight * values_[around[k]], weights += weight;
+    }
+    return sum / weights;
   }
 
   /// Of a corner where levels meet.
@@ -179,9 +198,38 @@ class Smoothing {
 
 }  // namespace
 
+namespace {
+
+/// Weights of sum 1 and mean 0 that depart least from the factors' own proportions, some perhaps below 0. False, and
+/// the weights as they were, where there are none, or only such as can take a value farther from the range of the
+/// others than that range is wide.
+bool weigh_by_squares(std::span<const glm::dvec3> d, std::span<const double> factor, const glm::dvec3& is_used,
+                      std::span<double> weights) {
+  glm::dmat4 moments(0);
+  for (int a = 0; a < 3; ++a) moments[a + 1][a + 1] = 1 - is_used[a];
+  for (std::size_t k = 0; k < d.size(); ++k) {
+    const glm::dvec4 v(1, d[k]);
+    moments += factor[k] * glm::outerProduct(v, v);
+  }
+  if (!(std::abs(glm::determinant(moments)) > 1e-9)) return false;
+  const glm::dvec4 multiplier = glm::inverse(moments)[0];
+  std::array<double, 8> found{};
+  double sum = -1, size = 0;
+  glm::dvec3 mean(0);
+  for (std::size_t k = 0; k < d.size(); ++k) {
+    found[k] = factor[k] * glm::dot(multiplier, glm::dvec4(1, d[k]));
+    sum += found[k], size += std::abs(found[k]), mean += found[k] * d[k];
+  }
+  if (!(size <= 3) || !(std::abs(sum) < 1e-9) || !(glm::length(mean) < 1e-9)) return false;
+  std::copy_n(found.begin(), d.size(), weights.begin());
+  return true;
+}
+
+}  // namespace
+
 void weigh_by_entropy(std::span<const glm::dvec3> offsets, std::span<double> weights) {
   // Axes along which all lie on one side are left out: there the values are continued as they are.
-  glm::dvec3 scale(0);
+  glm::dvec3 scale(0), is_used(0);
   glm::bvec3 below(false), above(false);
   for (const glm::dvec3& d : offsets)
     for (int a = 0; a < 3; ++a) {
@@ -191,9 +239,10 @@ void weigh_by_entropy(std::span<const glm::dvec3> offsets, std::span<double> wei
   std::array<glm::dvec3, 8> d{};
   std::array<double, 8> factor{};
   const std::size_t n = std::min(offsets.size(), d.size());
+  for (int a = 0; a < 3; ++a) is_used[a] = below[a] && above[a] ? 1 : 0;
   for (std::size_t k = 0; k < n; ++k) {
     factor[k] = weights[k];
-    for (int a = 0; a < 3; ++a) d[k][a] = below[a] && above[a] ? offsets[k][a] / scale[a] : 0;
+    for (int a = 0; a < 3; ++a) d[k][a] = is_used[a] > 0 ? offsets[k][a] / scale[a] : 0;
   }
   // Newton's method on the logarithm of the sum of factor exp(multiplier . d), which is convex and has its gradient 0
   // at the weights sought.
@@ -224,10 +273,14 @@ void weigh_by_entropy(std::span<const glm::dvec3> offsets, std::span<double> wei
     }
     if (!is_good()) {
       log_sum(multiplier);
-      return;
+      break;
     }
     multiplier = next, now = then;
   }
+  glm::dvec3 mean(0);
+  for (std::size_t k = 0; k < n; ++k) mean += weights[k] * d[k];
+  if (glm::length(mean) > 1e-12)  // far above what Newton's method leaves where there are such weights
+    weigh_by_squares(std::span(d).first(n), std::span(factor).first(n), is_used, weights);
 }
 
 AmrCubes smooth_cubes(const AmrLeaves& amr, std::span<const double> values) { return Smoothing(amr, values).cubes(); }

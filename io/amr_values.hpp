@@ -25,8 +25,10 @@ AmrCubes cubes_of_points(const AmrLeaves& amr, std::span<const std::vector<doubl
 /// Journal for Numerical Methods in Engineering 61, 2004), and in the middle of edges and faces that of their corners.
 AmrCubes smooth_cubes(const AmrLeaves& amr, std::span<const double> values);
 
-/// Weights above 0 of sum 1 with which offsets have the mean 0 along the axes where they lie on both sides of it. Those
-/// for which there are none such get weights that come near. `weights` holds a factor each.
+/// Weights above 0 of sum 1 with which offsets have the mean 0 along the axes where they lie on both sides of it. Where
+/// there are none such, as in places where levels differ by 3 and more or steps are uneven, some weights are below 0,
+/// the squares of all as small as can be; where those would be large, weights above 0 come near. `weights` holds a
+/// factor each.
 void weigh_by_entropy(std::span<const glm::dvec3> offsets, std::span<double> weights);
 
 }  // namespace tessera::io

@@ -17,7 +17,8 @@ std::uint64_t hash_of(const AmrIndex& p) {
 std::size_t AmrVertices::slot_of(const AmrIndex& p) const {
   const std::size_t mask = slots_.size() - 1;
   std::size_t slot = hash_of(p) & mask;
-  while (slots_[slot] != none && points_[slots_[slot]] != p) slot = (slot + 1) & mask;
+  const auto is_at = [&p](const AmrIndex& q) { return q[0] == p[0] && q[1] == p[1] && q[2] == p[2]; };
+  while (slots_[slot] != none && !is_at(points_[slots_[slot]])) slot = (slot + 1) & mask;
   return slot;
 }
 

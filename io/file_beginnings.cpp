@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "io/amrex_header.hpp"
 #include "io/brick_file.hpp"
 #include "io/input_file.hpp"
 #include "io/volume_formats.hpp"
@@ -96,6 +97,18 @@ bool begins_as_vtk_list(const FileBeginning& file) {
 }
 bool begins_as_vtk_amr(const FileBeginning& file) {
   return is_xml_of(file, {"vtkOverlappingAMR", "vtkNonOverlappingAMR", "vtkHierarchicalBoxDataSet"});
+}
+bool begins_as_hyper_trees(const FileBeginning& file) { return is_xml_of(file, {"HyperTreeGrid", "PHyperTreeGrid"}); }
+bool begins_as_amrex(const FileBeginning& file) {
+  return file.file.filename() == "Header" && looks_like_amrex(file.text);
+}
+bool begins_as_enzo(const FileBeginning& file) {
+  if (!is_text(file.text)) return false;
+  const auto lines = first_lines(file.text, '#', 8);
+  if (lines.empty()) return false;
+  return is_key(lines[0], "BOUNDARYRANK", '=') ||
+         (is_key(lines[0], "GRID", '=') &&
+          std::any_of(lines.begin(), lines.end(), [](std::string_view line) { return is_key(line, "GRIDRANK", '='); }));
 }
 bool begins_as_vtk_surface(const FileBeginning& file) {
   return is_xml_of(file, {"PolyData"}) || is_legacy_of(file, {"POLYDATA"});

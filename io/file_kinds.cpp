@@ -26,7 +26,15 @@ constexpr std::array rows = {
     FormatRow{FileKind::vtk_xml, "VTK XML multi-block", ".vtm .vtmb .vtpc .vtpd", FileHolds::mesh, Needs::vtk,
               "all volumes among them; surfaces left out", begins_as_vtk_list},
     FormatRow{FileKind::amr, "VTK XML AMR", ".vth .vthb", FileHolds::mesh, Needs::vtk,
-              "overlapping or not; finest cells; `smooth` continuous across levels", begins_as_vtk_amr},
+              "overlapping or not; finest cells; `smooth` continuous across levels", begins_as_vtk_amr, "amr_list"},
+    FormatRow{FileKind::amr, "VTK XML HyperTreeGrid", ".htg .phtg", FileHolds::mesh, Needs::vtk,
+              "three dimensions; masked cells left out; `smooth` continuous across levels", begins_as_hyper_trees,
+              "hyper_trees"},
+    FormatRow{FileKind::amr, "AMReX plot file", "", FileHolds::mesh, Needs::nothing,
+              "its folder, or the Header in it; all levels, no particles", begins_as_amrex, "amrex"},
+    FormatRow{FileKind::amr, "Enzo", ".hierarchy .boundary", FileHolds::mesh, Needs::vtk,
+              "HDF5 files and parameters beside it; all levels, no particles", begins_as_enzo, "enzo"},
+    FormatRow{FileKind::hdf5, "FLASH", "", FileHolds::mesh, Needs::vtk, "HDF5; all levels, no particles", nullptr},
     FormatRow{FileKind::vtk_legacy, "legacy VTK unstructured or curvilinear grid", ".vtk", FileHolds::mesh, Needs::vtk,
               "text or binary", begins_as_legacy_mesh},
     FormatRow{FileKind::exodus, "Exodus II", ".ex2 .exo .exii .e .g", FileHolds::mesh, Needs::vtk,
@@ -131,7 +139,9 @@ bool is_vtk(const FormatRow& row) {
 
 /// Of a folder.
 const FormatRow& row_of_folder(const std::filesystem::path& folder) {
-  const auto begins = is_case_folder(folder) ? begins_as_openfoam : begins_as_dicom;
+  const auto begins = is_case_folder(folder)    ? begins_as_openfoam
+                      : is_amrex_folder(folder) ? begins_as_amrex
+                                                : begins_as_dicom;
   return *std::find_if(rows.begin(), rows.end(), [&](const FormatRow& r) { return r.begins == begins; });
 }
 

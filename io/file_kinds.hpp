@@ -14,7 +14,7 @@ namespace tessera::io {
 enum class FileKind : std::uint8_t {
   vtk_xml,     ///< meshes, and lists of data sets
   vtk_legacy,  ///< meshes
-  amr,         ///< VTK XML lists of the blocks of several levels
+  amr,         ///< with levels of refinement; FormatRow::reader
   vtk_grid,    ///< image data and rectilinear grids, XML or legacy
   exodus,      ///< NetCDF; in HDF5 see hdf5
   hdf5,        ///< Exodus, CGNS or VTKHDF: the helper looks
@@ -57,15 +57,16 @@ struct FormatRow {
   Needs needs;
   const char* remark;                    ///< what applies, limits; why it is not read
   bool (*begins)(const FileBeginning&);  ///< null: nothing tells it but its name
-  const char* reader = "";               ///< of FileKind::solver and gmsh: one of helper/main.cpp, helper/gmsh_main.cpp
-  bool has_time_steps = false;           ///< ReadOptions::time_step applies
+  const char* reader = "";      ///< of FileKind::solver, amr and gmsh: one of helper/main.cpp, helper/gmsh_main.cpp
+  bool has_time_steps = false;  ///< ReadOptions::time_step applies
   enum class Listed : bool { no, yes } listed = Listed::yes;
 };
 
 std::span<const FormatRow> format_rows();
 
 /// What a file is: by what it begins with; where that tells nothing, or the file is not there, by its name; null if
-/// that tells nothing either. A folder is an OpenFOAM case, of DICOM files, or nothing.
+/// that tells nothing either. A folder is an OpenFOAM case, an AMReX plot file, of DICOM
+/// files, or nothing.
 const FormatRow* format_of(const std::filesystem::path& file);
 
 /// By what it begins with alone; null if that tells nothing.

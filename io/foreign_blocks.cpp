@@ -258,6 +258,8 @@ CellBlock block_of(const ForeignFile& file, const ForeignPart& part, GridsAre gr
       add_image_points(part, block);
       add_grid_cells(points_along(part), block, where);
       break;
+    case ForeignPart::Kind::trees:
+      throw scene::bad_input(fmt::format("{}: it holds trees of cells; give it alone", where));
     case ForeignPart::Kind::surface:
       throw scene::bad_input(fmt::format("{}: it holds a surface, no cells of volume; give a mesh", where));
   }

@@ -64,6 +64,8 @@ Json json_of(const ForeignPart& p) {
           {"faces", json_of(p.faces)},
           {"face_locations", json_of(p.face_locations)},
           {"coordinates", json_of(p.coordinates)},
+          {"branching", p.branching},
+          {"levels", p.levels},
           {"point_fields", json_of(p.point_fields)},
           {"cell_fields", json_of(p.cell_fields)}};
 }
@@ -71,7 +73,7 @@ Json json_of(const ForeignPart& p) {
 ForeignPart part_of(const Json& json) {
   ForeignPart p;
   const int kind = json.at("kind").get<int>();
-  if (kind < 0 || kind > static_cast<int>(ForeignPart::Kind::image)) throw std::invalid_argument("kind of a part");
+  if (kind < 0 || kind > static_cast<int>(ForeignPart::Kind::trees)) throw std::invalid_argument("kind of a part");
   p.kind = static_cast<ForeignPart::Kind>(kind);
   json.at("name").get_to(p.name);
   json.at("extent").get_to(p.extent);
@@ -85,6 +87,8 @@ ForeignPart part_of(const Json& json) {
   p.faces = optional_of(json.at("faces"));
   p.face_locations = optional_of(json.at("face_locations"));
   p.coordinates = arrays_of(json.at("coordinates"));
+  json.at("branching").get_to(p.branching);
+  json.at("levels").get_to(p.levels);
   p.point_fields = arrays_of(json.at("point_fields"));
   p.cell_fields = arrays_of(json.at("cell_fields"));
   return p;
@@ -150,7 +154,8 @@ std::vector<std::uint8_t> bytes_of(const ForeignContents& contents) {
   return Json::to_cbor({{"parts", std::move(parts)},
                         {"notes", contents.notes},
                         {"format", contents.format},
-                        {"block_names", contents.block_names}});
+                        {"block_names", contents.block_names},
+                        {"has_levels", contents.has_levels}});
 }
 
 ForeignContents contents_of(std::span<const std::uint8_t> bytes) {
@@ -160,6 +165,7 @@ ForeignContents contents_of(std::span<const std::uint8_t> bytes) {
   json.at("notes").get_to(contents.notes);
   json.at("format").get_to(contents.format);
   json.at("block_names").get_to(contents.block_names);
+  json.at("has_levels").get_to(contents.has_levels);
   return contents;
 }
 

@@ -83,8 +83,12 @@ struct ForeignArray {
 /// structured    points, extent
 /// rectilinear   three arrays of coordinates, extent
 /// image         extent, origin of index 0, spacing, direction (row by row)
+/// trees         leaves of cells divided into branching^3 again and again: extent and three arrays of coordinates of
+/// the
+///               cells that were divided first; points (int32), the leaves' lowest corners from 0 in cells of the last
+///               of `levels`; types (uint8), the leaves' levels; cell fields of the leaves
 struct ForeignPart {
-  enum class Kind : std::uint8_t { unstructured, surface, structured, rectilinear, image };
+  enum class Kind : std::uint8_t { unstructured, surface, structured, rectilinear, image, trees };
 
   Kind kind = Kind::unstructured;
   std::string name;                      ///< empty if it is the only one
@@ -92,7 +96,8 @@ struct ForeignPart {
   std::array<double, 3> origin{}, spacing{};
   std::array<double, 9> direction{};
   std::optional<ForeignArray> points, types, offsets, connectivity, faces, face_locations;
-  std::vector<ForeignArray> coordinates;  ///< three of a rectilinear grid, none of others
+  std::vector<ForeignArray> coordinates;  ///< three of a rectilinear grid or trees, none of others
+  int branching = 0, levels = 0;
   std::vector<ForeignArray> point_fields, cell_fields;
 };
 
@@ -101,6 +106,7 @@ struct ForeignContents {
   std::vector<std::string> notes;
   std::string format;
   std::vector<std::string> block_names{};  ///< of all blocks, where parts are not the blocks; empty: of the parts
+  bool has_levels = false;                 ///< the parts, images, are blocks of several levels of refinement
 };
 
 /// As bytes (CBOR, RFC 8949) and back. contents_of() throws std::exception for bytes of anything else.

@@ -55,6 +55,15 @@ MeshBlocks read_foreign(const std::filesystem::path& file, nlohmann::json reques
   return result;
 }
 
+MeshBlocks blocks_of_solver(const ForeignFile& opened) {
+  MeshBlocks result;
+  result.format = opened.contents.format;
+  result.notes = opened.contents.notes;
+  result.block_names = opened.contents.block_names;
+  result.blocks = blocks_of(opened, result.notes, GridsAre::hexahedra);
+  return result;
+}
+
 }  // namespace
 
 bool has_vtk() { return true; }
@@ -109,13 +118,14 @@ MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reade
   HelperTask task;
   if (name == "fluent")  // good ones make it crash
     task.remedy = "it is damaged, or of a kind that VTK's reader does not know: export CGNS or EnSight";
-  const ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(std::move(task)), file, std::move(request));
-  MeshBlocks result;
-  result.format = opened.contents.format;
-  result.notes = opened.contents.notes;
-  result.block_names = opened.contents.block_names;
-  result.blocks = blocks_of(opened, result.notes, GridsAre::hexahedra);
-  return result;
+  return blocks_of_solver(open_foreign(std::make_shared<HelperProcess>(std::move(task)), file, std::move(request)));
+}
+
+MeshBlocks read_hdf5(const std::filesystem::path& file, const MeshOptions& options) {
+  nlohmann::json request{{"reader", "hdf5"}, {"blocks", options.blocks}};
+  if (options.time_step) request["time_step"] = *options.time_step;
+  ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(), file, std::move(request));
+  return opened.contents.has_levels ? read_amr(std::move(opened), options) : blocks_of_solver(opened);
 }
 
 MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem::path& q_file) {

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "io/amrex_header.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -18,9 +19,10 @@ std::uint64_t require_file(const std::filesystem::path& file) {
     throw scene::bad_input(fmt::format("{}: there is no such file; check the name", file.string()));
   if (is_input_folder(file)) return 0;
   if (std::filesystem::is_directory(status))
-    throw scene::bad_input(
-        fmt::format("{}: it is a directory; name a file in it, or the folder of an OpenFOAM case or of DICOM files",
-                    file.string()));
+    throw scene::bad_input(fmt::format(
+        "{}: it is a directory; name a file in it, or the folder of an OpenFOAM case, an AMReX plot file or of DICOM "
+        "files",
+        file.string()));
   if (!std::ifstream(file, std::ios::binary))
     throw scene::bad_input(fmt::format("{}: it cannot be opened; check its permissions", file.string()));
   const std::uintmax_t size = std::filesystem::file_size(file, error);
@@ -49,12 +51,22 @@ bool is_case_folder(const std::filesystem::path& folder) {
           std::filesystem::is_directory(folder / "processor0" / "constant" / "polyMesh", unknown));
 }
 
+bool is_amrex_folder(const std::filesystem::path& folder) {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(folder / "Header", unknown)) return false;
+  std::string text(4096, '\0');
+  std::ifstream in(folder / "Header", std::ios::binary);
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return looks_like_amrex(text);
+}
+
 bool looks_like_dicom(std::string_view beginning) {
   return beginning.size() >= 132 && beginning.substr(128, 4) == "DICM";
 }
 
 bool is_input_folder(const std::filesystem::path& folder) {
-  if (is_case_folder(folder)) return true;
+  if (is_case_folder(folder) || is_amrex_folder(folder)) return true;
   // In many folders the slices lie one or two levels below, and other files beside them.
   constexpr int most = 1000;
   constexpr int deepest = 4;

@@ -11,11 +11,14 @@ namespace tessera::io {
 /// Whether a folder is an OpenFOAM case: system/controlDict or constant/polyMesh in it, or the latter in processor0.
 bool is_case_folder(const std::filesystem::path& folder);
 
+/// Whether a folder is an AMReX plot file: it has a Header that begins as theirs do.
+bool is_amrex_folder(const std::filesystem::path& folder);
+
 /// Whether a file begins as DICOM files do, with DICM after 128 bytes of anything.
 bool looks_like_dicom(std::string_view beginning);
 
-/// Whether a folder stands for a file: an OpenFOAM case, or one with a DICOM file among its first thousand, at most
-/// four levels below.
+/// Whether a folder stands for a file: an OpenFOAM case, an AMReX plot file, or one with a DICOM file among its first
+/// thousand, at most four levels below.
 bool is_input_folder(const std::filesystem::path& folder);
 
 /// Throws Error(bad_input) unless `file` is a readable regular file that is not empty, or a folder that stands for one;

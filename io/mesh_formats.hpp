@@ -14,6 +14,8 @@
 
 namespace tessera::io {
 
+struct ForeignFile;
+
 /// What a file holds before its cells are split. Readers that take a choice of blocks read no others.
 struct MeshBlocks {
   std::vector<CellBlock> blocks;
@@ -58,10 +60,16 @@ bool has_gmsh();
 MeshBlocks read_by_gmsh(const std::filesystem::path& file, const char* reader, std::optional<std::size_t> time_step,
                         const BlockChoice& choice = {});
 
-/// VTK's lists of the blocks of a mesh with levels of refinement (.vth .vthb). Cells that finer ones cover are left
-/// out; the chosen field alone is read. Cell data are voxels; point data and `smooth` are cells that meet across levels
-/// (amr_cells.hpp).
-MeshBlocks read_amr(const std::filesystem::path& file, const MeshOptions& options);
+/// Meshes with levels of refinement, by the name of a reader in helper/main.cpp, or "amr_list", VTK's lists of blocks.
+/// Cells that finer ones cover are left out; the chosen field alone is read. Cell data are voxels; point data and
+/// `smooth` are cells that meet across levels (amr_cells.hpp).
+MeshBlocks read_amr(const std::filesystem::path& file, const char* reader, const MeshOptions& options);
+
+/// The same of a file that the helper found to be one (ForeignContents::has_levels).
+MeshBlocks read_amr(ForeignFile blocks, const MeshOptions& options);
+
+/// HDF5, by what is in it.
+MeshBlocks read_hdf5(const std::filesystem::path& file, const MeshOptions& options);
 
 /// PLOT3D grid and solution; the binary layout is found from the file's size. `q_file` may be empty: then it is looked
 /// for beside the grid by its name, and if there is none the mesh has no field. IBLANK 0 hides a point's cells.

@@ -38,7 +38,7 @@ MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row,
     case FileKind::exodus:
       return read_exodus(file, options.time_step, options.blocks);
     case FileKind::hdf5:
-      return read_solver_file(file, "hdf5", options.time_step, options.blocks);
+      return read_hdf5(file, options);
     case FileKind::solver:
       return read_solver_file(file, row.reader, options.time_step, options.blocks);
     case FileKind::gmsh:
@@ -57,7 +57,7 @@ MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row,
     case FileKind::tets:
       return blocks_of_tets(parse_tets(MappedFile(file).bytes(), file.string()));
     case FileKind::amr:
-      return read_amr(file, options);
+      return read_amr(file, row.reader, options);
     default:
       refuse_as_mesh(file);
   }

@@ -1,6 +1,7 @@
 // Built in place of what needs VTK with TESSERA_VTK=OFF.
 #include <fmt/format.h>
 
+#include "io/amr_opened.hpp"
 #include "io/foreign_surfaces.hpp"
 #include "io/input_file.hpp"
 #include "io/listed_pieces.hpp"
@@ -32,7 +33,10 @@ MeshBlocks read_solver_file(const std::filesystem::path& file, const char*, std:
                             const BlockChoice&) {
   refuse(file);
 }
-MeshBlocks read_amr(const std::filesystem::path& file, const MeshOptions&) { refuse(file); }
+OpenedAmr open_amr_list(const std::filesystem::path& file) { refuse(file); }
+OpenedAmr open_hyper_trees(const std::filesystem::path& file) { refuse(file); }
+OpenedAmr open_amr_by(const char*, const std::filesystem::path& file) { refuse(file); }
+MeshBlocks read_hdf5(const std::filesystem::path& file, const MeshOptions&) { refuse(file); }
 MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem::path&) { refuse(file); }
 VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions&) { refuse(file); }
 Surface read_stl(const std::string& source) { refuse(source); }

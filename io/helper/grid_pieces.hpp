@@ -25,6 +25,10 @@ enum class GridKind { image, rectilinear, structured };
 vtkSmartPointer<vtkDataSet> read_grid_pieces(const std::filesystem::path& file, GridKind kind,
                                              std::vector<std::string>& notes);
 
+/// Throws Error(bad_input) for one of VTK's XML files that is cut short: VTK fills what it lacks with zeros, and says
+/// nothing.
+void require_xml_end(const std::filesystem::path& file);
+
 /// One of VTK's XML files, by the `type` of its <VTKFile>; not one in pieces. The pieces within it have to fill the
 /// whole. Throws Error(bad_input).
 vtkSmartPointer<vtkDataObject> read_xml_file(const std::filesystem::path& file, const std::string& type,

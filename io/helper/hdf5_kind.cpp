@@ -68,7 +68,7 @@ ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file,
   allow_for(file);
   std::string vtk_type;
   bool has_steps = false;
-  enum class Kind { unknown, vtk, cgns, exodus, fluent, minc, med } kind = Kind::unknown;
+  enum class Kind { unknown, vtk, cgns, exodus, flash, fluent, minc, med } kind = Kind::unknown;
   {
     const Hdf5File opened(file);
     if (!opened.is_open())
@@ -82,6 +82,8 @@ ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file,
       kind = Kind::cgns;
     else if (opened.has_attribute("floating_point_word_size") || opened.has("num_nodes"))
       kind = Kind::exodus;
+    else if (opened.has("gid") && opened.has("refine level") && opened.has("bounding box"))
+      kind = Kind::flash;
     else if (opened.has("meshes") && opened.has("settings"))
       kind = Kind::fluent;
     else if (opened.has("minc-2.0"))
@@ -104,6 +106,8 @@ ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file,
       return read_cgns(holdings, file, request);
     case Kind::exodus:
       return read_exodus(holdings, file, request);
+    case Kind::flash:
+      return read_flash(holdings, file, request);
     case Kind::fluent:
       throw refuse("a Fluent case, which is read as text only", "export CGNS, EnSight or a .cas without HDF5");
     case Kind::minc:
@@ -113,7 +117,8 @@ ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file,
     case Kind::unknown:
       break;
   }
-  throw refuse("neither Exodus nor CGNS nor VTKHDF", "give the program that wrote it another format to write");
+  throw refuse("neither Exodus nor CGNS nor FLASH nor VTKHDF",
+               "give the program that wrote it another format to write");
 }
 
 }  // namespace tessera::io::helper

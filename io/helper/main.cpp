@@ -13,6 +13,7 @@ constexpr Reader readers[] = {
     Reader{"openfoam", read_openfoam}, Reader{"ensight", read_ensight},         Reader{"cgns", read_cgns},
     Reader{"vtk_hdf", read_vtk_hdf},   Reader{"avs_ucd", read_avs_ucd},         Reader{"fluent", read_fluent},
     Reader{"gambit", read_gambit},     Reader{"tecplot", read_tecplot},         Reader{"hdf5", read_hdf5},
+    Reader{"enzo", read_enzo},         Reader{"hyper_trees", read_hyper_trees},
 #endif
 #ifdef TESSERA_TETGEN
     Reader{"fill", fill_surface},

@@ -18,6 +18,9 @@ ForeignContents read_vtk_xml(Holdings& holdings, const std::filesystem::path& fi
 /// Legacy VTK, all its arrays.
 ForeignContents read_vtk_legacy(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
+/// VTK's XML HyperTreeGrids: the leaves that no mask hides. A file without any has no part.
+ForeignContents read_hyper_trees(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+
 /// PLOT3D; `q` is the solution file or empty, the rest is the layout (io/plot3d_layout.hpp).
 ForeignContents read_plot3d(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
@@ -32,7 +35,7 @@ ForeignContents read_vtk_surface(Holdings& holdings, const std::filesystem::path
 /// vector NAME.
 ForeignContents read_exodus(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
-/// HDF5, by what is in it: Exodus, CGNS or VTKHDF.
+/// HDF5, by what is in it: Exodus, CGNS, FLASH or VTKHDF.
 ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
 /// OpenFOAM: the case that a folder is or a file lies in, which may be empty. Put together, or as its processors left
@@ -49,6 +52,10 @@ ForeignContents read_avs_ucd(Holdings& holdings, const std::filesystem::path& fi
 ForeignContents read_fluent(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 ForeignContents read_gambit(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 ForeignContents read_tecplot(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+
+/// FLASH, a file of HDF5, and Enzo, by its .hierarchy or .boundary: blocks of all levels, their cell data.
+ForeignContents read_flash(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+ForeignContents read_enzo(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
 /// Fills a surface by TetGen (io/surface.hpp), without limits: how long that takes and how much memory follows from the
 /// volume asked for, not from a file.

@@ -106,21 +106,6 @@ NumberTally tally_of(vtkDataArray& given) {
   return tally;
 }
 
-std::vector<ForeignArray> hold_fields(Holdings& holdings, vtkDataSetAttributes& attributes, const char* unnamed) {
-  std::vector<ForeignArray> fields;
-  for (int k = 0; k < attributes.GetNumberOfArrays(); ++k) {
-    vtkDataArray* const array = attributes.GetArray(k);  // null for arrays of strings
-    if (array == nullptr || array->GetNumberOfComponents() < 1) continue;
-    ForeignArray field = hold(holdings, *array);
-    const char* const name = array->GetName();
-    field.name = name != nullptr && *name != '\0' ? name : fmt::format("{}{}", unnamed, k);
-    field.active = array == attributes.GetScalars() || array == attributes.GetVectors();
-    field.tally = tally_of(*array);
-    fields.push_back(std::move(field));
-  }
-  return fields;
-}
-
 std::optional<ForeignArray> hold_points(Holdings& holdings, vtkPoints* points) {
   return points != nullptr ? hold_any(holdings, points->GetData()) : std::nullopt;
 }
@@ -265,6 +250,23 @@ void add_names(vtkDataObject* data, const std::string& path, Names& names) {
 }
 
 }  // namespace
+
+ForeignArray hold_array(Holdings& holdings, vtkDataArray& array) { return hold(holdings, array); }
+
+std::vector<ForeignArray> hold_fields(Holdings& holdings, vtkDataSetAttributes& attributes, const char* unnamed) {
+  std::vector<ForeignArray> fields;
+  for (int k = 0; k < attributes.GetNumberOfArrays(); ++k) {
+    vtkDataArray* const array = attributes.GetArray(k);  // null for arrays of strings
+    if (array == nullptr || array->GetNumberOfComponents() < 1) continue;
+    ForeignArray field = hold(holdings, *array);
+    const char* const name = array->GetName();
+    field.name = name != nullptr && *name != '\0' ? name : fmt::format("{}{}", unnamed, k);
+    field.active = array == attributes.GetScalars() || array == attributes.GetVectors();
+    field.tally = tally_of(*array);
+    fields.push_back(std::move(field));
+  }
+  return fields;
+}
 
 std::vector<ForeignPart> parts_of(Holdings& holdings, vtkDataObject& data, const std::string& source) {
   std::vector<ForeignPart> parts;

@@ -5,12 +5,20 @@
 
 #include "io/helper/holdings.hpp"
 
+class vtkDataArray;
 class vtkDataObject;
+class vtkDataSetAttributes;
 
 namespace tessera::io::helper {
 
 /// The data sets of a VTK data object, those of composite ones in their order, empty ones left out. Throws
 /// Error(bad_input) for what is no data set.
 std::vector<ForeignPart> parts_of(Holdings& holdings, vtkDataObject& data, const std::string& source);
+
+/// An array, without its name.
+ForeignArray hold_array(Holdings& holdings, vtkDataArray& array);
+
+/// The fields of points or cells but for those of text. Those without a name are called by `unnamed` and their number.
+std::vector<ForeignArray> hold_fields(Holdings& holdings, vtkDataSetAttributes& attributes, const char* unnamed);
 
 }  // namespace tessera::io::helper

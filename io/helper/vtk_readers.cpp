@@ -123,17 +123,18 @@ ForeignContents contents_of_data(Holdings& holdings, vtkDataObject* data, const 
 
 }  // namespace
 
+void require_xml_end(const std::filesystem::path& file) {
+  const MappedFile mapped(file);
+  const std::string_view text = mapped.text(),
+                         end = text.substr(text.size() - std::min<std::size_t>(text.size(), 1024));
+  if (end.find("</VTKFile") == std::string_view::npos)
+    throw scene::bad_input(fmt::format("{}: it does not end with </VTKFile>; {}", file.string(), write_anew));
+}
+
 vtkSmartPointer<vtkDataObject> read_xml_file(const std::filesystem::path& file, const std::string& type,
                                              std::string& warning) {
   allow_for(file);
-  // VTK fills what a file that is cut short lacks with zeros, and says nothing.
-  {
-    const MappedFile mapped(file);
-    const std::string_view text = mapped.text(),
-                           end = text.substr(text.size() - std::min<std::size_t>(text.size(), 1024));
-    if (end.find("</VTKFile") == std::string_view::npos)
-      throw scene::bad_input(fmt::format("{}: it does not end with </VTKFile>; {}", file.string(), write_anew));
-  }
+  require_xml_end(file);
   vtkSmartPointer<vtkDataObject> data;
   warning = with_quiet_vtk(file.string(), write_anew, [&] { data = read_xml(file.string(), type); });
   return data;

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <new>
 #include <stdexcept>
+#include <vector>
 
 #include "io/helper/readers.hpp"
 #include "scene/error.hpp"
@@ -31,12 +32,15 @@ class MessageTrap : public vtkOutputWindow {
   void DisplayDebugText(const char*) override {}
 
   std::string error, warning;
+  std::vector<std::string> passed_over;
 
  private:
   /// VTK writes "ERROR: In /path/x.cxx, line 12\nvtkX (0x55..): message\n\n"; only the message is for users.
-  static void keep(std::string& first, const char* text) {
+  void keep(std::string& first, const char* text) {
     if (!first.empty() || !text) return;
     std::string message = text;
+    for (const std::string& words : passed_over)
+      if (message.find(words) != std::string::npos) return;
     if (const std::size_t at = message.find("): "); at != std::string::npos) message.erase(0, at + 3);
     // Where the reader lies in memory says nothing to anybody, and another thing each time.
     for (std::size_t at = 0; (at = message.find("(0x", at)) != std::string::npos;) {
@@ -84,8 +88,10 @@ class Quiet {
 
 }  // namespace
 
-std::string with_quiet_vtk(const std::string& source, const std::string& remedy, const std::function<void()>& work) {
+std::string with_quiet_vtk(const std::string& source, const std::string& remedy, const std::function<void()>& work,
+                           std::initializer_list<const char*> passed_over) {
   const Quiet quiet;
+  quiet.trap->passed_over.assign(passed_over.begin(), passed_over.end());
   try {
     work();
   } catch (const std::bad_alloc&) {

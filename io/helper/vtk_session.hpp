@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
 #include <string>
 
 class vtkDataSetReader;
@@ -11,8 +12,10 @@ namespace tessera::io::helper {
 ///
 /// VTK's output window and log level are process-wide, so sessions run one at a time and put back what they found.
 /// An error that VTK reports (it does not throw) becomes Error(bad_input, "SOURCE: <VTK's words>; REMEDY"), as does
-/// running out of memory, which with small files means damaged counts.
-std::string with_quiet_vtk(const std::string& source, const std::string& remedy, const std::function<void()>& work);
+/// running out of memory, which with small files means damaged counts. Messages with one of the words `passed_over` in
+/// them are no errors, nor warnings.
+std::string with_quiet_vtk(const std::string& source, const std::string& remedy, const std::function<void()>& work,
+                           std::initializer_list<const char*> passed_over = {});
 
 /// Reads a legacy file, of meshes or grids, with all of its arrays instead of the active ones alone. Within
 /// with_quiet_vtk().

@@ -1,4 +1,5 @@
 // The program on several ranks, as users start it.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <sstream>
 
 #include "apps/program.hpp"
+#include "io/mesh_formats.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -147,6 +149,59 @@ TEST_F(Mpirun, TheScanlineRasterizerGivesItsBytesOfOneProcess) {
   ASSERT_EQ(tessera(one).status, 0);
   ASSERT_EQ(mpirun(3, ranks).status, 0);
   EXPECT_EQ(contents(folder / "ranks.pfm"), contents(folder / "one.pfm"));
+}
+
+/// Image data of cells from 0 on along each axis, as the text of a .vti.
+std::string image_text(int cells, double low, double spacing) {
+  std::string values;
+  for (int c = 0; c < cells * cells * cells; ++c) values += fmt::format("{} ", (c * 7) % 11);
+  return fmt::format(
+      "<VTKFile type=\"ImageData\" version=\"0.1\" byte_order=\"LittleEndian\"><ImageData WholeExtent=\"0 {0} 0 {0} 0 "
+      "{0}\" Origin=\"{1} {1} {1}\" Spacing=\"{2} {2} {2}\"><Piece Extent=\"0 {0} 0 {0} 0 {0}\"><CellData><DataArray "
+      "type=\"Float64\" Name=\"f\" format=\"ascii\">{3}</DataArray></CellData></Piece></ImageData></VTKFile>",
+      cells, low, spacing, values);
+}
+
+/// Two cells, of which the first is divided twice.
+constexpr const char* trees_text =
+    R"(<VTKFile type="HyperTreeGrid" version="2.0" byte_order="LittleEndian"><HyperTreeGrid BranchFactor="2"
+TransposedRootIndexing="0" Dimensions="3 2 2"><Grid>
+<DataArray type="Float64" Name="XCoordinates" NumberOfTuples="3" format="ascii">0 1 3</DataArray>
+<DataArray type="Float64" Name="YCoordinates" NumberOfTuples="2" format="ascii">0 1</DataArray>
+<DataArray type="Float64" Name="ZCoordinates" NumberOfTuples="2" format="ascii">0 1</DataArray></Grid><Trees>
+<DataArray type="Bit" Name="Descriptors" NumberOfTuples="9" format="ascii">1 0 1 0 0 0 0 0 0</DataArray>
+<DataArray type="Int64" Name="NumberOfVerticesPerDepth" NumberOfTuples="4" format="ascii">1 8 8 1</DataArray>
+<DataArray type="Int64" Name="TreeIds" NumberOfTuples="2" format="ascii">0 1</DataArray>
+<DataArray type="UInt32" Name="DepthPerTree" NumberOfTuples="2" format="ascii">3 1</DataArray></Trees><CellData>
+<DataArray type="Float64" Name="f" NumberOfTuples="18" format="ascii">0 3 1 4 1 5 9 2 6 5 3 5 8 9 7 9 3 2</DataArray>
+</CellData></HyperTreeGrid></VTKFile>
+)";
+
+TEST_F(Mpirun, MeshesWithLevelsGiveTheBytesOfOneProcess) {
+  if (!io::has_vtk()) GTEST_SKIP() << "built without VTK";
+  const Folder folder;
+  const std::string trees = folder.file("t.htg", trees_text);
+  ASSERT_NE(folder.file("coarse.vti", image_text(4, 0, 1)), "");
+  ASSERT_NE(folder.file("fine.vti", image_text(8, 1, 0.25)), "");
+  const std::string blocks = folder.file(
+      "a.vth",
+      "<VTKFile type=\"vtkOverlappingAMR\" version=\"1.1\"><vtkOverlappingAMR><Block level=\"0\"><DataSet index=\"0\" "
+      "file=\"coarse.vti\"/></Block><Block level=\"1\"><DataSet index=\"0\" file=\"fine.vti\"/></Block>"
+      "</vtkOverlappingAMR></VTKFile>");
+  for (const std::string& file : {trees, blocks})
+    for (const bool smooth : {false, true}) {
+      std::vector<std::string> arguments{"render",  file,        "-o", folder / "one.pfm", "--size",  "60x50",
+                                         "--quiet", "--threads", "1",  "--exchange",       "segments"};
+      if (smooth) arguments.emplace_back("--smooth");
+      ASSERT_EQ(tessera(arguments).status, 0) << file;
+      arguments[3] = folder / "ranks.pfm";
+      for (const int ranks : {1, 2, 3}) {
+        const Outcome outcome = mpirun(ranks, arguments);
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        EXPECT_EQ(contents(folder / "ranks.pfm"), contents(folder / "one.pfm"))
+            << file << ' ' << smooth << ' ' << ranks;
+      }
+    }
 }
 
 }  // namespace

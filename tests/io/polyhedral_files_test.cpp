@@ -34,7 +34,7 @@ MeshFile read_field(const std::filesystem::path& file, const char* field) {
 
 MeshFile in_memory(const CellBlock& block, const char* field) {
   MeshOptions options;
-  options.field = field;
+  options.field = std::string(field);
   return assemble_mesh({block}, options, "mesh");
 }
 
