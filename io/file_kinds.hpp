@@ -17,7 +17,9 @@ enum class FileKind : std::uint8_t {
   amr,         ///< VTK XML lists of the blocks of several levels
   vtk_grid,    ///< image data and rectilinear grids, XML or legacy
   exodus,      ///< NetCDF; in HDF5 see hdf5
-  hdf5,        ///< Exodus, CGNS or VTKHDF: the helper looks
+  hdf5,        ///< Exodus, CGNS, VTKHDF, NetCDF or MINC 2: the helper looks
+  netcdf,      ///< grids; in HDF5 see hdf5
+  minc,        ///< MINC 1
   solver,      ///< FormatRow::reader
   gmsh,        ///< what Gmsh's library reads; FormatRow::reader
   su2,

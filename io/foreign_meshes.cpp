@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/file_beginnings.hpp"
-#include "io/foreign_file.hpp"
+#include "io/foreign_mixed.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/listed_pieces.hpp"
@@ -100,22 +100,13 @@ MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::siz
   return read_foreign(file, std::move(request));
 }
 
-MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader, std::optional<std::size_t> time_step,
-                            const BlockChoice& choice) {
+MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader, const MeshOptions& options) {
   const std::string_view name = reader;
   if (name == "openfoam" || name == "ensight") require_beside_others(file);
-  nlohmann::json request{{"reader", reader}, {"blocks", choice}};
-  if (time_step) request["time_step"] = *time_step;
   HelperTask task;
   if (name == "fluent")  // good ones make it crash
     task.remedy = "it is damaged, or of a kind that VTK's reader does not know: export CGNS or EnSight";
-  const ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(std::move(task)), file, std::move(request));
-  MeshBlocks result;
-  result.format = opened.contents.format;
-  result.notes = opened.contents.notes;
-  result.block_names = opened.contents.block_names;
-  result.blocks = blocks_of(opened, result.notes, GridsAre::hexahedra);
-  return result;
+  return read_foreign_mesh(file, {reader, std::move(task)}, options, GridsAre::hexahedra);
 }
 
 MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem::path& q_file) {

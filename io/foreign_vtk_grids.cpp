@@ -3,6 +3,7 @@
 
 #include "io/file_beginnings.hpp"
 #include "io/foreign_grids.hpp"
+#include "io/foreign_mixed.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/volume_formats.hpp"
@@ -18,6 +19,12 @@ VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions&
   result.format = fmt::format("{} ({})", type.empty() ? "legacy VTK" : "VTK XML",
                               result.source->geometry().rectilinear() ? "rectilinear grid" : "image data");
   return result;
+}
+
+bool holds_grid_by_vtk(const std::filesystem::path& file, const char* reader) { return holds_one_grid(file, {reader}); }
+
+VolumeFile read_by_vtk(const std::filesystem::path& file, const char* reader, const VolumeOptions& options) {
+  return read_foreign_volume(file, {reader}, options);
 }
 
 }  // namespace tessera::io

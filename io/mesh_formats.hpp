@@ -46,17 +46,15 @@ MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::siz
                        const BlockChoice& choice = {});
 
 /// A file of a solver, by the name of a reader in helper/main.cpp: all blocks, all arrays, one time step, by default
-/// the last.
-MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader, std::optional<std::size_t> time_step,
-                            const BlockChoice& choice = {});
+/// the last. Grids become hexahedra.
+MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader, const MeshOptions& options);
 
 /// Whether this build has Gmsh's library (CMake option TESSERA_GMSH), in a helper program of its own.
 bool has_gmsh();
 
 /// What Gmsh's library reads, by the name of a reader in helper/gmsh_main.cpp: a block a physical group, one time step,
 /// by default the last. Without the library throws Error(bad_input).
-MeshBlocks read_by_gmsh(const std::filesystem::path& file, const char* reader, std::optional<std::size_t> time_step,
-                        const BlockChoice& choice = {});
+MeshBlocks read_by_gmsh(const std::filesystem::path& file, const char* reader, const MeshOptions& options);
 
 /// VTK's lists of the blocks of a mesh with levels of refinement (.vth .vthb). Cells that finer ones cover are left
 /// out; the chosen field alone is read. Cell data are voxels; point data and `smooth` are cells that meet across levels

@@ -38,11 +38,12 @@ MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row,
     case FileKind::exodus:
       return read_exodus(file, options.time_step, options.blocks);
     case FileKind::hdf5:
-      return read_solver_file(file, "hdf5", options.time_step, options.blocks);
+      return read_solver_file(file, "hdf5", options);
+    case FileKind::netcdf:
     case FileKind::solver:
-      return read_solver_file(file, row.reader, options.time_step, options.blocks);
+      return read_solver_file(file, row.reader, options);
     case FileKind::gmsh:
-      return read_by_gmsh(file, row.reader, options.time_step, options.blocks);
+      return read_by_gmsh(file, row.reader, options);
     case FileKind::su2:
       return {parse_su2(MappedFile(file).text(), file.string()), {}, "SU2"};
     case FileKind::plot3d:

@@ -28,13 +28,12 @@ MeshBlocks read_vtk_legacy(const std::filesystem::path& file) { refuse(file); }
 MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t>, const BlockChoice&) {
   refuse(file);
 }
-MeshBlocks read_solver_file(const std::filesystem::path& file, const char*, std::optional<std::size_t>,
-                            const BlockChoice&) {
-  refuse(file);
-}
+MeshBlocks read_solver_file(const std::filesystem::path& file, const char*, const MeshOptions&) { refuse(file); }
 MeshBlocks read_amr(const std::filesystem::path& file, const MeshOptions&) { refuse(file); }
 MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem::path&) { refuse(file); }
 VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions&) { refuse(file); }
+bool holds_grid_by_vtk(const std::filesystem::path&, const char*) { return false; }
+VolumeFile read_by_vtk(const std::filesystem::path& file, const char*, const VolumeOptions&) { refuse(file); }
 Surface read_stl(const std::string& source) { refuse(source); }
 VtkSurface read_vtk_surface(const std::string& source) { refuse(source); }
 

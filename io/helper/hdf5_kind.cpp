@@ -1,6 +1,7 @@
 // HDF5 says nothing at its beginning of what is in it.
 #include <fmt/format.h>
 #include <hdf5.h>
+#include <vtk_netcdf.h>
 
 #include <nlohmann/json.hpp>
 
@@ -62,6 +63,14 @@ class Hdf5File {
   hid_t id_ = H5I_INVALID_HID;
 };
 
+/// NetCDF-4, or other HDF5 that its library takes for such.
+bool opens_as_netcdf(const std::filesystem::path& file) {
+  int id = 0;
+  if (nc_open(file.c_str(), NC_NOWRITE, &id) != NC_NOERR) return false;
+  nc_close(id);
+  return true;
+}
+
 }  // namespace
 
 ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
@@ -92,6 +101,7 @@ ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file,
   const auto refuse = [&](const char* what, const char* remedy) {
     return scene::bad_input(fmt::format("{}: it is HDF5 and holds {}; {}", file.string(), what, remedy));
   };
+  if (request.value("look", false) && kind != Kind::unknown && kind != Kind::minc) return {};  // no grid
   switch (kind) {
     case Kind::vtk:
       if (!vtk_type.empty() && vtk_type != "UnstructuredGrid" && vtk_type != "ImageData")
@@ -113,7 +123,10 @@ ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file,
     case Kind::unknown:
       break;
   }
-  throw refuse("neither Exodus nor CGNS nor VTKHDF", "give the program that wrote it another format to write");
+  if (!opens_as_netcdf(file))
+    throw refuse("neither Exodus nor CGNS nor VTKHDF nor NetCDF",
+                 "give the program that wrote it another format to write");
+  return read_netcdf(holdings, file, request);
 }
 
 }  // namespace tessera::io::helper

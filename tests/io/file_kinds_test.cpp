@@ -76,7 +76,8 @@ TEST_F(FileKinds, TheBeginningWinsOverTheName) {
 
 TEST_F(FileKinds, ClassicNetCdfIsExodusByItsDimensions) {
   EXPECT_EQ(name_of("x.dat", std::string("CDF\1\0\0\0\0\0\0\0\12", 12) + "num_nodes"), "Exodus II");
-  EXPECT_EQ(name_of("x.dat", std::string("CDF\1\0\0\0\0\0\0\0\12", 12) + "latitude"), "");
+  EXPECT_EQ(name_of("x.dat", std::string("CDF\1\0\0\0\0\0\0\0\12", 12) + "latitude"), "NetCDF grid");
+  EXPECT_EQ(name_of("x.dat", std::string("CDF\1\0\0\0\0\0\0\0\12", 12) + "zspace yspace xspace"), "MINC");
 }
 
 TEST_F(FileKinds, BinaryStlIsToldByItsSize) {
