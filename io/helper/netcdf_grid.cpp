@@ -148,43 +148,58 @@ const GridOfVariables& choose_grid(const std::vector<GridOfVariables>& grids, co
   return *chosen;
 }
 
-/// Makes NaN of what the file's attributes say is missing: VTK does so of floats that equal _FillValue, alone.
-void blank_missing(const NetcdfFile& file, vtkDataSetAttributes& fields) {
+/// What is to be done with a variable's values as VTK gives them.
+struct Mending {
+  bool signed_bytes = false;    ///< VTK takes them for unsigned ones
+  double scale = 1, shift = 0;  ///< which VTK has applied
+  std::vector<double> missing;  ///< as they became; VTK knows the floats that equal _FillValue alone
+  [[nodiscard]] bool is_packed() const { return scale != 1 || shift != 0; }
+};
+
+Mending mending_of(const NetcdfFile& file, const std::string& name, bool is_float32) {
+  const auto first_of = [&](const char* attribute, double otherwise) {
+    const std::vector<double> numbers = file.numbers(name.c_str(), attribute);
+    return numbers.empty() ? otherwise : numbers.front();
+  };
+  Mending mending;
+  mending.signed_bytes = file.has_signed_bytes(name.c_str());
+  mending.scale = first_of("scale_factor", 1), mending.shift = first_of("add_offset", 0);
+  mending.missing = file.numbers(name.c_str(), "missing_value");
+  const std::vector<double> fill = file.numbers(name.c_str(), "_FillValue");
+  mending.missing.insert(mending.missing.end(), fill.begin(), fill.end());
+  for (double& value : mending.missing) {
+    value = value * mending.scale + mending.shift;
+    if (is_float32 && std::abs(value) <= std::numeric_limits<float>::max()) value = static_cast<float>(value);
+  }
+  return mending;
+}
+
+/// Gives bytes their signs back and makes NaN of what the file's attributes say is missing.
+void mend_values(const NetcdfFile& file, vtkDataSetAttributes& fields) {
   for (int k = 0; k < fields.GetNumberOfArrays(); ++k) {
     vtkDataArray* const array = fields.GetArray(k);
     if (array == nullptr || array->GetName() == nullptr) continue;
     const std::string name = array->GetName();
-    std::vector<double> missing = file.numbers(name.c_str(), "missing_value");
-    const std::vector<double> fill = file.numbers(name.c_str(), "_FillValue");
-    missing.insert(missing.end(), fill.begin(), fill.end());
-    if (missing.empty()) continue;
-    const auto first_of = [&](const char* attribute, double otherwise) {
-      const std::vector<double> numbers = file.numbers(name.c_str(), attribute);
-      return numbers.empty() ? otherwise : numbers.front();
-    };
-    // Packed numbers are unpacked by now, each by one rounding: half a step tells them apart.
-    const double scale = first_of("scale_factor", 1), shift = first_of("add_offset", 0);
-    const bool is_packed = scale != 1 || shift != 0;
-    for (double& value : missing) {
-      value = value * scale + shift;
-      if (array->GetDataType() == VTK_FLOAT && std::abs(value) <= std::numeric_limits<float>::max())
-        value = static_cast<float>(value);
-    }
-    const double reach = is_packed ? std::abs(scale) / 2 : 0;
-    const bool is_float = array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE;
-    vtkSmartPointer<vtkDataArray> blanked = array;
-    if (!is_float) {
-      blanked = vtkSmartPointer<vtkDataArray>::Take(
+    const int type = array->GetDataType();
+    const Mending mending = mending_of(file, name, type == VTK_FLOAT);
+    if (!mending.signed_bytes && mending.missing.empty()) continue;
+    vtkSmartPointer<vtkDataArray> mended = array;
+    if (type != VTK_FLOAT && type != VTK_DOUBLE) {
+      mended = vtkSmartPointer<vtkDataArray>::Take(
           vtkDataArray::CreateDataArray(array->GetDataTypeSize() <= 2 ? VTK_FLOAT : VTK_DOUBLE));
-      blanked->DeepCopy(array);
-      blanked->SetName(name.c_str());
+      mended->DeepCopy(array);
+      mended->SetName(name.c_str());
     }
-    for (vtkIdType t = 0; t < blanked->GetNumberOfTuples(); ++t) {
-      const double value = blanked->GetComponent(t, 0);
-      for (const double gone : missing)
-        if (std::abs(value - gone) <= reach) blanked->SetComponent(t, 0, std::numeric_limits<double>::quiet_NaN());
+    // Packed numbers are unpacked by now, each by one rounding: half a step tells them apart.
+    const double reach = mending.is_packed() ? std::abs(mending.scale) / 2 : 0;
+    for (vtkIdType t = 0; t < mended->GetNumberOfTuples(); ++t) {
+      double value = mended->GetComponent(t, 0);
+      if (mending.signed_bytes && (value - mending.shift) / mending.scale > 127.5) value -= 256 * mending.scale;
+      for (const double missing : mending.missing)
+        if (std::abs(value - missing) <= reach) value = std::numeric_limits<double>::quiet_NaN();
+      mended->SetComponent(t, 0, value);
     }
-    if (blanked != array) fields.AddArray(blanked);  // in place of the one of its name
+    if (mended != array) fields.AddArray(mended);  // in place of the one of its name
   }
 }
 
