@@ -56,6 +56,15 @@ bool has_gmsh();
 /// by default the last. Without the library throws Error(bad_input).
 MeshBlocks read_by_gmsh(const std::filesystem::path& file, const char* reader, const MeshOptions& options);
 
+/// XDMF by its library (has_xdmf()): a block a grid, all attributes of nodes and cells, one time step, by default the
+/// last. Without the library throws Error(bad_input).
+MeshBlocks read_xdmf_mesh(const std::filesystem::path& file, const MeshOptions& options);
+
+/// Whether this build has MED's library (CMake option TESSERA_MED), in a helper program of its own; and what it reads:
+/// a block a mesh, fields of nodes and cells, one time step, by default the last.
+bool has_med();
+MeshBlocks read_med(const std::filesystem::path& file, const MeshOptions& options);
+
 /// VTK's lists of the blocks of a mesh with levels of refinement (.vth .vthb). Cells that finer ones cover are left
 /// out; the chosen field alone is read. Cell data are voxels; point data and `smooth` are cells that meet across levels
 /// (amr_cells.hpp).

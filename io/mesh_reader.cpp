@@ -44,6 +44,10 @@ MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row,
       return read_solver_file(file, row.reader, options);
     case FileKind::gmsh:
       return read_by_gmsh(file, row.reader, options);
+    case FileKind::xdmf:
+      return read_xdmf_mesh(file, options);
+    case FileKind::med:
+      return read_med(file, options);
     case FileKind::su2:
       return {parse_su2(MappedFile(file).text(), file.string()), {}, "SU2"};
     case FileKind::plot3d:

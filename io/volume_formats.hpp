@@ -50,6 +50,12 @@ VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions&
 bool holds_grid_by_vtk(const std::filesystem::path& file, const char* reader);
 VolumeFile read_by_vtk(const std::filesystem::path& file, const char* reader, const VolumeOptions& options);
 
+/// Whether this build has XDMF's library (CMake option TESSERA_XDMF), in a helper program of its own; whether a file
+/// holds one regular or rectilinear grid, so that it is a volume; and that grid.
+bool has_xdmf();
+bool holds_xdmf_grid(const std::filesystem::path& file);
+VolumeFile read_xdmf_grid(const std::filesystem::path& file, const VolumeOptions& options);
+
 /// DICOM: a folder of slices, or one of its files, or frames in one file.
 VolumeFile read_dicom(const std::filesystem::path& file, const VolumeOptions& options);
 bool has_dicom();

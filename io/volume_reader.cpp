@@ -21,7 +21,7 @@ namespace tessera::io {
 namespace {
 
 /// What kind of volume a file begins as.
-enum class VolumeKind { none, vtk, netcdf, hdf5, minc, meta_image, nrrd, nifti, analyze, dicom, bricks };
+enum class VolumeKind { none, vtk, netcdf, hdf5, minc, xdmf, meta_image, nrrd, nifti, analyze, dicom, bricks };
 
 /// Of NIfTI files gzip is a part of the format, so that they are inflated as they are read; others are inflated first.
 VolumeKind volume_kind_of(const std::filesystem::path& file) {
@@ -37,6 +37,8 @@ VolumeKind volume_kind_of(const std::filesystem::path& file) {
       return VolumeKind::hdf5;
     case FileKind::minc:
       return VolumeKind::minc;
+    case FileKind::xdmf:
+      return VolumeKind::xdmf;
     case FileKind::nrrd:
       return VolumeKind::nrrd;
     case FileKind::meta_image:
@@ -52,10 +54,11 @@ VolumeKind volume_kind_of(const std::filesystem::path& file) {
   }
 }
 
-/// NetCDF and HDF5 hold all kinds of things.
+/// NetCDF, HDF5 and XDMF hold all kinds of things.
 bool holds_grid(const std::filesystem::path& file, const FormatRow& row) {
   if (row.kind == FileKind::netcdf) return holds_grid_by_vtk(file, "netcdf");
   if (row.kind == FileKind::hdf5) return holds_grid_by_vtk(file, "hdf5");
+  if (row.kind == FileKind::xdmf) return holds_xdmf_grid(file);
   return row.holds == FileHolds::grid || row.holds == FileHolds::grid_or_mesh;
 }
 
@@ -155,6 +158,8 @@ VolumeFile open_described(const std::filesystem::path& file, VolumeKind kind, co
       return read_by_vtk(file, "hdf5", options);
     case VolumeKind::minc:
       return read_by_vtk(file, "minc", options);
+    case VolumeKind::xdmf:
+      return read_xdmf_grid(file, options);
     case VolumeKind::meta_image:
       return open_stored(read_meta_image_header(file), options, source);
     case VolumeKind::nrrd:

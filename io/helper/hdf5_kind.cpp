@@ -117,7 +117,7 @@ ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file,
     case Kind::fluent:
       throw refuse("a Fluent case, which is read as text only", "export CGNS, EnSight or a .cas without HDF5");
     case Kind::minc:
-      throw refuse("a MINC 2 volume, which is not read", "convert it with mnc2nii or minc2nrrd");
+      return read_minc2(holdings, file, request);
     case Kind::med:
       throw refuse("a MED mesh, which is not read", "write .vtu with ParaVis or meshio");
     case Kind::unknown:

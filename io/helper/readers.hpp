@@ -41,6 +41,9 @@ ForeignContents read_netcdf(Holdings& holdings, const std::filesystem::path& fil
 /// MINC 1, `time_step` as of Exodus; real values, in the space that the direction cosines give.
 ForeignContents read_minc(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
+/// The same of MINC 2. Of a build without MINC's library (CMake option TESSERA_MINC) it throws Error(bad_input).
+ForeignContents read_minc2(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+
 /// HDF5, by what is in it: Exodus, CGNS, VTKHDF, or a grid as read_netcdf() and MINC 2. With `look` no more than the
 /// kind of a grid, of others nothing.
 ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
