@@ -119,7 +119,7 @@ ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file,
     case Kind::minc:
       return read_minc2(holdings, file, request);
     case Kind::med:
-      throw refuse("a MED mesh, which is not read", "write .vtu with ParaVis or meshio");
+      throw refuse("a MED mesh, which is known by its name alone", "have that end in .med");
     case Kind::unknown:
       break;
   }

@@ -35,6 +35,21 @@ const CellType& type_of(unsigned xdmf, const std::string& name, const std::strin
   return *type;
 }
 
+/// The library's table of names is its own and its subclasses'.
+class TopologyNames : public XdmfTopologyType {
+ public:
+  static void add() {
+    InitTypes();
+    mTopologyDefinitions["TRI_6"] = Triangle_6;
+    mTopologyDefinitions["QUAD_8"] = Quadrilateral_8;
+    mTopologyDefinitions["QUAD_9"] = Quadrilateral_9;
+    mTopologyDefinitions["TET_10"] = Tetrahedron_10;
+    mTopologyDefinitions["HEX_20"] = Hexahedron_20;
+    mTopologyDefinitions["HEX_24"] = Hexahedron_24;
+    mTopologyDefinitions["HEX_27"] = Hexahedron_27;
+  }
+};
+
 /// Reads along a topology's numbers.
 class Numbers {
  public:
@@ -66,6 +81,8 @@ class Numbers {
 };
 
 }  // namespace
+
+void add_cell_names() { TopologyNames::add(); }
 
 XdmfCells cells_of(XdmfTopology& topology, const std::string& where) {
   std::vector<std::int64_t> values(topology.getSize());

@@ -177,6 +177,7 @@ ForeignContents read(Holdings& holdings, const std::filesystem::path& file, cons
   const std::string source = file.string();
   allow_for(file);
   check_xdmf_elements(file);
+  add_cell_names();
   const auto domain = boost::dynamic_pointer_cast<XdmfDomain>(XdmfReader::New()->read(source));
   if (domain == nullptr) throw scene::bad_input(fmt::format("{}: it has no <Domain>; write it anew", source));
   std::optional<std::size_t> time_step;
