@@ -6,7 +6,6 @@
 #include <vtkDataSetAttributes.h>
 #include <vtkImageData.h>
 #include <vtkNetCDFCFReader.h>
-#include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
@@ -97,6 +96,26 @@ class NetcdfFile {
 
  private:
   int id_ = -1;
+};
+
+/// VTK's reader, to which a dimension is time by its variable's units alone; others (of WRF's files) have no such
+/// variable, and a name.
+class GridReader final : public vtkNetCDFCFReader {
+ public:
+  static GridReader* New() {
+    auto* const made = new GridReader;
+    made->InitializeObjectBase();
+    return made;
+  }
+
+ protected:
+  int IsTimeDimension(int file, int dimension) override {
+    if (vtkNetCDFCFReader::IsTimeDimension(file, dimension) != 0) return 1;
+    std::array<char, NC_MAX_NAME + 1> name{};
+    if (nc_inq_dimname(file, dimension, name.data()) != NC_NOERR) return 0;
+    const std::string_view text(name.data());
+    return text == "time" || text == "Time" || text == "TIME" || text == "t" ? 1 : 0;
+  }
 };
 
 /// Variables of the same dimensions, time aside: one grid.
@@ -219,7 +238,7 @@ ForeignContents read_netcdf(Holdings& holdings, const std::filesystem::path& fil
   allow_for(file);
   const std::string source = file.string();
   const NetcdfFile opened(file);
-  vtkNew<vtkNetCDFCFReader> reader;
+  const auto reader = vtkSmartPointer<GridReader>::Take(GridReader::New());
   ForeignContents contents;
   contents.format = "NetCDF";
   const bool only_look = request.value("look", false);

@@ -173,6 +173,24 @@ TEST(NetcdfGrids, WithoutCoordinatesHaveUnitSteps) {
   EXPECT_EQ(volume.range, (scene::ValueRange{-128, 22, 1}));
 }
 
+TEST(NetcdfGrids, KnowTimeByItsNameToo) {
+  const test::TemporaryFolder folder;
+  {
+    NetcdfWriter w(folder / "wrf", 0);
+    const std::vector<int> dimensions = {w.dimension("Time", NC_UNLIMITED), w.dimension("bottom_top", 2),
+                                         w.dimension("south_north", 2), w.dimension("west_east", 2)};
+    const int v = w.variable("T", NC_FLOAT, dimensions);
+    w.end_definitions();
+    w.put(v, {0, 0, 0, 0}, {3, 2, 2, 2}, ramp(24, 0));
+  }
+  VolumeOptions options;
+  for (const std::size_t step : {0, 1, 2}) {
+    options.time_step = step;
+    const double first = 8 * static_cast<double>(step);
+    EXPECT_EQ(open_volume(folder / "wrf", options).range, (scene::ValueRange{first, first + 7, 0}));
+  }
+}
+
 TEST(NetcdfGrids, OfTwoDimensionalCoordinatesAreMeshes) {
   const test::TemporaryFolder folder;
   {
