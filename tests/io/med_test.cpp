@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "io/changed_bytes.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
@@ -117,6 +118,7 @@ TEST(Med, DamagedOnesAreRefusedInOneLine) {
     test::expect_bad_input([&] { read_mesh(cut); }, {"cut.med: ", "; "});
   }
   test::expect_bad_input([&] { read_mesh(folder.write("text.med", "no HDF5")); }, {"text.med: it cannot be opened"});
+  test::expect_no_crash_of_changes(folder, "changed.med", whole, [](const auto& file) { read_mesh(file); });
   // By another name it is told, and what to do.
   std::filesystem::copy_file(folder / "bar.med", folder / "bar.h5");
   test::expect_bad_input([&] { read_mesh(folder / "bar.h5"); }, {"bar.h5: it is HDF5 and holds a MED mesh", ".med"});

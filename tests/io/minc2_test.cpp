@@ -7,6 +7,8 @@ extern "C" {
 #include <array>
 #include <vector>
 
+#include "io/changed_bytes.hpp"
+#include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/volume_checks.hpp"
 #include "io/volume_formats.hpp"
@@ -101,6 +103,12 @@ TEST(Minc2, DamagedOnesAreRefusedInOneLine) {
     const auto cut = folder.write("cut.mnc", whole.substr(0, size));
     test::expect_bad_input([&] { read_mesh(cut); }, {"cut.mnc: ", "; "});
   }
+  test::expect_no_crash_of_changes(folder, "changed.mnc", whole, [](const std::filesystem::path& file) {
+    if (is_volume(file))
+      open_volume(file);
+    else
+      read_mesh(file);
+  });
 }
 
 }  // namespace

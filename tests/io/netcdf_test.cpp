@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "io/changed_bytes.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
@@ -247,6 +248,22 @@ TEST(NetcdfGrids, DamagedOnesAreRefusedInOneLine) {
   test::expect_bad_input([&] { read_mesh(folder / "flat.nc"); }, {"flat.nc: none of its variables has three dimens"});
 }
 
+/// As whichever it is.
+void read_any(const std::filesystem::path& file) {
+  if (is_volume(file))
+    open_volume(file);
+  else
+    read_mesh(file);
+}
+
+TEST(NetcdfGrids, ChangedBytesNeverCrash) {
+  const test::TemporaryFolder folder;
+  for (const int mode : {0, NC_NETCDF4}) {
+    write_air(folder / "air", mode);
+    test::expect_no_crash_of_changes(folder, "changed.nc", test::contents(folder / "air"), read_any);
+  }
+}
+
 /// A MINC volume of 2 x 3 x 4 samples (z, y, x) in signed shorts, each slice with a range of its own.
 void write_minc(const std::filesystem::path& file, bool has_time) {
   NetcdfWriter w(file, 0);
@@ -326,6 +343,7 @@ TEST(Minc, DamagedOnesAreRefusedInOneLine) {
   const std::string whole = test::contents(folder / "head.mnc");
   for (const std::size_t size : {whole.size() - 60, whole.size() / 2})
     expect_no_volume(folder.write("cut.mnc", whole.substr(0, size)), "cut.mnc: ");
+  test::expect_no_crash_of_changes(folder, "changed.mnc", whole, read_any);
 }
 
 }  // namespace

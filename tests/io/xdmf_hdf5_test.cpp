@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "io/changed_bytes.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
@@ -80,6 +81,11 @@ TEST(XdmfHdf5, DamagedDataAreRefusedInOneLine) {
   std::string text = mesh_text("a.h5");
   text.replace(text.find(":/values"), 8, ":/absent");
   refused(text, {"a.xdmf: ", "; "});
+  const std::string good = mesh_text("a.h5");
+  const auto read = [](const std::filesystem::path& file) { read_mesh(file); };
+  test::expect_no_crash_of_changes(folder, "changed.xdmf", good, read);
+  const auto file = folder.write("a.xdmf", good);
+  test::expect_no_crash_of_changes(folder, "a.h5", whole, [&](const auto&) { read_mesh(file); });
   folder.write("a.h5", whole.substr(0, whole.size() / 2));
   refused(mesh_text("a.h5"), {"a.xdmf: ", "; "});
   folder.write("a.h5", "no HDF5 at all, and not much of it");
