@@ -11,9 +11,12 @@
 namespace tessera::io {
 namespace {
 
-ForeignFile open_by(const ForeignReader& by, const std::filesystem::path& file, nlohmann::json request) {
+ForeignFile open_by(const ForeignReader& by, const std::filesystem::path& file, nlohmann::json request,
+                    const ReadProgressFunction& progress = {}) {
   request["reader"] = by.reader;
-  return open_foreign(std::make_shared<HelperProcess>(by.task), file, std::move(request));
+  HelperTask task = by.task;
+  task.progress = progress;
+  return open_foreign(std::make_shared<HelperProcess>(std::move(task)), file, std::move(request));
 }
 
 }  // namespace
@@ -36,14 +39,14 @@ VolumeFile read_foreign_volume(const std::filesystem::path& file, const ForeignR
                                const VolumeOptions& options) {
   nlohmann::json request{{"field", options.field}};
   if (options.time_step) request["time_step"] = *options.time_step;
-  return grid_of(open_by(by, file, std::move(request)), options);
+  return grid_of(open_by(by, file, std::move(request), options.progress), options);
 }
 
 MeshBlocks read_foreign_mesh(const std::filesystem::path& file, const ForeignReader& by, const MeshOptions& options,
                              GridsAre grids) {
   nlohmann::json request{{"blocks", options.blocks}, {"field", options.field}};
   if (options.time_step) request["time_step"] = *options.time_step;
-  const ForeignFile opened = open_by(by, file, std::move(request));
+  const ForeignFile opened = open_by(by, file, std::move(request), options.progress);
   MeshBlocks result;
   result.format = opened.contents.format;
   result.notes = opened.contents.notes;

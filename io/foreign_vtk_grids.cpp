@@ -15,7 +15,10 @@ VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions&
   if (type.starts_with('P')) require_beside_others(file);
   nlohmann::json request{{"reader", type.empty() ? "vtk_legacy" : "vtk_xml"}};
   if (!type.empty()) request["type"] = type;
-  VolumeFile result = grid_of(open_foreign(std::make_shared<HelperProcess>(), file, std::move(request)), options);
+  HelperTask task;
+  task.progress = options.progress;
+  VolumeFile result =
+      grid_of(open_foreign(std::make_shared<HelperProcess>(std::move(task)), file, std::move(request)), options);
   result.format = fmt::format("{} ({})", type.empty() ? "legacy VTK" : "VTK XML",
                               result.source->geometry().rectilinear() ? "rectilinear grid" : "image data");
   return result;

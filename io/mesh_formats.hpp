@@ -32,18 +32,17 @@ bool has_vtk();
 
 /// VTK's XML files: .vtu .pvtu .vts .pvts .vtr .pvtr, and lists of them (.vtm .vtpc). The pieces of a .pvtu are a block
 /// each, their points not merged.
-MeshBlocks read_vtk_xml(const std::filesystem::path& file, const BlockChoice& choice = {});
+MeshBlocks read_vtk_xml(const std::filesystem::path& file, const MeshOptions& options);
 
 /// The tets of a .tets file, or a range of them, with their field "scalar".
 MeshBlocks blocks_of_tets(scene::TetMesh mesh);
 
 /// Legacy .vtk: unstructured, structured and rectilinear grids, ASCII or binary, all their arrays.
-MeshBlocks read_vtk_legacy(const std::filesystem::path& file);
+MeshBlocks read_vtk_legacy(const std::filesystem::path& file, const MeshOptions& options);
 
 /// Exodus II: all element blocks, nodal and element variables at one time step (default the last). Nodes are moved by
 /// the file's displacements, if it has some, as ParaView does. Variables NAME_x NAME_y NAME_z become one vector NAME.
-MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t> time_step,
-                       const BlockChoice& choice = {});
+MeshBlocks read_exodus(const std::filesystem::path& file, const MeshOptions& options);
 
 /// A file of a solver, by the name of a reader in helper/main.cpp: all blocks, all arrays, one time step, by default
 /// the last. Grids become hexahedra.
@@ -70,9 +69,9 @@ MeshBlocks read_med(const std::filesystem::path& file, const MeshOptions& option
 /// (amr_cells.hpp).
 MeshBlocks read_amr(const std::filesystem::path& file, const MeshOptions& options);
 
-/// PLOT3D grid and solution; the binary layout is found from the file's size. `q_file` may be empty: then it is looked
-/// for beside the grid by its name, and if there is none the mesh has no field. IBLANK 0 hides a point's cells.
-MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem::path& q_file);
+/// PLOT3D grid and solution; the binary layout is found from the file's size. `plot3d_q` may be empty: then it is
+/// looked for beside the grid by its name, and if there is none the mesh has no field. IBLANK 0 hides a point's cells.
+MeshBlocks read_plot3d(const std::filesystem::path& file, const MeshOptions& options);
 
 /// A surface (.stl .vtp .ply .poly .smesh) filled by TetGen with tets of at most `max_volume`, or of a 30,000th of what
 /// it encloses. Point fields: "depth", the distance to the surface in world units, after the file's own attributes.

@@ -10,6 +10,7 @@
 
 #include "scene/tet_mesh.hpp"
 #include "tessera/field_info.hpp"
+#include "tessera/read_progress.hpp"
 
 namespace tessera::io {
 
@@ -25,6 +26,7 @@ struct MeshOptions {
   int threads = 1;                         ///< that make tets of cells; 0: all cores
   /// Of files in blocks: names of those to read (io/block_choice.hpp); none: all.
   std::vector<std::string> blocks{};
+  ReadProgressFunction progress{};  ///< null: nobody hears
 };
 
 using tessera::MeshCounts;

@@ -23,6 +23,7 @@ struct VolumeOptions {
   bool big_endian = false;
   std::uint64_t skip = 0;                  ///< bytes before the first sample
   std::optional<std::size_t> time_step{};  ///< as MeshOptions::time_step
+  ReadProgressFunction progress{};         ///< null: nobody hears
 
   /// Whether one of the .raw options is given.
   [[nodiscard]] bool describes_raw() const { return dims || type || spacing || origin || big_endian || skip > 0; }
@@ -38,8 +39,8 @@ struct VolumeFile {
 };
 
 /// Whether the file is a regular or rectilinear grid: by what it begins with, so that a .vtk may be a mesh or a volume
-/// and a name may be wrong; by its name where it is not there or is .raw. Of NetCDF, HDF5 and XDMF a helper looks, which
-/// takes some hundredths of a second.
+/// and a name may be wrong; by its name where it is not there or is .raw. Of NetCDF, HDF5 and XDMF a helper looks,
+/// which takes some hundredths of a second.
 bool is_volume(const std::filesystem::path& file);
 
 /// Throws Error(bad_input) if the file is not there, or is a mesh. Does not read its samples.

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "io/helper/med_file.hpp"
+#include "io/helper/serve.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -134,6 +135,7 @@ void add_med_fields(const MedFile& file, std::optional<std::size_t> time_step, s
     file.require(MEDfieldComputingStepInfo(file.id(), field.name.c_str(), static_cast<int>(step) + 1, &field.step,
                                            &field.iteration, &time) >= 0,
                  fmt::format("a time step of field '{}'", field.name));
+    report_progress(static_cast<double>(f) / static_cast<double>(count));
     for (MedMesh& mesh : meshes)
       if (mesh.block.name == field.mesh) add_field(file, field, mesh, notes);
   }

@@ -47,6 +47,7 @@ ForeignContents read_minc(Holdings& holdings, const std::filesystem::path& file,
   if (const auto step = request.find("time_step"); step != request.end()) wish = step->get<std::size_t>();
   vtkNew<vtkMINCImageReader> reader;
   const std::string warning = with_quiet_vtk(source, write_anew, [&] {
+    watch_progress(*reader);
     reader->SetFileName(source.c_str());
     reader->RescaleRealValuesOn();
     reader->UpdateInformation();

@@ -7,8 +7,10 @@
 #include <vtkImageData.h>
 #include <vtkNetCDFCFReader.h>
 #include <vtkPointData.h>
+#include <vtkPoints.h>
 #include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
+#include <vtkStructuredGrid.h>
 #include <vtk_netcdf.h>
 
 #include <algorithm>
@@ -16,6 +18,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string_view>
 #include <vector>
 
@@ -61,6 +64,37 @@ class NetcdfFile {
       return {};
     std::vector<double> values(count);
     if (nc_get_att_double(id_, id, attribute, values.data()) != NC_NOERR) values.clear();
+    return values;
+  }
+
+  /// A variable's attribute that is text; empty if it has none.
+  [[nodiscard]] std::string text(const std::string& variable, const char* attribute) const {
+    int id = 0;
+    std::size_t length = 0;
+    constexpr std::size_t most = 1000;
+    nc_type type = NC_NAT;
+    if (nc_inq_varid(id_, variable.c_str(), &id) != NC_NOERR ||
+        nc_inq_att(id_, id, attribute, &type, &length) != NC_NOERR || type != NC_CHAR || length > most)
+      return "";
+    std::string value(length, '\0');
+    if (nc_get_att_text(id_, id, attribute, value.data()) != NC_NOERR) return "";
+    return value.substr(0, value.find('\0'));
+  }
+
+  /// All numbers of a variable, of which there have to be `count`; none if it has others.
+  [[nodiscard]] std::vector<double> values(const std::string& variable, std::size_t count) const {
+    int id = 0, dimensions = 0;
+    if (nc_inq_varid(id_, variable.c_str(), &id) != NC_NOERR || nc_inq_varndims(id_, id, &dimensions) != NC_NOERR)
+      return {};
+    std::vector<int> ids(static_cast<std::size_t>(dimensions));
+    double all = nc_inq_vardimid(id_, id, ids.data()) == NC_NOERR ? 1 : 0;
+    for (const int dimension : ids) {
+      std::size_t length = 0;
+      nc_inq_dimlen(id_, dimension, &length);
+      all *= static_cast<double>(length);
+    }
+    std::vector<double> values(count);
+    if (all != static_cast<double>(count) || nc_get_var_double(id_, id, values.data()) != NC_NOERR) values.clear();
     return values;
   }
 
@@ -222,6 +256,33 @@ void mend_values(const NetcdfFile& file, vtkDataSetAttributes& fields) {
   }
 }
 
+/// Cells of given corners (`bounds`): VTK 9.1 makes the points of their last row wrong. Corners go round a cell, the
+/// first two along the grid's first axis. Throws Error(bad_input) where the corners are not to be found.
+void mend_last_row(const NetcdfFile& file, vtkStructuredGrid& grid, const std::string& source) {
+  std::array<int, 3> points{};
+  grid.GetDimensions(points.data());
+  const auto columns = static_cast<std::size_t>(points[0]) - 1, rows = static_cast<std::size_t>(points[1]) - 1;
+  std::array<std::vector<double>, 2> corners;  // longitude, latitude
+  const char* const field = grid.GetCellData()->GetArrayName(0);
+  std::istringstream names(field != nullptr ? file.text(field, "coordinates") : "");
+  for (std::string name; names >> name;) {
+    const std::string units = file.text(name, "units"), bounds = file.text(name, "bounds");
+    if (!units.starts_with("degree") || bounds.empty()) continue;
+    corners[units.find_first_of("Nn") == std::string::npos ? 0 : 1] = file.values(bounds, columns * rows * 4);
+  }
+  if (corners[0].empty() || corners[1].empty())
+    throw scene::bad_input(fmt::format("{}: the bounds of its cells are not to be found; write it without", source));
+  for (int k = 0; k < points[2]; ++k)
+    for (std::size_t i = 0; i <= columns; ++i) {
+      const std::size_t cell = (rows - 1) * columns + std::min(i, columns - 1),
+                        corner = 4 * cell + (i < columns ? 3 : 2);
+      const auto point = static_cast<vtkIdType>((static_cast<std::size_t>(k) * (rows + 1) + rows) * (columns + 1) + i);
+      std::array<double, 3> place{};
+      grid.GetPoints()->GetPoint(point, place.data());
+      grid.GetPoints()->SetPoint(point, corners[0][corner], corners[1][corner], place[2]);
+    }
+}
+
 /// A reader on which the grid is chosen. Rectilinear axes are read as they stand: VTK takes those for even that are so
 /// to 1 % of a step.
 void prepare(vtkNetCDFCFReader& reader, const std::string& dimensions) {
@@ -258,6 +319,9 @@ ForeignContents read_netcdf(Holdings& holdings, const std::filesystem::path& fil
   if (!only_look) {
     mend_values(opened, *data->GetPointData());
     mend_values(opened, *data->GetCellData());
+    auto* const curvilinear = vtkStructuredGrid::SafeDownCast(data);
+    if (curvilinear != nullptr && curvilinear->GetCellData()->GetNumberOfArrays() > 0)
+      mend_last_row(opened, *curvilinear, source);
     if (opened.has_degrees())
       contents.notes.emplace_back(
           "longitude and latitude, in degrees, are x and y as they stand, not places on a sphere");

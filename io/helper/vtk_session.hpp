@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 
+class vtkAlgorithm;
 class vtkDataSetReader;
 
 namespace tessera::io::helper {
@@ -13,6 +14,9 @@ namespace tessera::io::helper {
 /// An error that VTK reports (it does not throw) becomes Error(bad_input, "SOURCE: <VTK's words>; REMEDY"), as does
 /// running out of memory, which with small files means damaged counts.
 std::string with_quiet_vtk(const std::string& source, const std::string& remedy, const std::function<void()>& work);
+
+/// Has a reader's progress reported (serve.hpp).
+void watch_progress(vtkAlgorithm& reader);
 
 /// Reads a legacy file, of meshes or grids, with all of its arrays instead of the active ones alone. Within
 /// with_quiet_vtk().

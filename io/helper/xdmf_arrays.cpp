@@ -10,6 +10,7 @@
 #include <algorithm>
 
 #include "io/helper/readers.hpp"
+#include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
@@ -57,7 +58,8 @@ NumberTally tally_of(const std::vector<T>& numbers, NumberType type, int compone
 }  // namespace
 
 XdmfHeavyFiles::XdmfHeavyFiles(const std::filesystem::path& file) : source_(file.string()) {
-  folder_ = std::filesystem::weakly_canonical(file).parent_path();
+  std::error_code unknown;  // there is none of what was in a gzip file
+  folder_ = std::filesystem::weakly_canonical(file, unknown).parent_path();
   files_.push_back(file);
 }
 
@@ -70,6 +72,7 @@ void XdmfHeavyFiles::add(XdmfArray& array) {
     return add(*subset->getReferenceArray());
   }
   for (unsigned k = 0; k < array.getNumberHeavyDataControllers(); ++k) {
+    require_beside_others(source_);
     const std::filesystem::path named = array.getHeavyDataController(k)->getFilePath();
     std::error_code unknown;
     const std::filesystem::path file = std::filesystem::canonical(named, unknown);

@@ -24,6 +24,8 @@
 #include "io/helper/xdmf_cells.hpp"
 #include "io/helper/xdmf_elements.hpp"
 #include "io/helper/xdmf_grids.hpp"
+#include "io/inflated_file.hpp"
+#include "io/input_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -178,7 +180,10 @@ ForeignContents read(Holdings& holdings, const std::filesystem::path& file, cons
   allow_for(file);
   check_xdmf_elements(file);
   add_cell_names();
-  const auto domain = boost::dynamic_pointer_cast<XdmfDomain>(XdmfReader::New()->read(source));
+  const auto reader = XdmfReader::New();
+  // The library takes names apart, which those of unnamed files do not bear.
+  const auto domain = boost::dynamic_pointer_cast<XdmfDomain>(
+      is_inflated(file) ? reader->parse(read_beginning(file, require_file(file))) : reader->read(source));
   if (domain == nullptr) throw scene::bad_input(fmt::format("{}: it has no <Domain>; write it anew", source));
   std::optional<std::size_t> time_step;
   const bool only_look = request.value("look", false);
@@ -193,8 +198,10 @@ ForeignContents read(Holdings& holdings, const std::filesystem::path& file, cons
   XdmfHeavyFiles files(file);
   for (const XdmfBlock& block : blocks) add_arrays(*block.grid, files);
   files.allow();
-  for (const XdmfBlock& block : blocks)
+  for (const XdmfBlock& block : blocks) {
     contents.parts.push_back(std::move(PartOf(holdings, block, only_look, source).part));
+    report_progress(static_cast<double>(contents.parts.size()) / static_cast<double>(blocks.size()));
+  }
   return contents;
 }
 

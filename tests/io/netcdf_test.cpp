@@ -228,6 +228,45 @@ TEST(NetcdfGrids, OfTwoDimensionalCoordinatesAreMeshes) {
   }
 }
 
+TEST(NetcdfGrids, CellsWithBoundsHaveAValueEach) {
+  const test::TemporaryFolder folder;
+  {
+    NetcdfWriter w(folder / "cells.nc", NC_NETCDF4);
+    const int z = w.dimension("z", 2), y = w.dimension("y", 2), x = w.dimension("x", 2), n = w.dimension("n", 4);
+    const int vz = w.variable("z", NC_DOUBLE, {z}), vlat = w.variable("clat", NC_DOUBLE, {y, x}),
+              vlon = w.variable("clon", NC_DOUBLE, {y, x}), blat = w.variable("blat", NC_DOUBLE, {y, x, n}),
+              blon = w.variable("blon", NC_DOUBLE, {y, x, n}), v = w.variable("v", NC_DOUBLE, {z, y, x});
+    w.text(vz, "units", "m");
+    w.text(vlat, "units", "degrees_north");
+    w.text(vlon, "units", "degrees_east");
+    w.text(vlat, "bounds", "blat");
+    w.text(vlon, "bounds", "blon");
+    w.text(v, "coordinates", "clon clat");
+    w.end_definitions();
+    std::vector<double> lon, lat, lon_bounds, lat_bounds;
+    for (int j = 0; j < 2; ++j)
+      for (int i = 0; i < 2; ++i) {
+        lon.push_back(i + 0.5), lat.push_back(j + 0.5);
+        for (const double dx : {0, 1, 1, 0}) lon_bounds.push_back(i + dx);
+        for (const double dy : {0, 0, 1, 1}) lat_bounds.push_back(j + dy);
+      }
+    w.put(vz, {1, 3});  // levels half way between 0, 2 and 4
+    w.put(vlat, lat);
+    w.put(vlon, lon);
+    w.put(blat, lat_bounds);
+    w.put(blon, lon_bounds);
+    w.put(v, ramp(8, 0));
+  }
+  const MeshFile mesh = read_mesh(folder / "cells.nc");
+  EXPECT_EQ(mesh.counts.cells_read, 8u);
+  EXPECT_NEAR(testing::volume(mesh.mesh), 2 * 2 * 4, 1e-12);
+  for (std::size_t t = 0; t < mesh.mesh.tets.size(); ++t) {
+    glm::dvec3 middle(0);
+    for (const std::uint32_t p : mesh.mesh.tets[t]) middle += mesh.mesh.positions[p] / 4.0;
+    EXPECT_EQ(mesh.mesh.scalars[t], std::floor(middle.x) + 2 * std::floor(middle.y) + 4 * std::floor(middle.z / 2));
+  }
+}
+
 TEST(NetcdfGrids, DamagedOnesAreRefusedInOneLine) {
   const test::TemporaryFolder folder;
   for (const int mode : {0, NC_NETCDF4}) {

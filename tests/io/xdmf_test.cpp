@@ -1,6 +1,7 @@
 // XDMF, with its numbers inline and in binary files beside it; HDF5 is in xdmf_hdf5_test.cpp.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <string>
@@ -217,6 +218,24 @@ TEST_F(Xdmf, BinaryNumbersLieBeside) {
   expect_refused(grid("absent.bin"), {"'absent.bin', which is not there"});
   folder.write("data/a.bin", test::bytes_of(points));
   expect_refused(grid("data/a.bin"), {});
+}
+
+TEST_F(Xdmf, InAGzipFileHaveTheirNumbersInTheText) {
+  const auto packed = [&](const std::string& text) {
+    const auto file = folder / "a.xmf.gz";
+    gzFile out = gzopen(file.c_str(), "wb");
+    EXPECT_EQ(gzwrite(out, text.data(), static_cast<unsigned>(text.size())), static_cast<int>(text.size()));
+    gzclose(out);
+    return file;
+  };
+  EXPECT_NEAR(testing::volume(read_mesh(packed(file_of(two_tets("m", 0, 1)))).mesh), 4.0 / 6, 1e-12);
+  const auto other = folder.write("a.bin", std::string(200, '\0'));
+  std::string text = two_tets("m", 0, 1);
+  const std::size_t at = text.find("<DataItem Dimensions=\"5 3\"");
+  text.replace(at, text.find("</DataItem>", at) - at,
+               fmt::format("<DataItem Dimensions=\"5 3\" NumberType=\"Float\" Precision=\"8\" Format=\"Binary\">{}",
+                           other.string()));
+  test::expect_bad_input([&] { read_mesh(packed(file_of(text))); }, {"a.xmf.gz: it goes with other files"});
 }
 
 TEST_F(Xdmf, DamagedAndStrangeOnesAreRefusedInOneLine) {
