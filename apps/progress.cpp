@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 
 namespace tessera::apps {
@@ -76,9 +77,12 @@ Dataset open_watched(const std::filesystem::path& file, ReadOptions options, boo
 
 std::string reading_words(const std::string& file, const std::optional<ReadProgress>& progress, double seconds) {
   std::string words = fmt::format("reading {}", file);
-  if (progress)
-    words += fmt::format(": {:.0f} %{}", 100 * progress->done,
-                         progress->stage == ReadProgress::Stage::copying ? " of its points and cells copied" : "");
+  if (progress && progress->stage == ReadProgress::Stage::copying)
+    words += progress->done < 1
+                 ? fmt::format(": {:.0f} % of its points and cells copied", std::floor(100 * progress->done))
+                 : std::string(": making tets of its cells");
+  else if (progress && progress->done > 0)  // some libraries say 0 for as long as they read
+    words += fmt::format(": {:.0f} %", std::floor(100 * progress->done));
   return words + fmt::format(", {:.0f} s", seconds);
 }
 
