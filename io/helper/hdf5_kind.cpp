@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/helper/readers.hpp"
+#include "io/inflated_file.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
 
@@ -74,6 +75,7 @@ bool opens_as_netcdf(const std::filesystem::path& file) {
 }  // namespace
 
 ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  require_real_name(file);
   allow_for(file);
   std::string vtk_type;
   bool has_steps = false;

@@ -5,11 +5,13 @@
 #include "io/helper/med_file.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/serve.hpp"
+#include "io/inflated_file.hpp"
 
 namespace tessera::io::helper {
 namespace {
 
 ForeignContents read_med(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  require_real_name(file);
   allow_for(file);
   const MedFile opened(file);
   std::optional<std::size_t> time_step;

@@ -1,6 +1,7 @@
 // NetCDF grids and MINC 1 volumes, which NetCDF's library writes here.
 #include <gtest/gtest.h>
 #include <vtk_netcdf.h>
+#include <zlib.h>
 
 #include <array>
 #include <cmath>
@@ -172,6 +173,25 @@ TEST(NetcdfGrids, WithoutCoordinatesHaveUnitSteps) {
   EXPECT_FALSE(volume.source->geometry().rectilinear());
   EXPECT_EQ(at(volume.source->geometry(), {3, 2, 1}), glm::dvec3(3, 2, 1));
   EXPECT_EQ(volume.range, (scene::ValueRange{-128, 22, 1}));
+}
+
+TEST(NetcdfGrids, InAGzipFileAreReadOrToBeUnpacked) {
+  const test::TemporaryFolder folder;
+  const auto packed = [&](int mode) {
+    write_air(folder / "air.nc", mode);
+    const std::string whole = test::contents(folder / "air.nc");
+    gzFile out = gzopen((folder / "air.nc.gz").c_str(), "wb");
+    EXPECT_EQ(gzwrite(out, whole.data(), static_cast<unsigned>(whole.size())), static_cast<int>(whole.size()));
+    gzclose(out);
+    return folder / "air.nc.gz";
+  };
+  ASSERT_TRUE(is_volume(packed(0)));
+  VolumeOptions options;
+  options.field = "T";
+  EXPECT_EQ(open_volume(folder / "air.nc.gz", options).range, (scene::ValueRange{100, 159, 2}));
+  const auto hdf5 = packed(NC_NETCDF4);
+  EXPECT_FALSE(is_volume(hdf5));
+  test::expect_bad_input([&] { read_mesh(hdf5); }, {"air.nc.gz: ", "unpack it with gunzip"});
 }
 
 TEST(NetcdfGrids, KnowTimeByItsNameToo) {
