@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "apps/argument_values.hpp"
+#include "apps/progress.hpp"
 #include "apps/report.hpp"
 #include "datasets/arrays.hpp"
 #include "datasets/modify.hpp"
@@ -47,7 +48,7 @@ void convert_mesh(const std::filesystem::path& input, const std::filesystem::pat
                   int subdivide, const std::optional<ConvertPieces>& pieces, bool quiet) {
   check_mesh_output(output, input, pieces ? std::optional(pieces->count) : std::nullopt);
   options.keep_corners = true;
-  const Dataset data = Dataset::open(input, options);
+  const Dataset data = open_watched(input, options, quiet);
   MeshArrays mesh = data.mesh_arrays();
   for (int time = 0; time < subdivide; ++time)
     mesh = datasets::arrays_of(datasets::subdivided(datasets::mesh_of(mesh)));
@@ -68,7 +69,7 @@ void convert_grid(const std::filesystem::path& input, const std::filesystem::pat
     throw bad_input(fmt::format("{}: '{}' is no volume format to write; choose .vti, .vtr, .nrrd, .raw or .bricks",
                                 output.string(), output.extension().string()));
   check_output(output, input);
-  const Dataset data = Dataset::open(input, options);
+  const Dataset data = open_watched(input, options, quiet);
   write_grid(data, output, block);
   if (quiet) return;
   const GridGeometry& g = data.grid_geometry();

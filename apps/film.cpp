@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "apps/progress.hpp"
 #include "apps/report.hpp"
 #include "apps/run_output.hpp"
 #include "apps/setting_words.hpp"
@@ -130,7 +131,10 @@ class Film final : public Sink {
     frame.require_still_there();
     session_.reset();  // the last step's memory before the next one's
     data_.reset();
-    data_.emplace(Dataset::open(frame.data.files, read, job_.communicator(), settings_.ranks));
+    ReadingLine line(options_.progress && writes_, frame.data.files.front());
+    ReadOptions watched = read;
+    watched.progress = line.listener();
+    data_.emplace(Dataset::open(frame.data.files, watched, job_.communicator(), settings_.ranks));
     step_ = frame.step;
   }
 

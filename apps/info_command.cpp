@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "apps/progress.hpp"
 #include "apps/report.hpp"
 
 namespace tessera::apps {
@@ -89,7 +90,7 @@ void print_check(const MeshCheck& check) {
 }  // namespace
 
 void info(const std::filesystem::path& input, const ReadOptions& options, bool as_json, bool check) {
-  const Dataset data = Dataset::open(input, options);
+  const Dataset data = open_watched(input, options, false);
   std::optional<MeshCheck> checked;
   if (check) checked = data.check();
   const analysis::Description description = described(data);

@@ -1,7 +1,16 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <cstddef>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "tessera/dataset.hpp"
+#include "tessera/read_progress.hpp"
 
 namespace tessera::apps {
 
@@ -24,5 +33,36 @@ class Progress {
   std::size_t frames_;
   std::chrono::steady_clock::time_point start_;
 };
+
+/// A line on stderr that says that a file is being read, since when, and how far that is where it is known. It comes
+/// after a second, for most files never, is rewritten in place by a thread of its own, and is gone at the end.
+class ReadingLine {
+ public:
+  /// Shows nothing unless `shown`.
+  ReadingLine(bool shown, const std::filesystem::path& file);
+  ~ReadingLine();
+  ReadingLine(const ReadingLine&) = delete;
+  ReadingLine& operator=(const ReadingLine&) = delete;
+
+  /// For ReadOptions::progress, while this lives; null unless it is shown.
+  [[nodiscard]] ReadProgressFunction listener();
+
+ private:
+  void show_until_stopped();
+
+  std::string file_;
+  std::chrono::steady_clock::time_point start_;
+  std::mutex mutex_;
+  std::condition_variable stopped_;
+  bool stop_ = false;
+  std::optional<ReadProgress> progress_;
+  std::thread thread_;
+};
+
+/// Opens a file with such a line, if stderr is a terminal and not to be `quiet`.
+Dataset open_watched(const std::filesystem::path& file, ReadOptions options, bool quiet);
+
+/// What the line says after `seconds`; nothing is known of how far it is without `progress`.
+std::string reading_words(const std::string& file, const std::optional<ReadProgress>& progress, double seconds);
 
 }  // namespace tessera::apps

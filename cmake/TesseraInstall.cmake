@@ -23,7 +23,7 @@ endif()
 
 # What there is, in the words of find_package(tessera COMPONENTS ...).
 set(tessera_components)
-foreach(part shared static vtk mpi gl cairo tetgen gmsh dicom apps)
+foreach(part shared static vtk mpi gl cairo tetgen gmsh dicom minc xdmf med apps)
   string(TOUPPER TESSERA_${part} option)
   if(${option})
     list(APPEND tessera_components ${part})

@@ -26,7 +26,7 @@ namespace tessera {
 namespace {
 
 io::VolumeOptions volume_options(const ReadOptions& o) {
-  return {o.field, o.dims, o.type, o.spacing, o.origin, o.big_endian, o.skip, o.time_step};
+  return {o.field, o.dims, o.type, o.spacing, o.origin, o.big_endian, o.skip, o.time_step, o.progress};
 }
 
 void check_grid_options(const std::filesystem::path& file, const ReadOptions& options) {
@@ -139,7 +139,8 @@ io::MeshOptions mesh_options(const ReadOptions& o) {
           o.threads,
           o.blocks,
           o.higher_order_tolerance,
-          o.higher_order_tets};
+          o.higher_order_tets,
+          o.progress};
 }
 
 }  // namespace frame
@@ -215,6 +216,7 @@ Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOp
     state->files.assign(files.begin(), files.end());
     state->options = options;
     state->options.trace = nullptr;  // which need not live as long
+    state->options.progress = nullptr;
     return Dataset(std::move(state));
   });
 }

@@ -134,6 +134,14 @@ bool begins_as_exodus(const FileBeginning& file) {
   return file.text.starts_with("CDF") &&
          (file.text.find("num_nodes") != std::string_view::npos || file.text.find("num_dim") != std::string_view::npos);
 }
+bool begins_as_minc(const FileBeginning& file) {
+  return file.text.starts_with("CDF") && file.text.find("xspace") != std::string_view::npos &&
+         file.text.find("yspace") != std::string_view::npos && file.text.find("zspace") != std::string_view::npos;
+}
+bool begins_as_netcdf(const FileBeginning& file) {
+  return (file.text.starts_with("CDF\1") || file.text.starts_with("CDF\2") || file.text.starts_with("CDF\5")) &&
+         !begins_as_exodus(file) && !begins_as_minc(file);
+}
 bool begins_as_hdf5(const FileBeginning& file) { return file.text.starts_with("\x89HDF\r\n\x1a\n"); }
 /// Four bytes before it are "@(#)" with the highest bit of some set.
 bool begins_as_adf(const FileBeginning& file) {

@@ -26,6 +26,8 @@ bool begins_as_other_vtk_xml(const FileBeginning& file);
 bool begins_as_legacy_mesh(const FileBeginning& file);
 bool begins_as_legacy_grid(const FileBeginning& file);
 bool begins_as_exodus(const FileBeginning& file);
+bool begins_as_minc(const FileBeginning& file);
+bool begins_as_netcdf(const FileBeginning& file);
 bool begins_as_hdf5(const FileBeginning& file);
 bool begins_as_adf(const FileBeginning& file);
 bool begins_as_openfoam(const FileBeginning& file);

@@ -16,6 +16,8 @@ const char* left_out(Needs needs) {
   if (vtk && !has_vtk()) return "VTK";
   if (needs == Needs::gmsh && !has_gmsh()) return "Gmsh";
   if (needs == Needs::dicom && !has_dicom()) return "GDCM";
+  if (needs == Needs::xdmf && !has_xdmf()) return "Xdmf";
+  if (needs == Needs::med && !has_med()) return "MED";
   return tetgen && !can_fill_surfaces() ? "TetGen" : "";
 }
 

@@ -47,7 +47,11 @@ constexpr std::array rows = {
               true},
     FormatRow{FileKind::solver, "VTKHDF", ".vtkhdf", FileHolds::mesh, Needs::vtk,
               "unstructured grids; image data as hexahedra; one time", nullptr, "vtk_hdf", true},
-    FormatRow{FileKind::hdf5, "HDF5", "", FileHolds::mesh, Needs::vtk, "", begins_as_hdf5, "", true, unlisted},
+    FormatRow{FileKind::med, "MED", ".med .rmed", FileHolds::mesh, Needs::med,
+              "Salome's, of version 3 and later; HDF5, by its name; fields of nodes and cells", nullptr, "med", true},
+    FormatRow{FileKind::xdmf, "XDMF", ".xdmf .xmf", FileHolds::grid_or_mesh, Needs::xdmf,
+              "one grid is a volume, others are meshes; HDF5, binary or inline numbers", begins_as_xdmf, "xdmf", true},
+    FormatRow{FileKind::hdf5, "HDF5", "", FileHolds::grid_or_mesh, Needs::vtk, "", begins_as_hdf5, "", true, unlisted},
     FormatRow{FileKind::solver, "Fluent", ".cas", FileHolds::mesh, Needs::vtk,
               "text or binary, no HDF5; values from the .dat beside it", begins_as_fluent, "fluent", true},
     FormatRow{FileKind::solver, "GAMBIT", ".neu", FileHolds::mesh, Needs::vtk, "", begins_as_gambit, "gambit", true},
@@ -83,6 +87,11 @@ constexpr std::array rows = {
               begins_as_vtr},
     FormatRow{FileKind::vtk_grid, "legacy VTK structured points or rectilinear grid", ".vtk", FileHolds::grid_or_mesh,
               Needs::vtk, "text or binary", begins_as_legacy_grid},
+    FormatRow{FileKind::netcdf, "NetCDF grid", ".nc .nc4 .cdf", FileHolds::grid_or_mesh, Needs::vtk,
+              "CF conventions or plain; curvilinear ones are meshes; missing values blank", begins_as_netcdf, "netcdf",
+              true},
+    FormatRow{FileKind::minc, "MINC", ".mnc", FileHolds::grid, Needs::vtk, "MINC 1, and 2 in HDF5; time",
+              begins_as_minc, "minc", true},
     FormatRow{FileKind::meta_image, "MetaImage", ".mhd .mha", FileHolds::grid, Needs::nothing,
               "raw, compressed or text; slices in files; time", begins_as_meta_image, "", true},
     FormatRow{FileKind::nrrd, "NRRD", ".nrrd .nhdr", FileHolds::grid, Needs::nothing,
@@ -101,8 +110,6 @@ constexpr std::array rows = {
               begins_as_pvd},
     FormatRow{FileKind::pvd, "ParaView file series", ".series", FileHolds::series, Needs::nothing,
               "of any meshes or grids", begins_as_file_series},
-    FormatRow{FileKind::unread, "XDMF", ".xdmf .xmf", FileHolds::not_read, Needs::nothing,
-              "VTK's reader is not packaged; save it as .vtu in ParaView", begins_as_xdmf},
     FormatRow{FileKind::unread, "Tecplot binary", ".plt .szplt", FileHolds::not_read, Needs::nothing,
               "its library is not free; write text, CGNS or .vtu", begins_as_binary_tecplot},
     FormatRow{FileKind::unread, "Abaqus or Ansys input", ".cdb", FileHolds::not_read, Needs::nothing,
@@ -115,8 +122,6 @@ constexpr std::array rows = {
               "its library is not packaged; have MFEM write .vtu", begins_as_mfem},
     FormatRow{FileKind::unread, "Netgen", ".vol", FileHolds::not_read, Needs::nothing,
               "VTK has no reader; convert it to .vtu with meshio", begins_as_netgen},
-    FormatRow{FileKind::unread, "MED", ".med .rmed", FileHolds::not_read, Needs::nothing,
-              "VTK has no reader; write .vtu with ParaVis or meshio", nullptr},
 };
 
 /// VTK XML of a kind that no row has: its reader says what it holds.
@@ -182,7 +187,11 @@ const FormatRow* format_begun(const std::filesystem::path& file) {
 
 const FormatRow* format_of(const std::filesystem::path& file) {
   const FormatRow* const begun = format_begun(file);
-  return begun != nullptr ? begun : format_named(file);
+  if (begun == nullptr || begun->kind == FileKind::hdf5) {
+    const FormatRow* const named = format_named(file);
+    if (begun == nullptr || (named != nullptr && named->kind == FileKind::med)) return named;
+  }
+  return begun;
 }
 
 void refuse_as_mesh(const std::filesystem::path& file) {

@@ -17,7 +17,11 @@ enum class FileKind : std::uint8_t {
   amr,         ///< with levels of refinement; FormatRow::reader
   vtk_grid,    ///< image data and rectilinear grids, XML or legacy
   exodus,      ///< NetCDF; in HDF5 see hdf5
-  hdf5,        ///< Exodus, CGNS or VTKHDF: the helper looks
+  hdf5,        ///< Exodus, CGNS, VTKHDF, NetCDF or MINC 2: the helper looks
+  netcdf,      ///< grids; in HDF5 see hdf5
+  minc,        ///< MINC 1
+  xdmf,        ///< grids and meshes
+  med,         ///< by its name: in HDF5, of which the beginning says nothing
   solver,      ///< FormatRow::reader
   gmsh,        ///< what Gmsh's library reads; FormatRow::reader
   su2,
@@ -46,7 +50,7 @@ struct FileBeginning {
   std::uint64_t size = 0;  ///< of the whole; 0 if it is compressed
 };
 
-enum class Needs : std::uint8_t { nothing, vtk, tetgen, vtk_and_tetgen, gmsh, dicom };
+enum class Needs : std::uint8_t { nothing, vtk, tetgen, vtk_and_tetgen, gmsh, dicom, xdmf, med };
 
 /// A row of the one table of formats. What is listed, what a name means and what a beginning means all come from it.
 struct FormatRow {
@@ -64,9 +68,9 @@ struct FormatRow {
 
 std::span<const FormatRow> format_rows();
 
-/// What a file is: by what it begins with; where that tells nothing, or the file is not there, by its name; null if
-/// that tells nothing either. A folder is an OpenFOAM case, an AMReX plot file, of DICOM
-/// files, or nothing.
+/// What a file is: by what it begins with; MED files, which begin as other HDF5, by that and their name; where that
+/// tells nothing, or the file is not there, by its name; null if that tells nothing either. A folder is an OpenFOAM
+/// case, an AMReX plot file, of DICOM files, or nothing.
 const FormatRow* format_of(const std::filesystem::path& file);
 
 /// By what it begins with alone; null if that tells nothing.

@@ -342,6 +342,11 @@ std::vector<std::uint8_t> ghost_bits(const ForeignFile& file, const std::vector<
 }
 
 std::vector<CellBlock> blocks_of(const ForeignFile& file, std::vector<std::string>& notes, GridsAre grids) {
+  std::uint64_t bytes = 0;
+  for (const ForeignPart& part : file.contents.parts)
+    for (const auto* array : {&part.points, &part.types, &part.offsets, &part.connectivity})
+      if (*array) bytes += (*array)->bytes();
+  file.helper->expect(bytes);
   std::vector<CellBlock> blocks;
   std::size_t surfaces = 0;
   for (const ForeignPart& part : file.contents.parts) {

@@ -1,5 +1,5 @@
 // DICOM series, read by a helper of their own.
-#include "io/foreign_grids.hpp"
+#include "io/foreign_mixed.hpp"
 #include "io/volume_formats.hpp"
 
 namespace tessera::io {
@@ -7,11 +7,9 @@ namespace tessera::io {
 bool has_dicom() { return true; }
 
 VolumeFile read_dicom(const std::filesystem::path& file, const VolumeOptions& options) {
-  nlohmann::json request{{"reader", "dicom"}};
-  if (options.time_step) request["time_step"] = *options.time_step;
   HelperTask task;
   task.program = "tessera-read-dicom";
-  return grid_of(open_foreign(std::make_shared<HelperProcess>(std::move(task)), file, std::move(request)), options);
+  return read_foreign_volume(file, {"dicom", std::move(task)}, options);
 }
 
 }  // namespace tessera::io

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/file_beginnings.hpp"
-#include "io/foreign_file.hpp"
+#include "io/foreign_mixed.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/listed_pieces.hpp"
@@ -45,8 +45,10 @@ MeshBlocks named_format(const XmlKind& kind, const std::string& extension) {
 }
 
 /// All of a file that the helper reads in one go.
-MeshBlocks read_foreign(const std::filesystem::path& file, nlohmann::json request) {
-  const ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(), file, std::move(request));
+MeshBlocks read_foreign(const std::filesystem::path& file, nlohmann::json request, const MeshOptions& options) {
+  HelperTask task;
+  task.progress = options.progress;
+  const ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(std::move(task)), file, std::move(request));
   MeshBlocks result;
   result.format = opened.contents.format;
   result.notes = opened.contents.notes;
@@ -68,7 +70,7 @@ MeshBlocks blocks_of_solver(const ForeignFile& opened) {
 
 bool has_vtk() { return true; }
 
-MeshBlocks read_vtk_xml(const std::filesystem::path& file, const BlockChoice& choice) {
+MeshBlocks read_vtk_xml(const std::filesystem::path& file, const MeshOptions& options) {
   const std::string source = file.string(), extension = lower_extension(file), type = xml_type(file);
   const XmlKind* const kind = kind_of(type);
   if (type.empty())
@@ -78,57 +80,57 @@ MeshBlocks read_vtk_xml(const std::filesystem::path& file, const BlockChoice& ch
         "{}: it is a regular grid (image data), no mesh; render, info and convert take it as a volume", source));
   if (lists_pieces(file)) {
     // Pieces one by one, so that the whole reads as its parts do, and faults name the piece.
-    const PieceList list = piece_list(file, choice);
-    return read_pieces(list, 0, list.pieces.size());
+    const PieceList list = piece_list(file, options.blocks);
+    return read_pieces(list, 0, list.pieces.size(), options.progress);
   }
   if (!kind) throw scene::bad_input(fmt::format("{}: its type is '{}'; give a mesh", source, type));
 
   if (type.starts_with('P')) require_beside_others(file);
   MeshBlocks result = named_format(*kind, extension);
-  MeshBlocks read = read_foreign(file, {{"reader", "vtk_xml"}, {"type", type}});
+  MeshBlocks read = read_foreign(file, {{"reader", "vtk_xml"}, {"type", type}}, options);
   add_notes(read.notes, result.notes);
   result.blocks = std::move(read.blocks);
   return result;
 }
 
-MeshBlocks read_vtk_legacy(const std::filesystem::path& file) {
+MeshBlocks read_vtk_legacy(const std::filesystem::path& file, const MeshOptions& options) {
   if (!read_beginning(file, 64).starts_with("# vtk DataFile Version"))
     throw scene::bad_input(fmt::format(
         "{}: it does not begin with '# vtk DataFile Version'; check that it is a legacy VTK file", file.string()));
-  return read_foreign(file, {{"reader", "vtk_legacy"}});
+  return read_foreign(file, {{"reader", "vtk_legacy"}}, options);
 }
 
-MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t> time_step,
-                       const BlockChoice& choice) {
+MeshBlocks read_exodus(const std::filesystem::path& file, const MeshOptions& options) {
   const std::string magic = read_beginning(file, 8);
   if (!magic.starts_with("CDF") && !magic.starts_with("\x89HDF\r\n\x1a\n"))
     throw scene::bad_input(
         fmt::format("{}: it is neither NetCDF nor HDF5; check that it is an Exodus file", file.string()));
-  nlohmann::json request{{"reader", "exodus"}, {"blocks", choice}};
-  if (time_step) request["time_step"] = *time_step;
-  return read_foreign(file, std::move(request));
+  nlohmann::json request{{"reader", "exodus"}, {"blocks", options.blocks}};
+  if (options.time_step) request["time_step"] = *options.time_step;
+  return read_foreign(file, std::move(request), options);
 }
 
-MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader, std::optional<std::size_t> time_step,
-                            const BlockChoice& choice) {
+MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader, const MeshOptions& options) {
   const std::string_view name = reader;
   if (name == "openfoam" || name == "ensight") require_beside_others(file);
-  nlohmann::json request{{"reader", reader}, {"blocks", choice}};
-  if (time_step) request["time_step"] = *time_step;
   HelperTask task;
   if (name == "fluent")  // good ones make it crash
     task.remedy = "it is damaged, or of a kind that VTK's reader does not know: export CGNS or EnSight";
-  return blocks_of_solver(open_foreign(std::make_shared<HelperProcess>(std::move(task)), file, std::move(request)));
+  return read_foreign_mesh(file, {reader, std::move(task)}, options, GridsAre::hexahedra);
 }
 
 MeshBlocks read_hdf5(const std::filesystem::path& file, const MeshOptions& options) {
   nlohmann::json request{{"reader", "hdf5"}, {"blocks", options.blocks}};
   if (options.time_step) request["time_step"] = *options.time_step;
-  ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(), file, std::move(request));
+  if (!options.field.empty()) request["field"] = options.field;
+  HelperTask task;
+  task.progress = options.progress;
+  ForeignFile opened = open_foreign(std::make_shared<HelperProcess>(std::move(task)), file, std::move(request));
   return opened.contents.has_levels ? read_amr(std::move(opened), options) : blocks_of_solver(opened);
 }
 
-MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem::path& q_file) {
+MeshBlocks read_plot3d(const std::filesystem::path& file, const MeshOptions& options) {
+  const std::filesystem::path& q_file = options.plot3d_q;
   const Plot3dLayout layout = detect_plot3d(file);
   const std::filesystem::path q = q_file.empty() ? find_plot3d_solution(file) : q_file;
   std::vector<std::string> notes;
@@ -147,14 +149,16 @@ MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem:
   notes.push_back(fmt::format("PLOT3D: {} grid{}, {}, {}{}", layout.grids.size(), layout.grids.size() == 1 ? "" : "s",
                               stored, layout.iblank ? "IBLANK" : "no IBLANK",
                               q.empty() ? "" : fmt::format(", solution {}", q.filename().string())));
-  MeshBlocks result = read_foreign(file, {{"reader", "plot3d"},
-                                          {"q", q.string()},
-                                          {"text", layout.is_text},
-                                          {"big_endian", layout.big_endian},
-                                          {"record_marks", layout.record_marks},
-                                          {"multi_grid", layout.multi_grid},
-                                          {"double_precision", layout.double_precision},
-                                          {"iblank", layout.iblank}});
+  MeshBlocks result = read_foreign(file,
+                                   {{"reader", "plot3d"},
+                                    {"q", q.string()},
+                                    {"text", layout.is_text},
+                                    {"big_endian", layout.big_endian},
+                                    {"record_marks", layout.record_marks},
+                                    {"multi_grid", layout.multi_grid},
+                                    {"double_precision", layout.double_precision},
+                                    {"iblank", layout.iblank}},
+                                   options);
   result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
   return result;
 }

@@ -3,6 +3,7 @@
 
 #include "io/file_beginnings.hpp"
 #include "io/foreign_grids.hpp"
+#include "io/foreign_mixed.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/volume_formats.hpp"
@@ -14,10 +15,19 @@ VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions&
   if (type.starts_with('P')) require_beside_others(file);
   nlohmann::json request{{"reader", type.empty() ? "vtk_legacy" : "vtk_xml"}};
   if (!type.empty()) request["type"] = type;
-  VolumeFile result = grid_of(open_foreign(std::make_shared<HelperProcess>(), file, std::move(request)), options);
+  HelperTask task;
+  task.progress = options.progress;
+  VolumeFile result =
+      grid_of(open_foreign(std::make_shared<HelperProcess>(std::move(task)), file, std::move(request)), options);
   result.format = fmt::format("{} ({})", type.empty() ? "legacy VTK" : "VTK XML",
                               result.source->geometry().rectilinear() ? "rectilinear grid" : "image data");
   return result;
+}
+
+bool holds_grid_by_vtk(const std::filesystem::path& file, const char* reader) { return holds_one_grid(file, {reader}); }
+
+VolumeFile read_by_vtk(const std::filesystem::path& file, const char* reader, const VolumeOptions& options) {
+  return read_foreign_volume(file, {reader}, options);
 }
 
 }  // namespace tessera::io

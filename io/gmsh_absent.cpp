@@ -8,8 +8,7 @@ namespace tessera::io {
 
 bool has_gmsh() { return false; }
 
-MeshBlocks read_by_gmsh(const std::filesystem::path& file, const char*, std::optional<std::size_t>,
-                        const BlockChoice&) {
+MeshBlocks read_by_gmsh(const std::filesystem::path& file, const char*, const MeshOptions&) {
   const FormatRow* const row = format_of(file);
   throw scene::bad_input(
       fmt::format("{}: {} files need Gmsh's library, which this build leaves out; build with TESSERA_GMSH=ON, or "

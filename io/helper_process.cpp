@@ -125,6 +125,18 @@ HelperDeath death_of(int status, bool known, bool has_begun, const HelperTask& t
   return {bad_input, fmt::format("{}; {}", words, task.remedy)};
 }
 
+/// What a message says of how far the helper is; nothing if it is a reply.
+std::optional<double> progress_of(std::span<const std::uint8_t> message) {
+  constexpr std::size_t longest = 64;
+  if (message.size() > longest) return std::nullopt;
+  const Json json = Json::from_cbor(message, true, false);
+  if (!json.is_object()) return std::nullopt;
+  const auto done = json.find("progress");
+  if (done == json.end() || !done->is_number()) return std::nullopt;
+  const auto number = done->get<double>();
+  return number >= 0 ? std::min(number, 1.0) : 0;  // 0 of a NaN, too
+}
+
 }  // namespace
 
 SharedBytes::SharedBytes(const Descriptor& file, std::uint64_t count) : size_(static_cast<std::size_t>(count)) {
@@ -228,9 +240,13 @@ void HelperProcess::send(const Json& request, const std::string& subject, int fi
 }
 
 HelperMessage HelperProcess::receive(const std::string& subject) {
-  std::optional<HelperMessage> reply = receive_message(socket_.get());
-  if (!reply) report_death(subject);
-  return std::move(*reply);
+  for (;;) {
+    std::optional<HelperMessage> reply = receive_message(socket_.get());
+    if (!reply) report_death(subject);
+    const std::optional<double> done = progress_of(reply->bytes);
+    if (!done) return std::move(*reply);
+    if (task_.progress) task_.progress({ReadProgress::Stage::reading, *done});
+  }
 }
 
 namespace {
@@ -300,6 +316,10 @@ void HelperProcess::stream(const ForeignArray& array, const std::string& subject
       for (std::uint64_t part = 0; part < parts; ++part) {
         await();
         use(window_.bytes().subspan(part % slots * slot_bytes, count_of(part) * tuple));
+        came_ += count_of(part) * tuple;
+        if (task_.progress && expected_ > 0)
+          task_.progress({ReadProgress::Stage::copying,
+                          std::min(static_cast<double>(came_) / static_cast<double>(expected_), 1.0)});
         if (asked < parts) ask();
       }
     } catch (...) {

@@ -14,6 +14,7 @@
 #include "io/foreign_data.hpp"
 #include "io/helper_messages.hpp"
 #include "scene/error.hpp"
+#include "tessera/read_progress.hpp"
 
 namespace tessera::io {
 
@@ -46,6 +47,7 @@ class SharedBytes {
 struct HelperTask {
   std::string words = "reading it", remedy = "the file is damaged, write it anew";
   const char* program = "tessera-read";
+  ReadProgressFunction progress{};  ///< hears how far it is; null: nobody
 };
 
 /// What a helper died of, without the subject.
@@ -84,6 +86,9 @@ class HelperProcess {
   void stream(const ForeignArray& array, const std::string& subject,
               const std::function<void(std::span<const std::byte> tuples)>& use);
 
+  /// How much will come by stream(), for the task's progress.
+  void expect(std::uint64_t bytes) { expected_ = bytes, came_ = 0; }
+
   /// Has the helper forget arrays that nobody will ask for. Throws nothing.
   void drop(std::span<const std::uint64_t> arrays) noexcept;
 
@@ -101,9 +106,10 @@ class HelperProcess {
   std::mutex mutex_;
   int process_ = -1;
   Descriptor socket_;
-  SharedBytes window_;                ///< of slots for stream(); empty until it is needed
-  bool has_begun_ = false;            ///< it has said that it is there
-  std::optional<HelperDeath> death_;  ///< once it is dead
+  SharedBytes window_;                     ///< of slots for stream(); empty until it is needed
+  std::uint64_t expected_ = 0, came_ = 0;  ///< bytes of stream()
+  bool has_begun_ = false;                 ///< it has said that it is there
+  std::optional<HelperDeath> death_;       ///< once it is dead
 };
 
 }  // namespace tessera::io

@@ -57,6 +57,12 @@ bool is_inflated(const std::filesystem::path& file) {
   return name.starts_with("/proc/") && file.parent_path().filename() == "fd";
 }
 
+void require_real_name(const std::filesystem::path& file) {
+  if (is_inflated(file))
+    throw scene::bad_input(
+        fmt::format("{}: HDF5's library opens no file within a gzip file; unpack it with gunzip", file.string()));
+}
+
 void require_beside_others(const std::filesystem::path& file) {
   if (is_inflated(file))
     throw scene::bad_input(

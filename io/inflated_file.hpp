@@ -43,6 +43,9 @@ class InflatedFile {
 /// Whether a name is one that InflatedFile gave, beside which nothing lies.
 bool is_inflated(const std::filesystem::path& file);
 
+/// For HDF5, whose library opens files by real names only: throws Error(bad_input) for one that was in a gzip file.
+void require_real_name(const std::filesystem::path& file);
+
 /// For files that others lie beside: throws Error(bad_input) for one that was in a gzip file.
 void require_beside_others(const std::filesystem::path& file);
 

@@ -121,7 +121,8 @@ PieceList piece_list(const std::filesystem::path& file, const BlockChoice& choic
   return list;
 }
 
-MeshBlocks read_pieces(const PieceList& list, std::size_t first, std::size_t last) {
+MeshBlocks read_pieces(const PieceList& list, std::size_t first, std::size_t last,
+                       const ReadProgressFunction& progress) {
   MeshBlocks result{{}, list.notes, list.format, list.block_names};
   std::shared_ptr<HelperProcess> helper;
   for (std::size_t k = first; k < last; ++k) {
@@ -139,6 +140,8 @@ MeshBlocks read_pieces(const PieceList& list, std::size_t first, std::size_t las
       if (of_whole) block.source = piece.file.string();
       result.blocks.push_back(std::move(block));
     }
+    if (progress)
+      progress({ReadProgress::Stage::reading, static_cast<double>(k + 1 - first) / static_cast<double>(last - first)});
   }
   return result;
 }

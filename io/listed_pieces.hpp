@@ -33,6 +33,7 @@ PieceList piece_list(const std::filesystem::path& file, const BlockChoice& choic
 
 /// Pieces [first, last) of a list, those of a whole a block each, whose `source` is the piece's file; regular grids as
 /// hexahedra. Throws Error(bad_input) that names the piece at fault.
-MeshBlocks read_pieces(const PieceList& list, std::size_t first, std::size_t last);
+MeshBlocks read_pieces(const PieceList& list, std::size_t first, std::size_t last,
+                       const ReadProgressFunction& progress = {});
 
 }  // namespace tessera::io

@@ -34,31 +34,37 @@ bool has_vtk();
 
 /// VTK's XML files: .vtu .pvtu .vts .pvts .vtr .pvtr, and lists of them (.vtm .vtpc). The pieces of a .pvtu are a block
 /// each, their points not merged.
-MeshBlocks read_vtk_xml(const std::filesystem::path& file, const BlockChoice& choice = {});
+MeshBlocks read_vtk_xml(const std::filesystem::path& file, const MeshOptions& options);
 
 /// The tets of a .tets file, or a range of them, with their field "scalar".
 MeshBlocks blocks_of_tets(scene::TetMesh mesh);
 
 /// Legacy .vtk: unstructured, structured and rectilinear grids, ASCII or binary, all their arrays.
-MeshBlocks read_vtk_legacy(const std::filesystem::path& file);
+MeshBlocks read_vtk_legacy(const std::filesystem::path& file, const MeshOptions& options);
 
 /// Exodus II: all element blocks, nodal and element variables at one time step (default the last). Nodes are moved by
 /// the file's displacements, if it has some, as ParaView does. Variables NAME_x NAME_y NAME_z become one vector NAME.
-MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t> time_step,
-                       const BlockChoice& choice = {});
+MeshBlocks read_exodus(const std::filesystem::path& file, const MeshOptions& options);
 
 /// A file of a solver, by the name of a reader in helper/main.cpp: all blocks, all arrays, one time step, by default
-/// the last.
-MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader, std::optional<std::size_t> time_step,
-                            const BlockChoice& choice = {});
+/// the last. Grids become hexahedra.
+MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader, const MeshOptions& options);
 
 /// Whether this build has Gmsh's library (CMake option TESSERA_GMSH), in a helper program of its own.
 bool has_gmsh();
 
 /// What Gmsh's library reads, by the name of a reader in helper/gmsh_main.cpp: a block a physical group, one time step,
 /// by default the last. Without the library throws Error(bad_input).
-MeshBlocks read_by_gmsh(const std::filesystem::path& file, const char* reader, std::optional<std::size_t> time_step,
-                        const BlockChoice& choice = {});
+MeshBlocks read_by_gmsh(const std::filesystem::path& file, const char* reader, const MeshOptions& options);
+
+/// XDMF by its library (has_xdmf()): a block a grid, all attributes of nodes and cells, one time step, by default the
+/// last. Without the library throws Error(bad_input).
+MeshBlocks read_xdmf_mesh(const std::filesystem::path& file, const MeshOptions& options);
+
+/// Whether this build has MED's library (CMake option TESSERA_MED), in a helper program of its own; and what it reads:
+/// a block a mesh, fields of nodes and cells, one time step, by default the last.
+bool has_med();
+MeshBlocks read_med(const std::filesystem::path& file, const MeshOptions& options);
 
 /// Meshes with levels of refinement, by the name of a reader in helper/main.cpp, or "amr_list", VTK's lists of blocks.
 /// Cells that finer ones cover are left out; the chosen field alone is read. Cell data are voxels; point data and
@@ -71,9 +77,9 @@ MeshBlocks read_amr(ForeignFile blocks, const MeshOptions& options);
 /// HDF5, by what is in it.
 MeshBlocks read_hdf5(const std::filesystem::path& file, const MeshOptions& options);
 
-/// PLOT3D grid and solution; the binary layout is found from the file's size. `q_file` may be empty: then it is looked
-/// for beside the grid by its name, and if there is none the mesh has no field. IBLANK 0 hides a point's cells.
-MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem::path& q_file);
+/// PLOT3D grid and solution; the binary layout is found from the file's size. `plot3d_q` may be empty: then it is
+/// looked for beside the grid by its name, and if there is none the mesh has no field. IBLANK 0 hides a point's cells.
+MeshBlocks read_plot3d(const std::filesystem::path& file, const MeshOptions& options);
 
 /// A surface (.stl .vtp .ply .poly .smesh) filled by TetGen with tets of at most `max_volume`, or of a 30,000th of what
 /// it encloses. Point fields: "depth", the distance to the surface in world units, after the file's own attributes.

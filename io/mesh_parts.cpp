@@ -79,7 +79,7 @@ struct MeshPartReading::State {
   void read_listed(int part, int parts) {
     const PieceList list = piece_list(file, options.blocks);
     blocks = read_pieces(list, first_of_part(list.pieces.size(), part, parts),
-                         first_of_part(list.pieces.size(), part + 1, parts));
+                         first_of_part(list.pieces.size(), part + 1, parts), options.progress);
     blocks.block_names = distinct_names(std::move(blocks.block_names));
     require_blocks(options.blocks, blocks.block_names, file.string());
     if (list.pieces.size() == 1 && blocks.block_names.size() <= 1)  // as read_mesh calls it

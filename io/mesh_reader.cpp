@@ -29,24 +29,30 @@ bool has_time_steps(const std::filesystem::path& file) {
 MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row, const MeshOptions& options) {
   switch (row.kind) {
     case FileKind::vtk_xml:
-      return read_vtk_xml(file, options.blocks);
+      return read_vtk_xml(file, options);
     case FileKind::vtk_legacy:
-      return read_vtk_legacy(file);
+      return read_vtk_legacy(file, options);
     case FileKind::vtk_grid:
       if (row.holds == FileHolds::grid) refuse_as_mesh(file);
-      return read_beginning(file, 8).starts_with("# vtk") ? read_vtk_legacy(file) : read_vtk_xml(file);
+      return read_beginning(file, 8).starts_with("# vtk") ? read_vtk_legacy(file, options)
+                                                          : read_vtk_xml(file, options);
     case FileKind::exodus:
-      return read_exodus(file, options.time_step, options.blocks);
+      return read_exodus(file, options);
     case FileKind::hdf5:
       return read_hdf5(file, options);
+    case FileKind::netcdf:
     case FileKind::solver:
-      return read_solver_file(file, row.reader, options.time_step, options.blocks);
+      return read_solver_file(file, row.reader, options);
     case FileKind::gmsh:
-      return read_by_gmsh(file, row.reader, options.time_step, options.blocks);
+      return read_by_gmsh(file, row.reader, options);
+    case FileKind::xdmf:
+      return read_xdmf_mesh(file, options);
+    case FileKind::med:
+      return read_med(file, options);
     case FileKind::su2:
       return {parse_su2(MappedFile(file).text(), file.string()), {}, "SU2"};
     case FileKind::plot3d:
-      return read_plot3d(file, options.plot3d_q);
+      return read_plot3d(file, options);
     case FileKind::tetgen_mesh:
       return read_node_ele(file);
     case FileKind::stl:

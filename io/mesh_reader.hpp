@@ -10,6 +10,7 @@
 
 #include "scene/tet_mesh.hpp"
 #include "tessera/field_info.hpp"
+#include "tessera/read_progress.hpp"
 
 namespace tessera::io {
 
@@ -30,6 +31,7 @@ struct MeshOptions {
   /// corners.
   double higher_order_tolerance = 1e-5;
   std::uint64_t higher_order_tets = std::uint64_t{1} << 23;
+  ReadProgressFunction progress{};  ///< null: nobody hears
 };
 
 using tessera::HigherOrderCells;

@@ -21,7 +21,7 @@ namespace tessera::io {
 namespace {
 
 /// What kind of volume a file begins as.
-enum class VolumeKind { none, vtk, meta_image, nrrd, nifti, analyze, dicom, bricks };
+enum class VolumeKind { none, vtk, netcdf, hdf5, minc, xdmf, meta_image, nrrd, nifti, analyze, dicom, bricks };
 
 /// Of NIfTI files gzip is a part of the format, so that they are inflated as they are read; others are inflated first.
 VolumeKind volume_kind_of(const std::filesystem::path& file) {
@@ -31,6 +31,14 @@ VolumeKind volume_kind_of(const std::filesystem::path& file) {
       return VolumeKind::bricks;
     case FileKind::vtk_grid:
       return VolumeKind::vtk;
+    case FileKind::netcdf:
+      return VolumeKind::netcdf;
+    case FileKind::hdf5:
+      return VolumeKind::hdf5;
+    case FileKind::minc:
+      return VolumeKind::minc;
+    case FileKind::xdmf:
+      return VolumeKind::xdmf;
     case FileKind::nrrd:
       return VolumeKind::nrrd;
     case FileKind::meta_image:
@@ -46,8 +54,12 @@ VolumeKind volume_kind_of(const std::filesystem::path& file) {
   }
 }
 
-bool holds_grid(const FormatRow* row) {
-  return row != nullptr && (row->holds == FileHolds::grid || row->holds == FileHolds::grid_or_mesh);
+/// NetCDF, HDF5 and XDMF hold all kinds of things.
+bool holds_grid(const std::filesystem::path& file, const FormatRow& row) {
+  if (row.kind == FileKind::netcdf) return holds_grid_by_vtk(file, "netcdf");
+  if (row.kind == FileKind::hdf5) return holds_grid_by_vtk(file, "hdf5");
+  if (row.kind == FileKind::xdmf) return holds_xdmf_grid(file);
+  return row.holds == FileHolds::grid || row.holds == FileHolds::grid_or_mesh;
 }
 
 /// The name that counts where the beginning says nothing: x.raw of x.raw.gz.
@@ -140,6 +152,14 @@ VolumeFile open_described(const std::filesystem::path& file, VolumeKind kind, co
     case VolumeKind::bricks:
       require_no_time_step(options.time_step, source);
       return open_bricks(file, options);
+    case VolumeKind::netcdf:
+      return read_by_vtk(file, "netcdf", options);
+    case VolumeKind::hdf5:
+      return read_by_vtk(file, "hdf5", options);
+    case VolumeKind::minc:
+      return read_by_vtk(file, "minc", options);
+    case VolumeKind::xdmf:
+      return read_xdmf_grid(file, options);
     case VolumeKind::meta_image:
       return open_stored(read_meta_image_header(file), options, source);
     case VolumeKind::nrrd:
@@ -187,7 +207,8 @@ void set_axes(scene::GridGeometry& geometry, const std::array<glm::dvec3, 3>& st
 bool is_volume(const std::filesystem::path& file) {
   std::error_code unknown;
   if (lower_extension(without_gz(file)) == ".raw" && !std::filesystem::is_directory(file, unknown)) return true;
-  return holds_grid(format_of(file));
+  const FormatRow* const row = format_of(file);
+  return row != nullptr && holds_grid(file, *row);
 }
 
 void require_volume(const std::filesystem::path& file) {

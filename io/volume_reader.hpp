@@ -23,6 +23,7 @@ struct VolumeOptions {
   bool big_endian = false;
   std::uint64_t skip = 0;                  ///< bytes before the first sample
   std::optional<std::size_t> time_step{};  ///< as MeshOptions::time_step
+  ReadProgressFunction progress{};         ///< null: nobody hears
 
   /// Whether one of the .raw options is given.
   [[nodiscard]] bool describes_raw() const { return dims || type || spacing || origin || big_endian || skip > 0; }
@@ -38,7 +39,8 @@ struct VolumeFile {
 };
 
 /// Whether the file is a regular or rectilinear grid: by what it begins with, so that a .vtk may be a mesh or a volume
-/// and a name may be wrong; by its name where it is not there or is .raw.
+/// and a name may be wrong; by its name where it is not there or is .raw. Of NetCDF, HDF5 and XDMF a helper looks,
+/// which takes some hundredths of a second.
 bool is_volume(const std::filesystem::path& file);
 
 /// Throws Error(bad_input) if the file is not there, or is a mesh. Does not read its samples.
@@ -57,6 +59,8 @@ void require_volume(const std::filesystem::path& file);
 ///       intercept apply. Analyze 7.5 (.hdr and .img): spacing alone, for it says nothing else reliably.
 ///   DICOM, a folder, one of its files or frames in one: by GDCM, all of it in memory. Position, orientation, spacing,
 ///       rescale; the slices of one series by their places. Uneven ones are a rectilinear grid.
+///   NetCDF of three dimensions beside time, MINC 1 and 2, XDMF of one regular or rectilinear grid: by their libraries,
+///       all of it in memory. Whether NetCDF, HDF5 and XDMF files are volumes, they tell.
 ///   .raw: described by the options or by its name, mapped. .bricks: what write_bricks made, read brick by brick.
 ///   A gzip file of any of these is inflated into memory first, whatever its name.
 ///

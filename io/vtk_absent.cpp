@@ -24,27 +24,24 @@ namespace {
 
 bool has_vtk() { return false; }
 
-MeshBlocks read_vtk_xml(const std::filesystem::path& file, const BlockChoice&) { refuse(file); }
-MeshBlocks read_vtk_legacy(const std::filesystem::path& file) { refuse(file); }
-MeshBlocks read_exodus(const std::filesystem::path& file, std::optional<std::size_t>, const BlockChoice&) {
-  refuse(file);
-}
-MeshBlocks read_solver_file(const std::filesystem::path& file, const char*, std::optional<std::size_t>,
-                            const BlockChoice&) {
-  refuse(file);
-}
+MeshBlocks read_vtk_xml(const std::filesystem::path& file, const MeshOptions&) { refuse(file); }
+MeshBlocks read_vtk_legacy(const std::filesystem::path& file, const MeshOptions&) { refuse(file); }
+MeshBlocks read_exodus(const std::filesystem::path& file, const MeshOptions&) { refuse(file); }
+MeshBlocks read_solver_file(const std::filesystem::path& file, const char*, const MeshOptions&) { refuse(file); }
+MeshBlocks read_plot3d(const std::filesystem::path& file, const MeshOptions&) { refuse(file); }
 OpenedAmr open_amr_list(const std::filesystem::path& file) { refuse(file); }
 OpenedAmr open_hyper_trees(const std::filesystem::path& file) { refuse(file); }
 OpenedAmr open_amr_by(const char*, const std::filesystem::path& file) { refuse(file); }
 MeshBlocks read_hdf5(const std::filesystem::path& file, const MeshOptions&) { refuse(file); }
-MeshBlocks read_plot3d(const std::filesystem::path& file, const std::filesystem::path&) { refuse(file); }
 VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions&) { refuse(file); }
+bool holds_grid_by_vtk(const std::filesystem::path&, const char*) { return false; }
+VolumeFile read_by_vtk(const std::filesystem::path& file, const char*, const VolumeOptions&) { refuse(file); }
 Surface read_stl(const std::string& source) { refuse(source); }
 VtkSurface read_vtk_surface(const std::string& source) { refuse(source); }
 
 // Read whole, by read_vtk_xml().
 bool lists_pieces(const std::filesystem::path&) { return false; }
 PieceList piece_list(const std::filesystem::path& file, const BlockChoice&) { refuse(file); }
-MeshBlocks read_pieces(const PieceList&, std::size_t, std::size_t) { return {}; }
+MeshBlocks read_pieces(const PieceList&, std::size_t, std::size_t, const ReadProgressFunction&) { return {}; }
 
 }  // namespace tessera::io

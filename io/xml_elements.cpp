@@ -18,6 +18,7 @@ namespace {
 struct Walk {
   XML_Parser parser;
   const std::function<void(const XmlElement&)>& visit;
+  const std::function<void(std::string_view)>& visit_text;
   std::vector<std::string> parents{};
   std::exception_ptr fault{};
 };
@@ -42,6 +43,17 @@ void XMLCALL on_end(void* user, const XML_Char* /*name*/) {
   if (!walk.fault) walk.parents.pop_back();
 }
 
+void XMLCALL on_text(void* user, const XML_Char* text, int length) {
+  Walk& walk = *static_cast<Walk*>(user);
+  if (walk.fault) return;
+  try {
+    walk.visit_text({text, static_cast<std::size_t>(length)});
+  } catch (...) {
+    walk.fault = std::current_exception();
+    XML_StopParser(walk.parser, XML_FALSE);
+  }
+}
+
 }  // namespace
 
 const std::string* XmlElement::find(const std::string& attribute) const {
@@ -50,12 +62,14 @@ const std::string* XmlElement::find(const std::string& attribute) const {
 }
 
 void each_xml_element(std::string_view text, const std::string& source,
-                      const std::function<void(const XmlElement&)>& visit) {
+                      const std::function<void(const XmlElement&)>& visit,
+                      const std::function<void(std::string_view)>& visit_text) {
   const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr), &XML_ParserFree);
   if (!parser) throw std::bad_alloc();
-  Walk walk{parser.get(), visit};
+  Walk walk{parser.get(), visit, visit_text};
   XML_SetUserData(parser.get(), &walk);
   XML_SetElementHandler(parser.get(), on_start, on_end);
+  if (visit_text) XML_SetCharacterDataHandler(parser.get(), on_text);
   constexpr std::size_t chunk = 1 << 20;  // expat counts in int
   for (std::size_t at = 0;; at += chunk) {
     const std::string_view part = text.substr(std::min(at, text.size()), chunk);

@@ -19,9 +19,11 @@ struct XmlElement {
 };
 
 /// Calls `visit` for each element of a small XML text (a list of files, not a mesh), in its order. Errors that `visit`
-/// throws come out of here. Throws Error(bad_input, "SOURCE: line N: ...") if the text is not well formed.
+/// throws come out of here. Throws Error(bad_input, "SOURCE: line N: ...") if the text is not well formed. What stands
+/// between tags goes to `visit_text`, if it is given, in pieces that may be cut anywhere.
 void each_xml_element(std::string_view text, const std::string& source,
-                      const std::function<void(const XmlElement&)>& visit);
+                      const std::function<void(const XmlElement&)>& visit,
+                      const std::function<void(std::string_view)>& visit_text = nullptr);
 
 /// Text as the value of an attribute in double quotes.
 std::string xml_escaped(std::string_view text);

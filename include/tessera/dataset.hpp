@@ -17,6 +17,7 @@
 #include "tessera/field_info.hpp"
 #include "tessera/grid.hpp"
 #include "tessera/mesh_check.hpp"
+#include "tessera/read_progress.hpp"
 #include "tessera/sample_source.hpp"
 #include "tessera/settings.hpp"
 #include "tessera/transfer_function.hpp"
@@ -59,7 +60,8 @@ struct ReadOptions {
   bool grid_as_mesh = false;
   /// Meshes: tets keep their corners' order, for who writes them again. A session then keeps a copy, 16 bytes a tet.
   bool keep_corners = false;
-  Trace* trace = nullptr;  ///< where the time of reading goes; null: nowhere
+  Trace* trace = nullptr;           ///< where the time of reading goes; null: nowhere
+  ReadProgressFunction progress{};  ///< hears how far it is; null: nobody
 };
 
 /// A mesh in the caller's arrays.

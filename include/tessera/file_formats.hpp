@@ -13,7 +13,8 @@ enum class FileHolds : std::uint8_t {
   mesh,
   surface,       ///< closed: it is filled with tets
   grid,          ///< regular or rectilinear: a volume
-  grid_or_mesh,  ///< a grid, which Dataset::open gives as a mesh if asked (ReadOptions::grid_as_mesh)
+  grid_or_mesh,  ///< a grid, which Dataset::open gives as a mesh if asked (ReadOptions::grid_as_mesh); of some formats
+                 ///< (NetCDF, XDMF) either by what is in the file
   series,        ///< a list of files, one a time step (tessera/time_series.hpp)
   not_read       ///< known, so that it can be refused by its name
 };

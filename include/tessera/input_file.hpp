@@ -11,7 +11,7 @@
 namespace tessera {
 
 /// Whether Dataset::open would make a grid of it: by what it begins with, so that a .vtk may be a mesh or a grid and a
-/// name may be wrong; by its name where it is not there or is .raw.
+/// name may be wrong; by its name where it is not there or is .raw. NetCDF, HDF5 and XDMF files are looked into.
 TESSERA_EXPORT bool opens_as_grid(const std::filesystem::path& file, const ReadOptions& options = {});
 
 /// Whether it can be opened as a mesh: by what it begins with, by its name where that says nothing or it is not there.

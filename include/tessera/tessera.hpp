@@ -16,6 +16,7 @@
 #include "tessera/job.hpp"
 #include "tessera/mesh_check.hpp"
 #include "tessera/output_file.hpp"
+#include "tessera/read_progress.hpp"
 #include "tessera/reference.hpp"
 #include "tessera/sample_source.hpp"
 #include "tessera/session.hpp"

@@ -69,6 +69,7 @@ std::vector<DicomSlice> slices_in(const std::filesystem::path& folder, std::vect
 ForeignArray hold_samples(Holdings& holdings, const DicomVolume& volume) {
   std::vector<double> values;
   for (const DicomSlice& slice : volume.slices) {
+    report_progress(static_cast<double>(&slice - volume.slices.data()) / static_cast<double>(volume.slices.size()));
     const std::vector<double> part = read_dicom_samples(slice);
     values.insert(values.end(), part.begin(), part.end());
   }

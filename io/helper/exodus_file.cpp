@@ -14,6 +14,7 @@
 #include "io/helper/exodus_faces.hpp"
 #include "io/helper/netcdf_size.hpp"
 #include "io/helper/readers.hpp"
+#include "io/helper/serve.hpp"
 #include "io/input_file.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/tuple_length.hpp"
@@ -284,6 +285,8 @@ class Reading {
     }
     for (std::size_t c = 0; c < count; ++c) block_.offsets.push_back(block_.offsets.back() + nodes);
     if (type == 42) faces_.add(id, info, init_.num_nodes, block_);
+    report_progress(static_cast<double>(block_.types.size()) /
+                    static_cast<double>(std::max<std::int64_t>(init_.num_elem, 1)));
   }
 
   void read_points() {

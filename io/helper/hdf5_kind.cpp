@@ -1,10 +1,12 @@
 // HDF5 says nothing at its beginning of what is in it.
 #include <fmt/format.h>
 #include <hdf5.h>
+#include <vtk_netcdf.h>
 
 #include <nlohmann/json.hpp>
 
 #include "io/helper/readers.hpp"
+#include "io/inflated_file.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
 
@@ -62,9 +64,18 @@ class Hdf5File {
   hid_t id_ = H5I_INVALID_HID;
 };
 
+/// NetCDF-4, or other HDF5 that its library takes for such.
+bool opens_as_netcdf(const std::filesystem::path& file) {
+  int id = 0;
+  if (nc_open(file.c_str(), NC_NOWRITE, &id) != NC_NOERR) return false;
+  nc_close(id);
+  return true;
+}
+
 }  // namespace
 
 ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  require_real_name(file);
   allow_for(file);
   std::string vtk_type;
   bool has_steps = false;
@@ -94,6 +105,7 @@ ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file,
   const auto refuse = [&](const char* what, const char* remedy) {
     return scene::bad_input(fmt::format("{}: it is HDF5 and holds {}; {}", file.string(), what, remedy));
   };
+  if (request.value("look", false) && kind != Kind::unknown && kind != Kind::minc) return {};  // no grid
   switch (kind) {
     case Kind::vtk:
       if (!vtk_type.empty() && vtk_type != "UnstructuredGrid" && vtk_type != "ImageData")
@@ -111,14 +123,16 @@ ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file,
     case Kind::fluent:
       throw refuse("a Fluent case, which is read as text only", "export CGNS, EnSight or a .cas without HDF5");
     case Kind::minc:
-      throw refuse("a MINC 2 volume, which is not read", "convert it with mnc2nii or minc2nrrd");
+      return read_minc2(holdings, file, request);
     case Kind::med:
-      throw refuse("a MED mesh, which is not read", "write .vtu with ParaVis or meshio");
+      throw refuse("a MED mesh, which is known by its name alone", "have that end in .med");
     case Kind::unknown:
       break;
   }
-  throw refuse("neither Exodus nor CGNS nor FLASH nor VTKHDF",
-               "give the program that wrote it another format to write");
+  if (!opens_as_netcdf(file))
+    throw refuse("neither Exodus nor CGNS nor FLASH nor VTKHDF nor NetCDF",
+                 "give the program that wrote it another format to write");
+  return read_netcdf(holdings, file, request);
 }
 
 }  // namespace tessera::io::helper

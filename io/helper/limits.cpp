@@ -64,6 +64,16 @@ void allow(std::uint64_t size, bool is_compressed) {
 
 void allow_for(const std::filesystem::path& file) { allow(require_file(file), may_be_compressed(file)); }
 
+void allow_for_files(std::span<const std::filesystem::path> files) {
+  std::uint64_t bytes = 0;
+  bool is_compressed = false;
+  for (const std::filesystem::path& file : files) {
+    bytes += require_file(file);
+    is_compressed = is_compressed || may_be_compressed(file);
+  }
+  allow(bytes, is_compressed);
+}
+
 void allow_for_folder(const std::filesystem::path& folder, bool is_compressed) {
   std::uint64_t bytes = 0;
   std::error_code error;

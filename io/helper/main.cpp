@@ -8,12 +8,25 @@ namespace {
 
 constexpr Reader readers[] = {
 #ifdef TESSERA_VTK
-    Reader{"vtk_xml", read_vtk_xml},   Reader{"vtk_legacy", read_vtk_legacy},   Reader{"plot3d", read_plot3d},
-    Reader{"stl", read_stl},           Reader{"vtk_surface", read_vtk_surface}, Reader{"exodus", read_exodus},
-    Reader{"openfoam", read_openfoam}, Reader{"ensight", read_ensight},         Reader{"cgns", read_cgns},
-    Reader{"vtk_hdf", read_vtk_hdf},   Reader{"avs_ucd", read_avs_ucd},         Reader{"fluent", read_fluent},
-    Reader{"gambit", read_gambit},     Reader{"tecplot", read_tecplot},         Reader{"hdf5", read_hdf5},
-    Reader{"enzo", read_enzo},         Reader{"hyper_trees", read_hyper_trees},
+    Reader{"vtk_xml", read_vtk_xml},
+    Reader{"vtk_legacy", read_vtk_legacy},
+    Reader{"plot3d", read_plot3d},
+    Reader{"stl", read_stl},
+    Reader{"vtk_surface", read_vtk_surface},
+    Reader{"exodus", read_exodus},
+    Reader{"openfoam", read_openfoam},
+    Reader{"ensight", read_ensight},
+    Reader{"cgns", read_cgns},
+    Reader{"vtk_hdf", read_vtk_hdf},
+    Reader{"avs_ucd", read_avs_ucd},
+    Reader{"fluent", read_fluent},
+    Reader{"gambit", read_gambit},
+    Reader{"tecplot", read_tecplot},
+    Reader{"hdf5", read_hdf5},
+    Reader{"netcdf", read_netcdf},
+    Reader{"minc", read_minc},
+    Reader{"enzo", read_enzo},
+    Reader{"hyper_trees", read_hyper_trees},
 #endif
 #ifdef TESSERA_TETGEN
     Reader{"fill", fill_surface},

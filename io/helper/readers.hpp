@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 
 #include "io/foreign_data.hpp"
 #include "io/helper/holdings.hpp"
@@ -35,7 +36,19 @@ ForeignContents read_vtk_surface(Holdings& holdings, const std::filesystem::path
 /// vector NAME.
 ForeignContents read_exodus(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
-/// HDF5, by what is in it: Exodus, CGNS, FLASH or VTKHDF.
+/// A grid of NetCDF variables of three dimensions, by the CF conventions where it follows them: rectilinear axes as
+/// they stand (degrees too), else hexahedra. The grid that has `field`, else the one with the most variables;
+/// `time_step` as of Exodus; missing values are NaN. With `look` the kind of grid alone.
+ForeignContents read_netcdf(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+
+/// MINC 1, `time_step` as of Exodus; real values, in the space that the direction cosines give.
+ForeignContents read_minc(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+
+/// The same of MINC 2. Of a build without MINC's library (CMake option TESSERA_MINC) it throws Error(bad_input).
+ForeignContents read_minc2(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
+
+/// HDF5, by what is in it: Exodus, CGNS, FLASH, VTKHDF, or a grid as read_netcdf() and MINC 2. With `look` no more than the
+/// kind of a grid, of others nothing.
 ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
 /// OpenFOAM: the case that a folder is or a file lies in, which may be empty. Put together, or as its processors left
@@ -63,6 +76,9 @@ ForeignContents fill_surface(Holdings& holdings, const std::filesystem::path& fi
 
 /// More memory and time for a file that is about to be read.
 void allow_for(const std::filesystem::path& file);
+
+/// For several, together.
+void allow_for_files(std::span<const std::filesystem::path> files);
 
 /// For all that lies in a folder and below: of formats that are many files.
 void allow_for_folder(const std::filesystem::path& folder, bool is_compressed = false);

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -122,6 +123,16 @@ bool answer(std::span<const Reader> readers, Holdings& holdings, Window& window,
 }
 
 }  // namespace
+
+void report_progress(double done) {
+  using Clock = std::chrono::steady_clock;
+  static Clock::time_point last = Clock::now();  // the start of the first file
+  if (const Clock::time_point now = Clock::now(); now - last >= std::chrono::milliseconds(100)) {
+    last = now;
+    static_cast<void>(
+        send_message(socket_to_caller, Json::to_cbor({{"progress", done}})));  // if it is gone, serve() ends
+  }
+}
 
 void serve(std::span<const Reader> readers) {
   const rlimit no_core{0, 0};

@@ -24,6 +24,10 @@ struct Reader {
 ///           {"do": "put", "array": number, "first", "count", "slot": index} -> {}; those tuples are in that slot
 ///           {"do": "drop", "arrays": [numbers]}                             -> nothing
 /// Failures  {"error": {"line", "code"}} instead.
+/// Before the answer to "open" any number of {"progress": how much of the file is read, 0 to 1}.
 [[noreturn]] void serve(std::span<const Reader> readers);
+
+/// Says how much of the file is read, 0 to 1, if it has not been said for a tenth of a second. For readers.
+void report_progress(double done);
 
 }  // namespace tessera::io::helper

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "io/helper/vtk_session.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -16,6 +17,7 @@ void update_at_step(vtkAlgorithm& reader, const nlohmann::json& request, const s
                     std::vector<std::string>& notes) {
   std::optional<std::size_t> wish;
   if (const auto step = request.find("time_step"); step != request.end()) wish = step->get<std::size_t>();
+  watch_progress(reader);
   reader.UpdateInformation();
   auto* const key = vtkStreamingDemandDrivenPipeline::TIME_STEPS();
   vtkInformation* const about = reader.GetOutputInformation(0);

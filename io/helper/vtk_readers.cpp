@@ -65,6 +65,7 @@ class WithPieces final : public Reader {
 template <class Reader>
 vtkSmartPointer<vtkDataObject> read_structured(const std::string& source) {
   const auto reader = vtkSmartPointer<WithPieces<Reader>>::Take(WithPieces<Reader>::New());
+  watch_progress(*reader);
   reader->SetFileName(source.c_str());
   reader->UpdateInformation();
   reader->require_whole(source);
@@ -74,6 +75,7 @@ vtkSmartPointer<vtkDataObject> read_structured(const std::string& source) {
 
 vtkSmartPointer<vtkDataObject> read_unstructured(const std::string& source) {
   vtkNew<vtkXMLUnstructuredGridReader> reader;
+  watch_progress(*reader);
   reader->SetFileName(source.c_str());
   reader->Update();
   return reader->GetOutputDataObject(0);
@@ -81,6 +83,7 @@ vtkSmartPointer<vtkDataObject> read_unstructured(const std::string& source) {
 
 vtkSmartPointer<vtkDataObject> read_surface(const std::string& source) {
   vtkNew<vtkXMLPolyDataReader> reader;
+  watch_progress(*reader);
   reader->SetFileName(source.c_str());
   reader->Update();
   return reader->GetOutputDataObject(0);
@@ -180,6 +183,7 @@ ForeignContents read_plot3d(Holdings& holdings, const std::filesystem::path& fil
   vtkSmartPointer<vtkDataObject> data;
   with_quiet_vtk(source, "grid or solution file is damaged, write it anew", [&] {
     vtkNew<vtkMultiBlockPLOT3DReader> reader;
+    watch_progress(*reader);
     reader->SetXYZFileName(source.c_str());
     if (!q.empty()) reader->SetQFileName(q.c_str());
     reader->SetBinaryFile(!request.at("text").get<bool>());
@@ -205,6 +209,7 @@ ForeignContents read_stl(Holdings& holdings, const std::filesystem::path& file, 
   with_quiet_vtk(source, "the file is truncated, damaged or of another kind, write it anew", [&] {
     vtkNew<vtkSTLReader> reader;
     reader->MergingOff();  // done by merge_coincident_points
+    watch_progress(*reader);
     reader->SetFileName(source.c_str());
     reader->Update();
     data = reader->GetOutput();

@@ -1,8 +1,12 @@
 #include "io/helper/vtk_session.hpp"
 
 #include <fmt/format.h>
+#include <vtkAlgorithm.h>
+#include <vtkCallbackCommand.h>
+#include <vtkCommand.h>
 #include <vtkDataSetReader.h>
 #include <vtkLogger.h>
+#include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkOutputWindow.h>
 #include <vtkSmartPointer.h>
@@ -14,6 +18,7 @@
 #include <vector>
 
 #include "io/helper/readers.hpp"
+#include "io/helper/serve.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io::helper {
@@ -108,7 +113,16 @@ std::string with_quiet_vtk(const std::string& source, const std::string& remedy,
   return quiet.trap->warning;
 }
 
+void watch_progress(vtkAlgorithm& reader) {
+  const vtkNew<vtkCallbackCommand> observer;
+  observer->SetCallback([](vtkObject* caller, unsigned long, void*, void*) {
+    if (auto* algorithm = vtkAlgorithm::SafeDownCast(caller)) report_progress(algorithm->GetProgress());
+  });
+  reader.AddObserver(vtkCommand::ProgressEvent, observer);
+}
+
 void read_all_arrays(vtkDataSetReader& reader, const std::string& source) {
+  watch_progress(reader);
   reader.SetFileName(source.c_str());
   reader.ReadAllScalarsOn();
   reader.ReadAllVectorsOn();

@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <string>
 
+class vtkAlgorithm;
 class vtkDataSetReader;
 
 namespace tessera::io::helper {
@@ -16,6 +17,9 @@ namespace tessera::io::helper {
 /// them are no errors, nor warnings.
 std::string with_quiet_vtk(const std::string& source, const std::string& remedy, const std::function<void()>& work,
                            std::initializer_list<const char*> passed_over = {});
+
+/// Has a reader's progress reported (serve.hpp).
+void watch_progress(vtkAlgorithm& reader);
 
 /// Reads a legacy file, of meshes or grids, with all of its arrays instead of the active ones alone. Within
 /// with_quiet_vtk().

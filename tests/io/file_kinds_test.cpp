@@ -76,7 +76,8 @@ TEST_F(FileKinds, TheBeginningWinsOverTheName) {
 
 TEST_F(FileKinds, ClassicNetCdfIsExodusByItsDimensions) {
   EXPECT_EQ(name_of("x.dat", std::string("CDF\1\0\0\0\0\0\0\0\12", 12) + "num_nodes"), "Exodus II");
-  EXPECT_EQ(name_of("x.dat", std::string("CDF\1\0\0\0\0\0\0\0\12", 12) + "latitude"), "");
+  EXPECT_EQ(name_of("x.dat", std::string("CDF\1\0\0\0\0\0\0\0\12", 12) + "latitude"), "NetCDF grid");
+  EXPECT_EQ(name_of("x.dat", std::string("CDF\1\0\0\0\0\0\0\0\12", 12) + "zspace yspace xspace"), "MINC");
 }
 
 TEST_F(FileKinds, BinaryStlIsToldByItsSize) {
@@ -99,9 +100,9 @@ TEST_F(FileKinds, TheNameCountsWhereTheBeginningSaysNothing) {
 TEST_F(FileKinds, WhatIsNotKnownOrNotReadIsTold) {
   EXPECT_NE(message_of([&] { read_mesh(write("x.dat", "Dear reader,")); }).find("`tessera formats` lists them"),
             std::string::npos);
-  EXPECT_NE(message_of([&] { read_mesh(write("x.vtu", "<Xdmf>")); }).find("it is XDMF, which is not read"),
+  EXPECT_NE(message_of([&] { read_mesh(write("x.vtu", "MFEM mesh v1.0\n")); }).find("it is MFEM, which is not read"),
             std::string::npos);
-  EXPECT_FALSE(is_mesh_file(write("x.vtu", "<Xdmf>")));
+  EXPECT_FALSE(is_mesh_file(write("x.vtu", "MFEM mesh v1.0\n")));
   EXPECT_FALSE(is_volume(write("x.vti", "ply\nformat ascii 1.0\n")));
 }
 

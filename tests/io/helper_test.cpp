@@ -101,6 +101,29 @@ TEST(Helper, ItsDeathIsOneLineAboutTheFileAndStaysSo) {
   }
 }
 
+TEST(Helper, TellsHowFarItIs) {
+  // Text of a hundred thousand points takes longer than the tenth of a second between reports.
+  const test::TemporaryFolder folder;
+  const auto file = folder.write("m.vtu", testing::vtu_text(testing::mixed_mesh(60, 1, false)));
+  std::vector<ReadProgress> heard;
+  MeshOptions options;
+  options.progress = [&](const ReadProgress& progress) { heard.push_back(progress); };
+  const MeshFile mesh = read_mesh(file, options);
+  EXPECT_GT(mesh.mesh.positions.size(), 100000u);
+  std::size_t reading = 0;
+  for (std::size_t k = 0; k < heard.size(); ++k) {
+    EXPECT_GE(heard[k].done, 0);
+    EXPECT_LE(heard[k].done, 1);
+    if (heard[k].stage == ReadProgress::Stage::reading) ++reading;
+    if (k == 0 || heard[k].stage != heard[k - 1].stage) continue;
+    EXPECT_GE(heard[k].done, heard[k - 1].done);
+  }
+  EXPECT_GT(reading, 0u);
+  ASSERT_FALSE(heard.empty());
+  EXPECT_EQ(heard.back().stage, ReadProgress::Stage::copying);
+  EXPECT_EQ(heard.back().done, 1);
+}
+
 TEST(Helper, StreamsAnArrayInPartsAndGoesOnAfterAnExceptionInOne) {
   const test::TemporaryFolder folder;
   constexpr int n = 110;  // floats of more than two slots of the window

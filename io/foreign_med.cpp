@@ -1,0 +1,14 @@
+// MED, read by a helper of its own.
+#include "io/foreign_mixed.hpp"
+
+namespace tessera::io {
+
+bool has_med() { return true; }
+
+MeshBlocks read_med(const std::filesystem::path& file, const MeshOptions& options) {
+  HelperTask task;
+  task.program = "tessera-read-med";
+  return read_foreign_mesh(file, {"med", std::move(task)}, options, GridsAre::hexahedra);
+}
+
+}  // namespace tessera::io

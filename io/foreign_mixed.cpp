@@ -1,0 +1,58 @@
+#include "io/foreign_mixed.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "io/foreign_grids.hpp"
+#include "io/gzip.hpp"
+#include "io/inflated_file.hpp"
+#include "io/input_file.hpp"
+
+namespace tessera::io {
+namespace {
+
+ForeignFile open_by(const ForeignReader& by, const std::filesystem::path& file, nlohmann::json request,
+                    const ReadProgressFunction& progress = {}) {
+  request["reader"] = by.reader;
+  HelperTask task = by.task;
+  task.progress = progress;
+  return open_foreign(std::make_shared<HelperProcess>(std::move(task)), file, std::move(request));
+}
+
+}  // namespace
+
+bool holds_one_grid(const std::filesystem::path& file, const ForeignReader& by) {
+  const auto look = [&](const std::filesystem::path& content) {
+    const auto& parts = open_by(by, content, {{"look", true}}).contents.parts;
+    return parts.size() == 1 &&
+           (parts[0].kind == ForeignPart::Kind::image || parts[0].kind == ForeignPart::Kind::rectilinear);
+  };
+  try {
+    if (looks_like_gzip(read_beginning(file, 2))) return InflatedFile(file).read(look);
+    return look(file);
+  } catch (const scene::Error&) {
+    return false;
+  }
+}
+
+VolumeFile read_foreign_volume(const std::filesystem::path& file, const ForeignReader& by,
+                               const VolumeOptions& options) {
+  nlohmann::json request{{"field", options.field}};
+  if (options.time_step) request["time_step"] = *options.time_step;
+  return grid_of(open_by(by, file, std::move(request), options.progress), options);
+}
+
+MeshBlocks read_foreign_mesh(const std::filesystem::path& file, const ForeignReader& by, const MeshOptions& options,
+                             GridsAre grids) {
+  nlohmann::json request{{"blocks", options.blocks}, {"field", options.field}};
+  if (options.time_step) request["time_step"] = *options.time_step;
+  const ForeignFile opened = open_by(by, file, std::move(request), options.progress);
+  MeshBlocks result;
+  result.format = opened.contents.format;
+  result.notes = opened.contents.notes;
+  result.block_names = opened.contents.block_names;
+  result.blocks = blocks_of(opened, result.notes, grids);
+  return result;
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,28 @@
+// XDMF, read by a helper of its own.
+#include "io/foreign_mixed.hpp"
+#include "io/volume_formats.hpp"
+
+namespace tessera::io {
+namespace {
+
+ForeignReader xdmf() {
+  HelperTask task;
+  task.program = "tessera-read-xdmf";
+  return {"xdmf", task};
+}
+
+}  // namespace
+
+bool has_xdmf() { return true; }
+
+bool holds_xdmf_grid(const std::filesystem::path& file) { return holds_one_grid(file, xdmf()); }
+
+VolumeFile read_xdmf_grid(const std::filesystem::path& file, const VolumeOptions& options) {
+  return read_foreign_volume(file, xdmf(), options);
+}
+
+MeshBlocks read_xdmf_mesh(const std::filesystem::path& file, const MeshOptions& options) {
+  return read_foreign_mesh(file, xdmf(), options, GridsAre::hexahedra);
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "io/helper/med_file.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io::helper {
+namespace {
+
+/// Of a mesh: its one computation step, or the first.
+struct MeshAt {
+  std::string name;
+  med_int step = MED_NO_DT, iteration = MED_NO_IT;
+};
+
+std::size_t count_of(const MedFile& file, const MeshAt& mesh, med_entity_type entity, med_geometry_type kind,
+                     med_data_type what) {
+  med_bool changed = MED_FALSE, moved = MED_FALSE;
+  const med_int count = MEDmeshnEntity(file.id(), mesh.name.c_str(), mesh.step, mesh.iteration, entity, kind, what,
+                                       what == MED_COORDINATE ? MED_NO_CMODE : MED_NODAL, &changed, &moved);
+  return static_cast<std::size_t>(std::max<med_int>(count, 0));  // negative where there are none
+}
+
+void read_points(const MedFile& file, const MeshAt& mesh, CellBlock& block) {
+  const std::size_t count = count_of(file, mesh, MED_NODE, MED_NO_GEOTYPE, MED_COORDINATE);
+  file.require(count > 0, "the number of nodes");
+  std::vector<med_float> xyz(3 * count);
+  file.require(MEDmeshNodeCoordinateRd(file.id(), mesh.name.c_str(), mesh.step, mesh.iteration, MED_FULL_INTERLACE,
+                                       xyz.data()) >= 0,
+               "the nodes");
+  block.positions.reserve(count);
+  for (std::size_t v = 0; v < count; ++v) block.positions.emplace_back(xyz[3 * v], xyz[3 * v + 1], xyz[3 * v + 2]);
+}
+
+void read_cells(const MedFile& file, const MeshAt& mesh, MedMesh& to) {
+  CellBlock& block = to.block;
+  block.offsets.push_back(0);
+  for (const MedCellKind& kind : med_cell_kinds) {
+    const std::size_t count = count_of(file, mesh, MED_CELL, kind.med, MED_CONNECTIVITY);
+    to.cells_of_kind.push_back(count);
+    if (count == 0) continue;
+    const auto nodes = static_cast<std::size_t>(kind.nodes);
+    std::vector<med_int> corners(count * nodes);
+    file.require(MEDmeshElementConnectivityRd(file.id(), mesh.name.c_str(), mesh.step, mesh.iteration, MED_CELL,
+                                              kind.med, MED_NODAL, MED_FULL_INTERLACE, corners.data()) >= 0,
+                 "the cells");
+    for (std::size_t c = 0; c < count; ++c) {
+      for (std::size_t n = 0; n < nodes; ++n) {
+        const med_int node = corners[c * nodes + n];  // counted from 1
+        block.connectivity.push_back(node < 1 ? UINT32_MAX : static_cast<std::uint32_t>(node - 1));
+      }
+      block.types.push_back(kind.vtk);
+      block.offsets.push_back(block.connectivity.size());
+    }
+  }
+  if (count_of(file, mesh, MED_CELL, MED_POLYHEDRON, MED_INDEX_FACE) > 0)
+    throw scene::bad_input(fmt::format(
+        "{}: mesh '{}' has polyhedra, which are not read; have them split, or write .vtu", file.source(), mesh.name));
+}
+
+/// Names are filled up with blanks, and may hold anything.
+std::string plain(std::string_view text) {
+  std::string name(text.substr(0, text.find('\0')));
+  name.resize(name.find_last_not_of(' ') + 1);
+  return name;
+}
+
+}  // namespace
+
+MedFile::MedFile(const std::filesystem::path& file) : source_(file.string()) {
+  med_bool is_hdf5 = MED_FALSE, is_known = MED_FALSE;
+  if (MEDfileCompatibility(file.c_str(), &is_hdf5, &is_known) < 0 || is_hdf5 != MED_TRUE)
+    throw scene::bad_input(fmt::format(
+        "{}: it cannot be opened as HDF5, which MED files are; it is truncated or damaged, write it anew", source_));
+  if (is_known != MED_TRUE)
+    throw scene::bad_input(
+        fmt::format("{}: it is no MED file of version 3 or later; have Salome save it anew", source_));
+  id_ = MEDfileOpen(file.c_str(), MED_ACC_RDONLY);
+  require(id_ >= 0, "the file");
+}
+
+MedFile::~MedFile() {
+  if (id_ >= 0) MEDfileClose(id_);
+}
+
+void MedFile::require(bool good, const std::string& what) const {
+  if (!good)
+    throw scene::bad_input(
+        fmt::format("{}: {} cannot be read as MED; the file is truncated or damaged, write it anew", source_, what));
+}
+
+std::vector<MedMesh> med_meshes(const MedFile& file, std::vector<std::string>& notes) {
+  std::vector<MedMesh> meshes;
+  const med_int count = MEDnMesh(file.id());
+  file.require(count >= 0 && count < 100000, "the number of meshes");
+  for (int m = 1; m <= count; ++m) {
+    const med_int axes = MEDmeshnAxis(file.id(), m);
+    file.require(axes > 0 && axes <= 3, "a mesh");
+    std::array<char, MED_NAME_SIZE + 1> name{};
+    std::array<char, MED_COMMENT_SIZE + 1> description{};
+    std::array<char, MED_SNAME_SIZE + 1> time_unit{};
+    std::array<char, 3 * MED_SNAME_SIZE + 1> axis_names{}, axis_units{};
+    med_int dimensions = 0, cell_dimensions = 0, steps = 0;
+    med_mesh_type type = MED_UNDEF_MESH_TYPE;
+    med_sorting_type sorting = MED_SORT_UNDEF;
+    med_axis_type axis_type = MED_UNDEF_AXIS_TYPE;
+    file.require(MEDmeshInfo(file.id(), m, name.data(), &dimensions, &cell_dimensions, &type, description.data(),
+                             time_unit.data(), &sorting, &steps, &axis_type, axis_names.data(), axis_units.data()) >= 0,
+                 "a mesh");
+    MeshAt mesh{plain(name.data())};
+    if (type != MED_UNSTRUCTURED_MESH || dimensions != 3 || axis_type != MED_CARTESIAN) {
+      notes.push_back(fmt::format("mesh '{}' is {} and is left out", mesh.name,
+                                  type != MED_UNSTRUCTURED_MESH ? "structured"
+                                  : dimensions != 3             ? "not in space"
+                                                                : "not in x y z"));
+      continue;
+    }
+    med_float time = 0;
+    if (steps > 0) MEDmeshComputationStepInfo(file.id(), mesh.name.c_str(), 1, &mesh.step, &mesh.iteration, &time);
+    MedMesh read;
+    read.block.name = mesh.name;
+    read_points(file, mesh, read.block);
+    read_cells(file, mesh, read);
+    meshes.push_back(std::move(read));
+  }
+  if (meshes.empty())
+    throw scene::bad_input(fmt::format("{}: it holds no unstructured mesh in space; give one", file.source()));
+  return meshes;
+}
+
+}  // namespace tessera::io::helper

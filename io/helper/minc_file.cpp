@@ -1,0 +1,82 @@
+// MINC 1, which is NetCDF, by VTK's reader.
+#include <fmt/format.h>
+#include <vtkImageData.h>
+#include <vtkMINCImageReader.h>
+#include <vtkMatrix4x4.h>
+#include <vtkNew.h>
+#include <vtk_netcdf.h>
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "io/helper/netcdf_size.hpp"
+#include "io/helper/readers.hpp"
+#include "io/helper/vtk_parts.hpp"
+#include "io/helper/vtk_session.hpp"
+#include "io/input_file.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io::helper {
+namespace {
+
+constexpr const char* write_anew = "the file is truncated or damaged, write it anew";
+
+/// VTK's reader takes what lies behind the file's end as zeros.
+void require_whole(const std::filesystem::path& file) {
+  int id = 0;
+  if (nc_open(file.c_str(), NC_NOWRITE, &id) != NC_NOERR)
+    throw scene::bad_input(fmt::format("{}: it begins as NetCDF and cannot be opened; {}", file.string(), write_anew));
+  const std::uint64_t least = least_netcdf_bytes(id), size = require_file(file);
+  nc_close(id);
+  if (size < least)
+    throw scene::bad_input(
+        fmt::format("{}: it has {} bytes of at least {}; {}", file.string(), size, least, write_anew));
+}
+
+}  // namespace
+
+ForeignContents read_minc(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  allow_for(file);
+  require_whole(file);
+  const std::string source = file.string();
+  ForeignContents contents;
+  contents.format = "MINC 1";
+  std::optional<std::size_t> wish;
+  if (const auto step = request.find("time_step"); step != request.end()) wish = step->get<std::size_t>();
+  vtkNew<vtkMINCImageReader> reader;
+  const std::string warning = with_quiet_vtk(source, write_anew, [&] {
+    watch_progress(*reader);
+    reader->SetFileName(source.c_str());
+    reader->RescaleRealValuesOn();
+    reader->UpdateInformation();
+    const auto steps = static_cast<std::size_t>(std::max(reader->GetNumberOfTimeSteps(), 1));
+    const std::size_t step = wish.value_or(steps - 1);
+    if (step >= steps)
+      throw scene::bad_input(
+          fmt::format("{}: there is no time step {}, the file has {}; count from 0", source, step, steps));
+    if (steps > 1)
+      contents.notes.push_back(
+          fmt::format("time step {} of 0 to {}{}", step, steps - 1, wish ? "" : " (the last is the default)"));
+    reader->SetTimeStep(static_cast<int>(step));
+    reader->Update();
+  });
+  if (!warning.empty()) contents.notes.push_back("VTK warns: " + warning);
+  contents.parts = parts_of(holdings, *reader->GetOutput(), source);
+  ForeignPart& part = contents.parts.front();
+  // The reader's origin is along the axes, whose directions it keeps to itself.
+  const vtkMatrix4x4& cosines = *reader->GetDirectionCosines();
+  const std::array<double, 3> along = part.origin;
+  for (std::size_t row = 0; row < 3; ++row) {
+    part.origin[row] = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double cosine = cosines.GetElement(static_cast<int>(row), static_cast<int>(axis));
+      part.direction[3 * row + axis] = cosine;
+      part.origin[row] += cosine * along[axis];
+    }
+  }
+  return contents;
+}
+
+}  // namespace tessera::io::helper

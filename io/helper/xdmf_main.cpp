@@ -1,0 +1,228 @@
+// tessera-read-xdmf: reads XDMF by its own library, as tessera-read does other formats. A program of its own, since
+// that library comes with another build of HDF5, for MPI, than VTK's.
+#include <fmt/format.h>
+
+#include <XdmfAttribute.hpp>
+#include <XdmfAttributeCenter.hpp>
+#include <XdmfCurvilinearGrid.hpp>
+#include <XdmfDomain.hpp>
+#include <XdmfError.hpp>
+#include <XdmfGeometry.hpp>
+#include <XdmfGeometryType.hpp>
+#include <XdmfReader.hpp>
+#include <XdmfRectilinearGrid.hpp>
+#include <XdmfRegularGrid.hpp>
+#include <XdmfTopology.hpp>
+#include <XdmfUnstructuredGrid.hpp>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "io/block_choice.hpp"
+#include "io/helper/readers.hpp"
+#include "io/helper/serve.hpp"
+#include "io/helper/xdmf_arrays.hpp"
+#include "io/helper/xdmf_cells.hpp"
+#include "io/helper/xdmf_elements.hpp"
+#include "io/helper/xdmf_grids.hpp"
+#include "io/inflated_file.hpp"
+#include "io/input_file.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io::helper {
+namespace {
+
+/// Points or cells along x, y and z, of dimensions that go the other way.
+std::array<std::int64_t, 3> sizes_of(XdmfArray& dimensions, const std::string& where) {
+  const std::vector<double> numbers = doubles_of(dimensions);
+  if (numbers.size() != 3)
+    throw scene::bad_input(
+        fmt::format("{}: it is a grid of {} dimensions, no volume; give one of three", where, numbers.size()));
+  std::array<std::int64_t, 3> sizes{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double n = numbers[2 - axis];
+    if (!(n >= 1 && n <= 2147483647.0))
+      throw scene::bad_input(fmt::format("{}: it has {} points along an axis; write it anew", where, n));
+    sizes[axis] = static_cast<std::int64_t>(n);
+  }
+  return sizes;
+}
+
+void set_extent(XdmfArray& dimensions, ForeignPart& part, const std::string& where) {
+  const auto sizes = sizes_of(dimensions, where);
+  for (std::size_t axis = 0; axis < 3; ++axis) part.extent[2 * axis + 1] = sizes[axis] - 1;
+}
+
+ForeignArray hold_points(Holdings& holdings, XdmfGeometry& geometry, const std::string& where) {
+  if (geometry.getType() != XdmfGeometryType::XYZ())
+    throw scene::bad_input(fmt::format("{}: its points are given as {}, not as x y z; write them so", where,
+                                       geometry.getType()->getName()));
+  ForeignArray points = hold_xdmf(holdings, geometry, "", 3);
+  return points;
+}
+
+/// One grid but for its attributes.
+class PartOf {
+ public:
+  PartOf(Holdings& holdings, const XdmfBlock& block, bool only_look, const std::string& source)
+      : holdings_(holdings),
+        only_look_(only_look),
+        where_(block.name.empty() ? source : fmt::format("{}: block '{}'", source, block.name)) {
+    part.name = block.name;
+    if (auto* regular = dynamic_cast<XdmfRegularGrid*>(block.grid.get())) {
+      set(*regular);
+    } else if (auto* rectilinear = dynamic_cast<XdmfRectilinearGrid*>(block.grid.get())) {
+      set(*rectilinear);
+    } else if (auto* curvilinear = dynamic_cast<XdmfCurvilinearGrid*>(block.grid.get())) {
+      part.kind = ForeignPart::Kind::structured;
+      if (only_look_) return;
+      set_extent(*curvilinear->getDimensions(), part, where_);
+      part.points = hold_points(holdings_, *curvilinear->getGeometry(), where_);
+    } else if (auto* unstructured = dynamic_cast<XdmfUnstructuredGrid*>(block.grid.get())) {
+      if (!only_look_) set(*unstructured);
+    } else {
+      throw scene::bad_input(fmt::format("{}: it is a grid of a kind that is not known; write it anew", where_));
+    }
+    if (!only_look_) add_attributes(*block.grid);
+  }
+
+  ForeignPart part;
+
+ private:
+  void set(XdmfRegularGrid& grid) {
+    part.kind = ForeignPart::Kind::image;
+    if (only_look_) return;
+    set_extent(*grid.getDimensions(), part, where_);
+    const std::vector<double> origin = doubles_of(*grid.getOrigin()), steps = doubles_of(*grid.getBrickSize());
+    if (origin.size() != 3 || steps.size() != 3)
+      throw scene::bad_input(fmt::format("{}: its origin or spacing is not of three numbers; write it anew", where_));
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      part.origin[axis] = origin[2 - axis], part.spacing[axis] = steps[2 - axis];
+    part.direction = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  }
+
+  void set(XdmfRectilinearGrid& grid) {
+    part.kind = ForeignPart::Kind::rectilinear;
+    if (only_look_) return;
+    const auto axes = grid.getCoordinates();
+    if (axes.size() != 3)
+      throw scene::bad_input(
+          fmt::format("{}: it is a grid of {} dimensions, no volume; give one of three", where_, axes.size()));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      part.coordinates.push_back(hold_xdmf(holdings_, *axes[axis], "", 1));
+      part.extent[2 * axis + 1] = static_cast<std::int64_t>(part.coordinates.back().tuples) - 1;
+    }
+  }
+
+  void set(XdmfUnstructuredGrid& grid) {
+    part.points = hold_points(holdings_, *grid.getGeometry(), where_);
+    XdmfTopology& topology = *grid.getTopology();
+    if (!topology.isInitialized()) topology.read();
+    XdmfCells cells = cells_of(topology, where_);
+    topology.release();
+    part.types = hold_vector(holdings_, {.type = NumberType::uint8}, std::move(cells.types));
+    part.offsets = hold_vector(holdings_, {.type = NumberType::uint64}, std::move(cells.offsets));
+    part.connectivity = hold_vector(holdings_, {.type = NumberType::uint32}, std::move(cells.connectivity));
+  }
+
+  [[nodiscard]] std::uint64_t count_of(bool points) const {
+    if (part.kind == ForeignPart::Kind::unstructured) return points ? part.points->tuples : part.types->tuples;
+    std::uint64_t count = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto last = static_cast<std::uint64_t>(part.extent[2 * axis + 1]);
+      count *= points ? last + 1 : std::max<std::uint64_t>(last, 1);
+    }
+    return count;
+  }
+
+  void add_attributes(XdmfGrid& grid) {
+    for (unsigned k = 0; k < grid.getNumberAttributes(); ++k) {
+      XdmfAttribute& attribute = *grid.getAttribute(k);
+      const bool is_node = attribute.getCenter() == XdmfAttributeCenter::Node();
+      if (!is_node && attribute.getCenter() != XdmfAttributeCenter::Cell()) continue;
+      const std::string name = attribute.getName().empty() ? fmt::format("attribute{}", k) : attribute.getName();
+      if (!attribute.isInitialized()) attribute.read();
+      const std::uint64_t count = count_of(is_node), values = attribute.getSize();
+      if (count == 0 || values == 0) continue;
+      if (values % count != 0 || values / count > 1024)
+        throw scene::bad_input(fmt::format("{}: field '{}' has {} values for {} {}; write it anew", where_, name,
+                                           values, count, is_node ? "points" : "cells"));
+      (is_node ? part.point_fields : part.cell_fields)
+          .push_back(hold_xdmf(holdings_, attribute, name, static_cast<int>(values / count)));
+    }
+  }
+
+  Holdings& holdings_;
+  bool only_look_;
+  std::string where_;
+};
+
+/// Every array that PartOf reads.
+void add_arrays(XdmfGrid& grid, XdmfHeavyFiles& files) {
+  const auto add = [&](const boost::shared_ptr<XdmfArray>& array) {
+    if (array != nullptr) files.add(*array);
+  };
+  if (auto* regular = dynamic_cast<XdmfRegularGrid*>(&grid)) {
+    for (const auto& array : {regular->getDimensions(), regular->getOrigin(), regular->getBrickSize()}) add(array);
+  } else if (auto* rectilinear = dynamic_cast<XdmfRectilinearGrid*>(&grid)) {
+    for (const auto& axis : rectilinear->getCoordinates()) add(axis);
+  } else if (auto* curvilinear = dynamic_cast<XdmfCurvilinearGrid*>(&grid)) {
+    add(curvilinear->getDimensions());
+    add(curvilinear->getGeometry());
+  } else if (auto* unstructured = dynamic_cast<XdmfUnstructuredGrid*>(&grid)) {
+    add(unstructured->getGeometry());
+    add(unstructured->getTopology());
+  }
+  for (unsigned k = 0; k < grid.getNumberAttributes(); ++k) add(grid.getAttribute(k));
+}
+
+ForeignContents read(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  const std::string source = file.string();
+  allow_for(file);
+  check_xdmf_elements(file);
+  add_cell_names();
+  const auto reader = XdmfReader::New();
+  // The library takes names apart, which those of unnamed files do not bear.
+  const auto domain = boost::dynamic_pointer_cast<XdmfDomain>(
+      is_inflated(file) ? reader->parse(read_beginning(file, require_file(file))) : reader->read(source));
+  if (domain == nullptr) throw scene::bad_input(fmt::format("{}: it has no <Domain>; write it anew", source));
+  std::optional<std::size_t> time_step;
+  const bool only_look = request.value("look", false);
+  if (const auto step = request.find("time_step"); step != request.end()) time_step = step->get<std::size_t>();
+  ForeignContents contents;
+  contents.format = "XDMF";
+  std::vector<XdmfBlock> blocks = blocks_at(domain, time_step, source, contents.notes);
+  if (blocks.empty()) throw scene::bad_input(fmt::format("{}: it holds no grid; give a mesh or a volume", source));
+  for (const XdmfBlock& block : blocks) contents.block_names.push_back(block.name);
+  const auto choice = request.value("blocks", BlockChoice());
+  std::erase_if(blocks, [&](const XdmfBlock& block) { return !is_chosen(choice, block.name); });
+  XdmfHeavyFiles files(file);
+  for (const XdmfBlock& block : blocks) add_arrays(*block.grid, files);
+  files.allow();
+  for (const XdmfBlock& block : blocks) {
+    contents.parts.push_back(std::move(PartOf(holdings, block, only_look, source).part));
+    report_progress(static_cast<double>(contents.parts.size()) / static_cast<double>(blocks.size()));
+  }
+  return contents;
+}
+
+ForeignContents read_xdmf(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  try {
+    return read(holdings, file, request);
+  } catch (const XdmfError& error) {
+    std::string words = error.what();
+    words.resize(std::min<std::size_t>(words.size(), 160));
+    for (char& c : words)
+      if (c < ' ' || c > '~') c = '?';
+    throw scene::bad_input(fmt::format("{}: Xdmf's library says {}; the file or its data are damaged, write it anew",
+                                       file.string(), words));
+  }
+}
+
+}  // namespace
+}  // namespace tessera::io::helper
+
+int main() {
+  using namespace tessera::io::helper;
+  constexpr Reader readers[] = {{"xdmf", read_xdmf}};
+  serve(readers);
+}

@@ -1,0 +1,130 @@
+// MED meshes and fields, which MED's library writes here.
+#include <gtest/gtest.h>
+#include <med.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "io/changed_bytes.hpp"
+#include "io/mesh_checks.hpp"
+#include "io/mesh_formats.hpp"
+#include "io/mesh_reader.hpp"
+#include "io/temporary_folder.hpp"
+
+namespace tessera::io {
+namespace {
+
+constexpr const char* mesh_name = "bar";
+
+void write_field(med_idt file, const char* name, med_int components, med_entity_type entity, med_geometry_type kind,
+                 med_int step, med_int count, const std::vector<double>& values, const char* profile = MED_NO_PROFILE) {
+  ASSERT_GE(MEDfieldValueWithProfileWr(file, name, step, MED_NO_IT, step, entity, kind, MED_COMPACT_STMODE, profile,
+                                       MED_NO_LOCALIZATION, MED_FULL_INTERLACE, MED_ALL_CONSTITUENT, count,
+                                       reinterpret_cast<const unsigned char*>(values.data())),
+            0);
+  ASSERT_EQ(values.size(), static_cast<std::size_t>(count * components));
+}
+
+/// A unit cube, as a hexahedron, and a tet and a pyramid beside it. Point field "t" is x + 2 y + 3 z, ten times that at
+/// the second step; cell field "p" is 5 in the hexahedron and 6 in the tet; "u" is a vector at the nodes.
+void write_bar(const std::string& name) {
+  const med_idt file = MEDfileOpen(name.c_str(), MED_ACC_CREAT);
+  ASSERT_GE(file, 0);
+  std::string axes = "x               y               z               ", units(48, ' ');
+  ASSERT_GE(MEDmeshCr(file, mesh_name, 3, 3, MED_UNSTRUCTURED_MESH, "a test", "s", MED_SORT_DTIT, MED_CARTESIAN,
+                      axes.c_str(), units.c_str()),
+            0);
+  const std::vector<med_float> points = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1,   0,   1,
+                                         1, 1, 1, 0, 1, 1, 2, 0, 0, 2, 1, 0, 2, 0, 1, 0.5, 0.5, 4};
+  ASSERT_GE(MEDmeshNodeCoordinateWr(file, mesh_name, MED_NO_DT, MED_NO_IT, 0, MED_FULL_INTERLACE, 12, points.data()),
+            0);
+  const auto cells = [&](med_geometry_type kind, const std::vector<med_int>& corners) {
+    ASSERT_GE(MEDmeshElementConnectivityWr(file, mesh_name, MED_NO_DT, MED_NO_IT, 0, MED_CELL, kind, MED_NODAL,
+                                           MED_FULL_INTERLACE, 1, corners.data()),
+              0);
+  };
+  cells(MED_HEXA8, {1, 4, 3, 2, 5, 8, 7, 6});  // the sense of faces is MED's, against VTK's
+  cells(MED_TETRA4, {2, 9, 10, 11});
+  cells(MED_PYRA5, {5, 8, 7, 6, 12});
+  cells(MED_TRIA3, {1, 2, 3});
+  const std::string component(16, ' '), components(48, ' ');
+  ASSERT_GE(MEDfieldCr(file, "t", MED_FLOAT64, 1, component.c_str(), component.c_str(), "s", mesh_name), 0);
+  ASSERT_GE(MEDfieldCr(file, "p", MED_FLOAT64, 1, component.c_str(), component.c_str(), "s", mesh_name), 0);
+  ASSERT_GE(MEDfieldCr(file, "u", MED_FLOAT64, 3, components.c_str(), components.c_str(), "s", mesh_name), 0);
+  for (const int step : {1, 2}) {
+    std::vector<double> values;
+    for (std::size_t v = 0; v < 12; ++v)
+      values.push_back((step == 1 ? 1 : 10) * (points[3 * v] + 2 * points[3 * v + 1] + 3 * points[3 * v + 2]));
+    write_field(file, "t", 1, MED_NODE, MED_NONE, step, 12, values);
+  }
+  write_field(file, "p", 1, MED_CELL, MED_HEXA8, 1, 1, {5});
+  write_field(file, "p", 1, MED_CELL, MED_TETRA4, 1, 1, {6});
+  const std::vector<med_int> places = {3, 7};
+  ASSERT_GE(MEDprofileWr(file, "two", 2, places.data()), 0);
+  write_field(file, "u", 3, MED_NODE, MED_NONE, 1, 2, {3, 4, 0, 0, 0, 7}, "two");
+  ASSERT_GE(MEDfileClose(file), 0);
+}
+
+TEST(Med, CellsAndFieldsAreRead) {
+  const test::TemporaryFolder folder;
+  write_bar((folder / "bar.med").string());
+  MeshOptions options;
+  options.field = "t";
+  const MeshFile mesh = read_mesh(folder / "bar.med", options);
+  EXPECT_EQ(mesh.format, "MED");
+  EXPECT_EQ(mesh.counts.cells_read, 3u);  // the triangle is none of volume
+  EXPECT_NEAR(testing::volume(mesh.mesh), 1 + 1.0 / 6 + 1, 1e-12);
+  for (std::size_t v = 0; v < mesh.mesh.positions.size(); ++v) {
+    const glm::dvec3& p = mesh.mesh.positions[v];
+    EXPECT_EQ(mesh.mesh.scalars[v], 10 * (p.x + 2 * p.y + 3 * p.z));
+  }
+  options.time_step = 0;
+  const MeshFile first = read_mesh(folder / "bar.med", options);
+  EXPECT_EQ(*std::ranges::max_element(first.mesh.scalars), 0.5 + 1 + 12);
+  options.time_step = 2;
+  test::expect_bad_input([&] { read_mesh(folder / "bar.med", options); }, {"bar.med: there is no time step 2"});
+}
+
+TEST(Med, WhatAFieldHasNoValueForIsBlank) {
+  const test::TemporaryFolder folder;
+  write_bar((folder / "bar.med").string());
+  MeshOptions options;
+  options.field = "p";
+  const MeshFile cells = read_mesh(folder / "bar.med", options);
+  EXPECT_NEAR(testing::volume(cells.mesh), 1 + 1.0 / 6, 1e-12);  // the pyramid has none
+  for (std::size_t t = 0; t < cells.mesh.tets.size(); ++t) {
+    const bool of_tet = cells.mesh.positions[cells.mesh.tets[t][0]].x + cells.mesh.positions[cells.mesh.tets[t][1]].x +
+                            cells.mesh.positions[cells.mesh.tets[t][2]].x +
+                            cells.mesh.positions[cells.mesh.tets[t][3]].x >
+                        4;
+    EXPECT_EQ(cells.mesh.scalars[t], of_tet ? 6 : 5);
+  }
+  // Two of twelve nodes have a vector, by a profile.
+  const auto u = std::ranges::find(cells.fields, "u", &FieldSummary::name);
+  ASSERT_NE(u, cells.fields.end());
+  EXPECT_EQ(u->low, 5);
+  EXPECT_EQ(u->high, 7);
+  EXPECT_EQ(u->nan_count, 10u);
+}
+
+TEST(Med, DamagedOnesAreRefusedInOneLine) {
+  const test::TemporaryFolder folder;
+  write_bar((folder / "bar.med").string());
+  const std::string whole = test::contents(folder / "bar.med");
+  for (const std::size_t size : {whole.size() - 100, whole.size() / 2, std::size_t{40}}) {
+    const auto cut = folder.write("cut.med", whole.substr(0, size));
+    test::expect_bad_input([&] { read_mesh(cut); }, {"cut.med: ", "; "});
+  }
+  test::expect_bad_input([&] { read_mesh(folder.write("text.med", "no HDF5")); }, {"text.med: it cannot be opened"});
+  test::expect_no_crash_of_changes(folder, "changed.med", whole, [](const auto& file) { read_mesh(file); });
+  if (!has_vtk()) return;  // nobody looks into HDF5
+  // By another name it is told, and what to do.
+  std::filesystem::copy_file(folder / "bar.med", folder / "bar.h5");
+  test::expect_bad_input([&] { read_mesh(folder / "bar.h5"); }, {"bar.h5: it is HDF5 and holds a MED mesh", ".med"});
+}
+
+}  // namespace
+}  // namespace tessera::io
