@@ -199,7 +199,7 @@ class Assembly {
   void take_tets() {
     if (!mesh_.tets.empty() || first_point_ > 0 || cells_before_ > 0) return append_given();
     mesh_.tets = std::move(*block_tets_);
-    if (choice_.association == Association::cell) mesh_.scalars = std::move(values_);
+    if (choice_.association == Association::cell) mesh_.scalars.swap(values_);
   }
 
   template <class CellOf>
