@@ -299,7 +299,9 @@ Association Dataset::association() const { return state_->facts.association; }
 const std::string& Dataset::field_name() const { return state_->field_name; }
 std::span<const FieldInfo> Dataset::fields() const { return state_->fields; }
 std::span<const std::string> Dataset::notes() const { return state_->notes; }
-std::vector<std::string> Dataset::warnings() const { return io::warnings_on_cells(state_->counts, state_->higher_order); }
+std::vector<std::string> Dataset::warnings() const {
+  return io::warnings_on_cells(state_->counts, state_->higher_order);
+}
 std::span<const std::string> Dataset::blocks() const { return state_->blocks; }
 const std::string& Dataset::format() const { return state_->format; }
 const std::string& Dataset::source() const { return state_->source; }

@@ -47,8 +47,8 @@ ForeignContents read_minc(Holdings& holdings, const std::filesystem::path& file,
 /// The same of MINC 2. Of a build without MINC's library (CMake option TESSERA_MINC) it throws Error(bad_input).
 ForeignContents read_minc2(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
-/// HDF5, by what is in it: Exodus, CGNS, FLASH, VTKHDF, or a grid as read_netcdf() and MINC 2. With `look` no more than the
-/// kind of a grid, of others nothing.
+/// HDF5, by what is in it: Exodus, CGNS, FLASH, VTKHDF, or a grid as read_netcdf() and MINC 2. With `look` no more than
+/// the kind of a grid, of others nothing.
 ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
 /// OpenFOAM: the case that a folder is or a file lies in, which may be empty. Put together, or as its processors left

@@ -78,7 +78,7 @@ std::string vtu_text(const CellBlock& block) {
     faces = data_array("faces", "Int64", 1, block.faces) + data_array("faceoffsets", "Int64", 1, face_ends);
   }
   return fmt::format(
-             "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
+             "<VTKFile type=\"UnstructuredGrid\" version=\"2.2\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
              "<UnstructuredGrid><Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
              block.positions.size(), block.cell_count()) +
          fields_text(block, scene::Association::point, block.point_ghost) + "</PointData><CellData>\n" +
