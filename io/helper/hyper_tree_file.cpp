@@ -21,6 +21,7 @@
 #include "io/helper/readers.hpp"
 #include "io/helper/vtk_parts.hpp"
 #include "io/helper/vtk_session.hpp"
+#include "io/input_file.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
 
@@ -50,6 +51,7 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
   }
 
   std::string source;
+  std::uint64_t file_size = 0;
   std::exception_ptr fault;
   bool was_read = false, has_interfaces = false;
   StoredForest forest;
@@ -84,6 +86,10 @@ class TreeFileReader final : public vtkXMLHyperTreeGridReader {
     const auto array = vtkSmartPointer<vtkDataArray>(vtkDataArray::SafeDownCast(made));
     if (array == nullptr) throw damaged(fmt::format("array {} has no numbers", name_of(element)));
     const std::int64_t count = tuples * array->GetNumberOfComponents();
+    // Deflate packs 1032 bytes of eight bits to one.
+    if (static_cast<double>(count) > 9000.0 * static_cast<double>(file_size))
+      throw damaged(
+          fmt::format("array {} has {} numbers, more than a file of its size holds", name_of(element), count));
     array->SetNumberOfTuples(tuples);
     if (array->GetNumberOfValues() != count || (count > 0 && array->GetVoidPointer(0) == nullptr))
       throw std::bad_alloc();
@@ -278,6 +284,7 @@ ForeignContents read_hyper_trees(Holdings& holdings, const std::filesystem::path
   const std::string warning = with_quiet_vtk(source, write_anew, [&] {
     const auto reader = vtkSmartPointer<TreeFileReader>::Take(TreeFileReader::New());
     reader->source = source;
+    reader->file_size = require_file(file);
     reader->SetFileName(source.c_str());
     reader->Update();
     if (reader->fault) std::rethrow_exception(reader->fault);

@@ -189,7 +189,7 @@ TEST(HyperTrees, WhatIsNotReadIsToldInOneLine) {
   has(fault("Name=\"Descriptors\" NumberOfComponents=\"1\" NumberOfTuples=\"17\" format=\"ascii\">1 0",
             "Name=\"Descriptors\" NumberOfComponents=\"1\" NumberOfTuples=\"17\" format=\"ascii\">1 1"),
       "by its counts");
-  has(fault("NumberOfTuples=\"17\"", "NumberOfTuples=\"99999999999\""), "write it anew");
+  has(fault("NumberOfTuples=\"17\"", "NumberOfTuples=\"99999999999\""), "more than a file of its size holds");
   has(fault("NumberOfTuples=\"17\"", "NumberOfTuples=\"-17\""), "array 'Descriptors' has -17 numbers");
   has(fault("</VTKFile>", ""), "it does not end with </VTKFile>");
   has(fault("<Trees>", "<Tress>"), "write it anew");
