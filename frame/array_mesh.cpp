@@ -172,6 +172,8 @@ ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty) {
   blocks.push_back(block_of(arrays));
   io::MeshOptions options;
   options.threads = 0;
+  options.higher_order_tolerance = arrays.higher_order_tolerance;
+  options.higher_order_tets = arrays.higher_order_tets;
   auto file = std::make_shared<io::MeshFile>(io::assemble_mesh(std::move(blocks), options, "mesh"));
   result.mesh = file->mesh;
   result.counts = file->counts;

@@ -85,6 +85,9 @@ struct MeshArrays {
   ArrayView scalars;  ///< one a point, or one a cell
   Association association = Association::point;
   std::string field_name = "scalar";
+  /// As ReadOptions has them, of cells of second and higher order; in parts each rank's own diagonal and range count.
+  double higher_order_tolerance = 1e-5;
+  std::uint64_t higher_order_tets = std::uint64_t{1} << 23;
   /// Of `tets`: uint64, one each, the cell of another mesh that it was made of, tets of one cell next to each other.
   /// Empty: it is its own. Written by write_mesh; no picture depends on it.
   ArrayView original_cells{};
