@@ -16,14 +16,16 @@ fuzz_one() {  # fuzz_one TARGET
   mkdir -p "$build/corpus/$name"
   # New finds go to the build's corpus; the seeds in the repository are only read.
   [ -d "$seeds" ] || seeds=
-  if ! "$build/tests/io/$name" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=4096 \
+  if ! "$build/tests/io/$name" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 \
     -print_final_stats=1 -artifact_prefix="$build/crashes/$name-" "$build/corpus/$name" $seeds 2>"$build/$name.log"; then
     tail -n 40 "$build/$name.log"
     echo "$name: failed; see $build/$name.log and $build/crashes"
     return 1
   fi
+  # What all runs have tried so far, beside the corpus that they share.
+  awk '/number_of_executed_units/ {print $2}' "$build/$name.log" >>"$build/$name.inputs"
   echo "$name: $seconds s, $(awk '/number_of_executed_units/ {n = $2} /peak_rss/ {m = $2} END {print n " inputs, " m " MiB"}' \
-    "$build/$name.log")"
+    "$build/$name.log"), $(awk '{n += $1} END {print n}' "$build/$name.inputs") inputs in all"
 }
 export -f fuzz_one
 

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "apps/program.hpp"
+#include "apps/quadratic_mesh.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/mesh_reader.hpp"
 #include "scene/mesh_facts.hpp"
@@ -61,14 +62,44 @@ TEST(Info, HigherOrderCellsAreWarnedOfInALineOfTheirOwn) {
                          "0 0 0 1 0 0 0 1 0 0 0 1 .5 0 0 .5 .5 0 0 .5 0 0 0 .5 .5 0 .5 0 .5 .5\nCELLS 1 11\n"
                          "10 0 1 2 3 4 5 6 7 8 9\nCELL_TYPES 1\n24\nPOINT_DATA 10\nSCALARS a float 1\n"
                          "LOOKUP_TABLE default\n0 1 2 3 4 5 6 7 8 9\n";
-  const auto info = tessera({"info", mesh});
+  const auto info = tessera({"info", mesh, "--higher-order-tets", "0"});
   EXPECT_NE(info.out.find("\nwarning   1 higher-order cells"), std::string::npos) << info.out;
-  const auto render = tessera({"render", mesh, "-o", folder / "a.png", "--size", "16x16"});
+  const auto render = tessera({"render", mesh, "-o", folder / "a.png", "--size", "16x16", "--higher-order-tets", "0"});
   EXPECT_EQ(render.status, 0) << render.err;
   EXPECT_TRUE(render.err.starts_with("tessera: warning: ")) << render.err;
   EXPECT_EQ(render.error_lines(), 2u) << render.err;
-  const auto quiet = tessera({"render", mesh, "-o", folder / "a.png", "--size", "16x16", "--quiet"});
+  const auto quiet =
+      tessera({"render", mesh, "-o", folder / "a.png", "--size", "16x16", "--higher-order-tets", "0", "--quiet"});
   EXPECT_EQ(quiet.err, "");
+}
+
+TEST(Render, DividesHigherOrderCellsAsFinelyAsTheAccuracyNeeds) {
+  if (!io::has_vtk()) GTEST_SKIP() << "this build is without VTK";
+  const Folder folder;
+  const auto mesh = folder.file("a.vtu", test::quadratic_tet_text(true));
+  const auto report_of = [&](const std::vector<std::string>& more, Outcome& outcome) {
+    std::vector<std::string> arguments{"render", mesh,    "-o",       folder / "a.png",
+                                       "--size", "16x16", "--report", folder / "a.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    outcome = tessera(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return nlohmann::json::parse(contents(folder / "a.json")).at("mesh").at("higher_order");
+  };
+  Outcome outcome;
+  std::uint64_t before = 0;
+  for (const auto& [words, accuracy] : {std::pair{"1e-1", 1e-1}, std::pair{"3e-2", 3e-2}, std::pair{"1e-2", 1e-2}}) {
+    const auto cells = report_of({"--accuracy", words}, outcome);
+    EXPECT_LE(cells.at("pixel_error").get<double>(), accuracy);
+    EXPECT_GT(cells.at("tets").get<std::uint64_t>(), before);
+    EXPECT_EQ(outcome.err.find("warning"), std::string::npos) << outcome.err;
+    before = cells.at("tets").get<std::uint64_t>();
+  }
+  const auto few = report_of({"--accuracy", "1e-2", "--higher-order-tets", "50"}, outcome);
+  EXPECT_GT(few.at("pixel_error").get<double>(), 1e-2);
+  EXPECT_NE(outcome.err.find("more than --accuracy 0.01; --higher-order-tets allows more"), std::string::npos)
+      << outcome.err;
+  const auto fixed = report_of({"--higher-order-tolerance", "0.05"}, outcome);
+  EXPECT_EQ(fixed.at("tolerance"), 0.05);
 }
 
 TEST(Convert, KeepsThePicture) {

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "apps/program.hpp"
+#include "apps/quadratic_mesh.hpp"
 #include "io/mesh_formats.hpp"
 
 namespace tessera::apps {
@@ -149,6 +150,40 @@ TEST_F(Mpirun, TheScanlineRasterizerGivesItsBytesOfOneProcess) {
   ASSERT_EQ(tessera(one).status, 0);
   ASSERT_EQ(mpirun(3, ranks).status, 0);
   EXPECT_EQ(contents(folder / "ranks.pfm"), contents(folder / "one.pfm"));
+}
+
+TEST_F(Mpirun, PiecesOfCurvedCellsGiveTheBytesOfOneProcess) {
+  if (!io::has_vtk()) GTEST_SKIP() << "built without VTK";
+  const Folder folder;
+  ASSERT_NE(folder.file("below.vtu", test::quadratic_tet_text(false)), "");
+  ASSERT_NE(folder.file("above.vtu", test::quadratic_tet_text(true)), "");
+  std::vector<std::string> arguments{"render",
+                                     folder.file("pair.pvtu", test::quadratic_pair_text()),
+                                     "-o",
+                                     folder / "one.pfm",
+                                     "--size",
+                                     "60x50",
+                                     "--quiet",
+                                     "--threads",
+                                     "1",
+                                     "--exchange",
+                                     "segments",
+                                     "--accuracy",
+                                     "5e-2",
+                                     "--report",
+                                     folder / "one.json"};
+  ASSERT_EQ(tessera(arguments).status, 0);
+  const auto cells_of = [&](const char* report) {
+    return nlohmann::json::parse(contents(folder / report)).at("mesh").at("higher_order");
+  };
+  EXPECT_EQ(cells_of("one.json").at("divided"), 2);
+  arguments[3] = folder / "ranks.pfm", arguments.back() = folder / "ranks.json";
+  for (const int ranks : {1, 2, 3}) {
+    const Outcome outcome = mpirun(ranks, arguments);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(contents(folder / "ranks.pfm"), contents(folder / "one.pfm")) << ranks;
+    EXPECT_EQ(cells_of("ranks.json"), cells_of("one.json")) << ranks;
+  }
 }
 
 /// Image data of cells from 0 on along each axis, as the text of a .vti.
