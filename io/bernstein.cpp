@@ -72,10 +72,10 @@ BernsteinForm make_form(int corners, int degree) {
 
 }  // namespace
 
-BernsteinNet::BernsteinNet(int degree) : degree_(degree), side_(degree + 1), points_(lattice_of(4, degree, true)) {
-  index_.resize(static_cast<std::size_t>(side_ * side_ * side_));
-  for (std::size_t k = 0; k < points_.size(); ++k)
-    index_[static_cast<std::size_t>((points_[k][1] * side_ + points_[k][2]) * side_ + points_[k][3])] = k;
+BernsteinNet::BernsteinNet(int degree)
+    : degree_(degree), side_(static_cast<std::size_t>(degree) + 1), points_(lattice_of(4, degree, true)) {
+  index_.resize(side_ * side_ * side_);
+  for (std::size_t k = 0; k < points_.size(); ++k) index_[place(points_[k])] = k;
   for (std::size_t c = 0; c < 4; ++c) {
     Multi point{};
     point[c] = degree;
@@ -104,9 +104,9 @@ void BernsteinNet::halve(std::span<const glm::dvec4> net, int i, int j, std::spa
       for (int step = 1; step <= n; ++step) {
         for (int t = 0; t + step <= n; ++t)
           row[static_cast<std::size_t>(t)] =
-              0.5 * (row[static_cast<std::size_t>(t)] + row[static_cast<std::size_t>(t + 1)]);
+              0.5 * (row[static_cast<std::size_t>(t)] + row[static_cast<std::size_t>(t) + 1]);
         half_i[at(step)] = row[0];
-        half_j[at(n - step)] = row[static_cast<std::size_t>(n - step)];
+        half_j[at(n - step)] = row[static_cast<std::size_t>(n) - static_cast<std::size_t>(step)];
       }
     }
 }

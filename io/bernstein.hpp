@@ -32,9 +32,7 @@ class BernsteinNet {
   [[nodiscard]] std::size_t size() const { return points_.size(); }
   /// Barycentric coordinates, times the degree.
   [[nodiscard]] std::span<const std::array<int, 4>> points() const { return points_; }
-  [[nodiscard]] std::size_t index(const std::array<int, 4>& point) const {
-    return index_[static_cast<std::size_t>((point[1] * side_ + point[2]) * side_ + point[3])];
-  }
+  [[nodiscard]] std::size_t index(const std::array<int, 4>& point) const { return index_[place(point)]; }
   [[nodiscard]] std::size_t corner(std::size_t c) const { return corner_[c]; }
 
   /// The coefficients of the halves at corners i and j, whose other corner j or i is the edge's middle then
@@ -43,7 +41,13 @@ class BernsteinNet {
              std::span<glm::dvec4> half_j) const;
 
  private:
-  int degree_, side_;
+  [[nodiscard]] std::size_t place(const std::array<int, 4>& point) const {
+    const auto at = [](int number) { return static_cast<std::size_t>(number); };
+    return (at(point[1]) * side_ + at(point[2])) * side_ + at(point[3]);
+  }
+
+  int degree_;
+  std::size_t side_;
   std::vector<std::array<int, 4>> points_;
   std::vector<std::size_t> index_;
   std::array<std::size_t, 4> corner_{};

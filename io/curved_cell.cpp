@@ -222,7 +222,7 @@ void CurvedCell::make_edge(unsigned faces, Part& part) const {
   if (before(end[1], end[0])) std::swap(end[0], end[1]);
   const LatticePlace a = lattice_corner(end[0]), b = lattice_corner(end[1]);
   part.origin = place_of_corner(end[0]);
-  int n = 0;
+  int n = 1;
   for (std::size_t x = 0; x < 3; ++x)
     if (a[x] != b[x]) {
       n = std::abs(b[x] - a[x]);
@@ -259,7 +259,7 @@ void CurvedCell::make_face(unsigned faces, Part& part) const {
     break;
   }
   const auto steps = [](const LatticePlace& p, const LatticePlace& q) {
-    return std::max({std::abs(q[0] - p[0]), std::abs(q[1] - p[1]), std::abs(q[2] - p[2])});
+    return std::max({1, std::abs(q[0] - p[0]), std::abs(q[1] - p[1]), std::abs(q[2] - p[2])});
   };
   part.order = {steps(a, b), steps(a, c)};
   const auto [n, m] = part.order;

@@ -156,7 +156,8 @@ bool is_of_lattice(const CurvedLattice& lattice, const LatticePlace& p) {
 
 void number_slots(CurvedLattice& lattice) {
   const auto& n = lattice.order;
-  lattice.slot_of_place.assign(static_cast<std::size_t>((n[0] + 1) * (n[1] + 1) * (n[2] + 1)), -1);
+  const auto places_along = [&](std::size_t axis) { return static_cast<std::size_t>(n[axis]) + 1; };
+  lattice.slot_of_place.assign(places_along(0) * places_along(1) * places_along(2), -1);
   std::size_t at = 0;
   for (int k = 0; k <= n[2]; ++k)
     for (int j = 0; j <= n[1]; ++j)

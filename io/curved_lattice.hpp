@@ -29,7 +29,8 @@ struct CurvedLattice {
   int slots = 0;                    ///< the lattice's places
 
   [[nodiscard]] int slot(const LatticePlace& p) const {
-    return slot_of_place[static_cast<std::size_t>((p[2] * (order[1] + 1) + p[1]) * (order[0] + 1) + p[0])];
+    const auto at = [](int number) { return static_cast<std::size_t>(number); };
+    return slot_of_place[(at(p[2]) * at(order[1] + 1) + at(p[1])) * at(order[0] + 1) + at(p[0])];
   }
 };
 

@@ -51,7 +51,7 @@ void CurvedSplitter::begin(const CurvedLattice& lattice, std::span<const glm::dv
 void CurvedSplitter::split(const CurvedLattice& lattice, std::span<const glm::dvec3> positions,
                            std::span<const double> values, std::span<const Tet> first, std::size_t limit) {
   begin(lattice, positions, values);
-  for (auto tet = first.rbegin(); tet != first.rend(); ++tet) open(*tet);
+  for (std::size_t k = first.size(); k > 0; --k) open(first[k - 1]);
   while (!open_.empty()) {
     const Tet tet = open_.back();
     open_.pop_back();
