@@ -30,7 +30,7 @@ struct MeshOptions {
   /// value of the field's range; and about so many tets at most, else the tolerance is larger. 0 tets: by their
   /// corners.
   double higher_order_tolerance = 1e-4;
-  std::uint64_t higher_order_tets = std::uint64_t{1} << 22;
+  std::uint64_t higher_order_tets = std::uint64_t{1} << 21;
   ReadProgressFunction progress{};  ///< null: nobody hears
 };
 

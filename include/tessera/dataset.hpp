@@ -44,7 +44,7 @@ struct ReadOptions {
   /// value of the field's range. No more than about `higher_order_tets` are made of them, else the tolerance is larger;
   /// Dataset::higher_order_cells() says what was reached. 0 tets: they are drawn by their corners, without a bound.
   double higher_order_tolerance = 1e-4;
-  std::uint64_t higher_order_tets = std::uint64_t{1} << 22;
+  std::uint64_t higher_order_tets = std::uint64_t{1} << 21;
 
   // A .raw file says nothing of itself, but perhaps by its name: NAME_WxHxD_TYPE.raw. These win over the name, and are
   // refused for other files.
@@ -87,7 +87,7 @@ struct MeshArrays {
   std::string field_name = "scalar";
   /// As ReadOptions has them, of cells of second and higher order; in parts each rank's own diagonal and range count.
   double higher_order_tolerance = 1e-4;
-  std::uint64_t higher_order_tets = std::uint64_t{1} << 22;
+  std::uint64_t higher_order_tets = std::uint64_t{1} << 21;
   /// Of `tets`: uint64, one each, the cell of another mesh that it was made of, tets of one cell next to each other.
   /// Empty: it is its own. Written by write_mesh; no picture depends on it.
   ArrayView original_cells{};

@@ -103,6 +103,7 @@ TEST(CurvedPicture, IsWithinTheAccuracyAskedFor) {
     ReadOptions options;
     options.field = "point:f";
     options.higher_order_tolerance = accuracy;
+    options.higher_order_tets = std::uint64_t{1} << 23;
     Dataset data = Dataset::open(file, options);
     const TransferFunction function = random_function(random, data.range());
     for (int again = 0; again < 3; ++again)
