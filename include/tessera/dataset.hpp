@@ -168,7 +168,7 @@ class TESSERA_EXPORT Dataset {
   [[nodiscard]] const HigherOrderCells& higher_order_cells() const;
   /// A bound on how far a pixel's colour or opacity is off because higher-order cells are drawn as tets: by the
   /// function's steepest slopes and largest extinction within the field's range, for any view. It leaves out rays that
-  /// meet the mesh's surface at more than 60 degrees from its normal. Infinite where the function has a step in that
+  /// meet the mesh's surface at more than 83 degrees from its normal. Infinite where the function has a step in that
   /// range, or where cells are drawn by their corners; 0 for meshes without such cells, and grids.
   [[nodiscard]] double higher_order_error(const TransferFunction& function) const;
   /// The tets as they are rendered, on several ranks this one's: float64 points and scalars, uint32 tets, borrowed from
