@@ -157,7 +157,9 @@ class Film final : public Sink {
     if (data_->higher_order_cells().divided == 0) return data;
     const double error = data_->higher_order_error(loaded_.function), accuracy = options_.settings.integrator.accuracy;
     data.higher_order_pixels = error;
-    if (error > accuracy) data.warnings.push_back(higher_order_warning(error, accuracy));
+    // Of cells drawn by their corners there is a warning already.
+    if (error > accuracy && data.higher_order.by_corners == 0)
+      data.warnings.push_back(higher_order_warning(error, accuracy));
     return data;
   }
 

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <optional>
 #include <span>
 #include <vector>
 

@@ -24,7 +24,8 @@ struct CurvedTolerance {
   double field = std::numeric_limits<double>::infinity();
 };
 
-/// Bounds on how far they are. `field` is at one place in space: what position is off counts for it too.
+/// Bounds on how far they are. `field` is at one place in space: what position is off counts for it too, to first
+/// order, by the cell's slopes at the tet's corners.
 struct CurvedError {
   double position = 0, field = 0;
   void add(const CurvedError& other);

@@ -3,8 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "io/cell_block.hpp"
 #include "io/curved_cells.hpp"

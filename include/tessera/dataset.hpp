@@ -166,9 +166,10 @@ class TESSERA_EXPORT Dataset {
   [[nodiscard]] std::uint64_t tet_count() const;
   [[nodiscard]] const MeshCounts& mesh_counts() const;
   [[nodiscard]] const HigherOrderCells& higher_order_cells() const;
-  /// A bound on how far a pixel's colour or opacity is off because higher-order cells are drawn as tets: by the
-  /// function's steepest slopes and largest extinction within the field's range, for any view. It leaves out rays that
-  /// meet the mesh's surface at more than 83 degrees from its normal. Infinite where the function has a step in that
+  /// A bound, to first order in what the cells are off by, on how far a pixel's colour or opacity is off because
+  /// higher-order cells are drawn as tets: by the function's steepest slopes within the field's range and its largest
+  /// extinction, for any view and emission by absorption. It leaves out rays that meet the mesh's surface at more than
+  /// 83 degrees from its normal, and takes those to cross it twice. Infinite where the function has a step in that
   /// range, or where cells are drawn by their corners; 0 for meshes without such cells, and grids.
   [[nodiscard]] double higher_order_error(const TransferFunction& function) const;
   /// The tets as they are rendered, on several ranks this one's: float64 points and scalars, uint32 tets, borrowed from
@@ -207,8 +208,8 @@ class TESSERA_EXPORT Dataset {
 };
 
 /// How to read a data set again so that higher_order_error() is about `accuracy` at most: with a smaller
-/// higher_order_tolerance than `options` have. Nothing if it is so already, or if more tets than
-/// ReadOptions::higher_order_tets, or all of them, would not do either.
+/// higher_order_tolerance than `options`, with which the data set was read. Nothing if it is so already, if the limit
+/// higher_order_tets has loosened the tolerance already, or if the error is infinite whatever the tolerance.
 TESSERA_EXPORT std::optional<ReadOptions> finer_read(const ReadOptions& options, const Dataset& data,
                                                      const TransferFunction& function, double accuracy);
 

@@ -73,7 +73,7 @@ struct HigherOrderCells {
   std::uint64_t by_corners = 0;  ///< drawn as linear cells by their corners, of kinds that are not divided: no bound
   std::uint64_t tets = 0;        ///< made of those divided
   double position_error = 0;     ///< the most that a point of a tet is away from where the cell has it, world units
-  double field_error = 0;        ///< the most that the field is off at one place, in its unit
+  double field_error = 0;        ///< the most that the field is off at one place, in its unit; to first order
   double tolerance = 0;          ///< what was asked for or, where that took too many tets, what was aimed at instead
 
   HigherOrderCells& operator+=(const HigherOrderCells& other);  ///< of another part
