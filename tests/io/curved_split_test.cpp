@@ -156,8 +156,6 @@ TEST(CurvedSplit, LeavesNoCracksWhateverTheNumbering) {
       EXPECT_GT(file.higher_order.tets, file.higher_order.divided * 2);
       EXPECT_LE(file.higher_order.position_error, 1e-2 * 2);
       std::size_t inside = 0, once = 0;
-      glm::dvec3 low(1e9), high(-1e9);
-      for (const glm::dvec3& p : file.mesh.positions) low = glm::min(low, p), high = glm::max(high, p);
       std::map<std::array<testing::Point, 2>, int> rim;
       for (const auto& [triangle, uses] : testing::count_triangles(file.mesh)) {
         EXPECT_LE(uses, 2);
