@@ -91,6 +91,7 @@ TEST(CurvedCell, HasItsNodesWhereTheLatticeSays) {
     SCOPED_TRACE(static_cast<int>(kind.type));
     const auto lattice = curved_lattice(kind.type, kind.nodes, kind.degrees);
     ASSERT_TRUE(lattice);
+    if (lattice->has_control_points) continue;
     std::vector<glm::dvec3> positions(kind.nodes);
     std::vector<double> values(kind.nodes);
     for (auto& p : positions) p = {anywhere(random), anywhere(random), anywhere(random)};
@@ -101,8 +102,9 @@ TEST(CurvedCell, HasItsNodesWhereTheLatticeSays) {
       CellPlace place;
       bool is_whole = true;  // a third has no place in units
       for (std::size_t x = 0; x < 3; ++x) {
-        is_whole = is_whole && cell_unit % lattice->order[x] == 0;
-        place[x] = lattice->nodes[k][x] * (cell_unit / lattice->order[x]);
+        const int steps = lattice->order[x] * lattice->refined;
+        is_whole = is_whole && std::int64_t{lattice->nodes[k][x]} * cell_unit % steps == 0;
+        place[x] = static_cast<std::int32_t>(std::int64_t{lattice->nodes[k][x]} * cell_unit / steps);
       }
       if (!is_whole) continue;
       EXPECT_NEAR(cell.at(place, 0).w, values[k], 1e-12) << k;
