@@ -51,9 +51,7 @@ const std::vector<Kind> kinds = {{24, 10, 2},
                                  lagrange(79, {3, 3, 3}),
                                  lagrange(80, {3, 3, 2})};
 
-glm::dvec3 place_of(const CurvedLattice& lattice, std::size_t node) {
-  return lattice.place(node);
-}
+glm::dvec3 place_of(const CurvedLattice& lattice, std::size_t node) { return lattice.place(node); }
 
 CellBlock warped_box(const Kind& kind, int n, const Warp& warp, const Field& field, bool turned) {
   CellBlock block;
