@@ -9,6 +9,7 @@
 #include "exchange/transport.hpp"
 #include "frame/array_mesh.hpp"
 #include "frame/communicator.hpp"
+#include "frame/curved_parts.hpp"
 #include "frame/distributed_mesh.hpp"
 #include "frame/mesh_check.hpp"
 #include "frame/mesh_input.hpp"
@@ -274,7 +275,7 @@ Dataset Dataset::of_parts(const MeshArrays& part, const Communicator& communicat
   const std::shared_ptr<exchange::Transport> transport = communicator.state().connect();
   return together(*transport, [&] {
     auto state = std::make_shared<State>();
-    frame::ArrayMesh mesh = frame::mesh_of_arrays(part, true);
+    frame::ArrayMesh mesh = frame::mesh_of_part(part, *transport);
     state->mesh = mesh.mesh;
     state->owner = std::move(mesh.owner);
     state->counts = mesh.counts;

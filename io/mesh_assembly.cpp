@@ -330,14 +330,15 @@ std::vector<std::string> warnings_on_cells(const MeshCounts& n, const HigherOrde
   return warnings;
 }
 
-MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options, const std::string& source) {
+MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options, const std::string& source,
+                       const HigherOrderPlanning& planning) {
   MeshFile file;
   const std::vector<FieldTally> tallies = tally_fields(blocks);
   file.fields = summarize_fields(std::span(&tallies, 1));
   const FieldChoice choice = choose_field(options.field, file.fields, source);
   file.notes = choice.notes;
 
-  const HigherOrderPlan plan = plan_higher_order(blocks, options, choice, file.fields);
+  const HigherOrderPlan plan = planning(blocks, options, choice, file.fields);
   AssembledBlocks assembled = assemble_blocks(std::move(blocks), file.fields, choice, source, plan, options.threads);
   file.mesh = std::move(assembled.mesh);
   file.counts = assembled.counts;

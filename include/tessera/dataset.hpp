@@ -43,8 +43,8 @@ struct ReadOptions {
   /// Cells of second and higher order become tets that are this near to them: in position of the mesh's diagonal, in
   /// value of the field's range. No more than about `higher_order_tets` are made of them, else the tolerance is larger;
   /// Dataset::higher_order_cells() says what was reached. 0 tets: they are drawn by their corners, without a bound.
-  double higher_order_tolerance = 1e-4;
-  std::uint64_t higher_order_tets = std::uint64_t{1} << 21;
+  double higher_order_tolerance = default_higher_order_tolerance;
+  std::uint64_t higher_order_tets = default_higher_order_tets;
 
   // A .raw file says nothing of itself, but perhaps by its name: NAME_WxHxD_TYPE.raw. These win over the name, and are
   // refused for other files.
@@ -85,9 +85,10 @@ struct MeshArrays {
   ArrayView scalars;  ///< one a point, or one a cell
   Association association = Association::point;
   std::string field_name = "scalar";
-  /// As ReadOptions has them, of cells of second and higher order; in parts each rank's own diagonal and range count.
-  double higher_order_tolerance = 1e-4;
-  std::uint64_t higher_order_tets = std::uint64_t{1} << 21;
+  /// As ReadOptions has them, of cells of second and higher order; in parts of the whole mesh, and the smallest of all
+  /// ranks' count.
+  double higher_order_tolerance = default_higher_order_tolerance;
+  std::uint64_t higher_order_tets = default_higher_order_tets;
   /// Of `tets`: uint64, one each, the cell of another mesh that it was made of, tets of one cell next to each other.
   /// Empty: it is its own. Written by write_mesh; no picture depends on it.
   ArrayView original_cells{};

@@ -67,6 +67,11 @@ inline MeshCounts& MeshCounts::operator+=(const MeshCounts& other) {
 }
 static_assert(sizeof(MeshCounts) == 17 * sizeof(std::uint64_t));  // one line above for each
 
+/// How near tets come to cells of second and higher order where nothing else is said: in position of the mesh's
+/// diagonal, in value of the field's range; and about how many there may be.
+inline constexpr double default_higher_order_tolerance = 1e-4;
+inline constexpr std::uint64_t default_higher_order_tets = std::uint64_t{1} << 21;
+
 /// What became of a mesh's cells of second and higher order.
 struct HigherOrderCells {
   std::uint64_t divided = 0;     ///< into tets that are as near to them as the bounds below say
