@@ -44,6 +44,11 @@ std::string brief(const std::string& text) {
   return fmt::format("{}e{}", mantissa, std::stoi(text.substr(e + 1)));
 }
 
+/// A power of ten: what label_of() writes, but shorter where that has five letters or more.
+std::string power_label(int e) {
+  return e < -3 || e > 4 ? fmt::format("1e{}", e) : fmt::format("{:.{}f}", std::pow(10.0, e), std::max(-e, 0));
+}
+
 /// Written to the decimal of ten to the `exponent`.
 std::string label_of(double value, int exponent) {
   const double size = std::abs(value);
@@ -67,8 +72,7 @@ std::vector<Tick> linear_ticks(double low, double high, int most) {
   if (width <= largest * 1e-12) return {{low, number_words(low)}, {high, number_words(high)}};
   // Ends that are multiples but for rounding count.
   constexpr double slack = 1e-6;
-  const auto first_of = [&](const Step& s) { return std::ceil(low / s.times(1) - slack) + 0.0; }  // no -0
-  ;
+  const auto first_of = [&](const Step& s) { return std::ceil(low / s.times(1) - slack) + 0.0; };  // no -0
   const auto last_of = [&](const Step& s) { return std::floor(high / s.times(1) + slack); };
   Step step = step_at_most(width / most * 2);
   while (last_of(step) - first_of(step) + 1 > most) step = step.next();
@@ -87,15 +91,18 @@ std::vector<Tick> logarithmic_ticks(double low, double high, int most) {
   const int first = static_cast<int>(std::ceil(std::log10(low) - 1e-12));
   const int last = static_cast<int>(std::floor(std::log10(high) + 1e-12));
   if (last <= first) return linear_ticks(low, high, most);
-  const int every = (last - first + most - 1) / (most - 1);
-  std::vector<Tick> ticks;
   // Multiples of `every`, so that 1 is among them if it is in the range.
+  const auto multiples = [&](int every) {
+    return static_cast<int>(std::floor(double(last) / every) - std::ceil(double(first) / every)) + 1;
+  };
+  int every = 1;
+  while (multiples(every) > most) ++every;
+  std::vector<Tick> ticks;
   for (int e = first; e <= last; ++e)
-    if (e % every == 0) ticks.push_back({std::clamp(Step{1, e}.times(1), low, high), label_of(Step{1, e}.times(1), e)});
+    if (e % every == 0) ticks.push_back({std::clamp(Step{1, e}.times(1), low, high), power_label(e)});
   if (ticks.size() < 2) {
     ticks.clear();
-    for (const int e : {first, last})
-      ticks.push_back({std::clamp(Step{1, e}.times(1), low, high), label_of(Step{1, e}.times(1), e)});
+    for (const int e : {first, last}) ticks.push_back({std::clamp(Step{1, e}.times(1), low, high), power_label(e)});
   }
   return ticks;
 }

@@ -50,19 +50,22 @@ double Typeface::width(const std::string& text) const {
 }
 
 std::string Typeface::fitted(const std::string& text, double room) const {
-  constexpr std::size_t longest = 1000;  // letters that are looked at
-  std::vector<std::size_t> starts;       // of letters
-  for (std::size_t i = 0; i < text.size(); ++i)
-    if ((static_cast<unsigned char>(text[i]) & 0xC0u) != 0x80u) starts.push_back(i);
-  if (starts.size() <= longest && width(text) <= room) return text;
-  starts.push_back(text.size());
-  const std::size_t letters = starts.size() - 1;
+  constexpr std::size_t longest = 1000;  // letters that are looked at, from either end
+  const auto begins = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xC0u) != 0x80u; };
+  std::vector<std::size_t> after, before;  // where the first k letters end, and the last k begin
+  for (std::size_t i = 0; i < text.size() && after.size() <= longest; ++i)
+    if (begins(i)) after.push_back(i);
+  if (after.size() <= longest) {
+    if (width(text) <= room) return text;
+    after.push_back(text.size());
+  }
+  before.push_back(text.size());
+  for (std::size_t i = text.size(); i > 0 && before.size() <= longest; --i)
+    if (begins(i - 1)) before.push_back(i - 1);
   const auto with = [&](std::size_t kept) {  // more of the beginning than of the end, where a unit may be
-    const std::size_t end = kept / 3, begin = kept - end;
-    return text.substr(0, starts[begin]) + "…" + text.substr(starts[letters - end]);
+    return text.substr(0, after[kept - kept / 3]) + "…" + text.substr(before[kept / 3]);
   };
-  std::size_t fits = 0, too_many = std::min(letters, longest);
-  if (width(with(0)) > room) return {};
+  std::size_t fits = 0, too_many = after.size() - 1;
   while (too_many - fits > 1) {
     const std::size_t middle = (fits + too_many) / 2;
     (width(with(middle)) <= room ? fits : too_many) = middle;

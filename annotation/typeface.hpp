@@ -27,7 +27,7 @@ class Typeface {
   [[nodiscard]] double line() const { return ascent_ + descent_; }
   /// Of clean text.
   [[nodiscard]] double width(const std::string& text) const;
-  /// Clean text that is at most so wide: its middle gives way to "…". Empty if not even that has room.
+  /// Clean text that is at most so wide: its middle gives way to "…". Empty if no letter beside that has room.
   [[nodiscard]] std::string fitted(const std::string& text, double width) const;
 
   /// Makes this the font of a context, unhinted: letters have the same form wherever they stand.
