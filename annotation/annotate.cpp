@@ -33,11 +33,11 @@ Sheet sketched(const Annotation& annotation, const Screen& screen, const Typefac
   const double margin = std::max(2.0, 0.7 * typeface.size());
   Sketch sketch{screen, typeface, annotation.style, Layout(screen.view().size, margin)};
   if (annotation.outline) add_outline(sketch, box);
-  if (annotation.axes && annotation.axes->box) add_box_axes(sketch, box, annotation.outline.has_value());
   if (annotation.axes && annotation.axes->triad) add_triad(sketch, annotation.axes->place);
   if (annotation.color_bar) add_color_bar(sketch, *annotation.color_bar, function);
   if (annotation.scale_bar) add_scale_bar(sketch, *annotation.scale_bar);
   for (const Text& text : annotation.texts) add_text(sketch, text);
+  if (annotation.axes && annotation.axes->box) add_box_axes(sketch, box, annotation.outline.has_value());
   return std::move(sketch.sheet);
 }
 

@@ -25,7 +25,7 @@ void add_arrow(Sketch& sketch, const glm::dvec2& from, const glm::dvec2& along, 
   const double head = std::min(0.55 * size, length);
   if (length < 1) return;  // seen along its axis
   const glm::dvec2 unit = along / length, across(-unit.y, unit.x), tip = from + along;
-  marks.emplace_back(Stroke{from, tip - unit * (0.9 * head), width, pen});
+  marks.emplace_back(Stroke{{from, tip - unit * (0.9 * head)}, width, pen});
   marks.emplace_back(
       Shape{{tip, tip - unit * head + across * (0.45 * head), tip - unit * head - across * (0.45 * head)}, pen});
 }
@@ -49,7 +49,7 @@ class EdgeAxis {
     const Pen pen = axis_pens[static_cast<std::size_t>(axis_)];
     const bool behind = faces_towards_eye(sketch_.screen, box_, edge_) == 0;
     Drawing& drawing = behind ? sketch_.sheet.behind : sketch_.sheet.before;
-    if (!outlined) drawing.marks.emplace_back(Stroke{line_[0], line_[1], sketch_.line_width(), Pen::ink});
+    if (!outlined) drawing.marks.emplace_back(Stroke{{line_[0], line_[1]}, sketch_.line_width(), Pen::ink});
     const double size = sketch_.typeface.size();
     const double tick = 0.4 * size;
     // Labels that have no room beside another are left out.
@@ -61,7 +61,7 @@ class EdgeAxis {
       const auto at = place_of(t.value);
       if (!at) continue;
       if (put({*at + outward_ * (tick + 0.3 * size)}, t.label, Pen::ink))
-        drawing.marks.emplace_back(Stroke{*at, *at + outward_ * tick, sketch_.line_width(), Pen::ink});
+        drawing.marks.emplace_back(Stroke{{*at, *at + outward_ * tick}, sketch_.line_width(), Pen::ink});
     }
     const glm::dvec2 middle = (line_[0] + line_[1]) * 0.5;
     const double beyond = tick + 0.9 * size + std::abs(outward_.x) * widest + std::abs(outward_.y) * size;
@@ -140,7 +140,8 @@ class EdgeAxis {
 
 void add_triad(Sketch& sketch, Place place) {
   const Typeface& face = sketch.typeface;
-  const double arm = 2.4 * face.size(), around = arm + 1.1 * face.size();
+  const double arm = std::min(2.4 * face.size(), 0.12 * std::min(sketch.layout.width(), sketch.layout.height()));
+  const double around = arm + 1.1 * face.size();
   const auto corner_at = sketch.layout.take(place, 2 * around, 2 * around);
   if (!corner_at) return;
   const glm::dvec2 middle = *corner_at + glm::dvec2(around);
@@ -162,6 +163,7 @@ void add_triad(Sketch& sketch, Place place) {
 void add_box_axes(Sketch& sketch, const Box& box, bool outlined) {
   if (box.empty()) return;
   std::vector<Box2> taken;
+  for (const auto& [low, high] : sketch.layout.taken()) taken.push_back({low, high});
   for (int axis = 0; axis < 3; ++axis) EdgeAxis(sketch, box, axis, taken).add(outlined);
 }
 
@@ -173,7 +175,7 @@ void add_outline(Sketch& sketch, const Box& box) {
         sketch.screen.segment(corner(box, edge.corner), corner(box, edge.corner | 1 << edge.axis), 4 * width);
     if (!line) continue;
     const bool behind = faces_towards_eye(sketch.screen, box, edge) == 0;
-    (behind ? sketch.sheet.behind : sketch.sheet.before).marks.emplace_back(Stroke{(*line)[0], (*line)[1], width});
+    (behind ? sketch.sheet.behind : sketch.sheet.before).marks.emplace_back(Stroke{{(*line)[0], (*line)[1]}, width});
   }
 }
 

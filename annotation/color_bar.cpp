@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 #include "annotation/sketch.hpp"
 #include "annotation/ticks.hpp"
@@ -63,18 +62,26 @@ void add_graph(Sketch& sketch, const Bar& bar, const Scale& scale, const Transfe
   };
   Shape graph;
   graph.corners.push_back(corner(bar.at(0), 0));
+  const double steps = bar.steps();
+  double before = extinction.front() / largest * depth;
+  graph.corners.push_back(corner(bar.at(0), before));
   for (int i = 0; i < bar.steps(); ++i) {
     const double height = extinction[static_cast<std::size_t>(i)] / largest * depth;
-    // Stairs of a pixel: steps of the function stay upright.
-    graph.corners.push_back(corner(bar.at(static_cast<double>(i) / bar.steps()), height));
-    graph.corners.push_back(corner(bar.at((i + 1.0) / bar.steps()), height));
+    // What rises by more than a pixel in one is a step, and upright.
+    if (std::abs(height - before) > 1) {
+      graph.corners.push_back(corner(bar.at(i / steps), before));
+      graph.corners.push_back(corner(bar.at(i / steps), height));
+    }
+    graph.corners.push_back(corner(bar.at((i + 0.5) / steps), height));
+    before = height;
   }
+  graph.corners.push_back(corner(bar.at(1), before));
   graph.corners.push_back(corner(bar.at(1), 0));
   auto& marks = sketch.sheet.on_top.marks;
-  const auto line = std::span(graph.corners).subspan(1, graph.corners.size() - 2);
+  Stroke line{{graph.corners.begin() + 1, graph.corners.end() - 1}, sketch.line_width()};
   graph.opacity = 0.4;
-  marks.emplace_back(graph);
-  for (std::size_t i = 1; i < line.size(); ++i) marks.emplace_back(Stroke{line[i - 1], line[i], sketch.line_width()});
+  marks.emplace_back(std::move(graph));
+  marks.emplace_back(std::move(line));
 }
 
 /// Round the bar, just outside of its colours.
@@ -83,10 +90,10 @@ void add_frame(Sketch& sketch, const Bar& bar) {
   const double left = bar.x - half, right = bar.x + bar.width + half;
   const double top = bar.y - half, bottom = bar.y + bar.height + half;
   auto& marks = sketch.sheet.on_top.marks;
-  marks.emplace_back(Stroke{{left - half, top}, {right + half, top}, w});
-  marks.emplace_back(Stroke{{left - half, bottom}, {right + half, bottom}, w});
-  marks.emplace_back(Stroke{{left, top}, {left, bottom}, w});
-  marks.emplace_back(Stroke{{right, top}, {right, bottom}, w});
+  marks.emplace_back(Stroke{{{left - half, top}, {right + half, top}}, w});
+  marks.emplace_back(Stroke{{{left - half, bottom}, {right + half, bottom}}, w});
+  marks.emplace_back(Stroke{{{left, top}, {left, bottom}}, w});
+  marks.emplace_back(Stroke{{{right, top}, {right, bottom}}, w});
 }
 
 double widest(const Typeface& face, const std::vector<Tick>& ticks) {
@@ -106,7 +113,7 @@ void add_upright(Sketch& sketch, const ColorBar& bar, const TransferFunction& fu
   const std::vector<Tick> ticks = scale.ticks(static_cast<int>(std::min(length / (2.2 * size), 12.0)));
   const double labels = widest(face, ticks), tick = std::round(0.35 * size), gap = 0.25 * size;
   const double graph = std::round(1.2 * size), thick = std::max(4.0, std::round(size));
-  const std::string title = face.fitted(clean_text(bar.title), 0.45 * sketch.layout.width());
+  const std::string title = face.fitted(clean_text(bar.title), 0.4 * sketch.layout.width());
   const double bar_part = graph + 3 * w + thick + tick + gap + labels, width = std::max(bar_part, face.width(title));
   const double head = title.empty() ? 0 : face.line() + 0.4 * size;
   const auto corner = sketch.layout.take(bar.place, width, length + head);
@@ -122,7 +129,7 @@ void add_upright(Sketch& sketch, const ColorBar& bar, const TransferFunction& fu
   const double from = place.x + place.width + w;
   for (const Tick& t : ticks) {
     const double y = place.at(scale.place(t.value));
-    marks.emplace_back(Stroke{{from, sketch.crisp(y)}, {from + tick, sketch.crisp(y)}, w});
+    marks.emplace_back(Stroke{{{from, sketch.crisp(y)}, {from + tick, sketch.crisp(y)}}, w});
     marks.emplace_back(Label{{from + tick + gap, y + 0.36 * size}, t.label});
   }
   if (title.empty()) return;
@@ -170,7 +177,7 @@ void add_level(Sketch& sketch, const ColorBar& bar, const TransferFunction& func
   const double from = place.y + place.height + w;
   for (const Tick& t : ticks) {
     const double x = place.at(scale.place(t.value));
-    marks.emplace_back(Stroke{{sketch.crisp(x), from}, {sketch.crisp(x), from + tick}, w});
+    marks.emplace_back(Stroke{{{sketch.crisp(x), from}, {sketch.crisp(x), from + tick}}, w});
     marks.emplace_back(Label{{x - face.width(t.label) / 2, from + tick + face.ascent()}, t.label});
   }
   if (title.empty()) return;

@@ -13,8 +13,9 @@ namespace tessera::annotation {
 /// Colours of lines and text; ink.hpp says which.
 enum class Pen { ink, x_axis, y_axis, z_axis };
 
+/// A line through points.
 struct Stroke {
-  glm::dvec2 a, b;
+  std::vector<glm::dvec2> points;
   double width;
   Pen pen = Pen::ink;
 };

@@ -17,6 +17,8 @@ class Ink {
   [[nodiscard]] glm::dvec3 halo() const { return halo_; }
 
  private:
+  [[nodiscard]] double light(const glm::dvec3& color) const;
+
   glm::dvec3 ink_, halo_;
   bool display_, dark_;
 };

@@ -47,6 +47,7 @@ std::optional<glm::dvec2> Layout::take(Place place, double width, double height)
   const glm::dvec2 corner(along(column, size_.width, width, sideways ? used : 0),
                           along(row, size_.height, height, sideways ? 0 : used));
   used += (sideways ? width : height) + margin_ / 2;
+  taken_.push_back({corner, corner + glm::dvec2(width, height)});
   return corner;
 }
 

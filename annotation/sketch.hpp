@@ -3,6 +3,7 @@
 #include <array>
 #include <glm/vec2.hpp>
 #include <optional>
+#include <vector>
 
 #include "annotation/drawing.hpp"
 #include "annotation/screen.hpp"
@@ -21,11 +22,14 @@ class Layout {
   [[nodiscard]] double height() const { return size_.height; }
   /// Top left corner of the next so large a rectangle at a place; nothing if it would not be on the picture.
   std::optional<glm::dvec2> take(Place place, double width, double height);
+  /// Low and high corners of all that were given.
+  [[nodiscard]] const std::vector<std::array<glm::dvec2, 2>>& taken() const { return taken_; }
 
  private:
   ImageSize size_;
   double margin_;
   std::array<double, 8> used_{};  ///< by place: from the margin inwards
+  std::vector<std::array<glm::dvec2, 2>> taken_;
 };
 
 /// -1, 0 or 1: left, middle, right; top, middle, bottom.
@@ -53,7 +57,7 @@ std::array<double, 2> range_of(const ColorBar& bar, const TransferFunction& func
 
 void add_color_bar(Sketch& sketch, const ColorBar& bar, const TransferFunction& function);
 void add_triad(Sketch& sketch, Place place);
-/// `outlined`: the box's edges are drawn already.
+/// Last: its labels stay clear of what has been placed. `outlined`: the box's edges are drawn already.
 void add_box_axes(Sketch& sketch, const Box& box, bool outlined);
 void add_outline(Sketch& sketch, const Box& box);
 void add_scale_bar(Sketch& sketch, const ScaleBar& bar);

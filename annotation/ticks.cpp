@@ -62,14 +62,14 @@ std::string label_of(double value, int exponent) {
 
 double round_length(double limit) { return step_at_most(limit).times(1); }
 
-std::string number_words(double value) { return brief(fmt::format("{:.6g}", value)); }
+std::string number_words(double value) { return brief(fmt::format("{:.6g}", value + 0.0)); }  // no -0
 
 std::vector<Tick> linear_ticks(double low, double high, int most) {
   if (low == high) return {{low, number_words(low)}};
   most = std::max(most, 2);
   const double largest = std::max(std::abs(low), std::abs(high));
   const double width = high / 2 - low / 2;  // halves, that 1e308 does not overflow
-  if (width <= largest * 1e-12) return {{low, number_words(low)}, {high, number_words(high)}};
+  if (width <= largest * 1e-12) return {{low, brief(fmt::format("{}", low))}, {high, brief(fmt::format("{}", high))}};
   // Ends that are multiples but for rounding count.
   constexpr double slack = 1e-6;
   const auto first_of = [&](const Step& s) { return std::ceil(low / s.times(1) - slack) + 0.0; };  // no -0

@@ -13,7 +13,7 @@ namespace tessera::annotation {
 /// A layer over a picture, most of it empty: pixels come in tiles as they are touched.
 class TiledLayer {
  public:
-  static constexpr int side = 64;  ///< of a tile
+  static constexpr int side = 16;  ///< of a tile
   /// Row-major, premultiplied, in the picture's own values.
   using Pixel = std::array<float, 4>;
   using Tile = std::array<Pixel, static_cast<std::size_t>(side) * side>;

@@ -25,6 +25,9 @@ TEST(Readable, InkStandsOutFromItsBackgroundAndItsHalo) {
         // 4.5 is what WCAG asks of text.
         EXPECT_GE(contrast(text, luminance(*style.background)), 4.5);
         EXPECT_GE(contrast(text, luminance(ink.halo())), 4.5);
+        // 3 is what it asks of graphics.
+        for (const Pen pen : {Pen::x_axis, Pen::y_axis, Pen::z_axis})
+          EXPECT_GE(contrast(luminance(ink.color(pen)), luminance(*style.background)), 3);
       }
 }
 
