@@ -67,8 +67,8 @@ class EdgeAxis {
     const double beyond = tick + 0.9 * size + std::abs(outward_.x) * widest + std::abs(outward_.y) * size;
     const auto axis = static_cast<std::size_t>(axis_);
     // A title is worth more than the label that may be in its way; it goes further out.
-    for (double further = 0; further < 4 * size; further += size)
-      if (put(middle + outward_ * (beyond + further), sketch_.with_unit(axis_names[axis]), pen)) break;
+    for (int further = 0; further < 4; ++further)
+      if (put(middle + outward_ * (beyond + further * size), sketch_.with_unit(axis_names[axis]), pen)) break;
   }
 
  private:

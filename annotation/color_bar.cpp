@@ -52,6 +52,7 @@ void add_colors(Sketch& sketch, const Bar& bar, const Scale& scale, const Transf
 /// Extinction over the range, its largest there as high as `depth`: to the left of an upright bar, above a level one.
 void add_graph(Sketch& sketch, const Bar& bar, const Scale& scale, const TransferFunction& function, double depth) {
   std::vector<double> extinction;
+  extinction.reserve(static_cast<std::size_t>(bar.steps()));
   for (int i = 0; i < bar.steps(); ++i)
     extinction.push_back(function.evaluate(scale.value((i + 0.5) / bar.steps())).extinction);
   const double largest = *std::ranges::max_element(extinction);

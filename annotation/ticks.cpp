@@ -76,11 +76,12 @@ std::vector<Tick> linear_ticks(double low, double high, int most) {
   const auto last_of = [&](const Step& s) { return std::floor(high / s.times(1) + slack); };
   Step step = step_at_most(width / most * 2);
   while (last_of(step) - first_of(step) + 1 > most) step = step.next();
+  const double first = first_of(step);
+  const int count = static_cast<int>(last_of(step) - first) + 1;
   std::vector<Tick> ticks;
-  const double first = first_of(step), last = last_of(step);
-  for (double k = first; k <= last; ++k) {
-    const double value = std::clamp(step.times(k), low, high);
-    ticks.push_back({value, label_of(step.times(k), step.exponent)});
+  for (int i = 0; i < count; ++i) {
+    const double multiple = step.times(first + i);
+    ticks.push_back({std::clamp(multiple, low, high), label_of(multiple, step.exponent)});
   }
   return ticks;
 }
