@@ -67,7 +67,7 @@ Bounds bounds_of(const Mark& mark, const Typeface& typeface) {
 /// the layer, so that the layer's colours are as exact as floats are; Cairo has 8 bits.
 class Mask {
  public:
-  Mask(const Block& block, const Typeface& typeface) : block_(block), typeface_(typeface) {
+  Mask(const Block& block, const Typeface& typeface) : block_(block) {
     surface_.reset(cairo_image_surface_create(CAIRO_FORMAT_A8, block.width, block.height));
     cairo_.reset(cairo_create(surface_.get()));
     cairo_translate(cairo_.get(), -block.x, -block.y);
@@ -140,7 +140,6 @@ class Mask {
     void operator()(cairo_t* cairo) const { cairo_destroy(cairo); }
   };
   Block block_;
-  const Typeface& typeface_;
   std::unique_ptr<cairo_surface_t, Destroy> surface_;
   std::unique_ptr<cairo_t, Destroy> cairo_;
   Bounds touched_;

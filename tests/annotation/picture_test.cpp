@@ -254,8 +254,8 @@ TEST(AnnotatedPicture, LinesDoNotDependOnTheWorldsUnit) {
 
 TEST(AnnotatedPicture, AnySizeAndViewGivesFiniteLightAndNoMoreThanFullAlpha) {
   std::vector<View> all = views();
-  for (const int width : {1, 2, 7, 16, 33, 64, 200, 1500})
-    for (const int height : {1, 5, 20, 64, 1100}) all.push_back({frame_box(box, {width, height}), {width, height}});
+  for (const int width : {1, 2, 7, 16, 33, 64, 200})
+    for (const int height : {1, 5, 20, 64}) all.push_back({frame_box(box, {width, height}), {width, height}});
   const std::array<Box, 6> boxes{box,
                                  Box{},
                                  Box{{1, 1, 1}, {1, 1, 1}},                         // a point
