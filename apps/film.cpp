@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "apps/frame_annotation.hpp"
 #include "apps/progress.hpp"
 #include "apps/report.hpp"
 #include "apps/run_output.hpp"
@@ -23,9 +24,11 @@ std::filesystem::path cost_name(const std::filesystem::path& picture) {
   return name.replace_extension().concat(".cost").concat(picture.extension().string());
 }
 
-/// With --show balance every picture has its cost map beside it.
+/// With --show balance every picture has its cost map beside it; an annotation's layer is a frame's last picture.
 std::vector<FilmFrame> frames_of(const RenderOptions& options) {
-  std::vector<FilmFrame> frames = plan_film(options.plan);
+  FilmPlan plan = options.plan;
+  if (!options.annotation.layer.empty()) plan.outputs.push_back(options.annotation.layer);
+  std::vector<FilmFrame> frames = plan_film(plan);
   if (!options.show_balance) return frames;
   for (FilmFrame& frame : frames) {
     const std::size_t pictures = frame.outputs.size();
@@ -90,7 +93,7 @@ class Film final : public Sink {
     {
       const TraceScope scope(timed() ? &compositing_ : nullptr, "write",
                              static_cast<std::int32_t>(jobs_before_ + rendered.number));
-      write_pictures(rendered.image, rendered.deep, frame, options_);
+      write_annotated(rendered.image, rendered.deep, frame, record.camera, *data_, loaded_.function, options_);
     }
     say(frame, rendered, std::move(record));
   }
@@ -110,6 +113,7 @@ class Film final : public Sink {
   /// The writing rank's view of the disk holds for all.
   void agree_on_finished_frames() {
     if (writes_) {
+      check_annotation(options_.annotation);
       const std::array more = {options_.report, options_.timing};
       const std::array inputs = {options_.input(), options_.plan.cameras, options_.read.plot3d_q,
                                  std::filesystem::path(options_.transfer_function)};
@@ -169,6 +173,7 @@ class Film final : public Sink {
       open(frames_.front(), read_);
       loaded_ = transfer_function_of(*data_, options_);
       come_near_enough();
+      if (writes_) check_annotation(options_.annotation, frame, *data_, loaded_.function);
       box_ = data_->bounds();
       tets_ = data_->tet_count();
       later_read_ = read_of_later_steps(read_, *data_);
@@ -218,14 +223,12 @@ class Film final : public Sink {
   }
 
   void write(const RenderedFrame& rendered, const FilmFrame& frame, const Camera& camera) const {
-    if (!options_.show_balance) return write_pictures(rendered.image, rendered.deep, frame, options_);
+    if (!options_.show_balance)
+      return write_annotated(rendered.image, rendered.deep, frame, camera, *data_, loaded_.function, options_);
     const BalancePictures shown = session_->balance_pictures(rendered, {camera, frame.size}, loaded_.function);
-    FilmFrame of_volume = frame, of_cost = frame;
-    const auto half = static_cast<std::ptrdiff_t>(frame.outputs.size() / 2);
-    of_volume.outputs.erase(of_volume.outputs.begin() + half, of_volume.outputs.end());
-    of_cost.outputs.erase(of_cost.outputs.begin(), of_cost.outputs.begin() + half);
-    write_pictures(shown.bricks, rendered.deep, of_volume, options_);
-    write_pictures(shown.cost, rendered.deep, of_cost, options_);
+    const std::span<const std::filesystem::path> outputs = frame.outputs;
+    write_pictures(shown.bricks, rendered.deep, outputs.first(outputs.size() / 2), options_.image);
+    write_pictures(shown.cost, rendered.deep, outputs.last(outputs.size() / 2), options_.image);
   }
 
   /// On the writing rank, of a frame that has been written.

@@ -87,6 +87,13 @@ void set_ranks(const RenderWords& words, bool merges, RenderOptions& options) {
     ranks.tile_seed = ranks.partition.seed = static_cast<std::uint64_t>(parse_count("--seed", words.seed, 0, no_limit));
 }
 
+/// Pictures that cannot be annotated.
+void refuse_unannotated(const RenderOptions& options) {
+  if (options.show_balance) throw bad_input("--show balance: its pictures are not annotated; leave one of the two out");
+  if (options.annotation.layer.empty() && std::ranges::all_of(options.plan.outputs, is_deep_name))
+    throw bad_input("deep picture: it is not annotated; name an .exr, .png or .pfm too, or an --annotation-layer");
+}
+
 }  // namespace
 
 void add_mesh_options(CLI::App& command, RenderWords& words) {
@@ -215,6 +222,8 @@ void add_render_options(CLI::App& command, RenderWords& words) {
   command.add_flag("--half", words.half, ".exr with 16-bit floats");
   command.add_option("--png-bits", words.png_bits, "default: 8")->type_name("8|16");
 
+  add_annotation_options(command, words.annotation);
+
   command
       .add_option(
           "--without", words.without,
@@ -282,6 +291,8 @@ RenderOptions render_options(const RenderWords& words) {
   if (!options.frame.deep && !words.deep_accuracy.empty())
     throw bad_input("--deep-accuracy: is for a deep picture; name one with -o FILE.deep.exr, or leave it out");
   options.image = image_options(words);
+  options.annotation = annotation_options(words.annotation, options.image);
+  if (options.annotation.annotation) refuse_unannotated(options);
   set_ranks(words, without.merging, options);
   plan.resume = words.resume;
   if (!words.repeat.empty()) options.repeat = parse_count("--repeat", words.repeat, 1, no_limit);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/annotation_options.hpp"
 #include "tessera/camera.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/film.hpp"
@@ -26,6 +27,7 @@ struct RenderOptions {
   ProjectionKind projection = ProjectionKind::orthographic;  ///< of the view that frames the data
   std::string without;                                       ///< the words of --without, as given
   ImageFileOptions image;
+  AnnotationOptions annotation;
 
   bool fixed_higher_order = false;  ///< higher-order cells are read as `read` says, whatever --accuracy is
 
@@ -54,6 +56,7 @@ struct RenderWords {
   std::string dims, type, spacing, origin, endian, skip, step, brick_size, cache, preload, light;
   std::string balance, balance_resolution, balance_weights, show;
   std::string projectors, compositors, exchange, partition = "curve", frames_in_flight, seed;
+  AnnotationWords annotation;
   bool smooth = false, shade = false, half = false, rescale = false, resume = false, progress = false, quiet = false;
 };
 

@@ -98,7 +98,9 @@ Json grid_method_json(const RenderOptions& options, int ranks) {
 }  // namespace
 
 Json method_json(const RenderOptions& options, int ranks) {
-  return options.is_grid() ? grid_method_json(options, ranks) : mesh_method_json(options);
+  Json json = options.is_grid() ? grid_method_json(options, ranks) : mesh_method_json(options);
+  if (!options.annotation.given.empty()) json["annotation"] = options.annotation.given;
+  return json;
 }
 
 Json job_json(const RenderOptions& options, int ranks, const Roles& roles) {

@@ -79,13 +79,14 @@ ExitCode RunOutput::finish(const RenderOptions& options) {
   return met_ ? ExitCode::complete : ExitCode::accuracy_not_met;
 }
 
-void write_pictures(const Image& image, const DeepImage& deep, const FilmFrame& frame, const RenderOptions& options) {
+void write_pictures(const Image& image, const DeepImage& deep, std::span<const std::filesystem::path> outputs,
+                    const ImageFileOptions& options) {
   try {
-    for (const auto& output : frame.outputs) {
+    for (const auto& output : outputs) {
       if (is_deep_name(output))
         write_deep_image(deep, output);
       else
-        write_image(image, output, options.image);
+        write_image(image, output, options);
     }
   } catch (const OutputFault& fault) {
     throw fault.since_changed();

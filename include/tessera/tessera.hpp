@@ -1,6 +1,7 @@
 #pragma once
 
 // All of the public API but tessera/mpi.hpp, which needs MPI.
+#include "tessera/annotation.hpp"
 #include "tessera/array.hpp"
 #include "tessera/camera.hpp"
 #include "tessera/communicator.hpp"
