@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/function_options.hpp"
+#include "apps/view_options.hpp"
 #include "tessera/camera.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/film.hpp"
@@ -23,10 +25,12 @@ struct RenderOptions {
 
   std::string transfer_function;  ///< file or preset; empty: the default one
   TransferFunctionOptions function;
+  ViewRequest view;
   ProjectionKind projection = ProjectionKind::orthographic;  ///< of the view that frames the data
   std::string without;                                       ///< the words of --without, as given
   ImageFileOptions image;
 
+  bool no_shade = false;            ///< not even where the default transfer function asks for it
   bool fixed_higher_order = false;  ///< higher-order cells are read as `read` says, whatever --accuracy is
 
   int repeat = 0;  ///< 0: render once and print no times
@@ -54,7 +58,10 @@ struct RenderWords {
   std::string dims, type, spacing, origin, endian, skip, step, brick_size, cache, preload, light;
   std::string balance, balance_resolution, balance_weights, show;
   std::string projectors, compositors, exchange, partition = "curve", frames_in_flight, seed;
-  bool smooth = false, shade = false, half = false, rescale = false, resume = false, progress = false, quiet = false;
+  ViewWords view;
+  FunctionWords function;
+  bool smooth = false, shade = false, no_shade = false, half = false, rescale = false, resume = false, progress = false,
+       quiet = false;
 };
 
 /// Declares the options of `tessera render` on its subcommand.

@@ -10,13 +10,14 @@ namespace {
 // Written down, and not asked of CLI11, for an error may come before the options are declared and on any thread. A test
 // compares it with what --help says.
 constexpr std::string_view setting_names =
-    "accuracy backend background balance balance_resolution balance_weights blend block brick_size budget_seconds "
-    "cache camera check compositor compositors csv deep_accuracy dims egl_device emission endian exchange field "
-    "figure framebuffer frames_in_flight half help higher_order_tets higher_order_tolerance integrator json light "
-    "max_volume memory on_stall opacity_scale "
-    "orbit origin output partition peer pieces pixels png_bits preload progress projection projectors q quiet "
-    "rasterizer repeat report rescale resume seed shade show size skip smooth spacing stall_timeout step "
-    "subdivide threads tile_size time_step timing transfer_function type unit_distance verify version without";
+    "accuracy azimuth backend background balance balance_resolution balance_weights blend block brick_size "
+    "budget_seconds cache camera check compositor compositors csv deep_accuracy dims egl_device elevation "
+    "emission endian exchange field figure fit framebuffer frames_in_flight half help higher_order_tets "
+    "higher_order_tolerance integrator json light log max_volume memory no_shade on_stall opacity opacity_points "
+    "opacity_scale orbit origin output partition peer pieces pixels png_bits preload progress projection "
+    "projectors q quiet range rasterizer repeat report rescale resume seed shade show size skip smooth spacing "
+    "stall_timeout step subdivide threads tile_size time_step timing transfer_function type unit_distance up "
+    "verify version view without zoom";
 
 constexpr auto settings = [] {
   std::array<std::string_view, std::ranges::count(setting_names, ' ') + 1> words;

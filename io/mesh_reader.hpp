@@ -32,6 +32,7 @@ struct MeshOptions {
   double higher_order_tolerance = 1e-4;
   std::uint64_t higher_order_tets = std::uint64_t{1} << 21;
   ReadProgressFunction progress{};  ///< null: nobody hears
+  bool shape = false;               ///< ReadOptions::shape
 };
 
 using tessera::HigherOrderCells;
