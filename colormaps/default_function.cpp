@@ -71,7 +71,7 @@ struct Draft {
   std::vector<ColorPoint> colors;
   std::vector<std::array<double, 2>> extinctions;  ///< value, extinction
   ColorSpace space = ColorSpace::rgb;
-  double mean_alpha = 0.3;
+  double mean_alpha = 0.4;
   std::string name;
   std::array<double, 2> range{};
   bool scales = true;
@@ -107,7 +107,6 @@ Draft draft_ct() {
     draft.colors.push_back({point.value, point.color});
     draft.extinctions.push_back({point.value, -std::log1p(-point.opacity)});
   }
-  draft.mean_alpha = 0.4;
   draft.range = {ct_points.front().value, ct_points.back().value};
   draft.name = "CT (Hounsfield units, air below -900 clear)";
   return draft;
@@ -150,7 +149,6 @@ Draft draft_values(const DefaultField& field, const std::array<double, 2>& range
   if (body) {
     draft.colors = spread(body_colors, r.has_ground ? r.ground : r.low, r.high);
     draft.space = ColorSpace::lab;
-    draft.mean_alpha = 0.4;
     draft.name = fmt::format("body over {:.6g} to {:.6g}, {}", r.low, r.high, how);
   } else {
     const ColorMapTable& table = color_map_tables().front();
@@ -227,14 +225,14 @@ std::vector<double> ValueShares::distinct(std::size_t most) const {
 DefaultKind default_kind(const DefaultField& field, const std::array<double, 2>& range) {
   if (range[0] == range[1]) return DefaultKind::constant;
   if (field.shape) return DefaultKind::shape;
+  const bool patient = field.axes != BodyAxes::none;
+  if ((patient || field.format == "DICOM CT") && range[0] <= -900 && range[1] >= 200) return DefaultKind::ct;
   const ValueShares shares(*field.samples);
   if (whole(range[0]) && whole(range[1]) && !shares.empty()) {
     const std::vector<double> labels = shares.distinct(highest_label + 1);
     const bool few = labels.size() <= most_labels || (range[0] >= 0 && range[1] <= highest_label);
-    if (!labels.empty() && few && std::ranges::all_of(labels, whole)) return DefaultKind::labels;
+    if (labels.size() > 2 && few && std::ranges::all_of(labels, whole)) return DefaultKind::labels;
   }
-  const bool patient = field.axes != BodyAxes::none;
-  if ((patient || field.format == "DICOM CT") && range[0] <= -900 && range[1] >= 200) return DefaultKind::ct;
   return patient && field.is_grid ? DefaultKind::body : DefaultKind::values;
 }
 
@@ -290,7 +288,7 @@ LoadedTransferFunction default_function(const DefaultField& field, const Transfe
   } else {
     const double unit = options.default_unit_distance;
     const PilotPixels pixels(*field.samples, draft.extinctions, 1 / unit);
-    curves.opacities = opacities_of(draft, draft.scales ? pixels.scale(draft.mean_alpha, 0.005) : 1);
+    curves.opacities = opacities_of(draft, draft.scales ? pixels.scale(draft.mean_alpha) : 1);
   }
   const double distance = options.unit_distance.value_or(options.default_unit_distance);
   LoadedTransferFunction loaded{make_transfer_function(refined_knots(curves, {.unit_distance = distance,

@@ -44,8 +44,8 @@ struct OpacityPoint;
 /// opacity_points over [low, high]; beyond the first and last their opacities go on.
 std::vector<OpacityPoint> points_over(const std::vector<std::array<double, 2>>& points, double low, double high);
 
-/// Whether a function over `function` tells next to nothing of a field over `field`: less than a hundredth of the field's
-/// range lies within, all the rest on one side; or the field fills less than a hundredth of it.
+/// Whether a function over `function` tells next to nothing of a field over `field`: less than a hundredth of the
+/// field's range lies within, all the rest on one side; or the field fills less than a hundredth of it.
 bool is_far_off(const std::array<double, 2>& function, const std::array<double, 2>& field);
 
 /// Throws Error(bad_input) naming the option if a range, distance or scale is not what its comment says.

@@ -6,7 +6,8 @@
 namespace tessera::colormaps {
 namespace {
 
-constexpr double saturated_alpha = 0.98, least_alpha = 1.0 / 255;
+constexpr double saturated_alpha = 0.98, most_saturated = 0.01, least_alpha = 1.0 / 255;
+constexpr double small_part = 0.15, small_part_factor = 0.6, least_face = 0.3;
 
 double interpolated(std::span<const std::array<double, 2>> points, double value) {
   const auto above = std::ranges::upper_bound(points, value, {}, [](const auto& p) { return p[0]; });
@@ -23,22 +24,42 @@ PilotPixels::PilotPixels(const scene::FieldSamples& samples, std::span<const std
   if (samples.samples.empty()) return;
   const int side = samples.samples.size() > 30000 ? 24 : 16;
   const auto pixels = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
-  depths_.assign(3 * pixels, 0.0);
-  const auto place = [&](float x) { return std::min(static_cast<int>(static_cast<double>(x) * side), side - 1); };
+  const glm::dvec3& side_length = samples.sides;
+  const std::array<double, 3> face{side_length.y * side_length.z, side_length.z * side_length.x,
+                                   side_length.x * side_length.y};
+  const double largest_face = *std::ranges::max_element(face);
+  std::array<std::size_t, 3> first{};  // pixel of each axis' picture
+  std::size_t pictures = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (face[axis] > 0 && face[axis] >= least_face * largest_face) first[axis] = pictures++ * pixels;
+  depths_.assign(pictures * pixels, 0.0);
+  // A sample is shared between the nearest pixels: else samples in rows would leave stripes.
+  struct Place {
+    int pixel[2];
+    double share[2];
+  };
+  const auto place = [&](float x) {
+    const double at = static_cast<double>(x) * side - 0.5, below = std::floor(at);
+    const int pixel = static_cast<int>(below);
+    return Place{{std::clamp(pixel, 0, side - 1), std::clamp(pixel + 1, 0, side - 1)}, {1 - (at - below), at - below}};
+  };
   for (const scene::FieldSample& s : samples.samples) {
     const double absorbed = interpolated(extinctions, s.value) * unit * samples.longest * static_cast<double>(s.volume);
     if (absorbed == 0) continue;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
-      const double area = samples.sides[static_cast<int>(a)] * samples.sides[static_cast<int>(b)];
-      if (!(area > 0)) continue;  // of a flat box: seen along its plane
-      const int pixel = place(s.at[a]) + side * place(s.at[b]);
-      depths_[axis * pixels + static_cast<std::size_t>(pixel)] += absorbed * static_cast<double>(pixels) / area;
+      if (!(face[axis] > 0) || face[axis] < least_face * largest_face) continue;
+      const double depth = absorbed * static_cast<double>(pixels) / face[axis];
+      const Place u = place(s.at[a]), v = place(s.at[b]);
+      for (const int k : {0, 1})
+        for (const int l : {0, 1})
+          depths_[first[axis] + static_cast<std::size_t>(u.pixel[k] + side * v.pixel[l])] +=
+              depth * u.share[k] * v.share[l];
     }
   }
 }
 
-double PilotPixels::scale(double mean_alpha, double most_saturated) const {
+double PilotPixels::scale(double mean_alpha) const {
   const auto too_much = [&](double factor) {
     double sum = 0;
     std::size_t shown = 0, saturated = 0;
@@ -50,7 +71,9 @@ double PilotPixels::scale(double mean_alpha, double most_saturated) const {
       saturated += alpha > saturated_alpha ? 1 : 0;
     }
     const auto count = static_cast<double>(shown);
-    return sum > mean_alpha * count || static_cast<double>(saturated) > most_saturated * count;
+    const bool small = count < small_part * static_cast<double>(depths_.size());
+    return sum > mean_alpha * (small ? small_part_factor : 1) * count ||
+           static_cast<double>(saturated) > most_saturated * count;
   };
   const double deepest = depths_.empty() ? 0 : *std::ranges::max_element(depths_);
   if (!(deepest > 0) || !std::isfinite(deepest)) return 1;
