@@ -119,8 +119,9 @@ void warn_of_nothing(const Dataset::State& data, const std::string& file_or_pres
                     low, high));
   } else if (knots.size() > 1 && colormaps::is_far_off({knots.front().value, knots.back().value}, {low, high})) {
     loaded.warnings.push_back(
-        fmt::format("the transfer function's {:.6g} to {:.6g} gives all but the whole of the field's {:.6g} to {:.6g} "
-                    "one colour and opacity; `rescale` stretches it over them, `range` over others",
+        fmt::format("the transfer function shows next to nothing: its {:.6g} to {:.6g} holds hardly any of the field's "
+                    "{:.6g} to {:.6g}, or all in one place, so that nearly all has one colour and opacity; `rescale` "
+                    "stretches it over them, `range` over others",
                     knots.front().value, knots.back().value, low, high));
   }
 }

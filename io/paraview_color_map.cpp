@@ -156,6 +156,23 @@ std::string set_color_space(const std::string& name, const Reader& reader, color
   return "";
 }
 
+/// The length over which opacities hold, and where it comes from.
+double unit_distance(const Reader& reader, const colormaps::TransferFunctionOptions& options, std::string& source) {
+  source = "default";
+  double distance = options.default_unit_distance;
+  if (const json* in_file = reader.find("ScalarOpacityUnitDistance")) {
+    if (!in_file->is_number() || !(in_file->get<double>() > 0) || !std::isfinite(in_file->get<double>()))
+      throw reader.fault("ScalarOpacityUnitDistance is not a positive number; it is a length in world units");
+    distance = in_file->get<double>();
+    source = "file";
+  }
+  if (options.unit_distance) {
+    distance = *options.unit_distance;
+    source = "`unit_distance`";
+  }
+  return distance;
+}
+
 }  // namespace
 
 colormaps::LoadedTransferFunction parse_paraview_color_map(std::string_view text, const std::string& source,
@@ -220,18 +237,7 @@ colormaps::LoadedTransferFunction parse_paraview_color_map(std::string_view text
     });
 
   colormaps::LoadedTransferFunction loaded;
-  loaded.unit_distance_source = "default";
-  double distance = options.default_unit_distance;
-  if (const json* in_file = reader.find("ScalarOpacityUnitDistance")) {
-    if (!in_file->is_number() || !(in_file->get<double>() > 0) || !std::isfinite(in_file->get<double>()))
-      throw reader.fault("ScalarOpacityUnitDistance is not a positive number; it is a length in world units");
-    distance = in_file->get<double>();
-    loaded.unit_distance_source = "file";
-  }
-  if (options.unit_distance) {
-    distance = *options.unit_distance;
-    loaded.unit_distance_source = "`unit_distance`";
-  }
+  const double distance = unit_distance(reader, options, loaded.unit_distance_source);
   loaded.unit_distance = distance;
   loaded.warnings = std::move(warnings);
   if (options.range) loaded.range = options.range;
