@@ -129,7 +129,9 @@ class Film final : public Sink {
     for (; writes_ && next_ < frame; ++next_) output_.skip(options_, frames_[next_]);
   }
 
-  [[nodiscard]] Camera camera_of(const FilmFrame& frame) const { return frame.view(*box_, options_.projection); }
+  [[nodiscard]] Camera camera_of(const FilmFrame& frame) const {
+    return frame.view(*box_, options_.projection, options_.view, axes_);
+  }
 
   void open(const FilmFrame& frame, const ReadOptions& read) {
     frame.require_still_there();
@@ -155,6 +157,15 @@ class Film final : public Sink {
     }
   }
 
+  /// What the default transfer function means to be shaded is so, unless an option of the run speaks against it.
+  void shade_by_default() {
+    if (!loaded_.shaded || options_.no_shade || options_.frame.deep || settings_.grid.shading) return;
+    if (takes_steps(settings_.integrator) || settings_.emission != Emission::absorption) return;
+    settings_.grid.shading.emplace();
+    options_.settings.grid.shading = settings_.grid.shading;
+    if (writes_) output_.note("method", method_json(options_, job_.size()));
+  }
+
   /// Of the data at hand, with what its higher-order cells do to pixels.
   [[nodiscard]] analysis::Description description() const {
     analysis::Description data = described(*data_);
@@ -173,8 +184,10 @@ class Film final : public Sink {
       open(frames_.front(), read_);
       loaded_ = transfer_function_of(*data_, options_);
       come_near_enough();
+      shade_by_default();
       if (writes_) check_annotation(options_.annotation, frame, *data_, loaded_.function);
       box_ = data_->bounds();
+      axes_ = data_->body_axes();
       tets_ = data_->tet_count();
       later_read_ = read_of_later_steps(read_, *data_);
       if (writes_) output_.describe(options_, description(), loaded_);
@@ -266,7 +279,7 @@ class Film final : public Sink {
     tessera::write_trace(trace_, process, traced, options_.timing, job_.communicator(), writer_);
   }
 
-  const RenderOptions& options_;
+  RenderOptions options_;  ///< with what is chosen once the data is known
   RenderOptions quiet_ = options_;
   Job& job_;
   Settings settings_ = options_.settings;
@@ -283,6 +296,7 @@ class Film final : public Sink {
   std::optional<Session> session_;
   std::size_t step_ = 0;    ///< of data_
   std::optional<Box> box_;  ///< of the first step; none until something is read
+  BodyAxes axes_ = BodyAxes::none;
   std::uint64_t tets_ = 0;
   LoadedTransferFunction loaded_;
 

@@ -166,12 +166,15 @@ void add_render_options(CLI::App& command, RenderWords& words) {
       .add_option("--unit-distance", words.unit_distance,
                   "world length over which a file's opacity holds (default: the file's, else mean thickness / 10)")
       ->type_name("LENGTH");
-  command.add_option("--opacity-scale", words.opacity_scale, "multiplies the extinction")->type_name("FACTOR");
+  command.add_option("--opacity-scale,--opacity", words.opacity_scale, "multiplies the extinction")
+      ->type_name("FACTOR");
+  add_function_options(command, words.function);
   command.add_option("--blend", words.blend, "linear light (default), or sRGB values as VTK does")
       ->type_name("linear|display");
 
   command.add_option("--camera", words.camera, "view or list of views: .json .pvcc text (default: frames the mesh)")
       ->type_name("FILE");
+  add_view_options(command, words.view);
   command.add_option("--orbit", words.orbit, "N frames once round the view's up axis")->type_name("N");
   command.add_option("--size", words.size, "pixels (default: the camera file's, else 1024x1024)")->type_name("WxH");
   command.add_option("--projection", words.projection, "of the default view (default: orthographic)")
@@ -217,8 +220,10 @@ void add_render_options(CLI::App& command, RenderWords& words) {
   command.add_option("--seed", words.seed, "under mpirun: of the tile map and of --partition random (default: 1)")
       ->type_name("NUMBER");
 
-  command.add_option("--background", words.background, "linear light; without it the picture has alpha")
-      ->type_name("R,G,B|NAME");
+  command
+      .add_option("--background", words.background,
+                  "linear R,G,B, sRGB #rrggbb or a name; without it the picture has alpha")
+      ->type_name("R,G,B|#RRGGBB|NAME");
   command.add_flag("--half", words.half, ".exr with 16-bit floats");
   command.add_option("--png-bits", words.png_bits, "default: 8")->type_name("8|16");
 
@@ -258,9 +263,13 @@ RenderOptions render_options(const RenderWords& words) {
   check_word("--blend", words.blend, {"linear", "display"});
   options.function.rescale = words.rescale;
   options.function.display_colors = words.blend == "display";
+  options.function.rescale_presets = true;
+  set_function(words.function, options.function);
+  options.read.shape = words.transfer_function.empty();
 
   plan.cameras = words.camera;
   if (!words.orbit.empty()) plan.orbit = parse_count("--orbit", words.orbit, 1, 1'000'000);
+  options.view = view_request(words.view, !words.camera.empty());
   if (!words.size.empty()) plan.size = parse_size("--size", words.size);
   if (!words.projection.empty()) {
     check_word("--projection", words.projection, {"orthographic", "perspective"});
@@ -287,6 +296,7 @@ RenderOptions render_options(const RenderWords& words) {
   } else {
     refuse_volume_options(words);
   }
+  options.no_shade = words.no_shade;
   options.frame.deep = std::ranges::any_of(plan.outputs, is_deep_name);
   if (!options.frame.deep && !words.deep_accuracy.empty())
     throw bad_input("--deep-accuracy: is for a deep picture; name one with -o FILE.deep.exr, or leave it out");
@@ -334,6 +344,7 @@ LoadedTransferFunction transfer_function_of(const Dataset& data, const RenderOpt
   LoadedTransferFunction loaded = data.transfer_function(options.transfer_function, options.function);
   loaded.name = with_options(loaded.name);
   loaded.unit_distance_source = with_options(loaded.unit_distance_source);
+  loaded.warnings = with_options(loaded.warnings);
   return loaded;
 }
 

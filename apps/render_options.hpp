@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "apps/annotation_options.hpp"
+#include "apps/function_options.hpp"
+#include "apps/view_options.hpp"
 #include "tessera/camera.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/film.hpp"
@@ -24,11 +26,13 @@ struct RenderOptions {
 
   std::string transfer_function;  ///< file or preset; empty: the default one
   TransferFunctionOptions function;
+  ViewRequest view;
   ProjectionKind projection = ProjectionKind::orthographic;  ///< of the view that frames the data
   std::string without;                                       ///< the words of --without, as given
   ImageFileOptions image;
   AnnotationOptions annotation;
 
+  bool no_shade = false;            ///< not even where the default transfer function asks for it
   bool fixed_higher_order = false;  ///< higher-order cells are read as `read` says, whatever --accuracy is
 
   int repeat = 0;  ///< 0: render once and print no times
@@ -57,7 +61,10 @@ struct RenderWords {
   std::string balance, balance_resolution, balance_weights, show;
   std::string projectors, compositors, exchange, partition = "curve", frames_in_flight, seed;
   AnnotationWords annotation;
-  bool smooth = false, shade = false, half = false, rescale = false, resume = false, progress = false, quiet = false;
+  ViewWords view;
+  FunctionWords function;
+  bool smooth = false, shade = false, no_shade = false, half = false, rescale = false, resume = false, progress = false,
+       quiet = false;
 };
 
 /// Declares the options of `tessera render` on its subcommand.

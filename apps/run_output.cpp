@@ -34,8 +34,10 @@ RunOutput::RunOutput(const RenderOptions& options, const std::vector<FilmFrame>&
 
 void RunOutput::describe(const RenderOptions& options, analysis::Description data,
                          LoadedTransferFunction transfer_function) {
+  std::vector<std::string> warnings = data.warnings;
+  warnings.insert(warnings.end(), transfer_function.warnings.begin(), transfer_function.warnings.end());
   if (!options.quiet)
-    for (const std::string& warning : data.warnings) {
+    for (const std::string& warning : warnings) {
       progress_.clear();
       fmt::print(stderr, "tessera: warning: {}: {}\n", options.input().string(), warning);
     }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <numeric>
 
@@ -93,6 +94,11 @@ class Assembly {
     const std::size_t n = point ? points_.size() : block.cell_count();
     if (!point) values_.clear();
     const std::size_t first = values_.size();
+    if (choice_.shape) {
+      values_.reserve(first + n);
+      for (std::size_t p = 0; p < n; ++p) values_.push_back(glm::dot(points_[p], shape_direction));
+      return;
+    }
     if (choice_.name.empty()) {
       values_.resize(first + n, 1.0);
       return;
@@ -335,7 +341,7 @@ MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options
   MeshFile file;
   const std::vector<FieldTally> tallies = tally_fields(blocks);
   file.fields = summarize_fields(std::span(&tallies, 1));
-  const FieldChoice choice = choose_field(options.field, file.fields, source);
+  const FieldChoice choice = choose_field(options.field, file.fields, source, options.shape);
   file.notes = choice.notes;
 
   const HigherOrderPlan plan = planning(blocks, options, choice, file.fields);

@@ -110,7 +110,7 @@ void MeshPartReading::choose(std::span<const std::vector<FieldTally>> tallies_of
   const std::string source = state_->file.string();
   with_clean_errors(source, [&] {
     state_->fields = summarize_fields(tallies_of_all);
-    state_->choice = choose_field(state_->options.field, state_->fields, source);
+    state_->choice = choose_field(state_->options.field, state_->fields, source, state_->options.shape);
     state_->asked = asked_tolerance(state_->options, box_of_all, state_->choice, state_->fields);
   });
 }

@@ -32,6 +32,7 @@ struct MeshOptions {
   double higher_order_tolerance = default_higher_order_tolerance;
   std::uint64_t higher_order_tets = default_higher_order_tets;
   ReadProgressFunction progress{};  ///< null: nobody hears
+  bool shape = false;               ///< ReadOptions::shape
 };
 
 using tessera::HigherOrderCells;

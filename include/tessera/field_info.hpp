@@ -7,6 +7,9 @@
 
 namespace tessera {
 
+/// The field of ReadOptions::shape, which is no array of a file.
+inline constexpr const char* shape_field_name = "shape (depth)";
+
 /// One array of a file. Range and count are of all tuples, cells that were dropped included.
 struct FieldInfo {
   std::string name;

@@ -7,6 +7,7 @@
 #include "tessera/communicator.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/deep_image.hpp"
+#include "tessera/default_view.hpp"
 #include "tessera/error.hpp"
 #include "tessera/file_formats.hpp"
 #include "tessera/film.hpp"
