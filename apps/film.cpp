@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <utility>
 
+#include "apps/picture_queue.hpp"
 #include "apps/progress.hpp"
 #include "apps/report.hpp"
 #include "apps/run_output.hpp"
@@ -69,6 +72,7 @@ class Film final : public Sink {
       }
       first = last;
     }
+    pictures_.finish();
     skip_to(frames_.size());
     if (timed()) write_trace();
     std::vector<std::byte> code(1);
@@ -87,12 +91,13 @@ class Film final : public Sink {
     const FilmFrame& frame = frames_[at];
     FrameRecord record;
     record.camera = camera_of(frame);
-    {
-      const TraceScope scope(timed() ? &compositing_ : nullptr, "write",
-                             static_cast<std::int32_t>(jobs_before_ + rendered.number));
-      write_pictures(rendered.image, rendered.deep, frame, options_);
-    }
-    say(frame, rendered, std::move(record));
+    const auto number = static_cast<std::int32_t>(jobs_before_ + rendered.number);
+    const auto picture = std::make_shared<const RenderedFrame>(std::move(rendered));
+    pictures_.add([this, picture, &frame, number] {
+      const TraceScope scope(timed() ? &compositing_ : nullptr, "write", number);
+      write_pictures(picture->image, picture->deep, frame, options_);
+    });
+    say(frame, *picture, std::move(record));
   }
 
  private:
@@ -196,12 +201,24 @@ class Film final : public Sink {
         rendered = session_->render({record.camera, frame.size}, loaded_.function, options_.frame);
         frame_ms_.push_back(rendered.statistics.milliseconds);
       }
-      if (writes_) {
-        const TraceScope scope(trace(), "write");
-        write(rendered, frame, record.camera);
+      if (!writes_) {
+        if (trace() != nullptr) trace()->add_frame(frame.number, frame_begin);
+        continue;
       }
-      if (trace() != nullptr) trace()->add_frame(frame.number, frame_begin);
-      if (writes_) say(frame, rendered, std::move(record));
+      const auto picture = std::make_shared<const RenderedFrame>(std::move(rendered));
+      // The cost map is the session's to draw, and that is at the next frame by the time a thread behind would ask.
+      std::optional<BalancePictures> shown;
+      if (options_.show_balance)
+        shown = session_->balance_pictures(*picture, {record.camera, frame.size}, loaded_.function);
+      pictures_.add([this, picture, shown = std::move(shown), &frame, frame_begin] {
+        {
+          const TraceScope scope(trace(), "write", frame.number);
+          shown ? write_balance(*shown, picture->deep, frame)
+                : write_pictures(picture->image, picture->deep, frame, options_);
+        }
+        if (trace() != nullptr) trace()->add_frame(frame.number, frame_begin);
+      });
+      say(frame, *picture, std::move(record));
     }
   }
 
@@ -217,18 +234,30 @@ class Film final : public Sink {
     jobs_before_ += jobs_.size();
   }
 
-  void write(const RenderedFrame& rendered, const FilmFrame& frame, const Camera& camera) const {
-    if (!options_.show_balance) return write_pictures(rendered.image, rendered.deep, frame, options_);
-    const BalancePictures shown = session_->balance_pictures(rendered, {camera, frame.size}, loaded_.function);
+  /// The first half of the frame's outputs shows the bricks, the second what they cost.
+  void write_balance(const BalancePictures& shown, const DeepImage& deep, const FilmFrame& frame) const {
     FilmFrame of_volume = frame, of_cost = frame;
     const auto half = static_cast<std::ptrdiff_t>(frame.outputs.size() / 2);
     of_volume.outputs.erase(of_volume.outputs.begin() + half, of_volume.outputs.end());
     of_cost.outputs.erase(of_cost.outputs.begin(), of_cost.outputs.begin() + half);
-    write_pictures(shown.bricks, rendered.deep, of_volume, options_);
-    write_pictures(shown.cost, rendered.deep, of_cost, options_);
+    write_pictures(shown.bricks, deep, of_volume, options_);
+    write_pictures(shown.cost, deep, of_cost, options_);
   }
 
-  /// On the writing rank, of a frame that has been written.
+  /// Pictures of a film are written behind it, but for those so large that memory should not hold two.
+  [[nodiscard]] bool writes_behind() const {
+    constexpr std::int64_t most_pixels = 4096 * 4096;
+    std::size_t left = 0;
+    std::int64_t pixels = 0;
+    for (const FilmFrame& frame : frames_)
+      if (!frame.finished) {
+        ++left;
+        pixels = std::max(pixels, std::int64_t{frame.size.width} * frame.size.height);
+      }
+    return writes_ && left > 1 && pixels <= most_pixels;
+  }
+
+  /// On the writing rank, of a frame that is written, or will be before the run ends without an error.
   void say(const FilmFrame& frame, const RenderedFrame& rendered, FrameRecord record) {
     record.statistics = rendered.statistics;
     record.frame_ms = std::exchange(frame_ms_, {});
@@ -287,6 +316,8 @@ class Film final : public Sink {
   std::vector<double> frame_ms_;   ///< of the frame at hand
   std::vector<std::size_t> jobs_;  ///< frame of each picture of the list at hand
   std::size_t jobs_before_ = 0;    ///< pictures of the lists before
+
+  PictureQueue pictures_{writes_behind()};  ///< last: what it writes refers to all above
 };
 
 }  // namespace

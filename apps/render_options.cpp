@@ -59,6 +59,7 @@ ImageFileOptions image_options(const RenderWords& words) {
   image.half = words.half;
   image.png_bits = words.png_bits == "16" ? 16 : 8;
   image.encode_srgb = words.blend != "display";
+  image.threads = thread_count(words);
   if (!words.background.empty()) {
     const auto color = parse_color("--background", words.background);
     image.background = glm::dvec3(color[0], color[1], color[2]);

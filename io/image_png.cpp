@@ -1,95 +1,139 @@
+// PNG (ISO/IEC 15948): a zlib stream of filtered rows between chunks. Written here and not by libpng, whose one stream
+// is compressed on one thread: strips of rows are compressed apart, each a run of whole deflate blocks that ends on a
+// byte, as pigz does it (Adler, zlib.net/pigz). Strips do not depend on the number of threads, so neither do the bytes.
 #include <fmt/format.h>
-#include <png.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <zlib.h>
 
 #include <algorithm>
-#include <cmath>
-#include <csetjmp>
-#include <cstring>
+#include <array>
+#include <cstdint>
 #include <exception>
+#include <string_view>
 #include <vector>
 
-#include "colormaps/color_spaces.hpp"
 #include "io/atomic_file.hpp"
+#include "io/display_rows.hpp"
 #include "io/image_formats.hpp"
 #include "scene/error.hpp"
+#include "scene/threads.hpp"
 
 namespace tessera::io {
 namespace {
 
-/// What libpng's callbacks reach. libpng leaves by longjmp, which must not pass C++ destructors, so exceptions are kept
-/// here and no function that calls libpng owns anything.
-struct Png {
-  AtomicFile* file = nullptr;
+using Bytes = std::vector<std::uint8_t>;
+
+// Of rendered pictures of 1024 x 1024, Up and level 4 took 30 ms, where libpng's defaults took 90, for files a tenth
+// larger; trying filters for every row took as long as compression and saved 2 %; level 1 saved 12 ms for half as much
+// again.
+constexpr int level = 4;
+constexpr std::uint8_t filter_up = 2;
+constexpr std::size_t strip_bytes = 256 << 10;  // so long that a strip's fresh start costs below 1 %
+
+struct Strip {
+  Bytes deflated;
+  uLong adler = 0;  ///< of its filtered rows
+  uLong length = 0;
   std::exception_ptr thrown;
-  char message[200] = "";
 };
 
-void on_write(png_structp png, png_bytep bytes, png_size_t count) {
-  Png& state = *static_cast<Png*>(png_get_io_ptr(png));
-  try {
-    state.file->write(bytes, count);
-    return;
-  } catch (...) {
-    state.thrown = std::current_exception();
+void append_be32(Bytes& bytes, std::uint32_t value) {
+  for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
+}
+
+void write_chunk(AtomicFile& file, std::string_view name, const Bytes& content) {
+  Bytes head;
+  append_be32(head, static_cast<std::uint32_t>(content.size()));
+  head.insert(head.end(), name.begin(), name.end());
+  uLong crc = crc32(0, head.data() + 4, 4);
+  // Of no bytes zlib would take it for a beginning.
+  if (!content.empty()) crc = crc32(crc, content.data(), static_cast<uInt>(content.size()));
+  Bytes tail;
+  append_be32(tail, static_cast<std::uint32_t>(crc));
+  file.write(head.data(), head.size());
+  file.write(content.data(), content.size());
+  file.write(tail.data(), tail.size());
+}
+
+/// Raw deflate blocks; all but the last strip's end with an empty block, which fills up a byte.
+Bytes deflated(const Bytes& rows, bool is_last) {
+  z_stream stream{};
+  constexpr int raw_32k = -15, memory_level = 8;
+  if (deflateInit2(&stream, level, Z_DEFLATED, raw_32k, memory_level, Z_DEFAULT_STRATEGY) != Z_OK)
+    throw std::bad_alloc();
+  struct End {
+    z_stream& stream;
+    ~End() { deflateEnd(&stream); }
+  } const end{stream};
+  Bytes out(deflateBound(&stream, static_cast<uLong>(rows.size())) + 16);  // and the empty block
+  stream.next_in = const_cast<Bytef*>(rows.data());                        // zlib reads it only
+  stream.avail_in = static_cast<uInt>(rows.size());
+  stream.next_out = out.data();
+  stream.avail_out = static_cast<uInt>(out.size());
+  deflate(&stream, is_last ? Z_FINISH : Z_SYNC_FLUSH);  // with room for all it cannot fail
+  out.resize(stream.total_out);
+  out.shrink_to_fit();
+  return out;
+}
+
+/// Rows [begin, end), each with its filter before it.
+Bytes filtered_rows(const DisplayRows& display, int begin, int end) {
+  const std::size_t row_bytes = display.row_bytes();
+  Bytes rows(static_cast<std::size_t>(end - begin) * (row_bytes + 1));
+  std::vector<float> rgba;
+  Bytes above(row_bytes), here(row_bytes);
+  if (begin > 0) display.row(begin - 1, rgba, above.data());
+  for (int y = begin; y < end; ++y) {
+    display.row(y, rgba, here.data());
+    std::uint8_t* out = rows.data() + static_cast<std::size_t>(y - begin) * (row_bytes + 1);
+    *out++ = filter_up;
+    for (std::size_t i = 0; i < row_bytes; ++i) out[i] = static_cast<std::uint8_t>(here[i] - above[i]);
+    above.swap(here);
   }
-  png_error(png, "write");
+  return rows;
 }
 
-void on_flush(png_structp) {}
-
-void on_error(png_structp png, png_const_charp message) {
-  Png& state = *static_cast<Png*>(png_get_error_ptr(png));
-  std::strncpy(state.message, message, sizeof(state.message) - 1);
-  png_longjmp(png, 1);
+std::vector<Strip> make_strips(const DisplayRows& display, int height, int threads) {
+  const int rows = std::max(1, static_cast<int>(strip_bytes / (display.row_bytes() + 1)));
+  std::vector<Strip> strips(static_cast<std::size_t>((height + rows - 1) / rows));
+  tbb::task_arena arena(scene::threads_for(threads));
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, strips.size(), [&](std::size_t i) {
+      Strip& strip = strips[i];
+      try {
+        const int begin = static_cast<int>(i) * rows, end = std::min(begin + rows, height);
+        const Bytes filtered = filtered_rows(display, begin, end);
+        strip.length = static_cast<uLong>(filtered.size());
+        strip.adler = adler32(adler32(0, nullptr, 0), filtered.data(), static_cast<uInt>(filtered.size()));
+        strip.deflated = deflated(filtered, end == height);
+      } catch (...) {
+        strip.thrown = std::current_exception();
+      }
+    });
+  });
+  // The first of the picture, whichever came first.
+  for (const Strip& strip : strips)
+    if (strip.thrown) std::rethrow_exception(strip.thrown);
+  return strips;
 }
 
-void on_warning(png_structp, png_const_charp) {}
-
-struct Layout {
-  png_uint_32 width, height;
-  int bits, color_type;
-};
-
-bool write_header(png_structp png, png_infop info, const Layout& layout) {
-  if (setjmp(png_jmpbuf(png)) != 0) return false;
-  png_set_IHDR(png, info, layout.width, layout.height, layout.bits, layout.color_type, PNG_INTERLACE_NONE,
-               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
-  png_write_info(png, info);
-  return true;
-}
-
-bool write_row(png_structp png, const png_byte* row) {
-  if (setjmp(png_jmpbuf(png)) != 0) return false;
-  png_write_row(png, row);
-  return true;
-}
-
-bool write_end(png_structp png, png_infop info) {
-  if (setjmp(png_jmpbuf(png)) != 0) return false;
-  png_write_end(png, info);
-  return true;
-}
-
-/// Premultiplied row to display integers, big endian where 16 bits.
-void encode_row(const std::vector<float>& rgba, int channels, const ImageFileOptions& options,
-                std::vector<png_byte>& out) {
-  const double largest = options.png_bits == 16 ? 65535 : 255;
-  png_byte* next = out.data();
-  const auto put = [&](double level) {
-    const auto code = static_cast<unsigned>(std::lround(std::clamp(level, 0.0, 1.0) * largest));
-    if (options.png_bits == 16) *next++ = static_cast<png_byte>(code >> 8);
-    *next++ = static_cast<png_byte>(code & 0xff);
-  };
-  for (std::size_t i = 0; i < rgba.size(); i += 4) {
-    // PNG's alpha is straight: colours are what an opaque pixel would show.
-    const double alpha = rgba[i + 3], scale = alpha > 0 ? 1 / alpha : 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double straight = std::clamp(rgba[i + k] * scale, 0.0, 1.0);
-      put(options.encode_srgb ? colormaps::encode_srgb(straight) : straight);
-    }
-    if (channels == 4) put(alpha);
-  }
+void write_head(AtomicFile& file, const scene::Image& image, int bits, int channels) {
+  constexpr std::array<std::uint8_t, 8> signature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  file.write(signature.data(), signature.size());
+  constexpr std::uint8_t rgb = 2, rgb_alpha = 6;
+  Bytes header;
+  append_be32(header, static_cast<std::uint32_t>(image.size.width));
+  append_be32(header, static_cast<std::uint32_t>(image.size.height));
+  header.insert(header.end(), {static_cast<std::uint8_t>(bits), channels == 4 ? rgb_alpha : rgb, 0, 0, 0});
+  write_chunk(file, "IHDR", header);
+  write_chunk(file, "sRGB", {0});  // perceptual
+  Bytes gamma, primaries;          // for readers that do not know sRGB; the standard gives the numbers
+  append_be32(gamma, 45455);
+  for (const std::uint32_t place : {31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000})
+    append_be32(primaries, place);
+  write_chunk(file, "gAMA", gamma);
+  write_chunk(file, "cHRM", primaries);
 }
 
 }  // namespace
@@ -98,38 +142,20 @@ void write_png(const scene::Image& image, const std::filesystem::path& file, con
   if (options.png_bits != 8 && options.png_bits != 16)
     throw scene::bad_input(fmt::format("{}: {} bits a channel; a .png has 8 or 16", file.string(), options.png_bits));
   AtomicFile target(file);
-  Png state;
-  state.file = &target;
-  struct Handles {
-    png_structp png = nullptr;
-    png_infop info = nullptr;
-    ~Handles() { png_destroy_write_struct(&png, &info); }
-  } handles;
-  handles.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &state, on_error, on_warning);
-  if (handles.png != nullptr) handles.info = png_create_info_struct(handles.png);
-  const auto check = [&](bool done) {
-    if (done) return;
-    if (state.thrown) std::rethrow_exception(state.thrown);
-    throw scene::Error(scene::ErrorCode::system_failure,
-                       fmt::format("{}: cannot be written: {}; write .exr", file.string(), state.message));
-  };
-  if (handles.info == nullptr)
-    throw scene::Error(scene::ErrorCode::system_failure, file.string() + ": no memory to write it");
-  png_set_write_fn(handles.png, &state, on_write, on_flush);
-
   const int channels = options.background ? 3 : 4;
-  check(write_header(handles.png, handles.info,
-                     {static_cast<png_uint_32>(image.size.width), static_cast<png_uint_32>(image.size.height),
-                      options.png_bits, channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB}));
-  const auto width = static_cast<std::size_t>(image.size.width);
-  std::vector<float> row(4 * width);
-  std::vector<png_byte> bytes(width * static_cast<std::size_t>(channels * options.png_bits / 8));
-  for (int y = 0; y < image.size.height; ++y) {
-    composited_row(image, y, options, file, row.data());
-    encode_row(row, channels, options, bytes);
-    check(write_row(handles.png, bytes.data()));
+  const DisplayRows display(image, file, options, channels);
+  std::vector<Strip> strips = make_strips(display, image.size.height, options.threads);
+  write_head(target, image, options.png_bits, channels);
+  uLong adler = adler32(0, nullptr, 0);
+  for (std::size_t i = 0; i < strips.size(); ++i) {
+    Strip& strip = strips[i];
+    adler = adler32_combine(adler, strip.adler, static_cast<z_off_t>(strip.length));
+    if (i == 0) strip.deflated.insert(strip.deflated.begin(), {0x78, 0x5e});  // zlib's head: 32 KiB window, fast
+    if (i + 1 == strips.size()) append_be32(strip.deflated, static_cast<std::uint32_t>(adler));
+    write_chunk(target, "IDAT", strip.deflated);
+    strip.deflated = {};
   }
-  check(write_end(handles.png, handles.info));
+  write_chunk(target, "IEND", {});
   target.commit();
 }
 

@@ -13,7 +13,7 @@ namespace tessera {
 
 /// Writes a picture by its name's extension.
 ///   .exr  OpenEXR scan lines, ZIP: R G B A linear and premultiplied, Z planar depth (+inf where nothing is).
-///   .png  sRGB. Without a background RGBA with straight alpha, as PNG has it: light that a pixel emits beyond its
+///   .png  sRGB, 8 or 16 bits. Without a background RGBA with straight alpha, as PNG has it: light that a pixel emits beyond its
 ///         alpha (independent emission) is clamped, give a background to see it.
 ///   .pfm  linear RGB, premultiplied, 32-bit floats, little endian, bottom row first. No alpha.
 /// Throws Error(bad_input) for another extension, a folder that is not there, a number that half cannot hold;

@@ -13,6 +13,7 @@ struct ImageFileOptions {
   /// Composited behind the picture, which is opaque then (A = 1; .png without an alpha channel). In the picture's own
   /// space: linear RGB, or display values where encode_srgb is false.
   std::optional<glm::dvec3> background{};
+  int threads = 0;  ///< .png, .exr: that compress; 0: all cores. The bytes are the same for any number
 };
 
 }  // namespace tessera

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "colormaps/color_spaces.hpp"
+#include "io/display_rows.hpp"
 #include "temporary_folder.hpp"
 
 namespace tessera::io {
@@ -156,6 +157,44 @@ TEST(ImageFile, PngHoldsStraightAlphaInSrgb) {
         EXPECT_EQ(png.at(x, y, 3), std::lround(in[3] * full));
       }
   }
+}
+
+TEST(ImageFile, PngOfManyStripsHasTheSameBytesOnAnyNumberOfThreads) {
+  const TemporaryFolder folder;
+  const scene::Image image = picture(700, 900);  // 2.5 MB of rows, some ten strips
+  for (const int bits : {8, 16}) {
+    write_image(image, folder / "one.png", {.png_bits = bits, .threads = 1});
+    for (const int threads : {2, 3, 0}) {
+      write_image(image, folder / "many.png", {.png_bits = bits, .threads = threads});
+      EXPECT_EQ(contents(folder / "many.png"), contents(folder / "one.png")) << threads;
+    }
+    const Png png = read_png(folder / "one.png");
+    ASSERT_EQ(png.samples.size(), image.rgba.size());
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4)
+      ASSERT_EQ(png.samples[i], std::lround(image.rgba[i] * (bits == 8 ? 255.0 : 65535.0))) << i / 4;
+  }
+}
+
+TEST(ImageFile, ExrHasTheSameBytesOnAnyNumberOfThreads) {
+  const TemporaryFolder folder;
+  const scene::Image image = picture(300, 203);
+  write_image(image, folder / "one.exr", {.threads = 1});
+  write_image(image, folder / "many.exr", {.threads = 3});
+  EXPECT_EQ(contents(folder / "many.exr"), contents(folder / "one.exr"));
+  EXPECT_EQ(read_image(folder / "many.exr").rgba, image.rgba);
+}
+
+TEST(ImageFile, DisplayCodesAreTheFormulas) {
+  const auto formula = [](double linear) { return std::lround(255 * colormaps::encode_srgb(linear)); };
+  for (int i = 0; i <= 1'000'000; ++i) ASSERT_EQ(srgb_code(i * 1e-6), formula(i * 1e-6)) << i;
+  // At the edges between codes, where a table would err first.
+  for (int code = 0; code < 255; ++code) {
+    double edge = colormaps::decode_srgb((code + 0.5) / 255);
+    for (int i = 0; i < 20; ++i) edge = std::nextafter(edge, 0.0);
+    for (int i = 0; i < 40; ++i, edge = std::nextafter(edge, 1.0)) ASSERT_EQ(srgb_code(edge), formula(edge)) << code;
+  }
+  EXPECT_EQ(srgb_code(-1), 0);
+  EXPECT_EQ(srgb_code(2), 255);
 }
 
 TEST(ImageFile, DisplayColoursAreNotEncodedAgain) {
