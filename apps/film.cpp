@@ -10,10 +10,12 @@
 #include <utility>
 
 #include "apps/picture_queue.hpp"
+#include "apps/picture_writer.hpp"
 #include "apps/progress.hpp"
 #include "apps/report.hpp"
 #include "apps/run_output.hpp"
 #include "apps/setting_words.hpp"
+#include "tessera/image_file.hpp"
 #include "tessera/session.hpp"
 #include "tessera/trace.hpp"
 
@@ -72,6 +74,7 @@ class Film final : public Sink {
       }
       first = last;
     }
+    if (writes_) pictures_.add([this] { picture_writer_.finish(); });
     pictures_.finish();
     skip_to(frames_.size());
     if (timed()) write_trace();
@@ -95,7 +98,7 @@ class Film final : public Sink {
     const auto picture = std::make_shared<const RenderedFrame>(std::move(rendered));
     pictures_.add([this, picture, &frame, number] {
       const TraceScope scope(timed() ? &compositing_ : nullptr, "write", number);
-      write_pictures(picture->image, picture->deep, frame, options_);
+      picture_writer_.write(picture->image, picture->deep, frame);
     });
     say(frame, *picture, std::move(record));
   }
@@ -115,7 +118,10 @@ class Film final : public Sink {
   /// The writing rank's view of the disk holds for all.
   void agree_on_finished_frames() {
     if (writes_) {
-      const std::array more = {options_.report, options_.timing};
+      std::vector<std::filesystem::path> more = options_.films;
+      if (!options_.report_to_standard_output) more.push_back(options_.report);
+      more.push_back(options_.timing);
+      PictureWriter::check(options_, frames_);
       const std::array inputs = {options_.input(), options_.plan.cameras, options_.read.plot3d_q,
                                  std::filesystem::path(options_.transfer_function)};
       check_film_outputs(frames_, more, inputs);
@@ -214,7 +220,7 @@ class Film final : public Sink {
         {
           const TraceScope scope(trace(), "write", frame.number);
           shown ? write_balance(*shown, picture->deep, frame)
-                : write_pictures(picture->image, picture->deep, frame, options_);
+                : picture_writer_.write(picture->image, picture->deep, frame);
         }
         if (trace() != nullptr) trace()->add_frame(frame.number, frame_begin);
       });
@@ -235,13 +241,14 @@ class Film final : public Sink {
   }
 
   /// The first half of the frame's outputs shows the bricks, the second what they cost.
-  void write_balance(const BalancePictures& shown, const DeepImage& deep, const FilmFrame& frame) const {
+  void write_balance(const BalancePictures& shown, const DeepImage& deep, const FilmFrame& frame) {
     FilmFrame of_volume = frame, of_cost = frame;
     const auto half = static_cast<std::ptrdiff_t>(frame.outputs.size() / 2);
     of_volume.outputs.erase(of_volume.outputs.begin() + half, of_volume.outputs.end());
     of_cost.outputs.erase(of_cost.outputs.begin(), of_cost.outputs.begin() + half);
-    write_pictures(shown.bricks, deep, of_volume, options_);
-    write_pictures(shown.cost, deep, of_cost, options_);
+    picture_writer_.write(shown.bricks, deep, of_volume);
+    // Films and standard output show the volume.
+    for (const auto& output : of_cost.outputs) write_image(shown.cost, output, options_.image);
   }
 
   /// Pictures of a film are written behind it, but for those so large that memory should not hold two.
@@ -317,6 +324,7 @@ class Film final : public Sink {
   std::vector<std::size_t> jobs_;  ///< frame of each picture of the list at hand
   std::size_t jobs_before_ = 0;    ///< pictures of the lists before
 
+  PictureWriter picture_writer_{options_};
   PictureQueue pictures_{writes_behind()};  ///< last: what it writes refers to all above
 };
 

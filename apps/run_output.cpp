@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 
+#include "apps/standard_streams.hpp"
 #include "tessera/output_file.hpp"
 #include "tessera/version.hpp"
 
@@ -58,9 +60,11 @@ void RunOutput::add(const RenderOptions& options, const FilmFrame& frame, const 
     progress_.clear();
     fmt::print(stderr, "{}\n", frame_line(options, frames_, frame, record));
   }
-  if (options.repeat > 0) fmt::print("{}\n", frame_ms_line(record.frame_ms));
+  // Standard output that a picture or the report goes to holds nothing else.
+  std::FILE* const lines = options.to_standard_output || options.report_to_standard_output ? stderr : stdout;
+  if (options.repeat > 0) fmt::print(lines, "{}\n", frame_ms_line(record.frame_ms));
   if (record.verification) {
-    fmt::print("{}\n", verification_line(*record.verification, frame.number));
+    fmt::print(lines, "{}\n", verification_line(*record.verification, frame.number));
     met_ = met_ && record.verification->met;
   }
   progress_.update(++done_, ++rendered_);
@@ -75,21 +79,11 @@ ExitCode RunOutput::finish(const RenderOptions& options) {
     fmt::print(stderr, "{}: all {} frames are there already, nothing rendered\n", options.input().string(),
                frames_.size());
   }
-  if (!options.report.empty()) frame_reports_.write(report_, options.report);
+  if (options.report_to_standard_output)
+    write_standard_output(with_stream_names(frame_reports_.text(report_)));
+  else if (!options.report.empty())
+    write_text(options.report, with_stream_names(frame_reports_.text(report_)));
   return met_ ? ExitCode::complete : ExitCode::accuracy_not_met;
-}
-
-void write_pictures(const Image& image, const DeepImage& deep, const FilmFrame& frame, const RenderOptions& options) {
-  try {
-    for (const auto& output : frame.outputs) {
-      if (is_deep_name(output))
-        write_deep_image(deep, output);
-      else
-        write_image(image, output, options.image);
-    }
-  } catch (const OutputFault& fault) {
-    throw fault.since_changed();
-  }
 }
 
 TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const FilmFrame& frame, std::size_t rendered) {

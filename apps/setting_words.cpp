@@ -12,7 +12,8 @@ namespace {
 constexpr std::string_view setting_names =
     "accuracy backend background balance balance_resolution balance_weights blend block brick_size budget_seconds "
     "cache camera check compositor compositors csv deep_accuracy dims egl_device emission endian exchange field "
-    "figure framebuffer frames_in_flight half help higher_order_tets higher_order_tolerance integrator json light "
+    "figure frame_rate framebuffer frames_in_flight half help higher_order_tets higher_order_tolerance integrator json "
+    "light "
     "max_volume memory on_stall opacity_scale "
     "orbit origin output partition peer pieces pixels png_bits preload progress projection projectors q quiet "
     "rasterizer repeat report rescale resume seed shade show size skip smooth spacing stall_timeout step "
