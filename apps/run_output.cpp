@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "apps/standard_streams.hpp"
+#include "apps/stderr_lines.hpp"
 #include "tessera/output_file.hpp"
 #include "tessera/version.hpp"
 
@@ -39,7 +40,7 @@ void RunOutput::describe(const RenderOptions& options, analysis::Description dat
   if (!options.quiet)
     for (const std::string& warning : data.warnings) {
       progress_.clear();
-      fmt::print(stderr, "tessera: warning: {}: {}\n", options.input().string(), warning);
+      say_lines(fmt::format("tessera: warning: {}: {}", options.input().string(), warning));
     }
   data_ = std::move(data);
   transfer_function_ = std::move(transfer_function);
@@ -54,11 +55,12 @@ void RunOutput::add(const RenderOptions& options, const FilmFrame& frame, const 
   if (frame_reports_.kept()) frame_reports_.add(frame_json(options, frame, &record));
   if (rendered_ == 0 && !options.quiet) {
     progress_.clear();
-    fmt::print(stderr, "{}\n", run_line(options, *data_, *transfer_function_, frames_, frame, record));
+    say_lines(run_line(options, *data_, *transfer_function_, frames_, frame, record));
+    for (const std::string& note : data_->notes) say_lines("note: " + note);
   }
   if (frames_.size() > 1 && !options.quiet) {
     progress_.clear();
-    fmt::print(stderr, "{}\n", frame_line(options, frames_, frame, record));
+    say_lines(frame_line(options, frames_, frame, record));
   }
   // Standard output that a picture or the report goes to holds nothing else.
   std::FILE* const lines = options.to_standard_output || options.report_to_standard_output ? stderr : stdout;
@@ -76,8 +78,8 @@ ExitCode RunOutput::finish(const RenderOptions& options) {
     report_[data_->is_mesh ? "mesh" : "volume"] = analysis::data_json(options.input(), *data_);
     report_["transfer_function"] = analysis::transfer_function_json(*transfer_function_);
   } else if (!options.quiet) {
-    fmt::print(stderr, "{}: all {} frames are there already, nothing rendered\n", options.input().string(),
-               frames_.size());
+    say_lines(
+        fmt::format("{}: all {} frames are there already, nothing rendered", options.input().string(), frames_.size()));
   }
   if (options.report_to_standard_output)
     write_standard_output(with_stream_names(frame_reports_.text(report_)));
