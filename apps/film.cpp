@@ -4,14 +4,19 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <utility>
 
 #include "apps/frame_annotation.hpp"
+#include "apps/picture_queue.hpp"
+#include "apps/picture_writer.hpp"
 #include "apps/progress.hpp"
 #include "apps/report.hpp"
 #include "apps/run_output.hpp"
 #include "apps/setting_words.hpp"
+#include "tessera/image_file.hpp"
 #include "tessera/session.hpp"
 #include "tessera/trace.hpp"
 
@@ -72,6 +77,8 @@ class Film final : public Sink {
       }
       first = last;
     }
+    if (writes_) pictures_.add([this] { picture_writer_.finish(); });
+    pictures_.finish();
     skip_to(frames_.size());
     if (timed()) write_trace();
     std::vector<std::byte> code(1);
@@ -90,12 +97,13 @@ class Film final : public Sink {
     const FilmFrame& frame = frames_[at];
     FrameRecord record;
     record.camera = camera_of(frame);
-    {
-      const TraceScope scope(timed() ? &compositing_ : nullptr, "write",
-                             static_cast<std::int32_t>(jobs_before_ + rendered.number));
-      write_annotated(rendered.image, rendered.deep, frame, record.camera, *data_, loaded_.function, options_);
-    }
-    say(frame, rendered, std::move(record));
+    const auto number = static_cast<std::int32_t>(jobs_before_ + rendered.number);
+    const auto picture = std::make_shared<const RenderedFrame>(std::move(rendered));
+    pictures_.add([this, picture, annotated = annotated_frame(frame, record.camera), number] {
+      const TraceScope scope(timed() ? &compositing_ : nullptr, "write", number);
+      write_annotated(picture->image, picture->deep, annotated, picture_writer_);
+    });
+    say(frame, *picture, std::move(record));
   }
 
  private:
@@ -114,7 +122,10 @@ class Film final : public Sink {
   void agree_on_finished_frames() {
     if (writes_) {
       check_annotation(options_.annotation);
-      const std::array more = {options_.report, options_.timing};
+      std::vector<std::filesystem::path> more = options_.films;
+      if (!options_.report_to_standard_output) more.push_back(options_.report);
+      more.push_back(options_.timing);
+      PictureWriter::check(options_, frames_);
       const std::array inputs = {options_.input(), options_.plan.cameras, options_.read.plot3d_q,
                                  std::filesystem::path(options_.transfer_function)};
       check_film_outputs(frames_, more, inputs);
@@ -214,12 +225,25 @@ class Film final : public Sink {
         rendered = session_->render({record.camera, frame.size}, loaded_.function, options_.frame);
         frame_ms_.push_back(rendered.statistics.milliseconds);
       }
-      if (writes_) {
-        const TraceScope scope(trace(), "write");
-        write(rendered, frame, record.camera);
+      if (!writes_) {
+        if (trace() != nullptr) trace()->add_frame(frame.number, frame_begin);
+        continue;
       }
-      if (trace() != nullptr) trace()->add_frame(frame.number, frame_begin);
-      if (writes_) say(frame, rendered, std::move(record));
+      const auto picture = std::make_shared<const RenderedFrame>(std::move(rendered));
+      // The cost map is the session's to draw, and that is at the next frame by the time a thread behind would ask.
+      std::optional<BalancePictures> shown;
+      if (options_.show_balance)
+        shown = session_->balance_pictures(*picture, {record.camera, frame.size}, loaded_.function);
+      pictures_.add([this, picture, shown = std::move(shown), &frame, annotated = annotated_frame(frame, record.camera),
+                     frame_begin] {
+        {
+          const TraceScope scope(trace(), "write", frame.number);
+          shown ? write_balance(*shown, picture->deep, frame)
+                : write_annotated(picture->image, picture->deep, annotated, picture_writer_);
+        }
+        if (trace() != nullptr) trace()->add_frame(frame.number, frame_begin);
+      });
+      say(frame, *picture, std::move(record));
     }
   }
 
@@ -235,16 +259,36 @@ class Film final : public Sink {
     jobs_before_ += jobs_.size();
   }
 
-  void write(const RenderedFrame& rendered, const FilmFrame& frame, const Camera& camera) const {
-    if (!options_.show_balance)
-      return write_annotated(rendered.image, rendered.deep, frame, camera, *data_, loaded_.function, options_);
-    const BalancePictures shown = session_->balance_pictures(rendered, {camera, frame.size}, loaded_.function);
-    const std::span<const std::filesystem::path> outputs = frame.outputs;
-    write_pictures(shown.bricks, rendered.deep, outputs.first(outputs.size() / 2), options_.image);
-    write_pictures(shown.cost, rendered.deep, outputs.last(outputs.size() / 2), options_.image);
+  /// With what its annotation tells of, which may be another step's by the time the picture is written.
+  [[nodiscard]] AnnotatedFrame annotated_frame(const FilmFrame& frame, const Camera& camera) const {
+    return {frame, camera, *data_, loaded_.function, options_};
   }
 
-  /// On the writing rank, of a frame that has been written.
+  /// The first half of the frame's outputs shows the bricks, the second what they cost.
+  void write_balance(const BalancePictures& shown, const DeepImage& deep, const FilmFrame& frame) {
+    FilmFrame of_volume = frame, of_cost = frame;
+    const auto half = static_cast<std::ptrdiff_t>(frame.outputs.size() / 2);
+    of_volume.outputs.erase(of_volume.outputs.begin() + half, of_volume.outputs.end());
+    of_cost.outputs.erase(of_cost.outputs.begin(), of_cost.outputs.begin() + half);
+    picture_writer_.write(shown.bricks, deep, of_volume);
+    // Films and standard output show the volume.
+    for (const auto& output : of_cost.outputs) write_image(shown.cost, output, options_.image);
+  }
+
+  /// Pictures of a film are written behind it, but for those so large that memory should not hold two.
+  [[nodiscard]] bool writes_behind() const {
+    constexpr std::int64_t most_pixels = 4096 * 4096;
+    std::size_t left = 0;
+    std::int64_t pixels = 0;
+    for (const FilmFrame& frame : frames_)
+      if (!frame.finished) {
+        ++left;
+        pixels = std::max(pixels, std::int64_t{frame.size.width} * frame.size.height);
+      }
+    return writes_ && left > 1 && pixels <= most_pixels;
+  }
+
+  /// On the writing rank, of a frame that is written, or will be before the run ends without an error.
   void say(const FilmFrame& frame, const RenderedFrame& rendered, FrameRecord record) {
     record.statistics = rendered.statistics;
     record.frame_ms = std::exchange(frame_ms_, {});
@@ -304,6 +348,9 @@ class Film final : public Sink {
   std::vector<double> frame_ms_;   ///< of the frame at hand
   std::vector<std::size_t> jobs_;  ///< frame of each picture of the list at hand
   std::size_t jobs_before_ = 0;    ///< pictures of the lists before
+
+  PictureWriter picture_writer_{options_};
+  PictureQueue pictures_{writes_behind()};  ///< last: what it writes refers to all above
 };
 
 }  // namespace

@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 
 #include <array>
-
-#include "apps/run_output.hpp"
-
 namespace tessera::apps {
 namespace {
 
@@ -44,23 +41,25 @@ void check_annotation(const AnnotationOptions& options, const FilmFrame& frame, 
   if (options.annotation) validate(filled(*options.annotation, frame, data), function);
 }
 
-void write_annotated(const Image& image, const DeepImage& deep, const FilmFrame& frame, const Camera& camera,
-                     const Dataset& data, const TransferFunction& function, const RenderOptions& options) {
+void write_annotated(const Image& image, const DeepImage& deep, const AnnotatedFrame& annotated,
+                     PictureWriter& writer) {
+  const auto& [frame, camera, data, function, options] = annotated;
   const AnnotationOptions& asked = options.annotation;
-  if (!asked.annotation) return write_pictures(image, deep, frame.outputs, options.image);
+  if (!asked.annotation) return writer.write(image, deep, frame);
   const Annotation annotation = filled(*asked.annotation, frame, data);
   const View view{camera, frame.size};
-  const std::span<const std::filesystem::path> outputs = frame.outputs;
   if (asked.layer.empty()) {
-    Image annotated = image;  // the bare one is verified yet
-    annotate(annotated, annotation, view, data.bounds(), function);
-    return write_pictures(annotated, deep, outputs, options.image);
+    Image picture = image;  // the bare one is verified yet
+    annotate(picture, annotation, view, data.bounds(), function);
+    return writer.write(picture, deep, frame);
   }
-  write_pictures(image, deep, outputs.first(outputs.size() - 1), options.image);
+  FilmFrame bare = frame;
+  bare.outputs.pop_back();
+  writer.write(image, deep, bare);
   ImageFileOptions transparent = options.image;
   transparent.background.reset();
-  write_pictures(annotation_layer(image, annotation, view, data.bounds(), function), deep, outputs.last(1),
-                 transparent);
+  PictureWriter::write_file(annotation_layer(image, annotation, view, data.bounds(), function), frame.outputs.back(),
+                            transparent);
 }
 
 }  // namespace tessera::apps

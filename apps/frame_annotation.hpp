@@ -1,11 +1,13 @@
 #pragma once
 
 #include "apps/annotation_options.hpp"
+#include "apps/picture_writer.hpp"
 #include "apps/render_options.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/deep_image.hpp"
 #include "tessera/film.hpp"
 #include "tessera/image.hpp"
+#include "tessera/transfer_function.hpp"
 
 namespace tessera::apps {
 
@@ -17,9 +19,17 @@ void check_annotation(const AnnotationOptions& options);
 void check_annotation(const AnnotationOptions& options, const FilmFrame& frame, const Dataset& data,
                       const TransferFunction& function);
 
-/// Writes a frame's pictures as write_pictures() does, annotated; with --annotation-layer they stay bare, and the
-/// frame's last output is the layer. Deep pictures are never annotated. `camera` is the frame's, `data` its time step.
-void write_annotated(const Image& image, const DeepImage& deep, const FilmFrame& frame, const Camera& camera,
-                     const Dataset& data, const TransferFunction& function, const RenderOptions& options);
+/// A frame and what its annotation tells of.
+struct AnnotatedFrame {
+  const FilmFrame& frame;
+  Camera camera;  ///< the frame's
+  Dataset data;   ///< its time step
+  TransferFunction function;
+  const RenderOptions& options;
+};
+
+/// Writes a frame's pictures, annotated; with --annotation-layer they stay bare, and the frame's last output is the
+/// layer. Deep pictures are never annotated. Throws as PictureWriter::write().
+void write_annotated(const Image& image, const DeepImage& deep, const AnnotatedFrame& annotated, PictureWriter& writer);
 
 }  // namespace tessera::apps

@@ -9,6 +9,7 @@
 
 #include "apps/argument_values.hpp"
 #include "apps/compositing_options.hpp"
+#include "apps/film_options.hpp"
 #include "apps/report.hpp"
 #include "apps/setting_words.hpp"
 #include "apps/volume_options.hpp"
@@ -59,6 +60,7 @@ ImageFileOptions image_options(const RenderWords& words) {
   image.half = words.half;
   image.png_bits = words.png_bits == "16" ? 16 : 8;
   image.encode_srgb = words.blend != "display";
+  image.threads = thread_count(words);
   if (!words.background.empty()) {
     const auto color = parse_color("--background", words.background);
     image.background = glm::dvec3(color[0], color[1], color[2]);
@@ -154,7 +156,8 @@ void add_render_options(CLI::App& command, RenderWords& words) {
                      "more meshes: a time series, as is INPUT alone if it is a .pvd, a .series or mesh_%04d.vtu");
   command
       .add_option("-o,--output", words.outputs,
-                  "picture: .exr .png .pfm .deep.exr; frame_%04d.exr numbers several frames; may be repeated")
+                  "picture: .exr .png .jpg .tif .pfm .deep.exr, frame_%04d.png for several; film: .mp4 .mov .mkv .webm "
+                  ".gif; - for a PNG on standard output; may be repeated")
       ->type_name("FILE")
       ->required()
       ->allow_extra_args(false);  // else `-o out.png mesh.vtu` would take the mesh for a second picture
@@ -224,8 +227,9 @@ void add_render_options(CLI::App& command, RenderWords& words) {
       .add_option("--background", words.background,
                   "linear R,G,B, sRGB #rrggbb or a name; without it the picture has alpha")
       ->type_name("R,G,B|#RRGGBB|NAME");
+  add_film_options(command, words);
   command.add_flag("--half", words.half, ".exr with 16-bit floats");
-  command.add_option("--png-bits", words.png_bits, "default: 8")->type_name("8|16");
+  command.add_option("--png-bits", words.png_bits, "of .png and .tif (default: 8)")->type_name("8|16");
 
   add_annotation_options(command, words.annotation);
 
@@ -239,7 +243,8 @@ void add_render_options(CLI::App& command, RenderWords& words) {
       ->type_name("K");
   command.add_option("--verify", words.verify, "check K random pixels a frame against the exact reference")
       ->type_name("K");
-  command.add_option("--report", words.report, "JSON file: everything chosen, all counters")->type_name("FILE");
+  command.add_option("--report", words.report, "JSON file: everything chosen, all counters; - for standard output")
+      ->type_name("FILE");
   command.add_option("--timing", words.timing, "Chrome trace-event JSON file of stages and threads")->type_name("FILE");
   command.add_flag("--progress", words.progress, "a progress line (default: if stderr is a terminal)");
   command.add_flag("--quiet", words.quiet, "nothing on stderr but errors");
@@ -250,7 +255,7 @@ RenderOptions render_options(const RenderWords& words) {
   FilmPlan& plan = options.plan;
   plan.inputs = {words.input};
   plan.inputs.insert(plan.inputs.end(), words.more_inputs.begin(), words.more_inputs.end());
-  plan.outputs.assign(words.outputs.begin(), words.outputs.end());
+  set_outputs(words, options);
   options.read = mesh_options(words);
   options.fixed_higher_order = !words.higher_order_tolerance.empty();
 

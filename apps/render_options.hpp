@@ -38,6 +38,10 @@ struct RenderOptions {
   int repeat = 0;  ///< 0: render once and print no times
   int verify = 0;  ///< pixels a frame to check against the reference; 0: none
   std::filesystem::path report, timing;
+  std::vector<std::filesystem::path> films;  ///< of all frames, beside the plan's pictures
+  double frame_rate = 25;                    ///< of films
+  bool to_standard_output = false;           ///< every picture as .png
+  bool report_to_standard_output = false;
   bool progress = false;
   bool quiet = false;
 
@@ -56,7 +60,7 @@ struct RenderWords {
   std::string integrator = "auto", accuracy, deep_accuracy, emission = "absorption", rasterizer = "planes";
   std::string backend, compositor, framebuffer, egl_device;
   std::string without;
-  std::string threads, tile_size, memory, background, png_bits = "8", repeat, verify, report, timing;
+  std::string threads, tile_size, memory, background, png_bits = "8", frame_rate, repeat, verify, report, timing;
   std::string dims, type, spacing, origin, endian, skip, step, brick_size, cache, preload, light;
   std::string balance, balance_resolution, balance_weights, show;
   std::string projectors, compositors, exchange, partition = "curve", frames_in_flight, seed;

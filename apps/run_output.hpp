@@ -46,11 +46,6 @@ class RunOutput {
   std::size_t done_ = 0, rendered_ = 0;
 };
 
-/// Writes a picture to these files, deep ones from `deep`. Throws Error(system_failure) if that cannot be done any
-/// more, as check_film_outputs() found it could.
-void write_pictures(const Image& image, const DeepImage& deep, std::span<const std::filesystem::path> outputs,
-                    const ImageFileOptions& options);
-
 /// `frame_ms median X min Y`, milliseconds. The median of an even number is the mean of the middle two.
 std::string frame_ms_line(std::vector<double> times);
 

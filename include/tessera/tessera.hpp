@@ -11,6 +11,7 @@
 #include "tessera/error.hpp"
 #include "tessera/file_formats.hpp"
 #include "tessera/film.hpp"
+#include "tessera/film_file.hpp"
 #include "tessera/grid.hpp"
 #include "tessera/image.hpp"
 #include "tessera/image_file.hpp"
