@@ -10,6 +10,7 @@
 #include "compositor/merged_pixel.hpp"
 #include "compositor/window_kernel.hpp"
 #include "integrals/integrate_lanes.hpp"
+#include "projection/surface_crossings.hpp"
 
 namespace tessera::compositor {
 namespace {
@@ -21,7 +22,7 @@ class RunMerger final : public TileMerger {
       : context_(context),
         budget_(context.budget_bytes),
         rect_(rect),
-        weight_(integrals::opacity_weight(context.max_color, context.longest_ray, context.emission)),
+        weight_(context.opacity_weight()),
         termination_error_(context.integrator->termination_error()),
         first_of_(static_cast<std::size_t>(rect.area()), none) {}
 
@@ -137,16 +138,29 @@ class RunMerger final : public TileMerger {
       const double x = rect_.x0 + column + 0.5, y = rect_.y0 + row + 0.5;
       batch_.length[i] =
           static_cast<float>(segment.back - segment.front) * static_cast<float>(context_.space->length_per_depth(x, y));
-      batch_.scalar_front[i] = segment.scalar_front;
-      batch_.scalar_back[i] = segment.scalar_back;
+      const bool crossing = projection::is_crossing(segment.scalar_front);  // its length is zero: no light
+      batch_.scalar_front[i] = crossing ? 0 : segment.scalar_front;
+      batch_.scalar_back[i] = crossing ? 0 : segment.scalar_back;
     }
     integrals::integrate_lanes(*context_.table, batch_);
     for (std::size_t i = 0; i < single_.size(); ++i) {
       const auto& [pixel, segment] = single_[i];
+      if (projection::is_crossing(segment.scalar_front)) {
+        push_crossing(pixel, segment);
+        continue;
+      }
       const double front = first_visible_depth(*context_.lattice, segment, *context_.integrator);
       push(pixel, {front, static_cast<float>(context_.lattice->depth(segment.back) - front), batch_.red[i],
                    batch_.green[i], batch_.blue[i], batch_.alpha[i]});
     }
+  }
+
+  void push_crossing(std::uint32_t pixel, const projection::LatticeSegment& segment) {
+    const projection::Crossing crossing = projection::crossing_of(segment.scalar_front, segment.scalar_back);
+    if (context_.surfaces == nullptr) return;
+    const scene::SurfaceSet::Light light = context_.surfaces->light(crossing.number, crossing.cosine);
+    push(pixel, {context_.lattice->depth(segment.front), 0, static_cast<float>(light.red),
+                 static_cast<float>(light.green), static_cast<float>(light.blue), static_cast<float>(light.opacity)});
   }
 
   MergeContext context_;

@@ -15,6 +15,7 @@
 #include "compositor/window_kernel.hpp"
 #include "integrals/integrate_lanes-inl.h"
 #include "projection/pack_lanes-inl.h"
+#include "projection/surface_crossings.hpp"
 
 HWY_BEFORE_NAMESPACE();
 #if HWY_TARGET != HWY_SCALAR
@@ -71,6 +72,38 @@ struct LightRows {
   // Runs: where each lane's ends behind the rows (no_key: in none), and whether none ends between them.
   alignas(64) std::int32_t run_back[most_lanes];
   bool touching;
+  // Crossings of surfaces: their cosines while they are integrated as segments of length zero and one scalar, and the
+  // rows that have some, a bit each.
+  alignas(64) float cosine[numbers];
+  std::uint32_t crossed_rows = 0;
+
+  /// Of a row that put_segment() has got.
+  HWY_INLINE void set_aside_crossings(HN::Mask<DI> takes, VF scalar_from, VF scalar_to, std::size_t row) {
+    const DF d;
+    const MF crossings = HN::And(HN::RebindMask(d, takes), HN::Ge(scalar_from, HN::Set(d, projection::first_mark)));
+    if (HN::AllFalse(d, crossings)) return;
+    const std::size_t at = row * HN::Lanes(d);
+    HN::Store(HN::IfThenElse(crossings, scalar_to, HN::Set(d, -1.0f)), d, cosine + at);
+    HN::Store(HN::IfThenElse(crossings, scalar_from, scalar_to), d, scalar_back + at);
+    crossed_rows |= 1u << row;
+  }
+  /// After integrate(): what the crossings send.
+  HWY_NOINLINE void light_crossings(const scene::SurfaceSet& surfaces) {
+    const std::size_t lanes = HN::Lanes(DF());
+    for (; crossed_rows != 0; crossed_rows &= crossed_rows - 1) {
+      const auto row = static_cast<std::size_t>(__builtin_ctz(crossed_rows));
+      for (std::size_t at = row * lanes; at < (row + 1) * lanes; ++at) {
+        if (cosine[at] < 0) continue;
+        scalar_back[at] = cosine[at];
+        const auto crossing = projection::crossing_of(scalar_front[at], cosine[at]);
+        const scene::SurfaceSet::Light light = surfaces.light(crossing.number, crossing.cosine);
+        red[at] = static_cast<float>(light.red), green[at] = static_cast<float>(light.green);
+        blue[at] = static_cast<float>(light.blue), alpha[at] = static_cast<float>(light.opacity);
+        optical_depth[at] = alpha[at];  // of which only is asked whether there is some
+        lit[row] = true;
+      }
+    }
+  }
 
   HWY_INLINE void put_segment(VF l, VI from, VI to, VF scalar_from, VF scalar_to, VI scalar_interval, std::size_t at) {
     const DF d;

@@ -82,6 +82,13 @@ HWY_NOINLINE void rasterize_irregular(const LatticeView& view, const TileEntry& 
   out.reserve(out.size + s.size);
   for (std::size_t i = 0; i < s.size; ++i) {
     out.pixel[out.size] = static_cast<std::int32_t>(s.pixel(i));
+    if (view.projected.iso != nullptr && is_crossing(s.scalar_front[i])) {
+      const LatticeSegment crossing = marked(view.lattice.depth_step(s.front[i]), crossing_of(s.scalar_front[i]));
+      out.front[out.size] = crossing.front, out.back[out.size] = crossing.back;
+      out.scalar_front[out.size] = crossing.scalar_front, out.scalar_back[out.size] = crossing.scalar_back;
+      ++out.size;
+      continue;
+    }
     out.front[out.size] = view.lattice.depth_step(s.front[i]);
     out.back[out.size] = view.lattice.depth_step(s.back[i]);
     const LatticeScalars scalars = lattice_scalars(s.scalar_front[i], s.scalar_back[i], view.steps, view.lattice);

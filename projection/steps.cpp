@@ -46,8 +46,9 @@ class Rule {
     const auto [low, high] = prepared_.scalar_bounds(tet);
     for (std::size_t i = steps_passed(steps_, low - most_error_); i < steps_.size(); ++i) {
       if (steps_[i].value > high + most_error_) break;
+      if (steps_[i].surface && low < steps_[i].value && steps_[i].value <= high) return most_pieces(low, high);
       if (level(low, high) ? rounded_across(steps_[i], low) : inexact(steps_[i], low, high, tet))
-        return 1 + steps_passed(steps_, high) - steps_passed(steps_, low);
+        return most_pieces(low, high);
     }
     return 0;
   }
@@ -60,6 +61,11 @@ class Rule {
   }
 
  private:
+  /// Of a cell with these scalars, crossings of surfaces included.
+  [[nodiscard]] std::size_t most_pieces(double low, double high) const {
+    return 1 + 2 * (steps_passed(steps_, high) - steps_passed(steps_, low));
+  }
+
   // Gradients rounded to a step of the lattice, over 16 pixels in two directions, and the corner itself; then a float's
   // last place. Two standard deviations of either are less than half of that.
   static constexpr double planes_error = 17, float_error = 0x1p-24, usual_part = 0.5, double_error = 0x1p-51;
@@ -113,6 +119,13 @@ std::vector<Step> steps_of(const scene::TransferFunction& function, scene::Emiss
     steps.push_back({above.value, std::abs(above.extinction - below.extinction) * brightest +
                                       std::max({change.x, change.y, change.z})});
   }
+  return steps;
+}
+
+std::vector<Step> with_surfaces(std::vector<Step> steps, const IsoView* iso) {
+  if (iso == nullptr) return steps;
+  for (const double value : iso->values()) steps.push_back({value, 0, true});
+  std::ranges::stable_sort(steps, {}, &Step::value);
   return steps;
 }
 
@@ -171,13 +184,21 @@ const Segments& SplitRasterizer<Segments>::rasterize(const ProjectedMesh& projec
   ProjectedMesh relative = projected;
   relative.scalar_origin = origin;
   rasterize_planes(relative, {&entry, 1}, rect, whole_, counts);
-  const std::size_t most = whole_.size * (near.size() + 1);
+  const std::size_t most = whole_.size * (2 * near.size() + 1);
+  const auto surfaces = projected.iso != nullptr ? projected.iso->within(low, high) : IsoView::Range{0, 0};
+  const glm::dvec3 normal =
+      surfaces.first < surfaces.last ? gradient_direction(*projected.mesh, entry.tet) : glm::dvec3(0);
   if (pieces_.capacity() < most) pieces_.reserve(most);
   pieces_.size = 0;
   for (std::size_t i = 0; i < whole_.size; ++i) {
     whole_.scalar_front[i] = std::clamp(whole_.scalar_front[i], low - origin, high - origin);
     whole_.scalar_back[i] = std::clamp(whole_.scalar_back[i], low - origin, high - origin);
     split(i, near, origin);
+    if (surfaces.first == surfaces.last) continue;
+    const auto pixel = static_cast<int>(whole_.pixel(i));
+    const glm::dvec3 ray =
+        projected.iso->space->direction(rect.x0 + pixel % rect.width() + 0.5, rect.y0 + pixel / rect.width() + 0.5);
+    cross(i, *projected.iso, surfaces, origin, ray, normal);
   }
   return pieces_;
 }
@@ -223,6 +244,29 @@ void SplitRasterizer<Segments>::split(std::size_t segment, std::span<const Step>
   else
     std::for_each(steps.rbegin(), steps.rend(), cut);
   if (at < back) add(at, back, scalar, to);
+}
+
+template <class Segments>
+void SplitRasterizer<Segments>::cross(std::size_t segment, const IsoView& iso, IsoView::Range range, double origin,
+                                      const glm::dvec3& ray, const glm::dvec3& normal) {
+  const double front = whole_.front[segment], back = whole_.back[segment];
+  const double from = whole_.scalar_front[segment], to = whole_.scalar_back[segment];
+  const auto add = [&](std::size_t surface) {
+    const double value = iso.values()[surface] - origin;
+    if ((from >= value) == (to >= value)) return;
+    double depth = std::clamp(front + (back - front) * ((value - from) / (to - from)), front, back);
+    if (value == to) depth = back;
+    const std::size_t at = pieces_.size++;
+    pieces_.pixel_and_tet[at] = whole_.pixel_and_tet[segment];
+    pieces_.front[at] = pieces_.back[at] = depth;
+    pieces_.scalar_front[at] =
+        marked(Crossing{iso.surfaces->crossing(surface, from < to), cosine_between(ray, normal)});
+    pieces_.scalar_back[at] = iso.values()[surface];
+  };
+  if (from < to)
+    for (std::size_t i = range.first; i < range.last; ++i) add(i);
+  else
+    for (std::size_t i = range.last; i-- > range.first;) add(i);
 }
 
 template class SplitRasterizer<RaySegments>;

@@ -24,7 +24,8 @@ void PixelLists::sort(const projection::RaySegments& s, std::size_t pixel_count,
   const auto before = [&](const Entry& a, const Entry& b) {
     if (a.depth != b.depth) return a.depth < b.depth;
     if (key == Key::front && s.back[a.segment] != s.back[b.segment]) return s.back[a.segment] < s.back[b.segment];
-    return s.tet(a.segment) < s.tet(b.segment);
+    if (s.tet(a.segment) != s.tet(b.segment)) return s.tet(a.segment) < s.tet(b.segment);
+    return a.segment < b.segment;  // a cell's own: crossings of surfaces in a cell of no thickness, as they came
   };
   for (std::size_t p = 0; p < pixel_count; ++p) {
     const auto first = entries_.begin() + begin_[p], last = entries_.begin() + begin_[p + 1];
