@@ -195,7 +195,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   project_vertices(space, task.frame, stop);
   projection::ProjectedMesh projected{prepared_.get(), vertices_, space.near_depth(), space.far_depth(),
                                       space.pixels_per_tangent()};
-  const projection::IsoView iso{task.surfaces, &space};
+  const projection::IsoView iso{task.surfaces, &space, task.lattice};
   if (task.surfaces != nullptr && !task.surfaces->empty()) projected.iso = &iso;
   const float longest_edge = task.longest_edge > 0 ? task.longest_edge : longest_edge_;
   if (settings_.rasterizer == Rasterizer::scanline) check_scanline(projected, space, longest_edge);

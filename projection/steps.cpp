@@ -46,7 +46,11 @@ class Rule {
     const auto [low, high] = prepared_.scalar_bounds(tet);
     for (std::size_t i = steps_passed(steps_, low - most_error_); i < steps_.size(); ++i) {
       if (steps_[i].value > high + most_error_) break;
-      if (steps_[i].surface && low < steps_[i].value && steps_[i].value <= high) return most_pieces(low, high);
+      if (steps_[i].surface) {
+        if ((low < steps_[i].value && steps_[i].value <= high) || along_face(steps_[i], tet))
+          return most_pieces(low, high);
+        continue;
+      }
       if (level(low, high) ? rounded_across(steps_[i], low) : inexact(steps_[i], low, high, tet))
         return most_pieces(low, high);
     }
@@ -70,6 +74,10 @@ class Rule {
   // last place. Two standard deviations of either are less than half of that.
   static constexpr double planes_error = 17, float_error = 0x1p-24, usual_part = 0.5, double_error = 0x1p-51;
 
+  /// Where a surface leaves a face that rises by more than so many errors, the error moves it by less than a pixel of
+  /// 1024 in a cell of a hundred.
+  static constexpr double most_slope = 1e5;
+
   static bool level(double low, double high) { return low == high; }
 
   /// A face of one scalar keeps it: only the scalar's own rounding can change its side.
@@ -79,12 +87,33 @@ class Rule {
     return (scalar >= step.value) != (on_lanes(scalar) >= on_lanes(step.value));
   }
 
+  /// Of a scalar near the step, on the lattice.
+  [[nodiscard]] double lattice_error(const Step& step) const {
+    return planes_error * lattice_->scalar_unit + std::abs(step.value - lattice_->scalar_origin) * float_error;
+  }
+
+  /// Whether a surface all but coincides with one of the cell's faces. Both cells at that face have to be told the same
+  /// of where it is, and whether the ray's crossing lies before or behind it: in double precision.
+  [[nodiscard]] bool along_face(const Step& step, std::size_t tet) const {
+    if (lattice_ == nullptr) return false;
+    const scene::Tet& corners = prepared_.tets()[tet];
+    const double error = lattice_error(step);
+    for (std::size_t opposite = 0; opposite < 4; ++opposite) {
+      double low = infinity, high = -infinity;
+      for (std::size_t i = 0; i < 4; ++i) {
+        if (i == opposite) continue;
+        low = std::min(low, mesh_.scalars[corners[i]]), high = std::max(high, mesh_.scalars[corners[i]]);
+      }
+      if (step.value >= low - error && step.value <= high + error && high - low <= most_slope * error) return true;
+    }
+    return false;
+  }
+
   [[nodiscard]] bool inexact(const Step& step, double low, double high, std::size_t tet) const {
     const scene::Tet& corners = prepared_.tets()[tet];
-    const double error =
-        lattice_ != nullptr
-            ? planes_error * lattice_->scalar_unit + std::abs(step.value - lattice_->scalar_origin) * float_error
-            : std::max({std::abs(low), std::abs(high), std::abs(step.value)}) * double_error;
+    const double error = lattice_ != nullptr
+                             ? lattice_error(step)
+                             : std::max({std::abs(low), std::abs(high), std::abs(step.value)}) * double_error;
     if (step.value < low - error || step.value > high + error) return false;
     if (step.contrast * longest_ray_ * (usual_part * error) > tolerance * (high - low)) return true;
     if (lattice_ == nullptr || step.contrast * longest_ray_ * relative_error <= tolerance) return false;
@@ -159,6 +188,26 @@ CellsAtSteps::CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> s
   most_pieces_ = std::max<std::size_t>(most.pieces, 1);
 }
 
+namespace {
+
+/// From where the scalars of a cell are counted: the step nearest to them, but a surface that one of its faces lies in,
+/// whose scalars then stay exactly zero.
+double origin_of(const ProjectedMesh& projected, std::span<const Step> near, std::size_t tet, double low, double high) {
+  for (const Step& step : near) {
+    if (!step.surface) continue;
+    int level = 0;
+    for (const std::uint32_t v : projected.mesh->tets()[tet])
+      level += projected.mesh->mesh().scalars[v] == step.value ? 1 : 0;
+    if (level == 3) return step.value;
+  }
+  const auto distance = [&](const Step& s) { return std::max({0.0, low - s.value, s.value - high}); };
+  return std::min_element(near.begin(), near.end(),
+                          [&](const Step& a, const Step& b) { return distance(a) < distance(b); })
+      ->value;
+}
+
+}  // namespace
+
 template <class Segments>
 const Segments& SplitRasterizer<Segments>::rasterize(const ProjectedMesh& projected, std::span<const Step> steps,
                                                      const TileEntry& entry, const scene::PixelRect& rect,
@@ -176,10 +225,7 @@ const Segments& SplitRasterizer<Segments>::rasterize(const ProjectedMesh& projec
   const std::size_t above_low = steps_passed(steps, low), above_high = steps_passed(steps, high);
   const std::size_t first = above_low - (above_low > 0 ? 1 : 0);
   const auto near = steps.subspan(first, std::min(steps.size(), above_high + 1) - first);
-  const auto distance = [&](const Step& s) { return std::max({0.0, low - s.value, s.value - high}); };
-  const double origin = std::min_element(near.begin(), near.end(), [&](const Step& a, const Step& b) {
-                          return distance(a) < distance(b);
-                        })->value;
+  const double origin = origin_of(projected, near, entry.tet, low, high);
 
   ProjectedMesh relative = projected;
   relative.scalar_origin = origin;
@@ -260,7 +306,7 @@ void SplitRasterizer<Segments>::cross(std::size_t segment, const IsoView& iso, I
     pieces_.pixel_and_tet[at] = whole_.pixel_and_tet[segment];
     pieces_.front[at] = pieces_.back[at] = depth;
     pieces_.scalar_front[at] =
-        marked(Crossing{iso.surfaces->crossing(surface, from < to), cosine_between(ray, normal)});
+        marked(Crossing{iso.number(surface, from < to, depth, front, back), cosine_between(ray, normal)});
     pieces_.scalar_back[at] = iso.values()[surface];
   };
   if (from < to)

@@ -11,6 +11,7 @@
 #include "projection/pixel_space.hpp"
 #include "projection/prepared_mesh.hpp"
 #include "projection/segment_windows.hpp"
+#include "scene/lattice.hpp"
 #include "scene/surface_set.hpp"
 
 /// Where rays cross iso-surfaces. A crossing travels among the ray segments as one of length zero at its depth, whose
@@ -51,8 +52,18 @@ inline Crossing crossing_of(float scalar_front, float scalar_back) {
 struct IsoView {
   const scene::SurfaceSet* surfaces;
   const PixelSpace* space;
+  const scene::Lattice* lattice = nullptr;  ///< to whose steps depths will be rounded; null: to none
 
   [[nodiscard]] std::span<const double> values() const { return surfaces->iso_values(); }
+
+  /// The number of a crossing at `depth` of a segment from `front` to `back`.
+  [[nodiscard]] std::uint32_t number(std::size_t iso, bool rises, double depth, double front, double back) const {
+    const auto place = lattice != nullptr
+                           ? scene::SurfaceSet::place_of(lattice->depth_step(depth), lattice->depth_step(front),
+                                                         lattice->depth_step(back))
+                           : scene::SurfaceSet::place_of(depth, front, back);
+    return surfaces->crossing(iso, rises, place);
+  }
 
   /// The range [first, last) of surfaces that a cell with these scalars has: those above `low`, up to `high`.
   struct Range {

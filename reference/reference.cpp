@@ -104,7 +104,10 @@ Pixel Reference::shaded(std::span<const RaySegment> segments, double x, double y
   for (const RaySegment& s : segments) {
     double at = 0, change = s.change_front;  // of the segment's length: what is integrated so far
     const auto depth_at = [&](double part) { return s.front + (s.back - s.front) * part; };
-    for (const SurfaceCrossing& c : surface_crossings(surfaces_, s.change_front, s.change_back, s.corner_scalar)) {
+    std::vector<SurfaceCrossing> crossings;
+    if (!surfaces_.empty())
+      crossings = surface_crossings(surfaces_, corners(s.tet), x, y, view_.nearest(), view_.farthest());
+    for (const SurfaceCrossing& c : crossings) {
       const double there = c.surface->value - s.corner_scalar;
       integral.add(s.length * (c.part - at), change, there, depth_at(at), depth_at(c.part), s.corner_scalar);
       integral.add_surface(lit(*c.surface, light_, view_.ray(x, y).step, mesh_, s.tet), c.surface->opacity,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <optional>
 
 namespace tessera::reference {
 namespace {
@@ -34,15 +35,24 @@ std::vector<SurfaceOfValue> by_value(const Surfaces& surfaces, const scene::Tran
   return sorted;
 }
 
-std::vector<SurfaceCrossing> surface_crossings(std::span<const SurfaceOfValue> surfaces, double front, double back,
-                                               double origin) {
+std::vector<SurfaceCrossing> surface_crossings(std::span<const SurfaceOfValue> surfaces,
+                                               const std::array<Corner, 4>& corners, double x, double y, double nearest,
+                                               double farthest) {
   std::vector<SurfaceCrossing> found;
+  const auto [low, high] = std::minmax({corners[0].scalar, corners[1].scalar, corners[2].scalar, corners[3].scalar});
+  bool falls = false;
   for (const SurfaceOfValue& surface : surfaces) {
-    const double value = surface.value - origin;
-    if ((front < value) == (back < value)) continue;
-    found.push_back({std::clamp((value - front) / (back - front), 0.0, 1.0), &surface});
+    if (!(low < surface.value && surface.value <= high)) continue;
+    std::array<Corner, 4> relative = corners;
+    for (Corner& c : relative) c.scalar -= surface.value;
+    const std::optional<Stretch> whole = intersect(relative, x, y);
+    const std::optional<Stretch> seen = whole ? clipped(*whole, nearest, farthest) : std::nullopt;
+    if (!seen || (seen->scalar_front < 0) == (seen->scalar_back < 0)) continue;
+    falls = seen->scalar_back < 0;
+    found.push_back({seen->scalar_front / (seen->scalar_front - seen->scalar_back), &surface});
   }
-  if (back < front) std::reverse(found.begin(), found.end());
+  if (falls) std::reverse(found.begin(), found.end());
+  for (std::size_t i = 1; i < found.size(); ++i) found[i].part = std::max(found[i].part, found[i - 1].part);
   return found;
 }
 

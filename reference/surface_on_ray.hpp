@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "reference/ray_tet.hpp"
 #include "scene/tet_mesh.hpp"
 #include "scene/transfer_function.hpp"
 #include "tessera/surfaces.hpp"
@@ -28,10 +29,13 @@ struct SurfaceCrossing {
   const SurfaceOfValue* surface;
 };
 
-/// The crossings of a segment on which the scalar goes in a straight line from `front` to `back`, both counted from
-/// `origin`, in the order along it. A surface is crossed if one end lies below its value and the other does not.
-std::vector<SurfaceCrossing> surface_crossings(std::span<const SurfaceOfValue> surfaces, double front, double back,
-                                               double origin);
+/// The crossings of the line through pixel coordinates (x, y) with the surfaces in a tet, in the order along it, of
+/// what lies between two planar depths. A surface is crossed if the scalar at one end lies below its value and the
+/// other does not. For each the scalars are counted from its value, so that the sides are right to a double's last
+/// place.
+std::vector<SurfaceCrossing> surface_crossings(std::span<const SurfaceOfValue> surfaces,
+                                               const std::array<Corner, 4>& corners, double x, double y, double nearest,
+                                               double farthest);
 
 /// A surface's colour in a tet, lit from the eye, seen along a ray of that direction (of any length). Where the field
 /// has no gradient it is lit as if seen face on.

@@ -48,8 +48,9 @@ SurfaceSet::SurfaceSet(const Surfaces& surfaces, const TransferFunction& functio
 
 SurfaceSet::Light SurfaceSet::light(std::uint32_t crossing, double cosine) const {
   const std::size_t n = paints_.size();
-  if (crossing >= 2 * n) return {};
-  const Paint& paint = paints_[crossing < n ? crossing : 2 * n - 1 - crossing];
+  if (crossing >= 6 * n) return {};
+  const std::size_t of_place = crossing % (2 * n);
+  const Paint& paint = paints_[of_place < n ? of_place : 2 * n - 1 - of_place];
   const double c = std::clamp(cosine, 0.0, 1.0);
   const double matte = light_.ambient + light_.diffuse * c, shine = light_.specular * std::pow(c, light_.shininess);
   const glm::dvec3 color = (paint.color * matte + glm::dvec3(shine)) * paint.opacity;

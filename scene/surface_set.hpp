@@ -16,9 +16,11 @@ void validate(const Surfaces& surfaces);
 
 /// The surfaces of a frame, numbered as projectors and compositors do it.
 ///
-/// Where a ray crosses an iso-surface it makes a crossing, whose number says of which surface it is and which way the
-/// field goes: the surfaces' numbers i, ascending by value, where it rises, and 2 n - 1 - i where it falls. Crossings
-/// at one depth, in a cell too thin for depths to tell them apart, are then in the ray's order by number.
+/// Where a ray crosses an iso-surface it makes a crossing, whose number puts crossings at one depth in the ray's order.
+/// At one depth there may be some at the back end of one cell's segment and some at the front end of the next one's, as
+/// a face may have a surface's value; those of one segment are all crossed upwards or all downwards. So the number is
+/// 2 n Place + i for the surface i of n, ascending by value, where the field rises, and 2 n Place + 2 n - 1 - i where
+/// it falls.
 class SurfaceSet {
  public:
   SurfaceSet() = default;
@@ -28,8 +30,16 @@ class SurfaceSet {
   [[nodiscard]] bool empty() const { return values_.empty(); }
   /// Of the iso-surfaces, ascending.
   [[nodiscard]] std::span<const double> iso_values() const { return values_; }
-  [[nodiscard]] std::uint32_t crossing(std::size_t iso, bool rises) const {
-    return static_cast<std::uint32_t>(rises ? iso : 2 * values_.size() - 1 - iso);
+  /// Where in its segment a crossing is; inside, too, where the segment has no length.
+  enum class Place : std::uint8_t { back_end, inside, front_end };
+  template <class Depth>
+  [[nodiscard]] static Place place_of(Depth depth, Depth front, Depth back) {
+    if (!(front < back)) return Place::inside;
+    return depth == back ? Place::back_end : depth == front ? Place::front_end : Place::inside;
+  }
+  [[nodiscard]] std::uint32_t crossing(std::size_t iso, bool rises, Place place) const {
+    const std::size_t n = values_.size();
+    return static_cast<std::uint32_t>(2 * n * static_cast<std::size_t>(place) + (rises ? iso : 2 * n - 1 - iso));
   }
 
   /// What a crossing sends to the eye: linear RGB, premultiplied.
