@@ -126,8 +126,10 @@ class CompositorLoop {
         to.collector.begin(projector, begin, reader.take_bytes(begin.tiles / 8 + (begin.tiles % 8 != 0 ? 1 : 0)));
         reader.finish();
         if (begin.stopped != 0) to.stopped = true;
-        if (!to.table && begin.lattice.depth_unit > 0)
+        if (!to.table && begin.lattice.depth_unit > 0) {
           to.table.emplace(run_.function, begin.lattice, run_.settings.render.emission);
+          to.surfaces.place_on(begin.lattice);
+        }
         if (to.collector.has_all_begins())
           for (auto& [tile, merge] : to.merges) schedule(to, tile);
         break;

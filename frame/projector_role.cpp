@@ -50,6 +50,7 @@ class FrameSinks {
     if (!settings_.deep) lattice_ = lattice_of(space_, mesh.box, mesh.scalar_range, run.function, settings_.render);
     if (!lattice_) return;
     table_.emplace(run.function, *lattice_, settings_.render.emission);
+    surfaces_.place_on(*lattice_);
     scene_.table = &*table_;
     scene_.lattice = *lattice_;
   }

@@ -85,7 +85,7 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   task.function = &transfer_function;
   task.watch = watch;
   task.image = &image;
-  const scene::SurfaceSet surfaces(settings.surfaces, transfer_function);
+  scene::SurfaceSet surfaces(settings.surfaces, transfer_function);
   task.surfaces = &surfaces;
   const double longest_ray = state_->projector.diagonal();
   std::optional<compositor::DeepCollector> collector;
@@ -111,6 +111,7 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   std::optional<integrals::LaneTable> table;
   if (lattice) {
     table.emplace(transfer_function, *lattice, settings.emission);
+    surfaces.place_on(*lattice);
     scene.table = &*table;
     scene.lattice = *lattice;
     task.lattice = &*lattice;

@@ -47,7 +47,7 @@ class Rule {
     for (std::size_t i = steps_passed(steps_, low - most_error_); i < steps_.size(); ++i) {
       if (steps_[i].value > high + most_error_) break;
       if (steps_[i].surface) {
-        if ((low < steps_[i].value && steps_[i].value <= high) || along_face(steps_[i], tet))
+        if (lattice_ == nullptr ? low < steps_[i].value && steps_[i].value <= high : passes_corner(steps_[i], tet))
           return most_pieces(low, high);
         continue;
       }
@@ -92,12 +92,14 @@ class Rule {
     return planes_error * lattice_->scalar_unit + std::abs(step.value - lattice_->scalar_origin) * float_error;
   }
 
-  /// Whether a surface all but coincides with one of the cell's faces. Both cells at that face have to be told the same
-  /// of where it is, and whether the ray's crossing lies before or behind it: in double precision.
-  [[nodiscard]] bool along_face(const Step& step, std::size_t tet) const {
-    if (lattice_ == nullptr) return false;
+  /// Whether, on the lattice, a surface all but coincides with one of the cell's faces, or passes through a vertex. All
+  /// cells there have to be told the same of where it is, and whether the ray's crossing lies before or behind a face:
+  /// in double precision.
+  [[nodiscard]] bool passes_corner(const Step& step, std::size_t tet) const {
     const scene::Tet& corners = prepared_.tets()[tet];
     const double error = lattice_error(step);
+    for (const std::uint32_t v : corners)
+      if (std::abs(mesh_.scalars[v] - step.value) <= error) return true;
     for (std::size_t opposite = 0; opposite < 4; ++opposite) {
       double low = infinity, high = -infinity;
       for (std::size_t i = 0; i < 4; ++i) {
@@ -302,11 +304,11 @@ void SplitRasterizer<Segments>::cross(std::size_t segment, const IsoView& iso, I
     if ((from >= value) == (to >= value)) return;
     double depth = std::clamp(front + (back - front) * ((value - from) / (to - from)), front, back);
     if (value == to) depth = back;
+    const std::uint32_t number = iso.number(surface, from < to, depth, front, back);
     const std::size_t at = pieces_.size++;
     pieces_.pixel_and_tet[at] = whole_.pixel_and_tet[segment];
     pieces_.front[at] = pieces_.back[at] = depth;
-    pieces_.scalar_front[at] =
-        marked(Crossing{iso.number(surface, from < to, depth, front, back), cosine_between(ray, normal)});
+    pieces_.scalar_front[at] = marked(Crossing{number, cosine_between(ray, normal)});
     pieces_.scalar_back[at] = iso.values()[surface];
   };
   if (from < to)

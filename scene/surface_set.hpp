@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "scene/lattice.hpp"
 #include "scene/transfer_function.hpp"
 #include "tessera/surfaces.hpp"
 
@@ -42,6 +43,13 @@ class SurfaceSet {
     return static_cast<std::uint32_t>(2 * n * static_cast<std::size_t>(place) + (rises ? iso : 2 * n - 1 - iso));
   }
 
+  /// The values in the lattice's steps, as segments' scalars, of which what lies behind a crossing needs one. To be
+  /// called before on_lattice(), once the lattice is known.
+  void place_on(const Lattice& lattice);
+  [[nodiscard]] std::span<const float> on_lattice() const { return on_lattice_; }
+  /// The same by the crossing's number.
+  [[nodiscard]] std::span<const float> on_lattice_by_number() const { return by_number_; }
+
   /// What a crossing sends to the eye: linear RGB, premultiplied.
   struct Light {
     double red = 0, green = 0, blue = 0, opacity = 0;
@@ -58,7 +66,9 @@ class SurfaceSet {
   };
   std::vector<double> values_;
   std::vector<Paint> paints_;
+  std::vector<float> on_lattice_, by_number_;
   SurfaceLight light_;
+  int whole_shininess_ = -1;  ///< -1: it is no whole number, or a large one
   double max_color_ = 0;
 };
 

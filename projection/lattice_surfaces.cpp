@@ -1,0 +1,83 @@
+#include "projection/lattice_surfaces.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::projection {
+
+std::uint32_t LatticeSurfaces::find(const LatticeView& view, std::span<const TileEntry> cells) {
+  const IsoView& iso = *view.projected.iso;
+  std::uint32_t crossed = 0;
+  for (std::size_t t = 0; t < cells.size(); ++t) {
+    const auto [low, high] = view.projected.mesh->scalar_bounds(cells[t].tet);
+    // Rounding may move a scalar over a value: a float's last place, and a gradient's over the square.
+    const double margin =
+        32 * view.lattice.scalar_unit +
+        0x1p-23 * std::max(std::abs(low - view.lattice.scalar_origin), std::abs(high - view.lattice.scalar_origin));
+    ranges_[t] = iso.within(low - margin, high + margin);
+    if (ranges_[t].first == ranges_[t].last) continue;
+    crossed |= 1u << t;
+    normals_[t] = gradient_direction(*view.projected.mesh, cells[t].tet);
+  }
+  return crossed;
+}
+
+void LatticeSurfaces::cross(const LatticeView& view, std::span<const TileEntry> cells, std::uint32_t crossed,
+                            std::size_t first, int x0, int y0, SegmentStream& out) {
+  const IsoView& iso = *view.projected.iso;
+  std::array<std::array<float, 2>, most_cells> limits;  // of a cell's values
+  for (std::size_t t = 0; t < cells.size(); ++t)
+    if ((crossed >> t & 1) != 0)
+      limits[t] = {iso.surfaces->on_lattice()[ranges_[t].first], iso.surfaces->on_lattice()[ranges_[t].last - 1]};
+  const std::size_t end = out.size;
+  for (std::size_t i = first; i < end; ++i) {
+    const auto t = static_cast<std::size_t>(out.hit[i] & 15);
+    if ((crossed >> t & 1) == 0) continue;
+    const auto [low, high] = std::minmax(out.scalar_front[i], out.scalar_back[i]);
+    if (high < limits[t][0] || !(low < limits[t][1])) continue;
+    const int column = out.hit[i] >> 4 & 31, row = out.hit[i] >> 20 & 31;
+    cross_segment(iso, i, ranges_[t], iso.space->direction(x0 + column + 0.5, y0 + row + 0.5), normals_[t], out);
+  }
+}
+
+void LatticeSurfaces::cross_segment(const IsoView& iso, std::size_t segment, const IsoView::Range& range,
+                                    const glm::dvec3& ray, const glm::dvec3& normal, SegmentStream& out) {
+  const std::span<const float> on_lattice = iso.surfaces->on_lattice();
+  const std::int32_t front = out.front[segment], back = out.back[segment];
+  const float from = out.scalar_front[segment], to = out.scalar_back[segment];
+  const bool rises = from < to;
+  const double length = static_cast<double>(back) - front, slope = length / (static_cast<double>(to) - from);
+  // The part that is not cut yet: at first the segment itself, then what is behind a crossing.
+  std::size_t rest = segment;
+  float cosine = -1;
+  const auto add = [&](std::int32_t f, std::int32_t b, float at_front, float at_back) {
+    const std::size_t at = out.size++;
+    out.front[at] = f, out.back[at] = b;
+    out.scalar_front[at] = at_front, out.scalar_back[at] = at_back;
+    out.pixel[at] = out.pixel[segment];
+    return at;
+  };
+  for (std::size_t k = 0; k < range.last - range.first; ++k) {
+    const std::size_t surface = rises ? range.first + k : range.last - 1 - k;
+    const float value = on_lattice[surface];
+    if ((from >= value) == (to >= value)) continue;
+    if (out.size + 2 > out.front.size() - SegmentStream::padding) out.reserve(2 * out.size + 2);
+    if (cosine < 0) cosine = cosine_between(ray, normal);
+    const double along = std::clamp((static_cast<double>(value) - from) * slope, 0.0, length);
+    const auto at = LatticePlace::of(static_cast<std::int32_t>(std::nearbyint(front + along)), front, back);
+    const float mark = LatticeMark::of({iso.surfaces->crossing(surface, rises, at.place), cosine});
+    if (at.place == scene::SurfaceSet::Place::back_end || front == back) {
+      add(at.depth, at.depth, mark, value);
+    } else if (at.depth == out.front[rest]) {
+      // A second one there: the first stands alone.
+      if (is_crossing(out.scalar_front[rest])) add(at.depth, at.depth, out.scalar_front[rest], value);
+      out.scalar_front[rest] = mark;
+    } else {
+      const std::size_t behind = add(at.depth, back, mark, to);
+      out.back[rest] = at.depth, out.scalar_back[rest] = value;
+      rest = behind;
+    }
+  }
+}
+
+}  // namespace tessera::projection
