@@ -2,13 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
 
 namespace tessera::projection {
 
-std::uint32_t LatticeSurfaces::find(const LatticeView& view, std::span<const TileEntry> cells) {
+std::uint32_t LatticeSurfaces::find(const LatticeView& view, std::span<const TileEntry> cells, std::uint32_t without) {
   const IsoView& iso = *view.projected.iso;
   std::uint32_t crossed = 0;
+  std::fill_n(limits_.low, most_cells, std::numeric_limits<float>::infinity());
+  std::fill_n(limits_.high, most_cells, -std::numeric_limits<float>::infinity());
   for (std::size_t t = 0; t < cells.size(); ++t) {
+    if ((without >> t & 1) != 0) continue;
     const auto [low, high] = view.projected.mesh->scalar_bounds(cells[t].tet);
     // Rounding may move a scalar over a value: a float's last place, and a gradient's over the square.
     const double margin =
@@ -17,31 +22,35 @@ std::uint32_t LatticeSurfaces::find(const LatticeView& view, std::span<const Til
     ranges_[t] = iso.within(low - margin, high + margin);
     if (ranges_[t].first == ranges_[t].last) continue;
     crossed |= 1u << t;
-    normals_[t] = gradient_direction(*view.projected.mesh, cells[t].tet);
+    limits_.low[t] = iso.surfaces->on_lattice()[ranges_[t].first];
+    limits_.high[t] = iso.surfaces->on_lattice()[ranges_[t].last - 1];
+    normals_[t] = unit(gradient_direction(*view.projected.mesh, cells[t].tet));
   }
   return crossed;
 }
 
-void LatticeSurfaces::cross(const LatticeView& view, std::span<const TileEntry> cells, std::uint32_t crossed,
-                            std::size_t first, int x0, int y0, SegmentStream& out) {
+void LatticeSurfaces::cross(const LatticeView& view, std::span<const std::uint32_t> segments, int x0, int y0,
+                            SegmentStream& out) {
   const IsoView& iso = *view.projected.iso;
-  std::array<std::array<float, 2>, most_cells> limits;  // of a cell's values
-  for (std::size_t t = 0; t < cells.size(); ++t)
-    if ((crossed >> t & 1) != 0)
-      limits[t] = {iso.surfaces->on_lattice()[ranges_[t].first], iso.surfaces->on_lattice()[ranges_[t].last - 1]};
-  const std::size_t end = out.size;
-  for (std::size_t i = first; i < end; ++i) {
-    const auto t = static_cast<std::size_t>(out.hit[i] & 15);
-    if ((crossed >> t & 1) == 0) continue;
-    const auto [low, high] = std::minmax(out.scalar_front[i], out.scalar_back[i]);
-    if (high < limits[t][0] || !(low < limits[t][1])) continue;
-    const int column = out.hit[i] >> 4 & 31, row = out.hit[i] >> 20 & 31;
-    cross_segment(iso, i, ranges_[t], iso.space->direction(x0 + column + 0.5, y0 + row + 0.5), normals_[t], out);
+  const glm::dvec3 corner = iso.space->direction(x0 + 0.5, y0 + 0.5);
+  const glm::dvec3 right = iso.space->direction(x0 + 1.5, y0 + 0.5) - corner;
+  const glm::dvec3 down = iso.space->direction(x0 + 0.5, y0 + 1.5) - corner;
+  for (const std::uint32_t i : segments) {
+    const std::int32_t hit = out.hit[i];
+    const auto t = static_cast<std::size_t>(hit & 15);
+    const glm::dvec3& normal = normals_[t];
+    double cosine = 1;
+    if (normal != glm::dvec3(0)) {
+      const glm::dvec3 ray =
+          corner + right * static_cast<double>(hit >> 4 & 31) + down * static_cast<double>(hit >> 20 & 31);
+      cosine = std::min(std::abs(glm::dot(ray, normal)) / std::sqrt(glm::dot(ray, ray)), 1.0);
+    }
+    cross_segment(iso, i, ranges_[t], static_cast<float>(cosine), out);
   }
 }
 
-void LatticeSurfaces::cross_segment(const IsoView& iso, std::size_t segment, const IsoView::Range& range,
-                                    const glm::dvec3& ray, const glm::dvec3& normal, SegmentStream& out) {
+void LatticeSurfaces::cross_segment(const IsoView& iso, std::size_t segment, const IsoView::Range& range, float cosine,
+                                    SegmentStream& out) {
   const std::span<const float> on_lattice = iso.surfaces->on_lattice();
   const std::int32_t front = out.front[segment], back = out.back[segment];
   const float from = out.scalar_front[segment], to = out.scalar_back[segment];
@@ -49,7 +58,6 @@ void LatticeSurfaces::cross_segment(const IsoView& iso, std::size_t segment, con
   const double length = static_cast<double>(back) - front, slope = length / (static_cast<double>(to) - from);
   // The part that is not cut yet: at first the segment itself, then what is behind a crossing.
   std::size_t rest = segment;
-  float cosine = -1;
   const auto add = [&](std::int32_t f, std::int32_t b, float at_front, float at_back) {
     const std::size_t at = out.size++;
     out.front[at] = f, out.back[at] = b;
@@ -62,7 +70,6 @@ void LatticeSurfaces::cross_segment(const IsoView& iso, std::size_t segment, con
     const float value = on_lattice[surface];
     if ((from >= value) == (to >= value)) continue;
     if (out.size + 2 > out.front.size() - SegmentStream::padding) out.reserve(2 * out.size + 2);
-    if (cosine < 0) cosine = cosine_between(ray, normal);
     const double along = std::clamp((static_cast<double>(value) - from) * slope, 0.0, length);
     const auto at = LatticePlace::of(static_cast<std::int32_t>(std::nearbyint(front + along)), front, back);
     const float mark = LatticeMark::of({iso.surfaces->crossing(surface, rises, at.place), cosine});

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "projection/lattice_rasterizer.hpp"
 
@@ -18,20 +19,33 @@ class LatticeSurfaces {
  public:
   static constexpr std::size_t most_cells = 16;
 
-  /// Which of the cells have surfaces, a bit each. At most `most_cells` cells.
-  std::uint32_t find(const LatticeView& view, std::span<const TileEntry> cells);
+  /// Between which values on the lattice a cell's surfaces are; a cell without has none that a segment could reach.
+  struct Limits {
+    alignas(64) float low[most_cells], high[most_cells];
+  };
 
-  /// Of the stream's segments from `first` on, which are of these cells and have SegmentStream::hit. `cells` are those
-  /// given to find(), `crossed` its answer; (x0, y0) is the square's first pixel.
-  void cross(const LatticeView& view, std::span<const TileEntry> cells, std::uint32_t crossed, std::size_t first,
-             int x0, int y0, SegmentStream& out);
+  /// Which of the cells have surfaces, a bit each, but those of `without`. At most `most_cells` cells.
+  std::uint32_t find(const LatticeView& view, std::span<const TileEntry> cells, std::uint32_t without);
+  [[nodiscard]] const Limits& limits() const { return limits_; }
+
+  /// Crosses segments of the stream, which are of the cells given to find() and have SegmentStream::hit. (x0, y0) is
+  /// the square's first pixel.
+  void cross(const LatticeView& view, std::span<const std::uint32_t> segments, int x0, int y0, SegmentStream& out);
+
+  /// Room for the numbers of `count` segments and what a vector of lanes may write behind them.
+  std::uint32_t* numbers(std::size_t count) {
+    if (numbers_.size() < count + SegmentStream::padding) numbers_.resize(count + SegmentStream::padding);
+    return numbers_.data();
+  }
 
  private:
-  void cross_segment(const IsoView& iso, std::size_t segment, const IsoView::Range& range, const glm::dvec3& ray,
-                     const glm::dvec3& normal, SegmentStream& out);
+  void cross_segment(const IsoView& iso, std::size_t segment, const IsoView::Range& range, float cosine,
+                     SegmentStream& out);
 
   std::array<IsoView::Range, most_cells> ranges_;
-  std::array<glm::dvec3, most_cells> normals_;
+  std::array<glm::dvec3, most_cells> normals_;  ///< unit; zero: none
+  Limits limits_;
+  std::vector<std::uint32_t> numbers_;
 };
 
 }  // namespace tessera::projection

@@ -29,11 +29,16 @@ glm::dvec3 gradient_direction(const PreparedMesh& prepared, std::size_t tet) {
          change[2] / most * glm::cross(edge[0], edge[1]);
 }
 
+glm::dvec3 unit(const glm::dvec3& direction) {
+  const double size = largest(direction);
+  if (!(size > 0)) return glm::dvec3(0);
+  const glm::dvec3 of_size_one = direction / size;
+  return of_size_one / glm::length(of_size_one);
+}
+
 float cosine_between(const glm::dvec3& ray, const glm::dvec3& normal) {
-  const double size = largest(normal);
-  if (!(size > 0)) return 1;
-  const glm::dvec3 n = normal / size;
-  return static_cast<float>(std::min(std::abs(glm::dot(ray, n)) / (glm::length(ray) * glm::length(n)), 1.0));
+  if (normal == glm::dvec3(0)) return 1;
+  return static_cast<float>(std::min(std::abs(glm::dot(ray, unit(normal))) / glm::length(ray), 1.0));
 }
 
 }  // namespace tessera::projection

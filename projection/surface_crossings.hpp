@@ -46,7 +46,7 @@ struct LatticeMark {
   static_assert(std::bit_cast<std::uint32_t>(first) == first_bits);
 
   static float of(const Crossing& crossing) {
-    const auto cosine = static_cast<std::uint32_t>(std::lround(crossing.cosine * cosines));
+    const auto cosine = static_cast<std::uint32_t>(crossing.cosine * cosines + 0.5f);
     return std::bit_cast<float>(first_bits + (crossing.number << cosine_bits | cosine));
   }
 };
@@ -102,6 +102,9 @@ struct IsoView {
 
 /// The field's gradient in a tet, of any length: zero where the field is constant; in a flat tet its normal.
 glm::dvec3 gradient_direction(const PreparedMesh& mesh, std::size_t tet);
+
+/// Of length one; zero stays zero.
+glm::dvec3 unit(const glm::dvec3& direction);
 
 /// Cosine of the angle between a ray of that direction and a normal, neither of unit length; 1 where there is no
 /// normal.

@@ -51,24 +51,24 @@ SurfaceSet::SurfaceSet(const Surfaces& surfaces, const TransferFunction& functio
     paints_.push_back({color, iso.opacity});
     max_color_ = std::max({max_color_, color.x, color.y, color.z});
   }
+  const auto n = static_cast<std::uint32_t>(values_.size());
+  for (std::uint32_t number = 0; number < 6 * n; ++number)
+    paint_of_.push_back(number % (2 * n) < n ? number % n : n - 1 - number % n);
   if (light_.shininess == std::floor(light_.shininess) && light_.shininess <= 1024)
     whole_shininess_ = static_cast<int>(light_.shininess);
   if (!empty()) max_color_ = max_color_ * (light_.ambient + light_.diffuse) + light_.specular;
 }
 
 void SurfaceSet::place_on(const Lattice& lattice) {
-  const std::size_t n = values_.size();
   on_lattice_.clear();
   for (const double value : values_) on_lattice_.push_back(static_cast<float>(lattice.scalar_step(value)));
-  by_number_.resize(6 * n);
-  for (std::size_t i = 0; i < 6 * n; ++i) by_number_[i] = on_lattice_[i % (2 * n) < n ? i % n : n - 1 - i % n];
+  by_number_.clear();
+  for (const std::uint32_t i : paint_of_) by_number_.push_back(on_lattice_[i]);
 }
 
 SurfaceSet::Light SurfaceSet::light(std::uint32_t crossing, double cosine) const {
-  const std::size_t n = paints_.size();
-  if (crossing >= 6 * n) return {};
-  const std::size_t of_place = crossing % (2 * n);
-  const Paint& paint = paints_[of_place < n ? of_place : 2 * n - 1 - of_place];
+  if (crossing >= paint_of_.size()) return {};
+  const Paint& paint = paints_[paint_of_[crossing]];
   const double c = std::clamp(cosine, 0.0, 1.0);
   const double matte = light_.ambient + light_.diffuse * c;
   const double shine =

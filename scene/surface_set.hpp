@@ -65,7 +65,8 @@ class SurfaceSet {
     double opacity;
   };
   std::vector<double> values_;
-  std::vector<Paint> paints_;
+  std::vector<Paint> paints_;            ///< by value, as values_
+  std::vector<std::uint32_t> paint_of_;  ///< by crossing
   std::vector<float> on_lattice_, by_number_;
   SurfaceLight light_;
   int whole_shininess_ = -1;  ///< -1: it is no whole number, or a large one
