@@ -25,6 +25,9 @@ std::uint32_t LatticeSurfaces::find(const LatticeView& view, std::span<const Til
     limits_.low[t] = iso.surfaces->on_lattice()[ranges_[t].first];
     limits_.high[t] = iso.surfaces->on_lattice()[ranges_[t].last - 1];
     normals_[t] = unit(gradient_direction(*view.projected.mesh, cells[t].tet));
+    cosines_[t] = 1;
+    if (!view.perspective && normals_[t] != glm::dvec3(0))
+      cosines_[t] = std::min(std::abs(glm::dot(iso.space->direction(0, 0), normals_[t])), 1.0);
   }
   return crossed;
 }
@@ -39,8 +42,8 @@ void LatticeSurfaces::cross(const LatticeView& view, std::span<const std::uint32
     const std::int32_t hit = out.hit[i];
     const auto t = static_cast<std::size_t>(hit & 15);
     const glm::dvec3& normal = normals_[t];
-    double cosine = 1;
-    if (normal != glm::dvec3(0)) {
+    double cosine = cosines_[t];
+    if (view.perspective && normal != glm::dvec3(0)) {
       const glm::dvec3 ray =
           corner + right * static_cast<double>(hit >> 4 & 31) + down * static_cast<double>(hit >> 20 & 31);
       cosine = std::min(std::abs(glm::dot(ray, normal)) / std::sqrt(glm::dot(ray, ray)), 1.0);

@@ -44,6 +44,7 @@ class LatticeSurfaces {
 
   std::array<IsoView::Range, most_cells> ranges_;
   std::array<glm::dvec3, most_cells> normals_;  ///< unit; zero: none
+  std::array<double, most_cells> cosines_;      ///< orthographic: of all rays; perspective: where there is no normal
   Limits limits_;
   std::vector<std::uint32_t> numbers_;
 };
