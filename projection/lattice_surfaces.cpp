@@ -7,6 +7,22 @@
 
 namespace tessera::projection {
 
+namespace {
+
+/// The surfaces that a cell with scalars between these steps may have. Rounding may move a scalar over a value: a
+/// float's last place (64 steps at most), the value's own, and a gradient's over the square.
+IsoView::Range range_between(std::span<const float> values, std::int32_t low, std::int32_t high) {
+  constexpr float margin = 256;
+  const float below = static_cast<float>(low) - margin, above = static_cast<float>(high) + margin;
+  std::size_t first = 0;
+  while (first < values.size() && values[first] < below) ++first;
+  std::size_t last = first;
+  while (last < values.size() && values[last] <= above) ++last;
+  return {first, last};
+}
+
+}  // namespace
+
 std::uint32_t LatticeSurfaces::find(const LatticeView& view, std::span<const TileEntry> cells, std::uint32_t without) {
   const IsoView& iso = *view.projected.iso;
   std::uint32_t crossed = 0;
@@ -14,12 +30,11 @@ std::uint32_t LatticeSurfaces::find(const LatticeView& view, std::span<const Til
   std::fill_n(limits_.high, most_cells, -std::numeric_limits<float>::infinity());
   for (std::size_t t = 0; t < cells.size(); ++t) {
     if ((without >> t & 1) != 0) continue;
-    const auto [low, high] = view.projected.mesh->scalar_bounds(cells[t].tet);
-    // Rounding may move a scalar over a value: a float's last place, and a gradient's over the square.
-    const double margin =
-        32 * view.lattice.scalar_unit +
-        0x1p-23 * std::max(std::abs(low - view.lattice.scalar_origin), std::abs(high - view.lattice.scalar_origin));
-    ranges_[t] = iso.within(low - margin, high + margin);
+    // Of the lattice's own vertices, which set-up has just read.
+    const scene::Tet& corners = view.projected.mesh->tets()[cells[t].tet];
+    const auto scalar = [&](std::size_t i) { return view.vertices[corners[i]].scalar; };
+    const auto [low, high] = std::minmax({scalar(0), scalar(1), scalar(2), scalar(3)});
+    ranges_[t] = range_between(iso.surfaces->on_lattice(), low, high);
     if (ranges_[t].first == ranges_[t].last) continue;
     crossed |= 1u << t;
     limits_.low[t] = iso.surfaces->on_lattice()[ranges_[t].first];

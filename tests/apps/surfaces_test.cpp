@@ -15,7 +15,7 @@ TEST(Surfaces, OfValuesAreRenderedVerifiedAndReported) {
       tessera({"render", folder.cube(), "-o", folder / "a.exr", "--size", "64x48", "--iso", "0.3:red:0.4", "--iso",
                "0.5:#4080ff", "--iso=0.7::0.5", "--verify", "500", "--report", folder / "r.json"});
   ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_NE(run.err.find(" met"), std::string::npos) << run.err;
+  EXPECT_NE((run.out + run.err).find(" met"), std::string::npos) << run.out << run.err;
   const auto image = io::read_image(folder / "a.exr");
   EXPECT_EQ(image.rgba[4 * image.index(32, 24) + 3], 1.0f);
   const auto report = nlohmann::json::parse(contents(folder / "r.json"));
