@@ -45,4 +45,14 @@ Surfaces surfaces_of(const SurfaceWords& words) {
   return surfaces;
 }
 
+std::vector<std::string> unseen_surfaces(const Surfaces& surfaces, const std::array<double, 2>& range) {
+  std::vector<std::string> warnings;
+  for (const IsoSurface& iso : surfaces.iso)
+    if (!(range[0] < iso.value && iso.value <= range[1]))
+      warnings.push_back(
+          fmt::format("--iso {}: shows nothing, the field goes from {:.6g} to {:.6g}; choose a value between",
+                      iso.value, range[0], range[1]));
+  return warnings;
+}
+
 }  // namespace tessera::apps

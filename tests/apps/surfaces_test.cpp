@@ -23,6 +23,13 @@ TEST(Surfaces, OfValuesAreRenderedVerifiedAndReported) {
   EXPECT_NE(text.find(R"("iso":[{"color":[1.0,0.0,0.0],"opacity":)"), std::string::npos) << text;
 }
 
+TEST(Surfaces, ThatTheFieldDoesNotReachAreWarnedOf) {
+  const Folder folder;
+  const auto run = tessera({"render", folder.cube(), "-o", folder / "a.png", "--size", "8x8", "--iso", "5"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.err.find("--iso 5: shows nothing, the field goes from 0.03"), std::string::npos) << run.err;
+}
+
 TEST(Surfaces, AreRefusedInOneLineThatSaysWhy) {
   const Folder folder;
   const std::string mesh = folder.cube();
