@@ -172,6 +172,7 @@ void add_render_options(CLI::App& command, RenderWords& words) {
   command.add_option("--opacity-scale,--opacity", words.opacity_scale, "multiplies the extinction")
       ->type_name("FACTOR");
   add_function_options(command, words.function);
+  add_surface_options(command, words.surfaces);
   command.add_option("--blend", words.blend, "linear light (default), or sRGB values as VTK does")
       ->type_name("linear|display");
 
@@ -308,6 +309,7 @@ RenderOptions render_options(const RenderWords& words) {
   options.image = image_options(words);
   options.annotation = annotation_options(words.annotation, options.image);
   if (options.annotation.annotation) refuse_unannotated(options);
+  settings.surfaces = surfaces_of(words.surfaces);
   set_ranks(words, without.merging, options);
   plan.resume = words.resume;
   if (!words.repeat.empty()) options.repeat = parse_count("--repeat", words.repeat, 1, no_limit);
@@ -350,6 +352,9 @@ LoadedTransferFunction transfer_function_of(const Dataset& data, const RenderOpt
   loaded.name = with_options(loaded.name);
   loaded.unit_distance_source = with_options(loaded.unit_distance_source);
   loaded.warnings = with_options(loaded.warnings);
+  if (!options.settings.surfaces.empty())
+    for (const std::string& warning : unseen_surfaces(options.settings.surfaces, data.range()))
+      loaded.warnings.push_back(warning);
   return loaded;
 }
 

@@ -7,6 +7,7 @@
 
 #include "apps/annotation_options.hpp"
 #include "apps/function_options.hpp"
+#include "apps/surface_options.hpp"
 #include "apps/view_options.hpp"
 #include "tessera/camera.hpp"
 #include "tessera/dataset.hpp"
@@ -67,6 +68,7 @@ struct RenderWords {
   AnnotationWords annotation;
   ViewWords view;
   FunctionWords function;
+  SurfaceWords surfaces;
   bool smooth = false, shade = false, no_shade = false, half = false, rescale = false, resume = false, progress = false,
        quiet = false;
 };

@@ -52,11 +52,21 @@ Description described(const Dataset& data) {
 
 namespace {
 
+Json iso_json(const Surfaces& surfaces) {
+  Json json = Json::array();
+  for (const IsoSurface& iso : surfaces.iso) {
+    json.push_back({{"value", iso.value}, {"opacity", iso.opacity}});
+    if (iso.color) json.back()["color"] = {iso.color->x, iso.color->y, iso.color->z};
+  }
+  return json;
+}
+
 Json mesh_method_json(const RenderOptions& options) {
   const Settings& settings = options.settings;
   Json json = {{"integrator", method_line(settings.integrator)}};
   if (settings.integrator.kind == IntegratorKind::automatic) json["accuracy"] = settings.integrator.accuracy;
   json["emission"] = settings.emission == Emission::absorption ? "absorption" : "independent";
+  if (!settings.surfaces.empty()) json["iso"] = iso_json(settings.surfaces);
   if (options.frame.deep) json["deep_accuracy"] = options.frame.deep_accuracy;
   json["rasterizer"] = word(settings.mesh.rasterizer);
   const DeviceSettings& on = settings.mesh.device;

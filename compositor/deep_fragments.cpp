@@ -46,13 +46,13 @@ bool DeepMerger::extend(const DeepSample& piece) {
   return true;
 }
 
-void DeepMerger::add(const DeepSample& given, std::vector<DeepSample>& samples) {
+void DeepMerger::add(const DeepSample& given, std::vector<DeepSample>& samples, bool surface) {
   DeepSample piece = given;
   const double most_light = std::max({piece.light[0], piece.light[1], piece.light[2]});
   const bool absorbs = piece.optical_depth >= least_optical_depth;
   if (!absorbs && most_light == 0) return;
   if (begun_) piece.front = std::max(piece.front, sample_.back), piece.back = std::max(piece.back, piece.front);
-  const bool touches = begun_ && piece.front == sample_.back && sample_.back > sample_.front;
+  const bool touches = !surface && begun_ && piece.front == sample_.back && sample_.back > sample_.front;
   if (!touches || absorbs != absorbs_ || !extend(piece)) {
     end(samples);
     begun_ = true;

@@ -38,7 +38,8 @@ class DeepMerger {
   explicit DeepMerger(double accuracy) : accuracy_(accuracy) {}
 
   /// The next piece along the ray. Appends the sample that it ends, if it does.
-  void add(const DeepSample& piece, std::vector<DeepSample>& samples);
+  /// A `surface` is a point, which stays one.
+  void add(const DeepSample& piece, std::vector<DeepSample>& samples, bool surface = false);
 
   /// Appends the last sample, if one is begun.
   void end(std::vector<DeepSample>& samples);

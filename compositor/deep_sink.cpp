@@ -75,6 +75,10 @@ void DeepSink::take(Store& lists, double final_depth, std::size_t /*at_least*/, 
     for (const auto& entry : lists.pixel(p)) {
       if (!(entry.depth < final_depth)) break;
       const std::uint32_t i = entry.segment;
+      if (scene_.surfaces != nullptr && projection::is_crossing(segments.scalar_front[i])) {
+        add_crossing(p, segments.front[i], projection::crossing_of(segments.scalar_front[i]));
+        continue;
+      }
       cutter_.cut({segments.front[i], segments.back[i], segments.scalar_front[i], segments.scalar_back[i]},
                   length_per_depth_[p], transmittance_before_[p], pieces_);
       piece_pixels_.resize(pieces_.size(), p);
@@ -88,6 +92,14 @@ void DeepSink::take(Store& lists, double final_depth, std::size_t /*at_least*/, 
   timer.record("composite");
 }
 
+/// A surface is a point in depth. It waits among the pieces, which are one pixel's in order.
+void DeepSink::add_crossing(std::uint32_t pixel, double depth, const projection::Crossing& crossing) {
+  crossings_.push_back({pieces_.size(), crossing});
+  pieces_.push_back({depth, depth, 0, 0});
+  piece_pixels_.push_back(pixel);
+  transmittance_before_[pixel] *= 1 - scene_.surfaces->light(crossing.number, crossing.cosine).opacity;
+}
+
 void DeepSink::integrate_pieces(scene::StageTimer& timer) {
   timer.record("composite");
   batch_.reserve(pieces_.size());
@@ -98,15 +110,22 @@ void DeepSink::integrate_pieces(scene::StageTimer& timer) {
     batch_.scalar_back[k] = pieces_[k].scalar_back;
   }
   scene_.integrator->integrate(batch_);
+  if (!crossings_.empty()) {
+    light_crossings(*scene_.surfaces, crossings_, batch_);
+    for (const CrossingInBatch& c : crossings_) pieces_[c.at].optical_depth = batch_.optical_depth[c.at];
+  }
   timer.record("integrate");
+  auto next = crossings_.cbegin();
   for (std::size_t k = 0; k < pieces_.size(); ++k) {
     const std::uint32_t p = piece_pixels_[k];
+    const bool surface = next != crossings_.end() && next->at == k;
+    if (surface) ++next;
     if (!deep_open_[p]) continue;
     DeepMerger& merger = mergers_[p];
     ended_.clear();
     merger.add(
         {pieces_[k].front, pieces_[k].back, {batch_.red[k], batch_.green[k], batch_.blue[k]}, pieces_[k].optical_depth},
-        ended_);
+        ended_, surface);
     for (const DeepSample& sample : ended_) samples_.push_back({p, sample});
     if (merger.transmittance() * scene_.left_out_per_transmittance < scene_.integrator->termination_error()) {
       deep_open_[p] = 0;
@@ -115,6 +134,7 @@ void DeepSink::integrate_pieces(scene::StageTimer& timer) {
   }
   pieces_.clear();
   piece_pixels_.clear();
+  crossings_.clear();
 }
 
 void DeepSink::finish() {

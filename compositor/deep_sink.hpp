@@ -35,6 +35,7 @@ class DeepSink final : public TileSink<DoubleEncoding> {
 
  private:
   void integrate_pieces(scene::StageTimer& timer);
+  void add_crossing(std::uint32_t pixel, double depth, const projection::Crossing& crossing);
 
   TileScene scene_;
   TilePixels<DoubleEncoding> picture_;
@@ -50,6 +51,7 @@ class DeepSink final : public TileSink<DoubleEncoding> {
   std::size_t deep_open_count_ = 0;
   std::vector<DeepPiece> pieces_;  ///< that wait for the integrator
   std::vector<std::uint32_t> piece_pixels_;
+  std::vector<CrossingInBatch> crossings_;  ///< among the pieces
   integrals::SegmentBatch batch_;
   struct PixelSample {
     std::uint32_t pixel;

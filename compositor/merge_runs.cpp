@@ -10,6 +10,7 @@
 #include "compositor/merged_pixel.hpp"
 #include "compositor/window_kernel.hpp"
 #include "integrals/integrate_lanes.hpp"
+#include "projection/surface_crossings.hpp"
 
 namespace tessera::compositor {
 namespace {
@@ -21,7 +22,7 @@ class RunMerger final : public TileMerger {
       : context_(context),
         budget_(context.budget_bytes),
         rect_(rect),
-        weight_(integrals::opacity_weight(context.max_color, context.longest_ray, context.emission)),
+        weight_(context.opacity_weight()),
         termination_error_(context.integrator->termination_error()),
         first_of_(static_cast<std::size_t>(rect.area()), none) {}
 
@@ -137,16 +138,38 @@ class RunMerger final : public TileMerger {
       const double x = rect_.x0 + column + 0.5, y = rect_.y0 + row + 0.5;
       batch_.length[i] =
           static_cast<float>(segment.back - segment.front) * static_cast<float>(context_.space->length_per_depth(x, y));
-      batch_.scalar_front[i] = segment.scalar_front;
+      batch_.scalar_front[i] = first_scalar(segment);
       batch_.scalar_back[i] = segment.scalar_back;
     }
     integrals::integrate_lanes(*context_.table, batch_);
     for (std::size_t i = 0; i < single_.size(); ++i) {
       const auto& [pixel, segment] = single_[i];
+      if (projection::is_crossing(segment.scalar_front)) put_surface_before(segment, i);
       const double front = first_visible_depth(*context_.lattice, segment, *context_.integrator);
       push(pixel, {front, static_cast<float>(context_.lattice->depth(segment.back) - front), batch_.red[i],
                    batch_.green[i], batch_.blue[i], batch_.alpha[i]});
     }
+  }
+
+  /// The field's at the front, be there a surface or not.
+  [[nodiscard]] float first_scalar(const projection::LatticeSegment& segment) const {
+    if (!projection::is_crossing(segment.scalar_front)) return segment.scalar_front;
+    const std::uint32_t number = projection::crossing_of(segment.scalar_front).number;
+    if (context_.surfaces == nullptr || number >= context_.surfaces->on_lattice_by_number().size())
+      throw scene::Error(scene::ErrorCode::system_failure,
+                         "exchange: a surface that is none; all ranks must run the same program");
+    return context_.surfaces->on_lattice_by_number()[number];
+  }
+
+  void put_surface_before(const projection::LatticeSegment& segment, std::size_t i) {
+    const projection::Crossing crossing = projection::crossing_of(segment.scalar_front);
+    const scene::SurfaceSet::Light light = context_.surfaces->light(crossing.number, crossing.cosine);
+    const double through = 1 - light.opacity;
+    const auto before = [&](double of_surface, float& behind) {
+      behind = static_cast<float>(of_surface + through * behind);
+    };
+    before(light.red, batch_.red[i]), before(light.green, batch_.green[i]), before(light.blue, batch_.blue[i]);
+    before(light.opacity, batch_.alpha[i]);
   }
 
   MergeContext context_;

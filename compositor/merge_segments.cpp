@@ -47,9 +47,12 @@ class SegmentMerger : public TileMerger {
 
   SegmentMerger(const MergeContext& context, const scene::PixelRect& rect)
       : context_(context),
-        scene_{context.space, context.integrator,
-               integrals::opacity_weight(context.max_color, context.longest_ray, context.emission), context.table,
-               context.lattice != nullptr ? *context.lattice : scene::Lattice{}},
+        scene_{context.space,
+               context.integrator,
+               context.opacity_weight(),
+               context.table,
+               context.lattice != nullptr ? *context.lattice : scene::Lattice{},
+               context.surfaces},
         rect_(rect),
         image_({rect.width(), rect.height()}) {}
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "scene/deep_image.hpp"
 #include "scene/image.hpp"
 #include "scene/lattice.hpp"
+#include "scene/surface_set.hpp"
 #include "scene/transfer_function.hpp"
 
 namespace tessera::compositor {
@@ -38,6 +40,13 @@ struct MergeContext {
   std::uint32_t frame = 0;
   /// Not null: where the device fails the CPU takes over, and this is set.
   std::atomic<bool>* device_failed = nullptr;
+  const scene::SurfaceSet* surfaces = nullptr;  ///< in the volume; null: none
+
+  /// What may still come behind a pixel of transmittance 1.
+  [[nodiscard]] double opacity_weight() const {
+    const double weight = integrals::opacity_weight(max_color, longest_ray, emission);
+    return surfaces != nullptr ? std::max(weight, surfaces->max_color()) : weight;
+  }
 };
 
 /// A finished tile.

@@ -23,10 +23,21 @@ void ListPixels::start(const scene::PixelRect& rect) {
     for (int x = rect.x0; x < rect.x1; ++x) length_per_depth_[i++] = scene_.space->length_per_depth(x + 0.5, y + 0.5);
 }
 
+void light_crossings(const scene::SurfaceSet& surfaces, std::span<const CrossingInBatch> crossings,
+                     integrals::SegmentBatch& batch) {
+  for (const auto& [at, crossing] : crossings) {
+    const scene::SurfaceSet::Light light = surfaces.light(crossing.number, crossing.cosine);
+    batch.red[at] = light.red, batch.green[at] = light.green, batch.blue[at] = light.blue;
+    batch.optical_depth[at] = -std::log1p(-light.opacity);  // infinite where it is opaque
+    batch.transmittance[at] = 1 - light.opacity;
+  }
+}
+
 void ListPixels::integrate(const Lists& lists, double final_depth) {
   const projection::RaySegments& segments = lists.segments;
   batch_.reserve(segments.size);
   batch_.size = 0;
+  crossings_.clear();
   for (std::size_t p = 0; p < open_.size(); ++p) {
     if (!open_[p]) continue;
     for (const auto& entry : lists.pixel(p)) {
@@ -35,10 +46,15 @@ void ListPixels::integrate(const Lists& lists, double final_depth) {
       batch_.length[batch_.size] = (segments.back[i] - segments.front[i]) * length_per_depth_[p];
       batch_.scalar_front[batch_.size] = segments.scalar_front[i];
       batch_.scalar_back[batch_.size] = segments.scalar_back[i];
+      if (scene_.surfaces != nullptr && projection::is_crossing(segments.scalar_front[i])) {
+        crossings_.push_back({batch_.size, projection::crossing_of(segments.scalar_front[i])});
+        batch_.scalar_front[batch_.size] = batch_.scalar_back[batch_.size];
+      }
       ++batch_.size;
     }
   }
   scene_.integrator->integrate(batch_);
+  if (!crossings_.empty()) light_crossings(*scene_.surfaces, crossings_, batch_);
 }
 
 /// Ends a run that a pixel is in.
@@ -81,8 +97,9 @@ void ListPixels::add(const Lists& lists, double final_depth) {
       }
       if (appears) {
         const double at =
-            absorbs ? scene_.integrator->first_visible(segments.scalar_front[i], segments.scalar_back[i]).value_or(0)
-                    : 0;
+            absorbs && segments.front[i] < segments.back[i]
+                ? scene_.integrator->first_visible(segments.scalar_front[i], segments.scalar_back[i]).value_or(0)
+                : 0;
         run.front = segments.front[i] + (segments.back[i] - segments.front[i]) * at;
       }
       run.red += run.transmittance * batch_.red[k];

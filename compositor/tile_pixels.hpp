@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "compositor/tile_scene.hpp"
 #include "compositor/window_kernel.hpp"
 #include "integrals/segment_batch.hpp"
+#include "projection/surface_crossings.hpp"
 #include "sorting/encodings.hpp"
 
 namespace tessera::compositor {
@@ -16,6 +18,15 @@ namespace tessera::compositor {
 struct PixelValue {
   double red, green, blue, opacity, depth;
 };
+
+/// A crossing of a surface among the segments of a batch: no segment, it is given its light afterwards.
+struct CrossingInBatch {
+  std::size_t at;
+  projection::Crossing crossing;
+};
+/// Gives crossings that were integrated as segments of length zero their light.
+void light_crossings(const scene::SurfaceSet& surfaces, std::span<const CrossingInBatch> crossings,
+                     integrals::SegmentBatch& batch);
 
 /// The pixels of a rectangle while segments are composited into them, front to back: the whole ray of each as one run,
 /// or (`runs`) a new run wherever a segment does not touch the one before.
@@ -80,6 +91,7 @@ class TilePixels<sorting::DoubleEncoding> {
   std::vector<std::uint8_t> open_;
   std::size_t open_count_ = 0;
   integrals::SegmentBatch batch_;
+  std::vector<CrossingInBatch> crossings_;
 };
 
 template <>
@@ -88,7 +100,7 @@ class TilePixels<sorting::LatticeEncoding> {
   using Run = WindowState::Run;
 
   TilePixels(const TileScene& scene, bool runs)
-      : scene_(scene), rules_{scene.table, scene.least_transmittance(), runs} {}
+      : scene_(scene), rules_{scene.table, scene.least_transmittance(), runs, scene.surfaces} {}
 
   void start(const scene::PixelRect& rect);
   std::uint64_t take(projection::SegmentWindows& windows, std::int64_t final_step, std::size_t at_least,

@@ -5,6 +5,7 @@
 #include "projection/pixel_space.hpp"
 #include "scene/image.hpp"
 #include "scene/lattice.hpp"
+#include "scene/surface_set.hpp"
 
 namespace tessera::compositor {
 
@@ -16,6 +17,7 @@ struct TileScene {
   // On the lattice:
   const integrals::LaneTable* table = nullptr;
   scene::Lattice lattice{};
+  const scene::SurfaceSet* surfaces = nullptr;  ///< in the volume; null: none
 
   /// Behind less light than this nothing changes a pixel by the integrator's termination error.
   [[nodiscard]] double least_transmittance() const {

@@ -84,7 +84,8 @@ class PixelGroup {
   /// Loads the segments of the rows [from, to) before `final_step`, in pixels that are open; of runs it notes where
   /// they end. Returns where it ended: behind the last row with a final segment.
   template <bool runs>
-  HWY_INLINE std::size_t load(std::size_t from, std::size_t to, std::int32_t final_step) {
+  HWY_INLINE std::size_t load(std::size_t from, std::size_t to, std::int32_t final_step,
+                              const scene::SurfaceSet* surfaces) {
     const DI d;
     const DF df;
     const std::size_t lanes = HN::Lanes(d);
@@ -104,11 +105,14 @@ class PixelGroup {
         break;
       }
       done_ = count_if(HN::RebindMask(df, is_final), done_);
+      VF scalar_front = s.scalar_front;
+      if (HWY_UNLIKELY(surfaces != nullptr))
+        scalar_front = light_.set_aside_surfaces(surfaces->on_lattice_by_number(), is_final, scalar_front, row - from);
       const VF length = HN::Mul(HN::ConvertTo(df, HN::Sub(s.back, front)), length_per_step);
       const auto takes = HN::And(is_final, open);
       light_.put_segment(HN::IfThenElseZero(HN::RebindMask(df, takes), length), HN::IfThenElse(takes, front, none),
-                         s.back, s.scalar_front, s.scalar_back,
-                         table_.locate(s.scalar_front, HN::Ge(s.scalar_back, s.scalar_front)), (row - from) * lanes);
+                         s.back, scalar_front, s.scalar_back,
+                         table_.locate(scalar_front, HN::Ge(s.scalar_back, scalar_front)), (row - from) * lanes);
       if constexpr (runs) {
         // A lane in no run begins one in the first of these rows, or takes nothing from any: its list has no holes.
         if (row == from) run_back = HN::IfThenElse(HN::And(takes, HN::Eq(run_back, none)), front, run_back);
@@ -130,8 +134,10 @@ class PixelGroup {
     for (std::size_t from = 0, to; from < rows; from = to) {
       const std::size_t most = std::min(rows, from + LightRows::most);
       // In three passes, each of chains short enough for a processor to work on several rows at once.
-      to = rules.runs ? load<true>(from, most, final_step) : load<false>(from, most, final_step);
+      to = rules.runs ? load<true>(from, most, final_step, rules.surfaces)
+                      : load<false>(from, most, final_step, rules.surfaces);
       light_.integrate(table_, to - from);
+      if (HWY_UNLIKELY(rules.surfaces != nullptr)) light_.put_surfaces(*rules.surfaces);
       if (!GroupLight(state_, light_, pixel_, table_.independent).add(to - from, rules) || to < most) break;
     }
     return keep_rest(rows);

@@ -10,6 +10,7 @@
 #include "projection/pixel_space.hpp"
 #include "projection/segment_windows.hpp"
 #include "scene/lattice.hpp"
+#include "scene/surface_set.hpp"
 #include "scene/trace.hpp"
 #include "sorting/window_order.hpp"
 
@@ -70,8 +71,9 @@ double first_visible_depth(const scene::Lattice& lattice, const projection::Latt
 /// How windows are composited.
 struct WindowRules {
   const integrals::LaneTable* table;
-  double least_transmittance;  ///< a pixel of less is closed
-  bool runs = false;           ///< segments that do not touch begin a new run
+  double least_transmittance;                   ///< a pixel of less is closed
+  bool runs = false;                            ///< segments that do not touch begin a new run
+  const scene::SurfaceSet* surfaces = nullptr;  ///< whose crossings are among the segments; null: none are
 };
 
 /// Runs end where the next segment's front is further from their back than this. Neighbours' depths are the same to the

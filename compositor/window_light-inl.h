@@ -11,10 +11,12 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <span>
 
 #include "compositor/window_kernel.hpp"
 #include "integrals/integrate_lanes-inl.h"
 #include "projection/pack_lanes-inl.h"
+#include "projection/surface_crossings.hpp"
 
 HWY_BEFORE_NAMESPACE();
 #if HWY_TARGET != HWY_SCALAR
@@ -71,6 +73,47 @@ struct LightRows {
   // Runs: where each lane's ends behind the rows (no_key: in none), and whether none ends between them.
   alignas(64) std::int32_t run_back[most_lanes];
   bool touching;
+  // Segments that begin at a surface: their marks while they are integrated (0: no surface), and the rows that have
+  // some, a bit each.
+  alignas(64) float mark[numbers];
+  std::uint32_t marked_rows = 0;
+
+  /// Of a row. Returns its front scalars, with the surfaces' values where they are marks.
+  HWY_INLINE VF set_aside_surfaces(std::span<const float> by_number, HN::Mask<DI> is_final, VF scalar_from,
+                                   std::size_t row) {
+    using Mark = projection::LatticeMark;
+    const DF d;
+    const DI di;
+    const MF marked = HN::And(HN::RebindMask(d, is_final), HN::Ge(scalar_from, HN::Set(d, Mark::first)));
+    if (HN::AllFalse(d, marked)) return scalar_from;
+    HN::Store(HN::IfThenElseZero(marked, scalar_from), d, mark + row * HN::Lanes(d));
+    marked_rows |= 1u << row;
+    const VI code = HN::Sub(HN::BitCast(di, scalar_from), HN::Set(di, static_cast<std::int32_t>(Mark::first_bits)));
+    const VI last = HN::Set(di, static_cast<std::int32_t>(by_number.size()) - 1);
+    const VI number =
+        HN::IfThenElseZero(HN::RebindMask(di, marked), HN::Min(HN::ShiftRight<Mark::cosine_bits>(code), last));
+    return HN::IfThenElse(marked, HN::GatherIndex(d, by_number.data(), number), scalar_from);
+  }
+  /// After integrate(): puts the surfaces before what is behind them.
+  HWY_NOINLINE void put_surfaces(const scene::SurfaceSet& surfaces) {
+    const std::size_t lanes = HN::Lanes(DF());
+    for (; marked_rows != 0; marked_rows &= marked_rows - 1) {
+      const auto row = static_cast<std::size_t>(__builtin_ctz(marked_rows));
+      for (std::size_t at = row * lanes; at < (row + 1) * lanes; ++at) {
+        if (mark[at] == 0 || front[at] == no_key) continue;
+        scalar_front[at] = mark[at];
+        const projection::Crossing crossing = projection::crossing_of(mark[at]);
+        const scene::SurfaceSet::Light light = surfaces.light(crossing.number, crossing.cosine);
+        const double through = 1 - light.opacity;
+        red[at] = static_cast<float>(light.red + through * red[at]);
+        green[at] = static_cast<float>(light.green + through * green[at]);
+        blue[at] = static_cast<float>(light.blue + through * blue[at]);
+        alpha[at] = static_cast<float>(light.opacity + through * alpha[at]);
+        optical_depth[at] = alpha[at];  // of which only is asked whether there is some
+        lit[row] = true;
+      }
+    }
+  }
 
   HWY_INLINE void put_segment(VF l, VI from, VI to, VF scalar_from, VF scalar_to, VI scalar_interval, std::size_t at) {
     const DF d;

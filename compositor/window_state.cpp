@@ -2,6 +2,7 @@
 
 #include "compositor/window_kernel.hpp"
 #include "integrals/segment_integrator.hpp"
+#include "projection/surface_crossings.hpp"
 
 namespace tessera::compositor {
 namespace {
@@ -62,6 +63,7 @@ int WindowState::open_pixels(const scene::PixelRect& rect, projection::OpenPixel
 
 double first_visible_depth(const scene::Lattice& lattice, const projection::LatticeSegment& segment,
                            const integrals::SegmentIntegrator& integrator) {
+  if (projection::is_crossing(segment.scalar_front)) return lattice.depth(segment.front);
   const double along =
       integrator.first_visible(lattice.scalar(segment.scalar_front), lattice.scalar(segment.scalar_back)).value_or(0);
   const double front = lattice.depth(segment.front), back = lattice.depth(segment.back);

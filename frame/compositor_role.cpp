@@ -39,6 +39,7 @@ struct Frame {
         collector(static_cast<int>(run.settings.roles.projectors.size()), map, compositor),
         space(job_of(run, number).camera, job_of(run, number).size),
         integrator(run.function, run.settings.render.integrator, run.settings.render.emission),
+        surfaces(run.settings.render.surfaces, run.function),
         sender(run.transport, run.settings.roles.assembler(), number) {}
 
   std::uint32_t number;
@@ -47,6 +48,7 @@ struct Frame {
   exchange::FrameCollector collector;
   projection::PixelSpace space;
   integrals::SegmentIntegrator integrator;
+  scene::SurfaceSet surfaces;
   compositor::TileSender sender;
   std::optional<integrals::LaneTable> table;  ///< of lattice segments, or for a device
   scene::Lattice units;                       ///< on a device: the table's
@@ -124,8 +126,10 @@ class CompositorLoop {
         to.collector.begin(projector, begin, reader.take_bytes(begin.tiles / 8 + (begin.tiles % 8 != 0 ? 1 : 0)));
         reader.finish();
         if (begin.stopped != 0) to.stopped = true;
-        if (!to.table && begin.lattice.depth_unit > 0)
+        if (!to.table && begin.lattice.depth_unit > 0) {
           to.table.emplace(run_.function, begin.lattice, run_.settings.render.emission);
+          to.surfaces.place_on(begin.lattice);
+        }
         if (to.collector.has_all_begins())
           for (auto& [tile, merge] : to.merges) schedule(to, tile);
         break;
@@ -224,7 +228,7 @@ class CompositorLoop {
                run_.settings.deep ? run_.settings.render.deep_accuracy : 0,
                run_.device.device != nullptr ? &of.units : &of.collector.lattice(), of.table ? &*of.table : nullptr,
                trace_, run_.device.device.get(), on_lattice, of.number,
-               run_.device.may_fail ? &run_.device.failed : nullptr},
+               run_.device.may_fail ? &run_.device.failed : nullptr, of.surfaces.empty() ? nullptr : &of.surfaces},
               of.grid.rect(tile));
         if (merge.merger != nullptr) compositor::merge(*merge.merger, waiting.parts, waiting.final_depth, budget_.tile);
         // A tile that got nothing stays as empty as the assembled picture is.

@@ -67,6 +67,8 @@ void check(const DistributedSettings& settings) {
     throw scene::bad_input("`exchange` runs: a deep picture needs the segments that runs are made of; use segments");
   const auto& backends = settings.compositing_on.backends;
   const bool on_device = std::any_of(backends.begin(), backends.end(), [](Backend b) { return b != Backend::cpu; });
+  if (on_device && !settings.render.surfaces.empty())
+    throw scene::bad_input("`iso`: surfaces are composited on the CPU; leave out `compositor` and `backend`");
   if (on_device && settings.deep)
     throw scene::bad_input("deep picture: it is made on the CPU; leave out `compositor` and `backend`");
   if (on_device && settings.compositing_on.gl.method == compositor::GlMethod::fragment &&

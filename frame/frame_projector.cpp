@@ -193,8 +193,10 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   const std::stop_token stop = task.watch != nullptr ? task.watch->stop() : std::stop_token();
   scene::throw_if_stopped(stop);
   project_vertices(space, task.frame, stop);
-  const projection::ProjectedMesh projected{prepared_.get(), vertices_, space.near_depth(), space.far_depth(),
-                                            space.pixels_per_tangent()};
+  projection::ProjectedMesh projected{prepared_.get(), vertices_, space.near_depth(), space.far_depth(),
+                                      space.pixels_per_tangent()};
+  const projection::IsoView iso{task.surfaces, &space, task.lattice};
+  if (task.surfaces != nullptr && !task.surfaces->empty()) projected.iso = &iso;
   const float longest_edge = task.longest_edge > 0 ? task.longest_edge : longest_edge_;
   if (settings_.rasterizer == Rasterizer::scanline) check_scanline(projected, space, longest_edge);
   if (task.lattice != nullptr) place_on_lattice(*task.lattice, space.perspective(), stop);
@@ -209,8 +211,9 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   std::optional<projection::TileLists> lists;
   {
     const scene::TraceScope timing(settings_.trace, "cull", task.frame);
-    if (exact) {
-      steps = projection::steps_of(*task.function, settings_.emission, longest_ray);
+    if (exact || projected.iso != nullptr) {
+      if (exact) steps = projection::steps_of(*task.function, settings_.emission, longest_ray);
+      steps = projection::with_surfaces(std::move(steps), projected.iso);
       at_steps = projection::CellsAtSteps(*prepared_, steps, longest_ray, task.lattice, stop);
     }
     lists.emplace(projected, task.grid, *task.function, settings_.emission == scene::Emission::independent,

@@ -13,6 +13,7 @@
 #include "projection/prepared_mesh.hpp"
 #include "projection/tile_lists.hpp"
 #include "scene/frame_watch.hpp"
+#include "scene/surface_set.hpp"
 #include "sorting/encodings.hpp"
 
 namespace tessera::frame {
@@ -31,10 +32,11 @@ class FrameProjector {
     const projection::PixelSpace* space;
     projection::TileGrid grid;
     const scene::TransferFunction* function;
-    std::int32_t frame = -1;       ///< for the trace
-    float longest_edge = 0;        ///< scanline: of the whole data set, world units; 0: of this mesh
-    double longest_ray = 0;        ///< bounds a ray's world length in the whole mesh; 0: diagonal()
-    std::uint64_t kept_bytes = 0;  ///< of the memory budget, for what becomes of the segments
+    const scene::SurfaceSet* surfaces = nullptr;  ///< in the volume; null or empty: none
+    std::int32_t frame = -1;                      ///< for the trace
+    float longest_edge = 0;                       ///< scanline: of the whole data set, world units; 0: of this mesh
+    double longest_ray = 0;                       ///< bounds a ray's world length in the whole mesh; 0: diagonal()
+    std::uint64_t kept_bytes = 0;                 ///< of the memory budget, for what becomes of the segments
     /// A sink for one thread; tiles go to it one after the other, and each thread takes tiles in ascending order.
     std::function<std::unique_ptr<compositor::TileSink<sorting::DoubleEncoding>>()> make_sink;
     /// If set, tiles are rendered on this lattice and go to sinks of make_lattice_sink; else in double precision.

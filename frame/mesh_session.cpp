@@ -45,6 +45,7 @@ class MeshAlone final : public Session::State {
       : State(std::move(dataset), settings),
         renderer_(data().prepared(settings.threads, settings.trace), data().facts, traced(settings)) {
     check_method(settings);
+    frame::check_surfaces(traced(settings), data().mesh.association);
     frame::assign_roles(1, settings.ranks.projectors, settings.ranks.compositors);  // of one rank there are not more
   }
 
@@ -96,6 +97,7 @@ class MeshOnRanks final : public Session::State {
       distributed_.compositing = &compositing_.emplace(*settings.trace, TraceRole::compositor);
     }
     const Dataset::State& state = data();
+    frame::check_surfaces(distributed_.render, state.mesh.association);
     check_exchange(distributed_.exchange);
     const auto projects = [&](int rank) { return distributed_.roles.projects(rank); };
     if (state.ranks > 1 && state.ranks != transport_->size())

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <glm/geometric.hpp>
 #include <memory>
 #include <optional>
@@ -41,11 +42,15 @@ class FrameSinks {
         cut_(exchange_budget(run.settings).cut),
         space_(job.camera, job.size),
         integrator_(run.function, settings_.render.integrator, settings_.render.emission),
+        surfaces_(settings_.render.surfaces, run.function),
         scene_{&space_, &integrator_,
-               integrals::opacity_weight(run.function.max_color(), mesh.diagonal, settings_.render.emission)} {
+               std::max(integrals::opacity_weight(run.function.max_color(), mesh.diagonal, settings_.render.emission),
+                        surfaces_.max_color())} {
+    if (!surfaces_.empty()) scene_.surfaces = &surfaces_;
     if (!settings_.deep) lattice_ = lattice_of(space_, mesh.box, mesh.scalar_range, run.function, settings_.render);
     if (!lattice_) return;
     table_.emplace(run.function, *lattice_, settings_.render.emission);
+    surfaces_.place_on(*lattice_);
     scene_.table = &*table_;
     scene_.lattice = *lattice_;
   }
@@ -54,6 +59,7 @@ class FrameSinks {
 
   [[nodiscard]] const projection::PixelSpace& space() const { return space_; }
   [[nodiscard]] const std::optional<scene::Lattice>& lattice() const { return lattice_; }
+  [[nodiscard]] const scene::SurfaceSet& surfaces() const { return surfaces_; }
 
   [[nodiscard]] std::unique_ptr<compositor::TileSink<sorting::DoubleEncoding>> make() const {
     if (settings_.render.rasterizer == Rasterizer::scanline)
@@ -76,6 +82,7 @@ class FrameSinks {
   std::uint64_t cut_;
   projection::PixelSpace space_;
   integrals::SegmentIntegrator integrator_;
+  scene::SurfaceSet surfaces_;
   compositor::TileScene scene_;
   std::optional<scene::Lattice> lattice_;
   std::optional<integrals::LaneTable> table_;
@@ -94,6 +101,7 @@ void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t 
   task.space = &sinks.space();
   task.grid = {job.size, settings.render.tile_size};
   task.function = &run.function;
+  task.surfaces = &sinks.surfaces();
   task.frame = number;
   task.longest_edge = mesh.longest_edge;
   task.longest_ray = mesh.box.empty() ? 0 : glm::length(mesh.box.high - mesh.box.low);

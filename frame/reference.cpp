@@ -24,7 +24,8 @@ std::unique_ptr<const reference::RayReference> rays_of(const Dataset& dataset, c
                                                       settings.emission, settings.grid.shading);
   if (data.ranks > 1)
     throw scene::bad_input(data.source + ": this rank has a part of the mesh; open it on one rank to judge pictures");
-  return std::make_unique<reference::Reference>(data.mesh, view.camera, view.size, function, settings.emission);
+  return std::make_unique<reference::Reference>(data.mesh, view.camera, view.size, function, settings.emission,
+                                                settings.surfaces);
 }
 
 }  // namespace

@@ -28,6 +28,17 @@ void check_deep(const RenderSettings& settings, const scene::TransferFunction& f
                     integrator.name()));
 }
 
+void check_surfaces(const RenderSettings& settings, scene::Association association) {
+  const scene::Surfaces& surfaces = settings.surfaces;
+  scene::validate(surfaces);
+  if (surfaces.empty()) return;
+  if (settings.rasterizer != Rasterizer::planes)
+    throw scene::bad_input("`iso`: `rasterizer` scanline knows no surfaces; use `rasterizer` planes");
+  if (association == scene::Association::cell)
+    throw scene::bad_input(
+        "`iso`: the field has one value a cell, so no iso-surfaces; use `smooth`, or a `field` with values at points");
+}
+
 struct Renderer::State {
   State(const scene::TetMeshView& mesh, const RenderSettings& s)
       : settings(s), projector(mesh, s), scalar_range(scene::scalar_range(mesh, s.threads)) {}
@@ -74,6 +85,8 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   task.function = &transfer_function;
   task.watch = watch;
   task.image = &image;
+  scene::SurfaceSet surfaces(settings.surfaces, transfer_function);
+  task.surfaces = &surfaces;
   const double longest_ray = state_->projector.diagonal();
   std::optional<compositor::DeepCollector> collector;
   if (deep != nullptr) {
@@ -81,8 +94,11 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
     task.kept_bytes = settings.memory_bytes / 2;
     collector.emplace(size, task.kept_bytes);
   }
-  compositor::TileScene scene{&space, &integrator,
-                              integrals::opacity_weight(transfer_function.max_color(), longest_ray, settings.emission)};
+  compositor::TileScene scene{
+      &space, &integrator,
+      std::max(integrals::opacity_weight(transfer_function.max_color(), longest_ray, settings.emission),
+               surfaces.max_color())};
+  if (!surfaces.empty()) scene.surfaces = &surfaces;
   const compositor::ImageWindow window{&image};
   task.make_sink = [&]() -> std::unique_ptr<compositor::TileSink<sorting::DoubleEncoding>> {
     if (!collector) return std::make_unique<compositor::PictureSink<sorting::DoubleEncoding>>(scene, window);
@@ -95,6 +111,7 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   std::optional<integrals::LaneTable> table;
   if (lattice) {
     table.emplace(transfer_function, *lattice, settings.emission);
+    surfaces.place_on(*lattice);
     scene.table = &*table;
     scene.lattice = *lattice;
     task.lattice = &*lattice;

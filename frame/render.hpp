@@ -12,6 +12,7 @@
 #include "scene/mechanisms.hpp"
 #include "scene/mesh_facts.hpp"
 #include "scene/optical_model.hpp"
+#include "scene/surface_set.hpp"
 #include "scene/tet_mesh.hpp"
 #include "scene/trace.hpp"
 #include "scene/transfer_function.hpp"
@@ -25,12 +26,13 @@ namespace tessera::frame {
 
 using tessera::Rasterizer;
 
-/// What a frame is made with. None of it but the rasterizer, integrator, emission, accuracy and `use` changes a bit of
-/// the picture.
+/// What a frame is made with. None of it but the rasterizer, integrator, emission, surfaces, accuracy and `use`
+/// changes a bit of the picture.
 struct RenderSettings {
   Rasterizer rasterizer = Rasterizer::planes;
   scene::Integrator integrator;
   scene::Emission emission = scene::Emission::absorption;
+  scene::Surfaces surfaces{};               ///< checked by check_surfaces()
   double deep_accuracy = 1e-3;              ///< of a deep picture, cut anywhere: largest error in linear RGBA
   scene::Mechanisms use;                    ///< what saves work
   bool bounded = true;                      ///< false: composited on a device whose error is only reported
@@ -89,5 +91,8 @@ class Renderer {
 
 /// Throws Error(bad_input) where deep pictures cannot be made with these settings.
 void check_deep(const RenderSettings& settings, const scene::TransferFunction& function);
+
+/// Throws Error(bad_input) where surfaces are out of range, or cannot be rendered of this mesh with these settings.
+void check_surfaces(const RenderSettings& settings, scene::Association association);
 
 }  // namespace tessera::frame

@@ -42,6 +42,7 @@ RenderSettings mesh_settings(const Settings& s) {
   settings.rasterizer = s.mesh.rasterizer;
   settings.integrator = s.integrator;
   settings.emission = s.emission;
+  settings.surfaces = s.surfaces;
   settings.use = s.use;
   settings.threads = s.threads;
   settings.tile_size = s.mesh.tile_size;
@@ -52,6 +53,7 @@ RenderSettings mesh_settings(const Settings& s) {
 }
 
 volume::RenderSettings grid_settings(const Settings& s) {
+  if (!s.surfaces.empty()) throw scene::bad_input("`iso`: is for meshes, and the data set is a grid; leave it out");
   volume::RenderSettings settings;
   settings.method = method_of(s.integrator.kind);
   settings.accuracy = s.integrator.accuracy;

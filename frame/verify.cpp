@@ -160,7 +160,8 @@ reference::Verification verify(const scene::Image& image, const scene::TetMeshVi
                                const scene::TransferFunction& transfer_function, const RenderSettings& settings,
                                std::size_t count) {
   const reference::Suspects where = suspects(image, mesh, camera, transfer_function, settings, count);
-  const reference::Reference reference(mesh, camera, image.size, transfer_function, settings.emission);
+  const reference::Reference reference(mesh, camera, image.size, transfer_function, settings.emission,
+                                       settings.surfaces);
   return reference::verify(image, reference, promised_error(settings), count, where, settings.threads);
 }
 

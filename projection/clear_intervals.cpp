@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 namespace tessera::projection {
 namespace {
@@ -38,7 +39,8 @@ double last_where(double low, double high, Predicate holds) {
 
 }  // namespace
 
-ClearIntervals::ClearIntervals(const scene::TransferFunction& function, bool emits_without_extinction) {
+ClearIntervals::ClearIntervals(const scene::TransferFunction& function, bool emits_without_extinction,
+                               std::span<const double> boundaries) {
   const auto shows = [&](const scene::Knot& k) {
     return k.extinction > 0 || (emits_without_extinction && (k.color.x > 0 || k.color.y > 0 || k.color.z > 0));
   };
@@ -46,6 +48,7 @@ ClearIntervals::ClearIntervals(const scene::TransferFunction& function, bool emi
   const auto knots = function.knots();
   if (knots.empty()) {
     add(-infinity, infinity, false);
+    part(boundaries);
     return;
   }
   if (!shows(knots.front())) add(-infinity, below(knots.front().value), false);
@@ -68,6 +71,7 @@ ClearIntervals::ClearIntervals(const scene::TransferFunction& function, bool emi
     }
   }
   if (!shows(knots.back())) add(above(knots.back().value), infinity, true);
+  part(boundaries);
 }
 
 void ClearIntervals::add(double low, double high, bool joins) {
@@ -75,6 +79,21 @@ void ClearIntervals::add(double low, double high, bool joins) {
     intervals_.back().high = high;
   else
     intervals_.push_back({low, high});
+}
+
+void ClearIntervals::part(std::span<const double> boundaries) {
+  if (boundaries.empty()) return;
+  std::vector<Interval> parts;
+  for (Interval rest : intervals_) {
+    for (auto b = std::upper_bound(boundaries.begin(), boundaries.end(), rest.low);
+         b != boundaries.end() && *b <= rest.high; ++b) {
+      if (*b == rest.low) continue;  // the same boundary again
+      parts.push_back({rest.low, below(*b)});
+      rest.low = *b;
+    }
+    parts.push_back(rest);
+  }
+  intervals_ = std::move(parts);
 }
 
 std::span<const ClearIntervals::Interval> ClearIntervals::meeting(double low, double high) const {

@@ -20,7 +20,10 @@ class ClearIntervals {
 
   /// None: everything shows.
   ClearIntervals() = default;
-  ClearIntervals(const scene::TransferFunction& function, bool emits_without_extinction);
+  /// `boundaries`, ascending: no interval holds both such a value and what lies below it, so that cells in which the
+  /// field crosses one show.
+  ClearIntervals(const scene::TransferFunction& function, bool emits_without_extinction,
+                 std::span<const double> boundaries = {});
 
   /// Those that have a value in common with [low, high], ascending.
   [[nodiscard]] std::span<const Interval> meeting(double low, double high) const;
@@ -30,6 +33,7 @@ class ClearIntervals {
 
  private:
   void add(double low, double high, bool joins);
+  void part(std::span<const double> boundaries);
 
   std::vector<Interval> intervals_;
 };

@@ -287,6 +287,7 @@ class HitCrossing {
     const VF scalar_front = hn::IfThenElse(swapped, second.scalar, first.scalar);
     const VF scalar_back = hn::IfThenElse(swapped, first.scalar, second.scalar);
     if (HWY_UNLIKELY(!all_hit)) {
+      if (HWY_UNLIKELY(out_.keeps_hits)) append_hits(hits_cell, hit, out_);
       append(hits_cell, pixel, front, back, scalar_front, scalar_back, out_);
       return;
     }
@@ -297,6 +298,7 @@ class HitCrossing {
     hn::StoreU(pixel, d, pixels + at);
     hn::StoreU(front, d, fronts + at), hn::StoreU(back, d, backs + at);
     hn::StoreU(scalar_front, df, scalar_fronts + at), hn::StoreU(scalar_back, df, scalar_backs + at);
+    if (HWY_UNLIKELY(out_.keeps_hits)) hn::StoreU(hit, d, out_.hit.data() + at);
     out_.size = at + count;
   }
 

@@ -9,6 +9,8 @@
 
 #include "projection/lattice_cover-inl.h"
 #include "projection/lattice_cross-inl.h"
+#include "projection/lattice_crossed-inl.h"
+#include "projection/lattice_surfaces.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
@@ -82,6 +84,13 @@ HWY_NOINLINE void rasterize_irregular(const LatticeView& view, const TileEntry& 
   out.reserve(out.size + s.size);
   for (std::size_t i = 0; i < s.size; ++i) {
     out.pixel[out.size] = static_cast<std::int32_t>(s.pixel(i));
+    if (view.projected.iso != nullptr && is_crossing(s.scalar_front[i])) {
+      out.front[out.size] = out.back[out.size] = view.lattice.depth_step(s.front[i]);
+      out.scalar_front[out.size] = LatticeMark::of(crossing_of(s.scalar_front[i]));
+      out.scalar_back[out.size] = 0;
+      ++out.size;
+      continue;
+    }
     out.front[out.size] = view.lattice.depth_step(s.front[i]);
     out.back[out.size] = view.lattice.depth_step(s.back[i]);
     const LatticeScalars scalars = lattice_scalars(s.scalar_front[i], s.scalar_back[i], view.steps, view.lattice);
@@ -98,6 +107,7 @@ void rasterize(const LatticeView& view, std::span<const TileEntry> entries, std:
   const bool per_cell = view.projected.mesh->mesh().association == scene::Association::cell;
   CellBatch batch;
   CoverScratch cover_scratch;
+  LatticeSurfaces surfaces;
   for (std::size_t from = 0; from < entries.size(); from += CellBatch::most) {
     const auto cells = entries.subspan(from, std::min<std::size_t>(CellBatch::most, entries.size() - from));
     if (from == 0) prefetch_cells(view, ahead);
@@ -107,6 +117,9 @@ void rasterize(const LatticeView& view, std::span<const TileEntry> entries, std:
       set_up_cells<false>(view, cells, rect, batch);
     for (unsigned irregular = batch.irregular; irregular != 0; irregular &= irregular - 1)
       rasterize_irregular(view, cells[static_cast<std::size_t>(__builtin_ctz(irregular))], rect, scratch, out, counts);
+    const std::uint32_t crossed = view.projected.iso != nullptr ? surfaces.find(view, cells, batch.irregular) : 0;
+    const std::size_t first = out.size;
+    out.keeps_hits = crossed != 0;
     out.reserve(out.size + cells.size() * static_cast<std::size_t>(rect.area()));
     if (view.perspective)
       per_cell ? rasterize_cells<true, true>(view, batch, rect, square, open, cover_scratch, out, counts)
@@ -114,6 +127,10 @@ void rasterize(const LatticeView& view, std::span<const TileEntry> entries, std:
     else
       per_cell ? rasterize_cells<false, true>(view, batch, rect, square, open, cover_scratch, out, counts)
                : rasterize_cells<false, false>(view, batch, rect, square, open, cover_scratch, out, counts);
+    if (crossed == 0) continue;
+    std::uint32_t* const numbers = surfaces.numbers(out.size - first);
+    surfaces.cross(view, {numbers, crossed_segments(out, first, surfaces.limits(), numbers)}, square.x0, square.y0,
+                   out);
   }
 }
 #endif  // HWY_SCALAR

@@ -47,6 +47,13 @@ HWY_INLINE void append(MF hit, VI pixel, VI front, VI back, VF scalar_front, VF 
   out.size += pack.count();
 }
 
+/// The same of what SegmentStream::hit keeps, before append() of the lanes' segments.
+HWY_NOINLINE inline void append_hits(MF hit, VI hits, SegmentStream& out) {
+  const I d;
+  const LanePacker pack(hn::RebindMask(d, hit));
+  hn::StoreU(pack(hits), d, out.hit.data() + out.size);
+}
+
 /// Which edges and faces play which part, by the set of front faces (bit f of the index).
 struct Roles {
   std::uint8_t valid;          ///< some pixel can be hit

@@ -33,6 +33,9 @@ class PixelSpace {
   /// As scene::PixelView has it.
   [[nodiscard]] double length_per_depth(double x, double y) const { return view_.length_per_depth(x, y); }
 
+  /// Of the ray through a pixel position, in the world, of any length.
+  [[nodiscard]] glm::dvec3 direction(double x, double y) const { return view_.direction(x, y); }
+
   /// Planar depths between which anything is seen: [max(0, near), far], or [0, inf).
   [[nodiscard]] double near_depth() const { return near_; }
   [[nodiscard]] double far_depth() const { return far_; }

@@ -9,6 +9,7 @@
 #include "projection/pixel_space.hpp"
 #include "projection/prepared_mesh.hpp"
 #include "projection/ray_segments.hpp"
+#include "projection/surface_crossings.hpp"
 
 namespace tessera::projection {
 
@@ -27,6 +28,8 @@ struct ProjectedMesh {
   double scalar_origin = 0;      ///< segments' scalars are counted from this
   /// For AttributeSegments, by vertex: the attribute. Linear in each cell, whether the scalars are by point or by cell.
   std::span<const double> attribute{};
+  /// The frame's iso-surfaces, which SplitRasterizer and rasterize_lattice() cross; null: none.
+  const IsoView* iso = nullptr;
 };
 
 /// What happened on the way.

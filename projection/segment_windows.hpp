@@ -24,14 +24,19 @@ struct SegmentStream {
   std::vector<std::int32_t> front, back;
   std::vector<std::int32_t> pixel;  ///< row by row in the rectangle
   std::vector<float> scalar_front, scalar_back;
+  /// Where surfaces are crossed, of the rasterizer's own while it is at a batch of cells: which cell of it (low four
+  /// bits) and which column and row of the square.
+  bool keeps_hits = false;
+  std::vector<std::int32_t> hit;
 
   /// Room for `capacity` segments and the padding.
   void reserve(std::size_t capacity) {
+    if (keeps_hits && hit.size() < capacity + padding) hit.resize(capacity + padding);
     if (front.size() >= capacity + padding) return;
     for (auto* a : {&front, &back, &pixel}) a->resize(capacity + padding);
     for (auto* a : {&scalar_front, &scalar_back}) a->resize(capacity + padding);
   }
-  [[nodiscard]] std::size_t bytes() const { return front.capacity() * 20; }
+  [[nodiscard]] std::size_t bytes() const { return front.capacity() * 20 + hit.capacity() * 4; }
 };
 
 /// A short list of segments for each pixel of a rectangle: what is in flight between rasterizer and compositor. Lists

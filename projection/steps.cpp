@@ -46,8 +46,13 @@ class Rule {
     const auto [low, high] = prepared_.scalar_bounds(tet);
     for (std::size_t i = steps_passed(steps_, low - most_error_); i < steps_.size(); ++i) {
       if (steps_[i].value > high + most_error_) break;
+      if (steps_[i].surface) {
+        if (lattice_ == nullptr ? low < steps_[i].value && steps_[i].value <= high : passes_corner(steps_[i], tet))
+          return most_pieces(low, high);
+        continue;
+      }
       if (level(low, high) ? rounded_across(steps_[i], low) : inexact(steps_[i], low, high, tet))
-        return 1 + steps_passed(steps_, high) - steps_passed(steps_, low);
+        return most_pieces(low, high);
     }
     return 0;
   }
@@ -60,9 +65,18 @@ class Rule {
   }
 
  private:
+  /// Of a cell with these scalars, crossings of surfaces included.
+  [[nodiscard]] std::size_t most_pieces(double low, double high) const {
+    return 1 + 2 * (steps_passed(steps_, high) - steps_passed(steps_, low));
+  }
+
   // Gradients rounded to a step of the lattice, over 16 pixels in two directions, and the corner itself; then a float's
   // last place. Two standard deviations of either are less than half of that.
   static constexpr double planes_error = 17, float_error = 0x1p-24, usual_part = 0.5, double_error = 0x1p-51;
+
+  /// Where a surface leaves a face that rises by more than so many errors, the error moves it by less than a pixel of
+  /// 1024 in a cell of a hundred.
+  static constexpr double most_slope = 1e5;
 
   static bool level(double low, double high) { return low == high; }
 
@@ -73,12 +87,35 @@ class Rule {
     return (scalar >= step.value) != (on_lanes(scalar) >= on_lanes(step.value));
   }
 
+  /// Of a scalar near the step, on the lattice.
+  [[nodiscard]] double lattice_error(const Step& step) const {
+    return planes_error * lattice_->scalar_unit + std::abs(step.value - lattice_->scalar_origin) * float_error;
+  }
+
+  /// Whether, on the lattice, a surface all but coincides with one of the cell's faces, or passes through a vertex. All
+  /// cells there have to be told the same of where it is, and whether the ray's crossing lies before or behind a face:
+  /// in double precision.
+  [[nodiscard]] bool passes_corner(const Step& step, std::size_t tet) const {
+    const scene::Tet& corners = prepared_.tets()[tet];
+    const double error = lattice_error(step);
+    for (const std::uint32_t v : corners)
+      if (std::abs(mesh_.scalars[v] - step.value) <= error) return true;
+    for (std::size_t opposite = 0; opposite < 4; ++opposite) {
+      double low = infinity, high = -infinity;
+      for (std::size_t i = 0; i < 4; ++i) {
+        if (i == opposite) continue;
+        low = std::min(low, mesh_.scalars[corners[i]]), high = std::max(high, mesh_.scalars[corners[i]]);
+      }
+      if (step.value >= low - error && step.value <= high + error && high - low <= most_slope * error) return true;
+    }
+    return false;
+  }
+
   [[nodiscard]] bool inexact(const Step& step, double low, double high, std::size_t tet) const {
     const scene::Tet& corners = prepared_.tets()[tet];
-    const double error =
-        lattice_ != nullptr
-            ? planes_error * lattice_->scalar_unit + std::abs(step.value - lattice_->scalar_origin) * float_error
-            : std::max({std::abs(low), std::abs(high), std::abs(step.value)}) * double_error;
+    const double error = lattice_ != nullptr
+                             ? lattice_error(step)
+                             : std::max({std::abs(low), std::abs(high), std::abs(step.value)}) * double_error;
     if (step.value < low - error || step.value > high + error) return false;
     if (step.contrast * longest_ray_ * (usual_part * error) > tolerance * (high - low)) return true;
     if (lattice_ == nullptr || step.contrast * longest_ray_ * relative_error <= tolerance) return false;
@@ -116,6 +153,13 @@ std::vector<Step> steps_of(const scene::TransferFunction& function, scene::Emiss
   return steps;
 }
 
+std::vector<Step> with_surfaces(std::vector<Step> steps, const IsoView* iso) {
+  if (iso == nullptr) return steps;
+  for (const double value : iso->values()) steps.push_back({value, 0, true});
+  std::ranges::stable_sort(steps, {}, &Step::value);
+  return steps;
+}
+
 CellsAtSteps::CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> steps, double longest_ray,
                            const scene::Lattice* lattice, const std::stop_token& stop) {
   const std::size_t count = prepared.tets().size();
@@ -146,6 +190,26 @@ CellsAtSteps::CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> s
   most_pieces_ = std::max<std::size_t>(most.pieces, 1);
 }
 
+namespace {
+
+/// From where the scalars of a cell are counted: the step nearest to them, but a surface that one of its faces lies in,
+/// whose scalars then stay exactly zero.
+double origin_of(const ProjectedMesh& projected, std::span<const Step> near, std::size_t tet, double low, double high) {
+  for (const Step& step : near) {
+    if (!step.surface) continue;
+    int level = 0;
+    for (const std::uint32_t v : projected.mesh->tets()[tet])
+      level += projected.mesh->mesh().scalars[v] == step.value ? 1 : 0;
+    if (level == 3) return step.value;
+  }
+  const auto distance = [&](const Step& s) { return std::max({0.0, low - s.value, s.value - high}); };
+  return std::min_element(near.begin(), near.end(),
+                          [&](const Step& a, const Step& b) { return distance(a) < distance(b); })
+      ->value;
+}
+
+}  // namespace
+
 template <class Segments>
 const Segments& SplitRasterizer<Segments>::rasterize(const ProjectedMesh& projected, std::span<const Step> steps,
                                                      const TileEntry& entry, const scene::PixelRect& rect,
@@ -163,21 +227,26 @@ const Segments& SplitRasterizer<Segments>::rasterize(const ProjectedMesh& projec
   const std::size_t above_low = steps_passed(steps, low), above_high = steps_passed(steps, high);
   const std::size_t first = above_low - (above_low > 0 ? 1 : 0);
   const auto near = steps.subspan(first, std::min(steps.size(), above_high + 1) - first);
-  const auto distance = [&](const Step& s) { return std::max({0.0, low - s.value, s.value - high}); };
-  const double origin = std::min_element(near.begin(), near.end(), [&](const Step& a, const Step& b) {
-                          return distance(a) < distance(b);
-                        })->value;
+  const double origin = origin_of(projected, near, entry.tet, low, high);
 
   ProjectedMesh relative = projected;
   relative.scalar_origin = origin;
   rasterize_planes(relative, {&entry, 1}, rect, whole_, counts);
-  const std::size_t most = whole_.size * (near.size() + 1);
+  const std::size_t most = whole_.size * (2 * near.size() + 1);
+  const auto surfaces = projected.iso != nullptr ? projected.iso->within(low, high) : IsoView::Range{0, 0};
+  const glm::dvec3 normal =
+      surfaces.first < surfaces.last ? gradient_direction(*projected.mesh, entry.tet) : glm::dvec3(0);
   if (pieces_.capacity() < most) pieces_.reserve(most);
   pieces_.size = 0;
   for (std::size_t i = 0; i < whole_.size; ++i) {
     whole_.scalar_front[i] = std::clamp(whole_.scalar_front[i], low - origin, high - origin);
     whole_.scalar_back[i] = std::clamp(whole_.scalar_back[i], low - origin, high - origin);
     split(i, near, origin);
+    if (surfaces.first == surfaces.last) continue;
+    const auto pixel = static_cast<int>(whole_.pixel(i));
+    const glm::dvec3 ray =
+        projected.iso->space->direction(rect.x0 + pixel % rect.width() + 0.5, rect.y0 + pixel / rect.width() + 0.5);
+    cross(i, *projected.iso, surfaces, origin, ray, normal);
   }
   return pieces_;
 }
@@ -223,6 +292,29 @@ void SplitRasterizer<Segments>::split(std::size_t segment, std::span<const Step>
   else
     std::for_each(steps.rbegin(), steps.rend(), cut);
   if (at < back) add(at, back, scalar, to);
+}
+
+template <class Segments>
+void SplitRasterizer<Segments>::cross(std::size_t segment, const IsoView& iso, IsoView::Range range, double origin,
+                                      const glm::dvec3& ray, const glm::dvec3& normal) {
+  const double front = whole_.front[segment], back = whole_.back[segment];
+  const double from = whole_.scalar_front[segment], to = whole_.scalar_back[segment];
+  const auto add = [&](std::size_t surface) {
+    const double value = iso.values()[surface] - origin;
+    if ((from >= value) == (to >= value)) return;
+    double depth = std::clamp(front + (back - front) * ((value - from) / (to - from)), front, back);
+    if (value == to) depth = back;
+    const std::uint32_t number = iso.number(surface, from < to, depth, front, back);
+    const std::size_t at = pieces_.size++;
+    pieces_.pixel_and_tet[at] = whole_.pixel_and_tet[segment];
+    pieces_.front[at] = pieces_.back[at] = depth;
+    pieces_.scalar_front[at] = marked(Crossing{number, cosine_between(ray, normal)});
+    pieces_.scalar_back[at] = iso.values()[surface];
+  };
+  if (from < to)
+    for (std::size_t i = range.first; i < range.last; ++i) add(i);
+  else
+    for (std::size_t i = range.last; i-- > range.first;) add(i);
 }
 
 template class SplitRasterizer<RaySegments>;

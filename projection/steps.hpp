@@ -19,11 +19,15 @@ namespace tessera::projection {
 /// A value at which the transfer function steps. What lies at the value or above is on its upper side.
 struct Step {
   double value;
-  double contrast;  ///< bounds what a world length taken for the wrong side changes of a pixel
+  double contrast;       ///< bounds what a world length taken for the wrong side changes of a pixel
+  bool surface = false;  ///< an iso-surface, which is crossed there
 };
 
 /// The function's steps, ascending. `longest_ray` bounds a ray's world length in the mesh.
 std::vector<Step> steps_of(const scene::TransferFunction& function, scene::Emission emission, double longest_ray);
+
+/// The same and the iso-surfaces, if there are any.
+std::vector<Step> with_surfaces(std::vector<Step> steps, const IsoView* iso);
 
 /// Cells of which rounded scalars would not tell well enough where rays cross a step: the error of a scalar, over the
 /// change of the scalar in the cell, times what the whole ray could change of a pixel if it ran through such cells
@@ -53,8 +57,9 @@ class CellsAtSteps {
 
 /// Rasterizes single cells with their segments cut where they cross steps: no segment has a step's value between its
 /// ends, and one that is below a step has an end below its value. Scalars are interpolated as differences to the
-/// nearest step, so that those which differ from it by a double's last place are as good as any.
-/// `Segments`: RaySegments, or AttributeSegments, whose attribute is cut too.
+/// nearest step, so that those which differ from it by a double's last place are as good as any. Where
+/// ProjectedMesh::iso has a surface that the segment crosses, a crossing follows (surface_crossings.hpp): the steps
+/// must have the surfaces among them. `Segments`: RaySegments, or AttributeSegments, whose attribute is cut too.
 template <class Segments>
 class SplitRasterizer {
  public:
@@ -64,6 +69,8 @@ class SplitRasterizer {
 
  private:
   void split(std::size_t segment, std::span<const Step> steps, double origin);
+  void cross(std::size_t segment, const IsoView& iso, IsoView::Range range, double origin, const glm::dvec3& ray,
+             const glm::dvec3& normal);
 
   Segments whole_, pieces_;
 };

@@ -124,7 +124,9 @@ TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
   });
 
   const ClearIntervals clear =
-      cull_invisible ? ClearIntervals(transfer_function, emits_without_extinction) : ClearIntervals();
+      cull_invisible ? ClearIntervals(transfer_function, emits_without_extinction,
+                                      projected.iso != nullptr ? projected.iso->values() : std::span<const double>())
+                     : ClearIntervals();
   const std::size_t blocks = projected_tets_.size();
   runs_.resize(run_count(blocks, grid.count()));
   for (std::size_t r = 0; r < runs_.size(); ++r) {

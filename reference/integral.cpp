@@ -58,6 +58,14 @@ void Integral::add(double length, double scalar_front, double scalar_back, doubl
   }
 }
 
+void Integral::add_surface(const std::array<double, 3>& color, double opacity, double depth) {
+  if (!(opacity > 0)) return;
+  const double transmittance = std::exp(-optical_depth_);
+  for (int i = 0; i < 3; ++i) color_[i] += transmittance * opacity * color[i];
+  if (std::isinf(first_visible_depth_)) first_visible_depth_ = depth;
+  optical_depth_ -= std::log1p(-opacity);
+}
+
 void Integral::add_linear(double length, const Optics& a, const Optics& b) {
   const double rise = b.extinction - a.extinction;
   const double optical_depth_before = optical_depth_;

@@ -28,6 +28,9 @@ class Integral {
   void add(double length, double scalar_front, double scalar_back, double depth_front, double depth_back,
            double origin = 0);
 
+  /// A surface of no thickness: its own colour, as lit, its opacity and where it is.
+  void add_surface(const std::array<double, 3>& color, double opacity, double depth);
+
   [[nodiscard]] std::array<double, 3> color() const { return color_; }  ///< linear RGB, premultiplied
   [[nodiscard]] double opacity() const;                                 ///< A = 1 - T, without cancellation
   [[nodiscard]] double optical_depth() const { return optical_depth_; }

@@ -36,12 +36,15 @@ void sort_front_to_back(std::vector<RaySegment>& segments) {
 }  // namespace
 
 Reference::Reference(const scene::TetMeshView& mesh, const scene::Camera& camera, scene::ImageSize size,
-                     const scene::TransferFunction& transfer_function, scene::Emission emission)
+                     const scene::TransferFunction& transfer_function, scene::Emission emission,
+                     const Surfaces& surfaces)
     : mesh_(mesh),
       size_((scene::validate(camera), scene::validate(size), size)),
       knots_(transfer_function.knots().begin(), transfer_function.knots().end()),
       emission_(emission),
-      view_(camera, size) {
+      view_(camera, size),
+      surfaces_(by_value(surfaces, transfer_function)),
+      light_(surfaces.light) {
   if (knots_.empty()) throw scene::bad_input("transfer function: no knots; give at least one");
   scene::validate(mesh, "mesh");
   vertices_.reserve(mesh.positions.size());
@@ -95,11 +98,23 @@ void Reference::trace(std::size_t tet, const std::array<Corner, 4>& corners, dou
                       seen->change_front, seen->change_back, tet});
 }
 
-Pixel Reference::shaded(std::span<const RaySegment> segments) const {
+Pixel Reference::shaded(std::span<const RaySegment> segments, double x, double y) const {
   Integral integral(knots_, emission_);
   Pixel pixel;
   for (const RaySegment& s : segments) {
-    integral.add(s.length, s.change_front, s.change_back, s.front, s.back, s.corner_scalar);
+    double at = 0, change = s.change_front;  // of the segment's length: what is integrated so far
+    const auto depth_at = [&](double part) { return s.front + (s.back - s.front) * part; };
+    std::vector<SurfaceCrossing> crossings;
+    if (!surfaces_.empty())
+      crossings = surface_crossings(surfaces_, corners(s.tet), x, y, view_.nearest(), view_.farthest());
+    for (const SurfaceCrossing& c : crossings) {
+      const double there = c.surface->value - s.corner_scalar;
+      integral.add(s.length * (c.part - at), change, there, depth_at(at), depth_at(c.part), s.corner_scalar);
+      integral.add_surface(lit(*c.surface, light_, view_.ray(x, y).step, mesh_, s.tet), c.surface->opacity,
+                           depth_at(c.part));
+      at = c.part, change = there;
+    }
+    integral.add(s.length * (1 - at), change, s.change_back, depth_at(at), s.back, s.corner_scalar);
     pixel.length += s.length;
   }
   std::tie(pixel.r, pixel.g, pixel.b) = std::tuple_cat(integral.color());
@@ -119,7 +134,7 @@ std::vector<RaySegment> Reference::segments(double x, double y) const {
   return segments;
 }
 
-Pixel Reference::pixel(double x, double y) const { return shaded(segments(x, y)); }
+Pixel Reference::pixel(double x, double y) const { return shaded(segments(x, y), x, y); }
 
 std::vector<Pixel> Reference::pixels(std::span<const PixelIndex> wanted, int threads) const {
   std::vector<std::size_t> order(wanted.size());
@@ -153,7 +168,7 @@ std::vector<Pixel> Reference::pixels(std::span<const PixelIndex> wanted, int thr
     }
     for (std::size_t i = 0; i < some.size(); ++i) {
       sort_front_to_back(segments[i]);
-      result[some[i]] = shaded(segments[i]);
+      result[some[i]] = shaded(segments[i], wanted[some[i]].x + 0.5, wanted[some[i]].y + 0.5);
     }
   };
 

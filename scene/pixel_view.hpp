@@ -46,6 +46,13 @@ struct PixelView {
     const double tx = (x - half_width) / pixels_per_unit, ty = (y - half_height) / pixels_per_unit;
     return std::sqrt(1 + tx * tx + ty * ty);
   }
+
+  /// Of the ray through a pixel position, in the world: one unit of planar depth.
+  [[nodiscard]] glm::dvec3 direction(double x, double y) const {
+    if (!perspective) return basis.forward;
+    return basis.forward + basis.right * ((x - half_width) / pixels_per_unit) -
+           basis.up * ((y - half_height) / pixels_per_unit);
+  }
 };
 
 }  // namespace tessera::scene

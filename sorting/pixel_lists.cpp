@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "projection/surface_crossings.hpp"
+
 namespace tessera::sorting {
 namespace {
 
@@ -24,6 +26,11 @@ void PixelLists::sort(const projection::RaySegments& s, std::size_t pixel_count,
   const auto before = [&](const Entry& a, const Entry& b) {
     if (a.depth != b.depth) return a.depth < b.depth;
     if (key == Key::front && s.back[a.segment] != s.back[b.segment]) return s.back[a.segment] < s.back[b.segment];
+    if (projection::is_crossing(s.scalar_front[a.segment]) && projection::is_crossing(s.scalar_front[b.segment])) {
+      const std::uint32_t number_a = projection::crossing_of(s.scalar_front[a.segment]).number;
+      const std::uint32_t number_b = projection::crossing_of(s.scalar_front[b.segment]).number;
+      if (number_a != number_b) return number_a < number_b;
+    }
     return s.tet(a.segment) < s.tet(b.segment);
   };
   for (std::size_t p = 0; p < pixel_count; ++p) {

@@ -33,8 +33,8 @@ struct PixelIndex {
 /// precision and by code that shares nothing with the renderers. Slow: a ray meets every tet or voxel on its way.
 class TESSERA_EXPORT Reference {
  public:
-  /// Of the settings the emission and a grid's shading count. Throws Error(bad_input) for an invalid view, an empty
-  /// transfer function, or a mesh of which this rank has a part.
+  /// Of the settings the emission, surfaces and a grid's shading count. Throws Error(bad_input) for an invalid view, an
+  /// empty transfer function, or a mesh of which this rank has a part.
   Reference(Dataset dataset, const View& view, const TransferFunction& transfer_function,
             const Settings& settings = {});
   ~Reference();

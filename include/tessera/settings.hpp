@@ -8,6 +8,7 @@
 #include "tessera/mechanisms.hpp"
 #include "tessera/optical_model.hpp"
 #include "tessera/shading.hpp"
+#include "tessera/surfaces.hpp"
 
 namespace tessera {
 
@@ -133,12 +134,13 @@ struct TESSERA_EXPORT Roles {
 TESSERA_EXPORT Roles assign_roles(int ranks, std::optional<int> projectors, std::optional<int> compositors);
 
 /// How a session renders: one vocabulary for meshes and grids, one process and many. Of what changes the picture there
-/// are the integrator, the emission, the shading, the rasterizer and the grid's step; nothing else changes it by more
-/// than the accuracy asked.
+/// are the surfaces, the integrator, the emission, the shading, the rasterizer and the grid's step; nothing else
+/// changes it by more than the accuracy asked.
 struct Settings {
   /// Meshes: all kinds. Grids: exact, sampled and preintegrated by GridSettings::step, automatic.
   Integrator integrator;
   Emission emission = Emission::absorption;
+  Surfaces surfaces;                        ///< in meshes, composited on the CPU by the planes rasterizer
   Mechanisms use;                           ///< what saves work
   int threads = 0;                          ///< of each process; 0: all cores
   std::uint64_t memory_bytes = 4ull << 30;  ///< of each process: frame buffers beside a mesh, bricks of a grid

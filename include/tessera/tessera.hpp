@@ -26,6 +26,7 @@
 #include "tessera/settings.hpp"
 #include "tessera/sink.hpp"
 #include "tessera/statistics.hpp"
+#include "tessera/surfaces.hpp"
 #include "tessera/time_series.hpp"
 #include "tessera/trace.hpp"
 #include "tessera/trace_file.hpp"

@@ -77,6 +77,20 @@ TEST(ClearIntervals, EndsAreThoseOfRoundedInterpolation) {
   expect_same_as_visible(scene::TransferFunction({{-1e300, {0, 0, 0}, 0}, {1e300, {1, 1, 1}, 1}}), random);
 }
 
+TEST(ClearIntervals, HoldNoBoundaryTogetherWithWhatIsBelowIt) {
+  const scene::TransferFunction clear({{0, {1, 1, 1}, 0}, {1, {1, 1, 1}, 0}});
+  const std::vector<double> boundaries{-1, 0.25, 0.25, 1};
+  const ClearIntervals parted(clear, false, boundaries);
+  EXPECT_TRUE(parted.hold(0.25, 0.9));
+  EXPECT_TRUE(parted.hold(-0.5, std::nextafter(0.25, 0)));
+  EXPECT_FALSE(parted.hold(-0.5, 0.25));
+  EXPECT_FALSE(parted.hold(std::nextafter(0.25, 0), 0.25));
+  EXPECT_FALSE(parted.hold(0.9, 1));
+  EXPECT_TRUE(parted.hold(1, 1e300));
+  EXPECT_TRUE(parted.hold(-1e300, -2));
+  EXPECT_TRUE(ClearIntervals(clear, false).hold(-2, 2));
+}
+
 TEST(ClearIntervals, AnEmptyFunctionHidesEverything) {
   EXPECT_TRUE(ClearIntervals(scene::TransferFunction(), false).hold(-infinity, infinity));
 }

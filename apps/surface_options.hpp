@@ -1,0 +1,25 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "tessera/surfaces.hpp"
+
+namespace tessera::apps {
+
+/// The options that put surfaces into the volume, as they stand on the command line.
+struct SurfaceWords {
+  std::vector<std::string> iso;
+};
+
+void add_surface_options(CLI::App& command, SurfaceWords& words);
+
+/// What they say. Throws Error(bad_input) naming the option.
+Surfaces surfaces_of(const SurfaceWords& words);
+
+/// A line of warning for each surface of a value that the field, whose range that is, does not cross.
+std::vector<std::string> unseen_surfaces(const Surfaces& surfaces, const std::array<double, 2>& range);
+
+}  // namespace tessera::apps

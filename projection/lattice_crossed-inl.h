@@ -1,0 +1,53 @@
+// Which of a batch's segments may cross a surface; included once per instruction set (Highway's include guard idiom).
+
+#if defined(TESSERA_PROJECTION_LATTICE_CROSSED_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_PROJECTION_LATTICE_CROSSED_INL_H_
+#undef TESSERA_PROJECTION_LATTICE_CROSSED_INL_H_
+#else
+#define TESSERA_PROJECTION_LATTICE_CROSSED_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include "projection/lattice_shapes-inl.h"
+#include "projection/lattice_surfaces.hpp"
+
+HWY_BEFORE_NAMESPACE();
+#if HWY_TARGET != HWY_SCALAR
+namespace tessera::projection {
+namespace HWY_NAMESPACE {
+
+/// The segments from `first` on whose scalars reach from below the last of their cell's surfaces to the first or above.
+/// Their numbers go to `crossed`, which has room for all and a vector more; returns how many they are.
+HWY_INLINE std::size_t crossed_segments(const SegmentStream& stream, std::size_t first,
+                                        const LatticeSurfaces::Limits& limits, std::uint32_t* crossed) {
+  const I d;
+  const F df;
+  std::size_t count = 0;
+  const auto of_cell = [&](const float* numbers, VI cell) HWY_ATTR {
+    if constexpr (lanes == static_cast<int>(LatticeSurfaces::most_cells))
+      return hn::TableLookupLanes(hn::Load(df, numbers), hn::IndicesFromVec(df, cell));
+    else
+      return hn::GatherIndex(df, numbers, cell);
+  };
+  for (std::size_t i = first; i < stream.size; i += lanes) {
+    const VI cell = hn::And(hn::LoadU(d, stream.hit.data() + i),
+                            hn::Set(d, static_cast<std::int32_t>(LatticeSurfaces::most_cells) - 1));
+    const VF from = hn::LoadU(df, stream.scalar_front.data() + i), to = hn::LoadU(df, stream.scalar_back.data() + i);
+    const auto reaches = hn::And(hn::Ge(hn::Max(from, to), of_cell(limits.low, cell)),
+                                 hn::Lt(hn::Min(from, to), of_cell(limits.high, cell)));
+    const auto is = hn::And(reaches, hn::FirstN(df, stream.size - i));
+    if (hn::AllFalse(df, is)) continue;
+    const LanePacker pack(hn::RebindMask(d, is));
+    hn::StoreU(pack(hn::Iota(d, static_cast<std::int32_t>(i))), d, reinterpret_cast<std::int32_t*>(crossed) + count);
+    count += pack.count();
+  }
+  return count;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::projection
+#endif  // HWY_SCALAR
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+
+#include "projection/pixel_space.hpp"
+#include "projection/prepared_mesh.hpp"
+#include "projection/segment_windows.hpp"
+#include "scene/lattice.hpp"
+#include "scene/surface_set.hpp"
+
+/// Where rays cross iso-surfaces. A crossing travels among the ray segments: stores, sorting and the wire know nothing
+/// of it. The cell's own segment is cut there, so that in depth order the crossing lies between its parts.
+namespace tessera::projection {
+
+/// Which crossing (scene::SurfaceSet), and the cosine of the angle between ray and normal.
+struct Crossing {
+  std::uint32_t number;
+  float cosine;
+};
+
+/// In double precision it is a segment of length zero whose front scalar is no number: its lower bits are the crossing.
+inline double marked(const Crossing& crossing) {
+  constexpr std::uint64_t no_number = 0x7ff8ull << 48;
+  return std::bit_cast<double>(no_number | static_cast<std::uint64_t>(crossing.number) << 32 |
+                               std::bit_cast<std::uint32_t>(crossing.cosine));
+}
+inline bool is_crossing(double scalar_front) { return std::isnan(scalar_front); }
+inline Crossing crossing_of(double scalar_front) {
+  const auto bits = std::bit_cast<std::uint64_t>(scalar_front);
+  return {static_cast<std::uint32_t>(bits >> 32 & 0xffff), std::bit_cast<float>(static_cast<std::uint32_t>(bits))};
+}
+
+/// On the lattice it is a segment's front end, the surface before what is behind it: the front scalar, which is the
+/// surface's value, gives way to a number beyond all of the field's, four times as far out as the lattice reaches. Such
+/// marks are in the order of the crossings' numbers, the cosine is in their lower bits. A crossing at its segment's
+/// back end is one of length zero.
+struct LatticeMark {
+  static constexpr float first = 0x1p32f;
+  static constexpr std::uint32_t first_bits = 0x4f800000, cosine_bits = 19, cosines = (1u << cosine_bits) - 1;
+  static_assert(std::bit_cast<std::uint32_t>(first) == first_bits);
+
+  static float of(const Crossing& crossing) {
+    const auto cosine = static_cast<std::uint32_t>(crossing.cosine * cosines + 0.5f);
+    return std::bit_cast<float>(first_bits + (crossing.number << cosine_bits | cosine));
+  }
+};
+inline bool is_crossing(float scalar_front) { return scalar_front >= LatticeMark::first; }
+inline Crossing crossing_of(float scalar_front) {
+  const std::uint32_t code = std::bit_cast<std::uint32_t>(scalar_front) - LatticeMark::first_bits;
+  return {code >> LatticeMark::cosine_bits,
+          static_cast<float>(code & LatticeMark::cosines) / static_cast<float>(LatticeMark::cosines)};
+}
+
+/// Where on the lattice a crossing of a segment is put. Cells in double precision and on the lattice differ by some
+/// steps in the depth of their common face: so that a crossing lies before all of the next cell's segment, one nearly
+/// at the back end is put this much before it.
+constexpr std::int32_t back_end_steps = 32;
+struct LatticePlace {
+  std::int32_t depth;
+  scene::SurfaceSet::Place place;
+
+  static LatticePlace of(std::int32_t depth, std::int32_t front, std::int32_t back) {
+    using Place = scene::SurfaceSet::Place;
+    const std::int32_t limit = std::max(front, back - back_end_steps);
+    if (depth >= limit) return {limit, limit > front ? Place::back_end : Place::inside};
+    return {depth, depth == front ? Place::front_end : Place::inside};
+  }
+};
+
+/// The iso-surfaces of a frame, as rasterizers meet them.
+struct IsoView {
+  const scene::SurfaceSet* surfaces;
+  const PixelSpace* space;
+  const scene::Lattice* lattice = nullptr;  ///< to whose steps depths will be rounded; null: to none
+
+  [[nodiscard]] std::span<const double> values() const { return surfaces->iso_values(); }
+
+  /// The number of a crossing at `depth` of a segment from `front` to `back`, and the depth at which it is put.
+  [[nodiscard]] std::uint32_t number(std::size_t iso, bool rises, double& depth, double front, double back) const {
+    if (lattice == nullptr) return surfaces->crossing(iso, rises, scene::SurfaceSet::place_of(depth, front, back));
+    const auto at = LatticePlace::of(lattice->depth_step(depth), lattice->depth_step(front), lattice->depth_step(back));
+    depth = lattice->depth(at.depth);
+    return surfaces->crossing(iso, rises, at.place);
+  }
+
+  /// The range [first, last) of surfaces that a cell with these scalars has: those above `low`, up to `high`.
+  struct Range {
+    std::size_t first, last;
+  };
+  [[nodiscard]] Range within(double low, double high) const {
+    const auto all = values();
+    const auto first = std::upper_bound(all.begin(), all.end(), low), last = std::upper_bound(first, all.end(), high);
+    return {static_cast<std::size_t>(first - all.begin()), static_cast<std::size_t>(last - all.begin())};
+  }
+};
+
+/// The field's gradient in a tet, of any length: zero where the field is constant; in a flat tet its normal.
+glm::dvec3 gradient_direction(const PreparedMesh& mesh, std::size_t tet);
+
+/// Of length one; zero stays zero.
+glm::dvec3 unit(const glm::dvec3& direction);
+
+/// Cosine of the angle between a ray of that direction and a normal, neither of unit length; 1 where there is no
+/// normal.
+float cosine_between(const glm::dvec3& ray, const glm::dvec3& normal);
+
+}  // namespace tessera::projection

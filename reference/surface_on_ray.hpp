@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "reference/ray_tet.hpp"
+#include "scene/tet_mesh.hpp"
+#include "scene/transfer_function.hpp"
+#include "tessera/surfaces.hpp"
+
+namespace tessera::reference {
+
+/// An iso-surface with the colour that it has.
+struct SurfaceOfValue {
+  double value;
+  glm::dvec3 color;  ///< linear RGB, unlit
+  double opacity;
+};
+
+/// All of them, ascending by value; equal ones as they were given.
+std::vector<SurfaceOfValue> by_value(const Surfaces& surfaces, const scene::TransferFunction& function);
+
+/// Where a segment crosses a surface: at this part of its length.
+struct SurfaceCrossing {
+  double part;
+  const SurfaceOfValue* surface;
+};
+
+/// The crossings of the line through pixel coordinates (x, y) with the surfaces in a tet, in the order along it, of
+/// what lies between two planar depths. A surface is crossed if the scalar at one end lies below its value and the
+/// other does not. For each the scalars are counted from its value, so that the sides are right to a double's last
+/// place.
+std::vector<SurfaceCrossing> surface_crossings(std::span<const SurfaceOfValue> surfaces,
+                                               const std::array<Corner, 4>& corners, double x, double y, double nearest,
+                                               double farthest);
+
+/// A surface's colour in a tet, lit from the eye, seen along a ray of that direction (of any length). Where the field
+/// has no gradient it is lit as if seen face on.
+std::array<double, 3> lit(const SurfaceOfValue& surface, const SurfaceLight& light, const glm::dvec3& ray,
+                          const scene::TetMeshView& mesh, std::size_t tet);
+
+}  // namespace tessera::reference

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scene/lattice.hpp"
+#include "scene/transfer_function.hpp"
+#include "tessera/surfaces.hpp"
+
+namespace tessera::scene {
+
+using tessera::Surfaces;
+
+/// Throws Error(bad_input) for a value or opacity that is out of range.
+void validate(const Surfaces& surfaces);
+
+/// The surfaces of a frame, numbered as projectors and compositors do it.
+///
+/// Where a ray crosses an iso-surface it makes a crossing, whose number puts crossings at one depth in the ray's order.
+/// At one depth there may be some at the back end of one cell's segment and some at the front end of the next one's, as
+/// a face may have a surface's value; those of one segment are all crossed upwards or all downwards. So the number is
+/// 2 n Place + i for the surface i of n, ascending by value, where the field rises, and 2 n Place + 2 n - 1 - i where
+/// it falls.
+class SurfaceSet {
+ public:
+  SurfaceSet() = default;
+  /// Of valid surfaces.
+  SurfaceSet(const Surfaces& surfaces, const TransferFunction& function);
+
+  [[nodiscard]] bool empty() const { return values_.empty(); }
+  /// Of the iso-surfaces, ascending.
+  [[nodiscard]] std::span<const double> iso_values() const { return values_; }
+  /// Where in its segment a crossing is; inside, too, where the segment has no length.
+  enum class Place : std::uint8_t { back_end, inside, front_end };
+  template <class Depth>
+  [[nodiscard]] static Place place_of(Depth depth, Depth front, Depth back) {
+    if (!(front < back)) return Place::inside;
+    return depth == back ? Place::back_end : depth == front ? Place::front_end : Place::inside;
+  }
+  [[nodiscard]] std::uint32_t crossing(std::size_t iso, bool rises, Place place) const {
+    const std::size_t n = values_.size();
+    return static_cast<std::uint32_t>(2 * n * static_cast<std::size_t>(place) + (rises ? iso : 2 * n - 1 - iso));
+  }
+
+  /// The values in the lattice's steps, as segments' scalars, of which what lies behind a crossing needs one. To be
+  /// called before on_lattice(), once the lattice is known.
+  void place_on(const Lattice& lattice);
+  [[nodiscard]] std::span<const float> on_lattice() const { return on_lattice_; }
+  /// The same by the crossing's number.
+  [[nodiscard]] std::span<const float> on_lattice_by_number() const { return by_number_; }
+
+  /// What a crossing sends to the eye: linear RGB, premultiplied.
+  struct Light {
+    double red = 0, green = 0, blue = 0, opacity = 0;
+  };
+  /// `cosine`: of the angle between ray and normal, 0 to 1. Nothing for a number that is none.
+  [[nodiscard]] Light light(std::uint32_t crossing, double cosine) const;
+  /// No surface's colour is brighter.
+  [[nodiscard]] double max_color() const { return max_color_; }
+
+ private:
+  struct Paint {
+    glm::dvec3 color;
+    double opacity;
+  };
+  std::vector<double> values_;
+  std::vector<Paint> paints_;            ///< by value, as values_
+  std::vector<std::uint32_t> paint_of_;  ///< by crossing
+  std::vector<float> on_lattice_, by_number_;
+  SurfaceLight light_;
+  int whole_shininess_ = -1;  ///< -1: it is no whole number, or a large one
+  double max_color_ = 0;
+};
+
+}  // namespace tessera::scene

@@ -1,0 +1,79 @@
+// Surfaces in the volume, as users ask for them.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/program.hpp"
+#include "io/image_file.hpp"
+
+namespace tessera::apps {
+namespace {
+
+TEST(Surfaces, OfValuesAreRenderedVerifiedAndReported) {
+  const Folder folder;
+  const auto run =
+      tessera({"render", folder.cube(), "-o", folder / "a.exr", "--size", "64x48", "--iso", "0.3:red:0.4", "--iso",
+               "0.5:#4080ff", "--iso=0.7::0.5", "--verify", "500", "--report", folder / "r.json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE((run.out + run.err).find(" met"), std::string::npos) << run.out << run.err;
+  const auto image = io::read_image(folder / "a.exr");
+  EXPECT_EQ(image.rgba[4 * image.index(32, 24) + 3], 1.0f);
+  const auto report = nlohmann::json::parse(contents(folder / "r.json"));
+  const auto text = report.dump();
+  EXPECT_NE(text.find(R"("iso":[{"color":[1.0,0.0,0.0],"opacity":)"), std::string::npos) << text;
+}
+
+TEST(Surfaces, ThatTheFieldDoesNotReachAreWarnedOf) {
+  const Folder folder;
+  const auto run = tessera({"render", folder.cube(), "-o", folder / "a.png", "--size", "8x8", "--iso", "5"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.err.find("--iso 5: shows nothing, the field goes from 0.03"), std::string::npos) << run.err;
+}
+
+TEST(Surfaces, AreRefusedInOneLineThatSaysWhy) {
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  const auto refused = [&](std::vector<std::string> more, const std::string& word) {
+    std::vector<std::string> arguments{"render", mesh, "-o", folder / "a.png", "--size", "16x16", "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto run = tessera(arguments);
+    EXPECT_EQ(run.status, 2) << run.err;
+    EXPECT_EQ(run.error_lines(), 1u) << run.err;
+    EXPECT_NE(run.err.find("--iso"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find(word), std::string::npos) << run.err;
+  };
+  refused({"--iso", "high"}, "not a number");
+  refused({"--iso", "0.5:reddish"}, "not a colour");
+  refused({"--iso", "0.5:red:0"}, "opacity");
+  refused({"--iso", "0.5:red:0.5:1"}, "not a number");
+  refused({"--iso", "0.5", "--rasterizer", "scanline"}, "planes");
+  refused({"--iso", "0.5", "--backend", "osmesa"}, "CPU");
+  ASSERT_EQ(tessera({"generate", "ripples", folder / "grid.vti", "n=8", "--quiet"}).status, 0);
+  const auto run = tessera({"render", folder / "grid.vti", "-o", folder / "a.png", "--iso", "0.5", "--quiet"});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.err.find("--iso: is for meshes"), std::string::npos) << run.err;
+}
+
+TEST(Surfaces, OfSeveralRanksHaveTheBytesOfOne) {
+  if (!has_mpirun()) GTEST_SKIP() << "there is no mpirun";
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  const auto render = [&](const std::string& out, std::vector<std::string> more) {
+    std::vector<std::string> arguments{"render", mesh,    "-o",  folder / out,     "--size",
+                                       "70x50",  "--iso", "0.5", "--iso=0.3::0.4", "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  ASSERT_EQ(tessera(render("one.pfm", {})).status, 0);
+  const Outcome ranks =
+      mpirun(3, render("ranks.pfm", {"--exchange", "segments", "--partition", "random", "--threads", "1"}));
+  ASSERT_EQ(ranks.status, 0) << ranks.err;
+  EXPECT_EQ(contents(folder / "ranks.pfm"), contents(folder / "one.pfm"));
+  ASSERT_EQ(tessera(render("one.deep.exr", {})).status, 0);
+  const Outcome deep = mpirun(3, render("ranks.deep.exr", {"--threads", "1"}));
+  ASSERT_EQ(deep.status, 0) << deep.err;
+  EXPECT_EQ(contents(folder / "ranks.deep.exr"), contents(folder / "one.deep.exr"));
+}
+
+}  // namespace
+}  // namespace tessera::apps

@@ -1,0 +1,106 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/boxes.hpp"
+#include "datasets/modify.hpp"
+#include "exchange/loopback_transport.hpp"
+#include "frame/distributed.hpp"
+#include "scene/mesh_facts.hpp"
+
+/// Surfaces that several ranks render have the place and the light that one gives them.
+namespace tessera::frame {
+namespace {
+
+std::vector<FinishedFrame> render(const std::vector<scene::TetMesh>& parts, const DistributedSettings& settings,
+                                  const FrameJob& job, const scene::TransferFunction& function) {
+  std::vector<FinishedFrame> frames;
+  scene::MeshFacts whole;
+  for (const scene::TetMesh& part : parts) whole = scene::joined(whole, scene::facts_of(part));
+  const auto ranks = static_cast<int>(parts.size());
+  exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
+    DistributedSettings mine = settings;
+    mine.roles = assign_roles(ranks, ranks, ranks);
+    render_distributed(
+        transport, mine, std::span(&job, 1), function,
+        [&](std::size_t) {
+          ProjectorMesh mesh;
+          const scene::TetMesh& part = parts[static_cast<std::size_t>(transport.rank())];
+          mesh.part = part;
+          mesh.global_tet = part.original_cell;
+          mesh.diagonal = 4;
+          mesh.box = whole.box;
+          mesh.scalar_range = whole.scalar_range;
+          return mesh;
+        },
+        [&](FinishedFrame frame) { frames.push_back(std::move(frame)); });
+  });
+  return frames;
+}
+
+double difference(const scene::Image& a, const scene::Image& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i) most = std::max(most, std::fabs(double{a.rgba[i]} - b.rgba[i]));
+  return most;
+}
+
+TEST(SurfacesBetweenRanks, AreThoseOfOneProcess) {
+  scene::TetMesh mesh = datasets::cube(8, 0.2);
+  // Values of vertices among them: the surfaces coincide with faces that ranks share.
+  for (std::size_t i = 0; i < mesh.scalars.size(); i += 3) mesh.scalars[i] = std::round(mesh.scalars[i] * 8) / 8;
+  const scene::TransferFunction function({{0, {0, 0, 0.3}, 0}, {0.5, {0.2, 0.9, 0.3}, 0}, {1, {1, 0.4, 0.2}, 2}});
+  DistributedSettings settings;
+  settings.render.integrator.kind = scene::IntegratorKind::exact;
+  settings.render.threads = 1;
+  settings.render.memory_bytes = 256ull << 20;
+  for (int i = 1; i < 8; ++i) settings.render.surfaces.iso.push_back({i / 8., {}, i == 7 ? 1 : 0.1 * i});
+  FrameJob job{{}, {61, 47}, 0};
+  job.camera.position = {3.1, 2.3, 4.2};
+  for (const bool perspective : {false, true})
+    for (const bool lattice : {true, false}) {
+      job.camera.projection = perspective ? scene::ProjectionKind::perspective : scene::ProjectionKind::orthographic;
+      job.camera.view_angle = 30;
+      settings.render.use.lattice = lattice;
+      const auto expected = Renderer(mesh, settings.render).render(job.camera, job.size, function);
+      for (const auto how : {datasets::Partition::random_blobs, datasets::Partition::interleaved}) {
+        const auto parts = datasets::parts(mesh, 3, how, 5);
+        settings.exchange = Exchange::segments;
+        const auto segments = render(parts, settings, job, function);
+        ASSERT_EQ(segments.size(), 1u);
+        EXPECT_EQ(segments[0].image.rgba, expected.rgba) << lattice << perspective;
+        EXPECT_EQ(segments[0].image.depth, expected.depth);
+        settings.exchange = Exchange::runs;
+        // Runs are rounded to float: 6e-8 of their light each.
+        EXPECT_LT(difference(render(parts, settings, job, function).at(0).image, expected), 2e-6);
+      }
+    }
+}
+
+TEST(SurfacesBetweenRanks, AreInDeepPicturesToo) {
+  const scene::TetMesh mesh = datasets::cube(5, 0.2);
+  const scene::TransferFunction function({{0, {0, 0, 0.3}, 0.1}, {1, {1, 0.4, 0.2}, 2}});
+  DistributedSettings settings;
+  settings.render.integrator.kind = scene::IntegratorKind::exact;
+  settings.render.threads = 1;
+  settings.render.memory_bytes = 256ull << 20;
+  settings.render.surfaces.iso = {{0.4, {}, 0.3}, {0.6, {}, 1}};
+  settings.exchange = Exchange::segments;
+  settings.deep = true;
+  FrameJob job{{}, {31, 23}, 0};
+  job.camera.position = {3.1, 2.3, 4.2};
+  scene::DeepImage expected;
+  Renderer(mesh, settings.render).render(job.camera, job.size, function, nullptr, &expected);
+  const auto frames = render(datasets::parts(mesh, 3, datasets::Partition::interleaved, 5), settings, job, function);
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_EQ(frames[0].deep.begin, expected.begin);
+  ASSERT_EQ(frames[0].deep.samples.size(), expected.samples.size());
+  for (std::size_t i = 0; i < expected.samples.size(); ++i) {
+    EXPECT_EQ(frames[0].deep.samples[i].z, expected.samples[i].z);
+    EXPECT_EQ(frames[0].deep.samples[i].red, expected.samples[i].red);
+    EXPECT_EQ(frames[0].deep.samples[i].alpha, expected.samples[i].alpha);
+  }
+}
+
+}  // namespace
+}  // namespace tessera::frame
