@@ -121,6 +121,7 @@ void add_mesh_options(CLI::App& command, RenderWords& words) {
                   "files in blocks: draw this one alone, of those that info lists; may be repeated")
       ->type_name("NAME")
       ->allow_extra_args(false);
+  add_clip_options(command, words.clip);
   command
       .add_option("--higher-order-tolerance", words.higher_order_tolerance,
                   "higher-order cells become tets this near to them, of diagonal and range (default: by --accuracy)")
@@ -141,6 +142,7 @@ ReadOptions mesh_options(const RenderWords& words) {
   if (!words.max_volume.empty()) mesh.max_volume = parse_positive("--max-volume", words.max_volume);
   mesh.time_step = time_step_of(words);
   mesh.blocks = words.blocks;
+  mesh.selection = selection_of(words.clip);
   if (!words.higher_order_tolerance.empty())
     mesh.higher_order_tolerance = parse_positive("--higher-order-tolerance", words.higher_order_tolerance);
   if (!words.higher_order_tets.empty())
@@ -343,6 +345,8 @@ void refuse_mesh_options(const RenderWords& words, const RenderOptions& options)
   if (!words.higher_order_tets.empty()) refuse("--higher-order-tets");
   if (!read.blocks.empty()) refuse("--block");
   if (!read.plot3d_q.empty()) refuse("--q");
+  if (!read.selection.clip.empty()) refuse("--clip");
+  if (read.selection.threshold) refuse("--threshold");
 }
 
 LoadedTransferFunction transfer_function_of(const Dataset& data, const RenderOptions& options) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/annotation_options.hpp"
+#include "apps/clip_options.hpp"
 #include "apps/function_options.hpp"
 #include "apps/view_options.hpp"
 #include "tessera/camera.hpp"
@@ -65,6 +66,7 @@ struct RenderWords {
   std::string balance, balance_resolution, balance_weights, show;
   std::string projectors, compositors, exchange, partition = "curve", frames_in_flight, seed;
   AnnotationWords annotation;
+  ClipWords clip;
   ViewWords view;
   FunctionWords function;
   bool smooth = false, shade = false, no_shade = false, half = false, rescale = false, resume = false, progress = false,

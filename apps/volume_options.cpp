@@ -88,6 +88,7 @@ ReadOptions volume_options(const RenderWords& words) {
   options.field = words.field;
   options.time_step = time_step_of(words);
   options.blocks = words.blocks;
+  options.selection = selection_of(words.clip);
   if (!words.dims.empty())
     options.dims =
         three<std::int64_t>("--dims", words.dims, 'x', "three sizes; write WxHxD", [](const std::string& word) {

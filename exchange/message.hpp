@@ -21,7 +21,7 @@ namespace tessera::exchange {
 static_assert(std::endian::native == std::endian::little, "messages are little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 11;        ///< the next one whenever a message changes
+inline constexpr std::uint16_t wire_version = 12;        ///< the next one whenever a message changes
 
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
@@ -72,7 +72,7 @@ enum class MessageKind : std::uint16_t {
   seconds = 35,           ///< f64 processor time of the last frame
   of_job = 36,            ///< list of bytes: the caller's own (tessera/job.hpp)
   higher_order = 37,      ///< u64[128]: tets by how far they are off (io/higher_order_plan.hpp)
-  field_samples = 39,      ///< list of scene::FieldSample: of a rank's part (frame/field_samples.cpp)
+  field_samples = 39,     ///< list of scene::FieldSample: of a rank's part (frame/field_samples.cpp)
   process_on_host = 38,   ///< exchange/one_line.cpp
   curved_part = 39,  ///< frame/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
   // The transport's own.

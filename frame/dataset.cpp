@@ -40,6 +40,8 @@ void check_grid_options(const std::filesystem::path& file, const ReadOptions& op
   if (options.max_volume) refuse("max_volume");
   if (!options.blocks.empty()) refuse("block");
   if (!options.plot3d_q.empty()) refuse("plot3d_q");
+  if (!options.selection.clip.empty()) refuse("clip");
+  if (options.selection.threshold) refuse("threshold");
 }
 
 void check_mesh_options(const std::filesystem::path& file, const ReadOptions& options) {
@@ -144,7 +146,8 @@ io::MeshOptions mesh_options(const ReadOptions& o) {
           o.higher_order_tolerance,
           o.higher_order_tets,
           o.progress,
-          o.shape};
+          o.shape,
+          o.selection};
 }
 
 }  // namespace frame
@@ -221,6 +224,7 @@ Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOp
     state->source = files.front().string();
     state->files.assign(files.begin(), files.end());
     state->options = options;
+    state->clip = options.selection.clip;
     state->options.trace = nullptr;  // which need not live as long
     state->options.progress = nullptr;
     return Dataset(std::move(state));

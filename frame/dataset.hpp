@@ -34,6 +34,8 @@ struct TESSERA_HIDDEN Dataset::State {
   int ranks = 1;                          ///< more than 1: a part, one a rank
   std::vector<std::uint64_t> global_tet;  ///< of a part: index of each tet in the whole
   bool shape = false;                     ///< the scalar is ReadOptions::shape's
+  std::vector<HalfSpace> clip;            ///< what `mesh` was cut by
+  std::shared_ptr<const State> uncut;     ///< before that; null: as `files` have it
 
   // Grids.
   std::shared_ptr<const scene::SampleSource> samples;  ///< null: a mesh

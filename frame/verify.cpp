@@ -156,11 +156,11 @@ reference::Suspects suspects(const scene::Image& image, const scene::SampleSourc
   return found;
 }
 
-reference::Verification verify(const scene::Image& image, const scene::TetMeshView& mesh, const scene::Camera& camera,
+reference::Verification verify(const scene::Image& image, const UncutMesh& mesh, const scene::Camera& camera,
                                const scene::TransferFunction& transfer_function, const RenderSettings& settings,
                                std::size_t count) {
-  const reference::Suspects where = suspects(image, mesh, camera, transfer_function, settings, count);
-  const reference::Reference reference(mesh, camera, image.size, transfer_function, settings.emission);
+  const reference::Suspects where = suspects(image, mesh.rendered, camera, transfer_function, settings, count);
+  const reference::Reference reference(mesh.mesh, camera, image.size, transfer_function, settings.emission, mesh.kept);
   return reference::verify(image, reference, promised_error(settings), count, where, settings.threads);
 }
 

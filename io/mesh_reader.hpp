@@ -11,6 +11,7 @@
 #include "scene/tet_mesh.hpp"
 #include "tessera/field_info.hpp"
 #include "tessera/read_progress.hpp"
+#include "tessera/selection.hpp"
 
 namespace tessera::io {
 
@@ -33,6 +34,7 @@ struct MeshOptions {
   std::uint64_t higher_order_tets = default_higher_order_tets;
   ReadProgressFunction progress{};  ///< null: nobody hears
   bool shape = false;               ///< ReadOptions::shape
+  Selection selection{};            ///< what of the mesh is kept
 };
 
 using tessera::HigherOrderCells;

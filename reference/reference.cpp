@@ -12,6 +12,7 @@
 #include <unordered_set>
 
 #include "reference/integral.hpp"
+#include "reference/kept_interval.hpp"
 #include "scene/error.hpp"
 #include "scene/threads.hpp"
 
@@ -36,11 +37,13 @@ void sort_front_to_back(std::vector<RaySegment>& segments) {
 }  // namespace
 
 Reference::Reference(const scene::TetMeshView& mesh, const scene::Camera& camera, scene::ImageSize size,
-                     const scene::TransferFunction& transfer_function, scene::Emission emission)
+                     const scene::TransferFunction& transfer_function, scene::Emission emission,
+                     std::span<const scene::HalfSpace> kept)
     : mesh_(mesh),
       size_((scene::validate(camera), scene::validate(size), size)),
       knots_(transfer_function.knots().begin(), transfer_function.knots().end()),
       emission_(emission),
+      kept_(kept.begin(), kept.end()),
       view_(camera, size) {
   if (knots_.empty()) throw scene::bad_input("transfer function: no knots; give at least one");
   scene::validate(mesh, "mesh");
@@ -88,7 +91,8 @@ void Reference::trace(std::size_t tet, const std::array<Corner, 4>& corners, dou
                       std::vector<RaySegment>& segments) const {
   const std::optional<Stretch> inside = intersect(corners, x, y);
   if (!inside) return;
-  const std::optional<Stretch> seen = clipped(*inside, view_.nearest(), view_.farthest());
+  const auto [nearest, farthest] = kept_interval(view_, x, y, kept_);
+  const std::optional<Stretch> seen = clipped(*inside, nearest, farthest);
   if (!seen) return;
   const double length = (seen->back - seen->front) * view_.length_per_depth(x, y);
   segments.push_back({seen->front, seen->back, length, seen->scalar_front, seen->scalar_back, seen->corner_scalar,

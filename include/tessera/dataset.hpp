@@ -20,6 +20,7 @@
 #include "tessera/mesh_check.hpp"
 #include "tessera/read_progress.hpp"
 #include "tessera/sample_source.hpp"
+#include "tessera/selection.hpp"
 #include "tessera/settings.hpp"
 #include "tessera/transfer_function.hpp"
 
@@ -45,6 +46,8 @@ struct ReadOptions {
   /// Files in blocks: names of those to read; none: all. Of a block that is in another ("fluid/internalMesh") the
   /// beginning or the end will do.
   std::vector<std::string> blocks{};
+  /// What of the mesh is kept. Bounds, range, default view and transfer function are of that.
+  Selection selection{};
 
   /// Cells of second and higher order become tets that are this near to them: in position of the mesh's diagonal, in
   /// value of the field's range. No more than about `higher_order_tets` are made of them, else the tolerance is larger;
@@ -156,6 +159,11 @@ class TESSERA_EXPORT Dataset {
   /// none. Cells are numbered rank after rank. Collective; the communicator must be the session's, where every rank
   /// projects what it has.
   static Dataset of_parts(const MeshArrays& part, const Communicator& communicator);
+
+  /// A part of a mesh that is whole on this rank (tessera/selection.hpp). It keeps this data set, by which
+  /// Session::verify() and Reference judge clipped pictures. Throws Error(bad_input) for a grid or a part, and if
+  /// nothing is left.
+  [[nodiscard]] Dataset selected(const Selection& selection) const;
 
   [[nodiscard]] bool is_mesh() const;
   [[nodiscard]] bool is_grid() const { return !is_mesh(); }
