@@ -141,6 +141,7 @@ Json frame_json(const RenderOptions& options, const FilmFrame& frame, const Fram
   for (const auto& output : frame.outputs) outputs.push_back(output.string());
   Json json = {{"number", frame.number}, {"outputs", outputs}, {"skipped", record == nullptr}};
   json["time"] = frame.data.time;
+  if (frame.data.in_file) json["time_step"] = *frame.data.in_file;
   for (const auto& file : frame.data.files) json["meshes"].push_back(file.string());
   if (record == nullptr) return json;
   const FrameStatistics& statistics = record->statistics;
@@ -226,6 +227,7 @@ std::string frame_line(const RenderOptions& options, const std::vector<FilmFrame
   if (is_series(options.plan)) {
     line += frame.data.files.front().filename().string();
     if (frame.data.files.size() > 1) line += fmt::format(" and {} more", frame.data.files.size() - 1);
+    if (frame.data.in_file) line += fmt::format(", time step {}", *frame.data.in_file);
     line += ", ";
   }
   const std::string work = options.is_grid() ? fmt::format("{} voxels visited", record.statistics.grid.voxels_visited)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "colormaps/presets.hpp"
@@ -69,6 +70,7 @@ std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, c
   state->notes = std::move(volume.notes);
   state->format = std::move(volume.format);
   state->body_axes = volume.body_axes;
+  state->time_steps = std::max<std::size_t>(volume.time_step.count, 1);
   state->samples = std::move(volume.source);
   return state;
 }
@@ -93,6 +95,7 @@ void take_description(io::MeshFile&& file, Dataset::State& state) {
   state.format = std::move(file.format);
   state.counts = file.counts;
   state.higher_order = file.higher_order;
+  state.time_steps = std::max<std::size_t>(file.time_step.count, 1);
 }
 
 /// Makes a mesh the state's own, its corners in the order that needs no copy unless theirs is to be kept.
@@ -314,6 +317,7 @@ std::span<const std::string> Dataset::notes() const { return state_->notes; }
 std::vector<std::string> Dataset::warnings() const {
   return io::warnings_on_cells(state_->counts, state_->higher_order);
 }
+std::size_t Dataset::time_steps() const { return state_->time_steps; }
 std::span<const std::string> Dataset::blocks() const { return state_->blocks; }
 const std::string& Dataset::format() const { return state_->format; }
 const std::string& Dataset::source() const { return state_->source; }
@@ -359,6 +363,13 @@ MeshCheck Dataset::check() const {
   if (state_->ranks > 1)
     throw scene::bad_input(state_->source + ": this rank has a part of the mesh; open it on one rank to check it");
   return frame::check_mesh(state_->mesh);
+}
+
+std::size_t time_steps_of(const std::filesystem::path& file, const ReadOptions& options) {
+  const std::uint64_t count = opens_as_grid(file, options)
+                                  ? io::open_unscanned_volume(file, volume_options(options)).time_step.count
+                                  : io::time_steps_of_mesh(file, frame::mesh_options(options));
+  return std::max<std::size_t>(count, 1);
 }
 
 std::vector<std::string> preset_names() { return colormaps::preset_names(); }

@@ -41,6 +41,7 @@ Dataset selected_part(const std::shared_ptr<const Dataset::State>& from, const S
   state->source = from->source, state->format = from->format, state->field_name = from->field_name;
   state->fields = from->fields, state->notes = from->notes, state->blocks = from->blocks;
   state->higher_order = from->higher_order;
+  state->time_steps = from->time_steps;
   state->options = from->options;
   state->shape = from->shape;
   if (!selection.clip.empty()) {

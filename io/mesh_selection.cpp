@@ -156,8 +156,11 @@ class HalfSpaceCut {
           fmt::format("{}: `clip` makes more than 2^32 - 1 points; use more processes, or fewer planes", source_));
     const double from = distance(mesh_.positions[a]), to = distance(mesh_.positions[b]), share = from / (from - to);
     const glm::dvec3 p = mesh_.positions[a], q = mesh_.positions[b];
-    mesh_.positions.emplace_back(std::lerp(p.x, q.x, share) + 0.0, std::lerp(p.y, q.y, share) + 0.0,
-                                 std::lerp(p.z, q.z, share) + 0.0);  // -0 becomes 0
+    glm::dvec3 place(std::lerp(p.x, q.x, share), std::lerp(p.y, q.y, share), std::lerp(p.z, q.z, share));
+    // On a plane across an axis it is to the bit.
+    for (int axis = 0; axis < 3; ++axis)
+      if (std::abs(normal_[axis]) == 1) place[axis] = point_[axis];
+    mesh_.positions.push_back(place + 0.0);  // -0 becomes 0
     sides_.push_back(0);
     if (mesh_.association == Association::point)
       mesh_.scalars.push_back(std::lerp(mesh_.scalars[a], mesh_.scalars[b], share));

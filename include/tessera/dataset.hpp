@@ -183,6 +183,8 @@ class TESSERA_EXPORT Dataset {
   /// One line each: what is drawn otherwise than the file has it, so that no accuracy is promised for that; mostly
   /// none.
   [[nodiscard]] std::vector<std::string> warnings() const;
+  /// How many time steps its file has, of which it is one; 1 of what does not change with time.
+  [[nodiscard]] std::size_t time_steps() const;
   /// Names of a file's blocks (ReadOptions::blocks), of those too that were not read.
   [[nodiscard]] std::span<const std::string> blocks() const;
   /// "VTK XML unstructured grid", "NRRD", ...; "arrays" of the caller's.
@@ -247,6 +249,10 @@ class TESSERA_EXPORT Dataset {
 /// higher_order_tets has loosened the tolerance already, or if the error is infinite whatever the tolerance.
 TESSERA_EXPORT std::optional<ReadOptions> finer_read(const ReadOptions& options, const Dataset& data,
                                                      const TransferFunction& function, double accuracy);
+
+/// How many time steps a mesh or grid file has (ReadOptions::time_step); 1 if it does not change with time. Formats
+/// that may have several are looked into, as `options` say, others are not read. Throws as Dataset::open.
+TESSERA_EXPORT std::size_t time_steps_of(const std::filesystem::path& file, const ReadOptions& options = {});
 
 /// The names of all presets' colours, the default first.
 TESSERA_EXPORT std::vector<std::string> preset_names();
