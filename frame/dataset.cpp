@@ -18,6 +18,7 @@
 #include "frame/roles.hpp"
 #include "frame/scan_together.hpp"
 #include "frame/transfer_function_choice.hpp"
+#include "frame/uncut_mesh.hpp"
 #include "io/foreign_data.hpp"
 #include "io/mesh_assembly.hpp"
 #include "io/volume_reader.hpp"
@@ -41,7 +42,6 @@ void check_grid_options(const std::filesystem::path& file, const ReadOptions& op
   if (options.max_volume) refuse("max_volume");
   if (!options.blocks.empty()) refuse("block");
   if (!options.plot3d_q.empty()) refuse("plot3d_q");
-  if (!options.selection.clip.empty()) refuse("clip");
   if (options.selection.threshold) refuse("threshold");
 }
 
@@ -208,6 +208,7 @@ Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOp
     if (files.size() == 1 && opens_as_grid(files.front(), options)) {
       state = opened_grid(files.front(), options, *transport, options.trace);
       complete_grid(*state);
+      if (!options.selection.clip.empty()) frame::clip_box(*state, options.selection, files.front().string());
     } else {
       check_mesh_options(files.front(), options);
       state = std::make_shared<State>();

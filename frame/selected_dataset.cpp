@@ -1,6 +1,7 @@
 // A part of a data set, and the whole that it was cut from.
 #include <fmt/format.h>
 
+#include <array>
 #include <utility>
 
 #include "exchange/transport.hpp"
@@ -77,6 +78,27 @@ UncutMesh uncut_mesh(const Dataset::State& data) {
   options.selection.clip.clear();
   auto whole = std::make_shared<const scene::TetMesh>(read_input(data.files, options).mesh);
   return {*whole, data.clip, data.ranks == 1 ? data.mesh : scene::TetMeshView(*whole), whole};
+}
+
+void clip_box(Dataset::State& grid, const Selection& selection, const std::string& source) {
+  const scene::GridGeometry& g = grid.samples->geometry();
+  // The grid as six tets round its diagonal.
+  scene::TetMesh mesh;
+  for (int n = 0; n < 8; ++n) {
+    glm::dvec3 local;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      local[axis] = g.lattice(a, (n >> axis & 1) != 0 ? g.points[a] - 1 : 0);
+    }
+    mesh.positions.push_back(g.origin + g.direction * local);
+  }
+  mesh.scalars.assign(8, 0.0);
+  for (const auto& [first, second] : {std::array{1u, 3u}, {3u, 2u}, {2u, 6u}, {6u, 4u}, {4u, 5u}, {5u, 1u}})
+    mesh.tets.push_back({0, first, second, 7});
+  MeshCounts counts;
+  io::select(mesh, {selection.clip}, counts, source);
+  io::require_selected(counts, source);
+  grid.facts.box = scene::bounds(mesh);
 }
 
 }  // namespace frame

@@ -108,9 +108,12 @@ Verification Session::verify(const RenderedFrame& frame, const View& view, const
   if (frame.image.size != view.size)
     throw scene::bad_input("verify: the frame is not of this view's size; give the view it was rendered with");
   const Dataset::State& data = dataset().state();
-  if (dataset().is_grid())
-    return public_form(frame::verify(frame.image, *data.samples, view.camera, transfer_function,
-                                     frame::grid_settings(settings()), frame.uncertainty, count));
+  if (dataset().is_grid()) {
+    volume::RenderSettings grid = frame::grid_settings(settings());
+    grid.clip = data.clip;
+    return public_form(
+        frame::verify(frame.image, *data.samples, view.camera, transfer_function, grid, frame.uncertainty, count));
+  }
   const frame::RenderSettings settings = frame::mesh_settings(this->settings());
   return public_form(
       frame::verify(frame.image, frame::uncut_mesh(data), view.camera, transfer_function, settings, count));

@@ -22,4 +22,7 @@ struct UncutMesh {
 /// Dataset::open, and Error(bad_input) if this rank has only a part. The state must outlive it.
 UncutMesh uncut_mesh(const Dataset::State& data);
 
+/// Makes a grid's box that of what half-spaces leave of it. Throws Error(bad_input) if that is nothing.
+void clip_box(Dataset::State& grid, const Selection& selection, const std::string& source);
+
 }  // namespace tessera::frame

@@ -73,9 +73,7 @@ void apply_threshold(scene::TetMesh& mesh, const std::array<double, 2>& range) {
 class HalfSpaceCut {
  public:
   HalfSpaceCut(scene::TetMesh& mesh, const scene::HalfSpace& kept, const std::string& source)
-      : mesh_(mesh), point_(kept.point), source_(source) {
-    const glm::dvec3 size = glm::abs(kept.normal);
-    normal_ = glm::normalize(kept.normal / std::max({size.x, size.y, size.z}));
+      : mesh_(mesh), point_(kept.point), normal_(scene::unit_normal(kept)), source_(source) {
     sides_.reserve(mesh.positions.size());
     for (const glm::dvec3& p : mesh.positions) sides_.push_back(side_of(p));
   }
@@ -178,7 +176,7 @@ class HalfSpaceCut {
   }
 
   scene::TetMesh& mesh_;
-  glm::dvec3 point_, normal_{0};
+  glm::dvec3 point_, normal_;
   const std::string& source_;
   std::vector<std::int8_t> sides_;  ///< of each vertex
   std::unordered_map<std::uint64_t, std::uint32_t> vertices_;
