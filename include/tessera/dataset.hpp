@@ -46,7 +46,8 @@ struct ReadOptions {
   /// Files in blocks: names of those to read; none: all. Of a block that is in another ("fluid/internalMesh") the
   /// beginning or the end will do.
   std::vector<std::string> blocks{};
-  /// What of the mesh is kept. Bounds, range, default view and transfer function are of that.
+  /// What of a mesh or grid is kept (tessera/selection.hpp). Bounds and default view are of that; so are a mesh's range
+  /// and transfer function.
   Selection selection{};
 
   /// Cells of second and higher order become tets that are this near to them: in position of the mesh's diagonal, in

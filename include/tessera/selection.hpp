@@ -30,6 +30,9 @@ TESSERA_EXPORT std::array<HalfSpace, 6> half_spaces_of(const Box& box);
 ///            they are on, for a cut edge is divided from its end that comes first by position, and what is left is
 ///            split as wedges and pyramids of files are. Corners within the rounding of their distance to a plane
 ///            count as on it, so that planes through vertices leave no splinters.
+/// Grids      have no threshold. Their rays are cut where they meet a plane; bounds are those of what is left, the
+/// range
+///            is the whole grid's.
 struct Selection {
   std::vector<HalfSpace> clip;
   std::optional<std::array<double, 2>> threshold{};
