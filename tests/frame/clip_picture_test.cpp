@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "datasets/boxes.hpp"
@@ -11,11 +12,13 @@
 #include "frame/render.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/mesh_selection.hpp"
+#include "reference/grid_reference.hpp"
 #include "reference/judge.hpp"
 #include "reference/reference.hpp"
 #include "scene/error.hpp"
 #include "tessera/reference.hpp"
 #include "tessera/session.hpp"
+#include "volume/render.hpp"
 
 /// Pictures of meshes whose cells are cut, against the reference's of the whole mesh along the parts of rays that are
 /// kept.
@@ -192,6 +195,95 @@ TEST_P(ClippedData, IsWithinThePromise) {
     std::printf("%s, extinction %g: largest error %.3g, %zu excused\n", GetParam(), extinction,
                 judged.max_error_not_excused, judged.excused);
   }
+}
+
+/// A grid of random values, spacings and axes, in memory.
+scene::Grid random_grid(Random& random, std::vector<float>& samples) {
+  scene::Grid grid;
+  scene::GridGeometry& g = grid.geometry;
+  g.points = {3 + random.below(7), 3 + random.below(7), 3 + random.below(7)};
+  g.origin = random.uniform(0, 3) * random.direction();
+  for (int axis = 0; axis < 3; ++axis) g.spacing[axis] = random.uniform(0.2, 0.6);
+  if (random.chance(0.3)) {  // turned
+    const glm::dvec3 x = random.direction(), y = glm::normalize(glm::cross(x, random.direction()));
+    g.direction = {x, y, glm::cross(x, y)};
+  }
+  if (random.chance(0.3))
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      double place = 0;
+      g.coordinates[axis].clear();
+      for (std::int64_t n = 0; n < g.points[axis]; ++n, place += random.uniform(0.1, 0.5))
+        g.coordinates[axis].push_back(place);
+    }
+  if (random.chance(0.3)) g.association = scene::Association::cell;
+  grid.type = scene::SampleType::float32;
+  grid.field_name = std::string("f");
+  const scene::GridIndex n = g.samples();
+  for (std::int64_t sample = 0; sample < n[0] * n[1] * n[2]; ++sample)
+    samples.push_back(static_cast<float>(random.uniform(0, 1)));
+  return grid;
+}
+
+TEST(ClipPicture, OfVolumesIsThatOfRaysCutShort) {
+  const int first = wanted("TESSERA_RANDOM_FIRST", 0), last = first + wanted("TESSERA_RANDOM_CASES", 60);
+  double worst = 0;
+  std::size_t excused = 0, pixels = 0;
+  for (int number = first; number < last; ++number) {
+    Random random(3000017u + static_cast<std::uint64_t>(number));
+    std::vector<float> samples;
+    const scene::Grid grid = random_grid(random, samples);
+    const scene::MemorySource source(grid, std::as_bytes(std::span<const float>(samples)), nullptr, "grid");
+    const scene::GridGeometry& g = grid.geometry;
+    const scene::Box box = scene::bounds(g);
+    const glm::dvec3 extent = box.high - box.low;
+    const auto inside = [&] {
+      return box.low +
+             extent * glm::dvec3(random.uniform(0.1, 0.9), random.uniform(0.1, 0.9), random.uniform(0.1, 0.9));
+    };
+    std::vector<HalfSpace> clip;
+    const int kind = random.below(4);
+    if (kind == 0) clip.push_back({inside(), random.power(-2, 2) * random.direction()});
+    if (kind == 1)
+      for (int plane = 0; plane < 2; ++plane) clip.push_back({inside(), random.direction()});
+    if (kind == 2) {  // along a plane of the lattice
+      const auto axis = static_cast<std::size_t>(random.below(3));
+      glm::dvec3 local(0);
+      local[static_cast<int>(axis)] = g.lattice(axis, 1);
+      clip.push_back(
+          {g.origin + g.direction * local, g.direction[static_cast<int>(axis)] * (random.chance(0.5) ? 1. : -1.)});
+    }
+    if (kind == 3) {
+      const glm::dvec3 a = inside(), b = inside();
+      for (const HalfSpace& side : half_spaces_of({glm::min(a, b), glm::max(a, b)})) clip.push_back(side);
+    }
+    scene::Camera camera = random_camera(random, (box.low + box.high) / 2.0, glm::length(extent));
+    if (random.chance(0.3)) {  // along an axis, some rays in the planes
+      const int axis = random.below(3);
+      camera.position = camera.focal_point;
+      camera.position[axis] += 4 * glm::length(extent);
+      camera.view_up = glm::dvec3(0);
+      camera.view_up[(axis + 1) % 3] = 1;
+    }
+    const scene::TransferFunction function =
+        random.chance(0.5) ? datasets::smooth_knots(20, {0, 1}, random.power(-0.5, 2) / glm::length(extent), 3)
+                           : datasets::step_knots(10, {0, 1}, random.power(-0.5, 2) / glm::length(extent), 3);
+    volume::RenderSettings settings;
+    settings.method = volume::Method::exact;
+    settings.clip = clip;
+    settings.threads = 1;
+    if (random.chance(0.3)) settings.shading.emplace();
+    const scene::Image image = volume::Renderer(source, settings).render(camera, size, function);
+    const reference::GridReference reference(source, camera, size, function, scene::Emission::absorption,
+                                             settings.shading, clip);
+    const reference::Judgement judged = reference::judge(image, reference, 1e-5);
+    EXPECT_LE(judged.max_error_not_excused, 1e-5)
+        << "case " << number << ", kind " << kind << ", at (" << judged.worst_x << ", " << judged.worst_y << ')'
+        << (g.rectilinear() ? " rectilinear" : "") << (settings.shading ? " shaded" : "");
+    worst = std::max(worst, judged.max_error_not_excused), excused += judged.excused, pixels += judged.pixels_checked;
+  }
+  EXPECT_LE(static_cast<double>(excused), 1e-4 * static_cast<double>(pixels) + 3);
+  std::printf("cases %d to %d: largest error %.3g, %zu of %zu pixels excused\n", first, last - 1, worst, excused,
+              pixels);
 }
 
 /// What another caller does: a part of a data set of arrays, verified by the whole.
