@@ -112,6 +112,10 @@ Json data_json(const std::filesystem::path& input, const Description& data) {
                      {"open", counts.cells_open},
                      {"tangled", counts.cells_tangled},
                      {"quadratic", counts.cells_quadratic}};
+    if (counts.cells_out_of_range + counts.cells_clipped + counts.cells_cut > 0)
+      json["selection"] = {{"cells_out_of_range", counts.cells_out_of_range},
+                           {"cells_clipped", counts.cells_clipped},
+                           {"cells_cut", counts.cells_cut}};
     if (counts.cells_polyhedra > 0)
       json["polyhedra"] = {{"kept", counts.cells_polyhedra},
                            {"from_inside", counts.polyhedra_from_inside},

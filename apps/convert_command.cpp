@@ -70,6 +70,8 @@ void convert_grid(const std::filesystem::path& input, const std::filesystem::pat
     throw bad_input(fmt::format("{}: '{}' is no volume format to write; choose .vti, .vtr, .nrrd, .raw or .bricks",
                                 output.string(), output.extension().string()));
   check_output(output, input);
+  if (!options.selection.clip.empty())
+    throw bad_input("--clip: volumes are written whole; leave it out, and clip when they are rendered");
   const Dataset data = open_watched(input, options, quiet);
   write_grid(data, output, block);
   if (quiet) return;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -45,6 +46,19 @@ std::vector<FilmFrame> frames_of(const RenderOptions& options) {
   return frames;
 }
 
+/// How many steps the input has, as one rank has found it.
+std::size_t steps_in(const RenderOptions& options, Job& job) {
+  std::vector<std::byte> bytes(sizeof(std::uint64_t));
+  if (job.rank() == 0) {
+    const std::uint64_t count = time_steps_of(options.input(), options.read);
+    std::memcpy(bytes.data(), &count, sizeof count);
+  }
+  bytes = job.broadcast(0, std::move(bytes));
+  std::uint64_t count = 0;
+  std::memcpy(&count, bytes.data(), sizeof count);
+  return static_cast<std::size_t>(count);
+}
+
 /// One rank's part in a run. Of a time series one step is held at a time; the first gives transfer function and view.
 class Film final : public Sink {
  public:
@@ -80,6 +94,7 @@ class Film final : public Sink {
     if (writes_) pictures_.add([this] { picture_writer_.finish(); });
     pictures_.finish();
     skip_to(frames_.size());
+    warn_of_range();
     if (timed()) write_trace();
     std::vector<std::byte> code(1);
     if (writes_) code[0] = static_cast<std::byte>(output_.finish(options_));
@@ -150,9 +165,25 @@ class Film final : public Sink {
     data_.reset();
     ReadingLine line(options_.progress && writes_, frame.data.files.front());
     ReadOptions watched = read;
+    if (frame.data.in_file) watched.time_step = frame.data.in_file;
     watched.progress = line.listener();
     data_.emplace(Dataset::open(frame.data.files, watched, job_.communicator(), settings_.ranks));
     step_ = frame.step;
+    const auto [low, high] = data_->range();
+    if (!first_range_) all_range_ = first_range_.emplace(std::array{low, high});
+    all_range_ = {std::min(all_range_[0], low), std::max(all_range_[1], high)};
+  }
+
+  /// Colours and opacities are the first step's, of whose values the others' may be far.
+  void warn_of_range() {
+    const bool of_file = !options_.function.rescale && std::filesystem::exists(options_.transfer_function);
+    if (!writes_ || !first_range_ || options_.function.range || of_file) return;
+    const auto [low, high] = *first_range_;
+    const double beyond = std::max(low - all_range_[0], all_range_[1] - high);
+    if (beyond > 0.1 * (high - low))
+      output_.warn(options_, fmt::format("values of all time steps are from {:.6g} to {:.6g}, colours are the first's, "
+                                         "of {:.6g} to {:.6g}; --range {:.6g},{:.6g} spans all",
+                                         all_range_[0], all_range_[1], low, high, all_range_[0], all_range_[1]));
   }
 
   /// Reads higher-order cells again, more finely, where the transfer function needs that for --accuracy. What is
@@ -339,8 +370,10 @@ class Film final : public Sink {
   ReadOptions later_read_;  ///< of the steps after the first
   std::optional<Dataset> data_;
   std::optional<Session> session_;
-  std::size_t step_ = 0;    ///< of data_
-  std::optional<Box> box_;  ///< of the first step; none until something is read
+  std::size_t step_ = 0;                              ///< of data_
+  std::optional<std::array<double, 2>> first_range_;  ///< of the first step's values
+  std::array<double, 2> all_range_{};                 ///< of all steps read
+  std::optional<Box> box_;                            ///< of the first step; none until something is read
   BodyAxes axes_ = BodyAxes::none;
   std::uint64_t tets_ = 0;
   LoadedTransferFunction loaded_;
@@ -356,6 +389,11 @@ class Film final : public Sink {
 
 }  // namespace
 
-ExitCode render(const RenderOptions& options, Job& job) { return Film(options, job).run(); }
+ExitCode render(const RenderOptions& options, Job& job) {
+  if (!takes_steps_of_file(options.plan)) return Film(options, job).run();
+  RenderOptions planned = options;
+  planned.plan.file_steps = steps_in(options, job);
+  return Film(planned, job).run();
+}
 
 }  // namespace tessera::apps

@@ -23,6 +23,7 @@
 #include "apps/setting_words.hpp"
 #include "apps/stall_options.hpp"
 #include "apps/standard_streams.hpp"
+#include "apps/time_options.hpp"
 #include "apps/timing_command.hpp"
 #include "apps/volume_options.hpp"
 #include "tessera/input_file.hpp"
@@ -132,6 +133,7 @@ ExitCode run(int argc, char** argv, Job& job) {
     throw bad_input(fmt::format("arguments: {}; see {}", error.what(), help));
   }
 
+  if (!*render_command) refuse_time_steps(words.time_step);
   if (words.input == standard_stream) {
     if (job.size() > 1) throw bad_input("standard input: only one process has it; give a file that all can open");
     words.input = spool_standard_input().string();

@@ -12,6 +12,7 @@
 #include "apps/film_options.hpp"
 #include "apps/report.hpp"
 #include "apps/setting_words.hpp"
+#include "apps/time_options.hpp"
 #include "apps/volume_options.hpp"
 #include "tessera/error.hpp"
 #include "tessera/input_file.hpp"
@@ -112,15 +113,13 @@ void add_mesh_options(CLI::App& command, RenderWords& words) {
   command.add_option("--q", words.q, "PLOT3D solution file, if it is not beside the grid")->type_name("FILE");
   command.add_option("--max-volume", words.max_volume, "surfaces: largest tetrahedron TetGen fills them with")
       ->type_name("VOLUME");
-  command
-      .add_option("--time-step", words.time_step,
-                  "Exodus, OpenFOAM, 4-D NIfTI, NRRD ...: step counted from 0 (default: the last)")
-      ->type_name("STEP");
+  add_time_options(command, words.time_step);
   command
       .add_option("--block", words.blocks,
                   "files in blocks: draw this one alone, of those that info lists; may be repeated")
       ->type_name("NAME")
       ->allow_extra_args(false);
+  add_clip_options(command, words.clip);
   command
       .add_option("--higher-order-tolerance", words.higher_order_tolerance,
                   "higher-order cells become tets this near to them, of diagonal and range (default: by --accuracy)")
@@ -139,8 +138,9 @@ ReadOptions mesh_options(const RenderWords& words) {
   mesh.smooth = words.smooth;
   mesh.plot3d_q = words.q;
   if (!words.max_volume.empty()) mesh.max_volume = parse_positive("--max-volume", words.max_volume);
-  mesh.time_step = time_step_of(words);
+  mesh.time_step = one_time_step(words.time_step);
   mesh.blocks = words.blocks;
+  mesh.selection = selection_of(words.clip);
   if (!words.higher_order_tolerance.empty())
     mesh.higher_order_tolerance = parse_positive("--higher-order-tolerance", words.higher_order_tolerance);
   if (!words.higher_order_tets.empty())
@@ -285,6 +285,7 @@ RenderOptions render_options(const RenderWords& words) {
   }
 
   plan.grids = is_grid_input(words);
+  plan.steps = time_steps(words.time_step);
   set_common(words, options);
   Settings& settings = options.settings;
   const WithoutWords without = parse_without("--without", words.without);
@@ -301,6 +302,10 @@ RenderOptions render_options(const RenderWords& words) {
     refuse_mesh_words(words);
   } else {
     refuse_volume_options(words);
+  }
+  if (options.read.time_step && is_series(plan)) {  // a step of the series, not of its files
+    plan.steps = StepRange{*options.read.time_step, options.read.time_step};
+    options.read.time_step.reset();
   }
   options.no_shade = words.no_shade;
   options.frame.deep = std::ranges::any_of(plan.outputs, is_deep_name);
@@ -345,6 +350,7 @@ void refuse_mesh_options(const RenderWords& words, const RenderOptions& options)
   if (!words.higher_order_tets.empty()) refuse("--higher-order-tets");
   if (!read.blocks.empty()) refuse("--block");
   if (!read.plot3d_q.empty()) refuse("--q");
+  if (read.selection.threshold) refuse("--threshold");
 }
 
 LoadedTransferFunction transfer_function_of(const Dataset& data, const RenderOptions& options) {

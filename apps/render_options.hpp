@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/annotation_options.hpp"
+#include "apps/clip_options.hpp"
 #include "apps/function_options.hpp"
 #include "apps/surface_options.hpp"
 #include "apps/view_options.hpp"
@@ -66,6 +67,7 @@ struct RenderWords {
   std::string balance, balance_resolution, balance_weights, show;
   std::string projectors, compositors, exchange, partition = "curve", frames_in_flight, seed;
   AnnotationWords annotation;
+  ClipWords clip;
   ViewWords view;
   FunctionWords function;
   SurfaceWords surfaces;

@@ -151,6 +151,7 @@ Json frame_json(const RenderOptions& options, const FilmFrame& frame, const Fram
   for (const auto& output : frame.outputs) outputs.push_back(output.string());
   Json json = {{"number", frame.number}, {"outputs", outputs}, {"skipped", record == nullptr}};
   json["time"] = frame.data.time;
+  if (frame.data.in_file) json["time_step"] = *frame.data.in_file;
   for (const auto& file : frame.data.files) json["meshes"].push_back(file.string());
   if (record == nullptr) return json;
   const FrameStatistics& statistics = record->statistics;
@@ -177,8 +178,9 @@ std::string samples_line(const Description& grid) {
 }
 
 std::string cells_line(const MeshCounts& counts) {
-  const std::uint64_t dropped =
-      counts.cells_ghost + counts.cells_hidden + counts.cells_nan + counts.cells_not_volumetric + counts.cells_open;
+  const std::uint64_t dropped = counts.cells_ghost + counts.cells_hidden + counts.cells_nan +
+                                counts.cells_not_volumetric + counts.cells_open + counts.cells_out_of_range +
+                                counts.cells_clipped;
   std::string line =
       fmt::format("{} of {} cells kept as {} tets", counts.cells_read - dropped, counts.cells_read, counts.tets_made);
   const std::pair<std::uint64_t, std::string_view> reasons[] = {
@@ -189,7 +191,10 @@ std::string cells_line(const MeshCounts& counts) {
       {counts.cells_zero_volume, "of zero volume kept"},
       {counts.cells_open, "not closed dropped"},
       {counts.cells_tangled, "tangled kept"},
-      {counts.cells_quadratic, "of higher order"}};
+      {counts.cells_quadratic, "of higher order"},
+      {counts.cells_out_of_range, "outside the threshold dropped"},
+      {counts.cells_clipped, "clipped away"},
+      {counts.cells_cut, "cut"}};
   for (const auto& [count, reason] : reasons)
     if (count > 0) line += fmt::format(", {} {}", count, reason);
   return line;
@@ -232,6 +237,7 @@ std::string frame_line(const RenderOptions& options, const std::vector<FilmFrame
   if (is_series(options.plan)) {
     line += frame.data.files.front().filename().string();
     if (frame.data.files.size() > 1) line += fmt::format(" and {} more", frame.data.files.size() - 1);
+    if (frame.data.in_file) line += fmt::format(", time step {}", *frame.data.in_file);
     line += ", ";
   }
   const std::string work = options.is_grid() ? fmt::format("{} voxels visited", record.statistics.grid.voxels_visited)

@@ -39,13 +39,15 @@ void RunOutput::describe(const RenderOptions& options, analysis::Description dat
                          LoadedTransferFunction transfer_function) {
   std::vector<std::string> warnings = data.warnings;
   warnings.insert(warnings.end(), transfer_function.warnings.begin(), transfer_function.warnings.end());
-  if (!options.quiet)
-    for (const std::string& warning : warnings) {
-      progress_.clear();
-      say_lines(fmt::format("tessera: warning: {}: {}", options.input().string(), warning));
-    }
+  for (const std::string& warning : warnings) warn(options, warning);
   data_ = std::move(data);
   transfer_function_ = std::move(transfer_function);
+}
+
+void RunOutput::warn(const RenderOptions& options, const std::string& warning) {
+  if (options.quiet) return;
+  progress_.clear();
+  say_lines(fmt::format("tessera: warning: {}: {}", options.input().string(), warning));
 }
 
 void RunOutput::skip(const RenderOptions& options, const FilmFrame& frame) {

@@ -22,6 +22,8 @@ class RunOutput {
 
   /// What the run line and the report say of the data; before the first add().
   void describe(const RenderOptions& options, analysis::Description data, LoadedTransferFunction transfer_function);
+  /// A line of its own on stderr, unless that is to be quiet.
+  void warn(const RenderOptions& options, const std::string& warning);
   /// More for the report's head, like the job's shape.
   void note(const char* name, nlohmann::ordered_json value) { report_[name] = std::move(value); }
 

@@ -7,6 +7,7 @@
 
 #include "apps/argument_values.hpp"
 #include "apps/report.hpp"
+#include "apps/time_options.hpp"
 #include "tessera/error.hpp"
 #include "tessera/input_file.hpp"
 
@@ -78,16 +79,12 @@ void add_volume_render_options(CLI::App& command, RenderWords& words) {
       ->type_name("balance");
 }
 
-std::optional<std::size_t> time_step_of(const RenderWords& words) {
-  if (words.time_step.empty()) return std::nullopt;
-  return static_cast<std::size_t>(parse_count("--time-step", words.time_step, 0, std::numeric_limits<int>::max()));
-}
-
 ReadOptions volume_options(const RenderWords& words) {
   ReadOptions options;
   options.field = words.field;
-  options.time_step = time_step_of(words);
+  options.time_step = one_time_step(words.time_step);
   options.blocks = words.blocks;
+  options.selection = selection_of(words.clip);
   if (!words.dims.empty())
     options.dims =
         three<std::int64_t>("--dims", words.dims, 'x', "three sizes; write WxHxD", [](const std::string& word) {

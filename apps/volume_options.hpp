@@ -11,9 +11,6 @@ void add_volume_options(CLI::App& command, RenderWords& words);
 /// The options of `tessera render` that are for volumes only.
 void add_volume_render_options(CLI::App& command, RenderWords& words);
 
-/// What --time-step says.
-std::optional<std::size_t> time_step_of(const RenderWords& words);
-
 ReadOptions volume_options(const RenderWords& words);
 
 /// Whether the input of these words is a volume: by its content, or because .raw options describe it.

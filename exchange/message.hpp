@@ -21,7 +21,7 @@ namespace tessera::exchange {
 static_assert(std::endian::native == std::endian::little, "messages are little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 12;        ///< the next one whenever a message changes
+inline constexpr std::uint16_t wire_version = 13;        ///< the next one whenever a message changes
 
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
@@ -57,8 +57,8 @@ enum class MessageKind : std::uint16_t {
   read_in_parts = 21,     ///< u8: 1: all projectors read
   field_tallies = 22,     ///< u64 fields; of each a field, u8 any_finite; f64 box of higher-order cells[6]
   part_summary = 23,      ///< MeshCounts, HigherOrderCells, texts of reading, of cells, u64 words of used points
-  mesh_description = 24,  ///< MeshCounts, HigherOrderCells, u64 fields, fields, u64 notes, texts, text format, text
-                          ///< field, u8 association
+  mesh_description = 24,  ///< MeshCounts, HigherOrderCells, u64 fields, fields, u64 notes, texts, text format, u64 time
+                          ///< steps, u64 step, text field, u8 association
   mesh_facts = 25,        ///< f64 box[6], f64 scalar range[2], u64 tets, u8 association
   mesh_volume = 26,       ///< 128-bit scene::VolumeSum
   tet_count = 27,         ///< u64

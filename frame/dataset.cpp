@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "colormaps/presets.hpp"
@@ -17,6 +18,7 @@
 #include "frame/roles.hpp"
 #include "frame/scan_together.hpp"
 #include "frame/transfer_function_choice.hpp"
+#include "frame/uncut_mesh.hpp"
 #include "io/foreign_data.hpp"
 #include "io/mesh_assembly.hpp"
 #include "io/volume_reader.hpp"
@@ -40,6 +42,7 @@ void check_grid_options(const std::filesystem::path& file, const ReadOptions& op
   if (options.max_volume) refuse("max_volume");
   if (!options.blocks.empty()) refuse("block");
   if (!options.plot3d_q.empty()) refuse("plot3d_q");
+  if (options.selection.threshold) refuse("threshold");
 }
 
 void check_mesh_options(const std::filesystem::path& file, const ReadOptions& options) {
@@ -67,6 +70,7 @@ std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, c
   state->notes = std::move(volume.notes);
   state->format = std::move(volume.format);
   state->body_axes = volume.body_axes;
+  state->time_steps = std::max<std::size_t>(volume.time_step.count, 1);
   state->samples = std::move(volume.source);
   return state;
 }
@@ -91,6 +95,7 @@ void take_description(io::MeshFile&& file, Dataset::State& state) {
   state.format = std::move(file.format);
   state.counts = file.counts;
   state.higher_order = file.higher_order;
+  state.time_steps = std::max<std::size_t>(file.time_step.count, 1);
 }
 
 /// Makes a mesh the state's own, its corners in the order that needs no copy unless theirs is to be kept.
@@ -144,7 +149,8 @@ io::MeshOptions mesh_options(const ReadOptions& o) {
           o.higher_order_tolerance,
           o.higher_order_tets,
           o.progress,
-          o.shape};
+          o.shape,
+          o.selection};
 }
 
 }  // namespace frame
@@ -202,6 +208,7 @@ Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOp
     if (files.size() == 1 && opens_as_grid(files.front(), options)) {
       state = opened_grid(files.front(), options, *transport, options.trace);
       complete_grid(*state);
+      if (!options.selection.clip.empty()) frame::clip_box(*state, options.selection, files.front().string());
     } else {
       check_mesh_options(files.front(), options);
       state = std::make_shared<State>();
@@ -221,6 +228,7 @@ Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOp
     state->source = files.front().string();
     state->files.assign(files.begin(), files.end());
     state->options = options;
+    state->clip = options.selection.clip;
     state->options.trace = nullptr;  // which need not live as long
     state->options.progress = nullptr;
     return Dataset(std::move(state));
@@ -310,6 +318,7 @@ std::span<const std::string> Dataset::notes() const { return state_->notes; }
 std::vector<std::string> Dataset::warnings() const {
   return io::warnings_on_cells(state_->counts, state_->higher_order);
 }
+std::size_t Dataset::time_steps() const { return state_->time_steps; }
 std::span<const std::string> Dataset::blocks() const { return state_->blocks; }
 const std::string& Dataset::format() const { return state_->format; }
 const std::string& Dataset::source() const { return state_->source; }
@@ -355,6 +364,13 @@ MeshCheck Dataset::check() const {
   if (state_->ranks > 1)
     throw scene::bad_input(state_->source + ": this rank has a part of the mesh; open it on one rank to check it");
   return frame::check_mesh(state_->mesh);
+}
+
+std::size_t time_steps_of(const std::filesystem::path& file, const ReadOptions& options) {
+  const std::uint64_t count = opens_as_grid(file, options)
+                                  ? io::open_unscanned_volume(file, volume_options(options)).time_step.count
+                                  : io::time_steps_of_mesh(file, frame::mesh_options(options));
+  return std::max<std::size_t>(count, 1);
 }
 
 std::vector<std::string> preset_names() { return colormaps::preset_names(); }

@@ -21,6 +21,7 @@ struct TESSERA_HIDDEN Dataset::State {
   std::string source, format, field_name;
   std::vector<FieldInfo> fields;
   std::vector<std::string> notes, blocks;
+  std::size_t time_steps = 1;
   scene::MeshFacts facts;  ///< of the whole; grids have no tets
   MeshCounts counts;
   HigherOrderCells higher_order;
@@ -34,6 +35,8 @@ struct TESSERA_HIDDEN Dataset::State {
   int ranks = 1;                          ///< more than 1: a part, one a rank
   std::vector<std::uint64_t> global_tet;  ///< of a part: index of each tet in the whole
   bool shape = false;                     ///< the scalar is ReadOptions::shape's
+  std::vector<HalfSpace> clip;            ///< what `mesh` was cut by
+  std::shared_ptr<const State> uncut;     ///< before that; null: as `files` have it
 
   // Grids.
   std::shared_ptr<const scene::SampleSource> samples;  ///< null: a mesh

@@ -91,7 +91,7 @@ scene::DeepImage deep_image(const scene::SampleSource& source, const scene::Came
   scene::validate(size);
   if (!(settings.accuracy >= 1e-6 && settings.accuracy <= 1))
     throw scene::bad_input(fmt::format("`deep_accuracy` {}: it must be 1e-6 to 1", settings.accuracy));
-  const volume::VoxelRays rays(camera, size, source.geometry());
+  const volume::VoxelRays rays(camera, size, source.geometry(), settings.clip);
   compositor::DeepCollector collector(size, settings.memory_bytes / 2);
   tbb::task_arena arena(scene::threads_for(settings.threads));
   arena.execute([&] {

@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <stop_token>
+#include <vector>
 
 #include "scene/camera.hpp"
 #include "scene/deep_image.hpp"
 #include "scene/optical_model.hpp"
 #include "scene/sample_source.hpp"
+#include "scene/selection.hpp"
 #include "scene/transfer_function.hpp"
 
 namespace tessera::frame {
@@ -16,6 +18,7 @@ struct DeepSettings {
   scene::Emission emission = scene::Emission::absorption;
   int threads = 0;                          ///< 0: all cores
   std::uint64_t memory_bytes = 4ull << 30;  ///< half of it may be samples
+  std::vector<scene::HalfSpace> clip{};     ///< that rays are kept in
 };
 
 /// The deep picture of a volume's rows y0 <= y < y1; the others stay empty. Regular and rectilinear grids, point and

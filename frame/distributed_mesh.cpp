@@ -93,6 +93,8 @@ Bytes message_of(const io::MeshFile& file) {
   append_texts(message, file.notes);
   append_texts(message, file.blocks);
   append_text(message, file.format);
+  append(message, file.time_step.count);
+  append(message, file.time_step.step);
   append_text(message, file.mesh.field_name);
   append(message, static_cast<std::uint8_t>(file.mesh.association));
   return message;
@@ -106,6 +108,8 @@ io::MeshFile description_in(MessageReader& reader) {
   file.notes = take_texts(reader);
   file.blocks = take_texts(reader);
   file.format = reader.take_text();
+  file.time_step.count = reader.take<std::uint64_t>();
+  file.time_step.step = reader.take<std::uint64_t>();
   file.mesh.field_name = reader.take_text();
   file.mesh.association = take_association(reader);
   reader.finish();

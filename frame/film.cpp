@@ -54,8 +54,30 @@ std::vector<FilmFrame> views(const FilmPlan& plan) {
   return frames;
 }
 
+/// The steps of a range that there are.
+std::vector<TimeStep> in_range(std::vector<TimeStep> steps, const FilmPlan& plan) {
+  if (!plan.steps) return steps;
+  const auto [first, last_wished, stride] = *plan.steps;
+  const std::size_t last = last_wished.value_or(steps.size() - 1);
+  if (std::max(first, last) >= steps.size())
+    throw bad_input(fmt::format("{}: there is no time step {}, it has {}; count from 0", plan.inputs.front().string(),
+                                std::max(first, last), steps.size()));
+  std::vector<TimeStep> chosen;
+  for (std::size_t step = first; step <= last; step += std::max<std::size_t>(stride, 1))
+    chosen.push_back(std::move(steps[step]));
+  return chosen;
+}
+
+std::vector<TimeStep> steps_of_file(const FilmPlan& plan) {
+  std::vector<TimeStep> steps;
+  for (std::size_t step = 0; step < std::max<std::size_t>(plan.file_steps, 1); ++step)
+    steps.push_back({static_cast<double>(step), plan.inputs, step});
+  return steps;
+}
+
 std::vector<TimeStep> steps(const FilmPlan& plan) {
   if (plan.inputs.empty()) throw bad_input("input: no file is named; name one");
+  if (takes_steps_of_file(plan)) return steps_of_file(plan);
   if (plan.inputs.size() == 1 && is_time_series(plan.inputs.front())) return read_time_series(plan.inputs.front());
   std::vector<TimeStep> steps;
   for (const auto& input : plan.inputs) steps.push_back({static_cast<double>(steps.size()), {input}});
@@ -68,12 +90,18 @@ std::vector<TimeStep> steps(const FilmPlan& plan) {
 
 }  // namespace
 
-bool is_series(const FilmPlan& plan) { return plan.inputs.size() > 1 || is_time_series(plan.inputs.front()); }
+bool is_series(const FilmPlan& plan) {
+  return plan.inputs.size() > 1 || is_time_series(plan.inputs.front()) || takes_steps_of_file(plan);
+}
+
+bool takes_steps_of_file(const FilmPlan& plan) {
+  return plan.steps && plan.inputs.size() == 1 && !is_time_series(plan.inputs.front());
+}
 
 std::vector<FilmFrame> plan_film(const FilmPlan& plan) {
   const auto views_of_each = views(plan);
   std::vector<FilmFrame> frames;
-  const auto series = steps(plan);
+  const auto series = in_range(steps(plan), plan);
   if (series.size() * views_of_each.size() > max_frames)
     throw bad_input(fmt::format("{}: {} time steps of {} views are more than {} frames; render them in parts",
                                 plan.inputs.front().string(), series.size(), views_of_each.size(), max_frames));

@@ -128,6 +128,7 @@ class GridByRays final : public Session::State {
   /// Bricks get what the budget leaves beside a picture of this size: the renderer is made once it is known.
   void make_renderer(std::optional<ImageSize> size) {
     volume::RenderSettings grid = frame::grid_settings(settings());
+    grid.clip = data().clip;
     if (!size) {
       // Only for its checks.
       const volume::Renderer checked(*data().samples, grid, data().ranges);
@@ -159,7 +160,7 @@ class GridByRays final : public Session::State {
         frame::StopRelay::Run relayed(sort_first_->relay(), stop);
         deep = frame::deep_rows(*transport_, *data().samples, view.camera, view.size, function,
                                 {settings.deep_accuracy, this->settings().emission, this->settings().threads,
-                                 this->settings().memory_bytes},
+                                 this->settings().memory_bytes, data().clip},
                                 static_cast<std::int32_t>(number), relayed.token());
       } catch (const scene::FrameStopped&) {
         return false;

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "frame/dataset.hpp"
+#include "frame/uncut_mesh.hpp"
 #include "reference/grid_reference.hpp"
 #include "reference/reference.hpp"
 #include "scene/error.hpp"
@@ -11,29 +12,34 @@ namespace tessera {
 
 struct Reference::State {
   Dataset dataset;
+  frame::UncutMesh mesh;  ///< of a grid none
   std::unique_ptr<const reference::RayReference> rays;
 };
 
 namespace {
 
-std::unique_ptr<const reference::RayReference> rays_of(const Dataset& dataset, const View& view,
-                                                       const TransferFunction& function, const Settings& settings) {
+std::unique_ptr<const reference::RayReference> rays_of(const Dataset& dataset, const frame::UncutMesh& mesh,
+                                                       const View& view, const TransferFunction& function,
+                                                       const Settings& settings) {
   const Dataset::State& data = dataset.state();
   if (dataset.is_grid())
     return std::make_unique<reference::GridReference>(*data.samples, view.camera, view.size, function,
-                                                      settings.emission, settings.grid.shading);
-  if (data.ranks > 1)
-    throw scene::bad_input(data.source + ": this rank has a part of the mesh; open it on one rank to judge pictures");
-  return std::make_unique<reference::Reference>(data.mesh, view.camera, view.size, function, settings.emission,
-                                                settings.surfaces);
+                                                      settings.emission, settings.grid.shading, data.clip);
+  return std::make_unique<reference::Reference>(mesh.mesh, view.camera, view.size, function, settings.emission,
+                                                settings.surfaces, mesh.kept);
 }
 
 }  // namespace
 
 Reference::Reference(Dataset dataset, const View& view, const TransferFunction& transfer_function,
                      const Settings& settings) {
-  auto rays = rays_of(dataset, view, transfer_function, settings);
-  state_ = std::make_unique<const State>(State{std::move(dataset), std::move(rays)});
+  const Dataset::State& data = dataset.state();
+  if (data.ranks > 1)
+    throw scene::bad_input(data.source + ": this rank has a part of the mesh; open it on one rank to judge pictures");
+  frame::UncutMesh mesh;
+  if (dataset.is_mesh()) mesh = frame::uncut_mesh(data);
+  auto rays = rays_of(dataset, mesh, view, transfer_function, settings);
+  state_ = std::make_unique<const State>(State{std::move(dataset), std::move(mesh), std::move(rays)});
 }
 
 Reference::~Reference() = default;

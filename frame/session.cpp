@@ -6,10 +6,9 @@
 #include <utility>
 
 #include "frame/communicator.hpp"
-#include "frame/mesh_input.hpp"
 #include "frame/session_state.hpp"
+#include "frame/uncut_mesh.hpp"
 #include "frame/verify.hpp"
-#include "io/mesh_reader.hpp"
 #include "scene/error.hpp"
 
 namespace tessera {
@@ -109,16 +108,15 @@ Verification Session::verify(const RenderedFrame& frame, const View& view, const
   if (frame.image.size != view.size)
     throw scene::bad_input("verify: the frame is not of this view's size; give the view it was rendered with");
   const Dataset::State& data = dataset().state();
-  if (dataset().is_grid())
-    return public_form(frame::verify(frame.image, *data.samples, view.camera, transfer_function,
-                                     frame::grid_settings(settings()), frame.uncertainty, count));
+  if (dataset().is_grid()) {
+    volume::RenderSettings grid = frame::grid_settings(settings());
+    grid.clip = data.clip;
+    return public_form(
+        frame::verify(frame.image, *data.samples, view.camera, transfer_function, grid, frame.uncertainty, count));
+  }
   const frame::RenderSettings settings = frame::mesh_settings(this->settings());
-  if (data.ranks == 1)
-    return public_form(frame::verify(frame.image, data.mesh, view.camera, transfer_function, settings, count));
-  if (data.files.empty())
-    throw scene::bad_input("verify: this rank has a part of the mesh, and no file has the whole; verify on one rank");
-  const io::MeshFile whole = frame::read_input(data.files, frame::mesh_options(data.options));
-  return public_form(frame::verify(frame.image, whole.mesh, view.camera, transfer_function, settings, count));
+  return public_form(
+      frame::verify(frame.image, frame::uncut_mesh(data), view.camera, transfer_function, settings, count));
 }
 
 BalancePictures Session::State::balance_pictures(const RenderedFrame&, const View&, const TransferFunction&) const {

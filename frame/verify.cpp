@@ -73,7 +73,7 @@ SuspicionMap second_opinion(const scene::Image& image, const scene::SampleSource
   scene::Image again(image.size);
   // What is looked for is as large as the bound.
   const double bound = promised_error(settings).value_or(1e-4);
-  const volume::VoxelCastSettings cast{{settings.emission, bound / 1000, bound / 64}, settings.shading};
+  const volume::VoxelCastSettings cast{{settings.emission, bound / 1000, bound / 64}, settings.shading, settings.clip};
   tbb::task_arena arena(scene::threads_for(settings.threads));
   arena.execute([&] {
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -156,12 +156,12 @@ reference::Suspects suspects(const scene::Image& image, const scene::SampleSourc
   return found;
 }
 
-reference::Verification verify(const scene::Image& image, const scene::TetMeshView& mesh, const scene::Camera& camera,
+reference::Verification verify(const scene::Image& image, const UncutMesh& mesh, const scene::Camera& camera,
                                const scene::TransferFunction& transfer_function, const RenderSettings& settings,
                                std::size_t count) {
-  const reference::Suspects where = suspects(image, mesh, camera, transfer_function, settings, count);
-  const reference::Reference reference(mesh, camera, image.size, transfer_function, settings.emission,
-                                       settings.surfaces);
+  const reference::Suspects where = suspects(image, mesh.rendered, camera, transfer_function, settings, count);
+  const reference::Reference reference(mesh.mesh, camera, image.size, transfer_function, settings.emission,
+                                       settings.surfaces, mesh.kept);
   return reference::verify(image, reference, promised_error(settings), count, where, settings.threads);
 }
 
@@ -171,7 +171,7 @@ reference::Verification verify(const scene::Image& image, const scene::SampleSou
                                std::size_t count) {
   const reference::Suspects where = suspects(image, source, camera, transfer_function, settings, error_bounds, count);
   const reference::GridReference reference(source, camera, image.size, transfer_function, settings.emission,
-                                           settings.shading);
+                                           settings.shading, settings.clip);
   return reference::verify(image, reference, promised_error(settings), count, where, settings.threads);
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "frame/render.hpp"
+#include "frame/uncut_mesh.hpp"
 #include "reference/verification.hpp"
 #include "scene/camera.hpp"
 #include "scene/image.hpp"
@@ -36,9 +37,14 @@ reference::Suspects suspects(const scene::Image& image, const scene::SampleSourc
                              std::span<const float> error_bounds, std::size_t count);
 
 /// Checks `count` pixels of a finished picture against the reference: a third at random, the rest of its suspects.
-reference::Verification verify(const scene::Image& image, const scene::TetMeshView& mesh, const scene::Camera& camera,
+reference::Verification verify(const scene::Image& image, const UncutMesh& mesh, const scene::Camera& camera,
                                const scene::TransferFunction& transfer_function, const RenderSettings& settings,
                                std::size_t count);
+inline reference::Verification verify(const scene::Image& image, const scene::TetMeshView& mesh,
+                                      const scene::Camera& camera, const scene::TransferFunction& transfer_function,
+                                      const RenderSettings& settings, std::size_t count) {
+  return verify(image, UncutMesh{mesh, {}, mesh, nullptr}, camera, transfer_function, settings, count);
+}
 reference::Verification verify(const scene::Image& image, const scene::SampleSource& source,
                                const scene::Camera& camera, const scene::TransferFunction& transfer_function,
                                const volume::RenderSettings& settings, std::span<const float> error_bounds,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/number_tally.hpp"
+#include "io/time_step_read.hpp"
 #include "scene/grid.hpp"
 #include "tessera/array.hpp"
 
@@ -106,7 +107,8 @@ struct ForeignContents {
   std::vector<std::string> notes;
   std::string format;
   std::vector<std::string> block_names{};  ///< of all blocks, where parts are not the blocks; empty: of the parts
-  bool has_levels = false;                 ///< the parts, images, are blocks of several levels of refinement
+  TimeStepRead time_step{};
+  bool has_levels = false;  ///< the parts, images, are blocks of several levels of refinement
 };
 
 /// As bytes (CBOR, RFC 8949) and back. contents_of() throws std::exception for bytes of anything else.

@@ -148,6 +148,7 @@ VolumeFile grid_of(const ForeignFile& opened, const VolumeOptions& options) {
   const ForeignPart& part = opened.contents.parts.front();
   VolumeFile result;
   result.notes = opened.contents.notes;
+  result.time_step = opened.contents.time_step;
   scene::Grid grid;
   grid.geometry = geometry_of(opened, part);
   result.format = opened.contents.format;

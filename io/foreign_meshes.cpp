@@ -52,6 +52,7 @@ MeshBlocks read_foreign(const std::filesystem::path& file, nlohmann::json reques
   MeshBlocks result;
   result.format = opened.contents.format;
   result.notes = opened.contents.notes;
+  result.time_step = opened.contents.time_step;
   result.block_names = opened.contents.block_names;
   result.blocks = blocks_of(opened, result.notes);
   return result;
@@ -61,6 +62,7 @@ MeshBlocks blocks_of_solver(const ForeignFile& opened) {
   MeshBlocks result;
   result.format = opened.contents.format;
   result.notes = opened.contents.notes;
+  result.time_step = opened.contents.time_step;
   result.block_names = opened.contents.block_names;
   result.blocks = blocks_of(opened, result.notes, GridsAre::hexahedra);
   return result;

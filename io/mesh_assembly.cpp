@@ -14,6 +14,7 @@
 
 #include "io/block_tets.hpp"
 #include "io/field_choice.hpp"
+#include "io/mesh_selection.hpp"
 #include "scene/error.hpp"
 #include "scene/threads.hpp"
 
@@ -289,6 +290,7 @@ AssembledBlocks assemble_blocks(std::vector<CellBlock> blocks, std::span<const F
 
 std::vector<std::string> notes_on_cells(const MeshCounts& n, const HigherOrderCells& higher_order,
                                         const std::string& source) {
+  require_selected(n, source);
   if (n.cells_read == 0)
     throw scene::bad_input(
         fmt::format("{}: it holds no cells, nothing is left to render; check how it was written", source));
@@ -360,6 +362,8 @@ MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options
     else
       file.notes.emplace_back("smoothing has no effect on point data");
   }
+  select(file.mesh, options.selection, file.counts, source);
+  require_selected(file.counts, source);
   return file;
 }
 

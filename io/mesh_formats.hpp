@@ -23,6 +23,7 @@ struct MeshBlocks {
   std::string format;
   std::vector<std::string> block_names{};  ///< of all, those too that were not chosen; empty: of `blocks`
   std::vector<FieldSummary> fields{};      ///< of the file, where the blocks have the chosen one alone, as options ask
+  TimeStepRead time_step{};
 };
 
 /// Adds the notes that are not there yet: all pieces of a file may give rise to one.

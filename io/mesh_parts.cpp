@@ -9,6 +9,7 @@
 #include "io/mapped_file.hpp"
 #include "io/mesh_assembly.hpp"
 #include "io/mesh_formats.hpp"
+#include "io/mesh_selection.hpp"
 #include "io/tets_file.hpp"
 
 namespace tessera::io {
@@ -146,6 +147,7 @@ MeshFilePart MeshPartReading::finish(const ExcessTally& excess_of_all) {
           part.summary.used_points[point / 64] |= std::uint64_t{1} << point % 64;
         }
     }
+    select(part.mesh, state_->options.selection, part.summary.counts, source);
     return part;
   });
 }

@@ -149,8 +149,16 @@ MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options
     result.format = std::move(read.format);
     result.blocks = std::move(read.block_names);
     result.notes.insert(result.notes.begin(), read.notes.begin(), read.notes.end());
+    result.time_step = read.time_step;
+    if (auto note = note_on(read.time_step, options.time_step)) result.notes.insert(result.notes.begin(), *note);
     return result;
   });
+}
+
+std::uint64_t time_steps_of_mesh(const std::filesystem::path& file, const MeshOptions& options) {
+  require_mesh_file(file);
+  if (!has_time_steps(file)) return 1;
+  return with_clean_errors(file.string(), [&] { return read_blocks(file, options).time_step.count; });
 }
 
 MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptions& options) {
@@ -170,6 +178,8 @@ MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptio
         if (block.source.empty()) block.source = source;
         all.blocks.push_back(std::move(block));
       }
+      if (auto note = note_on(read.time_step, options.time_step)) read.notes.insert(read.notes.begin(), *note);
+      all.time_step = read.time_step;
       add_notes(read.notes, all.notes);
     });
   }
@@ -180,6 +190,7 @@ MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptio
     MeshFile result = assemble_mesh(std::move(all.blocks), options, source);
     result.format = fmt::format("{} files: {}", files.size(), all.format);
     result.blocks = std::move(all.block_names);
+    result.time_step = all.time_step;
     result.notes.insert(result.notes.begin(), all.notes.begin(), all.notes.end());
     return result;
   });

@@ -8,9 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "io/time_step_read.hpp"
 #include "scene/tet_mesh.hpp"
 #include "tessera/field_info.hpp"
 #include "tessera/read_progress.hpp"
+#include "tessera/selection.hpp"
 
 namespace tessera::io {
 
@@ -33,6 +35,7 @@ struct MeshOptions {
   std::uint64_t higher_order_tets = default_higher_order_tets;
   ReadProgressFunction progress{};  ///< null: nobody hears
   bool shape = false;               ///< ReadOptions::shape
+  Selection selection{};            ///< what of the mesh is kept
 };
 
 using tessera::HigherOrderCells;
@@ -47,7 +50,8 @@ struct MeshFile {
   std::vector<FieldSummary> fields;
   std::vector<std::string> notes;   ///< one line each: what was chosen, or odd about the file
   std::vector<std::string> blocks;  ///< names of all that the file has, read or not
-  std::string format;               ///< "VTK XML unstructured grid", "PLOT3D", "TetGen .node/.ele", ...
+  TimeStepRead time_step{};
+  std::string format;  ///< "VTK XML unstructured grid", "PLOT3D", "TetGen .node/.ele", ...
 };
 
 /// Reads a mesh of any format of io/file_kinds.cpp, told by what it begins with, then by its name; or a gzip file of
@@ -60,6 +64,9 @@ MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options
 /// Reads several files as the pieces of one mesh, their points not merged. Each has to have the chosen field. Throws as
 /// read_mesh.
 MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptions& options = {});
+
+/// How many time steps a mesh file has. Of formats that may have several the helper opens it. Throws as read_mesh.
+std::uint64_t time_steps_of_mesh(const std::filesystem::path& file, const MeshOptions& options = {});
 
 /// Throws Error(bad_input) if the file is not there or read_mesh does not know its format. Does not read it.
 void require_mesh_file(const std::filesystem::path& file);

@@ -73,25 +73,18 @@ void list_range(const scene::ValueRange& range, FieldSummary& field) {
   field.nan_count = range.blanks;
 }
 
-/// The step that is wanted, with a note of what there is.
-std::size_t step_of(StoredVolume& volume, const VolumeOptions& options, const std::string& source) {
-  if (volume.steps == 1) {
-    require_no_time_step(options.time_step, source);
-    return 0;
-  }
-  const std::size_t step = options.time_step.value_or(volume.steps - 1);
-  if (step >= volume.steps)
-    throw scene::bad_input(
-        fmt::format("{}: there is no time step {}, the file has {}; count from 0", source, step, volume.steps));
-  volume.notes.push_back(fmt::format("time step {} of 0 to {}{}", step, volume.steps - 1,
-                                     options.time_step ? "" : " (the last is the default)"));
-  return step;
+/// The step that is wanted.
+TimeStepRead step_of(const StoredVolume& volume, const VolumeOptions& options, const std::string& source) {
+  if (volume.steps > 1) return chosen_step(options.time_step, volume.steps, source);
+  require_no_time_step(options.time_step, source);
+  return {};
 }
 
 /// Fields, choice and source of one array of samples.
 VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const std::string& source) {
   scene::validate(volume.grid, source);
-  const std::size_t step = step_of(volume, options, source);
+  const TimeStepRead time_step = step_of(volume, options, source);
+  const std::uint64_t step = time_step.step;
   VolumePayload payload = payload_of(volume, step, source);
   if (volume.coding == StoredVolume::Coding::text) volume.swapped = false;
   if (volume.planar && volume.components > 1) payload = interleaved(volume, payload);
@@ -109,6 +102,7 @@ VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const 
   result.format = std::move(volume.format);
   result.body_axes = volume.body_axes;
   result.notes = std::move(volume.notes);
+  result.time_step = time_step;
 
   FieldSummary field{.name = "samples", .components = volume.components, .type = listed_type(volume.number)};
   field.high = 1;  // until it is known; nobody chooses by it
@@ -237,13 +231,17 @@ VolumeFile open_unscanned_volume(const std::filesystem::path& file, const Volume
       volume.payload = content;
       return open_stored(std::move(volume), options, source);
     };
+    VolumeFile volume;
     if (is_input_folder(file) || kind == VolumeKind::nifti || kind == VolumeKind::analyze ||
-        (kind == VolumeKind::none && !raw) || !looks_like_gzip(read_beginning(file, 2)))
-      return open(file);
-    const InflatedFile inflated(file);
-    VolumeFile volume = inflated.read(open);
-    for (std::string& note : volume.notes) note = inflated.renamed(std::move(note));
-    volume.format += ", gzip";
+        (kind == VolumeKind::none && !raw) || !looks_like_gzip(read_beginning(file, 2))) {
+      volume = open(file);
+    } else {
+      const InflatedFile inflated(file);
+      volume = inflated.read(open);
+      for (std::string& note : volume.notes) note = inflated.renamed(std::move(note));
+      volume.format += ", gzip";
+    }
+    if (auto note = note_on(volume.time_step, options.time_step)) volume.notes.insert(volume.notes.begin(), *note);
     return volume;
   });
 }

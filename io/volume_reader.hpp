@@ -38,6 +38,7 @@ struct VolumeFile {
   std::vector<std::string> notes;    ///< one line each: what was chosen or applied, or odd about the file
   std::string format;
   BodyAxes body_axes = BodyAxes::none;
+  TimeStepRead time_step{};
 };
 
 /// Whether the file is a regular or rectilinear grid: by what it begins with, so that a .vtk may be a mesh or a volume

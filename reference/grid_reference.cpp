@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 
+#include "reference/kept_interval.hpp"
 #include "scene/error.hpp"
 #include "scene/threads.hpp"
 
@@ -31,11 +32,12 @@ Cubic mixed(const Cubic& p, const Cubic& q, double a, double b) {
 
 GridReference::GridReference(const scene::SampleSource& source, const scene::Camera& camera, scene::ImageSize size,
                              const scene::TransferFunction& transfer_function, scene::Emission emission,
-                             const std::optional<scene::Shading>& shading)
+                             const std::optional<scene::Shading>& shading, std::span<const scene::HalfSpace> kept)
     : source_(&source),
       size_((scene::validate(camera), scene::validate(size), size)),
       knots_(transfer_function.knots().begin(), transfer_function.knots().end()),
       emission_(emission),
+      kept_(kept.begin(), kept.end()),
       view_(camera, size),
       to_local_(scene::world_to_local(source.geometry())),
       shading_(shading) {
@@ -92,8 +94,8 @@ std::int64_t GridReference::voxel_along(std::size_t axis, double local) const {
 GridReference::LocalRay GridReference::local_ray(double x, double y) const {
   const scene::GridGeometry& g = source_->geometry();
   const View::Ray world = view_.ray(x, y);
-  LocalRay ray{
-      to_local_ * (world.origin - g.origin), to_local_ * world.step, {-1, -1, -1}, view_.nearest(), view_.farthest()};
+  const auto [nearest, farthest] = kept_interval(view_, x, y, kept_);
+  LocalRay ray{to_local_ * (world.origin - g.origin), to_local_ * world.step, {-1, -1, -1}, nearest, farthest};
   double span = 0;  // planar depth that the volume covers at most: where parallel planes need not be crossed
   const scene::Box box = scene::bounds(g);
   for (int corner = 0; corner < 8; ++corner) {

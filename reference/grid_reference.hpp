@@ -10,6 +10,7 @@
 #include "reference/view.hpp"
 #include "scene/optical_model.hpp"
 #include "scene/sample_source.hpp"
+#include "scene/selection.hpp"
 #include "scene/shading.hpp"
 #include "scene/transfer_function.hpp"
 
@@ -31,11 +32,13 @@ namespace tessera::reference {
 class GridReference final : public RayReference {
  public:
   /// The source must outlive the reference. Throws scene::Error(bad_input) for an invalid camera or size, or an empty
-  /// transfer function, or for shading of light that does not depend on extinction.
+  /// transfer function, or for shading of light that does not depend on extinction. What of rays lies in all
+  /// half-spaces counts (kept_interval.hpp).
   GridReference(const scene::SampleSource& source, const scene::Camera& camera, scene::ImageSize size,
                 const scene::TransferFunction& transfer_function,
                 scene::Emission emission = scene::Emission::absorption,
-                const std::optional<scene::Shading>& shading = std::nullopt);
+                const std::optional<scene::Shading>& shading = std::nullopt,
+                std::span<const scene::HalfSpace> kept = {});
 
   /// `length` and `segments` count what is not blank.
   [[nodiscard]] Pixel pixel(double x, double y) const override;
@@ -60,6 +63,7 @@ class GridReference final : public RayReference {
   scene::ImageSize size_;
   std::vector<scene::Knot> knots_;
   scene::Emission emission_;
+  std::vector<scene::HalfSpace> kept_;
   View view_;
   glm::dmat3 to_local_;
   std::optional<scene::Shading> shading_;

@@ -12,6 +12,7 @@
 #include <unordered_set>
 
 #include "reference/integral.hpp"
+#include "reference/kept_interval.hpp"
 #include "scene/error.hpp"
 #include "scene/threads.hpp"
 
@@ -37,11 +38,12 @@ void sort_front_to_back(std::vector<RaySegment>& segments) {
 
 Reference::Reference(const scene::TetMeshView& mesh, const scene::Camera& camera, scene::ImageSize size,
                      const scene::TransferFunction& transfer_function, scene::Emission emission,
-                     const Surfaces& surfaces)
+                     const Surfaces& surfaces, std::span<const scene::HalfSpace> kept)
     : mesh_(mesh),
       size_((scene::validate(camera), scene::validate(size), size)),
       knots_(transfer_function.knots().begin(), transfer_function.knots().end()),
       emission_(emission),
+      kept_(kept.begin(), kept.end()),
       view_(camera, size),
       surfaces_(by_value(surfaces, transfer_function)),
       light_(surfaces.light) {
@@ -91,7 +93,8 @@ void Reference::trace(std::size_t tet, const std::array<Corner, 4>& corners, dou
                       std::vector<RaySegment>& segments) const {
   const std::optional<Stretch> inside = intersect(corners, x, y);
   if (!inside) return;
-  const std::optional<Stretch> seen = clipped(*inside, view_.nearest(), view_.farthest());
+  const auto [nearest, farthest] = kept_interval(view_, x, y, kept_);
+  const std::optional<Stretch> seen = clipped(*inside, nearest, farthest);
   if (!seen) return;
   const double length = (seen->back - seen->front) * view_.length_per_depth(x, y);
   segments.push_back({seen->front, seen->back, length, seen->scalar_front, seen->scalar_back, seen->corner_scalar,
@@ -101,12 +104,12 @@ void Reference::trace(std::size_t tet, const std::array<Corner, 4>& corners, dou
 Pixel Reference::shaded(std::span<const RaySegment> segments, double x, double y) const {
   Integral integral(knots_, emission_);
   Pixel pixel;
+  const DepthInterval kept = kept_interval(view_, x, y, kept_);
   for (const RaySegment& s : segments) {
     double at = 0, change = s.change_front;  // of the segment's length: what is integrated so far
     const auto depth_at = [&](double part) { return s.front + (s.back - s.front) * part; };
     std::vector<SurfaceCrossing> crossings;
-    if (!surfaces_.empty())
-      crossings = surface_crossings(surfaces_, corners(s.tet), x, y, view_.nearest(), view_.farthest());
+    if (!surfaces_.empty()) crossings = surface_crossings(surfaces_, corners(s.tet), x, y, kept.nearest, kept.farthest);
     for (const SurfaceCrossing& c : crossings) {
       const double there = c.surface->value - s.corner_scalar;
       integral.add(s.length * (c.part - at), change, there, depth_at(at), depth_at(c.part), s.corner_scalar);

@@ -12,6 +12,7 @@
 #include "reference/view.hpp"
 #include "scene/camera.hpp"
 #include "scene/optical_model.hpp"
+#include "scene/selection.hpp"
 #include "scene/tet_mesh.hpp"
 #include "scene/transfer_function.hpp"
 
@@ -40,11 +41,12 @@ struct RaySegment {
 /// Cost     256x256 pixels over 0.5 M tets: seconds to a minute. One point query is a pass over all tets' boxes.
 class Reference final : public RayReference {
  public:
-  /// The mesh must outlive the reference. Throws scene::Error(bad_input) for an invalid camera or size, an empty
-  /// transfer function, or a mesh that breaks its invariants.
+  /// The mesh must outlive the reference. Of every ray what lies in all half-spaces counts (kept_interval.hpp); cells
+  /// are not cut. Throws scene::Error(bad_input) for an invalid camera or size, an empty transfer function, or a mesh
+  /// that breaks its invariants.
   Reference(const scene::TetMeshView& mesh, const scene::Camera& camera, scene::ImageSize size,
             const scene::TransferFunction& transfer_function, scene::Emission emission = scene::Emission::absorption,
-            const Surfaces& surfaces = {});
+            const Surfaces& surfaces = {}, std::span<const scene::HalfSpace> kept = {});
 
   /// The ray through pixel coordinates (x, y), front to back. Pixel (i, j) has its centre at (i + 0.5, j + 0.5).
   [[nodiscard]] std::vector<RaySegment> segments(double x, double y) const;
@@ -76,6 +78,7 @@ class Reference final : public RayReference {
   scene::ImageSize size_;
   std::vector<scene::Knot> knots_;
   scene::Emission emission_;
+  std::vector<scene::HalfSpace> kept_;
   View view_;
   std::vector<SurfaceOfValue> surfaces_;
   SurfaceLight light_;

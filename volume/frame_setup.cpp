@@ -49,7 +49,7 @@ double voxel_side_of(const scene::GridGeometry& geometry) {
 
 FrameSetup::FrameSetup(RendererState& state, const scene::Camera& camera, scene::ImageSize size,
                        const scene::TransferFunction& function, WorkTally* tally)
-    : rays_(camera, size, state.source.geometry()), table_(state.table_of(function)) {
+    : rays_(camera, size, state.source.geometry(), state.settings.clip), table_(state.table_of(function)) {
   find_visible(state);
   const scene::GridGeometry& geometry = state.source.geometry();
   view_.rays = &rays_;

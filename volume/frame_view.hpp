@@ -3,11 +3,13 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "integrals/lane_table.hpp"
 #include "scene/camera.hpp"
 #include "scene/grid.hpp"
+#include "scene/selection.hpp"
 #include "volume/brick_cache.hpp"
 #include "volume/cell_ranges.hpp"
 #include "volume/lane_error_bound.hpp"
@@ -17,6 +19,13 @@
 
 namespace tessera::volume {
 
+/// A half-space that rays are kept in, in index space: constant + dot(slope, place) >= 0. The largest part of the slope
+/// is 1, so that values are voxels.
+struct KeptSide {
+  double constant;
+  glm::dvec3 slope;
+};
+
 /// Rays of all pixels in index space (voxels, scene/grid.hpp), affine in pixel coordinates.
 ///
 /// The ray of pixel (x, y), y down, is origin(x, y) + t * direction(x, y), where t is planar depth, world units.
@@ -25,9 +34,11 @@ struct PixelRays {
   glm::dvec3 direction, direction_x, direction_y;
   double tangent_x0, tangent_y0, tangent_step;  ///< perspective: tangent = (x - x0, y - y0) * step; 0 orthographic
   double near_depth, far_depth;
+  std::vector<KeptSide> kept;
 
   /// A valid camera and size; a regular grid.
-  PixelRays(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry);
+  PixelRays(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry,
+            std::span<const scene::HalfSpace> clip = {});
 };
 
 /// Light and material as kernels want them. Gradients are per voxel along the grid's axes; with W the linear part of

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
@@ -7,7 +8,8 @@
 
 namespace tessera::volume {
 
-PixelRays::PixelRays(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry) {
+PixelRays::PixelRays(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry,
+                     std::span<const scene::HalfSpace> clip) {
   const scene::ViewBasis basis = scene::view_basis(camera);
   const glm::dmat3 to_local = scene::world_to_local(geometry);
   const auto to_index = [&](const glm::dvec3& v) { return to_local * v / geometry.spacing; };
@@ -30,6 +32,12 @@ PixelRays::PixelRays(const scene::Camera& camera, scene::ImageSize size, const s
   if (camera.clipping_range) {
     near_depth = std::max(0.0, camera.clipping_range->near_distance);
     far_depth = camera.clipping_range->far_distance;
+  }
+  for (const scene::HalfSpace& h : clip) {
+    const glm::dvec3 normal = scene::unit_normal(h);
+    const glm::dvec3 slope = glm::transpose(geometry.direction) * normal * geometry.spacing, size_of = glm::abs(slope);
+    const double largest = std::max({size_of.x, size_of.y, size_of.z});
+    kept.push_back({glm::dot(normal, geometry.origin - h.point) / largest, slope / largest});
   }
 }
 

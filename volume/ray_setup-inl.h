@@ -92,6 +92,32 @@ HWY_INLINE void clip(V a, V b, double end, V& in, V& out) {
   out = HN::IfThenElse(outside, HN::Set(d, -1.0), out);
 }
 
+/// Cuts [in, out] to where a + b k >= 0. A ray that runs in that plane is on the side that `inside` says.
+template <class V>
+HWY_INLINE void clip_half(V a, V b, V reach, bool inside, V& in, V& out) {
+  namespace HN = hwy::HWY_NAMESPACE;
+  const HN::DFromV<V> d;
+  const V zero = HN::Zero(d), within = HN::Set(d, in_plane_within);
+  const auto level = HN::Lt(HN::Mul(HN::Abs(b), reach), within);
+  const auto in_plane = HN::Lt(HN::Abs(a), within);
+  const V side = HN::IfThenElse(in_plane, HN::Set(d, inside ? 1.0 : -1.0), a);
+  const V at = HN::Div(HN::Neg(a), HN::IfThenElse(level, HN::Set(d, 1.0), b));
+  const auto rises = HN::Gt(b, zero);
+  in = HN::IfThenElse(HN::AndNot(level, rises), HN::Max(in, at), in);
+  out = HN::IfThenElse(HN::Or(level, rises), out, HN::Min(out, at));
+  out = HN::IfThenElse(HN::And(level, HN::Lt(side, zero)), HN::Set(d, -1.0), out);
+}
+
+/// On which side of a plane rays in it count, by the rule of side_of_plane().
+HWY_INLINE bool is_inside(const PixelRays& rays, bool perspective, const KeptSide& kept) {
+  double by_x = 0, by_y = 0;
+  for (int a = 0; a < 3; ++a) {
+    by_x += kept.slope[a] * (perspective ? rays.direction_x[a] : rays.origin_x[a]);
+    by_y += kept.slope[a] * (perspective ? rays.direction_y[a] : rays.origin_y[a]);
+  }
+  return (std::abs(by_x) > 1e-9 * std::abs(by_y) ? by_x : by_y) > 0;
+}
+
 /// Lays the tile's rays of one axis code out for the kernels; those of others are empty. The light is left alone.
 HWY_NOINLINE inline void set_up_rays(const FrameView& frame, int x0, int y0, int code, TileRays& out) {
   const PixelRays& rays = *frame.rays;
@@ -138,6 +164,13 @@ HWY_NOINLINE inline void set_up_rays(const FrameView& frame, int x0, int y0, int
     if (std::isfinite(rays.far_depth)) out_k = HN::Min(out_k, HN::MulAdd(set(rays.far_depth), dk, ok));
     clip(ax, bx, end_i, in, out_k);
     clip(ay, by, end_j, in, out_k);
+    for (const KeptSide& kept : rays.kept) {
+      const auto si = set(kept.slope[axes.i]), sj = set(kept.slope[axes.j]);
+      const double sk = axes.mirrored ? -kept.slope[axes.k] : kept.slope[axes.k];
+      const double at_0 = axes.mirrored ? kept.slope[axes.k] * end_k + kept.constant : kept.constant;
+      clip_half(HN::MulAdd(si, ax, HN::MulAdd(sj, ay, set(at_0))), HN::MulAdd(si, bx, HN::MulAdd(sj, by, set(sk))),
+                reach, is_inside(rays, perspective, kept), in, out_k);
+    }
     const auto kept = HN::And(here, HN::Lt(in, out_k));
     const auto tx = HN::Mul(HN::Sub(px, set(rays.tangent_x0)), set(rays.tangent_step)),
                ty = HN::Mul(HN::Sub(py, set(rays.tangent_y0)), set(rays.tangent_step));

@@ -55,12 +55,13 @@ scene::PixelRect within(scene::ImageSize size, const std::optional<scene::PixelR
 
 /// Pixels of a map, each with its ray's planes of the lattice.
 CostMap cost_of_planes(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,
-                       double resolution, const std::optional<scene::PixelRect>& region) {
+                       std::span<const scene::HalfSpace> clip, double resolution,
+                       const std::optional<scene::PixelRect>& region) {
   CostMap map;
   map.resolution = resolution;
   map.size = map_size(image, resolution);
   map.region = region.value_or(scene::PixelRect{0, 0, map.size.width, map.size.height});
-  const VoxelRays rays(camera, image, geometry);
+  const VoxelRays rays(camera, image, geometry, clip);
   for (int y = map.region.y0; y < map.region.y1; ++y)
     for (int x = map.region.x0; x < map.region.x1; ++x)
       map.cost.push_back(static_cast<std::uint32_t>(
@@ -220,7 +221,7 @@ CostMap Renderer::cost_map(const scene::Camera& camera, scene::ImageSize size,
                            std::optional<scene::PixelRect> region, const WorkRates* learned) const {
   const RendererState& state = *state_;
   const scene::GridGeometry& geometry = state.source.geometry();
-  if (geometry.rectilinear()) return cost_of_planes(camera, size, geometry, resolution, region);
+  if (geometry.rectilinear()) return cost_of_planes(camera, size, geometry, state_->settings.clip, resolution, region);
   const std::vector<std::uint8_t> visible = visible_cells(state.ranges, state.table_of(transfer_function));
   const bool by_voxels = state.settings.method == Method::automatic || state.settings.method == Method::exact;
   CostMap map;

@@ -15,6 +15,7 @@
 #include "scene/optical_model.hpp"
 #include "scene/pixel_rect.hpp"
 #include "scene/sample_source.hpp"
+#include "scene/selection.hpp"
 #include "scene/shading.hpp"
 #include "scene/trace.hpp"
 #include "scene/transfer_function.hpp"
@@ -47,7 +48,8 @@ struct RenderSettings {
   std::uint64_t memory_bytes = 4ull << 30;  ///< budget of the bricks in memory
   CachePolicy cache = CachePolicy::lru;
   int preload_limit = 0;  ///< proximity: bricks near the frustum loaded ahead between frames, at most; asynchronously
-  scene::Mechanisms use;  ///< what saves work
+  std::vector<scene::HalfSpace> clip{};  ///< that rays are kept in (tessera/selection.hpp)
+  scene::Mechanisms use;                 ///< what saves work
   scene::Trace* trace = nullptr;
 };
 

@@ -61,7 +61,8 @@ struct RendererState {
   [[nodiscard]] VoxelCastSettings voxel_settings(const scene::TransferFunction& function,
                                                  std::span<const std::uint8_t> visible) const {
     return {{settings.emission, WalkSettings().tolerance, static_cast<double>(least_transmittance(function)), visible},
-            settings.shading};
+            settings.shading,
+            settings.clip};
   }
   [[nodiscard]] double accuracy() const { return settings.method == Method::exact ? 2e-6 : settings.accuracy; }
 

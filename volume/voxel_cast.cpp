@@ -162,7 +162,7 @@ struct VoxelCaster::State {
         camera(camera_),
         function(function_),
         settings(settings_),
-        rays(camera_, size, source.geometry()),
+        rays(camera_, size, source.geometry(), settings.clip),
         pixels([this, &source] { return std::make_unique<VoxelPixels>(source, camera, function, settings); }) {}
 
   const scene::GridGeometry& geometry;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <stop_token>
+#include <vector>
 
 #include "scene/camera.hpp"
 #include "scene/pixel_rect.hpp"
@@ -22,6 +23,7 @@ namespace tessera::volume {
 struct VoxelCastSettings {
   WalkSettings walk;
   std::optional<scene::Shading> shading;
+  std::vector<scene::HalfSpace> clip{};  ///< that rays are kept in
 };
 
 struct VoxelCastCounts {

@@ -29,7 +29,8 @@ std::int64_t voxel_along(const scene::GridGeometry& geometry, std::size_t axis, 
 
 }  // namespace
 
-VoxelRays::VoxelRays(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry)
+VoxelRays::VoxelRays(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry,
+                     std::span<const scene::HalfSpace> clip)
     : camera_(camera),
       geometry_(geometry),
       basis_(scene::view_basis(camera)),
@@ -44,6 +45,29 @@ VoxelRays::VoxelRays(const scene::Camera& camera, scene::ImageSize size, const s
     const glm::dvec3 p((n & 1) != 0 ? box.high.x : box.low.x, (n & 2) != 0 ? box.high.y : box.low.y,
                        (n & 4) != 0 ? box.high.z : box.low.z);
     deepest_ = std::max(deepest_, std::abs(glm::dot(p - camera.position, basis_.forward)));
+  }
+  for (const scene::HalfSpace& h : clip) clip_.push_back({h.point, scene::unit_normal(h)});
+}
+
+void VoxelRays::cut(const glm::dvec3& from, const glm::dvec3& step, VoxelRay& ray) const {
+  double voxel = std::numeric_limits<double>::infinity();
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::int64_t last = geometry_.points[a] - 1;
+    voxel = std::min(voxel, (geometry_.lattice(a, last) - geometry_.lattice(a, 0)) / static_cast<double>(last));
+  }
+  for (const scene::HalfSpace& h : clip_) {
+    const double climb = glm::dot(h.normal, step), height = glm::dot(h.normal, from - h.point);
+    if (std::abs(climb) * deepest_ >= in_plane * voxel) {
+      (climb > 0 ? ray.begin : ray.end) =
+          climb > 0 ? std::max(ray.begin, -height / climb) : std::min(ray.end, -height / climb);
+      continue;
+    }
+    double side = height;
+    if (std::abs(height) < in_plane * voxel) {
+      const double by_x = glm::dot(h.normal, basis_.right), by_y = -glm::dot(h.normal, basis_.up);
+      side = std::abs(by_x) > in_plane ? by_x : by_y;
+    }
+    if (side < 0) ray.end = ray.begin;
   }
 }
 
@@ -81,6 +105,7 @@ VoxelRay VoxelRays::ray(double x, double y) const {
     ray.begin = std::max(ray.begin, std::min(one, other));
     ray.end = std::min(ray.end, std::max(one, other));
   }
+  cut(from, step, ray);
   return ray;
 }
 

@@ -10,6 +10,7 @@
 #include "scene/camera.hpp"
 #include "scene/optical_model.hpp"
 #include "scene/sample_source.hpp"
+#include "scene/selection.hpp"
 #include "scene/transfer_function.hpp"
 
 namespace tessera::volume {
@@ -25,8 +26,10 @@ struct VoxelRay {
 /// The rays of a picture; any lattice.
 class VoxelRays {
  public:
-  /// A valid camera and size.
-  VoxelRays(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry);
+  /// A valid camera and size. Rays are kept in the half-spaces of `clip`; one that runs in a plane of them counts to
+  /// the side that it would be on if it were shifted likewise.
+  VoxelRays(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry,
+            std::span<const scene::HalfSpace> clip = {});
 
   /// Through pixel coordinates (x, y), pixel (i, j) having its centre at (i + 0.5, j + 0.5). Where it runs in a plane
   /// of the lattice it has that plane's values, and counts for the voxels that it would be in if it were shifted by
@@ -34,13 +37,16 @@ class VoxelRays {
   [[nodiscard]] VoxelRay ray(double x, double y) const;
 
  private:
+  void cut(const glm::dvec3& from, const glm::dvec3& step, VoxelRay& ray) const;
+
   scene::Camera camera_;
   const scene::GridGeometry& geometry_;
   scene::ViewBasis basis_;
   glm::dmat3 to_local_;
   bool perspective_;
   double width_, height_, pixel_;
-  double deepest_ = 0;  ///< planar depth of the volume's corners, at most
+  double deepest_ = 0;                  ///< planar depth of the volume's corners, at most
+  std::vector<scene::HalfSpace> clip_;  ///< normals of length 1
 };
 
 /// A ray's stretch in one voxel, planar depths z0 to z1. `corner` a + 2 b + 4 c is the value at the voxel's corner

@@ -20,6 +20,7 @@
 #include "tessera/mesh_check.hpp"
 #include "tessera/read_progress.hpp"
 #include "tessera/sample_source.hpp"
+#include "tessera/selection.hpp"
 #include "tessera/settings.hpp"
 #include "tessera/transfer_function.hpp"
 
@@ -45,6 +46,9 @@ struct ReadOptions {
   /// Files in blocks: names of those to read; none: all. Of a block that is in another ("fluid/internalMesh") the
   /// beginning or the end will do.
   std::vector<std::string> blocks{};
+  /// What of a mesh or grid is kept (tessera/selection.hpp). Bounds and default view are of that; so are a mesh's range
+  /// and transfer function.
+  Selection selection{};
 
   /// Cells of second and higher order become tets that are this near to them: in position of the mesh's diagonal, in
   /// value of the field's range. No more than about `higher_order_tets` are made of them, else the tolerance is larger;
@@ -157,6 +161,11 @@ class TESSERA_EXPORT Dataset {
   /// projects what it has.
   static Dataset of_parts(const MeshArrays& part, const Communicator& communicator);
 
+  /// A part of a mesh that is whole on this rank (tessera/selection.hpp). It keeps this data set, by which
+  /// Session::verify() and Reference judge clipped pictures. Throws Error(bad_input) for a grid or a part, and if
+  /// nothing is left.
+  [[nodiscard]] Dataset selected(const Selection& selection) const;
+
   [[nodiscard]] bool is_mesh() const;
   [[nodiscard]] bool is_grid() const { return !is_mesh(); }
 
@@ -175,6 +184,8 @@ class TESSERA_EXPORT Dataset {
   /// One line each: what is drawn otherwise than the file has it, so that no accuracy is promised for that; mostly
   /// none.
   [[nodiscard]] std::vector<std::string> warnings() const;
+  /// How many time steps its file has, of which it is one; 1 of what does not change with time.
+  [[nodiscard]] std::size_t time_steps() const;
   /// Names of a file's blocks (ReadOptions::blocks), of those too that were not read.
   [[nodiscard]] std::span<const std::string> blocks() const;
   /// "VTK XML unstructured grid", "NRRD", ...; "arrays" of the caller's.
@@ -239,6 +250,10 @@ class TESSERA_EXPORT Dataset {
 /// higher_order_tets has loosened the tolerance already, or if the error is infinite whatever the tolerance.
 TESSERA_EXPORT std::optional<ReadOptions> finer_read(const ReadOptions& options, const Dataset& data,
                                                      const TransferFunction& function, double accuracy);
+
+/// How many time steps a mesh or grid file has (ReadOptions::time_step); 1 if it does not change with time. Formats
+/// that may have several are looked into, as `options` say, others are not read. Throws as Dataset::open.
+TESSERA_EXPORT std::size_t time_steps_of(const std::filesystem::path& file, const ReadOptions& options = {});
 
 /// The names of all presets' colours, the default first.
 TESSERA_EXPORT std::vector<std::string> preset_names();

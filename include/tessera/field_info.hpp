@@ -43,6 +43,10 @@ struct MeshCounts {
   std::uint64_t points_unused = 0;   ///< of no tet
   std::uint64_t tets_made = 0;       ///< in the mesh
   std::uint64_t tets_collapsed = 0;  ///< not made: two of their corners are one point in space
+  // Of ReadOptions::selection, and only of cells that are kept otherwise:
+  std::uint64_t cells_out_of_range = 0;  ///< dropped: their values are not all within the threshold
+  std::uint64_t cells_clipped = 0;       ///< dropped: clipped away altogether
+  std::uint64_t cells_cut = 0;           ///< kept in part
 
   MeshCounts& operator+=(const MeshCounts& other);  ///< of another part
   bool operator==(const MeshCounts&) const = default;
@@ -66,9 +70,12 @@ inline MeshCounts& MeshCounts::operator+=(const MeshCounts& other) {
   points_unused += other.points_unused;
   tets_made += other.tets_made;
   tets_collapsed += other.tets_collapsed;
+  cells_out_of_range += other.cells_out_of_range;
+  cells_clipped += other.cells_clipped;
+  cells_cut += other.cells_cut;
   return *this;
 }
-static_assert(sizeof(MeshCounts) == 17 * sizeof(std::uint64_t));  // one line above for each
+static_assert(sizeof(MeshCounts) == 20 * sizeof(std::uint64_t));  // one line above for each
 
 /// How near tets come to cells of second and higher order where nothing else is said: in position of the mesh's
 /// diagonal, in value of the field's range; and about how many there may be.

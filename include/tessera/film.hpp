@@ -14,13 +14,24 @@
 
 namespace tessera {
 
+/// Time steps from the first to the last, both included, counted from 0.
+struct StepRange {
+  std::size_t first = 0;
+  std::optional<std::size_t> last{};  ///< none: the last that there is
+  std::size_t stride = 1;             ///< at least 1; every so many-th
+};
+
 /// The pictures that a run is to make: each time step of the inputs in each view.
 struct FilmPlan {
   std::vector<std::filesystem::path> inputs;  ///< one mesh, grid or time series; or several of the first two, as steps
   bool grids = false;                         ///< what the inputs are
-  std::filesystem::path cameras;              ///< a view or a list of views (read_cameras); empty: the default view
-  int orbit = 0;                              ///< frames of one turn of one view round its up axis; 0: none
-  std::optional<ImageSize> size;              ///< wins over the camera file's
+  /// Steps of a time series or of the list of inputs; of one file the steps in it, of which it has `file_steps`. None:
+  /// all of a series, and of a file the one that ReadOptions::time_step says.
+  std::optional<StepRange> steps{};
+  std::size_t file_steps = 1;
+  std::filesystem::path cameras;  ///< a view or a list of views (read_cameras); empty: the default view
+  int orbit = 0;                  ///< frames of one turn of one view round its up axis; 0: none
+  std::optional<ImageSize> size;  ///< wins over the camera file's
   /// At least one, several for one frame in several formats; of several frames with `%d` or `%0Nd` for their number.
   std::vector<std::filesystem::path> outputs;
   bool resume = false;  ///< frames whose pictures are all there count as finished
@@ -46,12 +57,15 @@ struct TESSERA_EXPORT FilmFrame {
   void require_still_there() const;
 };
 
-/// Whether the plan's input is a time series, be it of one step.
+/// Whether the plan's input is a time series, be it of one step: several files, a name for several, or steps of one.
 TESSERA_EXPORT bool is_series(const FilmPlan& plan);
+
+/// Whether what is shown of the plan's one file depends on how many steps it has: FilmPlan::file_steps is to be set.
+TESSERA_EXPORT bool takes_steps_of_file(const FilmPlan& plan);
 
 /// The frames of a plan: all views of the first step, then of the second. Frame 0 is always of the first step. Throws
 /// Error(bad_input) if an input that is to be read is not there, if several frames would share one name, if an orbit is
-/// asked of several views, or for what read_cameras() refuses.
+/// asked of several views, for steps that are not there, or for what read_cameras() refuses.
 TESSERA_EXPORT std::vector<FilmFrame> plan_film(const FilmPlan& plan);
 
 /// How later steps of a time series are read: their field is the one that was chosen for the first step. A field that

@@ -22,6 +22,7 @@
 #include "tessera/read_progress.hpp"
 #include "tessera/reference.hpp"
 #include "tessera/sample_source.hpp"
+#include "tessera/selection.hpp"
 #include "tessera/session.hpp"
 #include "tessera/settings.hpp"
 #include "tessera/sink.hpp"

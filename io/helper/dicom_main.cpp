@@ -123,6 +123,7 @@ ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& file
 
   contents.format = fmt::format("DICOM{}{}", first.modality.empty() ? "" : " ", first.modality);
   contents.notes.insert(contents.notes.begin(), volume.notes.begin(), volume.notes.end());
+  contents.time_step = volume.time_step;
   const auto is_scaled = [](const DicomSlice& s) { return s.slope != 1 || s.intercept != 0; };
   if (std::any_of(volume.slices.begin(), volume.slices.end(), is_scaled)) {
     const bool are_alike = std::all_of(volume.slices.begin(), volume.slices.end(), [&](const DicomSlice& s) {

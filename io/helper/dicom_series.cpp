@@ -65,7 +65,7 @@ std::vector<DicomSlice> chosen_group(std::vector<DicomSlice> slices, const std::
 
 /// Slices of one place are of several times: the slices of one of them.
 std::vector<DicomSlice> slices_of_step(std::vector<DicomSlice> slices, std::optional<std::size_t> wish,
-                                       const std::string& source, std::vector<std::string>& notes) {
+                                       const std::string& source, DicomVolume& volume) {
   const glm::dvec3 normal = slices.front().normal();
   const auto place = [&](const DicomSlice& s) {
     return s.has_position ? glm::dot(s.position, normal) : static_cast<double>(s.number);
@@ -93,11 +93,10 @@ std::vector<DicomSlice> slices_of_step(std::vector<DicomSlice> slices, std::opti
     throw scene::bad_input(
         fmt::format("{}: there is no time step {}, the series has {}; count from 0", source, *wish, least));
   const std::size_t step = wish.value_or(least - 1);
-  if (least > 1)
-    notes.push_back(
-        fmt::format("time step {} of 0 to {}{}", step, least - 1, wish ? "" : " (the last is the default)"));
+  volume.time_step = {least, step};
   if (most > least)
-    notes.push_back(fmt::format("some places have {} slices, others {}; what is beyond is left out", most, least));
+    volume.notes.push_back(
+        fmt::format("some places have {} slices, others {}; what is beyond is left out", most, least));
   std::vector<DicomSlice> chosen;
   chosen.reserve(places.size());
   for (auto& at : places) chosen.push_back(std::move(at[step]));
@@ -146,7 +145,7 @@ DicomVolume volume_of(std::vector<DicomSlice> slices, const std::filesystem::pat
                       std::optional<std::size_t> time_step, const std::string& source) {
   DicomVolume volume;
   volume.slices =
-      slices_of_step(chosen_group(std::move(slices), named, source, volume.notes), time_step, source, volume.notes);
+      slices_of_step(chosen_group(std::move(slices), named, source, volume.notes), time_step, source, volume);
   const DicomSlice& first = volume.slices.front();
   volume.origin = first.position;
   volume.steps = {first.row * first.spacing.x, first.column * first.spacing.y, first.normal() * first.spacing.z};

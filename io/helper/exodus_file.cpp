@@ -219,14 +219,9 @@ class Reading {
   void choose_step(std::optional<std::size_t> wish) {
     const std::int64_t steps = std::max<std::int64_t>(ex_inquire_int(file_->id(), EX_INQ_TIME), 0);
     check_count("time steps", steps, 1);
-    if (wish && *wish >= static_cast<std::size_t>(std::max<std::int64_t>(steps, 1)))
-      throw scene::bad_input(
-          fmt::format("{}: there is no time step {}, the file has {}; count from 0", source_, *wish, steps));
+    result_.time_step = chosen_step(wish, static_cast<std::uint64_t>(steps), source_);
     if (steps > INT32_MAX) file_->fail(fmt::format("it promises {} time steps", steps));
     step_ = wish ? static_cast<int>(*wish) + 1 : static_cast<int>(steps);  // from 1; 0 if there are none
-    if (steps > 1)
-      result_.notes.push_back(
-          fmt::format("time step {} of 0 to {}{}", step_ - 1, steps - 1, wish ? "" : " (the last is the default)"));
   }
 
   void read_elements() {
@@ -383,6 +378,7 @@ ForeignContents read_exodus(Holdings& holdings, const std::filesystem::path& fil
   ForeignContents contents;
   for (CellBlock& block : read.blocks) contents.parts.push_back(hold_block(holdings, std::move(block)));
   contents.notes = std::move(read.notes);
+  contents.time_step = read.time_step;
   contents.format = std::move(read.format);
   contents.block_names = std::move(read.block_names);
   return contents;

@@ -93,7 +93,7 @@ ForeignContents contents_of_model(Holdings& holdings, const std::string& source,
   contents.format = format;
   std::optional<std::size_t> time_step;
   if (const auto step = request.find("time_step"); step != request.end()) time_step = step->get<std::size_t>();
-  const std::vector<GmshView> views = gmsh_views(time_step, source, contents.notes);
+  const std::vector<GmshView> views = gmsh_views(time_step, source, contents.notes, contents.time_step);
   for (CellBlock& block : gmsh_blocks(views, source, contents.notes))
     contents.parts.push_back(hold_block(holdings, std::move(block)));
   gmsh::clear();

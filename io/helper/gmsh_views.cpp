@@ -100,17 +100,12 @@ std::size_t TagIndex::find(std::size_t tag) const {
 }
 
 std::vector<GmshView> gmsh_views(std::optional<std::size_t> time_step, const std::string& source,
-                                 std::vector<std::string>& notes) {
+                                 std::vector<std::string>& notes, TimeStepRead& read) {
   const std::vector<KnownView> known = known_views();
   std::size_t steps = 0;
   for (const KnownView& view : known) steps = std::max(steps, view.steps);
-  if (time_step && *time_step >= std::max<std::size_t>(steps, 1))
-    throw scene::bad_input(
-        fmt::format("{}: there is no time step {}, the file has {}; count from 0", source, *time_step, steps));
-  const std::size_t step = time_step.value_or(steps == 0 ? 0 : steps - 1);
-  if (steps > 1)
-    notes.push_back(
-        fmt::format("time step {} of 0 to {}{}", step, steps - 1, time_step ? "" : " (the last is the default)"));
+  read = chosen_step(time_step, steps, source);
+  const std::size_t step = read.step;
   std::vector<GmshView> views;
   for (const KnownView& each : known) {
     if (each.steps > 1 && step >= each.steps) continue;  // it ends earlier

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "io/time_step_read.hpp"
+
 namespace tessera::io::helper {
 
 /// A list of tags (numbers that a file gives, in any order and with gaps) turned round.
@@ -34,9 +36,9 @@ struct GmshView {
   std::vector<std::vector<double>> node_values;  ///< of the nodes of each element
 };
 
-/// The views of what Gmsh has read at a time step counted from 0, or the last one. Notes say which it is, if there are
-/// several, and what is left out. Throws Error(bad_input) for a step that there is not.
+/// The views of what Gmsh has read at a time step counted from 0, or the last one. `read` says which it is, notes
+/// what is left out. Throws Error(bad_input) for a step that there is not.
 std::vector<GmshView> gmsh_views(std::optional<std::size_t> time_step, const std::string& source,
-                                 std::vector<std::string>& notes);
+                                 std::vector<std::string>& notes, TimeStepRead& read);
 
 }  // namespace tessera::io::helper

@@ -110,7 +110,7 @@ void add_field(const MedFile& file, const FieldAt& field, MedMesh& mesh, std::ve
 }  // namespace
 
 void add_med_fields(const MedFile& file, std::optional<std::size_t> time_step, std::vector<MedMesh>& meshes,
-                    std::vector<std::string>& notes) {
+                    std::vector<std::string>& notes, TimeStepRead& read) {
   const med_int count = MEDnField(file.id());
   file.require(count >= 0 && count < 100000, "the number of fields");
   std::size_t most_steps = 0;
@@ -139,12 +139,7 @@ void add_med_fields(const MedFile& file, std::optional<std::size_t> time_step, s
     for (MedMesh& mesh : meshes)
       if (mesh.block.name == field.mesh) add_field(file, field, mesh, notes);
   }
-  if (time_step && *time_step >= std::max<std::size_t>(most_steps, 1))
-    throw scene::bad_input(fmt::format("{}: there is no time step {}, the file has {}; count from 0", file.source(),
-                                       *time_step, most_steps));
-  if (most_steps > 1)
-    notes.push_back(fmt::format("time step {} of 0 to {}{}", time_step.value_or(most_steps - 1), most_steps - 1,
-                                time_step ? "" : " (the last is the default)"));
+  read = chosen_step(time_step, most_steps, file.source());
 }
 
 }  // namespace tessera::io::helper

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "io/cell_block.hpp"
+#include "io/time_step_read.hpp"
 
 namespace tessera::io::helper {
 
@@ -52,9 +53,9 @@ struct MedMesh {
 /// All meshes of three dimensions; notes name the others. Throws Error(bad_input) for polyhedra, and if there is none.
 std::vector<MedMesh> med_meshes(const MedFile& file, std::vector<std::string>& notes);
 
-/// Adds the fields of a mesh's nodes and cells at one time step, counted from 0, or the last; a note says which. Values
+/// Adds the fields of a mesh's nodes and cells at one time step, counted from 0, or the last; `read` says which. Values
 /// that the file has not are NaN. Throws Error(bad_input) for a step that no field has.
 void add_med_fields(const MedFile& file, std::optional<std::size_t> time_step, std::vector<MedMesh>& meshes,
-                    std::vector<std::string>& notes);
+                    std::vector<std::string>& notes, TimeStepRead& read);
 
 }  // namespace tessera::io::helper

@@ -19,7 +19,7 @@ ForeignContents read_med(Holdings& holdings, const std::filesystem::path& file, 
   ForeignContents contents;
   contents.format = "MED";
   std::vector<MedMesh> meshes = med_meshes(opened, contents.notes);
-  add_med_fields(opened, time_step, meshes, contents.notes);
+  add_med_fields(opened, time_step, meshes, contents.notes, contents.time_step);
   for (MedMesh& mesh : meshes) contents.parts.push_back(hold_block(holdings, std::move(mesh.block)));
   return contents;
 }

@@ -131,13 +131,8 @@ ForeignContents read_minc2(Holdings& holdings, const std::filesystem::path& file
   contents.format = "MINC 2";
   std::optional<std::size_t> wish;
   if (const auto step = request.find("time_step"); step != request.end()) wish = step->get<std::size_t>();
-  const std::size_t steps = axes.size() == 4 ? axes.front().size : 1, step = wish.value_or(steps - 1);
-  if (step >= steps)
-    throw scene::bad_input(
-        fmt::format("{}: there is no time step {}, the file has {}; count from 0", source, step, steps));
-  if (steps > 1)
-    contents.notes.push_back(
-        fmt::format("time step {} of 0 to {}{}", step, steps - 1, wish ? "" : " (the last is the default)"));
+  contents.time_step = chosen_step(wish, axes.size() == 4 ? axes.front().size : 1, source);
+  const std::size_t step = contents.time_step.step;
   ForeignPart& part = contents.parts.emplace_back();
   part.kind = ForeignPart::Kind::image;
   std::vector<misize_t> first, counts;

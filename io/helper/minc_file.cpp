@@ -52,14 +52,8 @@ ForeignContents read_minc(Holdings& holdings, const std::filesystem::path& file,
     reader->RescaleRealValuesOn();
     reader->UpdateInformation();
     const auto steps = static_cast<std::size_t>(std::max(reader->GetNumberOfTimeSteps(), 1));
-    const std::size_t step = wish.value_or(steps - 1);
-    if (step >= steps)
-      throw scene::bad_input(
-          fmt::format("{}: there is no time step {}, the file has {}; count from 0", source, step, steps));
-    if (steps > 1)
-      contents.notes.push_back(
-          fmt::format("time step {} of 0 to {}{}", step, steps - 1, wish ? "" : " (the last is the default)"));
-    reader->SetTimeStep(static_cast<int>(step));
+    contents.time_step = chosen_step(wish, steps, source);
+    reader->SetTimeStep(static_cast<int>(contents.time_step.step));
     reader->Update();
   });
   if (!warning.empty()) contents.notes.push_back("VTK warns: " + warning);

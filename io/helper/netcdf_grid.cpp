@@ -311,7 +311,7 @@ ForeignContents read_netcdf(Holdings& holdings, const std::filesystem::path& fil
       throw scene::bad_input(fmt::format(
           "{}: none of its variables has three dimensions (beside time); give a file of a grid in space", source));
     prepare(*reader, choose_grid(grids, request.value("field", ""), contents.notes).dimensions);
-    only_look ? reader->UpdateInformation() : update_at_step(*reader, request, source, contents.notes);
+    only_look ? reader->UpdateInformation() : update_at_step(*reader, request, source, contents.time_step);
   });
   if (!warning.empty()) contents.notes.push_back("VTK warns: " + warning);
   auto* const data = vtkDataSet::SafeDownCast(reader->GetOutputDataObject(0));

@@ -44,7 +44,7 @@ ForeignContents read_by(Holdings& holdings, Reader& reader, const std::filesyste
   const std::string warning = with_quiet_vtk(source, write_anew, [&] {
     reader.UpdateInformation();
     choose();
-    update_at_step(reader, request, source, contents.notes);
+    update_at_step(reader, request, source, contents.time_step);
   });
   if (!warning.empty()) contents.notes.push_back("VTK warns: " + warning);
   vtkDataObject* const data = reader.GetOutputDataObject(0);

@@ -1,6 +1,5 @@
 #include "io/helper/time_steps.hpp"
 
-#include <fmt/format.h>
 #include <vtkAlgorithm.h>
 #include <vtkInformation.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
@@ -9,12 +8,11 @@
 #include <optional>
 
 #include "io/helper/vtk_session.hpp"
-#include "scene/error.hpp"
 
 namespace tessera::io::helper {
 
 void update_at_step(vtkAlgorithm& reader, const nlohmann::json& request, const std::string& source,
-                    std::vector<std::string>& notes) {
+                    TimeStepRead& read) {
   std::optional<std::size_t> wish;
   if (const auto step = request.find("time_step"); step != request.end()) wish = step->get<std::size_t>();
   watch_progress(reader);
@@ -23,18 +21,12 @@ void update_at_step(vtkAlgorithm& reader, const nlohmann::json& request, const s
   vtkInformation* const about = reader.GetOutputInformation(0);
   const auto steps =
       static_cast<std::size_t>(about != nullptr && about->Has(key) ? std::max(about->Length(key), 0) : 0);
-  if (wish && *wish >= std::max<std::size_t>(steps, 1))
-    throw scene::bad_input(
-        fmt::format("{}: there is no time step {}, the file has {}; count from 0", source, *wish, steps));
+  read = chosen_step(wish, steps, source);
   if (steps == 0) {
     reader.Update();
     return;
   }
-  const std::size_t step = wish.value_or(steps - 1);
-  if (steps > 1)
-    notes.push_back(
-        fmt::format("time step {} of 0 to {}{}", step, steps - 1, wish ? "" : " (the last is the default)"));
-  reader.UpdateTimeStep(about->Get(key, static_cast<int>(step)));
+  reader.UpdateTimeStep(about->Get(key, static_cast<int>(read.step)));
 }
 
 }  // namespace tessera::io::helper

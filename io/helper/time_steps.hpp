@@ -2,7 +2,6 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "io/foreign_data.hpp"
 
@@ -10,10 +9,8 @@ class vtkAlgorithm;
 
 namespace tessera::io::helper {
 
-/// Has a reader that knows its file's time steps read one: the request's `time_step`, counted from 0, or the last. A
-/// note says which, if there are several. Within with_quiet_vtk(). Throws Error(bad_input) for a step that there is
-/// not.
-void update_at_step(vtkAlgorithm& reader, const nlohmann::json& request, const std::string& source,
-                    std::vector<std::string>& notes);
+/// Has a reader that knows its file's time steps read one: the request's `time_step`, counted from 0, or the
+/// last; `read` says which. Within with_quiet_vtk(). Throws Error(bad_input) for a step that there is not.
+void update_at_step(vtkAlgorithm& reader, const nlohmann::json& request, const std::string& source, TimeStepRead& read);
 
 }  // namespace tessera::io::helper

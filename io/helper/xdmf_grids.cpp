@@ -89,16 +89,14 @@ class Walk {
 }  // namespace
 
 std::vector<XdmfBlock> blocks_at(const boost::shared_ptr<XdmfDomain>& domain, std::optional<std::size_t> time_step,
-                                 const std::string& source, std::vector<std::string>& notes) {
+                                 const std::string& source, TimeStepRead& read) {
   Walk walk(time_step, source);
   const std::vector<Grid> grids = children_of(*domain);
   for (const Grid& grid : grids) walk.visit(grid, grids.size() > 1 ? grid->getName() : "");
   if (walk.steps == 0 && time_step.value_or(0) > 0)
     throw scene::bad_input(
         fmt::format("{}: there is no time step {}, the file has none; leave it out", source, *time_step));
-  if (walk.steps > 1)
-    notes.push_back(fmt::format("time step {} of 0 to {}{}", walk.step, walk.steps - 1,
-                                time_step ? "" : " (the last is the default)"));
+  read = {walk.steps, walk.step};
   return std::move(walk.blocks);
 }
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "io/time_step_read.hpp"
+
 class XdmfDomain;
 class XdmfGrid;
 
@@ -18,9 +20,9 @@ struct XdmfBlock {
 };
 
 /// The grids of a domain: of collections in space all; of collections in time those of one step, counted from 0, or the
-/// last. Steps are in the order of their times, if all have one. A note says which step, if there are several. Throws
+/// last. Steps are in the order of their times, if all have one. `read` says which step it is. Throws
 /// Error(bad_input) for a step that there is not.
 std::vector<XdmfBlock> blocks_at(const boost::shared_ptr<XdmfDomain>& domain, std::optional<std::size_t> time_step,
-                                 const std::string& source, std::vector<std::string>& notes);
+                                 const std::string& source, TimeStepRead& read);
 
 }  // namespace tessera::io::helper

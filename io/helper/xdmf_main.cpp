@@ -190,7 +190,7 @@ ForeignContents read(Holdings& holdings, const std::filesystem::path& file, cons
   if (const auto step = request.find("time_step"); step != request.end()) time_step = step->get<std::size_t>();
   ForeignContents contents;
   contents.format = "XDMF";
-  std::vector<XdmfBlock> blocks = blocks_at(domain, time_step, source, contents.notes);
+  std::vector<XdmfBlock> blocks = blocks_at(domain, time_step, source, contents.time_step);
   if (blocks.empty()) throw scene::bad_input(fmt::format("{}: it holds no grid; give a mesh or a volume", source));
   for (const XdmfBlock& block : blocks) contents.block_names.push_back(block.name);
   const auto choice = request.value("blocks", BlockChoice());

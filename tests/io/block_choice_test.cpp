@@ -54,7 +54,10 @@ TEST(BlockChoice, ANameOfNoBlockIsRefusedWithThoseThereAre) {
   std::string many = "NZONE= 40\n";
   for (int k = 0; k < 40; ++k) many += zone(k, k);
   test::expect_bad_input([&] { read_mesh(folder.write("b.su2", many), options); }, {"'wing'", "and 28 more"});
+  options.blocks = {"ZONE-37"};
+  test::expect_bad_input([&] { read_mesh(folder.write("b.su2", many), options); }, {"the nearest is 'zone 37'"});
   const auto plain = folder.write("c.su2", zone(1, 0).substr(9));
+  options.blocks = {"zone 1"};
   test::expect_bad_input([&] { read_mesh(plain, options); }, {"no block 'zone 1'", "leave `block` out"});
 }
 

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "scene/error.hpp"
+
+namespace tessera::io {
+
+/// Which of a file's time steps was read.
+struct TimeStepRead {
+  std::uint64_t count = 1;  ///< that the file has; 1, or 0: it does not change with time
+  std::uint64_t step = 0;   ///< counted from 0
+};
+
+/// Of so many steps the one that is asked for, the last if none is. Throws Error(bad_input) if it is not there.
+inline TimeStepRead chosen_step(std::optional<std::size_t> wish, std::uint64_t count, const std::string& source) {
+  if (wish && *wish >= std::max<std::uint64_t>(count, 1))
+    throw scene::bad_input(
+        fmt::format("{}: there is no time step {}, the file has {}; count from 0", source, *wish, count));
+  return {count, wish.value_or(count == 0 ? 0 : count - 1)};
+}
+
+/// What a file's notes say of it; nothing if there is but one.
+inline std::optional<std::string> note_on(const TimeStepRead& read, std::optional<std::size_t> wish) {
+  if (read.count <= 1) return std::nullopt;
+  return fmt::format("time step {} of 0 to {}{}", read.step, read.count - 1,
+                     wish ? "" : ", the last by default; `time_step` all shows them as a film");
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,42 @@
+#include "scene/selection.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <glm/common.hpp>
+
+#include "scene/error.hpp"
+
+namespace tessera {
+namespace {
+
+bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+}  // namespace
+
+std::array<HalfSpace, 6> half_spaces_of(const Box& box) {
+  std::array<HalfSpace, 6> sides;
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::dvec3 normal(0);
+    normal[axis] = 1;
+    sides[static_cast<std::size_t>(2 * axis)] = {box.low, normal};
+    sides[static_cast<std::size_t>(2 * axis + 1)] = {box.high, -normal};
+  }
+  return sides;
+}
+
+void validate(const Selection& selection) {
+  for (const HalfSpace& h : selection.clip) {
+    if (!finite(h.point) || !finite(h.normal))
+      throw scene::bad_input("`clip`: a plane's numbers are not all finite; give a point and a normal");
+    if (h.normal == glm::dvec3(0))
+      throw scene::bad_input("`clip`: a normal of 0,0,0 points nowhere; say which side is to be kept");
+  }
+  if (!selection.threshold) return;
+  const auto [low, high] = *selection.threshold;
+  if (!(low <= high))
+    throw scene::bad_input(
+        fmt::format("`threshold`: {:g} to {:g} is no range; give the smaller number first", low, high));
+}
+
+}  // namespace tessera

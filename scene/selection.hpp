@@ -1,0 +1,20 @@
+#pragma once
+
+#include <algorithm>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "tessera/selection.hpp"
+
+namespace tessera::scene {
+
+using tessera::HalfSpace;
+using tessera::Selection;
+
+/// Of length 1, whatever the length that is given.
+inline glm::dvec3 unit_normal(const HalfSpace& h) {
+  const glm::dvec3 size = glm::abs(h.normal);
+  return glm::normalize(h.normal / std::max({size.x, size.y, size.z}));
+}
+
+}  // namespace tessera::scene

@@ -1,0 +1,92 @@
+// `--clip` and `--threshold`, as users give them.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/program.hpp"
+
+namespace tessera::apps {
+namespace {
+
+using Names = std::vector<std::string>;
+
+class ClipCommand : public ::testing::Test {
+ protected:
+  Outcome render(const Names& more) const {
+    Names all = {"render", mesh, "-o", folder / "a.pfm", "--size", "40x30"};
+    all.insert(all.end(), more.begin(), more.end());
+    return tessera(all);
+  }
+
+  Folder folder;
+  std::string mesh = folder.cube();  // [-1, 1]^3
+};
+
+TEST_F(ClipCommand, IsCountedAndVerifiedByTheWhole) {
+  const Outcome outcome = render({"--clip", "-0.3,0,0,1,0.2,0", "--clip", "box:-2,-2,-2,2,0.5,0.4", "--integrator",
+                                  "exact", "--verify", "1200", "--report", folder / "r.json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err << outcome.out;
+  EXPECT_NE(outcome.err.find(" clipped away, "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.out.find("1200 pixels"), std::string::npos) << outcome.out;
+  const auto selection = nlohmann::json::parse(contents(folder / "r.json")).at("mesh").at("selection");
+  EXPECT_GT(selection.at("cells_clipped"), 0);
+  EXPECT_GT(selection.at("cells_cut"), 0);
+  EXPECT_EQ(selection.at("cells_out_of_range"), 0);
+}
+
+TEST_F(ClipCommand, IsWrittenByConvert) {
+  const std::string half = folder / "half.vtu";
+  ASSERT_EQ(tessera({"convert", mesh, half, "--clip", "0,0,0,0,0,1", "--quiet"}).status, 0);
+  const Outcome info = tessera({"info", half});
+  ASSERT_EQ(info.status, 0) << info.err;
+  EXPECT_NE(info.out.find("bounds    (-1 -1 0) to (1 1 1)"), std::string::npos) << info.out;
+}
+
+TEST_F(ClipCommand, SaysWhatIsWrongInOneLine) {
+  const std::pair<Names, std::string> faults[] = {
+      {{"--clip", "1,2,3"}, "--clip: '1,2,3' is not PX,PY,PZ,NX,NY,NZ"},
+      {{"--clip", "0,0,0,0,0,0"}, "has the normal 0,0,0"},
+      {{"--clip", "box:0,0,0,0,1,1"}, "is flat; give two opposite corners"},
+      {{"--clip", "9,0,0,1,0,0"}, "nothing is on the side that --clip keeps"},
+      {{"--threshold", "3,2"}, "give the smaller number first"},
+      {{"--threshold", "1"}, "is not MIN,MAX"},
+      {{"--threshold", "900,901"}, "no cell has all its values in --threshold"}};
+  for (const auto& [arguments, words] : faults) {
+    const Outcome outcome = render(arguments);
+    EXPECT_EQ(outcome.status, 2) << words;
+    EXPECT_EQ(outcome.error_lines(), 1u) << outcome.err;
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+  }
+}
+
+TEST_F(ClipCommand, GivesOnePictureOnAnyNumberOfRanks) {
+  if (!has_mpirun()) GTEST_SKIP() << "no mpirun";
+  const std::string pieces = folder / "pieces.pvtu";
+  ASSERT_EQ(tessera({"convert", mesh, pieces, "--pieces", "4", "--quiet"}).status, 0);
+  const Names looks = {"--clip",
+                       "0.1,0,0,-1,0.3,0.2",
+                       "--threshold=-0.8,0.9",
+                       "--exchange",
+                       "segments",
+                       "--threads",
+                       "1",
+                       "--transfer-function",
+                       "viridis",
+                       "--size",
+                       "40x30",
+                       "--quiet"};
+  for (const std::string& input : {mesh, pieces}) {
+    Names alone = {"render", input, "-o", folder / "one.pfm"}, ranks = {"render", input, "-o", folder / "three.pfm"};
+    alone.insert(alone.end(), looks.begin(), looks.end());
+    ranks.insert(ranks.end(), looks.begin(), looks.end());
+    ranks.insert(ranks.end(), {"--verify", "100"});
+    ASSERT_EQ(tessera(alone).status, 0);
+    const Outcome outcome = mpirun(3, ranks);
+    ASSERT_EQ(outcome.status, 0) << outcome.err << outcome.out;
+    EXPECT_EQ(contents(folder / "one.pfm"), contents(folder / "three.pfm")) << input;
+  }
+}
+
+}  // namespace
+}  // namespace tessera::apps

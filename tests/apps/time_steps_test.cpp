@@ -1,0 +1,104 @@
+// `--time-step` of files that have several: one of them, or a film.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "apps/program.hpp"
+
+namespace tessera::apps {
+namespace {
+
+using Names = std::vector<std::string>;
+
+class TimeSteps : public ::testing::Test {
+ protected:
+  /// 5^3 samples at four times: a ramp along x that is shifted by 10 a step.
+  void SetUp() override {
+    std::string text =
+        "NRRD0004\ntype: uint8\ndimension: 4\nsizes: 5 5 5 4\nkinds: domain domain domain time\n"
+        "spacings: 1 1 1 nan\nencoding: raw\n\n";
+    for (int step = 0; step < 4; ++step)
+      for (int sample = 0; sample < 125; ++sample) text += static_cast<char>(10 * step + sample % 5);
+    std::ofstream(volume, std::ios::binary) << text;
+  }
+
+  Outcome render(const std::string& output, const std::string& steps, const Names& more = {}) const {
+    Names all = {"render", volume, "-o", folder / output, "--size", "20x20", "--range", "0,40"};
+    if (!steps.empty()) all.insert(all.end(), {"--time-step", steps});
+    all.insert(all.end(), more.begin(), more.end());
+    return tessera(all);
+  }
+
+  Folder folder;
+  std::string volume = folder / "v.nrrd";
+};
+
+TEST_F(TimeSteps, AFilmHasThePictureOfEachStep) {
+  const Names looks = {"--transfer-function", "viridis", "--no-shade"};
+  const Outcome all =
+      render("all_%d.pfm", "all",
+             {"--report", folder / "r.json", "--verify", "50", "--transfer-function", "viridis", "--no-shade"});
+  ASSERT_EQ(all.status, 0) << all.err;
+  const auto frames = nlohmann::json::parse(contents(folder / "r.json")).at("frames");
+  ASSERT_EQ(frames.size(), 4u);
+  for (std::size_t step = 0; step < 4; ++step) {
+    EXPECT_EQ(frames.at(step).at("time_step"), step);
+    ASSERT_EQ(render("one.pfm", std::to_string(step), looks).status, 0);
+    EXPECT_EQ(contents(folder / "one.pfm"), contents(folder / ("all_" + std::to_string(step) + ".pfm"))) << step;
+  }
+  ASSERT_EQ(render("some_%d.pfm", "1:3:2", looks).status, 0);
+  EXPECT_EQ(contents(folder / "some_0.pfm"), contents(folder / "all_1.pfm"));
+  EXPECT_EQ(contents(folder / "some_1.pfm"), contents(folder / "all_3.pfm"));
+  EXPECT_NE(contents(folder / "all_1.pfm"), contents(folder / "all_3.pfm"));
+}
+
+TEST_F(TimeSteps, SaysWhichIsShownAndHowToSeeAll) {
+  const Outcome one = render("a.pfm", "");
+  EXPECT_NE(one.err.find("note: time step 3 of 0 to 3, the last by default; --time-step all shows them as a film"),
+            std::string::npos)
+      << one.err;
+}
+
+TEST_F(TimeSteps, WarnsIfLaterStepsLeaveTheRangeOfTheFirst) {
+  const Names film = {"render", volume, "-o", folder / "w_%d.pfm", "--size", "8x8", "--time-step", "all"};
+  const Outcome outcome = tessera(film);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("values of all time steps are from 0 to 34, colours are the first's, of 0 to 4; --range "
+                             "0,34 spans all"),
+            std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(render("w_%d.pfm", "all").err.find("spans all"), std::string::npos);
+}
+
+TEST_F(TimeSteps, SeriesAreChosenFromTheSameWay) {
+  const std::string cube = folder.cube();
+  const std::string list =
+      folder.file("f.pvd", "<VTKFile type=\"Collection\"><Collection><DataSet timestep=\"0\" file=\"" + cube +
+                               "\"/><DataSet timestep=\"2\" file=\"" + cube + "\"/></Collection></VTKFile>");
+  EXPECT_EQ(tessera({"render", list, "-o", folder / "s.png", "--size", "8x8", "--time-step", "1"}).status, 0);
+  const Outcome beyond = tessera({"render", list, "-o", folder / "s.png", "--size", "8x8", "--time-step", "2"});
+  EXPECT_EQ(beyond.status, 2);
+  EXPECT_NE(beyond.err.find("there is no time step 2, it has 2"), std::string::npos) << beyond.err;
+}
+
+TEST_F(TimeSteps, WrongStepsAreOneLine) {
+  const std::pair<std::string, std::string> faults[] = {{"0:4", "there is no time step 4, it has 4"},
+                                                        {"3:1", "ends before it begins"},
+                                                        {"0:3:0", "is not a whole number from 1 up"},
+                                                        {"x:3", "is not a whole number from 0 up"},
+                                                        {"all", "4 frames need a numbered name"}};
+  for (const auto& [steps, words] : faults) {
+    const Outcome outcome = render("one.pfm", steps);
+    EXPECT_EQ(outcome.status, 2) << steps;
+    EXPECT_EQ(outcome.error_lines(), 1u) << outcome.err;
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+  }
+  const Outcome info = tessera({"info", volume, "--time-step", "all"});
+  EXPECT_EQ(info.status, 2);
+  EXPECT_NE(info.err.find("which only render makes"), std::string::npos) << info.err;
+}
+
+}  // namespace
+}  // namespace tessera::apps
