@@ -21,7 +21,7 @@ namespace tessera::exchange {
 static_assert(std::endian::native == std::endian::little, "messages are little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 10;        ///< the next one whenever a message changes
+inline constexpr std::uint16_t wire_version = 11;        ///< the next one whenever a message changes
 
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
@@ -55,7 +55,8 @@ enum class MessageKind : std::uint16_t {
   host = 19,              ///< text: the machine's name
   device = 20,            ///< text: the compositing device's name, empty where none composites
   read_in_parts = 21,     ///< u8: 1: all projectors read
-  field_tallies = 22,     ///< u64 fields; of each a field, u8 any_finite; f64 box of higher-order cells[6]
+  field_tallies = 22,     ///< u64 fields; of each a field, u8 any_finite; f64 box of higher-order cells[6],
+                          ///< texts of block names
   part_summary = 23,      ///< MeshCounts, HigherOrderCells, texts of reading, of cells, u64 words of used points
   mesh_description = 24,  ///< MeshCounts, HigherOrderCells, u64 fields, fields, u64 notes, texts, text format, text
                           ///< field, u8 association

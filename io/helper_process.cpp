@@ -23,6 +23,7 @@
 #include <string_view>
 #include <utility>
 
+#include "io/large_vector.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -329,6 +330,14 @@ void HelperProcess::stream(const ForeignArray& array, const std::string& subject
     }
   }
   drop(std::span(&array.number, 1));
+}
+
+std::vector<std::byte> HelperProcess::copy(const ForeignArray& array, const std::string& subject) {
+  std::vector<std::byte> all;
+  reserve_large(all, array.bytes());
+  stream(array, subject,
+         [&](std::span<const std::byte> tuples) { all.insert(all.end(), tuples.begin(), tuples.end()); });
+  return all;
 }
 
 SharedBytes HelperProcess::take(const ForeignArray& array, const std::string& subject, bool keep) {

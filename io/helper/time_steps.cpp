@@ -26,15 +26,23 @@ void update_at_step(vtkAlgorithm& reader, const nlohmann::json& request, const s
   if (wish && *wish >= std::max<std::size_t>(steps, 1))
     throw scene::bad_input(
         fmt::format("{}: there is no time step {}, the file has {}; count from 0", source, *wish, steps));
+  const int part = request.value("part", 0), parts = request.value("parts", 1);
   if (steps == 0) {
-    reader.Update();
+    if (parts > 1)
+      reader.UpdatePiece(part, parts, 0);
+    else
+      reader.Update();
     return;
   }
   const std::size_t step = wish.value_or(steps - 1);
   if (steps > 1)
     notes.push_back(
         fmt::format("time step {} of 0 to {}{}", step, steps - 1, wish ? "" : " (the last is the default)"));
-  reader.UpdateTimeStep(about->Get(key, static_cast<int>(step)));
+  const double time = about->Get(key, static_cast<int>(step));
+  if (parts > 1)
+    reader.UpdateTimeStep(time, part, parts);
+  else
+    reader.UpdateTimeStep(time);
 }
 
 }  // namespace tessera::io::helper

@@ -40,15 +40,17 @@ struct InParts {
 InParts read_in_parts(const std::filesystem::path& file, int parts, const MeshOptions& options = {}) {
   std::vector<std::unique_ptr<MeshPartReading>> readings;
   std::vector<std::vector<FieldTally>> tallies;
+  std::vector<std::string> names;
   for (int p = 0; p < parts; ++p) {
     readings.push_back(std::make_unique<MeshPartReading>(file, options, p, parts));
     tallies.push_back(readings.back()->tallies());
+    add_notes(readings.back()->block_names(), names);
   }
   scene::Box box = higher_order_box({});
   for (const auto& reading : readings) box = joined(box, reading->box());
   ExcessTally excess{};
   for (const auto& reading : readings) {
-    reading->choose(tallies, box);
+    reading->choose(tallies, box, names);
     const ExcessTally own = reading->excess();
     for (std::size_t bin = 0; bin < own.size(); ++bin) excess[bin] += own[bin];
   }
