@@ -112,6 +112,7 @@ class HelperProcess {
   SharedBytes window_;                     ///< of slots for stream(); empty until it is needed
   std::uint64_t expected_ = 0, came_ = 0;  ///< bytes of stream()
   bool has_begun_ = false;                 ///< it has said that it is there
+  std::string reading_;                    ///< the file that it is at, of several; empty: it has not said
   std::optional<HelperDeath> death_;       ///< once it is dead
 };
 

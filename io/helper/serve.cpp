@@ -134,6 +134,13 @@ void report_progress(double done) {
   }
 }
 
+void report_reading(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  static_cast<void>(
+      send_message(socket_to_caller,
+                   Json::to_cbor({{"reading", Json::binary(std::vector<std::uint8_t>(name.begin(), name.end()))}})));
+}
+
 void serve(std::span<const Reader> readers) {
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
