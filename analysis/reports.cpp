@@ -149,6 +149,8 @@ Json transfer_function_json(const LoadedTransferFunction& loaded) {
   for (const auto& knot : loaded.function.knots())
     knots.push_back({knot.value, knot.color.x, knot.color.y, knot.color.z, knot.extinction});
   Json json = {{"name", loaded.name}};
+  if (loaded.range) json["range"] = *loaded.range;
+  if (!loaded.warnings.empty()) json["warnings"] = loaded.warnings;
   if (loaded.unit_distance)
     json["unit_distance"] = {{"value", *loaded.unit_distance}, {"source", loaded.unit_distance_source}};
   json["knots"] = knots;

@@ -29,6 +29,21 @@ Error wrong(const std::string& option, const std::string& text, const std::strin
   return bad_input(fmt::format("{}: '{}' is not {}", option, text, allowed));
 }
 
+/// `#rrggbb` of sRGB in linear light (IEC 61966-2-1).
+std::optional<std::array<float, 3>> color_of_hex(std::string_view text) {
+  if (text.size() != 7) return std::nullopt;
+  std::array<float, 3> color{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    unsigned byte = 0;
+    const char* const first = text.data() + 1 + 2 * c;
+    const auto [end, error] = std::from_chars(first, first + 2, byte, 16);
+    if (error != std::errc() || end != first + 2) return std::nullopt;
+    const double display = byte / 255.0;
+    color[c] = static_cast<float>(display <= 0.04045 ? display / 12.92 : std::pow((display + 0.055) / 1.055, 2.4));
+  }
+  return color;
+}
+
 }  // namespace
 
 ImageSize parse_size(const std::string& option, const std::string& text) {
@@ -116,7 +131,8 @@ WithoutWords parse_without(const std::string& option, const std::string& text) {
 
 std::array<float, 3> parse_color(const std::string& option, const std::string& text) {
   constexpr auto allowed =
-      "a colour; write R,G,B (linear light, 0 or more) or one of black, white, gray, red, green, blue";
+      "a colour; write R,G,B (linear light, 0 or more), #rrggbb (sRGB) or one of black, white, gray, lightgray, "
+      "darkgray, red, green, blue, yellow, cyan, magenta, orange, navy";
   constexpr float middle_gray = 0.2158f;  // sRGB 0.5
   constexpr std::pair<std::string_view, std::array<float, 3>> names[] = {
       {"black", {0, 0, 0}},
@@ -125,9 +141,22 @@ std::array<float, 3> parse_color(const std::string& option, const std::string& t
       {"grey", {middle_gray, middle_gray, middle_gray}},
       {"red", {1, 0, 0}},
       {"green", {0, 1, 0}},
-      {"blue", {0, 0, 1}}};
+      {"blue", {0, 0, 1}},
+      {"yellow", {1, 1, 0}},
+      {"cyan", {0, 1, 1}},
+      {"magenta", {1, 0, 1}}};
   for (const auto& [name, color] : names)
     if (text == name) return color;
+  constexpr std::pair<std::string_view, std::string_view> hexadecimal[] = {
+      {"lightgray", "#d3d3d3"}, {"lightgrey", "#d3d3d3"}, {"darkgray", "#404040"},
+      {"darkgrey", "#404040"},  {"orange", "#ffa500"},    {"navy", "#000080"}};
+  for (const auto& [name, digits] : hexadecimal)
+    if (text == name) return *color_of_hex(digits);
+  if (text.starts_with('#')) {
+    const auto color = color_of_hex(text);
+    if (!color) throw wrong(option, text, allowed);
+    return *color;
+  }
 
   std::array<float, 3> color{};
   std::string_view rest = text;
@@ -152,6 +181,19 @@ double parse_positive(const std::string& option, const std::string& text) {
   const auto value = number<double>(text);
   if (!value || !std::isfinite(*value) || !(*value > 0)) throw wrong(option, text, "a number above 0");
   return *value;
+}
+
+glm::dvec3 parse_vector(const std::string& option, const std::string& text, bool positive) {
+  glm::dvec3 values;
+  std::size_t at = 0;
+  for (int k = 0; k < 3; ++k) {
+    const std::size_t stop = k < 2 ? text.find(',', at) : text.size();
+    if (stop == std::string::npos) throw wrong(option, text, "three numbers; write X,Y,Z");
+    const std::string word = text.substr(at, stop - at);
+    values[k] = positive ? parse_positive(option, word) : parse_number(option, word);
+    at = stop + 1;
+  }
+  return values;
 }
 
 int parse_count(const std::string& option, const std::string& text, int low, int high) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <string>
 
 #include "tessera/camera.hpp"
@@ -37,6 +38,9 @@ WithoutWords parse_without(const std::string& option, const std::string& text);
 std::array<float, 3> parse_color(const std::string& option, const std::string& text);
 
 /// A finite number.
+/// `X,Y,Z`.
+glm::dvec3 parse_vector(const std::string& option, const std::string& text, bool positive);
+
 double parse_number(const std::string& option, const std::string& text);
 
 /// A number that is finite and above zero.

@@ -5,6 +5,7 @@
 #include "apps/argument_values.hpp"
 #include "apps/progress.hpp"
 #include "apps/report.hpp"
+#include "apps/stderr_lines.hpp"
 #include "datasets/arrays.hpp"
 #include "datasets/modify.hpp"
 #include "tessera/error.hpp"
@@ -59,8 +60,8 @@ void convert_mesh(const std::filesystem::path& input, const std::filesystem::pat
     parts = fmt::format(
         " and {} pieces ({}{})", pieces->count, order_words(pieces->partition.kind),
         pieces->partition.kind == PartitionKind::random ? fmt::format(", seed {}", pieces->partition.seed) : "");
-  fmt::print(stderr, "{}: {}; field {} written to {}{}\n", input.string(), cells_line(data.mesh_counts()),
-             data.field_name(), output.string(), parts);
+  say_lines(fmt::format("{}: {}; field {} written to {}{}", input.string(), cells_line(data.mesh_counts()),
+                        data.field_name(), output.string(), parts));
 }
 
 void convert_grid(const std::filesystem::path& input, const std::filesystem::path& output, const ReadOptions& options,
@@ -78,8 +79,8 @@ void convert_grid(const std::filesystem::path& input, const std::filesystem::pat
     how_to_read = fmt::format("; read it with --dims {}x{}x{} --type {} --spacing {},{},{} --origin {},{},{}",
                               g.points[0], g.points[1], g.points[2], name_of(written_type(data)), g.spacing.x,
                               g.spacing.y, g.spacing.z, g.origin.x, g.origin.y, g.origin.z);
-  fmt::print(stderr, "{}: {}; field {} written to {}{}\n", input.string(), samples_line(described(data)),
-             data.field_name(), output.string(), how_to_read);
+  say_lines(fmt::format("{}: {}; field {} written to {}{}", input.string(), samples_line(described(data)),
+                        data.field_name(), output.string(), how_to_read));
 }
 
 }  // namespace tessera::apps

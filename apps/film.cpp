@@ -4,13 +4,19 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <utility>
 
+#include "apps/frame_annotation.hpp"
+#include "apps/picture_queue.hpp"
+#include "apps/picture_writer.hpp"
 #include "apps/progress.hpp"
 #include "apps/report.hpp"
 #include "apps/run_output.hpp"
 #include "apps/setting_words.hpp"
+#include "tessera/image_file.hpp"
 #include "tessera/session.hpp"
 #include "tessera/trace.hpp"
 
@@ -23,9 +29,11 @@ std::filesystem::path cost_name(const std::filesystem::path& picture) {
   return name.replace_extension().concat(".cost").concat(picture.extension().string());
 }
 
-/// With --show balance every picture has its cost map beside it.
+/// With --show balance every picture has its cost map beside it; an annotation's layer is a frame's last picture.
 std::vector<FilmFrame> frames_of(const RenderOptions& options) {
-  std::vector<FilmFrame> frames = plan_film(options.plan);
+  FilmPlan plan = options.plan;
+  if (!options.annotation.layer.empty()) plan.outputs.push_back(options.annotation.layer);
+  std::vector<FilmFrame> frames = plan_film(plan);
   if (!options.show_balance) return frames;
   for (FilmFrame& frame : frames) {
     const std::size_t pictures = frame.outputs.size();
@@ -69,6 +77,8 @@ class Film final : public Sink {
       }
       first = last;
     }
+    if (writes_) pictures_.add([this] { picture_writer_.finish(); });
+    pictures_.finish();
     skip_to(frames_.size());
     if (timed()) write_trace();
     std::vector<std::byte> code(1);
@@ -87,12 +97,13 @@ class Film final : public Sink {
     const FilmFrame& frame = frames_[at];
     FrameRecord record;
     record.camera = camera_of(frame);
-    {
-      const TraceScope scope(timed() ? &compositing_ : nullptr, "write",
-                             static_cast<std::int32_t>(jobs_before_ + rendered.number));
-      write_pictures(rendered.image, rendered.deep, frame, options_);
-    }
-    say(frame, rendered, std::move(record));
+    const auto number = static_cast<std::int32_t>(jobs_before_ + rendered.number);
+    const auto picture = std::make_shared<const RenderedFrame>(std::move(rendered));
+    pictures_.add([this, picture, annotated = annotated_frame(frame, record.camera), number] {
+      const TraceScope scope(timed() ? &compositing_ : nullptr, "write", number);
+      write_annotated(picture->image, picture->deep, annotated, picture_writer_);
+    });
+    say(frame, *picture, std::move(record));
   }
 
  private:
@@ -110,7 +121,11 @@ class Film final : public Sink {
   /// The writing rank's view of the disk holds for all.
   void agree_on_finished_frames() {
     if (writes_) {
-      const std::array more = {options_.report, options_.timing};
+      check_annotation(options_.annotation);
+      std::vector<std::filesystem::path> more = options_.films;
+      if (!options_.report_to_standard_output) more.push_back(options_.report);
+      more.push_back(options_.timing);
+      PictureWriter::check(options_, frames_);
       const std::array inputs = {options_.input(), options_.plan.cameras, options_.read.plot3d_q,
                                  std::filesystem::path(options_.transfer_function)};
       check_film_outputs(frames_, more, inputs);
@@ -125,7 +140,9 @@ class Film final : public Sink {
     for (; writes_ && next_ < frame; ++next_) output_.skip(options_, frames_[next_]);
   }
 
-  [[nodiscard]] Camera camera_of(const FilmFrame& frame) const { return frame.view(*box_, options_.projection); }
+  [[nodiscard]] Camera camera_of(const FilmFrame& frame) const {
+    return frame.view(*box_, options_.projection, options_.view, axes_);
+  }
 
   void open(const FilmFrame& frame, const ReadOptions& read) {
     frame.require_still_there();
@@ -151,6 +168,15 @@ class Film final : public Sink {
     }
   }
 
+  /// What the default transfer function means to be shaded is so, unless an option of the run speaks against it.
+  void shade_by_default() {
+    if (!loaded_.shaded || options_.no_shade || options_.frame.deep || settings_.grid.shading) return;
+    if (takes_steps(settings_.integrator) || settings_.emission != Emission::absorption) return;
+    settings_.grid.shading.emplace();
+    options_.settings.grid.shading = settings_.grid.shading;
+    if (writes_) output_.note("method", method_json(options_, job_.size()));
+  }
+
   /// Of the data at hand, with what its higher-order cells do to pixels.
   [[nodiscard]] analysis::Description description() const {
     analysis::Description data = described(*data_);
@@ -169,7 +195,10 @@ class Film final : public Sink {
       open(frames_.front(), read_);
       loaded_ = transfer_function_of(*data_, options_);
       come_near_enough();
+      shade_by_default();
+      if (writes_) check_annotation(options_.annotation, frame, *data_, loaded_.function);
       box_ = data_->bounds();
+      axes_ = data_->body_axes();
       tets_ = data_->tet_count();
       later_read_ = read_of_later_steps(read_, *data_);
       if (writes_) output_.describe(options_, description(), loaded_);
@@ -196,12 +225,25 @@ class Film final : public Sink {
         rendered = session_->render({record.camera, frame.size}, loaded_.function, options_.frame);
         frame_ms_.push_back(rendered.statistics.milliseconds);
       }
-      if (writes_) {
-        const TraceScope scope(trace(), "write");
-        write(rendered, frame, record.camera);
+      if (!writes_) {
+        if (trace() != nullptr) trace()->add_frame(frame.number, frame_begin);
+        continue;
       }
-      if (trace() != nullptr) trace()->add_frame(frame.number, frame_begin);
-      if (writes_) say(frame, rendered, std::move(record));
+      const auto picture = std::make_shared<const RenderedFrame>(std::move(rendered));
+      // The cost map is the session's to draw, and that is at the next frame by the time a thread behind would ask.
+      std::optional<BalancePictures> shown;
+      if (options_.show_balance)
+        shown = session_->balance_pictures(*picture, {record.camera, frame.size}, loaded_.function);
+      pictures_.add([this, picture, shown = std::move(shown), &frame, annotated = annotated_frame(frame, record.camera),
+                     frame_begin] {
+        {
+          const TraceScope scope(trace(), "write", frame.number);
+          shown ? write_balance(*shown, picture->deep, frame)
+                : write_annotated(picture->image, picture->deep, annotated, picture_writer_);
+        }
+        if (trace() != nullptr) trace()->add_frame(frame.number, frame_begin);
+      });
+      say(frame, *picture, std::move(record));
     }
   }
 
@@ -217,18 +259,36 @@ class Film final : public Sink {
     jobs_before_ += jobs_.size();
   }
 
-  void write(const RenderedFrame& rendered, const FilmFrame& frame, const Camera& camera) const {
-    if (!options_.show_balance) return write_pictures(rendered.image, rendered.deep, frame, options_);
-    const BalancePictures shown = session_->balance_pictures(rendered, {camera, frame.size}, loaded_.function);
+  /// With what its annotation tells of, which may be another step's by the time the picture is written.
+  [[nodiscard]] AnnotatedFrame annotated_frame(const FilmFrame& frame, const Camera& camera) const {
+    return {frame, camera, *data_, loaded_.function, options_};
+  }
+
+  /// The first half of the frame's outputs shows the bricks, the second what they cost.
+  void write_balance(const BalancePictures& shown, const DeepImage& deep, const FilmFrame& frame) {
     FilmFrame of_volume = frame, of_cost = frame;
     const auto half = static_cast<std::ptrdiff_t>(frame.outputs.size() / 2);
     of_volume.outputs.erase(of_volume.outputs.begin() + half, of_volume.outputs.end());
     of_cost.outputs.erase(of_cost.outputs.begin(), of_cost.outputs.begin() + half);
-    write_pictures(shown.bricks, rendered.deep, of_volume, options_);
-    write_pictures(shown.cost, rendered.deep, of_cost, options_);
+    picture_writer_.write(shown.bricks, deep, of_volume);
+    // Films and standard output show the volume.
+    for (const auto& output : of_cost.outputs) write_image(shown.cost, output, options_.image);
   }
 
-  /// On the writing rank, of a frame that has been written.
+  /// Pictures of a film are written behind it, but for those so large that memory should not hold two.
+  [[nodiscard]] bool writes_behind() const {
+    constexpr std::int64_t most_pixels = 4096 * 4096;
+    std::size_t left = 0;
+    std::int64_t pixels = 0;
+    for (const FilmFrame& frame : frames_)
+      if (!frame.finished) {
+        ++left;
+        pixels = std::max(pixels, std::int64_t{frame.size.width} * frame.size.height);
+      }
+    return writes_ && left > 1 && pixels <= most_pixels;
+  }
+
+  /// On the writing rank, of a frame that is written, or will be before the run ends without an error.
   void say(const FilmFrame& frame, const RenderedFrame& rendered, FrameRecord record) {
     record.statistics = rendered.statistics;
     record.frame_ms = std::exchange(frame_ms_, {});
@@ -263,7 +323,7 @@ class Film final : public Sink {
     tessera::write_trace(trace_, process, traced, options_.timing, job_.communicator(), writer_);
   }
 
-  const RenderOptions& options_;
+  RenderOptions options_;  ///< with what is chosen once the data is known
   RenderOptions quiet_ = options_;
   Job& job_;
   Settings settings_ = options_.settings;
@@ -280,6 +340,7 @@ class Film final : public Sink {
   std::optional<Session> session_;
   std::size_t step_ = 0;    ///< of data_
   std::optional<Box> box_;  ///< of the first step; none until something is read
+  BodyAxes axes_ = BodyAxes::none;
   std::uint64_t tets_ = 0;
   LoadedTransferFunction loaded_;
 
@@ -287,6 +348,9 @@ class Film final : public Sink {
   std::vector<double> frame_ms_;   ///< of the frame at hand
   std::vector<std::size_t> jobs_;  ///< frame of each picture of the list at hand
   std::size_t jobs_before_ = 0;    ///< pictures of the lists before
+
+  PictureWriter picture_writer_{options_};
+  PictureQueue pictures_{writes_behind()};  ///< last: what it writes refers to all above
 };
 
 }  // namespace

@@ -2,8 +2,6 @@
 
 #include <string_view>
 
-#include "tessera/output_file.hpp"
-
 namespace tessera::apps {
 namespace {
 
@@ -33,21 +31,18 @@ void FrameReports::add(const Json& frame) {
   frames_ += text_of(frame, -1) + '\n';
 }
 
-void FrameReports::write(const Json& report, const std::filesystem::path& path) const {
-  AtomicFile file(path);
-  std::string head = text_of(report, indent);
-  head.resize(head.size() - 2);  // the newline and the bracket that end it
-  file.write(head);
-  file.write(",\n  \"frames\": [");
+std::string FrameReports::text(const Json& report) const {
+  std::string all = text_of(report, indent);
+  all.resize(all.size() - 2);  // the newline and the bracket that end it
+  all += ",\n  \"frames\": [";
   for (std::size_t at = 0; at < frames_.size();) {
     const std::size_t end = frames_.find('\n', at);
-    file.write(at == 0 ? "\n" : ",\n");
+    all += at == 0 ? "\n" : ",\n";
     const std::string_view frame = std::string_view(frames_).substr(at, end - at);
-    file.write(indented(text_of(Json::parse(frame), indent), 4));
+    all += indented(text_of(Json::parse(frame), indent), 4);
     at = end + 1;
   }
-  file.write(frames_.empty() ? "]\n}\n" : "\n  ]\n}\n");
-  file.commit();
+  return all += frames_.empty() ? "]\n}\n" : "\n  ]\n}\n";
 }
 
 }  // namespace tessera::apps

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -17,8 +16,8 @@ class FrameReports {
   [[nodiscard]] bool kept() const { return kept_; }
   void add(const nlohmann::ordered_json& frame);
 
-  /// `report` with the frames as its last member, `frames`. Appears by rename. Text that is not UTF-8 is replaced.
-  void write(const nlohmann::ordered_json& report, const std::filesystem::path& path) const;
+  /// `report` with the frames as its last member, `frames`. Text that is not UTF-8 is replaced.
+  [[nodiscard]] std::string text(const nlohmann::ordered_json& report) const;
 
  private:
   bool kept_;

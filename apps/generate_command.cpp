@@ -5,6 +5,7 @@
 #include <map>
 
 #include "apps/argument_values.hpp"
+#include "apps/stderr_lines.hpp"
 #include "datasets/arrays.hpp"
 #include "datasets/generate.hpp"
 #include "datasets/volumes.hpp"
@@ -50,16 +51,16 @@ void generate(const std::string& kind, const std::filesystem::path& output, cons
     write_grid(*volume, output);
     const auto& points = volume->geometry().points;
     if (!quiet)
-      fmt::print(stderr, "{}: {} of {}x{}x{} {} samples\n", output.string(), kind, points[0], points[1], points[2],
-                 name_of(volume->grid().type));
+      say_lines(fmt::format("{}: {} of {}x{}x{} {} samples", output.string(), kind, points[0], points[1], points[2],
+                            name_of(volume->grid().type)));
     return;
   }
   check_mesh_output(output, {});
   const MeshArrays mesh = datasets::arrays_of(datasets::generate(kind, values));
   write_mesh(mesh, output);
   if (!quiet)
-    fmt::print(stderr, "{}: {} with {} tets, {} points, field {}\n", output.string(), kind, mesh.tets.size() / 4,
-               mesh.points.size() / 3, mesh.field_name);
+    say_lines(fmt::format("{}: {} with {} tets, {} points, field {}", output.string(), kind, mesh.tets.size() / 4,
+                          mesh.points.size() / 3, mesh.field_name));
 }
 
 }  // namespace tessera::apps

@@ -22,6 +22,7 @@
 #include "apps/render_options.hpp"
 #include "apps/setting_words.hpp"
 #include "apps/stall_options.hpp"
+#include "apps/standard_streams.hpp"
 #include "apps/timing_command.hpp"
 #include "apps/volume_options.hpp"
 #include "tessera/input_file.hpp"
@@ -36,7 +37,8 @@ namespace {
 /// run's line has been said. Settings are options in it.
 int fail(const Error& error) {
   std::string line = "tessera: ";
-  for (const char c : with_options(error.what())) line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
+  for (const char c : with_stream_names(with_options(error.what())))
+    line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
   while (line.ends_with(' ')) line.pop_back();
   Job::say_once(line);
   return static_cast<int>(error.code());
@@ -130,6 +132,10 @@ ExitCode run(int argc, char** argv, Job& job) {
     throw bad_input(fmt::format("arguments: {}; see {}", error.what(), help));
   }
 
+  if (words.input == standard_stream) {
+    if (job.size() > 1) throw bad_input("standard input: only one process has it; give a file that all can open");
+    words.input = spool_standard_input().string();
+  }
   if (*render_command) {
     const RenderOptions options = render_options(words);
     if (const auto stalls = stall_settings(stall_words, words.quiet)) job.watch_stalls(*stalls);

@@ -9,6 +9,7 @@
 
 #include "apps/argument_values.hpp"
 #include "apps/compositing_options.hpp"
+#include "apps/film_options.hpp"
 #include "apps/report.hpp"
 #include "apps/setting_words.hpp"
 #include "apps/volume_options.hpp"
@@ -59,6 +60,7 @@ ImageFileOptions image_options(const RenderWords& words) {
   image.half = words.half;
   image.png_bits = words.png_bits == "16" ? 16 : 8;
   image.encode_srgb = words.blend != "display";
+  image.threads = thread_count(words);
   if (!words.background.empty()) {
     const auto color = parse_color("--background", words.background);
     image.background = glm::dvec3(color[0], color[1], color[2]);
@@ -85,6 +87,13 @@ void set_ranks(const RenderWords& words, bool merges, RenderOptions& options) {
     ranks.frames_in_flight = parse_count("--frames-in-flight", words.frames_in_flight, 1, 64);
   if (!words.seed.empty())
     ranks.tile_seed = ranks.partition.seed = static_cast<std::uint64_t>(parse_count("--seed", words.seed, 0, no_limit));
+}
+
+/// Pictures that cannot be annotated.
+void refuse_unannotated(const RenderOptions& options) {
+  if (options.show_balance) throw bad_input("--show balance: its pictures are not annotated; leave one of the two out");
+  if (options.annotation.layer.empty() && std::ranges::all_of(options.plan.outputs, is_deep_name))
+    throw bad_input("deep picture: it is not annotated; name an .exr, .png or .pfm too, or an --annotation-layer");
 }
 
 }  // namespace
@@ -147,7 +156,8 @@ void add_render_options(CLI::App& command, RenderWords& words) {
                      "more meshes: a time series, as is INPUT alone if it is a .pvd, a .series or mesh_%04d.vtu");
   command
       .add_option("-o,--output", words.outputs,
-                  "picture: .exr .png .pfm .deep.exr; frame_%04d.exr numbers several frames; may be repeated")
+                  "picture: .exr .png .jpg .tif .pfm .deep.exr, frame_%04d.png for several; film: .mp4 .mov .mkv .webm "
+                  ".gif; - for a PNG on standard output; may be repeated")
       ->type_name("FILE")
       ->required()
       ->allow_extra_args(false);  // else `-o out.png mesh.vtu` would take the mesh for a second picture
@@ -159,12 +169,15 @@ void add_render_options(CLI::App& command, RenderWords& words) {
       .add_option("--unit-distance", words.unit_distance,
                   "world length over which a file's opacity holds (default: the file's, else mean thickness / 10)")
       ->type_name("LENGTH");
-  command.add_option("--opacity-scale", words.opacity_scale, "multiplies the extinction")->type_name("FACTOR");
+  command.add_option("--opacity-scale,--opacity", words.opacity_scale, "multiplies the extinction")
+      ->type_name("FACTOR");
+  add_function_options(command, words.function);
   command.add_option("--blend", words.blend, "linear light (default), or sRGB values as VTK does")
       ->type_name("linear|display");
 
   command.add_option("--camera", words.camera, "view or list of views: .json .pvcc text (default: frames the mesh)")
       ->type_name("FILE");
+  add_view_options(command, words.view);
   command.add_option("--orbit", words.orbit, "N frames once round the view's up axis")->type_name("N");
   command.add_option("--size", words.size, "pixels (default: the camera file's, else 1024x1024)")->type_name("WxH");
   command.add_option("--projection", words.projection, "of the default view (default: orthographic)")
@@ -210,10 +223,15 @@ void add_render_options(CLI::App& command, RenderWords& words) {
   command.add_option("--seed", words.seed, "under mpirun: of the tile map and of --partition random (default: 1)")
       ->type_name("NUMBER");
 
-  command.add_option("--background", words.background, "linear light; without it the picture has alpha")
-      ->type_name("R,G,B|NAME");
+  command
+      .add_option("--background", words.background,
+                  "linear R,G,B, sRGB #rrggbb or a name; without it the picture has alpha")
+      ->type_name("R,G,B|#RRGGBB|NAME");
+  add_film_options(command, words);
   command.add_flag("--half", words.half, ".exr with 16-bit floats");
-  command.add_option("--png-bits", words.png_bits, "default: 8")->type_name("8|16");
+  command.add_option("--png-bits", words.png_bits, "of .png and .tif (default: 8)")->type_name("8|16");
+
+  add_annotation_options(command, words.annotation);
 
   command
       .add_option(
@@ -225,7 +243,8 @@ void add_render_options(CLI::App& command, RenderWords& words) {
       ->type_name("K");
   command.add_option("--verify", words.verify, "check K random pixels a frame against the exact reference")
       ->type_name("K");
-  command.add_option("--report", words.report, "JSON file: everything chosen, all counters")->type_name("FILE");
+  command.add_option("--report", words.report, "JSON file: everything chosen, all counters; - for standard output")
+      ->type_name("FILE");
   command.add_option("--timing", words.timing, "Chrome trace-event JSON file of stages and threads")->type_name("FILE");
   command.add_flag("--progress", words.progress, "a progress line (default: if stderr is a terminal)");
   command.add_flag("--quiet", words.quiet, "nothing on stderr but errors");
@@ -236,7 +255,7 @@ RenderOptions render_options(const RenderWords& words) {
   FilmPlan& plan = options.plan;
   plan.inputs = {words.input};
   plan.inputs.insert(plan.inputs.end(), words.more_inputs.begin(), words.more_inputs.end());
-  plan.outputs.assign(words.outputs.begin(), words.outputs.end());
+  set_outputs(words, options);
   options.read = mesh_options(words);
   options.fixed_higher_order = !words.higher_order_tolerance.empty();
 
@@ -249,9 +268,13 @@ RenderOptions render_options(const RenderWords& words) {
   check_word("--blend", words.blend, {"linear", "display"});
   options.function.rescale = words.rescale;
   options.function.display_colors = words.blend == "display";
+  options.function.rescale_presets = true;
+  set_function(words.function, options.function);
+  options.read.shape = words.transfer_function.empty();
 
   plan.cameras = words.camera;
   if (!words.orbit.empty()) plan.orbit = parse_count("--orbit", words.orbit, 1, 1'000'000);
+  options.view = view_request(words.view, !words.camera.empty());
   if (!words.size.empty()) plan.size = parse_size("--size", words.size);
   if (!words.projection.empty()) {
     check_word("--projection", words.projection, {"orthographic", "perspective"});
@@ -278,10 +301,13 @@ RenderOptions render_options(const RenderWords& words) {
   } else {
     refuse_volume_options(words);
   }
+  options.no_shade = words.no_shade;
   options.frame.deep = std::ranges::any_of(plan.outputs, is_deep_name);
   if (!options.frame.deep && !words.deep_accuracy.empty())
     throw bad_input("--deep-accuracy: is for a deep picture; name one with -o FILE.deep.exr, or leave it out");
   options.image = image_options(words);
+  options.annotation = annotation_options(words.annotation, options.image);
+  if (options.annotation.annotation) refuse_unannotated(options);
   set_ranks(words, without.merging, options);
   plan.resume = words.resume;
   if (!words.repeat.empty()) options.repeat = parse_count("--repeat", words.repeat, 1, no_limit);
@@ -323,6 +349,7 @@ LoadedTransferFunction transfer_function_of(const Dataset& data, const RenderOpt
   LoadedTransferFunction loaded = data.transfer_function(options.transfer_function, options.function);
   loaded.name = with_options(loaded.name);
   loaded.unit_distance_source = with_options(loaded.unit_distance_source);
+  loaded.warnings = with_options(loaded.warnings);
   return loaded;
 }
 

@@ -5,6 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "apps/annotation_options.hpp"
+#include "apps/function_options.hpp"
+#include "apps/view_options.hpp"
 #include "tessera/camera.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/film.hpp"
@@ -23,15 +26,22 @@ struct RenderOptions {
 
   std::string transfer_function;  ///< file or preset; empty: the default one
   TransferFunctionOptions function;
+  ViewRequest view;
   ProjectionKind projection = ProjectionKind::orthographic;  ///< of the view that frames the data
   std::string without;                                       ///< the words of --without, as given
   ImageFileOptions image;
+  AnnotationOptions annotation;
 
+  bool no_shade = false;            ///< not even where the default transfer function asks for it
   bool fixed_higher_order = false;  ///< higher-order cells are read as `read` says, whatever --accuracy is
 
   int repeat = 0;  ///< 0: render once and print no times
   int verify = 0;  ///< pixels a frame to check against the reference; 0: none
   std::filesystem::path report, timing;
+  std::vector<std::filesystem::path> films;  ///< of all frames, beside the plan's pictures
+  double frame_rate = 25;                    ///< of films
+  bool to_standard_output = false;           ///< every picture as .png
+  bool report_to_standard_output = false;
   bool progress = false;
   bool quiet = false;
 
@@ -50,11 +60,15 @@ struct RenderWords {
   std::string integrator = "auto", accuracy, deep_accuracy, emission = "absorption", rasterizer = "planes";
   std::string backend, compositor, framebuffer, egl_device;
   std::string without;
-  std::string threads, tile_size, memory, background, png_bits = "8", repeat, verify, report, timing;
+  std::string threads, tile_size, memory, background, png_bits = "8", frame_rate, repeat, verify, report, timing;
   std::string dims, type, spacing, origin, endian, skip, step, brick_size, cache, preload, light;
   std::string balance, balance_resolution, balance_weights, show;
   std::string projectors, compositors, exchange, partition = "curve", frames_in_flight, seed;
-  bool smooth = false, shade = false, half = false, rescale = false, resume = false, progress = false, quiet = false;
+  AnnotationWords annotation;
+  ViewWords view;
+  FunctionWords function;
+  bool smooth = false, shade = false, no_shade = false, half = false, rescale = false, resume = false, progress = false,
+       quiet = false;
 };
 
 /// Declares the options of `tessera render` on its subcommand.

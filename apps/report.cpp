@@ -2,13 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <span>
 #include <string_view>
 #include <utility>
 
 #include "apps/setting_words.hpp"
+#include "apps/stderr_lines.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -19,8 +23,6 @@ using analysis::word;
 using Json = nlohmann::ordered_json;
 
 const char* word(Rasterizer rasterizer) { return rasterizer == Rasterizer::planes ? "planes" : "scanline"; }
-
-std::string ms_words(double ms) { return ms < 100 ? fmt::format("{:.3g}", ms) : fmt::format("{:.0f}", ms); }
 
 std::string method_words(const Settings& settings) {
   std::string words = method_word(settings.integrator.kind);
@@ -98,7 +100,9 @@ Json grid_method_json(const RenderOptions& options, int ranks) {
 }  // namespace
 
 Json method_json(const RenderOptions& options, int ranks) {
-  return options.is_grid() ? grid_method_json(options, ranks) : mesh_method_json(options);
+  Json json = options.is_grid() ? grid_method_json(options, ranks) : mesh_method_json(options);
+  if (!options.annotation.given.empty()) json["annotation"] = options.annotation.given;
+  return json;
 }
 
 Json job_json(const RenderOptions& options, int ranks, const Roles& roles) {
@@ -192,7 +196,13 @@ std::string higher_order_warning(double error, double accuracy) {
 }
 
 std::string view_line(const Camera& camera) {
-  const auto point = [](const glm::dvec3& p) { return fmt::format("({:.6g} {:.6g} {:.6g})", p.x, p.y, p.z); };
+  // Far from the origin and near to each other they need more digits to tell them apart.
+  const glm::dvec3 eye = glm::abs(camera.position), centre = glm::abs(camera.focal_point);
+  const int digits = digits_for(std::max({eye.x, eye.y, eye.z, centre.x, centre.y, centre.z}),
+                                glm::distance(camera.position, camera.focal_point));
+  const auto point = [&](const glm::dvec3& p) {
+    return fmt::format("({:.{}g} {:.{}g} {:.{}g})", p.x, digits, p.y, digits, p.z, digits);
+  };
   const bool perspective = camera.projection == ProjectionKind::perspective;
   return fmt::format("{} from {} to {}, {} {:.6g}", perspective ? "perspective" : "orthographic",
                      point(camera.position), point(camera.focal_point), perspective ? "angle" : "scale",
@@ -216,36 +226,37 @@ std::string frame_line(const RenderOptions& options, const std::vector<FilmFrame
   }
   const std::string work = options.is_grid() ? fmt::format("{} voxels visited", record.statistics.grid.voxels_visited)
                                              : fmt::format("{} tets projected", record.statistics.mesh.tets_projected);
-  return line + fmt::format("{}, {} ms{}", work, ms_words(record.frame_ms.front()), balance_words(options, record));
+  return line + fmt::format("{}, {}{}", work, time_words(record.frame_ms.front()), balance_words(options, record));
 }
 
 std::string run_line(const RenderOptions& options, const Description& data, const LoadedTransferFunction& loaded,
                      const std::vector<FilmFrame>& frames, const FilmFrame& first, const FrameRecord& record) {
   const FrameStatistics& statistics = record.statistics;
-  std::string line = fmt::format("{}: {}; field {} ({}) {:.6g} to {:.6g}; {}; view {}, {}x{}",
-                                 options.is_grid() ? first.data.files.front().string() : options.input().string(),
-                                 options.is_grid() ? samples_line(data) : cells_line(data.counts), data.field_name,
-                                 word(data.association), data.range[0], data.range[1], transfer_function_line(loaded),
-                                 view_line(record.camera), first.size.width, first.size.height);
+  std::string line =
+      fmt::format("{}: {}; field {} ({}) {}; {}; view {}, {}x{}",
+                  options.is_grid() ? first.data.files.front().string() : options.input().string(),
+                  options.is_grid() ? samples_line(data) : cells_line(data.counts), data.field_name,
+                  word(data.association), range_words(data.range[0], data.range[1]), transfer_function_line(loaded),
+                  view_line(record.camera), first.size.width, first.size.height);
   if (frames.size() > 1) line += fmt::format(" (frame {} of {})", first.number + 1, frames.size());
   if (options.is_grid()) {
     const GridCounters& s = statistics.grid;
-    line += fmt::format("; {} of {} bricks invisible, {} loaded; {} voxels visited; {}, {}, {:.3g} ms{}",
-                        s.bricks_invisible, s.bricks_total, s.bricks_loaded, s.voxels_visited,
-                        method_words(options.settings), statistics.instruction_set, record.frame_ms.front(),
-                        balance_words(options, record));
+    line +=
+        fmt::format("; {} of {} bricks invisible, {} loaded; {} voxels visited; {}, {}, {}{}", s.bricks_invisible,
+                    s.bricks_total, s.bricks_loaded, s.voxels_visited, method_words(options.settings),
+                    statistics.instruction_set, time_words(record.frame_ms.front()), balance_words(options, record));
   } else {
     const FrameCounters& s = statistics.mesh;
-    line += fmt::format("; {} tets projected, {} invisible, {} outside the view; {}, {}, {}, {:.3g} ms",
-                        s.tets_projected, s.tets_invisible, s.tets_outside_view, word(options.settings.mesh.rasterizer),
-                        method_line(options.settings.integrator), statistics.instruction_set, record.frame_ms.front());
+    line += fmt::format("; {} tets projected, {} invisible, {} outside the view; {}, {}, {}, {}", s.tets_projected,
+                        s.tets_invisible, s.tets_outside_view, word(options.settings.mesh.rasterizer),
+                        method_line(options.settings.integrator), statistics.instruction_set,
+                        time_words(record.frame_ms.front()));
     if (!options.settings.mesh.device.backends.empty())
       line += fmt::format("; composited by {}", statistics.composited_on);
   }
   if (const std::size_t steps = frames.back().step + 1; is_series(options.plan))
     line += fmt::format("; transfer function{} of the first of {} time steps, {}, for all",
                         first.camera ? "" : " and view", steps, frames.front().data.files.front().string());
-  for (const auto& note : data.notes) line += fmt::format("; {}", note);
   return line;
 }
 

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 
+#include "apps/standard_streams.hpp"
+#include "apps/stderr_lines.hpp"
 #include "tessera/output_file.hpp"
 #include "tessera/version.hpp"
 
@@ -34,10 +37,12 @@ RunOutput::RunOutput(const RenderOptions& options, const std::vector<FilmFrame>&
 
 void RunOutput::describe(const RenderOptions& options, analysis::Description data,
                          LoadedTransferFunction transfer_function) {
+  std::vector<std::string> warnings = data.warnings;
+  warnings.insert(warnings.end(), transfer_function.warnings.begin(), transfer_function.warnings.end());
   if (!options.quiet)
-    for (const std::string& warning : data.warnings) {
+    for (const std::string& warning : warnings) {
       progress_.clear();
-      fmt::print(stderr, "tessera: warning: {}: {}\n", options.input().string(), warning);
+      say_lines(fmt::format("tessera: warning: {}: {}", options.input().string(), warning));
     }
   data_ = std::move(data);
   transfer_function_ = std::move(transfer_function);
@@ -52,15 +57,18 @@ void RunOutput::add(const RenderOptions& options, const FilmFrame& frame, const 
   if (frame_reports_.kept()) frame_reports_.add(frame_json(options, frame, &record));
   if (rendered_ == 0 && !options.quiet) {
     progress_.clear();
-    fmt::print(stderr, "{}\n", run_line(options, *data_, *transfer_function_, frames_, frame, record));
+    say_lines(run_line(options, *data_, *transfer_function_, frames_, frame, record));
+    for (const std::string& note : data_->notes) say_lines("note: " + note);
   }
   if (frames_.size() > 1 && !options.quiet) {
     progress_.clear();
-    fmt::print(stderr, "{}\n", frame_line(options, frames_, frame, record));
+    say_lines(frame_line(options, frames_, frame, record));
   }
-  if (options.repeat > 0) fmt::print("{}\n", frame_ms_line(record.frame_ms));
+  // Standard output that a picture or the report goes to holds nothing else.
+  std::FILE* const lines = options.to_standard_output || options.report_to_standard_output ? stderr : stdout;
+  if (options.repeat > 0) fmt::print(lines, "{}\n", frame_ms_line(record.frame_ms));
   if (record.verification) {
-    fmt::print("{}\n", verification_line(*record.verification, frame.number));
+    fmt::print(lines, "{}\n", verification_line(*record.verification, frame.number));
     met_ = met_ && record.verification->met;
   }
   progress_.update(++done_, ++rendered_);
@@ -72,24 +80,14 @@ ExitCode RunOutput::finish(const RenderOptions& options) {
     report_[data_->is_mesh ? "mesh" : "volume"] = analysis::data_json(options.input(), *data_);
     report_["transfer_function"] = analysis::transfer_function_json(*transfer_function_);
   } else if (!options.quiet) {
-    fmt::print(stderr, "{}: all {} frames are there already, nothing rendered\n", options.input().string(),
-               frames_.size());
+    say_lines(
+        fmt::format("{}: all {} frames are there already, nothing rendered", options.input().string(), frames_.size()));
   }
-  if (!options.report.empty()) frame_reports_.write(report_, options.report);
+  if (options.report_to_standard_output)
+    write_standard_output(with_stream_names(frame_reports_.text(report_)));
+  else if (!options.report.empty())
+    write_text(options.report, with_stream_names(frame_reports_.text(report_)));
   return met_ ? ExitCode::complete : ExitCode::accuracy_not_met;
-}
-
-void write_pictures(const Image& image, const DeepImage& deep, const FilmFrame& frame, const RenderOptions& options) {
-  try {
-    for (const auto& output : frame.outputs) {
-      if (is_deep_name(output))
-        write_deep_image(deep, output);
-      else
-        write_image(image, output, options.image);
-    }
-  } catch (const OutputFault& fault) {
-    throw fault.since_changed();
-  }
 }
 
 TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const FilmFrame& frame, std::size_t rendered) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <span>
 #include <vector>
 
 #include "apps/exit_code.hpp"
@@ -44,10 +45,6 @@ class RunOutput {
   bool met_ = true;
   std::size_t done_ = 0, rendered_ = 0;
 };
-
-/// Writes a frame's pictures, deep ones from `deep`. Throws Error(system_failure) if that cannot be done any
-/// more, as check_film_outputs() found it could.
-void write_pictures(const Image& image, const DeepImage& deep, const FilmFrame& frame, const RenderOptions& options);
 
 /// `frame_ms median X min Y`, milliseconds. The median of an even number is the mean of the middle two.
 std::string frame_ms_line(std::vector<double> times);

@@ -28,13 +28,6 @@ std::array<T, 3> three(const std::string& option, const std::string& text, char 
   return values;
 }
 
-glm::dvec3 vector(const std::string& option, const std::string& text, bool positive) {
-  const auto v = three<double>(option, text, ',', "three numbers; write X,Y,Z", [&](const std::string& word) {
-    return positive ? parse_positive(option, word) : parse_number(option, word);
-  });
-  return {v[0], v[1], v[2]};
-}
-
 }  // namespace
 
 void add_volume_options(CLI::App& command, RenderWords& words) {
@@ -52,6 +45,7 @@ void add_volume_render_options(CLI::App& command, RenderWords& words) {
   command.add_option("--step", words.step, "volumes: length of a step of sampled and preintegrated (default 0.5)")
       ->type_name("VOXELS");
   command.add_flag("--shade", words.shade, "volumes: Blinn-Phong with a light at the camera, or --light");
+  command.add_flag("--no-shade", words.no_shade, "volumes: not even a scan of a patient, which else is shaded");
   command
       .add_option(
           "--light", words.light,
@@ -105,8 +99,8 @@ ReadOptions volume_options(const RenderWords& words) {
       throw bad_input(fmt::format(
           "--type: '{}' is unknown; use int8, uint8, int16, uint16, int32, uint32, float32 or float64", words.type));
   }
-  if (!words.spacing.empty()) options.spacing = vector("--spacing", words.spacing, true);
-  if (!words.origin.empty()) options.origin = vector("--origin", words.origin, false);
+  if (!words.spacing.empty()) options.spacing = parse_vector("--spacing", words.spacing, true);
+  if (!words.origin.empty()) options.origin = parse_vector("--origin", words.origin, false);
   if (!words.endian.empty() && words.endian != "little" && words.endian != "big")
     throw bad_input(fmt::format("--endian: '{}' is unknown; use little or big", words.endian));
   options.big_endian = words.endian == "big";
@@ -143,13 +137,14 @@ void set_grid(const RenderWords& words, Settings& settings) {
                       method));
     grid.step = parse_positive("--step", words.step);
   }
+  if (words.shade && words.no_shade) throw bad_input("--no-shade: contradicts --shade; leave one of the two out");
   if (words.shade) grid.shading.emplace();
   if (!words.light.empty()) {
     if (!words.shade) throw bad_input("--light: has no effect without --shade; add it, or leave --light out");
     constexpr std::string_view world = "world:";
     grid.shading->camera_light = !words.light.starts_with(world);
     grid.shading->to_light =
-        vector("--light", words.light.substr(grid.shading->camera_light ? 0 : world.size()), false);
+        parse_vector("--light", words.light.substr(grid.shading->camera_light ? 0 : world.size()), false);
     if (grid.shading->to_light == glm::dvec3(0))
       throw bad_input("--light: 0,0,0 is no direction; say which way the light lies");
   }
@@ -210,6 +205,7 @@ void refuse_mesh_words(const RenderWords& words) {
 void refuse_volume_options(const RenderWords& words) {
   const std::pair<const char*, bool> given[] = {{"--step", !words.step.empty()},
                                                 {"--shade", words.shade},
+                                                {"--no-shade", words.no_shade},
                                                 {"--light", !words.light.empty()},
                                                 {"--brick-size", !words.brick_size.empty()},
                                                 {"--cache", !words.cache.empty()},

@@ -26,9 +26,27 @@ struct TransferFunctionOptions {
   /// `--rescale`: stretch a file's values over the field's range, as ParaView's "rescale to data range" does. Without
   /// it they are the field's own values, whatever they span.
   bool rescale = false;
+  /// `--range`: presets, the default and files (which it stretches) span this instead of the field's range.
+  std::optional<std::array<double, 2>> range{};
+  /// `--opacity-points`: fractions of the range and opacities per unit distance, ascending, instead of a preset's or a
+  /// colour map's own.
+  std::vector<std::array<double, 2>> opacity_points{};
+  /// A file over 0 to 1 or -1 to 1, as ParaView's presets are, is stretched as by `rescale` where the field lies almost
+  /// all outside or fills a hundredth of it.
+  bool rescale_presets = false;
+
+  [[nodiscard]] std::array<double, 2> spanned() const { return range.value_or(field_range); }
 };
 
 using tessera::LoadedTransferFunction;
+
+struct OpacityPoint;
+/// opacity_points over [low, high]; beyond the first and last their opacities go on.
+std::vector<OpacityPoint> points_over(const std::vector<std::array<double, 2>>& points, double low, double high);
+
+/// Whether a function over `function` tells next to nothing of a field over `field`: less than a hundredth of the
+/// field's range lies within, all the rest on one side; or the field fills less than a hundredth of it.
+bool is_far_off(const std::array<double, 2>& function, const std::array<double, 2>& field);
 
 /// Throws Error(bad_input) naming the option if a range, distance or scale is not what its comment says.
 void check(const TransferFunctionOptions& options);

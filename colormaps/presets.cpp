@@ -86,7 +86,7 @@ LoadedTransferFunction preset(std::string_view name, const TransferFunctionOptio
                     scene::quote(name), fmt::join(preset_names(), ", "), fmt::join(known, ", ")));
   }
 
-  const auto [low, high] = options.field_range;
+  const auto [low, high] = options.spanned();
   TransferCurves curves;
   curves.space = table->space;
   const std::size_t count = table->colors.size();
@@ -96,6 +96,7 @@ LoadedTransferFunction preset(std::string_view name, const TransferFunctionOptio
          table->colors[i]});
   curves.opacities = variant->points();
   for (OpacityPoint& point : curves.opacities) point.value = std::lerp(low, high, point.value);
+  if (!options.opacity_points.empty()) curves.opacities = points_over(options.opacity_points, low, high);
   if (low == high) {
     // The middle of the map; no variant may make the only value there is invisible.
     const double middle = 0.5 * static_cast<double>(count - 1);
@@ -107,13 +108,19 @@ LoadedTransferFunction preset(std::string_view name, const TransferFunctionOptio
   }
 
   const double distance = options.unit_distance.value_or(options.default_unit_distance);
-  return {make_transfer_function(refined_knots(curves, {.unit_distance = distance,
-                                                        .opacity_scale = options.opacity_scale,
-                                                        .display_colors = options.display_colors,
-                                                        .color_tolerance = preset_color_tolerance,
-                                                        .extinction_tolerance = preset_extinction_tolerance}),
-                                 std::string(name)),
-          std::string(name), distance, options.unit_distance ? "`unit_distance`" : "default"};
+  LoadedTransferFunction loaded{
+      make_transfer_function(refined_knots(curves, {.unit_distance = distance,
+                                                    .opacity_scale = options.opacity_scale,
+                                                    .display_colors = options.display_colors,
+                                                    .color_tolerance = preset_color_tolerance,
+                                                    .extinction_tolerance = preset_extinction_tolerance}),
+                             std::string(name)),
+      std::string(name), distance, options.unit_distance ? "`unit_distance`" : "default"};
+  if (options.range) {
+    loaded.name += fmt::format(" over {:.6g} to {:.6g}", low, high);
+    loaded.range = options.range;
+  }
+  return loaded;
 }
 
 LoadedTransferFunction default_transfer_function(const TransferFunctionOptions& options) {

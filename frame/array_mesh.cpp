@@ -153,15 +153,21 @@ io::CellBlock block_of(const MeshArrays& a) {
 
 }  // namespace
 
-ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty) {
+ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty, const io::HigherOrderPlanning& planning) {
   check_shapes(arrays);
+  io::MeshOptions options;
+  options.threads = 0;
+  options.higher_order_tolerance = arrays.higher_order_tolerance;
+  options.higher_order_tets = arrays.higher_order_tets;
   if (may_be_empty && arrays.tets.empty() && arrays.types.empty()) {
     scene::TetMeshView nothing;
     nothing.association = arrays.association;
+    planning({}, options, {}, {});
     return {nothing, nullptr, {}, {}, {}};
   }
   ArrayMesh result;
   if (const auto mesh = borrowed(arrays); mesh && !mesh->tets.empty() && all_finite(arrays)) {
+    planning({}, options, {}, {});
     result.mesh = *mesh;
     result.owner = arrays.owner;
     result.counts.cells_read = result.counts.tets_made = mesh->tets.size();
@@ -170,11 +176,7 @@ ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty) {
   }
   std::vector<io::CellBlock> blocks;
   blocks.push_back(block_of(arrays));
-  io::MeshOptions options;
-  options.threads = 0;
-  options.higher_order_tolerance = arrays.higher_order_tolerance;
-  options.higher_order_tets = arrays.higher_order_tets;
-  auto file = std::make_shared<io::MeshFile>(io::assemble_mesh(std::move(blocks), options, "mesh"));
+  auto file = std::make_shared<io::MeshFile>(io::assemble_mesh(std::move(blocks), options, "mesh", planning));
   result.mesh = file->mesh;
   result.counts = file->counts;
   result.higher_order = file->higher_order;

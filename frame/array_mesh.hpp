@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "io/mesh_assembly.hpp"
 #include "io/mesh_reader.hpp"
 #include "scene/tet_mesh.hpp"
 #include "tessera/dataset.hpp"
@@ -19,8 +20,10 @@ struct ArrayMesh {
 };
 
 /// Borrows the arrays where they are laid out as the renderer wants them and nothing is blank, else converts them as a
-/// file's. `may_be_empty`: of a part. Throws Error(bad_input) naming array and place.
-ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty);
+/// file's. `may_be_empty`: of a part. `planning` is called once, of no blocks where there is nothing to convert. Throws
+/// Error(bad_input) naming array and place.
+ArrayMesh mesh_of_arrays(const MeshArrays& arrays, bool may_be_empty,
+                         const io::HigherOrderPlanning& planning = io::plan_higher_order);
 
 /// The same for who only writes it: borrowed whatever its numbers are.
 ArrayMesh mesh_to_write(const MeshArrays& arrays);

@@ -9,12 +9,14 @@
 #include "exchange/transport.hpp"
 #include "frame/array_mesh.hpp"
 #include "frame/communicator.hpp"
+#include "frame/curved_parts.hpp"
 #include "frame/distributed_mesh.hpp"
 #include "frame/mesh_check.hpp"
 #include "frame/mesh_input.hpp"
 #include "frame/render.hpp"
 #include "frame/roles.hpp"
 #include "frame/scan_together.hpp"
+#include "frame/transfer_function_choice.hpp"
 #include "io/foreign_data.hpp"
 #include "io/mesh_assembly.hpp"
 #include "io/volume_reader.hpp"
@@ -64,6 +66,7 @@ std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, c
   state->fields = std::move(volume.fields);
   state->notes = std::move(volume.notes);
   state->format = std::move(volume.format);
+  state->body_axes = volume.body_axes;
   state->samples = std::move(volume.source);
   return state;
 }
@@ -140,7 +143,8 @@ io::MeshOptions mesh_options(const ReadOptions& o) {
           o.blocks,
           o.higher_order_tolerance,
           o.higher_order_tets,
-          o.progress};
+          o.progress,
+          o.shape};
 }
 
 }  // namespace frame
@@ -211,6 +215,8 @@ Dataset Dataset::open(std::span<const std::filesystem::path> files, const ReadOp
       state->ranks = transport->size();
       state->global_tet = std::move(mesh.part.global_tet);
       keep(std::move(mesh.part.mesh), options, trace, *state);
+      state->shape = options.shape && state->field_name == shape_field_name;
+      state->gather_field_samples(*transport);
     }
     state->source = files.front().string();
     state->files.assign(files.begin(), files.end());
@@ -274,7 +280,7 @@ Dataset Dataset::of_parts(const MeshArrays& part, const Communicator& communicat
   const std::shared_ptr<exchange::Transport> transport = communicator.state().connect();
   return together(*transport, [&] {
     auto state = std::make_shared<State>();
-    frame::ArrayMesh mesh = frame::mesh_of_arrays(part, true);
+    frame::ArrayMesh mesh = frame::mesh_of_part(part, *transport);
     state->mesh = mesh.mesh;
     state->owner = std::move(mesh.owner);
     state->counts = mesh.counts;
@@ -284,6 +290,7 @@ Dataset Dataset::of_parts(const MeshArrays& part, const Communicator& communicat
     if (state->facts.tets == 0) throw scene::bad_input("mesh: no rank has a cell; give at least one");
     state->ranks = transport->size();
     state->global_tet = frame::numbered_by_rank(*transport, state->mesh.tets.size());
+    state->gather_field_samples(*transport);
     state->source = "mesh";
     state->format = "arrays";
     state->field_name = part.field_name;
@@ -297,6 +304,7 @@ const Box& Dataset::bounds() const { return state_->facts.box; }
 std::array<double, 2> Dataset::range() const { return state_->facts.scalar_range; }
 Association Dataset::association() const { return state_->facts.association; }
 const std::string& Dataset::field_name() const { return state_->field_name; }
+bool Dataset::shows_shape() const { return state_->shape; }
 std::span<const FieldInfo> Dataset::fields() const { return state_->fields; }
 std::span<const std::string> Dataset::notes() const { return state_->notes; }
 std::vector<std::string> Dataset::warnings() const {
@@ -328,14 +336,18 @@ std::uint64_t Dataset::blank_samples() const { return is_mesh() ? 0 : state_->ra
 
 double Dataset::default_unit_distance() const { return frame::default_unit_distance(state_->facts); }
 
-Camera Dataset::default_camera(ImageSize size, ProjectionKind projection) const {
+Camera Dataset::default_camera(ImageSize size, ProjectionKind projection) const { return view({}, size, projection); }
+
+Camera Dataset::view(const ViewRequest& request, ImageSize size, ProjectionKind projection, bool turning) const {
   validate(size);
-  return frame_box(bounds(), size, projection);
+  return view_of_box(bounds(), size, request, projection, body_axes(), turning);
 }
+
+BodyAxes Dataset::body_axes() const { return state_->body_axes; }
 
 LoadedTransferFunction Dataset::transfer_function(const std::string& file_or_preset,
                                                   const TransferFunctionOptions& options) const {
-  return frame::transfer_function_of(state_->facts, is_grid(), file_or_preset, options);
+  return frame::transfer_function_of(*state_, file_or_preset, options);
 }
 
 MeshCheck Dataset::check() const {

@@ -7,9 +7,11 @@
 #include "frame/mesh_exchange.hpp"
 #include "io/mesh_reader.hpp"
 #include "projection/prepared_mesh.hpp"
+#include "scene/field_samples.hpp"
 #include "scene/mesh_facts.hpp"
 #include "scene/sample_source.hpp"
 #include "tessera/dataset.hpp"
+#include "tessera/default_view.hpp"
 #include "volume/cell_ranges.hpp"
 
 namespace tessera {
@@ -31,17 +33,25 @@ struct TESSERA_HIDDEN Dataset::State {
   std::shared_ptr<const void> owner;      ///< of its arrays
   int ranks = 1;                          ///< more than 1: a part, one a rank
   std::vector<std::uint64_t> global_tet;  ///< of a part: index of each tet in the whole
+  bool shape = false;                     ///< the scalar is ReadOptions::shape's
 
   // Grids.
   std::shared_ptr<const scene::SampleSource> samples;  ///< null: a mesh
   std::shared_ptr<const volume::CellRanges> ranges;
+  BodyAxes body_axes = BodyAxes::none;
 
   /// The mesh prepared for projection, shared by sessions.
   [[nodiscard]] std::shared_ptr<const projection::PreparedMesh> prepared(int threads,
                                                                          scene::Trace* trace = nullptr) const;
 
+  /// Points of the field over the whole. Of a mesh in parts they have to be gathered by all ranks first.
+  [[nodiscard]] const scene::FieldSamples& field_samples() const;
+  /// The whole's, of a mesh in parts. Collective.
+  void gather_field_samples(exchange::Transport& transport);
+
  private:
-  mutable std::once_flag once_;
+  mutable std::once_flag once_, sampled_;
+  mutable scene::FieldSamples field_samples_;
   mutable std::shared_ptr<const projection::PreparedMesh> prepared_;
 };
 

@@ -107,8 +107,10 @@ std::vector<FilmFrame> plan_film(const FilmPlan& plan) {
   return frames;
 }
 
-Camera FilmFrame::view(const Box& box, ProjectionKind default_projection) const {
-  const Camera seen = camera ? *camera : frame_box(box, size, default_projection, turn.has_value());
+Camera FilmFrame::view(const Box& box, ProjectionKind default_projection, const ViewRequest& request,
+                       BodyAxes axes) const {
+  const Camera seen = camera ? adjusted_view(*camera, box, size, request)
+                             : view_of_box(box, size, request, default_projection, axes, turn.has_value());
   return turn ? tessera::orbit(seen, *turn) : seen;
 }
 
@@ -124,7 +126,7 @@ void FilmFrame::require_still_there() const {
 }
 
 ReadOptions read_of_later_steps(ReadOptions options, const Dataset& first) {
-  if (first.is_grid() || !options.field.empty() || first.fields().empty()) return options;
+  if (first.is_grid() || !options.field.empty() || first.fields().empty() || first.shows_shape()) return options;
   options.field = first.field_name();
   // Smoothing has made point data of cell data, so only the name is sure.
   if (!options.smooth) options.field = (first.association() == Association::point ? "point:" : "cell:") + options.field;

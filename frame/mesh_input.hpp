@@ -4,7 +4,6 @@
 #include <span>
 #include <string>
 
-#include "colormaps/function_options.hpp"
 #include "io/mesh_reader.hpp"
 #include "scene/mesh_facts.hpp"
 #include "tessera/dataset.hpp"
@@ -23,9 +22,5 @@ using tessera::diagonal;
 /// thickness, so that the presets' ramps (0.03 to 0.2) make an average ray 0.26 to 0.89 opaque, in plates and scattered
 /// parts too. A mesh of no volume: a twentieth of its diagonal; of no extent: 1.
 double default_unit_distance(const scene::MeshFacts& facts);
-
-/// The preset or file named, or the default one, over the range of the field.
-LoadedTransferFunction transfer_function_of(const scene::MeshFacts& facts, bool is_grid,
-                                            const std::string& file_or_preset, const TransferFunctionOptions& options);
 
 }  // namespace tessera::frame

@@ -34,6 +34,9 @@ void write_camera(const CameraFile& camera, const std::filesystem::path& file) {
 void write_image(const Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
   io::write_image(image, file, options);
 }
+std::vector<std::byte> png_bytes(const Image& image, const ImageFileOptions& options) {
+  return io::checked_png_bytes(image, options);
+}
 Image read_image(const std::filesystem::path& file) { return io::read_image(file); }
 
 void write_deep_image(const DeepImage& image, const std::filesystem::path& file) {

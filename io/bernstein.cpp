@@ -1,10 +1,11 @@
 #include "io/bernstein.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <mutex>
 #include <utility>
+
+#include "io/inverse_matrix.hpp"
 
 namespace tessera::io {
 namespace {
@@ -33,32 +34,6 @@ long double bernstein(const Multi& of, const Multi& at, int degree) {
   return value;
 }
 
-/// Gauss and Jordan's elimination with partial pivoting, in long double.
-std::vector<double> inverse(std::vector<long double> a, std::size_t n) {
-  std::vector<long double> b(n * n, 0);
-  for (std::size_t i = 0; i < n; ++i) b[i * n + i] = 1;
-  for (std::size_t column = 0; column < n; ++column) {
-    std::size_t pivot = column;
-    for (std::size_t row = column + 1; row < n; ++row)
-      if (std::abs(a[row * n + column]) > std::abs(a[pivot * n + column])) pivot = row;
-    for (std::size_t k = 0; k < n; ++k) {
-      std::swap(a[pivot * n + k], a[column * n + k]);
-      std::swap(b[pivot * n + k], b[column * n + k]);
-    }
-    const long double scale = 1 / a[column * n + column];
-    for (std::size_t k = 0; k < n; ++k) a[column * n + k] *= scale, b[column * n + k] *= scale;
-    for (std::size_t row = 0; row < n; ++row) {
-      const long double factor = a[row * n + column];
-      if (row == column || factor == 0) continue;
-      for (std::size_t k = 0; k < n; ++k) {
-        a[row * n + k] -= factor * a[column * n + k];
-        b[row * n + k] -= factor * b[column * n + k];
-      }
-    }
-  }
-  return {b.begin(), b.end()};
-}
-
 BernsteinForm make_form(int corners, int degree) {
   BernsteinForm form;
   form.points = lattice_of(corners, degree, false);
@@ -66,9 +41,23 @@ BernsteinForm make_form(int corners, int degree) {
   std::vector<long double> values(n * n);
   for (std::size_t at = 0; at < n; ++at)
     for (std::size_t of = 0; of < n; ++of) values[of * n + at] = bernstein(form.points[of], form.points[at], degree);
-  form.matrix = inverse(std::move(values), n);  // of the transpose, as the matrix is kept
+  form.matrix = inverse_matrix(std::move(values), n);  // of the transpose, as the matrix is kept
   return form;
 }
+
+/// One of each degree, made when it is first asked for.
+template <class Made>
+struct OfDegrees {
+  std::array<std::unique_ptr<const Made>, highest_degree + 1> all;
+  std::array<std::once_flag, highest_degree + 1> made;
+
+  template <class Make>
+  const Made& at(int degree, const Make& make) {
+    const auto place = static_cast<std::size_t>(degree);
+    std::call_once(made[place], [&] { all[place] = std::make_unique<const Made>(make()); });
+    return *all[place];
+  }
+};
 
 }  // namespace
 
@@ -111,30 +100,26 @@ void BernsteinNet::halve(std::span<const glm::dvec4> net, int i, int j, std::spa
     }
 }
 
-namespace {
-
-/// One of each degree, made when it is first asked for.
-template <class Made, class Make>
-const Made& of_degree(int degree, std::array<std::unique_ptr<const Made>, highest_degree + 1>& all,
-                      std::array<std::once_flag, highest_degree + 1>& made, const Make& make) {
-  const auto at = static_cast<std::size_t>(degree);
-  std::call_once(made[at], [&] { all[at] = std::make_unique<const Made>(make()); });
-  return *all[at];
-}
-
-}  // namespace
-
 const BernsteinNet& bernstein_net(int degree) {
-  static std::array<std::unique_ptr<const BernsteinNet>, highest_degree + 1> nets;
-  static std::array<std::once_flag, highest_degree + 1> made;
-  return of_degree(degree, nets, made, [&] { return BernsteinNet(degree); });
+  static OfDegrees<BernsteinNet> nets;
+  return nets.at(degree, [&] { return BernsteinNet(degree); });
 }
 
 const BernsteinForm& bernstein_form(int corners, int degree) {
-  static std::array<std::array<std::unique_ptr<const BernsteinForm>, highest_degree + 1>, 3> forms;
-  static std::array<std::array<std::once_flag, highest_degree + 1>, 3> made;
-  const auto of = static_cast<std::size_t>(corners - 2);
-  return of_degree(degree, forms[of], made[of], [&] { return make_form(corners, degree); });
+  static std::array<OfDegrees<BernsteinForm>, 3> forms;
+  return forms[static_cast<std::size_t>(corners - 2)].at(degree, [&] { return make_form(corners, degree); });
+}
+
+const std::vector<double>& bernstein_values(int corners, int degree) {
+  static std::array<OfDegrees<std::vector<double>>, 3> values;
+  return values[static_cast<std::size_t>(corners - 2)].at(degree, [&] {
+    const std::vector<Multi> points = lattice_of(corners, degree, true);
+    std::vector<double> made;
+    made.reserve(points.size() * points.size());
+    for (const Multi& at : points)
+      for (const Multi& of : points) made.push_back(static_cast<double>(bernstein(of, at, degree)));
+    return made;
+  });
 }
 
 }  // namespace tessera::io

@@ -24,6 +24,10 @@ struct BernsteinForm {
 /// thread.
 const BernsteinForm& bernstein_form(int corners, int degree);
 
+/// Bernstein's polynomials on the lattice: row p has all of them at its point p. Of a point, lattice places of the
+/// second corner run fastest, then the third's, the fourth's. As above in all else.
+const std::vector<double>& bernstein_values(int corners, int degree);
+
 /// A tetrahedron's coefficients, those of its corners among them, and what they become when it is halved.
 class BernsteinNet {
  public:

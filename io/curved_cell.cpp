@@ -5,11 +5,16 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "io/bernstein.hpp"
+#include "io/curved_pyramid.hpp"
+
 namespace tessera::io {
 namespace {
 
 constexpr int highest_order = 100;
 using Basis = std::array<double, highest_order + 1>;
+constexpr std::size_t most_pyramid_nodes =
+    (highest_pyramid_order + 1) * (highest_pyramid_order + 2) * (2 * highest_pyramid_order + 3) / 6;
 
 /// Lagrange's polynomials of degree n for nodes 0, 1/n, ..., 1 at x.
 void lagrange(int n, double x, Basis& out) {
@@ -55,72 +60,43 @@ glm::dvec4 middle_of_quadrilateral(std::array<glm::dvec4, 4> corners, std::array
   return 0.5 * edge_sum - 0.25 * corner_sum;
 }
 
-constexpr int pyramid_nodes = 13;
-using PyramidFunctions = std::array<double, pyramid_nodes>;
-
-/// A basis of the 13-node pyramid's functions, of x and y from -1 to 1 across it at any height and w from 2 at its base
-/// to 0 at its apex.
-PyramidFunctions pyramid_functions(const std::array<double, 3>& place) {
-  const double height = 1 - place[2], x = height > 0 ? 2 * place[0] / height - 1 : 0,
-               y = height > 0 ? 2 * place[1] / height - 1 : 0, w = 2 * height, ww = w * w;
-  const double squares = x * x + y * y, both = x * x * y * y;
-  return {1,
-          w,
-          ww,
-          x * w,
-          y * w,
-          x * y * w,
-          x * ww,
-          y * ww,
-          x * y * ww,
-          x * y * y * ww,
-          x * x * y * ww,
-          (x * x - y * y) * ww,
-          2 * w * (squares - both) - ww * (squares / 2 - both)};
+/// Of a Bezier cell's coefficients along one of its axes, or on a triangle or tet, their values on the lattice:
+/// `count` numbers that lie `stride` apart, so many corners the simplex has.
+void to_values(int corners, int degree, glm::dvec4* first, std::size_t count, std::size_t stride) {
+  if (degree < 2) return;
+  const std::vector<double>& matrix = bernstein_values(corners, degree);
+  std::vector<glm::dvec4> values(count, glm::dvec4(0));
+  for (std::size_t at = 0; at < count; ++at)
+    for (std::size_t of = 0; of < count; ++of) values[at] += matrix[at * count + of] * first[of * stride];
+  for (std::size_t at = 0; at < count; ++at) first[at * stride] = values[at];
 }
 
-using PyramidMatrix = std::array<std::array<double, pyramid_nodes>, pyramid_nodes>;
-
-/// Of function m, what node k has of it: the inverse of the functions' values at the nodes.
-PyramidMatrix make_pyramid_matrix(const CurvedLattice& lattice) {
-  constexpr std::size_t n = pyramid_nodes;
-  std::array<std::array<long double, 2 * n>, n> a{};
-  for (std::size_t row = 0; row < n; ++row) {
-    const LatticePlace& p = lattice.nodes[row];
-    const PyramidFunctions values = pyramid_functions({p[0] / 2.0, p[1] / 2.0, p[2] / 2.0});
-    std::copy(values.begin(), values.end(), a[row].begin());
-    a[row][n + row] = 1;
-  }
-  for (std::size_t column = 0; column < n; ++column) {
-    std::size_t pivot = column;
-    for (std::size_t r = column + 1; r < n; ++r)
-      if (std::abs(a[r][column]) > std::abs(a[pivot][column])) pivot = r;
-    std::swap(a[column], a[pivot]);
-    const long double scale = 1 / a[column][column];
-    for (long double& value : a[column]) value *= scale;
-    for (std::size_t r = 0; r < n; ++r) {
-      const long double factor = a[r][column];
-      if (r == column || factor == 0) continue;
-      for (std::size_t c = 0; c < 2 * n; ++c) a[r][c] -= factor * a[column][c];
-    }
-  }
-  PyramidMatrix inverse;
-  for (std::size_t m = 0; m < n; ++m)
-    for (std::size_t k = 0; k < n; ++k) inverse[m][k] = static_cast<double>(a[m][n + k]);
-  return inverse;
+/// The same of rows of a segment's: n + 1 numbers each.
+void rows_to_values(int n, std::size_t stride, std::span<glm::dvec4> all) {
+  const std::size_t count = static_cast<std::size_t>(n) + 1;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (k / stride % count == 0) to_values(2, n, &all[k], count, stride);
 }
 
-glm::dvec4 evaluate_pyramid(const CurvedLattice& lattice, std::span<const glm::dvec4> values,
-                            const std::array<double, 3>& x) {
-  static const PyramidMatrix matrix = make_pyramid_matrix(lattice);
-  const PyramidFunctions functions = pyramid_functions(x);
-  glm::dvec4 sum(0);
-  for (std::size_t k = 0; k < pyramid_nodes; ++k) {
-    double weight = 0;
-    for (std::size_t m = 0; m < pyramid_nodes; ++m) weight += functions[m] * matrix[m][k];
-    sum += weight * values[static_cast<std::size_t>(lattice.slot(lattice.nodes[k]))];
+/// Of the whole cell.
+void cell_to_values(const CurvedLattice& lattice, std::span<glm::dvec4> all) {
+  const auto& n = lattice.order;
+  const auto number = [](int order) { return static_cast<std::size_t>(order); };
+  if (lattice.family == CurvedFamily::tet) return to_values(4, n[0], all.data(), all.size(), 1);
+  std::size_t layer = (number(n[0]) + 1) * (number(n[1]) + 1);
+  if (lattice.family == CurvedFamily::wedge) {
+    layer = (number(n[0]) + 1) * (number(n[0]) + 2) / 2;
+    for (std::size_t k = 0; k < all.size(); k += layer) to_values(3, n[0], &all[k], layer, 1);
+  } else {
+    rows_to_values(n[0], 1, all);
+    rows_to_values(n[1], number(n[0]) + 1, all);
   }
-  return sum;
+  rows_to_values(n[2], layer, all);
+}
+
+/// What a quadratic triangle has in its middle; corners and mid-edge nodes.
+glm::dvec4 middle_of_triangle(const glm::dvec4& corners, const glm::dvec4& edges) {
+  return (4.0 * edges - corners) / 9.0;
 }
 
 glm::dvec4 evaluate_triangle(std::span<const glm::dvec4> nodes, int n, double u, double v) {
@@ -138,21 +114,79 @@ glm::dvec4 evaluate_triangle(std::span<const glm::dvec4> nodes, int n, double u,
 }  // namespace
 
 void CurvedCell::set(const CurvedLattice& lattice, std::span<const glm::dvec3> positions,
-                     std::span<const double> values) {
+                     std::span<const double> values, std::span<const double> weights) {
   lattice_ = &lattice;
   parts_made_ = 0;
-  values_.assign(static_cast<std::size_t>(lattice.slots), glm::dvec4(0));
-  for (std::size_t k = 0; k < positions.size(); ++k) {
+  const std::size_t nodes = positions.size(), slots = std::max(static_cast<std::size_t>(lattice.slots), nodes);
+  values_.assign(slots, glm::dvec4(0));
+  weights_.assign(weights.empty() ? 0 : slots, glm::dvec4(0));
+  for (std::size_t k = 0; k < nodes; ++k) {
+    const auto slot = static_cast<std::size_t>(lattice.slot_of_node[k]);
     const glm::dvec3& p = positions[k];
-    node(lattice.nodes[k]) = glm::dvec4(p.x, p.y, p.z, values.empty() ? 0 : values[k]);
+    values_[slot] = glm::dvec4(p.x, p.y, p.z, values.empty() ? 0 : values[k]);
+    if (weights.empty()) continue;
+    values_[slot] *= weights[k];
+    weights_[slot].x = weights[k];
   }
+  least_weight_ = weights.empty() ? 1 : *std::min_element(weights.begin(), weights.end());
   const std::size_t corners = corners_of(lattice.family).size();
   for (std::size_t k = 0; k < corners; ++k) corner_position_[k] = positions[k];
   corner_faces_.assign(corners, 0);
   const auto faces = faces_of(lattice.family);
   for (std::size_t f = 0; f < faces.size(); ++f)
     for (int k = 0; k < faces[f].size; ++k) corner_faces_[faces[f].corner[static_cast<std::size_t>(k)]] |= 1u << f;
-  if (positions.size() < values_.size()) add_missing_nodes();
+  if (nodes < static_cast<std::size_t>(lattice.slots)) add_missing_nodes();
+  make_inside();
+}
+
+/// What the cell's functions inside are computed from.
+void CurvedCell::make_inside() {
+  inside_.clear(), inside_weights_ = weights_;
+  if (lattice_->family == CurvedFamily::pyramid) {
+    const std::size_t n = lattice_->nodes.size();
+    inside_.assign(n, glm::dvec4(0));
+    for (std::size_t m = 0; m < n; ++m)
+      for (std::size_t k = 0; k < n; ++k)
+        inside_[m] +=
+            lattice_->pyramid_matrix[m * n + k] * values_[static_cast<std::size_t>(lattice_->slot_of_node[k])];
+    return;
+  }
+  inside_.assign(values_.begin(), values_.begin() + lattice_->slots);
+  if (lattice_->has_control_points) {
+    cell_to_values(*lattice_, inside_);
+    cell_to_values(*lattice_, inside_weights_);
+  }
+  if (lattice_->has_bubbles) make_bubbles();
+}
+
+/// Each is what a node in the middle of a face or cell has beyond the functions before it, over what its own function
+/// has there.
+void CurvedCell::make_bubbles() {
+  const auto faces = faces_of(lattice_->family);
+  const auto middle = [](const LatticePlace& a, const LatticePlace& b) {
+    return LatticePlace{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
+  };
+  std::size_t made = 0;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (faces[f].size != 3) continue;
+    glm::dvec4 corners(0), edges(0);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const LatticePlace a = lattice_corner(faces[f].corner[k]), b = lattice_corner(faces[f].corner[(k + 1) % 3]);
+      corners += node(a), edges += node(middle(a, b));
+    }
+    const glm::dvec4& own = values_[static_cast<std::size_t>(lattice_->slot_of_middle(f))];
+    bubbles_[made++] = 27.0 * (own - middle_of_triangle(corners, edges));
+  }
+  const glm::dvec4& own = values_.back();
+  if (lattice_->family == CurvedFamily::wedge) {
+    bubbles_[made] = 27.0 * (own - middle_of_triangle(node({0, 0, 1}) + node({2, 0, 1}) + node({0, 2, 1}),
+                                                      node({1, 0, 1}) + node({1, 1, 1}) + node({0, 1, 1})));
+    return;
+  }
+  glm::dvec4 corners(0), all(0), on_faces(0);
+  for (std::size_t k = 0; k < 4; ++k) corners += node(lattice_corner(k)), on_faces += bubbles_[k];
+  for (const glm::dvec4& value : inside_) all += value;
+  bubbles_[made] = 256.0 * (own - ((all - corners) / 4.0 - corners / 8.0 + on_faces / 64.0));
 }
 
 /// Of serendipity cells, whose lattice is quadratic: the middles of faces, then of the cell.
@@ -205,7 +239,8 @@ const CurvedCell::Part& CurvedCell::part_on(unsigned faces) {
   if (parts_made_ == parts_.size()) parts_.emplace_back();
   auto& [key, part] = parts_[parts_made_++];
   key = faces;
-  part.nodes.clear();
+  part.nodes.clear(), part.weights.clear();
+  part.has_bubble = false;
   part.dimensions = faces == 0 ? 3 : std::popcount(faces) == 1 ? 2 : 1;
   if (part.dimensions == 2)
     make_face(faces, part);
@@ -231,12 +266,21 @@ void CurvedCell::make_edge(unsigned faces, Part& part) const {
     }
   part.order = {n, 0};
   for (int k = 0; k <= n; ++k)
-    part.nodes.push_back(
-        node({a[0] + k * (b[0] - a[0]) / n, a[1] + k * (b[1] - a[1]) / n, a[2] + k * (b[2] - a[2]) / n}));
+    add_to(part, {a[0] + k * (b[0] - a[0]) / n, a[1] + k * (b[1] - a[1]) / n, a[2] + k * (b[2] - a[2]) / n});
+  if (!lattice_->has_control_points) return;
+  rows_to_values(n, 1, part.nodes);
+  rows_to_values(n, 1, part.weights);
+}
+
+void CurvedCell::add_to(Part& part, const LatticePlace& place) const {
+  const auto slot = static_cast<std::size_t>(lattice_->slot(place));
+  part.nodes.push_back(values_[slot]);
+  if (!weights_.empty()) part.weights.push_back(weights_[slot]);
 }
 
 void CurvedCell::make_face(unsigned faces, Part& part) const {
-  const CurvedFace& face = faces_of(lattice_->family)[static_cast<std::size_t>(std::countr_zero(faces))];
+  const auto number = static_cast<std::size_t>(std::countr_zero(faces));
+  const CurvedFace& face = faces_of(lattice_->family)[number];
   const auto size = static_cast<std::size_t>(face.size);
   std::size_t first = 0;
   for (std::size_t k = 1; k < size; ++k)
@@ -267,8 +311,27 @@ void CurvedCell::make_face(unsigned faces, Part& part) const {
     for (int i = 0; i <= (part.triangle ? n - j : n); ++i) {
       LatticePlace p;
       for (std::size_t x = 0; x < 3; ++x) p[x] = a[x] + i * (b[x] - a[x]) / n + j * (c[x] - a[x]) / m;
-      part.nodes.push_back(node(p));
+      add_to(part, p);
     }
+  if (part.triangle && lattice_->has_bubbles) {
+    const auto& v = part.nodes;
+    part.has_bubble = true;
+    part.bubble = 27.0 * (values_[static_cast<std::size_t>(lattice_->slot_of_middle(number))] -
+                          middle_of_triangle(v[0] + v[2] + v[5], v[1] + v[3] + v[4]));
+  }
+  if (lattice_->has_control_points) face_to_values(part);
+}
+
+void CurvedCell::face_to_values(Part& part) {
+  for (std::vector<glm::dvec4>* all : {&part.nodes, &part.weights}) {
+    if (all->empty()) continue;
+    if (part.triangle) {
+      to_values(3, part.order[0], all->data(), all->size(), 1);
+      continue;
+    }
+    rows_to_values(part.order[0], 1, *all);
+    rows_to_values(part.order[1], static_cast<std::size_t>(part.order[0]) + 1, *all);
+  }
 }
 
 std::array<std::int32_t, 3> CurvedCell::coordinates(const Part& part, const CellPlace& place) {
@@ -281,40 +344,59 @@ std::array<std::int32_t, 3> CurvedCell::coordinates(const Part& part, const Cell
 }
 
 glm::dvec4 CurvedCell::evaluate(const Part& part, const std::array<double, 3>& x) const {
-  if (part.dimensions == 3) return evaluate_inside(x);
-  if (part.dimensions == 2 && part.triangle) return evaluate_triangle(part.nodes, part.order[0], x[0], x[1]);
+  const glm::dvec4 value = sum_of(part, part.dimensions == 3 ? inside_ : part.nodes, x);
+  return weights_.empty() ? value : value / weight(part, x);
+}
+
+double CurvedCell::weight(const Part& part, const std::array<double, 3>& x) const {
+  return weights_.empty() ? 1 : sum_of(part, part.dimensions == 3 ? inside_weights_ : part.weights, x).x;
+}
+
+glm::dvec4 CurvedCell::sum_of(const Part& part, std::span<const glm::dvec4> nodes,
+                              const std::array<double, 3>& x) const {
+  if (part.dimensions == 3) return sum_inside(nodes, x);
+  if (part.dimensions == 2 && part.triangle) {
+    const glm::dvec4 sum = evaluate_triangle(nodes, part.order[0], x[0], x[1]);
+    return part.has_bubble ? sum + (x[0] * x[1] * (1 - x[0] - x[1])) * part.bubble : sum;
+  }
   Basis a, b;
   lagrange(part.order[0], x[0], a);
   glm::dvec4 sum(0);
   if (part.dimensions == 1) {
-    for (std::size_t k = 0; k < part.nodes.size(); ++k) sum += a[k] * part.nodes[k];
+    for (std::size_t k = 0; k < nodes.size(); ++k) sum += a[k] * nodes[k];
     return sum;
   }
   lagrange(part.order[1], x[1], b);
   const auto n = static_cast<std::size_t>(part.order[0]), m = static_cast<std::size_t>(part.order[1]);
   for (std::size_t j = 0; j <= m; ++j)
-    for (std::size_t i = 0; i <= n; ++i) sum += a[i] * b[j] * part.nodes[j * (n + 1) + i];
+    for (std::size_t i = 0; i <= n; ++i) sum += a[i] * b[j] * nodes[j * (n + 1) + i];
   return sum;
 }
 
-glm::dvec4 CurvedCell::evaluate_inside(const std::array<double, 3>& x) const {
+glm::dvec4 CurvedCell::sum_inside(std::span<const glm::dvec4> nodes, const std::array<double, 3>& x) const {
   const auto& n = lattice_->order;
-  if (lattice_->family == CurvedFamily::pyramid) return evaluate_pyramid(*lattice_, values_, x);
-  Basis a, b, c, d;
   glm::dvec4 sum(0);
+  if (lattice_->family == CurvedFamily::pyramid) {
+    std::array<double, most_pyramid_nodes> functions;
+    pyramid_functions(*lattice_, x, functions);
+    for (std::size_t k = 0; k < nodes.size(); ++k) sum += functions[k] * nodes[k];
+    return sum;
+  }
+  Basis a, b, c, d;
   std::size_t at = 0;
   if (lattice_->family == CurvedFamily::hexahedron) {
     lagrange(n[0], x[0], a), lagrange(n[1], x[1], b), lagrange(n[2], x[2], c);
     for (std::size_t k = 0; k <= static_cast<std::size_t>(n[2]); ++k)
       for (std::size_t j = 0; j <= static_cast<std::size_t>(n[1]); ++j) {
         const double bc = b[j] * c[k];
-        for (std::size_t i = 0; i <= static_cast<std::size_t>(n[0]); ++i) sum += a[i] * bc * values_[at++];
+        for (std::size_t i = 0; i <= static_cast<std::size_t>(n[0]); ++i) sum += a[i] * bc * nodes[at++];
       }
     return sum;
   }
   silvester(n[0], x[0], a), silvester(n[0], x[1], b);
   const bool is_wedge = lattice_->family == CurvedFamily::wedge;
-  silvester(n[0], is_wedge ? 1 - x[0] - x[1] : 1 - x[0] - x[1] - x[2], d);
+  const double last = is_wedge ? 1 - x[0] - x[1] : 1 - x[0] - x[1] - x[2];
+  silvester(n[0], last, d);
   if (is_wedge)
     lagrange(n[2], x[2], c);
   else
@@ -324,9 +406,18 @@ glm::dvec4 CurvedCell::evaluate_inside(const std::array<double, 3>& x) const {
     for (int j = 0; j <= left; ++j)
       for (int i = 0; i + j <= left; ++i)
         sum += a[static_cast<std::size_t>(i)] * b[static_cast<std::size_t>(j)] * c[static_cast<std::size_t>(k)] *
-               d[static_cast<std::size_t>(left - i - j)] * values_[at++];
+               d[static_cast<std::size_t>(left - i - j)] * nodes[at++];
   }
-  return sum;
+  if (!lattice_->has_bubbles) return sum;
+  if (is_wedge) return sum + x[0] * x[1] * last * (c[0] * bubbles_[0] + c[1] * bubbles_[2] + c[2] * bubbles_[1]);
+  const std::array<double, 4> at_corner = {last, x[0], x[1], x[2]};
+  const auto faces = faces_of(CurvedFamily::tet);
+  for (std::size_t f = 0; f < 4; ++f) {
+    double product = 1;
+    for (std::size_t k = 0; k < 3; ++k) product *= at_corner[faces[f].corner[k]];
+    sum += product * bubbles_[f];
+  }
+  return sum + last * x[0] * x[1] * x[2] * bubbles_[4];
 }
 
 glm::dvec4 CurvedCell::at(const CellPlace& place, unsigned faces) {
@@ -345,23 +436,25 @@ void CurvedCell::order(std::span<CellPlace> corners, unsigned faces) {
 int CurvedCell::degree_on(unsigned faces) {
   const auto& n = lattice_->order;
   const Part& part = part_on(faces);
-  if (part.dimensions == 1) return part.order[0];
-  if (part.dimensions == 2) return part.triangle ? part.order[0] : part.order[0] + part.order[1];
+  const int weights = weights_.empty() ? 0 : 1, bubbles = lattice_->has_bubbles ? 1 : 0;
+  if (part.dimensions == 1) return part.order[0] + weights;
+  if (part.dimensions == 2)
+    return (part.triangle ? part.order[0] + (part.has_bubble ? 1 : 0) : part.order[0] + part.order[1]) + weights;
   switch (lattice_->family) {
     case CurvedFamily::tet:
-      return n[0];
+      return n[0] + 2 * bubbles + weights;
     case CurvedFamily::hexahedron:
-      return n[0] + n[1] + n[2];
+      return n[0] + n[1] + n[2] + weights;
     case CurvedFamily::wedge:
-      return n[0] + n[2];
+      return n[0] + n[2] + bubbles + weights;
     case CurvedFamily::pyramid:
-      return 4;  // rational: as near as a polynomial of this degree comes to them
+      return n[0] + 2 + bubbles;  // rational: as near as a polynomial of this degree comes to them
   }
   return 1;
 }
 
-glm::dvec4 CurvedCell::between(std::span<const CellPlace> corners, std::span<const int> weights, int total,
-                               unsigned faces) {
+CurvedCell::Weighted CurvedCell::between(std::span<const CellPlace> corners, std::span<const int> weights, int total,
+                                         unsigned faces) {
   const Part& part = part_on(faces);
   std::array<double, 3> x{};
   for (std::size_t k = 0; k < corners.size(); ++k) {
@@ -369,7 +462,8 @@ glm::dvec4 CurvedCell::between(std::span<const CellPlace> corners, std::span<con
     for (std::size_t a = 0; a < 3; ++a) x[a] += static_cast<double>(weights[k]) * c[a];
   }
   const double scale = static_cast<double>(total) * cell_unit;
-  return evaluate(part, {x[0] / scale, x[1] / scale, x[2] / scale});
+  for (double& number : x) number /= scale;
+  return {evaluate(part, x), weight(part, x)};
 }
 
 }  // namespace tessera::io

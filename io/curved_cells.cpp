@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "io/cell_split.hpp"
@@ -9,12 +10,32 @@
 namespace tessera::io {
 namespace {
 
-bool is_lagrange(std::uint8_t type) { return type >= 71 && type <= 73; }
+bool is_bezier(std::uint8_t type) { return type >= 78 && type <= 80; }
+/// Whose orders may be told by HigherOrderDegrees.
+bool has_degrees(std::uint8_t type) { return (type >= 71 && type <= 73) || is_bezier(type); }
 bool is_curved(std::uint8_t type) {
-  return (type >= 24 && type <= 27) || type == 29 || (type >= 31 && type <= 33) || is_lagrange(type);
+  return (type >= 24 && type <= 27) || type == 29 || (type >= 31 && type <= 33) || type == 37 || type == 74 ||
+         has_degrees(type);
 }
 
-/// VTK's cell array of the orders of Lagrange cells, if there is one.
+/// Of one cell's weights: beyond it, a few bits are left of what has the smallest.
+constexpr double most_weight_ratio = 1e6;
+
+/// VTK's point array of the weights of rational Bezier cells, if there is one.
+std::vector<double> weights_in(const CellBlock& block, std::size_t points) {
+  std::vector<double> weights;
+  for (const BlockField& field : block.fields) {
+    if (field.name != "RationalWeights" || field.association != scene::Association::point || field.components != 1 ||
+        field.tuples != points)
+      continue;
+    weights.resize(points);
+    field.read(0, 0, weights);
+    break;
+  }
+  return weights;
+}
+
+/// VTK's cell array of the orders of Lagrange and Bezier cells, if there is one.
 std::vector<std::array<int, 3>> degrees_in(const CellBlock& block) {
   std::vector<std::array<int, 3>> degrees;
   for (const BlockField& field : block.fields) {
@@ -45,7 +66,8 @@ CurvedCells::CurvedCells(const CellBlock& block, std::span<const glm::dvec3> poi
       values_(association == scene::Association::point ? values : std::span<const double>{}),
       settings_(settings) {
   if (settings.limit == 0 || !has_curved_cells(block)) return;
-  if (std::any_of(block.types.begin(), block.types.end(), is_lagrange)) degrees_ = degrees_in(block);
+  if (std::any_of(block.types.begin(), block.types.end(), has_degrees)) degrees_ = degrees_in(block);
+  if (std::any_of(block.types.begin(), block.types.end(), is_bezier)) weights_ = weights_in(block, points.size());
   for (std::size_t c = 0; c < block.types.size(); ++c) {
     if (!is_curved(block.types[c])) continue;
     const Key key = key_of(c);
@@ -58,14 +80,24 @@ CurvedCells::CurvedCells(const CellBlock& block, std::span<const glm::dvec3> poi
 
 CurvedCells::Key CurvedCells::key_of(std::size_t cell) const {
   const std::uint8_t type = block_.types[cell];
-  const std::array<int, 3> degrees = degrees_.empty() || !is_lagrange(type) ? std::array<int, 3>{} : degrees_[cell];
+  const std::array<int, 3> degrees = degrees_.empty() || !has_degrees(type) ? std::array<int, 3>{} : degrees_[cell];
   return {block_.offsets[cell + 1] - block_.offsets[cell], {degrees[0], degrees[1], degrees[2], type}};
 }
 
 const CurvedLattice* CurvedCells::lattice(std::size_t cell) const {
   if (lattices_.empty() || !is_curved(block_.types[cell])) return nullptr;
   const auto found = lattices_.find(key_of(cell));
-  return found == lattices_.end() ? nullptr : &found->second;
+  return found == lattices_.end() || !has_usable_weights(cell) ? nullptr : &found->second;
+}
+
+bool CurvedCells::has_usable_weights(std::size_t cell) const {
+  if (weights_.empty() || !is_bezier(block_.types[cell])) return true;
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+  for (const std::uint32_t v : nodes_of(cell)) {
+    if (!(weights_[v] > 0) || !std::isfinite(weights_[v])) return false;
+    low = std::min(low, weights_[v]), high = std::max(high, weights_[v]);
+  }
+  return high <= most_weight_ratio * low;
 }
 
 std::span<const std::uint32_t> CurvedCells::nodes_of(std::size_t cell) const {
@@ -74,19 +106,23 @@ std::span<const std::uint32_t> CurvedCells::nodes_of(std::size_t cell) const {
 
 /// The cell's nodes, and the tets of its corners.
 void CurvedCells::begin(std::size_t cell, CurvedWork& work) const {
-  work.positions.clear(), work.values.clear(), work.first.clear();
+  work.positions.clear(), work.values.clear(), work.weights.clear(), work.first.clear();
+  const bool is_weighted = !weights_.empty() && is_bezier(block_.types[cell]);
   for (const std::uint32_t v : nodes_of(cell)) {
     work.positions.push_back(points_[v]);
     if (!values_.empty()) work.values.push_back(values_[v]);
+    if (is_weighted) work.weights.push_back(weights_[v]);
   }
   static constexpr std::array<std::uint32_t, 8> numbers = {0, 1, 2, 3, 4, 5, 6, 7};
   const CellShape shape = cell_shape(block_.types[cell]);
+  const auto same = [&](double w) { return w == work.weights.front(); };
+  if (std::all_of(work.weights.begin(), work.weights.end(), same)) work.weights.clear();
   split_cell(shape.kind, std::span(numbers).first(static_cast<std::size_t>(shape.corners)), work.positions, work.first);
 }
 
 void CurvedCells::split(std::size_t cell, CurvedWork& work) const {
   begin(cell, work);
-  work.splitter.split(*lattice(cell), work.positions, work.values, work.first, settings_.limit);
+  work.splitter.split(*lattice(cell), work.positions, work.values, work.weights, work.first, settings_.limit);
 }
 
 void CurvedCells::tally_excess(const std::function<void(double)>& say) const {
@@ -100,7 +136,7 @@ void CurvedCells::tally_excess(const std::function<void(double)>& say) const {
             work.positions.begin(), work.positions.end(),
             [](const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }) &&
         std::all_of(work.values.begin(), work.values.end(), [](double v) { return std::isfinite(v); });
-    if (is_finite) work.splitter.tally_excess(*curved, work.positions, work.values, work.first, say);
+    if (is_finite) work.splitter.tally_excess(*curved, work.positions, work.values, work.weights, work.first, say);
   }
 }
 

@@ -28,7 +28,7 @@ struct CurvedWork {
   explicit CurvedWork(const CurvedTolerance& tolerance) : splitter(tolerance) {}
   CurvedSplitter splitter;
   std::vector<glm::dvec3> positions;
-  std::vector<double> values;
+  std::vector<double> values, weights;
   std::vector<scene::Tet> first;  ///< of the corners, numbered in the cell
 };
 
@@ -40,7 +40,8 @@ class CurvedCells {
 
   [[nodiscard]] bool any() const { return !lattices_.empty(); }
 
-  /// Null if the cell is no higher-order one or of a kind that is drawn by its corners.
+  /// Null if the cell is no higher-order one or of a kind that is drawn by its corners, as are Bezier cells of weights
+  /// that are not positive or more than a factor of 10^6 apart.
   [[nodiscard]] const CurvedLattice* lattice(std::size_t cell) const;
 
   /// Divides a cell that has a lattice: work.splitter has the result. Throws std::length_error for more than
@@ -56,6 +57,7 @@ class CurvedCells {
   using Key = std::pair<std::size_t, std::array<int, 4>>;  ///< number of nodes, degrees, type
   [[nodiscard]] Key key_of(std::size_t cell) const;
   [[nodiscard]] std::span<const std::uint32_t> nodes_of(std::size_t cell) const;
+  [[nodiscard]] bool has_usable_weights(std::size_t cell) const;
   void begin(std::size_t cell, CurvedWork& work) const;
 
   const CellBlock& block_;
@@ -63,6 +65,7 @@ class CurvedCells {
   std::span<const double> values_;  ///< none for cell data
   CurvedSettings settings_;
   std::vector<std::array<int, 3>> degrees_;  ///< of each cell, or none at all
+  std::vector<double> weights_;              ///< of each point, or none at all
   std::map<Key, CurvedLattice> lattices_;
 };
 

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/bernstein.hpp"
+#include "io/curved_pyramid.hpp"
+
 namespace tessera::io {
 namespace {
 
@@ -140,6 +143,26 @@ void number_lagrange_wedge(CurvedLattice& lattice) {
   for (int k = 1; k < n; ++k) add_triangle_inside(k);
 }
 
+void number_lagrange_pyramid(CurvedLattice& lattice) {
+  const int n = lattice.order[0];
+  Numbering numbering(lattice);
+  numbering.add_corners();
+  numbering.add_edges(pyramid_edges);
+  const auto add_layer = [&](int k) {
+    for (int j = 1; j < n - k; ++j)
+      for (int i = 1; i < n - k; ++i) numbering.add({i, j, k});
+  };
+  add_layer(0);
+  for (int side = 0; side < 4; ++side)
+    for (int k = 1; k < n; ++k)
+      for (int i = 1; i < n - k; ++i) {
+        const int far = n - k;
+        numbering.add(side % 2 == 0 ? LatticePlace{i, side == 0 ? 0 : far, k}
+                                    : LatticePlace{side == 1 ? far : 0, i, k});
+      }
+  for (int k = 1; k < n; ++k) add_layer(k);
+}
+
 bool is_of_lattice(const CurvedLattice& lattice, const LatticePlace& p) {
   switch (lattice.family) {
     case CurvedFamily::tet:
@@ -165,6 +188,16 @@ void number_slots(CurvedLattice& lattice) {
         if (is_of_lattice(lattice, {i, j, k})) lattice.slot_of_place[at] = lattice.slots++;
 }
 
+/// Nodes' slots; of those beside the lattice in their own order.
+void number_nodes(CurvedLattice& lattice) {
+  int beside = lattice.slots;
+  for (const LatticePlace& p : lattice.nodes) {
+    const int m = lattice.refined;
+    const bool is_of_it = p[0] % m == 0 && p[1] % m == 0 && p[2] % m == 0;
+    lattice.slot_of_node.push_back(is_of_it ? lattice.slot({p[0] / m, p[1] / m, p[2] / m}) : beside++);
+  }
+}
+
 /// The n for which nodes_of(n) is `nodes`; 0 if there is none.
 template <class NodesOf>
 int order_with(std::size_t nodes, const NodesOf& nodes_of) {
@@ -177,6 +210,43 @@ CurvedLattice quadratic(CurvedFamily family, int order_t = 2) {
   CurvedLattice lattice;
   lattice.family = family;
   lattice.order = {2, 2, order_t};
+  return lattice;
+}
+
+/// Quadratic cells with a node in the middle of each triangle and, of tets and pyramids, in the cell's.
+CurvedLattice bubble_lattice(CurvedFamily family) {
+  CurvedLattice lattice = quadratic(family);
+  lattice.has_bubbles = true;
+  lattice.refined = family == CurvedFamily::pyramid ? 12 : 6;  // halves, thirds and quarters of the cell
+  Numbering numbering(lattice);
+  numbering.add_corners();
+  const auto refine = [&] {
+    for (LatticePlace& p : lattice.nodes)
+      for (int& number : p) number *= lattice.refined;
+  };
+  switch (family) {
+    case CurvedFamily::tet:
+      numbering.add_edges(tet_edges);
+      refine();
+      for (const LatticePlace& p : {LatticePlace{4, 4, 0}, {4, 0, 4}, {4, 4, 4}, {0, 4, 4}, {3, 3, 3}})
+        numbering.add(p);
+      break;
+    case CurvedFamily::wedge:
+      numbering.add_edges(wedge_edges);
+      refine();
+      for (const LatticePlace& p : {LatticePlace{4, 4, 0}, {4, 4, 12}, {6, 0, 6}, {6, 6, 6}, {0, 6, 6}, {4, 4, 6}})
+        numbering.add(p);
+      break;
+    case CurvedFamily::pyramid:
+      numbering.add_edges(pyramid_edges);
+      numbering.add({1, 1, 0});
+      refine();
+      for (const LatticePlace& p : {LatticePlace{8, 0, 8}, {16, 8, 8}, {8, 16, 8}, {0, 8, 8}, {9, 9, 6}})
+        numbering.add(p);
+      break;
+    case CurvedFamily::hexahedron:  // has no triangles
+      break;
+  }
   return lattice;
 }
 
@@ -214,20 +284,24 @@ std::optional<CurvedLattice> quadratic_lattice(std::uint8_t vtk_type) {
       lattice = quadratic(CurvedFamily::pyramid);
       Numbering numbering(lattice);
       numbering.add_corners();
-      numbering.add_edges(std::span(pyramid_edges).first(4));
-      for (const LatticePlace& p : {LatticePlace{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}) numbering.add(p);
+      numbering.add_edges(pyramid_edges);
       return lattice;
     }
+    case 37:
+      return bubble_lattice(CurvedFamily::pyramid);
     default:
       return std::nullopt;
   }
 }
 
+/// Of Lagrange cells, 71 to 74.
 std::optional<CurvedLattice> lagrange_lattice(std::uint8_t vtk_type, std::size_t nodes,
                                               const std::array<int, 3>& degrees) {
-  const bool given = degrees[0] > 0 && degrees[1] > 0 && degrees[2] > 0;
+  if (vtk_type == 71 && nodes == 15) return bubble_lattice(CurvedFamily::tet);
+  if (vtk_type == 73 && nodes == 21 && degrees[2] <= 2) return bubble_lattice(CurvedFamily::wedge);
+  const bool given = degrees[0] > 0 && degrees[1] > 0 && degrees[2] > 0 && (vtk_type == 72 || vtk_type == 73);
   constexpr int highest = 100;  // of 10^6 nodes a cell
-  if (given && vtk_type != 71) {
+  if (given) {
     if (std::max({degrees[0], degrees[1], degrees[2]}) > highest) return std::nullopt;
     const std::size_t p = static_cast<std::size_t>(degrees[0]) + 1, q = static_cast<std::size_t>(degrees[1]) + 1,
                       n = static_cast<std::size_t>(degrees[2]) + 1;
@@ -250,8 +324,24 @@ std::optional<CurvedLattice> lagrange_lattice(std::uint8_t vtk_type, std::size_t
     lattice.family = CurvedFamily::wedge;
     lattice.order = given ? std::array{degrees[0], degrees[0], degrees[2]} : std::array{n, n, n};
     if ((given || n > 0) && lattice.order[0] <= highest) number_lagrange_wedge(lattice);
+  } else if (vtk_type == 74) {
+    const int n = order_with(nodes, [](std::size_t k) { return (k + 1) * (k + 2) * (2 * k + 3) / 6; });
+    lattice.family = CurvedFamily::pyramid;
+    lattice.order = {n, n, n};
+    if (n > 0 && n <= highest_pyramid_order) number_lagrange_pyramid(lattice);
   }
   return lattice.nodes.empty() ? std::nullopt : std::optional(std::move(lattice));
+}
+
+/// Of Bezier cells, 78 to 80: those of Lagrange's.
+std::optional<CurvedLattice> bezier_lattice(std::uint8_t vtk_type, std::size_t nodes,
+                                            const std::array<int, 3>& degrees) {
+  if (vtk_type < 78 || vtk_type > 80) return std::nullopt;
+  std::optional<CurvedLattice> lattice = lagrange_lattice(static_cast<std::uint8_t>(vtk_type - 7), nodes, degrees);
+  if (!lattice || lattice->has_bubbles) return std::nullopt;
+  if (std::max({lattice->order[0], lattice->order[1], lattice->order[2]}) > highest_degree) return std::nullopt;
+  lattice->has_control_points = true;
+  return lattice;
 }
 
 }  // namespace
@@ -260,8 +350,11 @@ std::optional<CurvedLattice> curved_lattice(std::uint8_t vtk_type, std::size_t n
                                             const std::array<int, 3>& degrees) {
   std::optional<CurvedLattice> lattice = quadratic_lattice(vtk_type);
   if (!lattice) lattice = lagrange_lattice(vtk_type, nodes, degrees);
+  if (!lattice) lattice = bezier_lattice(vtk_type, nodes, degrees);
   if (!lattice || lattice->nodes.size() != nodes) return std::nullopt;
   number_slots(*lattice);
+  number_nodes(*lattice);
+  if (lattice->family == CurvedFamily::pyramid) lattice->pyramid_matrix = pyramid_matrix(*lattice);
   return lattice;
 }
 

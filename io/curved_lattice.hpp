@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <optional>
 #include <span>
 #include <vector>
@@ -20,27 +21,49 @@ enum class CurvedFamily : std::uint8_t { tet, hexahedron, wedge, pyramid };
 /// A place of the lattice on which a cell has nodes: node / order is its place in (r, s, t).
 using LatticePlace = std::array<int, 3>;
 
-/// The polynomials of a higher-order cell, by its lattice of nodes.
+/// The functions of a higher-order cell, by its lattice of nodes.
 struct CurvedLattice {
   CurvedFamily family = CurvedFamily::tet;
   std::array<int, 3> order{};       ///< along r, s, t; one number for tets and pyramids, r and s alike for wedges
-  std::vector<LatticePlace> nodes;  ///< of each of the cell's nodes; may be fewer than the lattice has (serendipity)
-  std::vector<int> slot_of_place;   ///< where at(place) of cells' values is; -1: not of the lattice
-  int slots = 0;                    ///< the lattice's places
+  std::vector<LatticePlace> nodes;  ///< of each of the cell's nodes, times `refined`; may be fewer than the lattice has
+  int refined = 1;                  ///< so many steps of nodes' places are one of the lattice
+  /// Quadratic cells whose triangles have a node in their middle too, and with it a cubic function.
+  bool has_bubbles = false;
+  bool has_control_points = false;     ///< nodes are coefficients of Bernstein's polynomials (Bezier cells)
+  std::vector<int> slot_of_place;      ///< where at(place) of cells' values is; -1: not of the lattice
+  std::vector<int> slot_of_node;       ///< the same of each node; nodes that are not of the lattice come after it
+  int slots = 0;                       ///< the lattice's places
+  std::vector<double> pyramid_matrix;  ///< pyramids: pyramid_matrix() of io/curved_pyramid.hpp
 
   [[nodiscard]] int slot(const LatticePlace& p) const {
     const auto at = [](int number) { return static_cast<std::size_t>(number); };
     return slot_of_place[(at(p[2]) * at(order[1] + 1) + at(p[1])) * at(order[0] + 1) + at(p[0])];
   }
+  /// Of the node in the middle of a triangle, by its number among the cell's faces, where has_bubbles.
+  [[nodiscard]] int slot_of_middle(std::size_t face) const {
+    return slots + static_cast<int>(face) - (family == CurvedFamily::pyramid ? 1 : 0);
+  }
+  /// A node's place in (r, s, t).
+  [[nodiscard]] glm::dvec3 place(std::size_t node) const {
+    const auto in_units = [&](std::size_t x) { return static_cast<double>(nodes[node][x]) / (refined * order[x]); };
+    return {in_units(0), in_units(1), in_units(2)};
+  }
 };
 
-/// The lattice of a cell of one of VTK's types with so many nodes: 24 to 27, 29, 31, 32, 33 and Lagrange tetrahedra
-/// (71), hexahedra (72) and wedges (73). `degrees` are those of VTK's HigherOrderDegrees, or zero: then hexahedra have
-/// one order along all axes, and wedges as well. Nothing if the number of nodes is that of no such cell, or for other
-/// types.
+inline constexpr int highest_pyramid_order = 8;
+
+/// The lattice of a cell of one of VTK's types with so many nodes: 24 to 27, 29, 31, 32, 33, 37, Lagrange tetrahedra
+/// (71; of 15 nodes too), hexahedra (72), wedges (73; of 21 nodes too) and pyramids (74), Bezier tetrahedra (78),
+/// hexahedra (79) and wedges (80). `degrees` are those of VTK's HigherOrderDegrees, or zero: then hexahedra have one
+/// order along all axes, and wedges as well; tetrahedra and pyramids do not look at them. Nothing if the number of
+/// nodes is that of no such cell, or for other types.
 ///
-/// Source  The order of nodes is VTK's (vtkQuadraticTetra.h ..., vtkHigherOrderTetra.h, vtkHigherOrderHexahedron.h,
-///         vtkHigherOrderWedge.h of 9.1).
+/// Orders  Lagrange tetrahedra, hexahedra and wedges up to 100, pyramids up to 8, Bezier cells up to 12.
+/// Nodes   in VTK's order (vtkQuadraticTetra.h ..., vtkHigherOrderTetra.h, vtkHigherOrderHexahedron.h,
+///         vtkHigherOrderWedge.h of 9.1). VTK has no Lagrange pyramids yet. Ours have corners, edges (0 1, 1 2, 3 2, 0
+///         3, 0 4, 1 4, 2 4, 3 4, each from the first), the base row by row along r, the triangles on the base's edges
+///         in their order, row by row from the base up, each row as the edge runs, and layers of the inside from the
+///         base up, row by row: of second order what its one way to go on from quadratic pyramids is.
 std::optional<CurvedLattice> curved_lattice(std::uint8_t vtk_type, std::size_t nodes,
                                             const std::array<int, 3>& degrees = {});
 

@@ -31,8 +31,8 @@ void CurvedError::add(const CurvedError& other) {
 }
 
 void CurvedSplitter::begin(const CurvedLattice& lattice, std::span<const glm::dvec3> positions,
-                           std::span<const double> values) {
-  cell_.set(lattice, positions, values);
+                           std::span<const double> values, std::span<const double> weights) {
+  cell_.set(lattice, positions, values, weights);
   corners_ = corners_of(lattice.family).size();
   places_.clear(), faces_.clear(), values_.clear(), edges_.clear(), face_points_.clear();
   open_.clear(), tets_.clear(), open_nets_.clear();
@@ -49,8 +49,9 @@ void CurvedSplitter::begin(const CurvedLattice& lattice, std::span<const glm::dv
 }
 
 void CurvedSplitter::split(const CurvedLattice& lattice, std::span<const glm::dvec3> positions,
-                           std::span<const double> values, std::span<const Tet> first, std::size_t limit) {
-  begin(lattice, positions, values);
+                           std::span<const double> values, std::span<const double> weights, std::span<const Tet> first,
+                           std::size_t limit) {
+  begin(lattice, positions, values, weights);
   for (std::size_t k = first.size(); k > 0; --k) open(first[k - 1]);
   while (!open_.empty()) {
     const Tet tet = open_.back();
@@ -101,9 +102,9 @@ void CurvedSplitter::make_net(const Tet& tet) {
 }
 
 void CurvedSplitter::tally_excess(const CurvedLattice& lattice, std::span<const glm::dvec3> positions,
-                                  std::span<const double> values, std::span<const Tet> first,
-                                  const std::function<void(double)>& say) {
-  begin(lattice, positions, values);
+                                  std::span<const double> values, std::span<const double> weights,
+                                  std::span<const Tet> first, const std::function<void(double)>& say) {
+  begin(lattice, positions, values, weights);
   for (const Tet& tet : first) {
     double worst = 0;
     for (const auto& [a, b] : edges_of_tet)
@@ -132,17 +133,49 @@ std::span<const glm::dvec4> CurvedSplitter::departures(Corners corners) {
     for (const std::uint32_t v : corners)
       if (places_[v] == place[k]) value[k] = values_[v];
   const BernsteinForm& form = bernstein_form(static_cast<int>(corners.size()), degree);
+  weight_samples_.clear();
   for (const auto& weights : form.points) {
     glm::dvec4 straight(0);
     for (std::size_t k = 0; k < corners.size(); ++k) straight += static_cast<double>(weights[k]) * value[k];
-    samples_.push_back(cell_.between(places, std::span(weights).first(corners.size()), degree, faces) -
-                       straight / static_cast<double>(degree));
+    const auto [at, weight] = cell_.between(places, std::span(weights).first(corners.size()), degree, faces);
+    samples_.push_back(at - straight / static_cast<double>(degree));
+    if (cell_.has_weights()) samples_.back() *= weight, weight_samples_.push_back(weight);
   }
   const std::size_t n = samples_.size();
   coefficients_.assign(n, glm::dvec4(0));
   for (std::size_t j = 0; j < n; ++j)  // column by column: sums that do not wait for each other
     for (std::size_t k = 0; k < n; ++k) coefficients_[k] += form.matrix[j * n + k] * samples_[j];
+  if (cell_.has_weights()) {
+    const double scale = 1 / least_weight(places, faces, form);
+    for (glm::dvec4& coefficient : coefficients_) coefficient *= scale;
+  }
   return coefficients_;
+}
+
+/// A bound from below on the weights that the samples of departures() are multiplied by: their least coefficient.
+double CurvedSplitter::least_weight(std::span<const CellPlace> places, unsigned faces, const BernsteinForm& form) {
+  std::array<double, 4> at_corner{};
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    std::array<int, 4> alone{};
+    alone[k] = 1;
+    at_corner[k] = cell_.between(places, std::span(alone).first(places.size()), 1, faces).weight;
+    least = std::min(least, at_corner[k]);
+  }
+  const std::size_t n = form.points.size();
+  const auto straight = [&](std::size_t point) {
+    double sum = 0, total = 0;
+    for (std::size_t c = 0; c < places.size(); ++c)
+      sum += form.points[point][c] * at_corner[c], total += form.points[point][c];
+    return sum / total;
+  };
+  for (std::size_t k = 0; k < n; ++k) weight_samples_[k] -= straight(k);
+  for (std::size_t k = 0; k < n; ++k) {
+    double coefficient = straight(k);
+    for (std::size_t j = 0; j < n; ++j) coefficient += form.matrix[j * n + k] * weight_samples_[j];
+    least = std::min(least, coefficient);
+  }
+  return std::max(least, cell_.least_weight());
 }
 
 std::span<const glm::dvec4> CurvedSplitter::net_departures(const Tet& tet) {

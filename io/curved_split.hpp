@@ -39,9 +39,11 @@ struct CurvedError {
 ///         bounded by the coefficients of Bernstein's form, of an edge, a triangle or a tet.
 /// Shared  What becomes of an edge or a face follows from the nodes on it alone (CurvedCell), so neighbours divide what
 ///         they share alike, whatever order their nodes come in: there are no cracks.
+/// Weights What is off is a fraction: the coefficients of its numerator, over the least of its denominator's, bound it.
+///         The slopes that CurvedError counts are then those of a numerator over that one number.
 /// Limits  Bounds hold to rounding for polynomials of a degree of 12 at most: tets up to order 12, hexahedra up to 4,
-///         wedges up to 6. Others, and pyramids inside, are as near as a polynomial through points is. No edge is
-///         halved more than 20 times; what is left then is in the error.
+///         wedges up to 6; with weights one degree less. Others, and pyramids inside, are as near as a polynomial
+///         through points is. No edge is halved more than 20 times; what is left then is in the error.
 ///
 /// Source  Halving by edges, so that faces agree without their tets being looked at: Ruprecht, Mueller, "A scheme for
 ///         edge-based adaptive tetrahedron subdivision" (Mathematical Visualization, 1998).
@@ -50,9 +52,10 @@ class CurvedSplitter {
   explicit CurvedSplitter(const CurvedTolerance& tolerance) : tolerance_(tolerance) {}
 
   /// Divides one cell, of as many positions and values as the lattice has nodes; no values: the field is one number.
+  /// Weights as CurvedCell::set() has them.
   /// `first` are the tets of its corners, numbered as in the cell. Throws std::length_error for more than `limit` tets.
   void split(const CurvedLattice& lattice, std::span<const glm::dvec3> positions, std::span<const double> values,
-             std::span<const scene::Tet> first, std::size_t limit);
+             std::span<const double> weights, std::span<const scene::Tet> first, std::size_t limit);
 
   /// Of the last cell: tets in corner numbers, and from the number of corners on in `added`, position and field.
   [[nodiscard]] std::span<const scene::Tet> tets() const { return tets_; }
@@ -62,7 +65,8 @@ class CurvedSplitter {
 
   /// Says of each of a cell's first tets how far its worst edge is off, in tolerances.
   void tally_excess(const CurvedLattice& lattice, std::span<const glm::dvec3> positions, std::span<const double> values,
-                    std::span<const scene::Tet> first, const std::function<void(double excess)>& say);
+                    std::span<const double> weights, std::span<const scene::Tet> first,
+                    const std::function<void(double excess)>& say);
 
  private:
   using Corners = std::span<const std::uint32_t>;
@@ -72,10 +76,12 @@ class CurvedSplitter {
   };
   static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
-  void begin(const CurvedLattice& lattice, std::span<const glm::dvec3> positions, std::span<const double> values);
+  void begin(const CurvedLattice& lattice, std::span<const glm::dvec3> positions, std::span<const double> values,
+             std::span<const double> weights);
   Edge& edge(std::uint32_t a, std::uint32_t b);
   /// Bernstein's coefficients of what is off on a segment, triangle or tet.
   std::span<const glm::dvec4> departures(Corners corners);
+  double least_weight(std::span<const CellPlace> places, unsigned faces, const BernsteinForm& form);
   /// Those of a tet, from its net.
   std::span<const glm::dvec4> net_departures(const scene::Tet& tet);
   void open(const scene::Tet& tet);
@@ -106,6 +112,7 @@ class CurvedSplitter {
   /// Each open tet's coefficients, one after the other, where they are exact; those of the tet at hand.
   std::vector<glm::dvec4> open_nets_, tet_net_;
   std::vector<glm::dvec4> samples_, coefficients_;
+  std::vector<double> weight_samples_;
   CurvedError error_, tet_error_;  ///< of the cell's tets so far, and of the one at hand
 };
 

@@ -55,7 +55,7 @@ std::string label(const FieldSummary& field, int component) {
 
 FieldChoice choice_of(const FieldSummary& field, std::optional<int> component) {
   const int c = component ? *component : field.components == 1 ? 0 : magnitude;
-  return {field.name, field.association, c, label(field, c), {}};
+  return {field.name, field.association, c, label(field, c), false, {}};
 }
 
 std::string list(std::span<const FieldSummary> fields) {
@@ -104,28 +104,84 @@ std::optional<FieldChoice> resolve(const std::string& wish, std::optional<Associ
   return choice_of(*field, component);
 }
 
-std::optional<FieldChoice> default_choice(std::span<const FieldSummary> fields) {
-  const auto first = [&](auto&& wanted) -> const FieldSummary* {
-    const auto f = std::find_if(fields.begin(), fields.end(), wanted);
-    return f == fields.end() ? nullptr : &*f;
-  };
-  const auto quantity = [&](const FieldSummary& f) { return varies(f) && !is_label_name(f.name); };
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+/// Of labels those that number cells and points, parts and materials: shown last of all.
+bool is_id_name(const std::string& name) {
+  const std::string lower = lower_case(name);
+  static constexpr std::array exact = {"id",   "ids",     "iblank", "rank",     "partition",  "processid",  "procid",
+                                       "part", "blockid", "region", "material", "material #", "materialid", "block"};
+  if (std::find(exact.begin(), exact.end(), lower) != exact.end() || lower.starts_with("vtk")) return true;
+  for (const char* end : {"_id", "_ids", " id", " ids", "-id", "-ids"})
+    if (lower.ends_with(end)) return true;
+  // "GlobalNodeId" but not "Fluid" or "Solid".
+  for (const char* end : {"Id", "Ids", "ID", "IDs", "IDS"})
+    if (name.ends_with(end)) {
+      const std::size_t before = name.size() - std::string_view(end).size();
+      if (before > 0 && std::islower(static_cast<unsigned char>(name[before - 1]))) return true;
+    }
+  return false;
+}
+
+const FieldSummary* first_of(std::span<const FieldSummary> fields, const auto& wanted) {
+  const auto f = std::find_if(fields.begin(), fields.end(), wanted);
+  return f == fields.end() ? nullptr : &*f;
+}
+
+/// The first that varies and may be shown.
+const FieldSummary* first_quantity(std::span<const FieldSummary> fields, const auto& may_be) {
+  const auto quantity = [&](const FieldSummary& f) { return varies(f) && may_be(f); };
   for (const Association a : {Association::point, Association::cell})
-    if (const auto* f = first(
-            [&](const FieldSummary& s) { return s.association == a && s.components == 1 && quantity(s) && s.active; }))
-      return choice_of(*f, std::nullopt);
+    if (const auto* f = first_of(fields, [&](const FieldSummary& s) {
+          return s.association == a && s.components == 1 && quantity(s) && s.active;
+        }))
+      return f;
   for (const Association a : {Association::point, Association::cell})
     for (const bool scalar : {true, false})
-      if (const auto* f = first([&](const FieldSummary& s) {
+      if (const auto* f = first_of(fields, [&](const FieldSummary& s) {
             return s.association == a && (s.components == 1) == scalar && quantity(s);
           }))
-        return choice_of(*f, std::nullopt);
-  if (const auto* f = first([](const FieldSummary& s) { return s.high > s.low && !is_label_name(s.name); }))
+        return f;
+  return nullptr;
+}
+
+std::optional<FieldChoice> default_choice(std::span<const FieldSummary> fields, bool shape) {
+  if (const auto* f =
+          first_quantity(fields, [](const FieldSummary& s) { return !is_label_name(s.name) && !looks_like_noise(s); }))
     return choice_of(*f, std::nullopt);
-  if (const auto* f = first([](const FieldSummary& s) { return !is_label_name(s.name); }))
+  if (const auto* f = first_quantity(fields, [](const FieldSummary& s) { return !is_label_name(s.name); })) {
+    FieldChoice choice = choice_of(*f, std::nullopt);
+    choice.notes.push_back(fmt::format("'{}' is within {:.2g} of zero everywhere, perhaps noise: no other field varies",
+                                       f->name, std::max(std::abs(f->low), std::abs(f->high))));
+    return choice;
+  }
+  if (shape) return std::nullopt;
+  if (const auto* f = first_quantity(fields, [](const FieldSummary& s) { return !is_id_name(s.name); }))
     return choice_of(*f, std::nullopt);
-  if (const auto* f = first(varies)) return choice_of(*f, std::nullopt);
+  if (const auto* f = first_of(fields, [](const FieldSummary& s) { return s.high > s.low && !is_label_name(s.name); }))
+    return choice_of(*f, std::nullopt);
+  if (const auto* f = first_of(fields, [](const FieldSummary& s) { return !is_label_name(s.name); }))
+    return choice_of(*f, std::nullopt);
+  if (const auto* f = first_of(fields, varies)) return choice_of(*f, std::nullopt);
   return std::nullopt;
+}
+
+FieldChoice no_array(std::span<const FieldSummary> fields, bool shape) {
+  FieldChoice none{"", Association::point, 0, shape ? shape_field_name : "none", shape, {}};
+  if (!shape)
+    none.notes.emplace_back("the file has no field: every point has the value 1");
+  else if (fields.empty())
+    none.notes.emplace_back("the file has no field: its shape is drawn, near parts lighter");
+  else
+    none.notes.push_back(
+        fmt::format("of its fields none varies that is no label or index: its shape is drawn, near parts lighter; "
+                    "`field` draws one of {}",
+                    list(fields)));
+  return none;
 }
 
 }  // namespace
@@ -179,34 +235,62 @@ std::vector<FieldSummary> summarize_fields(std::span<const std::vector<FieldTall
   return summaries;
 }
 
-bool is_label_name(const std::string& name) {
-  std::string lower = name;
-  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
-  static constexpr std::array exact = {"id",   "ids",     "iblank", "rank",     "partition",  "processid",  "procid",
-                                       "part", "blockid", "region", "material", "material #", "materialid", "block"};
-  if (std::find(exact.begin(), exact.end(), lower) != exact.end() || lower.starts_with("vtk")) return true;
-  for (const char* end : {"_id", "_ids", " id", " ids", "-id", "-ids"})
-    if (lower.ends_with(end)) return true;
-  // "GlobalNodeId" but not "Fluid" or "Solid".
-  for (const char* end : {"Id", "Ids", "ID", "IDs", "IDS"})
-    if (name.ends_with(end)) {
-      const std::size_t before = name.size() - std::string_view(end).size();
-      if (before > 0 && std::islower(static_cast<unsigned char>(name[before - 1]))) return true;
-    }
-  return false;
+bool looks_like_noise(const FieldSummary& field) {
+  const double low = field.components == 1 ? field.low : -field.high;  // of vectors it is the length's range
+  return low < 0 && field.high > 0 && std::max(-low, field.high) <= 1e-12;
 }
 
-FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> fields, const std::string& source) {
+bool is_label_name(const std::string& name) {
+  const std::string lower = lower_case(name);
+  static constexpr std::array words = {"ranks",
+                                       "materials",
+                                       "mat",
+                                       "domain",
+                                       "subdomain",
+                                       "zone",
+                                       "index",
+                                       "indices",
+                                       "label",
+                                       "labels",
+                                       "owner",
+                                       "mpi_rank",
+                                       "mpirank",
+                                       "proc",
+                                       "process",
+                                       "attribute",
+                                       "i",
+                                       "j",
+                                       "k",
+                                       "block_i",
+                                       "block_j",
+                                       "block_k",
+                                       "cell_index",
+                                       "node_index",
+                                       "point_index",
+                                       "nodeid",
+                                       "elementid",
+                                       "cellid",
+                                       "objectid",
+                                       "globalid",
+                                       "globalnodeid",
+                                       "globalelementid",
+                                       "gmsh:physical",
+                                       "gmsh:geometrical",
+                                       "cellentityids"};
+  if (is_id_name(name) || std::find(words.begin(), words.end(), lower) != words.end()) return true;
+  for (const char* begin : {"material_", "material ", "partition_", "rank_"})
+    if (lower.starts_with(begin)) return true;
+  return lower.ends_with("_rank") || lower.ends_with("_label") || lower.ends_with("_labels");
+}
+
+FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> fields, const std::string& source,
+                         bool shape) {
   if (wish.empty()) {
-    std::optional<FieldChoice> choice = default_choice(fields);
-    if (!choice) {
-      FieldChoice none{"", Association::point, 0, "none", {}};
-      none.notes.emplace_back("the file has no field: every point has the value 1");
-      return none;
-    }
+    std::optional<FieldChoice> choice = default_choice(fields, shape);
+    if (!choice) return no_array(fields, shape);
     if (fields.size() > 1)
-      choice->notes.push_back(
-          fmt::format("field {}:'{}' chosen of {}", word(choice->association), choice->label, list(fields)));
+      choice->notes.insert(choice->notes.begin(), fmt::format("field {}:'{}' chosen of {}", word(choice->association),
+                                                              choice->label, list(fields)));
     return *choice;
   }
   std::optional<FieldChoice> choice;

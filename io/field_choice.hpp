@@ -1,5 +1,6 @@
 #pragma once
 
+#include <glm/vec3.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@ struct FieldChoice {
   scene::Association association = scene::Association::point;
   int component = 0;               ///< or `magnitude`
   std::string label;               ///< with component: "Velocity:mag"
+  bool shape = false;              ///< no array, but how far points lie along shape_direction
   std::vector<std::string> notes;  ///< why it was chosen, where that may surprise
 };
 
@@ -31,15 +33,24 @@ std::vector<FieldTally> tally_fields(std::span<const CellBlock> blocks);
 /// number of components and the type that come first. The same however the file was divided.
 std::vector<FieldSummary> summarize_fields(std::span<const std::vector<FieldTally>> parts);
 
-/// Whether a name is that of a label rather than a quantity ("GlobalNodeId", "vtkGhostType", "IBlank"): never the
-/// default.
+/// Towards the eye of the default view (tessera/default_view.hpp), of length one.
+inline constexpr glm::dvec3 shape_direction{0.4531538935183250, -0.7848855672213958, 0.4226182617406994};
+
+/// Whether a name is that of a label rather than a quantity ("GlobalNodeId", "vtkGhostType", "IBlank", "BLOCK_I"): an
+/// id, an index, the number of a rank, part, block or material. Never the default.
 bool is_label_name(const std::string& name);
+
+/// Whether a field is nowhere further from zero than 1e-12 and goes through it: what is left of zeros after arithmetic,
+/// as a rule. The default only if nothing else varies, and with a note.
+bool looks_like_noise(const FieldSummary& field);
 
 /// Resolves MeshOptions::field. Names win over syntax: "a:b" is the array of that name if there is one; a name of both
 /// a point and a cell array means the point one. Without a wish: the file's active scalars if they vary, else the first
-/// that varies of point scalars, point vectors, cell scalars, cell vectors (labels only if nothing else varies), else
-/// any. Throws Error(bad_input) listing all names.
-FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> fields, const std::string& source);
+/// that varies of point scalars, point vectors, cell scalars, cell vectors; of what looks like noise only if nothing
+/// else varies. If only labels vary: the first, or with `shape` (ReadOptions::shape) no array but the shape; and so if
+/// nothing varies. Throws Error(bad_input) listing all names.
+FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> fields, const std::string& source,
+                         bool shape = false);
 
 /// Whether this block has the chosen array, with the summary's number of components.
 const BlockField* find_field(const CellBlock& block, const std::string& name, scene::Association association);

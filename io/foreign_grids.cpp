@@ -151,6 +151,8 @@ VolumeFile grid_of(const ForeignFile& opened, const VolumeOptions& options) {
   scene::Grid grid;
   grid.geometry = geometry_of(opened, part);
   result.format = opened.contents.format;
+  if (result.format.starts_with("DICOM")) result.body_axes = BodyAxes::lps;
+  if (result.format.starts_with("MINC")) result.body_axes = BodyAxes::ras;
 
   CellBlock block;  // only its fields are of use
   std::size_t points = 1, cells = 1;

@@ -4,6 +4,7 @@
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfThreading.h>
 #include <fmt/format.h>
 #include <half.h>
 
@@ -12,6 +13,7 @@
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <mutex>
 #include <type_traits>
 #include <vector>
 
@@ -19,20 +21,32 @@
 #include "io/exr_stream.hpp"
 #include "io/image_formats.hpp"
 #include "scene/error.hpp"
+#include "scene/threads.hpp"
 
 namespace tessera::io {
 namespace {
 
 constexpr std::array<const char*, 4> channel_names{"R", "G", "B", "A"};
 
+/// OpenEXR compresses on threads of one pool of the process, which has none until somebody asks. It only grows here: a
+/// caller's own setting stays. 0: this thread alone.
+int compressing_threads(const ImageFileOptions& options) {
+  const int threads = scene::threads_for(options.threads);
+  if (threads < 2) return 0;
+  static std::mutex growing;
+  const std::lock_guard lock(growing);
+  if (Imf::globalThreadCount() < threads) Imf::setGlobalThreadCount(threads);
+  return threads;
+}
+
 template <class Number>
 void write_rows(Imf::OutputFile& output, const scene::Image& image, const std::filesystem::path& file,
-                const ImageFileOptions& options) {
+                const ImageFileOptions& options, int threads) {
   constexpr bool is_half = std::is_same_v<Number, half>;
   const auto width = static_cast<std::size_t>(image.size.width);
-  constexpr int rows_at_once = 16;  // what ZIP compresses together
+  const int rows_at_once = 16 * std::clamp(threads, 1, 64);  // ZIP compresses 16 together, each thread its own
   std::vector<float> row(4 * width);
-  std::vector<Number> rows(4 * width * rows_at_once);
+  std::vector<Number> rows(4 * width * static_cast<std::size_t>(std::min(rows_at_once, image.size.height)));
   for (int begin = 0; begin < image.size.height; begin += rows_at_once) {
     const int end = std::min(begin + rows_at_once, image.size.height);
     for (int y = begin; y < end; ++y) {
@@ -77,11 +91,12 @@ void write_exr(const scene::Image& image, const std::filesystem::path& file, con
     header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
     ExrStream stream(target, file.string());
     {
-      Imf::OutputFile output(stream, header, 0);
+      const int threads = compressing_threads(options);
+      Imf::OutputFile output(stream, header, threads);
       if (options.half)
-        write_rows<half>(output, image, file, options);
+        write_rows<half>(output, image, file, options, threads);
       else
-        write_rows<float>(output, image, file, options);
+        write_rows<float>(output, image, file, options, threads);
     }
     stream.rethrow();
   } catch (const scene::Error&) {

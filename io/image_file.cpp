@@ -14,7 +14,7 @@
 namespace tessera::io {
 namespace {
 
-enum class Format { exr, png, pfm, unknown };
+enum class Format { exr, png, jpeg, tiff, pfm, unknown };
 
 Format format_of(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
@@ -23,12 +23,14 @@ Format format_of(const std::filesystem::path& file) {
   });
   if (extension == ".exr") return Format::exr;
   if (extension == ".png") return Format::png;
+  if (extension == ".jpg" || extension == ".jpeg") return Format::jpeg;
+  if (extension == ".tif" || extension == ".tiff") return Format::tiff;
   if (extension == ".pfm") return Format::pfm;
   return Format::unknown;
 }
 
 scene::Error unknown_extension(const std::filesystem::path& file) {
-  return scene::bad_input(file.string() + ": is no image by its name; end it in .exr, .png or .pfm");
+  return scene::bad_input(file.string() + ": is no image by its name; end it in .exr, .png, .jpg, .tif or .pfm");
 }
 
 }  // namespace
@@ -60,7 +62,9 @@ void composited_row(const scene::Image& image, int y, const ImageFileOptions& op
   }
 }
 
-void write_image(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
+namespace {
+
+void check(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
   scene::validate(image.size);
   const std::size_t pixels = static_cast<std::size_t>(image.size.width) * static_cast<std::size_t>(image.size.height);
   if (image.rgba.size() != 4 * pixels || image.depth.size() != pixels)
@@ -72,11 +76,26 @@ void write_image(const scene::Image& image, const std::filesystem::path& file, c
       if (!(std::isfinite((*options.background)[k]) && (*options.background)[k] >= 0))
         throw scene::bad_input(
             fmt::format("background {} is not finite or negative; give three numbers", (*options.background)[k]));
+}
+
+}  // namespace
+
+std::vector<std::byte> checked_png_bytes(const scene::Image& image, const ImageFileOptions& options) {
+  check(image, "picture", options);
+  return png_bytes(image, options);
+}
+
+void write_image(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
+  check(image, file, options);
   switch (format_of(file)) {
     case Format::exr:
       return write_exr(image, file, options);
     case Format::png:
       return write_png(image, file, options);
+    case Format::jpeg:
+      return write_jpeg(image, file, options);
+    case Format::tiff:
+      return write_tiff(image, file, options);
     case Format::pfm:
       return write_pfm(image, file, options);
     case Format::unknown:
@@ -105,6 +124,8 @@ scene::Image read_image(const std::filesystem::path& file) {
 
 void check_image_path(const std::filesystem::path& file) {
   if (format_of(file) == Format::unknown) throw unknown_extension(file);
+  if (format_of(file) == Format::jpeg && !has_jpeg())
+    throw scene::bad_input(file.string() + ": this build leaves .jpg out; build with TESSERA_JPEG=ON, or write .png");
   // The only test that holds for every file system and user: begin such a file, and leave it.
   check_writable(file);
 }

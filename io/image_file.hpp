@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <vector>
 
 #include "scene/image.hpp"
 #include "tessera/image_file_options.hpp"
@@ -13,6 +15,9 @@ using tessera::ImageFileOptions;
 
 /// tessera::write_image().
 void write_image(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options);
+
+/// tessera::png_bytes().
+std::vector<std::byte> checked_png_bytes(const scene::Image& image, const ImageFileOptions& options);
 
 /// tessera::read_image().
 scene::Image read_image(const std::filesystem::path& file);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <vector>
 
 #include "io/image_file.hpp"
 
@@ -11,7 +13,12 @@ namespace tessera::io {
 
 void write_exr(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options);
 void write_png(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options);
+void write_jpeg(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options);
+void write_tiff(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options);
 void write_pfm(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options);
+std::vector<std::byte> png_bytes(const scene::Image& image, const ImageFileOptions& options);
+/// Whether write_jpeg() can.
+bool has_jpeg();
 scene::Image read_exr(const std::filesystem::path& file);
 scene::Image read_pfm(const std::filesystem::path& file);
 

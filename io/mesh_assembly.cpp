@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <numeric>
 
@@ -93,6 +94,11 @@ class Assembly {
     const std::size_t n = point ? points_.size() : block.cell_count();
     if (!point) values_.clear();
     const std::size_t first = values_.size();
+    if (choice_.shape) {
+      values_.reserve(first + n);
+      for (std::size_t p = 0; p < n; ++p) values_.push_back(glm::dot(points_[p], shape_direction));
+      return;
+    }
     if (choice_.name.empty()) {
       values_.resize(first + n, 1.0);
       return;
@@ -330,14 +336,15 @@ std::vector<std::string> warnings_on_cells(const MeshCounts& n, const HigherOrde
   return warnings;
 }
 
-MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options, const std::string& source) {
+MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options, const std::string& source,
+                       const HigherOrderPlanning& planning) {
   MeshFile file;
   const std::vector<FieldTally> tallies = tally_fields(blocks);
   file.fields = summarize_fields(std::span(&tallies, 1));
-  const FieldChoice choice = choose_field(options.field, file.fields, source);
+  const FieldChoice choice = choose_field(options.field, file.fields, source, options.shape);
   file.notes = choice.notes;
 
-  const HigherOrderPlan plan = plan_higher_order(blocks, options, choice, file.fields);
+  const HigherOrderPlan plan = planning(blocks, options, choice, file.fields);
   AssembledBlocks assembled = assemble_blocks(std::move(blocks), file.fields, choice, source, plan, options.threads);
   file.mesh = std::move(assembled.mesh);
   file.counts = assembled.counts;

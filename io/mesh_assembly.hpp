@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,9 +35,15 @@ std::vector<std::string> notes_on_cells(const MeshCounts& counts, const HigherOr
 /// What of the cells is drawn otherwise than the file has it, one line each.
 std::vector<std::string> warnings_on_cells(const MeshCounts& counts, const HigherOrderCells& higher_order);
 
+/// How higher-order cells are divided: plan_higher_order(), or what the parts of a mesh agree on.
+using HigherOrderPlanning =
+    std::function<HigherOrderPlan(std::span<const CellBlock> blocks, const MeshOptions& options,
+                                  const FieldChoice& choice, std::span<const FieldSummary> fields)>;
+
 /// Makes the tet mesh of all of a file's blocks: chooses the field, assembles, smooths if asked. `format` is left
 /// empty. Throws as the functions above and choose_field.
-MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options, const std::string& source);
+MeshFile assemble_mesh(std::vector<CellBlock> blocks, const MeshOptions& options, const std::string& source,
+                       const HigherOrderPlanning& planning = plan_higher_order);
 
 /// Replaces cell data by point data: each used vertex gets the mean of the cells that touch it, weighted by tet volume
 /// (unweighted where all volumes are 0). Vertices at one position count as one, so that pieces leave no seam.

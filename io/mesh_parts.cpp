@@ -129,7 +129,7 @@ void MeshPartReading::choose(std::span<const std::vector<FieldTally>> tallies_of
     require_blocks(state_->options.blocks, names_of_all, source);
     state_->blocks.block_names = std::move(names_of_all);
     state_->fields = summarize_fields(tallies_of_all);
-    state_->choice = choose_field(state_->options.field, state_->fields, source);
+    state_->choice = choose_field(state_->options.field, state_->fields, source, state_->options.shape);
     state_->asked = asked_tolerance(state_->options, box_of_all, state_->choice, state_->fields);
   });
 }

@@ -29,9 +29,10 @@ struct MeshOptions {
   /// Cells of second and higher order become tets that are this near to them: in position of the mesh's diagonal, in
   /// value of the field's range; and about so many tets at most, else the tolerance is larger. 0 tets: by their
   /// corners.
-  double higher_order_tolerance = 1e-4;
-  std::uint64_t higher_order_tets = std::uint64_t{1} << 21;
+  double higher_order_tolerance = default_higher_order_tolerance;
+  std::uint64_t higher_order_tets = default_higher_order_tets;
   ReadProgressFunction progress{};  ///< null: nobody hears
+  bool shape = false;               ///< ReadOptions::shape
 };
 
 using tessera::HigherOrderCells;

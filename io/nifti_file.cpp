@@ -143,11 +143,13 @@ void set_nifti_geometry(const NiftiHeader& header, const std::filesystem::path& 
       steps[column] = {header.srow(0, column), header.srow(1, column), header.srow(2, column)};
     set_axes(g, steps);
     g.origin = {header.srow(0, 3), header.srow(1, 3), header.srow(2, 3)};
+    volume.body_axes = BodyAxes::ras;
     volume.notes.emplace_back("placed by its sform");
   } else if (header.qform_code() > 0) {
     set_axes(g, quaternion_steps(header, spacing));
     g.spacing = spacing;  // as it stands, without the quaternion's rounding
     g.origin = {header.quaternion(3), header.quaternion(4), header.quaternion(5)};
+    volume.body_axes = BodyAxes::ras;
     volume.notes.emplace_back("placed by its qform");
   } else {
     g.spacing = spacing;

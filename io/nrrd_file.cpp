@@ -175,10 +175,21 @@ NrrdAxes axes_of(const NrrdFields& fields, const std::vector<std::int64_t>& size
   return axes;
 }
 
+/// Of its field `space`; the others ("scanner-xyz", "3D-right-handed") say nothing of a body.
+BodyAxes body_axes_of(std::string space) {
+  std::ranges::transform(space, space.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const char* word : {"right-anterior-superior", "ras", "left-anterior-superior", "las"})
+    if (space == word || space == std::string(word) + "-time" || space == std::string(word) + "t") return BodyAxes::ras;
+  for (const char* word : {"left-posterior-superior", "lps"})
+    if (space == word || space == std::string(word) + "-time" || space == std::string(word) + "t") return BodyAxes::lps;
+  return BodyAxes::none;
+}
+
 void set_nrrd_geometry(const NrrdFields& fields, const NrrdAxes& about, const std::filesystem::path& file,
                        StoredVolume& volume) {
   const std::size_t axes = about.count, skip = about.skip;
   scene::GridGeometry& g = volume.grid.geometry;
+  if (const auto* space = fields.find("space")) volume.body_axes = body_axes_of(*space);
   if (const auto* directions = fields.find("spacedirections")) {
     const auto vectors = space_vectors_of(*directions, file);
     if (vectors.size() != axes)

@@ -156,6 +156,23 @@ std::string set_color_space(const std::string& name, const Reader& reader, color
   return "";
 }
 
+/// The length over which opacities hold, and where it comes from.
+double unit_distance(const Reader& reader, const colormaps::TransferFunctionOptions& options, std::string& source) {
+  source = "default";
+  double distance = options.default_unit_distance;
+  if (const json* in_file = reader.find("ScalarOpacityUnitDistance")) {
+    if (!in_file->is_number() || !(in_file->get<double>() > 0) || !std::isfinite(in_file->get<double>()))
+      throw reader.fault("ScalarOpacityUnitDistance is not a positive number; it is a length in world units");
+    distance = in_file->get<double>();
+    source = "file";
+  }
+  if (options.unit_distance) {
+    distance = *options.unit_distance;
+    source = "`unit_distance`";
+  }
+  return distance;
+}
+
 }  // namespace
 
 colormaps::LoadedTransferFunction parse_paraview_color_map(std::string_view text, const std::string& source,
@@ -187,8 +204,18 @@ colormaps::LoadedTransferFunction parse_paraview_color_map(std::string_view text
 
   sort_points(curves.colors);
   const std::array<double, 2> color_range = range_of(curves.colors);
-  const std::array<double, 2> spanned = options.rescale ? options.field_range : color_range;
-  if (options.rescale) {
+  const bool preset_like = color_range == std::array{0.0, 1.0} || color_range == std::array{-1.0, 1.0};
+  const bool off = !options.range && !options.rescale && options.rescale_presets && preset_like &&
+                   colormaps::is_far_off(color_range, options.field_range);
+  const bool stretches = options.rescale || options.range || off;
+  const std::array<double, 2> spanned = stretches ? options.spanned() : color_range;
+  std::vector<std::string> warnings;
+  if (off)
+    warnings.push_back(fmt::format(
+        "the transfer function's {:g} to {:g} would show next to nothing of the field's {:.6g} to {:.6g}: it is taken "
+        "for a preset and stretched over the field; `range` says another range",
+        color_range[0], color_range[1], options.field_range[0], options.field_range[1]));
+  if (stretches) {
     remarks.push_back(fmt::format("rescaled to {:.6g} to {:.6g}", spanned[0], spanned[1]));
     stretch(curves.colors, color_range, spanned, [&] {
       const auto [a, b, t] = round_middle(curves.colors);
@@ -201,26 +228,19 @@ colormaps::LoadedTransferFunction parse_paraview_color_map(std::string_view text
   }
   if (!has_opacities) curves.opacities = colormaps::opacity_ramp();
   sort_points(curves.opacities);
-  if (options.rescale || !has_opacities)
+  if (!options.opacity_points.empty())
+    curves.opacities = colormaps::points_over(options.opacity_points, spanned[0], spanned[1]);
+  else if (stretches || !has_opacities)
     stretch(curves.opacities, range_of(curves.opacities), spanned, [&] {
       const auto [a, b, t] = round_middle(curves.opacities);
       return colormaps::OpacityPoint{0, colormaps::mix_opacities(a, b, t)};
     });
 
   colormaps::LoadedTransferFunction loaded;
-  loaded.unit_distance_source = "default";
-  double distance = options.default_unit_distance;
-  if (const json* in_file = reader.find("ScalarOpacityUnitDistance")) {
-    if (!in_file->is_number() || !(in_file->get<double>() > 0) || !std::isfinite(in_file->get<double>()))
-      throw reader.fault("ScalarOpacityUnitDistance is not a positive number; it is a length in world units");
-    distance = in_file->get<double>();
-    loaded.unit_distance_source = "file";
-  }
-  if (options.unit_distance) {
-    distance = *options.unit_distance;
-    loaded.unit_distance_source = "`unit_distance`";
-  }
+  const double distance = unit_distance(reader, options, loaded.unit_distance_source);
   loaded.unit_distance = distance;
+  loaded.warnings = std::move(warnings);
+  if (options.range) loaded.range = options.range;
   loaded.name = given_name.empty() ? source : source + " " + quote(given_name);
   if (!remarks.empty()) loaded.name += fmt::format(" ({})", fmt::join(remarks, "; "));
   try {

@@ -64,7 +64,9 @@ colormaps::LoadedTransferFunction parse_text_transfer_function(std::string_view 
     throw scene::bad_input(source + ": holds no knot; give at least one line `value r g b extinction`");
   std::string name = source;
   if (options.unit_distance) name += " (extinctions as they stand; `unit_distance` does not apply)";
-  if (options.rescale) name += rescale(knots, options.field_range);
+  if (!options.opacity_points.empty())
+    throw scene::bad_input(source + ": holds extinctions, which `opacity_points` cannot replace; leave it out");
+  if (options.rescale || options.range) name += rescale(knots, options.spanned());
   return {colormaps::make_transfer_function(std::move(knots), source), name, std::nullopt, ""};
 }
 

@@ -33,6 +33,7 @@ struct StoredVolume {
   enum class Wide { no, int64, uint64 } wide = Wide::no;  ///< 64-bit integers; `number` is float64, which they become
   std::string format;
   std::vector<std::string> notes;
+  BodyAxes body_axes = BodyAxes::none;
 };
 
 StoredVolume read_nifti_header(const std::filesystem::path& file);

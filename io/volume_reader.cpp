@@ -107,6 +107,7 @@ VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const 
   }
   VolumeFile result;
   result.format = std::move(volume.format);
+  result.body_axes = volume.body_axes;
   result.notes = std::move(volume.notes);
 
   FieldSummary field{.name = "samples", .components = volume.components, .type = listed_type(volume.number)};

@@ -9,6 +9,7 @@
 
 #include "io/mesh_reader.hpp"
 #include "scene/sample_source.hpp"
+#include "tessera/default_view.hpp"
 
 namespace tessera::io {
 
@@ -36,6 +37,7 @@ struct VolumeFile {
   std::vector<FieldSummary> fields;  ///< low > high: not known until set_range()
   std::vector<std::string> notes;    ///< one line each: what was chosen or applied, or odd about the file
   std::string format;
+  BodyAxes body_axes = BodyAxes::none;
 };
 
 /// Whether the file is a regular or rectilinear grid: by what it begins with, so that a .vtk may be a mesh or a volume

@@ -109,6 +109,27 @@ std::vector<glm::dvec3> hexahedron_nodes(std::array<int, 3> orders) {
   return places;
 }
 
+std::vector<glm::dvec3> lagrange_pyramid_nodes(int order) {
+  const std::array<glm::dvec3, 5> c{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}}};
+  constexpr std::array<std::array<std::size_t, 2>, 4> base{{{0, 1}, {1, 2}, {3, 2}, {0, 3}}};
+  Places places(c.begin(), c.end());
+  for (const auto& [from, to] : base) add_between(c[from], c[to], order, places);
+  for (std::size_t i = 0; i < 4; ++i)  // in the box they are upright
+    for (int k = 1; k < order; ++k) places.emplace_back(c[i].x, c[i].y, static_cast<double>(k) / order);
+  const auto add_layer = [&](int k) {
+    const double t = static_cast<double>(k) / order;
+    add_quad({0, 0, t}, {1, 0, t}, {0, 1, t}, order - k, order - k, places);
+  };
+  add_layer(0);
+  for (const auto& [from, to] : base)
+    for (int k = 1; k < order; ++k) {
+      const glm::dvec3 up(0, 0, static_cast<double>(k) / order);
+      add_between(c[from] + up, c[to] + up, order - k, places);
+    }
+  for (int k = 1; k < order; ++k) add_layer(k);
+  return places;
+}
+
 std::vector<glm::dvec3> pyramid_nodes() {
   const double third = 1.0 / 3;
   return {{0, 0, 0},       {1, 0, 0},       {1, 1, 0},       {0, 1, 0},       {0, 0, 1},

@@ -28,4 +28,9 @@ std::vector<glm::dvec3> hexahedron_nodes(std::array<int, 3> orders);
 /// A pyramid of 19 nodes. The first 5 or 13 are other types'.
 std::vector<glm::dvec3> pyramid_nodes();
 
+/// A Lagrange pyramid, of which VTK has the number but no order of nodes. Here: corners; edges, from the lower corner
+/// to the higher along r and s as a hexahedron's, then up to the apex; the base, rows along r; the triangles over the
+/// base's edges, rows from the base up along the edge; the inside, layers from the base up, rows along r.
+std::vector<glm::dvec3> lagrange_pyramid_nodes(int order);
+
 }  // namespace tessera::reference

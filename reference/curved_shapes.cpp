@@ -164,6 +164,19 @@ CellShape triquadratic_pyramid() {
   return spanned(BernsteinBasis(Domain::box, {2, 2, 3}), pyramid_nodes(), space);
 }
 
+/// The Lagrange pyramid: of the rational functions of Bergot, Cohen and Durufle ("Higher-order finite elements for
+/// hybrid meshes using new nodal pyramidal elements", Journal of Scientific Computing 2010), in the box x^i y^j times
+/// powers of w from the larger of i and j up to the order.
+CellShape lagrange_pyramid(int order) {
+  std::vector<Function> space;
+  for (int i = 0; i <= order; ++i)
+    for (int j = 0; j <= order; ++j)
+      for (int k = std::max(i, j); k <= order; ++k)
+        space.push_back(
+            towards_apex([=](double x, double y, double w) { return power(x, i) * power(y, j) * power(w / 2, k); }));
+  return spanned(BernsteinBasis(Domain::box, {order, order, order}), lagrange_pyramid_nodes(order), space);
+}
+
 /// The tet of 15 nodes: the quadratic one, with a cubic bubble for each face and a quartic one inside.
 CellShape enriched_tet() {
   std::vector<glm::dvec3> nodes = tet_nodes(2);
@@ -289,6 +302,17 @@ CellShape cell_shape(std::uint8_t vtk_type, std::size_t nodes, std::array<int, 3
       throw scene::bad_input(fmt::format("{}: type {} has {} nodes, this cell {}; write all of its nodes", where,
                                          vtk_type, wanted, nodes));
     return fixed_shape(vtk_type);
+  }
+  if (vtk_type == 74) {
+    const auto count = [](std::size_t n) { return (n + 1) * (n + 2) * (2 * n + 3) / 6; };
+    std::size_t order = 1;
+    while (order < highest_order && count(order) < nodes) ++order;
+    if (count(order) != nodes)
+      throw scene::bad_input(
+          fmt::format("{}: {} nodes do not fit a Lagrange pyramid of order 1 to {}; write all of its "
+                      "nodes",
+                      where, nodes, highest_order));
+    return lagrange_pyramid(static_cast<int>(order));
   }
   const bool of_tet = vtk_type == 71 || vtk_type == 78, of_hexahedron = vtk_type == 72 || vtk_type == 79,
              of_wedge = vtk_type == 73 || vtk_type == 80, is_bezier = vtk_type >= 78;

@@ -29,7 +29,7 @@ struct CellShape {
 /// What a type, a number of nodes and orders make; `orders` are of VTK's array HigherOrderDegrees, or zeros: told from
 /// the number of nodes, as VTK does. Only Lagrange and Bezier hexahedra and wedges look at them.
 ///
-/// Types   linear 10 to 14; quadratic 24 to 27, 29, 31 to 33, 37; Lagrange 71 to 73, with the tet of 15 nodes and the
+/// Types   linear 10 to 14; quadratic 24 to 27, 29, 31 to 33, 37; Lagrange 71 to 74, with the tet of 15 nodes and the
 ///         wedge of 21; Bezier 78 to 80, of unit weights.
 /// Throws  scene::Error(bad_input), which begins with `where`, for other types, wrong numbers of nodes and orders above
 ///         10.

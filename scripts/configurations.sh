@@ -20,7 +20,7 @@ options_of() {  # options_of NAME
     no-tetgen) echo -DTESSERA_TETGEN=OFF ;;
     no-gl) echo -DTESSERA_GL=OFF ;;
     least)
-      echo -DTESSERA_MPI=OFF -DTESSERA_TETGEN=OFF -DTESSERA_DICOM=OFF -DTESSERA_XDMF=OFF -DTESSERA_MED=OFF -DTESSERA_GL=OFF -DTESSERA_CAIRO=OFF "${clang[@]}" \
+      echo -DTESSERA_MPI=OFF -DTESSERA_TETGEN=OFF -DTESSERA_DICOM=OFF -DTESSERA_XDMF=OFF -DTESSERA_MED=OFF -DTESSERA_JPEG=OFF -DTESSERA_GL=OFF -DTESSERA_CAIRO=OFF "${clang[@]}" \
         -DCMAKE_DISABLE_FIND_PACKAGE_{VTK,MPI,TetGen,CLI11}=ON # as if they were not there
       ;;
     clang) echo "${clang[@]}" ;;

@@ -13,6 +13,7 @@
 #include "tessera/association.hpp"
 #include "tessera/camera.hpp"
 #include "tessera/communicator.hpp"
+#include "tessera/default_view.hpp"
 #include "tessera/export.hpp"
 #include "tessera/field_info.hpp"
 #include "tessera/grid.hpp"
@@ -33,6 +34,11 @@ struct ReadOptions {
   std::optional<std::size_t> time_step{};  ///< files of several: counted from 0; default the last
 
   // Meshes.
+  /// What a mesh shows that has nothing to show, for who names neither field nor transfer function: where it has no
+  /// field, or only constants and labels (ids, indices, ranks, materials), its shape, as point data named
+  /// `shape_field_name`: how far each point lies towards the eye of the default view. false: the value 1 where there is
+  /// no field, else the first of them, labels last.
+  bool shape = false;
   bool smooth = false;                 ///< average cell data to the points, weighted by tet volume
   std::filesystem::path plot3d_q{};    ///< PLOT3D solution file; empty: found beside the grid file by its name
   std::optional<double> max_volume{};  ///< surfaces only: largest tet TetGen makes, world units cubed
@@ -43,8 +49,8 @@ struct ReadOptions {
   /// Cells of second and higher order become tets that are this near to them: in position of the mesh's diagonal, in
   /// value of the field's range. No more than about `higher_order_tets` are made of them, else the tolerance is larger;
   /// Dataset::higher_order_cells() says what was reached. 0 tets: they are drawn by their corners, without a bound.
-  double higher_order_tolerance = 1e-4;
-  std::uint64_t higher_order_tets = std::uint64_t{1} << 21;
+  double higher_order_tolerance = default_higher_order_tolerance;
+  std::uint64_t higher_order_tets = default_higher_order_tets;
 
   // A .raw file says nothing of itself, but perhaps by its name: NAME_WxHxD_TYPE.raw. These win over the name, and are
   // refused for other files.
@@ -85,9 +91,10 @@ struct MeshArrays {
   ArrayView scalars;  ///< one a point, or one a cell
   Association association = Association::point;
   std::string field_name = "scalar";
-  /// As ReadOptions has them, of cells of second and higher order; in parts each rank's own diagonal and range count.
-  double higher_order_tolerance = 1e-4;
-  std::uint64_t higher_order_tets = std::uint64_t{1} << 21;
+  /// As ReadOptions has them, of cells of second and higher order; in parts of the whole mesh, and the smallest of all
+  /// ranks' count.
+  double higher_order_tolerance = default_higher_order_tolerance;
+  std::uint64_t higher_order_tets = default_higher_order_tets;
   /// Of `tets`: uint64, one each, the cell of another mesh that it was made of, tets of one cell next to each other.
   /// Empty: it is its own. Written by write_mesh; no picture depends on it.
   ArrayView original_cells{};
@@ -110,6 +117,17 @@ struct TransferFunctionOptions {
   double opacity_scale = 1;               ///< multiplies extinction, >= 0
   bool display_colors = false;  ///< colours stay as the file shows them, undecoded from sRGB, as VTK composites them
   bool rescale = false;         ///< stretch a file's values over the field's range
+  /// Presets, the default and files are stretched over this range instead; low < high.
+  std::optional<std::array<double, 2>> range{};
+  /// Colours and opacities go by the logarithm of the value. Values of 0 and below count as the smallest positive one;
+  /// a field without positive values is an error.
+  bool logarithmic = false;
+  /// Fractions of the range (0 to 1, ascending) and opacities per unit distance (0 to 1), linear between them, instead
+  /// of a preset's or a colour map's own. Files of extinctions have none to replace.
+  std::vector<std::array<double, 2>> opacity_points{};
+  /// Files over 0 to 1 or -1 to 1, as ParaView's presets are, are stretched as by `rescale` where they would show
+  /// next to nothing: less than a hundredth of the field's range lies within theirs, or the reverse.
+  bool rescale_presets = false;
 };
 
 /// A mesh or a grid with one scalar field, opened once. Immutable: copies share it, and so may threads and sessions.
@@ -148,6 +166,8 @@ class TESSERA_EXPORT Dataset {
   [[nodiscard]] std::array<double, 2> range() const;
   [[nodiscard]] Association association() const;
   [[nodiscard]] const std::string& field_name() const;
+  /// Whether it is a mesh's shape instead of a field (ReadOptions::shape).
+  [[nodiscard]] bool shows_shape() const;
   /// Arrays of the file; of the caller's, the one.
   [[nodiscard]] std::span<const FieldInfo> fields() const;
   /// One line each: what was chosen or applied, or odd about the file.
@@ -187,10 +207,17 @@ class TESSERA_EXPORT Dataset {
   /// thickness, so that the presets' ramps make an average ray 0.26 to 0.89 opaque. Of no volume: a twentieth of the
   /// diagonal; of no extent: 1.
   [[nodiscard]] double default_unit_distance() const;
-  /// The view that frames all of it.
+  /// The view that frames all of it: heads up, what is flat from above (tessera/default_view.hpp).
   [[nodiscard]] Camera default_camera(ImageSize size, ProjectionKind projection = ProjectionKind::orthographic) const;
-  /// A preset ("viridis", "cool-warm:rise", ...) or a file over this field's range; "": the default, which for meshes
-  /// shows everything and for grids leaves low values clear. Throws Error(bad_input) naming file and line.
+  /// Another view of all of it. `turning`: wide enough for every turn of orbit(). Throws as view_of_box().
+  [[nodiscard]] Camera view(const ViewRequest& request, ImageSize size,
+                            ProjectionKind projection = ProjectionKind::orthographic, bool turning = false) const;
+  /// Where a patient looks, of medical files that say so.
+  [[nodiscard]] BodyAxes body_axes() const;
+  /// A preset ("viridis", "cool-warm:rise", ...) or a file over this field's range; "": the default, chosen by how the
+  /// field's values share the volume (the rule: docs/GUIDE.md, "The first picture"), the same for any number of ranks
+  /// and threads. The first call looks at some ten thousand places of the field. What the function does not show is in
+  /// its `warnings`. Throws Error(bad_input) naming file and line.
   [[nodiscard]] LoadedTransferFunction transfer_function(const std::string& file_or_preset = "",
                                                          const TransferFunctionOptions& options = {}) const;
 

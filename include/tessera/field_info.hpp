@@ -7,6 +7,9 @@
 
 namespace tessera {
 
+/// The field of ReadOptions::shape, which is no array of a file.
+inline constexpr const char* shape_field_name = "shape (depth)";
+
 /// One array of a file. Range and count are of all tuples, cells that were dropped included.
 struct FieldInfo {
   std::string name;
@@ -66,6 +69,11 @@ inline MeshCounts& MeshCounts::operator+=(const MeshCounts& other) {
   return *this;
 }
 static_assert(sizeof(MeshCounts) == 17 * sizeof(std::uint64_t));  // one line above for each
+
+/// How near tets come to cells of second and higher order where nothing else is said: in position of the mesh's
+/// diagonal, in value of the field's range; and about how many there may be.
+inline constexpr double default_higher_order_tolerance = 1e-4;
+inline constexpr std::uint64_t default_higher_order_tets = std::uint64_t{1} << 21;
 
 /// What became of a mesh's cells of second and higher order.
 struct HigherOrderCells {

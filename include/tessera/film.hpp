@@ -8,6 +8,7 @@
 
 #include "tessera/camera.hpp"
 #include "tessera/dataset.hpp"
+#include "tessera/default_view.hpp"
 #include "tessera/export.hpp"
 #include "tessera/time_series.hpp"
 
@@ -36,8 +37,10 @@ struct TESSERA_EXPORT FilmFrame {
   std::vector<std::filesystem::path> outputs;
   bool finished = false;  ///< resumed, and all its pictures exist: to be left alone
 
-  /// The frame's view. `box` is the data's; of a time series the first step's, so that the view stands still.
-  [[nodiscard]] Camera view(const Box& box, ProjectionKind default_projection) const;
+  /// The frame's view. `box` is the data's; of a time series the first step's, so that the view stands still. A camera
+  /// of the plan is adjusted as `request` says, else the view is made as it says.
+  [[nodiscard]] Camera view(const Box& box, ProjectionKind default_projection, const ViewRequest& request = {},
+                            BodyAxes axes = BodyAxes::none) const;
   /// Of a series' later steps, before they are read: throws Error(system_failure) if a file that plan_film() saw is
   /// gone.
   void require_still_there() const;

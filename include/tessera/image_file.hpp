@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <vector>
 
 #include "tessera/deep_image.hpp"
 #include "tessera/export.hpp"
@@ -13,13 +15,19 @@ namespace tessera {
 
 /// Writes a picture by its name's extension.
 ///   .exr  OpenEXR scan lines, ZIP: R G B A linear and premultiplied, Z planar depth (+inf where nothing is).
-///   .png  sRGB. Without a background RGBA with straight alpha, as PNG has it: light that a pixel emits beyond its
+///   .png  sRGB, 8 or 16 bits. Without a background RGBA with straight alpha, as PNG has it: light that a pixel emits
+///   beyond its
 ///         alpha (independent emission) is clamped, give a background to see it.
+///   .tif  as .png: 8 or 16 bits, deflated, alpha straight (.tiff too).
+///   .jpg  sRGB, 8 bits, quality 92, colours in full (.jpeg too). No alpha: without a background it stands on black.
 ///   .pfm  linear RGB, premultiplied, 32-bit floats, little endian, bottom row first. No alpha.
 /// Throws Error(bad_input) for another extension, a folder that is not there, a number that half cannot hold;
 /// Error(system_failure) if the disk fails or a pixel is NaN or infinite.
 TESSERA_EXPORT void write_image(const Image& image, const std::filesystem::path& file,
                                 const ImageFileOptions& options = {});
+
+/// A .png as write_image() writes it, in memory.
+TESSERA_EXPORT std::vector<std::byte> png_bytes(const Image& image, const ImageFileOptions& options = {});
 
 /// Reads .exr (R G B, A if present, else 1; Z if present, else +inf) and .pfm (A = 1, Z = +inf). Throws
 /// Error(bad_input) for anything else and for broken files.

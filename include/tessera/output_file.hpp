@@ -50,6 +50,9 @@ class TESSERA_EXPORT AtomicFile {
 
   void commit();
 
+  /// For programs that are to write to it: the open file, until commit().
+  [[nodiscard]] int descriptor() const { return descriptor_; }
+
   /// For libraries that open their output by name: where they may write until commit(). Costs the nameless file its
   /// advantage: a killed process leaves the `.part` behind.
   std::filesystem::path named_part();

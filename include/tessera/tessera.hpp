@@ -1,14 +1,17 @@
 #pragma once
 
 // All of the public API but tessera/mpi.hpp, which needs MPI.
+#include "tessera/annotation.hpp"
 #include "tessera/array.hpp"
 #include "tessera/camera.hpp"
 #include "tessera/communicator.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/deep_image.hpp"
+#include "tessera/default_view.hpp"
 #include "tessera/error.hpp"
 #include "tessera/file_formats.hpp"
 #include "tessera/film.hpp"
+#include "tessera/film_file.hpp"
 #include "tessera/grid.hpp"
 #include "tessera/image.hpp"
 #include "tessera/image_file.hpp"

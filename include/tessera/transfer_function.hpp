@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <span>
@@ -52,6 +53,9 @@ struct LoadedTransferFunction {
   std::string name;                       ///< the preset's or the file's, with what was assumed in brackets
   std::optional<double> unit_distance{};  ///< that was used; none where the file gives extinctions
   std::string unit_distance_source;       ///< "file", "`unit_distance`", "default", or "" where they are absolute
+  std::optional<std::array<double, 2>> range{};  ///< that colours span, where it was chosen rather than the file's
+  bool shaded = false;                  ///< a picture with Shading is meant: the default function of a patient's scan
+  std::vector<std::string> warnings{};  ///< one line each: that it shows little of the field, and what mends that
 };
 
 }  // namespace tessera

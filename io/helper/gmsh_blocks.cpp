@@ -61,10 +61,13 @@ class CellTypes {
     } catch (const std::bad_alloc&) {
       throw;
     } catch (...) {  // it knows no places in prisms of the third order and above
-      if (type == 90 || type == 91 || (type >= 106 && type <= 117)) {
-        name = "Prism", corners = nodes = 6;
-        found->second = gmsh_cell(1, 6, std::vector<double>(18));
-        found->second.by_corners = true;
+      const bool is_third_or_fourth = type == 90 || type == 91;
+      if (is_third_or_fourth || (type >= 106 && type <= 117)) {
+        name = "Prism", corners = 6;
+        order = is_third_or_fourth ? type - 87 : type <= 110 ? type - 101 : 0;  // the others lack inner nodes
+        if (order > 0) places = gmsh_prism_places(order);
+        nodes = order > 0 ? static_cast<int>(places.size() / 3) : 6;
+        if (order == 0) found->second = gmsh_cell(1, 6, std::vector<double>(18)), found->second.by_corners = true;
       }
     }
     if (corners >= 4 && corners <= 8 && corners != 7 && places.size() == 3 * static_cast<std::size_t>(nodes))

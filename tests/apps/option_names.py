@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 FOLDERS = """include scene colormaps io integrals exchange projection gl sorting compositor volume reference frame datasets
-             analysis""".split()
+             annotation analysis""".split()
 SUFFIXES = {".cpp", ".hpp", ".h", ".inl"}
 
 TOKEN = re.compile(

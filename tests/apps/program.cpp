@@ -29,7 +29,8 @@ std::size_t Outcome::error_lines() const {
   std::size_t lines = 0;
   std::istringstream text(err);
   // hwloc, which is MPI's, complains in every process where there is no /sys, as in a bare chroot.
-  for (std::string line; std::getline(text, line) && !text.eof();) lines += line.starts_with("[hwloc/") ? 0 : 1;
+  for (std::string line; std::getline(text, line) && !text.eof();)
+    lines += line.starts_with("[hwloc/") || line.starts_with("  ") ? 0 : 1;
   return lines;
 }
 

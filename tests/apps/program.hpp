@@ -14,7 +14,8 @@ namespace tessera::apps {
 struct Outcome {
   int status = -1;  ///< exit status; 128 + signal if it was killed
   std::string out, err;
-  [[nodiscard]] std::size_t error_lines() const;  ///< of `err`, MPI's own remarks on the machine left out
+  [[nodiscard]] std::size_t error_lines()
+      const;  ///< of `err`; not those that go on with the one before, nor MPI's remarks on the machine
 };
 
 /// Runs the built `tessera` with these arguments, no shell in between, standard input empty.

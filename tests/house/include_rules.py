@@ -33,6 +33,7 @@ MAY_INCLUDE = {
     "frame": {"compositor", "sorting", "projection", "volume", "integrals", "exchange", "gl", "io", "colormaps",
               "reference"},
     "datasets": set(),
+    "annotation": set(),
     "analysis": set(),
     "apps": {"analysis", "datasets"},
     "examples": set(),
@@ -40,7 +41,7 @@ MAY_INCLUDE = {
     "tests": None,
 }
 # These may not even include scene/.
-PUBLIC_ONLY = {"include", "examples", "analysis", "apps"}
+PUBLIC_ONLY = {"include", "examples", "annotation", "analysis", "apps"}
 
 # Foreign headers, and the folders or files that alone may include them. Tests of io/ write VTK's files by VTK.
 ONLY_IN = [
@@ -53,7 +54,7 @@ ONLY_IN = [
     (r"^minc2\.h$", ["io/helper/minc2_file.cpp", "tests/io/minc2_test.cpp"]),
     (r"CLI/", ["apps/"]),
     (r"(GL|EGL|KHR)/", ["gl/"]),
-    (r"cairo", ["analysis/"]),
+    (r"cairo", ["analysis/", "annotation/"]),
 ]
 
 SUFFIXES = {".cpp", ".hpp", ".h", ".in"}

@@ -14,11 +14,11 @@ namespace {
 std::size_t lagrange_nodes(std::uint8_t type, const std::array<int, 3>& n) {
   const auto p = static_cast<std::size_t>(n[0]) + 1, q = static_cast<std::size_t>(n[1]) + 1,
              m = static_cast<std::size_t>(n[2]) + 1;
-  return type == 71 ? p * (p + 1) * (p + 2) / 6 : type == 72 ? p * q * m : p * (p + 1) / 2 * m;
+  return type % 7 == 1 ? p * (p + 1) * (p + 2) / 6 : type % 7 == 2 ? p * q * m : p * (p + 1) / 2 * m;
 }
 
 Kind lagrange(std::uint8_t type, std::array<int, 3> n) {
-  return {type, lagrange_nodes(type, n), std::min({n[0], n[1], n[2]}), n};
+  return {type, lagrange_nodes(type, n), type > 74 ? 1 : std::min({n[0], n[1], n[2]}), n};
 }
 
 }  // namespace
@@ -31,6 +31,9 @@ const std::vector<Kind> kinds = {{24, 10, 2},
                                  {31, 12, 1},
                                  {32, 18, 2},
                                  {33, 24, 2},
+                                 {37, 19, 2},
+                                 {71, 15, 2},
+                                 {73, 21, 2},
                                  lagrange(71, {2, 2, 2}),
                                  lagrange(71, {3, 3, 3}),
                                  lagrange(71, {5, 5, 5}),
@@ -38,13 +41,17 @@ const std::vector<Kind> kinds = {{24, 10, 2},
                                  lagrange(72, {3, 2, 1}),
                                  lagrange(72, {3, 3, 3}),
                                  lagrange(73, {3, 3, 2}),
-                                 lagrange(73, {4, 4, 4})};
+                                 lagrange(73, {4, 4, 4}),
+                                 {74, 14, 2},
+                                 {74, 30, 3},
+                                 {74, 55, 4},
+                                 lagrange(78, {2, 2, 2}),
+                                 lagrange(78, {4, 4, 4}),
+                                 lagrange(79, {3, 2, 1}),
+                                 lagrange(79, {3, 3, 3}),
+                                 lagrange(80, {3, 3, 2})};
 
-glm::dvec3 place_of(const CurvedLattice& lattice, std::size_t node) {
-  const LatticePlace& p = lattice.nodes[node];
-  return {static_cast<double>(p[0]) / lattice.order[0], static_cast<double>(p[1]) / lattice.order[1],
-          static_cast<double>(p[2]) / lattice.order[2]};
-}
+glm::dvec3 place_of(const CurvedLattice& lattice, std::size_t node) { return lattice.place(node); }
 
 CellBlock warped_box(const Kind& kind, int n, const Warp& warp, const Field& field, bool turned) {
   CellBlock block;

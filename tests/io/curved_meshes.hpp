@@ -16,7 +16,7 @@ namespace tessera::io::testing {
 struct Kind {
   std::uint8_t type;
   std::size_t nodes;
-  int degree;  ///< of the polynomials in (r, s, t) that it has all of
+  int degree;  ///< of the polynomials in (r, s, t) that it has all of, from their values at the nodes
   std::array<int, 3> degrees{};
 };
 

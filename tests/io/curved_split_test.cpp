@@ -8,7 +8,9 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
+#include <limits>
 #include <random>
+#include <utility>
 
 #include "io/curved_cell.hpp"
 #include "io/curved_meshes.hpp"
@@ -91,6 +93,7 @@ TEST(CurvedCell, HasItsNodesWhereTheLatticeSays) {
     SCOPED_TRACE(static_cast<int>(kind.type));
     const auto lattice = curved_lattice(kind.type, kind.nodes, kind.degrees);
     ASSERT_TRUE(lattice);
+    if (lattice->has_control_points) continue;
     std::vector<glm::dvec3> positions(kind.nodes);
     std::vector<double> values(kind.nodes);
     for (auto& p : positions) p = {anywhere(random), anywhere(random), anywhere(random)};
@@ -101,8 +104,9 @@ TEST(CurvedCell, HasItsNodesWhereTheLatticeSays) {
       CellPlace place;
       bool is_whole = true;  // a third has no place in units
       for (std::size_t x = 0; x < 3; ++x) {
-        is_whole = is_whole && cell_unit % lattice->order[x] == 0;
-        place[x] = lattice->nodes[k][x] * (cell_unit / lattice->order[x]);
+        const int steps = lattice->order[x] * lattice->refined;
+        is_whole = is_whole && std::int64_t{lattice->nodes[k][x]} * cell_unit % steps == 0;
+        place[x] = static_cast<std::int32_t>(std::int64_t{lattice->nodes[k][x]} * cell_unit / steps);
       }
       if (!is_whole) continue;
       EXPECT_NEAR(cell.at(place, 0).w, values[k], 1e-12) << k;
@@ -144,38 +148,49 @@ MeshOptions tolerance(double relative) {
   return options;
 }
 
+/// Triangles used once must enclose what the tets fill: a crack would show as edges that are not between two of them,
+/// or as more surface than a ball has.
+void expect_closed_ball(const scene::TetMesh& mesh) {
+  std::size_t inside = 0, once = 0;
+  std::map<std::array<testing::Point, 2>, int> rim;
+  for (const auto& [triangle, uses] : testing::count_triangles(mesh)) {
+    EXPECT_LE(uses, 2);
+    if (uses != 1) continue;
+    ++once;
+    for (int k = 0; k < 3; ++k) {
+      std::array<testing::Point, 2> edge = {triangle[static_cast<std::size_t>(k)],
+                                            triangle[static_cast<std::size_t>((k + 1) % 3)]};
+      std::sort(edge.begin(), edge.end());
+      ++rim[edge];
+    }
+  }
+  for (const auto& [edge, uses] : rim) inside += uses != 2;
+  EXPECT_GT(once, 0u);
+  EXPECT_EQ(inside, 0u) << "edges of the surface that are not between two triangles";
+  // Cracks would also add surface: its number of parts is Euler's.
+  std::map<testing::Point, int> corners;
+  for (const auto& [edge, uses] : rim) ++corners[edge[0]], ++corners[edge[1]];
+  EXPECT_EQ(static_cast<long>(corners.size()) - static_cast<long>(rim.size()) + static_cast<long>(once), 2)
+      << "the surface is not one ball's";
+}
+
+void expect_one_ball(std::vector<CellBlock> blocks) {
+  const MeshFile file = assemble_mesh(std::move(blocks), tolerance(1e-2), "mesh");
+  EXPECT_EQ(file.higher_order.by_corners, 0u);
+  EXPECT_GT(file.higher_order.tets, file.higher_order.divided * 2);
+  expect_closed_ball(file.mesh);
+}
+
 TEST(CurvedSplit, LeavesNoCracksWhateverTheNumbering) {
   const Field wavy = [](const glm::dvec3& p) { return std::sin(9 * p.x * p.y) + p.z * p.z; };
   for (const Kind& kind : kinds)
     for (const bool turned : {false, true}) {
       SCOPED_TRACE(::testing::PrintToString(static_cast<int>(kind.type)) + (turned ? " turned" : ""));
-      // Triangles on the sides of the box, whose curved surface is told by the places they come from: those used once
-      // must enclose what the tets fill, so a crack would show as a triangle inside.
       const MeshFile file = assemble_mesh({warped_box(kind, 2, bent, wavy, turned)}, tolerance(1e-2), "mesh");
       EXPECT_EQ(file.higher_order.by_corners, 0u);
       EXPECT_GT(file.higher_order.tets, file.higher_order.divided * 2);
       EXPECT_LE(file.higher_order.position_error, 1e-2 * 2);
-      std::size_t inside = 0, once = 0;
-      std::map<std::array<testing::Point, 2>, int> rim;
-      for (const auto& [triangle, uses] : testing::count_triangles(file.mesh)) {
-        EXPECT_LE(uses, 2);
-        if (uses != 1) continue;
-        ++once;
-        for (int k = 0; k < 3; ++k) {
-          std::array<testing::Point, 2> edge = {triangle[static_cast<std::size_t>(k)],
-                                                triangle[static_cast<std::size_t>((k + 1) % 3)]};
-          std::sort(edge.begin(), edge.end());
-          ++rim[edge];
-        }
-      }
-      for (const auto& [edge, uses] : rim) inside += uses != 2;
-      EXPECT_GT(once, 0u);
-      EXPECT_EQ(inside, 0u) << "edges of the surface that are not between two triangles";
-      // Cracks would also add surface: its number of parts is Euler's.
-      std::map<testing::Point, int> corners;
-      for (const auto& [edge, uses] : rim) ++corners[edge[0]], ++corners[edge[1]];
-      EXPECT_EQ(static_cast<long>(corners.size()) - static_cast<long>(rim.size()) + static_cast<long>(once), 2)
-          << "the surface is not one ball's";
+      expect_closed_ball(file.mesh);
     }
 }
 
@@ -268,6 +283,115 @@ TEST(CurvedSplit, FillsWhatTheCellsFill) {
       EXPECT_LE(file.higher_order.position_error, 2 * relative);  // the diagonal is 2
     }
   }
+}
+
+/// As a writer of rational cells adds them.
+void add_weights(CellBlock& block, const std::function<double(const glm::dvec3&)>& weight) {
+  std::vector<double> weights;
+  for (const glm::dvec3& p : block.positions) weights.push_back(weight(p));
+  block.fields.push_back(
+      field_of_values("RationalWeights", "double", scene::Association::point, 1, std::move(weights)));
+}
+
+/// A quarter of a tube of radii 1 and 2 and height 1, in one cell whose field is the height.
+CellBlock quarter_tube() {
+  const Kind kind{79, 12, 1, {2, 1, 1}};
+  const auto height = [](const glm::dvec3& p) { return p.z; };
+  const Warp tube = [](const glm::dvec3& p) {
+    const double radius = 1 + p.y;
+    const glm::dvec2 control[3] = {{radius, 0}, {radius, radius}, {0, radius}};
+    const glm::dvec2 at = control[static_cast<int>(std::lround(2 * p.x))];
+    return glm::dvec3(at.x, at.y, -p.z);  // as r, s, t turn
+  };
+  CellBlock block = warped_box(kind, 1, tube, height, false);
+  add_weights(block, [](const glm::dvec3& p) { return p.x == p.y ? std::sqrt(0.5) : 1; });
+  return block;
+}
+
+TEST(CurvedSplit, DrawsTheCirclesOfRationalCells) {
+  for (const double relative : {1e-1, 1e-2, 1e-3}) {
+    const MeshFile file = assemble_mesh({quarter_tube()}, tolerance(relative), "mesh");
+    EXPECT_EQ(file.higher_order.by_corners, 0u);
+    const double error = file.higher_order.position_error;
+    EXPECT_LE(error, relative * 3.01);  // the diagonal of the control points
+    std::size_t on_circles = 0;
+    for (const auto& [triangle, uses] : testing::count_triangles(file.mesh)) {
+      if (uses != 1) continue;
+      std::array<double, 3> radius{};
+      glm::dvec2 middle(0);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const glm::dvec2 p(triangle[k][0], triangle[k][1]);
+        radius[k] = glm::length(p);
+        middle += p / 3.0;
+      }
+      for (const double of : {1.0, 2.0}) {
+        const auto is_there = [&](double r) { return std::abs(r - of) < 1e-12; };
+        if (!std::all_of(radius.begin(), radius.end(), is_there)) continue;
+        ++on_circles;
+        EXPECT_NEAR(glm::length(middle), of, error);
+      }
+    }
+    EXPECT_GE(on_circles, 8u) << "the surface has no points on its circles";
+    const double volume = testing::volume(file.mesh), truth = 0.75 * 3.14159265358979324;
+    EXPECT_NEAR(volume, truth, 4.8 * error);  // times the area of what is curved
+    EXPECT_LT(volume, truth) << "chords of the outer circle take more away than those of the inner one add";
+    EXPECT_LE(file.higher_order.field_error, 1e-12) << "the height is linear";
+  }
+}
+
+TEST(CurvedSplit, LeavesNoCracksBetweenRationalCells) {
+  const Field wavy = [](const glm::dvec3& p) { return std::sin(9 * p.x * p.y) + p.z * p.z; };
+  for (const Kind& kind : kinds) {
+    if (kind.type < 78) continue;
+    SCOPED_TRACE(static_cast<int>(kind.type));
+    CellBlock block = warped_box(kind, 2, bent, wavy, true);
+    add_weights(block, [](const glm::dvec3& p) { return 1 + 0.5 * std::sin(7 * p.x + 3 * p.y - 5 * p.z); });
+    expect_one_ball({std::move(block)});
+  }
+}
+
+TEST(CurvedSplit, TakesEqualWeightsForNone) {
+  const Field wavy = [](const glm::dvec3& p) { return std::sin(5 * p.x) + p.y; };
+  const Kind kind{79, 27, 1, {2, 2, 2}};
+  const MeshFile without = assemble_mesh({warped_box(kind, 2, bent, wavy, true)}, tolerance(1e-2), "mesh");
+  CellBlock block = warped_box(kind, 2, bent, wavy, true);
+  add_weights(block, [](const glm::dvec3&) { return 0.3; });
+  const MeshFile with = assemble_mesh({std::move(block)}, tolerance(1e-2), "mesh");
+  EXPECT_EQ(with.mesh.tets, without.mesh.tets);
+  EXPECT_EQ(with.mesh.positions, without.mesh.positions);
+  EXPECT_EQ(with.mesh.scalars, without.mesh.scalars);
+}
+
+TEST(CurvedSplit, DrawsCellsOfUnusableWeightsByTheirCornersAndSaysSo) {
+  for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), 1e9}) {
+    CellBlock block = quarter_tube();
+    bool is_first = true;
+    block.fields.pop_back();
+    add_weights(block, [&](const glm::dvec3&) { return std::exchange(is_first, false) ? bad : 1.0; });
+    const MeshFile file = assemble_mesh({std::move(block)}, tolerance(1e-2), "mesh");
+    EXPECT_EQ(file.higher_order.by_corners, 1u) << bad;
+    EXPECT_EQ(warnings_on_cells(file.counts, file.higher_order).size(), 1u);
+  }
+}
+
+TEST(CurvedSplit, LeavesNoCracksBetweenKinds) {
+  const Field wavy = [](const glm::dvec3& p) { return std::sin(9 * p.x * p.y) + p.z * p.z; };
+  // Two cubes side by side, each of one kind: those of a group have the same nodes on the face between them.
+  const std::vector<std::vector<Kind>> alike = {
+      {{29, 27, 2}, {37, 19, 2}, {74, 14, 2}, {72, 27, 2, {2, 2, 2}}},
+      {{72, 64, 3, {3, 3, 3}}, {74, 30, 3}},
+      {{25, 20, 2}, {27, 13, 1}},
+      {{24, 10, 2}, {71, 10, 2}},
+      {{79, 27, 1, {2, 2, 2}}, {79, 27, 1, {2, 2, 2}}},
+  };
+  for (const auto& group : alike)
+    for (const Kind& left : group)
+      for (const Kind& right : group) {
+        SCOPED_TRACE(::testing::PrintToString(static_cast<int>(left.type)) + " beside " +
+                     ::testing::PrintToString(static_cast<int>(right.type)));
+        const Warp moved = [](const glm::dvec3& p) { return bent(glm::dvec3(p.x + 1, p.y, p.z)); };
+        expect_one_ball({warped_box(left, 1, bent, wavy, true), warped_box(right, 1, moved, wavy, true)});
+      }
 }
 
 }  // namespace

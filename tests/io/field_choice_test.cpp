@@ -60,6 +60,33 @@ TEST(FieldChoice, DefaultTakesPointsBeforeCellsAndScalarsBeforeVectors) {
   EXPECT_EQ(choose("", block_with({cell, vector, field("p", Association::point, {0, 1})})).label, "p");
 }
 
+TEST(FieldChoice, IndicesAndPartsAreNoDefaultWhereShapesAreShown) {
+  const CellBlock labels =
+      block_with({field("vtkOriginalCellIds", Association::cell, {0, 1}), field("BLOCK_I", Association::cell, {0, 1})});
+  const std::vector<FieldSummary> fields = summary({&labels, 1});
+  EXPECT_EQ(choose_field("", fields, "mesh.vtu").label, "BLOCK_I");
+  const FieldChoice shape = choose_field("", fields, "mesh.vtu", true);
+  EXPECT_TRUE(shape.shape);
+  EXPECT_TRUE(shape.name.empty());
+  ASSERT_EQ(shape.notes.size(), 1u);
+  EXPECT_NE(shape.notes.front().find("BLOCK_I"), std::string::npos);
+  EXPECT_EQ(choose_field("BLOCK_I", fields, "mesh.vtu", true).label, "BLOCK_I");
+  for (const char* name : {"rank", "BLOCK_K", "mpi_rank", "material_id", "subdomain"}) EXPECT_TRUE(is_label_name(name));
+  for (const char* name : {"mach_number", "refractive_index", "k_eps", "materiality"})
+    EXPECT_FALSE(is_label_name(name));
+}
+
+TEST(FieldChoice, NoiseAroundZeroIsShownOnlyWithAWord) {
+  const BlockField noise = field("y", Association::point, {-1e-15, 2e-15});
+  EXPECT_EQ(choose("", block_with({noise, field("p", Association::cell, {0, 1})})).label, "p");
+  const FieldChoice alone = choose("", block_with({noise}));
+  EXPECT_EQ(alone.label, "y");
+  ASSERT_EQ(alone.notes.size(), 1u);
+  EXPECT_NE(alone.notes.front().find("noise"), std::string::npos);
+  // Small but nowhere below zero: a charge, a permeability.
+  EXPECT_TRUE(choose("", block_with({field("k", Association::point, {1e-15, 2e-13})})).notes.empty());
+}
+
 TEST(FieldChoice, AFileWithoutFieldsSaysSo) {
   const FieldChoice choice = choose("", CellBlock{});
   EXPECT_TRUE(choice.name.empty());

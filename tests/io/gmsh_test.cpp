@@ -329,6 +329,36 @@ TEST_F(Gmsh, ThirdOrderHexahedraComeInVtksOrder) {
   EXPECT_EQ(points, vtks);
 }
 
+TEST_F(Gmsh, CompleteQuadraticPyramidsComeInLagrangesOrder) {
+  const Points corners = {{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0}, {1, 1, 5}};
+  Points theirs = with_middles(corners, {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 4}, {2, 3}, {2, 4}, {3, 4}});
+  Points ours = with_middles(corners, {{0, 1}, {1, 2}, {3, 2}, {0, 3}, {0, 4}, {1, 4}, {2, 4}, {3, 4}});
+  theirs.emplace_back(1, 1.5, 0.25), ours.emplace_back(1, 1.5, 0.25);
+  const MeshBlocks read = read_by_gmsh(folder.write("a.msh", one_cell(14, theirs)), "gmsh", {});
+  ASSERT_EQ(read.blocks.size(), 1u);
+  EXPECT_EQ(read.blocks[0].types[0], 74);
+  EXPECT_EQ(cell_points(read.blocks[0]), ours);
+}
+
+TEST_F(Gmsh, ThirdOrderPrismsComeInVtksOrder) {
+  // Nodes in thirds, as Gmsh 4.8 numbers those of a prism that it makes (Mesh.ElementOrder 3), and as VTK's
+  // vtkHigherOrderWedge does.
+  const Points theirs = {{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {0, 0, 3}, {3, 0, 3}, {0, 3, 3}, {1, 0, 0}, {2, 0, 0},
+                         {0, 1, 0}, {0, 2, 0}, {0, 0, 1}, {0, 0, 2}, {2, 1, 0}, {1, 2, 0}, {3, 0, 1}, {3, 0, 2},
+                         {0, 3, 1}, {0, 3, 2}, {1, 0, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 3}, {2, 1, 3}, {1, 2, 3},
+                         {1, 1, 0}, {1, 1, 3}, {1, 0, 1}, {2, 0, 1}, {2, 0, 2}, {1, 0, 2}, {0, 1, 1}, {0, 1, 2},
+                         {0, 2, 2}, {0, 2, 1}, {2, 1, 1}, {1, 2, 1}, {1, 2, 2}, {2, 1, 2}, {1, 1, 1}, {1, 1, 2}};
+  const Points vtks = {{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {0, 0, 3}, {3, 0, 3}, {0, 3, 3}, {1, 0, 0}, {2, 0, 0},
+                       {2, 1, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}, {1, 0, 3}, {2, 0, 3}, {2, 1, 3}, {1, 2, 3},
+                       {0, 2, 3}, {0, 1, 3}, {0, 0, 1}, {0, 0, 2}, {3, 0, 1}, {3, 0, 2}, {0, 3, 1}, {0, 3, 2},
+                       {1, 1, 0}, {1, 1, 3}, {1, 0, 1}, {2, 0, 1}, {1, 0, 2}, {2, 0, 2}, {2, 1, 1}, {1, 2, 1},
+                       {2, 1, 2}, {1, 2, 2}, {0, 2, 1}, {0, 1, 1}, {0, 2, 2}, {0, 1, 2}, {1, 1, 1}, {1, 1, 2}};
+  const MeshBlocks read = read_by_gmsh(folder.write("a.msh", one_cell(90, theirs)), "gmsh", {});
+  ASSERT_EQ(read.blocks.size(), 1u);
+  EXPECT_EQ(read.blocks[0].types[0], 73);
+  EXPECT_EQ(cell_points(read.blocks[0]), vtks);
+}
+
 TEST_F(Gmsh, MeditIsReadByItsName) {
   std::string text = "MeshVersionFormatted 2\nDimension 3\nVertices\n12\n";
   for (const glm::dvec3& p : two_cubes()) text += fmt::format("{} {} {} 0\n", p.x, p.y, p.z);

@@ -5,12 +5,15 @@
 #include <ImfInputFile.h>
 #include <gtest/gtest.h>
 #include <png.h>
+#include <tiffio.h>
 
 #include <cmath>
 #include <cstring>
 #include <limits>
 
 #include "colormaps/color_spaces.hpp"
+#include "io/display_rows.hpp"
+#include "io/image_formats.hpp"
 #include "temporary_folder.hpp"
 
 namespace tessera::io {
@@ -158,6 +161,104 @@ TEST(ImageFile, PngHoldsStraightAlphaInSrgb) {
   }
 }
 
+TEST(ImageFile, PngOfManyStripsHasTheSameBytesOnAnyNumberOfThreads) {
+  const TemporaryFolder folder;
+  const scene::Image image = picture(700, 900);  // 2.5 MB of rows, some ten strips
+  for (const int bits : {8, 16}) {
+    write_image(image, folder / "one.png", {.png_bits = bits, .threads = 1});
+    for (const int threads : {2, 3, 0}) {
+      write_image(image, folder / "many.png", {.png_bits = bits, .threads = threads});
+      EXPECT_EQ(contents(folder / "many.png"), contents(folder / "one.png")) << threads;
+    }
+    const Png png = read_png(folder / "one.png");
+    ASSERT_EQ(png.samples.size(), image.rgba.size());
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4)
+      ASSERT_EQ(png.samples[i], std::lround(image.rgba[i] * (bits == 8 ? 255.0 : 65535.0))) << i / 4;
+  }
+}
+
+TEST(ImageFile, TiffHoldsWhatPngHolds) {
+  const TemporaryFolder folder;
+  const scene::Image image = picture(700, 301);
+  for (const int bits : {8, 16})
+    for (const bool opaque : {false, true}) {
+      ImageFileOptions options{.png_bits = bits};
+      if (opaque) options.background = glm::dvec3(0.1, 0.5, 0.9);
+      write_image(image, folder / "a.png", options);
+      write_image(image, folder / "a.tif", options);
+      const Png png = read_png(folder / "a.png");
+      TIFF* const tiff = TIFFOpen((folder / "a.tif").c_str(), "r");
+      ASSERT_NE(tiff, nullptr);
+      std::uint32_t width = 0, height = 0;
+      std::uint16_t channels = 0, bits_there = 0, count = 0, *extra = nullptr;
+      TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &width);
+      TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &height);
+      TIFFGetField(tiff, TIFFTAG_SAMPLESPERPIXEL, &channels);
+      TIFFGetField(tiff, TIFFTAG_BITSPERSAMPLE, &bits_there);
+      ASSERT_EQ(width, png.width);
+      ASSERT_EQ(height, png.height);
+      ASSERT_EQ(channels, png.channels);
+      ASSERT_EQ(bits_there, bits);
+      if (!opaque) {
+        ASSERT_EQ(TIFFGetField(tiff, TIFFTAG_EXTRASAMPLES, &count, &extra), 1);
+        EXPECT_EQ(*extra, EXTRASAMPLE_UNASSALPHA);
+      }
+      std::vector<unsigned char> row(static_cast<std::size_t>(TIFFScanlineSize(tiff)));
+      for (std::uint32_t y = 0; y < height; ++y) {
+        ASSERT_EQ(TIFFReadScanline(tiff, row.data(), y), 1) << y;
+        for (std::size_t i = 0; i < std::size_t{width} * channels; ++i) {
+          std::uint16_t sample = row[bits == 8 ? i : 0];
+          if (bits == 16) std::memcpy(&sample, row.data() + 2 * i, 2);
+          ASSERT_EQ(sample, png.samples[y * std::size_t{width} * channels + i]) << y << ' ' << i;
+        }
+      }
+      TIFFClose(tiff);
+    }
+}
+
+TEST(ImageFile, APngInMemoryIsTheFile) {
+  const TemporaryFolder folder;
+  write_image(picture(), folder / "a.png", {});
+  const std::vector<std::byte> bytes = checked_png_bytes(picture(), {});
+  EXPECT_EQ(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), contents(folder / "a.png"));
+}
+
+TEST(ImageFile, JpegStandsOnBlackUnlessThereIsABackground) {
+  if (!has_jpeg()) GTEST_SKIP() << "built without libjpeg";
+  const TemporaryFolder folder;
+  scene::Image image({16, 16});
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) image.rgba[i] = 0.2f, image.rgba[i + 3] = 0.4f;
+  // Decoded by hand it would take a decoder: one flat colour is its first coefficient, so that files of one differ.
+  write_image(image, folder / "black.jpg", {});
+  write_image(image, folder / "background.jpg", {.background = glm::dvec3(0)});
+  write_image(image, folder / "white.jpg", {.background = glm::dvec3(1)});
+  EXPECT_EQ(contents(folder / "black.jpg"), contents(folder / "background.jpg"));
+  EXPECT_NE(contents(folder / "black.jpg"), contents(folder / "white.jpg"));
+  EXPECT_TRUE(contents(folder / "white.jpg").starts_with("\xff\xd8\xff"));
+}
+
+TEST(ImageFile, ExrHasTheSameBytesOnAnyNumberOfThreads) {
+  const TemporaryFolder folder;
+  const scene::Image image = picture(300, 203);
+  write_image(image, folder / "one.exr", {.threads = 1});
+  write_image(image, folder / "many.exr", {.threads = 3});
+  EXPECT_EQ(contents(folder / "many.exr"), contents(folder / "one.exr"));
+  EXPECT_EQ(read_image(folder / "many.exr").rgba, image.rgba);
+}
+
+TEST(ImageFile, DisplayCodesAreTheFormulas) {
+  const auto formula = [](double linear) { return std::lround(255 * colormaps::encode_srgb(linear)); };
+  for (int i = 0; i <= 1'000'000; ++i) ASSERT_EQ(srgb_code(i * 1e-6), formula(i * 1e-6)) << i;
+  // At the edges between codes, where a table would err first.
+  for (int code = 0; code < 255; ++code) {
+    double edge = colormaps::decode_srgb((code + 0.5) / 255);
+    for (int i = 0; i < 20; ++i) edge = std::nextafter(edge, 0.0);
+    for (int i = 0; i < 40; ++i, edge = std::nextafter(edge, 1.0)) ASSERT_EQ(srgb_code(edge), formula(edge)) << code;
+  }
+  EXPECT_EQ(srgb_code(-1), 0);
+  EXPECT_EQ(srgb_code(2), 255);
+}
+
 TEST(ImageFile, DisplayColoursAreNotEncodedAgain) {
   const TemporaryFolder folder;
   scene::Image image({1, 1});
@@ -198,7 +299,7 @@ TEST(ImageFile, LightBeyondAlphaIsClampedInPng) {
 TEST(ImageFile, NeverWritesNaNSilently) {
   const TemporaryFolder folder;
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  for (const char* name : {"a.exr", "a.png", "a.pfm"}) {
+  for (const char* name : {"a.exr", "a.png", "a.tif", "a.pfm"}) {
     for (const float broken : {nan, inf, -inf}) {
       scene::Image image = picture();
       image.rgba[4 * image.index(7, 20) + 1] = broken;
@@ -218,8 +319,8 @@ TEST(ImageFile, PathsAreCheckedBeforeRendering) {
   check_image_path(folder / "a.exr");
   check_image_path(folder / "a.Png");
   EXPECT_TRUE(folder.names().empty());
-  expect_bad_input([&] { check_image_path(folder / "a.jpg"); }, {"a.jpg: ", ".exr, .png or .pfm"});
-  expect_bad_input([&] { check_image_path(folder / "exr"); }, {".exr, .png or .pfm"});
+  expect_bad_input([&] { check_image_path(folder / "a.bmp"); }, {"a.bmp: ", ".exr, .png, .jpg, .tif or .pfm"});
+  expect_bad_input([&] { check_image_path(folder / "exr"); }, {".exr, .png, .jpg, .tif or .pfm"});
   expect_bad_input([&] { check_image_path(folder / "none/a.exr"); }, {"none/a.exr: ", "make the folder first"});
   std::filesystem::create_directory(folder / "b.exr");
   expect_bad_input([&] { check_image_path(folder / "b.exr"); }, {"name a file, not a folder"});
@@ -229,7 +330,7 @@ TEST(ImageFile, PathsAreCheckedBeforeRendering) {
 TEST(ImageFile, RefusesSettingsThatMakeNoFile) {
   const TemporaryFolder folder;
   expect_bad_input([&] { write_image(picture(), folder / "a.png", {.png_bits = 12}); }, {"12 bits", "8 or 16"});
-  expect_bad_input([&] { write_image(picture(), folder / "a.tif", {}); }, {".exr, .png or .pfm"});
+  expect_bad_input([&] { write_image(picture(), folder / "a.bmp", {}); }, {".exr, .png, .jpg, .tif or .pfm"});
   expect_bad_input([&] { write_image(scene::Image{}, folder / "a.png", {}); }, {"image size 0x0"});
   expect_bad_input([&] { write_image(picture(), folder / "a.png", {.background = glm::dvec3(-1, 0, 0)}); },
                    {"background -1"});

@@ -50,6 +50,15 @@ build_examples() {  # build_examples FOLDER PREFIX [OPTION...]
   } >"$SCRATCH/grid.nrrd"
   "$folder/tiles_and_stop" "$SCRATCH/grid.nrrd" >"$SCRATCH/log" || failed "$folder/tiles_and_stop"
   [ "$(sed 's/.*: //' "$SCRATCH/log" | tr '\n' ' ')" = "stopped whole " ] || failed "$folder/tiles_and_stop: $(cat "$SCRATCH/log")"
+  if [ "$CAIRO" = 1 ]; then
+    (cd "$folder" && quietly ./annotated_picture "$SCRATCH/grid.nrrd" && [ -s annotated.png ] && [ -s layer.png ]) ||
+      failed "$folder/annotated_picture"
+  else # it says why it does not
+    if (cd "$folder" && ./annotated_picture "$SCRATCH/grid.nrrd" >"$SCRATCH/log" 2>&1); then
+      failed "$folder/annotated_picture drew without Cairo"
+    fi
+    [[ $(<"$SCRATCH/log") == *'needs Cairo'* ]] || failed "$folder/annotated_picture: $(cat "$SCRATCH/log")"
+  fi
   if [ "$VTK" = 1 ]; then # one that the helper program reads, which has to be found from wherever the library lies
     { printf '%s\n' '# vtk DataFile Version 3.0' grid ASCII 'DATASET STRUCTURED_POINTS' 'DIMENSIONS 9 9 9' 'ORIGIN 0 0 0' \
       'SPACING 1 1 1' 'POINT_DATA 729' 'SCALARS s float 1' 'LOOKUP_TABLE default'; seq 729; } >"$SCRATCH/grid.vtk"

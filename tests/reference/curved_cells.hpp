@@ -55,6 +55,10 @@ inline std::vector<TypeCase> all_types() {
     types.push_back({"Lagrange wedge " + order, 73, a * a * (a + 1) / 2, {}, n});
     if (n < 5) types.push_back({"Lagrange hexahedron " + order, 72, a * a * a, {}, n});
   }
+  for (const int n : {1, 2, 3, 4}) {
+    const auto a = static_cast<std::size_t>(n) + 1;
+    types.push_back({"Lagrange pyramid " + std::to_string(n), 74, a * (a + 1) * (2 * a + 1) / 6, {}, n, false, true});
+  }
   for (const int n : {2, 3}) {
     const auto order = std::to_string(n);
     const auto a = static_cast<std::size_t>(n) + 1;

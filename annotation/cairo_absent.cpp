@@ -1,0 +1,21 @@
+// Built in place of what draws with TESSERA_CAIRO=OFF.
+#include "tessera/annotation.hpp"
+#include "tessera/error.hpp"
+
+namespace tessera {
+
+void validate(const Annotation&, const TransferFunction&) {
+  throw bad_input("annotation: needs Cairo, which this build leaves out; build with TESSERA_CAIRO=ON, or draw none");
+}
+
+void annotate(Image&, const Annotation& annotation, const View&, const Box&, const TransferFunction& function) {
+  validate(annotation, function);
+}
+
+Image annotation_layer(const Image&, const Annotation& annotation, const View&, const Box&,
+                       const TransferFunction& function) {
+  validate(annotation, function);
+  return {};
+}
+
+}  // namespace tessera

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "annotation/drawing.hpp"
+#include "annotation/ink.hpp"
+#include "annotation/tiled_layer.hpp"
+#include "annotation/typeface.hpp"
+
+namespace tessera::annotation {
+
+/// Makes pixels of a drawing. What is off the picture is not drawn. Throws Error(system_failure) if Cairo fails.
+void paint(const Drawing& drawing, const Ink& ink, const Typeface& typeface, TiledLayer& layer);
+
+}  // namespace tessera::annotation

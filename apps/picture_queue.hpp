@@ -1,0 +1,44 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+namespace tessera::apps {
+
+/// Writes pictures on a thread of its own, in order, while the next ones are made. Few wait at a time, so that memory
+/// holds no film; who comes with more waits.
+class PictureQueue {
+ public:
+  using Write = std::function<void()>;
+
+  /// Without `behind` add() writes itself.
+  explicit PictureQueue(bool behind);
+  /// Writes what still waits: finished pictures stay, whatever ended the run. Errors end here; finish() throws them.
+  ~PictureQueue();
+  PictureQueue(const PictureQueue&) = delete;
+  PictureQueue& operator=(const PictureQueue&) = delete;
+
+  /// Throws what an earlier picture threw; nothing is written after that.
+  void add(Write write);
+  /// Waits until all are written. Throws as add().
+  void finish();
+
+ private:
+  void run();
+
+  static constexpr std::size_t most_waiting = 1;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Write> waiting_;
+  bool busy_ = false, ends_ = false;
+  std::exception_ptr thrown_;
+  std::thread thread_;
+};
+
+}  // namespace tessera::apps

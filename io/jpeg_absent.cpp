@@ -1,0 +1,13 @@
+// Built in place of image_jpeg.cpp with TESSERA_JPEG=OFF.
+#include "io/image_formats.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io {
+
+bool has_jpeg() { return false; }
+
+void write_jpeg(const scene::Image& /*image*/, const std::filesystem::path& file, const ImageFileOptions& /*options*/) {
+  throw scene::bad_input(file.string() + ": this build leaves .jpg out; build with TESSERA_JPEG=ON, or write .png");
+}
+
+}  // namespace tessera::io

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+/// Directions in the world, at any scale that a double holds.
+namespace tessera::scene {
+
+inline bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+inline double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+/// Unit vector. Scaled first, so that 1e-200 and 1e200 neither underflow nor overflow; divided by the length rather
+/// than multiplied by its inverse, so that (0, 0, 49) becomes exactly (0, 0, 1).
+inline glm::dvec3 unit(const glm::dvec3& v) {
+  const glm::dvec3 scaled = v / largest(v);
+  return scaled / glm::length(scaled);
+}
+
+inline glm::dvec3 rotated(const glm::dvec3& v, const glm::dvec3& axis, double angle) {
+  // Rodrigues' formula.
+  return v * std::cos(angle) + glm::cross(axis, v) * std::sin(angle) +
+         axis * (glm::dot(axis, v) * (1 - std::cos(angle)));
+}
+
+}  // namespace tessera::scene

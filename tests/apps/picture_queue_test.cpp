@@ -1,0 +1,73 @@
+#include "apps/picture_queue.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+namespace tessera::apps {
+namespace {
+
+TEST(PictureQueue, WritesAllInOrder) {
+  for (const bool behind : {false, true}) {
+    std::vector<int> written;
+    PictureQueue queue(behind);
+    for (int i = 0; i < 20; ++i) queue.add([&written, i] { written.push_back(i); });
+    queue.finish();
+    ASSERT_EQ(written.size(), 20u);
+    for (int i = 0; i < 20; ++i) EXPECT_EQ(written[static_cast<std::size_t>(i)], i);
+  }
+}
+
+TEST(PictureQueue, HoldsOneBeingWrittenAndOneThatWaits) {
+  std::atomic<int> held = 0, most = 0;
+  struct Picture {
+    explicit Picture(std::atomic<int>& count) : held(count) { ++held; }
+    ~Picture() { --held; }
+    std::atomic<int>& held;
+  };
+  PictureQueue queue(true);
+  for (int i = 0; i < 10; ++i) {
+    const auto picture = std::make_shared<Picture>(held);
+    queue.add([picture] { std::this_thread::sleep_for(std::chrono::milliseconds(5)); });
+    most = std::max(most.load(), held.load());
+  }
+  queue.finish();
+  EXPECT_LE(most, 3);  // and the one that is handed over
+  EXPECT_EQ(held, 0);
+}
+
+TEST(PictureQueue, AnErrorEndsTheWritingAndReachesWhoMadeThePictures) {
+  std::atomic<int> written = 0;
+  PictureQueue queue(true);
+  queue.add([] { throw std::runtime_error("full"); });
+  EXPECT_THROW(
+      {
+        for (int i = 0; i < 5; ++i) queue.add([&written] { ++written; });
+        queue.finish();
+      },
+      std::runtime_error);
+  EXPECT_THROW(queue.finish(), std::runtime_error);
+  EXPECT_EQ(written, 0);
+}
+
+TEST(PictureQueue, WhatWaitsIsWrittenAtAnEarlyEnd) {
+  std::atomic<int> written = 0;
+  {
+    PictureQueue queue(true);
+    for (int i = 0; i < 4; ++i)
+      queue.add([&written] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        ++written;
+      });
+  }
+  EXPECT_EQ(written, 4);
+}
+
+}  // namespace
+}  // namespace tessera::apps

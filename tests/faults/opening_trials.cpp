@@ -1,0 +1,208 @@
+/// Damages files and opens them with the library, many in one process: what reads them by other people's libraries does
+/// so in a helper program, which may die, but this process may not.
+///
+///     opening_trials RUNS SEED FOLDER [LARGEST]
+///
+/// FOLDER holds files of at most LARGEST bytes (default 262144); those that cannot be opened are left out. Each run
+/// damages one and opens it. A fault is: another exception than Error(bad_input), a message of more than one line or
+/// without the file's name, over 20 s of wall time, or, at the end, a helper with more than `helper_mebibytes` of
+/// memory or this process with more than `own_mebibytes`. A fault's file is kept in the working folder as
+/// opening_trial_RUN_NAME. Prints the faults and the counts; ends with status 1 if there are any, with 2 if nothing can
+/// be tried.
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tessera/dataset.hpp"
+#include "tessera/error.hpp"
+#include "tessera/input_file.hpp"
+
+namespace {
+
+using Random = std::mt19937_64;
+namespace fs = std::filesystem;
+
+/// A helper limits itself to 256 MiB and 24 bytes a byte of its file, 1,100 if that is compressed
+/// (io/helper/limits.cpp); of the small files here that is little beside the first.
+constexpr long helper_mebibytes = 700;
+/// About 2 Mi tets of higher-order cells at most, and what malloc keeps of the run before.
+constexpr long own_mebibytes = 1500;
+
+std::size_t below(Random& random, std::size_t end) { return end == 0 ? 0 : random() % end; }
+
+void flip_bits(std::string& bytes, Random& random, std::size_t reach) {
+  static constexpr std::size_t counts[] = {1, 1, 2, 4, 16};
+  for (std::size_t n = counts[below(random, std::size(counts))]; n > 0; --n) {
+    char& byte = bytes[below(random, std::min(reach, bytes.size()))];
+    byte = static_cast<char>(static_cast<unsigned char>(byte) ^ (1U << below(random, 8)));
+  }
+}
+
+/// Another number in place of one of the first 400 written out in the text.
+void change_number(std::string& bytes, Random& random) {
+  static const std::string numbers[] = {"0",          "-1",         "1",   "255",   "65536", "999999",
+                                        "2147483647", "2147483648", "nan", "1e308", "",      "99999999999999999999"};
+  std::vector<std::pair<std::size_t, std::size_t>> found;
+  constexpr const char* digits = "0123456789";
+  for (std::size_t at = bytes.find_first_of(digits);
+       at < std::min<std::size_t>(bytes.size(), 65536) && found.size() < 400;) {
+    const std::size_t end = std::min(bytes.find_first_not_of(digits, at), bytes.size());
+    found.emplace_back(at, end - at);
+    at = bytes.find_first_of(digits, end);
+  }
+  if (found.empty()) return flip_bits(bytes, random, 2048);
+  const auto [at, count] = found[below(random, found.size())];
+  bytes.replace(at, count, numbers[below(random, std::size(numbers))]);
+}
+
+/// Eight bytes that may be an offset or a count, at a multiple of four of a binary part.
+void change_word(std::string& bytes, Random& random) {
+  const std::size_t mark = bytes.find("<AppendedData");
+  std::size_t at = mark == std::string::npos ? 4 * below(random, bytes.size() / 4 + 1)
+                                             : bytes.find('_', mark) + 1 + 8 * below(random, 16);
+  const std::uint64_t words[] = {0, ~std::uint64_t{0}, random(), random() % (std::uint64_t{1} << 34), random() % 4096};
+  const std::uint64_t word = words[below(random, std::size(words))];
+  for (std::size_t i = 0; i < 8 && at + i < bytes.size(); ++i) bytes[at + i] = static_cast<char>(word >> (8 * i));
+}
+
+void cut(std::string& bytes, Random& random) {
+  const std::size_t at = below(random, bytes.size());
+  bytes.erase(at, random() % 2 != 0 ? std::string::npos : 1 + below(random, 4096));
+}
+
+void exchange_stretches(std::string& bytes, Random& random) {
+  const std::size_t size = 1 + below(random, std::min<std::size_t>(512, bytes.size() / 2));
+  const std::size_t a = below(random, bytes.size() - size + 1), b = below(random, bytes.size() - size + 1);
+  const std::string first = bytes.substr(a, size), second = bytes.substr(b, size);
+  bytes.replace(a, size, second);
+  bytes.replace(b, size, first);
+}
+
+void damage(std::string& bytes, Random& random) {
+  switch (below(random, 10)) {
+    case 0:
+    case 1:
+      return flip_bits(bytes, random, bytes.size());
+    case 2:
+    case 3:
+      return flip_bits(bytes, random, 2048);
+    case 4:
+    case 5:
+    case 6:
+      return change_number(bytes, random);
+    case 7:
+      return change_word(bytes, random);
+    case 8:
+      return cut(bytes, random);
+    default:
+      return exchange_stretches(bytes, random);
+  }
+}
+
+/// What is wrong with how a file was taken; empty: nothing. `taken` says whether it was.
+std::string fault_of(const fs::path& file, bool& taken) {
+  taken = false;
+  const auto begin = std::chrono::steady_clock::now();
+  std::string fault;
+  try {
+    tessera::ReadOptions options;
+    options.threads = 1;
+    (void)tessera::Dataset::open(file, options);
+    taken = true;
+  } catch (const tessera::Error& e) {
+    const std::string line = e.what();
+    if (e.code() != tessera::ErrorCode::bad_input) fault += "not bad input: " + line;
+    if (line.find('\n') != std::string::npos) fault += "more than one line: " + line;
+    if (line.find(file.stem().string()) == std::string::npos) fault += "does not name the file: " + line;
+  } catch (const std::exception& e) {
+    fault = fmt::format("another exception: {}", e.what());
+  }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (seconds > 20) fault += fmt::format("{:.0f} s", seconds);
+  return fault;
+}
+
+long mebibytes(int who) {
+  rusage usage{};
+  getrusage(who, &usage);
+  return usage.ru_maxrss / 1024;
+}
+
+std::string read_all(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void write_all(const fs::path& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+}
+
+/// A folder in memory where there is one: hundreds of files a second are written.
+fs::path scratch_folder() {
+  std::string name =
+      (fs::exists("/dev/shm") ? fs::path("/dev/shm") : fs::temp_directory_path()) / "tessera-trials-XXXXXX";
+  if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+  return name;
+}
+
+int trials(std::size_t runs, std::uint64_t seed, const fs::path& folder, std::uintmax_t largest) {
+  std::vector<std::pair<std::string, std::string>> files;  // name, bytes
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file() && entry.file_size() > 1 && entry.file_size() <= largest)
+      files.emplace_back(entry.path().filename().string(), read_all(entry.path()));
+  std::sort(files.begin(), files.end());
+  const fs::path scratch = scratch_folder();
+  std::erase_if(files, [&](const auto& file) {
+    write_all(scratch / file.first, file.second);
+    bool opened = false;
+    (void)fault_of(scratch / file.first, opened);
+    return !opened;
+  });
+  if (files.empty())
+    return fmt::print(stderr, "opening_trials: {} holds no file that can be opened\n", folder.string()), 2;
+  std::map<std::string, std::size_t> taken, refused;
+  std::size_t faults = 0;
+  for (std::size_t run = 0; run < runs; ++run) {
+    Random random(seed * 1'000'003 + run);
+    const auto& [name, intact] = files[below(random, files.size())];
+    std::string bytes = intact;
+    damage(bytes, random);
+    const fs::path file = scratch / name;
+    write_all(file, bytes);
+    bool opened = false;
+    const std::string fault = fault_of(file, opened);
+    ++(opened ? taken : refused)[file.extension().string()];
+    fs::remove(file);
+    if (fault.empty()) continue;
+    ++faults;
+    write_all(fmt::format("opening_trial_{}_{}", run, name), bytes);
+    fmt::print("run {} of seed {}, {}: {}\n", run, seed, name, fault);
+  }
+  fs::remove_all(scratch);
+  const long own = mebibytes(RUSAGE_SELF), helper = mebibytes(RUSAGE_CHILDREN);
+  if (own > own_mebibytes || helper > helper_mebibytes) ++faults;
+  for (const auto& [kind, count] : refused) taken.try_emplace(kind, 0);
+  for (const auto& [kind, count] : taken) fmt::print("{:10} {} taken, {} refused\n", kind, count, refused[kind]);
+  fmt::print("{} damaged files of {}, {} faults; memory {} MiB, helpers at most {} MiB\n", runs, files.size(), faults,
+             own, helper);
+  return faults > 0 ? 1 : 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  if (argc < 4) return fmt::print(stderr, "usage: opening_trials RUNS SEED FOLDER [LARGEST]\n"), 2;
+  return trials(std::stoul(argv[1]), std::stoull(argv[2]), argv[3], argc > 4 ? std::stoull(argv[4]) : 1 << 18);
+} catch (const std::exception& e) {
+  fmt::print(stderr, "opening_trials: {}\n", e.what());
+  return 2;
+}

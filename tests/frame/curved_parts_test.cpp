@@ -1,0 +1,107 @@
+// A caller's higher-order cells in parts, one a rank: what they share is divided alike, as in one process.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "exchange/loopback_transport.hpp"
+#include "frame/communicator.hpp"
+#include "io/curved_meshes.hpp"
+#include "tessera/dataset.hpp"
+
+namespace tessera::frame {
+namespace {
+
+/// A tet by its corners' positions and values, in one order.
+using Corners = std::array<std::array<double, 4>, 4>;
+
+std::vector<Corners> tets_of(const Dataset& data) {
+  const MeshArrays arrays = data.mesh_arrays();
+  const auto points = arrays.points.as<double>(), scalars = arrays.scalars.as<double>();
+  const auto tets = arrays.tets.as<std::uint32_t>();
+  std::vector<Corners> all;
+  for (std::size_t t = 0; t < tets.size(); t += 4) {
+    Corners& corners = all.emplace_back();
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::size_t v = tets[t + k];
+      corners[k] = {points[3 * v], points[3 * v + 1], points[3 * v + 2], scalars[v]};
+    }
+    std::sort(corners.begin(), corners.end());
+  }
+  return all;
+}
+
+/// Some of a block's cells; each has points of its own.
+struct Cells {
+  Cells(const io::CellBlock& block, std::size_t first, std::size_t last) {
+    std::vector<double> values(block.positions.size());
+    block.fields.front().read(0, 0, values);
+    for (std::size_t c = first; c < last; ++c) {
+      types.push_back(block.types[c]);
+      for (std::size_t k = block.offsets[c]; k < block.offsets[c + 1]; ++k) {
+        const std::uint32_t v = block.connectivity[k];
+        connectivity.push_back(static_cast<std::uint32_t>(points.size() / 3));
+        for (int x = 0; x < 3; ++x) points.push_back(block.positions[v][x]);
+        scalars.push_back(values[v]);
+      }
+      offsets.push_back(connectivity.size());
+    }
+  }
+
+  [[nodiscard]] MeshArrays arrays(double tolerance, std::uint64_t tets) const {
+    MeshArrays result;
+    result.points = std::span<const double>(points);
+    if (!types.empty()) {
+      result.types = std::span<const std::uint8_t>(types);
+      result.offsets = std::span<const std::uint64_t>(offsets);
+      result.connectivity = std::span<const std::uint32_t>(connectivity);
+    }
+    result.scalars = std::span<const double>(scalars);
+    result.higher_order_tolerance = tolerance;
+    result.higher_order_tets = tets;
+    return result;
+  }
+
+  std::vector<double> points, scalars;
+  std::vector<std::uint8_t> types;
+  std::vector<std::uint64_t> offsets{0};
+  std::vector<std::uint32_t> connectivity;
+};
+
+TEST(CurvedParts, AreDividedAsTheWholeIs) {
+  // Steep at one end only: a part's range and number of tets are not another's.
+  const auto field = [](const glm::dvec3& p) { return std::exp(4 * p.x) + std::sin(5 * p.y * p.z); };
+  for (const io::testing::Kind& kind : {io::testing::Kind{24, 10, 2}, {72, 27, 2}})
+    for (const std::uint64_t most_tets : {std::uint64_t{1} << 21, std::uint64_t{2000}}) {
+      const io::CellBlock block = io::testing::warped_box(kind, 2, io::testing::bent, field, true);
+      const std::size_t cells = block.types.size();
+      const Dataset whole = Dataset::of(Cells(block, 0, cells).arrays(1e-3, most_tets));
+      std::vector<Corners> expected = tets_of(whole);
+      std::sort(expected.begin(), expected.end());
+      for (const int ranks : {1, 2, 3, 4}) {
+        SCOPED_TRACE(::testing::Message() << "type " << int{kind.type} << ", " << most_tets << " tets, " << ranks);
+        std::mutex mutex;
+        std::vector<Corners> found;
+        exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
+          // Of four the last has nothing; what another allows beyond the smallest does not count.
+          const auto self = static_cast<std::size_t>(transport.rank()),
+                     parts = static_cast<std::size_t>(std::min(ranks, 3));
+          const auto first = [&](std::size_t part) { return std::min(cells, cells * part / parts); };
+          const Cells own(block, first(self), first(self + 1));
+          const MeshArrays part = own.arrays(self == 1 ? 1e-2 : 1e-3, most_tets);
+          const Dataset data = Dataset::of_parts(part, communicator_over(transport));
+          EXPECT_EQ(data.higher_order_cells(), whole.higher_order_cells());
+          EXPECT_EQ(data.mesh_counts().cells_read, cells);
+          const std::vector<Corners> mine = tets_of(data);
+          const std::scoped_lock lock(mutex);
+          found.insert(found.end(), mine.begin(), mine.end());
+        });
+        std::sort(found.begin(), found.end());
+        EXPECT_TRUE(found == expected) << found.size() << " tets, " << expected.size() << " of the whole";
+      }
+    }
+}
+
+}  // namespace
+}  // namespace tessera::frame
