@@ -114,7 +114,8 @@ HelperDeath death_of(int status, bool known, bool has_begun, const HelperTask& t
     return {bad_input, fmt::format("{} ended in failure; {}", task.words, task.remedy)};
   switch (WTERMSIG(status)) {
     case SIGXCPU:
-      return {bad_input, fmt::format("{} takes longer than its size can explain; {}", task.words, task.remedy)};
+      return {bad_input, fmt::format("{} takes longer than its size can explain; {}", task.words,
+                                     task.limit_remedy.empty() ? task.remedy : task.limit_remedy)};
     case SIGKILL:
       return {system_failure,
               fmt::format("{} was killed from outside, perhaps for want of memory; use a larger machine", task.words)};

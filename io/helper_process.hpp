@@ -48,6 +48,7 @@ struct HelperTask {
   std::string words = "reading it", remedy = "the file is damaged, write it anew";
   const char* program = "tessera-read";
   ReadProgressFunction progress{};  ///< hears how far it is; null: nobody
+  std::string limit_remedy{};       ///< where it takes too long; empty: as ever
 };
 
 /// What a helper died of, without the subject.
@@ -63,7 +64,8 @@ struct HelperDeath {
 ///          to be installed.
 /// Started  by posix_spawn: nothing of the caller's process is copied. It inherits no file and, of the environment,
 ///          nothing that MPI launchers set; what it prints goes nowhere.
-/// Limits   of memory and processor time, by the sizes of the files it opens, which it sets itself; none for filling.
+/// Limits   of memory and processor time, by the sizes of the files it opens or the surface it fills, which it sets
+///          itself.
 /// Threads  calls wait for each other.
 class HelperProcess {
  public:

@@ -26,6 +26,7 @@ struct Reader {
 /// Failures  {"error": {"line", "code"}} instead.
 /// Before the answer to "open" any number of {"progress": how much of the file is read, 0 to 1} and, of formats that
 /// are many files, of {"reading": the one that is read from now on}, which a crash is then said of.
+/// As soon as the caller is gone, killed perhaps, so is this process, whatever it is at.
 [[noreturn]] void serve(std::span<const Reader> readers);
 
 /// Says how much of the file is read, 0 to 1, if it has not been said for a tenth of a second. For readers.
