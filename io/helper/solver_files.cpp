@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <vtkAVSucdReader.h>
 #include <vtkCGNSReader.h>
+#include <vtkCellArray.h>
+#include <vtkCellType.h>
 #include <vtkCommand.h>
 #include <vtkDataObject.h>
 #include <vtkEnSightReader.h>
@@ -9,13 +11,21 @@
 #include <vtkGAMBITReader.h>
 #include <vtkGenericEnSightReader.h>
 #include <vtkHDFReader.h>
+#include <vtkIdList.h>
 #include <vtkNew.h>
+#include <vtkPoints.h>
 #include <vtkSmartPointer.h>
 #include <vtkTecplotReader.h>
+#include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "io/helper/readers.hpp"
@@ -31,10 +41,12 @@ namespace {
 constexpr const char* write_anew = "the file is truncated or damaged, write it anew";
 
 /// Reads with a reader that is ready but for its file's arrays, which `choose` turns on once they are known. Of those
-/// that know shares of a file the request's `part` of `parts`, which may hold nothing.
+/// that know shares of a file the request's `part` of `parts`, which may hold nothing. `mend` puts right what the
+/// reader gets wrong.
 template <class Reader, class Choose>
 ForeignContents read_by(Holdings& holdings, Reader& reader, const std::filesystem::path& file,
-                        const nlohmann::json& request, const char* format, const Choose& choose) {
+                        const nlohmann::json& request, const char* format, const Choose& choose,
+                        void (*mend)(vtkDataObject&) = nullptr) {
   const std::string source = file.string();
   ForeignContents contents;
   contents.format = format;
@@ -46,6 +58,7 @@ ForeignContents read_by(Holdings& holdings, Reader& reader, const std::filesyste
   if (!warning.empty()) contents.notes.push_back("VTK warns: " + warning);
   vtkDataObject* const data = reader.GetOutputDataObject(0);
   if (data == nullptr) throw scene::bad_input(fmt::format("{}: nothing can be read; write it anew", source));
+  if (mend != nullptr) mend(*data);
   contents.parts = parts_of(holdings, *data, source);
   if (contents.parts.empty() && request.value("parts", 1) == 1)
     throw scene::bad_input(fmt::format("{}: it holds no cells; check how it was written", source));
@@ -76,6 +89,35 @@ class FluentErrors : public vtkCommand {
 
   std::string first;
 };
+
+/// GAMBIT numbers the corners of a quadrangle row by row, also in bricks and pyramids: (0, 0), (1, 0), (0, 1), (1, 1).
+/// VTK's reader takes them as going round, which makes cells that cut themselves. Some programs do write them so, so
+/// whichever makes fewer such cells is what the file has.
+void order_gambit_corners(vtkDataObject& data) {
+  auto* const grid = vtkUnstructuredGrid::SafeDownCast(&data);
+  if (grid == nullptr || grid->GetPoints() == nullptr) return;
+  const vtkNew<vtkIdList> corners;
+  std::vector<vtkIdType> with_quadrangles;
+  std::int64_t crossed = 0;
+  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell) {
+    if (const int type = grid->GetCellType(cell); type != VTK_HEXAHEDRON && type != VTK_PYRAMID) continue;
+    grid->GetCellPoints(cell, corners);
+    std::array<glm::dvec3, 4> p;
+    const vtkIdType* const ids = corners->GetPointer(0);
+    const auto is_there = [&](vtkIdType v) { return v >= 0 && v < grid->GetNumberOfPoints(); };
+    if (corners->GetNumberOfIds() < 5 || !std::all_of(ids, ids + 4, is_there)) continue;
+    for (std::size_t k = 0; k < 4; ++k) grid->GetPoint(ids[k], &p[k].x);
+    crossed += glm::dot(p[1] - p[0], p[2] - p[3]) < 0 ? 1 : -1;
+    with_quadrangles.push_back(cell);
+  }
+  if (crossed <= 0) return;
+  for (const vtkIdType cell : with_quadrangles) {
+    grid->GetCellPoints(cell, corners);
+    for (vtkIdType first = 0; first + 4 <= corners->GetNumberOfIds(); first += 4)
+      std::swap(*corners->GetPointer(first + 2), *corners->GetPointer(first + 3));
+    grid->GetCells()->ReplaceCellAtId(cell, corners);
+  }
+}
 
 }  // namespace
 
@@ -136,7 +178,10 @@ ForeignContents read_fluent(Holdings& holdings, const std::filesystem::path& fil
 
 ForeignContents read_gambit(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   allow_for(file);
-  return read_plainly<vtkGAMBITReader>(holdings, file, request, "GAMBIT");
+  const vtkNew<vtkGAMBITReader> reader;
+  reader->SetFileName(file.c_str());
+  return read_by(
+      holdings, *reader, file, request, "GAMBIT", [] {}, order_gambit_corners);
 }
 
 ForeignContents read_tecplot(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {

@@ -106,6 +106,49 @@ TEST(SolverFiles, AvsUcdAndTecplotAreReadAsTheyAre) {
   expect_cube(read_mesh(folder.write("tecplot.dat", tecplot(cubes))), 3);
 }
 
+/// The first cell as six pyramids about a point within, the others as bricks, corners in this order.
+std::string gambit(const Cubes& cubes, const std::array<std::size_t, 8>& order) {
+  constexpr std::array<std::array<std::size_t, 4>, 6> sides = {
+      {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {3, 2, 6, 7}, {1, 5, 6, 2}, {0, 3, 7, 4}}};
+  std::string text =
+      "        CONTROL INFO 2.4.6\n** GAMBIT NEUTRAL FILE\ncubes\nPROGRAM: Gambit VERSION: 2.4.6\n 1 Jan 2000 "
+      "00:00:00\n"
+      "     NUMNP     NELEM     NGRPS    NBSETS     NDFCD     NDFVL\n" +
+      fmt::format("{:10}{:10}{:10}{:10}{:10}{:10}\nENDOFSECTION\n   NODAL COORDINATES 2.4.6\n", cubes.points.size() + 1,
+                  cubes.cells.size() + 5, 0, 0, 3, 3);
+  for (std::size_t v = 0; v < cubes.points.size(); ++v)
+    text += fmt::format("{:10}{:20.11e}{:20.11e}{:20.11e}\n", v + 1, cubes.points[v].x, cubes.points[v].y,
+                        cubes.points[v].z);
+  text += fmt::format("{:10}{:20.11e}{:20.11e}{:20.11e}\n", cubes.points.size() + 1, 0.5, 0.5, 0.5);
+  text += "ENDOFSECTION\n      ELEMENTS/CELLS 2.4.6\n";
+  std::size_t element = 0;
+  for (const auto& side : sides) {
+    text += fmt::format("{:8}  7  5 ", ++element);
+    for (std::size_t k = 0; k < 4; ++k) text += fmt::format("{:8}", cubes.cells[0][side[order[k]]] + 1);
+    text += fmt::format("{:8}\n", cubes.points.size() + 1);
+  }
+  for (std::size_t c = 1; c < cubes.cells.size(); ++c) {
+    text += fmt::format("{:8}  4  8 ", ++element);
+    for (std::size_t k = 0; k < 8; ++k)
+      text += fmt::format("{}{:8}", k == 7 ? "\n               " : "", cubes.cells[c][order[k]] + 1);
+    text += "\n";
+  }
+  return text + "ENDOFSECTION\n";
+}
+
+TEST(SolverFiles, GambitsBricksAreReadRowByRowOrRoundAsTheyAre) {
+  const test::TemporaryFolder folder;
+  const Cubes cubes(3);
+  const std::array<std::size_t, 8> by_rows{0, 1, 3, 2, 4, 5, 7, 6}, round{0, 1, 2, 3, 4, 5, 6, 7};
+  for (const auto& order : {by_rows, round}) {
+    const MeshFile read = read_mesh(folder.write("m.neu", gambit(cubes, order)));
+    scene::validate(read.mesh, "cube");
+    EXPECT_NEAR(testing::volume(read.mesh), 27, 1e-5);
+    EXPECT_EQ(read.counts.cells_read, 32u);
+    EXPECT_EQ(read.counts.cells_tangled, 0u);
+  }
+}
+
 TEST(SolverFiles, AFluentCaseIsAMeshWithTheValuesBesideItIfAny) {
   const test::TemporaryFolder folder;
   const Cubes cubes(3);
