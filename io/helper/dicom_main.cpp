@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
@@ -67,14 +68,8 @@ std::vector<DicomSlice> slices_in(const std::filesystem::path& folder, std::vect
   return slices_among(below);
 }
 
-/// What the values of a volume are, which says how they are held.
-struct Values {
-  NumberTally tally;
-  bool are_whole = true;
-};
-
 /// The smallest type that holds all values: of whole numbers exactly, others as floats; blanks need floats.
-NumberType type_of(const Values& values) {
+NumberType type_of(const DicomValues& values) {
   const NumberTally& t = values.tally;
   const auto within = [&](double low, double high) { return values.are_whole && t.low >= low && t.high <= high; };
   if (t.not_finite > 0) return !values.are_whole || within(-0x1p24, 0x1p24) ? NumberType::float32 : NumberType::float64;
@@ -91,19 +86,15 @@ ForeignArray hold_samples(Holdings& holdings, const DicomVolume& volume, std::ve
   const auto stacks = std::make_shared<std::vector<DicomSamples>>();
   stacks->reserve(volume.slices.size());
   constexpr std::size_t at_once = 1 << 15;
-  std::vector<double> some(at_once);
-  Values values;
+  DicomValues values;
   for (const DicomSlice& slice : volume.slices) {
     report_progress(static_cast<double>(&slice - volume.slices.data()) / static_cast<double>(volume.slices.size()));
     report_reading(slice.file);
     const DicomSamples& samples = stacks->emplace_back(slice);
-    for (std::size_t first = 0; first < samples.count(); first += at_once) {
-      const auto part = std::span(some).first(std::min(at_once, samples.count() - first));
-      samples.read(first, part);
-      values.tally.add(part);
-      values.are_whole = values.are_whole && std::all_of(part.begin(), part.end(),
-                                                         [](double v) { return std::isnan(v) || v == std::floor(v); });
-    }
+    const DicomValues own = samples.values();
+    values.are_whole = values.are_whole && own.are_whole;
+    values.tally.not_finite += own.tally.not_finite;
+    if (own.tally.any_finite) values.tally.add(std::array{own.tally.low, own.tally.high});
   }
   if (const auto blank = values.tally.not_finite;
       blank > 0 && std::any_of(volume.slices.begin(), volume.slices.end(), [](const auto& s) { return s.padding; }))

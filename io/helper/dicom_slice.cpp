@@ -126,7 +126,7 @@ std::optional<NumberType> number_type_of(const gdcm::PixelFormat& format) {
 
 /// A sample of which only `bits` are used.
 template <class T>
-double number_at(const char* bytes, int bits) {
+T sample_at(const char* bytes, int bits) {
   T sample;
   std::memcpy(&sample, bytes, sizeof(T));
   if constexpr (std::is_integral_v<T>) {
@@ -136,7 +136,7 @@ double number_at(const char* bytes, int bits) {
       sample = static_cast<T>(static_cast<T>(static_cast<Unsigned>(static_cast<Unsigned>(sample) << spare)) >> spare);
     }
   }
-  return static_cast<double>(sample);
+  return sample;
 }
 
 /// A sample of 16 bits, as the samples are signed or not; none if the element is not there.
@@ -145,8 +145,8 @@ std::optional<double> sample_in(const gdcm::DataSet& data, std::uint16_t group, 
   if (!data.FindDataElement(tag)) return std::nullopt;
   const gdcm::ByteValue* const value = data.GetDataElement(tag).GetByteValue();
   if (value == nullptr || value->GetLength() != 2) return std::nullopt;
-  return is_signed ? number_at<std::int16_t>(value->GetPointer(), 16)
-                   : number_at<std::uint16_t>(value->GetPointer(), 16);
+  return is_signed ? sample_at<std::int16_t>(value->GetPointer(), 16)
+                   : static_cast<double>(sample_at<std::uint16_t>(value->GetPointer(), 16));
 }
 
 /// What the padding value, and the limit of a range of such, say.
@@ -227,11 +227,44 @@ DicomSamples::DicomSamples(const DicomSlice& slice)
   if (bytes_.size() != samples * size_of(type_)) throw refuse("its samples are not as many as its header says");
 }
 
+DicomValues DicomSamples::values() const {
+  DicomValues values;
+  const auto is_whole = [](double v) { return v == std::floor(v); };
+  // Integers that stay such in their order need no looking at each value.
+  const bool is_plain = !padding_ && is_whole(slope_) && is_whole(intercept_) && std::abs(slope_) < 0x1p20 &&
+                        std::abs(intercept_) < 0x1p52 && count() > 0;
+  with_number_type(type_, [&](auto zero) {
+    using Number = decltype(zero);
+    if constexpr (std::is_integral_v<Number>) {
+      if (!is_plain) return;
+      Number least = std::numeric_limits<Number>::max(), most = std::numeric_limits<Number>::lowest();
+      for (std::size_t k = 0; k < count(); ++k) {
+        const auto sample = sample_at<Number>(bytes_.data() + k * sizeof(Number), bits_);
+        least = std::min(least, sample), most = std::max(most, sample);
+      }
+      const std::array ends{slope_ * static_cast<double>(least) + intercept_,
+                            slope_ * static_cast<double>(most) + intercept_};
+      values.tally.add(ends);
+    }
+  });
+  if (values.tally.any_finite) return values;
+  constexpr std::size_t at_once = 1 << 15;
+  std::vector<double> some(std::min(at_once, count()));
+  for (std::size_t first = 0; first < count(); first += at_once) {
+    const auto part = std::span(some).first(std::min(at_once, count() - first));
+    read(first, part);
+    values.tally.add(part);
+    values.are_whole = values.are_whole &&
+                       std::all_of(part.begin(), part.end(), [&](double v) { return std::isnan(v) || is_whole(v); });
+  }
+  return values;
+}
+
 void DicomSamples::read(std::size_t first, std::span<double> out) const {
   with_number_type(type_, [&](auto zero) {
     using Number = decltype(zero);
     for (std::size_t k = 0; k < out.size(); ++k) {
-      const double sample = number_at<Number>(bytes_.data() + (first + k) * sizeof(Number), bits_);
+      const double sample = sample_at<Number>(bytes_.data() + (first + k) * sizeof(Number), bits_);
       const bool is_padding = padding_ && sample >= (*padding_)[0] && sample <= (*padding_)[1];
       out[k] = is_padding ? std::numeric_limits<double>::quiet_NaN() : slope_ * sample + intercept_;
     }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "io/foreign_data.hpp"
+#include "io/number_tally.hpp"
 
 namespace tessera::io::helper {
 
@@ -40,6 +41,12 @@ struct DicomSlice {
 /// None if the file is no DICOM file with pictures, or its header cannot be read. Samples are not read.
 std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file);
 
+/// What values are, which says how they are held.
+struct DicomValues {
+  NumberTally tally;
+  bool are_whole = true;
+};
+
 /// The samples of a file as they are stored, frame by frame, row by row.
 class DicomSamples {
  public:
@@ -47,6 +54,8 @@ class DicomSamples {
   explicit DicomSamples(const DicomSlice& slice);
 
   [[nodiscard]] std::size_t count() const { return bytes_.size() / size_of(type_); }
+
+  [[nodiscard]] DicomValues values() const;
 
   /// Values [first, first + out.size()); NaN where a sample is padding.
   void read(std::size_t first, std::span<double> out) const;

@@ -32,8 +32,8 @@ using Random = std::mt19937_64;
 namespace fs = std::filesystem;
 
 /// A helper limits itself to 256 MiB and 24 bytes a byte of its file, 1,100 if that is compressed
-/// (io/helper/limits.cpp); of the small files here that is little beside the first.
-constexpr long helper_mebibytes = 700;
+/// (io/helper/limits.cpp); of the small files here that is little beside the first. TetGen has 1 GiB for a surface.
+constexpr long helper_mebibytes = 1200;
 /// About 2 Mi tets of higher-order cells at most, and what malloc keeps of the run before.
 constexpr long own_mebibytes = 1500;
 
