@@ -73,9 +73,9 @@ enum class MessageKind : std::uint16_t {
   seconds = 35,           ///< f64 processor time of the last frame
   of_job = 36,            ///< list of bytes: the caller's own (tessera/job.hpp)
   higher_order = 37,      ///< u64[128]: tets by how far they are off (io/higher_order_plan.hpp)
-  field_samples = 39,      ///< list of scene::FieldSample: of a rank's part (frame/field_samples.cpp)
+  field_samples = 39,     ///< list of scene::FieldSample: of a rank's part (frame/field_samples.cpp)
   process_on_host = 38,   ///< exchange/one_line.cpp
-  curved_part = 39,  ///< frame/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
+  curved_part = 46,  ///< frame/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
   // The transport's own.
   fault = 40,    ///< a rank to rank 0, I have failed: u8 ErrorCode, text
   verdict = 41,  ///< the run's error to all: u8 ErrorCode, text

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "io/foreign_file.hpp"
+#include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/part_range.hpp"
 #include "scene/error.hpp"
