@@ -159,7 +159,8 @@ class Film final : public Sink {
   /// right for the first step is taken for all.
   void come_near_enough() {
     if (options_.fixed_higher_order) return;
-    for (int again = 0; again < 2; ++again) {
+    // A default function goes by samples of the tets, and becomes another with them.
+    for (int again = 0; again < 4; ++again) {
       const auto finer = finer_read(read_, *data_, loaded_.function, options_.settings.integrator.accuracy);
       if (!finer) return;
       read_ = *finer;

@@ -21,7 +21,7 @@ namespace tessera::exchange {
 static_assert(std::endian::native == std::endian::little, "messages are little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 11;        ///< the next one whenever a message changes
+inline constexpr std::uint16_t wire_version = 12;        ///< the next one whenever a message changes
 
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
@@ -73,16 +73,16 @@ enum class MessageKind : std::uint16_t {
   seconds = 35,           ///< f64 processor time of the last frame
   of_job = 36,            ///< list of bytes: the caller's own (tessera/job.hpp)
   higher_order = 37,      ///< u64[128]: tets by how far they are off (io/higher_order_plan.hpp)
-  field_samples = 39,     ///< list of scene::FieldSample: of a rank's part (frame/field_samples.cpp)
   process_on_host = 38,   ///< exchange/one_line.cpp
-  curved_part = 46,  ///< frame/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
+  field_samples = 39,     ///< list of scene::FieldSample: of a rank's part (frame/field_samples.cpp)
+  curved_part = 40,  ///< frame/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
   // The transport's own.
-  fault = 40,    ///< a rank to rank 0, I have failed: u8 ErrorCode, text
-  verdict = 41,  ///< the run's error to all: u8 ErrorCode, text
-  done = 42,     ///< a rank to rank 0, nothing: no more will come from me
-  clear = 43,    ///< rank 0 to all, nothing: no more will come from anyone
-  alive = 44,    ///< text: the name of the sender's process (heartbeats.hpp)
-  silent = 45,   ///< nothing: the sender has said that rank 0 is silent
+  fault = 41,    ///< a rank to rank 0, I have failed: u8 ErrorCode, text
+  verdict = 42,  ///< the run's error to all: u8 ErrorCode, text
+  done = 43,     ///< a rank to rank 0, nothing: no more will come from me
+  clear = 44,    ///< rank 0 to all, nothing: no more will come from anyone
+  alive = 45,    ///< text: the name of the sender's process (heartbeats.hpp)
+  silent = 46,   ///< nothing: the sender has said that rank 0 is silent
 };
 
 struct MessageHeader {

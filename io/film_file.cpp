@@ -227,8 +227,7 @@ FilmFile::FilmFile(std::filesystem::path file, ImageSize size, const FilmFileOpt
   require_kind(file);
   const std::filesystem::path program = require_ffmpeg(file);
   if (!(options.frames_per_second > 0 && options.frames_per_second <= 1000))
-    throw bad_input(
-        fmt::format("`frame_rate` {:g}: it must be above 0 and at most 1000", options.frames_per_second));
+    throw bad_input(fmt::format("`frame_rate` {:g}: it must be above 0 and at most 1000", options.frames_per_second));
   scene::validate(size);
   state_ = std::make_unique<State>(std::move(file), size, options);
   state_->start(program);

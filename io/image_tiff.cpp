@@ -44,7 +44,8 @@ Bytes zlib_stream(const Bytes& rows) {
   uLongf size = compressBound(static_cast<uLong>(rows.size()));
   Bytes out(size);
   // With room for all only memory can fail.
-  if (compress2(out.data(), &size, rows.data(), static_cast<uLong>(rows.size()), deflate_level) != Z_OK) throw std::bad_alloc();
+  if (compress2(out.data(), &size, rows.data(), static_cast<uLong>(rows.size()), deflate_level) != Z_OK)
+    throw std::bad_alloc();
   out.resize(size);
   return out;
 }

@@ -228,8 +228,7 @@ Camera adjusted_view(const Camera& camera, const Box& box, ImageSize size, const
     seen.position = camera.focal_point + direction.to_eye;
     seen.view_up = direction.up;
   }
-  if (request.fit)
-    seen = frame_box_along(box, size, seen.position - seen.focal_point, seen.view_up, camera.projection);
+  if (request.fit) seen = frame_box_along(box, size, seen.position - seen.focal_point, seen.view_up, camera.projection);
   return zoomed(seen, request.zoom);
 }
 

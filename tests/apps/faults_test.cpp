@@ -88,7 +88,7 @@ TEST(Faults, ArgumentsThatMakeNoSenseNameTheOption) {
       {{"--transfer-function", "no-such-preset"}, "no-such-preset"},
       {{"--camera", "nowhere.json"}, "nowhere.json"},
       {{"-o", folder / "a.png"}, "named twice"},
-      {{"-o", folder / "a.bmp"}, ".exr, .png or .pfm"},
+      {{"-o", folder / "a.bmp"}, ".exr, .png, .jpg, .tif or .pfm"},
       {{"-o", folder / "none/a.png"}, "none/a.png"},
       {{"--report", folder / "none/r.json"}, "none/r.json"},
       {{"--timing", "/"}, "/"},

@@ -96,7 +96,7 @@ TEST(Render, DividesHigherOrderCellsAsFinelyAsTheAccuracyNeeds) {
   }
   const auto few = report_of({"--accuracy", "1e-2", "--higher-order-tets", "50"}, outcome);
   EXPECT_GT(few.at("pixel_error").get<double>(), 1e-2);
-  EXPECT_NE(outcome.err.find("more than --accuracy 0.01; --higher-order-tets allows more"), std::string::npos)
+  EXPECT_NE(outcome.err.find("more than --accuracy 0.01\n  --higher-order-tets allows more"), std::string::npos)
       << outcome.err;
   const auto fixed = report_of({"--higher-order-tolerance", "0.05"}, outcome);
   EXPECT_EQ(fixed.at("tolerance"), 0.05);

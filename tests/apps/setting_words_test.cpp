@@ -38,12 +38,12 @@ TEST(SettingWords, TableHoldsWhatHelpLists) {
   for (const std::string command : {"", "render", "info", "convert", "generate", "chart", "timing"}) {
     const auto help = command.empty() ? tessera({"--help"}) : tessera({command, "--help"});
     ASSERT_EQ(help.status, 0) << command;
-    const std::regex option("(^|\n) +(-[a-z],)?--([a-z-]+)");
-    for (std::sregex_iterator found(help.out.begin(), help.out.end(), option), end; found != end; ++found) {
-      std::string name = (*found)[3];
-      std::ranges::replace(name, '-', '_');
-      listed.insert(name);
-    }
+    const std::regex option("(?:^|\n) +(?:-[a-z],)?--([a-z-]+)(?:,--([a-z-]+))?");
+    for (std::sregex_iterator found(help.out.begin(), help.out.end(), option), end; found != end; ++found)
+      for (std::string name : {found->str(1), found->str(2)}) {
+        std::ranges::replace(name, '-', '_');
+        if (!name.empty()) listed.insert(name);
+      }
   }
   const auto table = option_settings();
   EXPECT_EQ(listed, std::set<std::string>(table.begin(), table.end()));
@@ -95,7 +95,7 @@ TEST(SettingWords, RunLineReportAndNotesNameOptions) {
   const auto holds = [](const std::string& text, const std::string& words) {
     EXPECT_NE(text.find(words), std::string::npos) << words << " in " << text;
   };
-  holds(line_of({"--unit-distance", "2"}), ", unit distance 2 (--unit-distance);");
+  holds(line_of({"--unit-distance", "2"}), ", unit distance 2 (--unit-distance)\n");
   holds(contents(report), "\"source\": \"--unit-distance\"");
   const auto plain = folder.file("t.txt", "0 1 1 1 2\n");
   const std::string assumed = "t.txt (extinctions as they stand; --unit-distance does not apply)";
@@ -108,7 +108,7 @@ TEST(SettingWords, RunLineReportAndNotesNameOptions) {
   std::vector<std::string> volume = {"render", folder.file("v.raw", std::string(8, '\1')), "-o", folder / "v.png"};
   volume.insert(volume.end(), raw.begin(), raw.end());
   volume.insert(volume.end(), {"--size", "8x8", "--unit-distance", "3"});
-  holds(said(volume), ", unit distance 3 (--unit-distance);");
+  holds(said(volume), ", unit distance 3 (--unit-distance)\n");
 }
 
 }  // namespace
