@@ -6,6 +6,7 @@
 #include "exchange/collectives.hpp"
 #include "frame/mesh_input.hpp"
 #include "frame/reduce.hpp"
+#include "io/block_choice.hpp"
 #include "io/mesh_parts.hpp"
 
 namespace tessera::frame {
@@ -60,7 +61,8 @@ io::FieldSummary take_field(MessageReader& reader) {
   return f;
 }
 
-Bytes message_of(const std::vector<io::FieldTally>& tallies, const scene::Box& box) {
+Bytes message_of(const std::vector<io::FieldTally>& tallies, const scene::Box& box,
+                 const std::vector<std::string>& block_names) {
   Bytes message = exchange::begin_message(MessageKind::field_tallies);
   append(message, std::uint64_t{tallies.size()});
   for (const io::FieldTally& t : tallies) {
@@ -68,11 +70,12 @@ Bytes message_of(const std::vector<io::FieldTally>& tallies, const scene::Box& b
     append(message, std::uint8_t{t.any_finite});
   }
   append(message, box);
+  append_texts(message, block_names);
   return message;
 }
 
-/// `box` grows by the part's.
-std::vector<io::FieldTally> tallies_in(MessageReader& reader, scene::Box& box) {
+/// `box` and `block_names` grow by the part's.
+std::vector<io::FieldTally> tallies_in(MessageReader& reader, scene::Box& box, std::vector<std::string>& block_names) {
   std::vector<io::FieldTally> tallies;
   for (auto left = reader.take<std::uint64_t>(); left > 0; --left) {
     io::FieldTally tally{take_field(reader)};
@@ -80,6 +83,7 @@ std::vector<io::FieldTally> tallies_in(MessageReader& reader, scene::Box& box) {
     tallies.push_back(std::move(tally));
   }
   box = io::joined(box, reader.take<scene::Box>());
+  for (std::string& name : take_texts(reader)) block_names.push_back(std::move(name));
   reader.finish();
   return tallies;
 }
@@ -155,11 +159,12 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
   if (reads) reading.emplace(input, options, static_cast<int>(part), static_cast<int>(projectors.size()));
 
   std::vector<std::vector<io::FieldTally>> tallies;
+  std::vector<std::string> block_names;
   scene::Box box = io::higher_order_box({});
   gather(transport, MessageKind::field_tallies,
-         message_of(reads ? reading->tallies() : std::vector<io::FieldTally>{}, reads ? reading->box() : box),
-         projectors, [&](MessageReader& reader) { tallies.push_back(tallies_in(reader, box)); });
-  if (reads) reading->choose(tallies, box);
+         reads ? message_of(reading->tallies(), reading->box(), reading->block_names()) : message_of({}, box, {}),
+         projectors, [&](MessageReader& reader) { tallies.push_back(tallies_in(reader, box, block_names)); });
+  if (reads) reading->choose(tallies, box, io::distinct_names(std::move(block_names)));
   io::ExcessTally excess{};
   gather(transport, MessageKind::higher_order,
          exchange::message_of(MessageKind::higher_order, reads ? reading->excess() : excess), projectors,
@@ -177,6 +182,7 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
   std::uint64_t words = 0, first_tet = 0;
   Bytes message = exchange::message_of(MessageKind::part_summary, s.counts);
   append(message, s.higher_order);
+  append(message, s.time_step);
   append_texts(message, s.reading_notes);
   append_texts(message, s.cell_notes);
   append(message, std::uint64_t{s.used_points.size()});
@@ -184,6 +190,7 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
     io::PartSummary& summary = summaries.emplace_back();
     summary.counts = reader.take<io::MeshCounts>();
     summary.higher_order = reader.take<io::HigherOrderCells>();
+    summary.time_step = reader.take<io::TimeStepRead>();
     summary.reading_notes = take_texts(reader);
     summary.cell_notes = take_texts(reader);
     words = std::max(words, reader.take<std::uint64_t>());

@@ -127,6 +127,15 @@ void BlockCells::split_curved(std::size_t c, Workplace& work, BlockTets& out) co
   }
   out.curved.divided += 1;
   out.curved.tets += work.tets.size();
+  // The plan says how many there are, but cells folded over themselves, a damaged file's, take more. Twice as many
+  // as one cell may are three times the plan, which is the most that others take.
+  constexpr std::uint64_t each = 64;
+  const std::uint64_t limit = 2 * curved_.settings().limit + each * out.curved.divided;
+  if (out.curved.tets > limit)
+    throw scene::bad_input(
+        fmt::format("{}: {} higher-order cells up to {} take more than {} tets to come near to them; allow a larger "
+                    "difference (`higher_order_tolerance`)",
+                    source_, out.curved.divided, place(c), limit));
   out.curved.position_error = std::max(out.curved.position_error, split.error().position);
   out.curved.field_error = std::max(out.curved.field_error, split.error().field);
   const auto own = static_cast<std::uint32_t>(points_.size());

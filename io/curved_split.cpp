@@ -296,12 +296,13 @@ bool CurvedSplitter::divide_worst_face(const Tet& tet) {
   tet_error_ = error_of(inside);
   if (cell_.degree_on(faces_on(tet)) < 3) return false;  // all coefficients are edges'
   // Where all is well by a margin over rounding, a face is well too, whoever looks at it.
+  // It is no number where coordinates are too large to be squared: then nothing comes nearer.
   const double excess = excess_of(inside);
-  if (excess <= 0.9) return false;
+  if (!(excess > 0.9)) return false;
   for (const auto& [i, j, k] : faces_of_tet) {
     const std::array<std::uint32_t, 3> face = {tet[static_cast<std::size_t>(i)], tet[static_cast<std::size_t>(j)],
                                                tet[static_cast<std::size_t>(k)]};
-    if (cell_.degree_on(faces_on(face)) < 3 || excess_of(departures(face)) <= 1) continue;
+    if (cell_.degree_on(faces_on(face)) < 3 || !(excess_of(departures(face)) > 1)) continue;
     const std::uint32_t point = point_within(face);
     if (point == none) continue;
     for (const std::uint32_t corner : face) {

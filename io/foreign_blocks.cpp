@@ -30,10 +30,10 @@ class FetchedArray {
 
   void read(int component, std::size_t first, std::span<double> out) {
     std::call_once(once_, [&] {
-      bytes_ = helper_->take(array_, source_);
+      bytes_ = helper_->copy(array_, source_);
       fetched_ = true;
     });
-    read_tuples(bytes_.bytes(), array_.type, array_.components, component, first, out);
+    read_tuples(bytes_, array_.type, array_.components, component, first, out);
   }
 
  private:
@@ -41,7 +41,7 @@ class FetchedArray {
   std::string source_;
   ForeignArray array_;
   std::once_flag once_;
-  SharedBytes bytes_;
+  std::vector<std::byte> bytes_;
   bool fetched_ = false;
 };
 

@@ -8,10 +8,20 @@ namespace tessera::io {
 
 bool can_fill_surfaces() { return true; }
 
-FilledMesh fill_surface(const Surface& surface, double max_volume, const std::string& source) {
-  const auto helper = std::make_shared<HelperProcess>(HelperTask{"filling it by TetGen", "mend the surface"});
-  const ForeignFile opened =
-      open_foreign(helper, source, {{"reader", "fill"}, {"surface", json_of(surface)}, {"max_volume", max_volume}});
+FilledMesh fill_surface(const Surface& surface, const FillSize& size, const std::string& source) {
+  HelperTask task{"filling it by TetGen", "mend the surface"};
+  task.limit_remedy = size.is_chosen
+                          ? "mend the surface, or set a larger `max_volume`"
+                          : "mend the surface, or set `max_volume`, with which it may take more time and memory";
+  const std::string remedy = task.limit_remedy;
+  const auto helper = std::make_shared<HelperProcess>(std::move(task));
+  const ForeignFile opened = open_foreign(helper, source,
+                                          {{"reader", "fill"},
+                                           {"surface", json_of(surface)},
+                                           {"max_volume", size.max_volume},
+                                           {"tets", size.tets},
+                                           {"is_chosen", size.is_chosen},
+                                           {"limit_remedy", remedy}});
   if (opened.contents.parts.size() != 1) refuse_surface(source);
   const ForeignPart& part = opened.contents.parts.front();
   FilledMesh filled;

@@ -123,9 +123,9 @@ std::unique_ptr<scene::MemorySource> source_of(const ForeignFile& file, const Fo
   // Floats hold numbers of up to 16 bits, and magnitudes of floats.
   const bool narrow = scene::size_of(type) < 4 || type == SampleType::float32;
   if (plain && hidden.empty()) {
-    auto owner = std::make_shared<const SharedBytes>(file.helper->take(*array, file.source));
+    auto owner = std::make_shared<const std::vector<std::byte>>(file.helper->copy(*array, file.source));
     grid.type = choice.component != magnitude ? type : narrow ? SampleType::float32 : SampleType::float64;
-    const std::span<const std::byte> payload = owner->bytes();
+    const std::span<const std::byte> payload = *owner;
     return std::make_unique<scene::MemorySource>(
         std::move(grid), payload, std::move(owner), file.source,
         scene::ComponentChoice{field.components, choice.component == magnitude ? -1 : choice.component, type});

@@ -11,6 +11,7 @@
 #include "io/input_file.hpp"
 #include "io/listed_pieces.hpp"
 #include "io/mesh_formats.hpp"
+#include "io/mesh_shares.hpp"
 #include "io/plot3d_layout.hpp"
 #include "scene/error.hpp"
 
@@ -103,6 +104,7 @@ MeshBlocks read_vtk_legacy(const std::filesystem::path& file, const MeshOptions&
 }
 
 MeshBlocks read_exodus(const std::filesystem::path& file, const MeshOptions& options) {
+  if (!exodus_files(file).empty()) return read_share(file, options, 0, 1);
   const std::string magic = read_beginning(file, 8);
   if (!magic.starts_with("CDF") && !magic.starts_with("\x89HDF\r\n\x1a\n"))
     throw scene::bad_input(
@@ -122,6 +124,7 @@ MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reade
 }
 
 MeshBlocks read_hdf5(const std::filesystem::path& file, const MeshOptions& options) {
+  if (!exodus_files(file).empty()) return read_share(file, options, 0, 1);
   nlohmann::json request{{"reader", "hdf5"}, {"blocks", options.blocks}};
   if (options.time_step) request["time_step"] = *options.time_step;
   if (!options.field.empty()) request["field"] = options.field;

@@ -23,6 +23,7 @@
 #include <string_view>
 #include <utility>
 
+#include "io/large_vector.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -113,7 +114,8 @@ HelperDeath death_of(int status, bool known, bool has_begun, const HelperTask& t
     return {bad_input, fmt::format("{} ended in failure; {}", task.words, task.remedy)};
   switch (WTERMSIG(status)) {
     case SIGXCPU:
-      return {bad_input, fmt::format("{} takes longer than its size can explain; {}", task.words, task.remedy)};
+      return {bad_input, fmt::format("{} takes longer than its size can explain; {}", task.words,
+                                     task.limit_remedy.empty() ? task.remedy : task.limit_remedy)};
     case SIGKILL:
       return {system_failure,
               fmt::format("{} was killed from outside, perhaps for want of memory; use a larger machine", task.words)};
@@ -125,16 +127,27 @@ HelperDeath death_of(int status, bool known, bool has_begun, const HelperTask& t
   return {bad_input, fmt::format("{}; {}", words, task.remedy)};
 }
 
-/// What a message says of how far the helper is; nothing if it is a reply.
-std::optional<double> progress_of(std::span<const std::uint8_t> message) {
-  constexpr std::size_t longest = 64;
+/// What the helper says of its course before it replies: how far it is, or which file it is at.
+struct Course {
+  std::optional<double> done;
+  std::string reading;
+};
+
+/// Nothing if the message is a reply.
+std::optional<Course> course_of(std::span<const std::uint8_t> message) {
+  constexpr std::size_t longest = 8192;  // a name has at most 4096 bytes
   if (message.size() > longest) return std::nullopt;
   const Json json = Json::from_cbor(message, true, false);
   if (!json.is_object()) return std::nullopt;
-  const auto done = json.find("progress");
-  if (done == json.end() || !done->is_number()) return std::nullopt;
-  const auto number = done->get<double>();
-  return number >= 0 ? std::min(number, 1.0) : 0;  // 0 of a NaN, too
+  if (const auto done = json.find("progress"); done != json.end() && done->is_number()) {
+    const auto number = done->get<double>();
+    return Course{number >= 0 ? std::min(number, 1.0) : 0, ""};  // 0 of a NaN, too
+  }
+  if (const auto file = json.find("reading"); file != json.end() && file->is_binary()) {
+    const auto& name = file->get_binary();
+    return Course{std::nullopt, std::string(name.begin(), name.end())};
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -224,7 +237,7 @@ void HelperProcess::report_death(const std::string& subject) {
     death_ = death_of(status, ended == process_, has_begun_, task_);
     process_ = -1;
   }
-  throw scene::Error(death_->code, fmt::format("{}: {}", subject, death_->words));
+  throw scene::Error(death_->code, fmt::format("{}: {}", reading_.empty() ? subject : reading_, death_->words));
 }
 
 HelperMessage HelperProcess::exchange(const Json& request, const std::string& subject) {
@@ -243,9 +256,15 @@ HelperMessage HelperProcess::receive(const std::string& subject) {
   for (;;) {
     std::optional<HelperMessage> reply = receive_message(socket_.get());
     if (!reply) report_death(subject);
-    const std::optional<double> done = progress_of(reply->bytes);
-    if (!done) return std::move(*reply);
-    if (task_.progress) task_.progress({ReadProgress::Stage::reading, *done});
+    std::optional<Course> course = course_of(reply->bytes);
+    if (!course) {
+      reading_.clear();
+      return std::move(*reply);
+    }
+    if (!course->done)
+      reading_ = std::move(course->reading);
+    else if (task_.progress)
+      task_.progress({ReadProgress::Stage::reading, *course->done});
   }
 }
 
@@ -329,6 +348,14 @@ void HelperProcess::stream(const ForeignArray& array, const std::string& subject
     }
   }
   drop(std::span(&array.number, 1));
+}
+
+std::vector<std::byte> HelperProcess::copy(const ForeignArray& array, const std::string& subject) {
+  std::vector<std::byte> all;
+  reserve_large(all, array.bytes());
+  stream(array, subject,
+         [&](std::span<const std::byte> tuples) { all.insert(all.end(), tuples.begin(), tuples.end()); });
+  return all;
 }
 
 SharedBytes HelperProcess::take(const ForeignArray& array, const std::string& subject, bool keep) {

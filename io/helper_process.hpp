@@ -48,6 +48,7 @@ struct HelperTask {
   std::string words = "reading it", remedy = "the file is damaged, write it anew";
   const char* program = "tessera-read";
   ReadProgressFunction progress{};  ///< hears how far it is; null: nobody
+  std::string limit_remedy{};       ///< where it takes too long; empty: as ever
 };
 
 /// What a helper died of, without the subject.
@@ -63,7 +64,8 @@ struct HelperDeath {
 ///          to be installed.
 /// Started  by posix_spawn: nothing of the caller's process is copied. It inherits no file and, of the environment,
 ///          nothing that MPI launchers set; what it prints goes nowhere.
-/// Limits   of memory and processor time, by the sizes of the files it opens, which it sets itself; none for filling.
+/// Limits   of memory and processor time, by the sizes of the files it opens or the surface it fills, which it sets
+///          itself.
 /// Threads  calls wait for each other.
 class HelperProcess {
  public:
@@ -85,6 +87,9 @@ class HelperProcess {
   /// as call().
   void stream(const ForeignArray& array, const std::string& subject,
               const std::function<void(std::span<const std::byte> tuples)>& use);
+
+  /// All bytes of the helper's array, by stream(): faster than take(), which makes a file of small pages.
+  std::vector<std::byte> copy(const ForeignArray& array, const std::string& subject);
 
   /// How much will come by stream(), for the task's progress.
   void expect(std::uint64_t bytes) { expected_ = bytes, came_ = 0; }
@@ -109,6 +114,7 @@ class HelperProcess {
   SharedBytes window_;                     ///< of slots for stream(); empty until it is needed
   std::uint64_t expected_ = 0, came_ = 0;  ///< bytes of stream()
   bool has_begun_ = false;                 ///< it has said that it is there
+  std::string reading_;                    ///< the file that it is at, of several; empty: it has not said
   std::optional<HelperDeath> death_;       ///< once it is dead
 };
 

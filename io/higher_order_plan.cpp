@@ -87,7 +87,7 @@ HigherOrderPlan planned(const MeshOptions& options, const CurvedSettings& asked,
   plan.tolerance = factor * options.higher_order_tolerance;
   plan.settings.tolerance.position *= factor;
   plan.settings.tolerance.field *= factor;
-  plan.settings.limit = std::max<std::size_t>(4 * options.higher_order_tets, 1 << 16);
+  plan.settings.limit = std::max<std::size_t>(options.higher_order_tets / 2 * 3, 1 << 16);
   return plan;
 }
 

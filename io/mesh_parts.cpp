@@ -10,16 +10,12 @@
 #include "io/mesh_assembly.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/mesh_selection.hpp"
+#include "io/mesh_shares.hpp"
+#include "io/part_range.hpp"
 #include "io/tets_file.hpp"
 
 namespace tessera::io {
 namespace {
-
-/// The beginning of part `part` when n things are divided over the parts.
-std::uint64_t first_of_part(std::uint64_t n, int part, int parts) {
-  const auto p = static_cast<std::uint64_t>(part), count = static_cast<std::uint64_t>(parts);
-  return n / count * p + std::min(p, n % count);
-}
 
 bool is_tets(const std::filesystem::path& file) { return lower_extension(file) == ".tets"; }
 
@@ -28,14 +24,15 @@ bool is_tets(const std::filesystem::path& file) { return lower_extension(file) =
 bool readable_in_parts(const std::filesystem::path& file, const MeshOptions& options) {
   require_file(file);
   if (options.smooth) return false;
-  return is_tets(file) ? options.blocks.empty()
-                       : !std::filesystem::is_directory(file) && has_vtk() && lists_pieces(file);
+  if (is_tets(file)) return options.blocks.empty();
+  return has_vtk() && ((!std::filesystem::is_directory(file) && lists_pieces(file)) || has_shares(file));
 }
 
 std::vector<std::filesystem::path> files_of_parts(const std::filesystem::path& file) {
+  if (is_tets(file)) return {};
+  if (has_shares(file)) return exodus_files(file);
   std::vector<std::filesystem::path> files;
-  if (!is_tets(file))
-    for (const ListedPiece& piece : piece_list(file, {}).pieces) files.push_back(piece.file);
+  for (const ListedPiece& piece : piece_list(file, {}).pieces) files.push_back(piece.file);
   return files;
 }
 
@@ -82,10 +79,28 @@ struct MeshPartReading::State {
     blocks = read_pieces(list, first_of_part(list.pieces.size(), part, parts),
                          first_of_part(list.pieces.size(), part + 1, parts), options.progress);
     blocks.block_names = distinct_names(std::move(blocks.block_names));
-    require_blocks(options.blocks, blocks.block_names, file.string());
     if (list.pieces.size() == 1 && blocks.block_names.size() <= 1)  // as read_mesh calls it
       for (CellBlock& block : blocks.blocks) block.name.clear();
+    if (part > 0) blocks.block_names.clear();
     tallies = tally_fields(blocks.blocks);
+  }
+
+  void read_shared(int part, int parts) {
+    blocks = read_share(file, options, part, parts);
+    blocks.block_names = distinct_names(std::move(blocks.block_names));
+    tallies = tally_fields(blocks.blocks);
+  }
+
+  void read(int part, int parts) {
+    const bool is_shared = !is_tets(file) && has_shares(file);
+    const FormatRow* const row = is_shared ? format_of(file) : nullptr;
+    if (row == nullptr || !row->has_time_steps) require_no_time_step(options.time_step, file.string());
+    if (is_tets(file))
+      read_tets(part, parts);
+    else if (is_shared)
+      read_shared(part, parts);
+    else
+      read_listed(part, parts);
   }
 };
 
@@ -95,8 +110,7 @@ MeshPartReading::MeshPartReading(std::filesystem::path file, const MeshOptions& 
   state_->options = options;
   const std::string source = state_->file.string();
   with_clean_errors(source, [&] {
-    require_no_time_step(options.time_step, source);
-    is_tets(state_->file) ? state_->read_tets(part, parts) : state_->read_listed(part, parts);
+    state_->read(part, parts);
     state_->box = higher_order_box(state_->blocks.blocks);
   });
 }
@@ -107,9 +121,14 @@ const std::vector<FieldTally>& MeshPartReading::tallies() const { return state_-
 
 const scene::Box& MeshPartReading::box() const { return state_->box; }
 
-void MeshPartReading::choose(std::span<const std::vector<FieldTally>> tallies_of_all, const scene::Box& box_of_all) {
+const std::vector<std::string>& MeshPartReading::block_names() const { return state_->blocks.block_names; }
+
+void MeshPartReading::choose(std::span<const std::vector<FieldTally>> tallies_of_all, const scene::Box& box_of_all,
+                             std::vector<std::string> names_of_all) {
   const std::string source = state_->file.string();
   with_clean_errors(source, [&] {
+    require_blocks(state_->options.blocks, names_of_all, source);
+    state_->blocks.block_names = std::move(names_of_all);
     state_->fields = summarize_fields(tallies_of_all);
     state_->choice = choose_field(state_->options.field, state_->fields, source, state_->options.shape);
     state_->asked = asked_tolerance(state_->options, box_of_all, state_->choice, state_->fields);
@@ -136,7 +155,10 @@ MeshFilePart MeshPartReading::finish(const ExcessTally& excess_of_all) {
     part.summary.counts = assembled.counts;
     part.summary.higher_order = assembled.higher_order;
     part.summary.cell_notes = std::move(assembled.notes);
-    part.summary.reading_notes = std::move(state_->blocks.notes);
+    part.summary.time_step = state_->blocks.time_step;
+    if (auto note = note_on(part.summary.time_step, state_->options.time_step))
+      part.summary.reading_notes.push_back(*std::move(note));
+    add_notes(state_->blocks.notes, part.summary.reading_notes);
     if (is_tets(state_->file)) {
       part.summary.counts.points_read = state_->counts_points ? state_->file_vertices : 0;
       part.summary.counts.points_unused = 0;
@@ -166,6 +188,7 @@ MeshFile joined(const MeshFilePart& own, std::span<const PartSummary> summaries,
     whole.counts += part.counts;
     whole.higher_order += part.higher_order;
     add(part.reading_notes);
+    if (part.time_step.count > whole.time_step.count) whole.time_step = part.time_step;
     used.resize(std::max(used.size(), part.used_points.size()), 0);
     for (std::size_t w = 0; w < part.used_points.size(); ++w) used[w] |= part.used_points[w];
   }

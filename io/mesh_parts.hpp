@@ -10,6 +10,7 @@
 #include "io/field_choice.hpp"
 #include "io/higher_order_plan.hpp"
 #include "io/mesh_reader.hpp"
+#include "io/time_step_read.hpp"
 
 /// A mesh file read by several processes, each a part of it. They have to agree three times: before they choose the
 /// field, on what arrays there are and where; on how finely higher-order cells are divided; and at the end on the
@@ -17,7 +18,8 @@
 ///
 ///     MeshPartReading reading(file, options, part, parts);
 ///     tallies = reading.tallies() of all parts, in part order; box = reading.box() of all, joined
-///     reading.choose(tallies, box);
+///     names = reading.block_names() of all, in part order, each once
+///     reading.choose(tallies, box, names);
 ///     excess = sum of reading.excess() of all parts
 ///     MeshFilePart own = reading.finish(excess);
 ///     MeshFile whole = joined(own.summary of all parts, in part order, ...)
@@ -27,11 +29,12 @@
 namespace tessera::io {
 
 /// Whether the file can be read in parts: .pvtu, whose pieces are divided over the parts, VTK's lists of blocks (.vtm
-/// .vtpc), whose files are, and .tets, whose tets are. Not if it is to be smoothed, which needs all cells round a
-/// point. Throws Error(bad_input) if there is no such file.
+/// .vtpc), whose files are, .tets, whose tets are, and meshes in shares (io/mesh_shares.hpp). Not if it is to be
+/// smoothed, which needs all cells round a point. Throws Error(bad_input) if there is no such file.
 bool readable_in_parts(const std::filesystem::path& file, const MeshOptions& options);
 
-/// The files that such a file lists; none of .tets. Throws Error(bad_input).
+/// The files that such a file lists, or that it is one of; none of .tets and of what is in folders. Throws
+/// Error(bad_input).
 std::vector<std::filesystem::path> files_of_parts(const std::filesystem::path& file);
 
 /// What a part knows beside its mesh. Small, but for `used_points`.
@@ -42,6 +45,7 @@ struct PartSummary {
   std::vector<std::uint64_t> used_points;
   std::vector<std::string> reading_notes, cell_notes;
   HigherOrderCells higher_order;
+  TimeStepRead time_step{};  ///< of a part without files, of one step
 };
 
 struct MeshFilePart {
@@ -63,9 +67,12 @@ class MeshPartReading {
   [[nodiscard]] const std::vector<FieldTally>& tallies() const;
   /// higher_order_box() of the part.
   [[nodiscard]] const scene::Box& box() const;
+  /// The names of blocks that this part adds: those in its share, of files that list them the first part's alone.
+  [[nodiscard]] const std::vector<std::string>& block_names() const;
 
-  /// Chooses the field, the same on all parts. Throws as choose_field.
-  void choose(std::span<const std::vector<FieldTally>> tallies_of_all, const scene::Box& box_of_all);
+  /// Chooses the field, the same on all parts. Throws as choose_field, and for a block asked for that is in no part.
+  void choose(std::span<const std::vector<FieldTally>> tallies_of_all, const scene::Box& box_of_all,
+              std::vector<std::string> names_of_all);
 
   /// After the choice.
   [[nodiscard]] ExcessTally excess() const;

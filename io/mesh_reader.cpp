@@ -78,7 +78,8 @@ MeshBlocks chosen_blocks(MeshBlocks read, const BlockChoice& choice) {
     std::erase_if(read.blocks, [&](const CellBlock& block) {
       return !block.name.empty() && !is_chosen(choice, block.name);  // those of no name were chosen by their reader
     });
-  if (read.blocks.size() == 1 && read.block_names.size() <= 1) read.blocks.front().name.clear();
+  if (read.block_names.size() <= 1)
+    for (CellBlock& block : read.blocks) block.name.clear();
   return read;
 }
 

@@ -37,9 +37,18 @@ struct FilledMesh {
   std::vector<std::vector<double>> attributes;  ///< the surface's, at the points
 };
 
-/// By the helper. Throws Error(bad_input, "SOURCE: ...") if the surface is not closed, cuts itself or TetGen gives up,
-/// and always without TESSERA_TETGEN.
-FilledMesh fill_surface(const Surface& surface, double max_volume, const std::string& source);
+/// How finely a surface is filled.
+struct FillSize {
+  double max_volume;  ///< of a tet, world units cubed
+  double tets;        ///< about how many these are: the volume inside in units of `max_volume`
+  bool is_chosen =
+      false;  ///< by the user, who may know that it takes long: then 40 times as long, and 8 times the memory
+};
+
+/// By the helper. Throws Error(bad_input, "SOURCE: ...") if the surface is not closed, cuts itself, TetGen gives up or
+/// takes more memory or time than the facets and tets explain (io/helper/limits.cpp), and always without
+/// TESSERA_TETGEN.
+FilledMesh fill_surface(const Surface& surface, const FillSize& size, const std::string& source);
 
 /// Makes points at one place one point, drops polygons that this collapses. What STL has no other way to say.
 void merge_coincident_points(Surface& surface);

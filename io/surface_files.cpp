@@ -87,7 +87,7 @@ MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::o
   if (!(volume > 0))
     throw scene::bad_input(fmt::format("{}: the surface is flat, it encloses nothing; give a closed one", source));
   const double largest = max_volume.value_or(volume / default_tets);
-  FilledMesh filled = fill_surface(surface, largest, source);
+  FilledMesh filled = fill_surface(surface, {largest, volume / largest, max_volume.has_value()}, source);
   result.notes.push_back(fmt::format("surface of {} points and {} facets filled with {} tets of at most {:.4g}{}",
                                      surface.points.size(), surface.facets.size(), filled.tets.size() / 4, largest,
                                      max_volume ? "" : " (`max_volume` sets it)"));

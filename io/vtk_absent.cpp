@@ -6,6 +6,7 @@
 #include "io/input_file.hpp"
 #include "io/listed_pieces.hpp"
 #include "io/mesh_formats.hpp"
+#include "io/mesh_shares.hpp"
 #include "io/volume_formats.hpp"
 #include "scene/error.hpp"
 
@@ -42,6 +43,9 @@ VtkSurface read_vtk_surface(const std::string& source) { refuse(source); }
 // Read whole, by read_vtk_xml().
 bool lists_pieces(const std::filesystem::path&) { return false; }
 PieceList piece_list(const std::filesystem::path& file, const BlockChoice&) { refuse(file); }
+bool has_shares(const std::filesystem::path&) { return false; }
+std::vector<std::filesystem::path> exodus_files(const std::filesystem::path&) { return {}; }
+MeshBlocks read_share(const std::filesystem::path& file, const MeshOptions&, int, int) { refuse(file); }
 MeshBlocks read_pieces(const PieceList&, std::size_t, std::size_t, const ReadProgressFunction&) { return {}; }
 
 }  // namespace tessera::io

@@ -34,10 +34,26 @@ std::string text_of(const nlohmann::json& json) {
 }
 
 nlohmann::json json_of(const DicomSlice& s) {
-  return nlohmann::json::array({binary(s.series), binary(s.modality), binary(s.unit), s.columns, s.rows, s.frames,
-                                s.components, s.is_packed, s.bytes, s.has_position, three_of(s.position),
-                                three_of(s.row), three_of(s.column), three_of(s.spacing), s.slope, s.intercept,
-                                s.number, s.time, s.samples_end});
+  return nlohmann::json::array({binary(s.series),
+                                binary(s.modality),
+                                binary(s.unit),
+                                s.columns,
+                                s.rows,
+                                s.frames,
+                                s.components,
+                                s.is_packed,
+                                s.bytes,
+                                s.has_position,
+                                three_of(s.position),
+                                three_of(s.row),
+                                three_of(s.column),
+                                three_of(s.spacing),
+                                s.slope,
+                                s.intercept,
+                                s.number,
+                                s.time,
+                                s.samples_end,
+                                s.padding ? nlohmann::json(*s.padding) : nlohmann::json()});
 }
 
 DicomSlice slice_of(const nlohmann::json& j, const std::filesystem::path& file) {
@@ -51,6 +67,7 @@ DicomSlice slice_of(const nlohmann::json& j, const std::filesystem::path& file) 
   s.spacing = vector_of(j.at(13));
   j.at(14).get_to(s.slope), j.at(15).get_to(s.intercept), j.at(16).get_to(s.number), j.at(17).get_to(s.time),
       j.at(18).get_to(s.samples_end);
+  if (!j.at(19).is_null()) s.padding = j.at(19).get<std::array<double, 2>>();
   return s;
 }
 

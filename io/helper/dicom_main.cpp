@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <glm/geometric.hpp>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
 
@@ -65,28 +68,57 @@ std::vector<DicomSlice> slices_in(const std::filesystem::path& folder, std::vect
   return slices_among(below);
 }
 
-/// In the smallest type that holds all values: whole numbers, else floats.
-ForeignArray hold_samples(Holdings& holdings, const DicomVolume& volume) {
-  std::vector<double> values;
+/// The smallest type that holds all values: of whole numbers exactly, others as floats; blanks need floats.
+NumberType type_of(const DicomValues& values) {
+  const NumberTally& t = values.tally;
+  const auto within = [&](double low, double high) { return values.are_whole && t.low >= low && t.high <= high; };
+  if (t.not_finite > 0) return !values.are_whole || within(-0x1p24, 0x1p24) ? NumberType::float32 : NumberType::float64;
+  if (within(0, 255)) return NumberType::uint8;
+  if (within(-32768, 32767)) return NumberType::int16;
+  if (within(0, 65535)) return NumberType::uint16;
+  if (within(-0x1p31, 0x1p31 - 1)) return NumberType::int32;
+  if (within(0, 0x1p32 - 1)) return NumberType::uint32;
+  return values.are_whole ? NumberType::float64 : NumberType::float32;
+}
+
+/// As stored, and made into values as they are asked for.
+ForeignArray hold_samples(Holdings& holdings, const DicomVolume& volume, std::vector<std::string>& notes) {
+  const auto stacks = std::make_shared<std::vector<DicomSamples>>();
+  stacks->reserve(volume.slices.size());
+  constexpr std::size_t at_once = 1 << 15;
+  DicomValues values;
   for (const DicomSlice& slice : volume.slices) {
     report_progress(static_cast<double>(&slice - volume.slices.data()) / static_cast<double>(volume.slices.size()));
-    const std::vector<double> part = read_dicom_samples(slice);
-    values.insert(values.end(), part.begin(), part.end());
+    report_reading(slice.file);
+    const DicomSamples& samples = stacks->emplace_back(slice);
+    const DicomValues own = samples.values();
+    values.are_whole = values.are_whole && own.are_whole;
+    values.tally.not_finite += own.tally.not_finite;
+    if (own.tally.any_finite) values.tally.add(std::array{own.tally.low, own.tally.high});
   }
-  NumberTally tally;
-  tally.add(values);
-  const bool is_whole = std::all_of(values.begin(), values.end(), [](double v) { return v == std::floor(v); });
-  const auto within = [&](double low, double high) { return is_whole && tally.low >= low && tally.high <= high; };
-  const NumberType type = within(0, 255)                        ? NumberType::uint8
-                          : within(-32768, 32767)               ? NumberType::int16
-                          : within(0, 65535)                    ? NumberType::uint16
-                          : within(-2147483648.0, 2147483647.0) ? NumberType::int32
-                                                                : NumberType::float32;
-  return with_number_type(type, [&](auto zero) {
-    ForeignArray array{.name = "samples", .type = type};
-    array.tally = tally;
-    return hold_vector(holdings, std::move(array), std::vector<decltype(zero)>(values.begin(), values.end()));
-  });
+  if (const auto blank = values.tally.not_finite;
+      blank > 0 && std::any_of(volume.slices.begin(), volume.slices.end(), [](const auto& s) { return s.padding; }))
+    notes.push_back(fmt::format("{} samples are padding, as the header says, and blank", blank));
+  const std::size_t each = stacks->front().count();  // slices of a volume are of one size
+  ForeignArray array{
+      .name = "samples", .type = type_of(values), .tuples = each * stacks->size(), .tally = values.tally};
+  return holdings.hold(array,
+                       [stacks, each, type = array.type](std::uint64_t first, std::uint64_t count, std::byte* out) {
+                         std::vector<double> part;
+                         for (std::uint64_t k = first; k < first + count; k += part.size()) {
+                           const std::size_t within = k % each;
+                           part.resize(std::min<std::uint64_t>({first + count - k, each - within, at_once}));
+                           (*stacks)[k / each].read(within, part);
+                           with_number_type(type, [&](auto zero) {
+                             using Number = decltype(zero);
+                             for (const double value : part) {
+                               const auto number = static_cast<Number>(value);
+                               std::memcpy(out, &number, sizeof number);
+                               out += sizeof number;
+                             }
+                           });
+                         }
+                       });
 }
 
 ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
@@ -155,7 +187,7 @@ ForeignContents read_dicom(Holdings& holdings, const std::filesystem::path& file
       part.coordinates.push_back(hold_vector(holdings, {.type = NumberType::float64}, std::move(c)));
     }
   }
-  part.point_fields.push_back(hold_samples(holdings, volume));
+  part.point_fields.push_back(hold_samples(holdings, volume, contents.notes));
   return contents;
 }
 

@@ -14,8 +14,9 @@
 #include <cstring>
 #include <fstream>
 #include <glm/geometric.hpp>
+#include <limits>
+#include <type_traits>
 
-#include "io/foreign_data.hpp"
 #include "io/mapped_file.hpp"
 #include "scene/error.hpp"
 
@@ -123,20 +124,38 @@ std::optional<NumberType> number_type_of(const gdcm::PixelFormat& format) {
   return std::nullopt;
 }
 
-/// Samples of a type as doubles; of integers of which only `bits` are used, the others are something else's.
+/// A sample of which only `bits` are used.
 template <class T>
-void append_samples(const std::vector<char>& bytes, int bits, std::vector<double>& out) {
-  const int spare = std::is_integral_v<T> ? static_cast<int>(sizeof(T) * 8) - bits : 0;
-  for (std::size_t k = 0; k + sizeof(T) <= bytes.size(); k += sizeof(T)) {
-    T sample;
-    std::memcpy(&sample, bytes.data() + k, sizeof(T));
-    if constexpr (std::is_integral_v<T>)
-      if (spare > 0 && spare < static_cast<int>(sizeof(T) * 8)) {
-        using Unsigned = std::make_unsigned_t<T>;
-        sample = static_cast<T>(static_cast<T>(static_cast<Unsigned>(static_cast<Unsigned>(sample) << spare)) >> spare);
-      }
-    out.push_back(static_cast<double>(sample));
+T sample_at(const char* bytes, int bits) {
+  T sample;
+  std::memcpy(&sample, bytes, sizeof(T));
+  if constexpr (std::is_integral_v<T>) {
+    const int spare = static_cast<int>(sizeof(T) * 8) - bits;
+    if (spare > 0 && spare < static_cast<int>(sizeof(T) * 8)) {
+      using Unsigned = std::make_unsigned_t<T>;
+      sample = static_cast<T>(static_cast<T>(static_cast<Unsigned>(static_cast<Unsigned>(sample) << spare)) >> spare);
+    }
   }
+  return sample;
+}
+
+/// A sample of 16 bits, as the samples are signed or not; none if the element is not there.
+std::optional<double> sample_in(const gdcm::DataSet& data, std::uint16_t group, std::uint16_t element, bool is_signed) {
+  const gdcm::Tag tag(group, element);
+  if (!data.FindDataElement(tag)) return std::nullopt;
+  const gdcm::ByteValue* const value = data.GetDataElement(tag).GetByteValue();
+  if (value == nullptr || value->GetLength() != 2) return std::nullopt;
+  return is_signed ? sample_at<std::int16_t>(value->GetPointer(), 16)
+                   : static_cast<double>(sample_at<std::uint16_t>(value->GetPointer(), 16));
+}
+
+/// What the padding value, and the limit of a range of such, say.
+std::optional<std::array<double, 2>> padding_of(const gdcm::File& file) {
+  const bool is_signed = gdcm::ImageHelper::GetPixelFormatValue(file).GetPixelRepresentation() == 1;
+  const std::optional<double> value = sample_in(file.GetDataSet(), 0x0028, 0x0120, is_signed);
+  if (!value) return std::nullopt;
+  const double limit = sample_in(file.GetDataSet(), 0x0028, 0x0121, is_signed).value_or(*value);
+  return std::array{std::min(*value, limit), std::max(*value, limit)};
 }
 
 }  // namespace
@@ -168,6 +187,7 @@ std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
     set_place(reader.GetFile(), slice);
     slice.number = static_cast<std::int64_t>(std::clamp(number_of(data, 0x0020, 0x0013).value_or(0), -1e9, 1e9));
     slice.time = time_of(data);
+    slice.padding = padding_of(reader.GetFile());
     return slice;
   } catch (const std::bad_alloc&) {
     throw;
@@ -176,16 +196,19 @@ std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file) {
   }
 }
 
-std::vector<double> read_dicom_samples(const DicomSlice& slice) {
+DicomSamples::DicomSamples(const DicomSlice& slice)
+    : slope_(slice.slope), intercept_(slice.intercept), padding_(slice.padding) {
   const std::string source = slice.file.string();
   const auto refuse = [&](const char* what) {
     return scene::bad_input(fmt::format("{}: {}; {}", source, what, write_anew));
   };
   // GDCM minds neither samples that end early nor packed ones without their last mark.
-  const MappedFile mapped(slice.file);
-  if (slice.samples_end > 0 && (slice.is_packed ? mapped.text().find("\xfe\xff\xdd\xe0") == std::string_view::npos
-                                                : mapped.text().size() < std::max(slice.samples_end, slice.bytes)))
-    throw refuse("it ends before its samples do");
+  {
+    const MappedFile mapped(slice.file);
+    if (slice.samples_end > 0 && (slice.is_packed ? mapped.text().find("\xfe\xff\xdd\xe0") == std::string_view::npos
+                                                  : mapped.text().size() < std::max(slice.samples_end, slice.bytes)))
+      throw refuse("it ends before its samples do");
+  }
   gdcm::ImageReader reader;
   reader.SetFileName(slice.file.c_str());
   if (!reader.Read()) throw refuse("GDCM cannot read its samples");
@@ -194,19 +217,58 @@ std::vector<double> read_dicom_samples(const DicomSlice& slice) {
   const auto samples = static_cast<std::size_t>(slice.columns * slice.rows * slice.frames);
   if (image.GetBufferLength() != samples * format.GetPixelSize() || format.GetSamplesPerPixel() != 1)
     throw refuse("its samples are not as many as its header says");
-  std::vector<char> bytes(image.GetBufferLength());
-  if (!image.GetBuffer(bytes.data())) throw refuse("GDCM cannot unpack its samples");
-  std::vector<double> values;
-  values.reserve(samples);
-  const int bits = format.GetBitsStored();
   const std::optional<NumberType> type = number_type_of(format);
   if (!type)
     throw scene::bad_input(fmt::format("{}: its samples are of {} bits, which are not read; write 8, 16 or 32", source,
                                        format.GetBitsAllocated()));
-  with_number_type(*type, [&](auto zero) { append_samples<decltype(zero)>(bytes, bits, values); });
-  if (values.size() != samples) throw refuse("its samples are not as many as its header says");
-  for (double& value : values) value = slice.slope * value + slice.intercept;
+  type_ = *type, bits_ = format.GetBitsStored();
+  bytes_.resize(image.GetBufferLength());
+  if (!image.GetBuffer(bytes_.data())) throw refuse("GDCM cannot unpack its samples");
+  if (bytes_.size() != samples * size_of(type_)) throw refuse("its samples are not as many as its header says");
+}
+
+DicomValues DicomSamples::values() const {
+  DicomValues values;
+  const auto is_whole = [](double v) { return v == std::floor(v); };
+  // Integers that stay such in their order need no looking at each value.
+  const bool is_plain = !padding_ && is_whole(slope_) && is_whole(intercept_) && std::abs(slope_) < 0x1p20 &&
+                        std::abs(intercept_) < 0x1p52 && count() > 0;
+  with_number_type(type_, [&](auto zero) {
+    using Number = decltype(zero);
+    if constexpr (std::is_integral_v<Number>) {
+      if (!is_plain) return;
+      Number least = std::numeric_limits<Number>::max(), most = std::numeric_limits<Number>::lowest();
+      for (std::size_t k = 0; k < count(); ++k) {
+        const auto sample = sample_at<Number>(bytes_.data() + k * sizeof(Number), bits_);
+        least = std::min(least, sample), most = std::max(most, sample);
+      }
+      const std::array ends{slope_ * static_cast<double>(least) + intercept_,
+                            slope_ * static_cast<double>(most) + intercept_};
+      values.tally.add(ends);
+    }
+  });
+  if (values.tally.any_finite) return values;
+  constexpr std::size_t at_once = 1 << 15;
+  std::vector<double> some(std::min(at_once, count()));
+  for (std::size_t first = 0; first < count(); first += at_once) {
+    const auto part = std::span(some).first(std::min(at_once, count() - first));
+    read(first, part);
+    values.tally.add(part);
+    values.are_whole = values.are_whole &&
+                       std::all_of(part.begin(), part.end(), [&](double v) { return std::isnan(v) || is_whole(v); });
+  }
   return values;
+}
+
+void DicomSamples::read(std::size_t first, std::span<double> out) const {
+  with_number_type(type_, [&](auto zero) {
+    using Number = decltype(zero);
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      const double sample = sample_at<Number>(bytes_.data() + (first + k) * sizeof(Number), bits_);
+      const bool is_padding = padding_ && sample >= (*padding_)[0] && sample <= (*padding_)[1];
+      out[k] = is_padding ? std::numeric_limits<double>::quiet_NaN() : slope_ * sample + intercept_;
+    }
+  });
 }
 
 }  // namespace tessera::io::helper

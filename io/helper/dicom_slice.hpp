@@ -1,12 +1,17 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
+
+#include "io/foreign_data.hpp"
+#include "io/number_tally.hpp"
 
 namespace tessera::io::helper {
 
@@ -27,6 +32,8 @@ struct DicomSlice {
   double slope = 1, intercept = 0;  ///< value = slope * sample + intercept
   std::int64_t number = 0;          ///< in the series
   double time = 0;                  ///< whatever tells slices of one place apart; 0 without
+  /// Samples from the first to the second are padding, which no detector has seen.
+  std::optional<std::array<double, 2>> padding{};
 
   [[nodiscard]] glm::dvec3 normal() const;
 };
@@ -34,7 +41,31 @@ struct DicomSlice {
 /// None if the file is no DICOM file with pictures, or its header cannot be read. Samples are not read.
 std::optional<DicomSlice> read_dicom_header(const std::filesystem::path& file);
 
-/// Values of all samples, frame by frame, row by row. Throws Error(bad_input) in one line.
-std::vector<double> read_dicom_samples(const DicomSlice& slice);
+/// What values are, which says how they are held.
+struct DicomValues {
+  NumberTally tally;
+  bool are_whole = true;
+};
+
+/// The samples of a file as they are stored, frame by frame, row by row.
+class DicomSamples {
+ public:
+  /// Unpacks them. Throws Error(bad_input) in one line.
+  explicit DicomSamples(const DicomSlice& slice);
+
+  [[nodiscard]] std::size_t count() const { return bytes_.size() / size_of(type_); }
+
+  [[nodiscard]] DicomValues values() const;
+
+  /// Values [first, first + out.size()); NaN where a sample is padding.
+  void read(std::size_t first, std::span<double> out) const;
+
+ private:
+  std::vector<char> bytes_;
+  NumberType type_ = NumberType::uint8;
+  int bits_ = 0;  ///< of integers that are the sample's; the others are something else's
+  double slope_, intercept_;
+  std::optional<std::array<double, 2>> padding_;
+};
 
 }  // namespace tessera::io::helper

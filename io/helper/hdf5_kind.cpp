@@ -106,6 +106,7 @@ ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file,
     return scene::bad_input(fmt::format("{}: it is HDF5 and holds {}; {}", file.string(), what, remedy));
   };
   if (request.value("look", false) && kind != Kind::unknown && kind != Kind::minc) return {};  // no grid
+  if (kind != Kind::cgns && request.value("part", 0) > 0) return {};                           // the first share is all
   switch (kind) {
     case Kind::vtk:
       if (!vtk_type.empty() && vtk_type != "UnstructuredGrid" && vtk_type != "ImageData")

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
+#include <string>
+#include <string_view>
 
 #include "io/foreign_data.hpp"
 #include "io/helper/holdings.hpp"
@@ -70,8 +72,7 @@ ForeignContents read_tecplot(Holdings& holdings, const std::filesystem::path& fi
 ForeignContents read_flash(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 ForeignContents read_enzo(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
-/// Fills a surface by TetGen (io/surface.hpp), without limits: how long that takes and how much memory follows from the
-/// volume asked for, not from a file.
+/// Fills a surface by TetGen (io/surface.hpp).
 ForeignContents fill_surface(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request);
 
 /// More memory and time for a file that is about to be read.
@@ -83,8 +84,15 @@ void allow_for_files(std::span<const std::filesystem::path> files);
 /// For all that lies in a folder and below: of formats that are many files.
 void allow_for_folder(const std::filesystem::path& folder, bool is_compressed = false);
 
+/// For a surface of so many facets that is about to be filled with about so many tets; more where the user has
+/// `chosen` them.
+void allow_filling(std::size_t facets, double tets, bool is_chosen);
+
 /// What to say where memory ran out: the file is damaged, if it had all that its size can explain, else the machine is
 /// too small.
-scene::Error memory_error(const std::string& source);
+scene::Error memory_error(const std::string& source,
+                          std::string_view damage =
+                              "it asks for more memory than a file of its size can need; its "
+                              "counts are damaged, write it anew");
 
 }  // namespace tessera::io::helper

@@ -1,18 +1,22 @@
 #include "io/helper/serve.hpp"
 
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <system_error>
+#include <thread>
 #include <vector>
 
 #include "io/clean_errors.hpp"
@@ -82,6 +86,15 @@ class Window {
   std::size_t slot_ = 1;
 };
 
+/// Ends this process with its caller, whose end of the socket closes however it ends. A thread that waits for that, and
+/// not PR_SET_PDEATHSIG, which comes when the thread that started this one ends, though its process goes on.
+void end_with_caller() {
+  pollfd caller{.fd = socket_to_caller, .events = POLLRDHUP, .revents = 0};
+  while (::poll(&caller, 1, -1) < 0 && errno == EINTR) {
+  }
+  ::_exit(0);
+}
+
 Json error_json(const scene::Error& error) {
   return {{"error", {{"line", error.what()}, {"code", static_cast<int>(error.code())}}}};
 }
@@ -134,9 +147,20 @@ void report_progress(double done) {
   }
 }
 
+void report_reading(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  static_cast<void>(
+      send_message(socket_to_caller,
+                   Json::to_cbor({{"reading", Json::binary(std::vector<std::uint8_t>(name.begin(), name.end()))}})));
+}
+
 void serve(std::span<const Reader> readers) {
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
+  try {
+    std::thread(end_with_caller).detach();
+  } catch (const std::system_error&) {  // without a thread for it, it ends with the request that it is at
+  }
   Holdings holdings;
   Window window;
   if (!send_message(socket_to_caller, Json::to_cbor(Json::object()))) ::_exit(0);

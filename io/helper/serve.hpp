@@ -24,10 +24,15 @@ struct Reader {
 ///           {"do": "put", "array": number, "first", "count", "slot": index} -> {}; those tuples are in that slot
 ///           {"do": "drop", "arrays": [numbers]}                             -> nothing
 /// Failures  {"error": {"line", "code"}} instead.
-/// Before the answer to "open" any number of {"progress": how much of the file is read, 0 to 1}.
+/// Before the answer to "open" any number of {"progress": how much of the file is read, 0 to 1} and, of formats that
+/// are many files, of {"reading": the one that is read from now on}, which a crash is then said of.
+/// As soon as the caller is gone, killed perhaps, so is this process, whatever it is at.
 [[noreturn]] void serve(std::span<const Reader> readers);
 
 /// Says how much of the file is read, 0 to 1, if it has not been said for a tenth of a second. For readers.
 void report_progress(double done);
+
+/// Says which file is read from now on. For readers of formats that are many files.
+void report_reading(const std::filesystem::path& file);
 
 }  // namespace tessera::io::helper

@@ -1,27 +1,33 @@
-// What solvers write, by VTK's readers: all cell and point arrays, one time step.
+// What solvers write, by VTK's readers: all cell and point arrays, one time step. OpenFOAM is in openfoam_file.cpp.
 #include <fmt/format.h>
 #include <vtkAVSucdReader.h>
 #include <vtkCGNSReader.h>
+#include <vtkCellArray.h>
+#include <vtkCellType.h>
 #include <vtkCommand.h>
 #include <vtkDataObject.h>
-#include <vtkDummyController.h>
 #include <vtkEnSightReader.h>
 #include <vtkFLUENTReader.h>
 #include <vtkGAMBITReader.h>
 #include <vtkGenericEnSightReader.h>
 #include <vtkHDFReader.h>
+#include <vtkIdList.h>
 #include <vtkNew.h>
-#include <vtkPOpenFOAMReader.h>
+#include <vtkPoints.h>
 #include <vtkSmartPointer.h>
 #include <vtkTecplotReader.h>
+#include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "io/gzip.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/time_steps.hpp"
 #include "io/helper/vtk_parts.hpp"
@@ -34,10 +40,13 @@ namespace {
 
 constexpr const char* write_anew = "the file is truncated or damaged, write it anew";
 
-/// Reads with a reader that is ready but for its file's arrays, which `choose` turns on once they are known.
+/// Reads with a reader that is ready but for its file's arrays, which `choose` turns on once they are known. Of those
+/// that know shares of a file the request's `part` of `parts`, which may hold nothing. `mend` puts right what the
+/// reader gets wrong.
 template <class Reader, class Choose>
 ForeignContents read_by(Holdings& holdings, Reader& reader, const std::filesystem::path& file,
-                        const nlohmann::json& request, const char* format, const Choose& choose) {
+                        const nlohmann::json& request, const char* format, const Choose& choose,
+                        void (*mend)(vtkDataObject&) = nullptr) {
   const std::string source = file.string();
   ForeignContents contents;
   contents.format = format;
@@ -49,8 +58,9 @@ ForeignContents read_by(Holdings& holdings, Reader& reader, const std::filesyste
   if (!warning.empty()) contents.notes.push_back("VTK warns: " + warning);
   vtkDataObject* const data = reader.GetOutputDataObject(0);
   if (data == nullptr) throw scene::bad_input(fmt::format("{}: nothing can be read; write it anew", source));
+  if (mend != nullptr) mend(*data);
   contents.parts = parts_of(holdings, *data, source);
-  if (contents.parts.empty())
+  if (contents.parts.empty() && request.value("parts", 1) == 1)
     throw scene::bad_input(fmt::format("{}: it holds no cells; check how it was written", source));
   return contents;
 }
@@ -62,58 +72,6 @@ ForeignContents read_plainly(Holdings& holdings, const std::filesystem::path& fi
   vtkNew<Reader> reader;
   reader->SetFileName(file.c_str());
   return read_by(holdings, *reader, file, request, format, [] {});
-}
-
-/// The meshes of a case, or of one of its processors: of all regions, if it has several.
-std::vector<std::filesystem::path> meshes_of(const std::filesystem::path& folder) {
-  std::error_code unknown;
-  std::vector<std::filesystem::path> meshes;
-  const auto add = [&](const std::filesystem::path& of) {
-    if (std::filesystem::is_directory(of / "polyMesh", unknown)) meshes.push_back(of / "polyMesh");
-  };
-  add(folder / "constant");
-  for (std::filesystem::directory_iterator entry(folder / "constant", unknown), end; !unknown && entry != end;
-       entry.increment(unknown))
-    add(entry->path());
-  return meshes;
-}
-
-/// Whether a case's lists have 64-bit integers, which its files say of themselves ("arch").
-bool has_wide_labels(const std::filesystem::path& folder) {
-  std::error_code unknown;
-  for (const char* part : {".", "processor0"})
-    for (const std::filesystem::path& mesh : meshes_of(folder / part))
-      for (const char* name : {"owner", "owner.gz"}) {
-        const std::filesystem::path file = mesh / name;
-        if (!std::filesystem::is_regular_file(file, unknown)) continue;
-        const std::string beginning = read_beginning(file, 4096);
-        if (beginning.starts_with("\x1f\x8b")) {
-          const auto text = inflate_beginning(std::as_bytes(std::span(beginning)), 2048);
-          return std::string_view(reinterpret_cast<const char*>(text.data()), text.size()).find("label=64") !=
-                 std::string_view::npos;
-        }
-        return beginning.find("label=64") != std::string::npos;
-      }
-  return false;
-}
-
-bool is_case(const std::filesystem::path& folder) {
-  std::error_code unknown;
-  return is_case_folder(folder) || std::filesystem::exists(folder / "processor0", unknown) ||
-         std::filesystem::exists(folder / "processors", unknown);
-}
-
-/// The folder of the case that a file or folder is of: the one that it is in, or one of those above.
-std::filesystem::path case_of(const std::filesystem::path& named) {
-  std::error_code unknown;
-  if (std::filesystem::is_directory(named, unknown)) return named;
-  const std::filesystem::path own = named.has_parent_path() ? named.parent_path() : std::filesystem::path(".");
-  std::filesystem::path folder = own;
-  for (int level = 0; level < 4; ++level) {
-    if (is_case(folder)) return folder;
-    folder /= "..";
-  }
-  return own;
 }
 
 /// The first error of a Fluent reader but for its not finding values, without which a case is a mesh all the same.
@@ -132,32 +90,36 @@ class FluentErrors : public vtkCommand {
   std::string first;
 };
 
-}  // namespace
-
-ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::path& named, const nlohmann::json& request) {
-  const std::filesystem::path folder = case_of(named);
-  // The reader takes the case from a name in its folder, and asks for no such file.
-  const std::filesystem::path file = is_case(folder) ? folder / "case.foam" : named;
-  allow_for_folder(folder);
-  vtkNew<vtkPOpenFOAMReader> reader;
-  const vtkNew<vtkDummyController> alone;  // it takes the parts of a case for processes' and asks who it is
-  reader->SetController(alone);
-  reader->SetFileName(file.c_str());
-  // processor0, processor1, ...: written by parallel runs, and not put together since.
-  std::error_code unknown;
-  const bool is_whole = !meshes_of(folder).empty();
-  const bool is_decomposed = std::filesystem::exists(folder / "processor0", unknown) ||
-                             std::filesystem::exists(folder / "processors", unknown);
-  reader->SetCaseType(!is_whole && is_decomposed ? vtkPOpenFOAMReader::DECOMPOSED_CASE
-                                                 : vtkPOpenFOAMReader::RECONSTRUCTED_CASE);
-  reader->SetUse64BitLabels(has_wide_labels(folder));
-  reader->CreateCellToPointOff();
-  reader->DecomposePolyhedraOff();  // ours are conforming, one value a cell (polyhedron_split.hpp)
-  return read_by(holdings, *reader, file, request, "OpenFOAM case", [&] {
-    reader->EnableAllCellArrays();
-    reader->EnableAllPointArrays();
-  });
+/// GAMBIT numbers the corners of a quadrangle row by row, also in bricks and pyramids: (0, 0), (1, 0), (0, 1), (1, 1).
+/// VTK's reader takes them as going round, which makes cells that cut themselves. Some programs do write them so, so
+/// whichever makes fewer such cells is what the file has.
+void order_gambit_corners(vtkDataObject& data) {
+  auto* const grid = vtkUnstructuredGrid::SafeDownCast(&data);
+  if (grid == nullptr || grid->GetPoints() == nullptr) return;
+  const vtkNew<vtkIdList> corners;
+  std::vector<vtkIdType> with_quadrangles;
+  std::int64_t crossed = 0;
+  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell) {
+    if (const int type = grid->GetCellType(cell); type != VTK_HEXAHEDRON && type != VTK_PYRAMID) continue;
+    grid->GetCellPoints(cell, corners);
+    std::array<glm::dvec3, 4> p;
+    const vtkIdType* const ids = corners->GetPointer(0);
+    const auto is_there = [&](vtkIdType v) { return v >= 0 && v < grid->GetNumberOfPoints(); };
+    if (corners->GetNumberOfIds() < 5 || !std::all_of(ids, ids + 4, is_there)) continue;
+    for (std::size_t k = 0; k < 4; ++k) grid->GetPoint(ids[k], &p[k].x);
+    crossed += glm::dot(p[1] - p[0], p[2] - p[3]) < 0 ? 1 : -1;
+    with_quadrangles.push_back(cell);
+  }
+  if (crossed <= 0) return;
+  for (const vtkIdType cell : with_quadrangles) {
+    grid->GetCellPoints(cell, corners);
+    for (vtkIdType first = 0; first + 4 <= corners->GetNumberOfIds(); first += 4)
+      std::swap(*corners->GetPointer(first + 2), *corners->GetPointer(first + 3));
+    grid->GetCells()->ReplaceCellAtId(cell, corners);
+  }
 }
+
+}  // namespace
 
 ForeignContents read_ensight(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   allow_for_folder(file.has_parent_path() ? file.parent_path() : std::filesystem::path("."));
@@ -216,7 +178,10 @@ ForeignContents read_fluent(Holdings& holdings, const std::filesystem::path& fil
 
 ForeignContents read_gambit(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   allow_for(file);
-  return read_plainly<vtkGAMBITReader>(holdings, file, request, "GAMBIT");
+  const vtkNew<vtkGAMBITReader> reader;
+  reader->SetFileName(file.c_str());
+  return read_by(
+      holdings, *reader, file, request, "GAMBIT", [] {}, order_gambit_corners);
 }
 
 ForeignContents read_tecplot(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {

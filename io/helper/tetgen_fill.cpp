@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/common.hpp>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -29,8 +30,6 @@ namespace {
 /// TetGen's words for the numbers it throws (terminatetetgen in tetgen.h).
 const char* reason(int thrown) {
   switch (thrown) {
-    case 1:
-      return "memory ran out";
     case 3:
       return "the surface cuts itself";
     case 4:
@@ -126,6 +125,7 @@ FilledSurface fill(const Surface& surface, std::optional<double> max_volume, con
   try {
     tetrahedralize(&wishes, in, out);
   } catch (int thrown) {
+    if (thrown == 1) throw std::bad_alloc();
     throw scene::bad_input(
         fmt::format("{}: TetGen cannot fill the surface: {}; mend the surface", source, reason(thrown)));
   }
@@ -144,9 +144,10 @@ FilledSurface fill(const Surface& surface, std::optional<double> max_volume, con
   return filled;
 }
 
-ForeignContents fill_surface(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
-  const std::string source = file.string();
-  const Surface surface = surface_of(request.at("surface"));
+namespace {
+
+ForeignContents fill_with_fields(Holdings& holdings, const Surface& surface, const std::string& source,
+                                 const nlohmann::json& request) {
   FilledSurface filled = fill(surface, request.at("max_volume").get<double>(), source);
   ForeignPart part;
   const auto add = [&](std::vector<double> values) {
@@ -159,6 +160,20 @@ ForeignContents fill_surface(Holdings& holdings, const std::filesystem::path& fi
   part.points = hold_vector(holdings, {.components = 3}, std::move(filled.points));
   part.connectivity = hold_vector(holdings, {.type = NumberType::uint32}, std::move(filled.tets));
   return {.parts = {std::move(part)}, .notes = {}, .format = "TetGen"};
+}
+
+}  // namespace
+
+ForeignContents fill_surface(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
+  const std::string source = file.string();
+  const Surface surface = surface_of(request.at("surface"));
+  allow_filling(surface.facets.size(), request.at("tets").get<double>(), request.at("is_chosen").get<bool>());
+  try {
+    return fill_with_fields(holdings, surface, source, request);
+  } catch (const std::bad_alloc&) {
+    throw memory_error(source, fmt::format("filling it by TetGen takes more memory than its {} facets can explain; {}",
+                                           surface.facets.size(), request.at("limit_remedy").get<std::string>()));
+  }
 }
 
 }  // namespace tessera::io::helper

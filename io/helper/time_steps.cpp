@@ -22,11 +22,19 @@ void update_at_step(vtkAlgorithm& reader, const nlohmann::json& request, const s
   const auto steps =
       static_cast<std::size_t>(about != nullptr && about->Has(key) ? std::max(about->Length(key), 0) : 0);
   read = chosen_step(wish, steps, source);
+  const int part = request.value("part", 0), parts = request.value("parts", 1);
   if (steps == 0) {
-    reader.Update();
+    if (parts > 1)
+      reader.UpdatePiece(part, parts, 0);
+    else
+      reader.Update();
     return;
   }
-  reader.UpdateTimeStep(about->Get(key, static_cast<int>(read.step)));
+  const double time = about->Get(key, static_cast<int>(read.step));
+  if (parts > 1)
+    reader.UpdateTimeStep(time, part, parts);
+  else
+    reader.UpdateTimeStep(time);
 }
 
 }  // namespace tessera::io::helper

@@ -9,8 +9,9 @@ class vtkAlgorithm;
 
 namespace tessera::io::helper {
 
-/// Has a reader that knows its file's time steps read one: the request's `time_step`, counted from 0, or the
-/// last; `read` says which. Within with_quiet_vtk(). Throws Error(bad_input) for a step that there is not.
+/// Has a reader that knows its file's time steps read one: the request's `time_step`, counted from 0, or the last; of
+/// readers that know pieces the request's piece `part` of `parts`, if it has these. `read` says which step. Within
+/// with_quiet_vtk(). Throws Error(bad_input) for a step that there is not.
 void update_at_step(vtkAlgorithm& reader, const nlohmann::json& request, const std::string& source, TimeStepRead& read);
 
 }  // namespace tessera::io::helper

@@ -9,6 +9,7 @@
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
 #include "exchange/loopback_transport.hpp"
+#include "io/foam_case.hpp"
 #include "io/mesh_parts.hpp"
 #include "scene/error.hpp"
 
@@ -97,6 +98,20 @@ TEST(DistributedMesh, IsWhatOneProcessReads) {
       if (p < 4) pieces[p].tets.push_back(mesh.tets[t]);
   }
   expect_as_read_mesh(write_pieces(folder, pieces));
+}
+
+TEST(DistributedMesh, ADecomposedCaseIsReadByItsProcessors) {
+  const Folder folder;
+  const io::testing::Cubes cubes(4);
+  const std::filesystem::path place = folder / "case";
+  for (int part = 0; part < 4; ++part)
+    io::testing::write_foam(place / fmt::format("processor{}", part), cubes, [&](int c) { return c / 16 == part; });
+  io::testing::write_control(place);
+  io::MeshOptions options;
+  options.time_step = 0;
+  expect_as_read_mesh(place / "case.foam", options);
+  options.smooth = true;
+  expect_as_read_mesh(place / "case.foam", options);
 }
 
 TEST(DistributedMesh, CellDataAndSmoothingAreAsInOneProcess) {

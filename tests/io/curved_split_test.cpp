@@ -394,5 +394,35 @@ TEST(CurvedSplit, LeavesNoCracksBetweenKinds) {
       }
 }
 
+/// Cubic tets of a cube, the nodes within the first face of so many of them moved through their cells.
+CellBlock folded_box(std::size_t folded, double by) {
+  CellBlock block = warped_box(
+      {71, 20, 3}, 2, bent, [](const glm::dvec3& p) { return p.x; }, false);
+  for (std::size_t c = 0; c < folded; ++c) block.positions[block.connectivity[block.offsets[c] + 16]] += by;
+  return block;
+}
+
+TEST(CurvedSplit, RefusesCellsThatTakeTetsWithoutEnd) {
+  MeshOptions options = tolerance(1e-5);
+  options.higher_order_tets = 20000;
+  test::expect_bad_input([&] { assemble_mesh({folded_box(1, 2)}, options, "mesh"); },
+                         {"mesh: cell 0 takes more than 65536 tets", "`higher_order_tolerance`"});
+  // Many of them, each below what one may take.
+  test::expect_bad_input([&] { assemble_mesh({folded_box(30, 0.25)}, options, "mesh"); },
+                         {"mesh: ", " higher-order cells up to cell ", " take more than ", "`higher_order_tolerance`"});
+  options.higher_order_tolerance = 0.1;  // the remedy
+  EXPECT_NO_THROW(assemble_mesh({folded_box(1, 2)}, options, "mesh"));
+  EXPECT_NO_THROW(assemble_mesh({folded_box(30, 0.25)}, options, "mesh"));
+}
+
+TEST(CurvedSplit, DividesNoCellForDistancesThatAreNoNumbers) {
+  CellBlock block = warped_box(
+      {24, 10, 2}, 1, bent, [](const glm::dvec3& p) { return p.x; }, false);
+  block.positions[block.connectivity[4]].z = 1e308;  // whose square is not finite
+  const MeshFile file = assemble_mesh({std::move(block)}, tolerance(1e-2), "mesh");
+  EXPECT_LT(file.higher_order.tets, 1000u);
+  EXPECT_EQ(file.higher_order.position_error, std::numeric_limits<double>::infinity());
+}
+
 }  // namespace
 }  // namespace tessera::io

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -42,12 +43,15 @@ struct Slice {
   double slope = 1, intercept = 0;
   int time = 0;  ///< 0: none said
   int columns = 4, rows = 3, colours = 1;
-  std::vector<std::int16_t> samples;
+  std::vector<std::int16_t> samples{};
+  std::vector<std::int16_t> padding{};  ///< none, a value, or a value and the limit of a range
+  bool is_wide = false;                 ///< samples are the upper halves of 32 bits without a sign, the lower ones 1
 };
 
 constexpr const char* ct_storage = "1.2.840.10008.5.1.4.1.1.2";
 
 std::string dicom(const Slice& s) {
+  const std::uint32_t bits = s.colours > 1 ? 8 : s.is_wide ? 32 : 16;
   const std::string about = element(2, 2, "UI", ct_storage) + element(2, 3, "UI", fmt::format("1.2.{}", s.number)) +
                             element(2, 0x10, "UI", "1.2.840.10008.1.2.1");
   std::string data = element(8, 0x16, "UI", ct_storage) + element(8, 0x60, "CS", "CT") +
@@ -61,15 +65,20 @@ std::string dicom(const Slice& s) {
   if (s.colours > 1) data += element(0x28, 6, "US", little(0, 2));
   data += element(0x28, 0x10, "US", little(static_cast<std::uint32_t>(s.rows), 2)) +
           element(0x28, 0x11, "US", little(static_cast<std::uint32_t>(s.columns), 2)) +
-          element(0x28, 0x30, "DS", "0.75\\0.5") + element(0x28, 0x100, "US", little(s.colours == 1 ? 16 : 8, 2)) +
-          element(0x28, 0x101, "US", little(s.colours == 1 ? 16 : 8, 2)) +
-          element(0x28, 0x102, "US", little(s.colours == 1 ? 15 : 7, 2)) +
-          element(0x28, 0x103, "US", little(s.colours == 1 ? 1 : 0, 2)) +
-          element(0x28, 0x1052, "DS", fmt::format("{}", s.intercept)) +
+          element(0x28, 0x30, "DS", "0.75\\0.5") + element(0x28, 0x100, "US", little(bits, 2)) +
+          element(0x28, 0x101, "US", little(bits, 2)) + element(0x28, 0x102, "US", little(bits - 1, 2)) +
+          element(0x28, 0x103, "US", little(bits == 16 ? 1 : 0, 2));
+  for (std::size_t k = 0; k < s.padding.size(); ++k)
+    data +=
+        element(0x28, 0x120 + static_cast<std::uint32_t>(k), "SS", little(static_cast<std::uint16_t>(s.padding[k]), 2));
+  data += element(0x28, 0x1052, "DS", fmt::format("{}", s.intercept)) +
           element(0x28, 0x1053, "DS", fmt::format("{}", s.slope)) + element(0x28, 0x1054, "LO", "HU");
-  const std::string samples = s.colours == 1
-                                  ? test::bytes_of(s.samples)
-                                  : std::string(static_cast<std::size_t>(s.columns * s.rows * s.colours), 'c');
+  std::string samples = s.colours == 1 ? test::bytes_of(s.samples)
+                                       : std::string(static_cast<std::size_t>(s.columns * s.rows * s.colours), 'c');
+  if (s.is_wide) {
+    samples.clear();
+    for (const std::int16_t upper : s.samples) samples += little(1, 2) + little(static_cast<std::uint16_t>(upper), 2);
+  }
   return std::string(128, '\0') + "DICM" + element(2, 0, "UL", little(static_cast<std::uint32_t>(about.size()), 4)) +
          about + data + element(0x7fe0, 0x10, "OW", samples);
 }
@@ -192,6 +201,41 @@ TEST_F(Dicom, DamagedFilesAreNamedAndOtherFilesLeftOut) {
     EXPECT_TRUE(fault.message.empty() || fault.code == scene::ErrorCode::bad_input) << fault.message;
   }
   expect_no_volume(folder.write("text.dcm", std::string(200, 'x')), "GDCM finds no pictures");
+}
+
+TEST_F(Dicom, PaddingIsBlank) {
+  // A value in one slice, a range in the other, given from its upper end; values are scaled, padding is not.
+  write("0.dcm", {.z = 0, .number = 1, .slope = 2, .intercept = 10, .samples = twelve(-3), .padding = {-2}});
+  write("1.dcm", {.z = 1, .number = 2, .slope = 2, .intercept = 10, .samples = twelve(0), .padding = {5, 3}});
+  const VolumeFile volume = open_volume(folder.path());
+  const std::vector<double> samples = all_samples(*volume.source);
+  for (std::size_t k = 0; k < 24; ++k) {
+    const bool is_padding = k == 1 || (k >= 12 + 3 && k <= 12 + 5);
+    EXPECT_EQ(std::isnan(samples[k]), is_padding) << k;
+    if (!is_padding) {
+      EXPECT_EQ(samples[k], 2 * (k < 12 ? static_cast<double>(k) - 3 : static_cast<double>(k) - 12) + 10);
+    }
+  }
+  EXPECT_TRUE(has_note(volume, "4 samples are padding"));
+  EXPECT_EQ(volume.source->grid().type, scene::SampleType::float32);
+  EXPECT_EQ(volume.range.low, 4);
+}
+
+TEST_F(Dicom, WholeValuesBeyondThirtyOneBitsAreExact) {
+  // 65536 s + 1, beyond what a float holds.
+  std::vector<std::int16_t> upper = twelve(0);
+  upper[5] = -1;  // 65535 as the samples have no sign
+  for (int k = 0; k < 2; ++k)
+    write(fmt::format("{}.dcm", k), {.z = 1.0 * k, .number = k, .samples = upper, .is_wide = true});
+  const VolumeFile volume = open_volume(folder.path());
+  EXPECT_EQ(volume.source->grid().type, scene::SampleType::uint32);
+  EXPECT_EQ(all_samples(*volume.source)[5], 4294901761.0);
+  EXPECT_EQ(all_samples(*volume.source)[11], 720897.0);
+  for (int k = 0; k < 2; ++k)
+    write(fmt::format("{}.dcm", k), {.z = 1.0 * k, .number = k, .intercept = -10, .samples = upper, .is_wide = true});
+  const VolumeFile beyond = open_volume(folder.path());  // from -9 on: no integer of 32 bits
+  EXPECT_EQ(beyond.source->grid().type, scene::SampleType::float64);
+  EXPECT_EQ(all_samples(*beyond.source)[5], 4294901751.0);
 }
 
 }  // namespace

@@ -10,36 +10,21 @@
 #include <map>
 #include <utility>
 
+#include "io/foam_case.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
+#include "io/parts_checks.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace tessera::io {
 namespace {
 
+using testing::Cubes;
 using testing::message_of;
+using testing::write_control;
+using testing::write_foam;
 
 double field_at(const glm::dvec3& p) { return p.x + 2 * p.y + 3 * p.z; }
-
-/// [0, n]^3 in cubes.
-struct Cubes {
-  explicit Cubes(int side) : n(side) {
-    for (int k = 0; k <= n; ++k)
-      for (int j = 0; j <= n; ++j)
-        for (int i = 0; i <= n; ++i) points.emplace_back(i, j, k);
-    for (int k = 0; k < n; ++k)
-      for (int j = 0; j < n; ++j)
-        for (int i = 0; i < n; ++i)
-          cells.push_back({point(i, j, k), point(i + 1, j, k), point(i + 1, j + 1, k), point(i, j + 1, k),
-                           point(i, j, k + 1), point(i + 1, j, k + 1), point(i + 1, j + 1, k + 1),
-                           point(i, j + 1, k + 1)});
-  }
-  [[nodiscard]] int point(int i, int j, int k) const { return i + (n + 1) * (j + (n + 1) * k); }
-
-  int n;
-  std::vector<glm::dvec3> points;
-  std::vector<std::array<int, 8>> cells;
-};
 
 std::string joined(const std::array<int, 8>& corners, int first) {
   std::string text;
@@ -103,86 +88,6 @@ std::string fluent(const Cubes& cubes) {
   return text + "(45 (2 fluid fluid)())\n(45 (3 interior inside)())\n(45 (4 wall walls)())\n";
 }
 
-std::string foam_head(const char* kind, const std::string& object) {
-  return fmt::format(
-      "FoamFile\n{{\n version 2.0;\n format ascii;\n arch \"LSB;label=32;scalar=64\";\n class {};\n object {};\n}}\n",
-      kind, object);
-}
-
-/// Cells of one part of the cubes (all where `keep` says so) as an OpenFOAM mesh with fields at the times 0 and 1: `p`
-/// is the number of the cell among all, and 1000 at time 1.
-void write_foam(const std::filesystem::path& folder, const Cubes& cubes, const std::function<bool(int)>& keep) {
-  const int n = cubes.n;
-  std::vector<int> local(cubes.cells.size(), -1), kept;
-  for (int c = 0; c < static_cast<int>(local.size()); ++c)
-    if (keep(c)) local[static_cast<std::size_t>(c)] = static_cast<int>(kept.size()), kept.push_back(c);
-  struct Face {
-    int owner, neighbour;
-    std::array<int, 4> corners;
-  };
-  std::vector<Face> faces;
-  constexpr int sides[6][4] = {{1, 2, 6, 5}, {3, 7, 6, 2}, {4, 5, 6, 7}, {0, 4, 7, 3}, {0, 1, 5, 4}, {0, 3, 2, 1}};
-  const std::array<int, 6> steps{1, n, n * n, -1, -n, -n * n};
-  for (const int c : kept) {
-    const std::array<int, 3> at{c % n, c / n % n, c / (n * n)};
-    for (std::size_t side = 0; side < 6; ++side) {
-      const std::size_t axis = side % 3;
-      const bool inside = side < 3 ? at[axis] + 1 < n : at[axis] > 0;
-      const int other = inside ? local[static_cast<std::size_t>(c + steps[side])] : -1;
-      if (side >= 3 && other >= 0) continue;  // the other cell's
-      Face face{local[static_cast<std::size_t>(c)], other, {}};
-      for (std::size_t k = 0; k < 4; ++k)
-        face.corners[k] = cubes.cells[static_cast<std::size_t>(c)][static_cast<std::size_t>(sides[side][k])];
-      faces.push_back(face);
-    }
-  }
-  std::stable_sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
-    if ((a.neighbour >= 0) != (b.neighbour >= 0)) return a.neighbour >= 0;
-    return a.neighbour >= 0 && std::pair(a.owner, a.neighbour) < std::pair(b.owner, b.neighbour);
-  });
-  const auto inner = static_cast<std::size_t>(
-      std::count_if(faces.begin(), faces.end(), [](const Face& f) { return f.neighbour >= 0; }));
-
-  const auto mesh = folder / "constant" / "polyMesh";
-  const auto write = [](const std::filesystem::path& file, const std::string& text) {
-    std::filesystem::create_directories(file.parent_path());
-    std::ofstream(file) << text;
-  };
-  std::string points = foam_head("vectorField", "points") + fmt::format("{}\n(\n", cubes.points.size());
-  for (const glm::dvec3& p : cubes.points) points += fmt::format("({} {} {})\n", p.x, p.y, p.z);
-  std::string corners = foam_head("faceList", "faces") + fmt::format("{}\n(\n", faces.size());
-  std::string owners = foam_head("labelList", "owner") + fmt::format("{}\n(\n", faces.size());
-  std::string neighbours = foam_head("labelList", "neighbour") + fmt::format("{}\n(\n", inner);
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    const auto& v = faces[f].corners;
-    corners += fmt::format("4({} {} {} {})\n", v[0], v[1], v[2], v[3]);
-    owners += fmt::format("{}\n", faces[f].owner);
-    if (f < inner) neighbours += fmt::format("{}\n", faces[f].neighbour);
-  }
-  write(mesh / "points", points + ")\n");
-  write(mesh / "faces", corners + ")\n");
-  write(mesh / "owner", owners + ")\n");
-  write(mesh / "neighbour", neighbours + ")\n");
-  write(mesh / "boundary", foam_head("polyBoundaryMesh", "boundary") +
-                               fmt::format("1\n(\nwalls\n{{\n type wall;\n nFaces {};\n startFace {};\n}}\n)\n",
-                                           faces.size() - inner, inner));
-  for (const int time : {0, 1}) {
-    std::string p =
-        foam_head("volScalarField", "p") +
-        fmt::format("dimensions [0 2 -2 0 0 0 0];\ninternalField nonuniform List<scalar> {}\n(\n", kept.size());
-    for (const int c : kept) p += fmt::format("{}\n", time == 0 ? c : 1000);
-    write(folder / std::to_string(time) / "p", p + ")\n;\nboundaryField\n{\n walls\n {\n  type zeroGradient;\n }\n}\n");
-  }
-}
-
-void write_control(const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder / "system");
-  std::ofstream(folder / "system" / "controlDict")
-      << foam_head("dictionary", "controlDict")
-      << "startFrom startTime;\nstartTime 0;\nendTime 1;\ndeltaT 1;\nwriteControl timeStep;\nwriteInterval 1;\n";
-  std::ofstream(folder / "case.foam").flush();  // empty, as users make it
-}
-
 void expect_cube(const MeshFile& file, int n) {
   scene::validate(file.mesh, "cube");
   EXPECT_NEAR(testing::volume(file.mesh), n * n * n, 1e-5 * n * n * n);
@@ -199,6 +104,49 @@ TEST(SolverFiles, AvsUcdAndTecplotAreReadAsTheyAre) {
   expect_cube(read_mesh(folder.write("m.tec", tecplot(cubes))), 3);
   expect_cube(read_mesh(folder.write("ucd.tec", avs_ucd(cubes))), 3);
   expect_cube(read_mesh(folder.write("tecplot.dat", tecplot(cubes))), 3);
+}
+
+/// The first cell as six pyramids about a point within, the others as bricks, corners in this order.
+std::string gambit(const Cubes& cubes, const std::array<std::size_t, 8>& order) {
+  constexpr std::array<std::array<std::size_t, 4>, 6> sides = {
+      {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {3, 2, 6, 7}, {1, 5, 6, 2}, {0, 3, 7, 4}}};
+  std::string text =
+      "        CONTROL INFO 2.4.6\n** GAMBIT NEUTRAL FILE\ncubes\nPROGRAM: Gambit VERSION: 2.4.6\n 1 Jan 2000 "
+      "00:00:00\n"
+      "     NUMNP     NELEM     NGRPS    NBSETS     NDFCD     NDFVL\n" +
+      fmt::format("{:10}{:10}{:10}{:10}{:10}{:10}\nENDOFSECTION\n   NODAL COORDINATES 2.4.6\n", cubes.points.size() + 1,
+                  cubes.cells.size() + 5, 0, 0, 3, 3);
+  for (std::size_t v = 0; v < cubes.points.size(); ++v)
+    text += fmt::format("{:10}{:20.11e}{:20.11e}{:20.11e}\n", v + 1, cubes.points[v].x, cubes.points[v].y,
+                        cubes.points[v].z);
+  text += fmt::format("{:10}{:20.11e}{:20.11e}{:20.11e}\n", cubes.points.size() + 1, 0.5, 0.5, 0.5);
+  text += "ENDOFSECTION\n      ELEMENTS/CELLS 2.4.6\n";
+  std::size_t element = 0;
+  for (const auto& side : sides) {
+    text += fmt::format("{:8}  7  5 ", ++element);
+    for (std::size_t k = 0; k < 4; ++k) text += fmt::format("{:8}", cubes.cells[0][side[order[k]]] + 1);
+    text += fmt::format("{:8}\n", cubes.points.size() + 1);
+  }
+  for (std::size_t c = 1; c < cubes.cells.size(); ++c) {
+    text += fmt::format("{:8}  4  8 ", ++element);
+    for (std::size_t k = 0; k < 8; ++k)
+      text += fmt::format("{}{:8}", k == 7 ? "\n               " : "", cubes.cells[c][order[k]] + 1);
+    text += "\n";
+  }
+  return text + "ENDOFSECTION\n";
+}
+
+TEST(SolverFiles, GambitsBricksAreReadRowByRowOrRoundAsTheyAre) {
+  const test::TemporaryFolder folder;
+  const Cubes cubes(3);
+  const std::array<std::size_t, 8> by_rows{0, 1, 3, 2, 4, 5, 7, 6}, round{0, 1, 2, 3, 4, 5, 6, 7};
+  for (const auto& order : {by_rows, round}) {
+    const MeshFile read = read_mesh(folder.write("m.neu", gambit(cubes, order)));
+    scene::validate(read.mesh, "cube");
+    EXPECT_NEAR(testing::volume(read.mesh), 27, 1e-5);
+    EXPECT_EQ(read.counts.cells_read, 32u);
+    EXPECT_EQ(read.counts.cells_tangled, 0u);
+  }
 }
 
 TEST(SolverFiles, AFluentCaseIsAMeshWithTheValuesBesideItIfAny) {
@@ -263,10 +211,51 @@ TEST(SolverFiles, ADecomposedOpenFoamCaseIsReadWhole) {
   const MeshFile whole = read_mesh(folder / "case.foam");
   expect_cube(whole, 4);
   EXPECT_EQ(whole.mesh.scalars.front(), 1000);
+  for (const std::size_t step : {std::size_t{0}, std::size_t{1}}) {
+    MeshOptions options;
+    options.time_step = step;
+    testing::expect_as_whole(folder / "case.foam", options);
+    options.blocks = {"internalMesh"};
+    testing::expect_as_whole(folder / "case.foam", options);
+  }
+  MeshOptions none;
+  none.blocks = {"solid"};
+  test::expect_bad_input([&] { testing::read_in_parts(folder / "case.foam", 2, none); },
+                         {"case.foam", "there is no block", "internalMesh"});
   // As some copy it from a cluster: without what the processors share.
   std::filesystem::remove_all(folder / "system");
   std::filesystem::remove(folder / "case.foam");
   expect_cube(read_mesh(folder.path()), 4);
+  // A picture without one of the parts would be wrong.
+  std::filesystem::remove_all(folder / "processor1" / "constant");
+  test::expect_bad_input([&] { read_mesh(folder.path()); }, {"of its 2 processors' folders 1 can be read"});
+}
+
+TEST(SolverFiles, RegionsOfADecomposedOpenFoamCaseAreBlocksOfAllProcessors) {
+  const test::TemporaryFolder folder;
+  for (const int part : {0, 1}) {
+    const auto own = folder / ("processor" + std::to_string(part));
+    int side = 1;
+    for (const char* region : {"fluid", "solid"}) {
+      const Cubes cubes(2 * ++side);
+      write_foam(folder / "made", cubes, [&](int c) { return c % 2 == part; });
+      std::filesystem::create_directories(own / "constant" / region);
+      std::filesystem::rename(folder / "made" / "constant" / "polyMesh", own / "constant" / region / "polyMesh");
+      for (const char* time : {"0", "1"}) {
+        std::filesystem::create_directories(own / time);
+        std::filesystem::rename(folder / "made" / time, own / time / region);
+      }
+    }
+  }
+  write_control(folder.path());
+  const MeshFile all = read_mesh(folder / "case.foam");
+  EXPECT_EQ(all.blocks, (std::vector<std::string>{"fluid/internalMesh", "solid/internalMesh"}));
+  EXPECT_EQ(all.counts.cells_read, 64u + 216u);
+  testing::expect_as_whole(folder / "case.foam");
+  MeshOptions options;
+  options.blocks = {"solid"};
+  EXPECT_EQ(read_mesh(folder / "case.foam", options).counts.cells_read, 216u);
+  testing::expect_as_whole(folder / "case.foam", options);
 }
 
 TEST(SolverFiles, RegionsOfAnOpenFoamCaseAreBlocks) {

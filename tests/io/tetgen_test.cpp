@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <numbers>
 
@@ -254,6 +255,30 @@ TEST_F(Filled, OpenPolyIsTold) {
   const std::size_t at = text.find("6 0\n1\n4 1 2 3 4\n");
   text.replace(at, 16, "5 0\n");
   expect_bad_input([&] { read_mesh(folder.write("o.poly", text)); }, {"o.poly: ", "not closed"});
+}
+
+/// A box of six facets.
+std::string box_poly(double x, double y, double z) {
+  std::string text = "8 3 0 0\n";
+  for (int v = 0; v < 8; ++v)
+    text += fmt::format("{} {} {} {}\n", v + 1, v % 4 == 1 || v % 4 == 2 ? x : 0, v % 4 >= 2 ? y : 0, v >= 4 ? z : 0);
+  return text + "6 0\n1\n4 1 2 3 4\n1\n4 5 6 7 8\n1\n4 1 2 6 5\n1\n4 2 3 7 6\n1\n4 3 4 8 7\n1\n4 4 1 5 8\n0\n";
+}
+
+TEST_F(Filled, WhatNoFewFacetsNeedIsRefusedWithARemedy) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the helper has address space without a limit, for the sanitizer's sake";
+#endif
+  // Tets of a good shape are no wider than the plate is thick, which would be 10^12 of them. Half a percent is
+  // no trouble: some 10^5.
+  EXPECT_NEAR(testing::volume(read_mesh(folder.write("thick.poly", box_poly(1, 1, 0.005))).mesh), 0.005, 1e-9);
+  rusage before{}, after{};
+  ::getrusage(RUSAGE_CHILDREN, &before);
+  expect_bad_input([&] { read_mesh(folder.write("plate.poly", box_poly(1, 1, 1e-6))); },
+                   {"plate.poly: filling it by TetGen takes ", " can explain; mend the surface, or set `max_volume`"});
+  ::getrusage(RUSAGE_CHILDREN, &after);
+  EXPECT_LT(after.ru_maxrss, (1 << 20) + (200 << 10)) << "KiB";
+  EXPECT_LT(after.ru_utime.tv_sec - before.ru_utime.tv_sec, 20);
 }
 
 TEST(Surface, WithoutTetGenTheErrorSaysHowToGetIt) {

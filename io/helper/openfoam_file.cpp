@@ -1,0 +1,186 @@
+// OpenFOAM cases, by VTK's reader: whole, or a share of the processors' folders of a decomposed one.
+#include <fmt/format.h>
+#include <vtkCollection.h>
+#include <vtkDummyController.h>
+#include <vtkNew.h>
+#include <vtkObjectFactory.h>
+#include <vtkPOpenFOAMReader.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "io/gzip.hpp"
+#include "io/helper/readers.hpp"
+#include "io/helper/time_steps.hpp"
+#include "io/helper/vtk_parts.hpp"
+#include "io/helper/vtk_session.hpp"
+#include "io/input_file.hpp"
+#include "io/mesh_formats.hpp"
+#include "io/part_range.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io::helper {
+namespace {
+
+constexpr const char* write_anew = "the file is truncated or damaged, write it anew";
+
+/// Reads one processor's part at a time, where VTK's own reader appends all of them.
+class ProcessorReader : public vtkPOpenFOAMReader {
+ public:
+  static ProcessorReader* New();
+
+  /// How many parts there are, after UpdateInformation().
+  [[nodiscard]] int processors() const { return Readers->GetNumberOfItems(); }
+
+  /// Which of them the next update reads; all at first.
+  void choose(int processor) {
+    chosen_ = processor;
+    Modified();
+  }
+
+ protected:
+  int RequestData(vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override {
+    if (chosen_ < 0) return vtkPOpenFOAMReader::RequestData(request, inputs, outputs);
+    const vtkNew<vtkCollection> all;
+    for (int k = 0; k < processors(); ++k) all->AddItem(Readers->GetItemAsObject(k));
+    Readers->RemoveAllItems();
+    Readers->AddItem(all->GetItemAsObject(chosen_));
+    const int result = vtkPOpenFOAMReader::RequestData(request, inputs, outputs);
+    Readers->RemoveAllItems();
+    for (int k = 0; k < all->GetNumberOfItems(); ++k) Readers->AddItem(all->GetItemAsObject(k));
+    return result;
+  }
+
+ private:
+  int chosen_ = -1;
+};
+vtkStandardNewMacro(ProcessorReader);
+
+/// The meshes of a case, or of one of its processors: of all regions, if it has several.
+std::vector<std::filesystem::path> meshes_of(const std::filesystem::path& folder) {
+  std::error_code unknown;
+  std::vector<std::filesystem::path> meshes;
+  const auto add = [&](const std::filesystem::path& of) {
+    if (std::filesystem::is_directory(of / "polyMesh", unknown)) meshes.push_back(of / "polyMesh");
+  };
+  add(folder / "constant");
+  for (std::filesystem::directory_iterator entry(folder / "constant", unknown), end; !unknown && entry != end;
+       entry.increment(unknown))
+    add(entry->path());
+  return meshes;
+}
+
+/// Whether a case's lists have 64-bit integers, which its files say of themselves ("arch").
+bool has_wide_labels(const std::filesystem::path& folder) {
+  std::error_code unknown;
+  for (const char* part : {".", "processor0"})
+    for (const std::filesystem::path& mesh : meshes_of(folder / part))
+      for (const char* name : {"owner", "owner.gz"}) {
+        const std::filesystem::path file = mesh / name;
+        if (!std::filesystem::is_regular_file(file, unknown)) continue;
+        const std::string beginning = read_beginning(file, 4096);
+        if (beginning.starts_with("\x1f\x8b")) {
+          const auto text = inflate_beginning(std::as_bytes(std::span(beginning)), 2048);
+          return std::string_view(reinterpret_cast<const char*>(text.data()), text.size()).find("label=64") !=
+                 std::string_view::npos;
+        }
+        return beginning.find("label=64") != std::string::npos;
+      }
+  return false;
+}
+
+bool is_case(const std::filesystem::path& folder) {
+  std::error_code unknown;
+  return is_case_folder(folder) || std::filesystem::exists(folder / "processor0", unknown) ||
+         std::filesystem::exists(folder / "processors", unknown);
+}
+
+/// The folder of the case that a file or folder is of: the one that it is in, or one of those above.
+std::filesystem::path case_of(const std::filesystem::path& named) {
+  std::error_code unknown;
+  if (std::filesystem::is_directory(named, unknown)) return named;
+  const std::filesystem::path own = named.has_parent_path() ? named.parent_path() : std::filesystem::path(".");
+  std::filesystem::path folder = own;
+  for (int level = 0; level < 4; ++level) {
+    if (is_case(folder)) return folder;
+    folder /= "..";
+  }
+  return own;
+}
+
+/// How many folders of processors a case has, as VTK knows them.
+int processor_folders(const std::filesystem::path& folder) {
+  std::error_code unknown;
+  int count = 0;
+  for (std::filesystem::directory_iterator entry(folder, unknown), end; !unknown && entry != end;
+       entry.increment(unknown)) {
+    const std::string name = entry->path().filename().string();
+    constexpr std::string_view begin = "processor";
+    if (name.starts_with(begin) && name.size() > begin.size() && entry->is_directory(unknown) &&
+        name.find_first_not_of("0123456789", begin.size()) == std::string::npos)
+      ++count;
+  }
+  return count;
+}
+
+/// The request's share of the processors, one by one, as whole and shares alike are read: their blocks in their order.
+void read_processors(Holdings& holdings, ProcessorReader& reader, const std::filesystem::path& folder,
+                     const std::string& source, const nlohmann::json& request, ForeignContents& contents) {
+  const int processors = reader.processors(), part = request.value("part", 0), parts = request.value("parts", 1);
+  if (const int folders = processor_folders(folder); processors != folders)
+    throw scene::bad_input(
+        fmt::format("{}: of its {} processors' folders {} can be read; run reconstructPar, or decomposePar anew",
+                    source, folders, processors));
+  const auto count = static_cast<std::uint64_t>(processors);
+  const std::uint64_t last = first_of_part(count, part + 1, parts);
+  for (std::uint64_t k = first_of_part(count, part, parts); k < last; ++k) {
+    reader.choose(static_cast<int>(k));
+    update_at_step(reader, request, source, contents.time_step);
+    if (vtkDataObject* const data = reader.GetOutputDataObject(0); data != nullptr)
+      for (ForeignPart& made : parts_of(holdings, *data, source)) contents.parts.push_back(std::move(made));
+  }
+}
+
+}  // namespace
+
+ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::path& named, const nlohmann::json& request) {
+  const std::filesystem::path folder = case_of(named);
+  const std::string source = named.string();
+  // The reader takes the case from a name in its folder, and asks for no such file.
+  const std::filesystem::path file = is_case(folder) ? folder / "case.foam" : named;
+  allow_for_folder(folder);
+  const vtkNew<ProcessorReader> reader;
+  const vtkNew<vtkDummyController> alone;  // it takes the parts of a case for processes' and asks who it is
+  reader->SetController(alone);
+  reader->SetFileName(file.c_str());
+  // processor0, processor1, ...: written by parallel runs, and not put together since.
+  std::error_code unknown;
+  const bool is_whole = !meshes_of(folder).empty();
+  const bool is_decomposed = !is_whole && (std::filesystem::exists(folder / "processor0", unknown) ||
+                                           std::filesystem::exists(folder / "processors", unknown));
+  reader->SetCaseType(is_decomposed ? vtkPOpenFOAMReader::DECOMPOSED_CASE : vtkPOpenFOAMReader::RECONSTRUCTED_CASE);
+  reader->SetUse64BitLabels(has_wide_labels(folder));
+  reader->CreateCellToPointOff();
+  reader->DecomposePolyhedraOff();  // ours are conforming, one value a cell (polyhedron_split.hpp)
+  ForeignContents contents;
+  contents.format = "OpenFOAM case";
+  if (!is_decomposed && request.value("part", 0) > 0) return contents;
+  const std::string warning = with_quiet_vtk(source, write_anew, [&] {
+    reader->UpdateInformation();
+    reader->EnableAllCellArrays();
+    reader->EnableAllPointArrays();
+    if (is_decomposed) return read_processors(holdings, *reader, folder, source, request, contents);
+    update_at_step(*reader, request, source, contents.time_step);
+    if (vtkDataObject* const data = reader->GetOutputDataObject(0); data != nullptr)
+      contents.parts = parts_of(holdings, *data, source);
+  });
+  if (!warning.empty()) contents.notes.push_back("VTK warns: " + warning);
+  if (contents.parts.empty() && request.value("parts", 1) == 1)
+    throw scene::bad_input(fmt::format("{}: it holds no cells; check how it was written", source));
+  return contents;
+}
+
+}  // namespace tessera::io::helper

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+namespace tessera::io {
+
+/// The beginning of part `part` when n things are divided over the parts; part == parts: n.
+inline std::uint64_t first_of_part(std::uint64_t n, int part, int parts) {
+  const auto p = static_cast<std::uint64_t>(part), count = static_cast<std::uint64_t>(parts);
+  return n / count * p + std::min(p, n % count);
+}
+
+}  // namespace tessera::io
