@@ -18,6 +18,7 @@
 #include "tessera/input_file.hpp"
 #include "tessera/job.hpp"
 #include "tessera/mesh_check.hpp"
+#include "tessera/nearest_name.hpp"
 #include "tessera/output_file.hpp"
 #include "tessera/read_progress.hpp"
 #include "tessera/reference.hpp"

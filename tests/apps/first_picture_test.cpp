@@ -51,7 +51,7 @@ TEST(FirstPicture, AFunctionThatShowsNothingIsWarnedOfWithTheOptionThatMendsIt) 
 TEST(FirstPicture, AMeshWithoutFieldShowsItsShapeUnlessAFunctionIsNamed) {
   const Folder folder;
   const std::string mesh = folder.file("a.node", "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n");
-  folder.file("a.ele", "1 4 0\n0 0 1 2 3\n");
+  std::ignore = folder.file("a.ele", "1 4 0\n0 0 1 2 3\n");
   const Outcome shape = tessera({"render", mesh, "-o", folder / "a.png", "--size", "16x16"});
   ASSERT_EQ(shape.status, 0) << shape.err;
   EXPECT_NE(shape.err.find("shape by depth"), std::string::npos) << shape.err;
