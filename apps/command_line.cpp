@@ -34,8 +34,12 @@ CommandLine::CommandLine()
   declare_timing();
   formats = app.add_subcommand("formats", "List the formats of files that are read, and known ones that are not");
   formats->add_flag("--json", as_json, "for machines");
+  presets = app.add_subcommand("presets", "List the colour presets of --transfer-function, or draw them");
+  presets->add_option("-o,--output", picture, "draw them into this picture: .png .exr .jpg .tif")->type_name("FILE");
   help = app.add_subcommand("help", "Say how a command is called");
   declare_help();
+  completion = app.add_subcommand("completion", "Print the script by which a shell completes words of tessera");
+  completion->add_option("SHELL", shell, "bash, zsh or fish")->required();
 }
 
 void CommandLine::declare_convert() {
@@ -77,13 +81,13 @@ void CommandLine::declare_help() {
 }
 
 CLI::App* CommandLine::command(const std::string& name) const {
-  for (CLI::App* command : {render, info, convert, generate, chart, timing, formats, help})
+  for (CLI::App* command : {render, info, convert, generate, chart, timing, formats, presets, help, completion})
     if (command->get_name() == name) return command;
   return nullptr;
 }
 
 std::vector<const CLI::App*> CommandLine::commands() const {
-  return {render, info, convert, generate, chart, timing, formats, help};
+  return {render, info, convert, generate, chart, timing, formats, presets, help, completion};
 }
 
 }  // namespace tessera::apps

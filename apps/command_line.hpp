@@ -31,11 +31,11 @@ struct CommandLine {
   std::vector<std::string> parameters;
   std::vector<std::string> traces;
   std::string csv, figure;
-  std::string help_of;
+  std::string help_of, shell, picture;
   bool help_all = false, manual = false;
 
   CLI::App app;
-  CLI::App *render, *info, *convert, *generate, *chart, *timing, *formats, *help;
+  CLI::App *render, *info, *convert, *generate, *chart, *timing, *formats, *presets, *help, *completion;
 
  private:
   void declare_convert();

@@ -93,14 +93,18 @@ void add_entry(std::string& page, const std::string& form, const std::string& de
   page += '\n';
 }
 
-std::string usage(const CLI::App& command, const std::string& name) {
-  std::string line = "Usage: " + name + (command.get_parent() == nullptr ? " COMMAND" : " [OPTIONS]");
+}  // namespace
+
+std::string usage_of(const CLI::App& command, const std::string& name) {
+  std::string line = name + (command.get_parent() == nullptr ? " COMMAND" : " [OPTIONS]");
   for (const CLI::Option* word : command.get_options([](const CLI::Option* o) { return o->get_positional(); })) {
     const std::string form = word->get_name(true) + (word->get_expected_max() > 1 ? "..." : "");
     line += word->get_required() ? " " + form : " [" + form + "]";
   }
-  return line + '\n';
+  return line;
 }
+
+namespace {
 
 void add_commands(std::string& page, const CLI::App& app) {
   page += "\nCommands:\n";
@@ -162,7 +166,7 @@ std::vector<std::string> help_examples(const CLI::App& command) {
 std::string HelpPages::make_help(const CLI::App* command, std::string name, CLI::AppFormatMode mode) const {
   const bool is_render = command->get_name() == "render";
   const bool all = !is_render || mode != CLI::AppFormatMode::Normal;
-  std::string page = command->get_description() + "\n" + usage(*command, name);
+  std::string page = command->get_description() + "\nUsage: " + usage_of(*command, name) + '\n';
   for (const std::string& example : help_examples(*command)) page += "  " + example + '\n';
   const auto positionals = command->get_options([](const CLI::Option* o) { return o->get_positional(); });
   if (!positionals.empty()) page += '\n';

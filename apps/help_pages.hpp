@@ -19,6 +19,9 @@ std::vector<HelpTopic> help_topics(const CLI::App& command, bool all);
 /// How an option is written before its description: "-o, --output FILE", a long choice of words cut short unless `all`.
 std::string option_form(const CLI::Option& option, bool all);
 
+/// "tessera render [OPTIONS] INPUT [MORE...]", `name` being what is called.
+std::string usage_of(const CLI::App& command, const std::string& name);
+
 /// Three or so commands to begin with; empty for a command that needs none.
 std::vector<std::string> help_examples(const CLI::App& command);
 

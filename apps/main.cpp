@@ -18,6 +18,7 @@
 #include "apps/generate_command.hpp"
 #include "apps/info_command.hpp"
 #include "apps/parse_arguments.hpp"
+#include "apps/presets_command.hpp"
 #include "apps/render_options.hpp"
 #include "apps/setting_words.hpp"
 #include "apps/stall_options.hpp"
@@ -87,6 +88,7 @@ ExitCode run(int argc, char** argv, Job& job) {
   }
   if (*line.chart) chart(words, line.chart_words);
   if (*line.formats) formats(line.as_json);
+  if (*line.presets) presets(line.picture);
   if (*line.timing) timing({line.traces.begin(), line.traces.end()}, line.csv, line.figure);
   if (*line.generate) generate(line.kind, line.mesh_output, line.parameters, words.quiet);
   return ExitCode::complete;

@@ -4,6 +4,8 @@
 
 #include <cstdio>
 
+#include "apps/completion.hpp"
+#include "apps/manual_page.hpp"
 #include "tessera/error.hpp"
 #include "tessera/nearest_name.hpp"
 
@@ -38,10 +40,12 @@ Error no_option(const CLI::App& command, const std::string& word, const std::str
 
 /// `tessera help [COMMAND]`.
 std::string help_page(const CommandLine& line) {
+  if (line.help_of.empty() && line.manual) return manual_page(line, line.app);
   if (line.help_of.empty())
     return line.app.get_formatter()->make_help(&line.app, "tessera", CLI::AppFormatMode::Normal);
   const CLI::App* command = line.command(line.help_of);
   if (command == nullptr) throw no_command(line, line.help_of);
+  if (line.manual) return manual_page(line, *command);
   const auto mode = line.help_all ? CLI::AppFormatMode::All : CLI::AppFormatMode::Normal;
   return command->get_formatter()->make_help(command, "tessera " + line.help_of, mode);
 }
@@ -51,6 +55,12 @@ std::string help_page(const CommandLine& line) {
 bool parse(CommandLine& line, int argc, const char* const* argv, bool says) {
   const std::string first = argc > 1 ? argv[1] : "";
   const CLI::App* command = line.command(first);
+  if (first == "complete") {  // what the scripts ask: of no interest to users, and no words to be checked
+    std::string names;
+    for (const std::string& name : completions(line, {argv + 2, argv + argc})) names += name + '\n';
+    if (says) std::fputs(names.c_str(), stdout);
+    return false;
+  }
   // CLI11 would only say that a subcommand is missing.
   if (!first.empty() && first.front() != '-' && command == nullptr) throw no_command(line, first);
   const auto say = [&](const std::string& text) {
@@ -71,6 +81,7 @@ bool parse(CommandLine& line, int argc, const char* const* argv, bool says) {
     if (const auto word = unknown_option(of)) throw no_option(of, *word, help);
     throw bad_input(fmt::format("arguments: {}; see {}", error.what(), help));
   }
+  if (*line.completion) return say(completion_script(line.shell));
   return *line.help ? say(help_page(line)) : true;
 }
 

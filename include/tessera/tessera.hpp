@@ -20,6 +20,7 @@
 #include "tessera/mesh_check.hpp"
 #include "tessera/nearest_name.hpp"
 #include "tessera/output_file.hpp"
+#include "tessera/presets.hpp"
 #include "tessera/read_progress.hpp"
 #include "tessera/reference.hpp"
 #include "tessera/sample_source.hpp"
