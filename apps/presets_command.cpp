@@ -13,14 +13,24 @@
 namespace tessera::apps {
 namespace {
 
-/// A bar with its name, on white.
+/// The colours from low to high, under their name, on white.
 Image drawn(const std::string& name, ImageSize size) {
+  constexpr int margin = 8, top = 28;
+  const TransferFunction function = preset_function(name);
   Image image(size);
+  std::ranges::fill(image.rgba, 1.0f);  // on which every map but white is seen
+  const int width = size.width - 2 * margin;
+  for (int y = top; y < size.height - margin; ++y)
+    for (int x = 0; x < width; ++x) {
+      const glm::dvec3 color = function.evaluate((x + 0.5) / width).color;
+      for (int i = 0; i < 3; ++i)
+        image.rgba[4 * image.index(x + margin, y) + static_cast<std::size_t>(i)] = static_cast<float>(color[i]);
+    }
   Annotation annotation;
-  annotation.color_bar = ColorBar{.title = name, .place = Place::bottom};
+  annotation.texts.push_back({name, Place::top_left});
   annotation.style.background = glm::dvec3(1);
   annotation.style.text_size = 14;
-  annotate(image, annotation, View{Camera{}, size}, Box{}, preset_function(name));
+  annotate(image, annotation, View{Camera{}, size}, Box{}, function);
   return image;
 }
 
@@ -34,9 +44,10 @@ void presets(const std::filesystem::path& picture) {
   }
   check_image_path(picture);
   // Two columns; a name stands over its bar.
-  constexpr ImageSize cell{400, 88};
+  constexpr ImageSize cell{400, 64};
   const int rows = (static_cast<int>(names.size()) + 1) / 2;
   Image sheet(ImageSize{2 * cell.width, rows * cell.height});
+  std::ranges::fill(sheet.rgba, 1.0f);
   for (int i = 0; i < static_cast<int>(names.size()); ++i) {
     const Image one = drawn(names[static_cast<std::size_t>(i)], cell);
     for (int y = 0; y < cell.height; ++y)
@@ -44,9 +55,7 @@ void presets(const std::filesystem::path& picture) {
                   sheet.rgba.begin() +
                       static_cast<std::ptrdiff_t>(4 * sheet.index(i / rows * cell.width, i % rows * cell.height + y)));
   }
-  ImageFileOptions options;
-  options.background = glm::dvec3(1);
-  write_image(sheet, picture, options);
+  write_image(sheet, picture);
 }
 
 }  // namespace tessera::apps

@@ -10,6 +10,9 @@
 
 #include "apps/command_line.hpp"
 #include "apps/program.hpp"
+#include "tessera/dataset.hpp"
+#include "tessera/image_file.hpp"
+#include "tessera/presets.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -104,9 +107,17 @@ TEST(Presets, AreListedAndDrawn) {
   const Outcome list = tessera({"presets"});
   EXPECT_EQ(list.status, 0);
   EXPECT_NE(list.out.find("viridis\n"), std::string::npos);
-  const Outcome drawn = tessera({"presets", "-o", folder / "presets.png"});
-  EXPECT_EQ(drawn.status, 0) << drawn.err;
-  EXPECT_GT(std::filesystem::file_size(folder / "presets.png"), 1000U);
+  const Outcome drawn = tessera({"presets", "-o", folder / "presets.exr"});
+  ASSERT_EQ(drawn.status, 0) << drawn.err;
+  const Image sheet = read_image(folder / "presets.exr");
+  const TransferFunction first = preset_function(preset_names().front());
+  const auto red = [&](int x, int y) { return sheet.rgba[4 * sheet.index(x, y)]; };
+  EXPECT_NEAR(red(8, 40), first.evaluate(0).color.r, 0.01);  // a pixel is 1 / 384 of the map
+  EXPECT_NEAR(red(391, 40), first.evaluate(1).color.r, 0.01);
+  float darkest = 1;  // of its name
+  for (int y = 0; y < 28; ++y)
+    for (int x = 0; x < 400; ++x) darkest = std::min(darkest, red(x, y));
+  EXPECT_LT(darkest, 0.2f);
 }
 
 }  // namespace
