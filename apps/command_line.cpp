@@ -2,6 +2,7 @@
 
 #include "apps/generate_command.hpp"
 #include "apps/help_pages.hpp"
+#include "apps/scene_file.hpp"
 #include "tessera/version.hpp"
 
 namespace tessera::apps {
@@ -18,6 +19,7 @@ CommandLine::CommandLine()
   render->set_help_all_flag("--help-all", "say every option and end");
   add_render_options(*render, words);
   add_stall_options(*render, stalls);
+  add_scene_options(*render, words);
 
   info = app.add_subcommand("info", "Say what a mesh or volume holds and how it would be rendered");
   add_mesh_options(*info, words);

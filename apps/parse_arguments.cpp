@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "apps/completion.hpp"
 #include "apps/manual_page.hpp"
+#include "apps/scene_file.hpp"
 #include "tessera/error.hpp"
 #include "tessera/nearest_name.hpp"
 
@@ -68,7 +70,9 @@ bool parse(CommandLine& line, int argc, const char* const* argv, bool says) {
     return false;
   };
   try {
-    line.app.parse(argc, argv);
+    auto words = with_scene_file({argv + 1, argv + argc});
+    std::ranges::reverse(words);  // as CLI11 takes them
+    line.app.parse(std::move(words));
   } catch (const CLI::CallForVersion& version) {
     return say(std::string(version.what()) + "\n");
   } catch (const CLI::CallForAllHelp&) {
@@ -81,6 +85,7 @@ bool parse(CommandLine& line, int argc, const char* const* argv, bool says) {
     if (const auto word = unknown_option(of)) throw no_option(of, *word, help);
     throw bad_input(fmt::format("arguments: {}; see {}", error.what(), help));
   }
+  if (*line.render && !line.words.save_config.empty() && says) save_scene(*line.render, line.words.save_config);
   if (*line.completion) return say(completion_script(line.shell));
   return *line.help ? say(help_page(line)) : true;
 }
