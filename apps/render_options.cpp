@@ -184,8 +184,10 @@ void add_render_options(CLI::App& command, RenderWords& words) {
   command.add_option("--projection", words.projection, "of the default view (default: orthographic)")
       ->type_name("orthographic|perspective");
 
-  command.add_option("--integrator", words.integrator, "how a segment becomes colour (default: auto)")
-      ->type_name("auto|exact|sampled:N|preintegrated[:N]|partial; of volumes auto|exact|sampled|preintegrated");
+  command
+      .add_option("--integrator", words.integrator,
+                  "how a segment becomes colour (default: auto); of volumes auto, exact, sampled or preintegrated")
+      ->type_name("auto|exact|sampled:N|preintegrated[:N]|partial");
   command.add_option("--accuracy", words.accuracy, "auto: largest error in linear RGBA (default 1e-4)")
       ->type_name("EPS");
   command

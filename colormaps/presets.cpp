@@ -12,6 +12,7 @@
 #include "colormaps/function_options.hpp"
 #include "scene/error.hpp"
 #include "scene/quote.hpp"
+#include "tessera/nearest_name.hpp"
 
 namespace tessera::colormaps {
 namespace {
@@ -80,10 +81,13 @@ LoadedTransferFunction preset(std::string_view name, const TransferFunctionOptio
   if (table == nullptr || variant == variants.end()) {
     std::vector<std::string_view> known;
     std::ranges::transform(variants, std::back_inserter(known), &Variant::name);
+    std::vector<std::string> names(known.begin(), known.end());
+    const auto near = table == nullptr ? std::nullopt : nearest_name(variant_name, names);
     throw scene::bad_input(
-        fmt::format("{}: no such preset; write COLOURS or COLOURS:OPACITY with colours {} and "
+        fmt::format("{}: no such preset; {}write COLOURS or COLOURS:OPACITY with colours {} and "
                     "opacity {}",
-                    scene::quote(name), fmt::join(preset_names(), ", "), fmt::join(known, ", ")));
+                    scene::quote(name), near ? fmt::format("did you mean {}:{}? ", table->name, *near) : "",
+                    fmt::join(preset_names(), ", "), fmt::join(known, ", ")));
   }
 
   const auto [low, high] = options.spanned();

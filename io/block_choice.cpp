@@ -6,8 +6,8 @@
 #include <unordered_set>
 
 #include "scene/error.hpp"
-#include "scene/nearest_name.hpp"
 #include "scene/quote.hpp"
+#include "tessera/nearest_name.hpp"
 
 namespace tessera::io {
 namespace {
@@ -42,7 +42,7 @@ void require_blocks(const BlockChoice& choice, std::span<const std::string> bloc
     if (blocks.empty())
       throw scene::bad_input(fmt::format("{}: there is no block {}: it is not made of named blocks; leave `block` out",
                                          source, scene::quote(name)));
-    const std::optional<std::string> nearest = scene::nearest_name(name, blocks);
+    const std::optional<std::string> nearest = nearest_name(name, blocks);
     throw scene::bad_input(
         fmt::format("{}: there is no block {}; it has {}{}", source, scene::quote(name), list(blocks),
                     nearest && blocks.size() > 1 ? fmt::format("; the nearest is {}", scene::quote(*nearest)) : ""));

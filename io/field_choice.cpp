@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "scene/error.hpp"
+#include "tessera/nearest_name.hpp"
 
 namespace tessera::io {
 namespace {
@@ -283,6 +284,21 @@ bool is_label_name(const std::string& name) {
   return lower.ends_with("_rank") || lower.ends_with("_label") || lower.ends_with("_labels");
 }
 
+namespace {
+
+/// "did you mean 'NAME'? ", or nothing.
+std::string meant_field(const std::string& wish, std::span<const FieldSummary> fields) {
+  std::vector<std::string> names;
+  for (const FieldSummary& field : fields) names.push_back(field.name);
+  for (const Association a : {Association::point, Association::cell})
+    for (const FieldSummary& field : fields)
+      if (field.association == a) names.push_back(fmt::format("{}:{}", word(a), field.name));
+  const auto near = nearest_name(wish, names);
+  return near ? fmt::format("did you mean '{}'? ", *near) : "";
+}
+
+}  // namespace
+
 FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> fields, const std::string& source,
                          bool shape) {
   if (wish.empty()) {
@@ -300,9 +316,10 @@ FieldChoice choose_field(const std::string& wish, std::span<const FieldSummary> 
       choice = resolve(wish.substr(prefix.size()), a, fields, source);
   if (!choice) choice = resolve(wish, std::nullopt, fields, source);
   if (!choice)
-    throw scene::bad_input(fields.empty()
-                               ? fmt::format("{}: no field '{}', the file has none; leave `field` out", source, wish)
-                               : fmt::format("{}: no field '{}'; it has {}", source, wish, list(fields)));
+    throw scene::bad_input(
+        fields.empty()
+            ? fmt::format("{}: no field '{}', the file has none; leave `field` out", source, wish)
+            : fmt::format("{}: no field '{}'; {}it has {}", source, wish, meant_field(wish, fields), list(fields)));
   if (choice->association == Association::point && find(fields, choice->name, Association::cell) &&
       !wish.starts_with("point:"))
     choice->notes.push_back(fmt::format(

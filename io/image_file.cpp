@@ -9,6 +9,7 @@
 
 #include "io/atomic_file.hpp"
 #include "io/image_formats.hpp"
+#include "io/missing_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -106,7 +107,7 @@ void write_image(const scene::Image& image, const std::filesystem::path& file, c
 scene::Image read_image(const std::filesystem::path& file) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) throw scene::bad_input(file.string() + ": no such file; check the name");
+  if (!std::filesystem::exists(status)) throw missing_file(file);
   if (std::filesystem::is_directory(status)) throw scene::bad_input(file.string() + ": is a folder; name a file in it");
   try {
     switch (format_of(file)) {

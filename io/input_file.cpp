@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "io/amrex_header.hpp"
+#include "io/missing_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -15,8 +16,7 @@ namespace tessera::io {
 std::uint64_t require_file(const std::filesystem::path& file) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status))
-    throw scene::bad_input(fmt::format("{}: there is no such file; check the name", file.string()));
+  if (!std::filesystem::exists(status)) throw missing_file(file);
   if (is_input_folder(file)) return 0;
   if (std::filesystem::is_directory(status))
     throw scene::bad_input(fmt::format(

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "io/missing_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -26,7 +27,7 @@ std::string_view without_mark(std::string_view text) {
 std::string read_text_file(const std::filesystem::path& file) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) throw scene::bad_input(file.string() + ": no such file; check the name");
+  if (!std::filesystem::exists(status)) throw missing_file(file);
   if (std::filesystem::is_directory(status)) throw scene::bad_input(file.string() + ": is a folder; name a file in it");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw scene::bad_input(file.string() + ": cannot be opened; check that you may read it");

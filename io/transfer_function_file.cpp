@@ -3,14 +3,17 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "colormaps/function_options.hpp"
 #include "colormaps/presets.hpp"
+#include "io/missing_file.hpp"
 #include "io/paraview_color_map.hpp"
 #include "io/text_file.hpp"
 #include "scene/error.hpp"
+#include "tessera/nearest_name.hpp"
 
 namespace tessera::io {
 
@@ -31,14 +34,22 @@ colormaps::LoadedTransferFunction load_file(const std::string& file,
   }
 }
 
+/// With what was probably meant.
+scene::Error neither(const std::string& name) {
+  const std::vector<std::string> presets = colormaps::preset_names();
+  const std::size_t colon = std::min(name.find(':'), name.size());
+  const auto near = nearest_name(std::string_view(name).substr(0, colon), presets);
+  const std::string meant = near ? fmt::format("did you mean {}?", *near + name.substr(colon)) : meant_file(name);
+  return {scene::ErrorCode::bad_input, name, "no such file and no preset",
+          fmt::format("{}{}the presets are {}", meant, meant.empty() ? "" : " ", fmt::join(presets, ", "))};
+}
+
 }  // namespace
 
 colormaps::LoadedTransferFunction load_transfer_function(const std::string& file_or_preset,
                                                          const colormaps::TransferFunctionOptions& options) {
   if (colormaps::is_preset(file_or_preset)) return colormaps::preset(file_or_preset, options);
-  if (!std::filesystem::exists(file_or_preset))
-    throw scene::Error(scene::ErrorCode::bad_input, file_or_preset, "no such file and no preset",
-                       fmt::format("the presets are {}", fmt::join(colormaps::preset_names(), ", ")));
+  if (!std::filesystem::exists(file_or_preset)) throw neither(file_or_preset);
   try {
     return load_file(file_or_preset, options);
   } catch (const scene::Error& error) {

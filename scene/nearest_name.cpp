@@ -1,54 +1,63 @@
-#include "scene/nearest_name.hpp"
+#include "tessera/nearest_name.hpp"
 
 #include <algorithm>
 #include <cctype>
-#include <numeric>
-#include <utility>
 #include <vector>
 
-namespace tessera::scene {
+namespace tessera {
 namespace {
 
-constexpr std::size_t most_names = 10'000, most_letters = 64;
-
 std::string lower(std::string_view text) {
-  std::string result(text.substr(0, most_letters));
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  std::string result(text);
+  std::ranges::transform(result, result.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return result;
 }
 
-/// Damerau, "A technique for computer detection and correction of spelling errors", CACM 1964, in the restricted form
-/// in which no letter is changed twice.
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> before, last(b.size() + 1), row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
+/// Changes between two words, three rows of the table at a time.
+std::size_t changes(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
-    before = std::exchange(last, row);
     row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] == b[j - 1] ? 0u : 1u)});
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
       if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) row[j] = std::min(row[j], before[j - 2] + 1);
     }
+    std::swap(before, last);
+    std::swap(last, row);
   }
-  return row.back();
+  return last[b.size()];
 }
 
 }  // namespace
 
-std::optional<std::string> nearest_name(std::string_view wrong, std::span<const std::string> names) {
-  const std::string word = lower(wrong);
-  std::size_t least = word.size() / 3 + 1;
-  std::optional<std::string> nearest;
-  for (const std::string& name : names.first(std::min(names.size(), most_names))) {
-    const std::size_t part = name.rfind('/');
-    std::size_t changes = distance(word, lower(name));
-    if (part != std::string::npos)
-      changes = std::min(changes, distance(word, lower(std::string_view(name).substr(part + 1))));
-    if (changes >= least) continue;
-    least = changes;
-    nearest = name;
+std::optional<std::string> nearest_name(std::string_view word, std::span<const std::string> names) {
+  constexpr std::size_t longest = 256;  // of file and field names; the time goes with the square
+  constexpr std::size_t most = 10'000;
+  if (word.empty() || word.size() > longest) return std::nullopt;
+  const std::string wish = lower(word);
+  const std::string* nearest = nullptr;
+  const std::string* begun = nullptr;
+  std::size_t fewest = std::max<std::size_t>(1, wish.size() / 3) + 1, begins = 0;
+  for (const std::string& name : names.first(std::min(names.size(), most))) {
+    if (name.empty() || name.size() > longest) continue;
+    const std::string known = lower(name);
+    if (known.starts_with(wish)) {
+      begun = &name;
+      ++begins;
+    }
+    for (const std::string& part : {known, known.substr(known.rfind('/') + 1)}) {
+      const std::size_t all = std::max(part.size(), wish.size());
+      if (all - std::min(part.size(), wish.size()) >= fewest) continue;
+      // A word of one letter is as near to any other.
+      if (const std::size_t count = changes(wish, part); count < fewest && count < wish.size()) {
+        fewest = count;
+        nearest = &name;
+      }
+    }
   }
-  return nearest;
+  if (nearest == nullptr && begins == 1 && wish.size() > 1) nearest = begun;
+  return nearest == nullptr ? std::nullopt : std::optional(*nearest);
 }
 
-}  // namespace tessera::scene
+}  // namespace tessera

@@ -1,4 +1,4 @@
-#include "scene/nearest_name.hpp"
+#include "tessera/nearest_name.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/command_line.hpp"
+
+/// A run of `render` as a TOML file: options by their long names, `input` and `more` for its positional arguments, in
+/// the words of the command line; of several values an array. File names are relative to where the program is called.
+namespace tessera::apps {
+
+/// `arguments`, those after `tessera`, with what the file of their --config gives and they do not. Throws
+/// Error(bad_input) naming the file and what in it is no option.
+std::vector<std::string> with_scene_file(const std::vector<std::string>& arguments);
+
+/// Declares --config and --save-config.
+void add_scene_options(CLI::App& render, RenderWords& words);
+
+/// Writes what was given, but for --config and --save-config. Throws Error(bad_input) for a value with a line break, #
+/// or both kinds of quotes, which TOML as it is read here does not hold.
+void save_scene(const CLI::App& render, const std::filesystem::path& file);
+
+}  // namespace tessera::apps

@@ -1,0 +1,9 @@
+#include "tessera/presets.hpp"
+
+#include "colormaps/presets.hpp"
+
+namespace tessera {
+
+TransferFunction preset_function(std::string_view name) { return colormaps::preset(name, {}).function; }
+
+}  // namespace tessera

@@ -1,0 +1,47 @@
+#include "io/missing_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <system_error>
+#include <vector>
+
+#include "tessera/nearest_name.hpp"
+
+namespace tessera::io {
+
+namespace {
+
+std::string without_digits(std::string name) {
+  std::erase_if(name, [](unsigned char c) { return std::isdigit(c) != 0; });
+  return name;
+}
+
+}  // namespace
+
+std::string meant_file(const std::filesystem::path& file) {
+  constexpr std::size_t most = 1000;
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  std::vector<std::string> names;
+  std::error_code error;
+  std::filesystem::directory_iterator entry(folder, error);
+  for (; !error && names.size() < most && entry != std::filesystem::directory_iterator(); entry.increment(error))
+    names.push_back(entry->path().filename().string());
+  // The next piece or step of a series is not what was meant.
+  const std::string wish = without_digits(file.filename().string());
+  std::erase_if(names, [&](const std::string& name) { return without_digits(name) == wish; });
+  std::ranges::sort(names);  // a folder has no order of its own
+  const auto near = nearest_name(file.filename().string(), names);
+  if (!near) return {};
+  return fmt::format("did you mean {}?",
+                     (file.has_parent_path() ? folder / *near : std::filesystem::path(*near)).string());
+}
+
+scene::Error missing_file(const std::filesystem::path& file) {
+  const std::string meant = meant_file(file);
+  return scene::bad_input(
+      fmt::format("{}: there is no such file; {}", file.string(), meant.empty() ? "check the name" : meant));
+}
+
+}  // namespace tessera::io

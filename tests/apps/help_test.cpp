@@ -1,0 +1,95 @@
+// `--help`, `tessera help`, and what is said of names that are nearly right.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "apps/command_line.hpp"
+#include "apps/help_pages.hpp"
+#include "apps/program.hpp"
+
+namespace tessera::apps {
+namespace {
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(Help, OfRenderIsAScreenfulWithThreeExamples) {
+  const Outcome help = tessera({"render", "--help"});
+  EXPECT_EQ(help.status, 0);
+  EXPECT_TRUE(help.err.empty()) << help.err;
+  const auto lines = lines_of(help.out);
+  EXPECT_LE(lines.size(), 60U);
+  EXPECT_EQ(std::ranges::count_if(lines, [](const std::string& l) { return l.starts_with("  tessera render "); }), 3);
+}
+
+TEST(Help, IsAtMostHundredColumnsWide) {
+  const CommandLine line_of;
+  for (const CLI::App* command : line_of.commands())
+    for (const std::vector<std::string>& words :
+         {std::vector<std::string>{command->get_name(), "--help"}, {"help", "--all", command->get_name()}}) {
+      const Outcome help = tessera(words);
+      EXPECT_EQ(help.status, 0);
+      for (const std::string& line : lines_of(help.out)) EXPECT_LE(line.size(), 100U) << command->get_name() << line;
+    }
+}
+
+TEST(Help, AllHasEveryOption) {
+  const CommandLine line;
+  const std::string page = tessera({"render", "--help-all"}).out;
+  EXPECT_EQ(page, tessera({"help", "render", "--all"}).out);
+  for (const CLI::Option* option : line.render->get_options())
+    if (option->nonpositional() && !option->get_group().empty() && option != line.render->get_help_ptr() &&
+        option != line.render->get_help_all_ptr()) {
+      const std::string name = "--" + option->get_lnames().front();
+      EXPECT_TRUE(page.find(' ' + name + ' ') != std::string::npos ||
+                  page.find(' ' + name + '\n') != std::string::npos || page.find(' ' + name + ',') != std::string::npos)
+          << name;
+    }
+}
+
+TEST(Help, OfACommandIsWhatTheCommandSays) {
+  EXPECT_EQ(tessera({"help", "render"}).out, tessera({"render", "--help"}).out);
+  EXPECT_EQ(tessera({"help"}).out, tessera({"--help"}).out);
+}
+
+TEST(Help, NamesTheNearestName) {
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  const std::string other = folder / "other.png";
+  struct Case {
+    std::vector<std::string> words;
+    std::string meant;
+  };
+  const std::vector<Case> cases = {
+      {{"render", mesh, "-o", other, "--feild", "s"}, "did you mean --field?"},
+      {{"render", mesh, "-o", other, "--color-bra=left"}, "did you mean --color-bar?"},
+      {{"rendr", mesh}, "did you mean render?"},
+      {{"help", "inof"}, "did you mean info?"},
+      {{"render", mesh, "-o", other, "--transfer-function", "virids"}, "did you mean viridis?"},
+      {{"render", mesh, "-o", other, "--transfer-function", "viridis:peask"}, "did you mean viridis:peaks?"},
+      {{"render", mesh, "-o", other, "--field", "ponit:f"}, "did you mean 'point:f'?"},
+      {{"info", folder / "cubee.vtu"}, "did you mean " + mesh + "?"},
+  };
+  for (const Case& c : cases) {
+    const Outcome outcome = tessera(c.words);
+    EXPECT_EQ(outcome.status, 2) << c.meant;
+    EXPECT_EQ(outcome.error_lines(), 1U) << outcome.err;
+    EXPECT_NE(outcome.err.find(c.meant), std::string::npos) << c.meant << '\n' << outcome.err;
+  }
+}
+
+TEST(Help, GuessesNothingFarFetched) {
+  const Outcome outcome = tessera({"info", "a.vtu", "--wibble"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.err.find("did you mean"), std::string::npos) << outcome.err;
+}
+
+}  // namespace
+}  // namespace tessera::apps

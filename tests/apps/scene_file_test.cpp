@@ -1,0 +1,72 @@
+// Options in a file: what --save-config writes, --config reads.
+
+#include <gtest/gtest.h>
+
+#include "apps/program.hpp"
+
+namespace tessera::apps {
+namespace {
+
+TEST(SceneFile, ComesBackAsItWasSaved) {
+  const Folder folder;
+  const std::string mesh = folder.cube(), scene = folder / "scene.toml", picture = folder / "a.png";
+  const Outcome first = tessera({"render",
+                                 mesh,
+                                 "-o",
+                                 picture,
+                                 "--size",
+                                 "32x24",
+                                 "--range",
+                                 "-1,2",
+                                 "--axes",
+                                 "--color-bar=left",
+                                 "--color-bar-title",
+                                 "p = \"1, 2\"",
+                                 "--annotate",
+                                 "top: one, two",
+                                 "--annotate",
+                                 "it's {field}",
+                                 "--opacity",
+                                 "2",
+                                 "--save-config",
+                                 scene});
+  ASSERT_EQ(first.status, 0) << first.err;
+  const std::string bytes = contents(picture), saved = contents(scene);
+  const std::string again = folder / "again.toml";
+  ASSERT_EQ(tessera({"render", "--config", scene, "-o", folder / "b.png", "--save-config", again}).status, 0);
+  EXPECT_EQ(contents(folder / "b.png"), bytes);
+  std::string expected = saved;
+  expected.replace(expected.find(picture), picture.size(), folder / "b.png");
+  EXPECT_EQ(contents(again), expected);
+}
+
+TEST(SceneFile, CommandLineWins) {
+  const Folder folder;
+  const std::string scene =
+      folder.file("s.toml", "input = \"" + (folder / "none.vtu") + "\"\nsize = \"8x8\"\nquiet = true\n" +
+                                "output = \"" + (folder / "a.png") + "\"\n");
+  const Outcome run = tessera({"render", folder.cube(), "--config", scene});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  EXPECT_EQ(tessera({"render", "--config", scene}).status, 2);  // none.vtu
+}
+
+TEST(SceneFile, NamesWhatIsNoOption) {
+  const Folder folder;
+  const std::string scene = folder.file("s.toml", "feild = \"f\"\n");
+  const Outcome run = tessera({"render", folder.cube(), "-o", folder / "a.png", "--config", scene});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.err.find("s.toml: 'feild' is no option of render; did you mean field?"), std::string::npos) << run.err;
+  EXPECT_EQ(tessera({"render", "--config", folder / "none.toml"}).status, 2);
+}
+
+TEST(SceneFile, RefusesToSaveWhatWouldNotComeBack) {
+  const Folder folder;
+  const Outcome run = tessera(
+      {"render", folder.cube(), "-o", folder / "a.png", "--annotate", "# 1", "--save-config", folder / "s.toml"});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_EQ(run.error_lines(), 1U) << run.err;
+}
+
+}  // namespace
+}  // namespace tessera::apps
