@@ -58,7 +58,7 @@ ExitCode run(int argc, char** argv, Job& job) {
   RenderWords& words = line.words;
   if (!parse(line, argc, argv, job.rank() == 0)) return ExitCode::complete;
 
-  if (!*render_command) refuse_time_steps(words.time_step);
+  if (!*line.render) refuse_time_steps(words.time_step);
   if (words.input == standard_stream) {
     if (job.size() > 1) throw bad_input("standard input: only one process has it; give a file that all can open");
     words.input = spool_standard_input().string();
