@@ -262,6 +262,9 @@ DefaultRange default_range(const DefaultField& field, const std::array<double, 2
     DefaultRange all{range[0], range[1], range[0]};
     return all;
   }
+  // What stands there is rounding's: 0 reads better than 3.57e-18.
+  for (double* const end : {&r.low, &r.high})
+    if (std::abs(*end) < 1e-6 * (r.high - r.low)) *end = 0;
   if (r.has_ground) r.low = std::min(r.low, r.ground);
   if (!r.has_ground && r.low < 0 && r.high > 0 && std::min(-r.low, r.high) > 0.3 * std::max(-r.low, r.high)) {
     r.about_zero = true;

@@ -16,18 +16,18 @@
 ///           CT        a patient (BodyAxes) or DICOM CT, values from -900 or less to 200 or more, as Hounsfield's: air
 ///                     below -900 clear, lung and fat faint, muscle red, bone ivory
 ///           labels    all values whole numbers, 3 to 24 of them or all within 0 to 63: a colour each, 0 of a grid
-///           clear body      another patient (MR): background clear, dark red to ivory values    anything else:
-///           cool-warm
+///           body      another patient (MR): background clear, dark red to ivory
+///           values    anything else: cool-warm
 /// Range   of body and values: what lies between 0.5 and 99.5 % of the volume, background apart; about zero, as much
-///         below as above it, if both sides reach beyond 0.3 of the other. Values outside have the ends' colour.
+///         below as above it, if both sides reach beyond 0.3 of the other. An end within 1e-6 of
+///         the range's width from zero is zero. Values outside have the ends' colour.
 /// Ground  of a grid: if a third of the volume or more lies in one 32nd of the range next to its low end, that end is
 ///         background, up to where values get rare. It is clear.
 /// Opacity each 24th of the range, bar the ground, absorbs about as much in all: so it is in proportion to the inverse
 ///         of the volume that has these values, to the power 0.8. It rises to the high end (about zero: to both) by a
 ///         factor of 3.
 /// Scale   all opacities are scaled so that pixels that show anything are 0.4 opaque in the mean, seen along those of
-/// the
-///         box's axes across which its larger faces lie, with at most one in 100 above 0.98 (PilotPixels). By the
+///         the box's axes across which its larger faces lie, with at most one in 200 above 0.97 (PilotPixels). By the
 ///         samples alone: no picture is made.
 namespace tessera::colormaps {
 

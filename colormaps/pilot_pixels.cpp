@@ -6,7 +6,7 @@
 namespace tessera::colormaps {
 namespace {
 
-constexpr double saturated_alpha = 0.98, most_saturated = 0.01, least_alpha = 1.0 / 255;
+constexpr double saturated_alpha = 0.97, most_saturated = 0.005, least_alpha = 1.0 / 255;
 constexpr double small_part = 0.15, small_part_factor = 0.6, least_face = 0.3;
 
 double interpolated(std::span<const std::array<double, 2>> points, double value) {

@@ -17,7 +17,7 @@ class PilotPixels {
   PilotPixels(const scene::FieldSamples& samples, std::span<const std::array<double, 2>> extinctions, double unit);
 
   /// The factor on extinction that makes pixels of alpha > 1/255 `mean_alpha` opaque in the mean, or less if else more
-  /// than one in 100 had an alpha above 0.98. Where they are less than 0.15 of all, `mean_alpha` is taken times 0.6:
+  /// than one in 200 had an alpha above 0.97. Where they are less than 0.15 of all, `mean_alpha` is taken times 0.6:
   /// such parts are smaller than these pixels, which show them too faint. 1 where nothing shows at any factor.
   [[nodiscard]] double scale(double mean_alpha) const;
 
