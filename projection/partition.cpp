@@ -114,8 +114,7 @@ std::vector<CurveKey> curve_keys(const scene::TetMeshView& mesh, std::span<const
 }
 
 CurveCut::CurveCut(std::uint64_t total, int parts)
-    : total_(total),
-      // A splitter may miss by this much, so a part by twice that.
+    :  // A splitter may miss by this much, so a part by twice that.
       tolerance_(total / (250 * static_cast<std::uint64_t>(parts))),
       splitters_(static_cast<std::size_t>(parts) - 1) {
   if (parts > 1) bins_.push_back({{0, 0}, 0});

@@ -80,7 +80,7 @@ class CurveCut {
     std::uint64_t target;  ///< keys that should lie before it
   };
 
-  std::uint64_t total_, tolerance_;
+  std::uint64_t tolerance_;
   int depth_ = 0;  ///< bits looked at, of 128
   std::vector<Bin> bins_;
   std::vector<Open> open_;

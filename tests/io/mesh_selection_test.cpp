@@ -52,9 +52,10 @@ void expect_no_cracks(const scene::TetMesh& mesh, std::span<const HalfSpace> cli
       std::sort(face.begin(), face.end());
       ++faces[face];
     }
-  for (const auto& [face, count] : faces) {
-    ASSERT_LE(count, 2) << words;
-    if (count == 2) continue;
+  for (const auto& entry : faces) {
+    ASSERT_LE(entry.second, 2) << words;
+    if (entry.second == 2) continue;
+    const std::array<std::uint32_t, 3>& face = entry.first;
     const auto all_on = [&](const auto& distance) {
       return std::all_of(face.begin(), face.end(),
                          [&](std::uint32_t v) { return std::abs(distance(mesh.positions[v])) < 1e-12; });
