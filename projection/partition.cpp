@@ -113,10 +113,9 @@ std::vector<CurveKey> curve_keys(const scene::TetMeshView& mesh, std::span<const
   return keys;
 }
 
+// A splitter may miss by the tolerance, so a part by twice that.
 CurveCut::CurveCut(std::uint64_t total, int parts)
-    :  // A splitter may miss by this much, so a part by twice that.
-      tolerance_(total / (250 * static_cast<std::uint64_t>(parts))),
-      splitters_(static_cast<std::size_t>(parts) - 1) {
+    : tolerance_(total / (250 * static_cast<std::uint64_t>(parts))), splitters_(static_cast<std::size_t>(parts) - 1) {
   if (parts > 1) bins_.push_back({{0, 0}, 0});
   for (std::size_t s = 0; s < splitters_.size(); ++s)
     open_.push_back({s, 0, first_in_file_order(static_cast<int>(s) + 1, total, parts)});
