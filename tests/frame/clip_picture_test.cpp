@@ -10,6 +10,7 @@
 #include "datasets/transfer_functions.hpp"
 #include "frame/random_cases.hpp"
 #include "frame/render.hpp"
+#include "io/mesh_formats.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/mesh_selection.hpp"
 #include "reference/grid_reference.hpp"
@@ -165,6 +166,7 @@ INSTANTIATE_TEST_SUITE_P(SharedData, ClippedData,
 
 TEST_P(ClippedData, IsWithinThePromise) {
   if (!std::filesystem::exists(shared_data / GetParam())) GTEST_SKIP() << "no " << shared_data / GetParam();
+  if (!io::has_vtk()) GTEST_SKIP() << "this build is without VTK";
   const scene::TetMesh mesh = io::read_mesh(shared_data / GetParam()).mesh;
   const scene::Box box = scene::bounds(mesh);
   const double diagonal = glm::length(box.high - box.low);
