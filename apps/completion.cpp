@@ -1,5 +1,7 @@
 #include "apps/completion.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <exception>
 #include <filesystem>
@@ -71,7 +73,8 @@ std::vector<std::string> candidates(const CommandLine& line, const std::vector<s
   if (const std::size_t equals = current.find('='); current.starts_with("--") && equals != std::string::npos) {
     const std::string name = current.substr(0, equals);
     if (const CLI::Option* option = option_named(*command, name))
-      for (const std::string& value : values_of(*option, before, files)) found.push_back(name + '=' + value);
+      for (const std::string& value : values_of(*option, before, files))
+        found.push_back(fmt::format("{}={}", name, value));
     return found;
   }
   if (const CLI::Option* option = before.empty() ? nullptr : option_named(*command, before.back());
