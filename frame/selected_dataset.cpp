@@ -63,7 +63,7 @@ Dataset Dataset::selected(const Selection& selection) const {
                            ": this rank has a part of the mesh; open it with ReadOptions::selection instead");
   Dataset part = *this;
   if (selection.threshold) part = selected_part(part.state_, {{}, selection.threshold});
-  if (!selection.clip.empty()) part = selected_part(part.state_, {selection.clip});
+  if (!selection.clip.empty()) part = selected_part(part.state_, {selection.clip, {}, selection.levels});
   return part;
 }
 

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -72,14 +73,26 @@ void apply_threshold(scene::TetMesh& mesh, const std::array<double, 2>& range) {
 /// A mesh and a half-space, of which it keeps what is inside.
 class HalfSpaceCut {
  public:
-  HalfSpaceCut(scene::TetMesh& mesh, const scene::HalfSpace& kept, const std::string& source)
-      : mesh_(mesh), point_(kept.point), normal_(scene::unit_normal(kept)), source_(source) {
+  HalfSpaceCut(scene::TetMesh& mesh, const scene::HalfSpace& kept, std::span<const double> levels,
+               const std::string& source)
+      : mesh_(mesh), point_(kept.point), normal_(scene::unit_normal(kept)), levels_(levels), source_(source) {
     sides_.reserve(mesh.positions.size());
     for (const glm::dvec3& p : mesh.positions) sides_.push_back(side_of(p));
   }
 
   [[nodiscard]] bool misses() const {
     return std::none_of(sides_.begin(), sides_.end(), [](std::int8_t side) { return side < 0; });
+  }
+
+  /// Makes corners on the plane true to the levels.
+  void level_corners() {
+    if (levels_.empty() || mesh_.association != Association::point) return;
+    for (const Tet& tet : mesh_.tets) {
+      double size = 0;
+      for (const std::uint32_t v : tet) size = std::max(size, std::abs(mesh_.scalars[v]));
+      for (const std::uint32_t v : tet)
+        if (sides_[v] == 0) mesh_.scalars[v] = at_level(mesh_.scalars[v], size);
+    }
   }
 
   /// Adds cells of which something is removed, each once.
@@ -104,6 +117,14 @@ class HalfSpaceCut {
 
  private:
   [[nodiscard]] double distance(const glm::dvec3& p) const { return glm::dot(normal_, p - point_); }
+
+  /// The level that a scalar has but for rounding, next to scalars of that size.
+  [[nodiscard]] double at_level(double scalar, double size) const {
+    constexpr double rounding = 1e-12;  // some thousand last places: edges are shorter than the coordinates' size
+    for (const double level : levels_)
+      if (std::abs(scalar - level) <= rounding * size) return level;
+    return scalar;
+  }
 
   /// -1 outside, 1 inside, 0 on the plane: within the rounding of the distance, which is a corner's own, so that all
   /// who share it agree.
@@ -160,8 +181,10 @@ class HalfSpaceCut {
       if (std::abs(normal_[axis]) == 1) place[axis] = point_[axis];
     mesh_.positions.push_back(place + 0.0);  // -0 becomes 0
     sides_.push_back(0);
-    if (mesh_.association == Association::point)
-      mesh_.scalars.push_back(std::lerp(mesh_.scalars[a], mesh_.scalars[b], share));
+    if (mesh_.association == Association::point) {
+      const double at_a = mesh_.scalars[a], at_b = mesh_.scalars[b];
+      mesh_.scalars.push_back(at_level(std::lerp(at_a, at_b, share), std::max(std::abs(at_a), std::abs(at_b))));
+    }
     const auto vertex = static_cast<std::uint32_t>(mesh_.positions.size() - 1);
     vertices_.emplace(edge, vertex);
     return vertex;
@@ -177,6 +200,7 @@ class HalfSpaceCut {
 
   scene::TetMesh& mesh_;
   glm::dvec3 point_, normal_;
+  std::span<const double> levels_;
   const std::string& source_;
   std::vector<std::int8_t> sides_;  ///< of each vertex
   std::unordered_map<std::uint64_t, std::uint32_t> vertices_;
@@ -224,7 +248,8 @@ void select(scene::TetMesh& mesh, const scene::Selection& selection, MeshCounts&
   counts.cells_out_of_range += cells - cells_in_range;
   std::vector<std::uint64_t> changed;
   for (const scene::HalfSpace& kept : selection.clip) {
-    HalfSpaceCut cut(mesh, kept, source);
+    HalfSpaceCut cut(mesh, kept, selection.levels, source);
+    cut.level_corners();
     if (!cut.misses()) cut.apply(changed);
   }
   counts.cells_clipped += cells_in_range - cells_with_tets(mesh);

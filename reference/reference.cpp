@@ -104,12 +104,14 @@ void Reference::trace(std::size_t tet, const std::array<Corner, 4>& corners, dou
 Pixel Reference::shaded(std::span<const RaySegment> segments, double x, double y) const {
   Integral integral(knots_, emission_);
   Pixel pixel;
-  const DepthInterval kept = kept_interval(view_, x, y, kept_);
+  const DepthInterval interval = kept_interval(view_, x, y, kept_);
+  const KeptDepths kept{interval.nearest, interval.farthest, interval.nearest != view_.nearest(),
+                        interval.farthest != view_.farthest()};
   for (const RaySegment& s : segments) {
     double at = 0, change = s.change_front;  // of the segment's length: what is integrated so far
     const auto depth_at = [&](double part) { return s.front + (s.back - s.front) * part; };
     std::vector<SurfaceCrossing> crossings;
-    if (!surfaces_.empty()) crossings = surface_crossings(surfaces_, corners(s.tet), x, y, kept.nearest, kept.farthest);
+    if (!surfaces_.empty()) crossings = surface_crossings(surfaces_, corners(s.tet), x, y, kept);
     for (const SurfaceCrossing& c : crossings) {
       const double there = c.surface->value - s.corner_scalar;
       integral.add(s.length * (c.part - at), change, there, depth_at(at), depth_at(c.part), s.corner_scalar);

@@ -8,6 +8,10 @@
 namespace tessera::reference {
 namespace {
 
+// Of the field's size in a cell, where a clip's plane has a surface's value. A ray meets the plane 1e-12 of the depth
+// off, vertices being projected to a double's pixels.
+constexpr double level = 1e-10;
+
 using Vector = glm::vec<3, long double>;
 
 /// The gradient times six times the tet's volume, with either sign: by Cramer's rule for the system whose rows are the
@@ -36,18 +40,27 @@ std::vector<SurfaceOfValue> by_value(const Surfaces& surfaces, const scene::Tran
 }
 
 std::vector<SurfaceCrossing> surface_crossings(std::span<const SurfaceOfValue> surfaces,
-                                               const std::array<Corner, 4>& corners, double x, double y, double nearest,
-                                               double farthest) {
+                                               const std::array<Corner, 4>& corners, double x, double y,
+                                               const KeptDepths& kept) {
   std::vector<SurfaceCrossing> found;
   const auto [low, high] = std::minmax({corners[0].scalar, corners[1].scalar, corners[2].scalar, corners[3].scalar});
+  const double size = std::max(std::abs(low), std::abs(high));
+  const auto is_at = [](double depth, double plane) {
+    return std::abs(depth - plane) <= 1e-12 * (std::abs(depth) + std::abs(plane));
+  };
   bool falls = false;
   for (const SurfaceOfValue& surface : surfaces) {
-    if (!(low < surface.value && surface.value <= high)) continue;
+    if (!(low - level * size < surface.value && surface.value <= high + level * size)) continue;
     std::array<Corner, 4> relative = corners;
     for (Corner& c : relative) c.scalar -= surface.value;
     const std::optional<Stretch> whole = intersect(relative, x, y);
-    const std::optional<Stretch> seen = whole ? clipped(*whole, nearest, farthest) : std::nullopt;
-    if (!seen || (seen->scalar_front < 0) == (seen->scalar_back < 0)) continue;
+    std::optional<Stretch> seen = whole ? clipped(*whole, kept.nearest, kept.farthest) : std::nullopt;
+    if (!seen) continue;
+    if (kept.nearest_cut && is_at(seen->front, kept.nearest) && std::abs(seen->scalar_front) <= level * size)
+      seen->scalar_front = 0;
+    if (kept.farthest_cut && is_at(seen->back, kept.farthest) && std::abs(seen->scalar_back) <= level * size)
+      seen->scalar_back = 0;
+    if ((seen->scalar_front < 0) == (seen->scalar_back < 0)) continue;
     falls = seen->scalar_back < 0;
     found.push_back({seen->scalar_front / (seen->scalar_front - seen->scalar_back), &surface});
   }

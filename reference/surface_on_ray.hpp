@@ -23,6 +23,12 @@ struct SurfaceOfValue {
 /// All of them, ascending by value; equal ones as they were given.
 std::vector<SurfaceOfValue> by_value(const Surfaces& surfaces, const scene::TransferFunction& function);
 
+/// Planar depths between which a ray is kept, and whether a clip's plane is there.
+struct KeptDepths {
+  double nearest, farthest;
+  bool nearest_cut = false, farthest_cut = false;
+};
+
 /// Where a segment crosses a surface: at this part of its length.
 struct SurfaceCrossing {
   double part;
@@ -32,10 +38,11 @@ struct SurfaceCrossing {
 /// The crossings of the line through pixel coordinates (x, y) with the surfaces in a tet, in the order along it, of
 /// what lies between two planar depths. A surface is crossed if the scalar at one end lies below its value and the
 /// other does not. For each the scalars are counted from its value, so that the sides are right to a double's last
-/// place.
+/// place. An end at one of the two depths, where that is `cut` by a clip, has a surface's value if that is all but a
+/// part in 1e10 (tessera/selection.hpp: 1e12, which a ray from afar does not tell).
 std::vector<SurfaceCrossing> surface_crossings(std::span<const SurfaceOfValue> surfaces,
-                                               const std::array<Corner, 4>& corners, double x, double y, double nearest,
-                                               double farthest);
+                                               const std::array<Corner, 4>& corners, double x, double y,
+                                               const KeptDepths& kept);
 
 /// A surface's colour in a tet, lit from the eye, seen along a ray of that direction (of any length). Where the field
 /// has no gradient it is lit as if seen face on.

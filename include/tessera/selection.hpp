@@ -30,12 +30,15 @@ TESSERA_EXPORT std::array<HalfSpace, 6> half_spaces_of(const Box& box);
 ///            they are on, for a cut edge is divided from its end that comes first by position, and what is left is
 ///            split as wedges and pyramids of files are. Corners within the rounding of their distance to a plane
 ///            count as on it, so that planes through vertices leave no splinters.
+///            Corners there that have one of `levels` but for rounding (a part in 1e12) have it exactly: an iso-surface
+///            that coincides with a plane is seen all over what is cut if what is left lies below its value, and
+///            nowhere if it lies above.
 /// Grids      have no threshold. Their rays are cut where they meet a plane; bounds are those of what is left, the
-/// range
-///            is the whole grid's.
+///            range is the whole grid's.
 struct Selection {
   std::vector<HalfSpace> clip;
   std::optional<std::array<double, 2>> threshold{};
+  std::vector<double> levels{};  ///< values of the field to which corners on planes are true: those of iso-surfaces
 
   [[nodiscard]] bool all() const { return clip.empty() && !threshold; }
   bool operator==(const Selection&) const = default;

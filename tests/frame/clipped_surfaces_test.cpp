@@ -1,0 +1,103 @@
+// Iso-surfaces in meshes whose cells are cut, against the reference's in the whole mesh along the parts of rays that
+// are kept.
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "datasets/boxes.hpp"
+#include "datasets/transfer_functions.hpp"
+#include "frame/random_cases.hpp"
+#include "frame/random_clips.hpp"
+#include "frame/render.hpp"
+#include "io/mesh_selection.hpp"
+#include "reference/judge.hpp"
+
+namespace tessera::frame {
+namespace {
+
+constexpr double promised_error = 2e-5;  // docs/ACCURACY.md: of exact
+constexpr scene::ImageSize size{40, 40};
+
+scene::TetMesh clipped(const scene::TetMesh& mesh, const std::vector<HalfSpace>& clip,
+                       const scene::Surfaces& surfaces) {
+  scene::TetMesh cut = mesh;
+  io::MeshCounts counts;
+  scene::Selection selection{clip};
+  for (const IsoSurface& iso : surfaces.iso) selection.levels.push_back(iso.value);
+  io::select(cut, selection, counts, "mesh");
+  return cut;
+}
+
+struct Clipping {
+  scene::TetMesh mesh;
+  std::vector<HalfSpace> clip;
+  std::string words;
+  scene::Surfaces surfaces;
+};
+
+Clipping random_clipping(Random& random) {
+  Clipping c;
+  c.mesh = datasets::cube(2 + random.below(4), random.uniform(0, 0.2), random.bits());
+  c.clip = random_clip(random, c.mesh, c.words);
+  if (random.chance(0.3)) {  // the field is the plane's distance, so each of its values is on a plane like it
+    const HalfSpace plane = c.clip.front();
+    const glm::dvec3 normal = glm::normalize(plane.normal);
+    const double offset = random.uniform(-1, 1), scale = random.chance(0.5) ? 1 : random.power(-3, 3);
+    for (std::size_t v = 0; v < c.mesh.positions.size(); ++v)
+      c.mesh.scalars[v] = (offset + glm::dot(normal, c.mesh.positions[v] - plane.point)) * scale;
+    // In the plane, where it is the cut face or nothing, and near it, in pieces however thin.
+    for (const double distance : {0.0, 1e-2, 1e-4, 1e-6, -1e-3})
+      if (random.chance(0.7))
+        c.surfaces.iso.push_back({(offset + distance) * scale, glm::dvec3(random.uniform(0, 1)), 0.6});
+    c.words += ", of which the field is the distance";
+  }
+  const auto range = scene::scalar_range(c.mesh);
+  for (int n = 1 + random.below(4); n > 0; --n)
+    c.surfaces.iso.push_back(
+        {random.chance(0.5)
+             ? random.uniform(range[0], range[1])
+             : c.mesh.scalars[static_cast<std::size_t>(random.below(static_cast<int>(c.mesh.scalars.size())))],
+         glm::dvec3(random.uniform(0, 1), random.uniform(0, 1), 1), random.uniform(0.2, 1)});
+  return c;
+}
+
+TEST(ClippedSurfaces, AreThoseOfRaysCutShort) {
+  const int first = wanted("TESSERA_RANDOM_FIRST", 0), last = first + wanted("TESSERA_RANDOM_CASES", 100);
+  double worst = 0;
+  std::size_t excused = 0, pixels = 0;
+  for (int number = first; number < last; ++number) {
+    Random random(5000011u + static_cast<std::uint64_t>(number));
+    const Clipping c = random_clipping(random);
+    const scene::TetMesh cut = clipped(c.mesh, c.clip, c.surfaces);
+    if (cut.tets.empty()) continue;
+    const scene::Box box = scene::bounds(cut);
+    const double extent = glm::length(box.high - box.low);
+    scene::Camera camera;
+    camera.focal_point = (box.low + box.high) / 2.0;
+    camera.position = camera.focal_point + 4 * extent * random.direction();
+    camera.view_up = random.direction();
+    camera.projection = random.chance(0.5) ? scene::ProjectionKind::perspective : scene::ProjectionKind::orthographic;
+    camera.parallel_scale = extent * random.uniform(0.4, 0.8);
+    camera.view_angle = random.uniform(12, 26);
+    const scene::TransferFunction function =
+        datasets::smooth_knots(20, scene::scalar_range(c.mesh), random.power(-1, 1) / extent, 3);
+    RenderSettings settings;
+    settings.integrator.kind = scene::IntegratorKind::exact;
+    settings.use.lattice = number % 4 != 3;
+    settings.surfaces = c.surfaces;
+    const scene::Image image = Renderer(cut, settings).render(camera, size, function);
+    const reference::Reference reference(c.mesh, camera, size, function, scene::Emission::absorption, c.surfaces,
+                                         c.clip);
+    const reference::Judgement judged = reference::judge(image, reference, promised_error);
+    EXPECT_LE(judged.max_error_not_excused, promised_error)
+        << "case " << number << ", " << c.words << ", at (" << judged.worst_x << ", " << judged.worst_y << ") of "
+        << judged.over_bound;
+    worst = std::max(worst, judged.max_error_not_excused), excused += judged.excused, pixels += judged.pixels_checked;
+  }
+  EXPECT_LE(static_cast<double>(excused), 1e-4 * static_cast<double>(pixels) + 3);
+  std::printf("cases %d to %d: largest error %.3g, %zu of %zu pixels excused\n", first, last - 1, worst, excused,
+              pixels);
+}
+
+}  // namespace
+}  // namespace tessera::frame
