@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -11,7 +10,7 @@
 #include "frame/random_cases.hpp"
 #include "frame/random_clips.hpp"
 #include "frame/render.hpp"
-#include "io/mesh_formats.hpp"
+#include "frame/shared_meshes.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/mesh_selection.hpp"
 #include "reference/grid_reference.hpp"
@@ -110,18 +109,12 @@ TEST(ClipPicture, HoldsAlongTheAxes) {
     }
 }
 
-const std::filesystem::path shared_data = std::filesystem::path(TESSERA_SOURCE_DIR) / "../shared/data";
-
 class ClippedData : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(SharedData, ClippedData,
-                         testing::Values("oxygen-post/postxyz.bin", "bluntfin/bluntfinxyz.bin",
-                                         "bracket/bracket_appended_compressed.vtu", "disk-out/disk_out_ref.ex2",
-                                         "notch/notch_stress_fixed.vtk", "unisim/UNISIM-II-D.vtu"));
+INSTANTIATE_TEST_SUITE_P(SharedData, ClippedData, shared_meshes());
 
 TEST_P(ClippedData, IsWithinThePromise) {
-  if (!std::filesystem::exists(shared_data / GetParam())) GTEST_SKIP() << "no " << shared_data / GetParam();
-  if (!io::has_vtk()) GTEST_SKIP() << "this build is without VTK";
-  const scene::TetMesh mesh = io::read_mesh(shared_data / GetParam()).mesh;
+  if (const std::string missing = missing_mesh(GetParam()); !missing.empty()) GTEST_SKIP() << missing;
+  const scene::TetMesh mesh = io::read_mesh(shared_mesh(GetParam())).mesh;
   const scene::Box box = scene::bounds(mesh);
   const double diagonal = glm::length(box.high - box.low);
   const glm::dvec3 middle = (box.low + box.high) / 2.0 + 0.05 * (box.high - box.low);

@@ -1,11 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <glm/geometric.hpp>
 
 #include "datasets/transfer_functions.hpp"
 #include "frame/render.hpp"
+#include "frame/shared_meshes.hpp"
 #include "io/mesh_reader.hpp"
 #include "reference/judge.hpp"
 
@@ -16,14 +16,13 @@ namespace {
 
 using scene::TransferFunction;
 
-const std::filesystem::path shared_data = std::filesystem::path(TESSERA_SOURCE_DIR) / "../shared/data";
 constexpr scene::ImageSize size{120, 90};
 
 class RealMesh : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(shared_data / GetParam())) GTEST_SKIP() << "no " << shared_data / GetParam();
-    mesh = io::read_mesh(shared_data / GetParam()).mesh;
+    if (const std::string missing = missing_mesh(GetParam()); !missing.empty()) GTEST_SKIP() << missing;
+    mesh = io::read_mesh(shared_mesh(GetParam())).mesh;
     const scene::Box box = scene::bounds(mesh);
     diagonal = glm::length(box.high - box.low);
     scene::Camera outside = scene::frame_box(box, size);
@@ -49,10 +48,7 @@ class RealMesh : public testing::TestWithParam<const char*> {
   std::vector<scene::Camera> cameras;
 };
 
-INSTANTIATE_TEST_SUITE_P(SharedData, RealMesh,
-                         testing::Values("oxygen-post/postxyz.bin", "bluntfin/bluntfinxyz.bin",
-                                         "bracket/bracket_appended_compressed.vtu", "disk-out/disk_out_ref.ex2",
-                                         "notch/notch_stress_fixed.vtk", "unisim/UNISIM-II-D.vtu"));
+INSTANTIATE_TEST_SUITE_P(SharedData, RealMesh, shared_meshes());
 
 TEST_P(RealMesh, ExactIsWithinItsPromise) {
   Renderer renderer(mesh, exact());

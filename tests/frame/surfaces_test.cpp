@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <glm/geometric.hpp>
 
 #include "datasets/boxes.hpp"
@@ -12,6 +11,7 @@
 #include "frame/plateaus.hpp"
 #include "frame/random_cases.hpp"
 #include "frame/render.hpp"
+#include "frame/shared_meshes.hpp"
 #include "io/mesh_reader.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
@@ -266,19 +266,14 @@ TEST(IsoSurface, WhatCannotBeRenderedIsSaid) {
   EXPECT_NE(message(exact(surfaces, true), scene::Association::point).find("not finite"), std::string::npos);
 }
 
-const std::filesystem::path shared_data = std::filesystem::path(TESSERA_SOURCE_DIR) / "../shared/data";
-
 class RealMeshSurfaces : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(SharedData, RealMeshSurfaces,
-                         testing::Values("oxygen-post/postxyz.bin", "bluntfin/bluntfinxyz.bin",
-                                         "bracket/bracket_appended_compressed.vtu", "disk-out/disk_out_ref.ex2",
-                                         "notch/notch_stress_fixed.vtk", "unisim/UNISIM-II-D.vtu"));
+INSTANTIATE_TEST_SUITE_P(SharedData, RealMeshSurfaces, shared_meshes());
 
 TEST_P(RealMeshSurfaces, KeepThePromise) {
-  if (!std::filesystem::exists(shared_data / GetParam())) GTEST_SKIP() << "no " << shared_data / GetParam();
+  if (const std::string missing = missing_mesh(GetParam()); !missing.empty()) GTEST_SKIP() << missing;
   io::MeshOptions read;
   read.smooth = true;
-  const scene::TetMesh mesh = io::read_mesh(shared_data / GetParam(), read).mesh;
+  const scene::TetMesh mesh = io::read_mesh(shared_mesh(GetParam()), read).mesh;
   if (mesh.association == scene::Association::cell) GTEST_SKIP() << "cell data";
   const auto range = scene::scalar_range(mesh);
   const auto value = [&](double part) { return range[0] + part * (range[1] - range[0]); };

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "io/mesh_formats.hpp"
+
+/// Meshes that nobody here made, which lie beside the project on some machines only.
+namespace tessera::frame {
+
+inline auto shared_meshes() {
+  return testing::Values("oxygen-post/postxyz.bin", "bluntfin/bluntfinxyz.bin",
+                         "bracket/bracket_appended_compressed.vtu", "disk-out/disk_out_ref.ex2",
+                         "notch/notch_stress_fixed.vtk", "unisim/UNISIM-II-D.vtu");
+}
+
+inline std::filesystem::path shared_mesh(const char* name) {
+  return std::filesystem::path(TESSERA_SOURCE_DIR) / "../shared/data" / name;
+}
+
+/// Why a test of it is to be skipped; empty where it can be read.
+inline std::string missing_mesh(const char* name) {
+  if (!io::has_vtk()) return "this build is without VTK";
+  return std::filesystem::exists(shared_mesh(name)) ? "" : "no " + shared_mesh(name).string();
+}
+
+}  // namespace tessera::frame
