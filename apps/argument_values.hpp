@@ -33,14 +33,14 @@ struct WithoutWords {
 /// empty.
 WithoutWords parse_without(const std::string& option, const std::string& text);
 
-/// `R,G,B` as linear light, each >= 0, or a name: black, white, gray (linear 0.2158, what sRGB shows half way), red,
-/// green, blue.
+/// `R,G,B` as linear light, each >= 0; `#rrggbb` as sRGB; or a name: black, white, gray (linear 0.2158, what sRGB shows
+/// half way), lightgray, darkgray, red, green, blue, yellow, cyan, magenta, orange, navy.
 std::array<float, 3> parse_color(const std::string& option, const std::string& text);
 
-/// A finite number.
-/// `X,Y,Z`.
+/// `X,Y,Z`, finite; `positive`: each above zero.
 glm::dvec3 parse_vector(const std::string& option, const std::string& text, bool positive);
 
+/// A finite number.
 double parse_number(const std::string& option, const std::string& text);
 
 /// A number that is finite and above zero.

@@ -83,12 +83,12 @@ void CommandLine::declare_help() {
 }
 
 CLI::App* CommandLine::command(const std::string& name) const {
-  for (CLI::App* command : {render, info, convert, generate, chart, timing, formats, presets, help, completion})
+  for (CLI::App* command : commands())
     if (command->get_name() == name) return command;
   return nullptr;
 }
 
-std::vector<const CLI::App*> CommandLine::commands() const {
+std::vector<CLI::App*> CommandLine::commands() const {
   return {render, info, convert, generate, chart, timing, formats, presets, help, completion};
 }
 

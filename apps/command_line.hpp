@@ -20,7 +20,7 @@ struct CommandLine {
   /// Of a subcommand, null for another word.
   [[nodiscard]] CLI::App* command(const std::string& name) const;
   /// Those that a user is told of, in the order of help.
-  [[nodiscard]] std::vector<const CLI::App*> commands() const;
+  [[nodiscard]] std::vector<CLI::App*> commands() const;
 
   RenderWords words;
   StallWords stalls;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+
 namespace tessera::apps {
 namespace {
 

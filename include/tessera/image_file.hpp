@@ -16,8 +16,7 @@ namespace tessera {
 /// Writes a picture by its name's extension.
 ///   .exr  OpenEXR scan lines, ZIP: R G B A linear and premultiplied, Z planar depth (+inf where nothing is).
 ///   .png  sRGB, 8 or 16 bits. Without a background RGBA with straight alpha, as PNG has it: light that a pixel emits
-///   beyond its
-///         alpha (independent emission) is clamped, give a background to see it.
+///         beyond its alpha (independent emission) is clamped, give a background to see it.
 ///   .tif  as .png: 8 or 16 bits, deflated, alpha straight (.tiff too).
 ///   .jpg  sRGB, 8 bits, quality 92, colours in full (.jpeg too). No alpha: without a background it stands on black.
 ///   .pfm  linear RGB, premultiplied, 32-bit floats, little endian, bottom row first. No alpha.

@@ -36,7 +36,8 @@ TEST(SettingWords, AllElseStaysAsItIs) {
 TEST(SettingWords, TableHoldsWhatIsDeclared) {
   std::set<std::string> listed;
   const CommandLine line;
-  std::vector<const CLI::App*> commands = line.commands();
+  const std::vector<CLI::App*> declared = line.commands();
+  std::vector<const CLI::App*> commands(declared.begin(), declared.end());
   commands.push_back(&line.app);
   for (const CLI::App* command : commands)
     for (const CLI::Option* option : command->get_options()) {
