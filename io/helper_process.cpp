@@ -205,10 +205,12 @@ HelperProcess::HelperProcess(HelperTask task) : task_(std::move(task)) {
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     ::posix_spawn_file_actions_addopen(&plan.files, standard, "/dev/null", O_RDWR, 0);
   ::posix_spawn_file_actions_addclosefrom_np(&plan.files, helper_end + 1);
-  sigset_t none, all;
-  ::sigemptyset(&none);
+  sigset_t callers, all;
+  ::sigemptyset(&callers);
+  // What a terminal sends to caller and helper alike is the caller's to answer, with whose end the helper ends.
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) ::sigaddset(&callers, signal);
   ::sigfillset(&all);
-  ::posix_spawnattr_setsigmask(&plan.attributes, &none);
+  ::posix_spawnattr_setsigmask(&plan.attributes, &callers);
   ::posix_spawnattr_setsigdefault(&plan.attributes, &all);
   ::posix_spawnattr_setflags(&plan.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
   std::string name = program.string();
