@@ -24,6 +24,7 @@
 #include <utility>
 
 #include "io/large_vector.hpp"
+#include "io/unfinished.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -216,22 +217,33 @@ HelperProcess::HelperProcess(HelperTask task) : task_(std::move(task)) {
   std::string name = program.string();
   std::array<char*, 2> arguments{name.data(), nullptr};
   pid_t process = -1;
+  // It ends with its caller, but not before its own libraries are loaded: a caller that ends at once ends it too.
+  const auto lock = naming_outputs();
   if (const int error = ::posix_spawn(&process, name.c_str(), &plan.files, &plan.attributes, arguments.data(),
                                       helper_environment().data());
       error != 0)
     fail_to_start(task_.program, fmt::format("{} cannot be started: {}", name, std::strerror(error)));
   process_ = process;
+  add_unfinished(process_);
 }
 
 HelperProcess::~HelperProcess() {
   socket_ = Descriptor();  // which is how it knows that it may end
+  forget();
   while (process_ >= 0 && ::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
   }
+}
+
+void HelperProcess::forget() const {
+  if (process_ < 0) return;
+  const auto lock = naming_outputs();
+  remove_unfinished(process_);
 }
 
 void HelperProcess::report_death(const std::string& subject) {
   if (!death_) {
     socket_ = Descriptor();
+    forget();
     int status = 0;
     pid_t ended = -1;
     while ((ended = ::waitpid(process_, &status, 0)) < 0 && errno == EINTR) {

@@ -60,7 +60,7 @@ def make_data(folder: Path, source: Path):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--tessera", required=True)
-    parser.add_argument("--source", type=Path, required=True)
+    parser.add_argument("--source", type=lambda name: Path(name).resolve(), required=True)
     options = parser.parse_args()
     failed = ran = left = 0
     with tempfile.TemporaryDirectory() as name:
