@@ -49,11 +49,15 @@ void convert_mesh(const std::filesystem::path& input, const std::filesystem::pat
                   int subdivide, const std::optional<ConvertPieces>& pieces, bool quiet) {
   check_mesh_output(output, input, pieces ? std::optional(pieces->count) : std::nullopt);
   options.keep_corners = true;
-  const Dataset data = open_watched(input, options, quiet);
+  StatusLine line(shows_progress(quiet));
+  const Dataset data = open_watched(input, options, line);
+  line.begin("making tets");
   MeshArrays mesh = data.mesh_arrays();
   for (int time = 0; time < subdivide; ++time)
     mesh = datasets::arrays_of(datasets::subdivided(datasets::mesh_of(mesh)));
+  line.begin("writing " + output.filename().string());
   pieces ? write_mesh_pieces(mesh, output, pieces->count, pieces->partition) : write_mesh(mesh, output);
+  line.begin("");
   if (quiet) return;
   std::string parts;
   if (pieces)
@@ -72,8 +76,11 @@ void convert_grid(const std::filesystem::path& input, const std::filesystem::pat
   check_output(output, input);
   if (!options.selection.clip.empty())
     throw bad_input("--clip: volumes are written whole; leave it out, and clip when they are rendered");
-  const Dataset data = open_watched(input, options, quiet);
+  StatusLine line(shows_progress(quiet));
+  const Dataset data = open_watched(input, options, line);
+  line.begin("writing " + output.filename().string());
   write_grid(data, output, block);
+  line.begin("");
   if (quiet) return;
   const GridGeometry& g = data.grid_geometry();
   std::string how_to_read;

@@ -155,6 +155,11 @@ class Film final : public Sink {
     for (; writes_ && next_ < frame; ++next_) output_.skip(options_, frames_[next_]);
   }
 
+  [[nodiscard]] std::string rendering_words(const FilmFrame& frame) const {
+    return frames_.size() > 1 ? "rendering the next"
+                              : fmt::format("rendering {}x{}", frame.size.width, frame.size.height);
+  }
+
   [[nodiscard]] Camera camera_of(const FilmFrame& frame) const {
     return frame.view(*box_, options_.projection, options_.view, axes_);
   }
@@ -163,10 +168,10 @@ class Film final : public Sink {
     frame.require_still_there();
     session_.reset();  // the last step's memory before the next one's
     data_.reset();
-    ReadingLine line(options_.progress && writes_, frame.data.files.front());
+    output_.line().begin("reading " + frame.data.files.front().filename().string());
     ReadOptions watched = read;
     if (frame.data.in_file) watched.time_step = frame.data.in_file;
-    watched.progress = line.listener();
+    watched.progress = output_.line().listener();
     data_.emplace(Dataset::open(frame.data.files, watched, job_.communicator(), settings_.ranks));
     step_ = frame.step;
     const auto [low, high] = data_->range();
@@ -238,6 +243,7 @@ class Film final : public Sink {
     }
     if (frame.step != step_) open(frame, later_read_);
     if (session_) return;
+    output_.line().begin("preparing " + frame.data.files.front().filename().string());
     session_.emplace(*data_, settings_, job_.communicator());
   }
 
@@ -254,13 +260,17 @@ class Film final : public Sink {
         // The last repetition's span holds the writing too.
         if (trace() != nullptr && i > 0) trace()->add_frame(frame.number, frame_begin);
         if (trace() != nullptr) frame_begin = trace()->now_us();
-        rendered = session_->render({record.camera, frame.size}, loaded_.function, options_.frame);
+        output_.line().begin(rendering_words(frame));
+        FrameProgress progress(output_.line(), frame.size);
+        rendered = session_->render({record.camera, frame.size}, loaded_.function, options_.frame,
+                                    output_.line().shown() ? &progress : nullptr);
         frame_ms_.push_back(rendered.statistics.milliseconds);
       }
       if (!writes_) {
         if (trace() != nullptr) trace()->add_frame(frame.number, frame_begin);
         continue;
       }
+      if (!frame.outputs.empty()) output_.line().begin("writing " + frame.outputs.front().filename().string());
       const auto picture = std::make_shared<const RenderedFrame>(std::move(rendered));
       // The cost map is the session's to draw, and that is at the next frame by the time a thread behind would ask.
       std::optional<BalancePictures> shown;
@@ -287,6 +297,7 @@ class Film final : public Sink {
         jobs_.push_back(at);
         views.push_back({camera_of(frames_[at]), frames_[at].size});
       }
+    output_.line().begin(rendering_words(frames_[group.front()]));
     session_->render(views, loaded_.function, options_.frame, *this);
     jobs_before_ += jobs_.size();
   }
@@ -326,6 +337,7 @@ class Film final : public Sink {
     record.frame_ms = std::exchange(frame_ms_, {});
     if (options_.verify > 0) {
       const TraceScope scope(writing(), "verify");
+      output_.line().begin(fmt::format("verifying {} pixels", options_.verify));
       record.verification = session_->verify(rendered, {record.camera, frame.size}, loaded_.function,
                                              static_cast<std::size_t>(options_.verify));
     }

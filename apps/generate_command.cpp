@@ -5,6 +5,7 @@
 #include <map>
 
 #include "apps/argument_values.hpp"
+#include "apps/progress.hpp"
 #include "apps/stderr_lines.hpp"
 #include "datasets/arrays.hpp"
 #include "datasets/generate.hpp"
@@ -45,10 +46,14 @@ void generate(const std::string& kind, const std::filesystem::path& output, cons
     if (!values.emplace(name, parse_number(name, parameter.substr(equals + 1))).second)
       throw bad_input(fmt::format("generate: {} is given twice; give it once", name));
   }
+  StatusLine line(shows_progress(quiet));
+  line.begin("generating " + output.filename().string());
   if (is_grid_output(output)) {
     check_output(output, {});
     const auto volume = datasets::generate_volume(kind, values);
+    line.begin("writing " + output.filename().string());
     write_grid(*volume, output);
+    line.begin("");
     const auto& points = volume->geometry().points;
     if (!quiet)
       say_lines(fmt::format("{}: {} of {}x{}x{} {} samples", output.string(), kind, points[0], points[1], points[2],
@@ -57,7 +62,9 @@ void generate(const std::string& kind, const std::filesystem::path& output, cons
   }
   check_mesh_output(output, {});
   const MeshArrays mesh = datasets::arrays_of(datasets::generate(kind, values));
+  line.begin("writing " + output.filename().string());
   write_mesh(mesh, output);
+  line.begin("");
   if (!quiet)
     say_lines(fmt::format("{}: {} with {} tets, {} points, field {}", output.string(), kind, mesh.tets.size() / 4,
                           mesh.points.size() / 3, mesh.field_name));

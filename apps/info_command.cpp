@@ -90,13 +90,19 @@ void print_check(const MeshCheck& check) {
 }  // namespace
 
 void info(const std::filesystem::path& input, const ReadOptions& options, bool as_json, bool check) {
-  const Dataset data = open_watched(input, options, false);
+  StatusLine line(shows_progress(false));
+  const Dataset data = open_watched(input, options, line);
   std::optional<MeshCheck> checked;
-  if (check) checked = data.check();
+  if (check) {
+    line.begin("checking " + input.filename().string());
+    checked = data.check();
+  }
+  line.begin("looking through " + input.filename().string());
   const analysis::Description description = described(data);
   const auto loaded = transfer_function_of(data, RenderOptions{});
   const ImageSize size;
   const Camera view = data.default_camera(size);
+  line.begin("");
   if (!as_json) {
     print_text(input, description, loaded, view);
     if (checked) print_check(*checked);

@@ -17,6 +17,7 @@
 #include "apps/formats_command.hpp"
 #include "apps/generate_command.hpp"
 #include "apps/info_command.hpp"
+#include "apps/interruption.hpp"
 #include "apps/parse_arguments.hpp"
 #include "apps/presets_command.hpp"
 #include "apps/render_options.hpp"
@@ -36,6 +37,7 @@ namespace {
 /// One line whatever the message holds: file names may contain line breaks, and libraries' messages do. Nothing if the
 /// run's line has been said. Settings are options in it.
 int fail(const Error& error) {
+  yield_to_interruption();
   std::string line = "tessera: ";
   for (const char c : with_stream_names(with_options(error.what())))
     line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
@@ -51,6 +53,7 @@ bool to_mesh(const std::filesystem::path& input, const std::filesystem::path& ou
 }
 
 ExitCode run(int argc, char** argv, Job& job) {
+  if (job.size() == 1) answer_interruption();
   job.answer_termination();
   job.agree_instruction_sets();
 

@@ -31,7 +31,7 @@ void write_json(const Json& json, const std::filesystem::path& path) {
 
 RunOutput::RunOutput(const RenderOptions& options, const std::vector<FilmFrame>& frames, int ranks)
     : frames_(frames),
-      progress_(options.progress, frames.size()),
+      line_(options.progress, frames.size()),
       report_{{"program", "tessera"}, {"version", TESSERA_VERSION}, {"method", method_json(options, ranks)}},
       frame_reports_(!options.report.empty()) {}
 
@@ -46,38 +46,40 @@ void RunOutput::describe(const RenderOptions& options, analysis::Description dat
 
 void RunOutput::warn(const RenderOptions& options, const std::string& warning) {
   if (options.quiet) return;
-  progress_.clear();
+  const auto away = StatusLine::away();
   say_lines(fmt::format("tessera: warning: {}: {}", options.input().string(), warning));
 }
 
 void RunOutput::skip(const RenderOptions& options, const FilmFrame& frame) {
   if (frame_reports_.kept()) frame_reports_.add(frame_json(options, frame, nullptr));
-  progress_.update(++done_, rendered_);
+  line_.finish_frames(++done_, rendered_);
 }
 
 void RunOutput::add(const RenderOptions& options, const FilmFrame& frame, const FrameRecord& record) {
   if (frame_reports_.kept()) frame_reports_.add(frame_json(options, frame, &record));
-  if (rendered_ == 0 && !options.quiet) {
-    progress_.clear();
-    say_lines(run_line(options, *data_, *transfer_function_, frames_, frame, record));
-    for (const std::string& note : data_->notes) say_lines("note: " + note);
+  {
+    const auto away = StatusLine::away();
+    if (rendered_ == 0 && !options.quiet) {
+      say_lines(run_line(options, *data_, *transfer_function_, frames_, frame, record));
+      for (const std::string& note : data_->notes) say_lines("note: " + note);
+    }
+    if (frames_.size() > 1 && !options.quiet) {
+      say_lines(frame_line(options, frames_, frame, record));
+    }
+    // Standard output that a picture or the report goes to holds nothing else.
+    std::FILE* const lines = options.to_standard_output || options.report_to_standard_output ? stderr : stdout;
+    if (options.repeat > 0) fmt::print(lines, "{}\n", frame_ms_line(record.frame_ms));
+    if (record.verification) {
+      fmt::print(lines, "{}\n", verification_line(*record.verification, frame.number));
+      met_ = met_ && record.verification->met;
+    }
   }
-  if (frames_.size() > 1 && !options.quiet) {
-    progress_.clear();
-    say_lines(frame_line(options, frames_, frame, record));
-  }
-  // Standard output that a picture or the report goes to holds nothing else.
-  std::FILE* const lines = options.to_standard_output || options.report_to_standard_output ? stderr : stdout;
-  if (options.repeat > 0) fmt::print(lines, "{}\n", frame_ms_line(record.frame_ms));
-  if (record.verification) {
-    fmt::print(lines, "{}\n", verification_line(*record.verification, frame.number));
-    met_ = met_ && record.verification->met;
-  }
-  progress_.update(++done_, ++rendered_);
+  line_.finish_frames(++done_, ++rendered_);
 }
 
 ExitCode RunOutput::finish(const RenderOptions& options) {
-  progress_.clear();
+  line_.begin("");
+  const auto away = StatusLine::away();
   if (data_) {
     report_[data_->is_mesh ? "mesh" : "volume"] = analysis::data_json(options.input(), *data_);
     report_["transfer_function"] = analysis::transfer_function_json(*transfer_function_);

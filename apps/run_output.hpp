@@ -35,11 +35,14 @@ class RunOutput {
   /// Writes the report, if asked. Complete, or accuracy_not_met.
   ExitCode finish(const RenderOptions& options);
 
+  /// What the run is at.
+  [[nodiscard]] StatusLine& line() { return line_; }
+
   [[nodiscard]] std::size_t rendered() const { return rendered_; }
 
  private:
   const std::vector<FilmFrame>& frames_;
-  Progress progress_;
+  StatusLine line_;
   std::optional<analysis::Description> data_;
   std::optional<LoadedTransferFunction> transfer_function_;
   nlohmann::ordered_json report_;

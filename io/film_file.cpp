@@ -22,6 +22,7 @@
 #include "io/atomic_file.hpp"
 #include "io/display_rows.hpp"
 #include "io/helper_messages.hpp"
+#include "io/unfinished.hpp"
 #include "scene/error.hpp"
 #include "scene/image.hpp"
 
@@ -67,13 +68,19 @@ std::filesystem::path find_ffmpeg() {
   return {};
 }
 
+/// Pictures to write in its place. A name that is numbered already has its number.
+std::string pictures_instead(const std::filesystem::path& file) {
+  const std::string stem = (file.parent_path() / file.stem()).string();
+  return stem + (stem.find('%') == std::string::npos ? "_%04d.png" : ".png");
+}
+
 std::filesystem::path require_ffmpeg(const std::filesystem::path& file) {
   std::filesystem::path program = find_ffmpeg();
   if (program.empty())
     throw bad_input(
         fmt::format("{}: films are made by the program ffmpeg, which is not on PATH; install it (Debian: apt install "
-                    "ffmpeg), or write {}_%04d.png",
-                    file.string(), (file.parent_path() / file.stem()).string()));
+                    "ffmpeg), or write {}",
+                    file.string(), pictures_instead(file)));
   return program;
 }
 
@@ -121,6 +128,7 @@ struct FilmFile::State {
   }
   ~State() {
     if (process > 0) {
+      forget_process();
       ::kill(process, SIGKILL);
       ::waitpid(process, nullptr, 0);
     }
@@ -129,6 +137,11 @@ struct FilmFile::State {
   State& operator=(const State&) = delete;
 
   void start(const std::filesystem::path& program);
+  /// Before its end is waited for, after which its number may be another's.
+  void forget_process() const {
+    const auto lock = io::naming_outputs();
+    io::remove_unfinished(process);
+  }
   /// No more pictures; waits for its end. Throws if that is not a good one.
   void end();
   [[noreturn]] void fail(const std::string& what) const;
@@ -179,7 +192,10 @@ void FilmFile::State::start(const std::filesystem::path& program) {
   // A group of its own: Ctrl-C is for this program, whose end it hears of.
   ::posix_spawnattr_setpgroup(&attributes, 0);
   ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+  auto lock = io::naming_outputs();
   const int failed = ::posix_spawn(&process, program.c_str(), &files, &attributes, arguments.data(), environ);
+  if (failed == 0) io::add_unfinished(process);
+  lock.unlock();
   ::posix_spawn_file_actions_destroy(&files);
   ::posix_spawnattr_destroy(&attributes);
   if (failed != 0) {
@@ -200,12 +216,17 @@ std::string FilmFile::State::last_words() const {
 
 void FilmFile::State::fail(const std::string& what) const {
   throw Error(ErrorCode::system_failure, file.string(), "ffmpeg cannot make it: " + what,
-              fmt::format("see to that, or write {}_%04d.png", (file.parent_path() / file.stem()).string()));
+              "see to that, or write " + pictures_instead(file));
 }
 
 void FilmFile::State::end() {
   pictures = io::Descriptor();
   int status = 0;
+  // Looked at first, and taken away once it is no longer to be ended by abandon_outputs().
+  siginfo_t ended{};
+  while (::waitid(P_PID, static_cast<id_t>(process), &ended, WEXITED | WNOWAIT) < 0 && errno == EINTR) {
+  }
+  forget_process();
   while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
   }
   process = -1;

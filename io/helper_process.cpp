@@ -24,6 +24,7 @@
 #include <utility>
 
 #include "io/large_vector.hpp"
+#include "io/unfinished.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -205,31 +206,44 @@ HelperProcess::HelperProcess(HelperTask task) : task_(std::move(task)) {
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     ::posix_spawn_file_actions_addopen(&plan.files, standard, "/dev/null", O_RDWR, 0);
   ::posix_spawn_file_actions_addclosefrom_np(&plan.files, helper_end + 1);
-  sigset_t none, all;
-  ::sigemptyset(&none);
+  sigset_t callers, all;
+  ::sigemptyset(&callers);
+  // What a terminal sends to caller and helper alike is the caller's to answer, with whose end the helper ends.
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) ::sigaddset(&callers, signal);
   ::sigfillset(&all);
-  ::posix_spawnattr_setsigmask(&plan.attributes, &none);
+  ::posix_spawnattr_setsigmask(&plan.attributes, &callers);
   ::posix_spawnattr_setsigdefault(&plan.attributes, &all);
   ::posix_spawnattr_setflags(&plan.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
   std::string name = program.string();
   std::array<char*, 2> arguments{name.data(), nullptr};
   pid_t process = -1;
+  // It ends with its caller, but not before its own libraries are loaded: a caller that ends at once ends it too.
+  const auto lock = naming_outputs();
   if (const int error = ::posix_spawn(&process, name.c_str(), &plan.files, &plan.attributes, arguments.data(),
                                       helper_environment().data());
       error != 0)
     fail_to_start(task_.program, fmt::format("{} cannot be started: {}", name, std::strerror(error)));
   process_ = process;
+  add_unfinished(process_);
 }
 
 HelperProcess::~HelperProcess() {
   socket_ = Descriptor();  // which is how it knows that it may end
+  forget();
   while (process_ >= 0 && ::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
   }
+}
+
+void HelperProcess::forget() const {
+  if (process_ < 0) return;
+  const auto lock = naming_outputs();
+  remove_unfinished(process_);
 }
 
 void HelperProcess::report_death(const std::string& subject) {
   if (!death_) {
     socket_ = Descriptor();
+    forget();
     int status = 0;
     pid_t ended = -1;
     while ((ended = ::waitpid(process_, &status, 0)) < 0 && errno == EINTR) {

@@ -105,6 +105,8 @@ class HelperProcess {
   void send(const nlohmann::json& request, const std::string& subject, int file = -1);
   HelperMessage receive(const std::string& subject);
   void open_window(const std::string& subject);
+  /// Before its end is waited for, after which its number may be another's.
+  void forget() const;
   [[noreturn]] void report_death(const std::string& subject);
 
   HelperTask task_;

@@ -84,7 +84,8 @@ MeshBlocks read_plot3d(const std::filesystem::path& file, const MeshOptions& opt
 
 /// A surface (.stl .vtp .ply .poly .smesh) filled by TetGen with tets of at most `max_volume`, or of a 30,000th of what
 /// it encloses. Point fields: "depth", the distance to the surface in world units, after the file's own attributes.
-MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::optional<double> max_volume);
+MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::optional<double> max_volume,
+                        const ReadProgressFunction& progress);
 
 /// TetGen's mesh; either file's name finds the other.
 MeshBlocks read_node_ele(const std::filesystem::path& file);

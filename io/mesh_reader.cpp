@@ -59,7 +59,7 @@ MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row,
     case FileKind::vtk_surface:
     case FileKind::ply:
     case FileKind::tetgen_surface:
-      return read_surface(file, row.kind, options.max_volume);
+      return read_surface(file, row.kind, options.max_volume, options.progress);
     case FileKind::tets:
       return blocks_of_tets(parse_tets(MappedFile(file).bytes(), file.string()));
     case FileKind::amr:

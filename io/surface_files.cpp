@@ -49,7 +49,8 @@ double box_volume(const Surface& surface) {
 
 }  // namespace
 
-MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::optional<double> max_volume) {
+MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::optional<double> max_volume,
+                        const ReadProgressFunction& progress) {
   const std::string source = file.string();
   if (max_volume && !(*max_volume > 0))
     throw scene::bad_input(fmt::format("{}: the largest tet volume is {}; give a positive one", source, *max_volume));
@@ -87,6 +88,7 @@ MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::o
   if (!(volume > 0))
     throw scene::bad_input(fmt::format("{}: the surface is flat, it encloses nothing; give a closed one", source));
   const double largest = max_volume.value_or(volume / default_tets);
+  if (progress) progress({ReadProgress::Stage::filling, 0});
   FilledMesh filled = fill_surface(surface, {largest, volume / largest, max_volume.has_value()}, source);
   result.notes.push_back(fmt::format("surface of {} points and {} facets filled with {} tets of at most {:.4g}{}",
                                      surface.points.size(), surface.facets.size(), filled.tets.size() / 4, largest,

@@ -54,7 +54,7 @@ class TESSERA_EXPORT AtomicFile {
   [[nodiscard]] int descriptor() const { return descriptor_; }
 
   /// For libraries that open their output by name: where they may write until commit(). Costs the nameless file its
-  /// advantage: a killed process leaves the `.part` behind.
+  /// advantage: a killed process leaves the `.part` behind, unless it called abandon_outputs().
   std::filesystem::path named_part();
 
  private:
@@ -66,6 +66,11 @@ class TESSERA_EXPORT AtomicFile {
   bool begun_ = false;
   std::uint64_t position_ = 0;
 };
+
+/// For a program that ends in mid-run and runs no destructors (Ctrl-C): removes the `.part`s that AtomicFiles of this
+/// process have, ends the program that makes a film, and lets no output appear any more: who commits one waits for the
+/// end. From any thread, but not from a signal's handler.
+TESSERA_EXPORT void abandon_outputs() noexcept;
 
 /// Writes all of a text file, whole or not at all. Throws as AtomicFile.
 TESSERA_EXPORT void write_text(const std::filesystem::path& target, std::string_view text);

@@ -9,7 +9,8 @@ namespace tessera {
 struct ReadProgress {
   enum class Stage : std::uint8_t {
     reading,  ///< the library of its format reads the file
-    copying   ///< points and cells come from there
+    copying,  ///< points and cells come from there
+    filling   ///< a surface is filled with tets: nobody knows how far that is
   };
   Stage stage = Stage::reading;
   double done = 0;  ///< of that stage, 0 to 1, as far as the library says: it need not grow evenly

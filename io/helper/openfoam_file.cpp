@@ -161,6 +161,11 @@ ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::path& n
   const bool is_whole = !meshes_of(folder).empty();
   const bool is_decomposed = !is_whole && (std::filesystem::exists(folder / "processor0", unknown) ||
                                            std::filesystem::exists(folder / "processors", unknown));
+  if (!is_decomposed && !std::filesystem::is_directory(folder / "constant", unknown))
+    throw scene::bad_input(fmt::format(
+        "{}: there is no mesh of OpenFOAM beside it, constant/polyMesh or processor0/constant/polyMesh; move "
+        "it into the folder of a case, or name that folder",
+        source));
   reader->SetCaseType(is_decomposed ? vtkPOpenFOAMReader::DECOMPOSED_CASE : vtkPOpenFOAMReader::RECONSTRUCTED_CASE);
   reader->SetUse64BitLabels(has_wide_labels(folder));
   reader->CreateCellToPointOff();

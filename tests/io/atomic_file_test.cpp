@@ -28,6 +28,26 @@ TEST(AtomicFile, AppearsOnlyWhenCommitted) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"out"});
 }
 
+// In a process of its own, which it spoils for outputs.
+TEST(AtomicFile, IsRemovedEvenUnderItsTemporaryNameWhenTheProgramAbandonsItsOutputs) {
+  const TemporaryFolder folder;
+  const pid_t child = fork();
+  if (child == 0) {
+    AtomicFile nameless(folder / "a"), named(folder / "b"), done(folder / "c");
+    nameless.write("half");
+    std::ofstream(named.named_part()) << "half";
+    done.commit();
+    abandon_outputs();
+    alarm(1);
+    nameless.commit();  // waits for the end
+    _exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM) << status;
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"c"});
+}
+
 TEST(AtomicFile, ReplacesAnOldFileAsAWholeOrLeavesIt) {
   const TemporaryFolder folder;
   folder.write("out", "old");

@@ -1,0 +1,78 @@
+#include "apps/interruption.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <string>
+#include <thread>
+
+#include "apps/progress.hpp"
+#include "tessera/job.hpp"
+#include "tessera/output_file.hpp"
+
+namespace tessera::apps {
+namespace {
+
+/// What a signal's handler may touch: the pipe on which a thread hears of it, which may then do what handlers may not.
+std::array<int, 2> heard{-1, -1};
+std::atomic<int> ending = 0;  ///< the signal
+
+extern "C" void on_interruption(int signal) {
+  const int before = errno;
+  int none = 0;
+  // Whoever asks twice is in a hurry.
+  if (!ending.compare_exchange_strong(none, signal)) ::_exit(128 + signal);
+  const auto number = static_cast<char>(signal);
+  [[maybe_unused]] const ssize_t told = ::write(heard[1], &number, 1);
+  errno = before;
+}
+
+[[noreturn]] void end_by(int signal) {
+  StatusLine::end_all();
+  abandon_outputs();
+  Job::say_once(fmt::format("tessera: ended by {}; no output is half-written", signal == SIGINT    ? "Ctrl-C"
+                                                                               : signal == SIGTERM ? "SIGTERM"
+                                                                                                   : "SIGHUP"));
+  std::signal(signal, SIG_DFL);
+  ::kill(::getpid(), signal);
+  for (;;) ::pause();
+}
+
+void await_interruption() {
+  char signal = 0;
+  ssize_t got = 0;
+  while ((got = ::read(heard[0], &signal, 1)) < 0 && errno == EINTR) {
+  }
+  if (got == 1) end_by(signal);
+}
+
+}  // namespace
+
+void answer_interruption() {
+  if (::pipe2(heard.data(), O_CLOEXEC) != 0) return;  // then the signals end it as they end any program
+  try {
+    std::thread(await_interruption).detach();
+  } catch (const std::exception&) {
+    return;
+  }
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction present {};
+    if (::sigaction(signal, nullptr, &present) != 0 || present.sa_handler == SIG_IGN) continue;
+    struct sigaction action {};
+    action.sa_handler = on_interruption;
+    action.sa_flags = SA_RESTART;
+    ::sigaction(signal, &action, nullptr);
+  }
+}
+
+void yield_to_interruption() {
+  while (ending != 0) ::pause();
+}
+
+}  // namespace tessera::apps

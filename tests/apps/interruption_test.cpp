@@ -1,0 +1,249 @@
+// Ctrl-C and its like end every command at once and leave nothing; and what a terminal shows until then.
+#include <gtest/gtest.h>
+#include <pty.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "apps/program.hpp"
+#include "io/surface.hpp"
+
+namespace tessera::apps {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+/// A word in the environment of what a test starts, by which all that this starts in turn is found.
+class Mark {
+ public:
+  Mark() : word_("TESSERA_TEST_MARK=" + std::to_string(::getpid()) + "-" + std::to_string(++count())) {
+    ::setenv("TESSERA_TEST_MARK", word_.substr(word_.find('=') + 1).c_str(), 1);
+  }
+  ~Mark() { ::unsetenv("TESSERA_TEST_MARK"); }
+  Mark(const Mark&) = delete;
+  Mark& operator=(const Mark&) = delete;
+
+  /// Processes that have it, zombies not.
+  [[nodiscard]] std::vector<pid_t> processes() const {
+    std::vector<pid_t> found;
+    std::error_code gone;
+    for (const auto& entry : fs::directory_iterator("/proc", gone)) {
+      const std::string name = entry.path().filename();
+      if (name.find_first_not_of("0123456789") == std::string::npos &&
+          ('\0' + contents(entry.path() / "environ")).find('\0' + word_ + '\0') != std::string::npos)
+        found.push_back(std::stoi(name));
+    }
+    return found;
+  }
+  /// Whether none is left within two seconds: the kernel takes its time to free gigabytes.
+  [[nodiscard]] bool is_gone() const {
+    for (const auto end = Clock::now() + std::chrono::seconds(2); Clock::now() < end;
+         std::this_thread::sleep_for(milliseconds(10)))
+      if (processes().empty()) return true;
+    return false;
+  }
+
+ private:
+  static int& count() {
+    static int number = 0;
+    return number;
+  }
+  std::string word_;
+};
+
+/// A command at a terminal of its own.
+class AtTerminal {
+ public:
+  explicit AtTerminal(const std::vector<std::string>& command) {
+    std::vector<char*> words;
+    for (const auto& word : command) words.push_back(const_cast<char*>(word.c_str()));
+    words.push_back(nullptr);
+    process_ = ::forkpty(&terminal_, nullptr, nullptr, nullptr);
+    if (process_ == 0) {
+      ::execvp(words.front(), words.data());
+      ::_exit(127);
+    }
+  }
+  ~AtTerminal() {
+    if (process_ > 0) {
+      ::kill(process_, SIGKILL);
+      ::waitpid(process_, nullptr, 0);
+    }
+    ::close(terminal_);
+  }
+  AtTerminal(const AtTerminal&) = delete;
+  AtTerminal& operator=(const AtTerminal&) = delete;
+
+  /// Waits until it has shown this; false if it ends before.
+  bool shows(const std::string& text) {
+    while (shown_.find(text) == std::string::npos)
+      if (!read_more()) return false;
+    return true;
+  }
+  void press_control_c() const { ASSERT_EQ(::write(terminal_, "\x03", 1), 1); }
+  /// Its status, 128 + signal if that was its end.
+  int wait() {
+    while (read_more()) {
+    }
+    int status = 0;
+    ::waitpid(process_, &status, 0);
+    process_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+  [[nodiscard]] const std::string& shown() const { return shown_; }
+
+ private:
+  bool read_more() {
+    char bytes[4096];
+    ssize_t got = 0;
+    while ((got = ::read(terminal_, bytes, sizeof bytes)) < 0 && errno == EINTR) {
+    }
+    if (got <= 0) return false;  // EIO, once nobody has its other end
+    shown_.append(bytes, static_cast<std::size_t>(got));
+    return true;
+  }
+  pid_t process_ = -1;
+  int terminal_ = -1;
+  std::string shown_;
+};
+
+std::vector<std::string> program(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), TESSERA_PROGRAM);
+  return arguments;
+}
+
+/// A plate of a millionth of its width: TetGen fills it with more tets than there is memory for, over minutes.
+std::string plate(const Folder& folder) {
+  return folder.file("plate.poly",
+                     "8 3 0 0\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1e-6\n6 1 0 1e-6\n7 1 1 1e-6\n8 0 1 1e-6\n"
+                     "6 0\n1\n4 1 2 3 4\n1\n4 5 6 7 8\n1\n4 1 2 6 5\n1\n4 2 3 7 6\n1\n4 3 4 8 7\n1\n4 4 1 5 8\n0\n");
+}
+
+/// Time that ending may take: a machine under load, and memory to free.
+constexpr auto at_once = std::chrono::seconds(3);
+
+/// Starts it, sends the signal after a while, and looks at what is left.
+void expect_clean_end(const Folder& folder, const std::vector<std::string>& arguments, int signal, milliseconds after) {
+  SCOPED_TRACE(testing::Message() << arguments[0] << ", signal " << signal << " after " << after.count() << " ms");
+  const Mark mark;
+  const std::vector<std::string> before = folder.names();
+  Running running(program(arguments));
+  std::this_thread::sleep_for(after);
+  ASSERT_TRUE(running.runs()) << running.wait().err;
+  const auto sent = Clock::now();
+  ASSERT_EQ(::kill(running.process(), signal), 0);
+  const Outcome outcome = running.wait();
+  EXPECT_LT(Clock::now() - sent, at_once);
+  EXPECT_EQ(outcome.status, 128 + signal);
+  EXPECT_LE(outcome.error_lines(), 1u) << outcome.err;
+  EXPECT_TRUE(mark.is_gone());
+  EXPECT_EQ(folder.names(), before);
+}
+
+TEST(Interruption, EndsEveryCommandAtOnceAndLeavesNothing) {
+  const Folder folder;
+  const std::string mesh = folder / "mesh.tets", large = folder / "large.tets";
+  ASSERT_EQ(tessera({"generate", "cube", mesh, "n=4", "--quiet"}).status, 0);
+  ASSERT_EQ(tessera({"generate", "cube", large, "n=30", "--quiet"}).status, 0);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    for (const milliseconds after : {milliseconds(80), milliseconds(300)}) {
+      expect_clean_end(folder, {"render", large, "-o", folder / "a.png", "--size", "16384x16384"}, signal, after);
+      expect_clean_end(folder, {"generate", "cube", folder / "b.vtu", "n=250"}, signal, after);
+      expect_clean_end(folder, {"convert", large, folder / "c.vtu", "--subdivide", "4"}, signal, after);
+      expect_clean_end(folder, {"chart", large, "--budget-seconds", "100", "--json", folder / "d.json"}, signal, after);
+      if (io::can_fill_surfaces())
+        expect_clean_end(folder, {"info", plate(folder), "--max-volume", "1e-10"}, signal, after);
+    }
+}
+
+TEST(Interruption, OfAFilmEndsTheProgramThatMakesIt) {
+  const Folder folder;
+  const std::string mesh = folder.cube(), path = std::getenv("PATH");
+  fs::create_directory(folder / "bin");
+  // One that would go on for long after its last picture.
+  fs::permissions(folder.file("bin/ffmpeg", "#!/bin/sh\ncat > /dev/null\nexec sleep 100\n"), fs::perms::owner_all);
+  ::setenv("PATH", (folder / "bin:/usr/bin:/bin").c_str(), 1);
+  for (const int signal : {SIGINT, SIGTERM})
+    expect_clean_end(folder,
+                     {"render", mesh, "-o", folder / "a.mp4", "--orbit", "100000", "--size", "64x64", "--quiet"},
+                     signal, milliseconds(700));
+  ::setenv("PATH", path.c_str(), 1);
+}
+
+TEST(Interruption, LeavesTheFinishedPicturesOfASeriesWhole) {
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  Running running(
+      program({"render", mesh, "-o", folder / "%d.pfm", "--orbit", "100000", "--size", "64x64", "--quiet"}));
+  for (const auto end = Clock::now() + std::chrono::seconds(60); folder.names().size() < 20 && Clock::now() < end;)
+    std::this_thread::sleep_for(milliseconds(10));
+  ASSERT_EQ(::kill(running.process(), SIGINT), 0);
+  EXPECT_EQ(running.wait().status, 130);
+  const auto whole = fs::file_size(folder / "0.pfm");
+  for (const std::string& name : folder.names()) {
+    if (name == "cube.vtu") continue;
+    EXPECT_TRUE(name.ends_with(".pfm")) << name;
+    EXPECT_EQ(fs::file_size(folder / name), whole) << name;
+  }
+}
+
+TEST(Interruption, StaysIgnoredWhereTheCallerHasItIgnored) {
+  const Folder folder;
+  // Children inherit it, as those of nohup do.
+  std::signal(SIGINT, SIG_IGN);
+  std::signal(SIGHUP, SIG_IGN);
+  Running running(program({"generate", "cube", folder / "a.tets", "n=40", "--quiet"}));
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGHUP, SIG_DFL);
+  for (int k = 0; k < 10 && running.runs(); ++k) {
+    std::this_thread::sleep_for(milliseconds(20));
+    ::kill(running.process(), k % 2 == 0 ? SIGINT : SIGHUP);
+  }
+  EXPECT_EQ(running.wait().status, 0);
+  EXPECT_TRUE(fs::exists(folder / "a.tets"));
+}
+
+TEST(Interruption, AtATerminalControlCTakesTheLineOfProgressAway) {
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  const Mark mark;
+  const std::vector<std::string> before = folder.names();
+  AtTerminal run(program({"render", mesh, "-o", folder / "a.png", "--size", "16384x16384", "--threads", "1"}));
+  ASSERT_TRUE(run.shows("rendering 16384x16384")) << run.shown();
+  run.press_control_c();
+  const auto pressed = Clock::now();
+  EXPECT_EQ(run.wait(), 130);
+  EXPECT_LT(Clock::now() - pressed, at_once);
+  EXPECT_TRUE(run.shown().ends_with("\r\x1b[Ktessera: ended by Ctrl-C; no output is half-written\r\n")) << run.shown();
+  EXPECT_TRUE(mark.is_gone());
+  EXPECT_EQ(folder.names(), before);
+}
+
+TEST(Interruption, AtATerminalControlCEndsAFillingToo) {
+  if (!io::can_fill_surfaces()) GTEST_SKIP() << "built without TetGen";
+  const Folder folder;
+  const Mark mark;
+  AtTerminal run(program({"info", plate(folder), "--max-volume", "1e-10"}));
+  ASSERT_TRUE(run.shows("reading plate.poly: filling it with tets")) << run.shown();
+  run.press_control_c();
+  const auto pressed = Clock::now();
+  // The helper is at the same terminal: that it has crashed is nothing to tell of.
+  EXPECT_EQ(run.wait(), 130);
+  EXPECT_LT(Clock::now() - pressed, at_once);
+  EXPECT_EQ(run.shown().find("crashed"), std::string::npos) << run.shown();
+  EXPECT_TRUE(mark.is_gone());
+}
+
+}  // namespace
+}  // namespace tessera::apps
