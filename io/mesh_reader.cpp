@@ -145,7 +145,8 @@ MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options
     MeshBlocks read = read_blocks(file, options);
     if (!has_time_steps(file)) require_no_time_step(options.time_step, source);
     require_blocks(options.blocks, read.block_names, source);
-    MeshFile result = assemble_mesh(std::move(read.blocks), options_after(read, options), source);
+    const MeshOptions rest = options_after(read, options);
+    MeshFile result = assemble_mesh(std::move(read.blocks), rest, source);
     if (!read.fields.empty()) result.fields = std::move(read.fields);
     result.format = std::move(read.format);
     result.blocks = std::move(read.block_names);

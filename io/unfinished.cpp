@@ -1,6 +1,6 @@
 #include "io/unfinished.hpp"
 
-#include <signal.h>
+#include <csignal>
 #include <unistd.h>
 
 #include <algorithm>
