@@ -59,7 +59,7 @@ std::filesystem::path find_ffmpeg() {
   std::string_view path = value == nullptr ? "" : value;
   while (!path.empty()) {
     const std::size_t end = std::min(path.find(':'), path.size());
-    const std::filesystem::path program = std::filesystem::path(path.substr(0, end)) / "ffmpeg";
+    std::filesystem::path program = std::filesystem::path(path.substr(0, end)) / "ffmpeg";
     std::error_code unknown;
     if (end > 0 && std::filesystem::is_regular_file(program, unknown) && ::access(program.c_str(), X_OK) == 0)
       return program;
@@ -169,6 +169,7 @@ void FilmFile::State::start(const std::filesystem::path& program) {
   constexpr int output = 3;
   std::vector<std::string> words = ffmpeg_words(*kind_of(file), size, options, output);
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
 
