@@ -9,6 +9,7 @@ says how many of the messages of apps/ and io/ give advice, by their source, and
 """
 
 import argparse
+import os
 import re
 import subprocess
 import sys
@@ -141,7 +142,7 @@ def main():
 
         def run(command):
             return subprocess.run([options.tessera, *command.split()], cwd=folder, capture_output=True, timeout=60,
-                                  stdin=subprocess.DEVNULL, env={"PATH": "/nowhere"}, errors="replace")
+                                  stdin=subprocess.DEVNULL, env={**os.environ, "PATH": "/nowhere"}, errors="replace")
 
         make_data(run, folder)
         for command, advice, mended in ROWS:
