@@ -14,6 +14,14 @@ namespace {
 
 constexpr double on_level = 1e-10;  // of a voxel's largest value, in a clip's plane
 
+constexpr double rounding = 1e-14;  // more than what field_at() errs, of the largest of its values
+
+std::array<double, 8> differences(const std::array<double, 8>& corner, double value) {
+  std::array<double, 8> d;
+  for (std::size_t n = 0; n < 8; ++n) d[n] = corner[n] - value;
+  return d;
+}
+
 /// Keeps the sign that all of its values have, for weights in [0, 1]; a weight of 0 or 1 gives a value's own bits.
 double between(double low, double high, double weight) { return low * (1 - weight) + high * weight; }
 
@@ -50,11 +58,12 @@ struct SurfaceWalk::Stretch {
   [[nodiscard]] glm::dvec3 place(double u) const {
     return {between(front.x, back.x, u), between(front.y, back.y, u), between(front.z, back.z, u)};
   }
-  /// The sign of the field over a value, whose `difference`s are given.
-  [[nodiscard]] bool below(const std::array<double, 8>& difference, double u) const {
-    const double value = field_at(difference, u == 0 ? front : u == 1 ? back : place(u));
-    const bool cut = (u == 0 && front_cut) || (u == 1 && back_cut);
-    return value < 0 && !(cut && -value <= on_level * size);
+  [[nodiscard]] glm::dvec3 end_or_place(double u) const { return u == 0 ? front : u == 1 ? back : place(u); }
+  [[nodiscard]] bool cut(double u) const { return (u == 0 && front_cut) || (u == 1 && back_cut); }
+  /// Whether the field is below a value, to the last place.
+  [[nodiscard]] bool below(double value, double u) const {
+    const double height = field_at(differences(corner, value), end_or_place(u));
+    return height < 0 && !(cut(u) && -height <= on_level * size);
   }
 };
 
@@ -99,9 +108,11 @@ SurfaceWalk::Stretch SurfaceWalk::stretch_of(const VoxelRay& ray, const scene::G
     const double low = geometry_.lattice(a, voxel[a]), high = geometry_.lattice(a, voxel[a] + 1);
     const double origin = ray.origin[axis], step = ray.step[axis];
     const auto place = [&](double z) {
-      if (step != 0 && z == (low - origin) / step) return 0.0;
-      if (step != 0 && z == (high - origin) / step) return 1.0;
-      return std::clamp((origin + z * step - low) / (high - low), 0.0, 1.0);
+      constexpr double near = 1e-6;  // rounding is less, but for eyes 1e9 voxels away
+      const double p = (origin + z * step - low) / (high - low);
+      if (p < near && step != 0 && z == (low - origin) / step) return 0.0;
+      if (p > 1 - near && step != 0 && z == (high - origin) / step) return 1.0;
+      return std::clamp(p, 0.0, 1.0);
     };
     stretch.front[axis] = place(z0), stretch.back[axis] = place(z1), stretch.side[axis] = high - low;
   }
@@ -141,26 +152,31 @@ double SurfaceWalk::cross(const VoxelRay& ray, const scene::GridIndex& voxel, do
                                              values.begin());
   if (first >= last) return through;
   const Stretch stretch = stretch_of(ray, voxel, z0, z1, corner);
-  const auto differences = [&](double value) {
-    std::array<double, 8> d;
-    std::transform(corner.begin(), corner.end(), d.begin(), [&](double s) { return s - value; });
-    return d;
-  };
-  std::array<double, 4> ends{0, 1, 1, 1};
+  // All values are counted from the first one, and again from their own where rounding might matter.
+  const std::array<double, 8> from_first = differences(corner, values[first]);
+  const std::array<double, 4> cubic = cubic_of(from_first, stretch.front, stretch.back - stretch.front);
+  std::array<double, 4> ends{0, 1, 1, 1}, field{};
   std::size_t count = 1;
-  turning_points(cubic_of(differences(values[first]), stretch.front, stretch.back - stretch.front), ends, count);
+  turning_points(cubic, ends, count);
+  double largest = 0;
+  for (const double d : from_first) largest = std::max(largest, std::abs(d));
+  for (std::size_t e = 0; e <= count; ++e) field[e] = field_at(from_first, stretch.end_or_place(ends[e]));
+  const auto below = [&](std::size_t iso, std::size_t e) {
+    const double level = values[iso] - values[first], height = field[e] - level;
+    const double unsure = rounding * (largest + level) + (stretch.cut(ends[e]) ? 2 * on_level * stretch.size : 0);
+    return std::abs(height) > unsure ? height < 0 : stretch.below(values[iso], ends[e]);
+  };
   double behind = 0;
   for (std::size_t e = 0; e < count; ++e) {
     // Monotone from one end to the next: surfaces come in the order of their values.
-    const std::array<double, 8> some = differences(values[first]);
-    const bool up = field_at(some, stretch.place(ends[e])) <= field_at(some, stretch.place(ends[e + 1]));
+    const bool up = field[e] <= field[e + 1];
     for (std::size_t n = 0; n < last - first; ++n) {
       const std::size_t iso = up ? first + n : last - 1 - n;
-      const std::array<double, 8> d = differences(values[iso]);
-      const bool rises = stretch.below(d, ends[e]);
-      if (rises == stretch.below(d, ends[e + 1])) continue;
-      const std::array<double, 4> cubic = cubic_of(d, stretch.front, stretch.back - stretch.front);
-      behind = std::max(behind, zero_of(cubic, ends[e], ends[e + 1], rises));
+      const bool rises = below(iso, e);
+      if (rises == below(iso, e + 1)) continue;
+      std::array<double, 4> from_value = cubic;
+      from_value[0] -= values[iso] - values[first];
+      behind = std::max(behind, zero_of(from_value, ends[e], ends[e + 1], rises));
       const std::uint32_t number = surfaces_.set().crossing(iso, rises, scene::SurfaceSet::Place::inside);
       found.push_back(
           {behind == 1 ? z1 : z0 + (z1 - z0) * behind, surfaces_.set().light(number, cosine(ray, stretch, behind))});

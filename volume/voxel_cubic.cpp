@@ -9,14 +9,16 @@ std::array<double, 4> cubic_of(const std::array<double, 8>& corner, const glm::d
   // Bilinear in each axis in turn, polynomials growing by a degree each.
   std::array<std::array<double, 4>, 8> p{};
   for (std::size_t n = 0; n < 8; ++n) p[n][0] = corner[n];
-  for (int axis = 0; axis < 3; ++axis)
+  for (int axis = 0; axis < 3; ++axis) {
+    const double at = front[axis], change = rise[axis];
     for (std::size_t n = 0; n < (4u >> axis); ++n) {
       const std::array<double, 4> low = p[2 * n], high = p[2 * n + 1];
-      for (std::size_t i = 0; i < 4; ++i) {
-        p[n][i] = front[axis] == 1 ? high[i] : low[i] + (high[i] - low[i]) * front[axis];
-        if (i > 0) p[n][i] += (high[i - 1] - low[i - 1]) * rise[axis];
+      for (std::size_t i = 0; i < static_cast<std::size_t>(axis) + 2; ++i) {
+        p[n][i] = at == 1 ? high[i] : low[i] + (high[i] - low[i]) * at;
+        if (i > 0) p[n][i] += (high[i - 1] - low[i - 1]) * change;
       }
     }
+  }
   return p[0];
 }
 

@@ -100,7 +100,8 @@ TEST(ThresholdSource, BlanksSamplesWhoseValuesAreOutsideOfTheRangeAndKeepsTheOth
         const double b = wide[static_cast<std::size_t>(n)];
         EXPECT_EQ(std::isnan(a), !is_kept) << sample;
         EXPECT_EQ(std::isnan(b), !is_kept) << sample;
-        if (is_kept) EXPECT_EQ(a, sample), EXPECT_EQ(b, sample);
+        EXPECT_EQ(is_kept ? a : sample, sample);
+        EXPECT_EQ(is_kept ? b : sample, sample);
       }
       EXPECT_EQ(narrow[static_cast<std::size_t>(2 + 5 * j + 40 * k)], -1);  // between rows
     }
