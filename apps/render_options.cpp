@@ -353,7 +353,6 @@ void refuse_mesh_options(const RenderWords& words, const RenderOptions& options)
   if (!words.higher_order_tets.empty()) refuse("--higher-order-tets");
   if (!read.blocks.empty()) refuse("--block");
   if (!read.plot3d_q.empty()) refuse("--q");
-  if (read.selection.threshold) refuse("--threshold");
 }
 
 LoadedTransferFunction transfer_function_of(const Dataset& data, const RenderOptions& options) {

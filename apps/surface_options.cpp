@@ -33,8 +33,8 @@ IsoSurface iso_of(const std::string& word) {
 void add_surface_options(CLI::App& command, SurfaceWords& words) {
   command
       .add_option("--iso", words.iso,
-                  "meshes: the surface where the field has this value, lit, within the volume (colour: the transfer "
-                  "function's there; opacity 1); may be repeated")
+                  "the surface where the field has this value, lit, within the volume (colour: the transfer function's "
+                  "there; opacity 1); may be repeated")
       ->type_name("VALUE[:COLOUR[:OPACITY]]")
       ->allow_extra_args(false);
 }

@@ -24,6 +24,7 @@
 #include "io/volume_reader.hpp"
 #include "scene/error.hpp"
 #include "scene/threads.hpp"
+#include "scene/threshold_source.hpp"
 #include "tessera/input_file.hpp"
 
 namespace tessera {
@@ -42,7 +43,6 @@ void check_grid_options(const std::filesystem::path& file, const ReadOptions& op
   if (options.max_volume) refuse("max_volume");
   if (!options.blocks.empty()) refuse("block");
   if (!options.plot3d_q.empty()) refuse("plot3d_q");
-  if (options.selection.threshold) refuse("threshold");
 }
 
 void check_mesh_options(const std::filesystem::path& file, const ReadOptions& options) {
@@ -60,12 +60,25 @@ std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, c
     const scene::TraceScope timing(trace, "read");
     return io::open_unscanned_volume(file, volume_options(options));
   }();
+  const auto& threshold = options.selection.threshold;
+  if (threshold)
+    volume.source = std::make_unique<scene::ThresholdSource>(std::move(volume.source), *threshold, file.string());
   {
     const scene::TraceScope timing(trace, "prepare");
     state->ranges =
         std::make_shared<const volume::CellRanges>(frame::scan_together(transport, *volume.source, options.threads));
   }
-  io::set_range(volume, file, state->ranges->range);
+  scene::ValueRange range = state->ranges->range;
+  if (threshold) {
+    if (range.empty())
+      throw scene::bad_input(fmt::format(
+          "{}: no sample's value is in `threshold`, nothing is left to render; give a wider range", file.string()));
+    if (range.blanks > 0)
+      volume.notes.push_back(
+          fmt::format("{} samples are blank or not in `threshold`: voxels that have one are left out",
+                      std::exchange(range.blanks, 0)));
+  }
+  io::set_range(volume, file, range);
   state->fields = std::move(volume.fields);
   state->notes = std::move(volume.notes);
   state->format = std::move(volume.format);

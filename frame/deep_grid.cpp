@@ -6,8 +6,10 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "compositor/deep_collector.hpp"
@@ -19,6 +21,7 @@
 #include "scene/error.hpp"
 #include "scene/frame_watch.hpp"
 #include "scene/threads.hpp"
+#include "volume/surface_walk.hpp"
 #include "volume/voxel_walk.hpp"
 
 namespace tessera::frame {
@@ -31,14 +34,17 @@ class DeepPixels final : public volume::WalkSink {
       : cutter_(volume::over_knot_numbers(function), settings.emission, settings.accuracy),
         integrator_(volume::over_knot_numbers(function), {.kind = scene::IntegratorKind::exact}, settings.emission),
         accuracy_(settings.accuracy),
-        walk_(source, function, {.emission = settings.emission, .least = least(source, function, settings)}) {}
+        least_(least(source, function, settings)),
+        walk_(source, function, {.emission = settings.emission, .least = least_}) {
+    if (settings.surfaces != nullptr && settings.surfaces->any()) surfaces_.emplace(source, *settings.surfaces);
+  }
 
   /// Appends the pixel's samples.
   void add(const volume::VoxelRay& ray, std::vector<scene::DeepImageSample>& to) {
     pieces_.clear();
     transmittance_ = 1;
     length_per_depth_ = ray.length_per_depth;
-    walk_.walk(ray, *this);
+    go_along(ray);
     batch_.reserve(pieces_.size());
     batch_.size = pieces_.size();
     for (std::size_t k = 0; k < pieces_.size(); ++k) {
@@ -49,12 +55,23 @@ class DeepPixels final : public volume::WalkSink {
     integrator_.integrate(batch_);
     compositor::DeepMerger merger(accuracy_);
     samples_.clear();
-    for (std::size_t k = 0; k < pieces_.size(); ++k)
+    auto next = met_.cbegin();
+    for (std::size_t k = 0; k < pieces_.size(); ++k) {
+      const bool surface = next != met_.cend() && next->piece == k;
+      if (surface) {
+        const scene::SurfaceSet::Light& light = (next++)->light;
+        // An infinite optical depth where it is opaque.
+        merger.add(
+            {pieces_[k].front, pieces_[k].back, {light.red, light.green, light.blue}, -std::log1p(-light.opacity)},
+            samples_, true);
+        continue;
+      }
       merger.add({pieces_[k].front,
                   pieces_[k].back,
                   {batch_.red[k], batch_.green[k], batch_.blue[k]},
                   pieces_[k].optical_depth},
                  samples_);
+    }
     merger.end(samples_);
     compositor::append_tidy(samples_, to);
   }
@@ -66,17 +83,46 @@ class DeepPixels final : public volume::WalkSink {
   [[nodiscard]] double transmittance() const override { return transmittance_; }
 
  private:
+  /// A surface among the pieces.
+  struct Met {
+    std::size_t piece;
+    scene::SurfaceSet::Light light;
+  };
+
+  /// Makes the pieces, with a place for each surface between them.
+  void go_along(const volume::VoxelRay& ray) {
+    crossings_.clear();
+    met_.clear();
+    const bool stops = surfaces_ && surfaces_->find(ray, least_, crossings_);
+    volume::VoxelRay part = ray;
+    for (const volume::SurfaceCrossing& crossing : crossings_) {
+      part.end = crossing.z;
+      walk_.walk(part, *this);
+      if (transmittance_ < least_) return;
+      met_.push_back({pieces_.size(), crossing.light});
+      pieces_.push_back({crossing.z, crossing.z, 0, 0});
+      transmittance_ *= 1 - crossing.light.opacity;
+      part.begin = crossing.z;
+    }
+    part.end = ray.end;
+    if (!stops) walk_.walk(part, *this);
+  }
+
   double least(const scene::SampleSource& source, const scene::TransferFunction& function,
                const DeepSettings& settings) const {
     const scene::Box box = scene::bounds(source.geometry());
     return integrator_.termination_error() /
-           integrals::opacity_weight(function.max_color(), glm::length(box.high - box.low), settings.emission);
+           std::max(integrals::opacity_weight(function.max_color(), glm::length(box.high - box.low), settings.emission),
+                    settings.surfaces != nullptr ? settings.surfaces->set().max_color() : 0);
   }
 
   compositor::PieceCutter cutter_;
   integrals::SegmentIntegrator integrator_;
-  double accuracy_, transmittance_ = 1, length_per_depth_ = 1;
+  double accuracy_, least_, transmittance_ = 1, length_per_depth_ = 1;
   volume::VoxelWalk walk_;
+  std::optional<volume::SurfaceWalk> surfaces_;
+  std::vector<volume::SurfaceCrossing> crossings_;
+  std::vector<Met> met_;
   std::vector<compositor::DeepPiece> pieces_;
   integrals::SegmentBatch batch_;
   std::vector<compositor::DeepSample> samples_;

@@ -10,15 +10,17 @@
 #include "scene/sample_source.hpp"
 #include "scene/selection.hpp"
 #include "scene/transfer_function.hpp"
+#include "volume/grid_surfaces.hpp"
 
 namespace tessera::frame {
 
 struct DeepSettings {
   double accuracy = 1e-3;  ///< of samples cut anywhere: largest error in linear RGBA, 1e-6 to 1
   scene::Emission emission = scene::Emission::absorption;
-  int threads = 0;                          ///< 0: all cores
-  std::uint64_t memory_bytes = 4ull << 30;  ///< half of it may be samples
-  std::vector<scene::HalfSpace> clip{};     ///< that rays are kept in
+  int threads = 0;                                 ///< 0: all cores
+  std::uint64_t memory_bytes = 4ull << 30;         ///< half of it may be samples
+  std::vector<scene::HalfSpace> clip{};            ///< that rays are kept in
+  const volume::GridSurfaces* surfaces = nullptr;  ///< in the volume; null: none
 };
 
 /// The deep picture of a volume's rows y0 <= y < y1; the others stay empty. Regular and rectilinear grids, point and
@@ -28,6 +30,7 @@ struct DeepSettings {
 ///           voxel to voxel. Its cubic is cut where it turns and at the knots of the transfer function, and into
 ///           stretches so short that a line through its mean gives their light to 2e-9 (volume/ray_piece-inl.h has the
 ///           bound); from there on it is as with meshes: compositor/deep_pieces.hpp, deep_fragments.hpp.
+/// Surfaces  are samples without length.
 /// Flat      the samples flattened are the volume's picture to 1e-5, and within --accuracy of the caster's.
 /// Cost      about twenty times the caster's. Samples are read in blocks of 16^3 voxels, 256 of them kept a thread: 10
 ///           MB.

@@ -158,9 +158,10 @@ class GridByRays final : public Session::State {
     if (settings.deep) try {
         const scene::TraceScope timing(trace_, "project");
         frame::StopRelay::Run relayed(sort_first_->relay(), stop);
+        const volume::GridSurfaces surfaces(this->settings().surfaces, function, *data().ranges);
         deep = frame::deep_rows(*transport_, *data().samples, view.camera, view.size, function,
                                 {settings.deep_accuracy, this->settings().emission, this->settings().threads,
-                                 this->settings().memory_bytes, data().clip},
+                                 this->settings().memory_bytes, data().clip, &surfaces},
                                 static_cast<std::int32_t>(number), relayed.token());
       } catch (const scene::FrameStopped&) {
         return false;

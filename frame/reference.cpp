@@ -24,7 +24,8 @@ std::unique_ptr<const reference::RayReference> rays_of(const Dataset& dataset, c
   const Dataset::State& data = dataset.state();
   if (dataset.is_grid())
     return std::make_unique<reference::GridReference>(*data.samples, view.camera, view.size, function,
-                                                      settings.emission, settings.grid.shading, data.clip);
+                                                      settings.emission, settings.grid.shading, data.clip,
+                                                      settings.surfaces);
   return std::make_unique<reference::Reference>(mesh.mesh, view.camera, view.size, function, settings.emission,
                                                 settings.surfaces, mesh.kept);
 }

@@ -53,13 +53,13 @@ RenderSettings mesh_settings(const Settings& s) {
 }
 
 volume::RenderSettings grid_settings(const Settings& s) {
-  if (!s.surfaces.empty()) throw scene::bad_input("`iso`: is for meshes, and the data set is a grid; leave it out");
   volume::RenderSettings settings;
   settings.method = method_of(s.integrator.kind);
   settings.accuracy = s.integrator.accuracy;
   settings.step = s.grid.step;
   settings.emission = s.emission;
   settings.shading = s.grid.shading;
+  settings.surfaces = s.surfaces;
   settings.threads = s.threads;
   settings.brick_size = s.grid.brick_size;
   settings.edge_bricks = s.grid.edge_bricks;

@@ -73,7 +73,11 @@ SuspicionMap second_opinion(const scene::Image& image, const scene::SampleSource
   scene::Image again(image.size);
   // What is looked for is as large as the bound.
   const double bound = promised_error(settings).value_or(1e-4);
-  const volume::VoxelCastSettings cast{{settings.emission, bound / 1000, bound / 64}, settings.shading, settings.clip};
+  const volume::GridSurfaces surfaces(settings.surfaces, function);
+  const volume::VoxelCastSettings cast{{settings.emission, bound / 1000, bound / 64},
+                                       settings.shading,
+                                       settings.clip,
+                                       surfaces.any() ? &surfaces : nullptr};
   tbb::task_arena arena(scene::threads_for(settings.threads));
   arena.execute([&] {
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -171,7 +175,7 @@ reference::Verification verify(const scene::Image& image, const scene::SampleSou
                                std::size_t count) {
   const reference::Suspects where = suspects(image, source, camera, transfer_function, settings, error_bounds, count);
   const reference::GridReference reference(source, camera, image.size, transfer_function, settings.emission,
-                                           settings.shading, settings.clip);
+                                           settings.shading, settings.clip, settings.surfaces);
   return reference::verify(image, reference, promised_error(settings), count, where, settings.threads);
 }
 

@@ -75,6 +75,14 @@ void GridIntegral::add(double length, const Cubic& scalar, double depth_front, d
     if (cuts[i + 1] > cuts[i]) add_piece(length, scalar, cuts[i], cuts[i + 1], depth_front, depth_back, light, origin);
 }
 
+void GridIntegral::add_surface(const std::array<double, 3>& color, double opacity, double depth) {
+  if (!(opacity > 0)) return;
+  const double seen = std::exp(-optical_depth_) * opacity;
+  for (std::size_t i = 0; i < 3; ++i) color_[i] += seen * color[i];
+  if (std::isinf(first_visible_depth_)) first_visible_depth_ = depth;
+  optical_depth_ -= std::log1p(-opacity);
+}
+
 void GridIntegral::add_piece(double length, const Cubic& scalar, double u0, double u1, double depth_front,
                              double depth_back, const Light& light, double origin) {
   // The knots on either side of the piece; a value on a step belongs to the step's upper knot.

@@ -41,6 +41,9 @@ class GridIntegral {
     add(length, scalar, depth_front, depth_back, Light());
   }
 
+  /// A surface of no thickness: its own colour, as lit, its opacity and where it is.
+  void add_surface(const std::array<double, 3>& color, double opacity, double depth);
+
   [[nodiscard]] std::array<double, 3> color() const { return color_; }  ///< linear RGB, premultiplied
   [[nodiscard]] double opacity() const;
   [[nodiscard]] double optical_depth() const { return optical_depth_; }

@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 
+#include "reference/grid_surface.hpp"
 #include "reference/kept_interval.hpp"
 #include "scene/error.hpp"
 #include "scene/threads.hpp"
@@ -32,7 +33,8 @@ Cubic mixed(const Cubic& p, const Cubic& q, double a, double b) {
 
 GridReference::GridReference(const scene::SampleSource& source, const scene::Camera& camera, scene::ImageSize size,
                              const scene::TransferFunction& transfer_function, scene::Emission emission,
-                             const std::optional<scene::Shading>& shading, std::span<const scene::HalfSpace> kept)
+                             const std::optional<scene::Shading>& shading, std::span<const scene::HalfSpace> kept,
+                             const Surfaces& surfaces)
     : source_(&source),
       size_((scene::validate(camera), scene::validate(size), size)),
       knots_(transfer_function.knots().begin(), transfer_function.knots().end()),
@@ -40,7 +42,9 @@ GridReference::GridReference(const scene::SampleSource& source, const scene::Cam
       kept_(kept.begin(), kept.end()),
       view_(camera, size),
       to_local_(scene::world_to_local(source.geometry())),
-      shading_(shading) {
+      shading_(shading),
+      surfaces_(by_value(surfaces, transfer_function)),
+      surface_light_(surfaces.light) {
   if (knots_.empty()) throw scene::bad_input("transfer function: it has no knot; give one or more");
   if (!shading_) return;
   if (emission_ != scene::Emission::absorption)
@@ -54,23 +58,13 @@ GridReference::GridReference(const scene::SampleSource& source, const scene::Cam
   }
 }
 
-GridIntegral::Light GridReference::light(const std::array<double, 8>& corners, const glm::dvec3& place,
-                                         const glm::dvec3& side, const glm::dvec3& step_world) const {
+GridIntegral::Light GridReference::light(const Voxel& voxel, const glm::dvec3& place,
+                                         const glm::dvec3& step_world) const {
   constexpr double nothing = 1e-12;
-  glm::dvec3 gradient(0);  // local
+  const glm::dvec3& side = voxel.side;
+  const glm::dvec3 gradient = slopes(voxel.values, place) / side;  // local
   double largest = 0;
-  for (std::size_t corner = 0; corner < 8; ++corner) {
-    glm::dvec3 weight, slope;
-    for (int a = 0; a < 3; ++a) {
-      const bool far = (corner >> a & 1) != 0;
-      weight[a] = far ? place[a] : 1 - place[a];
-      slope[a] = (far ? 1 : -1) / side[a];
-    }
-    const double v = corners[corner] - corners[0];
-    gradient +=
-        v * glm::dvec3(slope.x * weight.y * weight.z, weight.x * slope.y * weight.z, weight.x * weight.y * slope.z);
-    largest = std::max(largest, std::abs(corners[corner]));
-  }
+  for (const double v : voxel.values) largest = std::max(largest, std::abs(v));
   const double least_side = std::min({side.x, side.y, side.z});
   if (!(glm::length(gradient) * least_side > nothing * largest)) return {};
   const glm::dvec3 normal = glm::normalize(glm::transpose(to_local_) * gradient), to_eye = -glm::normalize(step_world);
@@ -95,7 +89,14 @@ GridReference::LocalRay GridReference::local_ray(double x, double y) const {
   const scene::GridGeometry& g = source_->geometry();
   const View::Ray world = view_.ray(x, y);
   const auto [nearest, farthest] = kept_interval(view_, x, y, kept_);
-  LocalRay ray{to_local_ * (world.origin - g.origin), to_local_ * world.step, {-1, -1, -1}, nearest, farthest};
+  LocalRay ray{to_local_ * (world.origin - g.origin),
+               to_local_ * world.step,
+               {-1, -1, -1},
+               nearest,
+               farthest,
+               view_.length_per_depth(x, y),
+               false,
+               false};
   double span = 0;  // planar depth that the volume covers at most: where parallel planes need not be crossed
   const scene::Box box = scene::bounds(g);
   for (int corner = 0; corner < 8; ++corner) {
@@ -133,80 +134,106 @@ GridReference::LocalRay GridReference::local_ray(double x, double y) const {
     ray.begin = std::max(ray.begin, enter);
     ray.end = std::min(ray.end, leave);
   }
+  const auto is_at = [](double depth, double plane) {
+    return std::abs(depth - plane) <= 1e-12 * (std::abs(depth) + std::abs(plane));
+  };
+  ray.begin_cut = nearest != view_.nearest() && is_at(ray.begin, nearest);
+  ray.end_cut = farthest != view_.farthest() && is_at(ray.end, farthest);
   return ray;
 }
 
-Pixel GridReference::pixel(double x, double y) const {
+std::vector<double> GridReference::plane_depths(const LocalRay& ray) const {
+  const scene::GridGeometry& g = source_->geometry();
+  if (!(ray.begin < ray.end)) return {};
+  std::vector<double> depths = {ray.begin, ray.end};
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (ray.in_plane[a] >= 0) continue;
+    const int axis = static_cast<int>(a);
+    const auto at = [&](double z) { return voxel_along(a, ray.origin[axis] + z * ray.step[axis]); };
+    const std::int64_t one = at(ray.begin), other = at(ray.end), first = std::min(one, other),
+                       last = std::max(one, other);
+    for (std::int64_t i = first; i <= last + 1; ++i) {
+      const double z = (g.lattice(a, i) - ray.origin[axis]) / ray.step[axis];
+      if (z > ray.begin && z < ray.end) depths.push_back(z);
+    }
+  }
+  std::sort(depths.begin(), depths.end());
+  return depths;
+}
+
+bool GridReference::read_voxel(const LocalRay& ray, const glm::dvec3& middle, Voxel& voxel) const {
   const scene::Grid& grid = source_->grid();
   const scene::GridGeometry& g = grid.geometry;
+  voxel.constant = g.association == scene::Association::cell;
+  scene::SampleBox box;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int axis = static_cast<int>(a);
+    box.low[a] = ray.in_plane[a] >= 0 ? ray.in_plane[a] : voxel_along(a, middle[axis]);
+    box.high[a] = box.low[a] + (voxel.constant ? 1 : 2);
+    voxel.low[axis] = g.lattice(a, box.low[a]);
+    voxel.side[axis] = g.lattice(a, box.low[a] + 1) - voxel.low[axis];
+  }
+  std::array<double, 8> samples{};
+  const auto count = static_cast<std::size_t>(box.count());
+  source_->read(box, std::span(samples).first(count));
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!std::isfinite(samples[i])) return false;
+    voxel.values[i] = grid.value(samples[i]);
+  }
+  return true;
+}
+
+void GridReference::add_part(const LocalRay& ray, const Voxel& voxel, double z0, double z1,
+                             GridIntegral& integral) const {
+  // As differences: where a voxel's values are last places apart they keep them all.
+  const double origin = voxel.values[0];
+  std::array<Cubic, 8> field;
+  GridIntegral::Light lit;
+  if (!voxel.constant) {
+    for (std::size_t i = 0; i < 8; ++i) field[i].c[0] = voxel.values[i] - origin;
+    const glm::dvec3 front = voxel.place(ray.origin + z0 * ray.step), rise = (z1 - z0) * ray.step / voxel.side;
+    for (std::size_t a = 0; a < 3; ++a)  // i first: neighbours in the box's order
+      for (std::size_t i = 0; i < (8u >> (a + 1)); ++i)
+        field[i] = mixed(field[2 * i], field[2 * i + 1], front[static_cast<int>(a)], rise[static_cast<int>(a)]);
+    if (shading_)
+      lit =
+          light(voxel, voxel.place(ray.origin + ray.step * ((z0 + z1) / 2)), source_->geometry().direction * ray.step);
+  }
+  integral.add((z1 - z0) * ray.length_per_depth, field[0], z0, z1, lit, origin);
+}
+
+void GridReference::add_stretch(const LocalRay& ray, const Voxel& voxel, double z0, double z1,
+                                GridIntegral& integral) const {
+  double at = z0;
+  if (!surfaces_.empty() && !voxel.constant) {
+    const glm::dvec3 step_world = glm::normalize(source_->geometry().direction * ray.step);
+    const VoxelStretch stretch{voxel.values, voxel.place(ray.origin + z0 * ray.step),
+                               voxel.place(ray.origin + z1 * ray.step), ray.begin_cut && z0 == ray.begin,
+                               ray.end_cut && z1 == ray.end};
+    for (const GridCrossing& c : surface_crossings(surfaces_, stretch)) {
+      const double z = z0 + (z1 - z0) * c.part;
+      add_part(ray, voxel, at, z, integral);
+      at = z;
+      const glm::dvec3 normal = glm::transpose(to_local_) * (slopes(voxel.values, c.place) / voxel.side);
+      const double steepness = glm::length(normal);
+      const double cosine = steepness > 0 ? std::min(1.0, std::abs(glm::dot(normal, step_world)) / steepness) : 1;
+      integral.add_surface(lit(*c.surface, surface_light_, cosine), c.surface->opacity, z);
+    }
+  }
+  add_part(ray, voxel, at, z1, integral);
+}
+
+Pixel GridReference::pixel(double x, double y) const {
   const LocalRay ray = local_ray(x, y);
   GridIntegral integral(knots_, emission_);
   Pixel pixel;
-
-  // Every place where the ray passes a plane of the lattice, each computed from the plane alone.
-  std::vector<double> cuts;
-  if (ray.begin < ray.end) {
-    cuts = {ray.begin, ray.end};
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (ray.in_plane[a] >= 0) continue;
-      const int axis = static_cast<int>(a);
-      const auto at = [&](double z) { return voxel_along(a, ray.origin[axis] + z * ray.step[axis]); };
-      const std::int64_t one = at(ray.begin), other = at(ray.end), first = std::min(one, other),
-                         last = std::max(one, other);
-      for (std::int64_t i = first; i <= last + 1; ++i) {
-        const double z = (g.lattice(a, i) - ray.origin[axis]) / ray.step[axis];
-        if (z > ray.begin && z < ray.end) cuts.push_back(z);
-      }
-    }
-    std::sort(cuts.begin(), cuts.end());
-  }
-
-  const double length_per_depth = view_.length_per_depth(x, y);
+  const std::vector<double> cuts = plane_depths(ray);
   for (std::size_t c = 0; c + 1 < cuts.size() && !integral.opaque(); ++c) {
     const double z0 = cuts[c], z1 = cuts[c + 1];
-    if (!(z1 > z0)) continue;
-    const glm::dvec3 middle = ray.origin + ray.step * ((z0 + z1) / 2);
-    scene::SampleBox box;
-    for (std::size_t a = 0; a < 3; ++a) {
-      box.low[a] = ray.in_plane[a] >= 0 ? ray.in_plane[a] : voxel_along(a, middle[static_cast<int>(a)]);
-      box.high[a] = box.low[a] + (g.association == scene::Association::cell ? 1 : 2);
-    }
-    std::array<double, 8> samples{};
-    const auto count = static_cast<std::size_t>(box.count());
-    source_->read(box, std::span(samples).first(count));
-    if (!std::all_of(samples.begin(), samples.begin() + static_cast<std::ptrdiff_t>(count),
-                     [](double s) { return std::isfinite(s); }))
-      continue;
-    // As differences: where a voxel's values are last places apart they keep them all.
-    const double origin = grid.value(samples[0]);
-    std::array<Cubic, 8> field;
-    for (std::size_t i = 0; i < count; ++i) field[i].c[0] = grid.value(samples[i]) - origin;
-    GridIntegral::Light lit;
-    if (count == 8 && shading_) {
-      std::array<double, 8> corners{};
-      for (std::size_t i = 0; i < 8; ++i) corners[i] = grid.value(samples[i]);
-      glm::dvec3 place, side;
-      for (std::size_t a = 0; a < 3; ++a) {
-        const int axis = static_cast<int>(a);
-        const double low = g.lattice(a, box.low[a]);
-        side[axis] = g.lattice(a, box.low[a] + 1) - low;
-        place[axis] = (middle[axis] - low) / side[axis];
-      }
-      lit = light(corners, place, side, g.direction * ray.step);
-    }
-    if (count == 8) {
-      for (std::size_t a = 0; a < 3; ++a) {  // i first: neighbours in the box's order
-        const int axis = static_cast<int>(a);
-        const double low = g.lattice(a, box.low[a]), side = g.lattice(a, box.low[a] + 1) - low;
-        const double at_front = (ray.origin[axis] + z0 * ray.step[axis] - low) / side;
-        const double rise = (z1 - z0) * ray.step[axis] / side;
-        for (std::size_t i = 0; i < (8u >> (a + 1)); ++i)
-          field[i] = mixed(field[2 * i], field[2 * i + 1], at_front, rise);
-      }
-    }
-    const double length = (z1 - z0) * length_per_depth;
-    integral.add(length, field[0], z0, z1, lit, origin);
-    pixel.length += length;
+    Voxel voxel;
+    if (!(z1 > z0) || !read_voxel(ray, ray.origin + ray.step * ((z0 + z1) / 2), voxel)) continue;
+    add_stretch(ray, voxel, z0, z1, integral);
+    pixel.length += (z1 - z0) * ray.length_per_depth;
     ++pixel.segments;
   }
   pixel.r = integral.color()[0], pixel.g = integral.color()[1], pixel.b = integral.color()[2];

@@ -79,6 +79,10 @@ std::array<double, 3> lit(const SurfaceOfValue& surface, const SurfaceLight& lig
     const Vector along = glm::normalize(Vector(ray));
     cosine = static_cast<double>(std::min(std::abs(glm::dot(along, normal)) / glm::length(normal), 1.0L));
   }
+  return lit(surface, light, cosine);
+}
+
+std::array<double, 3> lit(const SurfaceOfValue& surface, const SurfaceLight& light, double cosine) {
   const double matte = light.ambient + light.diffuse * cosine;
   const double shine = light.specular * std::pow(cosine, light.shininess);
   return {surface.color.x * matte + shine, surface.color.y * matte + shine, surface.color.z * matte + shine};

@@ -44,6 +44,9 @@ std::vector<SurfaceCrossing> surface_crossings(std::span<const SurfaceOfValue> s
                                                const std::array<Corner, 4>& corners, double x, double y,
                                                const KeptDepths& kept);
 
+/// A surface's colour where the angle between the ray and its normal has this cosine, 0 to 1.
+std::array<double, 3> lit(const SurfaceOfValue& surface, const SurfaceLight& light, double cosine);
+
 /// A surface's colour in a tet, lit from the eye, seen along a ray of that direction (of any length). Where the field
 /// has no gradient it is lit as if seen face on.
 std::array<double, 3> lit(const SurfaceOfValue& surface, const SurfaceLight& light, const glm::dvec3& ray,

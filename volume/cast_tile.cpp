@@ -187,9 +187,20 @@ HWY_EXPORT(axis_codes_here);
 HWY_EXPORT(set_up_here);
 
 void cast_tile(const FrameView& frame, const VoxelBox& chunk, TileState& tile, TileMemory& memory, TileCounts& counts) {
-  for (int code = 0; code < RayAxes::codes; ++code)
-    if ((tile.codes() >> code & 1) != 0 && tile.enter(frame, chunk, code)) HWY_DYNAMIC_DISPATCH(cast_rays_here)
-  (frame, RayAxes::of(code), chunk, tile.wanted(), tile.rays(code), memory, counts);
+  const auto cast = [&](int code) {
+    HWY_DYNAMIC_DISPATCH(cast_rays_here)
+    (frame, RayAxes::of(code), chunk, tile.wanted(), tile.rays(code), memory, counts);
+  };
+  for (int code = 0; code < RayAxes::codes; ++code) {
+    if ((tile.codes() >> code & 1) == 0 || !tile.enter(frame, chunk, code)) continue;
+    if (frame.crossings == nullptr) {
+      cast(code);
+      continue;
+    }
+    tile.begin_parts(code);
+    do cast(code);
+    while (tile.next_parts(frame, code));
+  }
 }
 
 unsigned axis_codes_of_tile(const PixelRays& rays, int x0, int y0) {

@@ -53,7 +53,8 @@ class LaneChunks final : public ChunkCast::State {
       : function_(function), arena_(scene::threads_for(state.settings.threads)), region_(region) {
     arena_.execute([&] {
       setup_.emplace(state, camera, size, function_, nullptr);
-      in_double_.emplace(state.source, camera, size, function_, state.voxel_settings(function_, setup_->visible()));
+      in_double_.emplace(state.source, camera, size, function_,
+                         state.voxel_settings(function_, setup_->visible(), setup_->surfaces()));
       places_ = tiles_of(region);
       tiles_.resize(places_.size());
       columns_ = (region.x1 + TileRays::side - 1) / TileRays::side - region.x0 / TileRays::side;
@@ -153,7 +154,8 @@ class VoxelChunks final : public ChunkCast::State {
               const scene::TransferFunction& function, const scene::PixelRect& region)
       : function_(function), arena_(scene::threads_for(state.settings.threads)), region_(region) {
     arena_.execute([&] { visible_ = state.visible_to_walks(state.table_of(function_)); });
-    const VoxelCastSettings settings = state.voxel_settings(function_, visible_);
+    surfaces_ = state.surfaces_of(function_);
+    const VoxelCastSettings settings = state.voxel_settings(function_, visible_, &surfaces_);
     least_ = settings.walk.least;
     caster_.emplace(state.source, camera, size, function_, settings);
     for (int y = region.y0; y < region.y1; ++y)
@@ -240,6 +242,7 @@ class VoxelChunks final : public ChunkCast::State {
   tbb::task_arena arena_;
   scene::PixelRect region_;
   std::vector<std::uint8_t> visible_;
+  GridSurfaces surfaces_;
   double least_ = 0;
   std::optional<VoxelCaster> caster_;
   std::vector<Pixel> pixels_;  ///< row by row

@@ -30,7 +30,7 @@ class Renderer;
 ///
 /// Order    chunks come front to back along every ray (boxes_front_to_back()); a ray never goes back. What lies between
 ///          two chunks counts as empty.
-/// Covers   every method, point and cell data, shading, both projections, regular and rectilinear grids. With
+/// Covers   every method, point and cell data, shading, surfaces, both projections, regular and rectilinear grids. With
 ///          Method::preintegrated a step that begins in one chunk and ends in the next needs the ray's state: it is
 ///          left out where a cast begins in the middle of the volume, so sort-last is for the other methods.
 /// Bits     one emit() after all chunks gives those of Renderer::render() where chunks are whole slices of the volume

@@ -74,6 +74,9 @@ FrameSetup::FrameSetup(RendererState& state, const scene::Camera& camera, scene:
   const double tiles_in_picture = static_cast<double>(size.width) * size.height / (TileRays::side * TileRays::side);
   view_.pilot_packets = static_cast<int>(std::clamp(1024 / tiles_in_picture, 2.0, 32.0));
   view_.trace = state.settings.trace;
+  surfaces_ = state.surfaces_of(function);
+  if (surfaces_.any())
+    view_.crossings = &crossings_.emplace(state.source, camera, size, state.settings.clip, surfaces_);
   set_up_method(state, function);
   if (state.settings.shading)
     view_.shading = &shading_.emplace(shading_view(*state.settings.shading, camera, geometry, state.voxel_side));

@@ -7,6 +7,7 @@
 #include "volume/frame_view.hpp"
 #include "volume/lane_error_bound.hpp"
 #include "volume/preintegrated_table.hpp"
+#include "volume/ray_crossings.hpp"
 #include "volume/renderer_state.hpp"
 
 namespace tessera::volume {
@@ -25,6 +26,7 @@ class FrameSetup {
   /// By cell of 8^3 voxels, and by brick: whether something of it shows.
   [[nodiscard]] const std::vector<std::uint8_t>& visible() const { return visible_; }
   [[nodiscard]] const std::vector<std::uint8_t>& brick_visible() const { return brick_visible_; }
+  [[nodiscard]] const GridSurfaces* surfaces() const { return &surfaces_; }
 
  private:
   void find_visible(RendererState& state);
@@ -36,6 +38,8 @@ class FrameSetup {
   LaneErrorBound error_bound_;
   std::optional<PreintegratedTable> preintegrated_;
   std::optional<ShadingView> shading_;
+  GridSurfaces surfaces_;
+  std::optional<RayCrossings> crossings_;
   FrameView view_{};
 };
 

@@ -51,6 +51,8 @@ struct ShadingView {
   double light_eye[3];  ///< l along the camera's right and up axes and towards the eye
 };
 
+class RayCrossings;
+
 /// All that one frame's tiles share; read-only while they are made.
 struct FrameView {
   const PixelRays* rays;
@@ -73,6 +75,7 @@ struct FrameView {
   double step = 0;                                    ///< sampled, preintegrated: length in the table's unit; else 0
   const PreintegratedTable* preintegrated = nullptr;  ///< null: sampled
   const ShadingView* shading = nullptr;               ///< null: none
+  const RayCrossings* crossings = nullptr;            ///< with surfaces; null: there are none
   WorkTally* tally = nullptr;                         ///< not null: a pilot pass, which counts where work would be
   int pilot_packets = 0;                              ///< of each tile
   scene::Trace* trace;

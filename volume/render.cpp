@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "scene/error.hpp"
+#include "scene/surface_set.hpp"
 #include "scene/threads.hpp"
 #include "volume/cell_ranges.hpp"
 #include "volume/cost_map.hpp"
@@ -42,6 +43,12 @@ void check(const RenderSettings& settings, const scene::GridGeometry& geometry) 
     throw scene::bad_input("`shade`: shading needs emission in proportion to extinction; leave one of the two out");
   if (settings.shading && !(glm::length(settings.shading->to_light) > 0))
     throw scene::bad_input("`light`: the direction to the light has no length; give one that has");
+  scene::validate(settings.surfaces);
+  if (!settings.surfaces.empty() && in_steps)
+    throw scene::bad_input("`iso`: iso-surfaces need the exact or auto method; leave one of the two out");
+  if (!settings.surfaces.empty() && geometry.association == scene::Association::cell)
+    throw scene::bad_input(
+        "`iso`: the field has one value a cell, so no iso-surfaces; use a `field` with values at points");
   if (settings.method == Method::preintegrated && settings.emission == scene::Emission::independent)
     throw scene::bad_input(
         "`integrator`: pre-integration needs emission in proportion to extinction; use sampled or exact");
@@ -128,7 +135,8 @@ Cast cast_regular(RendererState& state, const scene::Camera& camera, scene::Imag
   tbb::task_arena arena(scene::threads_for(state.settings.threads));
   arena.execute([&] {
     const FrameSetup setup(state, camera, size, function, nullptr);
-    VoxelCaster in_double(state.source, camera, size, function, state.voxel_settings(function, setup.visible()));
+    VoxelCaster in_double(state.source, camera, size, function,
+                          state.voxel_settings(function, setup.visible(), setup.surfaces()));
     cast.counts = cast_frame(setup, wanted, &sink, &in_double, stop);
     cast.brick_visible = setup.brick_visible();
   });
@@ -145,7 +153,8 @@ Cast cast_rectilinear(RendererState& state, const scene::Camera& camera, scene::
     const std::vector<std::uint8_t> visible = state.visible_to_walks(table);
     cast.brick_visible = visible_bricks(state.ranges, visible, state.bricks.layout());
     const scene::TraceScope scope(state.settings.trace, "project");
-    VoxelCaster caster(state.source, camera, size, function, state.voxel_settings(function, visible));
+    const GridSurfaces surfaces = state.surfaces_of(function);
+    VoxelCaster caster(state.source, camera, size, function, state.voxel_settings(function, visible, &surfaces));
     caster.cast(wanted, sink, stop);
     const VoxelCastCounts counts = caster.counts();
     cast.counts.rays = counts.rays, cast.counts.voxels_visited = counts.voxels;
@@ -222,7 +231,9 @@ CostMap Renderer::cost_map(const scene::Camera& camera, scene::ImageSize size,
   const RendererState& state = *state_;
   const scene::GridGeometry& geometry = state.source.geometry();
   if (geometry.rectilinear()) return cost_of_planes(camera, size, geometry, state_->settings.clip, resolution, region);
-  const std::vector<std::uint8_t> visible = visible_cells(state.ranges, state.table_of(transfer_function));
+  std::vector<std::uint8_t> visible = visible_cells(state.ranges, state.table_of(transfer_function));
+  const GridSurfaces surfaces = state.surfaces_of(transfer_function);
+  for (std::size_t cell = 0; cell < surfaces.holding().size(); ++cell) visible[cell] |= surfaces.holding()[cell];
   const bool by_voxels = state.settings.method == Method::automatic || state.settings.method == Method::exact;
   CostMap map;
   tbb::task_arena arena(scene::threads_for(state.settings.threads));

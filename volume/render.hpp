@@ -21,6 +21,7 @@
 #include "scene/transfer_function.hpp"
 #include "tessera/settings.hpp"
 #include "tessera/statistics.hpp"
+#include "tessera/surfaces.hpp"
 
 namespace tessera::volume {
 
@@ -49,6 +50,7 @@ struct RenderSettings {
   CachePolicy cache = CachePolicy::lru;
   int preload_limit = 0;  ///< proximity: bricks near the frustum loaded ahead between frames, at most; asynchronously
   std::vector<scene::HalfSpace> clip{};  ///< that rays are kept in (tessera/selection.hpp)
+  Surfaces surfaces{};                   ///< of point data, with exact and automatic
   scene::Mechanisms use;                 ///< what saves work
   scene::Trace* trace = nullptr;
 };

@@ -15,6 +15,7 @@
 #include "scene/start_thread.hpp"
 #include "volume/brick_cache.hpp"
 #include "volume/cell_ranges.hpp"
+#include "volume/grid_surfaces.hpp"
 #include "volume/render.hpp"
 #include "volume/voxel_cast.hpp"
 
@@ -53,16 +54,22 @@ struct RendererState {
   }
   /// Light that may come along a ray.
   [[nodiscard]] double brightest(const scene::TransferFunction& function) const {
-    if (settings.emission != scene::Emission::independent) return function.max_color();
+    const double surfaces = scene::SurfaceSet(settings.surfaces, function).max_color();
+    if (settings.emission != scene::Emission::independent) return std::max(surfaces, function.max_color());
     const scene::Box box = scene::bounds(source.geometry());
-    return function.max_color() * glm::length(box.high - box.low);
+    return surfaces + function.max_color() * glm::length(box.high - box.low);
   }
-  /// Of a cast in double precision; `visible` must outlive it.
+  [[nodiscard]] GridSurfaces surfaces_of(const scene::TransferFunction& function) const {
+    return settings.surfaces.empty() ? GridSurfaces() : GridSurfaces(settings.surfaces, function, ranges);
+  }
+  /// Of a cast in double precision; `visible` and `surfaces` must outlive it.
   [[nodiscard]] VoxelCastSettings voxel_settings(const scene::TransferFunction& function,
-                                                 std::span<const std::uint8_t> visible) const {
+                                                 std::span<const std::uint8_t> visible,
+                                                 const GridSurfaces* surfaces) const {
     return {{settings.emission, WalkSettings().tolerance, static_cast<double>(least_transmittance(function)), visible},
             settings.shading,
-            settings.clip};
+            settings.clip,
+            surfaces->any() ? surfaces : nullptr};
   }
   [[nodiscard]] double accuracy() const { return settings.method == Method::exact ? 2e-6 : settings.accuracy; }
 

@@ -15,6 +15,7 @@
 #include "integrals/segment_batch.hpp"
 #include "integrals/segment_integrator.hpp"
 #include "scene/frame_watch.hpp"
+#include "volume/surface_walk.hpp"
 
 namespace tessera::volume {
 namespace {
@@ -73,6 +74,8 @@ class VoxelPixels final : public WalkSink {
     batch_.reserve(together);
     lights_.resize(together);
     places_.resize(together);
+    if (settings.surfaces != nullptr) surfaces_.emplace(source, *settings.surfaces);
+    least_ = settings.walk.least;
   }
 
   /// Adds what a ray meets behind what `sum` has.
@@ -82,7 +85,18 @@ class VoxelPixels final : public WalkSink {
     ray_ = &ray;
     sum_ = sum;
     batch_.size = 0;
-    walk_.walk(ray, *this);
+    crossings_.clear();
+    const bool stops = surfaces_ && surfaces_->find(ray, least_, crossings_);
+    VoxelRay part = ray;
+    for (const SurfaceCrossing& crossing : crossings_) {
+      part.end = crossing.z;
+      walk_.walk(part, *this);
+      put();
+      put(crossing);
+      part.begin = crossing.z;
+    }
+    part.end = ray.end;
+    if (!stops) walk_.walk(part, *this);
     put();
     sum = sum_;
   }
@@ -128,8 +142,21 @@ class VoxelPixels final : public WalkSink {
     batch_.size = 0;
   }
 
+  void put(const SurfaceCrossing& crossing) {
+    const scene::SurfaceSet::Light& light = crossing.light;
+    sum_.red += sum_.transmittance * light.red;
+    sum_.green += sum_.transmittance * light.green;
+    sum_.blue += sum_.transmittance * light.blue;
+    sum_.optical_depth -= std::log1p(-light.opacity);
+    sum_.transmittance *= 1 - light.opacity;
+    if (std::isinf(sum_.first)) sum_.first = crossing.z;
+  }
+
   integrals::SegmentIntegrator integrator_;
   std::optional<VoxelShading> shading_;
+  std::optional<SurfaceWalk> surfaces_;
+  double least_ = 0;
+  std::vector<SurfaceCrossing> crossings_;
   VoxelWalk walk_;
   integrals::SegmentBatch batch_;
   std::vector<VoxelLight> lights_;

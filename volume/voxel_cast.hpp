@@ -14,6 +14,7 @@
 #include "scene/shading.hpp"
 #include "scene/transfer_function.hpp"
 #include "volume/fragment_sink.hpp"
+#include "volume/grid_surfaces.hpp"
 #include "volume/lane_error_bound.hpp"
 #include "volume/voxel_box.hpp"
 #include "volume/voxel_walk.hpp"
@@ -23,7 +24,8 @@ namespace tessera::volume {
 struct VoxelCastSettings {
   WalkSettings walk;
   std::optional<scene::Shading> shading;
-  std::vector<scene::HalfSpace> clip{};  ///< that rays are kept in
+  std::vector<scene::HalfSpace> clip{};    ///< that rays are kept in
+  const GridSurfaces* surfaces = nullptr;  ///< in the volume; null: none
 };
 
 struct VoxelCastCounts {
@@ -41,7 +43,7 @@ struct RaySum {
 
 /// Casts rays pixel by pixel along a VoxelWalk, each line integrated exactly in double precision: those of rectilinear
 /// grids, which are not straight in index space, so that the caster's lanes are of no use, and those of which float
-/// lanes are not sure (lane_error_bound.hpp).
+/// lanes are not sure (lane_error_bound.hpp). Surfaces are put between the parts of rays that they divide.
 ///
 /// Error    below 1e-5, whatever the spacings; what the walk may leave out (WalkSettings::tolerance, least) comes on
 ///          top.

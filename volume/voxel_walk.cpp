@@ -2,112 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
+#include <glm/common.hpp>
 #include <limits>
-#include <numbers>
+
+#include "volume/voxel_cubic.hpp"
+#include "volume/voxel_steps.hpp"
 
 namespace tessera::volume {
 namespace {
 
-constexpr std::int64_t block_side = 16, cell_side = 8;
-constexpr std::size_t blocks_kept = 256;
-constexpr double in_plane = 1e-9;  ///< voxels that a ray parallel to a plane may be off it, or leave it by
-
-/// The voxel that has a place of the local frame, or is nearest.
-std::int64_t voxel_along(const scene::GridGeometry& geometry, std::size_t axis, double local) {
-  std::int64_t low = 0, high = geometry.points[axis] - 1;
-  if (!geometry.rectilinear(axis)) {
-    const double place = std::floor(local / geometry.spacing[static_cast<int>(axis)]);
-    return static_cast<std::int64_t>(std::clamp(place, 0.0, static_cast<double>(high - 1)));
-  }
-  while (high - low > 1) {
-    const std::int64_t middle = low + (high - low) / 2;
-    (geometry.lattice(axis, middle) <= local ? low : high) = middle;
-  }
-  return low;
-}
+constexpr std::int64_t cell_side = 8;
 
 }  // namespace
-
-VoxelRays::VoxelRays(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry,
-                     std::span<const scene::HalfSpace> clip)
-    : camera_(camera),
-      geometry_(geometry),
-      basis_(scene::view_basis(camera)),
-      to_local_(scene::world_to_local(geometry)),
-      perspective_(camera.projection == scene::ProjectionKind::perspective),
-      width_(size.width),
-      height_(size.height) {
-  const double half = perspective_ ? std::tan(camera.view_angle * std::numbers::pi / 360) : camera.parallel_scale;
-  pixel_ = 2 * half / size.height;
-  const scene::Box box = scene::bounds(geometry);
-  for (int n = 0; n < 8; ++n) {
-    const glm::dvec3 p((n & 1) != 0 ? box.high.x : box.low.x, (n & 2) != 0 ? box.high.y : box.low.y,
-                       (n & 4) != 0 ? box.high.z : box.low.z);
-    deepest_ = std::max(deepest_, std::abs(glm::dot(p - camera.position, basis_.forward)));
-  }
-  for (const scene::HalfSpace& h : clip) clip_.push_back({h.point, scene::unit_normal(h)});
-}
-
-void VoxelRays::cut(const glm::dvec3& from, const glm::dvec3& step, VoxelRay& ray) const {
-  double voxel = std::numeric_limits<double>::infinity();
-  for (std::size_t a = 0; a < 3; ++a) {
-    const std::int64_t last = geometry_.points[a] - 1;
-    voxel = std::min(voxel, (geometry_.lattice(a, last) - geometry_.lattice(a, 0)) / static_cast<double>(last));
-  }
-  for (const scene::HalfSpace& h : clip_) {
-    const double climb = glm::dot(h.normal, step), height = glm::dot(h.normal, from - h.point);
-    if (std::abs(climb) * deepest_ >= in_plane * voxel) {
-      (climb > 0 ? ray.begin : ray.end) =
-          climb > 0 ? std::max(ray.begin, -height / climb) : std::min(ray.end, -height / climb);
-      continue;
-    }
-    double side = height;
-    if (std::abs(height) < in_plane * voxel) {
-      const double by_x = glm::dot(h.normal, basis_.right), by_y = -glm::dot(h.normal, basis_.up);
-      side = std::abs(by_x) > in_plane ? by_x : by_y;
-    }
-    if (side < 0) ray.end = ray.begin;
-  }
-}
-
-VoxelRay VoxelRays::ray(double x, double y) const {
-  const glm::dvec3 off = basis_.right * ((x - 0.5 * width_) * pixel_) + basis_.up * ((0.5 * height_ - y) * pixel_);
-  const glm::dvec3 from = perspective_ ? camera_.position : camera_.position + off;
-  const glm::dvec3 step = perspective_ ? basis_.forward + off : basis_.forward;
-  VoxelRay ray{to_local_ * (from - geometry_.origin), to_local_ * step, glm::length(step), 0,
-               std::numeric_limits<double>::infinity()};
-  if (camera_.clipping_range) {
-    ray.begin = std::max(0.0, camera_.clipping_range->near_distance);
-    ray.end = camera_.clipping_range->far_distance;
-  }
-  for (std::size_t a = 0; a < 3; ++a) {
-    const int axis = static_cast<int>(a);
-    const double low = geometry_.lattice(a, 0), high = geometry_.lattice(a, geometry_.points[a] - 1);
-    const double voxel = (high - low) / static_cast<double>(geometry_.points[a] - 1);
-    if (std::abs(ray.step[axis]) * deepest_ < in_plane * voxel) {
-      // Rounding would have it change sides on its way.
-      const double by_x = (to_local_ * basis_.right)[axis] * pixel_ * (perspective_ ? deepest_ : 1.0),
-                   by_y = -(to_local_ * basis_.up)[axis];
-      ray.step[axis] = 0;
-      ray.aside[axis] = std::copysign(in_plane * voxel, std::abs(by_x) > in_plane * voxel ? by_x : by_y);
-      const double place = ray.origin[axis] + ray.aside[axis];
-      if (place < low || place >= high) {
-        ray.end = ray.begin;
-        continue;
-      }
-      const std::int64_t n = voxel_along(geometry_, a, place);
-      for (const double plane : {geometry_.lattice(a, n), geometry_.lattice(a, n + 1)})
-        if (std::abs(ray.origin[axis] - plane) < in_plane * voxel) ray.origin[axis] = plane;
-      continue;
-    }
-    const double one = (low - ray.origin[axis]) / ray.step[axis], other = (high - ray.origin[axis]) / ray.step[axis];
-    ray.begin = std::max(ray.begin, std::min(one, other));
-    ray.end = std::min(ray.end, std::max(one, other));
-  }
-  cut(from, step, ray);
-  return ray;
-}
 
 /// s over u in [0, 1], degree three.
 struct VoxelWalk::FieldCubic {
@@ -129,38 +35,6 @@ struct VoxelWalk::FieldCubic {
   }
 };
 
-namespace {
-
-/// Of the trilinear field from `front` on over `rise`, both in the voxel's unit cube.
-std::array<double, 4> cubic_of(const std::array<double, 8>& corner, const glm::dvec3& front, const glm::dvec3& rise) {
-  // Bilinear in each axis in turn, polynomials growing by a degree each.
-  std::array<std::array<double, 4>, 8> p{};
-  for (std::size_t n = 0; n < 8; ++n) p[n][0] = corner[n];
-  for (int axis = 0; axis < 3; ++axis)
-    for (std::size_t n = 0; n < (4u >> axis); ++n) {
-      const std::array<double, 4> low = p[2 * n], high = p[2 * n + 1];
-      for (std::size_t i = 0; i < 4; ++i) {
-        p[n][i] = front[axis] == 1 ? high[i] : low[i] + (high[i] - low[i]) * front[axis];
-        if (i > 0) p[n][i] += (high[i - 1] - low[i - 1]) * rise[axis];
-      }
-    }
-  return p[0];
-}
-
-/// The places in (0, 1) where a cubic turns, after ends[0] and before a last 1.
-void turning_points(const std::array<double, 4>& p, std::array<double, 4>& ends, std::size_t& count) {
-  const double a = 3 * p[3], b = 2 * p[2], c = p[1], discriminant = b * b - 4 * a * c;
-  if (!(discriminant > 0)) return;
-  const double q = -(b + std::copysign(std::sqrt(discriminant), b)) / 2;
-  double one = a != 0 ? q / a : -1, other = q != 0 ? c / q : -1;
-  if (one > other) std::swap(one, other);
-  for (const double u : {one, other})
-    if (u > 0 && u < 1) ends[count++] = u;
-  ends[count] = 1;
-}
-
-}  // namespace
-
 scene::TransferFunction over_knot_numbers(const scene::TransferFunction& function) {
   std::vector<scene::Knot> knots(function.knots().begin(), function.knots().end());
   for (std::size_t k = 0; k < knots.size(); ++k) knots[k].value = static_cast<double>(k);
@@ -169,79 +43,20 @@ scene::TransferFunction over_knot_numbers(const scene::TransferFunction& functio
 
 VoxelWalk::VoxelWalk(const scene::SampleSource& source, const scene::TransferFunction& function,
                      const WalkSettings& settings)
-    : source_(source),
-      geometry_(source.geometry()),
+    : geometry_(source.geometry()),
       settings_(settings),
-      samples_(geometry_.samples()),
-      shared_(geometry_.association == scene::Association::point ? 1 : 0),
-      blocks_(blocks_kept),
+      blocks_(source),
       knots_(function.knots().begin(), function.knots().end()),
       independent_(settings.emission == scene::Emission::independent) {
   const scene::GridIndex voxels = geometry_.voxels();
   for (std::size_t a = 0; a < 3; ++a) cells_[a] = (voxels[a] + cell_side - 1) / cell_side;
 }
 
-std::array<double, 8> VoxelWalk::corners(const scene::GridIndex& voxel) {
-  const scene::GridIndex place{voxel[0] / block_side, voxel[1] / block_side, voxel[2] / block_side};
-  Block& block = blocks_[static_cast<std::size_t>(place[0] + 7 * place[1] + 49 * place[2]) % blocks_kept];
-  if (block.place != place || block.values.empty()) fill(block, place);
-  const std::int64_t width = block.box.extent(0), slice = width * block.box.extent(1);
-  const double* const at = &block.values[static_cast<std::size_t>(
-      (voxel[0] - block.box.low[0]) + width * (voxel[1] - block.box.low[1]) + slice * (voxel[2] - block.box.low[2]))];
-  const std::int64_t i = shared_, j = shared_ * width, k = shared_ * slice;
-  return {at[0], at[i], at[j], at[i + j], at[k], at[k + i], at[k + j], at[k + i + j]};
-}
-
-void VoxelWalk::fill(Block& block, const scene::GridIndex& place) {
-  for (std::size_t a = 0; a < 3; ++a) {
-    block.box.low[a] = place[a] * block_side;
-    block.box.high[a] = std::min(block.box.low[a] + block_side + shared_, samples_[a]);
-  }
-  block.values.resize(static_cast<std::size_t>(block.box.count()));
-  block.place = place;
-  source_.read(block.box, std::span<double>(block.values));
-  for (double& v : block.values) v = std::isfinite(v) ? source_.grid().value(v) : std::nan("");
-  ++counts_.blocks_read;
-  counts_.bytes_read += static_cast<std::uint64_t>(block.box.count()) * scene::size_of(source_.grid().type);
-}
-
 void VoxelWalk::walk(const VoxelRay& ray, WalkSink& sink) {
-  if (!(ray.begin < ray.end)) return;
-  // Along each axis the voxel and the depth of its far plane, each computed from the plane alone.
-  scene::GridIndex voxel{}, last{}, step{};
-  std::array<double, 3> next{};
-  constexpr double never = std::numeric_limits<double>::infinity();
-  const auto plane = [&](std::size_t a) {
-    const int axis = static_cast<int>(a);
-    return (geometry_.lattice(a, voxel[a] + (step[a] > 0 ? 1 : 0)) - ray.origin[axis]) / ray.step[axis];
-  };
-  for (std::size_t a = 0; a < 3; ++a) {
-    const int axis = static_cast<int>(a);
-    step[a] = ray.step[axis] < 0 ? -1 : 1;
-    voxel[a] = voxel_along(geometry_, a, ray.origin[axis] + ray.begin * ray.step[axis] + ray.aside[axis]);
-    last[a] = step[a] > 0 ? geometry_.points[a] - 2 : 0;
-    next[a] = ray.step[axis] == 0 ? never : plane(a);
-  }
-  const auto forward = [&](std::size_t a) {
-    if (voxel[a] == last[a]) {
-      next[a] = never;
-    } else {
-      voxel[a] += step[a];
-      next[a] = plane(a);
-    }
-  };
-  double z = ray.begin;
-  while (z < ray.end) {
-    // Planes that are passed already, by rounding or at once with another.
-    std::size_t a = next[0] <= next[1] && next[0] <= next[2] ? 0 : next[1] <= next[2] ? 1 : 2;
-    const double end = std::min(next[a], ray.end);
-    if (end > z) {
-      if (sink.transmittance() < settings_.least) return;
-      cross(ray, voxel, z, end, sink);
-      z = end;
-    }
-    if (next[a] == never) return;
-    forward(a);
+  for (VoxelSteps at(geometry_, ray); at.inside(); at.step()) {
+    if (!(at.begin() < at.end())) continue;
+    if (sink.transmittance() < settings_.least) return;
+    cross(ray, at.voxel(), at.begin(), at.end(), sink);
   }
 }
 
@@ -251,8 +66,8 @@ void VoxelWalk::cross(const VoxelRay& ray, const scene::GridIndex& voxel, double
       settings_.visible[static_cast<std::size_t>(
           voxel[0] / cell_side + cells_[0] * (voxel[1] / cell_side + cells_[1] * (voxel[2] / cell_side)))] == 0)
     return;
-  ++counts_.voxels;
-  VoxelStretch stretch{z0, z1, corners(voxel), {}, {}, {}};
+  ++voxels_;
+  VoxelStretch stretch{z0, z1, blocks_.corners(voxel), {}, {}, {}};
   const std::array<double, 8>& corner = stretch.corner;
   double low = corner[0], high = corner[0], all = 0;
   for (const double s : corner) low = std::min(low, s), high = std::max(high, s), all += s;

@@ -2,52 +2,17 @@
 
 #include <array>
 #include <cstdint>
-#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <span>
 #include <vector>
 
-#include "scene/camera.hpp"
 #include "scene/optical_model.hpp"
 #include "scene/sample_source.hpp"
-#include "scene/selection.hpp"
 #include "scene/transfer_function.hpp"
+#include "volume/sample_blocks.hpp"
+#include "volume/voxel_ray.hpp"
 
 namespace tessera::volume {
-
-/// A view ray in a grid's local frame: at planar depth z it is at origin + z * step, and in the volume and in view
-/// between `begin` and `end` (empty if begin >= end).
-struct VoxelRay {
-  glm::dvec3 origin, step;
-  double length_per_depth, begin, end;
-  glm::dvec3 aside{0};  ///< of the origin, of a ray in a plane of the lattice: where the voxel is that it counts for
-};
-
-/// The rays of a picture; any lattice.
-class VoxelRays {
- public:
-  /// A valid camera and size. Rays are kept in the half-spaces of `clip`; one that runs in a plane of them counts to
-  /// the side that it would be on if it were shifted likewise.
-  VoxelRays(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry,
-            std::span<const scene::HalfSpace> clip = {});
-
-  /// Through pixel coordinates (x, y), pixel (i, j) having its centre at (i + 0.5, j + 0.5). Where it runs in a plane
-  /// of the lattice it has that plane's values, and counts for the voxels that it would be in if it were shifted by
-  /// (e, e^2) pixel, e infinitely small.
-  [[nodiscard]] VoxelRay ray(double x, double y) const;
-
- private:
-  void cut(const glm::dvec3& from, const glm::dvec3& step, VoxelRay& ray) const;
-
-  scene::Camera camera_;
-  const scene::GridGeometry& geometry_;
-  scene::ViewBasis basis_;
-  glm::dmat3 to_local_;
-  bool perspective_;
-  double width_, height_, pixel_;
-  double deepest_ = 0;                  ///< planar depth of the volume's corners, at most
-  std::vector<scene::HalfSpace> clip_;  ///< normals of length 1
-};
 
 /// A ray's stretch in one voxel, planar depths z0 to z1. `corner` a + 2 b + 4 c is the value at the voxel's corner
 /// (a, b, c), all the same for cell data; the ray is at `front` of the unit cube at z0, and at front + rise at z1.
@@ -88,8 +53,6 @@ struct WalkSettings {
 /// into stretches so short that a line through its mean gives their light to the tolerance (ray_piece-inl.h has the
 /// bound). The field is computed in differences to a knot among the voxel's values, or to the least of them: fields and
 /// knots may differ by last places of doubles.
-///
-/// Samples are read in blocks of 16^3 voxels, 256 of which are kept: 10 MB.
 class VoxelWalk {
  public:
   VoxelWalk(const scene::SampleSource& source, const scene::TransferFunction& function, const WalkSettings& settings);
@@ -100,18 +63,11 @@ class VoxelWalk {
   struct Counts {
     std::uint64_t voxels = 0, blocks_read = 0, bytes_read = 0;
   };
-  [[nodiscard]] const Counts& counts() const { return counts_; }
+  [[nodiscard]] Counts counts() const { return {voxels_, blocks_.blocks_read(), blocks_.bytes_read()}; }
 
  private:
-  struct Block {
-    scene::GridIndex place{-1, -1, -1};
-    scene::SampleBox box;
-    std::vector<double> values;
-  };
   struct FieldCubic;
 
-  std::array<double, 8> corners(const scene::GridIndex& voxel);
-  void fill(Block& block, const scene::GridIndex& place);
   void cross(const VoxelRay& ray, const scene::GridIndex& voxel, double z0, double z1, WalkSink& sink);
   [[nodiscard]] double next_knot(double s, double crossed, bool up) const;
   [[nodiscard]] std::size_t knots_above(double s) const;
@@ -120,17 +76,15 @@ class VoxelWalk {
                   WalkSink& sink) const;
   [[nodiscard]] bool shows(double low, double high) const;
 
-  const scene::SampleSource& source_;
   const scene::GridGeometry& geometry_;
   WalkSettings settings_;
-  scene::GridIndex samples_, cells_;
-  std::int64_t shared_;
-  std::vector<Block> blocks_;
+  scene::GridIndex cells_;
+  SampleBlocks blocks_;
   std::vector<scene::Knot> knots_;
   bool independent_;
   double origin_ = 0;     ///< scalars in the voxel are counted from here
   double last_knot_ = 0;  ///< crossed, from there
-  Counts counts_;
+  std::uint64_t voxels_ = 0;
 };
 
 }  // namespace tessera::volume

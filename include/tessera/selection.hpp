@@ -22,9 +22,9 @@ TESSERA_EXPORT std::array<HalfSpace, 6> half_spaces_of(const Box& box);
 
 /// Which part of a data set is kept. First whole cells by their values, then what of them lies in all half-spaces.
 ///
-/// Threshold  a cell of the file, whatever tets are made of it: of cell data by its value; of point data it is kept if
-///            all of its points' values are from the first number to the second, both included (of cells of higher
-///            order: at the corners of the tets that they are divided into).
+/// Threshold  keeps cells of the file (of grids voxels), whatever tets are made of them: of cell data by its value,
+///            of point data those whose points' values are all from the first number to the second, both included (of
+///            cells of higher order: at the corners of the tets that they are divided into).
 /// Clip       cells are cut exactly: a tet that a plane goes through becomes up to three, whose new corners have the
 ///            value of the linear field there. Cells that share a face cut it alike, whatever piece of a file or rank
 ///            they are on, for a cut edge is divided from its end that comes first by position, and what is left is
@@ -32,9 +32,9 @@ TESSERA_EXPORT std::array<HalfSpace, 6> half_spaces_of(const Box& box);
 ///            count as on it, so that planes through vertices leave no splinters.
 ///            Corners there that have one of `levels` but for rounding (a part in 1e12) have it exactly: an iso-surface
 ///            that coincides with a plane is seen all over what is cut if what is left lies below its value, and
-///            nowhere if it lies above.
-/// Grids      have no threshold. Their rays are cut where they meet a plane; bounds are those of what is left, the
-///            range is the whole grid's.
+///            nowhere if it lies above. In grids that holds of all values (to a part in 1e10).
+/// Grids      Samples out of the threshold's range are blank, so voxels that have one are left out. Rays are cut where
+///            they meet a plane; bounds are those of what is left, and a plane does not change the range.
 struct Selection {
   std::vector<HalfSpace> clip;
   std::optional<std::array<double, 2>> threshold{};

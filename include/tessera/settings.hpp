@@ -140,7 +140,7 @@ struct Settings {
   /// Meshes: all kinds. Grids: exact, sampled and preintegrated by GridSettings::step, automatic.
   Integrator integrator;
   Emission emission = Emission::absorption;
-  Surfaces surfaces;                        ///< in meshes, composited on the CPU by the planes rasterizer
+  Surfaces surfaces;                        ///< meshes: by the planes rasterizer, on the CPU; grids: not in steps
   Mechanisms use;                           ///< what saves work
   int threads = 0;                          ///< of each process; 0: all cores
   std::uint64_t memory_bytes = 4ull << 30;  ///< of each process: frame buffers beside a mesh, bricks of a grid

@@ -13,10 +13,10 @@ struct SurfaceLight {
   bool operator==(const SurfaceLight&) const = default;
 };
 
-/// The surface on which a mesh's field has a value: along every ray the places where the field goes from below the
-/// value to the value or above, or back. So it is the boundary of what lies at the value or above, inside the mesh:
-/// where a face has the value it is met once, between cells on different sides of it, and the mesh's own boundary is no
-/// part of it. In each cell it is as exact as the field is; its normal is the field's gradient there.
+/// Where a field has a value: all places along a ray where it goes from below the value to the value or above, or back.
+/// So it is the boundary of what lies at the value or above, inside the data set, whose own boundary (and that of what
+/// is blank) is no part of it; where a face has the value it is met once, between cells on different sides of it. In
+/// each cell it is as exact as the field, in a voxel all roots of a cubic; its normal is the field's gradient there.
 struct IsoSurface {
   double value = 0;
   std::optional<glm::dvec3> color{};  ///< linear RGB; none: the transfer function's at the value
@@ -27,7 +27,7 @@ struct IsoSurface {
 /// Surfaces in the volume, composited with it in the order in which a ray meets them. The transfer function does not
 /// hide them: with one that shows nothing they are all there is.
 struct Surfaces {
-  std::vector<IsoSurface> iso;  ///< of meshes with point data
+  std::vector<IsoSurface> iso;  ///< of point data
   SurfaceLight light;
   [[nodiscard]] bool empty() const { return iso.empty(); }
 };

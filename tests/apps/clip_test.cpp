@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "apps/program.hpp"
+#include "io/image_file.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -41,6 +43,32 @@ TEST_F(ClipCommand, IsWrittenByConvert) {
   const Outcome info = tessera({"info", half});
   ASSERT_EQ(info.status, 0) << info.err;
   EXPECT_NE(info.out.find("bounds    (-1 -1 0) to (1 1 1)"), std::string::npos) << info.out;
+}
+
+TEST_F(ClipCommand, ThresholdOfAVolumeLeavesOutVoxelsWithASampleOutOfIt) {
+  // 2^3 voxels, the samples at their corners all 1 but that of the first one.
+  std::string samples(27, '\1');
+  samples[0] = '\5';
+  const std::string volume = folder.file("v_3x3x3_uint8.raw", samples);
+  const std::string function = folder.file("f.txt", "0 1 1 1 1000\n9 1 1 1 1000\n");
+  const auto alpha = [&](const Names& more) {
+    Names all{"render",   volume,           "-o",    folder / "a.exr", "--size", "40x40",  "--transfer-function",
+              function,   "--view",         "front", "--verify",       "1600",   "--clip", "0,0.9,0,0,-1,0",
+              "--report", folder / "r.json"};
+    all.insert(all.end(), more.begin(), more.end());
+    const Outcome outcome = tessera(all);
+    EXPECT_EQ(outcome.status, 0) << outcome.err << outcome.out;
+    const auto image = io::read_image(folder / "a.exr");
+    // The front looks along y, z is up: left below, right below, left above.
+    return std::array{image.rgba[4 * image.index(15, 25) + 3], image.rgba[4 * image.index(25, 25) + 3],
+                      image.rgba[4 * image.index(15, 15) + 3]};
+  };
+  EXPECT_EQ(alpha({}), (std::array{1.f, 1.f, 1.f}));
+  EXPECT_EQ(alpha({"--threshold", "0,4"}), (std::array{0.f, 1.f, 1.f}));
+  EXPECT_NE(contents(folder / "r.json").find("1 samples are blank or not in"), std::string::npos);
+  const Outcome none = tessera({"render", volume, "-o", folder / "a.png", "--threshold", "6,7", "--quiet"});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_NE(none.err.find("no sample's value is in --threshold"), std::string::npos) << none.err;
 }
 
 TEST_F(ClipCommand, SaysWhatIsWrongInOneLine) {

@@ -49,9 +49,33 @@ TEST(Surfaces, AreRefusedInOneLineThatSaysWhy) {
   refused({"--iso", "0.5", "--rasterizer", "scanline"}, "planes");
   refused({"--iso", "0.5", "--backend", "osmesa"}, "CPU");
   ASSERT_EQ(tessera({"generate", "ripples", folder / "grid.vti", "n=8", "--quiet"}).status, 0);
-  const auto run = tessera({"render", folder / "grid.vti", "-o", folder / "a.png", "--iso", "0.5", "--quiet"});
-  EXPECT_EQ(run.status, 2);
-  EXPECT_NE(run.err.find("--iso: is for meshes"), std::string::npos) << run.err;
+  const auto of_grid = [&](std::vector<std::string> more, const std::string& out) {
+    std::vector<std::string> arguments{"render", folder / "grid.vti", "-o", folder / out, "--iso", "0.5", "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto run = tessera(arguments);
+    EXPECT_EQ(run.status, 2);
+    return run.err;
+  };
+  EXPECT_NE(of_grid({"--integrator", "sampled"}, "a.png").find("--iso: iso-surfaces need"), std::string::npos);
+}
+
+TEST(Surfaces, OfGridsAreVerifiedAndTheSameOnAnyNumberOfRanks) {
+  const Folder folder;
+  ASSERT_EQ(tessera({"generate", "ripples", folder / "grid.vti", "n=24", "--quiet"}).status, 0);
+  const auto render = [&](const std::string& out, std::vector<std::string> more) {
+    std::vector<std::string> arguments{"render", folder / "grid.vti", "-o",    folder / out,    "--size", "70x50",
+                                       "--iso",  "0.5:red",           "--iso", "0.3:white:0.4", "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  const auto one = tessera(render("one.pfm", {"--verify", "500", "--clip", "0,0,0,1,1,0"}));
+  EXPECT_EQ(one.status, 0) << one.err;
+  const auto plain = tessera(render("plain.pfm", {"--clip", "0,0,0,1,1,0", "--integrator", "exact", "--shade"}));
+  EXPECT_EQ(plain.status, 0) << plain.err;
+  if (!has_mpirun()) GTEST_SKIP() << "there is no mpirun";
+  const Outcome ranks = mpirun(3, render("ranks.pfm", {"--threads", "1", "--clip", "0,0,0,1,1,0"}));
+  ASSERT_EQ(ranks.status, 0) << ranks.err;
+  EXPECT_EQ(contents(folder / "ranks.pfm"), contents(folder / "one.pfm"));
 }
 
 TEST(Surfaces, OfSeveralRanksHaveTheBytesOfOne) {

@@ -100,6 +100,33 @@ TEST(DeepGrid, CutAnywhereItIsWithinItsAccuracy) {
       }
 }
 
+TEST(DeepGrid, SurfacesAreSamplesWithoutLength) {
+  Surfaces iso;
+  iso.iso = {{0.4, glm::dvec3(1, 0.3, 0), 0.35}, {0.7, {}, 1}};
+  for (const bool rectilinear : {false, true}) {
+    const auto source = noise(scene::Association::point, rectilinear);
+    const volume::GridSurfaces surfaces(iso, smooth, volume::CellRanges(*source, 2));
+    for (const scene::Camera& camera : views(*source)) {
+      frame::DeepSettings settings;
+      settings.surfaces = &surfaces;
+      settings.threads = 2;
+      const scene::DeepImage image = frame::deep_image(*source, camera, size, smooth, settings, 0, size.height);
+      const reference::GridReference truth(*source, camera, size, smooth, scene::Emission::absorption, {}, {}, iso);
+      std::size_t points = 0;
+      for (int y = 0; y < size.height; y += 3)
+        for (int x = 0; x < size.width; x += 3) {
+          const auto pixel = image.pixel(static_cast<std::size_t>(y * size.width + x));
+          for (const auto& s : pixel) points += s.z == s.z_back ? 1 : 0;
+          const reference::Pixel p = truth.pixel(x + 0.5, y + 0.5);
+          const std::array<double, 4> wanted{p.r, p.g, p.b, p.a};
+          const auto got = tests::composited(pixel);
+          for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(got[c], wanted[c], 1e-5) << x << ' ' << y;
+        }
+      EXPECT_GT(points, 100u);
+    }
+  }
+}
+
 TEST(DeepGrid, SamplesAreTidyAndFewerWhereLessIsAsked) {
   const auto source = noise(scene::Association::point);
   const scene::Camera camera = views(*source)[0];

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "scene/error.hpp"
+#include "scene/threshold_source.hpp"
 
 namespace tessera::scene {
 namespace {
@@ -75,6 +76,38 @@ TEST(SampleSource, RangeLeavesBlanksOutAndMeansValuesNotSamples) {
   const ValueRange range = value_range(*MemorySource::of(grid, values));
   EXPECT_EQ(range, (ValueRange{0, 14, 2}));
   EXPECT_TRUE(value_range(*MemorySource::of(grid, std::vector<float>(24, std::nanf("")))).empty());
+}
+
+TEST(ThresholdSource, BlanksSamplesWhoseValuesAreOutsideOfTheRangeAndKeepsTheOthersAsTheyAre) {
+  Grid grid = grid_of({4, 3, 5});
+  grid.scale = -0.5;
+  grid.shift = 20;                                                                  // values from 20 down to -9.5
+  const ThresholdSource kept(MemorySource::of(grid, counting(60)), {4, 7.5}, "v");  // samples 25 to 32
+  EXPECT_EQ(kept.grid().type, SampleType::float32);
+  EXPECT_EQ(value_range(kept), (ValueRange{4, 7.5, 52}));
+  // Rows and slices apart, in both float types.
+  const SampleBox box{{1, 0, 1}, {3, 3, 4}};
+  std::vector<float> narrow(200, -1);
+  kept.read(box, {SampleType::float32, 5, 40}, std::as_writable_bytes(std::span<float>(narrow)));
+  std::vector<double> wide(static_cast<std::size_t>(box.count()));
+  kept.read(box, std::span<double>(wide));
+  for (std::int64_t k = 0, n = 0; k < 3; ++k)
+    for (std::int64_t j = 0; j < 3; ++j) {
+      for (std::int64_t i = 0; i < 2; ++i, ++n) {
+        const double sample = double(i + 1 + 4 * (j + 3 * (k + 1)));
+        const bool is_kept = sample >= 25 && sample <= 32;
+        const float a = narrow[static_cast<std::size_t>(i + 5 * j + 40 * k)];
+        const double b = wide[static_cast<std::size_t>(n)];
+        EXPECT_EQ(std::isnan(a), !is_kept) << sample;
+        EXPECT_EQ(std::isnan(b), !is_kept) << sample;
+        EXPECT_EQ(is_kept ? a : sample, sample);
+        EXPECT_EQ(is_kept ? b : sample, sample);
+      }
+      EXPECT_EQ(narrow[static_cast<std::size_t>(2 + 5 * j + 40 * k)], -1);  // between rows
+    }
+  const ThresholdSource doubles(MemorySource::of(grid, std::vector<double>(60, 1 + 1e-12)), {0, 19.6}, "v");
+  EXPECT_EQ(doubles.grid().type, SampleType::float64);
+  EXPECT_EQ(value_range(doubles).blanks, 0u);
 }
 
 TEST(SampleSource, TooFewBytesAndABoxOutsideAreRefused) {

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "scene/sample_source.hpp"
+
+namespace tessera::volume {
+
+/// A source's values in double precision, voxel by voxel, for one thread: read in blocks of 16^3 voxels, 256 of which
+/// are kept: 10 MB. The source must outlive it.
+class SampleBlocks {
+ public:
+  explicit SampleBlocks(const scene::SampleSource& source);
+
+  /// The values at a voxel's corners, (a, b, c) being number a + 2 b + 4 c; all the same for cell data. NaN where
+  /// blank.
+  [[nodiscard]] std::array<double, 8> corners(const scene::GridIndex& voxel);
+
+  /// Since it was made.
+  [[nodiscard]] std::uint64_t blocks_read() const { return blocks_read_; }
+  [[nodiscard]] std::uint64_t bytes_read() const { return bytes_read_; }
+
+ private:
+  struct Block {
+    scene::GridIndex place{-1, -1, -1};
+    scene::SampleBox box;
+    std::vector<double> values;
+  };
+  void fill(Block& block, const scene::GridIndex& place);
+
+  const scene::SampleSource& source_;
+  scene::GridIndex samples_;
+  std::int64_t shared_;
+  std::vector<Block> blocks_;
+  std::uint64_t blocks_read_ = 0, bytes_read_ = 0;
+};
+
+}  // namespace tessera::volume
