@@ -353,7 +353,12 @@ void refuse_mesh_options(const RenderWords& words, const RenderOptions& options)
   if (!words.higher_order_tets.empty()) refuse("--higher-order-tets");
   if (!read.blocks.empty()) refuse("--block");
   if (!read.plot3d_q.empty()) refuse("--q");
-  if (read.selection.threshold) refuse("--threshold");
+  if (read.selection.threshold) {
+    require_input(options.input());
+    throw bad_input(
+        "--threshold: is for meshes, whose cells it leaves out; hide a volume's values by --opacity-points, like "
+        "0:0,0.3:0,1:0.8");
+  }
 }
 
 LoadedTransferFunction transfer_function_of(const Dataset& data, const RenderOptions& options) {
