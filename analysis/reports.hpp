@@ -12,7 +12,7 @@
 #include "tessera/transfer_function.hpp"
 #include "tessera/verification.hpp"
 
-/// Data sets, frames and checks as JSON: what `tessera render --report` and `tessera info --json` hold (docs/GUIDE.md).
+/// Data sets, frames and checks as JSON: what `tessera render --report` and `tessera info --json` hold.
 namespace tessera::analysis {
 
 /// What is to be said of a data set, kept when it is gone.

@@ -76,12 +76,10 @@ Place parse_place(const char* option, const std::string& word, Place otherwise) 
 }
 
 std::array<double, 2> parse_range(const std::string& option, const std::string& words) {
-  const std::size_t comma = words.find(',');
-  if (comma == std::string::npos)
-    throw bad_input(fmt::format("{}: '{}' is not LOW,HIGH; give two numbers", option, words));
-  const double low = parse_number(option, words.substr(0, comma)), high = parse_number(option, words.substr(comma + 1));
-  if (!(low < high)) throw bad_input(fmt::format("{}: '{}' does not ascend; give the lower one first", option, words));
-  return {low, high};
+  const auto ends = parse_numbers(option, words, 2, "LOW,HIGH, two numbers");
+  if (!(ends[0] < ends[1]))
+    throw bad_input(fmt::format("{}: '{}' does not ascend; give the lower one first", option, words));
+  return {ends[0], ends[1]};
 }
 
 /// Only a known place before the first colon is one: "Time: {time}" is text.

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "tessera/error.hpp"
+#include "tessera/nearest_name.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -28,6 +29,13 @@ std::optional<T> number(std::string_view text) {
 Error wrong(const std::string& option, const std::string& text, const std::string& allowed) {
   return bad_input(fmt::format("{}: '{}' is not {}", option, text, allowed));
 }
+
+/// Names of colours, each as `#rrggbb`; the first few are those that a message names.
+constexpr std::pair<std::string_view, std::string_view> colors[] = {
+    {"black", "#000000"},    {"white", "#ffffff"}, {"gray", "#808080"},      {"red", "#ff0000"},
+    {"green", "#00ff00"},    {"blue", "#0000ff"},  {"yellow", "#ffff00"},    {"orange", "#ffa500"},
+    {"navy", "#000080"},     {"cyan", "#00ffff"},  {"magenta", "#ff00ff"},   {"lightgray", "#d3d3d3"},
+    {"darkgray", "#404040"}, {"grey", "#808080"},  {"lightgrey", "#d3d3d3"}, {"darkgrey", "#404040"}};
 
 /// `#rrggbb` of sRGB in linear light (IEC 61966-2-1).
 std::optional<std::array<float, 3>> color_of_hex(std::string_view text) {
@@ -130,43 +138,29 @@ WithoutWords parse_without(const std::string& option, const std::string& text) {
 }
 
 std::array<float, 3> parse_color(const std::string& option, const std::string& text) {
-  constexpr auto allowed =
-      "a colour; write R,G,B (linear light, 0 or more), #rrggbb (sRGB) or one of black, white, gray, lightgray, "
-      "darkgray, red, green, blue, yellow, cyan, magenta, orange, navy";
-  constexpr float middle_gray = 0.2158f;  // sRGB 0.5
-  constexpr std::pair<std::string_view, std::array<float, 3>> names[] = {
-      {"black", {0, 0, 0}},
-      {"white", {1, 1, 1}},
-      {"gray", {middle_gray, middle_gray, middle_gray}},
-      {"grey", {middle_gray, middle_gray, middle_gray}},
-      {"red", {1, 0, 0}},
-      {"green", {0, 1, 0}},
-      {"blue", {0, 0, 1}},
-      {"yellow", {1, 1, 0}},
-      {"cyan", {0, 1, 1}},
-      {"magenta", {1, 0, 1}}};
-  for (const auto& [name, color] : names)
-    if (text == name) return color;
-  constexpr std::pair<std::string_view, std::string_view> hexadecimal[] = {
-      {"lightgray", "#d3d3d3"}, {"lightgrey", "#d3d3d3"}, {"darkgray", "#404040"},
-      {"darkgrey", "#404040"},  {"orange", "#ffa500"},    {"navy", "#000080"}};
-  for (const auto& [name, digits] : hexadecimal)
+  std::vector<std::string> names;
+  for (const auto& [name, digits] : colors) {
     if (text == name) return *color_of_hex(digits);
+    names.emplace_back(name);
+  }
+  const auto near = nearest_name(text, names);
+  const std::string allowed =
+      near ? fmt::format("a colour; did you mean {}?", *near)
+           : "a colour; write R,G,B (linear light, 0 or more), #rrggbb (sRGB) or black, white, gray, red, green, blue, "
+             "yellow, orange, navy, cyan or magenta";
   if (text.starts_with('#')) {
     const auto color = color_of_hex(text);
     if (!color) throw wrong(option, text, allowed);
     return *color;
   }
 
+  const std::vector<std::string> channels = split_at_commas(text);
+  if (channels.size() != 3) throw wrong(option, text, allowed);
   std::array<float, 3> color{};
-  std::string_view rest = text;
   for (std::size_t channel = 0; channel < 3; ++channel) {
-    const auto comma = channel < 2 ? rest.find(',') : rest.size();
-    if (comma == std::string_view::npos) throw wrong(option, text, allowed);
-    const auto value = number<float>(rest.substr(0, comma));
+    const auto value = number<float>(channels[channel]);
     if (!value || !std::isfinite(*value) || *value < 0) throw wrong(option, text, allowed);
     color[channel] = *value;
-    rest.remove_prefix(std::min(comma + 1, rest.size()));
   }
   return color;
 }
@@ -183,17 +177,34 @@ double parse_positive(const std::string& option, const std::string& text) {
   return *value;
 }
 
-glm::dvec3 parse_vector(const std::string& option, const std::string& text, bool positive) {
-  glm::dvec3 values;
-  std::size_t at = 0;
-  for (int k = 0; k < 3; ++k) {
-    const std::size_t stop = k < 2 ? text.find(',', at) : text.size();
-    if (stop == std::string::npos) throw wrong(option, text, "three numbers; write X,Y,Z");
-    const std::string word = text.substr(at, stop - at);
-    values[k] = positive ? parse_positive(option, word) : parse_number(option, word);
+std::vector<std::string> split_at_commas(const std::string& text) {
+  std::vector<std::string> words;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t stop = std::min(text.find(',', at), text.size());
+    words.push_back(text.substr(at, stop - at));
     at = stop + 1;
   }
+  return words;
+}
+
+std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count,
+                                  const std::string& form) {
+  const std::vector<std::string> words = split_at_commas(text);
+  if (words.size() != count) throw wrong(option, text, form);
+  std::vector<double> values;
+  for (const std::string& word : words) {
+    const auto value = number<double>(word);
+    if (!value || !std::isfinite(*value)) throw wrong(option, text, form);
+    values.push_back(*value);
+  }
   return values;
+}
+
+glm::dvec3 parse_vector(const std::string& option, const std::string& text, bool positive) {
+  const auto values = parse_numbers(option, text, 3, "three numbers; write X,Y,Z");
+  if (positive && !std::ranges::all_of(values, [](double value) { return value > 0; }))
+    throw wrong(option, text, "three numbers above 0; write X,Y,Z");
+  return {values[0], values[1], values[2]};
 }
 
 int parse_count(const std::string& option, const std::string& text, int low, int high) {

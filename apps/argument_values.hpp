@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <string>
+#include <vector>
 
 #include "tessera/camera.hpp"
 #include "tessera/mechanisms.hpp"
@@ -33,12 +34,19 @@ struct WithoutWords {
 /// empty.
 WithoutWords parse_without(const std::string& option, const std::string& text);
 
-/// `R,G,B` as linear light, each >= 0; `#rrggbb` as sRGB; or a name: black, white, gray (linear 0.2158, what sRGB shows
-/// half way), lightgray, darkgray, red, green, blue, yellow, cyan, magenta, orange, navy.
+/// `R,G,B` as linear light, each >= 0; `#rrggbb` as sRGB; or a name: black, white, gray (sRGB #808080), lightgray,
+/// darkgray, red, green, blue, yellow, cyan, magenta, orange, navy.
 std::array<float, 3> parse_color(const std::string& option, const std::string& text);
 
 /// `X,Y,Z`, finite; `positive`: each above zero.
 glm::dvec3 parse_vector(const std::string& option, const std::string& text, bool positive);
+
+/// What stands between commas, at least one word, perhaps empty.
+std::vector<std::string> split_at_commas(const std::string& text);
+
+/// `count` finite numbers with commas between; `form` is for the message, like "MIN,MAX, two numbers".
+std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count,
+                                  const std::string& form);
 
 /// A finite number.
 double parse_number(const std::string& option, const std::string& text);

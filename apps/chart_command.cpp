@@ -14,6 +14,7 @@
 #include "analysis/chart_peers.hpp"
 #include "analysis/chart_sweep.hpp"
 #include "apps/argument_values.hpp"
+#include "apps/progress.hpp"
 #include "apps/report.hpp"
 #include "apps/run_output.hpp"
 #include "apps/setting_words.hpp"
@@ -167,7 +168,11 @@ void chart(const RenderWords& words, const ChartWords& chart) {
     if (!file.empty()) check_output(file, options.input());
 
   const FilmFrame frame = plan_film(options.plan).front();
-  const Dataset data = Dataset::open(frame.data.files, options.read);
+  StatusLine line(shows_progress(options.quiet));
+  ReadOptions read_options = options.read;
+  read_options.progress = line.listener();
+  line.begin("reading " + options.input().filename().string());
+  const Dataset data = Dataset::open(frame.data.files, read_options);
   Json report = {{"program", "tessera"}, {"version", TESSERA_VERSION}};
   report[data.is_grid() ? "volume" : "mesh"] = analysis::data_json(options.input(), described(data));
   const auto loaded = transfer_function_of(data, options);
@@ -181,13 +186,19 @@ void chart(const RenderWords& words, const ChartWords& chart) {
   // Reading is what any use of the data takes, and no choice of the chart's.
   const double reading = seconds_since(begin);
   const auto read = Clock::now();
+  line.begin("rendering the reference");
   const analysis::ChartTruth truth = analysis::chart_truth(scene, budget / 3, pixels);
   const auto methods = analysis::chart_methods(scene);
+  std::size_t said = 0;
   const auto say = [&](const analysis::ChartPoint& point) {
-    if (!options.quiet)
-      fmt::print(stderr, "{}: {:.4g} ms, max {:.3g}\n", point.name, point.median_ms(), point.error.max);
+    line.advance(static_cast<double>(++said) / static_cast<double>(methods.size()));
+    if (options.quiet) return;
+    const auto away = StatusLine::away();
+    fmt::print(stderr, "{}: {:.4g} ms, max {:.3g}\n", point.name, point.median_ms(), point.error.max);
   };
+  line.begin("measuring methods");
   analysis::ChartSweep measured = analysis::sweep(scene, methods, truth, {read, budget, repeat}, say);
+  line.begin("");
   auto& points = measured.points;
   std::vector<analysis::ChartPoint> alone;
   for (std::size_t i = 0; i < methods.size(); ++i) {

@@ -7,8 +7,10 @@
 #include <filesystem>
 #include <system_error>
 
+#include "apps/generate_command.hpp"
 #include "apps/report.hpp"
 #include "tessera/dataset.hpp"
+#include "tessera/presets.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -46,14 +48,25 @@ std::vector<std::string> names_in_file(const std::vector<std::string>& words, bo
   return {};
 }
 
-/// What an option's value may be; `files` is set where it may be a file.
-std::vector<std::string> values_of(const CLI::Option& option, const std::vector<std::string>& words, bool& files) {
+/// Colours; with an opacity each once a colon stands.
+std::vector<std::string> preset_words(std::string_view current) {
+  const std::vector<std::string> colors = preset_names();
+  const std::string name(current.substr(0, current.find(':')));
+  if (name.size() == current.size() || std::ranges::find(colors, name) == colors.end()) return colors;
+  std::vector<std::string> found;
+  for (const std::string& opacity : preset_opacity_names()) found.push_back(fmt::format("{}:{}", name, opacity));
+  return found;
+}
+
+/// What an option's value may be, whose beginning is `current`; `files` is set where it may be a file.
+std::vector<std::string> values_of(const CLI::Option& option, const std::vector<std::string>& words,
+                                   std::string_view current, bool& files) {
   const std::string name = option.get_lnames().empty() ? "" : option.get_lnames().front();
   const std::string type = option.get_type_name();
   files = type.find("FILE") != std::string::npos;
   if (name == "field") return names_in_file(words, false);
   if (name == "block") return names_in_file(words, true);
-  if (name == "transfer-function") return preset_names();
+  if (name == "transfer-function") return preset_words(current);
   return literal_words(type);
 }
 
@@ -73,13 +86,13 @@ std::vector<std::string> candidates(const CommandLine& line, const std::vector<s
   if (const std::size_t equals = current.find('='); current.starts_with("--") && equals != std::string::npos) {
     const std::string name = current.substr(0, equals);
     if (const CLI::Option* option = option_named(*command, name))
-      for (const std::string& value : values_of(*option, before, files))
+      for (const std::string& value : values_of(*option, before, std::string_view(current).substr(equals + 1), files))
         found.push_back(fmt::format("{}={}", name, value));
     return found;
   }
   if (const CLI::Option* option = before.empty() ? nullptr : option_named(*command, before.back());
       option != nullptr && option->get_type_size() != 0 && option->get_expected_min() > 0)
-    return values_of(*option, before, files);
+    return values_of(*option, before, current, files);
   if (current.starts_with('-')) {
     for (const CLI::Option* option : command->get_options())
       if (!option->get_group().empty())
@@ -88,6 +101,7 @@ std::vector<std::string> candidates(const CommandLine& line, const std::vector<s
   }
   if (command == line.help) return command_names(line);
   if (command == line.completion) return {"bash", "zsh", "fish"};
+  if (command == line.generate && words.size() == 2) return generator_names();
   files = true;
   return {};
 }

@@ -44,7 +44,10 @@ _tessera() {
   found=("${(@f)$("${words[1]}" complete "${(@)words[2,CURRENT]}" 2> /dev/null)}")
   if [[ ${found[1]} == :files ]]; then
     found=("${(@)found[2,-1]}")
-    [[ ${words[CURRENT]} == --*=* ]] && compset -P '*='
+    if [[ ${words[CURRENT]} == --*=* ]]; then
+      compset -P '*='
+      found=("${(@)found#*=}")
+    fi
     _files
   fi
   [[ -n ${found[1]} ]] && compadd -- "${found[@]}"
@@ -56,10 +59,18 @@ constexpr const char* fish_script = R"script(# Completion of tessera for fish.
 function __tessera_complete
   set -l words (commandline -opc)
   set -l current (commandline -ct)
+  if string match --quiet --regex '^["\']' -- "$current"
+    set current (string sub --start 2 -- "$current")
+  else
+    set current (string unescape -- "$current")
+  end
   set -l found ($words[1] complete $words[2..-1] "$current" 2> /dev/null)
   if test "$found[1]" = ":files"
     set -e found[1]
-    __fish_complete_path "$current"
+    set -l option (string match --regex '^--[^=]*=' -- "$current")
+    for file in (__fish_complete_path (string replace -- "$option" "" "$current"))
+      echo "$option$file"
+    end
   end
   printf '%s\n' $found
 end

@@ -22,11 +22,7 @@ Backend backend_of(const std::string& word) {
 
 std::vector<Backend> backends_of(const std::string& words) {
   std::vector<Backend> backends;
-  for (std::size_t at = 0; at <= words.size();) {
-    const std::size_t stop = std::min(words.find(',', at), words.size());
-    backends.push_back(backend_of(words.substr(at, stop - at)));
-    at = stop + 1;
-  }
+  for (const std::string& word : split_at_commas(words)) backends.push_back(backend_of(word));
   return backends;
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 
 #include "apps/argument_values.hpp"
@@ -26,23 +25,18 @@ void add_function_options(CLI::App& command, FunctionWords& words) {
 void set_function(const FunctionWords& words, TransferFunctionOptions& options) {
   options.logarithmic = words.log;
   if (!words.range.empty()) {
-    const std::size_t comma = words.range.find(',');
-    if (comma == std::string::npos)
-      throw bad_input(fmt::format("--range: '{}' is not two numbers; write MIN,MAX", words.range));
-    options.range = {{parse_number("--range", words.range.substr(0, comma)),
-                      parse_number("--range", words.range.substr(comma + 1))}};
+    const auto ends = parse_numbers("--range", words.range, 2, "two numbers; write MIN,MAX");
+    options.range = {{ends[0], ends[1]}};
     if (!((*options.range)[0] < (*options.range)[1]))
       throw bad_input(fmt::format("--range: '{}' is empty; write the smaller number first", words.range));
   }
-  for (std::size_t at = 0; !words.opacity_points.empty() && at <= words.opacity_points.size();) {
-    const std::size_t stop = std::min(words.opacity_points.find(',', at), words.opacity_points.size());
-    const std::string point = words.opacity_points.substr(at, stop - at);
+  if (words.opacity_points.empty()) return;
+  for (const std::string& point : split_at_commas(words.opacity_points)) {
     const std::size_t colon = point.find(':');
     if (colon == std::string::npos)
       throw bad_input(fmt::format("--opacity-points: '{}' is no point; write T:A, like 0.3:0.02", point));
     options.opacity_points.push_back({parse_number("--opacity-points", point.substr(0, colon)),
                                       parse_number("--opacity-points", point.substr(colon + 1))});
-    at = stop + 1;
   }
   for (std::size_t i = 0; i < options.opacity_points.size(); ++i) {
     const auto [place, opacity] = options.opacity_points[i];

@@ -35,6 +35,13 @@ std::string generator_help() {
   return text + "Parameters of every mesh:\n" + parameter_help(datasets::common_parameters());
 }
 
+std::vector<std::string> generator_names() {
+  std::vector<std::string> names;
+  for (const auto& generator : datasets::generators()) names.emplace_back(generator.name);
+  for (const auto& generator : datasets::volume_generators()) names.emplace_back(generator.name);
+  return names;
+}
+
 void generate(const std::string& kind, const std::filesystem::path& output, const std::vector<std::string>& parameters,
               bool quiet) {
   std::map<std::string, double> values;

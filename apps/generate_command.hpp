@@ -14,4 +14,7 @@ void generate(const std::string& kind, const std::filesystem::path& output, cons
 /// Kinds with their parameters and defaults, several lines, for the help.
 std::string generator_help();
 
+/// Names of all kinds.
+std::vector<std::string> generator_names();
+
 }  // namespace tessera::apps

@@ -40,6 +40,8 @@ void presets(const std::filesystem::path& picture) {
   const auto names = preset_names();
   if (picture.empty()) {
     for (const std::string& name : names) fmt::print("{}\n", name);
+    fmt::print("\nwith an opacity, like {}:peaks:\n", names[1]);
+    for (const std::string& name : preset_opacity_names()) fmt::print("{}\n", name);
     return;
   }
   check_image_path(picture);

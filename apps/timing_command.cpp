@@ -5,6 +5,7 @@
 #include "analysis/timing_breakdown.hpp"
 #include "analysis/timing_figure.hpp"
 #include "analysis/timing_text.hpp"
+#include "apps/progress.hpp"
 #include "tessera/output_file.hpp"
 #include "tessera/trace_file.hpp"
 
@@ -19,7 +20,13 @@ void timing(const std::vector<std::filesystem::path>& traces, const std::filesys
 
   std::vector<analysis::RunTime> runs;
   runs.reserve(traces.size());
-  for (const auto& trace : traces) runs.push_back(analysis::break_down(read_trace(trace), trace.string()));
+  StatusLine line(shows_progress(false));
+  for (const auto& trace : traces) {
+    line.begin("reading " + trace.filename().string());
+    if (traces.size() > 1) line.advance(static_cast<double>(runs.size()) / static_cast<double>(traces.size()));
+    runs.push_back(analysis::break_down(read_trace(trace), trace.string()));
+  }
+  line.begin("");
 
   for (const analysis::RunTime& run : runs) fmt::print("{}\n", analysis::breakdown_text(run));
   if (runs.size() > 1) fmt::print("{}\n", analysis::scaling_text(runs));

@@ -177,11 +177,9 @@ void set_balance(const RenderWords& words, RankSettings& ranks) {
   }
   if (!words.show.empty() && words.show != "balance")
     throw bad_input(fmt::format("--show: '{}' is unknown; use balance", words.show));
-  for (std::size_t at = 0; !words.balance_weights.empty() && at <= words.balance_weights.size();) {
-    const std::size_t stop = std::min(words.balance_weights.find(',', at), words.balance_weights.size());
-    ranks.balance_weights.push_back(parse_positive("--balance-weights", words.balance_weights.substr(at, stop - at)));
-    at = stop + 1;
-  }
+  if (!words.balance_weights.empty())
+    for (const std::string& weight : split_at_commas(words.balance_weights))
+      ranks.balance_weights.push_back(parse_positive("--balance-weights", weight));
 }
 
 void refuse_mesh_words(const RenderWords& words) {

@@ -127,7 +127,11 @@ std::vector<std::array<double, 2>> even_extinctions(const ValueShares& shares, c
     smooth[static_cast<std::size_t>(b)] = (at(b - 1) + 2 * at(b) + at(b + 1)) / 4 / std::max(sum, 1e-300);
   }
   std::vector<std::array<double, 2>> points;
-  if (r.has_ground) points.insert(points.end(), {{std::min(r.low, r.ground), 0}, {r.ground, 0}});
+  points.reserve(bands + 2);
+  if (r.has_ground) {
+    points.push_back({std::min(r.low, r.ground), 0});
+    points.push_back({r.ground, 0});
+  }
   for (int b = 0; b < bands; ++b) {
     const double t = (b + 0.5) / bands, value = from + (b + 0.5) * width;
     const double rise = r.about_zero ? 1 + 2 * std::abs(2 * t - 1) : 1 + 2 * t;
@@ -183,10 +187,12 @@ std::vector<OpacityPoint> opacities_of(const Draft& draft, double scale) {
 
 }  // namespace
 
-ValueShares::ValueShares(const scene::FieldSamples& samples) {
+ValueShares::ValueShares(const scene::FieldSamples& samples, bool stored) {
   std::vector<std::pair<double, double>> sorted;
   sorted.reserve(samples.samples.size());
-  for (const scene::FieldSample& s : samples.samples) sorted.emplace_back(s.value, s.volume);
+  const bool own = stored && samples.stored.size() == samples.samples.size();
+  for (std::size_t i = 0; i < samples.samples.size(); ++i)
+    sorted.emplace_back(own ? samples.stored[i] : samples.samples[i].value, samples.samples[i].volume);
   std::ranges::sort(sorted);  // by volume too, so that sums have the same bits in any order of samples
   double sum = 0;
   for (const auto& [value, volume] : sorted) {
@@ -227,7 +233,7 @@ DefaultKind default_kind(const DefaultField& field, const std::array<double, 2>&
   if (field.shape) return DefaultKind::shape;
   const bool patient = field.axes != BodyAxes::none;
   if ((patient || field.format == "DICOM CT") && range[0] <= -900 && range[1] >= 200) return DefaultKind::ct;
-  const ValueShares shares(*field.samples);
+  const ValueShares shares(*field.samples, true);
   if (whole(range[0]) && whole(range[1]) && !shares.empty()) {
     const std::vector<double> labels = shares.distinct(highest_label + 1);
     const bool few = labels.size() <= most_labels || (range[0] >= 0 && range[1] <= highest_label);
@@ -279,11 +285,11 @@ LoadedTransferFunction default_function(const DefaultField& field, const Transfe
   const DefaultKind kind = default_kind(field, options.field_range);
   if (kind == DefaultKind::constant) return default_transfer_function(options);
   const ValueShares shares(*field.samples);
-  Draft draft = kind == DefaultKind::shape    ? draft_shape(shares, options.field_range)
-                : kind == DefaultKind::labels ? draft_labels(field, options.field_range, shares)
-                : kind == DefaultKind::ct
-                    ? draft_ct()
-                    : draft_values(field, options.field_range, shares, kind == DefaultKind::body, options);
+  Draft draft =
+      kind == DefaultKind::shape    ? draft_shape(shares, options.field_range)
+      : kind == DefaultKind::labels ? draft_labels(field, options.field_range, ValueShares(*field.samples, true))
+      : kind == DefaultKind::ct     ? draft_ct()
+                                : draft_values(field, options.field_range, shares, kind == DefaultKind::body, options);
   TransferCurves curves{std::move(draft.colors), {}, draft.space};
   if (!options.opacity_points.empty()) {
     curves.opacities = points_over(options.opacity_points, draft.range[0], draft.range[1]);

@@ -44,7 +44,8 @@ struct DefaultField {
 /// What is needed of the volume's distribution: values with all that lies below.
 class ValueShares {
  public:
-  explicit ValueShares(const scene::FieldSamples& samples);
+  /// Of the field, or of a grid's values themselves (FieldSamples::stored).
+  explicit ValueShares(const scene::FieldSamples& samples, bool stored = false);
   [[nodiscard]] bool empty() const { return values_.empty(); }
   /// The value below which `share` of the volume lies, of what is above `from`.
   [[nodiscard]] double quantile(double share, double from = -1e300) const;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 
 #include "colormaps/color_map_tables.hpp"
 #include "colormaps/function_options.hpp"
@@ -70,6 +69,12 @@ std::vector<std::string> preset_names() {
   return names;
 }
 
+std::vector<std::string> preset_opacity_names() {
+  std::vector<std::string> names;
+  for (const Variant& variant : variants) names.emplace_back(variant.name);
+  return names;
+}
+
 bool is_preset(std::string_view name) { return find_table(name.substr(0, name.find(':'))) != nullptr; }
 
 LoadedTransferFunction preset(std::string_view name, const TransferFunctionOptions& options) {
@@ -79,10 +84,8 @@ LoadedTransferFunction preset(std::string_view name, const TransferFunctionOptio
   const std::string_view variant_name = colon == std::string_view::npos ? "ramp" : name.substr(colon + 1);
   const auto variant = std::ranges::find(variants, variant_name, &Variant::name);
   if (table == nullptr || variant == variants.end()) {
-    std::vector<std::string_view> known;
-    std::ranges::transform(variants, std::back_inserter(known), &Variant::name);
-    std::vector<std::string> names(known.begin(), known.end());
-    const auto near = table == nullptr ? std::nullopt : nearest_name(variant_name, names);
+    const std::vector<std::string> known = preset_opacity_names();
+    const auto near = table == nullptr ? std::nullopt : nearest_name(variant_name, known);
     throw scene::bad_input(
         fmt::format("{}: no such preset; {}write COLOURS or COLOURS:OPACITY with colours {} and "
                     "opacity {}",

@@ -30,6 +30,8 @@ LoadedTransferFunction default_transfer_function(const TransferFunctionOptions& 
 
 /// The names of all colours, the default first.
 std::vector<std::string> preset_names();
+/// And of all opacities.
+std::vector<std::string> preset_opacity_names();
 
 /// The opacities of `ramp`, over [0, 1]: also what a colour map without opacities gets.
 std::vector<OpacityPoint> opacity_ramp();

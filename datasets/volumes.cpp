@@ -85,7 +85,9 @@ std::unique_ptr<scene::SampleSource> generate_volume(const std::string& kind,
   std::map<std::string, double> values;
   for (const GeneratorParameter& p : generator->parameters) values[p.name] = p.default_value;
   for (const auto& [name, value] : parameters) {
-    if (values.count(name) == 0) throw scene::bad_input(fmt::format("generate: {} has no parameter {}", kind, name));
+    if (values.count(name) == 0)
+      throw scene::bad_input(
+          fmt::format("{}: unknown parameter '{}'; it takes {}", kind, name, kind == "checker" ? "n" : "n, bits"));
     values[name] = value;
   }
   const double n = values["n"], bits = values.count("bits") > 0 ? values["bits"] : 32;

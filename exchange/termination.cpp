@@ -25,6 +25,7 @@ bool speaks_for_the_lost = true;  ///< on the first rank's machine
 std::array<pid_t, 2> launchers{};
 int rank_of_run = 0, size_of_run = 1;
 std::string remedy_of_run, line_of_run;
+void (*before_end_of_run)() noexcept = nullptr;
 std::atomic<bool> is_ending = false, asked_to_end = false;
 
 extern "C" void on_termination(int signal, siginfo_t* from, void* /*context*/) {
@@ -42,6 +43,7 @@ extern "C" void on_termination(int signal, siginfo_t* from, void* /*context*/) {
     static_cast<void>(ignored);
     hold_one_line();
   }
+  if (before_end_of_run != nullptr) before_end_of_run();
   _exit(static_cast<int>(scene::ErrorCode::system_failure));
 }
 
@@ -65,8 +67,10 @@ std::array<pid_t, 2> find_launchers() {
 
 }  // namespace
 
-void answer_termination(Transport& transport, const std::string& program, const std::string& remedy) {
+void answer_termination(Transport& transport, const std::string& program, const std::string& remedy,
+                        void (*before_end)() noexcept) {
   remedy_of_run = remedy;
+  before_end_of_run = before_end;
   line_of_run = fmt::format("{}: the run was ended from outside or has lost a rank (the launcher says which); {}\n",
                             program, remedy);
   rank_of_run = transport.rank(), size_of_run = transport.size();

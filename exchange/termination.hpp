@@ -9,8 +9,10 @@
 namespace tessera::exchange {
 
 /// Installs handlers of SIGTERM and SIGALRM for as long as the process lives. `program` and `remedy` as JobVoice has
-/// them. Collective; for jobs of several ranks.
-void answer_termination(Transport& transport, const std::string& program, const std::string& remedy);
+/// them; `before_end` is called in the handler, before the process ends in it, and does what a handler may. Collective;
+/// for jobs of several ranks.
+void answer_termination(Transport& transport, const std::string& program, const std::string& remedy,
+                        void (*before_end)() noexcept);
 
 /// The run's error, once this rank got SIGTERM from somebody else than its launcher.
 std::optional<scene::Error> ended_from_outside();

@@ -17,6 +17,7 @@
 #include "exchange/start_witness.hpp"
 #include "exchange/termination.hpp"
 #include "frame/communicator.hpp"
+#include "io/unfinished.hpp"
 
 namespace tessera {
 
@@ -69,7 +70,9 @@ int Job::size() const { return state_->transport().size(); }
 Communicator Job::communicator() { return frame::communicator_over(state_->transport()); }
 
 void Job::answer_termination() {
-  if (size() > 1) exchange::answer_termination(state_->transport(), state_->voice.program, state_->voice.remedy);
+  if (size() > 1)
+    exchange::answer_termination(state_->transport(), state_->voice.program, state_->voice.remedy,
+                                 io::abandon_in_handler);
 }
 
 void Job::watch_stalls(const StallSettings& settings) {

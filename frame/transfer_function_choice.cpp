@@ -69,8 +69,14 @@ double smallest_positive(const Dataset::State& data) {
                                        data.source, data.field_name, high));
   if (low > 0) return low;
   double least = high;
-  for (const scene::FieldSample& s : data.field_samples().samples)
-    if (s.value > 0) least = std::min(least, s.value);
+  const scene::FieldSamples& found = data.field_samples();
+  const auto look_at = [&](double value) {
+    if (value > 0) least = std::min(least, value);
+  };
+  // Between a grid's points values go to 0 beside the first that is none.
+  std::ranges::for_each(found.stored, look_at);
+  if (found.stored.empty())
+    for (const scene::FieldSample& s : found.samples) look_at(s.value);
   return least;
 }
 
@@ -95,6 +101,7 @@ LoadedTransferFunction logarithmic(const Dataset::State& data, const std::string
   if (file_or_preset.empty()) {
     samples = data.field_samples();
     for (scene::FieldSample& s : samples.samples) s.value = exponent(s.value);
+    for (double& value : samples.stored) value = exponent(value);
   }
   LoadedTransferFunction loaded =
       load(file_or_preset, {&samples, data.samples != nullptr, data.shape, BodyAxes::none, {}}, loading);

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -22,6 +21,7 @@
 #include "io/atomic_file.hpp"
 #include "io/display_rows.hpp"
 #include "io/helper_messages.hpp"
+#include "io/spawn_plan.hpp"
 #include "io/unfinished.hpp"
 #include "scene/error.hpp"
 #include "scene/image.hpp"
@@ -31,17 +31,16 @@ namespace {
 
 /// What ffmpeg is told of a kind of file: its format, and how pictures become it.
 struct FilmKind {
-  std::string_view extension, format, filter, pixels;
+  std::string_view extension, format;
+  bool is_video = true;           ///< else its pictures have colours of a palette
+  std::string_view quality = "";  ///< words for its encoder; without them it is made for small files
 };
 
-// Chroma in pairs of pixels is what players understand; a gif needs its colours chosen.
-constexpr std::string_view even_sides = "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=";
+// Without a bit rate of 0, VP9 keeps to one that is low whatever the pictures' size.
+constexpr std::string_view h264 = "-crf 18", vp9 = "-crf 24 -b:v 0";
 constexpr std::array kinds = {
-    FilmKind{".mp4", "mp4", even_sides, "yuv420p"},
-    FilmKind{".mov", "mov", even_sides, "yuv420p"},
-    FilmKind{".mkv", "matroska", even_sides, "yuv420p"},
-    FilmKind{".webm", "webm", even_sides, "yuv420p"},
-    FilmKind{".gif", "gif", "split[a][b];[a]palettegen[p];[b][p]paletteuse", ""},
+    FilmKind{".mp4", "mp4", true, h264},  FilmKind{".mov", "mov", true, h264}, FilmKind{".mkv", "matroska", true, h264},
+    FilmKind{".webm", "webm", true, vp9}, FilmKind{".gif", "gif", false},
 };
 
 const FilmKind* kind_of(const std::filesystem::path& file) {
@@ -111,9 +110,23 @@ std::vector<std::string> ffmpeg_words(const FilmKind& kind, ImageSize size, cons
                                     "-s",         fmt::format("{}x{}", size.width, size.height),
                                     "-framerate", fmt::format("{:g}", options.frames_per_second),
                                     "-i",         "pipe:0"};
-  const bool pads = kind.filter == even_sides;
-  words.insert(words.end(), {"-vf", std::string(kind.filter) + (pads ? ground_color(options.image) : "")});
-  if (!kind.pixels.empty()) words.insert(words.end(), {"-pix_fmt", std::string(kind.pixels)});
+  if (kind.is_video) {
+    // Chroma in pairs of pixels is what players understand. They take large pictures for those of BT.709, small ones
+    // for BT.601's, unless they are told, and ffmpeg makes BT.601 of all and says nothing.
+    words.insert(words.end(), {"-vf", fmt::format("pad=ceil(iw/2)*2:ceil(ih/2)*2:color={},scale=out_color_matrix=bt709:"
+                                                  "out_range=tv,format=yuv420p",
+                                                  ground_color(options.image))});
+    for (const std::string_view word :
+         {"-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "iec61966-2-1", "-color_range", "tv"})
+      words.emplace_back(word);
+  } else {
+    words.insert(words.end(), {"-vf", "split[a][b];[a]palettegen[p];[b][p]paletteuse"});
+  }
+  for (std::string_view left = kind.quality; !left.empty();) {
+    const std::size_t end = std::min(left.find(' '), left.size());
+    words.emplace_back(left.substr(0, end));
+    left.remove_prefix(std::min(end + 1, left.size()));
+  }
   // By descriptor: the nameless file that it is leaves nothing behind if this process is killed.
   words.insert(words.end(), {"-f", std::string(kind.format), fmt::format("/proc/self/fd/{}", output)});
   return words;
@@ -167,38 +180,17 @@ void FilmFile::State::start(const std::filesystem::path& program) {
   if (!complaints.is_open()) fail(std::strerror(errno));
 
   constexpr int output = 3;
-  std::vector<std::string> words = ffmpeg_words(*kind_of(file), size, options, output);
-  std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-
   // Copies first, above all numbers that are given out below: what is copied from may be one of those.
   const io::Descriptor in(::fcntl(theirs.get(), F_DUPFD_CLOEXEC, 10)),
       err(::fcntl(complaints.get(), F_DUPFD_CLOEXEC, 10)), out(::fcntl(target.descriptor(), F_DUPFD_CLOEXEC, 10));
   if (!in.is_open() || !err.is_open() || !out.is_open()) fail(std::strerror(errno));
-  posix_spawn_file_actions_t files;
-  posix_spawnattr_t attributes;
-  ::posix_spawn_file_actions_init(&files);
-  ::posix_spawnattr_init(&attributes);
-  ::posix_spawn_file_actions_adddup2(&files, in.get(), STDIN_FILENO);
-  ::posix_spawn_file_actions_adddup2(&files, err.get(), STDERR_FILENO);
-  ::posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  ::posix_spawn_file_actions_adddup2(&files, out.get(), output);
-  sigset_t none, all;
-  ::sigemptyset(&none);
-  ::sigfillset(&all);
-  ::posix_spawnattr_setsigmask(&attributes, &none);
-  ::posix_spawnattr_setsigdefault(&attributes, &all);
-  // A group of its own: Ctrl-C is for this program, whose end it hears of.
-  ::posix_spawnattr_setpgroup(&attributes, 0);
-  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-  auto lock = io::naming_outputs();
-  const int failed = ::posix_spawn(&process, program.c_str(), &files, &attributes, arguments.data(), environ);
-  if (failed == 0) io::add_unfinished(process);
-  lock.unlock();
-  ::posix_spawn_file_actions_destroy(&files);
-  ::posix_spawnattr_destroy(&attributes);
+  io::SpawnPlan plan;
+  ::posix_spawn_file_actions_adddup2(&plan.files, in.get(), STDIN_FILENO);
+  ::posix_spawn_file_actions_adddup2(&plan.files, err.get(), STDERR_FILENO);
+  ::posix_spawn_file_actions_addopen(&plan.files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  ::posix_spawn_file_actions_adddup2(&plan.files, out.get(), output);
+  plan.set_own_group();  // Ctrl-C is for this program, whose end it hears of
+  const int failed = plan.start(program, ffmpeg_words(*kind_of(file), size, options, output), environ, process);
   if (failed != 0) {
     process = -1;
     fail(fmt::format("{} does not start: {}", program.string(), std::strerror(failed)));

@@ -3,7 +3,6 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -24,6 +23,7 @@
 #include <utility>
 
 #include "io/large_vector.hpp"
+#include "io/spawn_plan.hpp"
 #include "io/unfinished.hpp"
 #include "scene/error.hpp"
 
@@ -75,22 +75,6 @@ std::vector<char*> helper_environment() {
   kept.push_back(nullptr);
   return kept;
 }
-
-/// posix_spawn's descriptions, which have to be destroyed.
-struct SpawnPlan {
-  posix_spawn_file_actions_t files;
-  posix_spawnattr_t attributes;
-  SpawnPlan() {
-    ::posix_spawn_file_actions_init(&files);
-    ::posix_spawnattr_init(&attributes);
-  }
-  ~SpawnPlan() {
-    ::posix_spawn_file_actions_destroy(&files);
-    ::posix_spawnattr_destroy(&attributes);
-  }
-  SpawnPlan(const SpawnPlan&) = delete;
-  SpawnPlan& operator=(const SpawnPlan&) = delete;
-};
 
 [[noreturn]] void fail_to_start(const char* program, const std::string& why) {
   throw scene::Error(scene::ErrorCode::system_failure, program, why,
@@ -200,31 +184,18 @@ HelperProcess::HelperProcess(HelperTask task) : task_(std::move(task)) {
   const Descriptor theirs(ends[1]);
 
   constexpr int helper_end = 3;  // helper/main.cpp
-  SpawnPlan plan;
+  // What a terminal sends to caller and helper alike is the caller's to answer, with whose end the helper ends.
+  SpawnPlan plan({SIGINT, SIGTERM, SIGHUP, SIGQUIT});
   // First of all: it may be one of those that follow, where the caller has closed them.
   ::posix_spawn_file_actions_adddup2(&plan.files, theirs.get(), helper_end);
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     ::posix_spawn_file_actions_addopen(&plan.files, standard, "/dev/null", O_RDWR, 0);
   ::posix_spawn_file_actions_addclosefrom_np(&plan.files, helper_end + 1);
-  sigset_t callers, all;
-  ::sigemptyset(&callers);
-  // What a terminal sends to caller and helper alike is the caller's to answer, with whose end the helper ends.
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) ::sigaddset(&callers, signal);
-  ::sigfillset(&all);
-  ::posix_spawnattr_setsigmask(&plan.attributes, &callers);
-  ::posix_spawnattr_setsigdefault(&plan.attributes, &all);
-  ::posix_spawnattr_setflags(&plan.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-  std::string name = program.string();
-  std::array<char*, 2> arguments{name.data(), nullptr};
-  pid_t process = -1;
   // It ends with its caller, but not before its own libraries are loaded: a caller that ends at once ends it too.
-  const auto lock = naming_outputs();
-  if (const int error = ::posix_spawn(&process, name.c_str(), &plan.files, &plan.attributes, arguments.data(),
-                                      helper_environment().data());
-      error != 0)
-    fail_to_start(task_.program, fmt::format("{} cannot be started: {}", name, std::strerror(error)));
+  pid_t process = -1;
+  if (const int error = plan.start(program, {program.string()}, helper_environment().data(), process); error != 0)
+    fail_to_start(task_.program, fmt::format("{} cannot be started: {}", program.string(), std::strerror(error)));
   process_ = process;
-  add_unfinished(process_);
 }
 
 HelperProcess::~HelperProcess() {

@@ -4,7 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <chrono>
+#include <cstdlib>
+#include <cstring>
 #include <vector>
 
 #include "tessera/output_file.hpp"
@@ -24,14 +28,48 @@ Unfinished& unfinished() {
   return *all;
 }
 
+/// The same where a handler can read it. Whoever takes a name out has it, and may free it.
+std::array<std::atomic<char*>, 64> part_names{};
+std::array<std::atomic<pid_t>, 64> program_numbers{};
+
 }  // namespace
 
 std::unique_lock<std::timed_mutex> naming_outputs() { return std::unique_lock(unfinished().naming); }
 
-void add_unfinished(const std::filesystem::path& part) { unfinished().parts.push_back(part); }
-void remove_unfinished(const std::filesystem::path& part) { std::erase(unfinished().parts, part); }
-void add_unfinished(pid_t program) { unfinished().programs.push_back(program); }
-void remove_unfinished(pid_t program) { std::erase(unfinished().programs, program); }
+void add_unfinished(const std::filesystem::path& part) {
+  unfinished().parts.push_back(part);
+  const auto free = std::ranges::find(part_names, nullptr, [](const auto& name) { return name.load(); });
+  if (free != part_names.end()) *free = ::strdup(part.c_str());
+}
+
+void remove_unfinished(const std::filesystem::path& part) {
+  std::erase(unfinished().parts, part);
+  for (std::atomic<char*>& name : part_names) {
+    char* const present = name;
+    if (present == nullptr || part != present) continue;
+    std::free(name.exchange(nullptr));
+    return;
+  }
+}
+
+void add_unfinished(pid_t program) {
+  unfinished().programs.push_back(program);
+  const auto free = std::ranges::find(program_numbers, 0, [](const auto& number) { return number.load(); });
+  if (free != program_numbers.end()) *free = program;
+}
+
+void remove_unfinished(pid_t program) {
+  std::erase(unfinished().programs, program);
+  const auto found = std::ranges::find(program_numbers, program, [](const auto& number) { return number.load(); });
+  if (found != program_numbers.end()) *found = 0;
+}
+
+void abandon_in_handler() noexcept {
+  for (std::atomic<char*>& name : part_names)
+    if (const char* const part = name.exchange(nullptr); part != nullptr) ::unlink(part);
+  for (std::atomic<pid_t>& number : program_numbers)
+    if (const pid_t program = number.exchange(0); program > 0) ::kill(program, SIGKILL);
+}
 
 }  // namespace tessera::io
 

@@ -14,15 +14,18 @@ constexpr double points_in_all = 1 << 14;
 constexpr int most_points_a_tet = 4096;
 constexpr std::int64_t points_along_axis = 40;
 
+/// Number j of a sequence that fills [0, 1) evenly, if `step` is hard to come near to by fractions.
+double uniform(std::uint64_t j, double step) {
+  const double u = 0.5 + step * static_cast<double>(j & 0xffffffff);
+  return u - std::floor(u);
+}
+
 /// Barycentric coordinates of point j of a sequence that fills a tet evenly. Source: Roberts, "The unreasonable
 /// effectiveness of quasirandom sequences", 2018, for the R3 sequence; differences of sorted uniform numbers are
 /// uniform barycentric coordinates (Devroye, "Non-Uniform Random Variate Generation", 1986, V.2.1).
 std::array<double, 4> barycentric(std::uint64_t j) {
-  const auto uniform = [&](double step) {
-    const double u = 0.5 + step * static_cast<double>(j & 0xffffffff);
-    return u - std::floor(u);
-  };
-  std::array<double, 3> u{uniform(0.8191725133961645), uniform(0.6710436067037893), uniform(0.5497004779019703)};
+  std::array<double, 3> u{uniform(j, 0.8191725133961645), uniform(j, 0.6710436067037893),
+                          uniform(j, 0.5497004779019703)};
   std::ranges::sort(u);
   return {u[0], u[1] - u[0], u[2] - u[1], 1 - u[2]};
 }
@@ -75,44 +78,118 @@ FieldSamples sample_mesh(const TetMeshView& part, std::span<const std::uint64_t>
   return out;
 }
 
+namespace {
+
+/// Parts of equal length, by index, of one axis of a grid.
+struct AxisParts {
+  std::int64_t parts = 1;
+  double length = 0;       ///< of each, in steps of the lattice
+  std::int64_t cells = 1;  ///< that places lie in
+
+  AxisParts(const GridGeometry& geometry, std::size_t axis) {
+    const std::int64_t steps = geometry.points[axis] - 1;
+    if (steps <= 0) return;
+    parts = std::max(points_along_axis, steps / std::max<std::int64_t>(1, steps / points_along_axis));
+    length = static_cast<double>(steps) / static_cast<double>(parts);
+    cells = steps;
+  }
+  /// The cell, and how far in it, at a fraction of part `i`.
+  [[nodiscard]] std::pair<std::int64_t, double> at(std::int64_t i, double fraction) const {
+    const double x = (static_cast<double>(i) + fraction) * length;
+    const std::int64_t cell = std::clamp<std::int64_t>(static_cast<std::int64_t>(x), 0, cells - 1);
+    return {cell, std::clamp(x - static_cast<double>(cell), 0.0, 1.0)};
+  }
+};
+
+/// Rows of samples round places of one y and z, and the field between.
+class SampleRows {
+ public:
+  explicit SampleRows(const SampleSource& source)
+      : source_(source),
+        count_(source.geometry().samples()),
+        cells_(source.geometry().association == Association::cell),
+        values_(static_cast<std::size_t>(4 * count_[0])) {}
+
+  /// Of the cell (j, k), at fractions y and z in it.
+  void read(std::int64_t j, std::int64_t k, double y, double z) {
+    const std::int64_t high_j = cells_ ? j : std::min(j + 1, count_[1] - 1);
+    const std::int64_t high_k = cells_ ? k : std::min(k + 1, count_[2] - 1);
+    rows_ = high_j - j + 1;
+    slices_ = high_k - k + 1;
+    y_ = y;
+    z_ = z;
+    source_.read(SampleBox{{0, j, k}, {count_[0], high_j + 1, high_k + 1}},
+                 std::span<double>(values_).first(static_cast<std::size_t>(count_[0] * rows_ * slices_)));
+  }
+  /// As stored, at a fraction x of cell i: not a number where a sample round it is not.
+  [[nodiscard]] double at(std::int64_t i, double x) const {
+    if (cells_) return value(i, 0, 0);
+    const std::int64_t next = std::min(i + 1, count_[0] - 1);
+    const auto along_x = [&](std::int64_t j, std::int64_t k) {
+      return std::lerp(value(i, j, k), value(next, j, k), x);
+    };
+    const auto along_y = [&](std::int64_t k) { return std::lerp(along_x(0, k), along_x(rows_ - 1, k), y_); };
+    return std::lerp(along_y(0), along_y(slices_ - 1), z_);
+  }
+  [[nodiscard]] double nearest(std::int64_t i, double x) const {
+    if (cells_) return value(i, 0, 0);
+    return value(std::min(i + (x < 0.5 ? 0 : 1), count_[0] - 1), y_ < 0.5 ? 0 : rows_ - 1, z_ < 0.5 ? 0 : slices_ - 1);
+  }
+
+ private:
+  [[nodiscard]] double value(std::int64_t i, std::int64_t j, std::int64_t k) const {
+    return values_[static_cast<std::size_t>(i + count_[0] * (j + rows_ * k))];
+  }
+
+  const SampleSource& source_;
+  GridIndex count_;
+  bool cells_;
+  std::vector<double> values_;
+  std::int64_t rows_ = 1, slices_ = 1;
+  double y_ = 0, z_ = 0;
+};
+
+}  // namespace
+
 FieldSamples sample_grid(const SampleSource& source) {
   const Grid& grid = source.grid();
   const GridGeometry& geometry = grid.geometry;
-  const GridIndex samples = geometry.samples();
   FieldSamples out;
-  std::array<std::vector<std::int64_t>, 3> chosen;
-  std::array<std::vector<double>, 3> place, width;  // along each axis: where, and how much of the axis it stands for
   glm::dvec3 extent(0);
-  for (std::size_t a = 0; a < 3; ++a) {
-    const std::int64_t stride = std::max<std::int64_t>(1, samples[a] / points_along_axis);
-    const std::int64_t last = geometry.points[a] - 1;
-    extent[static_cast<int>(a)] = geometry.lattice(a, last) - geometry.lattice(a, 0);
-    const bool cells = geometry.association == Association::cell;
-    for (std::int64_t i = stride / 2; i < samples[a]; i += stride) {
-      chosen[a].push_back(i);
-      const double low = geometry.lattice(a, std::max<std::int64_t>(i - stride / 2, 0));
-      const double high = geometry.lattice(a, std::min(i - stride / 2 + stride, last));
-      place[a].push_back(cells ? (geometry.lattice(a, i) + geometry.lattice(a, i + 1)) / 2 : geometry.lattice(a, i));
-      width[a].push_back(std::max(high - low, 0.0));
-    }
-  }
+  for (std::size_t a = 0; a < 3; ++a)
+    extent[static_cast<int>(a)] = geometry.lattice(a, geometry.points[a] - 1) - geometry.lattice(a, 0);
   out.longest = std::max({extent.x, extent.y, extent.z});
   if (!(out.longest > 0) || !std::isfinite(out.longest)) return {};
   out.sides = extent / out.longest;
-  std::vector<double> row(static_cast<std::size_t>(samples[0]));
-  for (std::size_t c = 0; c < chosen[2].size(); ++c)
-    for (std::size_t b = 0; b < chosen[1].size(); ++b) {
-      const std::int64_t j = chosen[1][b], k = chosen[2][c];
-      source.read(SampleBox{{0, j, k}, {samples[0], j + 1, k + 1}}, std::span<double>(row));
-      for (std::size_t a = 0; a < chosen[0].size(); ++a) {
-        const double stored = row[static_cast<std::size_t>(chosen[0][a])];
+  const std::array<AxisParts, 3> axes{AxisParts(geometry, 0), AxisParts(geometry, 1), AxisParts(geometry, 2)};
+  // World place of a fraction of a cell, and the length of the axis that a part stands for, in longest sides.
+  const auto place = [&](std::size_t axis, const std::pair<std::int64_t, double>& at) {
+    const std::int64_t next = std::min(at.first + 1, geometry.points[axis] - 1);
+    return std::lerp(geometry.lattice(axis, at.first), geometry.lattice(axis, next), at.second);
+  };
+  const auto length = [&](std::size_t axis, std::int64_t part) {
+    if (axes[axis].length == 0) return 0.0;
+    return std::max(place(axis, axes[axis].at(part, 1)) - place(axis, axes[axis].at(part, 0)), 0.0) / out.longest;
+  };
+  const auto along = [&](std::size_t axis, const std::pair<std::int64_t, double>& at) {
+    const double side = extent[static_cast<int>(axis)];
+    return side > 0 ? between((place(axis, at) - geometry.lattice(axis, 0)) / side) : 0.5F;
+  };
+  SampleRows rows(source);
+  for (std::int64_t c = 0; c < axes[2].parts; ++c)
+    for (std::int64_t b = 0; b < axes[1].parts; ++b) {
+      const auto number = static_cast<std::uint64_t>(b + axes[1].parts * c);
+      const auto y = axes[1].at(b, uniform(number, 0.7548776662466927)),
+                 z = axes[2].at(c, uniform(number, 0.5698402909980532));
+      rows.read(y.first, z.first, y.second, z.second);
+      const double face = length(1, b) * length(2, c);
+      for (std::int64_t a = 0; a < axes[0].parts; ++a) {
+        const auto x = axes[0].at(a, uniform(number + static_cast<std::uint64_t>(a) * 127, 0.6180339887498949));
+        const double stored = rows.at(x.first, x.second);
         if (!std::isfinite(stored)) continue;
-        const double volume = width[0][a] / out.longest * (width[1][b] / out.longest) * (width[2][c] / out.longest);
-        const auto along = [&](std::size_t axis, std::size_t at) {
-          return between((place[axis][at] - geometry.lattice(axis, 0)) / extent[static_cast<int>(axis)]);
-        };
         out.samples.push_back(
-            {grid.value(stored), static_cast<float>(volume), {along(0, a), along(1, b), along(2, c)}, 0});
+            {grid.value(stored), static_cast<float>(length(0, a) * face), {along(0, x), along(1, y), along(2, z)}, 0});
+        out.stored.push_back(grid.value(rows.nearest(x.first, x.second)));
       }
     }
   return out;

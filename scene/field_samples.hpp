@@ -28,6 +28,8 @@ struct FieldSamples {
   std::vector<FieldSample> samples;
   glm::dvec3 sides{0};  ///< of the box, in units of the longest; a grid's box lies along its axes
   double longest = 0;   ///< world units; 0 if there is no extent, and so no sample
+  /// Grids: the values of the file nearest to the samples, one each. Of labels those between are not meant.
+  std::vector<double> stored{};
 };
 
 /// Of a mesh's part, whose tets have the numbers `global_tet` in the whole (empty: their own). Of more than 2^16 tets
@@ -35,8 +37,9 @@ struct FieldSamples {
 /// low-discrepancy places inside.
 FieldSamples sample_mesh(const TetMeshView& part, std::span<const std::uint64_t> global_tet, const MeshFacts& whole);
 
-/// Of a grid: lattice points at equal distances, about 40 along each axis. Blank ones are left out. Throws what the
-/// source throws.
+/// Of a grid: at least 40 along each axis that has an extent, each somewhere in its own part of the grid, where the
+/// field is what rays see: trilinear between lattice points, constant in cells of cell data. Blank places are left out.
+/// Throws what the source throws.
 FieldSamples sample_grid(const SampleSource& source);
 
 }  // namespace tessera::scene

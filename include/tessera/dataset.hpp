@@ -226,7 +226,7 @@ class TESSERA_EXPORT Dataset {
   /// Where a patient looks, of medical files that say so.
   [[nodiscard]] BodyAxes body_axes() const;
   /// A preset ("viridis", "cool-warm:rise", ...) or a file over this field's range; "": the default, chosen by how the
-  /// field's values share the volume (the rule: docs/GUIDE.md, "The first picture"), the same for any number of ranks
+  /// field's values share the volume (docs/REFERENCE.md, "The first picture"), the same for any number of ranks
   /// and threads. The first call looks at some ten thousand places of the field. What the function does not show is in
   /// its `warnings`. Throws Error(bad_input) naming file and line.
   [[nodiscard]] LoadedTransferFunction transfer_function(const std::string& file_or_preset = "",

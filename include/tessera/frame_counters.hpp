@@ -10,7 +10,7 @@
 namespace tessera {
 
 /// What a frame of a mesh took, counted. Processes send it as it stands (exchange/wire.hpp); frame_counters says how
-/// they are put together and what reports and docs/GUIDE.md say of them.
+/// they are put together and what reports and docs/REFERENCE.md say of them.
 struct FrameCounters {
   std::uint64_t tets_total = 0;
   std::uint64_t tets_invisible = 0;

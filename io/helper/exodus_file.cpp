@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "io/helper/exodus_faces.hpp"
+#include "io/helper/exodus_sets.hpp"
 #include "io/helper/netcdf_size.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/serve.hpp"
@@ -90,6 +91,7 @@ class ExodusFile {
 struct ElementBlock {
   std::int64_t id = 0;
   std::uint64_t first = 0, count = 0;  ///< cells of the mesh
+  std::vector<std::uint64_t> of{};     ///< their numbers in the block, ascending; empty: all
 };
 
 /// One variable, or three that make a vector.
@@ -154,8 +156,16 @@ void read_cell_values(const ExodusFile& file, int step, int index, std::span<con
     const std::uint64_t low = std::max(first, blocks[b].first),
                         high = std::min(first + out.size(), blocks[b].first + blocks[b].count);
     if (low >= high || !has_variable[b]) continue;
-    read_values(file, step, EX_ELEM_BLOCK, index, blocks[b].id, low - blocks[b].first,
-                out.subspan(low - first, high - low));
+    const std::uint64_t from = low - blocks[b].first, to = high - blocks[b].first;
+    const std::span<double> values = out.subspan(low - first, high - low);
+    const std::vector<std::uint64_t>& of = blocks[b].of;
+    if (of.empty()) {
+      read_values(file, step, EX_ELEM_BLOCK, index, blocks[b].id, from, values);
+      continue;
+    }
+    std::vector<double> all(of[to - 1] - of[from] + 1);
+    read_values(file, step, EX_ELEM_BLOCK, index, blocks[b].id, of[from], all);
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = all[of[from + k] - of[from]];
   }
 }
 
@@ -228,13 +238,22 @@ class Reading {
     std::vector<std::int64_t> ids(static_cast<std::size_t>(init_.num_elem_blk));
     if (!ids.empty()) file_->require(ex_get_ids(file_->id(), EX_ELEM_BLOCK, ids.data()), "the element blocks");
     block_.offsets.push_back(0);
+    const ExodusSets sets(file_->id(), init_, choice_, most_values_, source_,
+                          [this](const std::string& what) { file_->fail(what); });
+    std::uint64_t first = 0;  // of the block's elements among all
     for (const std::int64_t id : ids) {
       ex_block info{};
       info.id = id;
       info.type = EX_ELEM_BLOCK;
       file_->require(ex_get_block_param(file_->id(), &info), "an element block");
-      result_.block_names.push_back(block_name(id));
-      if (info.num_entry == 0 || !is_chosen(choice_, result_.block_names.back())) {
+      check_count("elements", info.num_entry, 1);
+      const std::string name = exodus_name(file_->id(), EX_ELEM_BLOCK, id);
+      result_.block_names.push_back(name.empty() ? fmt::format("block {}", id) : name);
+      const auto count = static_cast<std::uint64_t>(info.num_entry);
+      std::vector<std::uint64_t> of;
+      if (!is_chosen(choice_, result_.block_names.back())) of = sets.chosen_of(first, count);
+      first += count;
+      if (count == 0 || (of.empty() && !is_chosen(choice_, result_.block_names.back()))) {
         blocks_.push_back({id, block_.types.size(), 0});
         continue;
       }
@@ -244,17 +263,14 @@ class Reading {
         throw scene::bad_input(
             fmt::format("{}: element block {} holds '{}' of {} nodes, which is not known; convert it", source_, id,
                         topology.substr(0, 20), info.num_nodes_per_entry));
-      check_count("elements", info.num_entry, 1);
       add_block(id, info, type);
+      if (of.empty()) continue;
+      keep_cells(block_, blocks_.back().first, of);
+      blocks_.back().count = of.size();
+      blocks_.back().of = std::move(of);
     }
+    result_.block_names.insert(result_.block_names.end(), sets.names().begin(), sets.names().end());
     if (!block_.faces.empty()) block_.face_locations.resize(block_.types.size(), CellBlock::no_faces);
-  }
-
-  [[nodiscard]] std::string block_name(std::int64_t id) const {
-    std::array<char, 256> name{};
-    ex_get_name(file_->id(), EX_ELEM_BLOCK, id, name.data());  // where it fails there is none
-    const std::string text(name.data(), ::strnlen(name.data(), name.size()));
-    return text.empty() ? fmt::format("block {}", id) : text;
   }
 
   void add_block(std::int64_t id, const ex_block& info, std::uint8_t type) {

@@ -38,8 +38,8 @@ TEST(FrameCounters, EachIsInTheListOnceAndIsPutTogetherAsItSays) {
   expect_listed_once(grid_counters);
 }
 
-TEST(FrameCounters, TheGuideSaysWhatEachCounts) {
-  std::ifstream file(TESSERA_SOURCE_DIR "/docs/GUIDE.md");
+TEST(FrameCounters, TheReferenceSaysWhatEachCounts) {
+  std::ifstream file(TESSERA_SOURCE_DIR "/docs/REFERENCE.md");
   const std::string guide{std::istreambuf_iterator<char>(file), {}};
   const auto expect_said = [&](std::string_view name, std::string_view meaning) {
     EXPECT_NE(guide.find("| `" + std::string(name) + "` | " + std::string(meaning) + " |"), std::string::npos) << name;

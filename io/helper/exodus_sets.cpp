@@ -1,0 +1,102 @@
+#include "io/helper/exodus_sets.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "scene/error.hpp"
+#include "scene/quote.hpp"
+
+namespace tessera::io::helper {
+namespace {
+
+std::vector<std::int64_t> ids_of(int file, ex_entity_type type, std::int64_t count, std::uint64_t most_values,
+                                 const std::function<void(const std::string&)>& fail) {
+  if (count < 0 || static_cast<std::uint64_t>(count) > most_values) fail(fmt::format("it promises {} sets", count));
+  std::vector<std::int64_t> ids(static_cast<std::size_t>(count));
+  if (!ids.empty() && ex_get_ids(file, type, ids.data()) < 0) fail("the sets cannot be read");
+  return ids;
+}
+
+/// Throws for a choice that means one of these sets.
+void refuse(int file, ex_entity_type type, const std::vector<std::int64_t>& ids, const char* what, const char* holds,
+            const BlockChoice& choice, const std::string& source) {
+  if (choice.empty()) return;
+  for (const std::int64_t id : ids) {
+    const std::string given = exodus_name(file, type, id),
+                      name = given.empty() ? fmt::format("{} {}", what, id) : given;
+    if (std::ranges::find(choice, name) != choice.end())
+      throw scene::bad_input(
+          fmt::format("{}: {} is a {}, which holds {} and no volume; name element blocks or element "
+                      "sets, which `tessera info` lists",
+                      source, scene::quote(name), what, holds));
+  }
+}
+
+}  // namespace
+
+std::string exodus_name(int file, ex_entity_type type, std::int64_t id) {
+  std::array<char, 256> name{};
+  ex_get_name(file, type, id, name.data());  // where it fails there is none
+  return {name.data(), ::strnlen(name.data(), name.size())};
+}
+
+ExodusSets::ExodusSets(int id, const ex_init_params& init, const BlockChoice& choice, std::uint64_t most_values,
+                       const std::string& source, const std::function<void(const std::string&)>& fail) {
+  for (const std::int64_t set : ids_of(id, EX_ELEM_SET, init.num_elem_sets, most_values, fail)) {
+    const std::string given = exodus_name(id, EX_ELEM_SET, set);
+    names_.push_back(given.empty() ? fmt::format("element set {}", set) : given);
+    if (choice.empty() || !is_chosen(choice, names_.back())) continue;
+    std::int64_t count = 0, factors = 0;
+    if (ex_get_set_param(id, EX_ELEM_SET, set, &count, &factors) < 0) fail("an element set cannot be read");
+    if (count < 0 || static_cast<std::uint64_t>(count) > most_values)
+      fail(fmt::format("it promises an element set of {} elements", count));
+    std::vector<std::int64_t> numbers(static_cast<std::size_t>(count));
+    if (!numbers.empty() && ex_get_set(id, EX_ELEM_SET, set, numbers.data(), nullptr) < 0)
+      fail("an element set cannot be read");
+    for (const std::int64_t number : numbers) {
+      if (number < 1 || number > init.num_elem)
+        throw scene::bad_input(
+            fmt::format("{}: the element set {} names element {}, the file holds {}; write sets and "
+                        "elements from one mesh",
+                        source, scene::quote(names_.back()), number, init.num_elem));
+      elements_.push_back(static_cast<std::uint64_t>(number) - 1);
+    }
+  }
+  std::ranges::sort(elements_);
+  elements_.erase(std::ranges::unique(elements_).begin(), elements_.end());
+  refuse(id, EX_SIDE_SET, ids_of(id, EX_SIDE_SET, init.num_side_sets, most_values, fail), "side set", "faces", choice,
+         source);
+  refuse(id, EX_NODE_SET, ids_of(id, EX_NODE_SET, init.num_node_sets, most_values, fail), "node set", "points", choice,
+         source);
+}
+
+std::vector<std::uint64_t> ExodusSets::chosen_of(std::uint64_t first, std::uint64_t count) const {
+  const auto low = std::ranges::lower_bound(elements_, first),
+             high = std::ranges::lower_bound(elements_, first + count);
+  std::vector<std::uint64_t> chosen(low, high);
+  for (std::uint64_t& element : chosen) element -= first;
+  return chosen;
+}
+
+void keep_cells(CellBlock& block, std::size_t first, const std::vector<std::uint64_t>& kept) {
+  std::size_t cell = first;
+  std::uint64_t end = block.offsets[first];
+  const bool has_faces = block.face_locations.size() > first;
+  for (const std::uint64_t number : kept) {
+    const std::size_t from = first + number;
+    const std::uint64_t low = block.offsets[from], high = block.offsets[from + 1];
+    block.types[cell] = block.types[from];
+    if (has_faces) block.face_locations[cell] = block.face_locations[from];
+    for (std::uint64_t k = low; k < high; ++k) block.connectivity[end++] = block.connectivity[k];
+    block.offsets[++cell] = end;
+  }
+  block.types.resize(cell);
+  block.offsets.resize(cell + 1);
+  block.connectivity.resize(end);
+  if (has_faces) block.face_locations.resize(cell);
+}
+
+}  // namespace tessera::io::helper
