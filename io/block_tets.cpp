@@ -18,18 +18,24 @@ using scene::Tet;
 constexpr std::uint8_t duplicate_cell = 1, refined_cell = 8, hidden_cell = 32, hidden_point = 2;
 constexpr std::uint8_t tetra = 10;  // VTK's cell type number
 
+/// Tets that each higher-order cell may become beside CurvedSettings::all of them together.
+constexpr std::uint64_t each_curved_cell = 64;
+
 bool finite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 }  // namespace
 
 BlockCells::BlockCells(const CellBlock& block, std::span<const glm::dvec3> points, std::span<const double> values,
-                       scene::Association association, const std::string& source, const CurvedSettings& curved)
+                       scene::Association association, const std::string& source, const CurvedSettings& curved,
+                       const HigherOrderCells& before)
     : block_(block),
       points_(points),
       values_(values),
       association_(association),
       source_(source),
-      curved_(block, points, values, association, curved) {
+      curved_(block, points, values, association, curved),
+      most_curved_tets_(curved.all + each_curved_cell * (before.divided + block.types.size())) {
+  most_curved_tets_ -= std::min(most_curved_tets_, before.tets);
   for (std::size_t type = 0; type < shapes_.size(); ++type) shapes_[type] = cell_shape(static_cast<std::uint8_t>(type));
 }
 
@@ -108,10 +114,17 @@ void BlockCells::split_curved(std::size_t c, Workplace& work, BlockTets& out) co
   } catch (const std::length_error&) {
     throw scene::bad_input(
         fmt::format("{}: {} takes more than {} tets to come near to it; allow a larger difference "
-                    "(`higher_order_tolerance`)",
+                    "(`higher_order_tolerance`) or more tets (`higher_order_tets`)",
                     source_, place(c), curved_.settings().limit));
   }
   const CurvedSplitter& split = work.curved.splitter;
+  // Whether it is an error follows from all cells together, whichever thread was faster; at which of them, does not.
+  const std::uint64_t so_far = curved_tets_.fetch_add(split.tets().size()) + split.tets().size();
+  if (so_far > most_curved_tets_)
+    throw scene::bad_input(
+        fmt::format("{}: its higher-order cells, as far as {}, take more than {} tets to come near to them; allow a "
+                    "larger difference (`higher_order_tolerance`) or more tets (`higher_order_tets`)",
+                    source_, place(c), most_curved_tets_));
   const std::uint32_t* const node = &block_.connectivity[block_.offsets[c]];
   out.nodes.insert(out.nodes.end(), node, &block_.connectivity[0] + block_.offsets[c + 1]);
   const auto corners = static_cast<std::uint32_t>(split.corners());
@@ -127,15 +140,6 @@ void BlockCells::split_curved(std::size_t c, Workplace& work, BlockTets& out) co
   }
   out.curved.divided += 1;
   out.curved.tets += work.tets.size();
-  // The plan says how many there are, but cells folded over themselves, a damaged file's, take more. Twice as many
-  // as one cell may are three times the plan, which is the most that others take.
-  constexpr std::uint64_t each = 64;
-  const std::uint64_t limit = 2 * curved_.settings().limit + each * out.curved.divided;
-  if (out.curved.tets > limit)
-    throw scene::bad_input(
-        fmt::format("{}: {} higher-order cells up to {} take more than {} tets to come near to them; allow a larger "
-                    "difference (`higher_order_tolerance`)",
-                    source_, out.curved.divided, place(c), limit));
   out.curved.position_error = std::max(out.curved.position_error, split.error().position);
   out.curved.field_error = std::max(out.curved.field_error, split.error().field);
   const auto own = static_cast<std::uint32_t>(points_.size());

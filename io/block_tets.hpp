@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <exception>
 #include <glm/vec3.hpp>
@@ -32,9 +33,10 @@ struct BlockTets {
 class BlockCells {
  public:
   /// `points` and `values` are those of the block, the latter of its points or cells by `association`; `source` is for
-  /// messages. All outlive this.
+  /// messages. All outlive this. `before` is what cells of other blocks have become.
   BlockCells(const CellBlock& block, std::span<const glm::dvec3> points, std::span<const double> values,
-             scene::Association association, const std::string& source, const CurvedSettings& curved = {});
+             scene::Association association, const std::string& source, const CurvedSettings& curved = {},
+             const HigherOrderCells& before = {});
 
   [[nodiscard]] std::size_t count() const { return block_.cell_count(); }
   /// Whether some are divided into many tets each.
@@ -71,6 +73,8 @@ class BlockCells {
   const std::string& source_;
   std::array<CellShape, 256> shapes_;
   CurvedCells curved_;
+  std::uint64_t most_curved_tets_;  ///< of this block
+  mutable std::atomic<std::uint64_t> curved_tets_{0};
 };
 
 }  // namespace tessera::io

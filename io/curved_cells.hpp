@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <map>
 #include <span>
 #include <utility>
@@ -21,6 +22,8 @@ namespace tessera::io {
 struct CurvedSettings {
   CurvedTolerance tolerance;
   std::size_t limit = 0;  ///< tets that one cell may become; 0: none is divided
+  /// Tets that all cells may become, beside 64 of each.
+  std::uint64_t all = std::numeric_limits<std::uint64_t>::max() / 2;
 };
 
 /// What a thread needs to divide them, of one cell after another.

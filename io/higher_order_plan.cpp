@@ -13,6 +13,14 @@ namespace {
 constexpr scene::Box no_box{glm::dvec3(std::numeric_limits<double>::infinity()),
                             glm::dvec3(-std::numeric_limits<double>::infinity())};
 
+constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
+
+/// About how many tets a first tet of a bin becomes where the tolerance is 2^(step/2) times as large.
+double tets_of(std::size_t bin, std::size_t step) {
+  const double excess = std::exp2((static_cast<double>(bin) + 0.5 - static_cast<double>(step)) / 2);
+  return bin <= step ? 1 : excess * std::sqrt(excess);
+}
+
 }  // namespace
 
 scene::Box higher_order_box(std::span<const CellBlock> blocks) {
@@ -68,13 +76,22 @@ ExcessTally tally_excess(std::span<const CellBlock> blocks, const FieldChoice& c
   return tally;
 }
 
+std::uint64_t usual_tets(const ExcessTally& tally) {
+  constexpr double least = 1 << 18, most = 1 << 21;
+  std::uint64_t outliers = 48;  // eight hexahedra, of six tets each, meet at a node
+  double tets = 0;
+  for (std::size_t bin = tally.size(); bin-- > 0;) {
+    const std::uint64_t left_out = std::min(outliers, tally[bin]);
+    outliers -= left_out;
+    tets += static_cast<double>(tally[bin] - left_out) * tets_of(bin, 0);
+  }
+  return static_cast<std::uint64_t>(std::min(most, least + 2 * tets));
+}
+
 double tolerance_factor(const ExcessTally& tally, std::uint64_t most_tets) {
   for (std::size_t step = 0; step < tally.size(); ++step) {
     double tets = 0;
-    for (std::size_t bin = 0; bin < tally.size(); ++bin) {
-      const double excess = std::exp2((static_cast<double>(bin) + 0.5 - static_cast<double>(step)) / 2);
-      tets += static_cast<double>(tally[bin]) * (bin <= step ? 1 : excess * std::sqrt(excess));
-    }
+    for (std::size_t bin = 0; bin < tally.size(); ++bin) tets += static_cast<double>(tally[bin]) * tets_of(bin, step);
     if (tets <= static_cast<double>(most_tets)) return std::exp2(static_cast<double>(step) / 2);
   }
   return std::exp2(static_cast<double>(tally.size()) / 2);
@@ -83,11 +100,17 @@ double tolerance_factor(const ExcessTally& tally, std::uint64_t most_tets) {
 HigherOrderPlan planned(const MeshOptions& options, const CurvedSettings& asked, const ExcessTally& tally) {
   HigherOrderPlan plan{asked, 0};
   if (asked.limit == 0) return plan;
-  const double factor = tolerance_factor(tally, options.higher_order_tets);
+  const bool is_chosen = options.higher_order_tets != default_higher_order_tets;
+  const std::uint64_t most = is_chosen ? options.higher_order_tets : usual_tets(tally);
+  const double factor = tolerance_factor(tally, most);
   plan.tolerance = factor * options.higher_order_tolerance;
   plan.settings.tolerance.position *= factor;
   plan.settings.tolerance.field *= factor;
-  plan.settings.limit = std::max<std::size_t>(options.higher_order_tets / 2 * 3, 1 << 16);
+  // The plan foresees how many there are, within three times, but not of cells folded over themselves, a damaged
+  // file's. What is twice the most is enough then.
+  plan.settings.limit = std::max<std::size_t>(most / 2 * 3, 1 << 16);
+  const std::uint64_t all = std::max(std::min(most, unlimited / 8) * 3, std::uint64_t{1} << 17);
+  plan.settings.all = is_chosen ? all : std::min(all, std::uint64_t{1} << 22);
   return plan;
 }
 

@@ -65,7 +65,7 @@ class Assembly {
     as_given_ = 0;
     const bool point = choice_.association == Association::point;
     add_cells(BlockCells(block, points_, std::span(values_).subspan(point ? first_point : 0), choice_.association,
-                         block.source.empty() ? source_ : block.source, plan_.settings));
+                         block.source.empty() ? source_ : block.source, plan_.settings, higher_order_));
     if (block_tets_ != nullptr) take_tets();
     take_added_points();
     block = {};

@@ -92,13 +92,12 @@ void allow_for_folder(const std::filesystem::path& folder, bool is_compressed) {
 
 void allow_filling(std::size_t facets, double tets, bool is_chosen) {
   // Measured on spheres: at most 6 KiB a facet; 0.2 ms up to 330,000 facets, over 0.6 ms at 10^6. 1 KiB and 0.02 ms a
-  // tet. Slow machines, and thin plates with many tets a facet, have the rest.
-  constexpr double gibibyte = 1 << 30;
-  const double bytes = gibibyte + 16384.0 * static_cast<double>(facets),
-               seconds = 15 + 4e-3 * static_cast<double>(facets);
+  // tet. A damaged surface may have slivers that take all there is, so twice what sound ones take and 256 MiB is all.
+  constexpr double base = 256 << 20;
+  const double bytes = base + 12288.0 * static_cast<double>(facets), seconds = 15 + 4e-3 * static_cast<double>(facets);
   if (!is_chosen) return allow(static_cast<std::uint64_t>(bytes), seconds);
   const double many = std::clamp(tets, 0.0, 1e10);
-  allow(static_cast<std::uint64_t>(8 * (bytes + 4096 * many)), 40 * (seconds + 2e-4 * many));
+  allow(static_cast<std::uint64_t>(32 * (bytes + 1024 * many)), 40 * (seconds + 2e-4 * many));
 }
 
 scene::Error memory_error(const std::string& source, std::string_view damage) {

@@ -10,8 +10,9 @@ Each run takes a file, changes it in one of these ways, and calls `tessera info`
   block     8 bytes at the beginning of     swap      two stretches change places
             the appended data
 A run is a fault if it ends by a signal or with another status than 0 or 2, takes over 20 s, prints anything but one line on stderr
-with status 2, uses more than twice the memory of the intact file and 256 MiB, or leaves an output where it failed. Faults are
-printed with what makes the file again, and kept with --keep. Ends with status 1 if there are any. Standard library only.
+with status 2, uses more than twice the memory of the intact file and 256 MiB, or leaves an output where it failed. The 20 s are of
+processor time, and of wall time as many times that as other programs keep it waiting. Faults are printed with what makes the file
+again, and kept with --keep. Ends with status 1 if there are any. Standard library only.
 """
 import argparse
 import concurrent.futures
@@ -62,18 +63,27 @@ def damage(data, rng):
     return way, bytes(data)
 
 
+def waiting():
+    """How many times as long this process takes for other programs: Linux gives 1.25 times less a step of niceness."""
+    others = max(0.0, os.getloadavg()[0] / (os.cpu_count() or 1) - 1)
+    return 1 + others * 1.25 ** max(0, os.nice(0))
+
+
 def run(command, folder):
-    """Status, stderr, seconds and MiB of memory, the helper's included, of a command."""
-    begin = time.monotonic()
+    """Status, stderr, words if it took too long, and MiB of memory, the most of it and its helpers, of a command."""
+    times, begin = waiting(), time.monotonic()
     with tempfile.TemporaryFile() as err:
         process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=err, cwd=folder)
-        timer = threading.Timer(60, process.kill)
+        timer = threading.Timer(60 * times, process.kill)
         timer.start()
         _, status, usage = os.wait4(process.pid, 0)
         timer.cancel()
         process.returncode = os.waitstatus_to_exitcode(status)
         err.seek(0)
-        return process.returncode, err.read(), time.monotonic() - begin, usage.ru_maxrss / 1024
+        seconds, processor = time.monotonic() - begin, usage.ru_utime + usage.ru_stime
+        is_long = processor > 20 or seconds > 20 * max(times, waiting())
+        words = f"{seconds:.0f} s, {processor:.0f} s of the processor" if is_long else ""
+        return process.returncode, err.read(), words, usage.ru_maxrss / 1024
 
 
 def command_of(program, file, out):
@@ -114,12 +124,12 @@ def main():
             damaged = pathlib.Path(folder) / file.name
             damaged.write_bytes(data)
             out = pathlib.Path(folder) / "out.pfm" if rendered else None
-            status, err, seconds, memory = run(command_of(program, str(damaged), out and str(out)), folder)
+            status, err, too_long, memory = run(command_of(program, str(damaged), out and str(out)), folder)
             faults = []
             if status not in (0, 2):
                 faults.append(f"status {status}")
-            if seconds > 20:
-                faults.append(f"{seconds:.0f} s")
+            if too_long:
+                faults.append(too_long)
             if memory > 2 * intact[file, rendered] + 256:
                 faults.append(f"{memory:.0f} MiB, intact {intact[file, rendered]:.0f}")
             if status == 2 and (err.count(b"\n") != 1 or not err.startswith(b"tessera: ")):

@@ -5,21 +5,28 @@
 ///
 /// FOLDER holds files of at most LARGEST bytes (default 262144); those that cannot be opened are left out. Each run
 /// damages one and opens it. A fault is: another exception than Error(bad_input), a message of more than one line or
-/// without the file's name, over 20 s of processor time of both processes or 200 s of wall time (other programs may use
-/// the machine too), or, at the end, a helper with more than `helper_mebibytes` of memory or this process with more
-/// than `own_mebibytes`. A fault's file is kept in the working folder as opening_trial_RUN_NAME. Prints the faults and
-/// the counts; ends with status 1 if there are any, with 2 if nothing can be tried.
+/// without the file's name, over 20 s, or more than twice the memory of the intact file and 256 MiB, in this process or
+/// the helper. The 20 s are of processor time, and of wall time as many times that as other programs keep it waiting.
+/// What a process has had at most never falls, so a run that takes no more than one before is not looked at. A fault's
+/// file is kept in the working folder as opening_trial_RUN_NAME. Prints the faults and the counts; ends with status 1 if
+/// there are any, with 2 if nothing can be tried.
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tessera/dataset.hpp"
@@ -31,11 +38,8 @@ namespace {
 using Random = std::mt19937_64;
 namespace fs = std::filesystem;
 
-/// A helper limits itself to 256 MiB and 24 bytes a byte of its file, 1,100 if that is compressed
-/// (io/helper/limits.cpp); of the small files here that is little beside the first. TetGen has 1 GiB for a surface.
-constexpr long helper_mebibytes = 1200;
-/// About 2 Mi tets of higher-order cells at most, and what malloc keeps of the run before.
-constexpr long own_mebibytes = 1500;
+constexpr double most_seconds = 20;
+constexpr long spare_mebibytes = 256;
 
 double processor_seconds() {
   double seconds = 0;
@@ -46,6 +50,14 @@ double processor_seconds() {
       seconds += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
   }
   return seconds;
+}
+
+/// How many times as long this process takes for other programs: Linux gives 1.25 times less a step of niceness.
+double waiting() {
+  double load = 1;  // programs that want a processor
+  std::ifstream("/proc/loadavg") >> load;
+  const double others = std::max(0.0, load / std::max(1U, std::thread::hardware_concurrency()) - 1);
+  return 1 + others * std::pow(1.25, std::max(0, getpriority(PRIO_PROCESS, 0)));
 }
 
 std::size_t below(Random& random, std::size_t end) { return end == 0 ? 0 : random() % end; }
@@ -140,14 +152,52 @@ std::string fault_of(const fs::path& file, bool& taken) {
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const double processor = processor_seconds() - used;  // a helper that has ended is in it
-  if (processor > 20 || seconds > 200) fault += fmt::format("{:.0f} s, {:.0f} s of the processor", seconds, processor);
+  if (processor > most_seconds || seconds > most_seconds * waiting())
+    fault += fmt::format("{:.0f} s, {:.0f} s of the processor; ", seconds, processor);
   return fault;
 }
 
-long mebibytes(int who) {
-  rusage usage{};
-  getrusage(who, &usage);
-  return usage.ru_maxrss / 1024;
+/// The most MiB that this process has had, and a helper.
+struct Memory {
+  long own = 0, helper = 0;
+};
+
+Memory memory_so_far() {
+  rusage own{}, helpers{};
+  getrusage(RUSAGE_SELF, &own);
+  getrusage(RUSAGE_CHILDREN, &helpers);
+  return {own.ru_maxrss / 1024, helpers.ru_maxrss / 1024};
+}
+
+/// What a file takes as it is, found in a process of its own; nothing if it cannot be opened.
+std::optional<Memory> memory_of_intact(const fs::path& file) {
+  int ends[2];
+  if (::pipe(ends) != 0) throw std::runtime_error("no pipe");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    bool opened = false;
+    (void)fault_of(file, opened);
+    const Memory memory = memory_so_far();
+    const bool is_told = opened && ::write(ends[1], &memory, sizeof(memory)) == sizeof(memory);
+    ::_exit(is_told ? 0 : 1);
+  }
+  ::close(ends[1]);
+  Memory memory;
+  const bool is_told = ::read(ends[0], &memory, sizeof(memory)) == sizeof(memory);
+  ::close(ends[0]);
+  ::waitpid(child, nullptr, 0);
+  return is_told ? std::optional(memory) : std::nullopt;
+}
+
+/// What is wrong with the memory of a run, by what was the most before and after it.
+std::string memory_fault(const Memory& before, const Memory& after, const Memory& intact) {
+  std::string fault;
+  const auto judge = [&](const char* who, long had, long has, long whole) {
+    if (has > had && has > 2 * whole + spare_mebibytes) fault += fmt::format("{} {} MiB, intact {}; ", who, has, whole);
+  };
+  judge("this process", before.own, after.own, intact.own);
+  judge("the helper", before.helper, after.helper, intact.helper);
+  return fault;
 }
 
 std::string read_all(const fs::path& file) {
@@ -168,17 +218,21 @@ fs::path scratch_folder() {
 }
 
 int trials(std::size_t runs, std::uint64_t seed, const fs::path& folder, std::uintmax_t largest) {
-  std::vector<std::pair<std::string, std::string>> files;  // name, bytes
+  struct File {
+    std::string name, bytes;
+    Memory intact;
+  };
+  std::vector<File> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     if (entry.is_regular_file() && entry.file_size() > 1 && entry.file_size() <= largest)
-      files.emplace_back(entry.path().filename().string(), read_all(entry.path()));
-  std::sort(files.begin(), files.end());
+      files.push_back({entry.path().filename().string(), read_all(entry.path()), {}});
+  std::sort(files.begin(), files.end(), [](const File& a, const File& b) { return a.name < b.name; });
   const fs::path scratch = scratch_folder();
-  std::erase_if(files, [&](const auto& file) {
-    write_all(scratch / file.first, file.second);
-    bool opened = false;
-    (void)fault_of(scratch / file.first, opened);
-    return !opened;
+  std::erase_if(files, [&](File& file) {
+    write_all(scratch / file.name, file.bytes);
+    const std::optional<Memory> intact = memory_of_intact(scratch / file.name);
+    file.intact = intact.value_or(Memory{});
+    return !intact;
   });
   if (files.empty())
     return fmt::print(stderr, "opening_trials: {} holds no file that can be opened\n", folder.string()), 2;
@@ -186,13 +240,15 @@ int trials(std::size_t runs, std::uint64_t seed, const fs::path& folder, std::ui
   std::size_t faults = 0;
   for (std::size_t run = 0; run < runs; ++run) {
     Random random(seed * 1'000'003 + run);
-    const auto& [name, intact] = files[below(random, files.size())];
-    std::string bytes = intact;
+    const auto& [name, whole, intact] = files[below(random, files.size())];
+    std::string bytes = whole;
     damage(bytes, random);
     const fs::path file = scratch / name;
     write_all(file, bytes);
     bool opened = false;
-    const std::string fault = fault_of(file, opened);
+    ::malloc_trim(0);  // what is left of earlier runs is not this one's
+    const Memory before = memory_so_far();
+    const std::string fault = fault_of(file, opened) + memory_fault(before, memory_so_far(), intact);
     ++(opened ? taken : refused)[file.extension().string()];
     fs::remove(file);
     if (fault.empty()) continue;
@@ -201,12 +257,11 @@ int trials(std::size_t runs, std::uint64_t seed, const fs::path& folder, std::ui
     fmt::print("run {} of seed {}, {}: {}\n", run, seed, name, fault);
   }
   fs::remove_all(scratch);
-  const long own = mebibytes(RUSAGE_SELF), helper = mebibytes(RUSAGE_CHILDREN);
-  if (own > own_mebibytes || helper > helper_mebibytes) ++faults;
+  const Memory most = memory_so_far();
   for (const auto& [kind, count] : refused) taken.try_emplace(kind, 0);
   for (const auto& [kind, count] : taken) fmt::print("{:10} {} taken, {} refused\n", kind, count, refused[kind]);
   fmt::print("{} damaged files of {}, {} faults; memory {} MiB, helpers at most {} MiB\n", runs, files.size(), faults,
-             own, helper);
+             most.own, most.helper);
   return faults > 0 ? 1 : 0;
 }
 

@@ -14,6 +14,7 @@
 
 #include "io/curved_cell.hpp"
 #include "io/curved_meshes.hpp"
+#include "io/higher_order_plan.hpp"
 #include "io/mesh_assembly.hpp"
 #include "io/mesh_checks.hpp"
 
@@ -407,12 +408,52 @@ TEST(CurvedSplit, RefusesCellsThatTakeTetsWithoutEnd) {
   options.higher_order_tets = 20000;
   test::expect_bad_input([&] { assemble_mesh({folded_box(1, 2)}, options, "mesh"); },
                          {"mesh: cell 0 takes more than 65536 tets", "`higher_order_tolerance`"});
-  // Many of them, each below what one may take.
-  test::expect_bad_input([&] { assemble_mesh({folded_box(30, 0.25)}, options, "mesh"); },
-                         {"mesh: ", " higher-order cells up to cell ", " take more than ", "`higher_order_tolerance`"});
   options.higher_order_tolerance = 0.1;  // the remedy
   EXPECT_NO_THROW(assemble_mesh({folded_box(1, 2)}, options, "mesh"));
-  EXPECT_NO_THROW(assemble_mesh({folded_box(30, 0.25)}, options, "mesh"));
+}
+
+TEST(CurvedSplit, RefusesMeshesThatTakeTetsWithoutEnd) {
+  const CellBlock block = warped_box(
+      kinds[0], 2, bent, [](const glm::dvec3& p) { return p.x; }, false);
+  const auto tets_of = [&](std::size_t blocks, std::uint64_t all) {
+    const auto planning = [&](const auto&...) {
+      return HigherOrderPlan{{{.position = 4e-4}, std::size_t{1} << 20, all}, 1e-4};
+    };
+    return assemble_mesh(std::vector(blocks, block), tolerance(1e-4), "mesh", planning).higher_order.tets;
+  };
+  const std::uint64_t alone = tets_of(1, 1 << 20);
+  ASSERT_GT(alone, 64 * block.types.size()) << "what each cell may become beside";
+  EXPECT_EQ(tets_of(1, alone), alone);
+  EXPECT_EQ(tets_of(2, 2 * alone), 2 * alone);
+  const auto expect_refusal = [&](std::size_t blocks, std::uint64_t all) {
+    test::expect_bad_input([&] { tets_of(blocks, all); },
+                           {"mesh: its higher-order cells, as far as ", " take more than ", "`higher_order_tets`"});
+  };
+  expect_refusal(1, alone - 64 * block.types.size() - 1);
+  expect_refusal(2, 2 * (alone - 64 * block.types.size()) - 1);  // each of which is below it
+}
+
+TEST(CurvedSplit, TakesNoMemoryOutOfProportionForADamagedNode) {
+  ExcessTally tally{};
+  EXPECT_EQ(usual_tets(tally), 1u << 18);
+  tally[0] = 1000, tally[40] = 48;
+  EXPECT_EQ(usual_tets(tally), (1u << 18) + 2000) << "what a node pulls away counts not";
+  tally[40] = 200;
+  EXPECT_EQ(usual_tets(tally), 1u << 21);
+
+  const Field wavy = [](const glm::dvec3& p) { return std::sin(5 * p.x) + p.y; };
+  for (const std::size_t kind : {0u, 4u}) {
+    // A node within an edge is a thousand times as far away as the mesh is large.
+    CellBlock block = warped_box(kinds[kind], 1, bent, wavy, false);
+    block.positions[block.connectivity[kinds[kind].nodes / 2 + 2]].x += 1e3;
+    std::uint64_t tets = 0;
+    try {
+      tets = assemble_mesh({std::move(block)}, tolerance(default_higher_order_tolerance), "mesh").higher_order.tets;
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find("more tets (`higher_order_tets`)"), std::string::npos) << e.what();
+    }
+    EXPECT_LE(tets, (3u << 18) + 64 * 6);
+  }
 }
 
 TEST(CurvedSplit, DividesNoCellForDistancesThatAreNoNumbers) {
