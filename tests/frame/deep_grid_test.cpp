@@ -113,8 +113,8 @@ TEST(DeepGrid, SurfacesAreSamplesWithoutLength) {
       const scene::DeepImage image = frame::deep_image(*source, camera, size, smooth, settings, 0, size.height);
       const reference::GridReference truth(*source, camera, size, smooth, scene::Emission::absorption, {}, {}, iso);
       std::size_t points = 0;
-      for (int y = 0; y < size.height; y += 3)
-        for (int x = 0; x < size.width; x += 3) {
+      for (int y = 0; y < size.height; y += 2)
+        for (int x = 0; x < size.width; x += 2) {
           const auto pixel = image.pixel(static_cast<std::size_t>(y * size.width + x));
           for (const auto& s : pixel) points += s.z == s.z_back ? 1 : 0;
           const reference::Pixel p = truth.pixel(x + 0.5, y + 0.5);
