@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <sstream>
 
@@ -36,6 +37,10 @@ TEST(Completion, KnowsCommandsOptionsWordsAndNames) {
   EXPECT_EQ(completions(line, {"info", ""}), Words{std::string(file_completion)});
   EXPECT_EQ(completions(line, {"help", "gen"}), Words{"generate"});
   EXPECT_EQ(completions(line, {"completion", "z"}), Words{"zsh"});
+  EXPECT_EQ(completions(line, {"generate", "rip"}), Words{"ripples"});
+  EXPECT_TRUE(holds(completions(line, {"render", "--transfer-function", "viridis:p"}), "viridis:peaks"));
+  EXPECT_TRUE(
+      holds(completions(line, {"render", "--transfer-function=viridis:p"}), "--transfer-function=viridis:peaks"));
   EXPECT_TRUE(completions(line, {"nonsense", ""}).empty());
   EXPECT_TRUE(completions(line, {"render", "--size", ""}).empty());
 }
@@ -68,6 +73,81 @@ TEST(Completion, WorksInBash) {
   EXPECT_EQ(offered_by_bash(folder, "render cube.vtu --field ''", file), Words{"f"});
   // bash splits --view=fr into three words, and wants the last alone.
   EXPECT_EQ(offered_by_bash(folder, "render --view = fr", file), Words{"front"});
+}
+
+/// Whether a program is installed, and a word for where it is not.
+bool has_shell(const std::string& name) { return std::filesystem::exists("/usr/bin/" + name); }
+
+/// A folder whose `bin` has the program by its name, for shells that look for it.
+std::string path_with_tessera(const Folder& folder) {
+  std::filesystem::create_directory(folder / "bin");
+  std::filesystem::create_symlink(TESSERA_PROGRAM, folder / "bin/tessera");
+  return folder / "bin:/usr/bin:/bin";
+}
+
+/// What is completed in zsh and fish, and the only thing that it may become.
+const std::vector<std::array<std::string, 2>> typed = {
+    {"tessera ren", "tessera render"},
+    {"tessera render --orb", "tessera render --orbit"},
+    {"tessera render cub", "tessera render cube.vtu"},
+    {"tessera render cube.vtu --field ", "tessera render cube.vtu --field f"},
+    {"tessera render cube.vtu --field=", "tessera render cube.vtu --field=f"},
+    {"tessera render --view=fr", "tessera render --view=front"},
+    {"tessera render --transfer-function viri", "tessera render --transfer-function viridis"},
+    {"tessera render --transfer-function=viri", "tessera render --transfer-function=viridis"},
+    {"tessera render --transfer-function viridis:p", "tessera render --transfer-function viridis:peaks"},
+    {"tessera render --camera=cub", "tessera render --camera=cube.vtu"},
+    {"tessera info a\\ vol", "tessera info a\\ volume.nrrd"},
+    {"tessera generate rip", "tessera generate ripples"}};
+
+TEST(Completion, WorksInFish) {
+  if (!has_shell("fish")) GTEST_SKIP() << "fish is not installed";
+  const Folder folder;
+  static_cast<void>(folder.cube());
+  static_cast<void>(folder.file("a volume.nrrd", ""));
+  std::string script = "set -x PATH " + path_with_tessera(folder) + "\nset -x PATH (string split : $PATH)\n";
+  script += "cd " + (folder / ".") + "\n" + tessera({"completion", "fish"}).out;
+  for (const auto& [line, whole] : typed) script += "complete -C '" + line + "'\necho\n";
+  const Outcome outcome = Running({"fish", "--no-config", folder.file("ask.fish", script)}).wait();
+  EXPECT_EQ(outcome.err, "");
+  std::istringstream offered(outcome.out);
+  for (const auto& [line, whole] : typed) {
+    std::string found, rest;
+    std::getline(offered, found);
+    EXPECT_TRUE(std::getline(offered, rest) && rest.empty()) << line << ": " << rest;
+    // The last word alone, as it is without quotes.
+    std::string word = whole.substr(line.find_last_of(' ') + 1);
+    if (line.find("a\\ ") != std::string::npos) word = "a volume.nrrd";
+    EXPECT_EQ(found, word) << line;
+  }
+}
+
+TEST(Completion, WorksInZsh) {
+  if (!has_shell("zsh")) GTEST_SKIP() << "zsh is not installed";
+  const Folder folder;
+  static_cast<void>(folder.cube());
+  static_cast<void>(folder.file("a volume.nrrd", ""));
+  const std::string script = folder.file("tessera.zsh", tessera({"completion", "zsh"}).out);
+  // A shell at a terminal of its own, in which lines are typed; Ctrl-X keeps what stands there.
+  std::string driver = "zmodload zsh/zpty || exit 77\nexport PATH=" + path_with_tessera(folder) + "\ncd " +
+                       (folder / ".") + "\nzpty -b shell 'TERM=dumb zsh -f -i'\nzpty -w shell \"PS1=; autoload -Uz " +
+                       "compinit && compinit -D -u; source " + script + "; keep() { print -r -- \\\"\\$BUFFER\\\" >> " +
+                       "kept; BUFFER=; }; zle -N keep; bindkey '^X' keep; print ready > ready\"\n" +
+                       "for i in {1..600}; do [[ -e ready ]] && break; sleep 0.1; done\nn=0\n" +
+                       "ask() { zpty -n -w shell \"$1\"$'\\t\\x18'; (( n++ ))\n" +
+                       "for i in {1..600}; do [[ -e kept ]] && (( $(wc -l < kept) >= n )) && return; sleep 0.1; " +
+                       "zpty -r -t shell > /dev/null; done }\n";
+  for (const auto& [line, whole] : typed) driver += "ask '" + line + "'\n";
+  driver += "zpty -d shell\n";
+  const Outcome outcome = Running({"zsh", "-f", folder.file("ask.zsh", driver)}).wait();
+  if (outcome.status == 77) GTEST_SKIP() << "zsh has no module zsh/zpty";
+  std::istringstream kept(contents(folder / "kept"));
+  for (const auto& [line, whole] : typed) {
+    std::string found;
+    std::getline(kept, found);
+    while (found.ends_with(' ')) found.pop_back();
+    EXPECT_EQ(found, whole);
+  }
 }
 
 TEST(Completion, ShellsTakeTheirScripts) {

@@ -126,11 +126,11 @@ def main():
                 text = with_small_pictures(text)
             began = time.monotonic()
             try:
-                done = subprocess.run(["bash", "-c", text], cwd=folder, env=environment, timeout=300,
+                done = subprocess.run(["bash", "-c", text], cwd=folder, env=environment, timeout=900,
                                       stdin=subprocess.DEVNULL, capture_output=True)
                 status, said = done.returncode, done.stderr.decode(errors="replace")
             except subprocess.TimeoutExpired:
-                status, said = "none", "takes longer than 300 s"
+                status, said = "none", "takes longer than 900 s"
             # A part that this build has not says so.
             if status == 2 and "this build" in said:
                 left += 1

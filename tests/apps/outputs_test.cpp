@@ -1,6 +1,7 @@
 // Where pictures and reports go: films through a stand-in for ffmpeg, standard streams.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -50,6 +51,45 @@ TEST(Outputs, AFilmThatFailsLeavesNothingAndSaysWhy) {
   EXPECT_EQ(run.error_lines(), 1u);
   EXPECT_NE(run.err.find("no such encoder"), std::string::npos) << run.err;
   for (const std::string& name : folder.names()) EXPECT_TRUE(name == "bin" || name.ends_with(".vtu")) << name;
+}
+
+/// The first picture of a film as 24-bit RGB, decoded as BT.709, and how many pictures it has.
+struct Decoded {
+  std::string rgb;
+  std::size_t pictures = 0;
+};
+Decoded decoded(const std::string& film, std::size_t bytes_each, bool is_video) {
+  const std::string filter = is_video ? "scale=in_color_matrix=bt709:in_range=tv" : "null";
+  const Outcome all = Running({"ffmpeg", "-v", "error", "-nostdin", "-i", film, "-vf", filter, "-f", "rawvideo",
+                               "-pix_fmt", "rgb24", "-"})
+                          .wait();
+  EXPECT_EQ(all.status, 0) << all.err;
+  return {all.out.substr(0, bytes_each), all.out.size() / bytes_each};
+}
+
+// Colours that encoders' two matrices make different by up to 30 of 255; 6 is what chroma of half the pixels, 8 bits
+// and compression leave of an even ground.
+TEST(Outputs, FilmsOfARealFfmpegHaveAllPicturesInTheirColours) {
+  if (!Running({"sh", "-c", "command -v ffmpeg"}).wait().out.ends_with("ffmpeg\n"))
+    GTEST_SKIP() << "ffmpeg is not installed";
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  constexpr std::size_t width = 64, height = 48, bytes = 3 * width * height;
+  for (const std::string name : {"a.mp4", "a.mov", "a.mkv", "a.webm", "a.gif"}) {
+    const Outcome run = tessera({"render", mesh, "-o", folder / name, "--orbit", "3", "--size", "64x48", "--zoom",
+                                 "0.2", "--background", "#1e9628", "--quiet"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const Decoded film = decoded(folder / name, bytes, name != "a.gif");
+    EXPECT_EQ(film.pictures, 3u) << name;
+    ASSERT_EQ(film.rgb.size(), bytes) << name;
+    const std::array<int, 3> ground = {0x1e, 0x96, 0x28};
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(static_cast<unsigned char>(film.rgb[3 * (width * 2 + 2) + c]), ground[c], 6) << name;
+  }
+  // Odd sides gain a line of the ground.
+  const Outcome odd = tessera({"render", mesh, "-o", folder / "odd.mp4", "--size", "63x47", "--quiet"});
+  EXPECT_EQ(odd.status, 0) << odd.err;
+  EXPECT_EQ(decoded(folder / "odd.mp4", bytes, true).pictures, 1u);
 }
 
 TEST(Outputs, WithoutFfmpegAFilmIsRefusedBeforeAnythingIsRead) {

@@ -7,7 +7,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
+
 #include "io/image_file.hpp"
+#include "io/unfinished.hpp"
 #include "temporary_folder.hpp"
 
 namespace tessera::io {
@@ -46,6 +49,31 @@ TEST(AtomicFile, IsRemovedEvenUnderItsTemporaryNameWhenTheProgramAbandonsItsOutp
   ASSERT_EQ(waitpid(child, &status, 0), child);
   EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM) << status;
   EXPECT_EQ(folder.names(), std::vector<std::string>{"c"});
+}
+
+// A rank that its launcher ends.
+TEST(AtomicFile, IsRemovedUnderItsTemporaryNameByASignalsHandlerToo) {
+  const TemporaryFolder folder;
+  const pid_t child = fork();
+  if (child == 0) {
+    std::signal(SIGTERM, [](int) {
+      abandon_in_handler();
+      _exit(0);
+    });
+    AtomicFile named(folder / "a"), done(folder / "b");
+    std::ofstream(named.named_part()) << "half";
+    std::ofstream(done.named_part()) << "whole";
+    done.commit();
+    for (int k = 0; k < 200; ++k)
+      static_cast<void>(AtomicFile(folder / "c").named_part());  // each takes a place and gives it back
+    const auto lock = naming_outputs();                          // whatever it interrupts
+    std::raise(SIGTERM);
+    _exit(1);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"b"});
 }
 
 TEST(AtomicFile, ReplacesAnOldFileAsAWholeOrLeavesIt) {
