@@ -31,6 +31,7 @@ int SpawnPlan::start(const std::filesystem::path& program, std::vector<std::stri
                      pid_t& process) {
   ::posix_spawnattr_setflags(&attributes_, flags_);
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   const auto lock = naming_outputs();
