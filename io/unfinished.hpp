@@ -17,8 +17,8 @@ namespace tessera::io {
 void add_unfinished(const std::filesystem::path& part);
 void remove_unfinished(const std::filesystem::path& part);
 
-/// What abandon_outputs() does, as far as a signal's handler may: without the lock, of the first 64 of each. The process
-/// ends after it.
+/// What abandon_outputs() does, as far as a signal's handler may: without the lock, of the first 64 of each. The
+/// process ends after it.
 void abandon_in_handler() noexcept;
 
 /// With that lock held, before its end is waited for.
