@@ -122,7 +122,7 @@ TEST(DeepGrid, SurfacesAreSamplesWithoutLength) {
           const auto got = tests::composited(pixel);
           for (std::size_t c = 0; c < 4; ++c) EXPECT_NEAR(got[c], wanted[c], 1e-5) << x << ' ' << y;
         }
-      EXPECT_GT(points, 100u);
+      EXPECT_GT(points, 45u);  // of 90 pixels
     }
   }
 }
