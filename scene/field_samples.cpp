@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <limits>
 #include <utility>
 
 namespace tessera::scene {
@@ -43,7 +44,10 @@ FieldSamples sample_mesh(const TetMeshView& part, std::span<const std::uint64_t>
   out.sides = extent / out.longest;
   const double face =
       std::max({out.sides.x * out.sides.y, out.sides.y * out.sides.z, out.sides.z * out.sides.x, 1e-300});
-  const double volume = whole.mean_thickness / out.longest * face;  // of all tets
+  // Of all tets, at least: volume_sum() rounds each one down, and a box a million million times as long as it is wide
+  // rounds to nothing; too little a volume would give every tet the most points.
+  const double volume = (whole.mean_thickness + std::numeric_limits<double>::denorm_min()) / out.longest * face +
+                        static_cast<double>(whole.tets) * 0x1p-100;
   const std::uint64_t stride = std::max<std::uint64_t>(1, (whole.tets + tets_looked_at - 1) / tets_looked_at);
   for (std::size_t t = 0; t < part.tets.size(); ++t) {
     const std::uint64_t number = global_tet.empty() ? t : global_tet[t];
@@ -57,8 +61,8 @@ FieldSamples sample_mesh(const TetMeshView& part, std::span<const std::uint64_t>
     const double tet_volume =
         std::abs(glm::dot(corner[1] - corner[0], glm::cross(corner[2] - corner[0], corner[3] - corner[0]))) / 6;
     if (!(tet_volume > 0)) continue;
-    const int points = static_cast<int>(
-        std::clamp(std::ceil(tet_volume / std::max(volume, 1e-300) * points_in_all), 1.0, double{most_points_a_tet}));
+    const int points =
+        static_cast<int>(std::clamp(std::ceil(tet_volume / volume * points_in_all), 1.0, double{most_points_a_tet}));
     for (int j = 0; j < points; ++j) {
       // Another stretch of the sequence in every tet; else all samples of a regular mesh lay at one place of its cells.
       const std::array<double, 4> share = barycentric(number * 127 + static_cast<std::uint64_t>(j));
