@@ -205,9 +205,9 @@ std::string higher_order_warning(double error, double accuracy) {
     return fmt::format(
         "how far its higher-order cells' tets change pixels is not bounded, for the transfer function has steps");
   return fmt::format(
-      "tets that stand for its higher-order cells may change pixels by {:.2g}, more than --accuracy {:g}; "
+      "tets that stand for its higher-order cells may change pixels by {}, more than --accuracy {:g}; "
       "--higher-order-tets allows more of them",
-      error, accuracy);
+      error < 1 ? fmt::format("{:.2g}", error) : "any amount", accuracy);
 }
 
 std::string view_line(const Camera& camera) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 
 #include "io/cell_split.hpp"
 
@@ -125,18 +126,39 @@ void CurvedCells::split(std::size_t cell, CurvedWork& work) const {
   work.splitter.split(*lattice(cell), work.positions, work.values, work.weights, work.first, settings_.limit);
 }
 
+bool CurvedCells::is_finite(const CurvedWork& work) {
+  return std::all_of(
+             work.positions.begin(), work.positions.end(),
+             [](const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }) &&
+         std::all_of(work.values.begin(), work.values.end(), [](double v) { return std::isfinite(v); });
+}
+
+bool CurvedCells::take_too_many() const {
+  CurvedWork work(settings_.tolerance);
+  std::uint64_t tets = 0;
+  for (std::size_t c = 0; c < block_.types.size() && !lattices_.empty(); ++c) {
+    if (lattice(c) == nullptr) continue;
+    begin(c, work);
+    if (!is_finite(work)) continue;
+    try {
+      split(c, work);
+    } catch (const std::length_error&) {
+      return true;
+    }
+    tets += work.splitter.tets().size();
+    if (tets > settings_.all) return true;
+  }
+  return false;
+}
+
 void CurvedCells::tally_excess(const std::function<void(double)>& say) const {
   CurvedWork work(settings_.tolerance);
   for (std::size_t c = 0; c < block_.types.size() && !lattices_.empty(); ++c) {
     const CurvedLattice* const curved = lattice(c);
     if (curved == nullptr) continue;
     begin(c, work);
-    const bool is_finite =
-        std::all_of(
-            work.positions.begin(), work.positions.end(),
-            [](const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }) &&
-        std::all_of(work.values.begin(), work.values.end(), [](double v) { return std::isfinite(v); });
-    if (is_finite) work.splitter.tally_excess(*curved, work.positions, work.values, work.weights, work.first, say);
+    if (is_finite(work))
+      work.splitter.tally_excess(*curved, work.positions, work.values, work.weights, work.first, say);
   }
 }
 

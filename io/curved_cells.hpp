@@ -54,6 +54,9 @@ class CurvedCells {
   /// Says of each first tet of all cells how far its edges are off, in tolerances.
   void tally_excess(const std::function<void(double excess)>& say) const;
 
+  /// Whether the cells become more tets than the settings let them, found by dividing them.
+  [[nodiscard]] bool take_too_many() const;
+
   [[nodiscard]] const CurvedSettings& settings() const { return settings_; }
 
  private:
@@ -62,6 +65,7 @@ class CurvedCells {
   [[nodiscard]] std::span<const std::uint32_t> nodes_of(std::size_t cell) const;
   [[nodiscard]] bool has_usable_weights(std::size_t cell) const;
   void begin(std::size_t cell, CurvedWork& work) const;
+  [[nodiscard]] static bool is_finite(const CurvedWork& work);
 
   const CellBlock& block_;
   std::span<const glm::dvec3> points_;

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numeric>
+#include <vector>
 
 namespace tessera::io {
 namespace {
@@ -19,6 +20,24 @@ constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
 double tets_of(std::size_t bin, std::size_t step) {
   const double excess = std::exp2((static_cast<double>(bin) + 0.5 - static_cast<double>(step)) / 2);
   return bin <= step ? 1 : excess * std::sqrt(excess);
+}
+
+/// Has `use` look at the higher-order cells of each block that has some.
+template <class Use>
+void for_curved_cells(std::span<const CellBlock> blocks, const FieldChoice& choice, const CurvedSettings& settings,
+                      const Use& use) {
+  if (settings.limit == 0) return;
+  std::vector<double> values;
+  for (const CellBlock& block : blocks) {
+    if (!has_curved_cells(block)) continue;
+    values.clear();
+    const BlockField* const field = find_field(block, choice.name, choice.association);
+    if (choice.association == scene::Association::point && field != nullptr) {
+      values.resize(block.positions.size());
+      field->read(std::min(choice.component, field->components - 1), 0, values);
+    }
+    use(CurvedCells(block, block.positions, values, choice.association, settings));
+  }
 }
 
 }  // namespace
@@ -57,22 +76,12 @@ CurvedSettings asked_tolerance(const MeshOptions& options, const scene::Box& box
 
 ExcessTally tally_excess(std::span<const CellBlock> blocks, const FieldChoice& choice, const CurvedSettings& asked) {
   ExcessTally tally{};
-  if (asked.limit == 0) return tally;
-  std::vector<double> values;
-  for (const CellBlock& block : blocks) {
-    if (!has_curved_cells(block)) continue;
-    values.clear();
-    const BlockField* const field = find_field(block, choice.name, choice.association);
-    if (choice.association == scene::Association::point && field != nullptr) {
-      values.resize(block.positions.size());
-      field->read(std::min(choice.component, field->components - 1), 0, values);
-    }
-    const CurvedCells cells(block, block.positions, values, choice.association, asked);
+  for_curved_cells(blocks, choice, asked, [&](const CurvedCells& cells) {
     cells.tally_excess([&](double excess) {
       const double bin = excess > 1 ? std::min(2 * std::log2(excess), static_cast<double>(tally.size() - 1)) : 0;
       ++tally[static_cast<std::size_t>(bin)];
     });
-  }
+  });
   return tally;
 }
 
@@ -117,7 +126,29 @@ HigherOrderPlan planned(const MeshOptions& options, const CurvedSettings& asked,
 HigherOrderPlan plan_higher_order(std::span<const CellBlock> blocks, const MeshOptions& options,
                                   const FieldChoice& choice, std::span<const FieldSummary> fields) {
   const CurvedSettings asked = asked_tolerance(options, higher_order_box(blocks), choice, fields);
-  return planned(options, asked, tally_excess(blocks, choice, asked));
+  const ExcessTally tally = tally_excess(blocks, choice, asked);
+  HigherOrderPlan plan = planned(options, asked, tally);
+  // A node has up to eight cells of six tets round it, and a cell folded over takes some eight times what is foreseen
+  // of its tets. Where that may be too many, and the cells are few, it is tried.
+  std::size_t worst = tally.size() - 1;
+  while (worst > 0 && tally[worst] == 0) --worst;
+  const double excess = std::exp2((static_cast<double>(worst) + 0.5) / 2) * options.higher_order_tolerance;
+  constexpr std::uint64_t few = 400;  // first tets, whose division takes no long time
+  if (plan.tolerance == 0 ||
+      6 * 8 * 8 * std::pow(excess / plan.tolerance, 1.5) < static_cast<double>(plan.settings.limit) ||
+      std::accumulate(tally.begin(), tally.end(), std::uint64_t{0}) > few)
+    return plan;
+  const auto takes_too_many = [&] {
+    bool is_over = false;
+    for_curved_cells(blocks, choice, plan.settings,
+                     [&](const CurvedCells& cells) { is_over = is_over || cells.take_too_many(); });
+    return is_over;
+  };
+  for (int tries = 0; tries < 20 && takes_too_many(); ++tries) {
+    plan.settings.tolerance.position *= 2, plan.settings.tolerance.field *= 2;
+    plan.tolerance *= 2;
+  }
+  return plan;
 }
 
 }  // namespace tessera::io
