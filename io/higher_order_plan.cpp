@@ -40,6 +40,27 @@ void for_curved_cells(std::span<const CellBlock> blocks, const FieldChoice& choi
   }
 }
 
+/// A node has up to eight cells of six tets round it, and a cell folded over takes some eight times what is foreseen of
+/// its tets.
+bool may_take_too_many(const MeshOptions& options, const HigherOrderPlan& plan, const ExcessTally& tally) {
+  std::size_t worst = tally.size() - 1;
+  while (worst > 0 && tally[worst] == 0) --worst;
+  const double excess = std::exp2((static_cast<double>(worst) + 0.5) / 2) * options.higher_order_tolerance;
+  return 6 * 8 * 8 * std::pow(excess / plan.tolerance, 1.5) >= static_cast<double>(plan.settings.limit);
+}
+
+/// Whether dividing all cells takes a second or so: what a tet takes grows with the nodes of its cell.
+bool is_quickly_divided(std::span<const CellBlock> blocks, const HigherOrderPlan& plan, const ExcessTally& tally) {
+  constexpr std::uint64_t few_tets = 48;
+  constexpr std::size_t most_nodes_of_tets = 1 << 24;
+  std::size_t nodes = 1;
+  for (const CellBlock& block : blocks)
+    for (std::size_t c = 0; c < block.types.size(); ++c)
+      nodes = std::max<std::size_t>(nodes, block.offsets[c + 1] - block.offsets[c]);
+  return std::accumulate(tally.begin(), tally.end(), std::uint64_t{0}) <= few_tets &&
+         plan.settings.limit <= most_nodes_of_tets / nodes;
+}
+
 }  // namespace
 
 scene::Box higher_order_box(std::span<const CellBlock> blocks) {
@@ -128,15 +149,7 @@ HigherOrderPlan plan_higher_order(std::span<const CellBlock> blocks, const MeshO
   const CurvedSettings asked = asked_tolerance(options, higher_order_box(blocks), choice, fields);
   const ExcessTally tally = tally_excess(blocks, choice, asked);
   HigherOrderPlan plan = planned(options, asked, tally);
-  // A node has up to eight cells of six tets round it, and a cell folded over takes some eight times what is foreseen
-  // of its tets. Where that may be too many, and the cells are few, it is tried.
-  std::size_t worst = tally.size() - 1;
-  while (worst > 0 && tally[worst] == 0) --worst;
-  const double excess = std::exp2((static_cast<double>(worst) + 0.5) / 2) * options.higher_order_tolerance;
-  constexpr std::uint64_t few = 400;  // first tets, whose division takes no long time
-  if (plan.tolerance == 0 ||
-      6 * 8 * 8 * std::pow(excess / plan.tolerance, 1.5) < static_cast<double>(plan.settings.limit) ||
-      std::accumulate(tally.begin(), tally.end(), std::uint64_t{0}) > few)
+  if (plan.tolerance == 0 || !may_take_too_many(options, plan, tally) || !is_quickly_divided(blocks, plan, tally))
     return plan;
   const auto takes_too_many = [&] {
     bool is_over = false;
