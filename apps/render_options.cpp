@@ -126,7 +126,7 @@ void add_mesh_options(CLI::App& command, RenderWords& words) {
       ->type_name("REL");
   command
       .add_option("--higher-order-tets", words.higher_order_tets,
-                  "and about so many at most (default: 262144 to 2097152, by the mesh; 0: by their corners)")
+                  "and about so many at most (default: by the mesh, from 262144; 0: by their corners)")
       ->type_name("N");
   add_volume_options(command, words);
 }

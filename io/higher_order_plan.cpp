@@ -109,13 +109,14 @@ ExcessTally tally_excess(std::span<const CellBlock> blocks, const FieldChoice& c
 std::uint64_t usual_tets(const ExcessTally& tally) {
   constexpr double least = 1 << 18, most = 1 << 21;
   std::uint64_t outliers = 48;  // eight hexahedra, of six tets each, meet at a node
-  double tets = 0;
+  double tets = 0, first = 0;
   for (std::size_t bin = tally.size(); bin-- > 0;) {
     const std::uint64_t left_out = std::min(outliers, tally[bin]);
     outliers -= left_out;
     tets += static_cast<double>(tally[bin] - left_out) * tets_of(bin, 0);
+    first += static_cast<double>(tally[bin]);
   }
-  return static_cast<std::uint64_t>(std::min(most, least + 2 * tets));
+  return static_cast<std::uint64_t>(std::min(std::max(most, 4 * first), least + 2 * tets));
 }
 
 double tolerance_factor(const ExcessTally& tally, std::uint64_t most_tets) {
@@ -140,7 +141,7 @@ HigherOrderPlan planned(const MeshOptions& options, const CurvedSettings& asked,
   // file's. What is twice the most is enough then.
   plan.settings.limit = std::max<std::size_t>(most / 2 * 3, 1 << 16);
   const std::uint64_t all = std::max(std::min(most, unlimited / 8) * 3, std::uint64_t{1} << 17);
-  plan.settings.all = is_chosen ? all : std::min(all, std::uint64_t{1} << 22);
+  plan.settings.all = is_chosen ? all : std::min(all, std::max(2 * most, std::uint64_t{1} << 22));
   return plan;
 }
 

@@ -28,7 +28,8 @@ CurvedSettings asked_tolerance(const MeshOptions& options, const scene::Box& box
 ExcessTally tally_excess(std::span<const CellBlock> blocks, const FieldChoice& choice, const CurvedSettings& asked);
 
 /// About how many tets a mesh may become where nobody says: 2^18, and twice as many as it takes without the worst 48 of
-/// its first tets, 2^21 at most. A damaged node may be so far away that the cells around it take all there may be.
+/// its first tets, at most 2^21 or four times the first, whichever is more. A damaged node may be so far away that the
+/// cells around it take all there may be.
 std::uint64_t usual_tets(const ExcessTally& tally);
 
 /// The factor by which the tolerance has to be larger, a power of the root of 2, so that no more than about

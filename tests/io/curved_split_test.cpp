@@ -456,6 +456,8 @@ TEST(CurvedSplit, TakesNoMemoryOutOfProportionForADamagedNode) {
   EXPECT_EQ(usual_tets(tally), (1u << 18) + 2000) << "what a node pulls away counts not";
   tally[40] = 200;
   EXPECT_EQ(usual_tets(tally), 1u << 21);
+  tally[0] = 1 << 20;
+  EXPECT_EQ(usual_tets(tally), 4 * ((1u << 20) + 200)) << "a large mesh is divided too";
 
   const Field wavy = [](const glm::dvec3& p) { return std::sin(5 * p.x) + p.y; };
   for (const std::size_t kind : {0u, 4u}) {
