@@ -58,6 +58,8 @@ std::vector<std::array<int, 3>> degrees_in(const CellBlock& block) {
 
 }  // namespace
 
+constexpr std::size_t enough_of_a_cell = 3 << 17;  // tets: what a small mesh may take
+
 bool has_curved_cells(const CellBlock& block) { return std::any_of(block.types.begin(), block.types.end(), is_curved); }
 
 CurvedCells::CurvedCells(const CellBlock& block, std::span<const glm::dvec3> points, std::span<const double> values,
@@ -77,6 +79,11 @@ CurvedCells::CurvedCells(const CellBlock& block, std::span<const glm::dvec3> poi
     if (std::optional<CurvedLattice> made = curved_lattice(block.types[c], nodes, {degrees[0], degrees[1], degrees[2]}))
       lattices_.emplace(key, std::move(*made));
   }
+  // A cell that takes far more than others, which is a damaged file's, takes no long time.
+  double cost = 1;
+  for (const auto& [key, made] : lattices_) cost = std::max(cost, cost_of_tet(made));
+  if (cost > 1 && settings_.limit > enough_of_a_cell)
+    settings_.limit = std::max(enough_of_a_cell, static_cast<std::size_t>(static_cast<double>(settings_.limit) / cost));
 }
 
 CurvedCells::Key CurvedCells::key_of(std::size_t cell) const {

@@ -29,6 +29,12 @@ constexpr double worst_of_fractions = 2.5;
 
 }  // namespace
 
+double cost_of_tet(const CurvedLattice& lattice) {
+  const auto& n = lattice.order;
+  const int degree = std::min(lattice.family == CurvedFamily::tet ? n[0] : n[0] + n[1] + n[2], highest_degree);
+  return std::max((degree + 1) * (degree + 2) * (degree + 3) / 120.0, 1.0);  // 20 coefficients: once
+}
+
 void CurvedError::add(const CurvedError& other) {
   position = std::max(position, other.position);
   field = std::max(field, other.field);

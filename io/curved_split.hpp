@@ -31,6 +31,9 @@ struct CurvedError {
   void add(const CurvedError& other);
 };
 
+/// How many times as long a tet of such a cell takes as one of a quadratic or cubic tetrahedron, by its coefficients.
+double cost_of_tet(const CurvedLattice& lattice);
+
 /// Divides higher-order cells into tets, as few as keep position and field within a tolerance.
 ///
 /// Method  A cell's corners give its first tets, as those of a linear cell (io/cell_split.hpp). Then edges are halved,
@@ -63,7 +66,8 @@ class CurvedSplitter {
   [[nodiscard]] std::span<const glm::dvec4> added() const { return std::span(values_).subspan(corners_); }
   [[nodiscard]] const CurvedError& error() const { return error_; }
 
-  /// Says of each of a cell's first tets how far its worst edge is off, in tolerances.
+  /// Says of each of a cell's first tets how far its worst edge is off, in tolerances; more where it will take
+  /// more tets than one of a polynomial.
   void tally_excess(const CurvedLattice& lattice, std::span<const glm::dvec3> positions, std::span<const double> values,
                     std::span<const double> weights, std::span<const scene::Tet> first,
                     const std::function<void(double excess)>& say);

@@ -428,6 +428,20 @@ TEST(CurvedSplit, TakesTheToleranceThatOneStronglyCurvedCellAllows) {
   EXPECT_GT(file.higher_order.tets, 10000u);
 }
 
+TEST(CurvedSplit, GivesOneCellTheFewerTetsTheLongerTheyTake) {
+  const auto limit_of = [&](const Kind& kind, std::size_t limit) {
+    const CellBlock block = warped_box(
+        kind, 1, bent, [](const glm::dvec3&) { return 0.0; }, false);
+    return CurvedCells(block, block.positions, {}, scene::Association::point, {.tolerance = {}, .limit = limit})
+        .settings()
+        .limit;
+  };
+  constexpr std::size_t many = 1 << 22, usual = 1 << 18;
+  EXPECT_EQ(limit_of({24, 10, 2}, many), many);      // quadratic tetrahedra
+  EXPECT_LT(limit_of({29, 27, 2}, many), many / 4);  // triquadratic hexahedra: 84 coefficients for 10
+  EXPECT_EQ(limit_of({29, 27, 2}, usual), usual);
+}
+
 TEST(CurvedSplit, RefusesMeshesThatTakeTetsWithoutEnd) {
   const CellBlock block = warped_box(
       kinds[0], 2, bent, [](const glm::dvec3& p) { return p.x; }, false);
