@@ -94,8 +94,8 @@ std::int64_t GridReference::voxel_along(std::size_t axis, double local) const {
 GridReference::LocalRay GridReference::local_ray(double x, double y) const {
   const scene::GridGeometry& g = source_->geometry();
   const View::Ray world = view_.ray(x, y);
-  const auto [nearest, farthest] = kept_interval(view_, x, y, kept_);
-  LocalRay ray{to_local_ * (world.origin - g.origin), to_local_ * world.step, {-1, -1, -1}, nearest, farthest};
+  const DepthInterval kept = kept_interval(view_, x, y, kept_);
+  LocalRay ray{to_local_ * (world.origin - g.origin), to_local_ * world.step, {-1, -1, -1}, kept.nearest, kept.farthest};
   double span = 0;  // planar depth that the volume covers at most: where parallel planes need not be crossed
   const scene::Box box = scene::bounds(g);
   for (int corner = 0; corner < 8; ++corner) {
