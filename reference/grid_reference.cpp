@@ -137,8 +137,8 @@ GridReference::LocalRay GridReference::local_ray(double x, double y) const {
   const auto is_at = [](double depth, double plane) {
     return std::abs(depth - plane) <= 1e-12 * (std::abs(depth) + std::abs(plane));
   };
-  ray.begin_cut = nearest != view_.nearest() && is_at(ray.begin, nearest);
-  ray.end_cut = farthest != view_.farthest() && is_at(ray.end, farthest);
+  ray.begin_cut = kept.nearest != view_.nearest() && is_at(ray.begin, kept.nearest);
+  ray.end_cut = kept.farthest != view_.farthest() && is_at(ray.end, kept.farthest);
   return ray;
 }
 
