@@ -18,7 +18,7 @@ namespace {
 using TriangleCorners = std::array<PixelVertex, 3>;
 
 /// The most that a mark's tolerance is of its depth: what lies between is taken for nothing.
-constexpr double most_tolerance = 1e-11;
+constexpr double most_tolerance = 1e-9;
 
 scene::PixelRect box_of(const TriangleCorners& c, const scene::PixelRect& window) {
   return footprint({c[0], c[1], c[2], c[2]}, window);
@@ -39,6 +39,14 @@ double edge_error(const TriangleCorners& corners, const scene::PixelRect& box, d
         error, u * (q + 2 * std::max(right, bottom) * w) + sight_error(v, pixels_per_tangent, std::max(right, bottom)));
   }
   return 8 * q * (error + u * q);
+}
+
+/// What rounding of orthographic pixel positions (PixelSpace) may change an edge function by, so that one plane cut
+/// into other triangles is at another depth: four times half a 2^-32 pixel along an edge and the way to it.
+double position_error(const TriangleCorners& c) {
+  const auto [left, right] = std::minmax({c[0].x, c[1].x, c[2].x});
+  const auto [top, bottom] = std::minmax({c[0].y, c[1].y, c[2].y});
+  return 0x1p-31 * ((right - left) + (bottom - top));
 }
 
 struct Edge {
@@ -134,6 +142,7 @@ void FrameFaces::meet_triangle(const Place& place, const scene::PixelRect& rect,
   const glm::dvec3 normal = unit(glm::cross(unit(at[1] - at[0]), unit(at[2] - at[0])));
   // Of the whole picture, so that no bit depends on the rectangle.
   const double error = edge_error(c, box_of(c, {0, 0, grid_.image.width, grid_.image.height}), per_tangent);
+  const double depth_error = error + (per_tangent == 0 ? position_error(c) : 0);
   const auto [least, most] = std::minmax({c[0].depth, c[1].depth, c[2].depth});
   const double size = std::max(std::abs(least), std::abs(most));
   std::array<double, 3> value{};
@@ -154,7 +163,8 @@ void FrameFaces::meet_triangle(const Place& place, const scene::PixelRect& rect,
         return of_c + ((a - of_c) * wa + (b - of_c) * wb) / sum;
       };
       const double depth = std::clamp(mean(c[0].depth, c[1].depth, c[2].depth), least, most);
-      const double tolerance = std::min(8 * (error / sum * (most - least) + 0x1p-52 * size), most_tolerance * size);
+      const double tolerance =
+          std::min(8 * (depth_error / sum * (most - least) + 0x1p-52 * size), most_tolerance * size);
       // At the eye's own place rounding alone puts it before the eye.
       if (!(depth > space_->near_depth() + (space_->near_depth() > 0 ? 0 : tolerance)) ||
           !(depth < space_->far_depth()))

@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t pixels_per_pass = 256;
 
 /// Parts of a depth that two may differ by and be one.
-constexpr double one_depth = 1e-11;
+constexpr double one_depth = 1e-9;
 
 bool row_major_less(const PixelIndex& a, const PixelIndex& b) { return std::tie(a.y, a.x) < std::tie(b.y, b.x); }
 

@@ -37,7 +37,7 @@ struct RaySegment {
 /// Error    about 1e-13 in linear RGBA. Cell data is constant in a tet, point data linear between the two hits.
 /// Surfaces are crossed where the scalar goes from below a value to the value or above, or back, from one end of a
 ///          segment to the other; where two are crossed at one depth they come as along the segment. Lit by the tet's
-///          gradient. Those of triangles are met where the ray goes through one; at one depth (to a part in 1e11) what
+///          gradient. Those of triangles are met where the ray goes through one; at one depth (to a part in 1e9) what
 ///          a cell has at its back end comes first, its boundary, triangles, the next cell's boundary, and what that
 ///          has at its front end. The boundary of what is kept is where a half-space's plane cuts a cell, too.
 /// Threads  const functions may be called from several threads; `pixels` and `image` use all cores themselves.
