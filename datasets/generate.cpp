@@ -133,6 +133,18 @@ std::vector<GeneratorParameter> common_parameters() {
           {"offset", 0, "is added to every coordinate"}};
 }
 
+std::map<std::string, double> with_defaults(const std::string& kind, const std::vector<GeneratorParameter>& known,
+                                            const std::map<std::string, double>& given) {
+  std::map<std::string, double> values;
+  for (const GeneratorParameter& p : known) values[p.name] = p.default_value;
+  for (const auto& [name, value] : given) {
+    if (!values.contains(name))
+      throw scene::bad_input(fmt::format("{}: unknown parameter '{}'; it takes {}", kind, name, names(known)));
+    values[name] = value;
+  }
+  return values;
+}
+
 scene::TetMesh generate(const std::string& kind, const std::map<std::string, double>& parameters) {
   std::string kinds;
   for (const Recipe& recipe : recipes()) {
@@ -141,13 +153,7 @@ scene::TetMesh generate(const std::string& kind, const std::map<std::string, dou
     if (g.name != kind) continue;
     std::vector<GeneratorParameter> known = g.parameters;
     for (const GeneratorParameter& p : common_parameters()) known.push_back(p);
-    std::map<std::string, double> values;
-    for (const GeneratorParameter& p : known) values[p.name] = p.default_value;
-    for (const auto& [name, value] : parameters) {
-      if (!values.contains(name))
-        throw scene::bad_input(fmt::format("{}: unknown parameter '{}'; it takes {}", kind, name, names(known)));
-      values[name] = value;
-    }
+    const std::map<std::string, double> values = with_defaults(kind, known, parameters);
     const Values v(g.name, values);
     return apply_common(recipe.make(v), v);
   }

@@ -27,6 +27,10 @@ std::vector<Generator> generators();
 /// offset, in that order).
 std::vector<GeneratorParameter> common_parameters();
 
+/// The values given, and defaults for the rest. Throws Error(bad_input) for a name that is none of `known`, with those.
+std::map<std::string, double> with_defaults(const std::string& kind, const std::vector<GeneratorParameter>& known,
+                                            const std::map<std::string, double>& given);
+
 /// The mesh `kind` with the parameters given and defaults for the rest.
 /// Throws Error(bad_input) for an unknown kind (lists the kinds), an unknown parameter (lists the kind's), a parameter
 /// that must be whole and is not, or a value out of its generator's range.

@@ -82,14 +82,7 @@ std::unique_ptr<scene::SampleSource> generate_volume(const std::string& kind,
   const auto generator = std::find_if(known.begin(), known.end(), [&](const Generator& g) { return g.name == kind; });
   if (generator == known.end())
     throw scene::bad_input(fmt::format("generate: there is no volume '{}'; use ripples or checker", kind));
-  std::map<std::string, double> values;
-  for (const GeneratorParameter& p : generator->parameters) values[p.name] = p.default_value;
-  for (const auto& [name, value] : parameters) {
-    if (values.count(name) == 0)
-      throw scene::bad_input(
-          fmt::format("{}: unknown parameter '{}'; it takes {}", kind, name, kind == "checker" ? "n" : "n, bits"));
-    values[name] = value;
-  }
+  std::map<std::string, double> values = with_defaults(kind, generator->parameters, parameters);
   const double n = values["n"], bits = values.count("bits") > 0 ? values["bits"] : 32;
   if (!(n >= 2 && n <= most_points) || n != std::floor(n))
     throw scene::bad_input(fmt::format("generate: n is {}; give a whole number from 2 to 4096", n));

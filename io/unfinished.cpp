@@ -1,12 +1,12 @@
 #include "io/unfinished.hpp"
 
-#include <csignal>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <vector>

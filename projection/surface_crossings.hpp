@@ -46,7 +46,7 @@ struct LatticeMark {
   static_assert(std::bit_cast<std::uint32_t>(first) == first_bits);
 
   static float of(const Crossing& crossing) {
-    const auto cosine = static_cast<std::uint32_t>(crossing.cosine * cosines + 0.5f);
+    const auto cosine = static_cast<std::uint32_t>(std::floor(crossing.cosine * cosines + 0.5f));
     return std::bit_cast<float>(first_bits + (crossing.number << cosine_bits | cosine));
   }
 };

@@ -22,9 +22,7 @@ namespace tessera::volume {
 /// A tile is one thread's at a time.
 ///
 /// Axes     rays of one tile may have several (TileRays): there is a TileRays for each, and a ray is in one of them.
-/// Memory   150 KB for each of these, mostly one, 30 KB and the crossings more with surfaces; begin() uses what there
-/// is
-///          again.
+/// Memory   150 KB for each of these, mostly one; with surfaces 30 KB and the crossings more. begin() uses it again.
 class TileState {
  public:
   /// The tile whose first pixel is (x0, y0), multiples of 32; of its pixels those in `region` count. A pilot pass

@@ -78,8 +78,8 @@ inline MeshCounts& MeshCounts::operator+=(const MeshCounts& other) {
 static_assert(sizeof(MeshCounts) == 20 * sizeof(std::uint64_t));  // one line above for each
 
 /// How near tets come to cells of second and higher order where nothing else is said: in position of the mesh's
-/// diagonal, in value of the field's range; and about how many there may be: not more than 2^18 and twice as many as the
-/// mesh takes without the worst 48 of the tets that its cells' corners make, so that damage takes no memory out of
+/// diagonal, in value of the field's range; and about how many there may be: not more than 2^18 and twice as many as
+/// the mesh takes without the worst 48 of the tets that its cells' corners make, so that damage takes no memory out of
 /// proportion. Any other number is taken as it is.
 inline constexpr double default_higher_order_tolerance = 1e-4;
 inline constexpr std::uint64_t default_higher_order_tets = std::uint64_t{1} << 21;

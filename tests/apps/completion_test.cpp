@@ -75,7 +75,7 @@ TEST(Completion, WorksInBash) {
   EXPECT_EQ(offered_by_bash(folder, "render --view = fr", file), Words{"front"});
 }
 
-/// Whether a program is installed, and a word for where it is not.
+/// Whether Debian has put this shell here.
 bool has_shell(const std::string& name) { return std::filesystem::exists("/usr/bin/" + name); }
 
 /// A folder whose `bin` has the program by its name, for shells that look for it.

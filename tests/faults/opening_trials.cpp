@@ -8,8 +8,8 @@
 /// without the file's name, over 20 s, or more than twice the memory of the intact file and 256 MiB, in this process or
 /// the helper. The 20 s are of processor time, and of wall time as many times that as other programs keep it waiting.
 /// What a process has had at most never falls, so a run that takes no more than one before is not looked at. A fault's
-/// file is kept in the working folder as opening_trial_RUN_NAME. Prints the faults and the counts; ends with status 1 if
-/// there are any, with 2 if nothing can be tried.
+/// file is kept in the working folder as opening_trial_RUN_NAME. Prints the faults and the counts; ends with status 1
+/// if there are any, with 2 if nothing can be tried.
 #include <fmt/format.h>
 #include <malloc.h>
 #include <sys/resource.h>

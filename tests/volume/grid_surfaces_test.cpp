@@ -300,7 +300,7 @@ TEST(GridSurface, RandomOnesKeepThePromise) {
               pixels);
 }
 
-TEST(GridSurface, BitsDoNotDependOnBricksThreadsRegionsOrSkippedSpace) {
+TEST(GridSurface, BitsDoNotDependOnBricksThreadsOrRegionsNorLightOnSkippedSpace) {
   const Volume volume = make_volume({45, 37, 41}, Field::smooth);
   Surfaces surfaces;
   surfaces.iso = {{0.4, glm::dvec3(1, 0.4, 0), 0.3}, {0.62, {}, 0.5}, {0.75, glm::dvec3(0, 1, 0.2), 1}};
