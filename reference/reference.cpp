@@ -22,9 +22,6 @@ namespace {
 /// Pixels that one task renders in one pass over the tets: many, to share the pass; few, to hold few segments.
 constexpr std::size_t pixels_per_pass = 256;
 
-/// Parts of a depth that two may differ by and be one.
-constexpr double one_depth = 1e-9;
-
 bool row_major_less(const PixelIndex& a, const PixelIndex& b) { return std::tie(a.y, a.x) < std::tie(b.y, b.x); }
 
 /// The first pixel whose centre is not left of (above) `coordinate`, and the last that is not right of (below) it.
@@ -141,25 +138,8 @@ std::vector<TriangleCrossing> Reference::triangles_on(double x, double y) const 
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
     const Box& b = triangle_boxes_[i];
     if (!(b.x_low <= x && x <= b.x_high && b.y_low <= y && y <= b.y_high)) continue;
-    const std::optional<TriangleHit> hit = intersect(triangles_[i].corners, x, y);
-    if (!hit) continue;
-    double size = 0;
-    for (const Corner& corner : triangles_[i].corners) size = std::max(size, std::abs(corner.vertex.depth));
-    // In the eye's own place rounding alone puts it before the eye.
-    const double nearest = view_.nearest() > 0 ? view_.nearest() : one_depth * size;
-    if (nearest < hit->depth && hit->depth < view_.farthest()) found.push_back({*hit, &triangles_[i]});
-  }
-  std::sort(found.begin(), found.end(),
-            [](const TriangleCrossing& a, const TriangleCrossing& b) { return a.hit.depth < b.hit.depth; });
-  // At one depth by surface.
-  for (auto first = found.begin(); first != found.end();) {
-    const auto last = std::find_if(first, found.end(), [&](const TriangleCrossing& other) {
-      return other.hit.depth - first->hit.depth > one_depth * std::abs(other.hit.depth);
-    });
-    std::stable_sort(first, last, [](const TriangleCrossing& a, const TriangleCrossing& b) {
-      return a.triangle->paint < b.triangle->paint;
-    });
-    first = last;
+    if (const std::optional<TriangleHit> hit = intersect(triangles_[i].corners, x, y))
+      found.push_back({*hit, &triangles_[i]});
   }
   return found;
 }
@@ -173,120 +153,6 @@ glm::dvec3 Reference::face_normal(std::size_t tet, int face) const {
   for (int i = 0, k = 0; i < 4; ++i)
     if (i != face) of_face[static_cast<std::size_t>(k++)] = corners[static_cast<std::size_t>(i)];
   return normal_of(of_face[0], of_face[1], of_face[2]);
-}
-
-/// One ray's light, segment by segment.
-class Reference::Ray {
- public:
-  Ray(const Reference& reference, double x, double y)
-      : reference_(reference),
-        x_(x),
-        y_(y),
-        integral_(reference.knots_, reference.emission_),
-        direction_(reference.view_.ray(x, y).step),
-        kept_(kept_interval(reference.view_, x, y, reference.kept_)),
-        triangles_(reference.triangles_on(x, y)) {}
-
-  void add(const RaySegment& s) {
-    const double reach = one_depth * std::max(std::abs(s.front), std::abs(s.back));
-    for (; next_ < triangles_.size() && triangles_[next_].hit.depth <= s.front + reach; ++next_) add_triangle();
-    if (const auto normal = end_normal(s, reach, true)) add_boundary(*normal, s.scalar_front, s.front);
-    at_ = 0, change_ = s.change_front;
-    std::vector<SurfaceCrossing> crossings;
-    const KeptDepths depths{kept_.nearest, kept_.farthest, kept_.nearest_plane != nullptr,
-                            kept_.farthest_plane != nullptr};
-    if (!reference_.surfaces_.empty())
-      crossings = surface_crossings(reference_.surfaces_, reference_.corners(s.tet), x_, y_, depths);
-    for (const SurfaceCrossing& c : crossings) {
-      const double depth = s.front + (s.back - s.front) * c.part;
-      add_triangles_inside(s, std::min(depth + reach, s.back - reach));
-      advance(s, c.part, c.surface->value - s.corner_scalar);
-      integral_.add_surface(lit(*c.surface, reference_.light_, direction_, reference_.mesh_, s.tet), c.surface->opacity,
-                            depth);
-    }
-    add_triangles_inside(s, s.back - reach);
-    advance(s, 1, s.change_back);
-    if (const auto normal = end_normal(s, reach, false)) add_boundary(*normal, s.scalar_back, s.back);
-    length_ += s.length;
-  }
-
-  Pixel end(std::size_t segments) {
-    for (; next_ < triangles_.size(); ++next_) add_triangle();
-    Pixel pixel;
-    std::tie(pixel.r, pixel.g, pixel.b) = std::tuple_cat(integral_.color());
-    pixel.a = integral_.opacity();
-    pixel.z = integral_.first_visible_depth();
-    pixel.length = length_;
-    pixel.segments = segments;
-    return pixel;
-  }
-
- private:
-  /// Integrates up to that part of the segment.
-  void advance(const RaySegment& s, double part, double change) {
-    const auto depth_at = [&](double p) { return p == 1 ? s.back : s.front + (s.back - s.front) * p; };
-    integral_.add(s.length * (part - at_), change_, change, depth_at(at_), depth_at(part), s.corner_scalar);
-    at_ = part, change_ = change;
-  }
-
-  void add_triangles_inside(const RaySegment& s, double before) {
-    for (; next_ < triangles_.size() && triangles_[next_].hit.depth < before; ++next_) {
-      const double part = std::max(at_, (triangles_[next_].hit.depth - s.front) / (s.back - s.front));
-      advance(s, part, s.change_front + (s.change_back - s.change_front) * part);
-      add_triangle();
-    }
-  }
-
-  void add_triangle() {
-    const TriangleCrossing& t = triangles_[next_];
-    add_face(reference_.paints_[t.triangle->paint], t.triangle->normal, t.hit.scalar, t.hit.depth);
-  }
-
-  void add_boundary(const glm::dvec3& normal, double scalar, double depth) {
-    for (const Paint& paint : reference_.boundary_) add_face(paint, normal, scalar, depth);
-  }
-
-  void add_face(const Paint& paint, const glm::dvec3& normal, double scalar, double depth) {
-    const glm::dvec3 color = paint.color ? *paint.color : glm::dvec3(reference_.function_.evaluate(scalar).color);
-    integral_.add_surface(lit(color, reference_.light_, direction_, normal), paint.opacity, depth);
-  }
-
-  /// The normal of the boundary at an end of a segment, if that is there: of an open face or of the plane that cuts the
-  /// mesh there, which a ray meets once.
-  std::optional<glm::dvec3> end_normal(const RaySegment& s, double reach, bool front) {
-    if (reference_.boundary_.empty()) return std::nullopt;
-    const scene::HalfSpace* plane = front ? kept_.nearest_plane : kept_.farthest_plane;
-    const bool at_plane =
-        plane != nullptr && (front ? s.front <= kept_.nearest + reach : s.back >= kept_.farthest - reach);
-    bool& met = front ? met_nearest_ : met_farthest_;
-    if (at_plane) {
-      // What only rounding leaves of a cell has none.
-      const bool thin = front ? !(s.back > kept_.nearest + reach) : !(s.front < kept_.farthest - reach);
-      if (thin || met) return std::nullopt;
-      met = true;
-      return plane->normal;
-    }
-    const int face = front ? s.face_front : s.face_back;
-    if (face < 0 || (reference_.open_[s.tet] >> face & 1) == 0) return std::nullopt;
-    return reference_.face_normal(s.tet, face);
-  }
-
-  const Reference& reference_;
-  double x_, y_;
-  Integral integral_;
-  glm::dvec3 direction_;
-  DepthInterval kept_;
-  std::vector<TriangleCrossing> triangles_;
-  std::size_t next_ = 0;        ///< of the triangles
-  double at_ = 0, change_ = 0;  ///< of the segment at hand: what is integrated so far
-  double length_ = 0;
-  bool met_nearest_ = false, met_farthest_ = false;
-};
-
-Pixel Reference::shaded(std::span<const RaySegment> segments, double x, double y) const {
-  Ray ray(*this, x, y);
-  for (const RaySegment& s : segments) ray.add(s);
-  return ray.end(segments.size());
 }
 
 std::vector<RaySegment> Reference::segments(double x, double y) const {

@@ -37,9 +37,11 @@ struct RaySegment {
 /// Error    about 1e-13 in linear RGBA. Cell data is constant in a tet, point data linear between the two hits.
 /// Surfaces are crossed where the scalar goes from below a value to the value or above, or back, from one end of a
 ///          segment to the other; where two are crossed at one depth they come as along the segment. Lit by the tet's
-///          gradient. Those of triangles are met where the ray goes through one; at one depth (to a part in 1e9) what
-///          a cell has at its back end comes first, its boundary, triangles, the next cell's boundary, and what that
-///          has at its front end. The boundary of what is kept is where a half-space's plane cuts a cell, too.
+///          gradient. Those of triangles are met where the ray goes through one, a boundary where a segment ends at a
+///          face that one cell alone has, or where a half-space's plane cuts a cell. Segments are cut there, so that
+///          they lie at their true depth in cells that overlap, too. At one depth what a cell has at its back end comes
+///          first, its boundary, triangles, what is in cells of no length, the next cell's boundary, and what that has
+///          at its front end. Depths are one if a shift of the ray by 2^-32 pixel may exchange them (shaded_ray.cpp).
 /// Threads  const functions may be called from several threads; `pixels` and `image` use all cores themselves.
 /// Cost     256x256 pixels over 0.5 M tets: seconds to a minute. One point query is a pass over all tets' boxes.
 class Reference final : public RayReference {
