@@ -76,7 +76,7 @@ enum class MessageKind : std::uint16_t {
   higher_order = 37,      ///< u64[128]: tets by how far they are off (io/higher_order_plan.hpp)
   process_on_host = 38,   ///< exchange/one_line.cpp
   field_samples = 39,     ///< list of scene::FieldSample: of a rank's part (frame/field_samples.cpp)
-  open_faces = 47,  ///< list of OpenFace (frame/boundary_faces.cpp): that one tet of a rank's part has alone
+  open_faces = 47,        ///< list of OpenFace (frame/boundary_faces.cpp): that one tet of a rank's part has alone
   curved_part = 40,  ///< frame/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
   // The transport's own.
   fault = 41,    ///< a rank to rank 0, I have failed: u8 ErrorCode, text

@@ -151,6 +151,59 @@ TEST(TriangleSurface, HasNoGapsAtItsEdgesAndNoneIsMetTwice) {
   }
 }
 
+TEST(BoundarySurface, OfCellsThatOverlapIsInTheOrderOfDepth) {
+  // Two boxes of one colour each, from z = -1.9 to 0.1 and -0.1 to 1.9.
+  std::vector<scene::TetMesh> boxes(2, datasets::cube(1));
+  for (std::size_t box = 0; box < 2; ++box) {
+    for (glm::dvec3& p : boxes[box].positions) p.z += box == 0 ? -0.9 : 0.9;
+    boxes[box].association = scene::Association::cell;
+    boxes[box].scalars.assign(boxes[box].tets.size(), static_cast<double>(box));
+  }
+  const scene::TetMesh mesh = datasets::merged(boxes);
+  const TransferFunction two({{0, {1, 0, 0}, 0}, {1, {0, 1, 0}, 0}});
+  scene::Surfaces surfaces;
+  surfaces.light = even_light;
+  surfaces.boundary = {{{}, 0.5}};
+  const scene::Camera camera = view(ProjectionKind::orthographic, {0, 0, 4});
+  const scene::ImageSize size{8, 8};
+  const auto image = Renderer(mesh, exact(surfaces)).render(camera, size, two);
+  const auto truth =
+      reference::Reference(mesh, camera, size, two, scene::Emission::absorption, surfaces).pixel(4.5, 4.5);
+  // Green, red, green, red.
+  const double red = 1. / 4 + 1. / 16, green = 1. / 2 + 1. / 8;
+  EXPECT_NEAR(image.rgba[4 * image.index(4, 4)], red, 1e-6);
+  EXPECT_NEAR(image.rgba[4 * image.index(4, 4) + 1], green, 1e-6);
+  EXPECT_NEAR(truth.r, red, 1e-12);
+  EXPECT_NEAR(truth.g, green, 1e-12);
+}
+
+TEST(TriangleSurface, ThatCoincidesWithTheBoundaryComesFirstHoweverNearTheEyeItIs) {
+  scene::Surfaces surfaces;
+  surfaces.light = even_light;
+  surfaces.boundary = {{glm::dvec3(0, 1, 0), 1}};
+  surfaces.triangles = {{square(0.97, 1), glm::dvec3(1, 0, 0), 0.5}};
+  // The eye is above the side z = 1 so little that the line in which its plane cuts the side is 1/20 pixel off the
+  // centres of a row.
+  const scene::ImageSize size{40, 40};
+  scene::Camera camera = view(ProjectionKind::orthographic, {0.013, -0.3, 1});
+  camera.parallel_scale = 0.5;
+  camera.view_up = {0, 0, 1};
+  const scene::TetMesh mesh = datasets::cube(3, 0.2);
+  for (const double slope : {0.3, 0.7, 1.9}) {
+    const double pixel = 2 * camera.parallel_scale / size.height;
+    camera.position.z = 1 + (0.5 + 0.05) * pixel / std::sqrt(1 + slope * slope);
+    camera.focal_point = camera.position + glm::dvec3(0, 1, -slope);
+    const auto image = Renderer(mesh, exact(surfaces)).render(camera, size, clear());
+    const reference::Reference reference(mesh, camera, size, clear(), scene::Emission::absorption, surfaces);
+    for (int x = 4; x < 36; ++x) {
+      const int y = 20;
+      EXPECT_NEAR(image.depth[image.index(x, y)], 0.05 * pixel / slope, 1e-8);
+      EXPECT_NEAR(image.rgba[4 * image.index(x, y)], 0.5, 1e-6) << x << ' ' << slope;
+      EXPECT_NEAR(reference.pixel(x + 0.5, y + 0.5).r, 0.5, 1e-12) << x << ' ' << slope;
+    }
+  }
+}
+
 /// Triangles of some kind in and about a mesh.
 std::vector<glm::dvec3> random_triangles(Random& random, const scene::TetMesh& mesh, const glm::dvec3& eye,
                                          std::string& words) {
