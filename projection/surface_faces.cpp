@@ -117,7 +117,9 @@ std::uint64_t FrameFaces::bytes() const {
 
 void FrameFaces::meet(const scene::PixelRect& rect, FaceMarks& marks) const {
   marks.reset(static_cast<std::size_t>(rect.area()));
-  const auto tile = static_cast<std::size_t>(rect.y0 / grid_.tile_size * grid_.columns() + rect.x0 / grid_.tile_size);
+  const int row = rect.y0 / grid_.tile_size, column = rect.x0 / grid_.tile_size;
+  const auto tile =
+      static_cast<std::size_t>(row) * static_cast<std::size_t>(grid_.columns()) + static_cast<std::size_t>(column);
   for (std::size_t i = begin_[tile]; i < begin_[tile + 1]; ++i) meet_triangle(places_[i], rect, marks);
   marks.sort();
 }
