@@ -70,7 +70,7 @@ void add_surface(const std::string& word, Surfaces& surfaces) {
   else
     throw bad_input(
         fmt::format("--surface: '{}' is neither boundary nor a file that is there; give one of the two, a file as "
-                    ".ply, .stl, .vtp, .vtk, .poly or .smesh",
+                    ".ply, .stl, .vtp, .vtk, .poly or .smesh (of one block of a mesh: --block NAME --surface boundary)",
                     name));
 }
 

@@ -55,6 +55,7 @@ TEST(Surfaces, OfFacesAreRefusedInOneLineThatSaysWhy) {
     EXPECT_NE(run.err.find(word), std::string::npos) << run.err;
   };
   refused({"--surface", "skin"}, "'skin' is neither boundary nor a file");
+  refused({"--surface", "skin"}, "--block NAME --surface boundary");
   refused({"--surface", "boundary:reddish"}, "not a colour");
   refused({"--surface", "boundary:red:2"}, "opacity 2");
   refused({"--surface", mesh}, "no surface of triangles");
