@@ -66,6 +66,7 @@ std::vector<std::string> values_of(const CLI::Option& option, const std::vector<
   files = type.find("FILE") != std::string::npos;
   if (name == "field") return names_in_file(words, false);
   if (name == "block") return names_in_file(words, true);
+  if (name == "surface") return {"boundary"};
   if (name == "transfer-function") return preset_words(current);
   return literal_words(type);
 }

@@ -141,7 +141,7 @@ ReadOptions mesh_options(const RenderWords& words) {
   mesh.time_step = one_time_step(words.time_step);
   mesh.blocks = words.blocks;
   mesh.selection = selection_of(words.clip);
-  for (const IsoSurface& iso : surfaces_of(words.surfaces).iso) mesh.selection.levels.push_back(iso.value);
+  for (const IsoSurface& iso : iso_surfaces_of(words.surfaces)) mesh.selection.levels.push_back(iso.value);
   if (!words.higher_order_tolerance.empty())
     mesh.higher_order_tolerance = parse_positive("--higher-order-tolerance", words.higher_order_tolerance);
   if (!words.higher_order_tets.empty())

@@ -61,12 +61,25 @@ Json iso_json(const Surfaces& surfaces) {
   return json;
 }
 
+Json faces_json(const Surfaces& surfaces) {
+  Json json = Json::array();
+  const auto add = [&](const std::string& what, const std::optional<glm::dvec3>& color, double opacity) {
+    json.push_back({{"what", what}, {"opacity", opacity}});
+    if (color) json.back()["color"] = {color->x, color->y, color->z};
+  };
+  for (const BoundarySurface& boundary : surfaces.boundary) add("boundary", boundary.color, boundary.opacity);
+  for (const TriangleSurface& surface : surfaces.triangles)
+    add(fmt::format("{} triangles", surface.mesh->triangles.size()), surface.color, surface.opacity);
+  return json;
+}
+
 Json mesh_method_json(const RenderOptions& options) {
   const Settings& settings = options.settings;
   Json json = {{"integrator", method_line(settings.integrator)}};
   if (settings.integrator.kind == IntegratorKind::automatic) json["accuracy"] = settings.integrator.accuracy;
   json["emission"] = settings.emission == Emission::absorption ? "absorption" : "independent";
-  if (!settings.surfaces.empty()) json["iso"] = iso_json(settings.surfaces);
+  if (!settings.surfaces.iso.empty()) json["iso"] = iso_json(settings.surfaces);
+  if (settings.surfaces.has_faces()) json["surface"] = faces_json(settings.surfaces);
   if (options.frame.deep) json["deep_accuracy"] = options.frame.deep_accuracy;
   json["rasterizer"] = word(settings.mesh.rasterizer);
   const DeviceSettings& on = settings.mesh.device;

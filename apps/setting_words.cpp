@@ -18,7 +18,7 @@ constexpr std::string_view setting_names =
     "json length_unit light log max_volume memory no_shade on_stall opacity opacity_points opacity_scale "
     "orbit origin outline output partition peer pieces pixels png_bits preload progress projection projectors "
     "q quiet range rasterizer repeat report rescale resume save_config scale_bar seed shade show size skip "
-    "smooth spacing stall_timeout step subdivide threads threshold tile_size time_step timing "
+    "smooth spacing stall_timeout step subdivide surface threads threshold tile_size time_step timing "
     "transfer_function type unit_distance up verify version view without zoom";
 
 constexpr auto settings = [] {

@@ -3,29 +3,75 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <system_error>
 
 #include "apps/argument_values.hpp"
 #include "tessera/error.hpp"
+#include "tessera/triangle_file.hpp"
 
 namespace tessera::apps {
 namespace {
 
-/// VALUE, VALUE:COLOUR, VALUE:COLOUR:OPACITY or VALUE::OPACITY.
+/// COLOUR, COLOUR:OPACITY or :OPACITY, as `text` has them behind a surface's name. `given`: all of it.
+struct Look {
+  std::optional<glm::dvec3> color{};
+  double opacity = 1;
+};
+Look look_of(const std::string& option, const std::string& given, const std::string& text) {
+  const std::size_t colon = std::min(text.find(':'), text.size());
+  Look look;
+  if (colon > 0) {
+    const auto color = parse_color(option, text.substr(0, colon));
+    look.color = glm::dvec3(color[0], color[1], color[2]);
+  }
+  if (colon < text.size()) {
+    look.opacity = parse_number(option, text.substr(colon + 1));
+    if (!(look.opacity > 0 && look.opacity <= 1))
+      throw bad_input(fmt::format("{} {}: the opacity {} is not above 0 and at most 1", option, given, look.opacity));
+  }
+  return look;
+}
+
+std::string behind(const std::string& word, std::size_t colon) {
+  return colon < word.size() ? word.substr(colon + 1) : std::string();
+}
+
 IsoSurface iso_of(const std::string& word) {
-  const std::size_t first = std::min(word.find(':'), word.size());
-  const std::size_t second = std::min(word.find(':', first + 1), word.size());
-  IsoSurface iso;
-  iso.value = parse_number("--iso", word.substr(0, first));
-  if (first + 1 < second) {
-    const auto color = parse_color("--iso", word.substr(first + 1, second - first - 1));
-    iso.color = glm::dvec3(color[0], color[1], color[2]);
+  const std::size_t colon = std::min(word.find(':'), word.size());
+  const double value = parse_number("--iso", word.substr(0, colon));
+  const Look look = look_of("--iso", word, behind(word, colon));
+  return {value, look.color, look.opacity};
+}
+
+/// Where the name of a surface ends: of a file that is there, though its own name has colons.
+std::size_t end_of_name(const std::string& word) {
+  std::size_t end = word.size();
+  for (int colons = 0; colons <= 2 && end != std::string::npos && end > 0; ++colons) {
+    std::error_code unknown;
+    if (std::filesystem::is_regular_file(word.substr(0, end), unknown)) return end;
+    end = word.rfind(':', end - 1);
   }
-  if (second < word.size()) {
-    iso.opacity = parse_number("--iso", word.substr(second + 1));
-    if (!(iso.opacity > 0 && iso.opacity <= 1))
-      throw bad_input(fmt::format("--iso {}: the opacity {} is not above 0 and at most 1", word, iso.opacity));
-  }
-  return iso;
+  return std::min(word.find(':'), word.size());
+}
+
+void add_surface(const std::string& word, Surfaces& surfaces) {
+  const std::size_t end = end_of_name(word);
+  const std::string name = word.substr(0, end);
+  const Look look = look_of("--surface", word, behind(word, end));
+  std::error_code unknown;
+  if (name == "boundary")
+    surfaces.boundary.push_back({look.color, look.opacity});
+  else if (std::filesystem::is_regular_file(name, unknown))
+    surfaces.triangles.push_back(
+        {std::make_shared<const TriangleMesh>(read_triangles(name)), look.color, look.opacity});
+  else
+    throw bad_input(
+        fmt::format("--surface: '{}' is neither boundary nor a file that is there; give one of the two, a file as "
+                    ".ply, .stl, .vtp, .vtk, .poly or .smesh (of one block of a mesh: --block NAME --surface boundary)",
+                    name));
 }
 
 }  // namespace
@@ -37,11 +83,24 @@ void add_surface_options(CLI::App& command, SurfaceWords& words) {
                   "there; opacity 1); may be repeated")
       ->type_name("VALUE[:COLOUR[:OPACITY]]")
       ->allow_extra_args(false);
+  command
+      .add_option("--surface", words.surface,
+                  "meshes: their boundary (colour: the field's; opacity 1), or the triangles of a file (light grey), "
+                  "lit, within the volume; may be repeated")
+      ->type_name("boundary|FILE[:COLOUR[:OPACITY]]")
+      ->allow_extra_args(false);
 }
 
 Surfaces surfaces_of(const SurfaceWords& words) {
   Surfaces surfaces;
-  for (const std::string& word : words.iso) surfaces.iso.push_back(iso_of(word));
+  surfaces.iso = iso_surfaces_of(words);
+  for (const std::string& word : words.surface) add_surface(word, surfaces);
+  return surfaces;
+}
+
+std::vector<IsoSurface> iso_surfaces_of(const SurfaceWords& words) {
+  std::vector<IsoSurface> surfaces;
+  for (const std::string& word : words.iso) surfaces.push_back(iso_of(word));
   return surfaces;
 }
 

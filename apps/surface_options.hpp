@@ -11,13 +11,15 @@ namespace tessera::apps {
 
 /// The options that put surfaces into the volume, as they stand on the command line.
 struct SurfaceWords {
-  std::vector<std::string> iso;
+  std::vector<std::string> iso, surface;
 };
 
 void add_surface_options(CLI::App& command, SurfaceWords& words);
 
-/// What they say. Throws Error(bad_input) naming the option.
+/// What they say, with the triangles of files. Throws Error(bad_input) naming the option or the file.
 Surfaces surfaces_of(const SurfaceWords& words);
+/// Of them those of a value.
+std::vector<IsoSurface> iso_surfaces_of(const SurfaceWords& words);
 
 /// A line of warning for each surface of a value that the field, whose range that is, does not cross.
 std::vector<std::string> unseen_surfaces(const Surfaces& surfaces, const std::array<double, 2>& range);

@@ -76,7 +76,7 @@ void DeepSink::take(Store& lists, double final_depth, std::size_t /*at_least*/, 
       if (!(entry.depth < final_depth)) break;
       const std::uint32_t i = entry.segment;
       if (scene_.surfaces != nullptr && projection::is_crossing(segments.scalar_front[i])) {
-        add_crossing(p, segments.front[i], projection::crossing_of(segments.scalar_front[i]));
+        add_crossing(p, segments.front[i], projection::crossing_of(segments.scalar_front[i]), segments.scalar_back[i]);
         continue;
       }
       cutter_.cut({segments.front[i], segments.back[i], segments.scalar_front[i], segments.scalar_back[i]},
@@ -93,8 +93,8 @@ void DeepSink::take(Store& lists, double final_depth, std::size_t /*at_least*/, 
 }
 
 /// A surface is a point in depth. It waits among the pieces, which are one pixel's in order.
-void DeepSink::add_crossing(std::uint32_t pixel, double depth, const projection::Crossing& crossing) {
-  crossings_.push_back({pieces_.size(), crossing});
+void DeepSink::add_crossing(std::uint32_t pixel, double depth, const projection::Crossing& crossing, double value) {
+  crossings_.push_back({pieces_.size(), crossing, value});
   pieces_.push_back({depth, depth, 0, 0});
   piece_pixels_.push_back(pixel);
   transmittance_before_[pixel] *= 1 - scene_.surfaces->light(crossing.number, crossing.cosine).opacity;

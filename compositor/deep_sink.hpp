@@ -35,7 +35,7 @@ class DeepSink final : public TileSink<DoubleEncoding> {
 
  private:
   void integrate_pieces(scene::StageTimer& timer);
-  void add_crossing(std::uint32_t pixel, double depth, const projection::Crossing& crossing);
+  void add_crossing(std::uint32_t pixel, double depth, const projection::Crossing& crossing, double value);
 
   TileScene scene_;
   TilePixels<DoubleEncoding> picture_;

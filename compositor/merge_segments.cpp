@@ -11,6 +11,7 @@
 #include "compositor/merge_kinds.hpp"
 #include "compositor/picture_sink.hpp"
 #include "compositor/tuple_record.hpp"
+#include "projection/surface_crossings.hpp"
 
 namespace tessera::compositor {
 namespace {
@@ -113,7 +114,7 @@ class ChainMerger : public SegmentMerger<DoubleEncoding> {
         segments.pixel_and_tet[at] = link.tet << 32 | chain.pixel;
         segments.front[at] = front;
         segments.back[at] = link.back;
-        segments.scalar_front[at] = cell_data ? link.scalar : scalar;
+        segments.scalar_front[at] = cell_data && !projection::is_crossing(scalar) ? link.scalar : scalar;
         segments.scalar_back[at] = link.scalar;
         front = link.back;
         scalar = link.scalar;

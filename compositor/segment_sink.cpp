@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "compositor/tuple_record.hpp"
+#include "projection/surface_crossings.hpp"
 
 namespace tessera::compositor {
 
@@ -52,8 +53,11 @@ std::uint64_t SegmentSink<DoubleEncoding>::write(Store& lists, double final_dept
     for (const auto& entry : lists.pixel(p)) {
       const std::uint32_t i = entry.segment;
       if (!(entry.depth < final_depth)) break;
+      // Of cell data a link has one scalar, a crossing two.
+      const bool crossing = cell_data_ && projection::is_crossing(segments.scalar_front[i]);
       const bool touches =
-          chain.links > 0 && segments.front[i] == back && (cell_data_ || segments.scalar_front[i] == scalar);
+          chain.links > 0 && segments.front[i] == back && !crossing &&
+          (cell_data_ ? !projection::is_crossing(chain.scalar_front) : segments.scalar_front[i] == scalar);
       if (!touches) {
         close();
         chain = {writer.tile_pixel(p), 0, segments.front[i], segments.scalar_front[i]};

@@ -25,8 +25,8 @@ void ListPixels::start(const scene::PixelRect& rect) {
 
 void light_crossings(const scene::SurfaceSet& surfaces, std::span<const CrossingInBatch> crossings,
                      integrals::SegmentBatch& batch) {
-  for (const auto& [at, crossing] : crossings) {
-    const scene::SurfaceSet::Light light = surfaces.light(crossing.number, crossing.cosine);
+  for (const auto& [at, crossing, value] : crossings) {
+    const scene::SurfaceSet::Light light = surfaces.light(crossing.number, crossing.cosine, value);
     batch.red[at] = light.red, batch.green[at] = light.green, batch.blue[at] = light.blue;
     batch.optical_depth[at] = -std::log1p(-light.opacity);  // infinite where it is opaque
     batch.transmittance[at] = 1 - light.opacity;
@@ -47,7 +47,7 @@ void ListPixels::integrate(const Lists& lists, double final_depth) {
       batch_.scalar_front[batch_.size] = segments.scalar_front[i];
       batch_.scalar_back[batch_.size] = segments.scalar_back[i];
       if (scene_.surfaces != nullptr && projection::is_crossing(segments.scalar_front[i])) {
-        crossings_.push_back({batch_.size, projection::crossing_of(segments.scalar_front[i])});
+        crossings_.push_back({batch_.size, projection::crossing_of(segments.scalar_front[i]), segments.scalar_back[i]});
         batch_.scalar_front[batch_.size] = batch_.scalar_back[batch_.size];
       }
       ++batch_.size;

@@ -23,6 +23,7 @@ struct PixelValue {
 struct CrossingInBatch {
   std::size_t at;
   projection::Crossing crossing;
+  double value;  ///< the field's there, or the surface's
 };
 /// Gives crossings that were integrated as segments of length zero their light.
 void light_crossings(const scene::SurfaceSet& surfaces, std::span<const CrossingInBatch> crossings,

@@ -29,8 +29,9 @@ ExchangeBudget exchange_budget(const DistributedSettings& settings) {
           std::clamp(memory / 16 / projectors, least_between_cuts, most_between_cuts)};
 }
 
-LoadedMesh::LoadedMesh(const DistributedSettings& settings, const std::function<ProjectorMesh(std::size_t)>& mesh_of)
-    : settings_(settings.render), mesh_of_(mesh_of) {
+LoadedMesh::LoadedMesh(exchange::Transport& transport, const DistributedSettings& settings,
+                       const std::function<ProjectorMesh(std::size_t)>& mesh_of)
+    : transport_(transport), settings_(settings.render), mesh_of_(mesh_of) {
   settings_.memory_bytes = exchange_budget(settings).projection;
   settings_.trace = settings.projecting;
 }
@@ -39,7 +40,9 @@ void LoadedMesh::load(std::size_t number) {
   if (number_ == number) return;
   projector_.reset();  // the last mesh's memory before the next one's
   mesh_ = {};
+  boundary_.reset();
   mesh_ = mesh_of_(number);
+  if (!settings_.surfaces.boundary.empty()) boundary_ = boundary_faces(mesh_.part, transport_);
   if (mesh_.prepared != nullptr)
     projector_.emplace(mesh_.prepared, scene::bounds(mesh_.part, settings_.threads), settings_);
   else
@@ -68,7 +71,8 @@ void check(const DistributedSettings& settings) {
   const auto& backends = settings.compositing_on.backends;
   const bool on_device = std::any_of(backends.begin(), backends.end(), [](Backend b) { return b != Backend::cpu; });
   if (on_device && !settings.render.surfaces.empty())
-    throw scene::bad_input("`iso`: surfaces are composited on the CPU; leave out `compositor` and `backend`");
+    throw scene::bad_input(fmt::format("{}: surfaces are composited on the CPU; leave out `compositor` and `backend`",
+                                       surface_word(settings.render.surfaces)));
   if (on_device && settings.deep)
     throw scene::bad_input("deep picture: it is made on the CPU; leave out `compositor` and `backend`");
   if (on_device && settings.compositing_on.gl.method == compositor::GlMethod::fragment &&
@@ -87,7 +91,7 @@ class DistributedRenderer::State {
   State(exchange::Transport& transport, DistributedSettings settings, MeshOf mesh_of)
       : transport_(transport), settings_(std::move(settings)), mesh_of_(std::move(mesh_of)), relay_(transport) {
     check(settings_);
-    if (settings_.roles.projects(transport.rank())) loaded_.emplace(settings_, mesh_of_);
+    if (settings_.roles.projects(transport.rank())) loaded_.emplace(transport_, settings_, mesh_of_);
   }
 
   void set_deep(bool deep, double accuracy, Exchange exchange) {
@@ -148,10 +152,12 @@ class DistributedRenderer::State {
  private:
   /// Meshes are loaded by all ranks together, those that do not project included.
   void load(std::size_t number) {
-    if (loaded_)
+    if (loaded_) {
       loaded_->load(number);
-    else if (number_ != number)
+    } else if (number_ != number) {
       static_cast<void>(mesh_of_(number));
+      if (!settings_.render.surfaces.boundary.empty()) static_cast<void>(boundary_faces({}, transport_));
+    }
     number_ = number;
   }
 

@@ -4,6 +4,7 @@
 #include <exception>
 #include <optional>
 
+#include "frame/boundary_faces.hpp"
 #include "frame/distributed.hpp"
 #include "frame/frame_projector.hpp"
 
@@ -28,18 +29,22 @@ const FrameJob& job_of(const DistributedRun& run, std::uint32_t number);
 /// A projector's part of the mesh at hand, prepared.
 class LoadedMesh {
  public:
-  LoadedMesh(const DistributedSettings& settings, const std::function<ProjectorMesh(std::size_t)>& mesh_of);
-  /// Loads mesh `number` unless that is the one at hand.
+  LoadedMesh(exchange::Transport& transport, const DistributedSettings& settings,
+             const std::function<ProjectorMesh(std::size_t)>& mesh_of);
+  /// Loads mesh `number` unless that is the one at hand. Collective.
   void load(std::size_t number);
   [[nodiscard]] const ProjectorMesh& mesh() const { return mesh_; }
   [[nodiscard]] FrameProjector& projector() { return *projector_; }
+  [[nodiscard]] const BoundaryFaces* boundary() const { return boundary_ ? &*boundary_ : nullptr; }
 
  private:
+  exchange::Transport& transport_;
   RenderSettings settings_;
   const std::function<ProjectorMesh(std::size_t)>& mesh_of_;
   std::optional<std::size_t> number_;
   ProjectorMesh mesh_;
   std::optional<FrameProjector> projector_;
+  std::optional<BoundaryFaces> boundary_;  ///< if the settings have surfaces of it
 };
 
 /// Projects this rank's part of every mesh and sends the fragments.

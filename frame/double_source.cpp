@@ -48,10 +48,20 @@ bool DoubleSourceOf<Segments>::start(const scene::PixelRect& rect, const project
   most_ = area * (context_.at_steps != nullptr ? context_.at_steps->most_pieces() : 1);
   // Juliachs et al. 2007, 4.3: z_back is the key.
   lists_.reset(area, context_.rasterizer == Rasterizer::scanline ? Key::back : Key::front);
+  std::size_t own = 0;
+  if constexpr (std::is_same_v<Segments, projection::RaySegments>)
+    if (context_.faces != nullptr) {
+      context_.faces->meet(rect, marks_);
+      most_ += marks_.size();
+      own = marks_.own();
+    }
   // Room for at least two segments a pixel: the rasterizer wants space for one more on every pixel before it takes a
   // cell.
-  return reserve(
-      std::max<std::size_t>(2 * most_, std::min(comfortable_segments, context_.budget_bytes / bytes_a_segment)));
+  if (!reserve(own + std::max<std::size_t>(2 * most_,
+                                           std::min(comfortable_segments, context_.budget_bytes / bytes_a_segment))))
+    return false;
+  if (own > 0) marks_.append_own(lists_.segments);
+  return true;
 }
 
 template <class Segments>
@@ -83,6 +93,7 @@ std::size_t DoubleSourceOf<Segments>::rasterize(std::span<const projection::Tile
     if (context_.rasterizer == Rasterizer::scanline)
       return projection::rasterize_scanline(*context_.projected, context_.longest_edge, entries, rect_, scanline_,
                                             lists_.segments, counts_->raster);
+  if (context_.faces != nullptr && marks_.size() > 0) return rasterize_at_faces(entries);
   if (context_.at_steps != nullptr) return rasterize_at_steps(entries);
   return projection::rasterize_planes(*context_.projected, entries, rect_, lists_.segments, counts_->raster);
 }
@@ -101,6 +112,23 @@ std::size_t DoubleSourceOf<Segments>::rasterize_at_steps(std::span<const project
     if (done < others || taken == entries.size() || segments.size + most_ > segments.capacity()) break;
     append(splitter_.rasterize(*context_.projected, context_.steps, entries[taken++], rect_, counts_->raster),
            segments);
+  }
+  return taken;
+}
+
+/// Cell by cell, of which each is cut before the next one.
+template <class Segments>
+std::size_t DoubleSourceOf<Segments>::rasterize_at_faces(std::span<const projection::TileEntry> entries) {
+  Segments& segments = lists_.segments;
+  std::size_t taken = 0;
+  for (; taken < entries.size() && segments.size + most_ <= segments.capacity(); ++taken) {
+    const projection::TileEntry& entry = entries[taken];
+    const std::size_t first = segments.size;
+    if (context_.at_steps != nullptr && context_.at_steps->contain(entry.tet))
+      append(splitter_.rasterize(*context_.projected, context_.steps, entry, rect_, counts_->raster), segments);
+    else
+      projection::rasterize_planes(*context_.projected, {&entry, 1}, rect_, segments, counts_->raster);
+    marks_.cut(segments, first);
   }
   return taken;
 }

@@ -2,15 +2,17 @@
 
 #include "frame/tile_renderer.hpp"
 #include "integrals/segment_batch.hpp"
+#include "projection/face_marks.hpp"
 #include "projection/scanline_rasterizer.hpp"
 #include "sorting/encodings.hpp"
 
 namespace tessera::frame {
 
 /// A tile renderer's source in double precision, for any frame: the `planes` or the `scanline` rasterizer, cells that
-/// need care at steps of the transfer function cut there. The store is one buffer for all pixels.
+/// need care at steps of the transfer function cut there, and all where rays meet surfaces of triangles, whose
+/// crossings are in the store from the start. The store is one buffer for all pixels.
 ///
-/// With AttributeSegments the `planes` rasterizer alone.
+/// With AttributeSegments the `planes` rasterizer alone, without such surfaces.
 template <class Segments>
 class DoubleSourceOf {
  public:
@@ -35,6 +37,7 @@ class DoubleSourceOf {
   bool reserve(std::size_t segments);
   std::size_t rasterize(std::span<const projection::TileEntry> entries);
   std::size_t rasterize_at_steps(std::span<const projection::TileEntry> entries);
+  std::size_t rasterize_at_faces(std::span<const projection::TileEntry> entries);
 
   TileContext context_;
   TileCounts* counts_;
@@ -44,6 +47,7 @@ class DoubleSourceOf {
   std::size_t most_ = 0;  ///< segments that a cell may add
   projection::ScanlineBuffers scanline_;
   projection::SplitRasterizer<Segments> splitter_;
+  projection::FaceMarks marks_;
   Store lists_;
 };
 

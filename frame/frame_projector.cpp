@@ -167,9 +167,21 @@ namespace {
 
 using Workers = tbb::enumerable_thread_specific<std::unique_ptr<TileWorker>>;
 
+bool has_any(const projection::TileLists& lists, const projection::FrameFaces* faces, std::size_t tile) {
+  return lists.entry_count(tile) > 0 || (faces != nullptr && faces->owns_in(tile));
+}
+
+void announce(const FrameProjector::Task& task, const projection::TileLists& lists,
+              const projection::FrameFaces* faces) {
+  if (!task.announce) return;
+  std::vector<bool> any(task.grid.count());
+  for (std::size_t tile = 0; tile < any.size(); ++tile) any[tile] = has_any(lists, faces, tile);
+  task.announce(any);
+}
+
 /// Renders tiles [first, last) of a task, whose lists are filled.
-void render_tiles(const FrameProjector::Task& task, projection::TileLists& lists, Workers& workers, std::size_t first,
-                  std::size_t last, const std::stop_token& stop) {
+void render_tiles(const FrameProjector::Task& task, projection::TileLists& lists, const projection::FrameFaces* faces,
+                  Workers& workers, std::size_t first, std::size_t last, const std::stop_token& stop) {
   // Threads draw tiles in order: fragments then leave in the order in which all processes send them.
   std::atomic<std::size_t> next = first;
   tbb::parallel_for(
@@ -179,7 +191,7 @@ void render_tiles(const FrameProjector::Task& task, projection::TileLists& lists
         for (std::size_t tile = next++; tile < last; tile = next++) {
           scene::throw_if_stopped(stop);
           const scene::PixelRect rect = task.grid.rect(tile);
-          if (lists.entry_count(tile) > 0) worker.render(tile, rect, lists.tile(tile));
+          if (has_any(lists, faces, tile)) worker.render(tile, rect, lists.tile(tile));
           if (task.image != nullptr && task.watch != nullptr) task.watch->finished(rect, *task.image);
         }
       },
@@ -196,7 +208,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   projection::ProjectedMesh projected{prepared_.get(), vertices_, space.near_depth(), space.far_depth(),
                                       space.pixels_per_tangent()};
   const projection::IsoView iso{task.surfaces, &space, task.lattice};
-  if (task.surfaces != nullptr && !task.surfaces->empty()) projected.iso = &iso;
+  if (task.surfaces != nullptr && !task.surfaces->iso_values().empty()) projected.iso = &iso;
   const float longest_edge = task.longest_edge > 0 ? task.longest_edge : longest_edge_;
   if (settings_.rasterizer == Rasterizer::scanline) check_scanline(projected, space, longest_edge);
   if (task.lattice != nullptr) place_on_lattice(*task.lattice, space.perspective(), stop);
@@ -209,6 +221,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   std::vector<projection::Step> steps;
   projection::CellsAtSteps at_steps;
   std::optional<projection::TileLists> lists;
+  std::optional<projection::FrameFaces> faces;
   {
     const scene::TraceScope timing(settings_.trace, "cull", task.frame);
     if (exact || projected.iso != nullptr) {
@@ -218,15 +231,13 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
     }
     lists.emplace(projected, task.grid, *task.function, settings_.emission == scene::Emission::independent,
                   settings_.trace, &list_buffers_, settings_.use.culling, stop);
+    if (!task.faces.empty()) faces.emplace(task.faces, space, task.grid);
   }
-  if (task.announce) {
-    std::vector<bool> has_cells(task.grid.count());
-    for (std::size_t tile = 0; tile < has_cells.size(); ++tile) has_cells[tile] = lists->entry_count(tile) > 0;
-    task.announce(has_cells);
-  }
+  const projection::FrameFaces* const faces_or_null = faces ? &*faces : nullptr;
+  announce(task, *lists, faces_or_null);
 
   const std::uint64_t vertex_bytes = vertices_.capacity() * sizeof(projection::PixelVertex) + lattice_vertices_.bytes();
-  const std::uint64_t held = vertex_bytes + lists->bytes() + task.kept_bytes;
+  const std::uint64_t held = vertex_bytes + lists->bytes() + (faces ? faces->bytes() : 0) + task.kept_bytes;
   const TileContext context{&projected,
                             lists->depth_origin(),
                             segment_budget(settings_, held, arena_.max_concurrency()) / 4 * 3,
@@ -236,6 +247,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
                             usual_optical_depth(*task.function, diagonal_) > opaque_depth,
                             steps,
                             at_steps.empty() ? nullptr : &at_steps,
+                            faces_or_null,
                             stop};
   Workers workers([&]() -> std::unique_ptr<TileWorker> {
     if (task.lattice == nullptr) return std::make_unique<Worker<DoubleSource>>(task.make_sink(), context);
@@ -250,7 +262,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
     return std::make_unique<Worker<LatticeSource>>(task.make_lattice_sink(), context, view);
   });
   const std::uint64_t most_list_bytes = render_bands(task, *lists, held, [&](std::size_t first, std::size_t last) {
-    render_tiles(task, *lists, workers, first, last, stop);
+    render_tiles(task, *lists, faces_or_null, workers, first, last, stop);
   });
 
   FrameStatistics statistics;

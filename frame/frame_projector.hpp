@@ -11,6 +11,7 @@
 #include "projection/large_array.hpp"
 #include "projection/lattice_rasterizer.hpp"
 #include "projection/prepared_mesh.hpp"
+#include "projection/surface_faces.hpp"
 #include "projection/tile_lists.hpp"
 #include "scene/frame_watch.hpp"
 #include "scene/surface_set.hpp"
@@ -32,11 +33,12 @@ class FrameProjector {
     const projection::PixelSpace* space;
     projection::TileGrid grid;
     const scene::TransferFunction* function;
-    const scene::SurfaceSet* surfaces = nullptr;  ///< in the volume; null or empty: none
-    std::int32_t frame = -1;                      ///< for the trace
-    float longest_edge = 0;                       ///< scanline: of the whole data set, world units; 0: of this mesh
-    double longest_ray = 0;                       ///< bounds a ray's world length in the whole mesh; 0: diagonal()
-    std::uint64_t kept_bytes = 0;                 ///< of the memory budget, for what becomes of the segments
+    const scene::SurfaceSet* surfaces = nullptr;        ///< in the volume; null or empty: none
+    std::span<const projection::SurfaceFaces> faces{};  ///< of those of triangles; then there is no lattice
+    std::int32_t frame = -1;                            ///< for the trace
+    float longest_edge = 0;        ///< scanline: of the whole data set, world units; 0: of this mesh
+    double longest_ray = 0;        ///< bounds a ray's world length in the whole mesh; 0: diagonal()
+    std::uint64_t kept_bytes = 0;  ///< of the memory budget, for what becomes of the segments
     /// A sink for one thread; tiles go to it one after the other, and each thread takes tiles in ascending order.
     std::function<std::unique_ptr<compositor::TileSink<sorting::DoubleEncoding>>()> make_sink;
     /// If set, tiles are rendered on this lattice and go to sinks of make_lattice_sink; else in double precision.
@@ -46,8 +48,9 @@ class FrameProjector {
     scene::FrameWatch* watch = nullptr;
     /// The picture that sinks write to, so that `watch` hears of its tiles; null: they go elsewhere.
     const scene::Image* image = nullptr;
-    /// Called once before the first tile: which tiles have cells, so will be given to a sink. May be empty.
-    std::function<void(const std::vector<bool>& has_cells)> announce;
+    /// Called once before the first tile: which tiles have cells or triangles of this process, so will be given to a
+    /// sink. May be empty.
+    std::function<void(const std::vector<bool>& has_any)> announce;
   };
 
   /// Fills all of the statistics but the names. Throws Error(bad_input) for a view that the rasterizer cannot do.

@@ -102,6 +102,12 @@ void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t 
   task.grid = {job.size, settings.render.tile_size};
   task.function = &run.function;
   task.surfaces = &sinks.surfaces();
+  const auto& projectors = settings.roles.projectors;
+  const auto own = std::find(projectors.begin(), projectors.end(), run.transport.rank()) - projectors.begin();
+  const std::vector<projection::SurfaceFaces> faces =
+      faces_of(settings.render.surfaces, sinks.surfaces(), loaded.boundary(), static_cast<std::uint32_t>(own),
+               static_cast<std::uint32_t>(projectors.size()));
+  task.faces = faces;
   task.frame = number;
   task.longest_edge = mesh.longest_edge;
   task.longest_ray = mesh.box.empty() ? 0 : glm::length(mesh.box.high - mesh.box.low);
@@ -113,9 +119,9 @@ void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t 
   const exchange::TileMap map(task.grid.count(), static_cast<int>(settings.roles.compositors.size()),
                               settings.tile_seed);
   bool announced = false, stopped = false;
-  task.announce = [&](const std::vector<bool>& has_cells) {
+  task.announce = [&](const std::vector<bool>& has_any) {
     announced = true;
-    outbox.begin_frame(static_cast<std::uint32_t>(number), map, has_cells,
+    outbox.begin_frame(static_cast<std::uint32_t>(number), map, has_any,
                        {.longest_ray = mesh.diagonal,
                         .tiles = 0,
                         .longest_edge = mesh.longest_edge,

@@ -12,6 +12,7 @@
 #include "io/mesh_reader.hpp"
 #include "io/pvtu_writer.hpp"
 #include "io/time_series.hpp"
+#include "io/triangle_file.hpp"
 #include "io/volume_reader.hpp"
 #include "io/volume_writer.hpp"
 #include "projection/partition.hpp"
@@ -22,6 +23,7 @@
 #include "tessera/input_file.hpp"
 #include "tessera/output_file.hpp"
 #include "tessera/statistics.hpp"
+#include "tessera/triangle_file.hpp"
 #include "tessera/view.hpp"
 #include "tessera/write.hpp"
 
@@ -38,6 +40,7 @@ std::vector<std::byte> png_bytes(const Image& image, const ImageFileOptions& opt
   return io::checked_png_bytes(image, options);
 }
 Image read_image(const std::filesystem::path& file) { return io::read_image(file); }
+TriangleMesh read_triangles(const std::filesystem::path& file) { return io::read_triangles(file); }
 
 void write_deep_image(const DeepImage& image, const std::filesystem::path& file) {
   if (file.extension() != ".exr") throw scene::bad_input(file.string() + ": deep pictures are OpenEXR; name it .exr");

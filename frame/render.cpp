@@ -1,6 +1,7 @@
 #include "frame/render.hpp"
 
 #include <fmt/format.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <optional>
@@ -9,11 +10,13 @@
 #include "compositor/deep_collector.hpp"
 #include "compositor/deep_sink.hpp"
 #include "compositor/picture_sink.hpp"
+#include "frame/boundary_faces.hpp"
 #include "frame/frame_projector.hpp"
 #include "frame/lattice_frame.hpp"
 #include "integrals/segment_integrator.hpp"
 #include "projection/planes_rasterizer.hpp"
 #include "scene/error.hpp"
+#include "scene/threads.hpp"
 
 namespace tessera::frame {
 void check_deep(const RenderSettings& settings, const scene::TransferFunction& function) {
@@ -28,22 +31,35 @@ void check_deep(const RenderSettings& settings, const scene::TransferFunction& f
                     integrator.name()));
 }
 
+const char* surface_word(const scene::Surfaces& surfaces) { return surfaces.has_faces() ? "`surface`" : "`iso`"; }
+
 void check_surfaces(const RenderSettings& settings, scene::Association association) {
   const scene::Surfaces& surfaces = settings.surfaces;
   scene::validate(surfaces);
   if (surfaces.empty()) return;
   if (settings.rasterizer != Rasterizer::planes)
-    throw scene::bad_input("`iso`: `rasterizer` scanline knows no surfaces; use `rasterizer` planes");
-  if (association == scene::Association::cell)
+    throw scene::bad_input(
+        fmt::format("{}: `rasterizer` scanline knows no surfaces; use `rasterizer` planes", surface_word(surfaces)));
+  if (association == scene::Association::cell && !surfaces.iso.empty())
     throw scene::bad_input(
         "`iso`: the field has one value a cell, so no iso-surfaces; use `smooth`, or a `field` with values at points");
 }
 
 struct Renderer::State {
   State(const scene::TetMeshView& mesh, const RenderSettings& s)
-      : settings(s), projector(mesh, s), scalar_range(scene::scalar_range(mesh, s.threads)) {}
+      : settings(s), projector(mesh, s), scalar_range(scene::scalar_range(mesh, s.threads)) {
+    find_boundary(mesh);
+  }
   State(std::shared_ptr<const projection::PreparedMesh> mesh, const scene::MeshFacts& facts, const RenderSettings& s)
-      : settings(s), projector(std::move(mesh), facts.box, s), scalar_range(facts.scalar_range) {}
+      : settings(s), projector(mesh, facts.box, s), scalar_range(facts.scalar_range) {
+    find_boundary(mesh->mesh());
+  }
+
+  void find_boundary(const scene::TetMeshView& mesh) {
+    if (settings.surfaces.boundary.empty()) return;
+    const scene::TraceScope timing(settings.trace, "prepare");
+    boundary = tbb::task_arena(scene::threads_for(settings.threads)).execute([&] { return boundary_faces(mesh); });
+  }
 
   /// The integrator of this function. Its tables are kept for as long as the function stays.
   const integrals::SegmentIntegrator& integrator(const scene::TransferFunction& f) {
@@ -57,6 +73,7 @@ struct Renderer::State {
   RenderSettings settings;
   FrameProjector projector;
   std::array<double, 2> scalar_range;
+  std::optional<BoundaryFaces> boundary;  ///< if the settings have surfaces of it
   scene::TransferFunction function;
   std::optional<integrals::SegmentIntegrator> kept;
 };
@@ -87,6 +104,9 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   task.image = &image;
   scene::SurfaceSet surfaces(settings.surfaces, transfer_function);
   task.surfaces = &surfaces;
+  const std::vector<projection::SurfaceFaces> faces =
+      faces_of(settings.surfaces, surfaces, state_->boundary ? &*state_->boundary : nullptr);
+  task.faces = faces;
   const double longest_ray = state_->projector.diagonal();
   std::optional<compositor::DeepCollector> collector;
   if (deep != nullptr) {

@@ -92,6 +92,9 @@ class Renderer {
 /// Throws Error(bad_input) where deep pictures cannot be made with these settings.
 void check_deep(const RenderSettings& settings, const scene::TransferFunction& function);
 
+/// The setting that has surfaces, for messages: `iso` or `surface`.
+const char* surface_word(const scene::Surfaces& surfaces);
+
 /// Throws Error(bad_input) where surfaces are out of range, or cannot be rendered of this mesh with these settings.
 void check_surfaces(const RenderSettings& settings, scene::Association association);
 

@@ -1,5 +1,7 @@
 #include "frame/session_settings.hpp"
 
+#include <fmt/format.h>
+
 #include "scene/error.hpp"
 
 namespace tessera::frame {
@@ -53,6 +55,9 @@ RenderSettings mesh_settings(const Settings& s) {
 }
 
 volume::RenderSettings grid_settings(const Settings& s) {
+  if (s.surfaces.has_faces())
+    throw scene::bad_input(
+        fmt::format("{}: is for meshes, and the data set is a grid; leave it out", surface_word(s.surfaces)));
   volume::RenderSettings settings;
   settings.method = method_of(s.integrator.kind);
   settings.accuracy = s.integrator.accuracy;

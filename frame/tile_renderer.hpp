@@ -10,6 +10,7 @@
 #include "projection/depth_order.hpp"
 #include "projection/planes_rasterizer.hpp"
 #include "projection/steps.hpp"
+#include "projection/surface_faces.hpp"
 #include "scene/trace.hpp"
 
 namespace tessera::frame {
@@ -25,6 +26,7 @@ struct TileContext {
   bool opaque = false;                                 ///< a usual ray ends in a fraction of the mesh's depth
   std::span<const projection::Step> steps{};           ///< of the transfer function
   const projection::CellsAtSteps* at_steps = nullptr;  ///< whose segments are cut there; null: none
+  const projection::FrameFaces* faces = nullptr;       ///< surfaces of triangles, in double precision; null: none
   std::stop_token stop{};                              ///< renderers throw scene::FrameStopped once it is asked for
 };
 

@@ -12,6 +12,7 @@
 #include "io/ply_file.hpp"
 #include "io/surface.hpp"
 #include "io/tetgen_files.hpp"
+#include "io/triangle_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -49,39 +50,46 @@ double box_volume(const Surface& surface) {
 
 }  // namespace
 
+SurfaceFile read_surface_file(const std::filesystem::path& file, FileKind kind) {
+  const std::string source = file.string();
+  SurfaceFile result;
+  Surface& surface = result.surface;
+  if (kind == FileKind::stl) {
+    result.words = "stl";
+    surface = read_stl(source);
+  } else if (kind == FileKind::vtk_surface) {
+    result.words = "vtk";
+    VtkSurface read = read_vtk_surface(source);
+    surface = std::move(read.surface);
+    result.attribute_names = std::move(read.attribute_names);
+    result.notes = std::move(read.notes);
+  } else if (kind == FileKind::ply) {
+    result.words = "ply";
+    PlySurface ply = parse_ply(MappedFile(file).text(), source);
+    surface = std::move(ply.surface);
+    result.attribute_names = std::move(ply.attribute_names);
+  } else {
+    result.words = lower_extension(file) == ".smesh" ? "smesh" : "poly";
+    surface = read_poly(file, source);
+    for (std::size_t a = 0; a < surface.attributes.size(); ++a)
+      result.attribute_names.push_back(fmt::format("attribute{}", a));
+  }
+  if (kind != FileKind::tetgen_surface) merge_coincident_points(surface);
+  return result;
+}
+
 MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::optional<double> max_volume,
                         const ReadProgressFunction& progress) {
   const std::string source = file.string();
   if (max_volume && !(*max_volume > 0))
     throw scene::bad_input(fmt::format("{}: the largest tet volume is {}; give a positive one", source, *max_volume));
   MeshBlocks result;
-  std::vector<std::string> attribute_names;
-  Surface surface;
-  const char* words = "";
-  if (kind == FileKind::stl) {
-    words = "stl";
-    surface = read_stl(source);
-  } else if (kind == FileKind::vtk_surface) {
-    words = "vtk";
-    VtkSurface read = read_vtk_surface(source);
-    surface = std::move(read.surface);
-    attribute_names = std::move(read.attribute_names);
-    result.notes = std::move(read.notes);
-  } else if (kind == FileKind::ply) {
-    words = "ply";
-    PlySurface ply = parse_ply(MappedFile(file).text(), source);
-    surface = std::move(ply.surface);
-    attribute_names = std::move(ply.attribute_names);
-  } else {
-    words = lower_extension(file) == ".smesh" ? "smesh" : "poly";
-    surface = read_poly(file, source);
-    for (std::size_t a = 0; a < surface.attributes.size(); ++a)
-      attribute_names.push_back(fmt::format("attribute{}", a));
-  }
-  if (kind != FileKind::tetgen_surface) merge_coincident_points(surface);
+  SurfaceFile read = read_surface_file(file, kind);
+  const Surface& surface = read.surface;
+  result.notes = std::move(read.notes);
   require_sound(surface, source);
 
-  result.format = fmt::format("surface ({}) filled by TetGen", words);
+  result.format = fmt::format("surface ({}) filled by TetGen", read.words);
   double volume = enclosed_volume(surface);
   // Facets that turn both ways cancel; the box is then the only measure.
   if (!(volume > 1e-3 * box_volume(surface))) volume = box_volume(surface);
@@ -95,8 +103,8 @@ MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::o
                                      max_volume ? "" : " (`max_volume` sets it)"));
   CellBlock block;
   for (std::size_t a = 0; a < filled.attributes.size(); ++a)
-    block.fields.push_back(
-        field_of_values(attribute_names[a], "double", scene::Association::point, 1, std::move(filled.attributes[a])));
+    block.fields.push_back(field_of_values(read.attribute_names[a], "double", scene::Association::point, 1,
+                                           std::move(filled.attributes[a])));
   block.fields.push_back(field_of_values("depth", "double", scene::Association::point, 1, std::move(filled.depth)));
   result.notes.emplace_back("field 'depth' is the distance to the surface, world units");
   block.positions = std::move(filled.points);

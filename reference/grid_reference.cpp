@@ -88,12 +88,12 @@ std::int64_t GridReference::voxel_along(std::size_t axis, double local) const {
 GridReference::LocalRay GridReference::local_ray(double x, double y) const {
   const scene::GridGeometry& g = source_->geometry();
   const View::Ray world = view_.ray(x, y);
-  const auto [nearest, farthest] = kept_interval(view_, x, y, kept_);
+  const DepthInterval kept = kept_interval(view_, x, y, kept_);
   LocalRay ray{to_local_ * (world.origin - g.origin),
                to_local_ * world.step,
                {-1, -1, -1},
-               nearest,
-               farthest,
+               kept.nearest,
+               kept.farthest,
                view_.length_per_depth(x, y),
                false,
                false};
@@ -137,8 +137,8 @@ GridReference::LocalRay GridReference::local_ray(double x, double y) const {
   const auto is_at = [](double depth, double plane) {
     return std::abs(depth - plane) <= 1e-12 * (std::abs(depth) + std::abs(plane));
   };
-  ray.begin_cut = nearest != view_.nearest() && is_at(ray.begin, nearest);
-  ray.end_cut = farthest != view_.farthest() && is_at(ray.end, farthest);
+  ray.begin_cut = kept.nearest != view_.nearest() && is_at(ray.begin, kept.nearest);
+  ray.end_cut = kept.farthest != view_.farthest() && is_at(ray.end, kept.farthest);
   return ray;
 }
 

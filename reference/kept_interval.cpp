@@ -41,10 +41,8 @@ DepthInterval kept_interval(const View& view, double x, double y, std::span<cons
       continue;
     }
     const double depth = glm::dot(normal, h.point - ray.origin) / climb;
-    if (climb > 0)
-      interval.nearest = std::max(interval.nearest, depth);
-    else
-      interval.farthest = std::min(interval.farthest, depth);
+    if (climb > 0 && depth > interval.nearest) interval.nearest = depth, interval.nearest_plane = &h;
+    if (!(climb > 0) && depth < interval.farthest) interval.farthest = depth, interval.farthest_plane = &h;
   }
   return interval;
 }

@@ -10,6 +10,8 @@ namespace tessera::reference {
 /// Planar depths; empty unless nearest < farthest.
 struct DepthInterval {
   double nearest, farthest;
+  const scene::HalfSpace* nearest_plane = nullptr;  ///< that ends it there; null: the view does
+  const scene::HalfSpace* farthest_plane = nullptr;
 };
 
 /// What of the ray through pixel coordinates (x, y) is in view and in all half-spaces. A ray that runs in a plane (to

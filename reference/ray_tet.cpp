@@ -89,6 +89,7 @@ bool edge_on(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
 struct Hit {
   double depth, scalar;
   double change;  ///< scalar less `from`
+  int face = -1;  ///< the corner opposite
 };
 
 /// Weights need not be normalised, only not negative; the results lie between the corners' by construction.
@@ -105,6 +106,15 @@ Hit weighted(const std::array<const Corner*, 3>& corners, const std::array<long 
   const auto [s0, s1] = std::minmax({corners[0]->scalar, corners[1]->scalar, corners[2]->scalar});
   return {std::clamp(static_cast<double>(depth), d0, d1), std::clamp(static_cast<double>(scalar), s0, s1),
           std::clamp(static_cast<double>(change), s0 - from, s1 - from)};
+}
+
+/// Of the three edges' values, where the line is on one side of all.
+std::optional<Hit> hit_of(const std::array<const Corner*, 3>& c, const EdgeValue& ab, const EdgeValue& bc,
+                          const EdgeValue& ac, double from) {
+  // E_ca is -E_ac.
+  if (ab.sign == 0 || bc.sign != ab.sign || -ac.sign != ab.sign) return std::nullopt;
+  if (edge_on(c[0]->vertex.sight, c[1]->vertex.sight, c[2]->vertex.sight)) return std::nullopt;
+  return weighted(c, {std::abs(bc.value), std::abs(ac.value), std::abs(ab.value)}, from);
 }
 
 /// The scalar at an eye that lies on the cell's surface: the volumes that the eye spans with the four faces are its
@@ -133,14 +143,12 @@ std::optional<Stretch> intersect(const std::array<Corner, 4>& corners, double x,
   std::array<Hit, 2> hits{};
   int count = 0;
   for (const auto& [a, b, c] : faces) {
-    // E_ca is -E_ac.
-    const int sign = e[a][b].sign;
-    if (sign == 0 || e[b][c].sign != sign || -e[a][c].sign != sign) continue;
-    if (edge_on(corners[a].vertex.sight, corners[b].vertex.sight, corners[c].vertex.sight)) continue;
+    const std::optional<Hit> hit =
+        hit_of({&corners[a], &corners[b], &corners[c]}, e[a][b], e[b][c], e[a][c], corners[0].scalar);
+    if (!hit) continue;
     if (count == 2) return std::nullopt;  // cannot be: a line enters and leaves a tetrahedron once
-    hits[count++] =
-        weighted({&corners[a], &corners[b], &corners[c]},
-                 {std::abs(e[b][c].value), std::abs(e[a][c].value), std::abs(e[a][b].value)}, corners[0].scalar);
+    hits[count] = *hit;
+    hits[count++].face = 6 - a - b - c;
   }
   if (count == 0) return std::nullopt;
   if (count == 1) {
@@ -148,8 +156,17 @@ std::optional<Stretch> intersect(const std::array<Corner, 4>& corners, double x,
     hits[1] = {0, scalar, scalar - corners[0].scalar};
   }
   if (hits[0].depth > hits[1].depth) std::swap(hits[0], hits[1]);
-  return Stretch{hits[0].depth,     hits[1].depth,  hits[0].scalar, hits[1].scalar,
-                 corners[0].scalar, hits[0].change, hits[1].change};
+  return Stretch{hits[0].depth,  hits[1].depth,  hits[0].scalar, hits[1].scalar, corners[0].scalar,
+                 hits[0].change, hits[1].change, hits[0].face,   hits[1].face};
+}
+
+std::optional<TriangleHit> intersect(const std::array<Corner, 3>& corners, double x, double y) {
+  const auto& [a, b, c] = corners;
+  const std::optional<Hit> hit =
+      hit_of({&a, &b, &c}, edge_value(x, y, a.vertex, b.vertex), edge_value(x, y, b.vertex, c.vertex),
+             edge_value(x, y, a.vertex, c.vertex), a.scalar);
+  if (!hit) return std::nullopt;
+  return TriangleHit{hit->depth, hit->scalar};
 }
 
 std::optional<Stretch> clipped(const Stretch& stretch, double nearest, double farthest) {
@@ -159,8 +176,8 @@ std::optional<Stretch> clipped(const Stretch& stretch, double nearest, double fa
     return stretch.change_front + share * (stretch.change_back - stretch.change_front);
   };
   Stretch kept = stretch;
-  if (stretch.front < nearest) kept.front = nearest, kept.change_front = change_at(nearest);
-  if (stretch.back > farthest) kept.back = farthest, kept.change_back = change_at(farthest);
+  if (stretch.front < nearest) kept.front = nearest, kept.change_front = change_at(nearest), kept.face_front = -1;
+  if (stretch.back > farthest) kept.back = farthest, kept.change_back = change_at(farthest), kept.face_back = -1;
   if (stretch.front < nearest) kept.scalar_front = stretch.corner_scalar + kept.change_front;
   if (stretch.back > farthest) kept.scalar_back = stretch.corner_scalar + kept.change_back;
   return kept;

@@ -20,6 +20,7 @@ struct Stretch {
   double front, back;
   double scalar_front, scalar_back;
   double corner_scalar, change_front, change_back;
+  int face_front = -1, face_back = -1;  ///< whose corner opposite has this index; -1: it ends at no face
 };
 
 /// Where the line (not only the half in front of the eye) through pixel coordinates (x, y) passes through a
@@ -37,6 +38,13 @@ struct Stretch {
 /// Eye      on the cell's surface: the line then hits only one other face, and the stretch ends at depth 0 at the eye.
 /// Flat     cells give stretches of length zero, up to rounding.
 std::optional<Stretch> intersect(const std::array<Corner, 4>& corners, double x, double y);
+
+/// Where a line meets a triangle, decided as above: among triangles that meet in edges every line through one is met
+/// once. Nothing if it does not, and where the eye lies in the triangle's plane.
+struct TriangleHit {
+  double depth, scalar;
+};
+std::optional<TriangleHit> intersect(const std::array<Corner, 3>& corners, double x, double y);
 
 /// What of a stretch lies between two planar depths; nothing if nothing of it lies strictly between them. A stretch of
 /// length zero between them stays.

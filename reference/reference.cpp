@@ -53,6 +53,32 @@ Reference::Reference(const scene::TetMeshView& mesh, const scene::Camera& camera
   for (const glm::dvec3& p : mesh.positions) vertices_.push_back(view_.project(p));
   boxes_.reserve(mesh.tets.size());
   for (std::size_t tet = 0; tet < mesh.tets.size(); ++tet) boxes_.push_back(box(tet));
+  if (!surfaces.has_faces()) return;
+  function_ = transfer_function;
+  for (const BoundarySurface& boundary : surfaces.boundary) boundary_.push_back({boundary.color, boundary.opacity});
+  if (!boundary_.empty()) open_ = open_faces(mesh);
+  project(surfaces);
+}
+
+void Reference::project(const Surfaces& surfaces) {
+  const glm::dvec3 light_grey(0.6);
+  for (const TriangleSurface& surface : surfaces.triangles) {
+    const TriangleMesh& mesh = *surface.mesh;
+    const bool by_field = !surface.color && !mesh.values.empty();
+    paints_.push_back({by_field ? std::nullopt : std::optional(surface.color.value_or(light_grey)), surface.opacity});
+    for (const auto& index : mesh.triangles) {
+      ProjectedTriangle triangle{};
+      std::array<ProjectedVertex, 3> vertices;
+      for (std::size_t i = 0; i < 3; ++i) {
+        vertices[i] = view_.project(mesh.points[index[i]]);
+        triangle.corners[i] = {vertices[i], mesh.values.empty() ? 0 : mesh.values[index[i]]};
+      }
+      triangle.normal = normal_of(mesh.points[index[0]], mesh.points[index[1]], mesh.points[index[2]]);
+      triangle.paint = paints_.size() - 1;
+      triangles_.push_back(triangle);
+      triangle_boxes_.push_back(box(vertices));
+    }
+  }
 }
 
 std::array<Corner, 4> Reference::corners(std::size_t tet) const {
@@ -70,14 +96,20 @@ std::array<Corner, 4> Reference::corners(std::size_t tet) const {
 }
 
 Reference::Box Reference::box(std::size_t tet) const {
+  std::array<ProjectedVertex, 4> vertices;
+  for (std::size_t i = 0; i < 4; ++i) vertices[i] = vertices_[mesh_.tets[tet][i]];
+  return box(vertices);
+}
+
+Reference::Box Reference::box(std::span<const ProjectedVertex> vertices) const {
   const double infinity = std::numeric_limits<double>::infinity();
   Box box{infinity, infinity, -infinity, -infinity};
   double least_w = infinity, largest_w = 0, deepest = -infinity;
-  for (const std::uint32_t v : mesh_.tets[tet]) {
-    const glm::dvec3& h = vertices_[v].homogeneous;
+  for (const ProjectedVertex& v : vertices) {
+    const glm::dvec3& h = v.homogeneous;
     least_w = std::min(least_w, h.z);
     largest_w = std::max(largest_w, std::abs(h.z));
-    deepest = std::max(deepest, vertices_[v].depth);
+    deepest = std::max(deepest, v.depth);
     box.x_low = std::min(box.x_low, h.x / h.z), box.x_high = std::max(box.x_high, h.x / h.z);
     box.y_low = std::min(box.y_low, h.y / h.z), box.y_high = std::max(box.y_high, h.y / h.z);
   }
@@ -93,40 +125,34 @@ void Reference::trace(std::size_t tet, const std::array<Corner, 4>& corners, dou
                       std::vector<RaySegment>& segments) const {
   const std::optional<Stretch> inside = intersect(corners, x, y);
   if (!inside) return;
-  const auto [nearest, farthest] = kept_interval(view_, x, y, kept_);
-  const std::optional<Stretch> seen = clipped(*inside, nearest, farthest);
+  const DepthInterval kept = kept_interval(view_, x, y, kept_);
+  const std::optional<Stretch> seen = clipped(*inside, kept.nearest, kept.farthest);
   if (!seen) return;
   const double length = (seen->back - seen->front) * view_.length_per_depth(x, y);
   segments.push_back({seen->front, seen->back, length, seen->scalar_front, seen->scalar_back, seen->corner_scalar,
-                      seen->change_front, seen->change_back, tet});
+                      seen->change_front, seen->change_back, tet, seen->face_front, seen->face_back});
 }
 
-Pixel Reference::shaded(std::span<const RaySegment> segments, double x, double y) const {
-  Integral integral(knots_, emission_);
-  Pixel pixel;
-  const DepthInterval interval = kept_interval(view_, x, y, kept_);
-  const KeptDepths kept{interval.nearest, interval.farthest, interval.nearest != view_.nearest(),
-                        interval.farthest != view_.farthest()};
-  for (const RaySegment& s : segments) {
-    double at = 0, change = s.change_front;  // of the segment's length: what is integrated so far
-    const auto depth_at = [&](double part) { return s.front + (s.back - s.front) * part; };
-    std::vector<SurfaceCrossing> crossings;
-    if (!surfaces_.empty()) crossings = surface_crossings(surfaces_, corners(s.tet), x, y, kept);
-    for (const SurfaceCrossing& c : crossings) {
-      const double there = c.surface->value - s.corner_scalar;
-      integral.add(s.length * (c.part - at), change, there, depth_at(at), depth_at(c.part), s.corner_scalar);
-      integral.add_surface(lit(*c.surface, light_, view_.ray(x, y).step, mesh_, s.tet), c.surface->opacity,
-                           depth_at(c.part));
-      at = c.part, change = there;
-    }
-    integral.add(s.length * (1 - at), change, s.change_back, depth_at(at), s.back, s.corner_scalar);
-    pixel.length += s.length;
+std::vector<TriangleCrossing> Reference::triangles_on(double x, double y) const {
+  std::vector<TriangleCrossing> found;
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    const Box& b = triangle_boxes_[i];
+    if (!(b.x_low <= x && x <= b.x_high && b.y_low <= y && y <= b.y_high)) continue;
+    if (const std::optional<TriangleHit> hit = intersect(triangles_[i].corners, x, y))
+      found.push_back({*hit, &triangles_[i]});
   }
-  std::tie(pixel.r, pixel.g, pixel.b) = std::tuple_cat(integral.color());
-  pixel.a = integral.opacity();
-  pixel.z = integral.first_visible_depth();
-  pixel.segments = segments.size();
-  return pixel;
+  return found;
+}
+
+glm::dvec3 Reference::face_normal(std::size_t tet, int face) const {
+  std::array<glm::dvec3, 4> corners;
+  for (std::size_t i = 0; i < 4; ++i) corners[i] = mesh_.positions[mesh_.tets[tet][i]];
+  std::sort(corners.begin(), corners.end(),
+            [](const glm::dvec3& p, const glm::dvec3& q) { return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z); });
+  std::array<glm::dvec3, 3> of_face;
+  for (int i = 0, k = 0; i < 4; ++i)
+    if (i != face) of_face[static_cast<std::size_t>(k++)] = corners[static_cast<std::size_t>(i)];
+  return normal_of(of_face[0], of_face[1], of_face[2]);
 }
 
 std::vector<RaySegment> Reference::segments(double x, double y) const {

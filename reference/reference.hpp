@@ -25,6 +25,7 @@ struct RaySegment {
   double scalar_front, scalar_back;
   double corner_scalar, change_front, change_back;  ///< the same scalars as in Stretch
   std::size_t tet;
+  int face_front, face_back;  ///< as in Stretch
 };
 
 /// The slow, exact renderer that the fast one is judged against. Brute force in double precision: every ray against
@@ -36,7 +37,11 @@ struct RaySegment {
 /// Error    about 1e-13 in linear RGBA. Cell data is constant in a tet, point data linear between the two hits.
 /// Surfaces are crossed where the scalar goes from below a value to the value or above, or back, from one end of a
 ///          segment to the other; where two are crossed at one depth they come as along the segment. Lit by the tet's
-///          gradient.
+///          gradient. Those of triangles are met where the ray goes through one, a boundary where a segment ends at a
+///          face that one cell alone has, or where a half-space's plane cuts a cell. Segments are cut there, so that
+///          they lie at their true depth in cells that overlap, too. At one depth what a cell has at its back end comes
+///          first, its boundary, triangles, what is in cells of no length, the next cell's boundary, and what that has
+///          at its front end. Depths are one if a shift of the ray by 2^-32 pixel may exchange them (shaded_ray.cpp).
 /// Threads  const functions may be called from several threads; `pixels` and `image` use all cores themselves.
 /// Cost     256x256 pixels over 0.5 M tets: seconds to a minute. One point query is a pass over all tets' boxes.
 class Reference final : public RayReference {
@@ -71,6 +76,11 @@ class Reference final : public RayReference {
   [[nodiscard]] Box box(std::size_t tet) const;
   void trace(std::size_t tet, const std::array<Corner, 4>& corners, double x, double y,
              std::vector<RaySegment>& segments) const;
+  [[nodiscard]] Box box(std::span<const ProjectedVertex> vertices) const;
+  void project(const Surfaces& surfaces);
+  [[nodiscard]] std::vector<TriangleCrossing> triangles_on(double x, double y) const;
+  [[nodiscard]] glm::dvec3 face_normal(std::size_t tet, int face) const;
+  class Ray;
   /// Of segments in order.
   [[nodiscard]] Pixel shaded(std::span<const RaySegment> segments, double x, double y) const;
 
@@ -82,6 +92,11 @@ class Reference final : public RayReference {
   View view_;
   std::vector<SurfaceOfValue> surfaces_;
   SurfaceLight light_;
+  scene::TransferFunction function_;      ///< if a surface of faces has its colours
+  std::vector<Paint> boundary_, paints_;  ///< the latter by ProjectedTriangle::paint
+  std::vector<std::uint8_t> open_;        ///< if there is a boundary: open_faces()
+  std::vector<ProjectedTriangle> triangles_;
+  std::vector<Box> triangle_boxes_;
   std::vector<ProjectedVertex> vertices_;
   std::vector<Box> boxes_;
 };

@@ -69,9 +69,16 @@ std::vector<SurfaceCrossing> surface_crossings(std::span<const SurfaceOfValue> s
   return found;
 }
 
-std::array<double, 3> lit(const SurfaceOfValue& surface, const SurfaceLight& light, const glm::dvec3& ray,
-                          const scene::TetMeshView& mesh, std::size_t tet) {
-  Vector normal = scaled_gradient(mesh, tet);
+namespace {
+
+std::array<double, 3> lit_at(const glm::dvec3& color, const SurfaceLight& light, double cosine) {
+  const double matte = light.ambient + light.diffuse * cosine;
+  const double shine = light.specular * std::pow(cosine, light.shininess);
+  return {color.x * matte + shine, color.y * matte + shine, color.z * matte + shine};
+}
+
+std::array<double, 3> lit_along(const glm::dvec3& color, const SurfaceLight& light, const glm::dvec3& ray,
+                                Vector normal) {
   const long double size = std::max({std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)});
   double cosine = 1;
   if (size > 0) {
@@ -79,13 +86,66 @@ std::array<double, 3> lit(const SurfaceOfValue& surface, const SurfaceLight& lig
     const Vector along = glm::normalize(Vector(ray));
     cosine = static_cast<double>(std::min(std::abs(glm::dot(along, normal)) / glm::length(normal), 1.0L));
   }
-  return lit(surface, light, cosine);
+  return lit_at(color, light, cosine);
 }
 
+}  // namespace
+
 std::array<double, 3> lit(const SurfaceOfValue& surface, const SurfaceLight& light, double cosine) {
-  const double matte = light.ambient + light.diffuse * cosine;
-  const double shine = light.specular * std::pow(cosine, light.shininess);
-  return {surface.color.x * matte + shine, surface.color.y * matte + shine, surface.color.z * matte + shine};
+  return lit_at(surface.color, light, cosine);
+}
+
+std::array<double, 3> lit(const SurfaceOfValue& surface, const SurfaceLight& light, const glm::dvec3& ray,
+                          const scene::TetMeshView& mesh, std::size_t tet) {
+  return lit_along(surface.color, light, ray, scaled_gradient(mesh, tet));
+}
+
+std::array<double, 3> lit(const glm::dvec3& color, const SurfaceLight& light, const glm::dvec3& ray,
+                          const glm::dvec3& normal) {
+  return lit_along(color, light, ray, Vector(normal));
+}
+
+glm::dvec3 normal_of(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  Vector u = Vector(b) - Vector(a), v = Vector(c) - Vector(a);
+  for (Vector* edge : {&u, &v}) {
+    const long double size = std::max({std::abs(edge->x), std::abs(edge->y), std::abs(edge->z)});
+    if (size > 0) *edge /= size;
+  }
+  Vector normal = glm::cross(u, v);
+  const long double size = std::max({std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)});
+  return size > 0 ? glm::dvec3(normal / size) : glm::dvec3(0);
+}
+
+std::vector<std::uint8_t> open_faces(const scene::TetMeshView& mesh) {
+  using Place = std::array<double, 3>;
+  struct Face {
+    std::array<Place, 3> corners;
+    std::size_t tet;
+    int opposite;
+  };
+  std::vector<Face> faces;
+  for (std::size_t tet = 0; tet < mesh.tets.size(); ++tet) {
+    std::array<Place, 4> corners;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const glm::dvec3& p = mesh.positions[mesh.tets[tet][i]];
+      corners[i] = {p.x, p.y, p.z};
+    }
+    std::sort(corners.begin(), corners.end());
+    for (std::size_t out = 0; out < 4; ++out) {
+      Face face{{}, tet, static_cast<int>(out)};
+      for (std::size_t i = 0, k = 0; i < 4; ++i)
+        if (i != out) face.corners[k++] = corners[i];
+      faces.push_back(face);
+    }
+  }
+  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) { return a.corners < b.corners; });
+  std::vector<std::uint8_t> open(mesh.tets.size(), 0);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const bool before = i > 0 && faces[i - 1].corners == faces[i].corners;
+    const bool behind = i + 1 < faces.size() && faces[i + 1].corners == faces[i].corners;
+    if (!before && !behind) open[faces[i].tet] |= static_cast<std::uint8_t>(1 << faces[i].opposite);
+  }
+  return open;
 }
 
 }  // namespace tessera::reference

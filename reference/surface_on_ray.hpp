@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -43,6 +45,37 @@ struct SurfaceCrossing {
 std::vector<SurfaceCrossing> surface_crossings(std::span<const SurfaceOfValue> surfaces,
                                                const std::array<Corner, 4>& corners, double x, double y,
                                                const KeptDepths& kept);
+
+/// A surface of faces with what it looks like.
+struct Paint {
+  std::optional<glm::dvec3> color;  ///< linear RGB, unlit; none: the transfer function's at the field's value
+  double opacity;
+};
+
+/// A triangle of a surface as the view sees it.
+struct ProjectedTriangle {
+  std::array<Corner, 3> corners;
+  glm::dvec3 normal;  ///< of any length
+  std::size_t paint;
+};
+
+/// Where a ray meets a triangle.
+struct TriangleCrossing {
+  TriangleHit hit;
+  const ProjectedTriangle* triangle;
+};
+
+/// The normal of three points, of any length.
+glm::dvec3 normal_of(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
+
+/// The faces that one tet of a mesh alone has, a bit a tet's corner that is not in the face: corner i in the order of
+/// positions. Faces are one whose corners are at the same places.
+std::vector<std::uint8_t> open_faces(const scene::TetMeshView& mesh);
+
+/// A colour, lit from the eye, on a surface of that normal, seen along that ray (both of any length). Without normal as
+/// if seen face on.
+std::array<double, 3> lit(const glm::dvec3& color, const SurfaceLight& light, const glm::dvec3& ray,
+                          const glm::dvec3& normal);
 
 /// A surface's colour where the angle between the ray and its normal has this cosine, 0 to 1.
 std::array<double, 3> lit(const SurfaceOfValue& surface, const SurfaceLight& light, double cosine);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <string>
 
 #include "scene/error.hpp"
 
@@ -21,19 +23,57 @@ double whole_power(double base, int exponent) {
   return result;
 }
 
+const glm::dvec3 light_grey(0.6, 0.6, 0.6);
+
 bool is_light(double value) { return value >= 0 && std::isfinite(value); }
+
+}  // namespace
+
+namespace {
+
+/// `name`: the surface's, in messages.
+void check_paint(const std::string& name, const std::optional<glm::dvec3>& color, double opacity) {
+  if (!(opacity > 0 && opacity <= 1))
+    throw bad_input(fmt::format("{}: the opacity {} is not above 0 and at most 1", name, opacity));
+  if (color && !(is_light(color->x) && is_light(color->y) && is_light(color->z)))
+    throw bad_input(fmt::format("{}: its colour must be 0 or more, and finite", name));
+}
+
+void check_triangles(const tessera::TriangleMesh& mesh) {
+  const auto finite = [](const glm::dvec3& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+  };
+  if (!std::ranges::all_of(mesh.points, finite))
+    throw bad_input("`surface`: a point of its triangles is not finite; mend it");
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t v : triangle)
+      if (v >= mesh.points.size())
+        throw bad_input(fmt::format("`surface`: a triangle uses point {} of {}; mend it", v, mesh.points.size()));
+  if (!mesh.values.empty() && mesh.values.size() != mesh.points.size())
+    throw bad_input(fmt::format("`surface`: has {} values for {} points; give one a point, or none", mesh.values.size(),
+                                mesh.points.size()));
+  if (!std::ranges::all_of(mesh.values, [](double v) { return std::isfinite(v); }))
+    throw bad_input("`surface`: a value at its points is not finite; mend it, or leave the values out");
+}
 
 }  // namespace
 
 void validate(const Surfaces& surfaces) {
   if (surfaces.iso.size() > most_surfaces)
     throw bad_input(fmt::format("`iso`: {} surfaces are more than {}", surfaces.iso.size(), most_surfaces));
+  if (surfaces.boundary.size() + surfaces.triangles.size() > most_surfaces)
+    throw bad_input(fmt::format("`surface`: {} surfaces are more than {}",
+                                surfaces.boundary.size() + surfaces.triangles.size(), most_surfaces));
   for (const IsoSurface& iso : surfaces.iso) {
     if (!std::isfinite(iso.value)) throw bad_input("`iso`: its value is not finite; give a value of the field");
-    if (!(iso.opacity > 0 && iso.opacity <= 1))
-      throw bad_input(fmt::format("`iso` {}: the opacity {} is not above 0 and at most 1", iso.value, iso.opacity));
-    if (iso.color && !(is_light(iso.color->x) && is_light(iso.color->y) && is_light(iso.color->z)))
-      throw bad_input(fmt::format("`iso` {}: its colour must be 0 or more, and finite", iso.value));
+    check_paint(fmt::format("`iso` {}", iso.value), iso.color, iso.opacity);
+  }
+  for (const BoundarySurface& boundary : surfaces.boundary)
+    check_paint("`surface` boundary", boundary.color, boundary.opacity);
+  for (const TriangleSurface& surface : surfaces.triangles) {
+    if (surface.mesh == nullptr) throw bad_input("`surface`: has no triangles; give it some, or leave it out");
+    check_paint("`surface`", surface.color, surface.opacity);
+    check_triangles(*surface.mesh);
   }
   const SurfaceLight& light = surfaces.light;
   for (const double part : {light.ambient, light.diffuse, light.specular, light.shininess})
@@ -51,29 +91,44 @@ SurfaceSet::SurfaceSet(const Surfaces& surfaces, const TransferFunction& functio
     paints_.push_back({color, iso.opacity});
     max_color_ = std::max({max_color_, color.x, color.y, color.z});
   }
-  const auto n = static_cast<std::uint32_t>(values_.size());
-  for (std::uint32_t number = 0; number < 6 * n; ++number)
-    paint_of_.push_back(number % (2 * n) < n ? number % n : n - 1 - number % n);
+  if (surfaces.has_faces()) function_ = function;
+  boundaries_ = surfaces.boundary.size();
+  for (const BoundarySurface& boundary : surfaces.boundary) add_face(boundary.color, boundary.opacity);
+  for (const TriangleSurface& surface : surfaces.triangles) {
+    const bool by_field = !surface.color && !surface.mesh->values.empty();
+    add_face(by_field ? std::nullopt : std::optional(surface.color.value_or(light_grey)), surface.opacity);
+  }
+  const auto n = static_cast<std::uint32_t>(values_.size()), m = static_cast<std::uint32_t>(faces());
+  for (std::uint32_t number = 0; number < 3 * (2 * n + m); ++number) {
+    const std::uint32_t k = number % (2 * n + m);
+    paint_of_.push_back(k < n ? k : k < 2 * n ? 2 * n - 1 - k : k - n);
+  }
   if (light_.shininess == std::floor(light_.shininess) && light_.shininess <= 1024)
     whole_shininess_ = static_cast<int>(light_.shininess);
   if (!empty()) max_color_ = max_color_ * (light_.ambient + light_.diffuse) + light_.specular;
+}
+
+void SurfaceSet::add_face(const std::optional<glm::dvec3>& color, double opacity) {
+  paints_.push_back({color.value_or(glm::dvec3(0)), opacity, !color});
+  max_color_ = std::max(max_color_, color ? std::max({color->x, color->y, color->z}) : function_.max_color());
 }
 
 void SurfaceSet::place_on(const Lattice& lattice) {
   on_lattice_.clear();
   for (const double value : values_) on_lattice_.push_back(static_cast<float>(lattice.scalar_step(value)));
   by_number_.clear();
-  for (const std::uint32_t i : paint_of_) by_number_.push_back(on_lattice_[i]);
+  for (const std::uint32_t i : paint_of_) by_number_.push_back(i < on_lattice_.size() ? on_lattice_[i] : 0.0f);
 }
 
-SurfaceSet::Light SurfaceSet::light(std::uint32_t crossing, double cosine) const {
+SurfaceSet::Light SurfaceSet::light(std::uint32_t crossing, double cosine, double value) const {
   if (crossing >= paint_of_.size()) return {};
   const Paint& paint = paints_[paint_of_[crossing]];
   const double c = std::clamp(cosine, 0.0, 1.0);
   const double matte = light_.ambient + light_.diffuse * c;
   const double shine =
       light_.specular * (whole_shininess_ >= 0 ? whole_power(c, whole_shininess_) : std::pow(c, light_.shininess));
-  const glm::dvec3 color = (paint.color * matte + glm::dvec3(shine)) * paint.opacity;
+  const glm::dvec3 own = paint.by_field ? glm::dvec3(function_.evaluate(value).color) : paint.color;
+  const glm::dvec3 color = (own * matte + glm::dvec3(shine)) * paint.opacity;
   return {color.x, color.y, color.z, paint.opacity};
 }
 

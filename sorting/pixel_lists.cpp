@@ -27,9 +27,13 @@ void PixelLists::sort(const projection::RaySegments& s, std::size_t pixel_count,
     if (a.depth != b.depth) return a.depth < b.depth;
     if (key == Key::front && s.back[a.segment] != s.back[b.segment]) return s.back[a.segment] < s.back[b.segment];
     if (projection::is_crossing(s.scalar_front[a.segment]) && projection::is_crossing(s.scalar_front[b.segment])) {
-      const std::uint32_t number_a = projection::crossing_of(s.scalar_front[a.segment]).number;
-      const std::uint32_t number_b = projection::crossing_of(s.scalar_front[b.segment]).number;
-      if (number_a != number_b) return number_a < number_b;
+      const projection::Crossing at_a = projection::crossing_of(s.scalar_front[a.segment]);
+      const projection::Crossing at_b = projection::crossing_of(s.scalar_front[b.segment]);
+      if (at_a.number != at_b.number) return at_a.number < at_b.number;
+      // Of triangles, which have no tet: by all that a crossing holds.
+      if (at_a.cosine != at_b.cosine) return at_a.cosine < at_b.cosine;
+      if (s.scalar_back[a.segment] != s.scalar_back[b.segment])
+        return s.scalar_back[a.segment] < s.scalar_back[b.segment];
     }
     return s.tet(a.segment) < s.tet(b.segment);
   };

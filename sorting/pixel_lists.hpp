@@ -11,9 +11,9 @@ namespace tessera::sorting {
 /// The ray segments of a tile, listed pixel by pixel in visibility order.
 ///
 /// Order is total, so it does not depend on how the segments arrived: front, then back, then, of crossings of surfaces
-/// (projection/surface_crossings.hpp), their number, then tet index. Or, in the mode
-/// of the `scanline` rasterizer, the back alone (Juliachs et al. 2007, 4.3: z_back is the key), then tet index. Any
-/// list length.
+/// (projection/surface_crossings.hpp), their number and what else they hold, then tet index. Or, in the mode of the
+/// `scanline` rasterizer, the back alone (Juliachs et al. 2007, 4.3: z_back is the key), then tet index. Any list
+/// length.
 class PixelLists {
  public:
   enum class Key { front, back };

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -24,12 +27,42 @@ struct IsoSurface {
   bool operator==(const IsoSurface&) const = default;
 };
 
+/// The boundary of a mesh: the faces that one tet alone has. Faces are one where their corners are at the same three
+/// places, whatever piece of a file or rank they come from; those that a clip or threshold makes are boundary like any
+/// other. Of point and of cell data.
+struct BoundarySurface {
+  std::optional<glm::dvec3> color{};  ///< linear RGB; none: the transfer function's at the field's value there
+  double opacity = 1;                 ///< above 0, at most 1, whatever the angle at which it is seen
+  bool operator==(const BoundarySurface&) const = default;
+};
+
+/// Triangles anywhere in space.
+struct TriangleMesh {
+  std::vector<glm::dvec3> points;                       ///< world units, finite
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< by indices of points, turned either way
+  std::vector<double> values;                           ///< of the field at the points, finite; empty: none
+};
+
+/// A surface in or about a mesh, of which it needs to know nothing: a ray meets it where it goes through a triangle, in
+/// cells and outside of them. Triangles that meet in an edge at the same places leave no gap.
+struct TriangleSurface {
+  std::shared_ptr<const TriangleMesh> mesh;
+  std::optional<glm::dvec3> color{};  ///< linear RGB; none: the transfer function's at `values`, or light grey
+  double opacity = 1;                 ///< above 0, at most 1, whatever the angle at which it is seen
+};
+
 /// Surfaces in the volume, composited with it in the order in which a ray meets them. The transfer function does not
-/// hide them: with one that shows nothing they are all there is.
+/// hide them: with one that shows nothing they are all there is. At one depth a ray leaves a cell and its boundary
+/// before it meets a triangle, and that before it enters the next boundary. Only those nearer than the camera's far
+/// plane and beyond its near plane are seen.
 struct Surfaces {
-  std::vector<IsoSurface> iso;  ///< of point data
+  std::vector<IsoSurface> iso;             ///< of point data
+  std::vector<BoundarySurface> boundary;   ///< of meshes
+  std::vector<TriangleSurface> triangles;  ///< in and about meshes
   SurfaceLight light;
-  [[nodiscard]] bool empty() const { return iso.empty(); }
+  [[nodiscard]] bool empty() const { return iso.empty() && !has_faces(); }
+  /// Whether there are any of triangles.
+  [[nodiscard]] bool has_faces() const { return !boundary.empty() || !triangles.empty(); }
 };
 
 }  // namespace tessera

@@ -34,6 +34,7 @@
 #include "tessera/trace.hpp"
 #include "tessera/trace_file.hpp"
 #include "tessera/transfer_function.hpp"
+#include "tessera/triangle_file.hpp"
 #include "tessera/verification.hpp"
 #include "tessera/version.hpp"
 #include "tessera/view.hpp"

@@ -23,6 +23,46 @@ TEST(Surfaces, OfValuesAreRenderedVerifiedAndReported) {
   EXPECT_NE(text.find(R"("iso":[{"color":[1.0,0.0,0.0],"opacity":)"), std::string::npos) << text;
 }
 
+/// Two triangles that cross [-1, 1]^3 and reach beyond it.
+std::string write_sheet(const Folder& folder) {
+  return folder.file("sheet.ply",
+                     "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+                     "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                     "-1.5 -1.5 0.1\n1.5 -1.5 0.2\n1.5 1.5 0.3\n-1.5 1.5 0.2\n4 0 1 2 3\n");
+}
+
+TEST(Surfaces, OfTheBoundaryAndOfFilesAreRenderedVerifiedAndReported) {
+  const Folder folder;
+  const auto run = tessera({"render", folder.cube(), "-o", folder / "a.exr", "--size", "64x48", "--surface",
+                            "boundary::0.3", "--surface", write_sheet(folder) + ":red:0.5", "--clip", "0.2,0,0,1,0.3,0",
+                            "--iso", "0.5", "--verify", "500", "--report", folder / "r.json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE((run.out + run.err).find(" met"), std::string::npos) << run.out << run.err;
+  const auto text = nlohmann::json::parse(contents(folder / "r.json")).dump();
+  EXPECT_NE(text.find(R"("what":"boundary")"), std::string::npos) << text;
+  EXPECT_NE(text.find(R"("what":"2 triangles")"), std::string::npos) << text;
+}
+
+TEST(Surfaces, OfFacesAreRefusedInOneLineThatSaysWhy) {
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& word) {
+    std::vector<std::string> arguments{"render", mesh, "-o", folder / "a.png", "--size", "16x16", "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto run = tessera(arguments);
+    EXPECT_EQ(run.status, 2) << run.err;
+    EXPECT_EQ(run.error_lines(), 1u) << run.err;
+    EXPECT_NE(run.err.find(word), std::string::npos) << run.err;
+  };
+  refused({"--surface", "skin"}, "'skin' is neither boundary nor a file");
+  refused({"--surface", "skin"}, "--block NAME --surface boundary");
+  refused({"--surface", "boundary:reddish"}, "not a colour");
+  refused({"--surface", "boundary:red:2"}, "opacity 2");
+  refused({"--surface", mesh}, "no surface of triangles");
+  refused({"--surface", "boundary", "--rasterizer", "scanline"}, "--surface: ");
+  refused({"--surface", folder.file("broken.ply", "ply\nformat ascii 1.0\n")}, "broken.ply");
+}
+
 TEST(Surfaces, ThatTheFieldDoesNotReachAreWarnedOf) {
   const Folder folder;
   const auto run = tessera({"render", folder.cube(), "-o", folder / "a.png", "--size", "8x8", "--iso", "5"});
@@ -81,10 +121,22 @@ TEST(Surfaces, OfGridsAreVerifiedAndTheSameOnAnyNumberOfRanks) {
 TEST(Surfaces, OfSeveralRanksHaveTheBytesOfOne) {
   if (!has_mpirun()) GTEST_SKIP() << "there is no mpirun";
   const Folder folder;
-  const std::string mesh = folder.cube();
+  const std::string mesh = folder.cube(), sheet = write_sheet(folder);
   const auto render = [&](const std::string& out, std::vector<std::string> more) {
-    std::vector<std::string> arguments{"render", mesh,    "-o",  folder / out,     "--size",
-                                       "70x50",  "--iso", "0.5", "--iso=0.3::0.4", "--quiet"};
+    std::vector<std::string> arguments{"render",
+                                       mesh,
+                                       "-o",
+                                       folder / out,
+                                       "--size",
+                                       "70x50",
+                                       "--iso",
+                                       "0.5",
+                                       "--iso=0.3::0.4",
+                                       "--surface",
+                                       "boundary::0.2",
+                                       "--surface",
+                                       sheet + "::0.3",
+                                       "--quiet"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   };

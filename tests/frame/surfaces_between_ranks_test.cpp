@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
@@ -77,6 +78,53 @@ TEST(SurfacesBetweenRanks, AreThoseOfOneProcess) {
     }
 }
 
+/// The mesh's boundary, and triangles through it and beyond.
+scene::Surfaces faces() {
+  auto triangles = std::make_shared<TriangleMesh>();
+  triangles->points = {{-1.5, -1.2, 0.1}, {1.6, -1.1, -0.3}, {0.2, 1.7, 0.4}, {-1, 0.3, -1.4}, {0.9, 0.2, 1.5}};
+  triangles->triangles = {{0, 1, 2}, {2, 3, 4}, {0, 3, 4}};
+  scene::Surfaces surfaces;
+  surfaces.boundary = {{{}, 0.3}};
+  surfaces.triangles = {{triangles, glm::dvec3(1, 0.5, 0), 0.4}};
+  return surfaces;
+}
+
+TEST(SurfacesBetweenRanks, OfFacesAreThoseOfOneProcess) {
+  const scene::TransferFunction function({{0, {0, 0, 0.3}, 0}, {0.5, {0.2, 0.9, 0.3}, 0}, {1, {1, 0.4, 0.2}, 2}});
+  DistributedSettings settings;
+  settings.render.integrator.kind = scene::IntegratorKind::exact;
+  settings.render.threads = 1;
+  settings.render.memory_bytes = 256ull << 20;
+  settings.render.surfaces = faces();
+  FrameJob job{{}, {61, 47}, 0};
+  for (const bool cells : {false, true}) {
+    scene::TetMesh mesh = datasets::cube(6, cells ? 0.2 : 0.0);
+    if (cells) {
+      mesh.association = scene::Association::cell;
+      mesh.scalars.resize(mesh.tets.size());
+      for (std::size_t t = 0; t < mesh.tets.size(); ++t) mesh.scalars[t] = static_cast<double>(t % 11) / 10;
+    }
+    for (const glm::dvec3 eye : {glm::dvec3(3.1, 2.3, 4.2), glm::dvec3(0.1, 0.2, 0.15), glm::dvec3(0, 0, 5)})
+      for (const bool perspective : {false, true}) {
+        job.camera.position = eye;
+        job.camera.projection = perspective ? scene::ProjectionKind::perspective : scene::ProjectionKind::orthographic;
+        job.camera.view_angle = 40;
+        const auto expected = Renderer(mesh, settings.render).render(job.camera, job.size, function);
+        for (const auto how : {datasets::Partition::random_blobs, datasets::Partition::interleaved}) {
+          const auto parts = datasets::parts(mesh, 3, how, 5);
+          settings.exchange = Exchange::segments;
+          const auto segments = render(parts, settings, job, function);
+          ASSERT_EQ(segments.size(), 1u);
+          EXPECT_EQ(segments[0].image.rgba, expected.rgba) << cells << perspective;
+          EXPECT_EQ(segments[0].image.depth, expected.depth);
+          settings.exchange = Exchange::runs;
+          // Runs are rounded to float: 6e-8 of their light each.
+          EXPECT_LT(difference(render(parts, settings, job, function).at(0).image, expected), 2e-6) << cells;
+        }
+      }
+  }
+}
+
 TEST(SurfacesBetweenRanks, AreInDeepPicturesToo) {
   const scene::TetMesh mesh = datasets::cube(5, 0.2);
   const scene::TransferFunction function({{0, {0, 0, 0.3}, 0.1}, {1, {1, 0.4, 0.2}, 2}});
@@ -84,6 +132,7 @@ TEST(SurfacesBetweenRanks, AreInDeepPicturesToo) {
   settings.render.integrator.kind = scene::IntegratorKind::exact;
   settings.render.threads = 1;
   settings.render.memory_bytes = 256ull << 20;
+  settings.render.surfaces = faces();
   settings.render.surfaces.iso = {{0.4, {}, 0.3}, {0.6, {}, 1}};
   settings.exchange = Exchange::segments;
   settings.deep = true;

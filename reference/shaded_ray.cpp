@@ -1,0 +1,257 @@
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <optional>
+#include <tuple>
+
+#include "reference/integral.hpp"
+#include "reference/kept_interval.hpp"
+#include "reference/reference.hpp"
+
+namespace tessera::reference {
+namespace {
+
+/// How far a ray may be moved, in pixels, and still be said to meet two faces at one depth: twice what rounding moves a
+/// vertex by (View::project), and what long double leaves of a pixel coordinate once it is a double.
+constexpr double shift = 0x1p-32, last_places = 0x1p-50;
+
+/// No depths that differ by more of a face's own depth are one.
+constexpr double most_reach = 1e-9;
+
+}  // namespace
+
+/// One ray's light.
+class Reference::Ray {
+ public:
+  Ray(const Reference& reference, std::span<const RaySegment> segments, double x, double y)
+      : reference_(reference),
+        segments_(segments),
+        x_(x),
+        y_(y),
+        integral_(reference.knots_, reference.emission_),
+        direction_(reference.view_.ray(x, y).step),
+        kept_(kept_interval(reference.view_, x, y, reference.kept_)) {
+    add_marks();
+    put_marks_in_order();
+    progress_.resize(segments.size());
+    for (std::size_t s = 0; s < segments.size(); ++s) cut(s);
+  }
+
+  Pixel shaded() {
+    std::stable_sort(pieces_.begin(), pieces_.end(), [](const Piece& a, const Piece& b) {
+      return std::tuple(a.before, a.at, a.front, a.back) < std::tuple(b.before, b.at, b.front, b.back);
+    });
+    auto piece = pieces_.begin();
+    for (std::size_t p = 0; p <= places_.size(); ++p) {
+      for (; piece != pieces_.end() && piece->before == p && !piece->at; ++piece) integrate(*piece);
+      if (p == places_.size()) break;
+      std::size_t m = places_[p].first;
+      for (; m < places_[p].last && marks_[m].kind != Mark::Kind::enters; ++m) add_face(marks_[m]);
+      for (; piece != pieces_.end() && piece->before == p; ++piece) integrate(*piece);
+      for (; m < places_[p].last; ++m) add_face(marks_[m]);
+    }
+    Pixel pixel;
+    std::tie(pixel.r, pixel.g, pixel.b) = std::tuple_cat(integral_.color());
+    pixel.a = integral_.opacity();
+    pixel.z = integral_.first_visible_depth();
+    for (const RaySegment& s : segments_) pixel.length += s.length;
+    pixel.segments = segments_.size();
+    return pixel;
+  }
+
+ private:
+  /// Where a ray meets a face of a surface.
+  struct Mark {
+    double depth, reach;
+    /// In the order in which a ray meets what is at one depth.
+    enum class Kind : std::uint8_t { leaves, goes_through, enters } kind;
+    std::size_t paint;
+    glm::dvec3 normal;
+    double scalar;
+  };
+
+  /// Faces at one depth: of the first one.
+  struct Place {
+    double depth, reach;
+    std::size_t first, last;  ///< of the marks
+  };
+
+  /// What of a segment is between two places.
+  struct Piece {
+    std::size_t before;  ///< the place that comes next
+    bool at;             ///< it is in that place
+    double front, back;
+    std::size_t segment, first, last;  ///< of the segment's crossings
+  };
+
+  /// The depth by which a ray that is moved as above meets a face elsewhere: by the plane's slope and, of rounding, by
+  /// the farthest of the corners and the largest of their depths.
+  [[nodiscard]] double reach(const glm::dvec3& normal, double depth, double far, double size) const {
+    const View& view = reference_.view_;
+    const View::Ray ray = view.ray(x_, y_);
+    const auto change = [&](double dx, double dy) {
+      const View::Ray other = view.ray(x_ + dx, y_ + dy);
+      return std::abs(glm::dot(normal, other.origin - ray.origin) + depth * glm::dot(normal, other.step - ray.step));
+    };
+    const double slope = (change(1, 0) + change(0, 1)) / std::abs(glm::dot(normal, ray.step));
+    const double pixels = shift + last_places * (view.perspective() ? far / std::abs(depth) : far);
+    const double reach = slope * pixels + 0x1p-48 * size;
+    return reach < most_reach * size ? reach : most_reach * size;
+  }
+
+  template <class Corners>
+  [[nodiscard]] double reach(const glm::dvec3& normal, double depth, const Corners& corners) const {
+    double far = 0, size = 0;
+    for (const Corner& corner : corners) {
+      far = std::max({far, std::abs(corner.vertex.homogeneous.x), std::abs(corner.vertex.homogeneous.y)});
+      size = std::max(size, std::abs(corner.vertex.depth));
+    }
+    return reach(normal, depth, far, size);
+  }
+
+  void add_marks() {
+    if (!reference_.boundary_.empty())
+      for (const RaySegment& s : segments_) {
+        add_boundary(s, true);
+        add_boundary(s, false);
+      }
+    for (const TriangleCrossing& t : reference_.triangles_on(x_, y_)) {
+      const double within = reach(t.triangle->normal, t.hit.depth, t.triangle->corners);
+      // In the eye's own place rounding alone puts it before the eye.
+      const double nearest = reference_.view_.nearest() > 0 ? reference_.view_.nearest() : within;
+      if (nearest < t.hit.depth && t.hit.depth < reference_.view_.farthest())
+        marks_.push_back({t.hit.depth, within, Mark::Kind::goes_through,
+                          reference_.boundary_.size() + t.triangle->paint, t.triangle->normal, t.hit.scalar});
+    }
+  }
+
+  /// The boundary at an end of a segment, if it is there: of an open face or of the plane that cuts the mesh there,
+  /// which a ray meets once.
+  void add_boundary(const RaySegment& s, bool front) {
+    const double depth = front ? s.front : s.back;
+    const auto add = [&](const glm::dvec3& normal, double within) {
+      for (std::size_t paint = 0; paint < reference_.boundary_.size(); ++paint)
+        marks_.push_back({depth, within, front ? Mark::Kind::enters : Mark::Kind::leaves, paint, normal,
+                          front ? s.scalar_front : s.scalar_back});
+    };
+    if (const scene::HalfSpace* plane = front ? kept_.nearest_plane : kept_.farthest_plane) {
+      const double at = front ? kept_.nearest : kept_.farthest;
+      const double within = reach(plane->normal, at, reference_.corners(s.tet));
+      if (front ? s.front <= at + within : s.back >= at - within) {
+        // What only rounding leaves of a cell has none.
+        const bool thin = front ? !(s.back > at + within) : !(s.front < at - within);
+        bool& met = front ? met_nearest_ : met_farthest_;
+        if (thin || met) return;
+        met = true;
+        return add(plane->normal, within);
+      }
+    }
+    const int face = front ? s.face_front : s.face_back;
+    if (face < 0 || (reference_.open_[s.tet] >> face & 1) == 0) return;
+    const glm::dvec3 normal = reference_.face_normal(s.tet, face);
+    add(normal, reach(normal, depth, reference_.corners(s.tet)));
+  }
+
+  void put_marks_in_order() {
+    std::stable_sort(marks_.begin(), marks_.end(), [](const Mark& a, const Mark& b) { return a.depth < b.depth; });
+    for (std::size_t first = 0, last; first < marks_.size(); first = last) {
+      Place place{marks_[first].depth, marks_[first].reach, first, 0};
+      for (last = first + 1; last < marks_.size(); ++last) {
+        if (marks_[last].depth - place.depth > marks_[first].reach + marks_[last].reach) break;
+        place.reach = std::max(place.reach, marks_[last].reach);
+      }
+      place.last = last;
+      std::stable_sort(
+          marks_.begin() + static_cast<std::ptrdiff_t>(first), marks_.begin() + static_cast<std::ptrdiff_t>(last),
+          [](const Mark& a, const Mark& b) { return std::tie(a.kind, a.paint) < std::tie(b.kind, b.paint); });
+      places_.push_back(place);
+    }
+  }
+
+  /// Cuts a segment at all places inside it, so that cells which overlap come in the order of depth, too.
+  void cut(std::size_t number) {
+    const RaySegment& s = segments_[number];
+    Progress& progress = progress_[number];
+    progress.change = s.change_front;
+    const KeptDepths depths{kept_.nearest, kept_.farthest, kept_.nearest_plane != nullptr,
+                            kept_.farthest_plane != nullptr};
+    if (!reference_.surfaces_.empty())
+      progress.crossings = surface_crossings(reference_.surfaces_, reference_.corners(s.tet), x_, y_, depths);
+    std::size_t begin = places_.size(), end = 0;  // the places from begin to end are inside
+    while (begin > 0 && places_[begin - 1].depth > s.front + places_[begin - 1].reach) --begin;
+    while (end < places_.size() && places_[end].depth < s.back - places_[end].reach) ++end;
+    if (begin > end) {
+      pieces_.push_back({end, true, s.front, s.back, number, 0, progress.crossings.size()});
+      return;
+    }
+    double front = s.front;
+    if (begin > 0 && std::abs(front - places_[begin - 1].depth) <= places_[begin - 1].reach)
+      front = places_[begin - 1].depth;
+    std::size_t crossing = 0;
+    for (std::size_t next = begin; next <= end; ++next) {
+      const std::size_t first = crossing;
+      const auto comes_first = [&](const SurfaceCrossing& c) {
+        return s.front + (s.back - s.front) * c.part < places_[next].depth - places_[next].reach;
+      };
+      while (crossing < progress.crossings.size() && (next == end || comes_first(progress.crossings[crossing])))
+        ++crossing;
+      const double back = next < end ? places_[next].depth : s.back;
+      pieces_.push_back({next, false, front, back, number, first, crossing});
+      front = back;
+    }
+  }
+
+  void integrate(const Piece& piece) {
+    const RaySegment& s = segments_[piece.segment];
+    const std::vector<SurfaceCrossing>& crossings = progress_[piece.segment].crossings;
+    for (std::size_t i = piece.first; i < piece.last; ++i) {
+      const SurfaceCrossing& c = crossings[i];
+      advance(piece.segment, c.part, c.surface->value - s.corner_scalar);
+      integral_.add_surface(lit(*c.surface, reference_.light_, direction_, reference_.mesh_, s.tet), c.surface->opacity,
+                            s.front + (s.back - s.front) * c.part);
+    }
+    if (piece.back == s.back) return advance(piece.segment, 1, s.change_back);
+    const double part = std::max(progress_[piece.segment].part, (piece.back - s.front) / (s.back - s.front));
+    advance(piece.segment, part, s.change_front + (s.change_back - s.change_front) * part);
+  }
+
+  /// Integrates up to that part of the segment.
+  void advance(std::size_t segment, double part, double change) {
+    const RaySegment& s = segments_[segment];
+    Progress& at = progress_[segment];
+    const auto depth_at = [&](double p) { return p == 1 ? s.back : s.front + (s.back - s.front) * p; };
+    integral_.add(s.length * (part - at.part), at.change, change, depth_at(at.part), depth_at(part), s.corner_scalar);
+    at.part = part, at.change = change;
+  }
+
+  void add_face(const Mark& mark) {
+    const std::size_t boundaries = reference_.boundary_.size();
+    const Paint& paint =
+        mark.paint < boundaries ? reference_.boundary_[mark.paint] : reference_.paints_[mark.paint - boundaries];
+    const glm::dvec3 color = paint.color ? *paint.color : glm::dvec3(reference_.function_.evaluate(mark.scalar).color);
+    integral_.add_surface(lit(color, reference_.light_, direction_, mark.normal), paint.opacity, mark.depth);
+  }
+
+  const Reference& reference_;
+  std::span<const RaySegment> segments_;
+  double x_, y_;
+  Integral integral_;
+  glm::dvec3 direction_;
+  DepthInterval kept_;
+  bool met_nearest_ = false, met_farthest_ = false;
+  std::vector<Mark> marks_;
+  std::vector<Place> places_;
+  std::vector<Piece> pieces_;
+  /// What of a segment is integrated so far.
+  struct Progress {
+    double part = 0, change = 0;
+    std::vector<SurfaceCrossing> crossings;
+  };
+  std::vector<Progress> progress_;
+};
+
+Pixel Reference::shaded(std::span<const RaySegment> segments, double x, double y) const {
+  return Ray(*this, segments, x, y).shaded();
+}
+
+}  // namespace tessera::reference
