@@ -27,10 +27,6 @@ const glm::dvec3 light_grey(0.6, 0.6, 0.6);
 
 bool is_light(double value) { return value >= 0 && std::isfinite(value); }
 
-}  // namespace
-
-namespace {
-
 /// `name`: the surface's, in messages.
 void check_paint(const std::string& name, const std::optional<glm::dvec3>& color, double opacity) {
   if (!(opacity > 0 && opacity <= 1))

@@ -70,15 +70,7 @@ TEST(ClippedSurfaces, AreThoseOfRaysCutShort) {
     const Clipping c = random_clipping(random);
     const scene::TetMesh cut = clipped(c.mesh, c.clip, c.surfaces);
     if (cut.tets.empty()) continue;
-    const scene::Box box = scene::bounds(cut);
-    const double extent = glm::length(box.high - box.low);
-    scene::Camera camera;
-    camera.focal_point = (box.low + box.high) / 2.0;
-    camera.position = camera.focal_point + 4 * extent * random.direction();
-    camera.view_up = random.direction();
-    camera.projection = random.chance(0.5) ? scene::ProjectionKind::perspective : scene::ProjectionKind::orthographic;
-    camera.parallel_scale = extent * random.uniform(0.4, 0.8);
-    camera.view_angle = random.uniform(12, 26);
+    const auto [camera, extent] = random_view(random, cut);
     const scene::TransferFunction function =
         datasets::smooth_knots(20, scene::scalar_range(c.mesh), random.power(-1, 1) / extent, 3);
     RenderSettings settings;

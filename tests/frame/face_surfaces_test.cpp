@@ -16,6 +16,7 @@
 #include "frame/random_clips.hpp"
 #include "frame/render.hpp"
 #include "frame/shared_meshes.hpp"
+#include "frame/surface_scenes.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/mesh_selection.hpp"
 #include "reference/judge.hpp"
@@ -30,25 +31,6 @@ using scene::TransferFunction;
 
 constexpr double promised_error = 2e-5;  // docs/ACCURACY.md: of exact
 constexpr SurfaceLight even_light{1, 0, 0, 1};
-
-RenderSettings exact(const scene::Surfaces& surfaces) {
-  RenderSettings settings;
-  settings.integrator.kind = scene::IntegratorKind::exact;
-  settings.surfaces = surfaces;
-  return settings;
-}
-
-scene::Camera view(ProjectionKind kind, const glm::dvec3& from) {
-  scene::Camera camera;
-  camera.position = from;
-  camera.projection = kind;
-  camera.parallel_scale = 1.5;
-  camera.view_angle = 38;
-  return camera;
-}
-
-TransferFunction clear() { return TransferFunction({{0, {0.2, 0.4, 0.6}, 0}, {1, {0.2, 0.4, 0.6}, 0}}); }
-TransferFunction grey_fog() { return TransferFunction({{0, {0.5, 0.5, 0.5}, 0.7}, {1, {0.5, 0.5, 0.5}, 0.7}}); }
 
 std::shared_ptr<const TriangleMesh> triangles(std::vector<glm::dvec3> points) {
   auto mesh = std::make_shared<TriangleMesh>();
@@ -285,6 +267,7 @@ RandomCase random_face_case(Random& random) {
   const auto range = scene::scalar_range(c.mesh);
   std::vector<scene::Knot> knots;
   const int n = 2 + random.below(4);
+  knots.reserve(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i)
     knots.push_back({range[0] + (range[1] - range[0]) * i / (n - 1),
                      {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)},
@@ -323,15 +306,7 @@ TEST(BoundarySurface, OfAClippedMeshHasTheCutFaces) {
     io::MeshCounts counts;
     io::select(cut, {clip}, counts, "mesh");
     if (cut.tets.empty()) continue;
-    const scene::Box box = scene::bounds(cut);
-    const double extent = glm::length(box.high - box.low);
-    scene::Camera camera;
-    camera.focal_point = (box.low + box.high) / 2.0;
-    camera.position = camera.focal_point + 4 * extent * random.direction();
-    camera.view_up = random.direction();
-    camera.projection = random.chance(0.5) ? ProjectionKind::perspective : ProjectionKind::orthographic;
-    camera.parallel_scale = extent * random.uniform(0.4, 0.8);
-    camera.view_angle = random.uniform(12, 26);
+    const auto [camera, extent] = random_view(random, cut);
     const TransferFunction function =
         datasets::smooth_knots(20, scene::scalar_range(mesh), random.power(-1, 1) / extent, 3);
     scene::Surfaces surfaces;

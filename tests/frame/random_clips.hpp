@@ -13,6 +13,25 @@ inline glm::dvec3 any_vertex(Random& random, const scene::TetMesh& mesh) {
   return mesh.positions[static_cast<std::size_t>(random.below(static_cast<int>(mesh.positions.size())))];
 }
 
+struct RandomView {
+  scene::Camera camera;
+  double extent;  ///< of the mesh: its box's diagonal
+};
+
+/// From anywhere outside of a mesh, which fills a good part of the picture.
+inline RandomView random_view(Random& random, const scene::TetMesh& mesh) {
+  const scene::Box box = scene::bounds(mesh);
+  RandomView view{{}, glm::length(box.high - box.low)};
+  scene::Camera& camera = view.camera;
+  camera.focal_point = (box.low + box.high) / 2.0;
+  camera.position = camera.focal_point + 4 * view.extent * random.direction();
+  camera.view_up = random.direction();
+  camera.projection = random.chance(0.5) ? scene::ProjectionKind::perspective : scene::ProjectionKind::orthographic;
+  camera.parallel_scale = view.extent * random.uniform(0.4, 0.8);
+  camera.view_angle = random.uniform(12, 26);
+  return view;
+}
+
 /// Half-spaces of some kind that cut a mesh in [-1, 1]^3, or miss it; `words` says of which kind.
 inline std::vector<HalfSpace> random_clip(Random& random, const scene::TetMesh& mesh, std::string& words) {
   std::vector<HalfSpace> clip;

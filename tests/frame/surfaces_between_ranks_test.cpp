@@ -46,6 +46,23 @@ double difference(const scene::Image& a, const scene::Image& b) {
   return most;
 }
 
+/// Three ranks' pictures, as segments and as runs, against one process's.
+void expect_those_of_one_process(const scene::TetMesh& mesh, DistributedSettings settings, const FrameJob& job,
+                                 const scene::TransferFunction& function) {
+  const auto expected = Renderer(mesh, settings.render).render(job.camera, job.size, function);
+  for (const auto how : {datasets::Partition::random_blobs, datasets::Partition::interleaved}) {
+    const auto parts = datasets::parts(mesh, 3, how, 5);
+    settings.exchange = Exchange::segments;
+    const auto segments = render(parts, settings, job, function);
+    ASSERT_EQ(segments.size(), 1u);
+    EXPECT_EQ(segments[0].image.rgba, expected.rgba) << "segments";
+    EXPECT_EQ(segments[0].image.depth, expected.depth);
+    settings.exchange = Exchange::runs;
+    // Runs are rounded to float: 6e-8 of their light each.
+    EXPECT_LT(difference(render(parts, settings, job, function).at(0).image, expected), 2e-6);
+  }
+}
+
 TEST(SurfacesBetweenRanks, AreThoseOfOneProcess) {
   scene::TetMesh mesh = datasets::cube(8, 0.2);
   // Values of vertices among them: the surfaces coincide with faces that ranks share.
@@ -63,18 +80,8 @@ TEST(SurfacesBetweenRanks, AreThoseOfOneProcess) {
       job.camera.projection = perspective ? scene::ProjectionKind::perspective : scene::ProjectionKind::orthographic;
       job.camera.view_angle = 30;
       settings.render.use.lattice = lattice;
-      const auto expected = Renderer(mesh, settings.render).render(job.camera, job.size, function);
-      for (const auto how : {datasets::Partition::random_blobs, datasets::Partition::interleaved}) {
-        const auto parts = datasets::parts(mesh, 3, how, 5);
-        settings.exchange = Exchange::segments;
-        const auto segments = render(parts, settings, job, function);
-        ASSERT_EQ(segments.size(), 1u);
-        EXPECT_EQ(segments[0].image.rgba, expected.rgba) << lattice << perspective;
-        EXPECT_EQ(segments[0].image.depth, expected.depth);
-        settings.exchange = Exchange::runs;
-        // Runs are rounded to float: 6e-8 of their light each.
-        EXPECT_LT(difference(render(parts, settings, job, function).at(0).image, expected), 2e-6);
-      }
+      SCOPED_TRACE(::testing::Message() << "lattice " << lattice << ", perspective " << perspective);
+      expect_those_of_one_process(mesh, settings, job, function);
     }
 }
 
@@ -109,18 +116,8 @@ TEST(SurfacesBetweenRanks, OfFacesAreThoseOfOneProcess) {
         job.camera.position = eye;
         job.camera.projection = perspective ? scene::ProjectionKind::perspective : scene::ProjectionKind::orthographic;
         job.camera.view_angle = 40;
-        const auto expected = Renderer(mesh, settings.render).render(job.camera, job.size, function);
-        for (const auto how : {datasets::Partition::random_blobs, datasets::Partition::interleaved}) {
-          const auto parts = datasets::parts(mesh, 3, how, 5);
-          settings.exchange = Exchange::segments;
-          const auto segments = render(parts, settings, job, function);
-          ASSERT_EQ(segments.size(), 1u);
-          EXPECT_EQ(segments[0].image.rgba, expected.rgba) << cells << perspective;
-          EXPECT_EQ(segments[0].image.depth, expected.depth);
-          settings.exchange = Exchange::runs;
-          // Runs are rounded to float: 6e-8 of their light each.
-          EXPECT_LT(difference(render(parts, settings, job, function).at(0).image, expected), 2e-6) << cells;
-        }
+        SCOPED_TRACE(::testing::Message() << "cells " << cells << ", perspective " << perspective);
+        expect_those_of_one_process(mesh, settings, job, function);
       }
   }
 }

@@ -12,6 +12,7 @@
 #include "frame/random_cases.hpp"
 #include "frame/render.hpp"
 #include "frame/shared_meshes.hpp"
+#include "frame/surface_scenes.hpp"
 #include "io/mesh_reader.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
@@ -26,32 +27,12 @@ using scene::TransferFunction;
 
 constexpr double promised_error = 2e-5;  // docs/ACCURACY.md: of exact
 
-RenderSettings exact(const scene::Surfaces& surfaces, bool lattice) {
-  RenderSettings settings;
-  settings.integrator.kind = scene::IntegratorKind::exact;
-  settings.surfaces = surfaces;
-  settings.use.lattice = lattice;
-  return settings;
-}
-
-scene::Camera view(ProjectionKind kind, const glm::dvec3& from) {
-  scene::Camera camera;
-  camera.position = from;
-  camera.projection = kind;
-  camera.parallel_scale = 1.5;
-  camera.view_angle = 38;
-  return camera;
-}
-
 /// A cube in [-1, 1]^3 of the field z / 2 + 1 / 2, which is the same along all rows of vertices.
 scene::TetMesh ramp(double jitter) {
   scene::TetMesh mesh = datasets::cube(8, jitter);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) mesh.scalars[i] = mesh.positions[i].z / 2 + 0.5;
   return mesh;
 }
-
-TransferFunction clear() { return TransferFunction({{0, {0.2, 0.4, 0.6}, 0}, {1, {0.2, 0.4, 0.6}, 0}}); }
-TransferFunction grey_fog() { return TransferFunction({{0, {0.5, 0.5, 0.5}, 0.7}, {1, {0.5, 0.5, 0.5}, 0.7}}); }
 
 TEST(IsoSurface, OfARampIsAPlaneLitByItsAngleAtTheDepthWhereTheFieldHasItsValue) {
   const scene::ImageSize size{24, 24};

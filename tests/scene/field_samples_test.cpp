@@ -40,8 +40,8 @@ TEST(FieldSamples, StandForTheVolumeAndTheField) {
     EXPECT_NEAR(s.value, s.at[0], 1e-6);  // places are floats
     volume += double{s.volume}, moment += double{s.volume} * s.value;
   }
-  EXPECT_NEAR(volume, 1, 1e-4);  // 16,768 floats of one size
-  EXPECT_NEAR(moment / volume, 0.5, 0.01);
+  EXPECT_NEAR(volume, 1, 1e-6);             // floats, each rounded by 6e-8
+  EXPECT_NEAR(moment / volume, 0.5, 0.01);  // four times what as many random places would miss by
 }
 
 // The tets' volumes, in cubes of the longest side, are too small for volume_sum() or for what follows from it.
