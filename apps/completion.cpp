@@ -50,7 +50,7 @@ std::vector<std::string> names_in_file(const std::vector<std::string>& words, bo
 
 /// Colours; with an opacity each once a colon stands.
 std::vector<std::string> preset_words(std::string_view current) {
-  const std::vector<std::string> colors = preset_names();
+  std::vector<std::string> colors = preset_names();
   const std::string name(current.substr(0, current.find(':')));
   if (name.size() == current.size() || std::ranges::find(colors, name) == colors.end()) return colors;
   std::vector<std::string> found;

@@ -50,7 +50,8 @@ struct Renderer::State {
       : settings(s), projector(mesh, s), scalar_range(scene::scalar_range(mesh, s.threads)) {
     find_boundary(mesh);
   }
-  State(std::shared_ptr<const projection::PreparedMesh> mesh, const scene::MeshFacts& facts, const RenderSettings& s)
+  State(const std::shared_ptr<const projection::PreparedMesh>& mesh, const scene::MeshFacts& facts,
+        const RenderSettings& s)
       : settings(s), projector(mesh, facts.box, s), scalar_range(facts.scalar_range) {
     find_boundary(mesh->mesh());
   }
@@ -81,9 +82,9 @@ struct Renderer::State {
 Renderer::Renderer(const scene::TetMeshView& mesh, const RenderSettings& settings)
     : state_(std::make_unique<State>(mesh, settings)) {}
 
-Renderer::Renderer(std::shared_ptr<const projection::PreparedMesh> mesh, const scene::MeshFacts& facts,
+Renderer::Renderer(const std::shared_ptr<const projection::PreparedMesh>& mesh, const scene::MeshFacts& facts,
                    const RenderSettings& settings)
-    : state_(std::make_unique<State>(std::move(mesh), facts, settings)) {}
+    : state_(std::make_unique<State>(mesh, facts, settings)) {}
 
 Renderer::~Renderer() = default;
 

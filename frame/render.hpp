@@ -60,7 +60,7 @@ class Renderer {
  public:
   Renderer(const scene::TetMeshView& mesh, const RenderSettings& settings);
   /// Of a mesh that has been prepared, with what is known of it.
-  Renderer(std::shared_ptr<const projection::PreparedMesh> mesh, const scene::MeshFacts& facts,
+  Renderer(const std::shared_ptr<const projection::PreparedMesh>& mesh, const scene::MeshFacts& facts,
            const RenderSettings& settings);
   ~Renderer();
   Renderer(const Renderer&) = delete;

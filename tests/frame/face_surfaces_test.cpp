@@ -265,15 +265,7 @@ RandomCase random_face_case(Random& random) {
   if (random.chance(0.3)) c.camera.parallel_scale = 1;
   if (random.chance(0.2)) c.camera.position *= 0.1;  // inside
   const auto range = scene::scalar_range(c.mesh);
-  std::vector<scene::Knot> knots;
-  const int n = 2 + random.below(4);
-  knots.reserve(static_cast<std::size_t>(n));
-  for (int i = 0; i < n; ++i)
-    knots.push_back({range[0] + (range[1] - range[0]) * i / (n - 1),
-                     {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)},
-                     random.chance(0.3) ? 0 : random.power(-1, 1)});
-  if (!(range[0] < range[1])) knots.resize(1);
-  c.function = TransferFunction(knots);
+  c.function = random_function(random, range);
   const auto color = [&]() -> std::optional<glm::dvec3> {
     if (random.chance(0.5)) return std::nullopt;
     return glm::dvec3(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1));

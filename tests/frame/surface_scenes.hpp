@@ -1,5 +1,9 @@
 #pragma once
 
+#include <array>
+#include <vector>
+
+#include "frame/random_cases.hpp"
 #include "frame/render.hpp"
 
 /// What tests of surfaces in a cube [-1, 1]^3 share.
@@ -27,6 +31,19 @@ inline scene::TransferFunction clear() {
 }
 inline scene::TransferFunction grey_fog() {
   return scene::TransferFunction({{0, {0.5, 0.5, 0.5}, 0.7}, {1, {0.5, 0.5, 0.5}, 0.7}});
+}
+
+/// Two to five knots, evenly over the range, some of them clear.
+inline scene::TransferFunction random_function(Random& random, const std::array<double, 2>& range) {
+  std::vector<scene::Knot> knots;
+  const int n = 2 + random.below(4);
+  knots.reserve(static_cast<std::size_t>(n));
+  for (int i = 0; i < n; ++i)
+    knots.push_back({range[0] + (range[1] - range[0]) * i / (n - 1),
+                     {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)},
+                     random.chance(0.3) ? 0 : random.power(-1, 1)});
+  if (!(range[0] < range[1])) knots.resize(1);
+  return scene::TransferFunction(knots);
 }
 
 }  // namespace tessera::frame

@@ -169,14 +169,7 @@ RandomCase random_surface_case(Random& random) {
   if (random.chance(0.3)) c.camera.parallel_scale = 1;
   if (random.chance(0.15)) c.camera.position *= 0.1;
   const auto range = scene::scalar_range(c.mesh);
-  std::vector<scene::Knot> knots;
-  const int n = 2 + random.below(4);
-  for (int i = 0; i < n; ++i)
-    knots.push_back({range[0] + (range[1] - range[0]) * i / (n - 1),
-                     {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)},
-                     random.chance(0.3) ? 0 : random.power(-1, 1)});
-  if (!(range[0] < range[1])) knots.resize(1);
-  c.function = TransferFunction(knots);
+  c.function = random_function(random, range);
   c.surfaces = random_surfaces(random, c.mesh);
   return c;
 }
@@ -226,7 +219,7 @@ TEST(IsoSurface, IsAPointAmongDeepSamples) {
 }
 
 TEST(IsoSurface, WhatCannotBeRenderedIsSaid) {
-  const auto message = [](RenderSettings settings, scene::Association association) -> std::string {
+  const auto message = [](const RenderSettings& settings, scene::Association association) -> std::string {
     try {
       check_surfaces(settings, association);
     } catch (const scene::Error& error) {
