@@ -229,7 +229,7 @@ void add_render_options(CLI::App& command, RenderWords& words) {
 
   command
       .add_option("--background", words.background,
-                  "linear R,G,B, sRGB #rrggbb or a name; without it the picture has alpha")
+                  "linear R,G,B, sRGB #rrggbb or CSS's name; without it the picture has alpha")
       ->type_name("R,G,B|#RRGGBB|NAME");
   add_film_options(command, words);
   command.add_flag("--half", words.half, ".exr with 16-bit floats");
