@@ -20,6 +20,7 @@
 #include "tessera/image_file.hpp"
 #include "tessera/session.hpp"
 #include "tessera/trace.hpp"
+#include "tessera/triangle_file.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -174,9 +175,22 @@ class Film final : public Sink {
     watched.progress = output_.line().listener();
     data_.emplace(Dataset::open(frame.data.files, watched, job_.communicator(), settings_.ranks));
     step_ = frame.step;
+    read_block_surfaces(frame.data.files, watched);
     const auto [low, high] = data_->range();
     if (!first_range_) all_range_ = first_range_.emplace(std::array{low, high});
     all_range_ = {std::min(all_range_[0], low), std::max(all_range_[1], high)};
+  }
+
+  /// Of the step at hand, with its field.
+  void read_block_surfaces(const std::vector<std::filesystem::path>& files, ReadOptions read) {
+    if (options_.block_surfaces.empty()) return;
+    settings_.surfaces = options_.settings.surfaces;
+    const char* const of = data_->association() == Association::cell ? "cell:" : "point:";
+    read.field = data_->shows_shape() ? std::string() : of + data_->field_name();
+    for (const BlockSurfaceWord& block : options_.block_surfaces)
+      settings_.surfaces.triangles.push_back(
+          {std::make_shared<const TriangleMesh>(read_block_surface(files, block.name, read)), block.color,
+           block.opacity});
   }
 
   /// Colours and opacities are the first step's, of whose values the others' may be far.

@@ -317,7 +317,9 @@ RenderOptions render_options(const RenderWords& words) {
   options.image = image_options(words);
   options.annotation = annotation_options(words.annotation, options.image);
   if (options.annotation.annotation) refuse_unannotated(options);
-  settings.surfaces = surfaces_of(words.surfaces);
+  settings.surfaces = surfaces_of(words.surfaces, options.block_surfaces);
+  if (plan.grids && !options.block_surfaces.empty())
+    throw bad_input("--surface: is for meshes, and the input is a volume; --iso VALUE shows a surface in one");
   set_ranks(words, without.merging, options);
   plan.resume = words.resume;
   if (!words.repeat.empty()) options.repeat = parse_count("--repeat", words.repeat, 1, no_limit);

@@ -34,6 +34,8 @@ struct RenderOptions {
   ImageFileOptions image;
   AnnotationOptions annotation;
 
+  std::vector<BlockSurfaceWord> block_surfaces;  ///< beside settings.surfaces, which has them once the input is read
+
   bool no_shade = false;            ///< not even where the default transfer function asks for it
   bool fixed_higher_order = false;  ///< higher-order cells are read as `read` says, whatever --accuracy is
 

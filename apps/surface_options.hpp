@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,10 +16,18 @@ struct SurfaceWords {
   std::vector<std::string> iso, surface;
 };
 
+/// `--surface NAME` of a block of the input, which is looked for once that is read.
+struct BlockSurfaceWord {
+  std::string name;
+  std::optional<glm::dvec3> color{};
+  double opacity = 1;
+};
+
 void add_surface_options(CLI::App& command, SurfaceWords& words);
 
-/// What they say, with the triangles of files. Throws Error(bad_input) naming the option or the file.
-Surfaces surfaces_of(const SurfaceWords& words);
+/// What they say, with the triangles of files; names of blocks go to `blocks`. Throws Error(bad_input) naming the
+/// option or the file.
+Surfaces surfaces_of(const SurfaceWords& words, std::vector<BlockSurfaceWord>& blocks);
 /// Of them those of a value.
 std::vector<IsoSurface> iso_surfaces_of(const SurfaceWords& words);
 
