@@ -67,7 +67,7 @@ ExodusSets::ExodusSets(int id, const ex_init_params& init, const BlockChoice& ch
     }
   }
   std::ranges::sort(elements_);
-  elements_.erase(std::ranges::unique(elements_).begin(), elements_.end());
+  elements_.erase(std::unique(elements_.begin(), elements_.end()), elements_.end());
   const std::vector<std::int64_t> sides = ids_of(id, EX_SIDE_SET, init.num_side_sets, most_values, fail);
   if (!with_sides) refuse(id, EX_SIDE_SET, sides, "side set", "faces", choice, source);
   for (const std::int64_t set : sides) {
