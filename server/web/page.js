@@ -1,0 +1,88 @@
+/**
+ * What the parts of the page share: the data, the state with its history, and what of it the server is told.
+ *
+ * @typedef {import("./types.js").Camera} Camera
+ * @typedef {import("./types.js").Data} Data
+ * @typedef {import("./types.js").State} State
+ * @typedef {import("./types.js").Vector} Vector
+ */
+import { ask_about, LatestQuestion } from "./requests.js";
+import { length, subtract } from "./vector.js";
+
+export class Page {
+  /**
+   * @param {import("./state.js").StateHistory} history @param {import("./messages.js").Messages} messages
+   * @param {import("./picture_view.js").PictureView} view
+   */
+  constructor(history, messages, view) {
+    this.history = history;
+    this.messages = messages;
+    this.view = view;
+    this.camera_question = new LatestQuestion();
+    /** Whether `data` is there. */
+    this.ready = false;
+    this.data = /** @type {Data} */ (/** @type {unknown} */ (undefined));
+    /** The colours that are edited, for parts that show one of them. @type {() => import("./transfer_function.js").EditedFunction | undefined} */
+    this.edited_function = () => undefined;
+  }
+
+  /** An option as it is in force: the state's, else what the server began with. @param {string} word @returns {any} */
+  option(word) {
+    const own = this.history.state[word];
+    return own !== undefined ? own : this.ready ? this.data.defaults[word] : undefined;
+  }
+
+  /** What the state says so that an option is off: nothing, unless the server began with it on. @param {string} word */
+  unset(word) {
+    return this.ready && this.data.defaults[word] ? false : undefined;
+  }
+
+  /** @param {string} word @param {any} value undefined: off */
+  set_option(word, value) {
+    this.history.change({ [word]: value === undefined ? this.unset(word) : value });
+  }
+
+  /** @returns {Camera} */
+  get camera() {
+    return this.history.state.camera ?? this.data.defaults.camera;
+  }
+
+  /** All that makes the picture. @returns {State} */
+  full_state() {
+    const { width, height } = this.view.size();
+    return { ...this.history.state, camera: this.camera, size: `${width}x${height}` };
+  }
+
+  /** Length of the data's diagonal, world units. */
+  get extent() {
+    const [low, high] = this.data.bounds;
+    return length(subtract(high, low)) || 1;
+  }
+
+  /** The field's range, or 0 to 1 where it is not known. @returns {[number, number]} */
+  get field_range() {
+    const word = String(this.option("field") ?? this.data.field);
+    const name = word.replace(/^(cell|point):/, "");
+    const field = this.data.fields.find((f) => f.name === name) ?? this.data.fields.find((f) => name.startsWith(`${f.name}:`));
+    const range = field?.range ?? [0, 1];
+    return Array.isArray(range[0]) ? [0, 1] : /** @type {[number, number]} */ (range);
+  }
+
+  /** A named view, by the server's code. @param {string} view */
+  async look(view) {
+    if (!this.ready) return;
+    const perspective = this.camera.parallel_scale === undefined;
+    const question = { state: this.full_state(), view, projection: perspective ? "perspective" : "orthographic" };
+    const camera = await this.messages.of(this.camera_question.ask("api/camera", question), "camera");
+    if (camera) this.history.change({ camera: camera.camera ?? camera });
+  }
+
+  /** Another field; what was said in the values of the one before goes. @param {string} field */
+  set_field(field) {
+    const own = this.history.state["transfer-function"];
+    this.history.change({ field, range: undefined, threshold: undefined, iso: undefined, "transfer-function": typeof own === "string" ? own : undefined });
+  }
+}
+
+/** The command of a state. @param {State} state @returns {Promise<string>} */
+export const command_of = async (state) => (await ask_about("api/command", { state })).command;
