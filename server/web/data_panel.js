@@ -21,6 +21,7 @@ export class DataPanel {
     this.last_step = 0;
     this.field = choice("", (name) => this.#choose_field(name));
     this.part = choice("Component", (part) => this.#choose_part(part));
+    this.field_row = row("Field", this.field, this.part);
     this.smooth = checkbox("Smooth", (on) => page.set_option("smooth", on ? true : undefined), "Average cell values to the points");
     this.step = element("input", { type: "range", min: 0, step: 1, "aria-label": "Time step", on_input: () => this.#set_step(Number(this.step.value), true), on_change: () => page.history.settle("step") });
     this.step_text = typed("Time step", (text) => this.#type_step(text), { class: "short" });
@@ -33,7 +34,7 @@ export class DataPanel {
     this.clip = new ClipEditor(page);
     this.surfaces = new SurfaceEditor(page);
     this.element = element("div", { class: "panel-body" },
-      row("Field", this.field, this.part), element("div", { class: "checks" }, this.smooth.label), this.time, this.blocks,
+      this.field_row, element("div", { class: "checks" }, this.smooth.label), this.time, this.blocks,
       element("div", { class: "checks" }, this.threshold_on.label), this.threshold.element, this.clip.element, this.surfaces.element);
   }
 
@@ -44,6 +45,7 @@ export class DataPanel {
       const word = twice(f.name) ? `${f.association}:${f.name}` : f.name;
       return [word, `${f.name} (${f.association}${f.components > 1 ? `, ${f.components} components` : ""})`];
     }));
+    this.field_row.hidden = data.fields.length === 0;
     this.smooth.label.hidden = !data.fields.some((f) => f.association === "cell");
     this.#begin_blocks();
     const count = this.step_count;
@@ -55,8 +57,7 @@ export class DataPanel {
   }
 
   get step_count() {
-    const steps = this.page.data.time_steps;
-    return Array.isArray(steps) ? steps.length : (steps ?? this.page.data.times?.length ?? 1);
+    return this.page.data.time_steps ?? this.page.data.times?.length ?? 1;
   }
 
   #begin_blocks() {
@@ -106,7 +107,7 @@ export class DataPanel {
   /** The field's name as options have it, and its component. @returns {[string, string]} */
   #field_words() {
     const { page } = this;
-    const word = String(page.option("field") ?? page.data.field);
+    const word = String(page.option("field") ?? page.data.field ?? "");
     const names = [...this.field.options].map((o) => o.value);
     const found = names.find((n) => n === word) ?? names.find((n) => word.startsWith(`${n}:`))
       ?? names.find((n) => n.endsWith(`:${word}`)) ?? names.find((n) => word === `cell:${n}` || word === `point:${n}`) ?? word;

@@ -151,7 +151,7 @@ export class FunctionPanel {
     this.reply = reply;
     // What is being edited is not replaced under the hand; the reply to its last state comes too.
     if (this.editor.dragging) return;
-    this.editor.edited = functions.edited_function(reply);
+    this.editor.edited = functions.edited_function(reply, this.page.history.state["transfer-function"], Number(this.page.option("opacity") ?? 1));
     this.#show();
   }
 
@@ -198,7 +198,7 @@ export class FunctionPanel {
       this.page.history.change({ "transfer-function": both });
       return;
     }
-    const state = { ...this.page.full_state(), "transfer-function": `${colors ?? "gray"}:${shape ?? "ramp"}`, range: this.editor.edited.range.join(",") };
+    const state = { ...this.page.full_state(), opacity: null, "transfer-function": `${colors ?? "gray"}:${shape ?? "ramp"}`, range: this.editor.edited.range.join(",") };
     const reply = await this.page.messages.of(ask_about("api/function", { state }), "function");
     if (!reply) return;
     const preset = functions.edited_function(reply);

@@ -21,9 +21,11 @@ export class InformationPanel {
   begin() {
     const { data } = this.page;
     const vector = (/** @type {number[]} */ v) => v.map((n) => short_number(n, 4)).join(", ");
+    const left_out = Object.entries(data.counts ?? {}).filter(([name, count]) => name !== "read" && count > 0);
     const lines = [
       ["File", data.file], ["Format", data.format], [data.kind === "mesh" ? "Cells" : "Samples", counted(data.cells ?? 0)],
       data.tets && data.tets !== data.cells ? ["Tetrahedra", counted(data.tets)] : null,
+      ...left_out.map(([name, count]) => [data.kind === "mesh" ? (name === "cut" ? "Cut by a clip" : `Left out, ${name.replaceAll("_", " ")}`) : "Blank samples", counted(count)]),
       ["Low corner", vector(data.bounds[0])], ["High corner", vector(data.bounds[1])],
       ["Processes", `${data.ranks ?? 1}, threads ${data.threads ?? "all"}`], ["Tessera", data.tessera ?? ""],
     ];

@@ -20,7 +20,7 @@ import { Page } from "./page.js";
 import { PicturePanel } from "./picture_panel.js";
 import { PictureView } from "./picture_view.js";
 import { ProbePanel } from "./probe_panel.js";
-import { ask, Refused, StillReading } from "./requests.js";
+import { ask, LatestQuestion, Refused, StillReading } from "./requests.js";
 import { StateHistory } from "./state.js";
 import { StatusLine } from "./status_line.js";
 import { ViewPanel } from "./view_panel.js";
@@ -325,8 +325,29 @@ history.listen(({ state, before, moving }) => {
   if (size) badge.replaceChildren(`${size[1]} × ${size[2]} `, button("Fill the window", () => history.change({ size: undefined })));
   offer(moving);
   update_soon();
-  if (!moving) write_address();
+  if (!moving) {
+    write_address();
+    ask_anew();
+  }
 });
+
+// What there is of the data goes with what is drawn of it.
+const data_words = ["field", "time-step", "block", "smooth", "threshold", "clip"];
+const data_key = () => JSON.stringify(data_words.map((word) => history.state[word] ?? null));
+/** The base's, which the page began with. */
+let known_data = "[null,null,null,null,null,null]";
+const data_question = new LatestQuestion();
+const ask_anew = debounced(async () => {
+  const key = data_key();
+  if (!page.ready || key === known_data) return;
+  known_data = key;
+  // An error is the state's, and is told with its picture.
+  const data = await data_question.ask("api/data", { state: page.full_state() }).catch(() => undefined);
+  if (!data || data.reading) return;
+  page.data = { ...data, defaults: page.data.defaults };
+  information.begin();
+  update_soon();
+}, 150);
 
 const resize_rest = debounced(() => offer(false), 250);
 view.resized = () => {

@@ -32,9 +32,9 @@ export class Page {
     return own !== undefined ? own : this.ready ? this.data.defaults[word] : undefined;
   }
 
-  /** What the state says so that an option is off: nothing, unless the server began with it on. @param {string} word */
+  /** What the state says so that an option is off: nothing, or null where the server began with it on. @param {string} word */
   unset(word) {
-    return this.ready && this.data.defaults[word] ? false : undefined;
+    return this.ready && this.data.defaults[word] ? null : undefined;
   }
 
   /** @param {string} word @param {any} value undefined: off */
@@ -61,11 +61,11 @@ export class Page {
 
   /** The field's range, or 0 to 1 where it is not known. @returns {[number, number]} */
   get field_range() {
-    const word = String(this.option("field") ?? this.data.field);
+    const word = String(this.option("field") ?? this.data.field ?? "");
     const name = word.replace(/^(cell|point):/, "");
     const field = this.data.fields.find((f) => f.name === name) ?? this.data.fields.find((f) => name.startsWith(`${f.name}:`));
-    const range = field?.range ?? [0, 1];
-    return Array.isArray(range[0]) ? [0, 1] : /** @type {[number, number]} */ (range);
+    const range = this.data.field === word && this.data.range ? this.data.range : field?.range;
+    return range && range[0] < range[1] ? range : [0, 1];
   }
 
   /** A named view, by the server's code. @param {string} view */

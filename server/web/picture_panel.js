@@ -91,8 +91,7 @@ export class PicturePanel {
     /** @type {Record<string, any>} */
     const state = { ...this.page.full_state(), size: `${size.width}x${size.height}` };
     if (this.clear.input.checked && format !== "jpg") {
-      delete state.background;
-      if (this.page.unset("background") === false) state.background = false;
+      state.background = null;
     }
     await this.#busy(this.save_button, async () => {
       const response = await post("picture", { state, format });
@@ -192,7 +191,7 @@ export class PicturePanel {
 
   async #show_progress() {
     const progress = await ask("api/progress").catch(() => undefined);
-    const fraction = progress?.fraction ?? (progress?.frames ? progress.frame / progress.frames : undefined);
+    const fraction = progress?.film;
     if (typeof fraction === "number" && this.filming) {
       this.film_progress.value = fraction;
       this.film_progress.title = `${short_number(fraction * 100, 3)} %`;

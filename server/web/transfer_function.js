@@ -22,15 +22,15 @@
 import { fraction_of, value_of } from "./numbers.js";
 
 /** More points than this are too many to take hold of. */
-const most_points = 24;
+const most_points = 24, most_colors = 40;
 
 /** @param {number[]} list @param {number} width @returns {number[][]} */
 const in_groups = (list, width) => Array.from({ length: Math.floor(list.length / width) }, (_, i) => list.slice(i * width, (i + 1) * width));
 
 /**
- * The fewest of the points between which straight lines miss none by more than `tolerance`.
+ * The fewest of the points between which straight lines miss none by more than `tolerance`, in any number but the first.
  * Source: Douglas, Peucker, "Algorithms for the reduction of the number of points", Cartographica, 1973; by height alone.
- * @param {OpacityPoint[]} points @param {number} tolerance @returns {OpacityPoint[]}
+ * @param {number[][]} points @param {number} tolerance @returns {number[][]}
  */
 export function simplified(points, tolerance) {
   if (points.length < 3) return points;
@@ -38,11 +38,11 @@ export function simplified(points, tolerance) {
   const spans = [[0, points.length - 1]];
   for (let span = spans.pop(); span; span = spans.pop()) {
     const [first, last] = span;
+    const from = points[first], to = points[last];
     let worst = -1, most = tolerance;
     for (let i = first + 1; i < last; ++i) {
-      const width = points[last][0] - points[first][0];
-      const t = width > 0 ? (points[i][0] - points[first][0]) / width : 0;
-      const miss = Math.abs(points[i][1] - points[first][1] - t * (points[last][1] - points[first][1]));
+      const t = to[0] > from[0] ? (points[i][0] - from[0]) / (to[0] - from[0]) : 0;
+      const miss = Math.max(...points[i].slice(1).map((v, k) => Math.abs(v - from[k + 1] - t * (to[k + 1] - from[k + 1]))));
       if (miss > most) [worst, most] = [i, miss];
     }
     if (worst < 0) continue;
@@ -50,6 +50,13 @@ export function simplified(points, tolerance) {
     spans.push([first, worst], [worst, last]);
   }
   return points.filter((_, i) => kept.has(i));
+}
+
+/** So few as `most`, with the least tolerance, doubled from `tolerance`, that gives that. @param {number[][]} points @param {number} tolerance @param {number} most */
+function fewer(points, tolerance, most) {
+  let few = simplified(points, tolerance);
+  for (let coarse = 2 * tolerance; few.length > most; coarse *= 2) few = simplified(points, coarse);
+  return few;
 }
 
 /**
@@ -70,23 +77,26 @@ function over_own_ends(points) {
   return points.map((p) => [span > 0 ? (p[0] - low) / span : 0, ...p.slice(1)]);
 }
 
+/** The opacity of an extinction `factor` times as large. @param {number} opacity @param {number} factor */
+const scaled_opacity = (opacity, factor) => (factor === 1 ? opacity : 1 - (1 - opacity) ** factor);
+
 /**
- * What api/function says, as it is edited. A colour map's own points are kept where they can be; else the function as
- * it is used is simplified.
- * @param {FunctionReply} reply @returns {EditedFunction}
+ * What api/function says, as it is edited. `own`: the colour map of the state, whose points are kept as they are; of any
+ * other function those knots that say what it is. `factor`: the state's overall opacity, which points are without.
+ * @param {FunctionReply} reply @param {any} [own] @param {number} [factor] @returns {EditedFunction}
  */
-export function edited_function(reply) {
-  const { json, log } = reply;
+export function edited_function(reply, own, factor = 1) {
+  const { log } = reply;
   const at = (/** @type {number[]} */ p) => [fraction_of(p[0], reply.range, log), ...p.slice(1)];
-  const stops = json?.RGBPoints?.length >= 8 ? over_own_ends(in_groups(json.RGBPoints, 4)) : reply.colors.map(at);
-  const own = json?.Points?.length >= 8 ? in_groups(json.Points, 4) : [];
-  const plain = own.length > 1 && own.length <= most_points && own.every((p) => p[2] === 0.5 && !p[3]);
-  let points = /** @type {OpacityPoint[]} */ (plain ? over_own_ends(own).map((p) => [p[0], p[1]]) : reply.opacities.map(at));
-  for (let tolerance = 1e-4; points.length > most_points; tolerance *= 2) points = simplified(points, tolerance);
+  const map = own?.RGBPoints?.length >= 8 ? own : undefined;
+  const stops = /** @type {ColorPoint[]} */ (map ? over_own_ends(in_groups(map.RGBPoints, 4)) : fewer(reply.colors.map(at), 2e-3, most_colors));
+  const own_points = in_groups(map?.Points ?? [], 4);
+  const plain = own_points.length > 1 && own_points.every((p) => p[2] === 0.5 && !p[3]);
+  const points = /** @type {OpacityPoint[]} */ (plain ? over_own_ends(own_points).map((p) => [p[0], p[1]])
+    : fewer(reply.opacities.map((p) => at([p[0], scaled_opacity(p[1], 1 / factor)])), 1e-4, most_points));
   return {
-    range: reply.range, log, colors: with_ends(/** @type {ColorPoint[]} */ (stops)), opacities: with_ends(points),
-    color_space: json?.RGBPoints ? (json.ColorSpace ?? "RGB") : "RGB", hsv_wrap: json?.HSVWrap,
-    unit_distance: json?.ScalarOpacityUnitDistance ?? reply.unit_distance, name: json?.Name ?? "function",
+    range: reply.range, log, colors: with_ends(stops), opacities: with_ends(points), color_space: map?.ColorSpace ?? "RGB", hsv_wrap: map?.HSVWrap,
+    unit_distance: map?.ScalarOpacityUnitDistance ?? reply.unit_distance, name: map?.Name ?? "function",
   };
 }
 

@@ -38,8 +38,10 @@
  * @property {number} [tets]
  * @property {[Vector, Vector]} bounds
  * @property {Field[]} fields
- * @property {string} field
- * @property {number|string[]|null} [time_steps]
+ * @property {string|null} field null: the shape alone is shown
+ * @property {[number, number]} [range] of the field
+ * @property {Record<string, number>} [counts] cells read, and those that are left out
+ * @property {number} [time_steps]
  * @property {number[]|null} [times]
  * @property {string[]} [blocks]
  * @property {string[]} [notes]

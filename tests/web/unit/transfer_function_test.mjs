@@ -13,19 +13,19 @@ const reply = {
 };
 
 test("what was edited by nobody makes the same colour map again", () => {
-  const made = functions.state_of(functions.edited_function(reply));
+  const made = functions.state_of(functions.edited_function(reply, json));
   assert.deepEqual(made["transfer-function"], json);
   assert.equal(made.range, "0,10");
 });
 
 test("points of a map that is used over another range are stretched by their ends", () => {
-  const edited = functions.edited_function({ ...reply, range: [100, 200] });
+  const edited = functions.edited_function({ ...reply, range: [100, 200] }, json);
   assert.deepEqual(edited.colors.map((p) => p[0]), [0, 0.5, 1]);
   assert.deepEqual(functions.state_of(edited)["transfer-function"].RGBPoints.filter((_, i) => i % 4 === 0), [100, 150, 200]);
 });
 
 test("a logarithmic function has its points over the exponent", () => {
-  const edited = functions.edited_function({ ...reply, range: [0.01, 100], log: true });
+  const edited = functions.edited_function({ ...reply, range: [0.01, 100], log: true }, json);
   assert.deepEqual(functions.state_of(edited)["transfer-function"].RGBPoints.filter((_, i) => i % 4 === 0), [-2, 0, 2]);
   assert.equal(functions.state_of(edited).range, "0.01,100");
   assert.ok(Math.abs(functions.value_at(edited, 0.5) - 1) < 1e-12);
@@ -33,14 +33,28 @@ test("a logarithmic function has its points over the exponent", () => {
 
 test("too many points become few that miss little", () => {
   const opacities = Array.from({ length: 500 }, (_, i) => [i / 499, 0.5 + 0.4 * Math.sin(i / 60)]);
-  const edited = functions.edited_function({ ...reply, range: [0, 1], opacities, json: { ...json, Points: undefined } });
+  const edited = functions.edited_function({ ...reply, range: [0, 1], opacities });
   assert.ok(edited.opacities.length <= 24);
   for (const [t, opacity] of opacities) assert.ok(Math.abs(functions.opacity_at(edited, t) - opacity) < 0.02);
 });
 
 test("points with a midpoint of their own are replaced by what they draw", () => {
   const bent = { ...json, Points: [0, 0, 0.3, 0.5, 10, 1, 0.5, 0] };
-  assert.deepEqual(functions.edited_function({ ...reply, json: bent }).opacities, [[0, 0], [1, 0.4]]);
+  assert.deepEqual(functions.edited_function(reply, bent).opacities, [[0, 0], [1, 0.4]]);
+});
+
+test("the knots of a function that is no colour map become its points, and colours miss by nothing that is seen", () => {
+  const colors = Array.from({ length: 300 }, (_, i) => [i / 29.9, Math.sin(i / 200), i / 299, 0.5]);
+  const edited = functions.edited_function({ ...reply, colors, opacities: [[0, 0], [2, 0.04], [5, 0.1], [10, 0.2]] });
+  assert.deepEqual(edited.opacities, [[0, 0], [1, 0.2]]);
+  assert.ok(edited.colors.length <= 40);
+  for (const [value, ...rgb] of colors)
+    functions.color_at(edited, value / 10).forEach((v, k) => assert.ok(Math.abs(v - rgb[k]) < 0.5 / 255 + 1e-4));
+});
+
+test("points are without the overall opacity", () => {
+  const edited = functions.edited_function({ ...reply, opacities: [[0, 0], [10, 0.75]] }, undefined, 2);
+  assert.deepEqual(edited.opacities, [[0, 0], [1, 0.5]]);
 });
 
 test("a point moves between its neighbours, and the ends keep their place", () => {
