@@ -18,6 +18,8 @@ import * as functions from "./transfer_function.js";
 const margin = { left: 34, right: 10, top: 16, bottom: 54 };
 const height = 250;
 const strip_height = 16;
+/** CSS pixels. */
+const usual_text = 14;
 
 export class FunctionEditor {
   /** @param {Wishes} wishes */
@@ -37,12 +39,14 @@ export class FunctionEditor {
     this.dragging = false;
     this.width = 320;
     this.element = svg("svg", {
-      class: "function-editor", height, role: "group",
+      class: "function-editor", role: "group",
       "aria-label": "Transfer function: opacity over the field's value. Points are moved with the arrow keys, added with Enter, removed with Delete.",
       on_dblclick: (/** @type {MouseEvent} */ e) => this.#add(e), on_keydown: (/** @type {KeyboardEvent} */ e) => this.#key(e),
     });
     new ResizeObserver(() => {
-      const width = Math.round(this.element.getBoundingClientRect().width);
+      // The drawing's unit is a pixel where the page's text has its usual size, and grows with that.
+      const unit = Number.parseFloat(getComputedStyle(document.documentElement).fontSize) / usual_text;
+      const width = Math.round(this.element.getBoundingClientRect().width / unit);
       if (width > 0 && width !== this.width) {
         this.width = width;
         this.draw();

@@ -20,7 +20,7 @@ import { Page } from "./page.js";
 import { PicturePanel } from "./picture_panel.js";
 import { PictureView } from "./picture_view.js";
 import { ProbePanel } from "./probe_panel.js";
-import { ask, LatestQuestion, Refused, StillReading } from "./requests.js";
+import { LatestQuestion, Refused, StillReading } from "./requests.js";
 import { StateHistory } from "./state.js";
 import { StatusLine } from "./status_line.js";
 import { ViewPanel } from "./view_panel.js";
@@ -243,7 +243,7 @@ let reading_timer = 0;
 async function load_data() {
   clearTimeout(reading_timer);
   try {
-    const data = await ask("api/data");
+    const data = await page.ask_data();
     by_id("reading").hidden = true;
     messages.clear("data");
     begin(data);
@@ -270,7 +270,6 @@ function first_state(state) {
 function begin(data) {
   const first = !page.ready;
   page.data = data;
-  page.ready = true;
   by_id("file").textContent = data.file;
   by_id("file").title = `${data.file}, ${data.format}`;
   document.title = `${data.file.replace(/^.*[\\/]/, "")} – Tessera`;
@@ -278,12 +277,14 @@ function begin(data) {
     for (const panel of panels) panel.begin();
     return;
   }
+  /** @type {import("./types.js").State} */
   let state = {};
   try {
     state = state_of_fragment(location.hash) ?? {};
   } catch (error) {
     messages.complain(error instanceof Error ? error.message : String(error), { about: "link" });
   }
+  page.ready = true;
   history.begin(first_state(state));
   for (const panel of panels) panel.begin();
   sender.opened();

@@ -49,8 +49,7 @@ export class Page {
 
   /** All that makes the picture. @returns {State} */
   full_state() {
-    const { width, height } = this.view.size();
-    return { ...this.history.state, camera: this.camera, size: `${width}x${height}` };
+    return { ...this.history.state, camera: this.camera, size: size_word(this.view.size()) };
   }
 
   /** Length of the data's diagonal, world units. */
@@ -68,9 +67,19 @@ export class Page {
     return range && range[0] < range[1] ? range : [0, 1];
   }
 
-  /** A named view, by the server's code. @param {string} view */
+  /** What there is, and what the server began with, its view framed for this window. @returns {Promise<Data>} */
+  ask_data() {
+    return ask_about("api/data", { state: { size: size_word(this.view.size()) } });
+  }
+
+  /** A named view, by the server's code; "default" is what the server began with. @param {string} view */
   async look(view) {
     if (!this.ready) return;
+    if (view === "default") {
+      const data = await this.messages.of(this.ask_data(), "camera");
+      if (data) this.history.change({ camera: data.defaults.camera });
+      return;
+    }
     const perspective = this.camera.parallel_scale === undefined;
     const question = { state: this.full_state(), view, projection: perspective ? "perspective" : "orthographic" };
     const camera = await this.messages.of(this.camera_question.ask("api/camera", question), "camera");
@@ -83,6 +92,9 @@ export class Page {
     this.history.change({ field, range: undefined, threshold: undefined, iso: undefined, "transfer-function": typeof own === "string" ? own : undefined });
   }
 }
+
+/** As the option has it. @param {import("./types.js").Size} size */
+export const size_word = ({ width, height }) => `${width}x${height}`;
 
 /** The command of a state. @param {State} state @returns {Promise<string>} */
 export const command_of = async (state) => (await ask_about("api/command", { state })).command;
