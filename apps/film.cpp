@@ -20,6 +20,7 @@
 #include "tessera/image_file.hpp"
 #include "tessera/session.hpp"
 #include "tessera/trace.hpp"
+#include "tessera/view.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -181,7 +182,8 @@ class Film final : public Sink {
 
   /// Colours and opacities are the first step's, of whose values the others' may be far.
   void warn_of_range() {
-    const bool of_file = !options_.function.rescale && std::filesystem::exists(options_.transfer_function);
+    const std::string& function = options_.transfer_function;
+    const bool of_file = !options_.function.rescale && (is_json_text(function) || std::filesystem::exists(function));
     if (!writes_ || !first_range_ || options_.function.range || of_file) return;
     const auto [low, high] = *first_range_;
     const double beyond = std::max(low - all_range_[0], all_range_[1] - high);

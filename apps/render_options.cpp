@@ -163,8 +163,8 @@ void add_render_options(CLI::App& command, RenderWords& words) {
       ->required()
       ->allow_extra_args(false);  // else `-o out.png mesh.vtu` would take the mesh for a second picture
 
-  command.add_option("--transfer-function", words.transfer_function, "file or preset (see the guide)")
-      ->type_name("FILE|PRESET");
+  command.add_option("--transfer-function", words.transfer_function, "file or preset (see the guide), or JSON itself")
+      ->type_name("FILE|PRESET|JSON");
   command.add_flag("--rescale", words.rescale, "stretch a transfer function file's values over the field's range");
   command
       .add_option("--unit-distance", words.unit_distance,
@@ -177,8 +177,10 @@ void add_render_options(CLI::App& command, RenderWords& words) {
   command.add_option("--blend", words.blend, "linear light (default), or sRGB values as VTK does")
       ->type_name("linear|display");
 
-  command.add_option("--camera", words.camera, "view or list of views: .json .pvcc text (default: frames the mesh)")
-      ->type_name("FILE");
+  command
+      .add_option("--camera", words.camera,
+                  "view or list of views: .json .pvcc text, or JSON itself (default: frames the mesh)")
+      ->type_name("FILE|JSON");
   add_view_options(command, words.view);
   command.add_option("--orbit", words.orbit, "N frames once round the view's up axis")->type_name("N");
   command.add_option("--size", words.size, "pixels (default: the camera file's, else 1024x1024)")->type_name("WxH");
