@@ -61,10 +61,9 @@ std::string host_name(std::string_view host) {
     name = host.substr(0, host.find(':'));
     host.remove_prefix(name.size());
   }
-  const bool port_is_right = host.empty() || (host.size() <= 6 && host.front() == ':' &&
-                                              std::ranges::all_of(host.substr(1), [](unsigned char c) {
-                                                return std::isdigit(c) != 0;
-                                              }));
+  const bool port_is_right =
+      host.empty() || (host.size() <= 6 && host.front() == ':' &&
+                       std::ranges::all_of(host.substr(1), [](unsigned char c) { return std::isdigit(c) != 0; }));
   return port_is_right ? lowered(name) : std::string();
 }
 

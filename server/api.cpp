@@ -19,12 +19,11 @@ struct Route {
   std::string_view path;
   bool get, post;
 };
-constexpr std::array routes = {Route{"api/data", true, true},       Route{"api/histogram", false, true},
-                               Route{"api/function", false, true},  Route{"api/camera", false, true},
-                               Route{"api/probe", false, true},     Route{"api/command", false, true},
-                               Route{"api/verify", false, true},    Route{"api/check", true, true},
-                               Route{"api/progress", true, false},  Route{"picture", true, true},
-                               Route{"film", false, true}};
+constexpr std::array routes = {
+    Route{"api/data", true, true},    Route{"api/histogram", false, true}, Route{"api/function", false, true},
+    Route{"api/camera", false, true}, Route{"api/probe", false, true},     Route{"api/command", false, true},
+    Route{"api/verify", false, true}, Route{"api/check", true, true},      Route{"api/progress", true, false},
+    Route{"picture", true, true},     Route{"film", false, true}};
 
 Response json_response(const Json& json) {
   return {200, "application/json", std::make_shared<const std::string>(text_of(json))};
@@ -52,13 +51,14 @@ PictureFormat picture_format(const Json& body) {
 Response picture_answer(const ApiContext& context, const OpenScene& open, PictureFormat format,
                         const std::stop_token& gone) {
   const View view = open.scene->view(open.held->data);
-  RenderedFrame rendered =
-      context.stage.render(open.state, *open.scene, *open.held, view, {}, nullptr, gone);
+  RenderedFrame rendered = context.stage.render(open.state, *open.scene, *open.held, view, {}, nullptr, gone);
   if (rendered.stopped) return error_response(500, "Nobody waits for the picture.");
   const auto& function = context.stage.function(*open.held, *open.scene).function;
   Response response{200, media_type(format),
                     finished_picture(std::move(rendered.image), format, *open.scene, view, open.held->data, function)};
-  response.file_name = format == PictureFormat::png ? "picture.png" : format == PictureFormat::exr ? "picture.exr" : "picture.jpg";
+  response.file_name = format == PictureFormat::png   ? "picture.png"
+                       : format == PictureFormat::exr ? "picture.exr"
+                                                      : "picture.jpg";
   return response;
 }
 
@@ -144,7 +144,8 @@ std::unique_ptr<ApiWork> make_api_work(Request request, const ApiContext& contex
 std::optional<Response> answer_at_once(const Request& request, const ApiContext& context) {
   const auto* const route =
       std::find_if(routes.begin(), routes.end(), [&](const Route& r) { return r.path == request.path; });
-  if (route == routes.end()) return error_response(404, "There is nothing at this address; docs/SERVER.md has what there is.");
+  if (route == routes.end())
+    return error_response(404, "There is nothing at this address; docs/SERVER.md has what there is.");
   const bool is_get = request.method == "GET", is_post = request.method == "POST";
   if ((!is_get && !is_post) || (is_get && !route->get) || (is_post && !route->post))
     return error_response(405, fmt::format("Ask for {} by {}.", route->path, route->get ? "GET" : "POST"));

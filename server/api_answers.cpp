@@ -5,10 +5,10 @@
 #include <cmath>
 #include <string_view>
 
+#include "analysis/reports.hpp"
 #include "server/api.hpp"
 #include "server/messages.hpp"
 #include "tessera/error.hpp"
-#include "tessera/field_queries.hpp"
 #include "tessera/presets.hpp"
 #include "tessera/statistics.hpp"
 #include "tessera/version.hpp"
@@ -17,9 +17,6 @@ namespace tessera::server {
 namespace {
 
 Json json_of(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
-
-/// null where it is not a number, which JSON cannot say.
-Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 double encoded(double linear) {
   const double c = std::clamp(linear, 0.0, 1.0);
@@ -79,7 +76,8 @@ Json counts_json(const Dataset& data) {
 std::uint64_t cells_of(const Dataset& data) {
   if (data.is_mesh()) return data.mesh_counts().cells_read;
   std::uint64_t cells = 1;
-  for (const auto samples : data.grid_geometry().dims) cells *= static_cast<std::uint64_t>(std::max<std::int64_t>(samples - 1, 1));
+  for (const auto samples : data.grid_geometry().samples())
+    cells *= static_cast<std::uint64_t>(std::max<std::int64_t>(samples - 1, 1));
   return cells;
 }
 
@@ -94,12 +92,16 @@ Json resolved(const ApiContext& context, const OpenScene& open) {
     state.erase(view_word);
   state["size"] = fmt::format("{}x{}", view.size.width, view.size.height);
   if (!data.shows_shape()) state["field"] = open.scene->field_word(data);
-  if (data.time_steps() > 1 && !state.contains("time-step")) state["time-step"] = fmt::format("{}", data.time_steps() - 1);
+  if (data.time_steps() > 1 && !state.contains("time-step"))
+    state["time-step"] = fmt::format("{}", data.time_steps() - 1);
   if (!state.contains("transfer-function")) {
     // The very function of the first picture, which goes by how the field's values share the volume.
     state["transfer-function"] = Json::parse(transfer_function_json(loaded.function));
     for (const char* in_it : {"range", "log", "opacity", "opacity-scale", "opacity-points", "unit-distance", "rescale"})
-      state.erase(in_it);
+      if (context.reader.fixes(in_it))
+        state[in_it] = nullptr;
+      else
+        state.erase(in_it);
     if (loaded.shaded && !state.contains("no-shade")) state["shade"] = true;
   } else if (loaded.range && !state.contains("range") && state["transfer-function"].is_string()) {
     state["range"] = fmt::format("{},{}", (*loaded.range)[0], (*loaded.range)[1]);
@@ -113,22 +115,6 @@ ProjectionKind projection_of(const Json& body, ProjectionKind otherwise) {
   if (*found == "orthographic") return ProjectionKind::orthographic;
   if (*found == "perspective") return ProjectionKind::perspective;
   throw bad_input("projection: is none; use orthographic or perspective");
-}
-
-Json json_of(const std::optional<RayPoint>& point, const char* name) {
-  const std::string prefix(name);
-  if (!point) return {{prefix + "point", nullptr}, {prefix + "value", nullptr}, {prefix + "depth", nullptr}};
-  return {{prefix + "point", json_of(point->position)},
-          {prefix + "value", finite(point->value)},
-          {prefix + "depth", finite(point->depth)}};
-}
-
-Json finding_json(const MeshCheck::Finding& finding) {
-  Json places = Json::array();
-  for (const MeshCheck::Place& place : finding.places)
-    places.push_back(
-        {{"cell", place.cell}, {"other", place.other}, {"at", json_of(place.at)}, {"value", finite(place.value)}});
-  return {{"count", finding.count}, {"places", std::move(places)}};
 }
 
 }  // namespace
@@ -167,26 +153,6 @@ Json data_answer(const ApiContext& context, const OpenScene& open) {
           {"defaults", resolved(context, open)}};
 }
 
-Json histogram_answer(const ApiContext& context, const OpenScene& open, const Json& body) {
-  HistogramOptions options;
-  options.bins = static_cast<std::size_t>(whole_number(body, "bins", 256, 1, 4096));
-  const auto visible = body.find("visible");
-  if (visible != body.end() && *visible == true) options.seen = open.scene->view(open.held->data);
-  options.logarithmic = open.state.contains("log") && open.state["log"] == true;
-  const LoadedTransferFunction& loaded = context.stage.function(*open.held, *open.scene);
-  if (loaded.range && (*loaded.range)[0] < (*loaded.range)[1] && body.contains("of_function")) options.range = loaded.range;
-  const Histogram made = histogram(open.held->data, options);
-  constexpr std::array fractions = {0.005, 0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99, 0.995};
-  const std::vector<double> values = quantiles(open.held->data, fractions, options.seen);
-  Json of_fractions = Json::object();
-  for (std::size_t i = 0; i < fractions.size(); ++i) of_fractions[fmt::format("{}", fractions[i])] = finite(values[i]);
-  return {{"range", made.range},
-          {"counts", made.shares},
-          {"log", made.logarithmic},
-          {"outside", made.outside},
-          {"quantiles", std::move(of_fractions)}};
-}
-
 Json function_answer(const ApiContext& context, const OpenScene& open) {
   const Dataset& data = open.held->data;
   const LoadedTransferFunction& loaded = context.stage.function(*open.held, *open.scene);
@@ -200,8 +166,7 @@ Json function_answer(const ApiContext& context, const OpenScene& open) {
     colors.push_back(std::move(color));
     opacities.push_back({knot.value, -std::expm1(-knot.extinction * distance)});
   }
-  const std::array<double, 2> range =
-      loaded.range.value_or(std::array{knots.front().value, knots.back().value});
+  const std::array<double, 2> range = loaded.range.value_or(std::array{knots.front().value, knots.back().value});
   return {{"range", range},
           {"name", context.reader.worded(loaded.name)},
           {"colors", std::move(colors)},
@@ -226,32 +191,11 @@ Json camera_answer(const OpenScene& open, const Json& body) {
   }
   if (name != "default") {
     const auto named = standard_view(name);
-    if (!named) throw bad_input("view: is none; use front, back, left, right, top, bottom, iso, +x ... -z, default or fit");
+    if (!named)
+      throw bad_input("view: is none; use front, back, left, right, top, bottom, iso, +x ... -z, default or fit");
     request.view = *named;
   }
   return json_of(data.view(request, view.size, projection));
-}
-
-Json probe_answer(const ApiContext& context, const OpenScene& open, const Json& body) {
-  const View view = open.scene->view(open.held->data);
-  const auto pixel = [&](const char* name, int side) {
-    if (!body.contains(name)) throw bad_input(fmt::format("{}: is missing; give the pixel", name));
-    return static_cast<int>(whole_number(body, name, 0, 0, side - 1));
-  };
-  const PixelIndex at{pixel("x", view.size.width), pixel("y", view.size.height)};
-  const auto samples = static_cast<std::size_t>(whole_number(body, "samples", 256, 2, 4096));
-  const LoadedTransferFunction& loaded = context.stage.function(*open.held, *open.scene);
-  const RayProbe found = context.stage.probe(open.state, *open.scene, *open.held, view, at, samples);
-  Json values = Json::array();
-  for (const double value : found.value) values.push_back(finite(value));
-  Json answer = json_of(found.first, "");
-  answer.update(json_of(found.front, "front_"));
-  answer.update(json_of(found.half, "half_"));
-  answer["hit"] = found.first.has_value();
-  answer["profile"] = {{"distance", found.depth}, {"value", std::move(values)}, {"opacity", found.opacity}};
-  answer["rgba"] = {found.pixel.r, found.pixel.g, found.pixel.b, found.pixel.a};
-  answer["range"] = loaded.range ? Json(*loaded.range) : Json();
-  return answer;
 }
 
 Json verify_answer(const ApiContext& context, const OpenScene& open, const Json& body) {
@@ -259,10 +203,10 @@ Json verify_answer(const ApiContext& context, const OpenScene& open, const Json&
   const View view = open.scene->view(open.held->data);
   FrameSettings settings;
   settings.keep_uncertainty = open.held->data.is_grid();
-  const RenderedFrame rendered =
-      context.stage.render(open.state, *open.scene, *open.held, view, settings, nullptr, {});
-  const Verification found = context.stage.session(open.state, *open.scene, *open.held)
-                                 .verify(rendered, view, context.stage.function(*open.held, *open.scene).function, pixels);
+  const RenderedFrame rendered = context.stage.render(open.state, *open.scene, *open.held, view, settings, nullptr, {});
+  const Verification found =
+      context.stage.session(open.state, *open.scene, *open.held)
+          .verify(rendered, view, context.stage.function(*open.held, *open.scene).function, pixels);
   return {{"pixels", found.pixels_checked},
           {"largest_error", found.max_error_not_excused},
           {"largest_error_of_all", found.max_error},
@@ -274,19 +218,6 @@ Json verify_answer(const ApiContext& context, const OpenScene& open, const Json&
           {"worst", {found.worst_x, found.worst_y}}};
 }
 
-Json check_answer(const OpenScene& open) {
-  const MeshCheck check = open.held->data.check();
-  return {{"clean", check.clean()},
-          {"tets", check.tets},
-          {"points", check.points},
-          {"duplicate_points", finding_json(check.duplicate_points)},
-          {"flat", finding_json(check.flat)},
-          {"slivers", finding_json(check.slivers)},
-          {"worst_aspect", finite(check.worst_aspect)},
-          {"inverted", finding_json(check.inverted)},
-          {"non_conforming_faces", finding_json(check.non_conforming_faces)},
-          {"overlaps", finding_json(check.overlaps)},
-          {"overlapping_cells", check.overlapping_cells}};
-}
+Json check_answer(const OpenScene& open) { return Json::parse(analysis::check_json(open.held->data.check()).dump()); }
 
 }  // namespace tessera::server

@@ -60,8 +60,7 @@ Camera between(const Camera& from, const Camera& to, double t) {
   if (t >= 1) return to;
   Camera camera = t < 0.5 ? from : to;
   camera.focal_point = (1 - t) * from.focal_point + t * to.focal_point;
-  camera.position =
-      camera.focal_point + turned(from.position - from.focal_point, to.position - to.focal_point, t);
+  camera.position = camera.focal_point + turned(from.position - from.focal_point, to.position - to.focal_point, t);
   camera.view_up = turned(from.view_up, to.view_up, t);
   camera.parallel_scale = std::exp((1 - t) * std::log(from.parallel_scale) + t * std::log(to.parallel_scale));
   camera.view_angle = (1 - t) * from.view_angle + t * to.view_angle;
@@ -82,8 +81,7 @@ class FilmWork final : public ApiWork {
   FilmWork(Json body, const ApiContext& context, std::stop_token gone)
       : body_(std::move(body)), context_(context), gone_(std::move(gone)) {
     const auto format = body_.find("format");
-    if (format != body_.end())
-      format_ = format->is_string() ? format->get<std::string>() : "";
+    if (format != body_.end()) format_ = format->is_string() ? format->get<std::string>() : "";
     if (std::ranges::find(formats, format_) == formats.end())
       throw bad_input("format: is none of a film; use mp4, webm or gif");
     if (const auto rate = body_.find("rate"); rate != body_.end()) {
@@ -121,7 +119,8 @@ class FilmWork final : public ApiWork {
     if (made_ < frames_) return {};
     film_->commit();
     std::ifstream file(scratch_.path() / ("film." + format_), std::ios::binary);
-    auto bytes = std::make_shared<const std::string>(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+    auto bytes =
+        std::make_shared<const std::string>(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
     Response response{200, format_ == "gif" ? "image/gif" : "video/" + format_, std::move(bytes)};
     response.file_name = "film." + format_;
     return {std::move(response)};

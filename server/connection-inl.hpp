@@ -25,8 +25,8 @@ namespace {
 namespace beast = boost::beast;
 namespace http = beast::http;
 namespace websocket = beast::websocket;
-using boost::asio::ip::tcp;
 using beast::error_code;
+using boost::asio::ip::tcp;
 
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -74,7 +74,7 @@ HttpResponse make_response(const HttpRequest& request, const Response& answer) {
   HttpResponse response{static_cast<http::status>(answer.status), request.version()};
   response.set(http::field::content_type, answer.type);
   response.set(http::field::cache_control, "no-store");
-  response.set(http::field::content_security_policy,
+  response.set("Content-Security-Policy",
                "default-src 'self'; img-src 'self' blob: data:; connect-src 'self'; frame-ancestors 'self'; "
                "base-uri 'none'; form-action 'none'");
   response.set("X-Content-Type-Options", "nosniff");
@@ -241,10 +241,9 @@ class Connection final : public std::enable_shared_from_this<Connection<Stream>>
       read();
     } else {
       lowest().expires_after(network_.limits.request);
-      stream_.async_handshake(boost::asio::ssl::stream_base::server,
-                              [self = this->shared_from_this()](error_code error) {
-                                if (!error) self->read();
-                              });
+      stream_.async_handshake(Stream::server, [self = this->shared_from_this()](error_code error) {
+        if (!error) self->read();
+      });
     }
   }
 
@@ -289,12 +288,14 @@ class Connection final : public std::enable_shared_from_this<Connection<Stream>>
     if (!path || !raw_path.starts_with('/'))
       return send(make_response(request_, error_response(400, "The address cannot be read.")));
     if (const auto refusal = network_.access.refusal(credentials_of(request_, query)))
-      return send(make_response(request_,
-                                is_api(*path) ? error_response(403, *refusal) : page_response(403, sentence_page(*refusal))));
+      return send(make_response(
+          request_, is_api(*path) ? error_response(403, *refusal) : page_response(403, sentence_page(*refusal))));
     if (*path == "socket" && websocket::is_upgrade(request_)) return become_socket();
-    if (is_api(*path)) return ask_service({std::string(view_of(request_.method_string())), *path, std::string(query), request_.body()});
+    if (is_api(*path))
+      return ask_service({std::string(view_of(request_.method_string())), *path, std::string(query), request_.body()});
     const WebFile* file = web_file(path->empty() ? "index.html" : std::string_view(*path));
-    if (file == nullptr) return send(make_response(request_, page_response(404, sentence_page("There is no such page."))));
+    if (file == nullptr)
+      return send(make_response(request_, page_response(404, sentence_page("There is no such page."))));
     if (request_.method() != http::verb::get && request_.method() != http::verb::head)
       return send(make_response(request_, error_response(405, "Pages are read by GET.")));
     HttpResponse response = make_response(
@@ -334,8 +335,8 @@ class Connection final : public std::enable_shared_from_this<Connection<Stream>>
       if (error || !self->waiting_) return;
       error_code unknown;
       char byte = 0;
-      const std::size_t there = self->lowest().socket().receive(
-          boost::asio::buffer(&byte, 1), boost::asio::socket_base::message_peek, unknown);
+      const std::size_t there = self->lowest().socket().receive(boost::asio::buffer(&byte, 1),
+                                                                boost::asio::socket_base::message_peek, unknown);
       if (there == 0 || unknown) self->gone_.request_stop();
     });
   }
@@ -350,15 +351,16 @@ class Connection final : public std::enable_shared_from_this<Connection<Stream>>
   /// Piece by piece, so that the limit is of a piece: the whole may be long and the way narrow.
   void write_some() {
     lowest().expires_after(network_.limits.write);
-    http::async_write_some(stream_, *serializer_, [self = this->shared_from_this()](error_code error, std::size_t /*b*/) {
-      if (!error && !self->serializer_->is_done()) return self->write_some();
-      --self->network_.writing;
-      if (error) return self->lowest().close();
-      if (!self->response_->keep_alive()) return self->end();
-      self->serializer_.reset();
-      self->response_.reset();
-      self->read();
-    });
+    http::async_write_some(stream_, *serializer_,
+                           [self = this->shared_from_this()](error_code error, std::size_t /*b*/) {
+                             if (!error && !self->serializer_->is_done()) return self->write_some();
+                             --self->network_.writing;
+                             if (error) return self->lowest().close();
+                             if (!self->response_->keep_alive()) return self->end();
+                             self->serializer_.reset();
+                             self->response_.reset();
+                             self->read();
+                           });
   }
 
   void end() {

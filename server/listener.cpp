@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <atomic>
 #include <boost/asio/steady_timer.hpp>
 #include <csignal>
 #include <thread>
@@ -81,7 +81,8 @@ struct Listener::State {
         socket.close(none);
       } else {
         socket.set_option(tcp::no_delay(true), none);
-        tls ? start_tls_connection(std::move(socket), network, *tls) : start_plain_connection(std::move(socket), network);
+        tls ? start_tls_connection(std::move(socket), network, *tls)
+            : start_plain_connection(std::move(socket), network);
       }
       accept();
     });

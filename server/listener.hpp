@@ -16,15 +16,15 @@ namespace tessera::server {
 /// What a connection may take. Whoever is over a limit is answered with an error where that is possible, and closed.
 struct NetworkLimits {
   std::size_t header_bytes = 16u << 10, body_bytes = 1u << 20, message_bytes = 1u << 20;
-  std::size_t connections = 256;  ///< more are closed as they come
-  std::size_t waiting_messages = 64;  ///< of a client that does not read
+  std::size_t connections = 256;                                 ///< more are closed as they come
+  std::size_t waiting_messages = 64;                             ///< of a client that does not read
   std::chrono::milliseconds request = std::chrono::seconds(10);  ///< for a whole request, from the first wait for it on
   std::chrono::milliseconds write = std::chrono::seconds(30);    ///< without a byte that the other side takes
 };
 
 struct NetworkOptions {
   std::string address = "127.0.0.1";
-  std::uint16_t port = 0;                 ///< 0: a free one
+  std::uint16_t port = 0;                  ///< 0: a free one
   std::filesystem::path certificate, key;  ///< PEM, for TLS; both or none
   NetworkLimits limits;
 };

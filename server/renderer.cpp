@@ -31,7 +31,7 @@ class FrameProgress final : public Sink {
       : order_(order), queue_(queue), pixels_(1.0 * size.width * size.height) {}
 
   void tile(const Tile& tile) override {
-    done_ += 1.0 * tile.rect.width * tile.rect.height;
+    done_ += tile.rect.area();
     const auto now = Clock::now();
     if (order_.level == Level::moving && queue_.overdue(order_)) {
       std::stop_source stop = order_.stop;
@@ -172,8 +172,8 @@ FrameOutcome Renderer::render(const FrameOrder& order) {
   } catch (...) {
     const Error error = error_of(std::current_exception());
     if (stage_.ranks() > 1 && error.code() != ErrorCode::bad_input) throw;  // the run's
-    order.channel->send_text(text_of(
-        {{"type", "error"}, {"number", order.number}, {"error", reader_.worded(error.what())}}));
+    order.channel->send_text(
+        text_of({{"type", "error"}, {"number", order.number}, {"error", reader_.worded(error.what())}}));
   }
   return outcome;
 }
@@ -222,9 +222,9 @@ FrameOutcome Renderer::make_frame(const FrameOrder& order) {
                  {"range", range},
                  {"warnings", loaded.warnings}};
   if (const auto promised = stage_.session(state, *scene, *held).promised_error()) header["promised_error"] = *promised;
+  queue_.begin_sending(order, frames_);
   order.channel->send_frame(frame_head(header), bytes);
   outcome.kind = FrameOutcome::Kind::sent;
-  outcome.frame = frames_;
   outcome.render_ms = rendered.statistics.milliseconds;
   return outcome;
 }

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "server/scene_reader.hpp"
 #include "server/api.hpp"
+#include "server/scene_reader.hpp"
 #include "server/service.hpp"
 #include "server/stage.hpp"
 #include "server/work_queue.hpp"
@@ -31,6 +31,7 @@ class Renderer final : public Service {
   void run();
   /// From any thread. `reason`: what clients are told.
   void end(const std::string& reason);
+  [[nodiscard]] bool is_reading() { return stage_.reading().has_value(); }
 
   void answer(Request request, std::stop_token gone, Reply reply) override;
   ClientId join(std::shared_ptr<Channel> channel) override;

@@ -31,14 +31,17 @@ class Scene {
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
-  /// Of what is read.
-  [[nodiscard]] virtual const std::string& data_key() const = 0;
-  /// More keys under which `data`, which this opened, is what other scenes would open.
-  [[nodiscard]] virtual std::vector<std::string> more_data_keys(const Dataset& data) const = 0;
+  /// Of what is read: data that was kept under one of them will do.
+  [[nodiscard]] virtual const std::vector<std::string>& data_keys() const = 0;
+  /// The keys under which `data`, which this opened, is what other scenes would open; this one's first.
+  [[nodiscard]] virtual std::vector<std::string> keys_of(const Dataset& data) const = 0;
   /// Of its transfer function, given the data.
   [[nodiscard]] virtual const std::string& look_key() const = 0;
   /// Of its settings, but for what the function does to them.
   [[nodiscard]] virtual const std::string& settings_key() const = 0;
+
+  /// The field as `--field` takes it.
+  [[nodiscard]] virtual std::string field_word(const Dataset& data) const = 0;
 
   /// Reads it, by all ranks. Throws Error.
   [[nodiscard]] virtual Dataset open(const Communicator& communicator, const ReadProgressFunction& progress) const = 0;
@@ -53,7 +56,8 @@ class Scene {
   virtual void explain(Image& image, const View& view, const Dataset& data, const TransferFunction& function) const = 0;
 };
 
-/// Reads states: JSON objects whose keys are long options of `tessera render` (docs/SERVER.md). On one thread at a time.
+/// Reads states: JSON objects whose keys are long options of `tessera render` (docs/SERVER.md). On one thread at a
+/// time.
 class SceneReader {
  public:
   virtual ~SceneReader() = default;
@@ -69,6 +73,8 @@ class SceneReader {
   virtual std::string command(const Json& state) = 0;
   /// What the server was started with, as a state.
   [[nodiscard]] virtual Json base() const = 0;
+  /// Whether a state that says nothing of an option has it all the same, from there.
+  [[nodiscard]] virtual bool fixes(const std::string& option) const = 0;
   /// What is served, for people: a file's name.
   [[nodiscard]] virtual std::string input_name() const = 0;
   /// Times of the steps, if there are several and they have times.

@@ -11,8 +11,8 @@ constexpr std::size_t most_data_sets = 8, most_sessions = 3, most_functions = 16
 
 std::uint64_t bytes_of(const Dataset& data) {
   if (data.is_grid()) {
-    const GridGeometry& grid = data.grid_geometry();
-    return grid.samples() * 8;  // at most: who is mapped takes none
+    const GridIndex samples = data.grid_geometry().samples();
+    return 8 * static_cast<std::uint64_t>(samples[0] * samples[1] * samples[2]);  // at most: who is mapped takes none
   }
   const MeshArrays arrays = data.mesh_arrays();
   return 8 * std::uint64_t{arrays.points.size() + arrays.scalars.size()} + 20 * data.tet_count();
@@ -20,9 +20,12 @@ std::uint64_t bytes_of(const Dataset& data) {
 
 const char* stage_words(ReadProgress::Stage stage) {
   switch (stage) {
-    case ReadProgress::Stage::copying: return "copying";
-    case ReadProgress::Stage::filling: return "filling";
-    default: return "reading";
+    case ReadProgress::Stage::copying:
+      return "copying";
+    case ReadProgress::Stage::filling:
+      return "filling";
+    default:
+      return "reading";
   }
 }
 
@@ -30,19 +33,15 @@ const char* stage_words(ReadProgress::Stage stage) {
 
 Stage::Stage(SceneReader& reader, Job& job, std::uint64_t memory_bytes, std::function<void()> came,
              std::function<void(const Reading&)> progress)
-    : reader_(reader),
-      job_(job),
-      memory_bytes_(memory_bytes),
-      came_(std::move(came)),
-      progress_(std::move(progress)) {}
+    : reader_(reader), job_(job), memory_bytes_(memory_bytes), came_(std::move(came)), progress_(std::move(progress)) {}
 
 Stage::~Stage() {
   if (reading_thread_.joinable()) reading_thread_.join();
 }
 
-std::shared_ptr<HeldData> Stage::find(const std::string& key) {
+std::shared_ptr<HeldData> Stage::find(const Scene& scene) {
   for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
-    if (std::ranges::find(entry->keys, key) == entry->keys.end()) continue;
+    if (std::ranges::find_first_of(entry->keys, scene.data_keys()) == entry->keys.end()) continue;
     entries_.splice(entries_.begin(), entries_, entry);
     return entry->held;
   }
@@ -51,8 +50,7 @@ std::shared_ptr<HeldData> Stage::find(const std::string& key) {
 
 void Stage::keep(const Scene& scene, Dataset data) {
   Entry entry;
-  entry.keys = scene.more_data_keys(data);
-  entry.keys.push_back(scene.data_key());
+  entry.keys = scene.keys_of(data);
   const std::uint64_t bytes = bytes_of(data);
   entry.held = std::make_shared<HeldData>(std::move(data));
   entry.held->bytes = bytes;
@@ -66,7 +64,7 @@ void Stage::keep(const Scene& scene, Dataset data) {
       ++at;
       continue;
     }
-    const std::string key = at->keys.back();
+    const std::string key = at->keys.front();
     ++at;
     tell({{"do", "drop"}, {"key", key}});
     drop(key);
@@ -74,11 +72,10 @@ void Stage::keep(const Scene& scene, Dataset data) {
 }
 
 void Stage::drop(const std::string& key) {
-  const auto gone = std::ranges::find_if(entries_, [&](const Entry& entry) { return entry.keys.back() == key; });
+  const auto gone = std::ranges::find_if(entries_, [&](const Entry& entry) { return entry.keys.front() == key; });
   if (gone == entries_.end()) return;
-  std::erase_if(sessions_, [&](const KeptSession& kept) {
-    return &kept.session->dataset().state() == &gone->held->data.state();
-  });
+  std::erase_if(sessions_,
+                [&](const KeptSession& kept) { return &kept.session->dataset().state() == &gone->held->data.state(); });
   entries_.erase(gone);
 }
 
@@ -90,18 +87,20 @@ std::shared_ptr<HeldData> Stage::data(const Json& state, const std::shared_ptr<c
   }
   if (arrived) {
     reading_thread_.join();
-    if (arrived->data) keep(*arrived->scene, std::move(*arrived->data));
-    else failed_.insert_or_assign(arrived->scene->data_key(), *arrived->error);
+    if (arrived->data)
+      keep(*arrived->scene, std::move(*arrived->data));
+    else
+      failed_.insert_or_assign(arrived->scene->data_keys().front(), *arrived->error);
   }
-  if (auto held = find(scene->data_key())) return held;
-  if (const auto failed = failed_.find(scene->data_key()); failed != failed_.end()) {
+  if (auto held = find(*scene)) return held;
+  if (const auto failed = failed_.find(scene->data_keys().front()); failed != failed_.end()) {
     const Error error = failed->second;
     failed_.erase(failed);  // who asks again may have mended the file
     throw error;
   }
   if (ranks() > 1) {
     read_together(state, *scene);
-    return find(scene->data_key());
+    return find(*scene);
   }
   if (!reading()) read_in_background(scene);
   return nullptr;
@@ -193,7 +192,10 @@ Session& Stage::session(const Json& /*state*/, const Scene& scene, HeldData& hel
 RenderedFrame Stage::render(const Json& state, const Scene& scene, HeldData& held, const View& view,
                             const FrameSettings& settings, Sink* sink, const std::stop_token& stop) {
   if (ranks() > 1)
-    tell({{"do", "render"}, {"state", state}, {"width", view.size.width}, {"height", view.size.height},
+    tell({{"do", "render"},
+          {"state", state},
+          {"width", view.size.width},
+          {"height", view.size.height},
           {"uncertainty", settings.keep_uncertainty}});
   try {
     return session(state, scene, held).render(view, function(held, scene).function, settings, sink, stop);
@@ -201,6 +203,14 @@ RenderedFrame Stage::render(const Json& state, const Scene& scene, HeldData& hel
     if (ranks() > 1) sessions_.clear();  // which may be of no use any more
     throw;
   }
+}
+
+RayProbe Stage::probe(const Json& state, const Scene& scene, HeldData& held, const View& view, PixelIndex pixel,
+                      std::size_t samples) {
+  tell({{"do", "probe"}, {"state", state}, {"x", pixel.x}, {"y", pixel.y}, {"samples", samples}});
+  const LoadedTransferFunction& loaded = function(held, scene);
+  static_cast<void>(view), static_cast<void>(loaded);
+  return {};
 }
 
 void Stage::tell(const Json& order) {
@@ -221,9 +231,14 @@ void Stage::obey(const Json& order) {
     keep(*scene, scene->open(job_.communicator(), {}));
     return;
   }
-  const auto held = find(scene->data_key());
+  const auto held = find(*scene);
   if (!held) throw Error(ErrorCode::system_failure, "server", "this rank has other data than the first", "report this");
   View view = scene->view(held->data);
+  if (order.at("do") == "probe") {
+    probe(state, *scene, *held, view, {order.at("x").get<int>(), order.at("y").get<int>()},
+          order.at("samples").get<std::size_t>());
+    return;
+  }
   view.size = {order.at("width").get<int>(), order.at("height").get<int>()};
   FrameSettings settings;
   settings.keep_uncertainty = order.at("uncertainty").get<bool>();

@@ -12,6 +12,7 @@
 
 #include "server/scene_reader.hpp"
 #include "tessera/error.hpp"
+#include "tessera/field_queries.hpp"
 #include "tessera/job.hpp"
 #include "tessera/session.hpp"
 
@@ -21,7 +22,7 @@ namespace tessera::server {
 struct HeldData {
   explicit HeldData(Dataset data_) : data(std::move(data_)) {}
   Dataset data;
-  std::uint64_t bytes = 0;  ///< about, in memory
+  std::uint64_t bytes = 0;                                  ///< about, in memory
   std::map<std::string, LoadedTransferFunction> functions;  ///< by Scene::look_key(), a few
 };
 
@@ -55,6 +56,10 @@ class Stage {
   /// The session of the scene's last picture.
   Session& session(const Json& state, const Scene& scene, HeldData& held);
 
+  /// As tessera::probe(), by all ranks.
+  RayProbe probe(const Json& state, const Scene& scene, HeldData& held, const View& view, PixelIndex pixel,
+                 std::size_t samples);
+
   /// What is being read.
   [[nodiscard]] std::optional<Reading> reading();
 
@@ -66,7 +71,7 @@ class Stage {
 
  private:
   struct Entry {
-    std::vector<std::string> keys;  ///< the last one is the scene's that opened it
+    std::vector<std::string> keys;  ///< the first one is the scene's that opened it
     std::shared_ptr<HeldData> held;
   };
   struct KeptSession {
@@ -74,7 +79,7 @@ class Stage {
     std::unique_ptr<Session> session;
   };
 
-  std::shared_ptr<HeldData> find(const std::string& key);
+  std::shared_ptr<HeldData> find(const Scene& scene);
   void keep(const Scene& scene, Dataset data);
   void drop(const std::string& key);
   void read_in_background(std::shared_ptr<const Scene> scene);
@@ -87,8 +92,8 @@ class Stage {
   const std::uint64_t memory_bytes_;
   std::function<void()> came_;
   std::function<void(const Reading&)> progress_;
-  std::list<Entry> entries_;          ///< the last used one first
-  std::list<KeptSession> sessions_;   ///< likewise
+  std::list<Entry> entries_;         ///< the last used one first
+  std::list<KeptSession> sessions_;  ///< likewise
 
   std::mutex mutex_;  ///< of what follows
   std::thread reading_thread_;

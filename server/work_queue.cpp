@@ -21,7 +21,7 @@ const char* level_name(Level level) {
 
 ClientId WorkQueue::join(std::shared_ptr<Channel> channel) {
   const std::lock_guard lock(mutex_);
-  clients_.emplace(++last_client_, Client{std::move(channel), LevelChoice(latency_ms_)});
+  clients_.try_emplace(++last_client_, std::move(channel), latency_ms_);
   return last_client_;
 }
 
@@ -133,6 +133,13 @@ std::optional<WorkQueue::Work> WorkQueue::next() {
   return std::nullopt;
 }
 
+void WorkQueue::begin_sending(const FrameOrder& order, std::uint64_t frame) {
+  const std::lock_guard lock(mutex_);
+  const auto found = clients_.find(order.client);
+  if (found == clients_.end()) return;
+  found->second.unacknowledged = Client::Sent{frame, order.level, order.shrink, order.stand_in, order.event};
+}
+
 void WorkQueue::finish(const FrameOrder& order, const FrameOutcome& outcome) {
   const std::lock_guard lock(mutex_);
   const auto found = clients_.find(order.client);
@@ -143,8 +150,6 @@ void WorkQueue::finish(const FrameOrder& order, const FrameOutcome& outcome) {
   if (outcome.kind == Kind::sent) {
     c.shown = order.number;
     c.shown_level = outcome.level;
-    c.unacknowledged =
-        Client::Sent{outcome.frame, outcome.level, order.shrink, order.stand_in, order.event};
     if (outcome.level == Level::automatic) c.levels.full_took(outcome.render_ms);
   } else if (outcome.kind == Kind::failed) {
     c.failed = order.number;

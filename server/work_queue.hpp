@@ -30,8 +30,8 @@ struct FrameOrder {
   Json state;
   std::uint64_t number = 0;
   Level level = Level::moving;
-  std::size_t shrink = 0;  ///< moving: of `shrinks`
-  bool stand_in = false;   ///< moving: not in time without one
+  std::size_t shrink = 0;   ///< moving: of `shrinks`
+  bool stand_in = false;    ///< moving: not in time without one
   Clock::time_point event;  ///< when the state came
   std::stop_source stop;    ///< asked for when the state is not the client's any more
 };
@@ -54,14 +54,13 @@ struct FrameOutcome {
   enum class Kind { sent, stopped, failed, waits_for_data };
   Kind kind = Kind::failed;
   Level level = Level::moving;  ///< sent: that it has, which may be more exact than what was asked for
-  std::uint64_t frame = 0;      ///< sent: its number
   double render_ms = 0;
 };
 
-/// What is to be done, and for whom next: clients and tasks take turns, so that nobody waits for another's second frame.
-/// Of a client only the latest state counts. A frame of an older state is asked to stop at once if it is of a state at
-/// rest; one of a state that moves is left to finish, for else who moves on and on would see none, unless it takes more
-/// than twice its budget.
+/// What is to be done, and for whom next: clients and tasks take turns, so that nobody waits for another's second
+/// frame. Of a client only the latest state counts. A frame of an older state is asked to stop at once if it is of a
+/// state at rest; one of a state that moves is left to finish, for else who moves on and on would see none, unless it
+/// takes more than twice its budget.
 ///
 /// One thread renders: next(), finish() and overdue() are its own. All else may be called from any thread.
 class WorkQueue {
@@ -78,6 +77,8 @@ class WorkQueue {
   using Work = std::variant<FrameOrder, std::shared_ptr<Task>>;
   /// Waits for work. Nothing once the queue has ended.
   std::optional<Work> next();
+  /// Before a frame is sent, for the client may say at once that it is painted.
+  void begin_sending(const FrameOrder& order, std::uint64_t frame);
   void finish(const FrameOrder& order, const FrameOutcome& outcome);
   void finish(std::shared_ptr<Task> task, Task::Turn turn);
   /// Whether a moving frame has taken so long that a newer state should not wait for it.
@@ -96,6 +97,7 @@ class WorkQueue {
 
  private:
   struct Client {
+    Client(std::shared_ptr<Channel> to, double budget_ms) : channel(std::move(to)), levels(budget_ms) {}
     std::shared_ptr<Channel> channel;
     LevelChoice levels;
     std::optional<StateMessage> state;
