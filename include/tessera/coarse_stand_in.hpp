@@ -20,8 +20,9 @@ struct StandInSettings {
 /// long. It is not the data, and no error is promised; say so where it is shown.
 ///
 /// Mesh   a regular grid over the mesh's box. A sample in a tet has the field's value there, of several tets that of
-///        the first; cell data too become point data. Other samples are blank, but for those beside a tet that has
-///        none: the mesh's boundary is off by up to a sample's distance, and what is thinner is drawn as thick as that.
+///        the first; cell data too become point data. So do samples within half of their distance beside a tet; others
+///        are blank. The boundary is off by up to a sample's distance, to both sides alike; of what is thinner than
+///        that only parts are drawn, so thick that it looks as dense from afar.
 /// Grid   fewer samples along each axis over the same box; each is the mean of those nearest to it that are not blank.
 ///        A grid that has no more than `samples` is returned as it is.
 ///
