@@ -131,11 +131,11 @@ RenderOptions options_of(const RenderWords& words) {
 
 void add_chart_options(CLI::App& command, RenderWords& words, ChartWords& chart) {
   add_mesh_options(command, words);
-  command.add_option("--transfer-function", words.transfer_function, "file or preset")->type_name("FILE|PRESET");
+  command.add_option("--transfer-function", words.transfer_function, "file or preset")->type_name("FILE|PRESET|JSON");
   command.add_flag("--rescale", words.rescale, "stretch a transfer function file's values over the field's range");
   command.add_option("--unit-distance", words.unit_distance, "as of render")->type_name("LENGTH");
   command.add_option("--opacity-scale", words.opacity_scale, "multiplies the extinction")->type_name("FACTOR");
-  command.add_option("--camera", words.camera, "view; of a list the first one")->type_name("FILE");
+  command.add_option("--camera", words.camera, "view; of a list the first one")->type_name("FILE|JSON");
   command.add_option("--size", words.size, "pixels (default: the camera file's, else 1024x1024)")->type_name("WxH");
   command.add_option("--projection", words.projection, "of the default view")->type_name("orthographic|perspective");
   command.add_option("--emission", words.emission, "source term")->type_name("absorption|independent");

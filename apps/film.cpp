@@ -20,6 +20,7 @@
 #include "tessera/image_file.hpp"
 #include "tessera/session.hpp"
 #include "tessera/trace.hpp"
+#include "tessera/view.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -181,7 +182,8 @@ class Film final : public Sink {
 
   /// Colours and opacities are the first step's, of whose values the others' may be far.
   void warn_of_range() {
-    const bool of_file = !options_.function.rescale && std::filesystem::exists(options_.transfer_function);
+    const std::string& function = options_.transfer_function;
+    const bool of_file = !options_.function.rescale && (is_json_text(function) || std::filesystem::exists(function));
     if (!writes_ || !first_range_ || options_.function.range || of_file) return;
     const auto [low, high] = *first_range_;
     const double beyond = std::max(low - all_range_[0], all_range_[1] - high);
@@ -207,8 +209,7 @@ class Film final : public Sink {
 
   /// What the default transfer function means to be shaded is so, unless an option of the run speaks against it.
   void shade_by_default() {
-    if (!loaded_.shaded || options_.no_shade || options_.frame.deep || settings_.grid.shading) return;
-    if (takes_steps(settings_.integrator) || settings_.emission != Emission::absorption) return;
+    if (!shades_by_default(loaded_, options_)) return;
     settings_.grid.shading.emplace();
     options_.settings.grid.shading = settings_.grid.shading;
     if (writes_) output_.note("method", method_json(options_, job_.size()));

@@ -163,8 +163,8 @@ void add_render_options(CLI::App& command, RenderWords& words) {
       ->required()
       ->allow_extra_args(false);  // else `-o out.png mesh.vtu` would take the mesh for a second picture
 
-  command.add_option("--transfer-function", words.transfer_function, "file or preset (see the guide)")
-      ->type_name("FILE|PRESET");
+  command.add_option("--transfer-function", words.transfer_function, "file or preset (see the guide), or JSON itself")
+      ->type_name("FILE|PRESET|JSON");
   command.add_flag("--rescale", words.rescale, "stretch a transfer function file's values over the field's range");
   command
       .add_option("--unit-distance", words.unit_distance,
@@ -177,8 +177,10 @@ void add_render_options(CLI::App& command, RenderWords& words) {
   command.add_option("--blend", words.blend, "linear light (default), or sRGB values as VTK does")
       ->type_name("linear|display");
 
-  command.add_option("--camera", words.camera, "view or list of views: .json .pvcc text (default: frames the mesh)")
-      ->type_name("FILE");
+  command
+      .add_option("--camera", words.camera,
+                  "view or list of views: .json .pvcc text, or JSON itself (default: frames the mesh)")
+      ->type_name("FILE|JSON");
   add_view_options(command, words.view);
   command.add_option("--orbit", words.orbit, "N frames once round the view's up axis")->type_name("N");
   command.add_option("--size", words.size, "pixels (default: the camera file's, else 1024x1024)")->type_name("WxH");
@@ -254,7 +256,9 @@ void add_render_options(CLI::App& command, RenderWords& words) {
   command.add_flag("--quiet", words.quiet, "nothing on stderr but errors");
 }
 
-RenderOptions render_options(const RenderWords& words) {
+RenderOptions render_options(const RenderWords& words) { return render_options(words, is_grid_input(words)); }
+
+RenderOptions render_options(const RenderWords& words, bool is_grid) {
   RenderOptions options;
   FilmPlan& plan = options.plan;
   plan.inputs = {words.input};
@@ -287,7 +291,7 @@ RenderOptions render_options(const RenderWords& words) {
     if (words.projection == "perspective") options.projection = ProjectionKind::perspective;
   }
 
-  plan.grids = is_grid_input(words);
+  plan.grids = is_grid;
   plan.steps = time_steps(words.time_step);
   set_common(words, options);
   Settings& settings = options.settings;
@@ -364,6 +368,12 @@ LoadedTransferFunction transfer_function_of(const Dataset& data, const RenderOpt
     for (const std::string& warning : unseen_surfaces(options.settings.surfaces, data.range()))
       loaded.warnings.push_back(warning);
   return loaded;
+}
+
+bool shades_by_default(const LoadedTransferFunction& loaded, const RenderOptions& options) {
+  const Settings& settings = options.settings;
+  if (!loaded.shaded || options.no_shade || options.frame.deep || settings.grid.shading) return false;
+  return !takes_steps(settings.integrator) && settings.emission == Emission::absorption;
 }
 
 }  // namespace tessera::apps

@@ -21,7 +21,7 @@ namespace tessera::exchange {
 static_assert(std::endian::native == std::endian::little, "messages are little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 14;        ///< the next one whenever a message changes
+inline constexpr std::uint16_t wire_version = 15;        ///< the next one whenever a message changes
 
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
@@ -77,6 +77,7 @@ enum class MessageKind : std::uint16_t {
   process_on_host = 38,   ///< exchange/one_line.cpp
   field_samples = 39,     ///< list of scene::FieldSample: of a rank's part (frame/field_samples.cpp)
   open_faces = 47,        ///< list of OpenFace (frame/boundary_faces.cpp): that one tet of a rank's part has alone
+  ray_tets = 48,          ///< list of RayTet (frame/probe.cpp): those of a rank's part that a ray meets
   curved_part = 40,  ///< frame/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
   // The transport's own.
   fault = 41,    ///< a rank to rank 0, I have failed: u8 ErrorCode, text

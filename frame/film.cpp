@@ -35,7 +35,7 @@ std::vector<FilmFrame> views(const FilmPlan& plan) {
     frame.size = plan.size.value_or(ImageSize{});
     frames.push_back(frame);
   } else {
-    for (const auto& view : read_cameras(plan.cameras)) {
+    for (const auto& view : cameras_of(plan.cameras.string())) {
       FilmFrame frame;
       frame.camera = view.camera;
       frame.size = plan.size.value_or(view.size.value_or(ImageSize{}));
@@ -44,8 +44,9 @@ std::vector<FilmFrame> views(const FilmPlan& plan) {
   }
   if (plan.orbit > 0) {
     if (frames.size() != 1)
-      throw bad_input(fmt::format("{}: `orbit` turns one view, the file holds {}; give a file with one",
-                                  plan.cameras.string(), frames.size()));
+      throw bad_input(fmt::format("{}: `orbit` turns one view, this holds {}; give one",
+                                  is_json_text(plan.cameras.string()) ? "`camera`" : plan.cameras.string(),
+                                  frames.size()));
     const FilmFrame first = frames.front();
     frames.assign(static_cast<std::size_t>(plan.orbit), first);
     for (std::size_t i = 0; i < frames.size(); ++i)

@@ -8,6 +8,7 @@
 #include "io/image_file.hpp"
 #include "io/input_file.hpp"
 #include "io/json_text.hpp"
+#include "io/json_transfer_function.hpp"
 #include "io/mesh_parts.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/pvtu_writer.hpp"
@@ -30,14 +31,32 @@
 namespace tessera {
 
 std::vector<CameraFile> read_cameras(const std::filesystem::path& file) { return io::read_cameras(file); }
+std::vector<CameraFile> parse_cameras(std::string_view text, const std::string& name) {
+  return io::parse_cameras(text, name);
+}
+bool is_json_text(std::string_view file_or_json) { return io::is_json_text(file_or_json); }
+std::vector<CameraFile> cameras_of(const std::string& file_or_json) {
+  return is_json_text(file_or_json) ? parse_cameras(file_or_json, "`camera`") : read_cameras(file_or_json);
+}
 std::string camera_json(const CameraFile& camera) { return io::camera_json(camera); }
 void write_camera(const CameraFile& camera, const std::filesystem::path& file) { io::write_camera(camera, file); }
+
+std::string transfer_function_json(const TransferFunction& function) { return io::knots_json(function); }
+std::string paraview_json(const TransferFunction& function, double unit_distance, const std::string& name) {
+  return io::color_map_json(function, unit_distance, name);
+}
 
 void write_image(const Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
   io::write_image(image, file, options);
 }
 std::vector<std::byte> png_bytes(const Image& image, const ImageFileOptions& options) {
   return io::checked_png_bytes(image, options);
+}
+std::vector<std::byte> exr_bytes(const Image& image, const ImageFileOptions& options) {
+  return io::checked_exr_bytes(image, options);
+}
+std::vector<std::byte> jpeg_bytes(const Image& image, const ImageFileOptions& options) {
+  return io::checked_jpeg_bytes(image, options);
 }
 Image read_image(const std::filesystem::path& file) { return io::read_image(file); }
 TriangleMesh read_triangles(const std::filesystem::path& file) { return io::read_triangles(file); }

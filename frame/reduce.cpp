@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "exchange/message.hpp"
 
 namespace tessera::frame {
@@ -33,7 +35,9 @@ std::vector<std::uint64_t> reduce_all(exchange::Transport& transport, std::vecto
   for (int others = transport.size() - 1; others > 0; --others) {
     const std::vector<std::uint64_t> part = take();
     for (std::size_t k = 0; k < values.size(); ++k)
-      values[k] = reduction == Reduction::sum ? values[k] + part[k] : values[k] | part[k];
+      values[k] = reduction == Reduction::sum      ? values[k] + part[k]
+                  : reduction == Reduction::bit_or ? values[k] | part[k]
+                                                   : std::min(values[k], part[k]);
   }
   const Bytes sum = message();
   for (int rank = 1; rank < transport.size(); ++rank) transport.send(rank, Channel::agreement, sum);

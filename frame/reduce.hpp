@@ -7,7 +7,7 @@
 
 namespace tessera::frame {
 
-enum class Reduction { sum, bit_or };
+enum class Reduction { sum, bit_or, minimum };
 
 /// Element by element over all ranks, on every rank. Collective (channel `agreement`); the same length everywhere, at
 /// fewer than 2^27 numbers.

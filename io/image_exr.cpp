@@ -11,10 +11,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <exception>
 #include <limits>
 #include <mutex>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "io/atomic_file.hpp"
@@ -79,33 +81,70 @@ void write_rows(Imf::OutputFile& output, const scene::Image& image, const std::f
   }
 }
 
-}  // namespace
+/// All of the file, into a stream named after it. Throws what OpenEXR throws, too.
+void encode(Imf::OStream& stream, const scene::Image& image, const std::filesystem::path& file,
+            const ImageFileOptions& options) {
+  Imf::Header header(image.size.width, image.size.height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  for (const char* name : channel_names)
+    header.channels().insert(name, Imf::Channel(options.half ? Imf::HALF : Imf::FLOAT));
+  header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+  const int threads = compressing_threads(options);
+  Imf::OutputFile output(stream, header, threads);
+  if (options.half)
+    write_rows<half>(output, image, file, options, threads);
+  else
+    write_rows<float>(output, image, file, options, threads);
+}
 
-void write_exr(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
-  AtomicFile target(file);
+/// What `work` throws, as the project's error.
+template <class Work>
+void writing(const std::filesystem::path& file, const Work& work) {
   try {
-    Imf::Header header(image.size.width, image.size.height);
-    header.compression() = Imf::ZIP_COMPRESSION;
-    for (const char* name : channel_names)
-      header.channels().insert(name, Imf::Channel(options.half ? Imf::HALF : Imf::FLOAT));
-    header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
-    ExrStream stream(target, file.string());
-    {
-      const int threads = compressing_threads(options);
-      Imf::OutputFile output(stream, header, threads);
-      if (options.half)
-        write_rows<half>(output, image, file, options, threads);
-      else
-        write_rows<float>(output, image, file, options, threads);
-    }
-    stream.rethrow();
+    work();
   } catch (const scene::Error&) {
     throw;
   } catch (const std::exception& error) {
     throw scene::Error(scene::ErrorCode::system_failure,
                        fmt::format("{}: cannot be written: {}; see the disk", file.string(), error.what()));
   }
+}
+
+/// Lets OpenEXR write into memory.
+class MemoryStream : public Imf::OStream {
+ public:
+  MemoryStream() : Imf::OStream("picture") {}
+  void write(const char bytes[], int count) override {
+    const auto size = static_cast<std::size_t>(count);
+    if (bytes_.size() < position_ + size) bytes_.resize(position_ + size);
+    std::memcpy(bytes_.data() + position_, bytes, size);
+    position_ += size;
+  }
+  std::uint64_t tellp() override { return position_; }
+  void seekp(std::uint64_t position) override { position_ = position; }
+  [[nodiscard]] std::vector<std::byte> take() { return std::move(bytes_); }
+
+ private:
+  std::vector<std::byte> bytes_;
+  std::size_t position_ = 0;
+};
+
+}  // namespace
+
+void write_exr(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
+  AtomicFile target(file);
+  writing(file, [&] {
+    ExrStream stream(target, file.string());
+    encode(stream, image, file, options);
+    stream.rethrow();
+  });
   target.commit();
+}
+
+std::vector<std::byte> exr_bytes(const scene::Image& image, const ImageFileOptions& options) {
+  MemoryStream stream;
+  writing("picture", [&] { encode(stream, image, "picture", options); });
+  return stream.take();
 }
 
 scene::Image read_exr(const std::filesystem::path& file) {

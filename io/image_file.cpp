@@ -86,6 +86,16 @@ std::vector<std::byte> checked_png_bytes(const scene::Image& image, const ImageF
   return png_bytes(image, options);
 }
 
+std::vector<std::byte> checked_exr_bytes(const scene::Image& image, const ImageFileOptions& options) {
+  check(image, "picture", options);
+  return exr_bytes(image, options);
+}
+
+std::vector<std::byte> checked_jpeg_bytes(const scene::Image& image, const ImageFileOptions& options) {
+  check(image, "picture", options);
+  return jpeg_bytes(image, options);
+}
+
 void write_image(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
   check(image, file, options);
   switch (format_of(file)) {

@@ -16,8 +16,10 @@ using tessera::ImageFileOptions;
 /// tessera::write_image().
 void write_image(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options);
 
-/// tessera::png_bytes().
+/// tessera::png_bytes(), exr_bytes() and jpeg_bytes().
 std::vector<std::byte> checked_png_bytes(const scene::Image& image, const ImageFileOptions& options);
+std::vector<std::byte> checked_exr_bytes(const scene::Image& image, const ImageFileOptions& options);
+std::vector<std::byte> checked_jpeg_bytes(const scene::Image& image, const ImageFileOptions& options);
 
 /// tessera::read_image().
 scene::Image read_image(const std::filesystem::path& file);

@@ -17,6 +17,8 @@ void write_jpeg(const scene::Image& image, const std::filesystem::path& file, co
 void write_tiff(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options);
 void write_pfm(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options);
 std::vector<std::byte> png_bytes(const scene::Image& image, const ImageFileOptions& options);
+std::vector<std::byte> exr_bytes(const scene::Image& image, const ImageFileOptions& options);
+std::vector<std::byte> jpeg_bytes(const scene::Image& image, const ImageFileOptions& options);
 /// Whether write_jpeg() can.
 bool has_jpeg();
 scene::Image read_exr(const std::filesystem::path& file);

@@ -17,8 +17,6 @@
 namespace tessera::io {
 namespace {
 
-constexpr int quality = 92;
-
 /// libjpeg leaves by longjmp, which must not pass C++ destructors: functions that call it own nothing.
 struct Jpeg {
   jpeg_compress_struct compress{};
@@ -45,7 +43,7 @@ void on_error(j_common_ptr info) {
 
 void on_message(j_common_ptr) {}
 
-bool begin(Jpeg& jpeg, int width, int height) {
+bool begin(Jpeg& jpeg, int width, int height, int quality) {
   jpeg.compress.err = jpeg_std_error(&jpeg.errors);
   jpeg.errors.error_exit = on_error;
   jpeg.errors.output_message = on_message;
@@ -77,25 +75,22 @@ bool finish(Jpeg& jpeg) {
   return true;
 }
 
-}  // namespace
-
-bool has_jpeg() { return true; }
-
-void write_jpeg(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
+/// All of the file, in `jpeg`.
+void encode(Jpeg& jpeg, const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
   if (image.size.width > JPEG_MAX_DIMENSION || image.size.height > JPEG_MAX_DIMENSION)
     throw scene::bad_input(fmt::format("{}: is {}x{} pixels, a .jpg has at most {} a side; write .png", file.string(),
                                        image.size.width, image.size.height, JPEG_MAX_DIMENSION));
-  AtomicFile target(file);
+  if (options.jpeg_quality < 1 || options.jpeg_quality > 100)
+    throw scene::bad_input(fmt::format("{}: the quality {} is not 1 to 100", file.string(), options.jpeg_quality));
   ImageFileOptions eight_bits = options;
   eight_bits.png_bits = 8;
   const DisplayRows display(image, file, eight_bits, 3);
-  Jpeg jpeg;
   const auto check = [&](bool done) {
     if (!done)
       throw scene::Error(scene::ErrorCode::system_failure,
                          fmt::format("{}: cannot be written: {}; write .png", file.string(), jpeg.message));
   };
-  check(begin(jpeg, image.size.width, image.size.height));
+  check(begin(jpeg, image.size.width, image.size.height, options.jpeg_quality));
   std::vector<float> rgba;
   std::vector<std::uint8_t> row(display.row_bytes());
   for (int y = 0; y < image.size.height; ++y) {
@@ -103,8 +98,25 @@ void write_jpeg(const scene::Image& image, const std::filesystem::path& file, co
     check(write_row(jpeg, row.data()));
   }
   check(finish(jpeg));
+}
+
+}  // namespace
+
+bool has_jpeg() { return true; }
+
+void write_jpeg(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
+  Jpeg jpeg;
+  AtomicFile target(file);
+  encode(jpeg, image, file, options);
   target.write(jpeg.bytes, jpeg.size);
   target.commit();
+}
+
+std::vector<std::byte> jpeg_bytes(const scene::Image& image, const ImageFileOptions& options) {
+  Jpeg jpeg;
+  encode(jpeg, image, "picture", options);
+  const auto* const first = reinterpret_cast<const std::byte*>(jpeg.bytes);
+  return {first, first + jpeg.size};
 }
 
 }  // namespace tessera::io

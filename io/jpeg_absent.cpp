@@ -10,4 +10,8 @@ void write_jpeg(const scene::Image& /*image*/, const std::filesystem::path& file
   throw scene::bad_input(file.string() + ": this build leaves .jpg out; build with TESSERA_JPEG=ON, or write .png");
 }
 
+std::vector<std::byte> jpeg_bytes(const scene::Image& /*image*/, const ImageFileOptions& /*options*/) {
+  throw scene::bad_input("picture: this build leaves .jpg out; build with TESSERA_JPEG=ON, or use .png");
+}
+
 }  // namespace tessera::io

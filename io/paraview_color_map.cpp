@@ -177,8 +177,12 @@ double unit_distance(const Reader& reader, const colormaps::TransferFunctionOpti
 
 colormaps::LoadedTransferFunction parse_paraview_color_map(std::string_view text, const std::string& source,
                                                            const colormaps::TransferFunctionOptions& options) {
+  return color_map_of(parse_json(text, source), source, options);
+}
+
+colormaps::LoadedTransferFunction color_map_of(const json& root, const std::string& source,
+                                               const colormaps::TransferFunctionOptions& options) {
   colormaps::check(options);
-  const json root = parse_json(text, source);
   if (root.is_array() && root.empty())
     throw scene::bad_input(source + ": is an empty list; export a colour map into it");
   const json& map = root.is_array() ? root.front() : root;

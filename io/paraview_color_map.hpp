@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 
@@ -19,5 +20,9 @@ namespace tessera::io {
 /// `IndexedColors` alone (categories) are refused. Throws Error(bad_input) in one line.
 colormaps::LoadedTransferFunction parse_paraview_color_map(std::string_view text, const std::string& source,
                                                            const colormaps::TransferFunctionOptions& options);
+
+/// The same of JSON that is parsed.
+colormaps::LoadedTransferFunction color_map_of(const nlohmann::json& root, const std::string& source,
+                                               const colormaps::TransferFunctionOptions& options);
 
 }  // namespace tessera::io

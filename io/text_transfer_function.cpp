@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "colormaps/function_options.hpp"
+#include "io/knot_list.hpp"
 #include "io/text_file.hpp"
 #include "io/transfer_function_file.hpp"
 #include "scene/error.hpp"
@@ -28,6 +29,17 @@ std::string rescale(std::vector<scene::Knot>& knots, const std::array<double, 2>
 }
 
 }  // namespace
+
+colormaps::LoadedTransferFunction loaded_knots(std::vector<scene::Knot> knots, const std::string& source,
+                                               const colormaps::TransferFunctionOptions& options) {
+  for (scene::Knot& knot : knots) knot.extinction *= options.opacity_scale;
+  std::string name = source;
+  if (options.unit_distance) name += " (extinctions as they stand; `unit_distance` does not apply)";
+  if (!options.opacity_points.empty())
+    throw scene::bad_input(source + ": holds extinctions, which `opacity_points` cannot replace; leave it out");
+  if (options.rescale || options.range) name += rescale(knots, options.spanned());
+  return {colormaps::make_transfer_function(std::move(knots), source), name, std::nullopt, ""};
+}
 
 colormaps::LoadedTransferFunction parse_text_transfer_function(std::string_view text, const std::string& source,
                                                                const colormaps::TransferFunctionOptions& options) {
@@ -58,16 +70,11 @@ colormaps::LoadedTransferFunction parse_text_transfer_function(std::string_view 
     if (!knots.empty() && numbers[0] < knots.back().value)
       throw fault(fmt::format("value {} is below the one before it, {}; sort the lines by value", numbers[0],
                               knots.back().value));
-    knots.push_back({numbers[0], {numbers[1], numbers[2], numbers[3]}, numbers[4] * options.opacity_scale});
+    knots.push_back({numbers[0], {numbers[1], numbers[2], numbers[3]}, numbers[4]});
   }
   if (knots.empty())
     throw scene::bad_input(source + ": holds no knot; give at least one line `value r g b extinction`");
-  std::string name = source;
-  if (options.unit_distance) name += " (extinctions as they stand; `unit_distance` does not apply)";
-  if (!options.opacity_points.empty())
-    throw scene::bad_input(source + ": holds extinctions, which `opacity_points` cannot replace; leave it out");
-  if (options.rescale || options.range) name += rescale(knots, options.spanned());
-  return {colormaps::make_transfer_function(std::move(knots), source), name, std::nullopt, ""};
+  return loaded_knots(std::move(knots), source, options);
 }
 
 }  // namespace tessera::io

@@ -9,8 +9,9 @@
 
 #include "colormaps/function_options.hpp"
 #include "colormaps/presets.hpp"
+#include "io/json_text.hpp"
+#include "io/json_transfer_function.hpp"
 #include "io/missing_file.hpp"
-#include "io/paraview_color_map.hpp"
 #include "io/text_file.hpp"
 #include "scene/error.hpp"
 #include "tessera/nearest_name.hpp"
@@ -25,7 +26,7 @@ colormaps::LoadedTransferFunction load_file(const std::string& file,
   switch (first_character(text)) {
     case '[':
     case '{':
-      return parse_paraview_color_map(text, file, options);
+      return parse_json_transfer_function(text, file, options);
     case '<':
       throw scene::Error(scene::ErrorCode::bad_input, file, "is XML, which is not read as a transfer function",
                          "import it in ParaView and export it as .json");
@@ -48,6 +49,12 @@ scene::Error neither(const std::string& name) {
 
 colormaps::LoadedTransferFunction load_transfer_function(const std::string& file_or_preset,
                                                          const colormaps::TransferFunctionOptions& options) {
+  if (is_json_text(file_or_preset)) {
+    const std::string source = "`transfer_function`";
+    colormaps::LoadedTransferFunction loaded = parse_json_transfer_function(file_or_preset, source, options);
+    loaded.name.replace(0, source.size(), "JSON");  // which no file is
+    return loaded;
+  }
   if (colormaps::is_preset(file_or_preset)) return colormaps::preset(file_or_preset, options);
   if (!std::filesystem::exists(file_or_preset)) throw neither(file_or_preset);
   try {

@@ -7,10 +7,9 @@
 
 namespace tessera::io {
 
-/// Loads a preset (`NAME` or `NAME:VARIANT`, see colormaps/presets.hpp) or a file: ParaView's colour-map JSON if it
-/// begins with
-/// `[` or `{`, plain text otherwise. A preset's name wins; `./viridis` is the file. Throws Error(bad_input) in one line
-/// naming file, line and remedy.
+/// Loads a preset (`NAME` or `NAME:VARIANT`, see colormaps/presets.hpp), JSON itself (is_json_text()) or a file: JSON
+/// (json_transfer_function.hpp) if it begins with `[` or `{`, plain text otherwise. A preset's name wins; `./viridis`
+/// is the file. Throws Error(bad_input) in one line naming file, line and remedy.
 colormaps::LoadedTransferFunction load_transfer_function(const std::string& file_or_preset,
                                                          const colormaps::TransferFunctionOptions& options);
 

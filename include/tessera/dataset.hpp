@@ -225,7 +225,8 @@ class TESSERA_EXPORT Dataset {
                             ProjectionKind projection = ProjectionKind::orthographic, bool turning = false) const;
   /// Where a patient looks, of medical files that say so.
   [[nodiscard]] BodyAxes body_axes() const;
-  /// A preset ("viridis", "cool-warm:rise", ...) or a file over this field's range; "": the default, chosen by how the
+  /// A preset ("viridis", "cool-warm:rise", ...), a file, or the text of a JSON file (is_json_text()), which messages
+  /// call `transfer_function`, over this field's range; "": the default, chosen by how the
   /// field's values share the volume (docs/REFERENCE.md, "The first picture"), the same for any number of ranks
   /// and threads. The first call looks at some ten thousand places of the field. What the function does not show is in
   /// its `warnings`. Throws Error(bad_input) naming file and line.

@@ -29,7 +29,8 @@ struct FilmPlan {
   /// all of a series, and of a file the one that ReadOptions::time_step says.
   std::optional<StepRange> steps{};
   std::size_t file_steps = 1;
-  std::filesystem::path cameras;  ///< a view or a list of views (read_cameras); empty: the default view
+  /// A view or a list of views, a file or JSON itself (cameras_of()); empty: the default view.
+  std::filesystem::path cameras;
   int orbit = 0;                  ///< frames of one turn of one view round its up axis; 0: none
   std::optional<ImageSize> size;  ///< wins over the camera file's
   /// At least one, several for one frame in several formats; of several frames with `%d` or `%0Nd` for their number.
@@ -65,7 +66,7 @@ TESSERA_EXPORT bool takes_steps_of_file(const FilmPlan& plan);
 
 /// The frames of a plan: all views of the first step, then of the second. Frame 0 is always of the first step. Throws
 /// Error(bad_input) if an input that is to be read is not there, if several frames would share one name, if an orbit is
-/// asked of several views, for steps that are not there, or for what read_cameras() refuses.
+/// asked of several views, for steps that are not there, or for what cameras_of() refuses.
 TESSERA_EXPORT std::vector<FilmFrame> plan_film(const FilmPlan& plan);
 
 /// How later steps of a time series are read: their field is the one that was chosen for the first step. A field that

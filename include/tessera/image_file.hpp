@@ -18,15 +18,19 @@ namespace tessera {
 ///   .png  sRGB, 8 or 16 bits. Without a background RGBA with straight alpha, as PNG has it: light that a pixel emits
 ///         beyond its alpha (independent emission) is clamped, give a background to see it.
 ///   .tif  as .png: 8 or 16 bits, deflated, alpha straight (.tiff too).
-///   .jpg  sRGB, 8 bits, quality 92, colours in full (.jpeg too). No alpha: without a background it stands on black.
+///   .jpg  sRGB, 8 bits, colours in full (.jpeg too). No alpha: without a background it stands on black.
 ///   .pfm  linear RGB, premultiplied, 32-bit floats, little endian, bottom row first. No alpha.
 /// Throws Error(bad_input) for another extension, a folder that is not there, a number that half cannot hold;
 /// Error(system_failure) if the disk fails or a pixel is NaN or infinite.
 TESSERA_EXPORT void write_image(const Image& image, const std::filesystem::path& file,
                                 const ImageFileOptions& options = {});
 
-/// A .png as write_image() writes it, in memory.
+// What write_image() writes into a .png, .exr or .jpg, byte by byte, in memory. They throw as it does, calling the file
+// "picture".
 TESSERA_EXPORT std::vector<std::byte> png_bytes(const Image& image, const ImageFileOptions& options = {});
+TESSERA_EXPORT std::vector<std::byte> exr_bytes(const Image& image, const ImageFileOptions& options = {});
+/// Throws Error(bad_input) where the library was built without libjpeg (TESSERA_JPEG).
+TESSERA_EXPORT std::vector<std::byte> jpeg_bytes(const Image& image, const ImageFileOptions& options = {});
 
 /// Reads .exr (R G B, A if present, else 1; Z if present, else +inf) and .pfm (A = 1, Z = +inf). Throws
 /// Error(bad_input) for anything else and for broken files.

@@ -13,7 +13,8 @@ struct ImageFileOptions {
   /// Composited behind the picture, which is opaque then (A = 1; .png without an alpha channel). In the picture's own
   /// space: linear RGB, or display values where encode_srgb is false.
   std::optional<glm::dvec3> background{};
-  int threads = 0;  ///< .png, .tif, .exr: that compress; 0: all cores. The bytes are the same for any number
+  int jpeg_quality = 92;  ///< .jpg: 1 to 100
+  int threads = 0;        ///< .png, .tif, .exr: that compress; 0: all cores. The bytes are the same for any number
 };
 
 }  // namespace tessera

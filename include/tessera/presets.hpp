@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <glm/vec3.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +14,10 @@ namespace tessera {
 /// The transfer function of a name, COLOURS or COLOURS:OPACITY (preset_names()), over the values from 0 to 1, per unit
 /// distance 1. Throws Error(bad_input) for an unknown name, with those known.
 TESSERA_EXPORT TransferFunction preset_function(std::string_view name);
+
+/// The colours of a name (preset_names()) at `count` even places from the low end to the high one: display (sRGB)
+/// values, 0 to 1. Throws as preset_function(), and Error(bad_input) for fewer than two.
+TESSERA_EXPORT std::vector<glm::dvec3> preset_colors(std::string_view name, std::size_t count);
 
 /// What OPACITY may be, the default first.
 TESSERA_EXPORT std::vector<std::string> preset_opacity_names();

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tessera/camera.hpp"
@@ -20,6 +21,15 @@ struct View {
 /// Reads one view, or the list of views of a camera path; never an empty list. JSON, ParaView's .pvcc or plain text
 /// (docs/FORMATS.md). Throws Error(bad_input) in one line naming file and line.
 TESSERA_EXPORT std::vector<CameraFile> read_cameras(const std::filesystem::path& file);
+
+/// The same of a file's text. `name` is what messages call it, in place of the file.
+TESSERA_EXPORT std::vector<CameraFile> parse_cameras(std::string_view text, const std::string& name);
+
+/// Whether what stands in place of a file's name is JSON itself: it begins with `{` or `[`. A file of such a name is
+/// `./{...`.
+TESSERA_EXPORT bool is_json_text(std::string_view file_or_json);
+/// read_cameras() of a file, or parse_cameras() of JSON itself, which messages call `camera`.
+TESSERA_EXPORT std::vector<CameraFile> cameras_of(const std::string& file_or_json);
 
 /// Writes one view as JSON, every double in the shortest form that reads back the same. Appears by rename.
 TESSERA_EXPORT void write_camera(const CameraFile& camera, const std::filesystem::path& file);

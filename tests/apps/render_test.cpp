@@ -46,6 +46,39 @@ TEST(Render, QuietLeavesNothingOnStderr) {
   EXPECT_EQ(run.err, "");
 }
 
+TEST(Render, TakesJsonItselfInPlaceOfAFilesName) {
+  const Folder folder;
+  const std::string near = R"({"position": [4, 3, 5], "focal_point": [0.5, 0.5, 0.5], "parallel_scale": 1})",
+                    far = R"({"position": [4, 3, 5], "focal_point": [0.5, 0.5, 0.5], "view_angle": 20})",
+                    views = "[" + near + "," + far + "]";
+  const std::string function = R"({"knots": [[0, 1, 0.5, 0, 0], [0.5, 0, 1, 0, 4], [1, 0, 0, 1, 1]]})";
+  const auto render = [&](const std::string& name, const std::string& camera, const std::string& colors) {
+    return tessera({"render", folder.cube(), "-o", folder / name, "--size", "40x30", "--camera", camera,
+                    "--transfer-function", colors});
+  };
+  const auto one = render("a.png", near, function);
+  ASSERT_EQ(one.status, 0) << one.err;
+  EXPECT_NE(one.err.find("transfer function JSON"), std::string::npos) << one.err;
+  ASSERT_EQ(render("b.png", folder.file("near.json", near), folder.file("f.json", function)).status, 0);
+  EXPECT_EQ(contents(folder / "a.png"), contents(folder / "b.png"));
+  ASSERT_EQ(render("v%d.png", views, function).status, 0);
+  EXPECT_EQ(contents(folder / "v0.png"), contents(folder / "a.png"));
+  EXPECT_NE(contents(folder / "v1.png"), contents(folder / "a.png"));
+
+  // More text than a file's name may have.
+  EXPECT_EQ(render("c.png", near + std::string(5000, ' '), function + std::string(5000, ' ')).status, 0);
+  for (const auto& [camera, colors, words] :
+       {std::array<std::string, 3>{R"({"position": [1, 2]})", function, "tessera: --camera: "},
+        {"[]", function, "tessera: --camera: is an empty list"},
+        {near, "{", "tessera: --transfer-function: line 1, column"},
+        {near, R"({"knots": 2})", "tessera: --transfer-function: knots is not a list"}}) {
+    const auto wrong = render("d.png", camera, colors);
+    EXPECT_EQ(wrong.status, 2);
+    EXPECT_EQ(wrong.err.rfind(words, 0), 0u) << wrong.err;
+    EXPECT_EQ(wrong.error_lines(), 1u) << wrong.err;
+  }
+}
+
 TEST(Render, WritesOneFrameInSeveralFormats) {
   const Folder folder;
   const auto mesh = folder.cube();

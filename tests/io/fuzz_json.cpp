@@ -1,4 +1,4 @@
-// Any text is a ParaView colour map, a ParaView file series, a JSON camera, or refused in one line.
+// Any text is a ParaView colour map, knots, a ParaView file series, a JSON camera, or refused in one line.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -6,6 +6,7 @@
 
 #include "fuzz_check.hpp"
 #include "io/camera_file.hpp"
+#include "io/json_transfer_function.hpp"
 #include "io/paraview_color_map.hpp"
 #include "io/time_series.hpp"
 
@@ -19,6 +20,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     options.field_range = {-3, 1e6};
     const auto loaded = io::parse_paraview_color_map(text, "f", options);
     test::require(loaded.function.max_color() <= 1 + 1e-9);
+    test::require(std::isfinite(loaded.function.max_extinction()));
+  });
+  test::parse_or_refuse([&] {
+    const auto loaded = io::parse_json_transfer_function(text, "f", {});
     test::require(std::isfinite(loaded.function.max_extinction()));
   });
   return 0;

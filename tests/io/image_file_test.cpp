@@ -113,6 +113,44 @@ TEST(ImageFile, HalfRefusesWhatItCannotHold) {
   write_image(image, folder / "a.exr", {});
 }
 
+std::string text_of(const std::vector<std::byte>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+TEST(ImageFile, MemoryHoldsTheFilesBytes) {
+  const TemporaryFolder folder;
+  const scene::Image image = picture(301, 170);
+  ImageFileOptions options;
+  for (const bool half : {false, true})
+    for (const int threads : {1, 3}) {
+      options.half = half, options.threads = threads;
+      write_image(image, folder / "a.exr", options);
+      EXPECT_EQ(text_of(checked_exr_bytes(image, options)), contents(folder / "a.exr"));
+    }
+  write_image(image, folder / "a.png", options);
+  EXPECT_EQ(text_of(checked_png_bytes(image, options)), contents(folder / "a.png"));
+  if (!has_jpeg()) return;
+  std::size_t last = 0;
+  for (const int quality : {20, 60, 92}) {
+    options.jpeg_quality = quality;
+    write_image(image, folder / "a.jpg", options);
+    const std::string bytes = text_of(checked_jpeg_bytes(image, options));
+    EXPECT_EQ(bytes, contents(folder / "a.jpg"));
+    EXPECT_GT(bytes.size(), last);
+    last = bytes.size();
+  }
+}
+
+TEST(ImageFile, MemoryRefusesWhatFilesDo) {
+  scene::Image image = picture();
+  expect_bad_input([&] { checked_jpeg_bytes(image, {.jpeg_quality = 101}); },
+                   {"picture: the quality 101 is not 1 to 100"});
+  image.rgba[4 * image.index(3, 2)] = 1e6f;
+  expect_bad_input([&] { checked_exr_bytes(image, {.half = true}); }, {"picture: pixel (3, 2)"});
+  image.size.width = 0;
+  expect_bad_input([&] { checked_exr_bytes(image, {}); }, {"size"});
+}
+
 TEST(ImageFile, PfmIsThreeFloatsFromTheBottomRowUp) {
   const TemporaryFolder folder;
   const scene::Image image = picture();

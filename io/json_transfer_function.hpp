@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "colormaps/function_options.hpp"
+
+namespace tessera::io {
+
+/// A transfer function as JSON: an object with `knots`, a list of [value, red, green, blue, extinction], values not
+/// decreasing, colours linear and extinctions per world unit as they stand, two of one value a step; or ParaView's
+/// colour map (paraview_color_map.hpp). Throws Error(bad_input, "SOURCE: ...") in one line.
+colormaps::LoadedTransferFunction parse_json_transfer_function(std::string_view text, const std::string& source,
+                                                               const colormaps::TransferFunctionOptions& options);
+
+/// tessera::transfer_function_json().
+std::string knots_json(const scene::TransferFunction& function);
+
+/// tessera::paraview_json().
+std::string color_map_json(const scene::TransferFunction& function, double unit_distance, const std::string& name);
+
+}  // namespace tessera::io
