@@ -213,13 +213,13 @@ export class FunctionEditor {
     const y = margin.top + this.plot_height + 6;
     const strip = svg("rect", { class: "strip", x: margin.left, y, width: this.plot_width, height: strip_height, fill: "url(#function-colors)" });
     strip.append(svg("title", {}, "Colours; double-click adds one"));
-    if (edited.colors.length > 40) return [strip];
     return [strip, ...edited.colors.map(([t, ...rgb], index) => {
       const x = this.x_of(functions.value_at(edited, t));
+      if (edited.colors.length > functions.most_handles && !this.#selected("color", index)) return svg("g");
       if (x < margin.left - 1 || x > this.width - margin.right + 1) return svg("g");
       const handle = svg("path", {
         d: `M${x} ${y + strip_height - 5}l5 8v5h-10v-5z`, fill: functions.hex_color(rgb), class: this.#handle_class("color", index),
-        tabindex: edited.colors.length <= 24 || this.#selected("color", index) ? 0 : -1, role: "slider", "data-handle": `color-${index}`,
+        tabindex: 0, role: "slider", "data-handle": `color-${index}`,
         "aria-label": `Colour ${index + 1} of ${edited.colors.length}`, "aria-valuenow": functions.value_at(edited, t),
         "aria-valuetext": `${functions.hex_color(rgb)} at ${short_number(functions.value_at(edited, t))}`,
         on_focus: () => this.#selected("color", index) || (this.select({ kind: "color", index }), this.draw()),

@@ -63,6 +63,9 @@ export class FunctionPanel {
     this.remove = icon_button("trash", "Remove the point (Delete)", () => this.editor.remove());
     this.point_row = element("div", { class: "row point-row" }, this.point_value, this.point_opacity, this.point_color, add, this.remove);
 
+    this.few = button("Edit colours", () => this.editor.edited && this.#edit(functions.with_few_colors(this.editor.edited), false),
+      { title: "Keep the few colours that say most, each with a handle on the bar" });
+
     this.low = typed("Low end of the range", (text) => this.#type_range(text, undefined));
     this.high = typed("High end of the range", (text) => this.#type_range(undefined, text));
     const ranges = element("div", { class: "buttons" },
@@ -86,7 +89,7 @@ export class FunctionPanel {
       this.swatches,
       element("div", { class: "row" }, element("label", { for: "shape" }, "Opacity"), this.shape, icon_button("swap", "Reverse the colours", () => this.#reverse())),
       this.editor.element, this.point_row,
-      element("div", { class: "checks" }, log_axis.label, this.log.label, close.label),
+      element("div", { class: "checks" }, log_axis.label, this.log.label, close.label, this.few),
       element("div", { class: "row" }, element("span", { class: "label" }, "Range"), this.low, this.high), ranges,
       row("Overall opacity", this.strength, this.strength_text), row("Unit distance", this.distance),
       element("div", { class: "checks" }, this.bar.label), this.warning,
@@ -168,6 +171,7 @@ export class FunctionPanel {
       swatch.setAttribute("aria-checked", String(chosen));
     }
     this.shape.value = shape ?? "";
+    this.few.hidden = editor.edited.colors.length <= functions.most_handles;
     const warnings = reply.warnings ?? [];
     this.warning.hidden = warnings.length === 0;
     this.warning.textContent = warnings.join(" ");

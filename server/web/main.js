@@ -323,7 +323,7 @@ history.listen(({ state, before, moving }) => {
   if (state.size !== before.size || (size === null) !== (view.fixed === undefined)) view.fix_size(size ? { width: Number(size[1]), height: Number(size[2]) } : undefined);
   const badge = by_id("fixed-size");
   badge.hidden = size === null;
-  if (size) badge.replaceChildren(`${size[1]} × ${size[2]} `, button("Fill the window", () => history.change({ size: undefined })));
+  if (size) badge.replaceChildren("fixed size ", button("Fill the window", () => history.change({ size: undefined }), { class: "plain" }));
   offer(moving);
   update_soon();
   if (!moving) {

@@ -21,9 +21,6 @@
  */
 import { fraction_of, value_of } from "./numbers.js";
 
-/** More points than this are too many to take hold of. */
-const most_points = 24, most_colors = 40;
-
 /** @param {number[]} list @param {number} width @returns {number[][]} */
 const in_groups = (list, width) => Array.from({ length: Math.floor(list.length / width) }, (_, i) => list.slice(i * width, (i + 1) * width));
 
@@ -52,12 +49,21 @@ export function simplified(points, tolerance) {
   return points.filter((_, i) => kept.has(i));
 }
 
-/** So few as `most`, with the least tolerance, doubled from `tolerance`, that gives that. @param {number[][]} points @param {number} tolerance @param {number} most */
-function fewer(points, tolerance, most) {
+/**
+ * With the least tolerance, doubled from `tolerance`, that gives at most `most`; or `many`, where that would miss by more
+ * than `limit`.
+ * @param {number[][]} points @param {{tolerance: number, most: number, limit: number, many: number}} wanted
+ */
+function fewer(points, { tolerance, most, limit, many }) {
   let few = simplified(points, tolerance);
-  for (let coarse = 2 * tolerance; few.length > most; coarse *= 2) few = simplified(points, coarse);
+  for (let coarse = 2 * tolerance; few.length > many || (few.length > most && coarse <= limit); coarse *= 2) few = simplified(points, coarse);
   return few;
 }
+
+/** Opacities: beyond `limit` the eye sees another picture. Colours: half a step of eight bits, always. */
+const few_opacities = { tolerance: 1e-4, most: 10, limit: 4e-3, many: 24 }, few_colors = { tolerance: 2e-3, most: 16, limit: 2e-3, many: 48 };
+/** Colours that can be taken hold of one by one. */
+export const most_handles = 16;
 
 /**
  * The same points with one at 0 and one at 1.
@@ -89,11 +95,11 @@ export function edited_function(reply, own, factor = 1) {
   const { log } = reply;
   const at = (/** @type {number[]} */ p) => [fraction_of(p[0], reply.range, log), ...p.slice(1)];
   const map = own?.RGBPoints?.length >= 8 ? own : undefined;
-  const stops = /** @type {ColorPoint[]} */ (map ? over_own_ends(in_groups(map.RGBPoints, 4)) : fewer(reply.colors.map(at), 2e-3, most_colors));
+  const stops = /** @type {ColorPoint[]} */ (map ? over_own_ends(in_groups(map.RGBPoints, 4)) : fewer(reply.colors.map(at), few_colors));
   const own_points = in_groups(map?.Points ?? [], 4);
   const plain = own_points.length > 1 && own_points.every((p) => p[2] === 0.5 && !p[3]);
   const points = /** @type {OpacityPoint[]} */ (plain ? over_own_ends(own_points).map((p) => [p[0], p[1]])
-    : fewer(reply.opacities.map((p) => at([p[0], scaled_opacity(p[1], 1 / factor)])), 1e-4, most_points));
+    : fewer(reply.opacities.map((p) => at([p[0], scaled_opacity(p[1], 1 / factor)])), few_opacities));
   return {
     range: reply.range, log, colors: with_ends(stops), opacities: with_ends(points), color_space: map?.ColorSpace ?? "RGB", hsv_wrap: map?.HSVWrap,
     unit_distance: map?.ScalarOpacityUnitDistance ?? reply.unit_distance, name: map?.Name ?? "function",
@@ -198,6 +204,12 @@ export function with_color_point(edited, t, rgb = color_at(edited, t)) {
 export function without_color(edited, index) {
   if (index <= 0 || index >= edited.colors.length - 1) return edited;
   return { ...edited, colors: edited.colors.filter((_, i) => i !== index), name: "function" };
+}
+
+/** The few colours that say most, so that each can be taken hold of. @param {EditedFunction} edited @returns {EditedFunction} */
+export function with_few_colors(edited) {
+  const colors = /** @type {ColorPoint[]} */ (fewer(edited.colors, { tolerance: 4e-3, most: 9, limit: 1, many: 9 }));
+  return { ...edited, colors, name: "function" };
 }
 
 /** Colours the other way round. @param {EditedFunction} edited @returns {EditedFunction} */

@@ -35,7 +35,7 @@ test("too many points become few that miss little", () => {
   const opacities = Array.from({ length: 500 }, (_, i) => [i / 499, 0.5 + 0.4 * Math.sin(i / 60)]);
   const edited = functions.edited_function({ ...reply, range: [0, 1], opacities });
   assert.ok(edited.opacities.length <= 24);
-  for (const [t, opacity] of opacities) assert.ok(Math.abs(functions.opacity_at(edited, t) - opacity) < 0.02);
+  for (const [t, opacity] of opacities) assert.ok(Math.abs(functions.opacity_at(edited, t) - opacity) < 0.01);
 });
 
 test("points with a midpoint of their own are replaced by what they draw", () => {
@@ -47,9 +47,17 @@ test("the knots of a function that is no colour map become its points, and colou
   const colors = Array.from({ length: 300 }, (_, i) => [i / 29.9, Math.sin(i / 200), i / 299, 0.5]);
   const edited = functions.edited_function({ ...reply, colors, opacities: [[0, 0], [2, 0.04], [5, 0.1], [10, 0.2]] });
   assert.deepEqual(edited.opacities, [[0, 0], [1, 0.2]]);
-  assert.ok(edited.colors.length <= 40);
+  assert.ok(edited.colors.length <= 48);
   for (const [value, ...rgb] of colors)
     functions.color_at(edited, value / 10).forEach((v, k) => assert.ok(Math.abs(v - rgb[k]) < 0.5 / 255 + 1e-4));
+});
+
+test("few colours keep the ends and stay near", () => {
+  const colors = Array.from({ length: 300 }, (_, i) => [i / 29.9, Math.sin(i / 200), i / 299, 0.5]);
+  const plain = functions.edited_function({ ...reply, colors }), few = functions.with_few_colors(plain);
+  assert.ok(few.colors.length <= 9);
+  assert.deepEqual(few.colors[0], plain.colors[0]);
+  for (const t of [0.1, 0.5, 0.8]) functions.color_at(few, t).forEach((v, k) => assert.ok(Math.abs(v - functions.color_at(plain, t)[k]) < 0.03));
 });
 
 test("points are without the overall opacity", () => {
