@@ -36,7 +36,7 @@ export class ClipEditor {
   begin() {}
 
   #bounds() {
-    return this.page.data.bounds.flat();
+    return this.page.whole_bounds.flat();
   }
 
   get #clips() {
@@ -65,14 +65,14 @@ export class ClipEditor {
   }
 
   #add_plane() {
-    const [low, high] = this.page.data.bounds;
+    const [low, high] = this.page.whole_bounds;
     const middle = low.map((v, i) => digits((v + high[i]) / 2));
     this.#set([...this.#clips, `${middle.join(",")},0,1,0`], false);
   }
 
   /** Least and greatest distance of the data's box along a direction from the origin. @param {Vector} normal @returns {[number, number]} */
   #span(normal) {
-    const [low, high] = this.page.data.bounds;
+    const [low, high] = this.page.whole_bounds;
     const at = (/** @type {boolean} */ most) => normal.reduce((sum, n, i) => sum + n * (n > 0 === most ? high[i] : low[i]), 0);
     return [at(false), at(true)];
   }

@@ -268,15 +268,16 @@ function first_state(state) {
 
 /** @param {import("./types.js").Data} data */
 function begin(data) {
-  const first = !page.ready;
-  page.data = data;
+  if (page.ready) {
+    // Back after a lost connection: what the page knows goes with its own state.
+    known_data = "";
+    ask_anew();
+    return;
+  }
+  page.take_data(data);
   by_id("file").textContent = data.file;
   by_id("file").title = `${data.file}, ${data.format}`;
   document.title = `${data.file.replace(/^.*[\\/]/, "")} – Tessera`;
-  if (!first) {
-    for (const panel of panels) panel.begin();
-    return;
-  }
   /** @type {import("./types.js").State} */
   let state = {};
   try {
@@ -345,7 +346,7 @@ const ask_anew = debounced(async () => {
   // An error is the state's, and is told with its picture.
   const data = await data_question.ask("api/data", { state: page.full_state() }).catch(() => undefined);
   if (!data || data.reading) return;
-  page.data = { ...data, defaults: page.data.defaults };
+  page.take_data(data);
   information.begin();
   update_soon();
 }, 150);

@@ -22,6 +22,10 @@ export class Page {
     /** Whether `data` is there. */
     this.ready = false;
     this.data = /** @type {Data} */ (/** @type {unknown} */ (undefined));
+    /** Ranges of fields without threshold and cuts, by the options that say which field. @type {Map<string, [number, number]>} */
+    this.whole_ranges = new Map();
+    /** The box of all of the data, whatever is cut away. @type {[Vector, Vector]} */
+    this.whole_bounds = [[0, 0, 0], [1, 1, 1]];
     /** The colours that are edited, for parts that show one of them. @type {() => import("./transfer_function.js").EditedFunction | undefined} */
     this.edited_function = () => undefined;
   }
@@ -29,12 +33,12 @@ export class Page {
   /** An option as it is in force: the state's, else what the server began with. @param {string} word @returns {any} */
   option(word) {
     const own = this.history.state[word];
-    return own !== undefined ? own : this.ready ? this.data.defaults[word] : undefined;
+    return own !== undefined ? own : this.data?.defaults[word];
   }
 
   /** What the state says so that an option is off: nothing, or null where the server began with it on. @param {string} word */
   unset(word) {
-    return this.ready && this.data.defaults[word] ? null : undefined;
+    return this.data?.defaults[word] ? null : undefined;
   }
 
   /** @param {string} word @param {any} value undefined: off */
@@ -54,16 +58,28 @@ export class Page {
 
   /** Length of the data's diagonal, world units. */
   get extent() {
-    const [low, high] = this.data.bounds;
+    const [low, high] = this.whole_bounds;
     return length(subtract(high, low)) || 1;
+  }
+
+  get #field_key() {
+    return JSON.stringify([this.option("field") ?? null, this.option("time-step") ?? null, this.option("smooth") ?? null]);
+  }
+
+  /** What there is now. What is cut away by the state's own options goes on to be in reach. @param {Data} data */
+  take_data(data) {
+    const cut = ["threshold", "clip", "block"].some((word) => this.option(word));
+    this.data = { ...data, defaults: this.data?.defaults ?? data.defaults };
+    if (cut && this.whole_ranges.size > 0) return;
+    this.whole_bounds = data.bounds;
+    if (data.range) this.whole_ranges.set(this.#field_key, data.range);
   }
 
   /** The field's range, or 0 to 1 where it is not known. @returns {[number, number]} */
   get field_range() {
     const word = String(this.option("field") ?? this.data.field ?? "");
     const name = word.replace(/^(cell|point):/, "");
-    const field = this.data.fields.find((f) => f.name === name) ?? this.data.fields.find((f) => name.startsWith(`${f.name}:`));
-    const range = this.data.field === word && this.data.range ? this.data.range : field?.range;
+    const range = this.whole_ranges.get(this.#field_key) ?? this.data.fields.find((f) => f.name === name)?.range ?? this.data.range;
     return range && range[0] < range[1] ? range : [0, 1];
   }
 

@@ -249,7 +249,7 @@ test("a colour map of ParaView's is imported, and exported again", async () => {
   assert.ok(Math.abs(got.RGBPoints[0] + 1) < 1e-9);
   await page.locator('input[type="file"]').setInputFiles({ name: "x.json", mimeType: "application/json", buffer: Buffer.from("{}") });
   await page.getByRole("alert").filter({ hasText: "no RGBPoints" }).waitFor();
-  await page.getByRole("alert").getByRole("button", { name: "Dismiss" }).click();
+  await page.getByRole("alert").filter({ hasText: "no RGBPoints" }).getByRole("button", { name: "Dismiss" }).click();
   await page.getByRole("button", { name: "Reset", exact: true }).click();
   await at_rest(page);
 });
@@ -302,6 +302,7 @@ test("threshold, box, plane and iso-surface", async () => {
   await data.getByRole("button", { name: "Add a clip plane" }).click();
   await at_rest(page);
   assert.equal((await state()).clip.length, 2);
+  assert.equal(await data.getByLabel("x, high end").and(page.locator("input[type=range]")).inputValue(), "625", "the slider spans what is cut away too");
   await data.getByRole("button", { name: "Add an iso-surface" }).click();
   await data.getByLabel("Boundary surface").check();
   await at_rest(page);
@@ -428,11 +429,16 @@ test("all controls have names, and text can be read on its ground", async () => 
   await page.emulateMedia({ colorScheme: null });
 });
 
-test("nothing is wider than a small window", async () => {
-  await page.setViewportSize({ width: 400, height: 700 });
-  await page.locator("#panel-toggle").waitFor();
-  const wide = await page.evaluate(() => [...document.querySelectorAll("header, main, #panel *, #status")].filter((c) => c.getBoundingClientRect().right > innerWidth + 1 && !c.closest("svg")).map((c) => c.outerHTML.slice(0, 100)));
-  assert.deepEqual(wide, []);
+test("nothing is wider than its place, in any window", async () => {
+  for (const [width, height] of [[400, 700], [1280, 800], [4000, 2200]]) {
+    await page.setViewportSize({ width, height });
+    await page.waitForTimeout(100);
+    const wide = await page.evaluate(() => {
+      const right = document.querySelector("#panel").getBoundingClientRect().right;
+      return [...document.querySelectorAll("header, main, #panel *, #status")].filter((c) => c.getBoundingClientRect().right > right + 1 && !c.closest("svg")).map((c) => c.outerHTML.slice(0, 100));
+    });
+    assert.deepEqual(wide, [], `${width} wide`);
+  }
   await page.setViewportSize(window_size);
   await at_rest(page);
 });
