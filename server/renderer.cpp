@@ -195,7 +195,9 @@ FrameOutcome Renderer::make_frame(const FrameOrder& order) {
   if (order.level == Level::moving) view.size = shrunk(view.size, shrinks.at(order.shrink));
   const LoadedTransferFunction& loaded = stage_.function(*held, *scene);
   FrameProgress progress(order, queue_, view.size);
-  RenderedFrame rendered = stage_.render(state, *scene, *held, view, {}, &progress, order.stop.get_token());
+  const bool stand_in = order.level == Level::moving && order.stand_in && stage_.has_stand_in(held);
+  RenderedFrame rendered = stand_in ? stage_.render_stand_in(*scene, *held, view, &progress, order.stop.get_token())
+                                    : stage_.render(state, *scene, *held, view, {}, &progress, order.stop.get_token());
   if (rendered.stopped || order.stop.stop_requested()) {
     outcome.kind = FrameOutcome::Kind::stopped;
     return outcome;
@@ -205,23 +207,25 @@ FrameOutcome Renderer::make_frame(const FrameOrder& order) {
   const SharedBytes bytes =
       finished_picture(std::move(rendered.image), format, *scene, view, held->data, loaded.function);
   const auto range = held->data.range();
-  Json header = {{"type", "frame"},
-                 {"frame", ++frames_},
-                 {"number", order.number},
-                 {"level", level_name(outcome.level)},
-                 {"stand_in", false},
-                 {"width", view.size.width},
-                 {"height", view.size.height},
-                 {"mime", media_type(format)},
-                 {"milliseconds", rendered.statistics.milliseconds},
-                 {"encode_ms", ms_between(rendered_at, Clock::now())},
-                 {"promised_error", nullptr},
-                 {"final", outcome.level == Level::exact},
-                 {"stages", Json::object()},
-                 {"field", held->data.field_name()},
-                 {"range", range},
-                 {"warnings", loaded.warnings}};
-  if (const auto promised = stage_.session(state, *scene, *held).promised_error()) header["promised_error"] = *promised;
+  Json header = {
+      {"type", "frame"},
+      {"frame", ++frames_},
+      {"number", order.number},
+      {"level", level_name(outcome.level)},
+      {"stand_in", stand_in},
+      {"width", view.size.width},
+      {"height", view.size.height},
+      {"mime", media_type(format)},
+      {"milliseconds", rendered.statistics.milliseconds},
+      {"encode_ms", ms_between(rendered_at, Clock::now())},
+      {"promised_error", nullptr},
+      {"final", outcome.level == Level::exact},
+      {"stages", stand_in ? std::map<std::string, double>{} : stage_.stage_times(rendered.statistics.milliseconds)},
+      {"field", held->data.field_name()},
+      {"range", range},
+      {"warnings", loaded.warnings}};
+  if (const auto promised = stand_in ? std::nullopt : stage_.session(state, *scene, *held).promised_error())
+    header["promised_error"] = *promised;
   queue_.begin_sending(order, frames_);
   order.channel->send_frame(frame_head(header), bytes);
   outcome.kind = FrameOutcome::Kind::sent;

@@ -4,6 +4,9 @@
 #include <cstring>
 #include <utility>
 
+#include "server/stage_times.hpp"
+#include "tessera/coarse_stand_in.hpp"
+
 namespace tessera::server {
 namespace {
 
@@ -36,6 +39,7 @@ Stage::Stage(SceneReader& reader, Job& job, std::uint64_t memory_bytes, std::fun
     : reader_(reader), job_(job), memory_bytes_(memory_bytes), came_(std::move(came)), progress_(std::move(progress)) {}
 
 Stage::~Stage() {
+  making_thread_ = {};
   if (reading_thread_.joinable()) reading_thread_.join();
 }
 
@@ -171,6 +175,53 @@ const LoadedTransferFunction& Stage::function(HeldData& held, const Scene& scene
   return held.functions.emplace(scene.look_key(), std::move(function)).first->second;
 }
 
+RenderedFrame Stage::render_stand_in(const Scene& scene, HeldData& held, const View& view, Sink* sink,
+                                     const std::stop_token& stop) {
+  const LoadedTransferFunction& loaded = function(held, scene);
+  const std::string key = scene.settings_key() + " stand-in";
+  if (held.stand_in_key != key || !held.stand_in_session) {
+    Settings settings = scene.settings(loaded);
+    settings.surfaces.boundary.clear();
+    settings.surfaces.triangles.clear();
+    settings.integrator = {};
+    settings.integrator.accuracy = 1e-2;
+    settings.mesh = {};
+    held.stand_in_session.reset();
+    held.stand_in_session = std::make_unique<Session>(*held.stand_in, settings);
+    held.stand_in_key = key;
+  }
+  return held.stand_in_session->render(view, loaded.function, {}, sink, stop);
+}
+
+bool Stage::has_stand_in(const std::shared_ptr<HeldData>& held) {
+  if (held->stand_in) return true;
+  if (ranks() > 1) return false;  // all ranks would have to make it at one time
+  {
+    const std::lock_guard lock(mutex_);
+    if (making_ != nullptr) return false;
+    if (made_) {
+      made_->held->stand_in = std::move(made_->data);
+      made_.reset();
+      if (held->stand_in) return true;
+    }
+    if (held->stand_in_tried) return false;
+    making_ = held.get();
+  }
+  held->stand_in_tried = true;
+  making_thread_ = std::jthread([this, held](const std::stop_token& stop) {
+    std::optional<Dataset> data;
+    try {
+      data = coarse_stand_in(held->data, {}, stop);
+    } catch (...) {  // then there is none, as if nobody had asked
+      data.reset();
+    }
+    const std::lock_guard lock(mutex_);
+    making_ = nullptr;
+    made_ = Made{held, std::move(data)};
+  });
+  return false;
+}
+
 Session& Stage::session(const Json& /*state*/, const Scene& scene, HeldData& held) {
   const LoadedTransferFunction& loaded = function(held, scene);
   Settings settings = scene.settings(loaded);
@@ -184,9 +235,16 @@ Session& Stage::session(const Json& /*state*/, const Scene& scene, HeldData& hel
   const std::size_t most = ranks() > 1 ? 1 : most_sessions;
   while (sessions_.size() >= most) sessions_.pop_back();
   if (held.data.is_grid()) settings.memory_bytes = std::max(settings.memory_bytes / most, std::uint64_t{1} << 20);
-  auto session = std::make_unique<Session>(held.data, settings, job_.communicator());
-  sessions_.push_front({key, std::move(session)});
+  KeptSession kept{key, std::make_unique<Trace>(), nullptr};
+  if (ranks() == 1) settings.trace = kept.trace.get();
+  kept.session = std::make_unique<Session>(held.data, settings, job_.communicator());
+  sessions_.push_front(std::move(kept));
   return *sessions_.front().session;
+}
+
+std::map<std::string, double> Stage::stage_times(double frame_ms) {
+  if (sessions_.empty()) return {};
+  return tessera::server::stage_times(sessions_.front().trace->take_spans(), frame_ms);
 }
 
 RenderedFrame Stage::render(const Json& state, const Scene& scene, HeldData& held, const View& view,
@@ -198,7 +256,9 @@ RenderedFrame Stage::render(const Json& state, const Scene& scene, HeldData& hel
           {"height", view.size.height},
           {"uncertainty", settings.keep_uncertainty}});
   try {
-    return session(state, scene, held).render(view, function(held, scene).function, settings, sink, stop);
+    Session& used = session(state, scene, held);
+    static_cast<void>(sessions_.front().trace->take_spans());  // of frames whose times nobody asked for
+    return used.render(view, function(held, scene).function, settings, sink, stop);
   } catch (...) {
     if (ranks() > 1) sessions_.clear();  // which may be of no use any more
     throw;
@@ -209,8 +269,7 @@ RayProbe Stage::probe(const Json& state, const Scene& scene, HeldData& held, con
                       std::size_t samples) {
   tell({{"do", "probe"}, {"state", state}, {"x", pixel.x}, {"y", pixel.y}, {"samples", samples}});
   const LoadedTransferFunction& loaded = function(held, scene);
-  static_cast<void>(view), static_cast<void>(loaded);
-  return {};
+  return tessera::probe(held.data, view, loaded.function, pixel, samples, scene.settings(loaded), job_.communicator());
 }
 
 void Stage::tell(const Json& order) {

@@ -15,6 +15,7 @@
 #include "tessera/field_queries.hpp"
 #include "tessera/job.hpp"
 #include "tessera/session.hpp"
+#include "tessera/trace.hpp"
 
 namespace tessera::server {
 
@@ -24,6 +25,10 @@ struct HeldData {
   Dataset data;
   std::uint64_t bytes = 0;                                  ///< about, in memory
   std::map<std::string, LoadedTransferFunction> functions;  ///< by Scene::look_key(), a few
+  std::optional<Dataset> stand_in;                          ///< tessera/coarse_stand_in.hpp
+  bool stand_in_tried = false;
+  std::unique_ptr<Session> stand_in_session;
+  std::string stand_in_key;
 };
 
 /// How far the reading of data is.
@@ -53,6 +58,14 @@ class Stage {
   /// A picture of the scene, in a size that may be another than the scene's. Collective.
   RenderedFrame render(const Json& state, const Scene& scene, HeldData& held, const View& view,
                        const FrameSettings& settings, Sink* sink, const std::stop_token& stop);
+  /// Of that picture, how long each stage took: its share of the frame's time. One process.
+  std::map<std::string, double> stage_times(double frame_ms);
+  /// Whether there is a stand-in for the data; making one begins with the first question. On several ranks there is
+  /// none.
+  bool has_stand_in(const std::shared_ptr<HeldData>& held);
+  /// The picture of the stand-in, without surfaces of meshes.
+  RenderedFrame render_stand_in(const Scene& scene, HeldData& held, const View& view, Sink* sink,
+                                const std::stop_token& stop);
   /// The session of the scene's last picture.
   Session& session(const Json& state, const Scene& scene, HeldData& held);
 
@@ -76,7 +89,12 @@ class Stage {
   };
   struct KeptSession {
     std::string key;
+    std::unique_ptr<Trace> trace;  // outlives the session
     std::unique_ptr<Session> session;
+  };
+  struct Made {
+    std::shared_ptr<HeldData> held;
+    std::optional<Dataset> data;
   };
 
   std::shared_ptr<HeldData> find(const Scene& scene);
@@ -104,6 +122,9 @@ class Stage {
     std::optional<Error> error;
   };
   std::optional<Arrived> arrived_;
+  const HeldData* making_ = nullptr;  ///< whose stand-in is being made
+  std::optional<Made> made_;
+  std::jthread making_thread_;
   std::map<std::string, Error> failed_;  ///< of data that could not be read, until it has been said
 };
 
