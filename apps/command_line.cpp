@@ -21,6 +21,9 @@ CommandLine::CommandLine()
   add_stall_options(*render, stalls);
   add_scene_options(*render, words);
 
+  serve = app.add_subcommand("serve", "Show a mesh or a volume in a browser, as it is turned and changed");
+  add_serve_options(*serve, words, serve_words);
+
   info = app.add_subcommand("info", "Say what a mesh or volume holds and how it would be rendered");
   add_mesh_options(*info, words);
   info->add_flag("--json", as_json, "for machines");
@@ -89,7 +92,7 @@ CLI::App* CommandLine::command(const std::string& name) const {
 }
 
 std::vector<CLI::App*> CommandLine::commands() const {
-  return {render, info, convert, generate, chart, timing, formats, presets, help, completion};
+  return {render, serve, info, convert, generate, chart, timing, formats, presets, help, completion};
 }
 
 }  // namespace tessera::apps

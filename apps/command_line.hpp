@@ -6,6 +6,7 @@
 
 #include "apps/chart_command.hpp"
 #include "apps/render_options.hpp"
+#include "apps/serve_command.hpp"
 #include "apps/stall_options.hpp"
 
 namespace tessera::apps {
@@ -25,6 +26,7 @@ struct CommandLine {
   RenderWords words;
   StallWords stalls;
   ChartWords chart_words;
+  ServeWords serve_words;
   bool as_json = false, check = false;
   std::string mesh_output, pieces, pieces_partition = "curve", subdivide = "0";
   std::string kind;
@@ -35,7 +37,7 @@ struct CommandLine {
   bool help_all = false, manual = false;
 
   CLI::App app;
-  CLI::App *render, *info, *convert, *generate, *chart, *timing, *formats, *presets, *help, *completion;
+  CLI::App *render, *serve, *info, *convert, *generate, *chart, *timing, *formats, *presets, *help, *completion;
 
  private:
   void declare_convert();

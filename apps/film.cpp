@@ -223,8 +223,7 @@ class Film final : public Sink {
 
   /// What the default transfer function means to be shaded is so, unless an option of the run speaks against it.
   void shade_by_default() {
-    if (!loaded_.shaded || options_.no_shade || options_.frame.deep || settings_.grid.shading) return;
-    if (takes_steps(settings_.integrator) || settings_.emission != Emission::absorption) return;
+    if (!shades_by_default(loaded_, options_)) return;
     settings_.grid.shading.emplace();
     options_.settings.grid.shading = settings_.grid.shading;
     if (writes_) output_.note("method", method_json(options_, job_.size()));

@@ -42,18 +42,25 @@ void check_annotation(const AnnotationOptions& options, const FilmFrame& frame, 
   if (options.annotation) validate(filled(*options.annotation, frame, data), function);
 }
 
+void draw_annotation(Image& picture, const AnnotatedFrame& annotated) {
+  const auto& [frame, camera, data, function, options] = annotated;
+  if (!options.annotation.annotation) return;
+  const Annotation annotation = filled(*options.annotation.annotation, frame, data);
+  annotate(picture, annotation, {camera, picture.size}, data.bounds(), function);
+}
+
 void write_annotated(const Image& image, const DeepImage& deep, const AnnotatedFrame& annotated,
                      PictureWriter& writer) {
   const auto& [frame, camera, data, function, options] = annotated;
   const AnnotationOptions& asked = options.annotation;
   if (!asked.annotation) return writer.write(image, deep, frame);
-  const Annotation annotation = filled(*asked.annotation, frame, data);
-  const View view{camera, frame.size};
   if (asked.layer.empty()) {
     Image picture = image;  // the bare one is verified yet
-    annotate(picture, annotation, view, data.bounds(), function);
+    draw_annotation(picture, annotated);
     return writer.write(picture, deep, frame);
   }
+  const Annotation annotation = filled(*asked.annotation, frame, data);
+  const View view{camera, frame.size};
   FilmFrame bare = frame;
   bare.outputs.pop_back();
   writer.write(image, deep, bare);

@@ -28,6 +28,9 @@ struct AnnotatedFrame {
   const RenderOptions& options;
 };
 
+/// Draws a frame's annotation, if there is any, over its picture, of whatever size that is. Throws as annotate().
+void draw_annotation(Image& picture, const AnnotatedFrame& annotated);
+
 /// Writes a frame's pictures, annotated; with --annotation-layer they stay bare, and the frame's last output is the
 /// layer. Deep pictures are never annotated. Throws as PictureWriter::write().
 void write_annotated(const Image& image, const DeepImage& deep, const AnnotatedFrame& annotated, PictureWriter& writer);

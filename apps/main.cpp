@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <exception>
 #include <optional>
+#include <string_view>
 
 #include "apps/argument_values.hpp"
 #include "apps/chart_command.hpp"
@@ -21,6 +22,7 @@
 #include "apps/parse_arguments.hpp"
 #include "apps/presets_command.hpp"
 #include "apps/render_options.hpp"
+#include "apps/serve_command.hpp"
 #include "apps/setting_words.hpp"
 #include "apps/stall_options.hpp"
 #include "apps/standard_streams.hpp"
@@ -53,8 +55,10 @@ bool to_mesh(const std::filesystem::path& input, const std::filesystem::path& ou
 }
 
 ExitCode run(int argc, char** argv, Job& job) {
-  if (job.size() == 1) answer_interruption();
-  job.answer_termination();
+  // A server ends by a signal as it is meant to.
+  const bool serves = argc > 1 && std::string_view(argv[1]) == "serve";
+  if (job.size() == 1 && !serves) answer_interruption();
+  if (!serves) job.answer_termination();
   job.agree_instruction_sets();
 
   CommandLine line;
@@ -71,6 +75,10 @@ ExitCode run(int argc, char** argv, Job& job) {
     if (const auto stalls = stall_settings(line.stalls, words.quiet)) job.watch_stalls(*stalls);
     if (options.is_grid()) refuse_mesh_options(words, options);
     return render(options, job);
+  }
+  if (*line.serve) {
+    serve(words, line.serve_words, *line.serve, job);
+    return ExitCode::complete;
   }
   if (job.rank() != 0) return ExitCode::complete;  // the other commands are for one process
   if (*line.info) {

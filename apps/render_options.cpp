@@ -256,7 +256,9 @@ void add_render_options(CLI::App& command, RenderWords& words) {
   command.add_flag("--quiet", words.quiet, "nothing on stderr but errors");
 }
 
-RenderOptions render_options(const RenderWords& words) {
+RenderOptions render_options(const RenderWords& words) { return render_options(words, is_grid_input(words)); }
+
+RenderOptions render_options(const RenderWords& words, bool is_grid) {
   RenderOptions options;
   FilmPlan& plan = options.plan;
   plan.inputs = {words.input};
@@ -289,7 +291,7 @@ RenderOptions render_options(const RenderWords& words) {
     if (words.projection == "perspective") options.projection = ProjectionKind::perspective;
   }
 
-  plan.grids = is_grid_input(words);
+  plan.grids = is_grid;
   plan.steps = time_steps(words.time_step);
   set_common(words, options);
   Settings& settings = options.settings;
@@ -369,6 +371,12 @@ LoadedTransferFunction transfer_function_of(const Dataset& data, const RenderOpt
     for (const std::string& warning : unseen_surfaces(options.settings.surfaces, data.range()))
       loaded.warnings.push_back(warning);
   return loaded;
+}
+
+bool shades_by_default(const LoadedTransferFunction& loaded, const RenderOptions& options) {
+  const Settings& settings = options.settings;
+  if (!loaded.shaded || options.no_shade || options.frame.deep || settings.grid.shading) return false;
+  return !takes_steps(settings.integrator) && settings.emission == Emission::absorption;
 }
 
 }  // namespace tessera::apps

@@ -88,6 +88,8 @@ ReadOptions mesh_options(const RenderWords& words);
 /// Words to values. Throws Error(bad_input) naming the option: what it was given, what it takes; also for words
 /// that the design knows but this version cannot do yet, and for options that would have no effect together.
 RenderOptions render_options(const RenderWords& words);
+/// The same where it is known already whether the input is a grid, which else is looked into.
+RenderOptions render_options(const RenderWords& words, bool is_grid);
 
 /// Of `render`, once it is known that a grid is rendered: throws for options that are for meshes, and for deep pictures
 /// that cannot be made.
@@ -95,5 +97,8 @@ void refuse_mesh_options(const RenderWords& words, const RenderOptions& options)
 
 /// The transfer function that the options name, or the default one, its words as the program says them.
 LoadedTransferFunction transfer_function_of(const Dataset& data, const RenderOptions& options);
+
+/// Whether a picture is shaded because the default transfer function means it to be, and no option speaks against it.
+bool shades_by_default(const LoadedTransferFunction& loaded, const RenderOptions& options);
 
 }  // namespace tessera::apps

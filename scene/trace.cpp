@@ -89,6 +89,17 @@ std::vector<TraceSpan> Trace::spans() const {
   return all;
 }
 
+std::vector<TraceSpan> Trace::take_spans() {
+  std::vector<TraceSpan> all;
+  const std::lock_guard lock(recording_->mutex);
+  for (const auto& thread : recording_->threads) {
+    const std::lock_guard spans_lock(thread->mutex);
+    all.insert(all.end(), thread->spans.begin(), thread->spans.end());
+    thread->spans.clear();
+  }
+  return all;
+}
+
 double Trace::now_us() const {
   return std::chrono::duration<double, std::micro>(Clock::now() - recording_->origin).count();
 }

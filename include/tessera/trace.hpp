@@ -74,6 +74,8 @@ class TESSERA_EXPORT Trace {
 
   /// All spans of the recording, through whichever face they came; each thread's in the order of their ends.
   [[nodiscard]] std::vector<TraceSpan> spans() const;
+  /// The same, which are gone from the recording then: for who looks at each frame of a run without end.
+  std::vector<TraceSpan> take_spans();
   [[nodiscard]] double now_us() const;
   /// Small dense number of the calling thread, 0 for the first that asks.
   std::uint32_t thread_number();

@@ -35,13 +35,14 @@ MAY_INCLUDE = {
     "datasets": set(),
     "annotation": set(),
     "analysis": set(),
-    "apps": {"analysis", "datasets"},
+    "server": {"analysis"},
+    "apps": {"analysis", "datasets", "server"},
     "examples": set(),
     "bench": None,
     "tests": None,
 }
 # These may not even include scene/.
-PUBLIC_ONLY = {"include", "examples", "annotation", "analysis", "apps"}
+PUBLIC_ONLY = {"include", "examples", "annotation", "analysis", "server", "apps"}
 
 # Foreign headers, and the folders or files that alone may include them. Tests of io/ write VTK's files by VTK.
 ONLY_IN = [
@@ -49,7 +50,8 @@ ONLY_IN = [
     (r"vtk", ["io/helper/", "tests/io/"]),
     (r"gmsh\.h$", ["io/helper/gmsh_"]),
     (r"tetgen\.h$", ["io/helper/tetgen_fill.cpp"]),
-    (r"^(Xdmf|boost/)", ["io/helper/xdmf_"]),
+    (r"^Xdmf", ["io/helper/xdmf_"]),
+    (r"^boost/", ["io/helper/xdmf_", "server/", "tests/server/"]),
     (r"^med\.h$", ["io/helper/med_", "tests/io/med_test.cpp"]),
     (r"^minc2\.h$", ["io/helper/minc2_file.cpp", "tests/io/minc2_test.cpp"]),
     (r"CLI/", ["apps/"]),

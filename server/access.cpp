@@ -1,0 +1,160 @@
+#include "server/access.hpp"
+
+#include <fmt/format.h>
+#include <sys/random.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "tessera/error.hpp"
+
+namespace tessera::server {
+namespace {
+
+std::string lowered(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
+/// In a time that does not tell how much of it is right.
+bool same(std::string_view given, std::string_view token) {
+  if (given.size() != token.size()) return false;
+  unsigned char differ = 0;
+  for (std::size_t i = 0; i < token.size(); ++i) differ |= static_cast<unsigned char>(given[i] ^ token[i]);
+  return differ == 0;
+}
+
+/// 127.0.0.0/8 in four numbers, not a name that begins so.
+bool is_loopback_v4(std::string_view name) {
+  if (!name.starts_with("127.") || std::ranges::count(name, '.') != 3) return false;
+  return std::ranges::all_of(name, [](char c) { return c == '.' || (c >= '0' && c <= '9'); });
+}
+
+bool is_loopback(std::string_view name) { return name == "localhost" || name == "::1" || is_loopback_v4(name); }
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+/// `host:port` without the port that its scheme has anyway.
+std::string plain_authority(std::string_view authority, std::string_view port) {
+  std::string result = lowered(authority);
+  if (result.ends_with(port)) result.resize(result.size() - port.size());
+  return result;
+}
+
+}  // namespace
+
+std::string host_name(std::string_view host) {
+  std::string_view name = host;
+  if (host.starts_with('[')) {
+    const std::size_t close = host.find(']');
+    if (close == std::string_view::npos) return {};
+    name = host.substr(1, close - 1);
+    host.remove_prefix(close + 1);
+  } else {
+    name = host.substr(0, host.find(':'));
+    host.remove_prefix(name.size());
+  }
+  const bool port_is_right =
+      host.empty() || (host.size() <= 6 && host.front() == ':' &&
+                       std::ranges::all_of(host.substr(1), [](unsigned char c) { return std::isdigit(c) != 0; }));
+  return port_is_right ? lowered(name) : std::string();
+}
+
+std::string random_hex(std::size_t count) {
+  std::string bytes(count, '\0');
+  if (::getrandom(bytes.data(), count, 0) != static_cast<ssize_t>(count))
+    throw Error(ErrorCode::system_failure, "server", "the system has no random numbers for a token", "try again");
+  std::string hex;
+  for (const char byte : bytes) hex += fmt::format("{:02x}", static_cast<unsigned char>(byte));
+  return hex;
+}
+
+std::optional<std::string> decoded(std::string_view text, bool plus) {
+  std::string result;
+  result.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '%') {
+      result += plus && text[i] == '+' ? ' ' : text[i];
+      continue;
+    }
+    if (i + 2 >= text.size()) return std::nullopt;
+    const int high = hex_digit(text[i + 1]), low = hex_digit(text[i + 2]);
+    if (high < 0 || low < 0) return std::nullopt;
+    result += static_cast<char>(16 * high + low);
+    i += 2;
+  }
+  return result;
+}
+
+std::optional<std::string> query_value(std::string_view query, std::string_view name) {
+  while (!query.empty()) {
+    const std::string_view pair = query.substr(0, query.find('&'));
+    query.remove_prefix(std::min(pair.size() + 1, query.size()));
+    const std::size_t equals = pair.find('=');
+    if (equals != std::string_view::npos && pair.substr(0, equals) == name)
+      return decoded(pair.substr(equals + 1), true);
+  }
+  return std::nullopt;
+}
+
+Access::Access(std::string bound, std::vector<std::string> allowed_hosts)
+    : Access(random_hex(16), random_hex(4), std::move(bound), std::move(allowed_hosts)) {}
+
+Access::Access(std::string token, std::string run, std::string bound, std::vector<std::string> allowed_hosts)
+    : token_(std::move(token)), cookie_name_("tessera_" + run), bound_(lowered(bound)) {
+  for (const std::string& host : allowed_hosts) allowed_.push_back(lowered(host));
+}
+
+std::string Access::cookie(bool secure) const {
+  return fmt::format("{}={}; HttpOnly; SameSite=Strict{}", cookie_name_, token_, secure ? "; Secure" : "");
+}
+
+bool Access::allowed(std::string_view name) const {
+  return is_loopback(name) || name == bound_ || std::ranges::find(allowed_, name) != allowed_.end();
+}
+
+bool Access::has_token(const Credentials& credentials) const {
+  if (const auto given = query_value(credentials.query, "token"); given && same(*given, token_)) return true;
+  constexpr std::string_view bearer = "Bearer ";
+  if (credentials.authorization.starts_with(bearer) && same(credentials.authorization.substr(bearer.size()), token_))
+    return true;
+  std::string_view cookies = credentials.cookie;
+  while (!cookies.empty()) {
+    std::string_view pair = cookies.substr(0, cookies.find(';'));
+    cookies.remove_prefix(std::min(pair.size() + 1, cookies.size()));
+    while (pair.starts_with(' ')) pair.remove_prefix(1);
+    const std::size_t equals = pair.find('=');
+    if (equals != std::string_view::npos && pair.substr(0, equals) == cookie_name_ &&
+        same(pair.substr(equals + 1), token_))
+      return true;
+  }
+  return false;
+}
+
+std::optional<std::string> Access::refusal(const Credentials& credentials) const {
+  const std::string name = host_name(credentials.host);
+  if (name.empty() || !allowed(name))
+    return "This server is not called so; start it with --allow-host and the name in the address to allow it.";
+  if (!credentials.origin.empty()) {
+    const std::size_t scheme = credentials.origin.find("://");
+    const std::string_view authority =
+        scheme == std::string_view::npos ? std::string_view() : credentials.origin.substr(scheme + 3);
+    const std::string_view port = credentials.origin.starts_with("https:") ? ":443" : ":80";
+    const bool own = !authority.empty() && plain_authority(authority, port) == plain_authority(credentials.host, port);
+    const std::string origin_name = host_name(authority);
+    const bool named = !origin_name.empty() && std::ranges::find(allowed_, origin_name) != allowed_.end();
+    if (!own && !named) return "The request comes from a page of another server, which may not use this one.";
+  }
+  if (!has_token(credentials))
+    return "The token is missing or of another run; open the whole address that `tessera serve` printed.";
+  return std::nullopt;
+}
+
+}  // namespace tessera::server

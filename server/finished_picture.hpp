@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "server/scene_reader.hpp"
+#include "server/service.hpp"
+#include "tessera/transfer_function.hpp"
+
+namespace tessera::server {
+
+enum class PictureFormat { png, jpeg, exr };
+
+/// A rendered picture as the bytes of a file, those that `tessera render` writes for the scene, with what explains it
+/// drawn over it.
+SharedBytes finished_picture(Image image, PictureFormat format, const Scene& scene, const View& view,
+                             const Dataset& data, const TransferFunction& function);
+
+const char* media_type(PictureFormat format);
+
+}  // namespace tessera::server

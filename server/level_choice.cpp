@@ -1,0 +1,55 @@
+#include "server/level_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessera::server {
+namespace {
+
+/// Of a frame's time, what does not go with its pixels: between what meshes of cells that cover many pixels take, and
+/// those of cells that cover none.
+constexpr double part_of_data = 0.3;
+/// Larger pictures only where there is room for them, so that sizes do not go up and down.
+constexpr double room = 0.85;
+
+double pixels(std::size_t shrink) { return 1 / (shrinks.at(shrink) * shrinks.at(shrink)); }
+
+}  // namespace
+
+ImageSize shrunk(ImageSize size, double shrink) {
+  const auto side = [shrink](int pixels) { return std::max(1, static_cast<int>(std::lround(pixels / shrink))); };
+  return {side(size.width), side(size.height)};
+}
+
+std::size_t LevelChoice::fitting(std::size_t from, double ms) const {
+  for (std::size_t to = from; to < shrinks.size(); ++to)
+    if (ms * (part_of_data + (1 - part_of_data) * pixels(to) / pixels(from)) <= budget_ms_) return to;
+  return shrinks.size();
+}
+
+void LevelChoice::took(std::size_t shrink, bool stand_in, double ms) {
+  if (stand_in != stand_in_) return;  // of what is not shown any more
+  measured_ = true;
+  if (ms > budget_ms_) {
+    const std::size_t to = fitting(shrink, ms);
+    at_ = std::max(at_, std::min(to, shrinks.size() - 1));
+    if (shrink + 1 == shrinks.size() && !stand_in_) {
+      stand_in_ = true;
+      at_ = 1;
+    }
+  } else if (shrink == at_ && at_ > 0 && ms * pixels(at_ - 1) / pixels(at_) <= room * budget_ms_) {
+    --at_;
+  }
+}
+
+void LevelChoice::full_took(double ms) {
+  const std::size_t to = fitting(0, ms);
+  if (stand_in_ && to < shrinks.size()) {
+    stand_in_ = false;
+    at_ = to;
+  } else if (!stand_in_ && !measured_) {
+    at_ = std::min(to, shrinks.size() - 1);
+  }
+}
+
+}  // namespace tessera::server

@@ -1,0 +1,128 @@
+#include "server/listener.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <csignal>
+#include <thread>
+
+#include "server/connection.hpp"
+#include "server/tls.hpp"
+#include "tessera/error.hpp"
+
+namespace tessera::server {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using boost::system::error_code;
+
+struct Listener::State {
+  State(const NetworkOptions& options, const Access& access, Service& service, std::function<void()> on_signal_)
+      : network{access, service, options.limits}, on_signal(std::move(on_signal_)) {
+    if (!options.certificate.empty()) {
+      tls = tls_context(options.certificate, options.key);
+      network.secure = true;
+    }
+    listen_at(options.address, options.port);
+    if (on_signal) {
+      signals.add(SIGINT);
+      signals.add(SIGTERM);
+      signals.async_wait([this](error_code error, int /*signal*/) {
+        if (!error) on_signal();
+      });
+    }
+    accept();
+    thread = std::thread([this] { io.run(); });
+  }
+
+  ~State() {
+    io.stop();
+    thread.join();
+  }
+
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  void listen_at(const std::string& address, std::uint16_t port) {
+    error_code error;
+    const auto ip = asio::ip::make_address(address, error);
+    if (error) throw bad_input(fmt::format("--bind: '{}' is no address; write one like 127.0.0.1 or 0.0.0.0", address));
+    const tcp::endpoint endpoint(ip, port);
+    acceptor.open(endpoint.protocol(), error);
+    if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
+    if (!error) acceptor.bind(endpoint, error);
+    if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+    if (!error) return;
+    if (error == asio::error::address_in_use)
+      throw bad_input(fmt::format("--port: {} is in use; name another, or none for a free one", port));
+    if (error == asio::error::access_denied)
+      throw bad_input(fmt::format("--port: {} is not for everybody to use; name one above 1023", port));
+    throw bad_input(fmt::format("--bind: {} cannot be listened at ({}); name an address of this machine", address,
+                                error.message()));
+  }
+
+  void accept() {
+    acceptor.async_accept([this](error_code error, tcp::socket socket) {
+      if (!acceptor.is_open()) return;
+      if (error) {  // no more files, most likely: a while later there are
+        pause.expires_after(std::chrono::milliseconds(100));
+        pause.async_wait([this](error_code stopped) {
+          if (!stopped) accept();
+        });
+        return;
+      }
+      error_code none;
+      if (network.connections >= network.limits.connections) {
+        socket.close(none);
+      } else {
+        socket.set_option(tcp::no_delay(true), none);
+        tls ? start_tls_connection(std::move(socket), network, *tls)
+            : start_plain_connection(std::move(socket), network);
+      }
+      accept();
+    });
+  }
+
+  Network network;  // outlives the connections, which end with what runs them
+  asio::io_context io{1};
+  std::function<void()> on_signal;
+  std::shared_ptr<asio::ssl::context> tls;
+  tcp::acceptor acceptor{io};
+  asio::signal_set signals{io};
+  asio::steady_timer pause{io};
+  std::thread thread;
+};
+
+Listener::Listener(const NetworkOptions& options, const Access& access, Service& service,
+                   std::function<void()> on_signal)
+    : state_(std::make_unique<State>(options, access, service, std::move(on_signal))) {}
+
+Listener::~Listener() = default;
+
+std::uint16_t Listener::port() const { return state_->acceptor.local_endpoint().port(); }
+
+void Listener::finish() {
+  error_code none;
+  asio::post(state_->io, [this] {
+    error_code ignored;
+    state_->acceptor.close(ignored);
+  });
+  for (int i = 0; i < 50; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    std::atomic<bool> asked = false, quiet = false;
+    asio::post(state_->io, [&] {
+      quiet = state_->network.writing == 0;
+      asked = true;
+      asked.notify_one();
+    });
+    asked.wait(false);
+    if (quiet) return;
+  }
+}
+
+}  // namespace tessera::server

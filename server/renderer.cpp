@@ -1,0 +1,236 @@
+#include "server/renderer.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "server/api.hpp"
+#include "server/finished_picture.hpp"
+#include "server/frame_message.hpp"
+#include "tessera/error.hpp"
+#include "tessera/version.hpp"
+
+namespace tessera::server {
+namespace {
+
+constexpr int protocol_version = 1;
+
+double ms_between(Clock::time_point from, Clock::time_point to) {
+  return std::chrono::duration<double, std::milli>(to - from).count();
+}
+
+std::string reading_text(const Reading& reading) {
+  Json text = {{"type", "reading"}, {"stage", reading.stage}, {"fraction", nullptr}};
+  if (reading.fraction) text["fraction"] = *reading.fraction;
+  return text_of(text);
+}
+
+/// Hears of a frame's tiles: tells the client of long ones, and stops one that a newer state should not wait for.
+class FrameProgress final : public Sink {
+ public:
+  FrameProgress(const FrameOrder& order, WorkQueue& queue, ImageSize size)
+      : order_(order), queue_(queue), pixels_(1.0 * size.width * size.height) {}
+
+  void tile(const Tile& tile) override {
+    done_ += tile.rect.area();
+    const auto now = Clock::now();
+    if (order_.level == Level::moving && queue_.overdue(order_)) {
+      std::stop_source stop = order_.stop;
+      stop.request_stop();
+    }
+    if (now < next_) return;
+    next_ = now + std::chrono::milliseconds(500);
+    order_.channel->send_text(text_of({{"type", "progress"},
+                                       {"number", order_.number},
+                                       {"level", level_name(order_.level)},
+                                       {"fraction", std::min(1.0, done_ / pixels_)}}));
+  }
+
+ private:
+  const FrameOrder& order_;
+  WorkQueue& queue_;
+  double pixels_, done_ = 0;
+  Clock::time_point next_ = Clock::now() + std::chrono::seconds(1);
+};
+
+/// A request, until it is answered.
+class ApiTask final : public Task {
+ public:
+  ApiTask(Request request, std::stop_token gone, Service::Reply reply, ApiContext context)
+      : work_(make_api_work(std::move(request), context, gone)), reply_(std::move(reply)), gone_(std::move(gone)) {}
+
+  Turn turn() override {
+    if (gone_.stop_requested()) return answer(error_response(500, "Nobody waits for the answer."));
+    const ApiResult result = work_->turn();
+    if (result.response) return answer(*result.response);
+    return result.waits_for_data ? Turn::waits_for_data : Turn::again;
+  }
+  void abandon() override {
+    if (reply_) answer(error_response(503, "The server ends, or has too much to do."));
+  }
+
+ private:
+  Turn answer(const Response& response) {
+    std::exchange(reply_, nullptr)(response);
+    return Turn::done;
+  }
+
+  std::unique_ptr<ApiWork> work_;
+  Service::Reply reply_;
+  std::stop_token gone_;
+};
+
+}  // namespace
+
+Response error_response(int status, const std::string& sentence) {
+  return {status, "application/json", std::make_shared<const std::string>(text_of({{"error", sentence}}))};
+}
+
+Renderer::Renderer(SceneReader& reader, Job& job, const RendererSettings& settings)
+    : reader_(reader),
+      settings_(settings),
+      queue_(settings.latency_ms),
+      stage_(
+          reader, job, settings.memory_bytes, [this] { data_came(); },
+          [this](const Reading& reading) { say_reading(reading); }) {}
+
+Renderer::~Renderer() = default;
+
+void Renderer::data_came() {
+  if (!first_came_.exchange(true)) queue_.tell_all(R"({"type":"data"})");
+  queue_.tell_waiting(R"({"type":"data"})");
+  queue_.wake();
+}
+
+void Renderer::say_reading(const Reading& reading) {
+  const auto now = Clock::now();
+  if (ms_between(told_reading_, now) < 200) return;
+  told_reading_ = now;
+  first_came_ ? queue_.tell_waiting(reading_text(reading)) : queue_.tell_all(reading_text(reading));
+}
+
+void Renderer::answer(Request request, std::stop_token gone, Reply reply) {
+  const ApiContext context{reader_, stage_, settings_.threads, progress_};
+  if (auto response = answer_at_once(request, context)) return reply(std::move(*response));
+  queue_.add(std::make_shared<ApiTask>(std::move(request), std::move(gone), std::move(reply), context));
+}
+
+ClientId Renderer::join(std::shared_ptr<Channel> channel) {
+  channel->send_text(text_of({{"type", "welcome"},
+                              {"version", protocol_version},
+                              {"tessera", TESSERA_VERSION},
+                              {"latency", settings_.latency_ms},
+                              {"ready", first_came_.load()}}));
+  if (const auto reading = stage_.reading()) channel->send_text(reading_text(*reading));
+  return queue_.join(std::move(channel));
+}
+
+void Renderer::message(ClientId client, const std::string& text) {
+  try {
+    Message message = parse_message(text);
+    if (auto* state = std::get_if<StateMessage>(&message)) return queue_.set_state(client, std::move(*state));
+    if (const auto* ack = std::get_if<AckMessage>(&message)) return queue_.acknowledge(client, ack->frame);
+    queue_.pause(client);
+  } catch (...) {
+    queue_.tell(client, text_of({{"type", "error"}, {"error", error_of(std::current_exception()).what()}}));
+  }
+}
+
+void Renderer::leave(ClientId client) { queue_.leave(client); }
+
+void Renderer::read_first() {
+  try {
+    const Json base = reader_.base();
+    stage_.data(base, reader_.scene(base));
+  } catch (const Error&) {  // who asks for it is told
+    first_came_ = true;
+  }
+}
+
+void Renderer::run() {
+  read_first();
+  while (auto work = queue_.next()) {
+    if (auto* order = std::get_if<FrameOrder>(&*work)) {
+      queue_.finish(*order, render(*order));
+    } else {
+      auto& task = std::get<std::shared_ptr<Task>>(*work);
+      const Task::Turn turn = task->turn();
+      queue_.finish(std::move(task), turn);
+    }
+  }
+  stage_.end();
+}
+
+void Renderer::end(const std::string& reason) {
+  queue_.tell_all(text_of({{"type", "ended"}, {"error", reason}}));
+  queue_.end();
+}
+
+FrameOutcome Renderer::render(const FrameOrder& order) {
+  FrameOutcome outcome;
+  try {
+    return make_frame(order);
+  } catch (...) {
+    const Error error = error_of(std::current_exception());
+    if (stage_.ranks() > 1 && error.code() != ErrorCode::bad_input) throw;  // the run's
+    order.channel->send_text(
+        text_of({{"type", "error"}, {"number", order.number}, {"error", reader_.worded(error.what())}}));
+  }
+  return outcome;
+}
+
+FrameOutcome Renderer::make_frame(const FrameOrder& order) {
+  FrameOutcome outcome;
+  outcome.level = order.level;
+  const Json exact = order.level == Level::moving ? Json() : reader_.exact(order.state);
+  if (order.level == Level::automatic && exact == order.state) outcome.level = Level::exact;
+  const Json& state = outcome.level == Level::exact ? exact : order.state;
+  const auto scene = reader_.scene(state);
+  const auto held = stage_.data(state, scene);
+  if (!held) {
+    if (const auto reading = stage_.reading()) order.channel->send_text(reading_text(*reading));
+    outcome.kind = FrameOutcome::Kind::waits_for_data;
+    return outcome;
+  }
+  View view = scene->view(held->data);
+  if (order.level == Level::moving) view.size = shrunk(view.size, shrinks.at(order.shrink));
+  const LoadedTransferFunction& loaded = stage_.function(*held, *scene);
+  FrameProgress progress(order, queue_, view.size);
+  const bool stand_in = order.level == Level::moving && order.stand_in && stage_.has_stand_in(held);
+  RenderedFrame rendered = stand_in ? stage_.render_stand_in(*scene, *held, view, &progress, order.stop.get_token())
+                                    : stage_.render(state, *scene, *held, view, {}, &progress, order.stop.get_token());
+  if (rendered.stopped || order.stop.stop_requested()) {
+    outcome.kind = FrameOutcome::Kind::stopped;
+    return outcome;
+  }
+  const auto rendered_at = Clock::now();
+  const PictureFormat format = order.level == Level::moving ? PictureFormat::jpeg : PictureFormat::png;
+  const SharedBytes bytes =
+      finished_picture(std::move(rendered.image), format, *scene, view, held->data, loaded.function);
+  const auto range = held->data.range();
+  Json header = {
+      {"type", "frame"},
+      {"frame", ++frames_},
+      {"number", order.number},
+      {"level", level_name(outcome.level)},
+      {"stand_in", stand_in},
+      {"width", view.size.width},
+      {"height", view.size.height},
+      {"mime", media_type(format)},
+      {"milliseconds", rendered.statistics.milliseconds},
+      {"encode_ms", ms_between(rendered_at, Clock::now())},
+      {"promised_error", nullptr},
+      {"final", outcome.level == Level::exact},
+      {"stages", stand_in ? std::map<std::string, double>{} : stage_.stage_times(rendered.statistics.milliseconds)},
+      {"field", held->data.field_name()},
+      {"range", range},
+      {"warnings", loaded.warnings}};
+  if (const auto promised = stand_in ? std::nullopt : stage_.session(state, *scene, *held).promised_error())
+    header["promised_error"] = *promised;
+  queue_.begin_sending(order, frames_);
+  order.channel->send_frame(frame_head(header), bytes);
+  outcome.kind = FrameOutcome::Kind::sent;
+  outcome.render_ms = rendered.statistics.milliseconds;
+  return outcome;
+}
+
+}  // namespace tessera::server

@@ -1,0 +1,323 @@
+#include "server/stage.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "server/stage_times.hpp"
+#include "tessera/coarse_stand_in.hpp"
+
+namespace tessera::server {
+namespace {
+
+constexpr std::size_t most_data_sets = 8, most_sessions = 3, most_functions = 16;
+
+std::uint64_t bytes_of(const Dataset& data) {
+  if (data.is_grid()) {
+    const GridIndex samples = data.grid_geometry().samples();
+    return 8 * static_cast<std::uint64_t>(samples[0] * samples[1] * samples[2]);  // at most: who is mapped takes none
+  }
+  const MeshArrays arrays = data.mesh_arrays();
+  return 8 * std::uint64_t{arrays.points.size() + arrays.scalars.size()} + 20 * data.tet_count();
+}
+
+const char* stage_words(ReadProgress::Stage stage) {
+  switch (stage) {
+    case ReadProgress::Stage::copying:
+      return "copying";
+    case ReadProgress::Stage::filling:
+      return "filling";
+    default:
+      return "reading";
+  }
+}
+
+}  // namespace
+
+Stage::Stage(SceneReader& reader, Job& job, std::uint64_t memory_bytes, std::function<void()> came,
+             std::function<void(const Reading&)> progress)
+    : reader_(reader), job_(job), memory_bytes_(memory_bytes), came_(std::move(came)), progress_(std::move(progress)) {}
+
+Stage::~Stage() {
+  making_thread_ = {};
+  if (reading_thread_.joinable()) reading_thread_.join();
+}
+
+std::shared_ptr<HeldData> Stage::find(const Scene& scene) {
+  for (auto entry = entries_.begin(); entry != entries_.end(); ++entry) {
+    if (std::ranges::find_first_of(entry->keys, scene.data_keys()) == entry->keys.end()) continue;
+    entries_.splice(entries_.begin(), entries_, entry);
+    return entry->held;
+  }
+  return nullptr;
+}
+
+void Stage::keep(const Scene& scene, Dataset data) {
+  Entry entry;
+  entry.keys = scene.keys_of(data);
+  const std::uint64_t bytes = bytes_of(data);
+  entry.held = std::make_shared<HeldData>(std::move(data));
+  entry.held->bytes = bytes;
+  entries_.push_front(std::move(entry));
+  if (job_.rank() != 0) return;  // the first rank says what goes
+  std::uint64_t sum = 0;
+  std::size_t count = 0;
+  for (auto at = entries_.begin(); at != entries_.end();) {
+    sum += at->held->bytes;
+    if (++count == 1 || (count <= most_data_sets && sum <= memory_bytes_)) {
+      ++at;
+      continue;
+    }
+    const std::string key = at->keys.front();
+    ++at;
+    tell({{"do", "drop"}, {"key", key}});
+    drop(key);
+  }
+}
+
+void Stage::drop(const std::string& key) {
+  const auto gone = std::ranges::find_if(entries_, [&](const Entry& entry) { return entry.keys.front() == key; });
+  if (gone == entries_.end()) return;
+  std::erase_if(sessions_,
+                [&](const KeptSession& kept) { return &kept.session->dataset().state() == &gone->held->data.state(); });
+  entries_.erase(gone);
+}
+
+std::shared_ptr<HeldData> Stage::data(const Json& state, const std::shared_ptr<const Scene>& scene) {
+  std::optional<Arrived> arrived;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!reading_) arrived.swap(arrived_);
+  }
+  if (arrived) {
+    reading_thread_.join();
+    if (arrived->data)
+      keep(*arrived->scene, std::move(*arrived->data));
+    else
+      failed_.insert_or_assign(arrived->scene->data_keys().front(), *arrived->error);
+  }
+  if (auto held = find(*scene)) return held;
+  if (const auto failed = failed_.find(scene->data_keys().front()); failed != failed_.end()) {
+    const Error error = failed->second;
+    failed_.erase(failed);  // who asks again may have mended the file
+    throw error;
+  }
+  if (ranks() > 1) {
+    read_together(state, *scene);
+    return find(*scene);
+  }
+  if (!reading()) read_in_background(scene);
+  return nullptr;
+}
+
+void Stage::read_in_background(std::shared_ptr<const Scene> scene) {
+  {
+    const std::lock_guard lock(mutex_);
+    reading_ = Reading{"reading " + reader_.input_name(), std::nullopt};
+  }
+  progress_(*reading());
+  reading_thread_ = std::thread([this, scene = std::move(scene)] {
+    Arrived arrived{scene, std::nullopt, std::nullopt};
+    const auto heard = [this](const ReadProgress& progress) {
+      Reading now{std::string(stage_words(progress.stage)) + " " + reader_.input_name(), progress.done};
+      if (progress.stage == ReadProgress::Stage::filling) now.fraction.reset();
+      {
+        const std::lock_guard lock(mutex_);
+        reading_ = now;
+      }
+      progress_(now);
+    };
+    try {
+      arrived.data = scene->open(Communicator(), heard);
+    } catch (...) {
+      arrived.error = error_of(std::current_exception());
+    }
+    {
+      const std::lock_guard lock(mutex_);
+      arrived_ = std::move(arrived);
+      reading_.reset();
+    }
+    came_();
+  });
+}
+
+void Stage::read_together(const Json& state, const Scene& scene) {
+  {
+    const std::lock_guard lock(mutex_);
+    reading_ = Reading{"reading " + reader_.input_name(), std::nullopt};
+  }
+  progress_(*reading());
+  const auto end = [this] {
+    const std::lock_guard lock(mutex_);
+    reading_.reset();
+  };
+  try {
+    tell({{"do", "open"}, {"state", state}});
+    keep(scene, scene.open(job_.communicator(), {}));
+  } catch (...) {
+    end();
+    throw;
+  }
+  end();
+  came_();
+}
+
+std::optional<Reading> Stage::reading() {
+  const std::lock_guard lock(mutex_);
+  return reading_;
+}
+
+const LoadedTransferFunction& Stage::function(HeldData& held, const Scene& scene) {
+  const auto found = held.functions.find(scene.look_key());
+  if (found != held.functions.end()) return found->second;
+  LoadedTransferFunction function = scene.function(held.data);
+  if (held.functions.size() >= most_functions) held.functions.clear();
+  return held.functions.emplace(scene.look_key(), std::move(function)).first->second;
+}
+
+RenderedFrame Stage::render_stand_in(const Scene& scene, HeldData& held, const View& view, Sink* sink,
+                                     const std::stop_token& stop) {
+  const LoadedTransferFunction& loaded = function(held, scene);
+  const std::string key = scene.settings_key() + " stand-in";
+  if (held.stand_in_key != key || !held.stand_in_session) {
+    Settings settings = scene.settings(loaded);
+    settings.surfaces.boundary.clear();
+    settings.surfaces.triangles.clear();
+    settings.integrator = {};
+    settings.integrator.accuracy = 1e-2;
+    settings.mesh = {};
+    held.stand_in_session.reset();
+    held.stand_in_session = std::make_unique<Session>(*held.stand_in, settings);
+    held.stand_in_key = key;
+  }
+  return held.stand_in_session->render(view, loaded.function, {}, sink, stop);
+}
+
+bool Stage::has_stand_in(const std::shared_ptr<HeldData>& held) {
+  if (held->stand_in) return true;
+  if (ranks() > 1) return false;  // all ranks would have to make it at one time
+  {
+    const std::lock_guard lock(mutex_);
+    if (making_ != nullptr) return false;
+    if (made_) {
+      made_->held->stand_in = std::move(made_->data);
+      made_.reset();
+      if (held->stand_in) return true;
+    }
+    if (held->stand_in_tried) return false;
+    making_ = held.get();
+  }
+  held->stand_in_tried = true;
+  making_thread_ = std::jthread([this, held](const std::stop_token& stop) {
+    std::optional<Dataset> data;
+    try {
+      data = coarse_stand_in(held->data, {}, stop);
+    } catch (...) {  // then there is none, as if nobody had asked
+      data.reset();
+    }
+    const std::lock_guard lock(mutex_);
+    making_ = nullptr;
+    made_ = Made{held, std::move(data)};
+  });
+  return false;
+}
+
+Session& Stage::session(const Json& /*state*/, const Scene& scene, HeldData& held) {
+  const LoadedTransferFunction& loaded = function(held, scene);
+  Settings settings = scene.settings(loaded);
+  const std::string key = scene.settings_key() + (loaded.shaded ? " shaded" : "");
+  for (auto kept = sessions_.begin(); kept != sessions_.end(); ++kept) {
+    if (kept->key != key || &kept->session->dataset().state() != &held.data.state()) continue;
+    sessions_.splice(sessions_.begin(), sessions_, kept);
+    return *sessions_.front().session;
+  }
+  // Sessions of several ranks share the job's messages, so there is one at a time.
+  const std::size_t most = ranks() > 1 ? 1 : most_sessions;
+  while (sessions_.size() >= most) sessions_.pop_back();
+  if (held.data.is_grid()) settings.memory_bytes = std::max(settings.memory_bytes / most, std::uint64_t{1} << 20);
+  KeptSession kept{key, std::make_unique<Trace>(), nullptr};
+  if (ranks() == 1) settings.trace = kept.trace.get();
+  kept.session = std::make_unique<Session>(held.data, settings, job_.communicator());
+  sessions_.push_front(std::move(kept));
+  return *sessions_.front().session;
+}
+
+std::map<std::string, double> Stage::stage_times(double frame_ms) {
+  if (sessions_.empty()) return {};
+  return tessera::server::stage_times(sessions_.front().trace->take_spans(), frame_ms);
+}
+
+RenderedFrame Stage::render(const Json& state, const Scene& scene, HeldData& held, const View& view,
+                            const FrameSettings& settings, Sink* sink, const std::stop_token& stop) {
+  if (ranks() > 1)
+    tell({{"do", "render"},
+          {"state", state},
+          {"width", view.size.width},
+          {"height", view.size.height},
+          {"uncertainty", settings.keep_uncertainty}});
+  try {
+    Session& used = session(state, scene, held);
+    static_cast<void>(sessions_.front().trace->take_spans());  // of frames whose times nobody asked for
+    return used.render(view, function(held, scene).function, settings, sink, stop);
+  } catch (...) {
+    if (ranks() > 1) sessions_.clear();  // which may be of no use any more
+    throw;
+  }
+}
+
+RayProbe Stage::probe(const Json& state, const Scene& scene, HeldData& held, const View& view, PixelIndex pixel,
+                      std::size_t samples) {
+  tell({{"do", "probe"}, {"state", state}, {"x", pixel.x}, {"y", pixel.y}, {"samples", samples}});
+  const LoadedTransferFunction& loaded = function(held, scene);
+  return tessera::probe(held.data, view, loaded.function, pixel, samples, scene.settings(loaded), job_.communicator());
+}
+
+void Stage::tell(const Json& order) {
+  if (ranks() == 1 || job_.rank() != 0) return;
+  const std::string text = order.dump();
+  std::vector<std::byte> bytes(text.size());
+  std::memcpy(bytes.data(), text.data(), text.size());
+  job_.broadcast(0, std::move(bytes));
+}
+
+void Stage::end() { tell({{"do", "end"}}); }
+
+void Stage::obey(const Json& order) {
+  if (order.at("do") == "drop") return drop(order.at("key").get<std::string>());
+  const Json& state = order.at("state");
+  const auto scene = reader_.scene(state);
+  if (order.at("do") == "open") {
+    keep(*scene, scene->open(job_.communicator(), {}));
+    return;
+  }
+  const auto held = find(*scene);
+  if (!held) throw Error(ErrorCode::system_failure, "server", "this rank has other data than the first", "report this");
+  View view = scene->view(held->data);
+  if (order.at("do") == "probe") {
+    probe(state, *scene, *held, view, {order.at("x").get<int>(), order.at("y").get<int>()},
+          order.at("samples").get<std::size_t>());
+    return;
+  }
+  view.size = {order.at("width").get<int>(), order.at("height").get<int>()};
+  FrameSettings settings;
+  settings.keep_uncertainty = order.at("uncertainty").get<bool>();
+  render(state, *scene, *held, view, settings, nullptr, {});
+}
+
+void Stage::follow() {
+  while (true) {
+    const std::vector<std::byte> bytes = job_.broadcast(0, {});
+    std::string text(bytes.size(), '\0');
+    std::memcpy(text.data(), bytes.data(), bytes.size());
+    const Json order = Json::parse(text);
+    if (order.at("do") == "end") return;
+    try {
+      obey(order);
+    } catch (const Error& error) {
+      // The first rank has the same one, and tells its client.
+      if (error.code() != ErrorCode::bad_input) throw;
+    }
+  }
+}
+
+}  // namespace tessera::server

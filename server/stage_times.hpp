@@ -1,0 +1,16 @@
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tessera/trace.hpp"
+
+namespace tessera::server {
+
+/// How the milliseconds of a frame are shared between its stages, by the time that threads spent in each and in no
+/// stage inside of it. They sum to `frame_ms`, if there are any.
+std::map<std::string, double> stage_times(std::vector<TraceSpan> spans, double frame_ms);
+
+}  // namespace tessera::server

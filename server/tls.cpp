@@ -1,0 +1,29 @@
+#include "server/tls.hpp"
+
+#include <fmt/format.h>
+
+#include <boost/asio/ssl/context.hpp>
+
+#include "tessera/error.hpp"
+
+namespace tessera::server {
+
+std::shared_ptr<boost::asio::ssl::context> tls_context(const std::filesystem::path& certificate,
+                                                       const std::filesystem::path& key) {
+  using boost::asio::ssl::context;
+  auto tls = std::make_shared<context>(context::tls_server);
+  tls->set_options(context::default_workarounds | context::no_sslv2 | context::no_sslv3 | context::no_tlsv1 |
+                   context::no_tlsv1_1);
+  boost::system::error_code error;
+  tls->use_certificate_chain_file(certificate.string(), error);
+  if (error)
+    throw bad_input(fmt::format("{}: is no certificate in PEM that can be read ({}); give one", certificate.string(),
+                                error.message()));
+  tls->use_private_key_file(key.string(), context::pem, error);
+  if (error)
+    throw bad_input(fmt::format("{}: is no key in PEM that can be read and goes with {} ({}); give the certificate's",
+                                key.string(), certificate.string(), error.message()));
+  return tls;
+}
+
+}  // namespace tessera::server

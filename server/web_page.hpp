@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace tessera::server {
+
+/// A file of server/web/, which is in the program.
+struct WebFile {
+  std::string_view name, type, text;
+};
+
+/// Null for another name. The page itself is "index.html".
+const WebFile* web_file(std::string_view name);
+
+/// A page that says one sentence.
+std::string sentence_page(std::string_view sentence);
+
+/// `text` as it stands in HTML.
+std::string html_escaped(std::string_view text);
+
+}  // namespace tessera::server

@@ -1,0 +1,134 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <variant>
+
+#include "server/level_choice.hpp"
+#include "server/messages.hpp"
+#include "server/service.hpp"
+
+namespace tessera::server {
+
+enum class Level { moving, automatic, exact };
+const char* level_name(Level level);
+
+using Clock = std::chrono::steady_clock;
+
+/// A frame that is to be rendered for a client.
+struct FrameOrder {
+  ClientId client = 0;
+  std::shared_ptr<Channel> channel;
+  Json state;
+  std::uint64_t number = 0;
+  Level level = Level::moving;
+  std::size_t shrink = 0;   ///< moving: of `shrinks`
+  bool stand_in = false;    ///< moving: not in time without one
+  Clock::time_point event;  ///< when the state came
+  std::stop_source stop;    ///< asked for when the state is not the client's any more
+};
+
+/// Work that takes turns, for a request.
+class Task {
+ public:
+  enum class Turn { done, again, waits_for_data };
+  virtual ~Task() = default;
+  Task() = default;
+  Task(const Task&) = delete;
+  Task& operator=(const Task&) = delete;
+  virtual Turn turn() = 0;
+  /// No turn follows: the server ends.
+  virtual void abandon() = 0;
+};
+
+/// What became of a frame.
+struct FrameOutcome {
+  enum class Kind { sent, stopped, failed, waits_for_data };
+  Kind kind = Kind::failed;
+  Level level = Level::moving;  ///< sent: that it has, which may be more exact than what was asked for
+  double render_ms = 0;
+};
+
+/// What is to be done, and for whom next: clients and tasks take turns, so that nobody waits for another's second
+/// frame. Of a client only the latest state counts. A frame of an older state is asked to stop at once if it is of a
+/// state at rest; one of a state that moves is left to finish, for else who moves on and on would see none, unless it
+/// takes more than twice its budget.
+///
+/// One thread renders: next(), finish() and overdue() are its own. All else may be called from any thread.
+class WorkQueue {
+ public:
+  explicit WorkQueue(double latency_ms) : latency_ms_(latency_ms) {}
+
+  ClientId join(std::shared_ptr<Channel> channel);
+  void leave(ClientId client);
+  void set_state(ClientId client, StateMessage message);
+  void acknowledge(ClientId client, std::uint64_t frame);
+  void pause(ClientId client);
+  void add(std::shared_ptr<Task> task);
+
+  using Work = std::variant<FrameOrder, std::shared_ptr<Task>>;
+  /// Waits for work. Nothing once the queue has ended.
+  std::optional<Work> next();
+  /// Before a frame is sent, for the client may say at once that it is painted.
+  void begin_sending(const FrameOrder& order, std::uint64_t frame);
+  void finish(const FrameOrder& order, const FrameOutcome& outcome);
+  void finish(std::shared_ptr<Task> task, Task::Turn turn);
+  /// Whether a moving frame has taken so long that a newer state should not wait for it.
+  bool overdue(const FrameOrder& order);
+
+  /// Data has come, or could not be read: who waited for it tries again.
+  void wake();
+  void tell(ClientId client, const std::string& text);
+  /// To all clients.
+  void tell_all(const std::string& text);
+  /// To those who wait for data.
+  void tell_waiting(const std::string& text);
+  /// From now on next() gives nothing; what is in work is asked to stop, tasks are abandoned.
+  void end();
+  [[nodiscard]] bool ended();
+
+ private:
+  struct Client {
+    Client(std::shared_ptr<Channel> to, double budget_ms) : channel(std::move(to)), levels(budget_ms) {}
+    std::shared_ptr<Channel> channel;
+    LevelChoice levels;
+    std::optional<StateMessage> state;
+    Clock::time_point event;
+    std::optional<std::uint64_t> shown, failed;  ///< numbers of states
+    Level shown_level = Level::moving;
+    struct Sent {
+      std::uint64_t frame;
+      Level level;
+      std::size_t shrink;
+      bool stand_in;
+      Clock::time_point event;
+    };
+    std::optional<Sent> unacknowledged;
+    std::optional<std::stop_source> working;
+    Level working_level = Level::moving;
+    Clock::time_point working_since;
+    bool paused = false, waits = false;
+  };
+
+  [[nodiscard]] static std::optional<Level> wanted(const Client& client);
+  std::optional<FrameOrder> next_frame();
+
+  const double latency_ms_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::map<ClientId, Client> clients_;
+  ClientId last_client_ = 0, served_ = 0;
+  std::deque<std::shared_ptr<Task>> tasks_, waiting_;
+  std::uint64_t wakes_ = 0, wakes_before_turn_ = 0;  ///< data may come while somebody decides to wait for it
+  bool tasks_turn_ = false, ended_ = false;
+};
+
+}  // namespace tessera::server
