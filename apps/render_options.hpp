@@ -68,7 +68,7 @@ struct RenderWords {
   std::string dims, type, spacing, origin, endian, skip, step, brick_size, cache, preload, light;
   std::string balance, balance_resolution, balance_weights, show;
   std::string projectors, compositors, exchange, partition = "curve", frames_in_flight, seed;
-  std::string config, save_config;
+  std::string preset, config, save_config;
   AnnotationWords annotation;
   ClipWords clip;
   ViewWords view;
