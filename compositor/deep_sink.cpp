@@ -115,8 +115,8 @@ void DeepSink::integrate_pieces(scene::StageTimer& timer) {
   for (std::size_t k = 0; k < piece_tets_.size(); ++k) {
     if (!(pieces_[k].optical_depth > 0)) continue;
     const auto p = static_cast<int>(piece_pixels_[k]);
-    const glm::dvec3 ray =
-        scene_.space->direction(rect_.x0 + p % rect_.width() + 0.5, rect_.y0 + p / rect_.width() + 0.5);
+    const int x = rect_.x0 + p % rect_.width(), y = rect_.y0 + p / rect_.width();
+    const glm::dvec3 ray = scene_.space->direction(x + 0.5, y + 0.5);
     light_segment(scene_.light->on(scene_.normals->of(piece_tets_[k]), ray), k, pieces_[k].optical_depth, batch_);
   }
   if (!crossings_.empty()) {

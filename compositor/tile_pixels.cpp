@@ -67,8 +67,8 @@ void ListPixels::light_matter(const Lists& lists, double final_depth) {
     const auto entries = lists.pixel(p);
     if (entries.empty()) continue;
     const auto at = static_cast<int>(p);
-    const glm::dvec3 ray =
-        scene_.space->direction(rect_.x0 + at % rect_.width() + 0.5, rect_.y0 + at / rect_.width() + 0.5);
+    const int x = rect_.x0 + at % rect_.width(), y = rect_.y0 + at / rect_.width();
+    const glm::dvec3 ray = scene_.space->direction(x + 0.5, y + 0.5);
     for (const auto& entry : entries) {
       if (!(entry.depth < final_depth)) break;
       const std::size_t k = next++;
