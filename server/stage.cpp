@@ -141,6 +141,12 @@ void Stage::read_in_background(std::shared_ptr<const Scene> scene) {
   });
 }
 
+Dataset Stage::open_together(const Scene& scene) {
+  std::optional<Dataset> data;
+  job_.attempt([&](const Communicator& ranks) { data = scene.open(ranks, {}); });
+  return std::move(*data);
+}
+
 void Stage::read_together(const Json& state, const Scene& scene) {
   {
     const std::lock_guard lock(mutex_);
@@ -153,7 +159,7 @@ void Stage::read_together(const Json& state, const Scene& scene) {
   };
   try {
     tell({{"do", "open"}, {"state", state}});
-    keep(scene, scene.open(job_.communicator(), {}));
+    keep(scene, open_together(scene));
   } catch (...) {
     end();
     throw;
@@ -280,14 +286,21 @@ void Stage::tell(const Json& order) {
   job_.broadcast(0, std::move(bytes));
 }
 
-void Stage::end() { tell({{"do", "end"}}); }
+void Stage::end() {
+  tell({{"do", "end"}});
+  hear_all();
+}
+
+void Stage::hear_all() {
+  for (int rank = 1; rank < ranks(); ++rank) job_.broadcast(rank, {});
+}
 
 void Stage::obey(const Json& order) {
   if (order.at("do") == "drop") return drop(order.at("key").get<std::string>());
   const Json& state = order.at("state");
   const auto scene = reader_.scene(state);
   if (order.at("do") == "open") {
-    keep(*scene, scene->open(job_.communicator(), {}));
+    keep(*scene, open_together(*scene));
     return;
   }
   const auto held = find(*scene);
@@ -310,12 +323,12 @@ void Stage::follow() {
     std::string text(bytes.size(), '\0');
     std::memcpy(text.data(), bytes.data(), bytes.size());
     const Json order = Json::parse(text);
-    if (order.at("do") == "end") return;
+    if (order.at("do") == "end") return hear_all();
     try {
       obey(order);
     } catch (const Error& error) {
-      // The first rank has the same one, and tells its client.
-      if (error.code() != ErrorCode::bad_input) throw;
+      // Of opening all ranks have the same one, of bad input too: the first tells its client.
+      if (error.code() != ErrorCode::bad_input && order.at("do") != "open") throw;
     }
   }
 }
