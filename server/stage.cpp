@@ -1,5 +1,7 @@
 #include "server/stage.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -253,8 +255,25 @@ std::map<std::string, double> Stage::stage_times(double frame_ms) {
   return tessera::server::stage_times(sessions_.front().trace->take_spans(), frame_ms);
 }
 
+void Stage::check_size(ImageSize size) const {
+  constexpr int longest_side = 16384;
+  constexpr std::uint64_t bytes_of_pixel = 24;  // rendered, and as it is encoded
+  if (size.width > longest_side || size.height > longest_side)
+    throw bad_input(
+        fmt::format("--size: {}x{} has more than {} pixels a side; ask for a smaller picture, or render it "
+                    "by its command line",
+                    size.width, size.height, longest_side));
+  const auto width = static_cast<std::uint64_t>(size.width), height = static_cast<std::uint64_t>(size.height);
+  if (width * height * bytes_of_pixel > memory_bytes_)
+    throw bad_input(
+        fmt::format("--size: {}x{} takes more memory than the server has for it; ask for a smaller picture, "
+                    "or start the server with a larger --memory",
+                    size.width, size.height));
+}
+
 RenderedFrame Stage::render(const Json& state, const Scene& scene, HeldData& held, const View& view,
                             const FrameSettings& settings, Sink* sink, const std::stop_token& stop) {
+  check_size(view.size);
   if (ranks() > 1)
     tell({{"do", "render"},
           {"state", state},
