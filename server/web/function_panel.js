@@ -72,7 +72,7 @@ export class FunctionPanel {
       button("Whole", () => this.#range_of("whole"), { title: "Range: all of the field's values" }),
       button("99 %", () => this.#range_of("most"), { title: "Range: the values of 99 % of the volume" }),
       button("Visible", () => this.#range_of("visible"), { title: "Range: the values of 99 % of what this view shows" }),
-      button("Reset", () => this.page.history.change({ range: undefined, "transfer-function": undefined, log: undefined, opacity: undefined, "unit-distance": undefined }),
+      button("Reset", () => this.page.history.change({ range: undefined, "transfer-function": undefined, log: undefined, opacity: undefined, "unit-distance": undefined, "color-bar-scale": undefined }),
         { title: "The function that the server chooses" }));
 
     this.strength = element("input", {
@@ -80,19 +80,22 @@ export class FunctionPanel {
     });
     this.strength_text = typed("Overall opacity, a factor", (text) => this.#type_strength(text), { class: "short" });
     this.distance = typed("", (text) => this.#type_distance(text));
-    this.bar = checkbox("Colour bar", (on) => this.page.set_option("color-bar", on ? true : undefined), "Drawn in the picture, and in saved ones");
+    this.bar = checkbox("Colour bar", (on) => this.#set_bar(on), "Drawn in the picture, and in saved ones");
+    this.bar_title = typed("", (text) => this.page.history.change({ "color-bar-title": text.trim() || this.page.unset("color-bar-title") }),
+      { inputmode: "text", placeholder: "the field's name", title: "{field}, {time}, {file}, {min} and {max} are filled in" });
+    this.bar_row = row("Bar's title", this.bar_title);
     this.warning = element("p", { class: "warning", hidden: true });
 
     const file = element("input", { type: "file", accept: ".json,application/json", hidden: true, on_change: () => void this.#import() });
     this.file = file;
     this.element.append(
       this.swatches,
-      element("div", { class: "row" }, element("label", { for: "shape" }, "Opacity"), this.shape, icon_button("swap", "Reverse the colours", () => this.#reverse())),
+      element("div", { class: "row" }, element("label", { for: "shape" }, "Shape"), this.shape, icon_button("swap", "Reverse the colours", () => this.#reverse())),
       this.editor.element, this.point_row,
       element("div", { class: "checks" }, log_axis.label, this.log.label, close.label, this.few),
       element("div", { class: "row" }, element("span", { class: "label" }, "Range"), this.low, this.high), ranges,
-      row("Overall opacity", this.strength, this.strength_text), row("Unit distance", this.distance),
-      element("div", { class: "checks" }, this.bar.label), this.warning,
+      row("Opacity ×", this.strength, this.strength_text), row("Unit distance", this.distance),
+      element("div", { class: "checks" }, this.bar.label), this.bar_row, this.warning,
       element("div", { class: "buttons" }, button("Import…", () => file.click(), { title: "A colour map of ParaView's, .json" }),
         button("Export", () => this.#export(), { title: "As ParaView's colour map, .json" })), file);
     this.shape.id = "shape";
@@ -119,6 +122,8 @@ export class FunctionPanel {
     const { page } = this;
     this.log.input.checked = page.option("log") === true;
     this.bar.input.checked = Boolean(page.option("color-bar"));
+    this.bar_row.hidden = !this.bar.input.checked;
+    show_value(this.bar_title, String(page.option("color-bar-title") ?? ""));
     const strength = Number(page.option("opacity") ?? 1);
     show_value(this.strength, String(Math.log10(strength)));
     show_value(this.strength_text, short_number(strength, 3));
@@ -162,8 +167,8 @@ export class FunctionPanel {
     const { reply, editor } = this;
     if (!reply || !editor.edited) return;
     editor.show(editor.edited, this.histogram);
-    show_value(this.low, short_number(editor.edited.range[0], 6));
-    show_value(this.high, short_number(editor.edited.range[1], 6));
+    show_value(this.low, short_number(editor.edited.range[0], 5));
+    show_value(this.high, short_number(editor.edited.range[1], 5));
     show_value(this.distance, short_number(reply.unit_distance, 5));
     const [name, shape] = this.#words();
     for (const swatch of this.swatches.children) {
@@ -224,8 +229,8 @@ export class FunctionPanel {
     const keys = typeof this.page.history.state["transfer-function"] === "object" && this.editor.edited
       ? functions.state_of({ ...this.editor.edited, range }) : { range: range.join(",") };
     this.page.history.change(keys, { moving, name: "range" });
-    show_value(this.low, short_number(range[0], 6));
-    show_value(this.high, short_number(range[1], 6));
+    show_value(this.low, short_number(range[0], 5));
+    show_value(this.high, short_number(range[1], 5));
   }
 
   /** @param {string | undefined} low @param {string | undefined} high */
@@ -248,6 +253,18 @@ export class FunctionPanel {
     else this.page.messages.complain("All of these values are the same, so they are no range.", { about: "range" });
   }
 
+  /** What says how the colour bar is drawn; without a bar these options are refused. @param {boolean} on @param {boolean} log */
+  #bar_scale(on, log) {
+    return { "color-bar-scale": on && log ? "log" : this.page.unset("color-bar-scale") };
+  }
+
+  /** @param {boolean} on */
+  #set_bar(on) {
+    const { page } = this;
+    const others = on ? {} : Object.fromEntries(["color-bar-title", "color-bar-range", "field-unit"].map((word) => [word, page.unset(word)]));
+    page.history.change({ "color-bar": on ? true : page.unset("color-bar"), ...others, ...this.#bar_scale(on, page.option("log") === true) });
+  }
+
   /** @param {boolean} on */
   #set_log(on) {
     const { edited } = this.editor;
@@ -257,7 +274,7 @@ export class FunctionPanel {
     const range = on && !(edited.range[0] > 0) ? undefined : edited.range.join(",");
     const own = typeof this.page.history.state["transfer-function"] === "object";
     const points = own ? { "transfer-function": functions.state_of({ ...edited, log: on })["transfer-function"] } : {};
-    this.page.history.change({ log, ...points, ...(own || this.page.history.state.range ? { range } : {}) });
+    this.page.history.change({ log, ...this.#bar_scale(Boolean(this.page.option("color-bar")), on), ...points, ...(own || this.page.history.state.range ? { range } : {}) });
   }
 
   /** @param {boolean} moving */

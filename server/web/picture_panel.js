@@ -25,6 +25,12 @@ export class PicturePanel {
     this.clear = checkbox("Without background", () => {}, "With alpha, PNG and OpenEXR");
     this.save_button = button("Save", () => void this.save(), { class: "primary" });
     this.fixed = checkbox("Show at this size", (on) => this.#fix(on), "Otherwise the picture fills the window");
+    this.accuracy = typed("", (text) => {
+      const bound = parsed_number(text);
+      if (!(bound > 0) && text.trim() !== "") return false;
+      page.history.change({ accuracy: bound > 0 ? String(bound) : page.unset("accuracy") });
+      return true;
+    }, { placeholder: "1e-4", title: "Largest error of the linear RGBA of a pixel" });
     this.kind = choice("", () => this.#show_film(), [["orbit", "once round the data"], ["views", "along key views"]]);
     this.frames = typed("", (text) => parsed_number(text) >= 2, { value: "120", class: "short", inputmode: "numeric" });
     this.rate = typed("Frames a second", (text) => parsed_number(text) > 0, { value: "25", class: "short" });
@@ -37,6 +43,7 @@ export class PicturePanel {
     this.element = element("div", { class: "panel-body" },
       element("div", { class: "row" }, element("span", { class: "label" }, "Size"), this.width, element("span", { class: "times" }, "×"), this.height, icon_button("fit", "The window's size", () => this.#take_window())),
       element("div", { class: "checks" }, this.fixed.label),
+      row("Accuracy", this.accuracy),
       row("Format", this.format, this.save_button), element("div", { class: "checks" }, this.clear.label),
       element("div", { class: "buttons" }, button("Copy link", () => void this.copy_link()), button("Copy command", () => void this.copy_command(), { title: "The tessera render command of this picture" })),
       element("div", { class: "heading" }, "Film"),
@@ -50,6 +57,7 @@ export class PicturePanel {
 
   update() {
     const size = this.page.view.size();
+    show_value(this.accuracy, String(this.page.option("accuracy") ?? ""));
     if (this.fixed.input.checked !== (this.page.view.fixed !== undefined)) this.fixed.input.checked = this.page.view.fixed !== undefined;
     if (!this.typed_size || this.page.view.fixed) {
       show_value(this.width, String(size.width));
