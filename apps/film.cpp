@@ -20,7 +20,6 @@
 #include "tessera/image_file.hpp"
 #include "tessera/session.hpp"
 #include "tessera/trace.hpp"
-#include "tessera/triangle_file.hpp"
 #include "tessera/view.hpp"
 
 namespace tessera::apps {
@@ -185,13 +184,8 @@ class Film final : public Sink {
   /// Of the step at hand, with its field.
   void read_block_surfaces(const std::vector<std::filesystem::path>& files, ReadOptions read) {
     if (options_.block_surfaces.empty()) return;
-    settings_.surfaces = options_.settings.surfaces;
-    const char* const of = data_->association() == Association::cell ? "cell:" : "point:";
-    read.field = data_->shows_shape() ? std::string() : of + data_->field_name();
-    for (const BlockSurfaceWord& block : options_.block_surfaces)
-      settings_.surfaces.triangles.push_back(
-          {std::make_shared<const TriangleMesh>(read_block_surface(files, block.name, read)), block.color,
-           block.opacity});
+    settings_.surfaces =
+        with_block_surfaces(options_.settings.surfaces, options_.block_surfaces, *data_, files, std::move(read));
   }
 
   /// Colours and opacities are the first step's, of whose values the others' may be far.

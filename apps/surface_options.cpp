@@ -115,6 +115,16 @@ std::vector<IsoSurface> iso_surfaces_of(const SurfaceWords& words) {
   return surfaces;
 }
 
+Surfaces with_block_surfaces(Surfaces surfaces, std::span<const BlockSurfaceWord> blocks, const Dataset& data,
+                             std::span<const std::filesystem::path> files, ReadOptions read) {
+  const char* const of = data.association() == Association::cell ? "cell:" : "point:";
+  read.field = data.shows_shape() ? std::string() : of + data.field_name();
+  for (const BlockSurfaceWord& block : blocks)
+    surfaces.triangles.push_back({std::make_shared<const TriangleMesh>(read_block_surface(files, block.name, read)),
+                                  block.color, block.opacity});
+  return surfaces;
+}
+
 std::vector<std::string> unseen_surfaces(const Surfaces& surfaces, const std::array<double, 2>& range) {
   std::vector<std::string> warnings;
   for (const IsoSurface& iso : surfaces.iso)
