@@ -231,6 +231,7 @@ function show_reading({ stage, fraction }) {
 
 /** @param {{number?: number, level?: string, fraction?: number}} progress */
 function show_progress({ level, fraction }) {
+  sender.in_work();
   const bar = /** @type {HTMLProgressElement} */ (by_id("frame-progress"));
   bar.hidden = false;
   if (typeof fraction === "number") bar.value = fraction;
@@ -288,7 +289,7 @@ function begin(data) {
   page.ready = true;
   history.begin(first_state(state));
   for (const panel of panels) panel.begin();
-  sender.opened();
+  if (connection.is_open) sender.opened();
 }
 
 // What follows each change.
