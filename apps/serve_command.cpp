@@ -66,6 +66,11 @@ void serve(const RenderWords& words, const ServeWords& serve_words, const CLI::A
     std::fflush(stdout);
     std::_Exit(0);
   };
+  events.rank_lost = [] {
+    abandon_outputs();
+    Job::say_once("tessera: a rank is lost, or was ended from outside; start the server again");
+    std::_Exit(static_cast<int>(ErrorCode::system_failure));
+  };
   server::serve(options, *reader, job, events);
 }
 

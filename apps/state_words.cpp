@@ -81,14 +81,23 @@ constexpr std::array state_keys = {StateKey{"size", Kind::value},
 constexpr std::array<std::string_view, 9> view_options = {"camera", "view", "up",         "azimuth", "elevation",
                                                           "zoom",   "fit",  "projection", "orbit"};
 
+/// A key as it can stand in a message: it comes from anywhere.
+std::string shown(const std::string& name) {
+  constexpr std::size_t longest = 40;
+  std::string text = name.substr(0, longest);
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
+  return name.size() > longest ? text + "..." : text;
+}
+
 const StateKey& key_named(const std::string& name) {
   const auto* const found = std::ranges::find(state_keys, std::string_view(name), &StateKey::name);
   if (found != state_keys.end()) return *found;
   std::vector<std::string> names;
   for (const StateKey& key : state_keys) names.emplace_back(key.name);
   if (const auto near = nearest_name(name, names))
-    throw bad_input(fmt::format("state: '{}' is no key; did you mean {}?", name, *near));
-  throw bad_input(fmt::format("state: '{}' is no key; docs/SERVER.md has those there are", name));
+    throw bad_input(fmt::format("state: '{}' is no key; did you mean {}?", shown(name), *near));
+  throw bad_input(fmt::format("state: '{}' is no key; docs/SERVER.md has those there are", shown(name)));
 }
 
 Error wrong_kind(const std::string& name, const char* kind) {
@@ -100,6 +109,9 @@ std::string text_of(const std::string& name, const Json& value) {
   if (!value.is_string()) throw wrong_kind(name, "text or number");
   const auto& text = value.get_ref<const std::string&>();
   if (text.empty()) throw bad_input(fmt::format("state: '{}' is empty; leave it out, or give a value", name));
+  constexpr std::size_t longest = 4096;
+  if (text.size() > longest && !is_json_text(text))
+    throw bad_input(fmt::format("state: '{}' has more than {} bytes; make it shorter", name, longest));
   if (std::ranges::any_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }))
     throw bad_input(fmt::format("state: '{}' has control characters; leave them out", name));
   return text;
@@ -124,6 +136,8 @@ std::string function_text(const std::string& name, const Json& value) {
 
 std::vector<std::string> list_of(const std::string& name, const Json& value) {
   if (!value.is_array()) return {text_of(name, value)};
+  constexpr std::size_t most = 64;
+  if (value.size() > most) throw bad_input(fmt::format("state: '{}' has more than {} values; send fewer", name, most));
   std::vector<std::string> texts;
   for (const Json& one : value) texts.push_back(text_of(name, one));
   return texts;

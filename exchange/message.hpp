@@ -21,7 +21,7 @@ namespace tessera::exchange {
 static_assert(std::endian::native == std::endian::little, "messages are little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 15;        ///< the next one whenever a message changes
+inline constexpr std::uint16_t wire_version = 16;        ///< the next one whenever a message changes
 
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
@@ -79,6 +79,8 @@ enum class MessageKind : std::uint16_t {
   open_faces = 47,        ///< list of OpenFace (frame/boundary_faces.cpp): that one tet of a rank's part has alone
   ray_tets = 48,          ///< list of RayTet (frame/probe.cpp): those of a rank's part that a ray meets
   curved_part = 40,  ///< frame/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
+  // All channels.
+  attempt_end = 49,  ///< u8 ErrorCode, 0 if all went well, text: the sender has no more of this attempt (attempt.hpp)
   // The transport's own.
   fault = 41,    ///< a rank to rank 0, I have failed: u8 ErrorCode, text
   verdict = 42,  ///< the run's error to all: u8 ErrorCode, text

@@ -9,6 +9,7 @@
 #include <memory>
 #include <string_view>
 
+#include "exchange/attempt.hpp"
 #include "exchange/collectives.hpp"
 #include "exchange/instruction_sets.hpp"
 #include "exchange/loopback_transport.hpp"
@@ -92,6 +93,12 @@ std::vector<std::byte> Job::broadcast(int root, std::vector<std::byte> bytes) {
   bytes = reader.take_list<std::byte>();
   reader.finish();
   return bytes;
+}
+
+void Job::attempt(const std::function<void(const Communicator&)>& work) {
+  if (size() == 1) return work(communicator());
+  exchange::attempt(state_->transport(),
+                    [&](exchange::Transport& transport) { work(frame::communicator_over(transport)); });
 }
 
 void Job::fail(const Error& error) { state_->transport().fail(error); }

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <csignal>
 #include <thread>
 
 #include "server/connection.hpp"
@@ -22,20 +21,13 @@ using asio::ip::tcp;
 using boost::system::error_code;
 
 struct Listener::State {
-  State(const NetworkOptions& options, const Access& access, Service& service, std::function<void()> on_signal_)
-      : network{access, service, options.limits}, on_signal(std::move(on_signal_)) {
+  State(const NetworkOptions& options, const Access& access, Service& service)
+      : network{access, service, options.limits} {
     if (!options.certificate.empty()) {
       tls = tls_context(options.certificate, options.key);
       network.secure = true;
     }
     listen_at(options.address, options.port);
-    if (on_signal) {
-      signals.add(SIGINT);
-      signals.add(SIGTERM);
-      signals.async_wait([this](error_code error, int /*signal*/) {
-        if (!error) on_signal();
-      });
-    }
     accept();
     thread = std::thread([this] { io.run(); });
   }
@@ -90,17 +82,15 @@ struct Listener::State {
 
   Network network;  // outlives the connections, which end with what runs them
   asio::io_context io{1};
-  std::function<void()> on_signal;
+  asio::executor_work_guard<asio::io_context::executor_type> until_stopped{io.get_executor()};
   std::shared_ptr<asio::ssl::context> tls;
   tcp::acceptor acceptor{io};
-  asio::signal_set signals{io};
   asio::steady_timer pause{io};
   std::thread thread;
 };
 
-Listener::Listener(const NetworkOptions& options, const Access& access, Service& service,
-                   std::function<void()> on_signal)
-    : state_(std::make_unique<State>(options, access, service, std::move(on_signal))) {}
+Listener::Listener(const NetworkOptions& options, const Access& access, Service& service)
+    : state_(std::make_unique<State>(options, access, service)) {}
 
 Listener::~Listener() = default;
 

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -32,12 +31,11 @@ struct NetworkOptions {
 /// HTTP and WebSocket on one port, on one thread of its own, from construction to destruction.
 ///
 /// The page and what it loads come from server/web_page.hpp, `socket` is the WebSocket, all else the service's.
-/// The first SIGINT or SIGTERM calls `on_signal`, from the network's thread, if one is given.
 class Listener {
  public:
   /// Throws Error(bad_input) for an address that is none of this machine's, a port that is taken, a certificate that
   /// cannot be read. `service` must outlive it.
-  Listener(const NetworkOptions& options, const Access& access, Service& service, std::function<void()> on_signal = {});
+  Listener(const NetworkOptions& options, const Access& access, Service& service);
   ~Listener();
   Listener(const Listener&) = delete;
   Listener& operator=(const Listener&) = delete;

@@ -160,10 +160,7 @@ void Renderer::run() {
   stage_.end();
 }
 
-void Renderer::end(const std::string& reason) {
-  queue_.tell_all(text_of({{"type", "ended"}, {"error", reason}}));
-  queue_.end();
-}
+void Renderer::say_end(const std::string& reason) { queue_.tell_all(text_of({{"type", "ended"}, {"error", reason}})); }
 
 FrameOutcome Renderer::render(const FrameOrder& order) {
   FrameOutcome outcome;

@@ -27,10 +27,12 @@ class Renderer final : public Service {
   Renderer(SceneReader& reader, Job& job, const RendererSettings& settings);
   ~Renderer() override;
 
-  /// Until end() is called. Throws what ends the run of all ranks.
+  /// Until end() is called, and on several ranks all have come to their end. Throws what ends the run of all ranks.
   void run();
-  /// From any thread. `reason`: what clients are told.
-  void end(const std::string& reason);
+  /// From any thread: run() returns soon.
+  void end() { queue_.end(); }
+  /// Tells clients why the server ends.
+  void say_end(const std::string& reason);
   [[nodiscard]] bool is_reading() { return stage_.reading().has_value(); }
 
   void answer(Request request, std::stop_token gone, Reply reply) override;
@@ -52,8 +54,6 @@ class Renderer final : public Service {
   Stage stage_;
   FilmProgress progress_;
   std::atomic<bool> first_came_ = false;
-  std::mutex reason_mutex_;
-  std::string reason_;
   std::uint64_t frames_ = 0;
   Clock::time_point told_reading_;
 };

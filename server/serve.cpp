@@ -2,11 +2,20 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
 #include "server/access.hpp"
+#include "server/signals.hpp"
 #include "tessera/error.hpp"
 
 namespace tessera::server {
 namespace {
+
+/// A launcher gives ranks a second between SIGTERM and their end; who is well says so in half of it.
+constexpr std::chrono::milliseconds patience(500);
 
 /// An address as it stands in one of the web: IPv6 in brackets; all of a machine's by its loopback.
 std::string web_host(const std::string& address) {
@@ -14,26 +23,75 @@ std::string web_host(const std::string& address) {
   return address.find(':') == std::string::npos ? address : "[" + address + "]";
 }
 
+/// Calls `late` unless the ranks come to their end together within `patience` after hurry(). A launcher sends all ranks
+/// the same signal when its user ends the job and when a rank has died, and a rank that has died does not answer.
+class EndWatch {
+ public:
+  explicit EndWatch(std::function<void()> late) : late_(std::move(late)) {}
+  ~EndWatch() {
+    {
+      const std::lock_guard lock(mutex_);
+      ended_ = true;
+    }
+    changed_.notify_all();
+    if (thread_.joinable()) thread_.join();
+  }
+  EndWatch(const EndWatch&) = delete;
+  EndWatch& operator=(const EndWatch&) = delete;
+
+  void hurry() {
+    thread_ = std::thread([this] {
+      std::unique_lock lock(mutex_);
+      if (changed_.wait_for(lock, patience, [this] { return ended_; })) return;
+      lock.unlock();
+      late_();
+    });
+  }
+
+ private:
+  std::function<void()> late_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool ended_ = false;
+  std::thread thread_;
+};
+
+void follow(const ServeOptions& options, SceneReader& reader, Job& job, const ServeEvents& events) {
+  Stage stage(
+      reader, job, options.renderer.memory_bytes, [] {}, [](const Reading& /*reading*/) {});
+  EndWatch watch([&] { events.rank_lost(); });
+  const Signals signals([&] { watch.hurry(); });
+  stage.follow();
+}
+
 }  // namespace
 
 void serve(const ServeOptions& options, SceneReader& reader, Job& job, const ServeEvents& events) {
-  if (job.rank() != 0) {
-    Stage stage(
-        reader, job, options.renderer.memory_bytes, [] {}, [](const Reading& /*reading*/) {});
-    return stage.follow();
-  }
+  if (job.rank() != 0) return follow(options, reader, job, events);
   const Access access(options.network.address, options.allowed_hosts);
   Renderer renderer(reader, job, options.renderer);
-  Listener listener(options.network, access, renderer, [&renderer] { renderer.end("The server was ended."); });
+  Listener listener(options.network, access, renderer);
+  EndWatch watch([&] {
+    if (job.size() == 1) return;
+    if (!renderer.is_reading()) renderer.say_end("A rank of the server was lost; start it again.");
+    listener.finish();
+    renderer.is_reading() ? events.ended_while_reading() : events.rank_lost();
+  });
+  const Signals signals([&] {
+    renderer.end();
+    watch.hurry();
+  });
   events.listening(fmt::format("{}://{}:{}/?token={}", options.network.certificate.empty() ? "http" : "https",
                                web_host(options.network.address), listener.port(), access.token()));
   try {
     renderer.run();
   } catch (...) {
-    renderer.end(reader.worded(error_of(std::current_exception()).what()));
+    renderer.end();
+    renderer.say_end(reader.worded(error_of(std::current_exception()).what()));
     listener.finish();
     throw;
   }
+  renderer.say_end("The server was ended.");
   listener.finish();
   if (renderer.is_reading()) events.ended_while_reading();
 }

@@ -23,6 +23,8 @@ struct ServeEvents {
   std::function<void(const std::string& url)> listening;
   /// It ended while a file was read, which nobody can stop: to leave the process, or return and wait for it.
   std::function<void()> ended_while_reading;
+  /// Of several ranks one is gone: to say so, and to leave the process. On any rank, from any thread.
+  std::function<void()> rank_lost;
 };
 
 /// Serves pictures until SIGINT or SIGTERM comes, on all ranks of the job; the first one speaks with clients. Throws

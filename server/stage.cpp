@@ -1,5 +1,7 @@
 #include "server/stage.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -141,6 +143,12 @@ void Stage::read_in_background(std::shared_ptr<const Scene> scene) {
   });
 }
 
+Dataset Stage::open_together(const Scene& scene) {
+  std::optional<Dataset> data;
+  job_.attempt([&](const Communicator& ranks) { data = scene.open(ranks, {}); });
+  return std::move(*data);
+}
+
 void Stage::read_together(const Json& state, const Scene& scene) {
   {
     const std::lock_guard lock(mutex_);
@@ -153,7 +161,7 @@ void Stage::read_together(const Json& state, const Scene& scene) {
   };
   try {
     tell({{"do", "open"}, {"state", state}});
-    keep(scene, scene.open(job_.communicator(), {}));
+    keep(scene, open_together(scene));
   } catch (...) {
     end();
     throw;
@@ -247,8 +255,25 @@ std::map<std::string, double> Stage::stage_times(double frame_ms) {
   return tessera::server::stage_times(sessions_.front().trace->take_spans(), frame_ms);
 }
 
+void Stage::check_size(ImageSize size) const {
+  constexpr int longest_side = 16384;
+  constexpr std::uint64_t bytes_of_pixel = 24;  // rendered, and as it is encoded
+  if (size.width > longest_side || size.height > longest_side)
+    throw bad_input(
+        fmt::format("--size: {}x{} has more than {} pixels a side; ask for a smaller picture, or render it "
+                    "by its command line",
+                    size.width, size.height, longest_side));
+  const auto width = static_cast<std::uint64_t>(size.width), height = static_cast<std::uint64_t>(size.height);
+  if (width * height * bytes_of_pixel > memory_bytes_)
+    throw bad_input(
+        fmt::format("--size: {}x{} takes more memory than the server has for it; ask for a smaller picture, "
+                    "or start the server with a larger --memory",
+                    size.width, size.height));
+}
+
 RenderedFrame Stage::render(const Json& state, const Scene& scene, HeldData& held, const View& view,
                             const FrameSettings& settings, Sink* sink, const std::stop_token& stop) {
+  check_size(view.size);
   if (ranks() > 1)
     tell({{"do", "render"},
           {"state", state},
@@ -280,14 +305,21 @@ void Stage::tell(const Json& order) {
   job_.broadcast(0, std::move(bytes));
 }
 
-void Stage::end() { tell({{"do", "end"}}); }
+void Stage::end() {
+  tell({{"do", "end"}});
+  hear_all();
+}
+
+void Stage::hear_all() {
+  for (int rank = 1; rank < ranks(); ++rank) job_.broadcast(rank, {});
+}
 
 void Stage::obey(const Json& order) {
   if (order.at("do") == "drop") return drop(order.at("key").get<std::string>());
   const Json& state = order.at("state");
   const auto scene = reader_.scene(state);
   if (order.at("do") == "open") {
-    keep(*scene, scene->open(job_.communicator(), {}));
+    keep(*scene, open_together(*scene));
     return;
   }
   const auto held = find(*scene);
@@ -310,12 +342,12 @@ void Stage::follow() {
     std::string text(bytes.size(), '\0');
     std::memcpy(text.data(), bytes.data(), bytes.size());
     const Json order = Json::parse(text);
-    if (order.at("do") == "end") return;
+    if (order.at("do") == "end") return hear_all();
     try {
       obey(order);
     } catch (const Error& error) {
-      // The first rank has the same one, and tells its client.
-      if (error.code() != ErrorCode::bad_input) throw;
+      // Of opening all ranks have the same one, of bad input too: the first tells its client.
+      if (error.code() != ErrorCode::bad_input && order.at("do") != "open") throw;
     }
   }
 }

@@ -101,7 +101,12 @@ class Stage {
   void keep(const Scene& scene, Dataset data);
   void drop(const std::string& key);
   void read_in_background(std::shared_ptr<const Scene> scene);
+  /// Throws Error(bad_input) for what takes too much memory.
+  void check_size(ImageSize size) const;
+  Dataset open_together(const Scene& scene);
   void read_together(const Json& state, const Scene& scene);
+  /// Returns when all ranks have come here.
+  void hear_all();
   void tell(const Json& order);
   void obey(const Json& order);
 

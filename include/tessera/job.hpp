@@ -66,6 +66,10 @@ class TESSERA_EXPORT Job {
   /// `bytes` of rank `root`, on every rank. Collective. Throws the run's error.
   std::vector<std::byte> broadcast(int root, std::vector<std::byte> bytes);
 
+  /// Runs `work` on all ranks with a communicator that holds for as long as it runs, such as for opening a data set. An
+  /// error of one rank is thrown on all of them and, unlike any other, leaves the job usable. Collective.
+  void attempt(const std::function<void(const Communicator&)>& work);
+
   /// Ends the run for all ranks with this error, unless another came first.
   void fail(const Error& error);
   /// The end of every rank's part, after an error too: waits until all ranks are here and shuts MPI down. Returns the

@@ -1,0 +1,145 @@
+#include "exchange/attempt.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <optional>
+
+#include "exchange/message.hpp"
+
+namespace tessera::exchange {
+namespace {
+
+constexpr auto kind = MessageKind::attempt_end;
+/// Who waits on one channel sees so soon what came on another.
+constexpr std::chrono::milliseconds slice(50);
+
+bool is_end(const Bytes& message) {
+  MessageHeader header;
+  if (message.size() < sizeof header) return false;
+  std::memcpy(&header, message.data(), sizeof header);
+  return header.magic == wire_magic && header.version == wire_version && header.kind == kind;
+}
+
+class AttemptTransport final : public Transport {
+ public:
+  explicit AttemptTransport(Transport& beneath) : beneath_(beneath), errors_(static_cast<std::size_t>(beneath.size())) {
+    for (auto& channel : ends_) channel.resize(errors_.size(), false);
+  }
+
+  [[nodiscard]] int rank() const override { return beneath_.rank(); }
+  [[nodiscard]] int size() const override { return beneath_.size(); }
+
+  using Transport::send;
+  void send(int to, Channel channel, Bytes bytes, std::int32_t frame) override {
+    if (!failed_) beneath_.send(to, channel, std::move(bytes), frame);
+  }
+
+  using Transport::receive;
+  std::optional<Message> receive(Channel channel, std::chrono::milliseconds timeout) override {
+    for (auto left = timeout;; left -= slice) {
+      check();
+      auto message = beneath_.receive(channel, std::min(left, slice));
+      if (message && is_end(message->bytes))
+        take_end(channel, *message);
+      else if (message)
+        return message;
+      if (left <= slice) {
+        check();
+        return std::nullopt;
+      }
+    }
+  }
+
+  void fail(const scene::Error& error) override {
+    const std::lock_guard lock(mutex_);
+    if (!own_error_) own_error_ = error;
+    end_own_part();
+    failed_ = true;
+  }
+
+  void check() const override {
+    beneath_.check();
+    if (!failed_) return;
+    const std::lock_guard lock(mutex_);
+    throw scene::Error(*first_error());
+  }
+
+  void set_working(bool working) override { beneath_.set_working(working); }
+  void trace_to(scene::Trace* projecting, scene::Trace* compositing) override {
+    beneath_.trace_to(projecting, compositing);
+  }
+  [[nodiscard]] Traffic sent(Channel channel) const override { return beneath_.sent(channel); }
+
+  /// The end of this rank's part: waits for the others', and leaves nothing behind.
+  void settle() {
+    {
+      const std::lock_guard lock(mutex_);
+      end_own_part();
+    }
+    for (std::size_t c = 0; c < channel_count; ++c) {
+      const auto channel = static_cast<Channel>(c);
+      while (std::ranges::find(ends_[c], false) != ends_[c].end()) {
+        const Message message = beneath_.receive(channel);
+        if (is_end(message.bytes)) take_end(channel, message);
+      }
+    }
+    const std::lock_guard lock(mutex_);
+    for (const auto& error : errors_)
+      if (error) throw scene::Error(*error);
+  }
+
+ private:
+  void end_own_part() {
+    if (std::exchange(ended_, true)) return;
+    Bytes message = begin_message(kind);
+    append(message, static_cast<std::uint8_t>(own_error_ ? own_error_->code() : scene::ErrorCode{}));
+    append_text(message, own_error_ ? own_error_->what() : "");
+    for (int to = 0; to < size(); ++to)
+      for (std::size_t c = 0; c < channel_count; ++c) beneath_.send(to, static_cast<Channel>(c), message);
+  }
+
+  void take_end(Channel channel, const Message& message) {
+    MessageReader reader(message.bytes, message.from, kind);
+    const auto code = static_cast<scene::ErrorCode>(reader.take<std::uint8_t>());
+    const std::string text(reader.take_text());
+    reader.finish();
+    const std::lock_guard lock(mutex_);
+    const auto from = static_cast<std::size_t>(message.from);
+    ends_[static_cast<std::size_t>(channel)][from] = true;
+    if (code == scene::ErrorCode{}) return;
+    errors_[from] = scene::Error(code, text);
+    failed_ = true;
+  }
+
+  [[nodiscard]] const scene::Error* first_error() const {
+    for (const auto& error : errors_)
+      if (error) return &*error;
+    return &*own_error_;
+  }
+
+  Transport& beneath_;
+  mutable std::mutex mutex_;
+  std::atomic<bool> failed_ = false;
+  bool ended_ = false;
+  std::optional<scene::Error> own_error_;
+  std::vector<std::optional<scene::Error>> errors_;    ///< by rank
+  std::array<std::vector<bool>, channel_count> ends_;  ///< by rank, whether it has ended on the channel
+};
+
+}  // namespace
+
+void attempt(Transport& beneath, const std::function<void(Transport&)>& work) {
+  AttemptTransport transport(beneath);
+  try {
+    work(transport);
+  } catch (...) {
+    beneath.check();  // the run's own
+    transport.fail(error_of(std::current_exception()));
+  }
+  transport.settle();
+}
+
+}  // namespace tessera::exchange

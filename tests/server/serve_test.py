@@ -1,0 +1,491 @@
+#!/usr/bin/env python3
+"""Tests of `tessera serve` through the program: pictures are those of `tessera render`, whoever may not is refused,
+hostile clients harm nobody, and it ends in order.
+
+    serve_test.py --tessera PROGRAM [--part pictures|refusals|hostile|ends] [--without-mpi] [--sanitized]
+
+TESSERA_SERVE_MESSAGES: how many mutated messages are sent (30000), TESSERA_SERVE_FRAMES: over how many small frames
+memory is watched (500).
+"""
+
+import argparse
+import json
+import os
+import random
+import shlex
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import urllib.parse
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+from serve_client import Server, WebSocket  # noqa: E402
+
+MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+MPIRUN = ["mpirun", "--oversubscribe", "-n", "2"]
+
+options = None
+folder = None
+
+
+def tessera(*words, launcher=()):
+    result = subprocess.run([*launcher, options.tessera, *map(str, words)], capture_output=True, text=True, cwd=folder,
+                            env=dict(os.environ, **MPI), check=False)
+    assert result.returncode == 0, f"tessera {words}: {result.stderr}"
+
+
+def check(holds, words):
+    if not holds:
+        raise AssertionError(words)
+
+
+def files():
+    tessera("generate", "ball", "ball.vtu", "levels=3")
+    tessera("generate", "cube", "cells.vtu", "n=6", "cell_data=2")
+    tessera("generate", "ripples", "ripples.vti", "n=24")
+    return [folder / name for name in ("ball.vtu", "cells.vtu", "ripples.vti")]
+
+
+def rendered(command, launcher=(), output="picture.png"):
+    """The bytes that a command line, which a server has stated, writes."""
+    words = shlex.split(command)
+    check(words[:2] == ["tessera", "render"] and words[-2:] == ["-o", "picture.png"], command)
+    words[-1] = output
+    path = folder / output
+    path.unlink(missing_ok=True)
+    # The file as the server was given it.
+    tessera(*words[1:], launcher=launcher)
+    return path.read_bytes()
+
+
+def states_of(server, is_grid, is_points):
+    """States that differ in all that a page can change."""
+    defaults = dict(server.data()["defaults"], size="160x120")
+    turned = dict(defaults, camera=server.json("POST", "/api/camera", {"state": defaults, "view": "iso",
+                                                                       "projection": "perspective"}))
+    yield defaults
+    yield {"size": "120x160"}
+    yield dict(turned, background="#203040", **{"color-bar": True, "axes": "both", "outline": True, "scale-bar": True})
+    yield {"size": "160x120", "transfer-function": "viridis:peaks", "range": "0.2,0.8", "opacity": 3, "log": False}
+    yield dict(turned, clip=["0,0,0,1,0.2,0"], **{"transfer-function": "plasma:ends"})
+    paraview = server.json("POST", "/api/function", {"state": defaults})["paraview"]
+    yield dict(turned, **{"transfer-function": paraview})
+    if is_points:
+        yield dict(turned, iso=["0.5:red:0.4"])
+    if not is_grid:
+        yield dict(turned, surface=["boundary:white:0.3"], threshold="0.1,0.9")
+    else:
+        yield dict(turned, shade=True)
+
+
+def pictures_of(file, launcher=()):
+    is_grid = file.suffix == ".vti"
+    with Server(options.tessera, file, "--memory", "1G", launcher=launcher, environment=MPI) as server:
+        client = server.socket()
+        check(client.receive()["type"] == "welcome", "no welcome")
+        for number, state in enumerate(states_of(server, is_grid, file.name != "cells.vtu"), 1):
+            client.state(number, state)
+            header, image = client.last_frame(number)
+            check(header["level"] == "exact" and header["mime"] == "image/png", header)
+            exact = dict(state, integrator="exact")
+            command = server.json("POST", "/api/command", {"state": exact})["command"]
+            check(image == rendered(command, launcher), f"not the picture of {command}")
+            status, headers, picture = server.ask("POST", "/picture", {"state": exact, "format": "png"})
+            check(status == 200 and picture == image, "picture is not the frame")
+            check("attachment" in headers["Content-Disposition"], headers)
+            query = urllib.parse.urlencode({"state": json.dumps(exact), "format": "exr"})
+            if len(query) < 15000:  # else it is no address any more
+                status, _, picture = server.ask("GET", "/picture?" + query)
+            else:
+                status, _, picture = server.ask("POST", "/picture", {"state": exact, "format": "exr"})
+            check(status == 200 and picture == rendered(command, launcher, "picture.exr"), f"not the .exr of {command}")
+            automatic = server.json("POST", "/api/command", {"state": state})["command"]
+            _, _, picture = server.ask("POST", "/picture", {"state": state})
+            check(picture == rendered(automatic, launcher), f"not the picture of {automatic}")
+        status, errors = server.stop()
+        check(status == 0 or launcher, f"ended with {status}: {errors}")
+        check("tessera" not in errors, errors)
+
+
+def defaults_are_the_first_picture(file):
+    """What the data's defaults say is what is shown when nothing is said."""
+    with Server(options.tessera, file) as server:
+        defaults = server.data()["defaults"]
+        _, _, said = server.ask("POST", "/picture", {"state": dict(defaults, size="90x90")})
+        _, _, unsaid = server.ask("POST", "/picture", {"state": {"size": "90x90", "camera": defaults["camera"]}})
+        check(said == unsaid, f"{file.name}: the defaults make another picture")
+
+
+def answers(file):
+    with Server(options.tessera, file) as server:
+        data = server.data()
+        state = dict(data["defaults"], size="64x48")
+        histogram = server.json("POST", "/api/histogram", {"state": state, "bins": 32, "visible": True})
+        check(len(histogram["counts"]) == 32 and abs(sum(histogram["counts"]) - 1) < 1e-9, histogram)
+        check(histogram["quantiles"]["0.005"] < histogram["quantiles"]["0.995"], histogram)
+        function = server.json("POST", "/api/function", {"state": state})
+        check(server.json("POST", "/api/function", {"state": dict(state, **{"transfer-function": function["json"]})})
+              ["json"] == function["json"], "the function does not come back")
+        probe = server.json("POST", "/api/probe", {"state": state, "x": 32, "y": 24, "samples": 16})
+        check(probe["hit"] and len(probe["profile"]["distance"]) == 16, probe)
+        check(not server.json("POST", "/api/probe", {"state": state, "x": 0, "y": 0})["hit"], "hit beside the data")
+        verified = server.json("POST", "/api/verify", {"state": state, "pixels": 200})
+        check(verified["met"] and verified["pixels"] == 200 and verified["largest_error"] <= verified["promised"], verified)
+        fitted = server.json("POST", "/api/camera", {"state": state, "view": "fit"})
+        check(fitted["view_up"] == state["camera"]["view_up"], fitted)
+        if data["kind"] == "mesh":
+            check(server.json("GET", "/api/check")["clean"] is True, "the mesh is not clean")
+        else:
+            server.json("GET", "/api/check", expect=400)
+        if shutil.which("ffmpeg"):
+            status, headers, film = server.ask("POST", "/film", {"state": state, "orbit": 4, "format": "gif"})
+            check(status == 200 and film.startswith(b"GIF8") and headers["Content-Type"] == "image/gif", status)
+            views = [state["camera"], fitted]
+            status, _, film = server.ask("POST", "/film", {"state": state, "views": views, "frames": 3, "format": "mp4"})
+            check(status == 200 and film[4:8] == b"ftyp", status)
+        check(server.json("GET", "/api/progress")["film"] is None, "a film goes on")
+        for path, body, words in (("/api/camera", {"state": {"sise": "8x8"}}, "did you mean size"),
+                                  ("/api/camera", {"state": {"size": "8"}}, "--size"),
+                                  ("/api/camera", {"state": []}, "state"),
+                                  ("/api/camera", {"state": state, "view": "up"}, "view"),
+                                  ("/api/probe", {"state": state, "x": 64, "y": 0}, "x"),
+                                  ("/api/verify", {"state": state, "pixels": 0}, "pixels"),
+                                  ("/picture", {"state": state, "format": "bmp"}, "format"),
+                                  ("/picture", {"state": dict(state, size="16385x1")}, "--size"),
+                                  ("/picture", {"state": dict(state, size="16384x16384")}, "--memory"),
+                                  ("/picture", {"state": dict(state, field="nothing")}, "nothing"),
+                                  ("/picture", {"state": dict(state, threshold="7,8")}, ""),
+                                  ("/film", {"state": state}, "film"), ("/api/function", "[", "line 1")):
+            error = server.json("POST", path, body, expect=400)["error"]
+            check(words in error and "\n" not in error and "`" not in error, f"{path} {body}: {error}")
+        server.json("GET", "/api/nothing", expect=404)
+        server.json("GET", "/api/camera", expect=405)
+
+
+def part_pictures():
+    for file in files():
+        pictures_of(file)
+        defaults_are_the_first_picture(file)
+        answers(file)
+        if not options.without_mpi and file.name != "cells.vtu":
+            pictures_of(file, MPIRUN)
+
+
+def part_refusals():
+    file = files()[0]
+    with Server(options.tessera, file) as server:
+        server.data()
+        paths = ["/", "/index.html", "/api/data", "/picture", "/socket", "/none"]
+        for path in paths:
+            for headers, query in (({}, ""), ({"Authorization": "Bearer " + "0" * 32}, ""), ({}, "?token=" + "0" * 32),
+                                   ({"Cookie": "tessera_0=" + server.token}, "")):
+                status, answer, text = server.ask("GET", path + query, headers=headers, token=False)
+                check(status == 403, f"{path} {headers} {query}: {status}")
+                is_json = path not in ("/", "/index.html", "/none")
+                check(answer["Content-Type"].startswith("application/json" if is_json else "text/html"), answer)
+                check(b"token" in text and server.token.encode() not in text, text)
+            for headers in ({"Host": "evil.example"}, {"Host": f"127.0.0.1.evil.example:{server.port}"},
+                            {"Origin": "http://evil.example"}, {"Origin": "null"},
+                            {"Origin": f"http://127.0.0.1:{server.port ^ 1}"}):
+                check(server.ask("GET", path, headers=headers)[0] == 403, f"{path} {headers}")
+                if path == "/socket":
+                    check(server.socket(headers=headers).status == 403, headers)
+        check(server.socket(token=False).status == 403, "a socket without a token")
+        check(server.socket(headers={"Origin": f"http://127.0.0.1:{server.port}"}).status == 101, "our own page")
+        # The page's address gives a cookie that the rest is asked with.
+        status, headers, _ = server.ask("GET", f"/?token={server.token}", token=False)
+        cookie = headers["Set-Cookie"]
+        check(status == 200 and "HttpOnly" in cookie and "SameSite=Strict" in cookie and "Path" not in cookie, cookie)
+        for name, value in (("Cache-Control", "no-store"), ("X-Content-Type-Options", "nosniff"),
+                            ("Referrer-Policy", "no-referrer")):
+            check(headers[name] == value, headers)
+        check("default-src 'self'" in headers["Content-Security-Policy"], headers)
+        check(server.ask("GET", "/api/data", headers={"Cookie": cookie.split(";")[0]}, token=False)[0] == 200, "cookie")
+        check(server.ask("GET", "/..%2f..%2fetc/passwd")[0] == 404, "a file that is none of the page")
+        check(server.ask("DELETE", "/")[0] == 405, "a page deleted")
+    with Server(options.tessera, file, "--allow-host", "viz.example.org") as server:
+        headers = {"Host": "viz.example.org", "Origin": "https://viz.example.org"}
+        check(server.ask("GET", "/", headers=headers)[0] == 200, "an allowed host")
+
+
+def mutated(rng, text):
+    data = bytearray(text)
+    for _ in range(rng.randint(1, 8)):
+        at = rng.randrange(len(data)) if data else 0
+        kind = rng.randrange(4)
+        if kind == 0 and data:
+            data[at] = rng.randrange(256)
+        elif kind == 1:
+            del data[at:at + rng.randint(1, 9)]
+        elif kind == 2:
+            data[at:at] = rng.choice([b"{", b"}", b"[", b"]", b'"', b",", b":", b"-", b"1e999", b"null", b"\\u0000"])
+        else:
+            data[at:at] = bytes(rng.randrange(256) for _ in range(rng.randint(1, 5)))
+    return bytes(data)
+
+
+def is_served(server, state):
+    """Whether a client that behaves gets its picture."""
+    client = server.socket(timeout=60)
+    client.state(1, state)
+    header, image = client.last_frame(1)
+    client.close()
+    return header["final"] and image.startswith(b"\x89PNG")
+
+
+def send_mutated(server, state, count):
+    seed = random.SystemRandom().randrange(1 << 32)
+    rng = random.Random(seed)
+    print(f"mutated messages: seed {seed}")
+    originals = [json.dumps({"type": "state", "number": 1, "moving": True, "state": dict(state, size="8x8")}).encode(),
+                 json.dumps({"type": "state", "number": 2, "state": {"size": "9x9", "clip": ["0,0,0,1,0,0"]}}).encode(),
+                 b'{"type":"ack","frame":1}', b'{"type":"pause"}']
+    sent = 0
+    while sent < count:
+        client = server.socket()
+        stop = threading.Event()
+
+        def drain(of=client):
+            try:
+                while not stop.is_set():
+                    of.receive()
+            except (OSError, ValueError, KeyError):
+                pass
+
+        reader = threading.Thread(target=drain)
+        reader.start()
+        try:
+            for _ in range(2000):
+                client.send_bytes(mutated(rng, rng.choice(originals)), rng.choice([1, 1, 1, 1, 2]))
+                sent += 1
+        except OSError:
+            pass  # closed for a frame that is no UTF-8, or because it did not read
+        stop.set()
+        try:
+            client.stream.shutdown(socket.SHUT_RDWR)
+        except OSError:
+            pass
+        reader.join()
+        client.close()
+        check(server.process.poll() is None, f"the server has died of seed {seed}")
+    # HTTP, mutated from the first byte on.
+    request = f"POST /api/camera?token={server.token} HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\nContent-Length: 15\r\n\r\n" \
+              '{"state": {} } '
+    for _ in range(count // 20):
+        with socket.create_connection((server.host, server.port)) as stream:
+            stream.settimeout(30)
+            try:
+                stream.sendall(mutated(rng, request.encode()))
+                stream.shutdown(socket.SHUT_WR)
+                stream.recv(1 << 16)
+            except OSError:
+                pass
+
+
+def part_hostile():
+    file = files()[0]
+    count = int(os.environ.get("TESSERA_SERVE_MESSAGES", "3000" if options.sanitized else "30000"))
+    with Server(options.tessera, file) as server:
+        state = dict(server.data()["defaults"], size="48x48")
+        send_mutated(server, state, count)
+        check(is_served(server, state), "not served after mutated messages")
+
+        # Messages and headers that are too long.
+        client = server.socket()
+        client.receive()
+        try:
+            client.send_bytes(b" " * ((1 << 20) + 1))
+            while True:
+                client.receive()
+        except OSError:
+            pass
+        status, _, _ = server.ask("POST", "/api/camera", b" " * ((1 << 20) + 1))
+        check(status == 413, f"a long body: {status}")
+        status, _, _ = server.ask("GET", "/api/data", headers={"X-Long": "a" * 20000})
+        check(status == 431, f"a long header: {status}")
+
+        # Half-open connections are closed, and others served meanwhile.
+        half_open = [socket.create_connection((server.host, server.port)) for _ in range(60)]
+        for number, stream in enumerate(half_open):
+            stream.sendall([b"", b"GET / HT", b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n"][number % 3])
+        check(is_served(server, state), "not served beside half-open connections")
+        # A reader that does not read its frame.
+        slow = server.socket()
+        slow.state(1, dict(state, size="1500x1500"))
+        # 200 clients at once.
+        clients = [server.socket() for _ in range(170)]
+        for number, client in enumerate(clients):
+            client.state(1, dict(state, size=f"{8 + number % 5}x8"))
+        for client in clients:
+            client.last_frame(1)
+        check(is_served(server, state), "not served beside 170 clients")
+        start = time.monotonic()
+        for stream in half_open:
+            stream.settimeout(30)
+            check(stream.recv(1) == b"", "a half-open connection was answered")
+        check(time.monotonic() - start < 15, "half-open connections stayed")
+        more = [socket.create_connection((server.host, server.port)) for _ in range(100)]
+        refused = sum(1 for stream in more if is_closed(stream))
+        check(refused >= 10, f"only {refused} connections over the limit were closed")
+        for stream in more + half_open:
+            stream.close()
+        for client in clients + [slow]:
+            client.close()
+        time.sleep(0.5)
+
+        # 500 states in a burst: one frame, and no second one before it is acknowledged.
+        client = server.socket(timeout=60)
+        client.receive()
+        for number in range(1, 501):
+            client.state(number, dict(state, opacity=1 + number / 1000), moving=number < 500)
+        header, _ = client.frame(acknowledge=False)
+        client.stream.settimeout(2)
+        try:
+            while True:
+                check(not isinstance(client.receive(), tuple), "a second frame before the first was acknowledged")
+        except TimeoutError:
+            pass
+        client.stream.settimeout(60)
+        client.send({"type": "ack", "frame": header["frame"]})
+        frames = 1
+        while not (header["final"] and header["number"] == 500):
+            header, _ = client.frame()
+            frames += 1
+        check(frames <= 4, f"{frames} frames for a burst of states")
+        client.close()
+
+        memory_stays(server, state)
+        check(is_served(server, state), "not served at the end")
+        status, errors = server.stop()
+        check(status == 0 and errors == "", f"ended with {status}: {errors}")
+
+
+def is_closed(stream):
+    stream.settimeout(1)
+    try:
+        return stream.recv(1) == b""
+    except TimeoutError:
+        return False
+    except OSError:
+        return True
+
+
+def memory_stays(server, state):
+    frames = int(os.environ.get("TESSERA_SERVE_FRAMES", "500"))
+    client = server.socket(timeout=60)
+    client.receive()
+    position = list(state["camera"]["position"])
+    sizes = []
+    for number in range(1, frames + 1):
+        camera = dict(state["camera"], position=[position[0] + 1e-3 * number, *position[1:]])
+        client.state(number, dict(state, camera=camera, opacity=1 + number % 40), moving=True)
+        client.frame()
+        if number % (frames // 10) == 0:
+            sizes.append(server.resident_bytes())
+    client.close()
+    print(f"resident over {frames} frames: " + " ".join(f"{size >> 20}" for size in sizes) + " MiB")
+    if not options.sanitized:  # whose quarantine grows
+        check(sizes[-1] - sizes[4] < 8 << 20, "memory grows with frames")
+
+
+def part_ends():
+    file = files()[0]
+    for how in (signal.SIGINT, signal.SIGTERM):
+        with Server(options.tessera, file) as server:
+            server.data()
+            client = server.socket()
+            client.receive()
+            client.state(1, {"size": "3000x3000"})  # which it is in the midst of
+            time.sleep(0.3)
+            start = time.monotonic()
+            status, errors = server.stop(how)
+            check(status == 0 and errors == "", f"{how}: ended with {status}: {errors}")
+            check(time.monotonic() - start < (30 if options.sanitized else 5), f"{how}: it took long to end")
+            try:
+                while True:
+                    message = client.receive()
+                    if not isinstance(message, tuple) and message["type"] == "ended":
+                        break
+            except ConnectionError:
+                raise AssertionError("the client was not told of the end") from None
+    for words, expected in ((["missing.vtu"], "missing.vtu"), ([file, "--port", "x"], "--port"),
+                            ([file, "--bind", "nowhere"], "--bind"), ([file, "--latency", "0"], "--latency"),
+                            ([file, "--tls-key", "k"], "--tls-certificate"), ([file, "--integrator", "x"], "--integrator"),
+                            ([file, "--tls-key", "k", "--tls-certificate", "c"], ""), ([file, "-o", "a.png"], "-o")):
+        result = subprocess.run([options.tessera, "serve", *map(str, words)], capture_output=True, text=True, cwd=folder,
+                                timeout=60, check=False)
+        check(result.returncode == 2 and result.stderr.count("\n") == 1 and expected in result.stderr and
+              result.stdout == "", f"{words}: {result.returncode} {result.stderr}")
+    (folder / "broken.vtu").write_text("<VTKFile type='UnstructuredGrid'>")
+    with Server(options.tessera, folder / "broken.vtu") as server:
+        client = server.socket()
+        client.state(1, {"size": "8x8"})
+        try:
+            client.last_frame(1)
+            raise AssertionError("a picture of a broken file")
+        except RuntimeError as error:
+            check("broken.vtu" in str(error), error)
+        check(server.stop()[0] == 0, "a server of a broken file does not end well")
+    if not options.without_mpi:
+        ranks_end()
+
+
+def ranks_end():
+    file = folder / "ball.vtu"
+    with Server(options.tessera, file, launcher=MPIRUN, environment=MPI) as server:
+        state = dict(server.data()["defaults"], size="64x48")
+        error = server.json("POST", "/picture", {"state": dict(state, field="nothing")}, expect=400)["error"]
+        check("nothing" in error, error)
+        error = server.json("POST", "/picture", {"state": dict(state, threshold="7,8")}, expect=400)["error"]
+        client = server.socket()
+        client.receive()
+        # Stale frames stop on all ranks.
+        client.state(1, dict(state, size="4000x4000"))
+        time.sleep(0.5)
+        client.state(2, state)
+        header, _ = client.frame()
+        check(header["number"] == 2, header)
+        client.last_frame(2)
+        _, errors = server.stop()
+        check("tessera:" not in errors, errors)
+    with Server(options.tessera, file, launcher=MPIRUN, environment=MPI) as server:
+        server.data()
+        client = server.socket()
+        client.receive()
+        ranks = subprocess.run(["pgrep", "-P", str(server.process.pid), "-f", "serve"], capture_output=True, text=True,
+                               check=True).stdout.split()
+        os.kill(int(ranks[1]), signal.SIGKILL)
+        message = client.receive()
+        check(message["type"] == "ended" and "rank" in message["error"], message)
+        server.process.wait(30)
+        errors = server.process.stderr.read()
+        check(errors.count("tessera:") == 1, errors)
+
+
+def main():
+    global options, folder
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--tessera", required=True)
+    parser.add_argument("--part", choices=["pictures", "refusals", "hostile", "ends"])
+    parser.add_argument("--without-mpi", action="store_true")
+    parser.add_argument("--sanitized", action="store_true")
+    options = parser.parse_args()
+    options.tessera = str(Path(options.tessera).resolve())
+    options.without_mpi = options.without_mpi or not shutil.which("mpirun")
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch)
+        for name in ("pictures", "refusals", "hostile", "ends"):
+            if options.part in (None, name):
+                start = time.monotonic()
+                globals()["part_" + name]()
+                print(f"{name}: {time.monotonic() - start:.1f} s")
+
+
+if __name__ == "__main__":
+    main()

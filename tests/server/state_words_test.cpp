@@ -1,0 +1,74 @@
+#include "apps/state_words.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tessera/error.hpp"
+
+namespace tessera::apps {
+namespace {
+
+using Json = nlohmann::json;
+
+TEST(StateWords, AreTheOptionsOfRender) {
+  const Json state = Json::parse(R"({"size":"8x6","smooth":true,"shade":false,"log":null,"opacity":2.5,
+    "clip":["box:0,0,0,1,1,1","0,0,0,1,0,0"],"axes":"box","color-bar":true,"camera":{"position":[0,0,1]},
+    "transfer-function":"viridis:rise"})");
+  const std::vector<std::string> arguments = arguments_of(state_words({}, state));
+  EXPECT_EQ(arguments,
+            (std::vector<std::string>{"--axes=box", "--camera={\"position\":[0,0,1]}", "--clip=box:0,0,0,1,1,1",
+                                      "--clip=0,0,0,1,0,0", "--color-bar", "--opacity=2.5", "--size=8x6", "--smooth",
+                                      "--transfer-function=viridis:rise"}));
+}
+
+TEST(StateWords, StandOverThoseTheServerWasStartedWith) {
+  const OptionWords base = {
+      {"field", {"p"}}, {"log", {"true"}}, {"view", {"front"}}, {"zoom", {"2"}}, {"threads", {"2"}}};
+  EXPECT_EQ(arguments_of(state_words(base, Json::object())),
+            (std::vector<std::string>{"--field=p", "--log", "--threads=2", "--view=front", "--zoom=2"}));
+  // A camera takes the place of what places one; null takes an option away.
+  EXPECT_EQ(arguments_of(state_words(base, Json::parse(R"({"field":"v:mag","log":null,"camera":{}})"))),
+            (std::vector<std::string>{"--camera={}", "--field=v:mag", "--threads=2"}));
+  EXPECT_EQ(state_of_words(base), Json::parse(R"({"field":"p","log":true,"view":"front","zoom":"2"})"));
+}
+
+TEST(StateWords, NameNoFilesAndNoOtherOptions) {
+  for (const char* text : {R"({"camera":"view.json"})",
+                           R"({"transfer-function":"/etc/passwd"})",
+                           R"({"transfer-function":"map.json"})",
+                           R"({"surface":["wing.stl"]})",
+                           R"({"surface":["boundaryx"]})",
+                           R"({"surface":"/etc/passwd:red:1"})",
+                           R"({"output":"a.png"})",
+                           R"({"report":"a"})",
+                           R"({"config":"a"})",
+                           R"({"q":"a"})",
+                           R"({"threads":"64"})",
+                           R"({"memory":"1T"})",
+                           R"({"annotation-layer":"a.png"})",
+                           R"({"size":{}})",
+                           R"({"size":["8x8"]})",
+                           R"({"size":""})",
+                           R"({"smooth":"yes"})",
+                           R"({"field":"a\nb"})",
+                           R"({"clip":[1,[2]]})",
+                           R"({"clip":[null]})",
+                           R"({"orbit":"10"})",
+                           R"({"--size":"8x8"})",
+                           R"({"":"8x8"})"}) {
+    try {
+      state_words({}, Json::parse(text));
+      ADD_FAILURE() << text;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::bad_input) << text;
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << text;
+    }
+  }
+}
+
+TEST(StateWords, AreQuotedForAShell) {
+  EXPECT_EQ(shell_words({"tessera", "render", "my mesh.vtu", "--camera={\"a\":1}", "--annotate=it's", "-o", "p.png"}),
+            "tessera render 'my mesh.vtu' --camera='{\"a\":1}' --annotate='it'\\''s' -o p.png");
+}
+
+}  // namespace
+}  // namespace tessera::apps
