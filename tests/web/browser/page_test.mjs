@@ -27,7 +27,7 @@ async function open(path, options = {}) {
   opened.on("pageerror", (error) => complaints.push(error.stack));
   opened.on("console", (message) => {
     // A lost connection is told by the browser too.
-    if (message.type() === "error" && !/ERR_|WebSocket|status of 4/.test(message.text())) complaints.push(message.text());
+    if (message.type() === "error" && !/ERR_|WebSocket|status of (4|503)/.test(message.text())) complaints.push(message.text());
   });
   await opened.goto(path);
   return opened;
