@@ -159,7 +159,9 @@ export class FunctionPanel {
     this.reply = reply;
     // What is being edited is not replaced under the hand; the reply to its last state comes too.
     if (this.editor.dragging) return;
-    this.editor.edited = functions.edited_function(reply, this.page.history.state["transfer-function"], Number(this.page.option("opacity") ?? 1));
+    const own = this.page.history.state["transfer-function"];
+    this.editor.edited = functions.edited_function(reply, own, Number(this.page.option("opacity") ?? 1));
+    if (typeof own === "string") this.editor.edited.name = own.split(":")[0];
     this.#show();
   }
 
