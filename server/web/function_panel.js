@@ -39,7 +39,7 @@ export class FunctionPanel {
     this.element = element("div", { class: "panel-body" });
     this.refresh = debounced(() => void this.#refresh(), 60);
 
-    this.swatches = element("div", { class: "swatches", role: "radiogroup", "aria-label": "Colours" });
+    this.swatches = element("div", { class: "swatches", role: "group", "aria-label": "Colours" });
     this.shape = choice("", (word) => void this.#choose(undefined, word));
     const log_axis = checkbox("Log opacity axis", (on) => {
       this.editor.log_opacity = on;
@@ -109,7 +109,7 @@ export class FunctionPanel {
       const bar = element("span", { class: "gradient", "aria-hidden": "true" });
       bar.style.backgroundImage = `linear-gradient(to right, ${preset.colors.join(", ")})`;
       return element("button", {
-        type: "button", class: "swatch", role: "radio", "data-preset": preset.name, title: preset.name, "aria-checked": "false",
+        type: "button", class: "swatch", "data-preset": preset.name, title: preset.name, "aria-pressed": "false",
         on_click: () => void this.#choose(preset.name, undefined),
       }, bar, element("span", {}, preset.name));
     }));
@@ -175,7 +175,7 @@ export class FunctionPanel {
     const [name, shape] = this.#words();
     for (const swatch of this.swatches.children) {
       const chosen = swatch.getAttribute("data-preset") === name;
-      swatch.setAttribute("aria-checked", String(chosen));
+      swatch.setAttribute("aria-pressed", String(chosen));
     }
     this.shape.value = shape ?? "";
     this.few.hidden = editor.edited.colors.length <= functions.most_handles;

@@ -173,6 +173,34 @@ test("named views come from the server", async () => {
   assert.ok(Math.abs(camera.position[0] - camera.focal_point[0]) < 1e-9 && camera.position[1] < camera.focal_point[1]);
 });
 
+test("an end of the axes is a button that looks from there", async () => {
+  await page.locator("#axes .axis-end", { hasText: "Look from +x" }).last().click();
+  await page.waitForFunction(() => {
+    const { position, focal_point } = window.tessera.state().camera;
+    return position[0] - focal_point[0] > 1 && Math.abs(position[1] - focal_point[1]) < 1e-9;
+  });
+  await page.locator("#axes .axis-end").filter({ hasText: "Look from -y" }).focus();
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => Math.abs(window.tessera.state().camera.position[0] - window.tessera.state().camera.focal_point[0]) < 1e-9);
+  await at_rest(page);
+});
+
+test("a double click centres what is there", async () => {
+  const box = await page.locator("#picture").boundingBox();
+  const before_click = (await state()).camera.focal_point;
+  await page.mouse.dblclick(box.x + 0.45 * box.width, box.y + 0.55 * box.height);
+  await page.waitForFunction((old) => JSON.stringify(window.tessera.state().camera.focal_point) !== JSON.stringify(old), before_click);
+  await at_rest(page);
+});
+
+test("the keys are listed", async () => {
+  await page.locator("#picture").focus();
+  await page.keyboard.press("?");
+  await page.getByRole("dialog").getByText("Keys anywhere").waitFor();
+  await page.keyboard.press("Escape");
+  await page.getByRole("dialog").waitFor({ state: "hidden" });
+});
+
 test("points of the function are added, dragged, typed and removed", async () => {
   const editor = page.locator(".function-editor");
   await page.waitForSelector(".opacity-handle");
@@ -217,7 +245,7 @@ test("an edited function survives the way to the server and back", async () => {
 
 test("presets, logarithm and range", async () => {
   await page.locator('[data-preset="viridis"]').click();
-  await page.waitForFunction(() => document.querySelector('[data-preset="viridis"]').getAttribute("aria-checked") === "true");
+  await page.waitForFunction(() => document.querySelector('[data-preset="viridis"]').getAttribute("aria-pressed") === "true");
   await at_rest(page);
   const colors = await page.evaluate(() => window.tessera.state()["transfer-function"]);
   assert.ok(typeof colors === "string" || colors.Name === "viridis");
