@@ -432,6 +432,16 @@ test("a damaged link is told, and the page works", async () => {
   await other.context().close();
 });
 
+test("a link with an option that there is none of is told, and the default view mends it", async () => {
+  const fragment = Buffer.from(JSON.stringify({ nonsense: 1 })).toString("base64url");
+  const other = await open(`${address.href}#1.${fragment}`);
+  const alert = other.getByRole("alert").filter({ hasText: "nonsense" });
+  await alert.getByRole("button", { name: "Default view" }).click();
+  await at_rest(other);
+  await alert.waitFor({ state: "detached" });
+  await other.context().close();
+});
+
 test("whoever has no token reads a sentence", async () => {
   const other = await open(`http://127.0.0.1:${proxy.port}/`);
   assert.match(await other.locator("body").textContent(), /\w+ \w+ \w+.*\./s);
