@@ -1,0 +1,44 @@
+/**
+ * The state in an address's fragment, which no browser sends to a server: "#1." and JSON in URL-safe base64, where 1 is
+ * this form's version. Letters that neither mail nor chat programs cut off or escape.
+ *
+ * @typedef {import("./types.js").State} State
+ */
+import { is_camera } from "./camera.js";
+
+const version = "1.";
+
+/** @param {State} state */
+export function fragment_of(state) {
+  const bytes = new TextEncoder().encode(JSON.stringify(state));
+  let text = "";
+  for (const byte of bytes) text += String.fromCharCode(byte);
+  return `#${version}${btoa(text).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "")}`;
+}
+
+/**
+ * Nothing for no fragment. Throws a sentence for one that holds no state.
+ * @param {string} fragment @returns {State | undefined}
+ */
+export function state_of_fragment(fragment) {
+  const text = fragment.replace(/^#/, "");
+  if (text === "") return undefined;
+  try {
+    if (!text.startsWith(version)) throw new Error("version");
+    const bytes = Uint8Array.from(atob(text.slice(version.length).replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0));
+    const state = JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(bytes));
+    if (typeof state !== "object" || state === null || Array.isArray(state)) throw new Error("no object");
+    if (state.camera !== undefined && !is_camera(state.camera)) throw new Error("no camera");
+    return state;
+  } catch {
+    throw new Error("The link is damaged or cut short, so the view it holds cannot be shown; copy it anew.");
+  }
+}
+
+/** The address without its token and with this state. @param {string} address @param {State} state */
+export function link_of(address, state) {
+  const url = new URL(address);
+  url.searchParams.delete("token");
+  url.hash = fragment_of(state);
+  return url.href;
+}

@@ -1,0 +1,99 @@
+/**
+ * The socket: opened, kept, and opened again when it is lost.
+ *
+ * @typedef {import("./types.js").FrameHeader} FrameHeader
+ * @typedef {"connecting"|"open"|"lost"|"ended"|"refused"} Status
+ *
+ * @typedef {object} Listeners
+ * @property {(status: Status, detail: {sentence?: string, retry_at?: number}) => void} status
+ * @property {(message: Record<string, any>) => void} message
+ * @property {(header: FrameHeader, image: Uint8Array<ArrayBuffer>) => void} frame
+ */
+import { back_off, decoded_frame } from "./frames.js";
+import { ask, Refused, StillReading } from "./requests.js";
+
+/** Where the socket is, beside the page. */
+function socket_address() {
+  const url = new URL("socket", document.baseURI);
+  url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
+  url.search = "";
+  url.hash = "";
+  return url.href;
+}
+
+export class Connection {
+  /** @param {Listeners} listeners */
+  constructor(listeners) {
+    this.listeners = listeners;
+    this.tries = 0;
+    this.timer = 0;
+    /** @type {WebSocket | undefined} */
+    this.socket = undefined;
+    /** What the server said before it ended. */
+    this.ended = "";
+    window.addEventListener("online", () => this.retry());
+  }
+
+  open() {
+    this.listeners.status("connecting", {});
+    const socket = new WebSocket(socket_address());
+    this.socket = socket;
+    socket.binaryType = "arraybuffer";
+    socket.onopen = () => {
+      this.tries = 0;
+      this.ended = "";
+      this.listeners.status("open", {});
+    };
+    socket.onmessage = ({ data }) => this.#read(data);
+    socket.onclose = () => {
+      if (this.socket !== socket) return;
+      this.socket = undefined;
+      void this.#lost();
+    };
+  }
+
+  /** Tries at once. */
+  retry() {
+    if (this.socket) return;
+    clearTimeout(this.timer);
+    this.open();
+  }
+
+  /** @param {Record<string, any>} message */
+  send(message) {
+    if (this.is_open) this.socket?.send(JSON.stringify(message));
+  }
+
+  get is_open() {
+    return this.socket?.readyState === WebSocket.OPEN;
+  }
+
+  /** @param {string | ArrayBuffer} bytes */
+  #read(bytes) {
+    if (typeof bytes !== "string") {
+      const { header, image } = decoded_frame(bytes);
+      this.listeners.frame(header, image);
+      return;
+    }
+    const message = JSON.parse(bytes);
+    if (message.type === "ended") this.ended = message.error ?? "It was asked to end.";
+    this.listeners.message(message);
+  }
+
+  async #lost() {
+    // A socket does not say why it was not opened; a request does.
+    try {
+      if (!this.ended) await ask("api/data");
+    } catch (error) {
+      if (error instanceof Refused) {
+        this.listeners.status("refused", { sentence: error.message });
+        return;
+      }
+      if (error instanceof StillReading) this.tries = Math.min(this.tries, 2);
+    }
+    const delay = back_off(this.ended ? this.tries + 3 : this.tries);
+    this.tries += 1;
+    this.listeners.status(this.ended ? "ended" : "lost", { sentence: this.ended, retry_at: performance.now() + delay });
+    this.timer = window.setTimeout(() => this.open(), delay);
+  }
+}

@@ -1,0 +1,179 @@
+/**
+ * What of the data is drawn: field, time, blocks, cuts, surfaces.
+ *
+ * @typedef {import("./page.js").Page} Page
+ */
+import { button, checkbox, choice, element, fill_choice, icon, icon_button, row, show_value, typed } from "./dom.js";
+import { ClipEditor } from "./clip_editor.js";
+import { DoubleSlider } from "./double_slider.js";
+import { parsed_number, short_number } from "./numbers.js";
+import { SurfaceEditor } from "./surface_editor.js";
+
+/** Milliseconds that a step is shown at least while playing. */
+const step_time = 100;
+
+export class DataPanel {
+  /** @param {Page} page */
+  constructor(page) {
+    this.page = page;
+    this.playing = false;
+    this.play_timer = 0;
+    this.last_step = 0;
+    this.field = choice("", (name) => this.#choose_field(name));
+    this.part = choice("Component", (part) => this.#choose_part(part));
+    this.field_row = row("Field", this.field, this.part);
+    this.smooth = checkbox("Smooth", (on) => page.set_option("smooth", on ? true : undefined), "Average cell values to the points");
+    this.step = element("input", { type: "range", min: 0, step: 1, "aria-label": "Time step", on_input: () => this.#set_step(Number(this.step.value), true), on_change: () => page.history.settle("step") });
+    this.step_text = typed("Time step", (text) => this.#type_step(text), { class: "short" });
+    this.play = icon_button("play", "Play the time steps (space)", () => this.toggle_play());
+    this.time_text = element("span", { class: "hint" });
+    this.time = element("div", { class: "group", hidden: true }, row("Time step", this.step, this.step_text, this.play), this.time_text);
+    this.blocks = element("fieldset", { class: "blocks", hidden: true });
+    this.threshold_on = checkbox("Threshold", (on) => page.set_option("threshold", on ? this.page.field_range.join(",") : undefined), "Keep whole cells whose values are all in this range");
+    this.threshold = new DoubleSlider("Values", (ends, moving) => page.history.change({ threshold: ends.join(",") }, { moving, name: "threshold" }));
+    this.clip = new ClipEditor(page);
+    this.surfaces = new SurfaceEditor(page);
+    this.element = element("div", { class: "panel-body" },
+      this.field_row, element("div", { class: "checks" }, this.smooth.label), this.time, this.blocks,
+      element("div", { class: "checks" }, this.threshold_on.label), this.threshold.element, this.clip.element, this.surfaces.element);
+  }
+
+  begin() {
+    const { data } = this.page;
+    const twice = (/** @type {string} */ name) => data.fields.filter((f) => f.name === name).length > 1;
+    const fields = data.fields.map((f) => {
+      const word = twice(f.name) ? `${f.association}:${f.name}` : f.name;
+      return /** @type {[string, string]} */ ([word, `${f.name} (${f.association}${f.components > 1 ? `, ${f.components} components` : ""})`]);
+    });
+    // A file without a field that says something is shown as a shape, until one is chosen.
+    fill_choice(this.field, data.field === null ? [["", "none: the shape"], ...fields] : fields);
+    this.field_row.hidden = data.fields.length === 0;
+    this.smooth.label.hidden = !data.fields.some((f) => f.association === "cell");
+    this.#begin_blocks();
+    const count = this.step_count;
+    this.time.hidden = count < 2;
+    this.step.max = String(Math.max(0, count - 1));
+    this.clip.begin();
+    this.surfaces.begin();
+    this.update();
+  }
+
+  get step_count() {
+    return this.page.data.time_steps ?? this.page.data.times?.length ?? 1;
+  }
+
+  #begin_blocks() {
+    const names = this.page.data.blocks ?? [];
+    this.blocks.hidden = names.length < 2;
+    this.block_boxes = names.map((name) => ({ name, ...checkbox(name, () => this.#set_blocks()) }));
+    this.blocks.replaceChildren(element("legend", {}, "Blocks"), ...this.block_boxes.map((b) => b.label),
+      element("div", { class: "buttons" }, button("All", () => this.page.history.change({ block: undefined }))));
+  }
+
+  #set_blocks() {
+    const chosen = (this.block_boxes ?? []).filter((b) => b.input.checked).map((b) => b.name);
+    if (chosen.length === 0) {
+      this.page.messages.tell("At least one block has to be drawn.");
+      this.update();
+      return;
+    }
+    this.page.history.change({ block: chosen.length === this.block_boxes?.length ? undefined : chosen });
+  }
+
+  update() {
+    const { page } = this;
+    const [name, part] = this.#field_words();
+    this.field.value = name;
+    const components = page.data.fields.find((f) => f.name === name.replace(/^(cell|point):/, ""))?.components ?? 1;
+    this.part.hidden = components < 2;
+    const letters = components <= 3 ? ["x", "y", "z"].slice(0, components) : Array.from({ length: components }, (_, i) => String(i));
+    fill_choice(this.part, [["mag", "length"], ...letters.map((w) => /** @type {[string, string]} */ ([w, w]))]);
+    this.part.value = part || "mag";
+    this.smooth.input.checked = page.option("smooth") === true;
+    const step = this.current_step;
+    show_value(this.step, String(step));
+    show_value(this.step_text, String(step));
+    const time = page.data.times?.[step];
+    this.time_text.textContent = time === undefined ? "" : `Time ${short_number(time, 6)}, step ${step} of ${this.step_count - 1}`;
+    const blocks = page.option("block");
+    for (const box of this.block_boxes ?? []) box.input.checked = !blocks || [blocks].flat().includes(box.name);
+    const threshold = page.option("threshold");
+    this.threshold_on.input.checked = Boolean(threshold);
+    this.threshold.element.hidden = !threshold;
+    const ends = /** @type {[number, number]} */ (threshold ? String(threshold).split(",").map(Number) : page.field_range);
+    this.threshold.show(page.field_range, ends);
+    this.clip.update();
+    this.surfaces.update();
+  }
+
+  /** The field's name as options have it, and its component. @returns {[string, string]} */
+  #field_words() {
+    const { page } = this;
+    const word = String(page.option("field") ?? page.data.field ?? "");
+    const names = [...this.field.options].map((o) => o.value);
+    const found = names.find((n) => n === word) ?? names.find((n) => word.startsWith(`${n}:`))
+      ?? names.find((n) => n.endsWith(`:${word}`)) ?? names.find((n) => word === `cell:${n}` || word === `point:${n}`) ?? word;
+    return [found, word.startsWith(`${found}:`) ? word.slice(found.length + 1) : ""];
+  }
+
+  /** @param {string} name */
+  #choose_field(name) {
+    if (name === "") return this.page.set_field(undefined);
+    const components = this.page.data.fields.find((f) => f.name === name.replace(/^(cell|point):/, ""))?.components ?? 1;
+    this.page.set_field(components > 1 ? `${name}:mag` : name);
+  }
+
+  /** @param {string} part */
+  #choose_part(part) {
+    this.page.set_field(`${this.field.value}:${part}`);
+  }
+
+  get current_step() {
+    return Number(this.page.option("time-step") ?? this.step_count - 1);
+  }
+
+  /** @param {number} step @param {boolean} moving */
+  #set_step(step, moving) {
+    this.page.history.change({ "time-step": String(step) }, { moving, name: "step" });
+  }
+
+  /** @param {string} text */
+  #type_step(text) {
+    const step = parsed_number(text);
+    if (!Number.isInteger(step) || step < 0 || step >= this.step_count) return false;
+    this.#set_step(step, false);
+    return true;
+  }
+
+  /** By a step, round and round. @param {number} by */
+  step_by(by) {
+    if (this.step_count < 2) return;
+    this.#set_step((this.current_step + by + this.step_count) % this.step_count, this.playing);
+  }
+
+  toggle_play() {
+    if (this.step_count < 2) return;
+    this.playing = !this.playing;
+    this.play.replaceChildren(icon(this.playing ? "pause" : "play"));
+    this.play.setAttribute("aria-pressed", String(this.playing));
+    clearTimeout(this.play_timer);
+    if (this.playing) this.step_by(1);
+    else this.page.history.settle("play");
+  }
+
+  /** A frame has been painted: the next step may come. */
+  painted() {
+    if (!this.playing) return;
+    clearTimeout(this.play_timer);
+    const wait = Math.max(0, this.last_step + step_time - performance.now());
+    this.play_timer = window.setTimeout(() => {
+      this.last_step = performance.now();
+      if (this.playing) this.step_by(1);
+    }, wait);
+  }
+
+  /** Something went wrong: no more steps. */
+  stop() {
+    if (this.playing) this.toggle_play();
+  }
+}

@@ -1,0 +1,103 @@
+/**
+ * The stream of frames: their form, and which states are sent when.
+ *
+ * @typedef {import("./types.js").FrameHeader} FrameHeader
+ * @typedef {import("./types.js").State} State
+ */
+
+/** A header longer than this is none. */
+const most_header = 1 << 20;
+
+/**
+ * A frame's header and picture. Throws a sentence for bytes that are none.
+ * @param {ArrayBuffer} bytes @returns {{header: FrameHeader, image: Uint8Array<ArrayBuffer>}}
+ */
+export function decoded_frame(bytes) {
+  const length = bytes.byteLength >= 4 ? new DataView(bytes).getUint32(0, true) : Infinity;
+  if (length > most_header || length + 4 > bytes.byteLength) throw new Error("The server sent a frame that cannot be read; reload the page.");
+  const header = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, length)));
+  return { header, image: new Uint8Array(bytes, 4 + length) };
+}
+
+/**
+ * Which states are sent: while something moves one at a time, the latest, as soon as the one before has been painted; a
+ * state at rest at once, for it cancels what is in work. An answer that does not come within `patience` is given up.
+ */
+export class StateSender {
+  /**
+   * @param {(message: {type: "state", number: number, moving: boolean, state: State}) => void} send
+   * @param {{patience?: number, clock?: () => number}} [how]
+   */
+  constructor(send, { patience = 5000, clock = () => performance.now() } = {}) {
+    this.send = send;
+    this.patience = patience;
+    this.clock = clock;
+    this.number = 0;
+    this.awaited = 0;
+    this.sent_at = 0;
+    this.open = false;
+    /** @type {{state: State, moving: boolean, time: number} | undefined} */
+    this.waiting = undefined;
+    /** @type {{state: State, moving: boolean, time: number} | undefined} */
+    this.latest = undefined;
+    /** When the event happened that made a state, by the state's number. @type {Map<number, number>} */
+    this.event_times = new Map();
+  }
+
+  /** @param {State} state @param {boolean} moving @param {number} [time] of the event that made it */
+  offer(state, moving, time = this.clock()) {
+    this.waiting = this.latest = { state, moving, time };
+    this.#advance();
+  }
+
+  /** The answer to state `number`, a picture that is painted or an error, is there. @param {number} number */
+  answered(number) {
+    if (number < this.awaited) return;
+    this.awaited = 0;
+    this.#advance();
+  }
+
+  /** The answer is on its way. */
+  in_work() {
+    this.sent_at = this.clock();
+  }
+
+  /** There is a connection, a new one: it is told the state it left at. */
+  opened() {
+    this.open = true;
+    this.awaited = 0;
+    if (this.latest) this.waiting = { ...this.latest, moving: false, time: this.clock() };
+    this.#advance();
+  }
+
+  closed() {
+    this.open = false;
+  }
+
+  /** To be called now and then, for answers that never came. */
+  tick() {
+    if (this.awaited && this.clock() - this.sent_at > this.patience) this.awaited = 0;
+    this.#advance();
+  }
+
+  #advance() {
+    const next = this.waiting;
+    if (!this.open || !next || (this.awaited && next.moving)) return;
+    this.waiting = undefined;
+    this.awaited = ++this.number;
+    this.sent_at = this.clock();
+    this.event_times.set(this.number, next.time);
+    for (const number of this.event_times.keys()) if (number < this.number - 50) this.event_times.delete(number);
+    this.send({ type: "state", number: this.number, moving: next.moving, state: next.state });
+  }
+}
+
+/** Milliseconds until try number `tries` (from 0) of a connection: half a second, doubled up to 15 s, and up to a quarter more. @param {number} tries @param {number} [random] 0 to 1 */
+export const back_off = (tries, random = Math.random()) => Math.min(15000, 500 * 2 ** tries) * (1 + random / 4);
+
+/** The middle value and that which 95 % do not exceed. @param {number[]} values */
+export function median_and_95(values) {
+  const sorted = values.slice().sort((a, b) => a - b);
+  const at = (/** @type {number} */ part) => sorted[Math.min(sorted.length - 1, Math.floor(part * sorted.length))] ?? Number.NaN;
+  return { count: sorted.length, median: at(0.5), p95: at(0.95) };
+}

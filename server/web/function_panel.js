@@ -1,0 +1,378 @@
+/**
+ * Colour and opacity: presets, the editor, range, and ParaView's files.
+ *
+ * @typedef {import("./page.js").Page} Page
+ * @typedef {import("./types.js").FunctionReply} FunctionReply
+ * @typedef {import("./types.js").Preset} Preset
+ * @typedef {import("./transfer_function.js").EditedFunction} EditedFunction
+ */
+import { button, checkbox, choice, debounced, element, fill_choice, icon_button, preference, row, save_file, set_preference, show_value, typed } from "./dom.js";
+import { FunctionEditor } from "./function_editor.js";
+import { fraction_of, parsed_number, short_number } from "./numbers.js";
+import { ask_about, LatestQuestion } from "./requests.js";
+import { same } from "./state.js";
+import * as functions from "./transfer_function.js";
+
+/** What of the state a function depends on, and what its histogram does. */
+const data_words = ["field", "time-step", "block", "smooth"];
+const function_words = [...data_words, "transfer-function", "range", "log", "opacity", "unit-distance"];
+const histogram_words = [...data_words, "threshold", "clip", "log"];
+
+export class FunctionPanel {
+  /** @param {Page} page */
+  constructor(page) {
+    this.page = page;
+    this.function_question = new LatestQuestion();
+    this.histogram_question = new LatestQuestion();
+    this.function_key = "";
+    this.histogram_key = "";
+    /** @type {FunctionReply | undefined} */
+    this.reply = undefined;
+    /** @type {import("./types.js").HistogramReply | undefined} */
+    this.histogram = undefined;
+    this.editor = new FunctionEditor({
+      edit: (edited, moving) => this.#edit(edited, moving),
+      range: (range, moving) => this.#set_range(range, moving),
+      select: () => this.#show_selection(),
+    });
+    this.editor.log_opacity = preference("log-opacity", "no") === "yes";
+    this.element = element("div", { class: "panel-body" });
+    this.refresh = debounced(() => void this.#refresh(), 60);
+
+    this.swatches = element("div", { class: "swatches", role: "group", "aria-label": "Colours" });
+    this.shape = choice("", (word) => void this.#choose(undefined, word));
+    const log_axis = checkbox("Log opacity axis", (on) => {
+      this.editor.log_opacity = on;
+      set_preference("log-opacity", on ? "yes" : "no");
+      this.editor.draw();
+    }, "Room for opacities near zero");
+    log_axis.input.checked = this.editor.log_opacity;
+    const close = checkbox("Zoom to range", (on) => {
+      this.editor.close = on;
+      this.editor.show(this.editor.edited, this.histogram);
+    }, "Draw the function's range alone, not the whole field");
+    this.log = checkbox("Log values", (on) => this.#set_log(on), "Colours and opacities by the logarithm of the value");
+
+    this.point_value = typed("Value of the point", (text) => this.#type_point(text, undefined));
+    this.point_opacity = typed("Opacity of the point, per unit distance", (text) => this.#type_point(undefined, text));
+    this.point_color = element("input", {
+      type: "color", "aria-label": "Colour at the point", title: "Colour at the point",
+      on_input: () => this.#color_point(true), on_change: () => this.#color_point(false),
+    });
+    const add = icon_button("plus", "Add a point at the middle of the widest gap", () => this.#add_in_gap());
+    this.remove = icon_button("trash", "Remove the point (Delete)", () => this.editor.remove());
+    this.point_row = element("div", { class: "row point-row" }, this.point_value, this.point_opacity, this.point_color, add, this.remove);
+
+    this.few = button("Edit colours", () => this.editor.edited && this.#edit(functions.with_few_colors(this.editor.edited), false),
+      { title: "Keep the few colours that say most, each with a handle on the bar" });
+
+    this.low = typed("Low end of the range", (text) => this.#type_range(text, undefined));
+    this.high = typed("High end of the range", (text) => this.#type_range(undefined, text));
+    const ranges = element("div", { class: "buttons" },
+      button("Whole", () => this.#range_of("whole"), { title: "Range: all of the field's values" }),
+      button("99 %", () => this.#range_of("most"), { title: "Range: the values of 99 % of the volume" }),
+      button("Visible", () => this.#range_of("visible"), { title: "Range: the values of 99 % of what this view shows" }),
+      button("Reset", () => this.page.history.change({ range: undefined, "transfer-function": undefined, log: undefined, opacity: undefined, "unit-distance": undefined, "color-bar-scale": undefined }),
+        { title: "The function that the server chooses" }));
+
+    this.strength = element("input", {
+      type: "range", min: -2, max: 2, step: 0.01, on_input: () => this.#set_strength(true), on_change: () => this.#set_strength(false),
+    });
+    this.strength_text = typed("Overall opacity, a factor", (text) => this.#type_strength(text), { class: "short" });
+    this.distance = typed("", (text) => this.#type_distance(text), { title: "Unit distance: the world length over which an opacity holds" });
+    this.bar = checkbox("Colour bar", (on) => this.#set_bar(on), "Drawn in the picture, and in saved ones");
+    this.bar_title = typed("", (text) => this.page.history.change({ "color-bar-title": text.trim() || this.page.unset("color-bar-title") }),
+      { inputmode: "text", placeholder: "the field's name", title: "{field}, {time}, {file}, {min} and {max} are filled in" });
+    this.bar_row = row("Bar's title", this.bar_title);
+    this.warning = element("p", { class: "warning", hidden: true });
+
+    const file = element("input", { type: "file", accept: ".json,application/json", hidden: true, on_change: () => void this.#import() });
+    this.file = file;
+    this.element.append(
+      this.swatches,
+      element("div", { class: "row" }, element("label", { for: "shape" }, "Shape"), this.shape, icon_button("swap", "Reverse the colours", () => this.#reverse())),
+      this.editor.element, this.point_row,
+      element("div", { class: "checks" }, log_axis.label, this.log.label, close.label, this.few),
+      element("div", { class: "row" }, element("span", { class: "label" }, "Range"), this.low, this.high), ranges,
+      row("Opacity ×", this.strength, this.strength_text), row("Distance", this.distance),
+      element("div", { class: "checks" }, this.bar.label), this.bar_row, this.warning,
+      element("div", { class: "buttons" }, button("Import…", () => file.click(), { title: "A colour map of ParaView's, .json" }),
+        button("Export", () => this.#export(), { title: "As ParaView's colour map, .json" })), file);
+    this.shape.id = "shape";
+    this.#show_selection();
+  }
+
+  /** Presets, once they are known. */
+  begin() {
+    const { presets, opacities } = this.page.data;
+    this.swatches.replaceChildren(...presets.map((preset) => {
+      const bar = element("span", { class: "gradient", "aria-hidden": "true" });
+      bar.style.backgroundImage = `linear-gradient(to right, ${preset.colors.join(", ")})`;
+      return element("button", {
+        type: "button", class: "swatch", "data-preset": preset.name, title: preset.name, "aria-pressed": "false",
+        on_click: () => void this.#choose(preset.name, undefined),
+      }, bar, element("span", {}, preset.name));
+    }));
+    fill_choice(this.shape, [["", "as drawn"], ...opacities.map((name) => /** @type {[string, string]} */ ([name, name]))]);
+    this.update();
+  }
+
+  /** The state has changed, or the data. */
+  update() {
+    const { page } = this;
+    this.log.input.checked = page.option("log") === true;
+    this.bar.input.checked = Boolean(page.option("color-bar"));
+    this.bar_row.hidden = !this.bar.input.checked;
+    show_value(this.bar_title, String(page.option("color-bar-title") ?? ""));
+    const strength = Number(page.option("opacity") ?? 1);
+    show_value(this.strength, String(Math.log10(strength)));
+    show_value(this.strength_text, short_number(strength, 3));
+    this.refresh();
+  }
+
+  /** @param {string[]} words */
+  #key(words) {
+    return JSON.stringify(words.map((word) => this.page.history.state[word] ?? null));
+  }
+
+  async #refresh() {
+    if (this.page.history.moving || !this.page.ready) return;
+    const histogram_key = this.#key(histogram_words), function_key = this.#key(function_words);
+    const work = [];
+    if (histogram_key !== this.histogram_key) {
+      this.histogram_key = histogram_key;
+      work.push(this.histogram_question.ask("api/histogram", { state: this.page.full_state(), bins: 256, visible: false })
+        .then((reply) => { if (reply) this.histogram = reply; }).catch(() => { this.histogram_key = ""; }));
+    }
+    if (function_key !== this.function_key) {
+      this.function_key = function_key;
+      work.push(this.function_question.ask("api/function", { state: this.page.full_state() })
+        .then((reply) => { if (reply && function_key === this.#key(function_words)) this.#take(reply); }).catch(() => { this.function_key = ""; }));
+    }
+    if (work.length === 0) return;
+    await Promise.all(work);
+    this.editor.show(this.editor.edited, this.histogram);
+  }
+
+  /** @param {FunctionReply} reply */
+  #take(reply) {
+    this.reply = reply;
+    // What is being edited is not replaced under the hand; the reply to its last state comes too.
+    if (this.editor.dragging) return;
+    const own = this.page.history.state["transfer-function"];
+    this.editor.edited = functions.edited_function(reply, own, Number(this.page.option("opacity") ?? 1));
+    if (typeof own === "string") this.editor.edited.name = own.split(":")[0];
+    this.#show();
+  }
+
+  #show() {
+    const { reply, editor } = this;
+    if (!reply || !editor.edited) return;
+    editor.show(editor.edited, this.histogram);
+    show_value(this.low, short_number(editor.edited.range[0], 5));
+    show_value(this.high, short_number(editor.edited.range[1], 5));
+    show_value(this.distance, short_number(reply.unit_distance, 5));
+    const [name, shape] = this.#words();
+    for (const swatch of this.swatches.children) {
+      const chosen = swatch.getAttribute("data-preset") === name;
+      swatch.setAttribute("aria-pressed", String(chosen));
+    }
+    this.shape.value = shape ?? "";
+    this.few.hidden = editor.edited.colors.length <= functions.most_handles;
+    const warnings = reply.warnings ?? [];
+    this.warning.hidden = warnings.length === 0;
+    this.warning.textContent = warnings.join(" ");
+    this.#show_selection();
+  }
+
+  /** Names of colours and opacities that are a preset's. @returns {[string | undefined, string | undefined]} */
+  #words() {
+    const word = this.page.history.state["transfer-function"];
+    if (typeof word === "string") {
+      const [name, shape] = word.split(":");
+      return [name, shape ?? this.page.data.opacities[0]];
+    }
+    const name = this.editor.edited?.name;
+    return [this.page.data.presets.some((preset) => preset.name === name) ? name : undefined, undefined];
+  }
+
+  /**
+   * Colours or opacities of a preset; the other stays as it is. A word where both are a preset's, else points.
+   * @param {string | undefined} colors @param {string | undefined} shape
+   */
+  async #choose(colors, shape) {
+    if (shape === "") return;
+    const [name, old_shape] = this.#words();
+    const word = this.page.history.state["transfer-function"];
+    if (typeof word === "string" || (colors === undefined && name !== undefined) || this.editor.edited === undefined) {
+      const both = `${colors ?? name ?? "cool-warm"}:${shape ?? old_shape ?? "ramp"}`;
+      this.page.history.change({ "transfer-function": both });
+      return;
+    }
+    const state = { ...this.page.full_state(), opacity: null, "transfer-function": `${colors ?? "gray"}:${shape ?? "ramp"}`, range: this.editor.edited.range.join(",") };
+    const reply = await this.page.messages.of(ask_about("api/function", { state }), "function");
+    if (!reply) return;
+    const preset = functions.edited_function(reply);
+    const { edited } = this.editor;
+    this.#edit(shape ? { ...edited, opacities: preset.opacities }
+      : { ...edited, colors: preset.colors, color_space: preset.color_space, hsv_wrap: preset.hsv_wrap, name: colors ?? edited.name }, false);
+  }
+
+  /** @param {EditedFunction} edited @param {boolean} moving */
+  #edit(edited, moving) {
+    this.editor.edited = edited;
+    this.page.history.change(functions.state_of(edited), { moving, name: "function" });
+    this.#show();
+  }
+
+  /** @param {[number, number]} range @param {boolean} [moving] */
+  #set_range(range, moving = false) {
+    const keys = typeof this.page.history.state["transfer-function"] === "object" && this.editor.edited
+      ? functions.state_of({ ...this.editor.edited, range }) : { range: range.join(",") };
+    this.page.history.change(keys, { moving, name: "range" });
+    show_value(this.low, short_number(range[0], 5));
+    show_value(this.high, short_number(range[1], 5));
+  }
+
+  /** @param {string | undefined} low @param {string | undefined} high */
+  #type_range(low, high) {
+    const { edited } = this.editor;
+    if (!edited) return false;
+    const range = /** @type {[number, number]} */ ([low === undefined ? edited.range[0] : parsed_number(low), high === undefined ? edited.range[1] : parsed_number(high)]);
+    if (!(range[0] < range[1]) || (edited.log && !(range[0] > 0))) return false;
+    if (!same(range, edited.range)) this.#set_range(range);
+    return true;
+  }
+
+  /** @param {"whole"|"most"|"visible"} kind */
+  async #range_of(kind) {
+    const question = { state: this.page.full_state(), bins: 256, visible: kind === "visible" };
+    const reply = await this.page.messages.of(ask_about("api/histogram", question), "range");
+    if (!reply) return;
+    const ends = kind === "whole" ? reply.range : [reply.quantiles["0.005"] ?? reply.range[0], reply.quantiles["0.995"] ?? reply.range[1]];
+    if (ends[0] < ends[1]) this.#set_range(ends);
+    else this.page.messages.complain("All of these values are the same, so they are no range.", { about: "range" });
+  }
+
+  /** What says how the colour bar is drawn; without a bar these options are refused. @param {boolean} on @param {boolean} log */
+  #bar_scale(on, log) {
+    return { "color-bar-scale": on && log ? "log" : this.page.unset("color-bar-scale") };
+  }
+
+  /** @param {boolean} on */
+  #set_bar(on) {
+    const { page } = this;
+    const others = on ? {} : Object.fromEntries(["color-bar-title", "color-bar-range", "field-unit"].map((word) => [word, page.unset(word)]));
+    page.history.change({ "color-bar": on ? true : page.unset("color-bar"), ...others, ...this.#bar_scale(on, page.option("log") === true) });
+  }
+
+  /** @param {boolean} on */
+  #set_log(on) {
+    const { edited } = this.editor;
+    const log = on ? true : this.page.unset("log");
+    if (!edited) return;
+    // A range that begins at or below zero has no logarithm: the server begins at the smallest positive value.
+    const range = on && !(edited.range[0] > 0) ? undefined : edited.range.join(",");
+    const own = typeof this.page.history.state["transfer-function"] === "object";
+    const points = own ? { "transfer-function": functions.state_of({ ...edited, log: on })["transfer-function"] } : {};
+    this.page.history.change({ log, ...this.#bar_scale(Boolean(this.page.option("color-bar")), on), ...points, ...(own || this.page.history.state.range ? { range } : {}) });
+  }
+
+  /** @param {boolean} moving */
+  #set_strength(moving) {
+    const factor = Number((10 ** Number(this.strength.value)).toPrecision(3));
+    this.page.history.change({ opacity: factor === 1 ? this.page.unset("opacity") : String(factor) }, { moving, name: "opacity" });
+    show_value(this.strength_text, short_number(factor, 3));
+  }
+
+  /** @param {string} text */
+  #type_strength(text) {
+    const factor = parsed_number(text);
+    if (!(factor > 0)) return false;
+    this.page.history.change({ opacity: factor === 1 ? this.page.unset("opacity") : String(factor) });
+    return true;
+  }
+
+  /** @param {string} text */
+  #type_distance(text) {
+    const distance = parsed_number(text);
+    if (!(distance > 0) && text.trim() !== "") return false;
+    const own = this.page.history.state["transfer-function"];
+    const points = typeof own === "object" && distance > 0 ? { "transfer-function": { ...own, ScalarOpacityUnitDistance: distance }, "unit-distance": undefined }
+      : { "unit-distance": distance > 0 ? String(distance) : undefined };
+    this.page.history.change(points);
+    return true;
+  }
+
+  #add_in_gap() {
+    const { edited } = this.editor;
+    if (!edited) return;
+    let widest = 1;
+    edited.opacities.forEach((p, i) => {
+      if (i > 0 && p[0] - edited.opacities[i - 1][0] > edited.opacities[widest][0] - edited.opacities[widest - 1][0]) widest = i;
+    });
+    this.editor.add_point((edited.opacities[widest][0] + edited.opacities[widest - 1][0]) / 2);
+  }
+
+  #show_selection() {
+    const { edited, selection } = this.editor ?? {};
+    const list = edited && selection && (selection.kind === "opacity" ? edited.opacities : edited.colors);
+    const point = list?.[selection?.index ?? -1];
+    for (const input of [this.point_value, this.point_opacity, this.point_color]) input.disabled = !point;
+    this.point_opacity.disabled ||= selection?.kind !== "opacity";
+    this.remove.disabled = !point || !list || selection?.index === 0 || selection?.index === list.length - 1;
+    this.point_value.placeholder = "value";
+    this.point_opacity.placeholder = "opacity";
+    if (!edited || !point) return;
+    this.point_value.disabled = selection?.index === 0 || selection?.index === (list?.length ?? 0) - 1;
+    show_value(this.point_value, short_number(functions.value_at(edited, point[0]), 6));
+    show_value(this.point_opacity, selection?.kind === "opacity" ? short_number(point[1], 4) : "");
+    show_value(this.point_color, functions.hex_color(functions.color_at(edited, point[0])));
+  }
+
+  /** @param {string | undefined} value @param {string | undefined} opacity */
+  #type_point(value, opacity) {
+    const { edited, selection } = this.editor;
+    if (!edited || !selection) return false;
+    const list = selection.kind === "opacity" ? edited.opacities : edited.colors;
+    const point = list[selection.index];
+    const t = value === undefined ? point[0] : fraction_of(parsed_number(value), edited.range, edited.log);
+    if (!(t >= 0 && t <= 1)) return false;
+    if (selection.kind === "color") this.#edit(functions.with_color(edited, selection.index, t, point.slice(1)), false);
+    else {
+      const wanted = opacity === undefined ? point[1] : parsed_number(opacity);
+      if (!(wanted >= 0 && wanted <= 1)) return false;
+      this.#edit(functions.with_opacity(edited, selection.index, t, wanted), false);
+    }
+    return true;
+  }
+
+  /** @param {boolean} moving */
+  #color_point(moving) {
+    const { edited, selection } = this.editor;
+    if (!edited || !selection) return;
+    const rgb = functions.color_of_hex(this.point_color.value);
+    const list = selection.kind === "opacity" ? edited.opacities : edited.colors;
+    const t = list[selection.index][0];
+    this.#edit(selection.kind === "color" ? functions.with_color(edited, selection.index, t, rgb) : functions.with_color_point(edited, t, rgb).edited, moving);
+  }
+
+  #reverse() {
+    if (this.editor.edited) this.#edit(functions.with_colors_reversed(this.editor.edited), false);
+  }
+
+  async #import() {
+    const [chosen] = this.file.files ?? [];
+    if (!chosen) return;
+    const text = await chosen.text();
+    this.file.value = "";
+    const taken = await this.page.messages.of(Promise.resolve().then(() => functions.imported_function(text)), "import");
+    if (taken) this.page.history.change({ "transfer-function": taken, range: undefined, log: undefined });
+  }
+
+  #export() {
+    if (!this.reply) return;
+    save_file(new Blob([JSON.stringify(this.reply.paraview, null, 1)], { type: "application/json" }), "transfer-function.json");
+  }
+}
+

@@ -1,0 +1,59 @@
+/** Sentences for who uses the page: read aloud by screen readers, and gone by themselves unless they are errors. */
+import { button, by_id, element, icon_button } from "./dom.js";
+
+/** Milliseconds. */
+const shown_for = 6000;
+
+export class Messages {
+  constructor() {
+    this.list = by_id("messages");
+    this.spoken = by_id("spoken");
+    /** @type {Map<string, HTMLElement>} */
+    this.shown = new Map();
+  }
+
+  /** Something happened. @param {string} sentence */
+  tell(sentence) {
+    this.#show("note", `note:${sentence}`, sentence);
+    this.spoken.textContent = sentence;
+  }
+
+  /**
+   * Something is wrong. `about`: what a later call, or clear(), replaces.
+   * @param {string} sentence @param {{about?: string, action?: {text: string, act: () => void}}} [how]
+   */
+  complain(sentence, { about = sentence, action } = {}) {
+    this.#show("error", about, sentence, action);
+  }
+
+  /** @param {string} about */
+  clear(about) {
+    this.shown.get(about)?.remove();
+    this.shown.delete(about);
+  }
+
+  /** Says what a promise failed at. @template T @param {Promise<T>} work @param {string} [about] @returns {Promise<T | undefined>} */
+  async of(work, about) {
+    try {
+      const result = await work;
+      if (about) this.clear(about);
+      return result;
+    } catch (error) {
+      this.complain(error instanceof Error ? error.message : String(error), { about });
+      return undefined;
+    }
+  }
+
+  /** @param {"note"|"error"} kind @param {string} about @param {string} sentence @param {{text: string, act: () => void}} [action] */
+  #show(kind, about, sentence, action) {
+    const before = this.shown.get(about);
+    const line = element("div", { class: `message ${kind}`, role: kind === "error" ? "alert" : undefined },
+      element("span", {}, sentence),
+      action && button(action.text, action.act),
+      icon_button("close", "Dismiss", () => this.clear(about)));
+    if (before) before.replaceWith(line);
+    else this.list.append(line);
+    this.shown.set(about, line);
+    if (kind === "note") setTimeout(() => this.shown.get(about) === line && this.clear(about), shown_for);
+  }
+}

@@ -1,0 +1,116 @@
+/**
+ * What the parts of the page share: the data, the state with its history, and what of it the server is told.
+ *
+ * @typedef {import("./types.js").Camera} Camera
+ * @typedef {import("./types.js").Data} Data
+ * @typedef {import("./types.js").State} State
+ * @typedef {import("./types.js").Vector} Vector
+ */
+import { ask_about, LatestQuestion } from "./requests.js";
+import { length, subtract } from "./vector.js";
+
+export class Page {
+  /**
+   * @param {import("./state.js").StateHistory} history @param {import("./messages.js").Messages} messages
+   * @param {import("./picture_view.js").PictureView} view
+   */
+  constructor(history, messages, view) {
+    this.history = history;
+    this.messages = messages;
+    this.view = view;
+    this.camera_question = new LatestQuestion();
+    /** Whether `data` is there. */
+    this.ready = false;
+    this.data = /** @type {Data} */ (/** @type {unknown} */ (undefined));
+    /** Ranges of fields without threshold and cuts, by the options that say which field. @type {Map<string, [number, number]>} */
+    this.whole_ranges = new Map();
+    /** The box of all of the data, whatever is cut away. @type {[Vector, Vector]} */
+    this.whole_bounds = [[0, 0, 0], [1, 1, 1]];
+    /** The colours that are edited, for parts that show one of them. @type {() => import("./transfer_function.js").EditedFunction | undefined} */
+    this.edited_function = () => undefined;
+  }
+
+  /** An option as it is in force: the state's, else what the server began with. @param {string} word @returns {any} */
+  option(word) {
+    const own = this.history.state[word];
+    return own !== undefined ? own : this.data?.defaults[word];
+  }
+
+  /** What the state says so that an option is off: nothing, or null where the server began with it on. @param {string} word */
+  unset(word) {
+    return this.data?.defaults[word] ? null : undefined;
+  }
+
+  /** @param {string} word @param {any} value undefined: off */
+  set_option(word, value) {
+    this.history.change({ [word]: value === undefined ? this.unset(word) : value });
+  }
+
+  /** @returns {Camera} */
+  get camera() {
+    return this.history.state.camera ?? this.data.defaults.camera;
+  }
+
+  /** All that makes the picture. @returns {State} */
+  full_state() {
+    return { ...this.history.state, camera: this.camera, size: size_word(this.view.size()) };
+  }
+
+  /** Length of the data's diagonal, world units. */
+  get extent() {
+    const [low, high] = this.whole_bounds;
+    return length(subtract(high, low)) || 1;
+  }
+
+  get #field_key() {
+    return JSON.stringify([this.option("field") ?? null, this.option("time-step") ?? null, this.option("smooth") ?? null]);
+  }
+
+  /** What there is now. What is cut away by the state's own options goes on to be in reach. @param {Data} data */
+  take_data(data) {
+    const cut = ["threshold", "clip", "block"].some((word) => this.option(word));
+    this.data = { ...data, defaults: this.data?.defaults ?? data.defaults };
+    if (cut && this.whole_ranges.size > 0) return;
+    this.whole_bounds = data.bounds;
+    if (data.range) this.whole_ranges.set(this.#field_key, data.range);
+  }
+
+  /** The field's range, or 0 to 1 where it is not known. @returns {[number, number]} */
+  get field_range() {
+    const word = String(this.option("field") ?? this.data.field ?? "");
+    const name = word.replace(/^(cell|point):/, "");
+    const range = this.whole_ranges.get(this.#field_key) ?? this.data.fields.find((f) => f.name === name)?.range ?? this.data.range;
+    return range && range[0] < range[1] ? range : [0, 1];
+  }
+
+  /** What there is, and what the server began with, its view framed for this window. @returns {Promise<Data>} */
+  ask_data() {
+    return ask_about("api/data", { state: { size: size_word(this.view.size()) } });
+  }
+
+  /** A named view, by the server's code; "default" is what the server began with. @param {string} view */
+  async look(view) {
+    if (!this.ready) return;
+    if (view === "default") {
+      const data = await this.messages.of(this.ask_data(), "camera");
+      if (data) this.history.change({ camera: data.defaults.camera });
+      return;
+    }
+    const perspective = this.camera.parallel_scale === undefined;
+    const question = { state: this.full_state(), view, projection: perspective ? "perspective" : "orthographic" };
+    const camera = await this.messages.of(this.camera_question.ask("api/camera", question), "camera");
+    if (camera) this.history.change({ camera: camera.camera ?? camera });
+  }
+
+  /** Another field; what was said in the values of the one before goes. @param {string | undefined} field undefined: the one that the server began with */
+  set_field(field) {
+    const own = this.history.state["transfer-function"];
+    this.history.change({ field, range: undefined, threshold: undefined, iso: undefined, "transfer-function": typeof own === "string" ? own : undefined });
+  }
+}
+
+/** As the option has it. @param {import("./types.js").Size} size */
+export const size_word = ({ width, height }) => `${width}x${height}`;
+
+/** The command of a state. @param {State} state @returns {Promise<string>} */
+export const command_of = async (state) => (await ask_about("api/command", { state })).command;

@@ -1,0 +1,70 @@
+/**
+ * Questions to the server. Each throws an Error whose message is a sentence.
+ *
+ * @typedef {import("./types.js").State} State
+ */
+
+/** The data is still being read. */
+export class StillReading extends Error {
+  /** @param {{stage?: string, fraction?: number|null}} progress */
+  constructor(progress) {
+    super("The data is still being read.");
+    this.progress = progress;
+  }
+}
+
+/** The token is not this server's. */
+export class Refused extends Error {}
+
+export const unreachable = "The server cannot be reached.";
+
+/** @param {string} path @param {RequestInit} [options] @returns {Promise<Response>} */
+async function answered(path, options) {
+  let response;
+  try {
+    response = await fetch(path, { credentials: "same-origin", ...options });
+  } catch (error) {
+    if (error instanceof DOMException && error.name === "AbortError") throw error;
+    throw new Error(unreachable);
+  }
+  if (response.ok) return response;
+  const said = await response.json().catch(() => ({}));
+  if (response.status === 503 && said.reading) throw new StillReading(said);
+  const sentence = said.error ?? `The server answered ${response.status} to ${path}.`;
+  throw response.status === 403 ? new Refused(sentence) : new Error(sentence);
+}
+
+/** @param {string} path @param {AbortSignal} [signal] @returns {Promise<any>} */
+export const ask = async (path, signal) => (await answered(path, { signal })).json();
+
+/** @param {string} path @param {Record<string, any>} question @param {AbortSignal} [signal] @returns {Promise<Response>} */
+export const post = (path, question, signal) =>
+  answered(path, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(question), signal });
+
+/** @param {string} path @param {Record<string, any>} question @param {AbortSignal} [signal] @returns {Promise<any>} */
+export const ask_about = async (path, question, signal) => (await post(path, question, signal)).json();
+
+/**
+ * One question at a time: another ends the one before, whose answer then never comes.
+ */
+export class LatestQuestion {
+  constructor() {
+    /** @type {AbortController | undefined} */
+    this.running = undefined;
+  }
+
+  /** @param {string} path @param {Record<string, any>} question @returns {Promise<any | undefined>} undefined if another came */
+  async ask(path, question) {
+    this.running?.abort();
+    const mine = (this.running = new AbortController());
+    try {
+      const reply = await ask_about(path, question, mine.signal);
+      return mine.signal.aborted ? undefined : reply;
+    } catch (error) {
+      if (mine.signal.aborted) return undefined;
+      throw error;
+    } finally {
+      if (this.running === mine) this.running = undefined;
+    }
+  }
+}

@@ -1,0 +1,91 @@
+/**
+ * Values that the page's modules share. The state and the messages are the server's (docs/SERVER.md).
+ *
+ * @typedef {[number, number, number]} Vector
+ *
+ * @typedef {object} Camera a view in VTK's words; exactly one of parallel_scale and view_angle
+ * @property {Vector} position
+ * @property {Vector} focal_point
+ * @property {Vector} view_up
+ * @property {number} [parallel_scale] orthographic: half the window's height, world units
+ * @property {number} [view_angle] perspective: vertical, degrees
+ * @property {[number, number]} [clipping_range]
+ *
+ * @typedef {Record<string, any>} State long option names of `tessera render` without dashes, and their values
+ *
+ * @typedef {object} Size pixels
+ * @property {number} width
+ * @property {number} height
+ *
+ * @typedef {object} Field
+ * @property {string} name
+ * @property {"point"|"cell"} association
+ * @property {number} components
+ * @property {string} [type]
+ * @property {[number, number]} [range]
+ * @property {boolean} [active]
+ *
+ * @typedef {object} Preset
+ * @property {string} name
+ * @property {string[]} colors
+ * @property {string} [family]
+ *
+ * @typedef {object} Data what api/data says
+ * @property {string} file
+ * @property {string} format
+ * @property {"mesh"|"grid"} kind
+ * @property {number} cells
+ * @property {number} [tets]
+ * @property {[Vector, Vector]} bounds
+ * @property {Field[]} fields
+ * @property {string|null} field null: the shape alone is shown
+ * @property {[number, number]} [range] of the field
+ * @property {Record<string, number>} [counts] cells read, and those that are left out
+ * @property {number} [time_steps]
+ * @property {number[]|null} [times]
+ * @property {string[]} [blocks]
+ * @property {string[]} [notes]
+ * @property {string[]} [warnings]
+ * @property {number} [ranks]
+ * @property {number} [threads]
+ * @property {string} [tessera]
+ * @property {Preset[]} presets
+ * @property {string[]} opacities
+ * @property {State} defaults
+ *
+ * @typedef {object} FunctionReply what api/function says; colours are sRGB, 0 to 1
+ * @property {[number, number]} range
+ * @property {number[][]} colors [value, r, g, b]
+ * @property {number[][]} opacities [value, opacity per unit distance]
+ * @property {number} unit_distance
+ * @property {boolean} log
+ * @property {Record<string, any>} json
+ * @property {any} paraview
+ * @property {string[]} [warnings]
+ *
+ * @typedef {object} HistogramReply
+ * @property {[number, number]} range
+ * @property {number[]} counts fractions of the volume
+ * @property {boolean} log
+ * @property {Record<string, number>} quantiles
+ *
+ * @typedef {object} FrameHeader
+ * @property {"frame"} type
+ * @property {number} frame
+ * @property {number} number the state's
+ * @property {"moving"|"auto"|"exact"} level
+ * @property {boolean} [stand_in]
+ * @property {number} width
+ * @property {number} height
+ * @property {string} mime
+ * @property {number} milliseconds
+ * @property {number} [encode_ms]
+ * @property {number|null} [promised_error]
+ * @property {boolean} final
+ * @property {Record<string, number>} [stages]
+ * @property {string} [field]
+ * @property {[number, number]} [range]
+ * @property {string[]} [warnings]
+ */
+
+export {};

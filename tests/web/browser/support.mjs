@@ -1,0 +1,95 @@
+// The server that is tested, a proxy that loses connections when told, and a browser that looks at them.
+import { spawn } from "node:child_process";
+import { existsSync } from "node:fs";
+import { createRequire } from "node:module";
+import net from "node:net";
+import { join } from "node:path";
+
+export const program = process.env.TESSERA_PROGRAM ?? "";
+const packages = process.env.TESSERA_WEB_PACKAGES ?? "";
+const chromium_file = process.env.TESSERA_CHROMIUM ?? "/usr/bin/chromium";
+
+/** Why nothing can be tested here; empty if it can. */
+export function missing() {
+  if (Number(process.versions.node.split(".")[0]) < 20) return `node is ${process.version}, playwright-core needs 20`;
+  if (!existsSync(chromium_file)) return `there is no ${chromium_file}; install chromium`;
+  if (!existsSync(join(packages, "node_modules", "playwright-core"))) return "there is no playwright-core; npm could not bring it";
+  return "";
+}
+
+export async function launch() {
+  const { chromium } = createRequire(join(packages, "package.json"))("playwright-core");
+  const args = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
+  return chromium.launch({ executablePath: chromium_file, args });
+}
+
+/** `tessera serve` with these words. @param {string[]} words */
+export function serve(words) {
+  const child = spawn(program, ["serve", ...words], { stdio: ["ignore", "pipe", "pipe"] });
+  let said = "", errors = "";
+  child.stderr.on("data", (bytes) => { errors += bytes; });
+  const ended = new Promise((done) => child.on("close", (code) => done(code)));
+  const address = new Promise((done, fail) => {
+    child.stdout.on("data", (bytes) => {
+      said += bytes;
+      const line = /^(http:\S+)/m.exec(said);
+      if (line) done(new URL(line[1]));
+    });
+    child.on("error", fail);
+    void ended.then((code) => fail(new Error(`tessera serve ended with ${code}: ${errors}`)));
+  });
+  return { child, address, ended, errors: () => errors };
+}
+
+/** Passes bytes on to a port, until it is cut. @param {number} port */
+export async function make_proxy(port) {
+  const sockets = new Set();
+  let open = true;
+  const server = net.createServer((from) => {
+    if (!open) return from.destroy();
+    const to = net.connect(port, "127.0.0.1");
+    for (const [one, other] of [[from, to], [to, from]]) {
+      sockets.add(one);
+      one.on("data", (bytes) => other.write(bytes));
+      one.on("error", () => other.destroy());
+      one.on("close", () => {
+        sockets.delete(one);
+        other.destroy();
+      });
+    }
+  });
+  await new Promise((done) => server.listen(0, "127.0.0.1", done));
+  return {
+    port: server.address().port,
+    cut: () => {
+      open = false;
+      for (const socket of sockets) socket.destroy();
+    },
+    mend: () => { open = true; },
+    end: () => {
+      for (const socket of sockets) socket.destroy();
+      server.close();
+    },
+  };
+}
+
+/** A page at rest: the latest state's exact picture is painted. @param {any} page */
+export async function at_rest(page) {
+  await page.waitForFunction(() => window.tessera?.at_rest(), null, { timeout: 20000 });
+}
+
+/** The bytes of the frame that is shown. @param {any} page */
+export async function shown_bytes(page) {
+  await at_rest(page);
+  return Buffer.from(await page.evaluate(() => Array.from(window.tessera.bytes())));
+}
+
+/** What a shell makes of a command, in a folder. @param {string} command @param {string} folder */
+export async function run_command(command, folder) {
+  const path = `${join(program, "..")}:${process.env.PATH}`;
+  const child = spawn("sh", ["-c", command], { cwd: folder, env: { ...process.env, PATH: path }, stdio: ["ignore", "pipe", "pipe"] });
+  let errors = "";
+  child.stderr.on("data", (bytes) => { errors += bytes; });
+  const code = await new Promise((done) => child.on("close", done));
+  if (code !== 0) throw new Error(`${command}\nended with ${code}: ${errors}`);
+}
