@@ -18,6 +18,7 @@ struct Topic {
   const char *title, *first, *more;
 };
 constexpr std::array topics = {
+    Topic{"Server", "", "bind port latency tls-certificate tls-key allow-host"},
     Topic{"Data", "field block clip threshold time-step",
           "smooth q max-volume higher-order-tolerance higher-order-tets cut-planes"},
     Topic{"Raw volumes", "", "dims type spacing origin endian skip"},
@@ -117,7 +118,7 @@ void add_commands(std::string& page, const CLI::App& app) {
 std::vector<HelpTopic> help_topics(const CLI::App& command, bool all) {
   auto options = told_options(command);
   std::vector<HelpTopic> result;
-  if (command.get_name() != "render") {
+  if (command.get_name() != "render" && command.get_name() != "serve") {
     if (!options.empty()) result.push_back({"Options", std::move(options)});
     return result;
   }
@@ -157,6 +158,8 @@ std::vector<std::string> help_examples(const CLI::App& command) {
   if (name == "render")
     return {"tessera render mesh.vtu -o picture.png", "tessera render head.nii.gz --view left --color-bar -o head.png",
             "tessera render mesh.vtu --field p --transfer-function viridis --orbit 120 -o turn.mp4"};
+  if (name == "serve")
+    return {"tessera serve mesh.vtu", "mpirun -n 4 tessera serve mesh.pvtu --port 8080"};
   if (name == "info") return {"tessera info mesh.vtu"};
   if (name == "convert") return {"tessera convert mesh.vtu mesh.tets"};
   if (name == "generate") return {"tessera generate cube cube.vtu n=16"};

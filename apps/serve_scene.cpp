@@ -317,9 +317,11 @@ std::unique_ptr<server::SceneReader> scene_reader(const RenderWords& words, cons
 }
 
 void add_scene_reader_options(CLI::App& serve, RenderWords& words) {
+  const std::vector<CLI::Option*> own = serve.get_options();
   add_render_options(serve, words);
   std::vector<CLI::Option*> others;
   for (CLI::Option* option : serve.get_options()) {
+    if (std::ranges::find(own, option) != own.end()) continue;
     const std::string name = option->get_lnames().empty() ? "" : option->get_lnames().front();
     const bool is_input = option->get_positional() && option->get_name(true) == "INPUT";
     if (!is_input && served_options.find(" " + name + " ") == std::string_view::npos) others.push_back(option);

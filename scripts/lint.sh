@@ -12,7 +12,7 @@ cd "$(dirname "$0")/.."
 # With what -inl.h files hold: kernels, compiled once per instruction set.
 sources() { git ls-files --cached --others --exclude-standard -- '*.cpp' '*.hpp' '*.h'; }
 # The folders, and after them io without io/helper.
-ours='^((scene|colormaps|integrals|exchange|projection|sorting|compositor|frame|reference|volume|analysis|annotation|apps|gl|datasets)/.*|io/[^/]*)'
+ours='^((scene|colormaps|integrals|exchange|projection|sorting|compositor|frame|reference|volume|analysis|annotation|server|apps|gl|datasets)/.*|io/[^/]*)'
 
 format() { sources | xargs -r clang-format-14 --style=file "$@"; }
 

@@ -118,6 +118,7 @@ class FilmWork final : public ApiWork {
     context_.progress.set(1.0 * ++made_ / static_cast<double>(frames_));
     if (made_ < frames_) return {};
     film_->commit();
+    context_.progress.set(std::nullopt);  // before anybody has the film
     std::ifstream file(scratch_.path() / ("film." + format_), std::ios::binary);
     auto bytes =
         std::make_shared<const std::string>(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());

@@ -2,6 +2,7 @@
 
 // One text for plain and TLS connections: plain_connection.cpp and tls_connection.cpp include it, each once.
 
+#include <algorithm>
 #include <array>
 #include <boost/asio/bind_executor.hpp>
 #include <boost/asio/dispatch.hpp>
@@ -366,6 +367,19 @@ class Connection final : public std::enable_shared_from_this<Connection<Stream>>
   void end() {
     error_code none;
     lowest().socket().shutdown(tcp::socket::shutdown_send, none);
+    lowest().expires_after(network_.limits.request);
+    pass_over(0);
+  }
+
+  /// What comes after the last answer: who closes with bytes unread takes the answer from whoever still sends.
+  void pass_over(std::size_t passed) {
+    constexpr std::size_t most = 64u << 20;
+    if (passed > most) return lowest().close();
+    buffer_.clear();
+    lowest().async_read_some(buffer_.prepare(std::min<std::size_t>(16u << 10, buffer_.max_size())),
+                             [self = this->shared_from_this(), passed](error_code error, std::size_t bytes) {
+                               if (!error) self->pass_over(passed + bytes);
+                             });
   }
 
   Stream stream_;

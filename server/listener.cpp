@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
@@ -81,6 +82,7 @@ struct Listener::State {
 
   Network network;  // outlives the connections, which end with what runs them
   asio::io_context io{1};
+  asio::executor_work_guard<asio::io_context::executor_type> until_stopped{io.get_executor()};
   std::shared_ptr<asio::ssl::context> tls;
   tcp::acceptor acceptor{io};
   asio::steady_timer pause{io};

@@ -4,6 +4,7 @@
  *
  * @typedef {import("./types.js").State} State
  */
+import { is_camera } from "./camera.js";
 
 const version = "1.";
 
@@ -27,6 +28,7 @@ export function state_of_fragment(fragment) {
     const bytes = Uint8Array.from(atob(text.slice(version.length).replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0));
     const state = JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(bytes));
     if (typeof state !== "object" || state === null || Array.isArray(state)) throw new Error("no object");
+    if (state.camera !== undefined && !is_camera(state.camera)) throw new Error("no camera");
     return state;
   } catch {
     throw new Error("The link is damaged or cut short, so the view it holds cannot be shown; copy it anew.");

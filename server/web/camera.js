@@ -16,6 +16,14 @@ const default_angle = 30;
 /** @param {Camera} camera */
 export const is_perspective = (camera) => camera.parallel_scale === undefined;
 
+/** Whether a value that came from outside is a view. @param {any} value */
+export function is_camera(value) {
+  const vector = (/** @type {any} */ v) => Array.isArray(v) && v.length === 3 && v.every(Number.isFinite);
+  const positive = (/** @type {any} */ v) => Number.isFinite(v) && v > 0;
+  return typeof value === "object" && value !== null && vector(value.position) && vector(value.focal_point) && vector(value.view_up) &&
+    (value.parallel_scale === undefined ? positive(value.view_angle) : positive(value.parallel_scale) && value.view_angle === undefined);
+}
+
 /**
  * Orthonormal axes: `up` points to the top of the picture, `forward` into it.
  * @param {Camera} camera

@@ -61,7 +61,11 @@ export class Connection {
 
   /** @param {Record<string, any>} message */
   send(message) {
-    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+    if (this.is_open) this.socket?.send(JSON.stringify(message));
+  }
+
+  get is_open() {
+    return this.socket?.readyState === WebSocket.OPEN;
   }
 
   /** @param {string | ArrayBuffer} bytes */

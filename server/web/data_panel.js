@@ -41,10 +41,12 @@ export class DataPanel {
   begin() {
     const { data } = this.page;
     const twice = (/** @type {string} */ name) => data.fields.filter((f) => f.name === name).length > 1;
-    fill_choice(this.field, data.fields.map((f) => {
+    const fields = data.fields.map((f) => {
       const word = twice(f.name) ? `${f.association}:${f.name}` : f.name;
-      return [word, `${f.name} (${f.association}${f.components > 1 ? `, ${f.components} components` : ""})`];
-    }));
+      return /** @type {[string, string]} */ ([word, `${f.name} (${f.association}${f.components > 1 ? `, ${f.components} components` : ""})`]);
+    });
+    // A file without a field that says something is shown as a shape, until one is chosen.
+    fill_choice(this.field, data.field === null ? [["", "none: the shape"], ...fields] : fields);
     this.field_row.hidden = data.fields.length === 0;
     this.smooth.label.hidden = !data.fields.some((f) => f.association === "cell");
     this.#begin_blocks();
@@ -116,6 +118,7 @@ export class DataPanel {
 
   /** @param {string} name */
   #choose_field(name) {
+    if (name === "") return this.page.set_field(undefined);
     const components = this.page.data.fields.find((f) => f.name === name.replace(/^(cell|point):/, ""))?.components ?? 1;
     this.page.set_field(components > 1 ? `${name}:mag` : name);
   }

@@ -57,6 +57,11 @@ export class StateSender {
     this.#advance();
   }
 
+  /** The answer is on its way. */
+  in_work() {
+    this.sent_at = this.clock();
+  }
+
   /** There is a connection, a new one: it is told the state it left at. */
   opened() {
     this.open = true;

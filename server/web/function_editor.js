@@ -143,7 +143,7 @@ export class FunctionEditor {
       group.append(svg("line", { x1: margin.left, x2: this.width - margin.right, y1: y, y2: y }),
         svg("text", { x: margin.left - 4, y: y + 4, class: "tick", "text-anchor": "end" }, short_number(opacity)));
     }
-    const count = Math.max(2, Math.floor(this.plot_width / 70));
+    const count = Math.max(2, Math.floor(this.plot_width / 45));
     const ticks = edited.log ? log_ticks(...this.domain, count) : linear_ticks(...this.domain, count);
     for (const value of ticks) {
       const x = this.x_of(value);

@@ -39,7 +39,7 @@ export class FunctionPanel {
     this.element = element("div", { class: "panel-body" });
     this.refresh = debounced(() => void this.#refresh(), 60);
 
-    this.swatches = element("div", { class: "swatches", role: "radiogroup", "aria-label": "Colours" });
+    this.swatches = element("div", { class: "swatches", role: "group", "aria-label": "Colours" });
     this.shape = choice("", (word) => void this.#choose(undefined, word));
     const log_axis = checkbox("Log opacity axis", (on) => {
       this.editor.log_opacity = on;
@@ -79,7 +79,7 @@ export class FunctionPanel {
       type: "range", min: -2, max: 2, step: 0.01, on_input: () => this.#set_strength(true), on_change: () => this.#set_strength(false),
     });
     this.strength_text = typed("Overall opacity, a factor", (text) => this.#type_strength(text), { class: "short" });
-    this.distance = typed("", (text) => this.#type_distance(text));
+    this.distance = typed("", (text) => this.#type_distance(text), { title: "Unit distance: the world length over which an opacity holds" });
     this.bar = checkbox("Colour bar", (on) => this.#set_bar(on), "Drawn in the picture, and in saved ones");
     this.bar_title = typed("", (text) => this.page.history.change({ "color-bar-title": text.trim() || this.page.unset("color-bar-title") }),
       { inputmode: "text", placeholder: "the field's name", title: "{field}, {time}, {file}, {min} and {max} are filled in" });
@@ -94,7 +94,7 @@ export class FunctionPanel {
       this.editor.element, this.point_row,
       element("div", { class: "checks" }, log_axis.label, this.log.label, close.label, this.few),
       element("div", { class: "row" }, element("span", { class: "label" }, "Range"), this.low, this.high), ranges,
-      row("Opacity ×", this.strength, this.strength_text), row("Unit distance", this.distance),
+      row("Opacity ×", this.strength, this.strength_text), row("Distance", this.distance),
       element("div", { class: "checks" }, this.bar.label), this.bar_row, this.warning,
       element("div", { class: "buttons" }, button("Import…", () => file.click(), { title: "A colour map of ParaView's, .json" }),
         button("Export", () => this.#export(), { title: "As ParaView's colour map, .json" })), file);
@@ -109,7 +109,7 @@ export class FunctionPanel {
       const bar = element("span", { class: "gradient", "aria-hidden": "true" });
       bar.style.backgroundImage = `linear-gradient(to right, ${preset.colors.join(", ")})`;
       return element("button", {
-        type: "button", class: "swatch", role: "radio", "data-preset": preset.name, title: preset.name, "aria-checked": "false",
+        type: "button", class: "swatch", "data-preset": preset.name, title: preset.name, "aria-pressed": "false",
         on_click: () => void this.#choose(preset.name, undefined),
       }, bar, element("span", {}, preset.name));
     }));
@@ -147,7 +147,7 @@ export class FunctionPanel {
     if (function_key !== this.function_key) {
       this.function_key = function_key;
       work.push(this.function_question.ask("api/function", { state: this.page.full_state() })
-        .then((reply) => { if (reply) this.#take(reply); }).catch(() => { this.function_key = ""; }));
+        .then((reply) => { if (reply && function_key === this.#key(function_words)) this.#take(reply); }).catch(() => { this.function_key = ""; }));
     }
     if (work.length === 0) return;
     await Promise.all(work);
@@ -159,7 +159,9 @@ export class FunctionPanel {
     this.reply = reply;
     // What is being edited is not replaced under the hand; the reply to its last state comes too.
     if (this.editor.dragging) return;
-    this.editor.edited = functions.edited_function(reply, this.page.history.state["transfer-function"], Number(this.page.option("opacity") ?? 1));
+    const own = this.page.history.state["transfer-function"];
+    this.editor.edited = functions.edited_function(reply, own, Number(this.page.option("opacity") ?? 1));
+    if (typeof own === "string") this.editor.edited.name = own.split(":")[0];
     this.#show();
   }
 
@@ -173,7 +175,7 @@ export class FunctionPanel {
     const [name, shape] = this.#words();
     for (const swatch of this.swatches.children) {
       const chosen = swatch.getAttribute("data-preset") === name;
-      swatch.setAttribute("aria-checked", String(chosen));
+      swatch.setAttribute("aria-pressed", String(chosen));
     }
     this.shape.value = shape ?? "";
     this.few.hidden = editor.edited.colors.length <= functions.most_handles;
@@ -220,7 +222,6 @@ export class FunctionPanel {
   #edit(edited, moving) {
     this.editor.edited = edited;
     this.page.history.change(functions.state_of(edited), { moving, name: "function" });
-    if (!moving) this.function_key = this.#key(function_words);
     this.#show();
   }
 

@@ -46,7 +46,7 @@ export class Gestures {
     for (const end of ["pointerup", "pointercancel"]) surface.addEventListener(end, (e) => this.#release(/** @type {PointerEvent} */ (e)));
     surface.addEventListener("wheel", (e) => this.#wheel(e), { passive: false });
     surface.addEventListener("contextmenu", (e) => e.preventDefault());
-    surface.addEventListener("dblclick", (e) => wiring.centre(wiring.place_of(e.clientX, e.clientY)));
+    surface.addEventListener("dblclick", (e) => over_the_picture(e) || wiring.centre(wiring.place_of(e.clientX, e.clientY)));
     surface.addEventListener("keydown", (e) => this.#key(e));
     surface.addEventListener("keyup", (e) => {
       this.held.delete(e.code);
@@ -68,7 +68,7 @@ export class Gestures {
 
   /** @param {PointerEvent} event */
   #press(event) {
-    if (event.target instanceof Element && event.target.closest("button, a")) return;
+    if (over_the_picture(event)) return;
     this.surface.focus({ preventScroll: true });
     this.surface.setPointerCapture(event.pointerId);
     this.pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
@@ -149,6 +149,7 @@ export class Gestures {
 
   /** @param {WheelEvent} event */
   #wheel(event) {
+    if (over_the_picture(event)) return;
     event.preventDefault();
     const unit = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 18 : event.deltaMode === WheelEvent.DOM_DELTA_PAGE ? 200 : 1;
     const amount = Math.max(-300, Math.min(300, event.deltaY * unit * (event.ctrlKey ? 4 : 1)));
@@ -205,6 +206,9 @@ export class Gestures {
     requestAnimationFrame(advance);
   }
 }
+
+/** Whether an event is of something that lies over the picture: tools, messages. @param {Event} event */
+const over_the_picture = (event) => event.target instanceof Element && event.target.closest("[data-over]") !== null;
 
 /** By the key's place on the keyboard: axis (right, up, forward) and sign. @type {Map<string, [number, number]>} */
 const flight_keys = new Map([["KeyW", [2, 1]], ["KeyS", [2, -1]], ["KeyA", [0, -1]], ["KeyD", [0, 1]], ["KeyE", [1, 1]], ["KeyQ", [1, -1]]]);

@@ -42,7 +42,7 @@ function set_mode(word) {
   set_preference("mode", mode);
   // Flight through an orthographic view shows no way ahead.
   if (mode === "fly" && page.ready && !is_perspective(page.camera)) history.change({ camera: with_projection(page.camera, true) });
-  for (const tool of mode_tools) tool.setAttribute("aria-checked", String(tool.dataset.mode === mode));
+  for (const tool of mode_tools) tool.setAttribute("aria-pressed", String(tool.dataset.mode === mode));
   view_panel.update();
 }
 
@@ -83,10 +83,10 @@ function show_panel(open) {
 show_panel(!window.matchMedia("(max-width: 760px)").matches);
 
 const mode_names = { turntable: "Turntable", trackball: "Trackball", fly: "Fly (W A S D Q E)" };
-const mode_tools = modes.map((word) => icon_button(word, `${mode_names[word]} (T)`, () => set_mode(word), { role: "radio", "data-mode": word, "aria-checked": String(word === mode) }));
+const mode_tools = modes.map((word) => icon_button(word, `${mode_names[word]} (T)`, () => set_mode(word), { "data-mode": word, "aria-pressed": String(word === mode) }));
 const probe_tool = icon_button("probe", "Probe with a click (P)", () => set_probing(!probe.on), { "aria-pressed": "false" });
 by_id("view-tools").append(
-  element("div", { role: "radiogroup", "aria-label": "Turning" }, ...mode_tools), icon_button("fit", "Fit the data (F)", () => void page.look("fit")),
+  element("div", { role: "group", "aria-label": "Turning" }, ...mode_tools), icon_button("fit", "Fit the data (F)", () => void page.look("fit")),
   icon_button("home", "Default view (R)", () => void page.look("default")), icon_button("projection", "Orthographic or perspective (O)", toggle_projection), probe_tool);
 
 function toggle_projection() {
@@ -162,6 +162,7 @@ async function show_frame(header, image) {
   first_of.add(header.number);
   if (first_of.size > 200) first_of.delete([...first_of][0]);
   messages.clear("state");
+  end_reading();
   by_id("frame-progress").hidden = true;
   if (header.level !== "moving") information.tell_notes(header.warnings ?? []);
   document.body.dataset.shown = `${header.number} ${header.level}${header.final ? " final" : ""}`;
@@ -174,6 +175,7 @@ const first_of = new Set();
 function show_error(message) {
   if (message.number !== undefined) sender.answered(message.number);
   data_panel.stop();
+  end_reading();
   by_id("frame-progress").hidden = true;
   const action = history.can_undo ? { text: "Undo", act: () => history.undo() } : { text: "Default view", act: () => history.load(first_state({})) };
   messages.complain(message.error, { about: "state", action });
@@ -204,11 +206,11 @@ function show_connection(state, detail) {
     if (page.ready) sender.opened();
   } else if (state !== "connecting") {
     sender.closed();
-    if (!page.ready) by_id("reading").hidden = true;
+    end_reading();
     const again = element("span");
     const retry = button("Try now", () => connection.retry());
     const text = state === "refused" ? `${detail.sentence ?? "The server refuses this page."} Open the address that tessera serve printed.`
-      : state === "ended" ? `The server has ended: ${detail.sentence ?? ""}` : "The connection to the server is lost; the picture stays, and changes are shown once it is back.";
+      : state === "ended" ? `The server has ended. ${/^the server (was|has) ended/i.test(detail.sentence ?? "") ? "" : detail.sentence ?? ""}` : "The connection to the server is lost; the picture stays, and changes are shown once it is back.";
     banner.replaceChildren(element("span", {}, text), " ", again, ...(state === "refused" ? [] : [retry]));
     banner.hidden = false;
     if (detail.retry_at !== undefined) {
@@ -220,17 +222,28 @@ function show_connection(state, detail) {
 }
 let countdown = 0;
 
+let reading_delay = 0;
+
 /** @param {{stage?: string, fraction?: number|null}} progress */
 function show_reading({ stage, fraction }) {
-  by_id("reading").hidden = false;
+  // What is read again, another step, a cut, is often there at once: then nothing flashes up.
+  if (page.ready && by_id("reading").hidden) reading_delay ||= window.setTimeout(() => { by_id("reading").hidden = false; }, 400);
+  else by_id("reading").hidden = false;
   by_id("reading-stage").textContent = stage ? `${stage.charAt(0).toUpperCase()}${stage.slice(1)} …` : "Reading …";
   const bar = /** @type {HTMLProgressElement} */ (by_id("reading-progress"));
   if (typeof fraction === "number") bar.value = fraction;
   else bar.removeAttribute("value");
 }
 
+function end_reading() {
+  clearTimeout(reading_delay);
+  reading_delay = 0;
+  by_id("reading").hidden = true;
+}
+
 /** @param {{number?: number, level?: string, fraction?: number}} progress */
 function show_progress({ level, fraction }) {
+  sender.in_work();
   const bar = /** @type {HTMLProgressElement} */ (by_id("frame-progress"));
   bar.hidden = false;
   if (typeof fraction === "number") bar.value = fraction;
@@ -244,7 +257,7 @@ async function load_data() {
   clearTimeout(reading_timer);
   try {
     const data = await page.ask_data();
-    by_id("reading").hidden = true;
+    end_reading();
     messages.clear("data");
     begin(data);
   } catch (error) {
@@ -254,7 +267,7 @@ async function load_data() {
     } else if (error instanceof Refused) {
       show_connection("refused", { sentence: error.message });
     } else {
-      by_id("reading").hidden = true;
+      end_reading();
       messages.complain(error instanceof Error ? error.message : String(error), { about: "data" });
     }
   }
@@ -288,7 +301,7 @@ function begin(data) {
   page.ready = true;
   history.begin(first_state(state));
   for (const panel of panels) panel.begin();
-  sender.opened();
+  if (connection.is_open) sender.opened();
 }
 
 // What follows each change.

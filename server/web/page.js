@@ -102,7 +102,7 @@ export class Page {
     if (camera) this.history.change({ camera: camera.camera ?? camera });
   }
 
-  /** Another field; what was said in the values of the one before goes. @param {string} field */
+  /** Another field; what was said in the values of the one before goes. @param {string | undefined} field undefined: the one that the server began with */
   set_field(field) {
     const own = this.history.state["transfer-function"];
     this.history.change({ field, range: undefined, threshold: undefined, iso: undefined, "transfer-function": typeof own === "string" ? own : undefined });

@@ -47,7 +47,7 @@ export class PicturePanel {
       row("Format", this.format, this.save_button), element("div", { class: "checks" }, this.clear.label),
       element("div", { class: "buttons" }, button("Copy link", () => void this.copy_link()), button("Copy command", () => void this.copy_command(), { title: "The tessera render command of this picture" })),
       element("div", { class: "heading" }, "Film"),
-      row("Path", this.kind), this.view_part, row("Frames", this.frames, element("span", { class: "times" }, "at"), this.rate, element("span", { class: "times" }, "a second")),
+      row("Path", this.kind), this.view_part, row("Frames", this.frames, element("span", { class: "times" }, "at"), this.rate, element("span", { class: "times", title: "frames a second" }, "per s")),
       element("div", { class: "row" }, this.film_format, this.film_button, this.film_stop), this.film_progress);
   }
 

@@ -8,6 +8,14 @@ import { by_id } from "./dom.js";
 
 /** The largest picture that follows the window by itself, pixels; a larger one is asked for by its size. */
 const most_pixels = 8e6;
+/** While moving, what a canvas is scaled up to in software; the screen's own scaling does the rest. */
+const most_moving_pixels = 1.5e6;
+
+/** The same shape with at most so many pixels. @param {Size} size @param {number} most @returns {Size} */
+function limited({ width, height }, most) {
+  const shrink = Math.min(1, Math.sqrt(most / (width * height)));
+  return { width: Math.max(16, Math.floor(width * shrink)), height: Math.max(16, Math.floor(height * shrink)) };
+}
 
 export class PictureView {
   constructor() {
@@ -33,9 +41,7 @@ export class PictureView {
   window_size() {
     const box = this.frame.getBoundingClientRect();
     const ratio = window.devicePixelRatio || 1;
-    const width = Math.max(16, Math.round(box.width * ratio)), height = Math.max(16, Math.round(box.height * ratio));
-    const shrink = Math.min(1, Math.sqrt(most_pixels / (width * height)));
-    return { width: Math.max(16, Math.floor(width * shrink)), height: Math.max(16, Math.floor(height * shrink)) };
+    return limited({ width: Math.round(box.width * ratio), height: Math.round(box.height * ratio) }, most_pixels);
   }
 
   /** What states ask for. @returns {Size} */
@@ -73,7 +79,7 @@ export class PictureView {
     this.painted = header.frame;
     this.shown = header;
     this.bytes = image;
-    const size = header.level === "moving" ? this.size() : { width: bitmap.width, height: bitmap.height };
+    const size = header.level === "moving" ? limited(this.size(), Math.max(most_moving_pixels, header.width * header.height)) : { width: bitmap.width, height: bitmap.height };
     if (this.canvas.width !== size.width || this.canvas.height !== size.height) {
       this.canvas.width = size.width;
       this.canvas.height = size.height;

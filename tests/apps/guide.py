@@ -27,6 +27,7 @@ PAGES = ("docs/GUIDE.md", "docs/REFERENCE.md")
 LEFT_OUT = {
     "nozzle.cgns": "a CGNS file, which is HDF5 and nothing here writes",
     "srun": "needs Slurm",
+    "tessera serve": "waits for browsers",
     "--backend": "needs OpenGL",
     "1.json 2.json 4.json": "traces of three machines",
 }

@@ -289,6 +289,26 @@ TEST(Probe, OfAPartIsThatOfTheWhole) {
   });
 }
 
+TEST(Probe, RanksWithoutCellsAreAskedToo) {
+  scene::TetMesh one = datasets::cube(1);
+  const std::vector<std::uint32_t> two_tets{0, 1};
+  for (const scene::TetMesh& mesh :
+       {scene::subset(one, two_tets), datasets::with_cell_data(scene::subset(one, two_tets))}) {
+    const Dataset data = Dataset::of(datasets::arrays_of(mesh));
+    const View view{data.default_camera({9, 9}), {9, 9}};
+    const RayProbe alone = probe(data, view, soft, {4, 4}, 9);
+    const Dataset coarse = *coarse_stand_in(data, {.samples = 1000});
+    run_ranks(4, [&](const Communicator& communicator) {
+      const Dataset part = part_of(mesh, communicator);
+      const RayProbe found = probe(part, view, soft, {4, 4}, 9, {}, communicator);
+      EXPECT_EQ(found.pixel.a, alone.pixel.a);
+      EXPECT_EQ(found.opacity, alone.opacity);
+      EXPECT_EQ(coarse_stand_in(part, {.samples = 1000}, {}, communicator)->range(), coarse.range());
+      EXPECT_EQ(histogram(part, {.bins = 3}).shares, histogram(data, {.bins = 3}).shares);
+    });
+  }
+}
+
 TEST(Probe, BesideTheDataItFindsNothing) {
   for (const Dataset& data : {mesh_of_x(), grid_of_x()}) {
     const RayProbe found = probe(data, view_from({0, 0, 4}, false), soft, {0, 0});

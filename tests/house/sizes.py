@@ -16,7 +16,7 @@ import sys
 from pathlib import Path
 
 FOLDERS = """include scene colormaps io integrals exchange projection gl sorting compositor volume reference frame datasets
-             analysis""".split()
+             analysis server""".split()
 SUFFIXES = {".cpp", ".hpp", ".h"}
 FILE_LINES, FUNCTION_LINES = 500, 80
 

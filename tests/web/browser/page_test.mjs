@@ -27,7 +27,7 @@ async function open(path, options = {}) {
   opened.on("pageerror", (error) => complaints.push(error.stack));
   opened.on("console", (message) => {
     // A lost connection is told by the browser too.
-    if (message.type() === "error" && !/ERR_|WebSocket|status of 4/.test(message.text())) complaints.push(message.text());
+    if (message.type() === "error" && !/ERR_|WebSocket|status of (4|503)/.test(message.text())) complaints.push(message.text());
   });
   await opened.goto(path);
   return opened;
@@ -173,6 +173,34 @@ test("named views come from the server", async () => {
   assert.ok(Math.abs(camera.position[0] - camera.focal_point[0]) < 1e-9 && camera.position[1] < camera.focal_point[1]);
 });
 
+test("an end of the axes is a button that looks from there", async () => {
+  await page.locator("#axes .axis-end", { hasText: "Look from +x" }).last().click();
+  await page.waitForFunction(() => {
+    const { position, focal_point } = window.tessera.state().camera;
+    return position[0] - focal_point[0] > 1 && Math.abs(position[1] - focal_point[1]) < 1e-9;
+  });
+  await page.locator("#axes .axis-end").filter({ hasText: "Look from -y" }).focus();
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => Math.abs(window.tessera.state().camera.position[0] - window.tessera.state().camera.focal_point[0]) < 1e-9);
+  await at_rest(page);
+});
+
+test("a double click centres what is there", async () => {
+  const box = await page.locator("#picture").boundingBox();
+  const before_click = (await state()).camera.focal_point;
+  await page.mouse.dblclick(box.x + 0.45 * box.width, box.y + 0.55 * box.height);
+  await page.waitForFunction((old) => JSON.stringify(window.tessera.state().camera.focal_point) !== JSON.stringify(old), before_click);
+  await at_rest(page);
+});
+
+test("the keys are listed", async () => {
+  await page.locator("#picture").focus();
+  await page.keyboard.press("?");
+  await page.getByRole("dialog").getByText("Keys anywhere").waitFor();
+  await page.keyboard.press("Escape");
+  await page.getByRole("dialog").waitFor({ state: "hidden" });
+});
+
 test("points of the function are added, dragged, typed and removed", async () => {
   const editor = page.locator(".function-editor");
   await page.waitForSelector(".opacity-handle");
@@ -217,7 +245,7 @@ test("an edited function survives the way to the server and back", async () => {
 
 test("presets, logarithm and range", async () => {
   await page.locator('[data-preset="viridis"]').click();
-  await page.waitForFunction(() => document.querySelector('[data-preset="viridis"]').getAttribute("aria-checked") === "true");
+  await page.waitForFunction(() => document.querySelector('[data-preset="viridis"]').getAttribute("aria-pressed") === "true");
   await at_rest(page);
   const colors = await page.evaluate(() => window.tessera.state()["transfer-function"]);
   assert.ok(typeof colors === "string" || colors.Name === "viridis");
@@ -401,6 +429,16 @@ test("a damaged link is told, and the page works", async () => {
   const other = await open(`${address.href}#1.broken`);
   await other.getByRole("alert").filter({ hasText: "damaged or cut short" }).waitFor();
   await at_rest(other);
+  await other.context().close();
+});
+
+test("a link with an option that there is none of is told, and the default view mends it", async () => {
+  const fragment = Buffer.from(JSON.stringify({ nonsense: 1 })).toString("base64url");
+  const other = await open(`${address.href}#1.${fragment}`);
+  const alert = other.getByRole("alert").filter({ hasText: "nonsense" });
+  await alert.getByRole("button", { name: "Default view" }).click();
+  await at_rest(other);
+  await alert.waitFor({ state: "detached" });
   await other.context().close();
 });
 

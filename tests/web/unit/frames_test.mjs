@@ -73,6 +73,17 @@ test("an answer that never comes is given up", () => {
   assert.equal(sent.length, 2);
 });
 
+test("an answer that is on its way is waited for", () => {
+  const { made, sent, clock } = sender();
+  made.offer({ x: 1 }, true);
+  made.offer({ x: 2 }, true);
+  clock.now = 900;
+  made.in_work();
+  clock.now = 1800;
+  made.tick();
+  assert.equal(sent.length, 1);
+});
+
 test("a new connection is told the latest state, at rest, with a greater number", () => {
   const { made, sent } = sender();
   made.offer({ x: 1 }, true);

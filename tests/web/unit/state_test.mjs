@@ -81,7 +81,7 @@ test("listeners hear what changed, whether it moves, and why", () => {
 });
 
 test("a state comes back from its fragment, whatever its letters", () => {
-  const state = { field: "Druck «p»\u{1f30a}/+?", camera: { position: [1e-300, -0, 1 / 3] }, clip: ["box:0,0,0,1,1,1"] };
+  const state = { field: "Druck «p»\u{1f30a}/+?", camera: { position: [1e-300, 0, 1 / 3], focal_point: [0, 0, 0], view_up: [0, 1, 0], parallel_scale: 2 }, clip: ["box:0,0,0,1,1,1"] };
   const fragment = fragment_of(state);
   assert.match(fragment, /^#1\.[\w-]+$/);
   assert.equal(JSON.stringify(state_of_fragment(fragment)), JSON.stringify(state));
@@ -93,6 +93,13 @@ test("a damaged fragment is refused with a sentence", () => {
   const whole = fragment_of({ field: "pressure" });
   for (const damaged of [whole.slice(0, -4), "#1.!!!", "#2.e30", "#1.WzFd", "#elsewhere"])
     assert.throws(() => state_of_fragment(damaged), /damaged or cut short/);
+});
+
+test("a camera that is none is refused with a sentence", () => {
+  const good = { position: [1, 2, 3], focal_point: [0, 0, 0], view_up: [0, 0, 1], view_angle: 30 };
+  assert.deepEqual(state_of_fragment(fragment_of({ camera: good })), { camera: good });
+  for (const camera of [null, 3, { ...good, position: [1, 2] }, { ...good, view_up: undefined }, { ...good, view_angle: "30" }, { ...good, parallel_scale: 1 }])
+    assert.throws(() => state_of_fragment(fragment_of({ camera })), /damaged or cut short/);
 });
 
 test("a link never holds the token", () => {
