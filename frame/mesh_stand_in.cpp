@@ -73,7 +73,7 @@ GridGeometry stand_in_geometry(const Box& box, std::uint64_t samples) {
   const double longest = std::max({sides.x, sides.y, sides.z});
   GridGeometry geometry;
   geometry.origin = box.low;
-  if (!(longest > 0)) {
+  if (!(longest > 0) || !std::isfinite(longest)) {
     geometry.points = {2, 2, 2};
     return geometry;
   }
@@ -124,8 +124,9 @@ StandInSamples stand_in_samples(const scene::TetMeshView& part, std::span<const 
       bool any = true;
       for (std::size_t a = 0; a < 3; ++a) {
         const auto axis = static_cast<int>(a);
-        first[a] = std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil(low[axis] - reach)));
-        last[a] = std::min<std::int64_t>(n[a] - 1, static_cast<std::int64_t>(std::floor(high[axis] + reach)));
+        const auto count = static_cast<double>(n[a]);
+        first[a] = static_cast<std::int64_t>(std::clamp(std::ceil(low[axis] - reach), 0.0, count));
+        last[a] = static_cast<std::int64_t>(std::clamp(std::floor(high[axis] + reach), -1.0, count - 1));
         any = any && first[a] <= last[a];
       }
       if (!any) continue;

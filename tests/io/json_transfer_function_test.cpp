@@ -62,7 +62,7 @@ TEST(JsonTransferFunction, RefusesWhatIsNoFunctionNamingTheKnot) {
       {R"({"knots": [[0, 1, 1, 1, 1])", {"f: line 1, column", "not valid JSON"}},
       {R"({"colors": []})", {"f: has no RGBPoints"}},
   };
-  for (const auto& [text, parts] : cases) expect_bad_input([&] { parse_json_transfer_function(text, "f", {}); }, parts);
+  for (const auto& c : cases) expect_bad_input([&] { parse_json_transfer_function(c.text, "f", {}); }, c.parts);
 }
 
 TEST(JsonTransferFunction, IsTakenInPlaceOfAName) {
