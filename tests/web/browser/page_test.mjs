@@ -500,6 +500,19 @@ test("a lost connection comes back by itself to the same state", async () => {
   assert.ok((await shown_bytes(page)).equals(own));
 });
 
+test("a connection that nothing comes through any more is noticed, and made anew", async () => {
+  await page.evaluate(() => Object.assign(window.tessera.connection, { silence: 500, answer_time: 500 }));
+  await at_rest(page);
+  proxy.freeze();
+  await page.evaluate(() => window.tessera.change({ log: true }));
+  await page.getByRole("alert").filter({ hasText: "connection to the server is lost" }).waitFor();
+  proxy.mend();
+  await page.waitForFunction(() => document.body.dataset.connection === "open", null, { timeout: 15000 });
+  await at_rest(page);
+  await page.evaluate(() => window.tessera.change({ log: undefined }));
+  await at_rest(page);
+});
+
 test("a server that ends says so, and ends well", async () => {
   server.child.kill("SIGTERM");
   await page.getByRole("alert").filter({ hasText: "The server has ended" }).waitFor();
