@@ -309,6 +309,7 @@ RenderOptions render_options(const RenderWords& words, bool is_grid) {
     refuse_mesh_words(words);
   } else {
     refuse_volume_options(words);
+    settings.mesh.shading = shading_of(words);
   }
   if (options.read.time_step && is_series(plan)) {  // a step of the series, not of its files
     plan.steps = StepRange{*options.read.time_step, options.read.time_step};

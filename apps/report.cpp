@@ -73,11 +73,19 @@ Json faces_json(const Surfaces& surfaces) {
   return json;
 }
 
+void add_shading(const std::optional<Shading>& shading, Json& json) {
+  json["shade"] = shading.has_value();
+  if (shading)
+    json["light"] = {{"frame", shading->camera_light ? "camera" : "world"},
+                     {"direction", {shading->to_light.x, shading->to_light.y, shading->to_light.z}}};
+}
+
 Json mesh_method_json(const RenderOptions& options) {
   const Settings& settings = options.settings;
   Json json = {{"integrator", method_line(settings.integrator)}};
   if (settings.integrator.kind == IntegratorKind::automatic) json["accuracy"] = settings.integrator.accuracy;
   json["emission"] = settings.emission == Emission::absorption ? "absorption" : "independent";
+  add_shading(settings.mesh.shading, json);
   if (!settings.surfaces.iso.empty()) json["iso"] = iso_json(settings.surfaces);
   if (settings.surfaces.has_faces()) json["surface"] = faces_json(settings.surfaces);
   if (options.frame.deep) json["deep_accuracy"] = options.frame.deep_accuracy;
@@ -101,10 +109,7 @@ Json grid_method_json(const RenderOptions& options, int ranks) {
   if (settings.integrator.kind == IntegratorKind::automatic) json["accuracy"] = settings.integrator.accuracy;
   if (takes_steps(settings.integrator)) json["step"] = s.step;
   json["emission"] = settings.emission == Emission::absorption ? "absorption" : "independent";
-  json["shade"] = s.shading.has_value();
-  if (s.shading)
-    json["light"] = {{"frame", s.shading->camera_light ? "camera" : "world"},
-                     {"direction", {s.shading->to_light.x, s.shading->to_light.y, s.shading->to_light.z}}};
+  add_shading(s.shading, json);
   json["backend"] = "cpu";
   if (!options.without.empty()) json["without"] = options.without;
   json["blend"] = options.function.display_colors ? "display" : "linear";
@@ -278,8 +283,8 @@ std::string run_line(const RenderOptions& options, const Description& data, cons
     const FrameCounters& s = statistics.mesh;
     line += fmt::format("; {} tets projected, {} invisible, {} outside the view; {}, {}, {}, {}", s.tets_projected,
                         s.tets_invisible, s.tets_outside_view, word(options.settings.mesh.rasterizer),
-                        method_line(options.settings.integrator), statistics.instruction_set,
-                        time_words(record.frame_ms.front()));
+                        method_line(options.settings.integrator) + (options.settings.mesh.shading ? ", shaded" : ""),
+                        statistics.instruction_set, time_words(record.frame_ms.front()));
     if (!options.settings.mesh.device.backends.empty())
       line += fmt::format("; composited by {}", statistics.composited_on);
   }

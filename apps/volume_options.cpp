@@ -45,13 +45,13 @@ void add_volume_options(CLI::App& command, RenderWords& words) {
 void add_volume_render_options(CLI::App& command, RenderWords& words) {
   command.add_option("--step", words.step, "volumes: length of a step of sampled and preintegrated (default 0.5)")
       ->type_name("VOXELS");
-  command.add_flag("--shade", words.shade, "volumes: Blinn-Phong with a light at the camera, or --light");
+  command.add_flag("--shade", words.shade,
+                   "Blinn-Phong by the field's gradient, with a light at the camera, or --light");
   command.add_flag("--no-shade", words.no_shade, "volumes: not even a scan of a patient, which else is shaded");
   command
-      .add_option(
-          "--light", words.light,
-          "volumes, --shade: towards the light; to the right, up and towards the eye, or along the world's axes "
-          "(default 0,0,1)")
+      .add_option("--light", words.light,
+                  "--shade: towards the light; to the right, up and towards the eye, or along the world's axes "
+                  "(default 0,0,1)")
       ->type_name("[world:]X,Y,Z");
   command.add_option("--brick-size", words.brick_size, "volumes: voxels a side of a brick (default 32)")
       ->type_name("VOXELS");
@@ -110,6 +110,19 @@ bool is_grid_input(const RenderWords& words) {
   return volume_options(words).describes_raw() || opens_as_grid(words.input);
 }
 
+std::optional<Shading> shading_of(const RenderWords& words) {
+  if (!words.shade && words.light.empty()) return std::nullopt;
+  if (!words.shade) throw bad_input("--light: has no effect without --shade; add it, or leave --light out");
+  Shading shading;
+  if (words.light.empty()) return shading;
+  constexpr std::string_view world = "world:";
+  shading.camera_light = !words.light.starts_with(world);
+  shading.to_light = parse_vector("--light", words.light.substr(shading.camera_light ? 0 : world.size()), false);
+  if (shading.to_light == glm::dvec3(0))
+    throw bad_input("--light: 0,0,0 is no direction; say which way the light lies");
+  return shading;
+}
+
 void set_grid(const RenderWords& words, Settings& settings) {
   const std::string& method = words.integrator;
   Integrator& integrator = settings.integrator;
@@ -135,16 +148,7 @@ void set_grid(const RenderWords& words, Settings& settings) {
     grid.step = parse_positive("--step", words.step);
   }
   if (words.shade && words.no_shade) throw bad_input("--no-shade: contradicts --shade; leave one of the two out");
-  if (words.shade) grid.shading.emplace();
-  if (!words.light.empty()) {
-    if (!words.shade) throw bad_input("--light: has no effect without --shade; add it, or leave --light out");
-    constexpr std::string_view world = "world:";
-    grid.shading->camera_light = !words.light.starts_with(world);
-    grid.shading->to_light =
-        parse_vector("--light", words.light.substr(grid.shading->camera_light ? 0 : world.size()), false);
-    if (grid.shading->to_light == glm::dvec3(0))
-      throw bad_input("--light: 0,0,0 is no direction; say which way the light lies");
-  }
+  grid.shading = shading_of(words);
   if (!words.brick_size.empty()) grid.brick_size = parse_count("--brick-size", words.brick_size, 2, 1 << 20);
   if (words.cache == "proximity")
     grid.cache = CachePolicy::proximity;
@@ -199,9 +203,7 @@ void refuse_mesh_words(const RenderWords& words) {
 
 void refuse_volume_options(const RenderWords& words) {
   const std::pair<const char*, bool> given[] = {{"--step", !words.step.empty()},
-                                                {"--shade", words.shade},
                                                 {"--no-shade", words.no_shade},
-                                                {"--light", !words.light.empty()},
                                                 {"--brick-size", !words.brick_size.empty()},
                                                 {"--cache", !words.cache.empty()},
                                                 {"--preload", !words.preload.empty()},

@@ -16,6 +16,9 @@ ReadOptions volume_options(const RenderWords& words);
 /// Whether the input of these words is a volume: by its content, or because .raw options describe it.
 bool is_grid_input(const RenderWords& words);
 
+/// --shade and --light. Throws Error(bad_input) naming the option.
+std::optional<Shading> shading_of(const RenderWords& words);
+
 /// Sets how a volume is rendered: all but what it shares with meshes. Throws Error(bad_input) naming the option.
 void set_grid(const RenderWords& words, Settings& settings);
 

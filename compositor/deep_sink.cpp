@@ -46,7 +46,7 @@ DeepSink::DeepSink(const TileScene& scene, const ImageWindow& window, const scen
     : scene_(scene),
       picture_(scene, false),
       window_(window),
-      cutter_(function, emission, accuracy),
+      cutter_(scene.light != nullptr ? scene.light->brightest(function) : function, emission, accuracy),
       accuracy_(accuracy),
       collector_(&collector) {}
 
@@ -82,6 +82,7 @@ void DeepSink::take(Store& lists, double final_depth, std::size_t /*at_least*/, 
       cutter_.cut({segments.front[i], segments.back[i], segments.scalar_front[i], segments.scalar_back[i]},
                   length_per_depth_[p], transmittance_before_[p], pieces_);
       piece_pixels_.resize(pieces_.size(), p);
+      if (scene_.light != nullptr) piece_tets_.resize(pieces_.size(), segments.tet(i));
       if (pieces_.size() >= batch_pieces) integrate_pieces(timer);
     }
   }
@@ -97,6 +98,7 @@ void DeepSink::add_crossing(std::uint32_t pixel, double depth, const projection:
   crossings_.push_back({pieces_.size(), crossing, value});
   pieces_.push_back({depth, depth, 0, 0});
   piece_pixels_.push_back(pixel);
+  if (scene_.light != nullptr) piece_tets_.push_back(0);
   transmittance_before_[pixel] *= 1 - scene_.surfaces->light(crossing.number, crossing.cosine).opacity;
 }
 
@@ -110,6 +112,13 @@ void DeepSink::integrate_pieces(scene::StageTimer& timer) {
     batch_.scalar_back[k] = pieces_[k].scalar_back;
   }
   scene_.integrator->integrate(batch_);
+  for (std::size_t k = 0; k < piece_tets_.size(); ++k) {
+    if (!(pieces_[k].optical_depth > 0)) continue;
+    const auto p = static_cast<int>(piece_pixels_[k]);
+    const int x = rect_.x0 + p % rect_.width(), y = rect_.y0 + p / rect_.width();
+    const glm::dvec3 ray = scene_.space->direction(x + 0.5, y + 0.5);
+    light_segment(scene_.light->on(scene_.normals->of(piece_tets_[k]), ray), k, pieces_[k].optical_depth, batch_);
+  }
   if (!crossings_.empty()) {
     light_crossings(*scene_.surfaces, crossings_, batch_);
     for (const CrossingInBatch& c : crossings_) pieces_[c.at].optical_depth = batch_.optical_depth[c.at];
@@ -134,6 +143,7 @@ void DeepSink::integrate_pieces(scene::StageTimer& timer) {
   }
   pieces_.clear();
   piece_pixels_.clear();
+  piece_tets_.clear();
   crossings_.clear();
 }
 

@@ -51,6 +51,7 @@ class DeepSink final : public TileSink<DoubleEncoding> {
   std::size_t deep_open_count_ = 0;
   std::vector<DeepPiece> pieces_;  ///< that wait for the integrator
   std::vector<std::uint32_t> piece_pixels_;
+  std::vector<std::uint32_t> piece_tets_;   ///< with light on the matter
   std::vector<CrossingInBatch> crossings_;  ///< among the pieces
   integrals::SegmentBatch batch_;
   struct PixelSample {

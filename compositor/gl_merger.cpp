@@ -93,6 +93,9 @@ class GlMerger final : public TileMerger {
         case exchange::RecordKind::chains_of_cells:
           add_chain(part, reader);
           break;
+        case exchange::RecordKind::lit_chains:  // a device gives no light
+          throw scene::Error(scene::ErrorCode::system_failure,
+                             "exchange: lit segments on a device; all ranks must run the same program");
         case exchange::RecordKind::tuples: {
           const auto record = reader.take<TupleRecord>();
           check(part, record.pixel);

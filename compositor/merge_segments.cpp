@@ -53,7 +53,8 @@ class SegmentMerger : public TileMerger {
                context.opacity_weight(),
                context.table,
                context.lattice != nullptr ? *context.lattice : scene::Lattice{},
-               context.surfaces},
+               context.surfaces,
+               context.light},
         rect_(rect),
         image_({rect.width(), rect.height()}) {}
 
@@ -95,12 +96,19 @@ class ChainMerger : public SegmentMerger<DoubleEncoding> {
 
   ChainMerger(const MergeContext& context, const scene::PixelRect& rect, Key key = Key::front)
       : SegmentMerger(context, rect) {
+    scene_.normals = &sent_;
     squares_.push_back({rect, {}, nullptr});
     squares_[0].store.reset(static_cast<std::size_t>(rect.area()), key);
     open(squares_[0]);
   }
 
+  void advance(double final_depth) override {
+    SegmentMerger::advance(final_depth);
+    sent_.forget(squares_[0].store.segments);
+  }
+
   void add(const exchange::TilePart& part) override {
+    const bool lit = part.kind == exchange::RecordKind::lit_chains;
     const bool cell_data = part.kind == exchange::RecordKind::chains_of_cells;
     projection::RaySegments& segments = reserve(part.fragments);
     exchange::RecordReader reader(part.records.bytes());
@@ -110,6 +118,11 @@ class ChainMerger : public SegmentMerger<DoubleEncoding> {
       double front = chain.front, scalar = chain.scalar_front;
       for (std::uint32_t i = 0; i < chain.links; ++i) {
         const auto link = reader.take<exchange::ChainLink>();
+        if (lit) {
+          const auto normal = reader.take<exchange::LinkNormal>();
+          if (!projection::is_crossing(scalar))
+            sent_.set(static_cast<std::uint32_t>(link.tet), {normal.x, normal.y, normal.z});
+        }
         const std::size_t at = segments.size++;
         segments.pixel_and_tet[at] = link.tet << 32 | chain.pixel;
         segments.front[at] = front;
@@ -121,6 +134,9 @@ class ChainMerger : public SegmentMerger<DoubleEncoding> {
       }
     }
   }
+
+ private:
+  SentNormals sent_;
 
  protected:
   [[nodiscard]] double first_from(double depth) const override { return depth; }

@@ -68,6 +68,11 @@ std::uint64_t SegmentSink<DoubleEncoding>::write(Store& lists, double final_dept
       scalar = segments.scalar_back[i];
       const std::uint32_t tet = segments.tet(i);
       exchange::append(out, exchange::ChainLink{back, scalar, global_tet_.empty() ? tet : global_tet_[tet]});
+      if (normals_ != nullptr) {
+        const bool has_none = projection::is_crossing(segments.scalar_front[i]);
+        const glm::vec3 normal = has_none ? glm::vec3(0) : normals_->of(tet);
+        exchange::append(out, exchange::LinkNormal{normal.x, normal.y, normal.z});
+      }
       ++chain.links;
     }
     close();

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "compositor/fragment_sink.hpp"
+#include "compositor/matter_light.hpp"
 #include "scene/lattice.hpp"
 
 namespace tessera::compositor {
@@ -42,11 +43,16 @@ template <>
 class SegmentSink<DoubleEncoding> final : public RawSink<DoubleEncoding> {
  public:
   /// `global_tet[t]`: index in the whole mesh of this process's tet t, ascending; empty: t itself. Must outlive the
-  /// sink.
-  SegmentSink(bool cell_data, std::span<const std::uint64_t> global_tet, Deliver deliver)
-      : RawSink(cell_data ? exchange::RecordKind::chains_of_cells : exchange::RecordKind::chains, std::move(deliver)),
+  /// sink. `normals`: sent along; null: not. Cell data have none.
+  SegmentSink(bool cell_data, std::span<const std::uint64_t> global_tet, Deliver deliver,
+              const CellNormals* normals = nullptr)
+      : RawSink(cell_data            ? exchange::RecordKind::chains_of_cells
+                : normals != nullptr ? exchange::RecordKind::lit_chains
+                                     : exchange::RecordKind::chains,
+                std::move(deliver)),
         cell_data_(cell_data),
-        global_tet_(global_tet) {}
+        global_tet_(global_tet),
+        normals_(cell_data ? nullptr : normals) {}
 
  private:
   std::uint64_t write(Store& lists, double final_depth, exchange::PartWriter& writer) override;
@@ -54,6 +60,7 @@ class SegmentSink<DoubleEncoding> final : public RawSink<DoubleEncoding> {
 
   bool cell_data_;
   std::span<const std::uint64_t> global_tet_;
+  const CellNormals* normals_;
 };
 
 /// In no order, as the compositor sorts: nothing is done here but copying, of all segments at once.

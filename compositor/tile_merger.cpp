@@ -35,6 +35,7 @@ std::unique_ptr<TileMerger> make_tile_merger(exchange::RecordKind kind, const Me
       return make_run_merger(context, rect);
     case exchange::RecordKind::chains:
     case exchange::RecordKind::chains_of_cells:
+    case exchange::RecordKind::lit_chains:
       return make_segment_merger(context, rect);
     case exchange::RecordKind::lattice:
       return make_window_merger(context, rect);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "compositor/matter_light.hpp"
 #include "exchange/wire.hpp"
 #include "integrals/lane_table.hpp"
 #include "integrals/segment_integrator.hpp"
@@ -41,10 +42,12 @@ struct MergeContext {
   /// Not null: where the device fails the CPU takes over, and this is set.
   std::atomic<bool>* device_failed = nullptr;
   const scene::SurfaceSet* surfaces = nullptr;  ///< in the volume; null: none
+  const MatterLight* light = nullptr;           ///< on the matter of a mesh, by the CPU; null: none
 
   /// What may still come behind a pixel of transmittance 1.
   [[nodiscard]] double opacity_weight() const {
-    const double weight = integrals::opacity_weight(max_color, longest_ray, emission);
+    const double brightest = light != nullptr ? light->brightest(max_color) : max_color;
+    const double weight = integrals::opacity_weight(brightest, longest_ray, emission);
     return surfaces != nullptr ? std::max(weight, surfaces->max_color()) : weight;
   }
 };

@@ -10,6 +10,7 @@ using WindowPixels = TilePixels<sorting::LatticeEncoding>;
 
 void ListPixels::start(const scene::PixelRect& rect) {
   const auto n = static_cast<std::size_t>(rect.area());
+  rect_ = rect;
   ended.clear();
   pixels_.assign(n, Run{});
   for (std::size_t p = 0; p < n; ++p) pixels_[p].pixel = static_cast<std::uint32_t>(p);
@@ -54,7 +55,28 @@ void ListPixels::integrate(const Lists& lists, double final_depth) {
     }
   }
   scene_.integrator->integrate(batch_);
+  if (scene_.light != nullptr) light_matter(lists, final_depth);
   if (!crossings_.empty()) light_crossings(*scene_.surfaces, crossings_, batch_);
+}
+
+/// Of the batch of these lists. Crossings, which show nothing yet, stay as they are.
+void ListPixels::light_matter(const Lists& lists, double final_depth) {
+  std::size_t next = 0;
+  for (std::size_t p = 0; p < open_.size(); ++p) {
+    if (!open_[p]) continue;
+    const auto entries = lists.pixel(p);
+    if (entries.empty()) continue;
+    const auto at = static_cast<int>(p);
+    const int x = rect_.x0 + at % rect_.width(), y = rect_.y0 + at / rect_.width();
+    const glm::dvec3 ray = scene_.space->direction(x + 0.5, y + 0.5);
+    for (const auto& entry : entries) {
+      if (!(entry.depth < final_depth)) break;
+      const std::size_t k = next++;
+      if (!(batch_.optical_depth[k] > 0)) continue;
+      const glm::vec3 normal = scene_.normals->of(lists.segments.tet(entry.segment));
+      light_segment(scene_.light->on(normal, ray), k, batch_.optical_depth[k], batch_);
+    }
+  }
 }
 
 /// Ends a run that a pixel is in.

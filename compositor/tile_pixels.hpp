@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -25,6 +26,13 @@ struct CrossingInBatch {
   projection::Crossing crossing;
   double value;  ///< the field's there, or the surface's
 };
+/// Gives segment `at` of a batch, which has been integrated, the light on its tet.
+inline void light_segment(const MatterLight::Light& light, std::size_t at, double optical_depth,
+                          integrals::SegmentBatch& batch) {
+  const double white = light.white * -std::expm1(-optical_depth);
+  for (auto* color : {&batch.red, &batch.green, &batch.blue}) (*color)[at] = light.own * (*color)[at] + white;
+}
+
 /// Gives crossings that were integrated as segments of length zero their light.
 void light_crossings(const scene::SurfaceSet& surfaces, std::span<const CrossingInBatch> crossings,
                      integrals::SegmentBatch& batch);
@@ -80,12 +88,14 @@ class TilePixels<sorting::DoubleEncoding> {
 
  private:
   void integrate(const sorting::SegmentLists& lists, double final_depth);
+  void light_matter(const sorting::SegmentLists& lists, double final_depth);
   template <bool runs>
   void add(const sorting::SegmentLists& lists, double final_depth);
   void end(Run& run);
 
   TileScene scene_;
   bool runs_, closes_ = true;
+  scene::PixelRect rect_{0, 0, 0, 0};
   std::vector<Run> pixels_;
   std::vector<double> transmittance_;  ///< of each ray: its runs so far
   std::vector<double> length_per_depth_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "compositor/matter_light.hpp"
 #include "integrals/lane_table.hpp"
 #include "integrals/segment_integrator.hpp"
 #include "projection/pixel_space.hpp"
@@ -18,6 +19,9 @@ struct TileScene {
   const integrals::LaneTable* table = nullptr;
   scene::Lattice lattice{};
   const scene::SurfaceSet* surfaces = nullptr;  ///< in the volume; null: none
+  // In double precision:
+  const MatterLight* light = nullptr;    ///< on the matter; null: none
+  const CellNormals* normals = nullptr;  ///< with light: of the segments' tets
 
   /// Behind less light than this nothing changes a pixel by the integrator's termination error.
   [[nodiscard]] double least_transmittance() const {

@@ -22,6 +22,9 @@
 ///              the next begins, at the same depth and scalar, so 24 bytes a segment carry all of it in double
 ///              precision: the compositor's picture has the bits of a single process's. Scalars of cell data are the
 ///              same at both ends of a link and are not shared with the next.
+///   lit_chains  the same as chains, with a LinkNormal behind each ChainLink: what light there is on the matter is of
+///   the
+///              compositor's making.
 ///   lattice    LatticeHeader and `segments` LatticeSegments each: segments of one pixel in any order, on the frame's
 ///              integer lattice, 16 bytes each (projection/segment_windows.hpp: front, back, scalars): the compositor's
 ///              picture has the bits of a single process's. Where a segment begins at a surface in the volume its front
@@ -37,7 +40,8 @@ enum class RecordKind : std::uint8_t {
   chains_of_cells = 3,
   tuples = 4,
   lattice = 5,
-  lattice_runs = 6
+  lattice_runs = 6,
+  lit_chains = 7
 };
 
 struct FrameBegin {
@@ -81,6 +85,12 @@ struct ChainLink {
   std::uint64_t tet;    ///< index in the whole mesh: the last key of the depth order
 };
 static_assert(sizeof(ChainLink) == 24);
+
+/// The normal of a link's tet, of length one, or 0: the field has no gradient there.
+struct LinkNormal {
+  float x, y, z;
+};
+static_assert(sizeof(LinkNormal) == 12);
 
 /// Segments of one pixel on the lattice.
 struct LatticeHeader {

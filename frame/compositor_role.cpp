@@ -30,6 +30,11 @@ int worker_count(const DistributedRun& run) {
   return scene::threads_for(run.settings.render.threads) + (run.device.device != nullptr ? tiles_in_flight : 0);
 }
 
+std::optional<compositor::MatterLight> light_of(const DistributedRun& run, const FrameJob& job) {
+  if (!run.settings.render.shading) return std::nullopt;
+  return compositor::MatterLight(*run.settings.render.shading, job.camera);
+}
+
 /// A frame at its compositor.
 struct Frame {
   Frame(const DistributedRun& run, std::uint32_t number, int compositor)
@@ -40,6 +45,7 @@ struct Frame {
         space(job_of(run, number).camera, job_of(run, number).size),
         integrator(run.function, run.settings.render.integrator, run.settings.render.emission),
         surfaces(run.settings.render.surfaces, run.function),
+        light(light_of(run, job_of(run, number))),
         sender(run.transport, run.settings.roles.assembler(), number) {}
 
   std::uint32_t number;
@@ -49,6 +55,7 @@ struct Frame {
   projection::PixelSpace space;
   integrals::SegmentIntegrator integrator;
   scene::SurfaceSet surfaces;
+  std::optional<compositor::MatterLight> light;
   compositor::TileSender sender;
   std::optional<integrals::LaneTable> table;  ///< of lattice segments, or for a device
   scene::Lattice units;                       ///< on a device: the table's
@@ -228,7 +235,8 @@ class CompositorLoop {
                run_.settings.deep ? run_.settings.render.deep_accuracy : 0,
                run_.device.device != nullptr ? &of.units : &of.collector.lattice(), of.table ? &*of.table : nullptr,
                trace_, run_.device.device.get(), on_lattice, of.number,
-               run_.device.may_fail ? &run_.device.failed : nullptr, of.surfaces.empty() ? nullptr : &of.surfaces},
+               run_.device.may_fail ? &run_.device.failed : nullptr, of.surfaces.empty() ? nullptr : &of.surfaces,
+               of.light ? &*of.light : nullptr},
               of.grid.rect(tile));
         if (merge.merger != nullptr) compositor::merge(*merge.merger, waiting.parts, waiting.final_depth, budget_.tile);
         // A tile that got nothing stays as empty as the assembled picture is.

@@ -73,6 +73,8 @@ void check(const DistributedSettings& settings) {
   if (on_device && !settings.render.surfaces.empty())
     throw scene::bad_input(fmt::format("{}: surfaces are composited on the CPU; leave out `compositor` and `backend`",
                                        surface_word(settings.render.surfaces)));
+  if (on_device && settings.render.shading)
+    throw scene::bad_input("`shade`: meshes are shaded on the CPU; leave out `compositor` and `backend`");
   if (on_device && settings.deep)
     throw scene::bad_input("deep picture: it is made on the CPU; leave out `compositor` and `backend`");
   if (on_device && settings.compositing_on.gl.method == compositor::GlMethod::fragment &&

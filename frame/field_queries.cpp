@@ -142,6 +142,7 @@ std::vector<double> quantiles(const Dataset& dataset, std::span<const double> fr
   if (shares.empty()) return std::vector<double>(fractions.size(), std::numeric_limits<double>::quiet_NaN());
   std::ranges::stable_sort(shares, {}, &Share::value);
   std::vector<double> below;  // up to and with each
+  below.reserve(shares.size());
   double sum = 0;
   for (const Share& share : shares) below.push_back(sum += share.volume);
   std::vector<double> values;

@@ -53,7 +53,7 @@ std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, co
   const bool exact = settings.integrator.kind == scene::IntegratorKind::exact ||
                      settings.integrator.kind == scene::IntegratorKind::automatic;
   if (!settings.use.lattice || settings.rasterizer != Rasterizer::planes || !exact || box.empty() ||
-      settings.surfaces.has_faces() || !projection::lattice_available())
+      settings.surfaces.has_faces() || settings.shading || !projection::lattice_available())
     return std::nullopt;
   const auto [near, far] = depth_range(space, box);
   if (!(near <= far) || !std::isfinite(far - near)) return std::nullopt;

@@ -46,6 +46,7 @@ class MeshAlone final : public Session::State {
         renderer_(data().prepared(settings.threads, settings.trace), data().facts, traced(settings)) {
     check_method(settings);
     frame::check_surfaces(traced(settings), data().mesh.association);
+    frame::check_shading(traced(settings));
     frame::assign_roles(1, settings.ranks.projectors, settings.ranks.compositors);  // of one rank there are not more
   }
 
@@ -98,6 +99,7 @@ class MeshOnRanks final : public Session::State {
     }
     const Dataset::State& state = data();
     frame::check_surfaces(distributed_.render, state.mesh.association);
+    frame::check_shading(distributed_.render);
     check_exchange(distributed_.exchange);
     const auto projects = [&](int rank) { return distributed_.roles.projects(rank); };
     if (state.ranks > 1 && state.ranks != transport_->size())

@@ -79,7 +79,8 @@ class RayInMesh final : public ProbedRay {
         mesh_(std::move(near)),
         function_(function),
         emission_(settings.emission),
-        surfaces_(settings.surfaces) {
+        surfaces_(settings.surfaces),
+        shading_(settings.mesh.shading) {
     for (TriangleSurface& surface : surfaces_.triangles)
       surface.mesh = std::make_shared<const TriangleMesh>(frame::triangles_near_ray(*surface.mesh, view, pixel));
     segments_ = reference::Reference(mesh_, view.camera, view.size, function, emission_).segments(x(), y());
@@ -102,13 +103,15 @@ class RayInMesh final : public ProbedRay {
 
  private:
   [[nodiscard]] ReferencePixel pixel_with(const Camera& camera) const override {
-    return reference::Reference(mesh_, camera, view_.size, function_, emission_, surfaces_).pixel(x(), y());
+    return reference::Reference(mesh_, camera, view_.size, function_, emission_, surfaces_, {}, shading_)
+        .pixel(x(), y());
   }
 
   scene::TetMesh mesh_;
   const TransferFunction& function_;
   Emission emission_;
   Surfaces surfaces_;
+  std::optional<Shading> shading_;
   std::vector<reference::RaySegment> segments_;
 };
 

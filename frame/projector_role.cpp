@@ -43,10 +43,14 @@ class FrameSinks {
         space_(job.camera, job.size),
         integrator_(run.function, settings_.render.integrator, settings_.render.emission),
         surfaces_(settings_.render.surfaces, run.function),
-        scene_{&space_, &integrator_,
-               std::max(integrals::opacity_weight(run.function.max_color(), mesh.diagonal, settings_.render.emission),
-                        surfaces_.max_color())} {
+        normals_(mesh.part),
+        scene_{&space_, &integrator_, 1} {
+    if (settings_.render.shading) light_.emplace(*settings_.render.shading, job.camera);
+    const double max_color = light_ ? light_->brightest(run.function.max_color()) : run.function.max_color();
+    scene_.left_out_per_transmittance =
+        std::max(integrals::opacity_weight(max_color, mesh.diagonal, settings_.render.emission), surfaces_.max_color());
     if (!surfaces_.empty()) scene_.surfaces = &surfaces_;
+    if (light_) scene_.light = &*light_, scene_.normals = &normals_;
     if (!settings_.deep) lattice_ = lattice_of(space_, mesh.box, mesh.scalar_range, run.function, settings_.render);
     if (!lattice_) return;
     table_.emplace(run.function, *lattice_, settings_.render.emission);
@@ -66,7 +70,7 @@ class FrameSinks {
       return std::make_unique<compositor::TupleSink>(mesh_.longest_edge, deliver_);
     if (settings_.exchange == Exchange::segments)
       return std::make_unique<compositor::SegmentSink<sorting::DoubleEncoding>>(
-          mesh_.part.association == scene::Association::cell, mesh_.global_tet, deliver_);
+          mesh_.part.association == scene::Association::cell, mesh_.global_tet, deliver_, scene_.normals);
     return std::make_unique<compositor::RunSink<sorting::DoubleEncoding>>(scene_, cut_, deliver_);
   }
   [[nodiscard]] std::unique_ptr<compositor::TileSink<sorting::LatticeEncoding>> make_on_lattice() const {
@@ -83,6 +87,8 @@ class FrameSinks {
   projection::PixelSpace space_;
   integrals::SegmentIntegrator integrator_;
   scene::SurfaceSet surfaces_;
+  compositor::MeshNormals normals_;
+  std::optional<compositor::MatterLight> light_;
   compositor::TileScene scene_;
   std::optional<scene::Lattice> lattice_;
   std::optional<integrals::LaneTable> table_;

@@ -27,7 +27,7 @@ std::unique_ptr<const reference::RayReference> rays_of(const Dataset& dataset, c
                                                       settings.emission, settings.grid.shading, data.clip,
                                                       settings.surfaces);
   return std::make_unique<reference::Reference>(mesh.mesh, view.camera, view.size, function, settings.emission,
-                                                settings.surfaces, mesh.kept);
+                                                settings.surfaces, mesh.kept, settings.mesh.shading);
 }
 
 }  // namespace

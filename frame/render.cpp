@@ -4,11 +4,14 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <optional>
 #include <utility>
 
 #include "compositor/deep_collector.hpp"
 #include "compositor/deep_sink.hpp"
+#include "compositor/matter_light.hpp"
 #include "compositor/picture_sink.hpp"
 #include "frame/boundary_faces.hpp"
 #include "frame/frame_projector.hpp"
@@ -45,14 +48,29 @@ void check_surfaces(const RenderSettings& settings, scene::Association associati
         "`iso`: the field has one value a cell, so no iso-surfaces; use `smooth`, or a `field` with values at points");
 }
 
+void check_shading(const RenderSettings& settings) {
+  if (!settings.shading) return;
+  const scene::Shading& shading = *settings.shading;
+  if (settings.rasterizer != Rasterizer::planes)
+    throw scene::bad_input("`shade`: `rasterizer` scanline knows no shading; use `rasterizer` planes");
+  if (settings.emission == scene::Emission::independent)
+    throw scene::bad_input("`shade`: shading needs emission in proportion to extinction; leave one of the two out");
+  const double length = glm::length(shading.to_light);
+  if (!(length > 0) || !std::isfinite(length))
+    throw scene::bad_input("`light`: the direction to the light has no length; say which way the light lies");
+  for (const double part : {shading.ambient, shading.diffuse, shading.specular, shading.shininess})
+    if (!(part >= 0) || !std::isfinite(part))
+      throw scene::bad_input("`shade`: the parts of the light must be 0 or more, and finite");
+}
+
 struct Renderer::State {
   State(const scene::TetMeshView& mesh, const RenderSettings& s)
-      : settings(s), projector(mesh, s), scalar_range(scene::scalar_range(mesh, s.threads)) {
+      : settings(s), projector(mesh, s), scalar_range(scene::scalar_range(mesh, s.threads)), normals(mesh) {
     find_boundary(mesh);
   }
   State(const std::shared_ptr<const projection::PreparedMesh>& mesh, const scene::MeshFacts& facts,
         const RenderSettings& s)
-      : settings(s), projector(mesh, facts.box, s), scalar_range(facts.scalar_range) {
+      : settings(s), projector(mesh, facts.box, s), scalar_range(facts.scalar_range), normals(mesh->mesh()) {
     find_boundary(mesh->mesh());
   }
 
@@ -74,6 +92,7 @@ struct Renderer::State {
   RenderSettings settings;
   FrameProjector projector;
   std::array<double, 2> scalar_range;
+  compositor::MeshNormals normals;
   std::optional<BoundaryFaces> boundary;  ///< if the settings have surfaces of it
   scene::TransferFunction function;
   std::optional<integrals::SegmentIntegrator> kept;
@@ -115,11 +134,14 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
     task.kept_bytes = settings.memory_bytes / 2;
     collector.emplace(size, task.kept_bytes);
   }
+  std::optional<compositor::MatterLight> light;
+  if (settings.shading) light.emplace(*settings.shading, camera);
+  const double max_color = light ? light->brightest(transfer_function.max_color()) : transfer_function.max_color();
   compositor::TileScene scene{
       &space, &integrator,
-      std::max(integrals::opacity_weight(transfer_function.max_color(), longest_ray, settings.emission),
-               surfaces.max_color())};
+      std::max(integrals::opacity_weight(max_color, longest_ray, settings.emission), surfaces.max_color())};
   if (!surfaces.empty()) scene.surfaces = &surfaces;
+  if (light) scene.light = &*light, scene.normals = &state_->normals;
   const compositor::ImageWindow window{&image};
   task.make_sink = [&]() -> std::unique_ptr<compositor::TileSink<sorting::DoubleEncoding>> {
     if (!collector) return std::make_unique<compositor::PictureSink<sorting::DoubleEncoding>>(scene, window);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "scene/camera.hpp"
@@ -12,6 +13,7 @@
 #include "scene/mechanisms.hpp"
 #include "scene/mesh_facts.hpp"
 #include "scene/optical_model.hpp"
+#include "scene/shading.hpp"
 #include "scene/surface_set.hpp"
 #include "scene/tet_mesh.hpp"
 #include "scene/trace.hpp"
@@ -26,13 +28,14 @@ namespace tessera::frame {
 
 using tessera::Rasterizer;
 
-/// What a frame is made with. None of it but the rasterizer, integrator, emission, surfaces, accuracy and `use`
-/// changes a bit of the picture.
+/// What a frame is made with. None of it but the rasterizer, integrator, emission, surfaces, shading, accuracy and
+/// `use` changes a bit of the picture.
 struct RenderSettings {
   Rasterizer rasterizer = Rasterizer::planes;
   scene::Integrator integrator;
   scene::Emission emission = scene::Emission::absorption;
   scene::Surfaces surfaces{};               ///< checked by check_surfaces()
+  std::optional<scene::Shading> shading{};  ///< of point data, checked by check_shading()
   double deep_accuracy = 1e-3;              ///< of a deep picture, cut anywhere: largest error in linear RGBA
   scene::Mechanisms use;                    ///< what saves work
   bool bounded = true;                      ///< false: composited on a device whose error is only reported
@@ -97,5 +100,8 @@ const char* surface_word(const scene::Surfaces& surfaces);
 
 /// Throws Error(bad_input) where surfaces are out of range, or cannot be rendered of this mesh with these settings.
 void check_surfaces(const RenderSettings& settings, scene::Association association);
+
+/// Throws Error(bad_input) where a mesh cannot be shaded with these settings.
+void check_shading(const RenderSettings& settings);
 
 }  // namespace tessera::frame

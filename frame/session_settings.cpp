@@ -45,6 +45,7 @@ RenderSettings mesh_settings(const Settings& s) {
   settings.integrator = s.integrator;
   settings.emission = s.emission;
   settings.surfaces = s.surfaces;
+  settings.shading = s.mesh.shading;
   settings.use = s.use;
   settings.threads = s.threads;
   settings.tile_size = s.mesh.tile_size;

@@ -165,7 +165,7 @@ reference::Verification verify(const scene::Image& image, const UncutMesh& mesh,
                                std::size_t count) {
   const reference::Suspects where = suspects(image, mesh.rendered, camera, transfer_function, settings, count);
   const reference::Reference reference(mesh.mesh, camera, image.size, transfer_function, settings.emission,
-                                       settings.surfaces, mesh.kept);
+                                       settings.surfaces, mesh.kept, settings.shading);
   return reference::verify(image, reference, promised_error(settings), count, where, settings.threads);
 }
 

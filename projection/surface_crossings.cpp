@@ -12,8 +12,10 @@ double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v
 }  // namespace
 
 glm::dvec3 gradient_direction(const PreparedMesh& prepared, std::size_t tet) {
-  const scene::TetMeshView& mesh = prepared.mesh();
-  const scene::Tet& corners = prepared.tets()[tet];
+  return gradient_direction(prepared.mesh(), prepared.tets()[tet]);
+}
+
+glm::dvec3 gradient_direction(const scene::TetMeshView& mesh, const scene::Tet& corners) {
   std::array<glm::dvec3, 3> edge;
   std::array<double, 3> change{};
   double size = 0, most = 0;

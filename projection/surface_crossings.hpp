@@ -100,8 +100,10 @@ struct IsoView {
   }
 };
 
-/// The field's gradient in a tet, of any length: zero where the field is constant; in a flat tet its normal.
+/// The field's gradient in a tet of point data, of any length: zero where the field is constant; in a flat tet its
+/// normal.
 glm::dvec3 gradient_direction(const PreparedMesh& mesh, std::size_t tet);
+glm::dvec3 gradient_direction(const scene::TetMeshView& mesh, const scene::Tet& corners);
 
 /// Of length one; zero stays zero.
 glm::dvec3 unit(const glm::dvec3& direction);

@@ -35,7 +35,7 @@ Integral::Optics Integral::optics(double s, double within, double origin) const 
 }
 
 void Integral::add(double length, double scalar_front, double scalar_back, double depth_front, double depth_back,
-                   double origin) {
+                   double origin, const Light& light) {
   if (!(length > 0)) return;
   const auto value_less = [origin](double value, const scene::Knot& knot) { return value < knot.value - origin; };
 
@@ -51,7 +51,9 @@ void Integral::add(double length, double scalar_front, double scalar_back, doubl
     if (!(cuts[i + 1] > cuts[i])) continue;
     const double s0 = mixed(scalar_front, scalar_back, cuts[i]), s1 = mixed(scalar_front, scalar_back, cuts[i + 1]);
     const double middle = low == high ? low : mixed(scalar_front, scalar_back, (cuts[i] + cuts[i + 1]) / 2);
-    const Optics a = optics(s0, middle, origin), b = optics(s1, middle, origin);
+    Optics a = optics(s0, middle, origin), b = optics(s1, middle, origin);
+    for (Optics* end : {&a, &b})
+      for (double& c : end->color) c = light.own * c + light.white;
     if (std::isinf(first_visible_depth_) && (a.extinction > 0 || b.extinction > 0))
       first_visible_depth_ = mixed(depth_front, depth_back, cuts[i]);
     add_linear(length * (cuts[i + 1] - cuts[i]), a, b);

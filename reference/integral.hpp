@@ -22,11 +22,20 @@ class Integral {
   /// The knots must outlive the integral.
   Integral(std::span<const scene::Knot> knots, scene::Emission emission) : knots_(knots), emission_(emission) {}
 
+  /// What shading makes of colour c over a segment: own * c + white.
+  struct Light {
+    double own = 1, white = 0;
+  };
+
   /// The next segment: its world length and the scalars at its ends, and the planar depths there. A scalar constant
   /// along the segment and exactly on a step of the transfer function takes the step's upper knot. Scalars are counted
   /// from `origin`, so that they may be nearer to a knot than numbers of their size tell apart.
+  void add(double length, double scalar_front, double scalar_back, double depth_front, double depth_back, double origin,
+           const Light& light);
   void add(double length, double scalar_front, double scalar_back, double depth_front, double depth_back,
-           double origin = 0);
+           double origin = 0) {
+    add(length, scalar_front, scalar_back, depth_front, depth_back, origin, Light());
+  }
 
   /// A surface of no thickness: its own colour, as lit, its opacity and where it is.
   void add_surface(const std::array<double, 3>& color, double opacity, double depth);

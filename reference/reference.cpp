@@ -38,7 +38,8 @@ void sort_front_to_back(std::vector<RaySegment>& segments) {
 
 Reference::Reference(const scene::TetMeshView& mesh, const scene::Camera& camera, scene::ImageSize size,
                      const scene::TransferFunction& transfer_function, scene::Emission emission,
-                     const Surfaces& surfaces, std::span<const scene::HalfSpace> kept)
+                     const Surfaces& surfaces, std::span<const scene::HalfSpace> kept,
+                     const std::optional<scene::Shading>& shading)
     : mesh_(mesh),
       size_((scene::validate(camera), scene::validate(size), size)),
       knots_(transfer_function.knots().begin(), transfer_function.knots().end()),
@@ -49,6 +50,7 @@ Reference::Reference(const scene::TetMeshView& mesh, const scene::Camera& camera
       light_(surfaces.light) {
   if (knots_.empty()) throw scene::bad_input("transfer function: no knots; give at least one");
   scene::validate(mesh, "mesh");
+  if (shading) matter_light_.emplace(*shading, camera, emission);
   vertices_.reserve(mesh.positions.size());
   for (const glm::dvec3& p : mesh.positions) vertices_.push_back(view_.project(p));
   boxes_.reserve(mesh.tets.size());

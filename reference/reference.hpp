@@ -3,9 +3,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "reference/matter_light.hpp"
 #include "reference/ray_reference.hpp"
 #include "reference/ray_tet.hpp"
 #include "reference/surface_on_ray.hpp"
@@ -42,6 +44,7 @@ struct RaySegment {
 ///          they lie at their true depth in cells that overlap, too. At one depth what a cell has at its back end comes
 ///          first, its boundary, triangles, what is in cells of no length, the next cell's boundary, and what that has
 ///          at its front end. Depths are one if a shift of the ray by 2^-32 pixel may exchange them (shaded_ray.cpp).
+/// Shading  of point data by each tet's own gradient (scene/shading.hpp).
 /// Threads  const functions may be called from several threads; `pixels` and `image` use all cores themselves.
 /// Cost     256x256 pixels over 0.5 M tets: seconds to a minute. One point query is a pass over all tets' boxes.
 class Reference final : public RayReference {
@@ -51,7 +54,8 @@ class Reference final : public RayReference {
   /// that breaks its invariants.
   Reference(const scene::TetMeshView& mesh, const scene::Camera& camera, scene::ImageSize size,
             const scene::TransferFunction& transfer_function, scene::Emission emission = scene::Emission::absorption,
-            const Surfaces& surfaces = {}, std::span<const scene::HalfSpace> kept = {});
+            const Surfaces& surfaces = {}, std::span<const scene::HalfSpace> kept = {},
+            const std::optional<scene::Shading>& shading = std::nullopt);
 
   /// The ray through pixel coordinates (x, y), front to back. Pixel (i, j) has its centre at (i + 0.5, j + 0.5).
   [[nodiscard]] std::vector<RaySegment> segments(double x, double y) const;
@@ -92,6 +96,7 @@ class Reference final : public RayReference {
   View view_;
   std::vector<SurfaceOfValue> surfaces_;
   SurfaceLight light_;
+  std::optional<MatterLight> matter_light_;
   scene::TransferFunction function_;      ///< if a surface of faces has its colours
   std::vector<Paint> boundary_, paints_;  ///< the latter by ProjectedTriangle::paint
   std::vector<std::uint8_t> open_;        ///< if there is a boundary: open_faces()

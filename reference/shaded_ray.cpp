@@ -173,6 +173,7 @@ class Reference::Ray {
     const RaySegment& s = segments_[number];
     Progress& progress = progress_[number];
     progress.change = s.change_front;
+    if (reference_.matter_light_) progress.light = reference_.matter_light_->in(reference_.mesh_, s.tet, direction_);
     const KeptDepths depths{kept_.nearest, kept_.farthest, kept_.nearest_plane != nullptr,
                             kept_.farthest_plane != nullptr};
     if (!reference_.surfaces_.empty())
@@ -220,7 +221,8 @@ class Reference::Ray {
     const RaySegment& s = segments_[segment];
     Progress& at = progress_[segment];
     const auto depth_at = [&](double p) { return p == 1 ? s.back : s.front + (s.back - s.front) * p; };
-    integral_.add(s.length * (part - at.part), at.change, change, depth_at(at.part), depth_at(part), s.corner_scalar);
+    integral_.add(s.length * (part - at.part), at.change, change, depth_at(at.part), depth_at(part), s.corner_scalar,
+                  at.light);
     at.part = part, at.change = change;
   }
 
@@ -245,6 +247,7 @@ class Reference::Ray {
   /// What of a segment is integrated so far.
   struct Progress {
     double part = 0, change = 0;
+    Integral::Light light;
     std::vector<SurfaceCrossing> crossings;
   };
   std::vector<Progress> progress_;

@@ -105,6 +105,12 @@ std::array<double, 3> lit(const glm::dvec3& color, const SurfaceLight& light, co
   return lit_along(color, light, ray, Vector(normal));
 }
 
+glm::dvec3 gradient_in(const scene::TetMeshView& mesh, std::size_t tet) {
+  const Vector gradient = scaled_gradient(mesh, tet);
+  const long double size = std::max({std::abs(gradient.x), std::abs(gradient.y), std::abs(gradient.z)});
+  return size > 0 ? glm::dvec3(gradient / size) : glm::dvec3(0);
+}
+
 glm::dvec3 normal_of(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   Vector u = Vector(b) - Vector(a), v = Vector(c) - Vector(a);
   for (Vector* edge : {&u, &v}) {

@@ -65,6 +65,10 @@ struct TriangleCrossing {
   const ProjectedTriangle* triangle;
 };
 
+/// The field's gradient in a tet of point data, of any length and either sign; 0 where it has none. In a flat tet its
+/// normal.
+glm::dvec3 gradient_in(const scene::TetMeshView& mesh, std::size_t tet);
+
 /// The normal of three points, of any length.
 glm::dvec3 normal_of(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 

@@ -193,6 +193,7 @@ RenderedFrame Stage::render_stand_in(const Scene& scene, HeldData& held, const V
     settings.surfaces.triangles.clear();
     settings.integrator = {};
     settings.integrator.accuracy = 1e-2;
+    if (settings.mesh.shading) settings.grid.shading = settings.mesh.shading;
     settings.mesh = {};
     held.stand_in_session.reset();
     held.stand_in_session = std::make_unique<Session>(*held.stand_in, settings);

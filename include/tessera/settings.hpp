@@ -86,6 +86,8 @@ struct MeshSettings {
   Rasterizer rasterizer = Rasterizer::planes;
   int tile_size = 32;  ///< pixels a side, 1 to 1024; changes no bit of the picture
   DeviceSettings device;
+  std::optional<Shading> shading;  ///< of point data, by the planes rasterizer, on the CPU, in double precision:
+                                   ///< slower; emission in proportion to absorption
 };
 
 /// Of regular and rectilinear grids alone.

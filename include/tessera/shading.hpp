@@ -4,10 +4,12 @@
 
 namespace tessera {
 
-/// Blinn-Phong, two-sided, for regular grids. The normal n is the gradient of the trilinear field, taken in the middle
-/// of every stretch of a ray inside a voxel, up to a surface, and kept over it. With l the unit vector to the light, v
+/// Blinn-Phong, two-sided. The normal n is the field's gradient: in a mesh's tet the one that it has there, in a grid
+/// that of the trilinear field, taken in the middle of every stretch of a ray inside a voxel, up to a surface, and kept
+/// over it. With l the unit vector to the light, v
 /// towards the eye along the ray and h halfway between them, colour c becomes c * (ambient + diffuse |n.l|) + specular
-/// |n.h|^shininess; where the gradient is zero, and in cell data, it stays as it is. Extinction does not change.
+/// |n.h|^shininess; where the gradient is zero (values that differ by less than 1e-12 of themselves), and in cell data,
+/// it stays as it is. Extinction does not change.
 ///
 /// Source  Blinn, "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977.
 struct Shading {

@@ -65,6 +65,11 @@ ROWS = [
     (R + "--balance even", "leave it out", R),
     # volumes
     (V + "--smooth", "leave it out", V),
+    (R + "--light 1,1,1", "add it, or leave --light out", R + "--light 1,1,1 --shade"),
+    (R + "--shade --emission independent", "leave one of the two out", R + "--shade"),
+    (R + "--shade --rasterizer scanline", "use --rasterizer planes", R + "--shade --rasterizer planes"),
+    (R + "--shade --compositor gl-compute --backend osmesa", "leave out --compositor and --backend", R + "--shade"),
+    (R + "--camera {", "not valid JSON", R + "--camera c.json"),
     (V + "--light 1,1,1", "add it, or leave --light out", V + "--light 1,1,1 --shade"),
     (V + "--light 0,0,0 --shade", "say which way the light lies", V + "--light 1,1,1 --shade"),
     (V + "--shade --no-shade", "leave one of the two out", V + "--shade"),

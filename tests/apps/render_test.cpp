@@ -79,6 +79,23 @@ TEST(Render, TakesJsonItselfInPlaceOfAFilesName) {
   }
 }
 
+TEST(Render, ShadesMeshesAndVerifiesThem) {
+  const Folder folder;
+  const auto mesh = folder.cube();
+  std::string last = "";
+  for (const char* light : {"0,0,1", "0.5,1,0.7", "world:0.5,1,0.7"}) {
+    const auto run = tessera({"render", mesh, "-o", folder / "a.pfm", "--size", "40x30", "--integrator", "exact",
+                              "--shade", "--light", light, "--verify", "1200", "--report", folder / "r.json"});
+    EXPECT_EQ(run.status, 0) << light << run.err;
+    EXPECT_NE(run.err.find("exact, shaded"), std::string::npos) << run.err;
+    const auto report = nlohmann::json::parse(contents(folder / "r.json"));
+    EXPECT_LT(report["frames"][0]["verify"]["max_error"], 2e-5) << light;
+    EXPECT_EQ(report["method"]["shade"], true);
+    EXPECT_NE(contents(folder / "a.pfm"), last) << light;
+    last = contents(folder / "a.pfm");
+  }
+}
+
 TEST(Render, WritesOneFrameInSeveralFormats) {
   const Folder folder;
   const auto mesh = folder.cube();

@@ -8,8 +8,11 @@
 
 #include "datasets/modify.hpp"
 #include "frame/query_data.hpp"
+#include "io/temporary_folder.hpp"
 #include "scene/error.hpp"
+#include "tessera/coarse_stand_in.hpp"
 #include "tessera/session.hpp"
+#include "tessera/write.hpp"
 
 namespace tessera {
 namespace {
@@ -141,7 +144,8 @@ double opacity_up_to(const Dataset& data, const View& view, PixelIndex pixel, do
   return image.rgba[4 * image.index(pixel.x, pixel.y) + 3];
 }
 
-void expect_profile_holds(const RayProbe& probe, const Image& image, PixelIndex pixel) {
+/// `off`: how far the field may be from x.
+void expect_profile_holds(const RayProbe& probe, const Image& image, PixelIndex pixel, double off = 1e-5) {
   const std::size_t i = image.index(pixel.x, pixel.y);
   EXPECT_NEAR(probe.pixel.r, image.rgba[4 * i], 1e-4);
   EXPECT_NEAR(probe.pixel.g, image.rgba[4 * i + 1], 1e-4);
@@ -161,7 +165,7 @@ void expect_profile_holds(const RayProbe& probe, const Image& image, PixelIndex 
   EXPECT_LE(probe.front->depth, probe.half->depth);
   // The field is x, and shown from -0.5 on.
   for (const RayPoint& point : {*probe.first, *probe.front, *probe.half}) {
-    EXPECT_NEAR(point.value, point.position.x, 1e-5);
+    EXPECT_NEAR(point.value, point.position.x, off);
     EXPECT_GE(point.value, -0.5 - 1e-5);
   }
 }
@@ -239,6 +243,36 @@ TEST(Probe, SeesSurfacesAndClips) {
   }
 }
 
+/// What a file's grid keeps of a clip holds for all that is asked of it.
+TEST(Probe, OfAClippedGridEndsAtThePlane) {
+  const test::TemporaryFolder folder;
+  write_grid(grid_of_x(), folder / "x.nrrd");
+  ReadOptions options;
+  options.selection.clip = {{{0.25, 0, 0}, {-1, 0, 0}}, {{0, 0, 0.5}, {0.2, 0, -1}}};
+  const Dataset data = Dataset::open(folder / "x.nrrd", options);
+  const std::optional<Dataset> coarse = coarse_stand_in(data, {.samples = 20 * 20 * 20});
+  ASSERT_TRUE(coarse);
+  EXPECT_EQ(coarse->bounds(), data.bounds());
+  for (const Dataset& asked : {data, *coarse}) {
+    const Histogram found = histogram(asked, {.bins = 8, .range = {{-1.0, 1.0}}});
+    // Fewer samples, each the mean of some, are off by up to half of those between them.
+    const double off = asked.format() == data.format() ? 1e-5 : 0.04;
+    EXPECT_LE(found.shares[5], off);
+    EXPECT_EQ(found.shares[6] + found.shares[7], 0);
+    EXPECT_NEAR(found.shares[2] / found.shares[1], 1, 0.1);
+    const View view = view_from({2, 1.4, 4}, true);
+    const Image image = Session(asked).render(view, soft).image;
+    int met = 0;
+    for (int x = 1; x < 48; x += 3) {
+      const RayProbe probed = probe(asked, view, soft, {x, 17}, 40);
+      expect_profile_holds(probed, image, {x, 17}, off);
+      for (const double value : probed.value) EXPECT_LE(value, 0.25 + off);
+      met += probed.pixel.a > 0.05 ? 1 : 0;
+    }
+    EXPECT_GT(met, 3);
+  }
+}
+
 TEST(Probe, OfAPartIsThatOfTheWhole) {
   const scene::TetMesh mesh = with_field(datasets::cube(6), x_of);
   Settings settings;
@@ -253,6 +287,26 @@ TEST(Probe, OfAPartIsThatOfTheWhole) {
     EXPECT_EQ(found.value, alone.value);
     EXPECT_EQ(found.half->depth, alone.half->depth);
   });
+}
+
+TEST(Probe, RanksWithoutCellsAreAskedToo) {
+  scene::TetMesh one = datasets::cube(1);
+  const std::vector<std::uint32_t> two_tets{0, 1};
+  for (const scene::TetMesh& mesh :
+       {scene::subset(one, two_tets), datasets::with_cell_data(scene::subset(one, two_tets))}) {
+    const Dataset data = Dataset::of(datasets::arrays_of(mesh));
+    const View view{data.default_camera({9, 9}), {9, 9}};
+    const RayProbe alone = probe(data, view, soft, {4, 4}, 9);
+    const Dataset coarse = *coarse_stand_in(data, {.samples = 1000});
+    run_ranks(4, [&](const Communicator& communicator) {
+      const Dataset part = part_of(mesh, communicator);
+      const RayProbe found = probe(part, view, soft, {4, 4}, 9, {}, communicator);
+      EXPECT_EQ(found.pixel.a, alone.pixel.a);
+      EXPECT_EQ(found.opacity, alone.opacity);
+      EXPECT_EQ(coarse_stand_in(part, {.samples = 1000}, {}, communicator)->range(), coarse.range());
+      EXPECT_EQ(histogram(part, {.bins = 3}).shares, histogram(data, {.bins = 3}).shares);
+    });
+  }
 }
 
 TEST(Probe, BesideTheDataItFindsNothing) {
