@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
 
+#include "apps/color_names.hpp"
 #include "tessera/error.hpp"
 #include "tessera/nearest_name.hpp"
 
@@ -30,26 +32,29 @@ Error wrong(const std::string& option, const std::string& text, const std::strin
   return bad_input(fmt::format("{}: '{}' is not {}", option, text, allowed));
 }
 
-/// Names of colours, each as `#rrggbb`; the first few are those that a message names.
-constexpr std::pair<std::string_view, std::string_view> colors[] = {
-    {"black", "#000000"},    {"white", "#ffffff"}, {"gray", "#808080"},      {"red", "#ff0000"},
-    {"green", "#00ff00"},    {"blue", "#0000ff"},  {"yellow", "#ffff00"},    {"orange", "#ffa500"},
-    {"navy", "#000080"},     {"cyan", "#00ffff"},  {"magenta", "#ff00ff"},   {"lightgray", "#d3d3d3"},
-    {"darkgray", "#404040"}, {"grey", "#808080"},  {"lightgrey", "#d3d3d3"}, {"darkgrey", "#404040"}};
-
-/// `#rrggbb` of sRGB in linear light (IEC 61966-2-1).
-std::optional<std::array<float, 3>> color_of_hex(std::string_view text) {
-  if (text.size() != 7) return std::nullopt;
+/// 0xrrggbb of sRGB in linear light (IEC 61966-2-1).
+std::array<float, 3> linear_color(std::uint32_t rgb) {
   std::array<float, 3> color{};
   for (std::size_t c = 0; c < 3; ++c) {
-    unsigned byte = 0;
-    const char* const first = text.data() + 1 + 2 * c;
-    const auto [end, error] = std::from_chars(first, first + 2, byte, 16);
-    if (error != std::errc() || end != first + 2) return std::nullopt;
-    const double display = byte / 255.0;
+    const double display = (rgb >> (16 - 8 * c) & 0xff) / 255.0;
     color[c] = static_cast<float>(display <= 0.04045 ? display / 12.92 : std::pow((display + 0.055) / 1.055, 2.4));
   }
   return color;
+}
+
+/// `#rrggbb`, or `#rgb` for `#rrggbb`.
+std::optional<std::array<float, 3>> color_of_hex(std::string_view text) {
+  const std::string_view digits = text.substr(1);
+  const bool is_short = digits.size() == 3;
+  if ((!is_short && digits.size() != 6) || digits.find_first_not_of("0123456789abcdefABCDEF") != std::string_view::npos)
+    return std::nullopt;
+  std::uint32_t rgb = 0;
+  for (const char digit : digits) {
+    std::uint32_t value = 0;
+    std::from_chars(&digit, &digit + 1, value, 16);
+    rgb = is_short ? rgb << 8 | 0x11 * value : rgb << 4 | value;
+  }
+  return linear_color(rgb);
 }
 
 }  // namespace
@@ -139,15 +144,15 @@ WithoutWords parse_without(const std::string& option, const std::string& text) {
 
 std::array<float, 3> parse_color(const std::string& option, const std::string& text) {
   std::vector<std::string> names;
-  for (const auto& [name, digits] : colors) {
-    if (text == name) return *color_of_hex(digits);
-    names.emplace_back(name);
+  for (const NamedColor& color : color_names()) {
+    if (text == color.name) return linear_color(color.rgb);
+    names.emplace_back(color.name);
   }
   const auto near = nearest_name(text, names);
   const std::string allowed =
       near ? fmt::format("a colour; did you mean {}?", *near)
-           : "a colour; write R,G,B (linear light, 0 or more), #rrggbb (sRGB) or black, white, gray, red, green, blue, "
-             "yellow, orange, navy, cyan or magenta";
+           : "a colour; write R,G,B (linear light, 0 or more), #rrggbb (sRGB) or a name of CSS, like white, black, "
+             "lightgray or steelblue";
   if (text.starts_with('#')) {
     const auto color = color_of_hex(text);
     if (!color) throw wrong(option, text, allowed);

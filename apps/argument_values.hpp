@@ -34,8 +34,7 @@ struct WithoutWords {
 /// empty.
 WithoutWords parse_without(const std::string& option, const std::string& text);
 
-/// `R,G,B` as linear light, each >= 0; `#rrggbb` as sRGB; or a name: black, white, gray (sRGB #808080), lightgray,
-/// darkgray, red, green, blue, yellow, cyan, magenta, orange, navy.
+/// `R,G,B` as linear light, each >= 0; `#rrggbb` or `#rgb` as sRGB; or a name of CSS's (apps/color_names.hpp).
 std::array<float, 3> parse_color(const std::string& option, const std::string& text);
 
 /// `X,Y,Z`, finite; `positive`: each above zero.

@@ -175,9 +175,17 @@ class Film final : public Sink {
     watched.progress = output_.line().listener();
     data_.emplace(Dataset::open(frame.data.files, watched, job_.communicator(), settings_.ranks));
     step_ = frame.step;
+    read_block_surfaces(frame.data.files, watched);
     const auto [low, high] = data_->range();
     if (!first_range_) all_range_ = first_range_.emplace(std::array{low, high});
     all_range_ = {std::min(all_range_[0], low), std::max(all_range_[1], high)};
+  }
+
+  /// Of the step at hand, with its field.
+  void read_block_surfaces(const std::vector<std::filesystem::path>& files, ReadOptions read) {
+    if (options_.block_surfaces.empty()) return;
+    settings_.surfaces =
+        with_block_surfaces(options_.settings.surfaces, options_.block_surfaces, *data_, files, std::move(read));
   }
 
   /// Colours and opacities are the first step's, of whose values the others' may be far.

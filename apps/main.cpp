@@ -19,6 +19,7 @@
 #include "apps/generate_command.hpp"
 #include "apps/info_command.hpp"
 #include "apps/interruption.hpp"
+#include "apps/method_preset.hpp"
 #include "apps/parse_arguments.hpp"
 #include "apps/presets_command.hpp"
 #include "apps/render_options.hpp"
@@ -71,6 +72,7 @@ ExitCode run(int argc, char** argv, Job& job) {
     words.input = spool_standard_input().string();
   }
   if (*line.render) {
+    apply_method_preset(*line.render, job.size(), words);
     const RenderOptions options = render_options(words);
     if (const auto stalls = stall_settings(line.stalls, words.quiet)) job.watch_stalls(*stalls);
     if (options.is_grid()) refuse_mesh_options(words, options);

@@ -231,7 +231,7 @@ void add_render_options(CLI::App& command, RenderWords& words) {
 
   command
       .add_option("--background", words.background,
-                  "linear R,G,B, sRGB #rrggbb or a name; without it the picture has alpha")
+                  "linear R,G,B, sRGB #rrggbb or CSS's name; without it the picture has alpha")
       ->type_name("R,G,B|#RRGGBB|NAME");
   add_film_options(command, words);
   command.add_flag("--half", words.half, ".exr with 16-bit floats");
@@ -322,7 +322,9 @@ RenderOptions render_options(const RenderWords& words, bool is_grid) {
   options.image = image_options(words);
   options.annotation = annotation_options(words.annotation, options.image);
   if (options.annotation.annotation) refuse_unannotated(options);
-  settings.surfaces = surfaces_of(words.surfaces);
+  settings.surfaces = surfaces_of(words.surfaces, options.block_surfaces);
+  if (plan.grids && !options.block_surfaces.empty())
+    throw bad_input("--surface: is for meshes, and the input is a volume; --iso VALUE shows a surface in one");
   set_ranks(words, without.merging, options);
   plan.resume = words.resume;
   if (!words.repeat.empty()) options.repeat = parse_count("--repeat", words.repeat, 1, no_limit);

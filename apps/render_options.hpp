@@ -34,6 +34,8 @@ struct RenderOptions {
   ImageFileOptions image;
   AnnotationOptions annotation;
 
+  std::vector<BlockSurfaceWord> block_surfaces;  ///< beside settings.surfaces, which has them once the input is read
+
   bool no_shade = false;            ///< not even where the default transfer function asks for it
   bool fixed_higher_order = false;  ///< higher-order cells are read as `read` says, whatever --accuracy is
 
@@ -66,7 +68,7 @@ struct RenderWords {
   std::string dims, type, spacing, origin, endian, skip, step, brick_size, cache, preload, light;
   std::string balance, balance_resolution, balance_weights, show;
   std::string projectors, compositors, exchange, partition = "curve", frames_in_flight, seed;
-  std::string config, save_config;
+  std::string preset, config, save_config;
   AnnotationWords annotation;
   ClipWords clip;
   ViewWords view;

@@ -61,7 +61,7 @@ Json iso_json(const Surfaces& surfaces) {
   return json;
 }
 
-Json faces_json(const Surfaces& surfaces) {
+Json faces_json(const Surfaces& surfaces, std::span<const BlockSurfaceWord> blocks) {
   Json json = Json::array();
   const auto add = [&](const std::string& what, const std::optional<glm::dvec3>& color, double opacity) {
     json.push_back({{"what", what}, {"opacity", opacity}});
@@ -70,6 +70,7 @@ Json faces_json(const Surfaces& surfaces) {
   for (const BoundarySurface& boundary : surfaces.boundary) add("boundary", boundary.color, boundary.opacity);
   for (const TriangleSurface& surface : surfaces.triangles)
     add(fmt::format("{} triangles", surface.mesh->triangles.size()), surface.color, surface.opacity);
+  for (const BlockSurfaceWord& block : blocks) add("block " + block.name, block.color, block.opacity);
   return json;
 }
 
@@ -87,7 +88,8 @@ Json mesh_method_json(const RenderOptions& options) {
   json["emission"] = settings.emission == Emission::absorption ? "absorption" : "independent";
   add_shading(settings.mesh.shading, json);
   if (!settings.surfaces.iso.empty()) json["iso"] = iso_json(settings.surfaces);
-  if (settings.surfaces.has_faces()) json["surface"] = faces_json(settings.surfaces);
+  if (settings.surfaces.has_faces() || !options.block_surfaces.empty())
+    json["surface"] = faces_json(settings.surfaces, options.block_surfaces);
   if (options.frame.deep) json["deep_accuracy"] = options.frame.deep_accuracy;
   json["rasterizer"] = word(settings.mesh.rasterizer);
   const DeviceSettings& on = settings.mesh.device;

@@ -85,6 +85,7 @@ struct ParsedWords {
   std::string data, field, look, settings;  ///< keys
   bool shape = false;
   std::string accuracy;
+  mutable std::optional<std::pair<std::string, Surfaces>> surfaces{};  ///< with those of blocks, by field; read once
 };
 
 /// Of what is read: the field may be named or not, and of cells that are not curved the accuracy does not count.
@@ -155,8 +156,9 @@ class RenderScene final : public server::Scene {
     return transfer_function_of(data, options());
   }
 
-  [[nodiscard]] Settings settings(const LoadedTransferFunction& function) const override {
+  [[nodiscard]] Settings settings(const Dataset& data, const LoadedTransferFunction& function) const override {
     Settings settings = options().settings;
+    if (!options().block_surfaces.empty()) settings.surfaces = block_surfaces(data);
     if (shades_by_default(function, options())) settings.grid.shading.emplace();
     return settings;
   }
@@ -172,6 +174,19 @@ class RenderScene final : public server::Scene {
 
  private:
   [[nodiscard]] const RenderOptions& options() const { return parsed_->options; }
+
+  /// Those of the last field that they were asked for with.
+  [[nodiscard]] const Surfaces& block_surfaces(const Dataset& data) const {
+    std::string field = field_word(data);
+    if (!parsed_->surfaces || parsed_->surfaces->first != field) {
+      ReadOptions read = options().read;
+      if (frame_.data.in_file) read.time_step = frame_.data.in_file;
+      parsed_->surfaces.emplace(std::move(field),
+                                with_block_surfaces(options().settings.surfaces, options().block_surfaces, data,
+                                                    frame_.data.files, std::move(read)));
+    }
+    return parsed_->surfaces->second;
+  }
 
   std::shared_ptr<const ParsedWords> parsed_;
   FilmFrame frame_;

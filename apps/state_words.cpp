@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <string_view>
 
 #include "tessera/dataset.hpp"
@@ -145,10 +146,16 @@ std::vector<std::string> list_of(const std::string& name, const Json& value) {
 
 std::vector<std::string> surfaces_of(const std::string& name, const Json& value) {
   std::vector<std::string> texts = list_of(name, value);
-  for (const std::string& text : texts)
-    if (text.substr(0, text.find(':')) != "boundary")
-      throw bad_input(
-          fmt::format("state: '{}' takes no files from a page; send boundary, boundary:COLOR:OPACITY", name));
+  for (const std::string& text : texts) {
+    std::error_code unknown;
+    // The longest name first: a file's may have colons.
+    for (std::size_t end = text.size(); end != std::string::npos && end > 0; end = text.rfind(':', end - 1))
+      if (std::filesystem::is_regular_file(text.substr(0, end), unknown))
+        throw bad_input(
+            fmt::format("state: '{}' takes no files from a page; send boundary or a block of the mesh, like "
+                        "boundary:COLOR:OPACITY",
+                        name));
+  }
   return texts;
 }
 

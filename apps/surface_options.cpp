@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <system_error>
 
 #include "apps/argument_values.hpp"
@@ -57,7 +59,13 @@ std::size_t end_of_name(const std::string& word) {
   return std::min(word.find(':'), word.size());
 }
 
-void add_surface(const std::string& word, Surfaces& surfaces) {
+/// Whether a name is a file's rather than a block's.
+bool looks_like_file(const std::string& name) {
+  constexpr std::array<std::string_view, 7> extensions = {".ply", ".stl", ".vtp", ".vtk", ".poly", ".smesh", ".obj"};
+  return name.empty() || std::ranges::any_of(extensions, [&](std::string_view e) { return name.ends_with(e); });
+}
+
+void add_surface(const std::string& word, Surfaces& surfaces, std::vector<BlockSurfaceWord>& blocks) {
   const std::size_t end = end_of_name(word);
   const std::string name = word.substr(0, end);
   const Look look = look_of("--surface", word, behind(word, end));
@@ -67,10 +75,12 @@ void add_surface(const std::string& word, Surfaces& surfaces) {
   else if (std::filesystem::is_regular_file(name, unknown))
     surfaces.triangles.push_back(
         {std::make_shared<const TriangleMesh>(read_triangles(name)), look.color, look.opacity});
+  else if (!looks_like_file(name))
+    blocks.push_back({name, look.color, look.opacity});
   else
     throw bad_input(
         fmt::format("--surface: '{}' is neither boundary nor a file that is there; give one of the two, a file as "
-                    ".ply, .stl, .vtp, .vtk, .poly or .smesh (of one block of a mesh: --block NAME --surface boundary)",
+                    ".ply, .stl, .vtp, .vtk, .poly or .smesh, or a block of the mesh",
                     name));
 }
 
@@ -84,23 +94,34 @@ void add_surface_options(CLI::App& command, SurfaceWords& words) {
       ->type_name("VALUE[:COLOUR[:OPACITY]]")
       ->allow_extra_args(false);
   command
-      .add_option("--surface", words.surface,
-                  "meshes: their boundary (colour: the field's; opacity 1), or the triangles of a file (light grey), "
-                  "lit, within the volume; may be repeated")
-      ->type_name("boundary|FILE[:COLOUR[:OPACITY]]")
+      .add_option(
+          "--surface", words.surface,
+          "meshes: their boundary, a block, patch or side set of theirs (colour: the field's; opacity 1), or the "
+          "triangles of a file (light grey), lit, within the volume; may be repeated")
+      ->type_name("boundary|BLOCK|FILE[:COLOUR[:OPACITY]]")
       ->allow_extra_args(false);
 }
 
-Surfaces surfaces_of(const SurfaceWords& words) {
+Surfaces surfaces_of(const SurfaceWords& words, std::vector<BlockSurfaceWord>& blocks) {
   Surfaces surfaces;
   surfaces.iso = iso_surfaces_of(words);
-  for (const std::string& word : words.surface) add_surface(word, surfaces);
+  for (const std::string& word : words.surface) add_surface(word, surfaces, blocks);
   return surfaces;
 }
 
 std::vector<IsoSurface> iso_surfaces_of(const SurfaceWords& words) {
   std::vector<IsoSurface> surfaces;
   for (const std::string& word : words.iso) surfaces.push_back(iso_of(word));
+  return surfaces;
+}
+
+Surfaces with_block_surfaces(Surfaces surfaces, std::span<const BlockSurfaceWord> blocks, const Dataset& data,
+                             std::span<const std::filesystem::path> files, ReadOptions read) {
+  const char* const of = data.association() == Association::cell ? "cell:" : "point:";
+  read.field = data.shows_shape() ? std::string() : of + data.field_name();
+  for (const BlockSurfaceWord& block : blocks)
+    surfaces.triangles.push_back({std::make_shared<const TriangleMesh>(read_block_surface(files, block.name, read)),
+                                  block.color, block.opacity});
   return surfaces;
 }
 

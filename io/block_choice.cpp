@@ -12,8 +12,8 @@
 namespace tessera::io {
 namespace {
 
-std::string list(std::span<const std::string> blocks) {
-  constexpr std::size_t most = 12;  // of a line that is to be read
+std::string list(std::span<const std::string> blocks, bool with_surfaces) {
+  const std::size_t most = with_surfaces ? blocks.size() : 12;  // of a line that is to be read
   std::string text;
   for (const std::string& block : blocks.first(std::min(blocks.size(), most)))
     text += (text.empty() ? "" : ", ") + scene::quote(block);
@@ -35,16 +35,18 @@ bool is_chosen(const BlockChoice& choice, std::string_view block) {
          std::any_of(choice.begin(), choice.end(), [&](const std::string& name) { return means_block(name, block); });
 }
 
-void require_blocks(const BlockChoice& choice, std::span<const std::string> blocks, const std::string& source) {
+void require_blocks(const BlockChoice& choice, std::span<const std::string> blocks, const std::string& source,
+                    bool with_surfaces) {
   for (const std::string& name : choice) {
     if (std::any_of(blocks.begin(), blocks.end(), [&](const std::string& block) { return means_block(name, block); }))
       continue;
     if (blocks.empty())
-      throw scene::bad_input(fmt::format("{}: there is no block {}: it is not made of named blocks; leave `block` out",
-                                         source, scene::quote(name)));
+      throw scene::bad_input(fmt::format("{}: there is no block {}: it is not made of named blocks; {}", source,
+                                         scene::quote(name),
+                                         with_surfaces ? "give boundary or a file of triangles" : "leave `block` out"));
     const std::optional<std::string> nearest = nearest_name(name, blocks);
     throw scene::bad_input(
-        fmt::format("{}: there is no block {}; it has {}{}", source, scene::quote(name), list(blocks),
+        fmt::format("{}: there is no block {}; it has {}{}", source, scene::quote(name), list(blocks, with_surfaces),
                     nearest && blocks.size() > 1 ? fmt::format("; the nearest is {}", scene::quote(*nearest)) : ""));
   }
 }

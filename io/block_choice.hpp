@@ -17,8 +17,10 @@ bool means_block(std::string_view name, std::string_view block);
 /// Whether some name of the choice means the block, or there is no choice.
 bool is_chosen(const BlockChoice& choice, std::string_view block);
 
-/// Throws Error(bad_input) for a name that means none of a file's blocks, with those that there are and the nearest.
-void require_blocks(const BlockChoice& choice, std::span<const std::string> blocks, const std::string& source);
+/// Throws Error(bad_input) for a name that means none of a file's blocks, with those that there are and the nearest;
+/// `with_surfaces`: with all of them, for `info` does not list surfaces.
+void require_blocks(const BlockChoice& choice, std::span<const std::string> blocks, const std::string& source,
+                    bool with_surfaces = false);
 
 /// The names without empty ones and repetitions, in their order.
 std::vector<std::string> distinct_names(std::vector<std::string> names);

@@ -234,6 +234,18 @@ void add_image_points(const ForeignPart& image, CellBlock& block) {
       }
 }
 
+void add_polygons(const ForeignFile& file, const ForeignPart& part, CellBlock& block, const std::string& where) {
+  if (part.points) copy_points(file, *part.points, block, where);
+  if (!part.offsets || !part.connectivity || part.offsets->tuples == 0) return;
+  if (part.connectivity->type != NumberType::uint32)
+    throw scene::bad_input(fmt::format("{}: its cells are lists of no known width; write it anew", where));
+  constexpr std::uint8_t polygon = 7;
+  block.types.assign(part.offsets->tuples - 1, polygon);
+  copy_offsets(file, *part.offsets, block, where);
+  copy_numbers<std::uint32_t>(file, *part.connectivity, block.connectivity, where);
+  check_cells(block, where);
+}
+
 CellBlock block_of(const ForeignFile& file, const ForeignPart& part, GridsAre grids) {
   CellBlock block;
   block.name = part.name;
@@ -261,12 +273,19 @@ CellBlock block_of(const ForeignFile& file, const ForeignPart& part, GridsAre gr
     case ForeignPart::Kind::trees:
       throw scene::bad_input(fmt::format("{}: it holds trees of cells; give it alone", where));
     case ForeignPart::Kind::surface:
+      if (file.with_surfaces) {
+        add_polygons(file, part, block, where);
+        break;
+      }
       throw scene::bad_input(fmt::format("{}: it holds a surface, no cells of volume; give a mesh", where));
   }
   block.point_ghost = ghost_bits(file, part.point_fields, block.positions.size());
   block.cell_ghost = ghost_bits(file, part.cell_fields, block.cell_count());
   add_foreign_fields(file, part, Association::point, block.positions.size(), block, where);
-  add_foreign_fields(file, part, Association::cell, block.cell_count(), block, where);
+  // VTK's cell arrays of a surface have its points and lines before its polygons.
+  if (part.kind != ForeignPart::Kind::surface ||
+      std::ranges::all_of(part.cell_fields, [&](const ForeignArray& a) { return a.tuples == block.cell_count(); }))
+    add_foreign_fields(file, part, Association::cell, block.cell_count(), block, where);
   return block;
 }
 
@@ -280,6 +299,7 @@ ForeignFile open_foreign(std::shared_ptr<HelperProcess> helper, const std::files
   ForeignFile opened;
   opened.helper = std::move(helper);
   opened.source = file.string();
+  opened.with_surfaces = request.value("surfaces", false);
   const nlohmann::json reply = opened.helper->call(request, opened.source);
   try {
     opened.contents = contents_of(reply.at("contents").get_binary());
@@ -290,7 +310,7 @@ ForeignFile open_foreign(std::shared_ptr<HelperProcess> helper, const std::files
   ForeignContents& contents = opened.contents;
   if (!contents.block_names.empty()) return opened;  // the reader has seen to it
   for (const ForeignPart& part : contents.parts)
-    if (part.kind != ForeignPart::Kind::surface) contents.block_names.push_back(part.name);
+    if (part.kind != ForeignPart::Kind::surface || opened.with_surfaces) contents.block_names.push_back(part.name);
   const BlockChoice choice = request.value("blocks", BlockChoice());
   std::erase_if(contents.parts, [&](const ForeignPart& part) { return !is_chosen(choice, part.name); });
   return opened;
@@ -350,7 +370,7 @@ std::vector<CellBlock> blocks_of(const ForeignFile& file, std::vector<std::strin
   std::vector<CellBlock> blocks;
   std::size_t surfaces = 0;
   for (const ForeignPart& part : file.contents.parts) {
-    if (part.kind == ForeignPart::Kind::surface && file.contents.parts.size() > 1) {
+    if (part.kind == ForeignPart::Kind::surface && file.contents.parts.size() > 1 && !file.with_surfaces) {
       ++surfaces;
       continue;
     }

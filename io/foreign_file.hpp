@@ -17,11 +17,12 @@ struct ForeignFile {
   std::shared_ptr<HelperProcess> helper;
   std::string source;  ///< for messages
   ForeignContents contents;
+  bool with_surfaces = false;  ///< surfaces are blocks like others: of polygons (VTK's type 7)
 };
 
 /// Has the helper read a file. `request` names the reader and what it is told (helper/readers.hpp); the file is added.
 /// Of the parts those that its "blocks", names, do not mean are left out; contents.block_names are of all. Throws
-/// Error(bad_input) in one line.
+/// Error(bad_input) in one line. With "surfaces" those count as blocks (ForeignFile::with_surfaces).
 ForeignFile open_foreign(std::shared_ptr<HelperProcess> helper, const std::filesystem::path& file,
                          nlohmann::json request);
 
@@ -36,7 +37,8 @@ void add_foreign_fields(const ForeignFile& file, const ForeignPart& part, scene:
 enum class GridsAre { volumes, hexahedra };
 
 /// The parts as blocks, every offset and index checked, which readers do not. Structured, curvilinear and rectilinear
-/// grids become hexahedra. Empty parts are left out, and so are surfaces beside volumes, for which `notes` has a line.
+/// grids become hexahedra. Empty parts are left out, and so are surfaces beside volumes, for which `notes` has a line,
+/// unless they are asked for.
 /// Throws Error(bad_input) naming the cell at fault, and for images (regular grids).
 std::vector<CellBlock> blocks_of(const ForeignFile& file, std::vector<std::string>& notes,
                                  GridsAre grids = GridsAre::volumes);

@@ -83,7 +83,7 @@ MeshBlocks read_vtk_xml(const std::filesystem::path& file, const MeshOptions& op
         "{}: it is a regular grid (image data), no mesh; render, info and convert take it as a volume", source));
   if (lists_pieces(file)) {
     // Pieces one by one, so that the whole reads as its parts do, and faults name the piece.
-    const PieceList list = piece_list(file, options.blocks);
+    const PieceList list = piece_list(file, options.blocks, options.surfaces);
     return read_pieces(list, 0, list.pieces.size(), options.progress);
   }
   if (!kind) throw scene::bad_input(fmt::format("{}: its type is '{}'; give a mesh", source, type));
@@ -110,6 +110,7 @@ MeshBlocks read_exodus(const std::filesystem::path& file, const MeshOptions& opt
     throw scene::bad_input(
         fmt::format("{}: it is neither NetCDF nor HDF5; check that it is an Exodus file", file.string()));
   nlohmann::json request{{"reader", "exodus"}, {"blocks", options.blocks}};
+  if (options.surfaces) request["surfaces"] = true;
   if (options.time_step) request["time_step"] = *options.time_step;
   return read_foreign(file, std::move(request), options);
 }
@@ -126,6 +127,7 @@ MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reade
 MeshBlocks read_hdf5(const std::filesystem::path& file, const MeshOptions& options) {
   if (!exodus_files(file).empty()) return read_share(file, options, 0, 1);
   nlohmann::json request{{"reader", "hdf5"}, {"blocks", options.blocks}};
+  if (options.surfaces) request["surfaces"] = true;
   if (options.time_step) request["time_step"] = *options.time_step;
   if (!options.field.empty()) request["field"] = options.field;
   HelperTask task;

@@ -46,6 +46,7 @@ MeshBlocks read_foreign_mesh(const std::filesystem::path& file, const ForeignRea
                              GridsAre grids) {
   nlohmann::json request{{"blocks", options.blocks}, {"field", options.field}};
   if (options.time_step) request["time_step"] = *options.time_step;
+  if (options.surfaces) request["surfaces"] = true;
   const ForeignFile opened = open_by(by, file, std::move(request), options.progress);
   MeshBlocks result;
   result.format = opened.contents.format;

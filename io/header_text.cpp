@@ -84,7 +84,8 @@ std::filesystem::path header_path(std::string_view text, const std::filesystem::
   std::error_code failed;
   std::filesystem::path path = file.parent_path() / text;
   if (is_inflated(path)) require_beside_others(file);
-  if (!is_name || !std::filesystem::exists(path, failed))
+  // A name of nothing would be the folder itself.
+  if (!is_name || !std::filesystem::exists(path, failed) || std::filesystem::is_directory(path, failed))
     throw scene::bad_input(fmt::format("{}: {} is {}, and there is no such file; put the file it names there",
                                        file.string(), what, quote(text)));
   return path;

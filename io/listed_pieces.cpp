@@ -53,13 +53,14 @@ void add_block(ListedPiece listed, const BlockChoice& choice, PieceList& list, s
     return;
   }
   listed.type = type_of(listed.file);
-  if (is_any_of(listed.type, surfaces)) {
+  const bool is_wanted = list.with_surfaces && listed.type == surfaces.front();
+  if (is_any_of(listed.type, surfaces) && !is_wanted) {
     ++surfaces_left_out;
     return;
   }
   list.block_names.push_back(listed.block);
   if (listed.type == in_pieces) return add_pieces_of_whole(listed.file, listed.block, list);
-  if (!is_any_of(listed.type, volumes))
+  if (!is_any_of(listed.type, volumes) && !is_wanted)
     throw scene::bad_input(fmt::format("{}: it is a block of {} and its type is '{}', no mesh or grid; leave it out",
                                        listed.file.string(), listed.list, listed.type));
   list.pieces.push_back(std::move(listed));
@@ -106,9 +107,10 @@ bool lists_pieces(const std::filesystem::path& file) {
   return type == in_pieces || is_any_of(type, lists);
 }
 
-PieceList piece_list(const std::filesystem::path& file, const BlockChoice& choice) {
+PieceList piece_list(const std::filesystem::path& file, const BlockChoice& choice, bool with_surfaces) {
   require_beside_others(file);
   PieceList list;
+  list.with_surfaces = with_surfaces;
   if (type_of(file) != in_pieces) {
     list.format = "VTK XML multi-block";
     add_blocks(file, choice, list);
@@ -131,7 +133,8 @@ MeshBlocks read_pieces(const PieceList& list, std::size_t first, std::size_t las
     const std::string type = of_whole ? type_of(piece.file) : piece.type;
     if (of_whole) require_piece(piece, type);
     if (!helper) helper = std::make_shared<HelperProcess>();
-    ForeignFile opened = open_foreign(helper, piece.file, {{"reader", "vtk_xml"}, {"type", type}});
+    ForeignFile opened =
+        open_foreign(helper, piece.file, {{"reader", "vtk_xml"}, {"type", type}, {"surfaces", list.with_surfaces}});
     add_notes(opened.contents.notes, result.notes);
     if (!of_whole)
       for (ForeignPart& part : opened.contents.parts) part.name = piece.block;

@@ -21,6 +21,7 @@ struct PieceList {
   std::vector<ListedPiece> pieces;  ///< in their order; the chosen blocks' volumes
   std::vector<std::string> block_names, notes;
   std::string format;
+  bool with_surfaces = false;  ///< of the chosen blocks
 };
 
 /// Whether a file that begins as VTK XML does is an unstructured grid in pieces, or a list of blocks, whatever its
@@ -28,8 +29,8 @@ struct PieceList {
 bool lists_pieces(const std::filesystem::path& file);
 
 /// The pieces of such a file, their paths as it gives them, relative ones against its folder. Those of a .pvtu need not
-/// exist; blocks are looked at, since surfaces are left out. Throws Error(bad_input).
-PieceList piece_list(const std::filesystem::path& file, const BlockChoice& choice);
+/// exist; blocks are looked at, since surfaces are left out unless `with_surfaces`. Throws Error(bad_input).
+PieceList piece_list(const std::filesystem::path& file, const BlockChoice& choice, bool with_surfaces = false);
 
 /// Pieces [first, last) of a list, those of a whole a block each, whose `source` is the piece's file; regular grids as
 /// hexahedra. Throws Error(bad_input) that names the piece at fault.

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numeric>
@@ -123,7 +124,11 @@ class Assembly {
             fmt::format("block '{}' lacks the field '{}': its cells are blanked", block.name, choice_.name));
       return;
     }
-    field->read(choice_.component, 0, std::span(values_).subspan(first, n));
+    const auto values = std::span(values_).subspan(first, n);
+    field->read(choice_.component, 0, values);
+    // Between subnormal numbers there are too few to interpolate.
+    for (double& value : values)
+      if (std::abs(value) < std::numeric_limits<double>::min()) value = 0;
   }
 
   /// Appends, in the order of the cells, what threads make of some of them at a time.

@@ -138,6 +138,17 @@ bool is_mesh_file(const std::filesystem::path& file) {
          (row->holds == FileHolds::mesh || row->holds == FileHolds::surface || row->holds == FileHolds::grid_or_mesh);
 }
 
+MeshBlocks read_mesh_blocks(const std::filesystem::path& file, const MeshOptions& options) {
+  const std::string source = file.string();
+  require_file(file);
+  return with_clean_errors(source, [&] {
+    MeshBlocks read = read_blocks(file, options);
+    if (!has_time_steps(file)) require_no_time_step(options.time_step, source);
+    require_blocks(options.blocks, read.block_names, source, options.surfaces);
+    return read;
+  });
+}
+
 MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options) {
   const std::string source = file.string();
   require_file(file);

@@ -36,6 +36,7 @@ struct MeshOptions {
   ReadProgressFunction progress{};  ///< null: nobody hears
   bool shape = false;               ///< ReadOptions::shape
   Selection selection{};            ///< what of the mesh is kept
+  bool surfaces = false;            ///< blocks of faces, patches and side sets are read and named too
 };
 
 using tessera::HigherOrderCells;
@@ -64,6 +65,11 @@ MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options
 /// Reads several files as the pieces of one mesh, their points not merged. Each has to have the chosen field. Throws as
 /// read_mesh.
 MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptions& options = {});
+
+/// The cells of a file's chosen blocks as they are before they are split, and the names of all its blocks. Throws as
+/// read_mesh, but not if there are none.
+struct MeshBlocks;
+MeshBlocks read_mesh_blocks(const std::filesystem::path& file, const MeshOptions& options);
 
 /// How many time steps a mesh file has. Of formats that may have several the helper opens it. Throws as read_mesh.
 std::uint64_t time_steps_of_mesh(const std::filesystem::path& file, const MeshOptions& options = {});

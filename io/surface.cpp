@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <unordered_map>
 
+#include "io/polygon_triangles.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -21,7 +23,40 @@ struct PositionHash {
   }
 };
 
+/// Whether corners lie on a plane but for a part in 10^8 of their distance, which is TetGen's own tolerance.
+bool is_flat(const Polygon& polygon, const std::vector<glm::dvec3>& points) {
+  const glm::dvec3 first = points[polygon.front()];
+  glm::dvec3 area(0);
+  double longest = 0;
+  for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
+    const glm::dvec3 a = points[polygon[k]] - first, b = points[polygon[k + 1]] - first;
+    area += glm::cross(a, b);
+    longest = std::max({longest, glm::length(a), glm::length(b)});
+  }
+  const double length = glm::length(area);
+  return std::ranges::all_of(
+      polygon, [&](std::uint32_t v) { return std::abs(glm::dot(area, points[v] - first)) <= 1e-8 * longest * length; });
+}
+
 }  // namespace
+
+void cut_warped_facets(Surface& surface) {
+  PolygonTriangles cutter;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<Facet> facets;
+  facets.reserve(surface.facets.size());
+  for (Facet& facet : surface.facets) {
+    if (facet.polygons.size() != 1 || facet.polygons.front().size() < 4 || !facet.holes.empty() ||
+        is_flat(facet.polygons.front(), surface.points)) {
+      facets.push_back(std::move(facet));
+      continue;
+    }
+    triangles.clear();
+    cutter.cut(facet.polygons.front(), surface.points, triangles);
+    for (const auto& t : triangles) facets.push_back({{{t[0], t[1], t[2]}}, {}});
+  }
+  surface.facets = std::move(facets);
+}
 
 void merge_coincident_points(Surface& surface) {
   std::unordered_map<glm::dvec3, std::uint32_t, PositionHash> place;

@@ -53,6 +53,10 @@ FilledMesh fill_surface(const Surface& surface, const FillSize& size, const std:
 /// Makes points at one place one point, drops polygons that this collapses. What STL has no other way to say.
 void merge_coincident_points(Surface& surface);
 
+/// Cuts facets of one polygon that are not flat into triangles, as faces of polyhedra are: to TetGen a facet is a
+/// plane.
+void cut_warped_facets(Surface& surface);
+
 /// Throws Error(bad_input) naming an edge that belongs to one polygon only. Facets of several polygons are TetGen's to
 /// judge, with them this checks nothing.
 void require_closed(const Surface& surface, const std::string& source);

@@ -85,9 +85,10 @@ MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::o
     throw scene::bad_input(fmt::format("{}: the largest tet volume is {}; give a positive one", source, *max_volume));
   MeshBlocks result;
   SurfaceFile read = read_surface_file(file, kind);
-  const Surface& surface = read.surface;
+  Surface& surface = read.surface;
   result.notes = std::move(read.notes);
   require_sound(surface, source);
+  cut_warped_facets(surface);
 
   result.format = fmt::format("surface ({}) filled by TetGen", read.words);
   double volume = enclosed_volume(surface);

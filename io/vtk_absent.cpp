@@ -42,7 +42,7 @@ VtkSurface read_vtk_surface(const std::string& source) { refuse(source); }
 
 // Read whole, by read_vtk_xml().
 bool lists_pieces(const std::filesystem::path&) { return false; }
-PieceList piece_list(const std::filesystem::path& file, const BlockChoice&) { refuse(file); }
+PieceList piece_list(const std::filesystem::path& file, const BlockChoice&, bool) { refuse(file); }
 bool has_shares(const std::filesystem::path&) { return false; }
 std::vector<std::filesystem::path> exodus_files(const std::filesystem::path&) { return {}; }
 MeshBlocks read_share(const std::filesystem::path& file, const MeshOptions&, int, int) { refuse(file); }

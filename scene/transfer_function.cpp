@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scene/error.hpp"
 
@@ -33,6 +34,9 @@ TransferFunction::TransferFunction(std::vector<Knot> knots) {
     if (i > 0 && knots[i].value < knots[i - 1].value)
       throw bad_input(fmt::format("knot {}: value {} is below the value before it, {}; sort the knots", i + 1,
                                   knots[i].value, knots[i - 1].value));
+    // Between such neighbours a slope has no finite number.
+    if (i > 0 && knots[i].value - knots_.back().value < std::numeric_limits<double>::min())
+      knots[i].value = knots_.back().value;
     const std::size_t n = knots_.size();
     if (n >= 2 && knots_[n - 1].value == knots[i].value && knots_[n - 2].value == knots[i].value)
       knots_.back() = knots[i];

@@ -46,7 +46,8 @@ class Scene {
   /// Reads it, by all ranks. Throws Error.
   [[nodiscard]] virtual Dataset open(const Communicator& communicator, const ReadProgressFunction& progress) const = 0;
   [[nodiscard]] virtual LoadedTransferFunction function(const Dataset& data) const = 0;
-  [[nodiscard]] virtual Settings settings(const LoadedTransferFunction& function) const = 0;
+  /// Read once for equal keys, for it may read surfaces of the data's files. Throws Error.
+  [[nodiscard]] virtual Settings settings(const Dataset& data, const LoadedTransferFunction& function) const = 0;
   [[nodiscard]] virtual View view(const Dataset& data) const = 0;
   /// How the picture becomes a file.
   [[nodiscard]] virtual ImageFileOptions image_options() const = 0;

@@ -188,7 +188,7 @@ RenderedFrame Stage::render_stand_in(const Scene& scene, HeldData& held, const V
   const LoadedTransferFunction& loaded = function(held, scene);
   const std::string key = scene.settings_key() + " stand-in";
   if (held.stand_in_key != key || !held.stand_in_session) {
-    Settings settings = scene.settings(loaded);
+    Settings settings = scene.settings(held.data, loaded);
     settings.surfaces.boundary.clear();
     settings.surfaces.triangles.clear();
     settings.integrator = {};
@@ -233,7 +233,7 @@ bool Stage::has_stand_in(const std::shared_ptr<HeldData>& held) {
 
 Session& Stage::session(const Json& /*state*/, const Scene& scene, HeldData& held) {
   const LoadedTransferFunction& loaded = function(held, scene);
-  Settings settings = scene.settings(loaded);
+  Settings settings = scene.settings(held.data, loaded);
   const std::string key = scene.settings_key() + (loaded.shaded ? " shaded" : "");
   for (auto kept = sessions_.begin(); kept != sessions_.end(); ++kept) {
     if (kept->key != key || &kept->session->dataset().state() != &held.data.state()) continue;
@@ -295,7 +295,8 @@ RayProbe Stage::probe(const Json& state, const Scene& scene, HeldData& held, con
                       std::size_t samples) {
   tell({{"do", "probe"}, {"state", state}, {"x", pixel.x}, {"y", pixel.y}, {"samples", samples}});
   const LoadedTransferFunction& loaded = function(held, scene);
-  return tessera::probe(held.data, view, loaded.function, pixel, samples, scene.settings(loaded), job_.communicator());
+  return tessera::probe(held.data, view, loaded.function, pixel, samples, scene.settings(held.data, loaded),
+                        job_.communicator());
 }
 
 void Stage::tell(const Json& order) {

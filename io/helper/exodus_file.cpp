@@ -197,9 +197,11 @@ BlockField make_field(const Variable& variable, scene::Association association, 
 /// Reads one file; a class so that its parts share the open file and the counts.
 class Reading {
  public:
-  Reading(const std::filesystem::path& path, std::optional<std::size_t> time_step, BlockChoice choice)
+  Reading(const std::filesystem::path& path, std::optional<std::size_t> time_step, BlockChoice choice,
+          bool with_surfaces)
       : source_(path.string()),
         choice_(std::move(choice)),
+        with_surfaces_(with_surfaces),
         file_(std::make_shared<ExodusFile>(path)),
         // HDF5 compresses: then a value may take less than a byte. NetCDF classic does not.
         most_values_(require_file(path) * (read_beginning(path, 3).starts_with("CDF") ? 1 : 1040)),
@@ -238,8 +240,9 @@ class Reading {
     std::vector<std::int64_t> ids(static_cast<std::size_t>(init_.num_elem_blk));
     if (!ids.empty()) file_->require(ex_get_ids(file_->id(), EX_ELEM_BLOCK, ids.data()), "the element blocks");
     block_.offsets.push_back(0);
-    const ExodusSets sets(file_->id(), init_, choice_, most_values_, source_,
-                          [this](const std::string& what) { file_->fail(what); });
+    const ExodusSets sets(
+        file_->id(), init_, choice_, most_values_, source_, [this](const std::string& what) { file_->fail(what); },
+        with_surfaces_);
     std::uint64_t first = 0;  // of the block's elements among all
     for (const std::int64_t id : ids) {
       ex_block info{};
@@ -270,17 +273,24 @@ class Reading {
       blocks_.back().of = std::move(of);
     }
     result_.block_names.insert(result_.block_names.end(), sets.names().begin(), sets.names().end());
+    for (const std::int64_t set : sets.sides())
+      add_sides(
+          file_->id(), set, init_.num_nodes, most_values_, [this](const std::string& what) { file_->fail(what); },
+          block_);
+    has_sides_ = !sets.sides().empty();
     if (!block_.faces.empty()) block_.face_locations.resize(block_.types.size(), CellBlock::no_faces);
   }
 
   void add_block(std::int64_t id, const ex_block& info, std::uint8_t type) {
     const auto count = static_cast<std::size_t>(info.num_entry);
     blocks_.push_back({id, block_.types.size(), count});
-    const bool volumes = type != 9 && type != 42;
-    const auto nodes = static_cast<std::size_t>(std::max<std::int64_t>(volumes ? info.num_nodes_per_entry : 0, 0));
+    const bool has_corners = (type != 9 || is_faces(info)) && type != 42;
+    const auto nodes = static_cast<std::size_t>(std::max<std::int64_t>(has_corners ? info.num_nodes_per_entry : 0, 0));
     if (nodes > 0 && count > most_values_ / nodes)
       file_->fail(fmt::format("it promises {} elements of {} nodes", count, nodes));
-    block_.types.insert(block_.types.end(), count, type);
+    // Of faces the corners are used: three of 3, 6 and 7 nodes, else four.
+    const bool is_triangle = nodes == 3 || nodes == 6 || nodes == 7;
+    block_.types.insert(block_.types.end(), count, type == 9 && is_triangle ? std::uint8_t{5} : type);
     if (nodes > 0) {
       std::vector<std::int64_t> corner(count * nodes);
       file_->require(ex_get_conn(file_->id(), EX_ELEM_BLOCK, id, corner.data(), nullptr, nullptr), "the elements");
@@ -298,6 +308,16 @@ class Reading {
     if (type == 42) faces_.add(id, info, init_.num_nodes, block_);
     report_progress(static_cast<double>(block_.types.size()) /
                     static_cast<double>(std::max<std::int64_t>(init_.num_elem, 1)));
+  }
+
+  /// Whether a block's elements are faces that are asked for.
+  [[nodiscard]] bool is_faces(const ex_block& info) const {
+    const std::string_view topology(info.topology, ::strnlen(info.topology, sizeof info.topology));
+    const auto is = [&](std::string_view word) {
+      return std::ranges::equal(topology.substr(0, 3), word, {},
+                                [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    };
+    return with_surfaces_ && info.num_nodes_per_entry >= 3 && (is("SHE") || is("QUA") || is("TRI"));
   }
 
   void read_points() {
@@ -323,11 +343,16 @@ class Reading {
                                            }));
         displace(variable.name, block_.fields.back());
       }
-      add_element_fields();
+      if (!has_sides_) add_element_fields();
     }
+    if (has_sides_) return finish();
     std::vector<double> ids;
     for (const ElementBlock& b : blocks_) ids.insert(ids.end(), b.count, static_cast<double>(b.id));
     block_.fields.push_back(field_of_values("ObjectId", "int64", scene::Association::cell, 1, std::move(ids)));
+    finish();
+  }
+
+  void finish() {
     result_.format = "Exodus II";
     result_.blocks.push_back(std::move(block_));
   }
@@ -374,6 +399,8 @@ class Reading {
 
   std::string source_;
   BlockChoice choice_;
+  bool with_surfaces_ = false;
+  bool has_sides_ = false;            ///< faces among the cells, of which element variables have no values
   std::shared_ptr<ExodusFile> file_;  // the fields keep it open
   ex_init_params init_{};
   std::uint64_t most_values_ = 0;
@@ -390,7 +417,8 @@ ForeignContents read_exodus(Holdings& holdings, const std::filesystem::path& fil
   allow_for(file);
   std::optional<std::size_t> time_step;
   if (const auto step = request.find("time_step"); step != request.end()) time_step = step->get<std::size_t>();
-  MeshBlocks read = Reading(file, time_step, request.value("blocks", BlockChoice())).take();
+  MeshBlocks read =
+      Reading(file, time_step, request.value("blocks", BlockChoice()), request.value("surfaces", false)).take();
   ForeignContents contents;
   for (CellBlock& block : read.blocks) contents.parts.push_back(hold_block(holdings, std::move(block)));
   contents.notes = std::move(read.notes);

@@ -28,10 +28,10 @@ void refuse(int file, ex_entity_type type, const std::vector<std::int64_t>& ids,
     const std::string given = exodus_name(file, type, id),
                       name = given.empty() ? fmt::format("{} {}", what, id) : given;
     if (std::ranges::find(choice, name) != choice.end())
-      throw scene::bad_input(
-          fmt::format("{}: {} is a {}, which holds {} and no volume; name element blocks or element "
-                      "sets, which `tessera info` lists",
-                      source, scene::quote(name), what, holds));
+      throw scene::bad_input(fmt::format(
+          "{}: {} is a {}, which holds {} and no volume; name element blocks or element "
+          "sets, which `tessera info` lists{}",
+          source, scene::quote(name), what, holds, type == EX_SIDE_SET ? " (`surface` shows side sets)" : ""));
   }
 }
 
@@ -44,7 +44,8 @@ std::string exodus_name(int file, ex_entity_type type, std::int64_t id) {
 }
 
 ExodusSets::ExodusSets(int id, const ex_init_params& init, const BlockChoice& choice, std::uint64_t most_values,
-                       const std::string& source, const std::function<void(const std::string&)>& fail) {
+                       const std::string& source, const std::function<void(const std::string&)>& fail,
+                       bool with_sides) {
   for (const std::int64_t set : ids_of(id, EX_ELEM_SET, init.num_elem_sets, most_values, fail)) {
     const std::string given = exodus_name(id, EX_ELEM_SET, set);
     names_.push_back(given.empty() ? fmt::format("element set {}", set) : given);
@@ -66,9 +67,15 @@ ExodusSets::ExodusSets(int id, const ex_init_params& init, const BlockChoice& ch
     }
   }
   std::ranges::sort(elements_);
-  elements_.erase(std::ranges::unique(elements_).begin(), elements_.end());
-  refuse(id, EX_SIDE_SET, ids_of(id, EX_SIDE_SET, init.num_side_sets, most_values, fail), "side set", "faces", choice,
-         source);
+  elements_.erase(std::unique(elements_.begin(), elements_.end()), elements_.end());
+  const std::vector<std::int64_t> sides = ids_of(id, EX_SIDE_SET, init.num_side_sets, most_values, fail);
+  if (!with_sides) refuse(id, EX_SIDE_SET, sides, "side set", "faces", choice, source);
+  for (const std::int64_t set : sides) {
+    if (!with_sides) break;
+    const std::string given = exodus_name(id, EX_SIDE_SET, set);
+    names_.push_back(given.empty() ? fmt::format("side set {}", set) : given);
+    if (!choice.empty() && is_chosen(choice, names_.back())) sides_.push_back(set);
+  }
   refuse(id, EX_NODE_SET, ids_of(id, EX_NODE_SET, init.num_node_sets, most_values, fail), "node set", "points", choice,
          source);
 }
@@ -79,6 +86,35 @@ std::vector<std::uint64_t> ExodusSets::chosen_of(std::uint64_t first, std::uint6
   std::vector<std::uint64_t> chosen(low, high);
   for (std::uint64_t& element : chosen) element -= first;
   return chosen;
+}
+
+void add_sides(int file, std::int64_t id, std::int64_t points, std::uint64_t most_values,
+               const std::function<void(const std::string&)>& fail, CellBlock& block) {
+  std::int64_t count = 0, factors = 0, length = 0;
+  if (ex_get_set_param(file, EX_SIDE_SET, id, &count, &factors) < 0) fail("a side set cannot be read");
+  if (count < 0 || static_cast<std::uint64_t>(count) > most_values)
+    fail(fmt::format("it promises a side set of {} faces", count));
+  if (count == 0) return;
+  if (ex_get_side_set_node_list_len(file, id, &length) < 0) fail("a side set cannot be read");
+  // Of an element no more than 32 nodes are of one face.
+  if (length < 0 || length > 32 * count) fail(fmt::format("it promises a side set of {} corners", length));
+  std::vector<std::int64_t> counts(static_cast<std::size_t>(count)), nodes(static_cast<std::size_t>(length));
+  if (ex_get_side_set_node_list(file, id, counts.data(), nodes.data()) < 0) fail("a side set cannot be read");
+  constexpr std::uint8_t polygon = 7;
+  std::size_t at = 0;
+  for (const std::int64_t size : counts) {
+    if (size < 0 || at + static_cast<std::size_t>(size) > nodes.size()) fail("a side set cannot be read");
+    // Nodes of higher order come after the corners: 6 and 7 are of a triangle, 8 and 9 of a quadrilateral.
+    const std::int64_t corners = size == 6 || size == 7 ? 3 : size == 8 || size == 9 ? 4 : size;
+    for (std::int64_t k = 0; k < corners; ++k) {
+      const std::int64_t node = nodes[at + static_cast<std::size_t>(k)];
+      if (node < 1 || node > points) fail(fmt::format("a side set names node {} of {}", node, points));
+      block.connectivity.push_back(static_cast<std::uint32_t>(node - 1));
+    }
+    block.types.push_back(polygon);
+    block.offsets.push_back(block.connectivity.size());
+    at += static_cast<std::size_t>(size);
+  }
 }
 
 void keep_cells(CellBlock& block, std::size_t first, const std::vector<std::uint64_t>& kept) {

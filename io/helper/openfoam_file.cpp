@@ -177,6 +177,7 @@ ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::path& n
     reader->UpdateInformation();
     reader->EnableAllCellArrays();
     reader->EnableAllPointArrays();
+    if (request.value("surfaces", false)) reader->EnableAllPatchArrays();  // without, the volume alone is on
     if (is_decomposed) return read_processors(holdings, *reader, folder, source, request, contents);
     update_at_step(*reader, request, source, contents.time_step);
     if (vtkDataObject* const data = reader->GetOutputDataObject(0); data != nullptr)

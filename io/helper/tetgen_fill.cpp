@@ -103,6 +103,31 @@ void copy_in(const Surface& surface, const Frame& frame, tetgenio& in) {
   }
 }
 
+/// Where a surface cuts itself, in words that follow "the surface cuts itself"; none if TetGen does not find it.
+std::string place_of_cut(const Surface& surface, const Frame& frame) {
+  tetgenbehavior wishes;
+  std::string switches = "dzQ";  // d: find faces that meet where they should not
+  wishes.parse_commandline(switches.data());
+  tetgenio* const in = keep_for_good();
+  tetgenio* const out = keep_for_good();
+  copy_in(surface, frame, *in);
+  try {
+    tetrahedralize(&wishes, in, out);
+  } catch (int) {
+    return {};
+  }
+  if (out->numberoftrifaces <= 0 || out->trifacelist == nullptr || out->pointlist == nullptr) return {};
+  glm::dvec3 middle(0);
+  for (int k = 0; k < 3; ++k) {
+    const int v = out->trifacelist[k];
+    if (v < 0 || v >= out->numberofpoints) return {};
+    const REAL* const p = out->pointlist + 3 * static_cast<std::size_t>(v);
+    middle += frame.out({p[0], p[1], p[2]}) / 3.0;
+  }
+  return fmt::format(" in {} faces, one about ({:.6g}, {:.6g}, {:.6g})", out->numberoftrifaces, middle.x, middle.y,
+                     middle.z);
+}
+
 }  // namespace
 
 FilledSurface fill(const Surface& surface, std::optional<double> max_volume, const std::string& source) {
@@ -126,8 +151,8 @@ FilledSurface fill(const Surface& surface, std::optional<double> max_volume, con
     tetrahedralize(&wishes, in, out);
   } catch (int thrown) {
     if (thrown == 1) throw std::bad_alloc();
-    throw scene::bad_input(
-        fmt::format("{}: TetGen cannot fill the surface: {}; mend the surface", source, reason(thrown)));
+    throw scene::bad_input(fmt::format("{}: TetGen cannot fill the surface: {}{}; mend the surface", source,
+                                       reason(thrown), thrown == 3 || thrown == 5 ? place_of_cut(surface, frame) : ""));
   }
   FilledSurface filled;
   const auto points = static_cast<std::size_t>(out->numberofpoints);

@@ -22,6 +22,14 @@ TEST(ArgumentValues, SizesInMemoryTakePowersOf1024) {
 TEST(ArgumentValues, ColorsAreNamesOrThreeNumbers) {
   EXPECT_EQ(parse_color("--background", "white"), (std::array<float, 3>{1, 1, 1}));
   EXPECT_EQ(parse_color("--background", "0.25,0,2"), (std::array<float, 3>{0.25f, 0, 2}));
+  // CSS's green is half of lime in sRGB.
+  EXPECT_EQ(parse_color("--background", "lime"), (std::array<float, 3>{0, 1, 0}));
+  EXPECT_EQ(parse_color("--background", "green"), parse_color("--background", "#008000"));
+  EXPECT_EQ(parse_color("--background", "steelblue"), parse_color("--background", "#4682B4"));
+  EXPECT_EQ(parse_color("--background", "#48b"), parse_color("--background", "#4488bb"));
+  EXPECT_NEAR(parse_color("--background", "gray")[1], 0.215861, 1e-6);  // 128 / 255 by IEC 61966-2-1
+  for (const char* text : {"#", "#12", "#1234", "#12345", "#1234567", "#12345g", "#+12345", "steelblues", "rgb"})
+    EXPECT_THROW(parse_color("--background", text), Error) << text;
   for (const char* text : {"", "1", "1,2", "1,2,3,4", "1,,2", "1,2,", "inf,0,0", "1,2,x", "-0.1,0,0", "White"})
     EXPECT_THROW(parse_color("--background", text), Error) << text;
 }

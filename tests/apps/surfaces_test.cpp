@@ -54,8 +54,8 @@ TEST(Surfaces, OfFacesAreRefusedInOneLineThatSaysWhy) {
     EXPECT_EQ(run.error_lines(), 1u) << run.err;
     EXPECT_NE(run.err.find(word), std::string::npos) << run.err;
   };
-  refused({"--surface", "skin"}, "'skin' is neither boundary nor a file");
-  refused({"--surface", "skin"}, "--block NAME --surface boundary");
+  refused({"--surface", "skin"}, "no block 'skin': it is not made of named blocks; give boundary or a file");
+  refused({"--surface", "skin.ply"}, "'skin.ply' is neither boundary nor a file that is there");
   refused({"--surface", "boundary:reddish"}, "not a colour");
   refused({"--surface", "boundary:red:2"}, "opacity 2");
   refused({"--surface", mesh}, "no surface of triangles");

@@ -3,12 +3,14 @@
 #include <vtk_exodusII.h>
 
 #include <array>
+#include <glm/geometric.hpp>
 #include <set>
 #include <vector>
 
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
 #include "io/temporary_folder.hpp"
+#include "tessera/triangle_file.hpp"
 
 namespace tessera::io {
 namespace {
@@ -112,9 +114,42 @@ TEST(ExodusBlocks, ElementSetsAreChosenLikeBlocks) {
   // What is named twice is there once.
   EXPECT_NEAR(testing::volume(read({"ends", "element set 4"}).mesh), 3, 1e-12);
   EXPECT_NEAR(testing::volume(read({"ends", "steel"}).mesh), 3, 1e-12);
-  test::expect_bad_input([&] { read({"inlet"}); }, {"'inlet' is a side set", "element sets"});
+  test::expect_bad_input([&] { read({"inlet"}); }, {"'inlet' is a side set", "element sets", "`surface`"});
   test::expect_bad_input([&] { read({"node set 5"}); }, {"'node set 5' is a node set"});
   test::expect_bad_input([&] { read({"end"}); }, {"no block 'end'", "'ends'"});
+}
+
+double area(const tessera::TriangleMesh& mesh) {
+  double sum = 0;
+  for (const auto& t : mesh.triangles) {
+    const glm::dvec3 p = mesh.points[t[0]];
+    sum += 0.5 * glm::length(glm::cross(mesh.points[t[1]] - p, mesh.points[t[2]] - p));
+  }
+  return sum;
+}
+
+/// The side set is one face of the middle cube, between x = 1 and 2.
+TEST(ExodusBlocks, SideSetsAreSurfaces) {
+  const test::TemporaryFolder folder;
+  write_cubes((folder / "a.exo").string(), true);
+  const std::array files = {folder / "a.exo"};
+  const tessera::TriangleMesh inlet = read_block_surface(files, "inlet");
+  EXPECT_EQ(inlet.triangles.size(), 2u);
+  EXPECT_NEAR(area(inlet), 1, 1e-12);
+  EXPECT_TRUE(inlet.values.empty());
+  for (const glm::dvec3& p : inlet.points) EXPECT_TRUE(p.x >= 1 && p.x <= 2) << p.x;
+  // Of a block of volume, and of an element set, the boundary, with values.
+  ReadOptions options;
+  options.field = "v";
+  const tessera::TriangleMesh steel = read_block_surface(files, "steel", options);
+  EXPECT_NEAR(area(steel), 14, 1e-12);
+  EXPECT_EQ(steel.values.size(), steel.points.size());
+  const tessera::TriangleMesh middle = read_block_surface(files, "element set 4", options);
+  EXPECT_NEAR(area(middle), 6, 1e-12);
+  for (const double value : middle.values) EXPECT_EQ(value, 10);
+  test::expect_bad_input([&] { (void)read_block_surface(files, "outlet"); },
+                         {"a.exo: there is no block 'outlet'; it has 'steel', 'ends', 'element set 4', 'inlet'"});
+  test::expect_bad_input([&] { (void)read_block_surface(files, "node set 5"); }, {"'node set 5' is a node set"});
 }
 
 }  // namespace

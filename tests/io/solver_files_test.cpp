@@ -10,6 +10,7 @@
 #include <map>
 #include <utility>
 
+#include "io/block_surface.hpp"
 #include "io/foam_case.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
@@ -200,6 +201,25 @@ TEST(SolverFiles, AnOpenFoamCaseIsReadAtItsLastTimeOrTheOneAskedFor) {
             std::string::npos);
 }
 
+/// A zero-gradient patch has the pressure of the cells beside it, 1000.
+TEST(SolverFiles, PatchesOfAnOpenFoamCaseAreReadByName) {
+  const test::TemporaryFolder folder;
+  write_foam(folder.path(), Cubes(3), [](int) { return true; });
+  write_control(folder.path());
+  const std::array files = {folder / "case.foam"};
+  MeshOptions options;
+  options.field = "cell:p";
+  options.blocks = {"walls"};
+  const BlockFaces walls = read_block_faces(files, options);
+  EXPECT_FALSE(walls.has_volume);
+  EXPECT_EQ(walls.mesh.triangles.size(), 2u * 6 * 9);
+  for (const glm::dvec3& p : walls.mesh.points)
+    EXPECT_TRUE(p.x == 0 || p.x == 3 || p.y == 0 || p.y == 3 || p.z == 0 || p.z == 3);
+  ASSERT_EQ(walls.mesh.values.size(), walls.mesh.points.size());
+  for (const double value : walls.mesh.values) EXPECT_EQ(value, 1000);
+  EXPECT_EQ(read_mesh(folder / "case.foam").blocks, std::vector<std::string>{"internalMesh"});
+}
+
 TEST(SolverFiles, ADecomposedOpenFoamCaseIsReadWhole) {
   const test::TemporaryFolder folder;
   const Cubes cubes(4);
@@ -315,6 +335,46 @@ TEST(SolverFiles, AMultiBlockFilesVolumesAreDrawnTogether) {
   EXPECT_NE(
       message_of([&] { read_mesh(list(both + "<DataSet index=\"2\" file=\"gone.vtu\"/>")); }).find("gone.vtu: there"),
       std::string::npos);
+}
+
+/// A square that no cell of the volume has.
+TEST(SolverFiles, AMultiBlockFilesSurfacesAreReadByName) {
+  const test::TemporaryFolder folder;
+  folder.write("a.vtu", testing::vtu_text(testing::mixed_mesh(2, 1, false)));
+  folder.write(
+      "s.vtp",
+      "<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\"><PolyData><Piece NumberOfPoints=\"4\" "
+      "NumberOfPolys=\"1\"><PointData><DataArray type=\"Float64\" Name=\"f\" format=\"ascii\">1 2 3 4</DataArray>"
+      "</PointData><CellData/><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 9 2 0 "
+      "9 2 "
+      "2 9 0 2 9</DataArray></Points><Polys><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2 "
+      "3</DataArray><DataArray type=\"Int32\" Name=\"offsets\" "
+      "format=\"ascii\">4</DataArray></Polys></Piece></PolyData>"
+      "</VTKFile>");
+  const std::array files = {folder.write(
+      "m.vtm",
+      "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet><DataSet index=\"0\" "
+      "name=\"fluid\" "
+      "file=\"a.vtu\"/><DataSet index=\"1\" name=\"lid\" file=\"s.vtp\"/></vtkMultiBlockDataSet></VTKFile>")};
+  MeshOptions options;
+  options.field = "f";
+  options.blocks = {"lid"};
+  const BlockFaces lid = read_block_faces(files, options);
+  EXPECT_FALSE(lid.has_volume);
+  ASSERT_EQ(lid.mesh.triangles.size(), 2u);
+  ASSERT_EQ(lid.mesh.values.size(), lid.mesh.points.size());
+  for (std::size_t v = 0; v < lid.mesh.points.size(); ++v) {
+    const glm::dvec3& p = lid.mesh.points[v];
+    EXPECT_EQ(p.z, 9);
+    EXPECT_EQ(lid.mesh.values[v], p.y == 0 ? 1 + p.x / 2 : 4 - p.x / 2);
+  }
+  options.field = "nothing";  // a surface need not have the field
+  EXPECT_TRUE(read_block_faces(files, options).mesh.values.empty());
+  options.blocks = {"fluid"};
+  EXPECT_TRUE(read_block_faces(files, options).has_volume);
+  options.blocks = {"lit"};
+  EXPECT_NE(message_of([&] { (void)read_block_faces(files, options); }).find("it has 'fluid', 'lid'; the nearest is"),
+            std::string::npos);
 }
 
 }  // namespace

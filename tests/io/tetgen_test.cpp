@@ -239,7 +239,7 @@ TEST_F(Filled, OpenCuttingFlatAndEmptySurfacesAreTold) {
       [&] {
         read_mesh(folder.write("c.ply", ply({s, sphere(12, {0.3, 0.2, 0.1}, 1)})));
       },
-      {"c.ply: TetGen cannot fill the surface", "cuts itself"});
+      {"c.ply: TetGen cannot fill the surface", "cuts itself in ", "faces, one about ("});
   expect_bad_input([&] { read_mesh(folder.write("f.ply", ply({sphere(12, {0, 0, 0}, 0)}))); }, {"f.ply: "});
   expect_bad_input([&] { read_mesh(folder.write("e.stl", "solid e\nendsolid e\n")); }, {"e.stl: "});
   Sphere nan = s;
@@ -248,6 +248,26 @@ TEST_F(Filled, OpenCuttingFlatAndEmptySurfacesAreTold) {
   MeshOptions options;
   options.max_volume = -1;
   expect_bad_input([&] { read_mesh(folder.write("s.ply", ply({s})), options); }, {"give a positive one"});
+}
+
+/// A prism whose three sides are quads that are not flat, as those of many drawn surfaces: TetGen takes none of them.
+TEST_F(Filled, WarpedPolygonsAreCutIntoTriangles) {
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty double x\nproperty double y\nproperty double z\n"
+      "element face 5\nproperty list uchar int vertex_indices\nend_header\n";
+  constexpr double turn = 0.4;
+  for (int v = 0; v < 6; ++v) {
+    const double angle = 2.0943951023931953 * (v % 3) + (v < 3 ? 0 : turn);
+    text += fmt::format("{} {} {}\n", std::cos(angle), std::sin(angle), v / 3);
+  }
+  text += "3 0 2 1\n3 3 4 5\n4 0 1 4 3\n4 1 2 5 4\n4 2 0 3 5\n";
+  MeshOptions options;
+  options.max_volume = 0.01;
+  const MeshFile read = read_mesh(folder.write("w.ply", text), options);
+  // Each side's diagonal is one of two: what is inside lies between the volumes of all inward and all outward.
+  const double base = 0.75 * std::sqrt(3.0);
+  EXPECT_NEAR(testing::volume(read.mesh), base, 0.25 * base);
+  EXPECT_GT(read.mesh.tets.size(), 100u);
 }
 
 TEST_F(Filled, OpenPolyIsTold) {

@@ -257,6 +257,9 @@ TEST_F(VolumeFiles, MetaImagePlacesScalesAndReadsLocalAndSeparateSamples) {
   expect_refused(folder.write("c.mha", head + "ElementDataFile = LOCAL\n" + samples.substr(1)), "the file has 23");
   expect_refused(folder.write("d.mha", head), "no ElementDataFile");
   expect_refused(folder.write("e.mhd", "NDims = 2\nElementDataFile = LOCAL\n"), "2 dimensions");
+  for (const char* folder_name : {"", ".", "..", "./"})
+    expect_refused(folder.write("f.mhd", head + "ElementDataFile = " + folder_name + "\n"),
+                   "f.mhd: ElementDataFile is '" + std::string(folder_name) + "', and there is no such file");
 }
 
 TEST_F(VolumeFiles, RawFilesAreDescribedByOptionsOrByName) {

@@ -54,4 +54,13 @@ TEST(TransferFunction, RefusesNegativeUnsortedAndNotFiniteKnots) {
 }
 
 }  // namespace
+/// A field of such small values has no slopes that are numbers.
+TEST(TransferFunction, KnotsBelowTheSmallestNormalNumberApartAreAStep) {
+  const TransferFunction f({{0, glm::dvec3(0), 0}, {1e-320, glm::dvec3(1), 2}, {2e-320, glm::dvec3(0.5), 3}});
+  ASSERT_EQ(f.knots().size(), 2u);
+  EXPECT_EQ(f.evaluate(-1).extinction, 0);
+  EXPECT_EQ(f.evaluate(0).extinction, 3);
+  EXPECT_EQ(f.evaluate(3e-320).color, glm::dvec3(0.5));
+}
+
 }  // namespace tessera::scene

@@ -1,0 +1,151 @@
+#include "io/block_surface.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <optional>
+
+#include "io/cell_split.hpp"
+#include "io/clean_errors.hpp"
+#include "io/field_choice.hpp"
+#include "io/mesh_formats.hpp"
+#include "io/polygon_triangles.hpp"
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+/// The corners of a two-dimensional cell one after the other round it; none of other cells.
+std::vector<std::uint32_t> rim_of(std::uint8_t type, std::span<const std::uint32_t> points) {
+  std::size_t corners = 0;
+  switch (type) {
+    case 5:   // triangle
+    case 22:  // quadratic, biquadratic and Lagrange triangles
+    case 34:
+    case 69:
+      corners = 3;
+      break;
+    case 8:  // pixel
+      if (points.size() >= 4) return {points[0], points[1], points[3], points[2]};
+      break;
+    case 9:  // quadrilateral
+    case 23:
+    case 28:
+    case 30:
+    case 70:
+      corners = 4;
+      break;
+    case 7:  // polygon
+      corners = points.size();
+      break;
+    case 36:  // quadratic polygon: corners, then as many nodes between them
+      corners = points.size() / 2;
+      break;
+    default:
+      break;
+  }
+  if (corners < 3 || points.size() < corners) return {};
+  return {points.begin(), points.begin() + static_cast<std::ptrdiff_t>(corners)};
+}
+
+class Faces {
+ public:
+  Faces(const FieldChoice* choice, BlockFaces& to) : choice_(choice), to_(to) {}
+
+  void add(const CellBlock& block, const std::string& source) {
+    if (!block.tets.empty()) to_.has_volume = true;
+    read_values(block);
+    for (std::size_t c = 0; c < block.types.size(); ++c) {
+      const auto points =
+          std::span(block.connectivity).subspan(block.offsets[c], block.offsets[c + 1] - block.offsets[c]);
+      if (block.types[c] == 6) {  // triangle strip
+        for (std::size_t k = 0; k + 2 < points.size(); ++k)
+          add_face(block, c, std::array{points[k + k % 2], points[k + 1 - k % 2], points[k + 2]}, source);
+        continue;
+      }
+      const std::vector<std::uint32_t> rim = rim_of(block.types[c], points);
+      if (!rim.empty())
+        add_face(block, c, rim, source);
+      else if (cell_shape(block.types[c]).kind != CellKind::not_volumetric)
+        to_.has_volume = true;
+    }
+  }
+
+ private:
+  void read_values(const CellBlock& block) {
+    values_.clear();
+    if (choice_ == nullptr) return;
+    const BlockField* const field = find_field(block, choice_->name, choice_->association);
+    const bool point = choice_->association == scene::Association::point;
+    values_.assign(point ? block.positions.size() : block.cell_count(), 0);
+    if (field != nullptr && field->tuples == values_.size())
+      field->read(choice_->component, 0, values_);
+    else
+      has_values_ = false;
+  }
+
+  /// Each face has points of its own, for those of cell data have several values.
+  void add_face(const CellBlock& block, std::size_t cell, std::span<const std::uint32_t> rim,
+                const std::string& source) {
+    triangles_.clear();
+    cutter_.cut(rim, block.positions, triangles_);
+    for (const auto& triangle : triangles_) {
+      const auto first = static_cast<std::uint32_t>(to_.mesh.points.size());
+      for (const std::uint32_t v : triangle) {
+        const glm::dvec3& p = block.positions[v];
+        if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)))
+          throw scene::bad_input(fmt::format("{}: point {} of its faces is not finite; mend it", source, v));
+        to_.mesh.points.push_back(p);
+        if (choice_ == nullptr) continue;
+        const double value = values_[choice_->association == scene::Association::point ? v : cell];
+        to_.mesh.values.push_back(value);
+        if (!std::isfinite(value)) has_values_ = false;
+      }
+      to_.mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    if (!has_values_) to_.mesh.values.clear(), choice_ = nullptr;
+  }
+
+  const FieldChoice* choice_;
+  BlockFaces& to_;
+  bool has_values_ = true;
+  std::vector<double> values_;
+  std::vector<std::array<std::uint32_t, 3>> triangles_;
+  PolygonTriangles cutter_;
+};
+
+/// The field that is asked for, if the blocks have it.
+std::optional<FieldChoice> field_of(std::span<const CellBlock> blocks, const std::string& wish,
+                                    const std::string& source) {
+  if (wish.empty()) return std::nullopt;
+  const std::vector<FieldTally> tallies = tally_fields(blocks);
+  try {
+    return choose_field(wish, summarize_fields(std::span(&tallies, 1)), source);
+  } catch (const scene::Error&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+BlockFaces read_block_faces(std::span<const std::filesystem::path> files, MeshOptions options) {
+  options.surfaces = true;
+  const std::string source = files.front().string();
+  return with_clean_errors(source, [&] {
+    std::vector<CellBlock> blocks;
+    for (const std::filesystem::path& file : files) {
+      MeshBlocks read = read_mesh_blocks(file, options);
+      std::move(read.blocks.begin(), read.blocks.end(), std::back_inserter(blocks));
+    }
+    const std::optional<FieldChoice> choice = field_of(blocks, options.field, source);
+    BlockFaces result;
+    Faces faces(choice ? &*choice : nullptr, result);
+    for (const CellBlock& block : blocks) faces.add(block, source);
+    return result;
+  });
+}
+
+}  // namespace tessera::io
