@@ -332,7 +332,7 @@ test("threshold, box, plane and iso-surface", async () => {
   assert.equal((await state()).clip.length, 2);
   assert.equal(await data.getByLabel("x, high end").and(page.locator("input[type=range]")).inputValue(), "625", "the slider spans what is cut away too");
   await data.getByRole("button", { name: "Add an iso-surface" }).click();
-  await data.getByLabel("Boundary surface").check();
+  await data.getByRole("button", { name: "Add a surface" }).click();
   await at_rest(page);
   assert.equal((await state()).iso.length, 1);
   assert.match((await state()).surface[0], /^boundary:#/);
