@@ -31,6 +31,12 @@ export class Connection {
     this.socket = undefined;
     /** What the server said before it ended. */
     this.ended = "";
+    /** When the first state was sent that nothing has been heard since; 0: none. */
+    this.asked_at = 0;
+    this.checking = false;
+    /** Milliseconds of silence after a state that are looked into, and within which a server answers a request. */
+    this.silence = 20000;
+    this.answer_time = 10000;
     window.addEventListener("online", () => this.retry());
   }
 
@@ -44,7 +50,10 @@ export class Connection {
       this.ended = "";
       this.listeners.status("open", {});
     };
-    socket.onmessage = ({ data }) => this.#read(data);
+    socket.onmessage = ({ data }) => {
+      this.asked_at = 0;
+      if (this.socket === socket) this.#read(data);
+    };
     socket.onclose = () => {
       if (this.socket !== socket) return;
       this.socket = undefined;
@@ -61,7 +70,31 @@ export class Connection {
 
   /** @param {Record<string, any>} message */
   send(message) {
-    if (this.is_open) this.socket?.send(JSON.stringify(message));
+    if (!this.is_open) return;
+    this.socket?.send(JSON.stringify(message));
+    if (message.type === "state") this.asked_at ||= performance.now();
+  }
+
+  /**
+   * To be called now and then. A socket over a network that is gone, after a laptop's sleep, may stay open for long:
+   * silence is looked into by a request, which a server answers however long its frame takes.
+   */
+  async check() {
+    const { socket } = this;
+    if (!socket || !this.asked_at || this.checking || performance.now() - this.asked_at < this.silence) return;
+    this.checking = true;
+    try {
+      await ask("api/progress", AbortSignal.timeout(this.answer_time));
+      this.asked_at = performance.now();
+    } catch {
+      if (this.socket === socket) {
+        this.socket = undefined;
+        socket.close();
+        void this.#lost();
+      }
+    } finally {
+      this.checking = false;
+    }
   }
 
   get is_open() {
@@ -81,9 +114,10 @@ export class Connection {
   }
 
   async #lost() {
+    this.asked_at = 0;
     // A socket does not say why it was not opened; a request does.
     try {
-      if (!this.ended) await ask("api/data");
+      if (!this.ended) await ask("api/data", AbortSignal.timeout(this.answer_time));
     } catch (error) {
       if (error instanceof Refused) {
         this.listeners.status("refused", { sentence: error.message });

@@ -387,7 +387,10 @@ document.addEventListener("visibilitychange", () => {
   if (document.hidden) connection.send({ type: "pause" });
   else offer(false);
 });
-setInterval(() => sender.tick(), 500);
+setInterval(() => {
+  sender.tick();
+  void connection.check();
+}, 500);
 
 // Keys.
 
@@ -422,6 +425,7 @@ Object.assign(window, {
   tessera: {
     state: () => history.state, full_state: () => page.full_state(), shown: () => view.shown, bytes: () => view.bytes, latencies: () => status.latencies(),
     change: (/** @type {import("./types.js").State} */ state) => history.change(state), link: () => picture_panel.link(), copied: () => picture_panel.copied, sent: () => sender.number,
+    connection,
     at_rest: () => page.ready && !history.moving && !sender.waiting && sender.number > 0 && document.body.dataset.shown === `${sender.number} exact final`,
   },
 });

@@ -47,6 +47,8 @@ export class Messages {
   /** @param {"note"|"error"} kind @param {string} about @param {string} sentence @param {{text: string, act: () => void}} [action] */
   #show(kind, about, sentence, action) {
     const before = this.shown.get(about);
+    // One cause often spoils several questions: it is told once.
+    if (!before && [...this.shown.values()].some((line) => line.firstChild?.textContent === sentence)) return;
     const line = element("div", { class: `message ${kind}`, role: kind === "error" ? "alert" : undefined },
       element("span", {}, sentence),
       action && button(action.text, action.act),

@@ -87,8 +87,8 @@ export class ProbePanel {
     });
     for (let i = used[0]; i <= used[used.length - 1]; ++i) area += `${area ? "L" : "M"}${x(distance[i]).toFixed(1)} ${y(profile.opacity[i]).toFixed(1)}`;
     const ticks = [
-      ...linear_ticks(from, to, 4).map((d) => svg("text", { x: x(d), y: plot.height - 8, "text-anchor": "middle", class: "tick" }, short_number(d, 4))),
-      ...linear_ticks(low, high, 3).map((v) => svg("text", { x: plot.left - 4, y: y((v - low) / (high - low)) + 4, "text-anchor": "end", class: "tick value" }, short_number(v, 3))),
+      ...linear_ticks(from, to, 6).map((d) => svg("text", { x: x(d), y: plot.height - 8, "text-anchor": "middle", class: "tick" }, short_number(d, 4))),
+      ...linear_ticks(low, high, 5).map((v) => svg("text", { x: plot.left - 4, y: y((v - low) / (high - low)) + 4, "text-anchor": "end", class: "tick value" }, short_number(v, 3))),
       ...[0, 0.5, 1].map((a) => svg("text", { x: plot.width - plot.right + 4, y: y(a) + 4, class: "tick opacity" }, String(a))),
     ];
     this.plot.replaceChildren(

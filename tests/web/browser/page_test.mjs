@@ -332,7 +332,7 @@ test("threshold, box, plane and iso-surface", async () => {
   assert.equal((await state()).clip.length, 2);
   assert.equal(await data.getByLabel("x, high end").and(page.locator("input[type=range]")).inputValue(), "625", "the slider spans what is cut away too");
   await data.getByRole("button", { name: "Add an iso-surface" }).click();
-  await data.getByLabel("Boundary surface").check();
+  await data.getByRole("button", { name: "Add a surface" }).click();
   await at_rest(page);
   assert.equal((await state()).iso.length, 1);
   assert.match((await state()).surface[0], /^boundary:#/);
@@ -498,6 +498,19 @@ test("a lost connection comes back by itself to the same state", async () => {
   assert.ok(!(await shown_bytes(page)).equals(own));
   await page.evaluate((outline) => window.tessera.change({ outline }), kept.outline);
   assert.ok((await shown_bytes(page)).equals(own));
+});
+
+test("a connection that nothing comes through any more is noticed, and made anew", async () => {
+  await page.evaluate(() => Object.assign(window.tessera.connection, { silence: 500, answer_time: 500 }));
+  await at_rest(page);
+  proxy.freeze();
+  await page.evaluate(() => window.tessera.change({ log: true }));
+  await page.getByRole("alert").filter({ hasText: "connection to the server is lost" }).waitFor();
+  proxy.mend();
+  await page.waitForFunction(() => document.body.dataset.connection === "open", null, { timeout: 15000 });
+  await at_rest(page);
+  await page.evaluate(() => window.tessera.change({ log: undefined }));
+  await at_rest(page);
 });
 
 test("a server that ends says so, and ends well", async () => {

@@ -41,16 +41,16 @@ export function serve(words) {
   return { child, address, ended, errors: () => errors };
 }
 
-/** Passes bytes on to a port, until it is cut. @param {number} port */
+/** Passes bytes on to a port, until it is cut, or frozen: then connections stay, and nothing comes through. @param {number} port */
 export async function make_proxy(port) {
   const sockets = new Set();
-  let open = true;
+  let open = true, frozen = false;
   const server = net.createServer((from) => {
     if (!open) return from.destroy();
     const to = net.connect(port, "127.0.0.1");
     for (const [one, other] of [[from, to], [to, from]]) {
       sockets.add(one);
-      one.on("data", (bytes) => other.write(bytes));
+      one.on("data", (bytes) => frozen || other.write(bytes));
       one.on("error", () => other.destroy());
       one.on("close", () => {
         sockets.delete(one);
@@ -65,7 +65,12 @@ export async function make_proxy(port) {
       open = false;
       for (const socket of sockets) socket.destroy();
     },
-    mend: () => { open = true; },
+    freeze: () => { frozen = true; },
+    mend: () => {
+      open = true;
+      if (frozen) for (const socket of sockets) socket.destroy();
+      frozen = false;
+    },
     end: () => {
       for (const socket of sockets) socket.destroy();
       server.close();
