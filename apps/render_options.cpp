@@ -367,6 +367,9 @@ LoadedTransferFunction transfer_function_of(const Dataset& data, const RenderOpt
   loaded.name = with_options(loaded.name);
   loaded.unit_distance_source = with_options(loaded.unit_distance_source);
   loaded.warnings = with_options(loaded.warnings);
+  if (options.settings.mesh.shading && data.is_mesh() && data.association() == Association::cell)
+    loaded.warnings.emplace_back(
+        "--shade: lights nothing, a value of each cell has no gradient; --smooth gives values at the points");
   if (!options.settings.surfaces.empty())
     for (const std::string& warning : unseen_surfaces(options.settings.surfaces, data.range()))
       loaded.warnings.push_back(warning);

@@ -13,3 +13,4 @@ tessera=build/demo/apps/tessera
 "$tessera" render build/demo.vtu --camera datasets/small/wake_camera.txt \
   --transfer-function datasets/small/wake_transfer_function.txt --background black -o build/demo.png
 echo "The picture is $PWD/build/demo.png; the mesh beside it, demo.vtu, opens in ParaView too."
+echo "To turn it in a browser: $tessera serve build/demo.vtu"

@@ -7,6 +7,8 @@ cd "$(dirname "$0")/.."
 missing=()
 for scope in "$@"; do
   while read -r package; do
+    # Node.js often comes from elsewhere, npm with it; Debian's would not go beside it.
+    case $package in nodejs) command -v node >/dev/null && continue ;; npm) command -v npm >/dev/null && continue ;; esac
     status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null) || status=none
     [ "$status" = installed ] || missing+=("$package")
   done < <(awk -v scope="$scope" '$1 == scope { print $2 }' scripts/packages.txt)
