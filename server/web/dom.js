@@ -86,7 +86,12 @@ export function fill_choice(select, options) {
 export function typed(label, change, attributes = {}) {
   const input = element("input", {
     type: "text", inputmode: "decimal", autocomplete: "off", spellcheck: "false", "aria-label": label || undefined, ...attributes,
-    on_change: () => input.setAttribute("aria-invalid", String(change(input.value) === false)),
+    on_change: () => {
+      const taken = change(input.value) !== false;
+      input.setAttribute("aria-invalid", String(!taken));
+      if (taken) input.dataset.held = input.value;
+    },
+    on_focus: () => { input.dataset.held = input.value; },
   });
   input.addEventListener("keydown", (event) => {
     if (event.key === "Enter") input.dispatchEvent(new Event("change"));
@@ -94,10 +99,14 @@ export function typed(label, change, attributes = {}) {
   return input;
 }
 
+/** Whether a text stands in the control that has not been taken yet. @param {HTMLInputElement} input */
+export const being_typed = (input) => document.activeElement === input && input.type === "text" && input.value !== input.dataset.held;
+
 /** Sets what a control shows, unless it is being typed in. @param {HTMLInputElement} input @param {string} value */
 export function show_value(input, value) {
-  if (document.activeElement === input && input.type === "text") return;
+  if (being_typed(input)) return;
   input.value = value;
+  if (input.type === "text") input.dataset.held = value;
   input.removeAttribute("aria-invalid");
 }
 

@@ -9,7 +9,7 @@ import { AxesWidget } from "./axes_widget.js";
 import { basis_of, centred, is_perspective, with_projection } from "./camera.js";
 import { Connection } from "./connection.js";
 import { DataPanel } from "./data_panel.js";
-import { button, by_id, debounced, element, icon_button, preference, set_preference } from "./dom.js";
+import { being_typed, button, by_id, debounced, element, icon_button, preference, set_preference } from "./dom.js";
 import { StateSender } from "./frames.js";
 import { FunctionPanel } from "./function_panel.js";
 import { Gestures } from "./gestures.js";
@@ -406,7 +406,9 @@ const keys = {
 document.addEventListener("keydown", (event) => {
   const target = event.target instanceof Element ? event.target : document.body;
   const typing = target.matches("input:not([type=range]):not([type=checkbox]):not([type=color]), select, textarea");
-  if ((event.ctrlKey || event.metaKey) && !event.altKey && !typing && ["z", "y"].includes(event.key.toLowerCase())) {
+  // The browser's own undo is of what is being typed.
+  const half_typed = target instanceof HTMLInputElement && being_typed(target);
+  if ((event.ctrlKey || event.metaKey) && !event.altKey && !half_typed && ["z", "y"].includes(event.key.toLowerCase())) {
     event.preventDefault();
     if (event.key.toLowerCase() === "y" || event.shiftKey) history.redo();
     else history.undo();

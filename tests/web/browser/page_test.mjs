@@ -254,6 +254,18 @@ test("presets, logarithm and range", async () => {
   await low.press("Enter");
   await at_rest(page);
   assert.match((await state()).range, /^0\.25,/);
+  await low.press("Control+z");
+  await at_rest(page);
+  assert.doesNotMatch((await state()).range ?? "", /^0\.25,/);
+  assert.notEqual(await low.inputValue(), "0.25");
+  await low.press("Control+Shift+z");
+  await at_rest(page);
+  await low.fill("nonsense");
+  await low.press("Enter");
+  assert.equal(await low.getAttribute("aria-invalid"), "true");
+  assert.match((await state()).range, /^0\.25,/);
+  await low.fill("0.25");
+  await low.press("Enter");
   await page.getByRole("button", { name: "Visible", exact: true }).click();
   await page.waitForFunction(() => !window.tessera.state().range.startsWith("0.25,"));
   await at_rest(page);
