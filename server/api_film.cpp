@@ -101,6 +101,18 @@ class FilmWork final : public ApiWork {
   ~FilmWork() override { context_.progress.set(std::nullopt); }
 
   ApiResult turn() override {
+    try {
+      return make_frame();
+    } catch (const Error& error) {
+      // A client knows nothing of the scratch file, nor of names that would do instead.
+      if (!error.subject().starts_with(scratch_.path().native())) throw;
+      throw Error(error.code(), "film", error.problem(),
+                  "see that ffmpeg works on the server's machine (Debian: apt install ffmpeg)");
+    }
+  }
+
+ private:
+  ApiResult make_frame() {
     const Json& state = state_of(body_);
     const OpenScene open{state, scene(state), context_.stage.data(state, scene(state))};
     if (!open.held) return {std::nullopt, true};
@@ -127,7 +139,6 @@ class FilmWork final : public ApiWork {
     return {std::move(response)};
   }
 
- private:
   static constexpr std::array<std::string_view, 3> formats = {"mp4", "webm", "gif"};
 
   std::shared_ptr<const Scene> scene(const Json& state) {
