@@ -12,11 +12,12 @@ cmake --build $build -j"$(nproc)" --target fuzz
 mkdir -p $build/crashes
 
 fuzz_one() {  # fuzz_one TARGET
-  local name=$1 seeds=tests/io/fuzz_seeds/$1
+  local name=$1 seeds program
+  seeds=$(echo tests/*/fuzz_seeds/"$1") program=$(echo $build/tests/*/"$1")
   mkdir -p "$build/corpus/$name"
   # New finds go to the build's corpus; the seeds in the repository are only read.
   [ -d "$seeds" ] || seeds=
-  if ! "$build/tests/io/$name" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 \
+  if ! "$program" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 \
     -print_final_stats=1 -artifact_prefix="$build/crashes/$name-" "$build/corpus/$name" $seeds 2>"$build/$name.log"; then
     tail -n 40 "$build/$name.log"
     echo "$name: failed; see $build/$name.log and $build/crashes"
@@ -30,6 +31,6 @@ fuzz_one() {  # fuzz_one TARGET
 export -f fuzz_one
 
 if [ $# -eq 0 ]; then
-  for source in tests/io/fuzz_*.cpp; do set -- "$@" "$(basename "$source" .cpp)"; done
+  for source in tests/io/fuzz_*.cpp tests/server/fuzz_server_*.cpp; do set -- "$@" "$(basename "$source" .cpp)"; done
 fi
 printf '%s\n' "$@" | xargs -P "$(nproc)" -I{} bash -c 'fuzz_one {}'

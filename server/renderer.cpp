@@ -121,7 +121,7 @@ ClientId Renderer::join(std::shared_ptr<Channel> channel) {
                               {"latency", settings_.latency_ms},
                               {"ready", first_came_.load()}}));
   if (const auto reading = stage_.reading()) channel->send_text(reading_text(*reading));
-  return queue_.join(std::move(channel));
+  return queue_.join(channel);
 }
 
 void Renderer::message(ClientId client, const std::string& text) {

@@ -41,7 +41,8 @@ Stage::Stage(SceneReader& reader, Job& job, std::uint64_t memory_bytes, std::fun
     : reader_(reader), job_(job), memory_bytes_(memory_bytes), came_(std::move(came)), progress_(std::move(progress)) {}
 
 Stage::~Stage() {
-  making_thread_ = {};
+  stop_making_.request_stop();
+  if (making_thread_.joinable()) making_thread_.join();
   if (reading_thread_.joinable()) reading_thread_.join();
 }
 
@@ -217,7 +218,8 @@ bool Stage::has_stand_in(const std::shared_ptr<HeldData>& held) {
     making_ = held.get();
   }
   held->stand_in_tried = true;
-  making_thread_ = std::jthread([this, held](const std::stop_token& stop) {
+  if (making_thread_.joinable()) making_thread_.join();  // the last one, which is through
+  making_thread_ = std::thread([this, held, stop = stop_making_.get_token()] {
     std::optional<Dataset> data;
     try {
       data = coarse_stand_in(held->data, {}, stop);

@@ -129,7 +129,8 @@ class Stage {
   std::optional<Arrived> arrived_;
   const HeldData* making_ = nullptr;  ///< whose stand-in is being made
   std::optional<Made> made_;
-  std::jthread making_thread_;
+  std::thread making_thread_;
+  std::stop_source stop_making_;
   std::map<std::string, Error> failed_;  ///< of data that could not be read, until it has been said
 };
 

@@ -19,9 +19,9 @@ const char* level_name(Level level) {
   return level == Level::moving ? "moving" : level == Level::automatic ? "auto" : "exact";
 }
 
-ClientId WorkQueue::join(std::shared_ptr<Channel> channel) {
+ClientId WorkQueue::join(const std::shared_ptr<Channel>& channel) {
   const std::lock_guard lock(mutex_);
-  clients_.try_emplace(++last_client_, std::move(channel), latency_ms_);
+  clients_.try_emplace(++last_client_, channel, latency_ms_);
   return last_client_;
 }
 

@@ -67,7 +67,7 @@ class WorkQueue {
  public:
   explicit WorkQueue(double latency_ms) : latency_ms_(latency_ms) {}
 
-  ClientId join(std::shared_ptr<Channel> channel);
+  ClientId join(const std::shared_ptr<Channel>& channel);
   void leave(ClientId client);
   void set_state(ClientId client, StateMessage message);
   void acknowledge(ClientId client, std::uint64_t frame);

@@ -1,0 +1,13 @@
+// What the fuzzed sources call of the public API, without the rest of it.
+#include "io/json_text.hpp"
+#include "tessera/dataset.hpp"
+#include "tessera/input_file.hpp"
+#include "tessera/view.hpp"
+
+namespace tessera {
+
+void check_json(std::string_view text, const std::string& source) { io::parse_json(text, source); }
+bool is_json_text(std::string_view file_or_json) { return io::is_json_text(file_or_json); }
+std::vector<std::string> preset_names() { return {"cool-warm", "viridis"}; }
+
+}  // namespace tessera

@@ -1,0 +1,32 @@
+// Any text is a client's message or is refused in one line; a state that is taken is options of render, which a shell
+// gives back as they are.
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "apps/state_words.hpp"
+#include "io/fuzz_check.hpp"
+#include "server/messages.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace tessera;
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  test::parse_or_refuse([&] {
+    const server::Message message = server::parse_message(text);
+    const auto* const state = std::get_if<server::StateMessage>(&message);
+    if (state == nullptr) return;
+    const apps::OptionWords words = apps::state_words({{"field", {"p"}}, {"view", {"front"}}}, state->state);
+    for (const auto& [option, values] : words) test::require(!option.empty() && !values.empty());
+    for (const std::string& argument : apps::arguments_of(words)) {
+      test::require(argument.starts_with("--"));
+      test::require(argument.find('\n') == std::string::npos);
+    }
+    test::require(!apps::shell_words(apps::arguments_of(words)).starts_with(' '));
+  });
+  test::parse_or_refuse([&] {
+    const server::Json body = server::parse_body(text);
+    server::state_of(body);
+    server::whole_number(body, "bins", 1, 0, 100);
+  });
+  return 0;
+}
