@@ -158,8 +158,7 @@ std::vector<std::string> help_examples(const CLI::App& command) {
   if (name == "render")
     return {"tessera render mesh.vtu -o picture.png", "tessera render head.nii.gz --view left --color-bar -o head.png",
             "tessera render mesh.vtu --field p --transfer-function viridis --orbit 120 -o turn.mp4"};
-  if (name == "serve")
-    return {"tessera serve mesh.vtu", "mpirun -n 4 tessera serve mesh.pvtu --port 8080"};
+  if (name == "serve") return {"tessera serve mesh.vtu", "mpirun -n 4 tessera serve mesh.pvtu --port 8080"};
   if (name == "info") return {"tessera info mesh.vtu"};
   if (name == "convert") return {"tessera convert mesh.vtu mesh.tets"};
   if (name == "generate") return {"tessera generate cube cube.vtu n=16"};
