@@ -96,9 +96,9 @@ std::string data_key(const ParsedWords& parsed, const std::string& field, bool s
 
 class RenderScene final : public server::Scene {
  public:
-  RenderScene(std::shared_ptr<const ParsedWords> parsed, std::optional<Camera> camera, ImageSize size)
+  RenderScene(std::shared_ptr<const ParsedWords> parsed, const std::optional<Camera>& camera, ImageSize size)
       : parsed_(std::move(parsed)), frame_(parsed_->frame), size_(size) {
-    frame_.camera = std::move(camera);
+    frame_.camera = camera;
     frame_.size = size;
     for (const bool linear : {false, true}) keys_.push_back(data_key(*parsed_, parsed_->field, parsed_->shape, linear));
   }

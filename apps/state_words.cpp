@@ -95,6 +95,7 @@ const StateKey& key_named(const std::string& name) {
   const auto* const found = std::ranges::find(state_keys, std::string_view(name), &StateKey::name);
   if (found != state_keys.end()) return *found;
   std::vector<std::string> names;
+  names.reserve(state_keys.size());
   for (const StateKey& key : state_keys) names.emplace_back(key.name);
   if (const auto near = nearest_name(name, names))
     throw bad_input(fmt::format("state: '{}' is no key; did you mean {}?", shown(name), *near));
@@ -120,14 +121,14 @@ std::string text_of(const std::string& name, const Json& value) {
 
 std::string camera_text(const std::string& name, const Json& value) {
   if (value.is_object()) return value.dump();
-  const std::string text = text_of(name, value);
+  std::string text = text_of(name, value);
   if (!is_json_text(text)) throw wrong_kind(name, "camera (a JSON object)");
   return text;
 }
 
 std::string function_text(const std::string& name, const Json& value) {
   if (value.is_object() || value.is_array()) return value.dump();
-  const std::string text = text_of(name, value);
+  std::string text = text_of(name, value);
   if (is_json_text(text)) return text;
   const std::vector<std::string> presets = preset_names();
   if (std::ranges::find(presets, text.substr(0, text.find(':'))) == presets.end())
@@ -249,9 +250,13 @@ std::string shell_words(const std::vector<std::string>& arguments) {
     // The option's name outside of the quotes, for people.
     const std::size_t equals = argument.starts_with("--") ? argument.find('=') : std::string::npos;
     const std::size_t begin = equals == std::string::npos ? 0 : equals + 1;
-    line += argument.substr(0, begin) + "'";
-    for (const char c : argument.substr(begin)) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    line += "'";
+    line.append(argument, 0, begin);
+    line += '\'';
+    for (const char c : argument.substr(begin)) {
+      if (c == '\'') line += "'\\'";  // ends the quotes, says the mark, and begins them again
+      line += c;
+    }
+    line += '\'';
   }
   return line;
 }

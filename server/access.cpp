@@ -104,10 +104,11 @@ std::optional<std::string> query_value(std::string_view query, std::string_view 
   return std::nullopt;
 }
 
-Access::Access(std::string bound, std::vector<std::string> allowed_hosts)
-    : Access(random_hex(16), random_hex(4), std::move(bound), std::move(allowed_hosts)) {}
+Access::Access(const std::string& bound, const std::vector<std::string>& allowed_hosts)
+    : Access(random_hex(16), random_hex(4), bound, allowed_hosts) {}
 
-Access::Access(std::string token, std::string run, std::string bound, std::vector<std::string> allowed_hosts)
+Access::Access(std::string token, const std::string& run, const std::string& bound,
+               const std::vector<std::string>& allowed_hosts)
     : token_(std::move(token)), cookie_name_("tessera_" + run), bound_(lowered(bound)) {
   for (const std::string& host : allowed_hosts) allowed_.push_back(lowered(host));
 }

@@ -21,9 +21,10 @@ struct Credentials {
 class Access {
  public:
   /// Of a new run. `bound` is the address listened at.
-  Access(std::string bound, std::vector<std::string> allowed_hosts);
+  Access(const std::string& bound, const std::vector<std::string>& allowed_hosts);
   /// With a token and a run's word of the caller's.
-  Access(std::string token, std::string run, std::string bound, std::vector<std::string> allowed_hosts);
+  Access(std::string token, const std::string& run, const std::string& bound,
+         const std::vector<std::string>& allowed_hosts);
 
   [[nodiscard]] const std::string& token() const { return token_; }
   /// `Set-Cookie`'s value. Without a path, so that it holds below whatever prefix a proxy adds.
