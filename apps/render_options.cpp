@@ -16,6 +16,7 @@
 #include "apps/volume_options.hpp"
 #include "tessera/error.hpp"
 #include "tessera/input_file.hpp"
+#include "tessera/time_series.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -34,6 +35,12 @@ Integrator mesh_integrator(const RenderWords& words) {
 /// 0: all cores.
 int thread_count(const RenderWords& words) {
   return words.threads.empty() ? 0 : parse_count("--threads", words.threads, 1, 1024);
+}
+
+/// Whether volumes are drawn: of a list of files its first says it.
+bool draws_grids(const RenderWords& words) {
+  return is_time_series(words.input) ? opens_as_grid(read_time_series(words.input).front().files.front())
+                                     : is_grid_input(words);
 }
 
 /// What meshes and grids share, and what is of meshes.
@@ -287,7 +294,7 @@ RenderOptions render_options(const RenderWords& words) {
     if (words.projection == "perspective") options.projection = ProjectionKind::perspective;
   }
 
-  plan.grids = is_grid_input(words);
+  plan.grids = draws_grids(words);
   plan.steps = time_steps(words.time_step);
   set_common(words, options);
   Settings& settings = options.settings;
