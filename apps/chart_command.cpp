@@ -120,11 +120,6 @@ std::string csv_of(const std::vector<analysis::ChartPoint>& points) {
   return csv;
 }
 
-/// The words of `render` that this command has, checked and in values.
-RenderOptions options_of(const RenderWords& words) {
-  return render_options(words);
-}
-
 }  // namespace
 
 void add_chart_options(CLI::App& command, RenderWords& words, ChartWords& chart) {
@@ -154,7 +149,7 @@ void add_chart_options(CLI::App& command, RenderWords& words, ChartWords& chart)
 
 void chart(const RenderWords& words, const ChartWords& chart) {
   const auto begin = Clock::now();
-  const RenderOptions options = options_of(words);
+  const RenderOptions options = render_options(words);
   const double budget = parse_positive("--budget-seconds", chart.budget);
   const int repeat = parse_count("--repeat", chart.repeat, 1, 1000);
   std::optional<std::size_t> pixels;

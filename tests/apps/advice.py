@@ -13,6 +13,7 @@ exit status 1 if there is one.
 import argparse
 import os
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -22,20 +23,21 @@ from pathlib import Path
 import advice_arguments
 import advice_colors
 import advice_foreign
+import advice_libraries
 import advice_meshes
 import advice_outputs
 import advice_volumes
 from advice_exceptions import EXCEPTIONS, NO_ADVICE
 from advice_messages import messages_of
 
-TOPICS = (advice_arguments, advice_outputs, advice_colors, advice_volumes, advice_meshes, advice_foreign)
+TOPICS = (advice_arguments, advice_outputs, advice_colors, advice_volumes, advice_meshes, advice_foreign, advice_libraries)
 
 
 def make_data(tessera, folder: Path):
     """What rows share."""
     folder.mkdir()
     for command in ("generate cube m.vtu n=3", "generate ripples v.vti n=8", "convert v.vti v.raw"):
-        done = subprocess.run([tessera, *command.split()], cwd=folder, capture_output=True, errors="replace")
+        done = subprocess.run([tessera, *shlex.split(command)], cwd=folder, capture_output=True, errors="replace")
         if done.returncode != 0:
             sys.exit(f"{command}: {done.stderr}")
     (folder / "c.json").write_text(
@@ -57,7 +59,7 @@ def write(folder: Path, files):
 
 def outputs_of(command):
     """Files that a command writes."""
-    words = command.split()
+    words = shlex.split(command)
     if words[0] in ("convert", "generate") and len(words) > 2:
         return [words[2]]
     named = [words[k + 1] for k, word in enumerate(words[:-1]) if word in ("-o", "--output", "--report", "--annotation-layer")]
@@ -87,7 +89,7 @@ def follow(tessera, data: Path, folder: Path, row):
             opened += os.openpty()
             streams[terminal] = opened[-1]
         environment = {**os.environ, "PATH": "/nowhere", **row.env}
-        done = subprocess.run([tessera, *command.split()], cwd=folder, timeout=300, env=environment, stderr=subprocess.PIPE,
+        done = subprocess.run([tessera, *shlex.split(command)], cwd=folder, timeout=300, env=environment, stderr=subprocess.PIPE,
                               **streams)
         for each in opened:
             os.close(each)

@@ -44,7 +44,7 @@ ROWS = [
     colors(KNOTS, KNOTS, "# nothing\n", "give at least one line `value r g b extinction`"),
     row(R + "--transfer-function tf --opacity-points 0:0,1:1", "leave it out", R + "--transfer-function tf", {"tf": KNOTS}),
     row(R + "--transfer-function tf", "is XML, which is not read as a transfer function", None, {"tf": "<a/>"}, {"tf": COLOR_MAP}),
-    row(R + "--transfer-function big", "name a camera or transfer function", R + "--transfer-function tf",
+    row(R + "--transfer-function big", "check that it is the right file", R + "--transfer-function tf",
         {"big": b"#" * (65 << 20), "tf": KNOTS}),
     row(R + "--transfer-function folder", "name a file in it", R + "--transfer-function folder/tf", {"folder/tf": KNOTS}),
     # ParaView's
@@ -96,7 +96,7 @@ ROWS = [
     row("info s.series", "give one of its meshes", "info m.vtu", {"s.series": SERIES}),
     listed("s.pvd", PVD, "VTKFile", "Folder", "check that it is a .pvd"),
     listed("s.pvd", PVD, 'timestep="0"', 'timestep="never"', "write it anew"),
-    listed("s.pvd", PVD, "DataSet timestep", "Set timestep", "write it anew"),
+    listed("s.pvd", PVD, 'file="m.vtu"', 'file=""', "names no file; write it anew"),
     row("render s.pvd -o a.png --size 16x16 --time-step 0", "it lists no DataSet; write it anew", None,
         {"s.pvd": PVD.replace("DataSet", "Set")}, {"s.pvd": PVD}),
     listed("s.pvd", PVD, "</Collection>", "", "truncated or damaged, write it anew"),

@@ -59,8 +59,8 @@ ROWS = [
     nrrd("dimension: 3\nspace dimension: 3\nsizes: 2 2 2", "dimension: 2\nsizes: 4 2", "a volume has three, before them components and after"),
     nrrd("sizes: 2 2 2", "sizes: 2 2 x", "the file is truncated or damaged, write it anew"),
     nrrd("sizes: 2 2 2", "sizes: 9999999999 9999999999 9999999999", "write the file anew"),
-    nrrd("dimension: 3\nspace dimension: 3\nsizes: 2 2 2", "dimension: 4\nsizes: 1000000 1000000 1000000 100",
-         "than can be addressed; it is damaged, write it anew"),
+    row("info a.nrrd", "than can be addressed; it is damaged, write it anew", None,
+        {"a.nrrd": b"NRRD0004\ntype: uint8\ndimension: 4\nsizes: 100000 100000 100000 99999999\nencoding: raw\n\n"}, {"a.nrrd": NRRD}),
     row("info a.nrrd", "write at most 64 components", None,
         {"a.nrrd": b"NRRD0004\ntype: uint8\ndimension: 4\nkinds: vector domain domain domain\nsizes: 65 2 2 2\nencoding: raw\n\n"
          + SAMPLES * 65},
