@@ -53,6 +53,12 @@ def write(folder: Path, files):
             continue
         file.parent.mkdir(parents=True, exist_ok=True)
         file.unlink(missing_ok=True)
+        if isinstance(content, tuple):
+            kind, content = content
+            if kind == "link":
+                file.symlink_to(content)
+                continue
+            file.touch(0o755)
         if content is not None:
             file.write_bytes(content if isinstance(content, bytes) else content.encode())
 
@@ -76,7 +82,7 @@ def follow(tessera, data: Path, folder: Path, row):
     for file in data.iterdir():
         os.link(file, folder / file.name)
 
-    def run(command, terminal=""):
+    def run(command, terminal="", limits=""):
         streams = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE}
         opened = []
         if row.stdin:
@@ -89,7 +95,10 @@ def follow(tessera, data: Path, folder: Path, row):
             opened += os.openpty()
             streams[terminal] = opened[-1]
         environment = {**os.environ, "PATH": "/nowhere", **row.env}
-        done = subprocess.run([tessera, *shlex.split(command)], cwd=folder, timeout=300, env=environment, stderr=subprocess.PIPE,
+        words = [tessera, *shlex.split(command)]
+        if limits:
+            words = ["/bin/sh", "-c", f'{limits}; exec "$0" "$@"', *words]
+        done = subprocess.run(words, cwd=folder, timeout=300, env=environment, stderr=subprocess.PIPE,
                               **streams)
         for each in opened:
             os.close(each)
@@ -97,11 +106,11 @@ def follow(tessera, data: Path, folder: Path, row):
 
     wrong = []
     write(folder, row.before)
-    failed = run(row.command, row.terminal)
+    failed = run(row.command, row.terminal, row.limits)
     errors, output = has_said(failed)
     is_line = failed.returncode in (2, 3) and errors.count("\n") == 1
     # What a picture does not show is a warning.
-    said = "\n".join((errors, re.sub(r"\n +", " ", errors), output))  # long lines are wrapped
+    said = "\n".join((errors, re.sub(r"\n +", " ", errors), output, re.sub(r"\n +", " ", output)))  # long lines are wrapped
     if not (is_line or failed.returncode == 0) or row.advice not in said:
         wrong.append(f"{row.command}\n  status {failed.returncode}, '{row.advice}' awaited: {errors.strip()}")
     write(folder, row.after)

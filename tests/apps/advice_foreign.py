@@ -47,6 +47,16 @@ def second(text):
 SECOND = second(rectilinear("1 2"))
 DEEP = " ".join(["1"] + ["8"] * 31)
 
+HALF_NAN = unstructured("0 0 0 1 0 0 0 1 0 0 0 1 1 1 nan", "0 1 2 3 1 2 3 4", "4 8", "10 10", FIELD.format("0 1 2 3 4"))
+VOLUME = (
+    "# vtk DataFile Version 3.0\none\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\n"
+    "POINT_DATA 8\nSCALARS f float 1\nLOOKUP_TABLE default\n0 1 2 3 4 5 6 7\n"
+)
+PARTS = (
+    '<VTKFile type="Collection"><Collection><DataSet timestep="0" part="0" file="m.vtu"/><DataSet timestep="0" part="1" file="{}"/>'
+    "</Collection></VTKFile>"
+)
+
 ROWS = [
     # unstructured grids
     mesh(unstructured(cells="0 1 2 9"), "the file holds 4 points; write cells and points from one mesh"),
@@ -136,4 +146,17 @@ ROWS = [
     row("render a.pvd -o a.png --size 16x16", "give it alone", "render a.htg -o a.png --size 16x16",
         {"a.htg": TREES, "a.pvd": '<VTKFile type="Collection"><Collection><DataSet timestep="0" part="0" file="a.htg"/>'
                                   '<DataSet timestep="0" part="1" file="m.vtu"/></Collection></VTKFile>'}),
+    # surfaces, shapes and parts
+    row("render a.vtm -o a.png --size 16x16 --surface two", "is not finite; mend it", None,
+        {"a.vtm": VTM, "p.vtu": PIECE, "q.vtu": HALF_NAN}, {"q.vtu": HALF_NAN.replace("nan", "1")}),
+    mesh(TET.replace('NumberOfPoints="4"', 'NumberOfPoints="99999999999"'), "write it anew"),
+    mesh(TET.replace('NumberOfComponents="3"', 'NumberOfComponents="2"'), "write it anew"),
+    mesh(unstructured(cells="", offsets="", types=""), "check how it was written"),
+    row("render a.vtu -o a.png --size 16x16", "--field draws one of", "render a.vtu -o a.png --size 16x16 --field f",
+        {"a.vtu": unstructured(fields=FIELD.format("7 7 7 7"))}),
+    row("render a.pvd -o a.png --size 16x16", "render, info and convert take it as a volume", "render a.vtk -o a.png --size 16x16",
+        {"a.vtk": VOLUME, "a.pvd": PARTS.format("a.vtk")}),
+    row("render a.pvd -o a.png --size 16x16", "render, info and convert take it as a volume", "render v.vti -o a.png --size 16x16",
+        {"a.pvd": PARTS.format("v.vti")}),
+    trees("write it with fewer levels", hyper_trees(counts="1" + 40 * " 8", divided="1" + 39 * " 1 0 0 0 0 0 0 0", depth="41")),
 ]

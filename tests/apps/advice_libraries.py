@@ -1,8 +1,9 @@
 """Rows of advice about files that libraries other than VTK's XML and legacy readers read."""
 
 import gzip
+import struct
 
-from advice_library_files import (EXODUS, FOAM, GMSH, MEDIT, MINC, PLOT3D, SLICES, SOLUTION, UCD, XDMF, dicom, exodus, foam_case, item,
+from advice_library_files import (CUBE, EXODUS, FOAM, GMSH, MEDIT, MINC, PLOT3D, SLICES, SOLUTION, UCD, XDMF, dicom, exodus, foam, foam_case, foam_list, item,
                                   netcdf, netcdf_grid, xdmf, xdmf_grid, xdmf_mesh)
 from advice_row import cut, damaged, row
 
@@ -34,6 +35,7 @@ def collection(*steps):
     return xdmf(f'<Grid Name="steps" GridType="Collection" CollectionType="Temporal">{grids}</Grid>')
 
 
+BINARY = struct.pack("<3i24f", 2, 2, 2, *(float(p[a]) for a in range(3) for p in CUBE))
 GRID = xdmf(xdmf_grid())
 TIMES = collection(0, 1)
 
@@ -91,7 +93,7 @@ ROWS = [
     row("info case.foam", "or name that folder", "info case", {"case.foam": "", **FOAM}),
     row("info case", "write it anew", None, {**FOAM, "case/constant/polyMesh/owner": "nothing"}, FOAM),
     row("info case", "run reconstructPar, or decomposePar anew", "info case",
-        {"case/processor0/constant/x": "", **foam_case("case/processor0/"), **foam_case("case/processor2/"), "case/system/controlDict": FOAM["case/system/controlDict"]},
+        {"case/processor0/constant/x": "", **foam_case("case/processor0/"), "case/processor1/constant/polyMesh/x": "", "case/system/controlDict": FOAM["case/system/controlDict"]},
         foam_case()),
     # PLOT3D
     damaged("a.xyz", PLOT3D, "2 2 2\n0", "2 2 3\n0", "is truncated or of another kind (the solution goes with --q)"),
@@ -111,7 +113,6 @@ ROWS = [
     row("info ct", "give a folder of slices", None, {"ct/1.dcm": dicom(1)}, SLICES),
     ct("give a folder", **{str(k): bytes(128) + b"DICM" + b"?" * 40 for k in (1, 2, 3)}),
     ct("write it anew or leave it out", **{"2": dicom(2)[:-4]}),
-    ct("which are not read; write 8, 16 or 32", **{str(k): dicom(k, bits=1, pixels=bytes(2)) for k in (1, 2, 3)}),
     ct("may be missing", "info ct", None, {**SLICES, "ct/4.dcm": dicom(4)}, **{"4": dicom(5, position=5)}),
     ct("name one of its files for another", "info ct", "info ct/9.dcm", {}, **{str(k): dicom(k, series="1.2.9") for k in (8, 9)}),
     ct("there is no time step 5", "info ct --time-step 5", "info ct"),
@@ -124,4 +125,15 @@ ROWS = [
     row("info a.mfem", "have MFEM write .vtu", "info m.vtu", {"a.mfem": "MFEM mesh v1.0\n\ndimension\n3\n"}),
     cut("a.inp", UCD, len(UCD) // 2, "write it anew"),
     row("info a.cas", "export CGNS or EnSight", "info m.vtu", {"a.cas": "(2 3)\n(10 (0 1 ffffffff 0))\n"}),
+    row("info a.dcm", "give a folder or a file of slices", "info ct", {**SLICES, "a.dcm": bytes(128) + b"DICM" + b"?" * 40}),
+    row("info a.ex2.gz", "unpack it with gunzip", "info a.ex2", {"a.ex2.gz": gzip.compress(HDF5)}, {"a.ex2": EXODUS}),
+    row("info a.xdmf", "time_step all shows them as a film".replace("time_step", "--time-step"), "render a.xdmf -o a%d.png --size 16x16 --time-step all",
+        {"a.xdmf": TIMES}),
+    wrong_xdmf(XDMF.replace(item("1 2 3 4"), '<DataItem ItemType="Function" Function="$0 + $0" Dimensions="4">' + item("1 2 3 4") + "</DataItem>"),
+               "have the program that made it write them"),
+    wrong_xdmf(XDMF.replace('"Tetrahedron"', '"Polyline" NodesPerElement="0"'), "nodes each; write it anew"),
+    wrong_xdmf(xdmf(xdmf_grid(origin="0 0")), "is not of three numbers; write it anew", GRID),
+    row("info a.xyz --q a.q", "it is truncated or of another kind (function, OVERFLOW)", None, {"a.xyz": BINARY, "a.q": BINARY[:12] + bytes(40)},
+        {"a.q": BINARY[:12] + bytes(4 * 44)}),
+    row("info case", "write it anew", None, {**FOAM, **{f"case/constant/polyMesh/{n}": foam("x", n, foam_list([])) for n in ("faces", "owner", "neighbour")}}, FOAM),
 ]

@@ -2,7 +2,7 @@
 
 import struct
 
-from advice_files import AMREX, BOX, ELE, NODE, PLY, POLY, SMESH, STL, SU2, TETRAHEDRON, TETS
+from advice_files import AMREX, BOX, ELE, FACES, NODE, PLY, POLY, SMESH, STL, SU2, TETRAHEDRON, TETS
 from advice_row import cut, damaged, row
 
 R = "render m.vtu -o a.png --size 16x16 "
@@ -30,6 +30,13 @@ FOUR_BOXES = {
     SHARED: AMREX[SHARED].replace("(1 0\n", "(4 0\n" + 3 * (BOX + "\n")).replace(")\n1\n", ")\n4\n" + 3 * "FabOnDisk: Cell_D_00000 0\n"),
     "plt/Header": AMREX["plt/Header"].replace("0 1 0\n0\n", "0 4 0\n0\n" + 9 * "0 1\n"),
 }
+
+CORNERS = SMESH.splitlines()[1:5]
+CROSSED = (
+    "8 3 0 0\n" + "".join(corner + "\n" for corner in CORNERS)
+    + "4 0.1 0.1 0.1\n5 1.2 0.1 0.1\n6 0.1 1.2 0.1\n7 0.1 0.1 1.2\n8 0\n"
+    + "".join(f"3 {a + first} {b + first} {c + first}\n" for first in (0, 4) for a, b, c in FACES) + "0\n0\n"
+)
 
 ROWS = [
     # SU2
@@ -90,4 +97,7 @@ ROWS = [
     amrex("Level_0/Cell_D_00000", "(1,1,1)", "(0,1,1)", "its box has cells 0 to 1; write it anew"),
     row("info plt", "it is truncated, write it anew", None, {**AMREX, "plt/Level_0/Cell_D_00000": AMREX["plt/Level_0/Cell_D_00000"][:-8]}, AMREX),
     row("info plt", "boxes share their values; it is damaged, write it anew", None, FOUR_BOXES, AMREX),
+    row("info plt", "field 600 has no name; write it anew", None,
+        {**AMREX, "plt/Header": "HyperCLaw-V1.1\n700\n" + 600 * "fieldnam\n" + "\n"}, AMREX),
+    row("info a.smesh", "TetGen cannot fill the surface", None, {"a.smesh": CROSSED}, {"a.smesh": SMESH}),
 ]

@@ -18,7 +18,7 @@ VERBS = (
 ADVICE = re.compile(r"; [a-z`(]|, (?:write|give) |(?:^|\n)(?:" + "|".join(VERBS) + r") ")
 # What takes words that nobody is told.
 ASKING = set(
-    "find rfind contains starts_with ends_with substr count at attribute child get find_first_of find_last_of find_first_not_of begins_with".split()
+    "if while for switch find rfind contains starts_with ends_with substr count at attribute child get find_first_of find_last_of find_first_not_of begins_with".split()
 )
 DECLARING = set("add_option add_flag add_option_function add_flag_function add_subcommand static_assert footer".split())
 
@@ -62,6 +62,17 @@ def top_level(tokens, marks):
         index += 1
 
 
+def formatted(tokens):
+    """The ways of fmt::format(): what its arguments say stands where its string has them."""
+    edges = [-1, *top_level(tokens, {","}), len(tokens)]
+    arguments = [alternatives(tokens[a + 1 : b]) for a, b in zip(edges, edges[1:])]
+    ways = []
+    for choice in itertools.islice(itertools.product(*arguments), 32):
+        values = iter("{}".join(["", *said, ""]) if said else "{}" for said in choice[1:])
+        ways.append([re.sub(r"\{[^}]*\}", lambda _: next(values, "{}"), part) for part in choice[0]])
+    return ways
+
+
 def alternatives(tokens):
     """What these tokens say: a list of ways, each a list of literals."""
     commas = list(top_level(tokens, {","}))
@@ -86,13 +97,14 @@ def alternatives(tokens):
                 said += literal(tokens[index])
                 index += 1
             beside += tokens[index] if index < len(tokens) else ""
-            if "==" not in beside and "!=" not in beside and re.search(r"\w{3}|; ", said):
+            if not re.search(r"[!=]=|\[", beside) and re.search(r"\w{3}|; ", said) and not re.match(r"\.\w+( \.\w+)*$", said):
                 ways = [[*way, said] for way in ways]
             continue
         if token in ("(", "["):
             end = closing(tokens, index)
-            if token == "(" and not (index and tokens[index - 1] in ASKING):
-                inner = alternatives(tokens[index + 1 : end])
+            before = tokens[index - 1] if index else ""
+            if token == "(" and before not in ASKING:
+                inner = (formatted if before == "format" else alternatives)(tokens[index + 1 : end])
                 ways = [a + b for a, b in itertools.islice(itertools.product(ways, inner), 32)]
             index = end
         index += 1

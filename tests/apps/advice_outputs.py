@@ -2,6 +2,7 @@
 
 import os
 
+from advice_files import TETS
 from advice_row import row
 
 R = "render m.vtu -o a.png --size 16x16 "
@@ -10,6 +11,8 @@ V = "render v.vti -o a.png --size 16x16 "
 FFMPEG = {"PATH": os.environ.get("PATH", "")}
 VIEW = '{{"position": [0, 0, 9], "focal_point": [0, 0, 0], "view_up": [0, 1, 0], "parallel_scale": 2, "size": [{0}, {0}]}}'
 CAMERAS = f"[{VIEW.format(16)}, {VIEW.format(32)}]"
+
+BROKEN = "#!/bin/sh\nexit 1\n"
 
 ROWS = [
     # what is written
@@ -46,4 +49,14 @@ ROWS = [
     row("render m.vtu -o a.deep.exr --size 16x16 --integrator sampled:4 --outline", "name an .exr", R + "--outline"),
     row(f"render m.vtu -o {'n' * 300}.png --size 16x16", "give a shorter name", R),
     row("render m.vtu -o /sys/a.png --size 16x16", "name a folder you may write in", R),
+    # disks, folders and films
+    row("render m.vtu -o loop/a.png --size 16x16", "see the disk and the file system", R, {"loop": ("link", "loop")}),
+    row("convert m.tets b.tets", "free some space or name another disk", "convert m.tets b.tets", {"m.tets": TETS},
+        limits="trap '' XFSZ; ulimit -f 0"),
+    row("render m.tets -o a.exr --size 16x16", "see the disk", "render m.tets -o a.exr --size 16x16", {"m.tets": TETS},
+        limits="trap '' XFSZ; ulimit -f 0"),
+    row("render m.vtu -o a.gif --size 16x16", "or write a_%04d.png", "render m.vtu -o a_%04d.png --size 16x16", {"bin/ffmpeg": ("program", BROKEN)},
+        env={"PATH": "bin"}),
+    row("render m.vtu -o a.exr --size 16x16 --half --background 1e6,0,0", "write float", "render m.vtu -o a.exr --size 16x16 --background 1e6,0,0"),
+    row("render m.vtu -o a.jpg --size 65536x1 --threads 2", "write .png", "render m.vtu -o a.png --size 65536x1 --threads 2"),
 ]

@@ -135,4 +135,10 @@ ROWS = [
         {"s.series": '{"files": [{"name": "m.vtu"}, {"name": "v.vti"}]}'}),
     row("info n.vtu --field g", "the file has none; leave --field out", "info n.vtu",
         {"n.vtu": TETRAHEDRON.replace('<DataArray type="Float64" Name="f" format="ascii">0 250 500 1000</DataArray>', "")}),
+    row("info /dev/null", "give one that can be read twice", "info v.vti"),
+    row("info a.mha --field samples:mag", "choose one with --field samples:0", "info a.mha --field samples:0",
+        {"a.mha": META.replace(b"ElementType", b"ElementNumberOfChannels = 2\nElementToIntensityFunctionOffset = 5\nElementType") + SAMPLES}),
+    row("info b.raw --dims 2x2x2 --type uint8 --skip 1", "give the right dimensions and type", "info b.raw --dims 2x2x2 --type uint8",
+        {"b.raw": SAMPLES}),
+    row("info b.raw", "does not say its dimensions and type", "info b.raw --dims 2x2x2 --type uint8", {"b.raw": SAMPLES}),
 ]
