@@ -97,8 +97,8 @@ std::vector<std::int32_t> level_sizes(std::span<const ForeignPart* const> levels
 }
 
 scene::Error too_long(double cells, const std::string& source) {
-  return scene::bad_input(fmt::format("{}: it is {} of the finest cells long, {} are read; leave out levels", source,
-                                      cells, most_corners));
+  return scene::bad_input(
+      fmt::format("{}: it is {} of the finest cells long, {} are read; leave out levels", source, cells, most_corners));
 }
 
 /// Puts the blocks on the lattice.

@@ -103,7 +103,7 @@ void write_exr(const scene::Image& image, const std::filesystem::path& file, con
     throw;
   } catch (const std::exception& error) {
     throw scene::Error(scene::ErrorCode::system_failure,
-                       fmt::format("{}: cannot be written: {}; see the disk", file.string(), error.what()));
+                       fmt::format("{}: cannot be written: {}; check the disk", file.string(), error.what()));
   }
   target.commit();
 }

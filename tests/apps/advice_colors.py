@@ -16,7 +16,13 @@ def colors(whole, old, new, advice):
 
 def listed(name, whole, old, new, advice):
     assert old in whole, old
-    return row(f"render {name} -o a.png --size 16x16 --time-step 0", advice, None, {name: whole.replace(old, new, 1)}, {name: whole})
+    return row(
+        f"render {name} -o a.png --size 16x16 --time-step 0",
+        advice,
+        None,
+        {name: whole.replace(old, new, 1)},
+        {name: whole},
+    )
 
 
 def traced(old, new, advice):
@@ -42,11 +48,28 @@ ROWS = [
     colors(KNOTS, "0.5", "-1", "it must not be negative"),
     colors(KNOTS, "1 0 0 1 2", "-1 0 0 1 2", "sort the lines by value"),
     colors(KNOTS, KNOTS, "# nothing\n", "give at least one line `value r g b extinction`"),
-    row(R + "--transfer-function tf --opacity-points 0:0,1:1", "leave it out", R + "--transfer-function tf", {"tf": KNOTS}),
-    row(R + "--transfer-function tf", "is XML, which is not read as a transfer function", None, {"tf": "<a/>"}, {"tf": COLOR_MAP}),
-    row(R + "--transfer-function big", "check that it is the right file", R + "--transfer-function tf",
-        {"big": b"#" * (65 << 20), "tf": KNOTS}),
-    row(R + "--transfer-function folder", "name a file in it", R + "--transfer-function folder/tf", {"folder/tf": KNOTS}),
+    row(
+        R + "--transfer-function tf --opacity-points 0:0,1:1",
+        "leave it out",
+        R + "--transfer-function tf",
+        {"tf": KNOTS},
+    ),
+    row(
+        R + "--transfer-function tf",
+        "is XML, which is not read as a transfer function",
+        None,
+        {"tf": "<a/>"},
+        {"tf": COLOR_MAP},
+    ),
+    row(
+        R + "--transfer-function big",
+        "check that it is the right file",
+        R + "--transfer-function tf",
+        {"big": b"#" * (65 << 20), "tf": KNOTS},
+    ),
+    row(
+        R + "--transfer-function folder", "name a file in it", R + "--transfer-function folder/tf", {"folder/tf": KNOTS}
+    ),
     # ParaView's
     colors(COLOR_MAP, '"RGB"', "7", "export the map again"),
     colors(COLOR_MAP, "[0, 0, 0, 1, 1, 1, 0, 0]", "7", "it is 4 numbers a point"),
@@ -64,8 +87,12 @@ ROWS = [
     colors(COLOR_MAP, ": 1}", ": 1e999}", "mend it or export it again"),
     colors(COLOR_MAP, '"Name": "two"', '"Name": "two", "Name": "three"', "stands twice in one object; keep one"),
     colors(COLOR_MAP, COLOR_MAP, "[" * 70 + "]" * 70, "levels deep; "),
-    row("render b.vtu -o a.png --size 16x16 --transfer-function tf", "taken for a preset and stretched over the field; --range",
-        "render b.vtu -o a.png --size 16x16 --transfer-function tf --range 0,1", {"tf": COLOR_MAP, "b.vtu": TETRAHEDRON}),
+    row(
+        "render b.vtu -o a.png --size 16x16 --transfer-function tf",
+        "taken for a preset and stretched over the field; --range",
+        "render b.vtu -o a.png --size 16x16 --transfer-function tf --range 0,1",
+        {"tf": COLOR_MAP, "b.vtu": TETRAHEDRON},
+    ),
     # cameras
     camera("c.txt", TEXT_CAMERA, "0 0 9", "0 0 nine", "each line is a word and its numbers"),
     camera("c.txt", TEXT_CAMERA, "view_up 0 1 0\n", "view_up 0 1 0\nview_up 0 1 0\n", "is given twice; keep one"),
@@ -73,10 +100,18 @@ ROWS = [
     camera("c.txt", TEXT_CAMERA, "view_up", "up", "is no word of a camera; position, focal_point"),
     camera("c.txt", TEXT_CAMERA, "position 0 0 9\n", "", "give the eye's place, three numbers"),
     camera("c.txt", TEXT_CAMERA, "focal_point 0 0 0\n", "", "give the point it looks at"),
-    camera("c.txt", TEXT_CAMERA, "parallel_scale 2", "parallel_scale 2\nview_angle 9", "keep the first for an orthographic view"),
+    camera(
+        "c.txt",
+        TEXT_CAMERA,
+        "parallel_scale 2",
+        "parallel_scale 2\nview_angle 9",
+        "keep the first for an orthographic view",
+    ),
     camera("c.txt", TEXT_CAMERA, "parallel_scale 2\n", "", "give the first for an orthographic view"),
     camera("c.txt", TEXT_CAMERA, "parallel_scale 2", "parallel_scale 2\nsize 0 9", "each is a whole number, 1 to"),
-    camera("c.txt", TEXT_CAMERA, TEXT_CAMERA, "\n", "is empty; give position, focal_point and parallel_scale or view_angle"),
+    camera(
+        "c.txt", TEXT_CAMERA, TEXT_CAMERA, "\n", "is empty; give position, focal_point and parallel_scale or view_angle"
+    ),
     camera("d.json", JSON_CAMERA, JSON_CAMERA, "[7]", 'is not an object; a view is {"position"'),
     camera("d.json", JSON_CAMERA, JSON_CAMERA, "[]", "give at least one view"),
     camera("d.json", JSON_CAMERA, "9", '"9"', "give numbers only"),
@@ -90,21 +125,35 @@ ROWS = [
     camera("c.pvcc", PVCC, "CameraPosition", "Position", "CameraPosition is missing; save the camera again"),
     camera("c.pvcc", PVCC, '<Element index="2" value="5"/>', "", "2 of 3 numbers; save the camera again"),
     # lists of files
-    row("render q%d.vtu -o a%d.png --size 16x16", "it would be like q1.vtu", "render q%d.vtu -o a%d.png --size 16x16",
-        {}, {"q1.vtu": TETRAHEDRON}),
+    row(
+        "render q%d.vtu -o a%d.png --size 16x16",
+        "it would be like q1.vtu",
+        "render q%d.vtu -o a%d.png --size 16x16",
+        {},
+        {"q1.vtu": TETRAHEDRON},
+    ),
     row("render nowhere/q%d.vtu -o a%d.png", "check its name", R),
     row("info s.series", "give one of its meshes", "info m.vtu", {"s.series": SERIES}),
     listed("s.pvd", PVD, "VTKFile", "Folder", "check that it is a .pvd"),
     listed("s.pvd", PVD, 'timestep="0"', 'timestep="never"', "write it anew"),
     listed("s.pvd", PVD, 'file="m.vtu"', 'file=""', "names no file; write it anew"),
-    row("render s.pvd -o a.png --size 16x16 --time-step 0", "it lists no DataSet; write it anew", None,
-        {"s.pvd": PVD.replace("DataSet", "Set")}, {"s.pvd": PVD}),
+    row(
+        "render s.pvd -o a.png --size 16x16 --time-step 0",
+        "it lists no DataSet; write it anew",
+        None,
+        {"s.pvd": PVD.replace("DataSet", "Set")},
+        {"s.pvd": PVD},
+    ),
     listed("s.pvd", PVD, "</Collection>", "", "truncated or damaged, write it anew"),
     listed("s.series", SERIES, "files", "file", "check that it is a ParaView file series"),
     listed("s.series", SERIES, SERIES, '{"files": []}', "it lists no file; write it anew"),
     listed("s.series", SERIES, '"name": "m.vtu", "time": 1', '"time": 1', "write it anew"),
-    row("render s.series -o a.png --size 16x16 --time-step 2", "there is no time step 2, it has 2; count from 0",
-        "render s.series -o a.png --size 16x16 --time-step 1", {"s.series": SERIES}),
+    row(
+        "render s.series -o a.png --size 16x16 --time-step 2",
+        "there is no time step 2, it has 2; count from 0",
+        "render s.series -o a.png --size 16x16 --time-step 1",
+        {"s.series": SERIES},
+    ),
     row(R + "--time-step 2", "leave it out", R),
     # traces
     row("timing t.json", "give a file that tessera render --timing wrote", None, {"t.json": "{}"}, {"t.json": TRACE}),

@@ -101,7 +101,9 @@ IMAGE = image_data()
 
 def rectilinear(x="0 1", values="0 1 2 3 4 5 6 7"):
     axes = "".join(f'<DataArray type="Float64" format="ascii">{axis}</DataArray>\n' for axis in (x, "0 1", "0 1"))
-    return image_data("RectilinearGrid", f"0 {len(x.split()) - 1} 0 1 0 1", values, f"<Coordinates>\n{axes}</Coordinates>\n")
+    return image_data(
+        "RectilinearGrid", f"0 {len(x.split()) - 1} 0 1 0 1", values, f"<Coordinates>\n{axes}</Coordinates>\n"
+    )
 
 
 RECTILINEAR = rectilinear()
@@ -114,7 +116,8 @@ TETS = struct.pack("<qq12f4f4i", 4, 1, *[x for p in CORNERS for x in p], 0, 1, 2
 STL = (
     "solid a\n"
     + "".join(
-        "facet normal 0 0 0\nouter loop\n" + "".join(f"vertex {x} {y} {z}\n" for x, y, z in (CORNERS[v] for v in face))
+        "facet normal 0 0 0\nouter loop\n"
+        + "".join(f"vertex {x} {y} {z}\n" for x, y, z in (CORNERS[v] for v in face))
         + "endloop\nendfacet\n"
         for face in FACES
     )
@@ -122,14 +125,17 @@ STL = (
 )
 BOX = "((0,0,0) (1,1,1) (0,0,0))"
 AMREX = {
-    "plt/Header": "HyperCLaw-V1.1\n1\nf\n3\n0.0\n0\n0 0 0\n1 1 1\n\n" + BOX + "\n0\n0.5 0.5 0.5\n0\n0\n0 1 0\n0\n0 1\n0 1\n0 1\nLevel_0/Cell\n",
+    "plt/Header": "HyperCLaw-V1.1\n1\nf\n3\n0.0\n0\n0 0 0\n1 1 1\n\n"
+    + BOX
+    + "\n0\n0.5 0.5 0.5\n0\n0\n0 1 0\n0\n0 1\n0 1\n0 1\nLevel_0/Cell\n",
     "plt/Level_0/Cell_H": f"1\n1\n1\n0\n(1 0\n{BOX}\n)\n1\nFabOnDisk: Cell_D_00000 0\n",
     "plt/Level_0/Cell_D_00000": f"FAB ((8, (64 11 52 0 1 12 0 1023)),(8, (8 7 6 5 4 3 2 1))){BOX} 1\n".encode()
     + struct.pack("<8d", *range(8)),
 }
 POLY = SMESH[: SMESH.index("4 0\n")] + "4 0\n" + "".join(f"1\n3 {a} {b} {c}\n" for a, b, c in FACES) + "0\n0\n"
 LEGACY = (
-    "# vtk DataFile Version 3.0\none\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n" + lines(CORNERS)
+    "# vtk DataFile Version 3.0\none\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n"
+    + lines(CORNERS)
     + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\nPOINT_DATA 4\nSCALARS f float 1\nLOOKUP_TABLE default\n0 1 2 3\n"
 )
 VTP = (
@@ -195,7 +201,9 @@ AMR = (
 AMR_FILES = {"a.vth": AMR, "b0.vti": block(), "b1.vti": block(spacing="0.5 0.5 0.5")}
 
 
-def hyper_trees(axes=("0 1", "0 1", "0 1"), counts="1 8", divided="1", version="2.0", branching=2, values=None, depth="2"):
+def hyper_trees(
+    axes=("0 1", "0 1", "0 1"), counts="1 8", divided="1", version="2.0", branching=2, values=None, depth="2"
+):
     """One tree, or as many as `depth` has words."""
 
     def array(kind, name, values):
@@ -208,9 +216,15 @@ def hyper_trees(axes=("0 1", "0 1", "0 1"), counts="1 8", divided="1", version="
     return (
         f'<VTKFile type="HyperTreeGrid" version="{version}" byte_order="LittleEndian" header_type="UInt32">\n'
         f'<HyperTreeGrid BranchFactor="{branching}" TransposedRootIndexing="0" Dimensions="{sizes}" NumberOfVertices="{cells}">\n'
-        "<Grid>\n" + "".join(array("Float64", f"{name}Coordinates", axis) for name, axis in zip("XYZ", axes)) + "</Grid>\n<Trees>\n"
-        + array("Bit", "Descriptors", divided) + array("Int64", "NumberOfVerticesPerDepth", counts) + array("Int64", "TreeIds", trees)
-        + array("UInt32", "DepthPerTree", depth) + "</Trees>\n<CellData>\n" + array("Float64", "f", values)
+        "<Grid>\n"
+        + "".join(array("Float64", f"{name}Coordinates", axis) for name, axis in zip("XYZ", axes))
+        + "</Grid>\n<Trees>\n"
+        + array("Bit", "Descriptors", divided)
+        + array("Int64", "NumberOfVerticesPerDepth", counts)
+        + array("Int64", "TreeIds", trees)
+        + array("UInt32", "DepthPerTree", depth)
+        + "</Trees>\n<CellData>\n"
+        + array("Float64", "f", values)
         + "</CellData>\n</HyperTreeGrid>\n</VTKFile>\n"
     )
 

@@ -27,15 +27,19 @@ def amrex(file, old, new, advice):
 SHARED = "plt/Level_0/Cell_H"
 FOUR_BOXES = {
     **AMREX,
-    SHARED: AMREX[SHARED].replace("(1 0\n", "(4 0\n" + 3 * (BOX + "\n")).replace(")\n1\n", ")\n4\n" + 3 * "FabOnDisk: Cell_D_00000 0\n"),
+    SHARED: AMREX[SHARED]
+    .replace("(1 0\n", "(4 0\n" + 3 * (BOX + "\n"))
+    .replace(")\n1\n", ")\n4\n" + 3 * "FabOnDisk: Cell_D_00000 0\n"),
     "plt/Header": AMREX["plt/Header"].replace("0 1 0\n0\n", "0 4 0\n0\n" + 9 * "0 1\n"),
 }
 
 CORNERS = SMESH.splitlines()[1:5]
 CROSSED = (
-    "8 3 0 0\n" + "".join(corner + "\n" for corner in CORNERS)
+    "8 3 0 0\n"
+    + "".join(corner + "\n" for corner in CORNERS)
     + "4 0.1 0.1 0.1\n5 1.2 0.1 0.1\n6 0.1 1.2 0.1\n7 0.1 0.1 1.2\n8 0\n"
-    + "".join(f"3 {a + first} {b + first} {c + first}\n" for first in (0, 4) for a, b, c in FACES) + "0\n0\n"
+    + "".join(f"3 {a + first} {b + first} {c + first}\n" for first in (0, 4) for a, b, c in FACES)
+    + "0\n0\n"
 )
 
 ROWS = [
@@ -57,11 +61,25 @@ ROWS = [
     # .tets
     cut("a.tets", TETS, 9, "are too few for a .tets header of 16; write the file anew"),
     damaged("a.tets", TETS, struct.pack("<q", 4), struct.pack("<q", -4), "this is no little-endian .tets file"),
-    damaged("a.tets", TETS, struct.pack("<4i", 0, 1, 2, 3), struct.pack("<4i", 0, 1, 2, 9), "write tets and vertices from one mesh"),
-    row("convert c.vtu b.tets", "write .vtu, or smooth it", "convert c.vtu b.tets --smooth",
-        {"c.vtu": TETRAHEDRON.replace("PointData", "CellData").replace("0 250 500 1000", "7")}),
-    row("convert c.vtu b.tets", "write .vtu, which holds doubles", "convert c.vtu b.vtu",
-        {"c.vtu": TETRAHEDRON.replace("0 250", "0 1e99")}),
+    damaged(
+        "a.tets",
+        TETS,
+        struct.pack("<4i", 0, 1, 2, 3),
+        struct.pack("<4i", 0, 1, 2, 9),
+        "write tets and vertices from one mesh",
+    ),
+    row(
+        "convert c.vtu b.tets",
+        "write .vtu, or smooth it",
+        "convert c.vtu b.tets --smooth",
+        {"c.vtu": TETRAHEDRON.replace("PointData", "CellData").replace("0 250 500 1000", "7")},
+    ),
+    row(
+        "convert c.vtu b.tets",
+        "write .vtu, which holds doubles",
+        "convert c.vtu b.vtu",
+        {"c.vtu": TETRAHEDRON.replace("0 250", "0 1e99")},
+    ),
     # TetGen's
     damaged("a.ele", ELE, "0 1 2 3", "0 1 2 9", "write the file anew", beside={"a.node": NODE}),
     damaged("a.smesh", SMESH, "3 0 2 1", "3 0 2 x", "write the file anew"),
@@ -75,19 +93,39 @@ ROWS = [
     surface("a.ply", PLY, "element face 4", "element face 0", "the surface has no faces; write it anew"),
     surface("a.ply", PLY, "1 0 0\n", "1 0 nan\n", "of the surface is not finite; mend it"),
     surface("a.ply", PLY, "3 0 2 1", "3 0 2 9", "the file holds 4; write it anew"),
-    row(R + "--surface m.tets", "give a .ply, .stl, .vtp, .vtk, .poly or .smesh", R + "--surface a.ply", {"m.tets": TETS, "a.ply": PLY}),
-    row(R + "--surface a.poly", "divide it into polygons without", None,
-        {"a.poly": POLY.replace("4 0\n1\n3 0 2 1\n", "4 0\n1 1\n3 0 2 1\n1 0.2 0.2 0\n")}, {"a.poly": POLY}),
+    row(
+        R + "--surface m.tets",
+        "give a .ply, .stl, .vtp, .vtk, .poly or .smesh",
+        R + "--surface a.ply",
+        {"m.tets": TETS, "a.ply": PLY},
+    ),
+    row(
+        R + "--surface a.poly",
+        "divide it into polygons without",
+        None,
+        {"a.poly": POLY.replace("4 0\n1\n3 0 2 1\n", "4 0\n1 1\n3 0 2 1\n1 0.2 0.2 0\n")},
+        {"a.poly": POLY},
+    ),
     row("info a.ply --max-volume 0", "a number above 0", "info a.ply --max-volume 1", {"a.ply": PLY}),
     # AMReX
     amrex("Header", "Level_0/Cell\n", "", "it is truncated, write it anew"),
     amrex("Header", "0.0\n0\n", "0.0\nx\n", "is wanted; write it anew"),
     amrex("Header", "0.5 0.5 0.5", "0.5 x 0.5", "a number is wanted; write it anew"),
-    amrex("Header", "(0,0,0))", "(1,0,0))", "only cells are read, write them"),
+    amrex("Header", "(0,0,0))", "(1,0,0))", "which are not read; write values of cells"),
     amrex("Header", "(1,1,1)", "(-1,1,1)", "ends before it begins; write it anew"),
     amrex("Header", "f\n3\n", "f\n2\n", "give a data set of three"),
-    amrex("Header", "0.5\n0\n0\n", "0.5\n1\n0\n", "its coordinates are cylindrical, only Cartesian ones are read; give another data set"),
-    amrex("Header", "0.5\n0\n0\n", "0.5\n2\n0\n", "its coordinates are spherical, only Cartesian ones are read; give another data set"),
+    amrex(
+        "Header",
+        "0.5\n0\n0\n",
+        "0.5\n1\n0\n",
+        "its coordinates are cylindrical, only Cartesian ones are read; give another data set",
+    ),
+    amrex(
+        "Header",
+        "0.5\n0\n0\n",
+        "0.5\n2\n0\n",
+        "its coordinates are spherical, only Cartesian ones are read; give another data set",
+    ),
     amrex("Level_0/Cell_H", "1\n1\n1\n", "2\n1\n1\n", "write it with vismf.headerversion = 1"),
     amrex("Level_0/Cell_H", "1\n1\n1\n", "1\n1\n2\n", "it has 2 fields, the Header has 1; write it anew"),
     amrex("Level_0/Cell_H", "FabOnDisk:", "FabOnTape:", "where FabOnDisk: is wanted; write it anew"),
@@ -95,9 +133,20 @@ ROWS = [
     amrex("Level_0/Cell_D_00000", "(64 11", "(64 12", "write IEEE numbers of 32 or 64 bits"),
     amrex("Level_0/Cell_D_00000", ") 1\n", ") 2\n", "2 fields are there, the Header has 1; write it anew"),
     amrex("Level_0/Cell_D_00000", "(1,1,1)", "(0,1,1)", "its box has cells 0 to 1; write it anew"),
-    row("info plt", "it is truncated, write it anew", None, {**AMREX, "plt/Level_0/Cell_D_00000": AMREX["plt/Level_0/Cell_D_00000"][:-8]}, AMREX),
+    row(
+        "info plt",
+        "it is truncated, write it anew",
+        None,
+        {**AMREX, "plt/Level_0/Cell_D_00000": AMREX["plt/Level_0/Cell_D_00000"][:-8]},
+        AMREX,
+    ),
     row("info plt", "boxes share their values; it is damaged, write it anew", None, FOUR_BOXES, AMREX),
-    row("info plt", "field 600 has no name; write it anew", None,
-        {**AMREX, "plt/Header": "HyperCLaw-V1.1\n700\n" + 600 * "fieldnam\n" + "\n"}, AMREX),
+    row(
+        "info plt",
+        "field 600 has no name; write it anew",
+        None,
+        {**AMREX, "plt/Header": "HyperCLaw-V1.1\n700\n" + 600 * "fieldnam\n" + "\n"},
+        AMREX,
+    ),
     row("info a.smesh", "TetGen cannot fill the surface", None, {"a.smesh": CROSSED}, {"a.smesh": SMESH}),
 ]

@@ -32,7 +32,9 @@ class Message:
         pieces = []
         for part in parts:
             pieces += [re.escape(piece) for piece in re.split(r"\{[^}]*\}|`\w+`|\n", part) if piece]
-        self.pattern = re.compile(".*?".join(pieces))
+        # Advice goes no further than its words, but for what is in brackets.
+        end = "" if re.search(r"[}`\s]$", parts[-1]) else r"(?=$|[.,;:)?]| \()"
+        self.pattern = re.compile(".*?".join(pieces) + end, re.MULTILINE)
 
     def __str__(self):
         return f"{self.place}: {' .. '.join(self.parts)}"
@@ -97,7 +99,11 @@ def alternatives(tokens):
                 said += literal(tokens[index])
                 index += 1
             beside += tokens[index] if index < len(tokens) else ""
-            if not re.search(r"[!=]=|\[", beside) and re.search(r"\w{3}|; ", said) and not re.match(r"\.\w+( \.\w+)*$", said):
+            if (
+                not re.search(r"[!=]=|\[", beside)
+                and re.search(r"\w{3}|; ", said)
+                and not re.match(r"\.\w+( \.\w+)*$", said)
+            ):
                 ways = [[*way, said] for way in ways]
             continue
         if token in ("(", "["):
