@@ -101,7 +101,7 @@ def copy_of(tessera, folder: Path):
 
 
 def follow(tessera, data: Path, folder: Path, row):
-    """Runs a row: what is wrong with it, and all that its first command said."""
+    """Runs a row: what is wrong with it, and all that its first command said; None if this build cannot run it."""
     folder.mkdir()
     for file in data.iterdir():
         os.link(file, folder / file.name)
@@ -127,30 +127,36 @@ def follow(tessera, data: Path, folder: Path, row):
             os.close(each)
         return done
 
-    wrong = []
     write(folder, row.before)
     failed = run(row.command, row.terminal, row.limits, copy_of(tessera, folder) if row.alone else "")
     errors, output = has_said(failed)
+    wrong = []
     faults = [line for line in errors.splitlines() if line.startswith("tessera: ") and "warning: " not in line]
     is_line = failed.returncode in (2, 3) and len(faults) == 1
     # What a picture does not show is a warning.
     said = "\n".join((errors, re.sub(r"\n +", " ", errors), re.sub(r"\n +", "; ", errors), output))  # lines are wrapped
-    if "which this build leaves out" in said or (row.alone and failed.returncode == 0):  # an installed helper was found
+    if "which this build leaves out" in said or (row.alone and failed.returncode == 0):  # one that is installed ran
         return [], None
     if not (is_line or failed.returncode == 0) or row.advice not in said:
         wrong.append(f"{row.command}\n  status {failed.returncode}, '{row.advice}' awaited: {errors.strip()}")
-    write(folder, row.after)
+    write(folder, dict.fromkeys(outputs_of(row.mended)) | row.after)
     done = run(row.mended)
-    if done.returncode != row.status or (row.status == 0 and row.advice in has_said(done)[0]):
+    if done.returncode != 0 or row.advice in has_said(done)[0]:
         wrong.append(f"{row.mended}\n  status {done.returncode}, after '{row.advice}': {has_said(done)[0].strip()}")
     missing = [name for name in outputs_of(row.mended) if done.returncode == 0 and not (folder / name).exists()]
     wrong += [f"{row.mended}\n  {name} is not there after '{row.advice}'" for name in missing]
     return [f"{row.line}: {line}" for line in wrong], said
 
 
+def follow_in_time(tessera, data, folder, row):
+    try:
+        return follow(tessera, data, folder, row)
+    except subprocess.TimeoutExpired as late:
+        return [f"{row.line}: {row.command}\n  {late}"], ""
+
+
 def uncovered(source, said, is_partial):
-    """Messages that no row made, without those that are excepted; and exceptions of no use. A build that leaves formats
-    out cannot make all."""
+    """Messages that no row made and that are not excepted; exceptions of no use. `is_partial`: not all rows ran."""
     messages = messages_of(source, ("apps", "io"))
     messages = [message for message in messages if not any(re.search(known, str(message)) for known in NO_ADVICE)]
     followed = [message for message in messages if message.pattern.search(said)]
@@ -183,7 +189,9 @@ def main():
         folder = Path(name)
         make_data(tessera, folder / "data")
         results = list(
-            pool.map(lambda item: follow(tessera, folder / "data", folder / str(item[0]), item[1]), enumerate(rows))
+            pool.map(
+                lambda item: follow_in_time(tessera, folder / "data", folder / str(item[0]), item[1]), enumerate(rows)
+            )
         )
     wrong = [line for lines, _ in results for line in lines]
     counts = ""

@@ -36,7 +36,8 @@ PVCC = (
 )
 KNOTS = "0 1 0 0 0.5\n1 0 0 1 2\n"
 COLOR_MAP = (
-    '[{"Name": "two", "ColorSpace": "RGB", "RGBPoints": [0, 0, 0, 1, 1, 1, 0, 0], "Points": [0, 0, 0.5, 0, 1, 1, 0.5, 0],'
+    '[{"Name": "two", "ColorSpace": "RGB", "RGBPoints": [0, 0, 0, 1, 1, 1, 0, 0], "Points": [0, 0, 0.5, '
+    "0, 1, 1, 0.5, 0],"
     ' "ScalarOpacityUnitDistance": 1}]'
 )
 PVD = (
@@ -55,7 +56,8 @@ NRRD = (
     "space origin: (0,0,0)\nendian: little\nencoding: raw\n\n"
 ).encode() + SAMPLES
 META = (
-    b"ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nOffset = 0 0 0\nElementSpacing = 1 1 1\n"
+    b"ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nOffset = 0 0 0\n"
+    b"ElementSpacing = 1 1 1\n"
     b"DimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n"
 ) + SAMPLES
 
@@ -78,7 +80,8 @@ TETRAHEDRON = (
     '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian">\n<UnstructuredGrid>\n'
     '<Piece NumberOfPoints="4" NumberOfCells="1">\n'
     '<PointData>\n<DataArray type="Float64" Name="f" format="ascii">0 250 500 1000</DataArray>\n</PointData>\n'
-    '<Points>\n<DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0 0 0 1</DataArray>\n</Points>\n'
+    '<Points>\n<DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0 0 0 '
+    "1</DataArray>\n</Points>\n"
     '<Cells>\n<DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 3</DataArray>\n'
     '<DataArray type="Int64" Name="offsets" format="ascii">4</DataArray>\n'
     '<DataArray type="UInt8" Name="types" format="ascii">10</DataArray>\n</Cells>\n'
@@ -90,8 +93,10 @@ def image_data(kind="ImageData", extent="0 1 0 1 0 1", values="0 1 2 3 4 5 6 7",
     """VTK XML of a regular or rectilinear grid."""
     geometry = "" if kind == "RectilinearGrid" else ' Origin="0 0 0" Spacing="1 1 1"'
     return (
-        f'<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian">\n<{kind} WholeExtent="{extent}"{geometry}{more}>\n'
-        f'<Piece Extent="{extent}">\n<PointData>\n<DataArray type="Float64" Name="f" format="ascii">{values}</DataArray>\n'
+        f'<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian">\n<{kind} '
+        f'WholeExtent="{extent}"{geometry}{more}>\n'
+        f'<Piece Extent="{extent}">\n<PointData>\n<DataArray type="Float64" Name="f" '
+        f'format="ascii">{values}</DataArray>\n'
         f"</PointData>\n{coordinates}</Piece>\n</{kind}>\n</VTKFile>\n"
     )
 
@@ -139,10 +144,13 @@ LEGACY = (
     + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\nPOINT_DATA 4\nSCALARS f float 1\nLOOKUP_TABLE default\n0 1 2 3\n"
 )
 VTP = (
-    '<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian">\n<PolyData>\n<Piece NumberOfPoints="4" NumberOfPolys="4">\n'
-    '<Points>\n<DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0 0 0 1</DataArray>\n</Points>\n'
+    '<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian">\n<PolyData>\n<Piece '
+    'NumberOfPoints="4" NumberOfPolys="4">\n'
+    '<Points>\n<DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0 0 0 '
+    "1</DataArray>\n</Points>\n"
     '<Polys>\n<DataArray type="Int64" Name="connectivity" format="ascii">0 2 1 0 1 3 1 2 3 0 3 2</DataArray>\n'
-    '<DataArray type="Int64" Name="offsets" format="ascii">3 6 9 12</DataArray>\n</Polys>\n</Piece>\n</PolyData>\n</VTKFile>\n'
+    '<DataArray type="Int64" Name="offsets" format="ascii">3 6 9 12</DataArray>\n</Polys>\n</Piece>\n'
+    "</PolyData>\n</VTKFile>\n"
 )
 
 
@@ -166,11 +174,13 @@ def unstructured(points="0 0 0 1 0 0 0 1 0 0 0 1", cells="0 1 2 3", offsets="4",
 
 
 PVTU = (
-    '<VTKFile type="PUnstructuredGrid" version="1.0">\n<PUnstructuredGrid>\n<PPointData><PDataArray type="Float64" Name="f"/>'
+    '<VTKFile type="PUnstructuredGrid" version="1.0">\n<PUnstructuredGrid>\n<PPointData><PDataArray '
+    'type="Float64" Name="f"/>'
     '</PPointData>\n<Piece Source="p.vtu"/>\n</PUnstructuredGrid>\n</VTKFile>\n'
 )
 VTM = (
-    '<VTKFile type="vtkMultiBlockDataSet" version="1.0">\n<vtkMultiBlockDataSet>\n<DataSet index="0" name="one" file="p.vtu"/>\n'
+    '<VTKFile type="vtkMultiBlockDataSet" version="1.0">\n<vtkMultiBlockDataSet>\n<DataSet index="0" '
+    'name="one" file="p.vtu"/>\n'
     '<DataSet index="1" name="two" file="q.vtu"/>\n</vtkMultiBlockDataSet>\n</VTKFile>\n'
 )
 
@@ -179,7 +189,10 @@ def in_pieces(kind, pieces, extent="0 2 0 1 0 1"):
     """A grid's pieces, each a name and the points that it has."""
     geometry = ' Origin="0 0 0" Spacing="1 1 1"' if kind == "ImageData" else ""
     listed = "".join(f'<Piece Extent="{points}" Source="{name}"/>\n' for name, points in pieces)
-    return f'<VTKFile type="P{kind}" version="1.0">\n<P{kind} WholeExtent="{extent}" GhostLevel="0"{geometry}>\n{listed}</P{kind}>\n</VTKFile>\n'
+    return (
+        f'<VTKFile type="P{kind}" version="1.0">\n<P{kind} WholeExtent="{extent}" '
+        f'GhostLevel="0"{geometry}>\n{listed}</P{kind}>\n</VTKFile>\n'
+    )
 
 
 def block(cells="0 2 0 2 0 2", origin="0 0 0", spacing="1 1 1", more="", values=None):
@@ -188,14 +201,17 @@ def block(cells="0 2 0 2 0 2", origin="0 0 0", spacing="1 1 1", more="", values=
     count = (ends[1] - ends[0]) * (ends[3] - ends[2]) * (ends[5] - ends[4])
     values = " ".join(map(str, range(count))) if values is None else values
     return (
-        f'<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian">\n<ImageData WholeExtent="{cells}" Origin="{origin}"'
-        f' Spacing="{spacing}"{more}>\n<Piece Extent="{cells}">\n<CellData>\n<DataArray type="Float64" Name="f" format="ascii">{values}'
+        f'<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian">\n<ImageData '
+        f'WholeExtent="{cells}" Origin="{origin}"'
+        f' Spacing="{spacing}"{more}>\n<Piece Extent="{cells}">\n<CellData>\n<DataArray type="Float64" '
+        f'Name="f" format="ascii">{values}'
         "</DataArray>\n</CellData>\n</Piece>\n</ImageData>\n</VTKFile>\n"
     )
 
 
 AMR = (
-    '<VTKFile type="vtkOverlappingAMR" version="1.1">\n<vtkOverlappingAMR>\n<Block level="0"><DataSet index="0" file="b0.vti"/></Block>\n'
+    '<VTKFile type="vtkOverlappingAMR" version="1.1">\n<vtkOverlappingAMR>\n<Block level="0"><DataSet '
+    'index="0" file="b0.vti"/></Block>\n'
     '<Block level="1"><DataSet index="0" file="b1.vti"/></Block>\n</vtkOverlappingAMR>\n</VTKFile>\n'
 )
 AMR_FILES = {"a.vth": AMR, "b0.vti": block(), "b1.vti": block(spacing="0.5 0.5 0.5")}
@@ -207,7 +223,10 @@ def hyper_trees(
     """One tree, or as many as `depth` has words."""
 
     def array(kind, name, values):
-        return f'<DataArray type="{kind}" Name="{name}" NumberOfTuples="{len(values.split())}" format="ascii">{values}</DataArray>\n'
+        return (
+            f'<DataArray type="{kind}" Name="{name}" NumberOfTuples="{len(values.split())}" '
+            f'format="ascii">{values}</DataArray>\n'
+        )
 
     sizes = " ".join(str(len(axis.split())) for axis in axes)
     cells = sum(map(int, counts.split()))
@@ -215,7 +234,8 @@ def hyper_trees(
     trees = " ".join(map(str, range(len(depth.split()))))
     return (
         f'<VTKFile type="HyperTreeGrid" version="{version}" byte_order="LittleEndian" header_type="UInt32">\n'
-        f'<HyperTreeGrid BranchFactor="{branching}" TransposedRootIndexing="0" Dimensions="{sizes}" NumberOfVertices="{cells}">\n'
+        f'<HyperTreeGrid BranchFactor="{branching}" TransposedRootIndexing="0" Dimensions="{sizes}" '
+        f'NumberOfVertices="{cells}">\n'
         "<Grid>\n"
         + "".join(array("Float64", f"{name}Coordinates", axis) for name, axis in zip("XYZ", axes))
         + "</Grid>\n<Trees>\n"

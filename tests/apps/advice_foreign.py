@@ -75,7 +75,8 @@ VOLUME = (
     "POINT_DATA 8\nSCALARS f float 1\nLOOKUP_TABLE default\n0 1 2 3 4 5 6 7\n"
 )
 PARTS = (
-    '<VTKFile type="Collection"><Collection><DataSet timestep="0" part="0" file="m.vtu"/><DataSet timestep="0" part="1" file="{}"/>'
+    '<VTKFile type="Collection"><Collection><DataSet timestep="0" part="0" file="m.vtu"/><DataSet '
+    'timestep="0" part="1" file="{}"/>'
     "</Collection></VTKFile>"
 )
 
@@ -299,12 +300,14 @@ ROWS = [
             advice,
             None,
             {
-                "a.phtg": '<VTKFile type="PHyperTreeGrid"><PHyperTreeGrid><Piece Source="p.htg"/><Piece Source="q.htg"/></PHyperTreeGrid></VTKFile>',
+                "a.phtg": '<VTKFile type="PHyperTreeGrid"><PHyperTreeGrid><Piece Source="p.htg"/><Piece '
+                'Source="q.htg"/></PHyperTreeGrid></VTKFile>',
                 "p.htg": TREES,
                 "q.htg": other,
             },
             {
-                "a.phtg": '<VTKFile type="PHyperTreeGrid"><PHyperTreeGrid><Piece Source="p.htg"/></PHyperTreeGrid></VTKFile>'
+                "a.phtg": '<VTKFile type="PHyperTreeGrid"><PHyperTreeGrid><Piece Source="p.htg"/>'
+                "</PHyperTreeGrid></VTKFile>"
             },
         )
         for advice, other in (

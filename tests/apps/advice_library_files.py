@@ -28,7 +28,10 @@ SOLUTION = "2 2 2\n0.5 0 1 0\n" + "".join(" ".join("12345678") + "\n" for _ in r
 
 def item(values, dimensions=None, more=""):
     words = values.split()
-    return f'<DataItem Dimensions="{dimensions or len(words)}" Format="XML" NumberType="Float" Precision="8"{more}>{values}</DataItem>'
+    return (
+        f'<DataItem Dimensions="{dimensions or len(words)}" Format="XML" NumberType="Float" '
+        f'Precision="8"{more}>{values}</DataItem>'
+    )
 
 
 def xdmf(grid, before=""):
@@ -45,7 +48,8 @@ def xdmf_mesh(
     time="",
 ):
     return (
-        f'<Grid Name="mesh" GridType="Uniform">\n{time}<Topology TopologyType="{kind}" NumberOfElements="1"{more}>{cells}</Topology>\n'
+        f'<Grid Name="mesh" GridType="Uniform">\n{time}<Topology TopologyType="{kind}" '
+        f'NumberOfElements="1"{more}>{cells}</Topology>\n'
         f'<Geometry GeometryType="{geometry}">{points}</Geometry>\n'
         f'<Attribute Name="f" AttributeType="Scalar" Center="Node">{item(values)}</Attribute>\n</Grid>'
     )
@@ -152,8 +156,8 @@ SLICES = {f"ct/{k}.dcm": dicom(k) for k in (1, 2, 3)}
 
 
 def netcdf(dimensions, variables, attributes=()):
-    """NetCDF's classic format: lengths of dimensions by their names, 0 the unlimited one; (name, type, dimensions, values,
-    attributes) of variables, where types are those of struct, or a str's."""
+    """NetCDF's classic format: lengths of dimensions by their names, 0 the unlimited one; (name, type, dimensions,
+    values, attributes) of variables, where types are those of struct, "c" a str's."""
     codes = {"c": 2, "i": 4, "f": 5, "d": 6, "b": 1}
 
     def padded(data):

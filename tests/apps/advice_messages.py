@@ -1,7 +1,8 @@
 """Messages of the sources that give advice, each as the pattern of the lines that it can write.
 
-A message is what one statement says with its literals, `{}` and names between them standing for anything; of `a ? b : c`
-each of the two is a message of its own. Settings in backquotes stand for anything too: the program writes options.
+A message is what one statement says with its literals, `{}` and names between them standing for anything; of
+`a ? b : c` each of the two is a message of its own. Settings in backquotes stand for anything too: the program writes
+options.
 """
 
 import itertools
@@ -11,14 +12,13 @@ from pathlib import Path
 TOKEN = re.compile(
     r'//[^\n]*|/\*.*?\*/|#[^\n]*|R"\(.*?\)"|"(?:[^"\\\n]|\\.)*"|\'(?:[^\'\\\n]|\\.)+\'|\s+|\w+|::|[=!<>]=|.', re.DOTALL
 )
-VERBS = (
-    "add allow build check choose close count did end export free give have inflate install keep lay leave make mend move "
-    "name please put raise read run save see set split start try unpack use write"
-).split()
+VERBS = """add allow build check choose close count did end export free give have inflate install keep lay leave make mend
+           move name please put raise read run save see set split start try unpack use write""".split()
 ADVICE = re.compile(r"; [a-z`(]|, (?:write|give) |(?:^|\n)(?:" + "|".join(VERBS) + r") ")
 # What takes words that nobody is told.
 ASKING = set(
-    "if while for switch find rfind contains starts_with ends_with substr count at attribute child get find_first_of find_last_of find_first_not_of begins_with".split()
+    """if while for switch find rfind contains starts_with ends_with substr count at attribute child get find_first_of
+       find_last_of find_first_not_of begins_with""".split()
 )
 DECLARING = set("add_option add_flag add_option_function add_flag_function add_subcommand static_assert footer".split())
 

@@ -9,13 +9,11 @@ class Row:
     command: str
     advice: str  # what the message has to say
     mended: str  # the command with the advice followed
-    before: dict = field(
-        default_factory=dict
-    )  # files that are there first, by their names; ("program", text), ("link", target) and names that end in / are these
+    # Files by their names, which may end in / for a folder: text, bytes, ("program", text), ("link", target), None: away.
+    before: dict = field(default_factory=dict)  # for the first command
     after: dict = field(default_factory=dict)  # what the advice makes of them
     stdin: str = ""  # file that both commands read
     env: dict = field(default_factory=dict)
-    status: int = 0  # what the mended command ends with
     terminal: str = ""  # what the first command has for a terminal: stdin or stdout; full: its output has no room
     limits: str = ""  # what a shell does before it becomes the first command
     alone: bool = False  # whether the first command is of a program without its helpers

@@ -81,12 +81,12 @@ ROWS = [
         "write at most 64 components",
         None,
         {
-            "a.nrrd": b"NRRD0004\ntype: uint8\ndimension: 4\nkinds: vector domain domain domain\nsizes: 65 2 2 2\nencoding: raw\n\n"
-            + SAMPLES * 65
+            "a.nrrd": b"NRRD0004\ntype: uint8\ndimension: 4\nkinds: vector domain domain domain\nsizes: "
+            b"65 2 2 2\nencoding: raw\n\n" + SAMPLES * 65
         },
         {
-            "a.nrrd": b"NRRD0004\ntype: uint8\ndimension: 4\nkinds: vector domain domain domain\nsizes: 64 2 2 2\nencoding: raw\n\n"
-            + SAMPLES * 64
+            "a.nrrd": b"NRRD0004\ntype: uint8\ndimension: 4\nkinds: vector domain domain domain\nsizes: "
+            b"64 2 2 2\nencoding: raw\n\n" + SAMPLES * 64
         },
     ),
     row(
@@ -94,12 +94,12 @@ ROWS = [
         "write one of them alone",
         None,
         {
-            "a.nrrd": b"NRRD0004\ntype: uint8\ndimension: 5\nkinds: list domain domain domain time\nsizes: 2 2 2 2 2\nencoding: raw\n\n"
-            + SAMPLES * 4
+            "a.nrrd": b"NRRD0004\ntype: uint8\ndimension: 5\nkinds: list domain domain domain time\n"
+            b"sizes: 2 2 2 2 2\nencoding: raw\n\n" + SAMPLES * 4
         },
         {
-            "a.nrrd": b"NRRD0004\ntype: uint8\ndimension: 4\nkinds: list domain domain domain\nsizes: 2 2 2 2\nencoding: raw\n\n"
-            + SAMPLES * 2
+            "a.nrrd": b"NRRD0004\ntype: uint8\ndimension: 4\nkinds: list domain domain domain\nsizes: 2 2 "
+            b"2 2\nencoding: raw\n\n" + SAMPLES * 2
         },
     ),
     row(
