@@ -18,7 +18,6 @@
 #include "apps/report.hpp"
 #include "apps/run_output.hpp"
 #include "apps/setting_words.hpp"
-#include "tessera/error.hpp"
 #include "tessera/film.hpp"
 #include "tessera/output_file.hpp"
 #include "tessera/statistics.hpp"
