@@ -18,7 +18,6 @@
 #include "apps/report.hpp"
 #include "apps/run_output.hpp"
 #include "apps/setting_words.hpp"
-#include "tessera/error.hpp"
 #include "tessera/film.hpp"
 #include "tessera/output_file.hpp"
 #include "tessera/statistics.hpp"
@@ -120,13 +119,6 @@ std::string csv_of(const std::vector<analysis::ChartPoint>& points) {
   return csv;
 }
 
-/// The words of `render` that this command has, checked and in values.
-RenderOptions options_of(const RenderWords& words) {
-  RenderOptions options = render_options(words);
-  if (options.frame.deep) throw bad_input("chart: makes no pictures; leave -o out");
-  return options;
-}
-
 }  // namespace
 
 void add_chart_options(CLI::App& command, RenderWords& words, ChartWords& chart) {
@@ -156,7 +148,7 @@ void add_chart_options(CLI::App& command, RenderWords& words, ChartWords& chart)
 
 void chart(const RenderWords& words, const ChartWords& chart) {
   const auto begin = Clock::now();
-  const RenderOptions options = options_of(words);
+  const RenderOptions options = render_options(words);
   const double budget = parse_positive("--budget-seconds", chart.budget);
   const int repeat = parse_count("--repeat", chart.repeat, 1, 1000);
   std::optional<std::size_t> pixels;

@@ -16,6 +16,7 @@
 #include "apps/volume_options.hpp"
 #include "tessera/error.hpp"
 #include "tessera/input_file.hpp"
+#include "tessera/time_series.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -256,7 +257,12 @@ void add_render_options(CLI::App& command, RenderWords& words) {
   command.add_flag("--quiet", words.quiet, "nothing on stderr but errors");
 }
 
-RenderOptions render_options(const RenderWords& words) { return render_options(words, is_grid_input(words)); }
+bool draws_grids(const RenderWords& words) {
+  return is_time_series(words.input) ? opens_as_grid(read_time_series(words.input).front().files.front())
+                                     : is_grid_input(words);
+}
+
+RenderOptions render_options(const RenderWords& words) { return render_options(words, draws_grids(words)); }
 
 RenderOptions render_options(const RenderWords& words, bool is_grid) {
   RenderOptions options;

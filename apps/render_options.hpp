@@ -85,6 +85,9 @@ void add_render_options(CLI::App& command, RenderWords& words);
 void add_mesh_options(CLI::App& command, RenderWords& words);
 ReadOptions mesh_options(const RenderWords& words);
 
+/// Whether volumes are drawn: of a list of files its first says it.
+bool draws_grids(const RenderWords& words);
+
 /// Words to values. Throws Error(bad_input) naming the option: what it was given, what it takes; also for words
 /// that the design knows but this version cannot do yet, and for options that would have no effect together.
 RenderOptions render_options(const RenderWords& words);

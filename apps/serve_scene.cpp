@@ -197,7 +197,7 @@ class RenderScene final : public server::Scene {
 class RenderSceneReader final : public server::SceneReader {
  public:
   RenderSceneReader(const RenderWords& words, const CLI::App& serve)
-      : input_(words.input), is_grid_(is_grid_input(words)) {
+      : input_(words.input), is_grid_(draws_grids(words)) {
     for (const CLI::Option* option : serve.get_options()) {
       if (option->count() == 0 || option->get_lnames().empty()) continue;
       std::string name = option->get_lnames().front();

@@ -125,6 +125,8 @@ void add_notes_on(std::span<const CellBlock> fields, const AmrLeaves& amr, const
 }
 
 MeshBlocks mesh_of(const OpenedAmr& opened, const MeshOptions& options, const std::string& source) {
+  if (opened.blocks.empty())
+    throw scene::bad_input(fmt::format("{}: it holds no cells; check how it was written", source));
   std::vector<CellBlock> fields = opened.fields;
   for (const AmrBlock& block : std::span(opened.blocks).subspan(fields.size()))
     fields.push_back(
@@ -134,7 +136,6 @@ MeshBlocks mesh_of(const OpenedAmr& opened, const MeshOptions& options, const st
   result.notes = opened.notes;
   const std::vector<FieldTally> tallies = tally_fields(fields);
   result.fields = summarize_fields(std::span(&tallies, 1));
-  if (result.fields.empty()) throw scene::bad_input(fmt::format("{}: it has no field; write one with it", source));
   const FieldChoice choice = choose_field(options.field, result.fields, source);
   result.notes.insert(result.notes.end(), choice.notes.begin(), choice.notes.end());
 

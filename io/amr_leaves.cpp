@@ -96,6 +96,11 @@ std::vector<std::int32_t> level_sizes(std::span<const ForeignPart* const> levels
   return size;
 }
 
+scene::Error too_long(double cells, const std::string& source) {
+  return scene::bad_input(
+      fmt::format("{}: it is {} of the finest cells long, {} are read; leave out levels", source, cells, most_corners));
+}
+
 /// Puts the blocks on the lattice.
 void place_blocks(std::span<const AmrBlock> blocks, AmrLeaves& amr, std::span<const ForeignPart* const> levels,
                   const std::string& source) {
@@ -119,7 +124,8 @@ void place_blocks(std::span<const AmrBlock> blocks, AmrLeaves& amr, std::span<co
       if (!(std::abs(part.spacing[a] / own - 1) <= 1e-3))
         throw scene::bad_input(fmt::format("{}: its spacing along {} is {}, that of its level {}; write it anew",
                                            where(part, source), "xyz"[a], part.spacing[a], own));
-      if (!(std::abs(at) * size < most_corners) || !(std::abs(at - std::round(at)) < 0.02))
+      if (!(std::abs(at) * size < most_corners)) throw too_long(std::abs(at) * size, source);
+      if (!(std::abs(at - std::round(at)) < 0.02))
         throw scene::bad_input(fmt::format(
             "{}: it begins {} cells of its level from the coarsest block along {}, which has to be a whole number; "
             "write it anew",
@@ -128,9 +134,7 @@ void place_blocks(std::span<const AmrBlock> blocks, AmrLeaves& amr, std::span<co
       const std::int64_t high = cells_along(part, a) < most_corners ? low[a] + cells_along(part, a) * size : INT64_MAX;
       first[a] = std::min(first[a], low[a]), last[a] = std::max(last[a], high);
       if (static_cast<double>(last[a]) - static_cast<double>(first[a]) > most_corners)
-        throw scene::bad_input(fmt::format("{}: it is {} of the finest cells long, {} are read; leave out levels",
-                                           source, static_cast<double>(last[a]) - static_cast<double>(first[a]),
-                                           most_corners));
+        throw too_long(static_cast<double>(last[a]) - static_cast<double>(first[a]), source);
       placed.cells[a] = static_cast<std::int32_t>(cells_along(part, a));
     }
     if (static_cast<double>(placed.cells[0]) * placed.cells[1] * placed.cells[2] >
@@ -271,7 +275,6 @@ bool AmrLeaves::leaves_out(std::uint8_t ghost) {
 }
 
 AmrLeaves leaves_of_blocks(std::span<const AmrBlock> blocks, const std::string& source) {
-  if (blocks.empty()) throw scene::bad_input(fmt::format("{}: it holds no cells; check how it was written", source));
   for (const AmrBlock& block : blocks) require_block(*block.part, source);
   AmrLeaves amr;
   const std::vector<const ForeignPart*> levels = distinct_levels(blocks);

@@ -127,7 +127,6 @@ class TreeLeaves {
 }  // namespace
 
 AmrLeaves leaves_of_trees(std::span<const AmrBlock> trees, const std::string& source) {
-  if (trees.empty()) throw scene::bad_input(fmt::format("{}: it holds no cells; check how it was written", source));
   AmrLeaves amr;
   const ForeignPart& first = *trees.front().part;
   int levels = 1;

@@ -61,7 +61,8 @@ class Words {
     for (std::int64_t& n : box.low) n = count(what, -most_cells, most_cells);
     for (std::int64_t& n : box.high) n = count(what, -most_cells, most_cells);
     for (int axis = 0; axis < 3; ++axis)
-      if (count(what, 0, 1) != 0) fail(fmt::format("{} has values at nodes; only cells are read, write them", what));
+      if (count(what, 0, 1) != 0)
+        fail(fmt::format("{} has values at nodes, which are not read; write values of cells", what));
     skip(")");
     for (std::size_t a = 0; a < 3; ++a)
       if (box.cells(a) < 1) fail(fmt::format("{} ends before it begins; write it anew", what));

@@ -150,7 +150,7 @@ void AtomicFile::commit() {
 }
 
 void AtomicFile::fail(int error_number, const char* doing) const {
-  const char* remedy = "see the disk and the file system";
+  const char* remedy = "check the disk and the file system";
   switch (error_number) {
     case ENOENT:
     case ENOTDIR:

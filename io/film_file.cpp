@@ -209,7 +209,7 @@ std::string FilmFile::State::last_words() const {
 
 void FilmFile::State::fail(const std::string& what) const {
   throw Error(ErrorCode::system_failure, file.string(), "ffmpeg cannot make it: " + what,
-              "see to that, or write " + pictures_instead(file));
+              "mend that, or write " + pictures_instead(file));
 }
 
 void FilmFile::State::end() {

@@ -265,8 +265,8 @@ CellBlock block_of(const ForeignFile& file, const ForeignPart& part, GridsAre gr
       break;
     case ForeignPart::Kind::image:
       if (grids == GridsAre::volumes)
-        throw scene::bad_input(fmt::format(
-            "{}: it is a regular grid (image data), no mesh; render, info and convert take it as a volume", where));
+        throw scene::bad_input(
+            fmt::format("{}: it is a regular grid (image data), no mesh; give it alone or among volumes", where));
       add_image_points(part, block);
       add_grid_cells(points_along(part), block, where);
       break;

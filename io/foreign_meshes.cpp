@@ -79,8 +79,8 @@ MeshBlocks read_vtk_xml(const std::filesystem::path& file, const MeshOptions& op
   if (type.empty())
     throw scene::bad_input(fmt::format("{}: it does not begin as a VTK XML file does; check that it is one", source));
   if (type == "ImageData" || type == "PImageData")
-    throw scene::bad_input(fmt::format(
-        "{}: it is a regular grid (image data), no mesh; render, info and convert take it as a volume", source));
+    throw scene::bad_input(
+        fmt::format("{}: it is a regular grid (image data), no mesh; give it alone or among volumes", source));
   if (lists_pieces(file)) {
     // Pieces one by one, so that the whole reads as its parts do, and faults name the piece.
     const PieceList list = piece_list(file, options.blocks, options.surfaces);

@@ -107,7 +107,7 @@ void write_deep_exr(const scene::DeepImage& image, const std::filesystem::path& 
     throw;
   } catch (const std::exception& error) {
     throw scene::Error(scene::ErrorCode::system_failure,
-                       fmt::format("{}: cannot be written: {}; see the disk", file.string(), error.what()));
+                       fmt::format("{}: cannot be written: {}; check the disk", file.string(), error.what()));
   }
   target.commit();
 }

@@ -106,7 +106,7 @@ void writing(const std::filesystem::path& file, const Work& work) {
     throw;
   } catch (const std::exception& error) {
     throw scene::Error(scene::ErrorCode::system_failure,
-                       fmt::format("{}: cannot be written: {}; see the disk", file.string(), error.what()));
+                       fmt::format("{}: cannot be written: {}; check the disk", file.string(), error.what()));
   }
 }
 

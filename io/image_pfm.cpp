@@ -57,7 +57,7 @@ scene::Image read_pfm(const std::filesystem::path& file) {
   std::vector<std::uint32_t> row(3 * static_cast<std::size_t>(*width));
   for (int y = image.size.height - 1; y >= 0; --y) {
     if (!stream.read(reinterpret_cast<char*>(row.data()), static_cast<std::streamsize>(row.size() * sizeof(row[0]))))
-      throw scene::Error(scene::ErrorCode::system_failure, file.string() + ": reading failed; see the disk");
+      throw scene::Error(scene::ErrorCode::system_failure, file.string() + ": reading failed; check the disk");
     for (std::size_t x = 0; x < row.size() / 3; ++x) {
       float* out = &image.rgba[4 * (image.index(0, y) + x)];
       for (std::size_t k = 0; k < 3; ++k)

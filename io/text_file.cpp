@@ -38,11 +38,12 @@ std::string read_text_file(const std::filesystem::path& file) {
     stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
     text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
     if (text.size() > largest_file)
-      throw scene::bad_input(fmt::format("{}: is larger than {} MiB; name a camera or transfer function", file.string(),
-                                         largest_file >> 20));
+      throw scene::bad_input(
+          fmt::format("{}: is larger than {} MiB, which no such text is; check that it is the right file",
+                      file.string(), largest_file >> 20));
   }
   if (stream.bad())
-    throw scene::Error(scene::ErrorCode::system_failure, file.string() + ": reading failed; see the disk");
+    throw scene::Error(scene::ErrorCode::system_failure, file.string() + ": reading failed; check the disk");
   return text;
 }
 

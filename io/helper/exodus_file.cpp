@@ -264,8 +264,9 @@ class Reading {
       const std::uint8_t type = vtk_type(topology, info.num_nodes_per_entry);
       if (type == 255)
         throw scene::bad_input(
-            fmt::format("{}: element block {} holds '{}' of {} nodes, which is not known; convert it", source_, id,
-                        topology.substr(0, 20), info.num_nodes_per_entry));
+            fmt::format("{}: element block {} holds '{}' of {} nodes, which is not known; write tetrahedra, wedges, "
+                        "pyramids or hexahedra",
+                        source_, id, topology.substr(0, 20), info.num_nodes_per_entry));
       add_block(id, info, type);
       if (of.empty()) continue;
       keep_cells(block_, blocks_.back().first, of);

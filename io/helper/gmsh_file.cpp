@@ -112,7 +112,7 @@ ForeignContents read_gmsh(Holdings& holdings, const std::filesystem::path& file,
   require_last_section(file);
   // By a name without an extension, since one of another format would be believed.
   const Descriptor opened(::open(source.c_str(), O_RDONLY | O_CLOEXEC));
-  if (!opened.is_open()) throw scene::bad_input(fmt::format("{}: it cannot be opened; check its rights", source));
+  if (!opened.is_open()) throw scene::bad_input(fmt::format("{}: it cannot be opened; check its permissions", source));
   merge(fmt::format("/proc/self/fd/{}", opened.get()), source);
   return contents_of_model(holdings, source, request, "Gmsh");
 }

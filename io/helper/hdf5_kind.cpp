@@ -132,7 +132,7 @@ ForeignContents read_hdf5(Holdings& holdings, const std::filesystem::path& file,
   }
   if (!opens_as_netcdf(file))
     throw refuse("neither Exodus nor CGNS nor FLASH nor VTKHDF nor NetCDF",
-                 "give the program that wrote it another format to write");
+                 "have the program that wrote it write another format");
   return read_netcdf(holdings, file, request);
 }
 

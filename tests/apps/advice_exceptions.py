@@ -1,0 +1,76 @@
+"""Messages with advice that no row provokes, each with the reason; and statements that look like advice and are none.
+
+Patterns are looked for in `FILE:LINE: PARTS .. OF THE MESSAGE` (advice_messages.py). One that is not found, or whose
+messages rows make, fails the test, and so does one that is found more often than it says: a new message needs a row or
+a reason of its own.
+"""
+
+OTHER_BUILD = "only a build without the library says so; CI's build without VTK tests it (io/vtk_absent_test.cpp)"
+DEFECT = "a defect of ours, which users are to report"
+HUGE = "takes more than 2^31 or 2^32 points or cells, or gigabytes"
+DISK = "needs a disk that fails while it is read or written"
+ROOT = "rights do not bind root, as which tests may run"
+RANKS = "needs several processes; apps/mpirun_test.cpp"
+LIBRARY = "only callers of the library can; the program asks the same sooner, in its own words, or has no such option"
+ANSWER = "checks a reader's answer; the reader refuses such files sooner, so that a row would need a damaged helper"
+HDF5 = "needs HDF5 files, which nothing but HDF5's library writes; io's tests of the format write them"
+HELPER = "needs a helper program that speaks and then dies or lies; io/helper_test.cpp has one"
+RARE = "needs rare cells or bounds that no small file has; io's tests of the format"
+TIME = "takes minutes: a limit of time or of tets that sound files do not come near"
+
+EXCEPTIONS = {
+    r"apps/main\.cpp:\d+: standard input: only one process has it": (1, RANKS),
+    r"this build leaves (out|\.jpg out); build with|^io/tetgen_absent": (10, OTHER_BUILD),
+    r"please report": (5, DEFECT),
+    r"2\^32|points are too many for|the 4 GiB of a \.tif|it lists more than \{\} blocks": (9, HUGE),
+    r"; check the disk$|it cannot be mapped into memory|^io/image_jpeg\.cpp:\d+: \{\}: cannot be written": (7, DISK),
+    r"^io/pvtu_writer\.cpp:\d+: \{\}: cannot be written": (1, "a folder that takes files and refuses to rename them"),
+    r"cannot be opened; check (its permissions|that you may read it)": (3, ROOT),
+    r"^io/(brick_file\.cpp:\d+: `block`|surface_files\.cpp:\d+: \{\}: the largest tet)": (2, LIBRARY),
+    r"^io/film_file\.cpp:\d+: (: is no film|\{\}: a picture of)": (2, LIBRARY),
+    r"^io/(time_series\.cpp:\d+: \{\}: is no time|volume_reader\.cpp:\d+: \{\}: it does not begin as a \{\}vol)": (
+        2,
+        LIBRARY,
+    ),
+    r"^io/image_(exr\.cpp:\d+: \{\}: (is|has)|file\.cpp:\d+: background|pfm|png|tiff)": (9, LIBRARY),
+    r"^io/amr_(file|trees)\.cpp:\d+: \{\}: its (points|trees)|^io/amr_leaves\.cpp:\d+: \{\}: a block of an AMR": (
+        3,
+        ANSWER,
+    ),
+    r"^io/(foreign_blocks|foreign_grids|cell_block|foreign_numbers)": (18, ANSWER),
+    r"^io/helper/\w+\.cpp:\d+: \{\}: (nothing can be|it holds \{\}, no|it is a grid of a kind|it cannot be read)": (
+        8,
+        ANSWER,
+    ),
+    r"^io/helper/(gmsh_blocks\.cpp:\d+: \{\}: a cell uses|gmsh_file\.cpp:\d+: \{\}: \{\}Gmsh cannot)": (2, ANSWER),
+    r"^io/helper/vtk_readers\.cpp:\d+: grid or": (1, ANSWER),
+    r"^io/helper/(dicom_slice|tetgen_fill\.cpp:\d+: \{\}: TetGen finds nothing)": (2, ANSWER),
+    r"^io/helper/(hdf5_kind|med_meshes|minc2_file|amr_files)|^io/mesh_shares\.cpp:\d+: \{\}: it is named as CGNS": (
+        17,
+        HDF5,
+    ),
+    r"^io/helper/(gmsh_blocks\.cpp:\d+: \{\}: its cells of|netcdf_grid\.cpp:\d+: \{\}: the bounds)": (2, RARE),
+    r"^io/(helper_process\.[ch]pp|helper/serve|helper/limits|foreign_fill\.cpp:\d+: filling)": (8, HELPER),
+    r"^io/(foreign_fill\.cpp:\d+: mend|block_tets\.cpp:\d+: .*order_tolerance|amr_leaves\.cpp:\d+: .*many pieces)": (
+        5,
+        TIME,
+    ),
+    r"points in one block; split it$|^io/gzip\.cpp:\d+: it holds more than": (2, HUGE),
+}
+
+# Descriptions of options and formats, lines of reports and tables, and notes that only say what was done.
+NO_ADVICE = [
+    r"apps/annotation_options\.cpp:\d+: --annotat",
+    r"apps/chart_command\.cpp:\d+: errors: largest",
+    r"apps/command_line\.cpp:\d+: --block",
+    r"apps/info_command\.cpp:\d+: (check|renders) ",
+    r"apps/interruption\.cpp:\d+: tessera: ended by",
+    r"apps/manual_page\.cpp",
+    r"apps/report\.cpp",
+    r"apps/convert_command\.cpp:\d+: \{\}: \{\}; field \{\} written to",
+    r"io/chrome_trace_reader\.cpp:\d+: name is missing",
+    r"io/file_kinds\.cpp:\d+: (closed|VTK XML|AMReX|Enzo|FLASH|Exodus|OpenFOAM|VTKHDF|MED|Fluent|AVS|Gmsh|Medit|I-DEAS)",
+    r"io/file_kinds\.cpp:\d+: (Nastran|SU2|PLOT3D|raw tetra|NetCDF|MINC|MetaImage|NRRD|NIfTI|Analyze|DICOM)",
+    r"io/helper/dicom_series\.cpp:\d+: (some places have|slices are)",
+    r"io/text_transfer_function\.cpp:\d+:  \(extinctions as they stand",
+]

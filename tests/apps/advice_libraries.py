@@ -1,0 +1,309 @@
+"""Rows of advice about files that libraries other than VTK's XML and legacy readers read."""
+
+import gzip
+import struct
+
+from advice_library_files import (
+    CUBE,
+    EXODUS,
+    FOAM,
+    GMSH,
+    MEDIT,
+    MINC,
+    PLOT3D,
+    SLICES,
+    SOLUTION,
+    UCD,
+    XDMF,
+    dicom,
+    exodus,
+    foam,
+    foam_case,
+    foam_list,
+    item,
+    netcdf,
+    netcdf_grid,
+    xdmf,
+    xdmf_grid,
+    xdmf_mesh,
+)
+from advice_row import cut, damaged, row
+
+HDF5 = b"\x89HDF\r\n\x1a\n" + b"?" * 2000
+
+
+def wrong_xdmf(whole, advice, good=XDMF, **more):
+    return row("info a.xdmf", advice, None, {"a.xdmf": whole, **more}, {"a.xdmf": good})
+
+
+def msh(old, new, advice):
+    return damaged("a.msh", GMSH, old, new, advice)
+
+
+def wrong_exodus(whole, advice, command="info a.ex2", mended=None, good=EXODUS):
+    return row(command, advice, mended, {"a.ex2": whole}, {"a.ex2": good})
+
+
+def ct(advice, command="info ct", mended=None, good=SLICES, **files):
+    return row(command, advice, mended, {**SLICES, **{f"ct/{name}.dcm": whole for name, whole in files.items()}}, good)
+
+
+def solved(old, new, advice):
+    return row(
+        "info a.xyz --q a.q", advice, None, {"a.xyz": PLOT3D, "a.q": SOLUTION.replace(old, new, 1)}, {"a.q": SOLUTION}
+    )
+
+
+def collection(*steps):
+    grids = "".join(xdmf_mesh(time=f'<Time Value="{step}"/>\n') for step in steps)
+    return xdmf(f'<Grid Name="steps" GridType="Collection" CollectionType="Temporal">{grids}</Grid>')
+
+
+BINARY = struct.pack("<3i24f", 2, 2, 2, *(float(p[a]) for a in range(3) for p in CUBE))
+GRID = xdmf(xdmf_grid())
+TIMES = collection(0, 1)
+
+ROWS = [
+    # Gmsh
+    msh("$EndElements\n", "", "it is truncated, write it anew"),
+    msh("$MeshFormat", "$MashFormat", "it does not begin with $MeshFormat; write it anew"),
+    msh("1 4 2 1 1 1 2 3 4", "1 4 2 1 1 1 2 3 9", "write it anew"),
+    msh("1 4 2 1 1 1 2 3 4", "1 2 2 1 1 1 2 3", "give a mesh of tetrahedra, hexahedra, prisms or pyramids"),
+    damaged(
+        "a.mesh", MEDIT, "MeshVersionFormatted", "Mesh", "it does not begin as a Medit mesh does; check what it is"
+    ),
+    row(
+        "info a.mesh.gz",
+        "have its name end in .mesh, .meshb",
+        "info a.mesh",
+        {"a.mesh.gz": gzip.compress(MEDIT.encode())},
+        {"a.mesh": MEDIT},
+    ),
+    # XDMF
+    wrong_xdmf('<?xml version="1.0"?>\n<Xdmf Version="3.0"/>\n', "it has no <Domain>; write it anew"),
+    wrong_xdmf(xdmf(""), "it holds no grid; give a mesh or a volume"),
+    wrong_xdmf(
+        xdmf(xdmf_mesh(), '<!DOCTYPE Xdmf [<!ENTITY a "b">]>\n'), "it defines entities of its own; write it without"
+    ),
+    wrong_xdmf(
+        xdmf('<xi:include href="b.xdmf" xmlns:xi="http://www.w3.org/2001/XInclude"/>'),
+        "have it written as one, with its numbers beside",
+    ),
+    wrong_xdmf(
+        xdmf(xdmf_mesh(values="1 2 3 4").replace('Name="f"', 'Name="f" Reference="XML"')),
+        "write it with <xi:include>, or save it as .vtu",
+    ),
+    wrong_xdmf(xdmf(xdmf_mesh(points=item("0 0 0 1 0 0 0 1 0", "4 3"))), "it is truncated or damaged, write it anew"),
+    wrong_xdmf(xdmf(xdmf_mesh(values="1 2 3")), "field 'f' has 3 values for 4 points; write it anew"),
+    wrong_xdmf(
+        xdmf(
+            xdmf_mesh(values="1 2 3")
+            .replace('"Node"', '"Cell"')
+            .replace(item("0 1 2 3", "1 4"), item("0 1 2 3 0 1 2 3", "2 4"))
+        ),
+        "field 'f' has 3 values for 2 cells; write it anew",
+    ),
+    wrong_xdmf(xdmf(xdmf_mesh(cells=item("6 0 1 2", "4"), kind="Mixed")), "its topology ends within a cell"),
+    wrong_xdmf(
+        xdmf(xdmf_mesh(cells=item("16 4 0 1 2 3", "6"), kind="Mixed")),
+        "write tetrahedra, hexahedra, wedges or pyramids",
+    ),
+    wrong_xdmf(xdmf(xdmf_mesh(geometry="XY", points=item("0 0 1 0 0 1 1 1", "4 2"))), "not as x y z; write them so"),
+    wrong_xdmf(
+        xdmf(xdmf_grid("2 4", "0 0", kind="2DCoRectMesh", geometry="ORIGIN_DXDY", spacing="1 1")),
+        "no volume; give one of three",
+        GRID,
+    ),
+    wrong_xdmf(xdmf(xdmf_grid("2 2 0")), "points along an axis; write it anew", GRID),
+    wrong_xdmf(XDMF.replace("Tetrahedron", "Nothing"), "the file or its data are damaged, write it anew"),
+    wrong_xdmf(
+        XDMF.replace(
+            item("0 1 2 3", "1 4"),
+            '<DataItem Dimensions="1 4" Format="Binary" NumberType="Int" Precision="4">b.bin</DataItem>',
+        ),
+        "which is not there; put it there",
+    ),
+    wrong_xdmf(
+        XDMF.replace(
+            item("0 1 2 3", "1 4"),
+            '<DataItem Dimensions="1 4" Format="Binary" NumberType="Int" Precision="4">b.bin</DataItem>',
+        ),
+        "the file has 3; write both anew",
+        **{"b.bin": b"abc"},
+    ),
+    wrong_xdmf(
+        XDMF.replace(
+            item("0 1 2 3", "1 4"),
+            '<DataItem Dimensions="1 4" Format="Binary" NumberType="Int" Precision="4">/etc/passwd</DataItem>',
+        ),
+        "move it there, and name it so",
+    ),
+    row("info a.xdmf --time-step 2", "the file has 2; count from 0", "info a.xdmf --time-step 1", {"a.xdmf": TIMES}),
+    row("info a.xdmf --time-step 2", "the file has none; leave it out", "info a.xdmf", {"a.xdmf": XDMF}),
+    # Exodus
+    wrong_exodus(b"nothing like it", "check that it is an Exodus file"),
+    wrong_exodus(EXODUS[:-8], "write it anew"),
+    wrong_exodus(HDF5, "it is truncated or damaged, write it anew"),
+    wrong_exodus(exodus(2), "give a mesh in space"),
+    wrong_exodus(exodus(kind="BLOB4"), "which is not known; write tetrahedra, wedges"),
+    wrong_exodus(exodus(corners=(1, 2, 3, 9)), "write elements and nodes from one mesh"),
+    wrong_exodus(exodus(set_element=9), "write sets and elements from one mesh", "info a.ex2 --block 'element set 7'"),
+    row(
+        "info a.ex2 --block 'side set 6'",
+        "(--surface shows side sets)",
+        "info a.ex2 --block 'block 1'",
+        {"a.ex2": exodus(sides=True)},
+    ),
+    row(
+        "info a.ex2 --block 'node set 5'",
+        "name element blocks or element sets",
+        "info a.ex2 --block 'element set 7'",
+        {"a.ex2": exodus(sides=True)},
+    ),
+    row(
+        "info a.e.2.0",
+        "lay it beside, or give this one another name",
+        "info b.ex2",
+        {"a.e.2.0": EXODUS, "b.ex2": EXODUS},
+    ),
+    row(
+        "info a.e.2.0",
+        "and none itself; write it anew",
+        None,
+        {"a.e.2.0": EXODUS, "a.e.2.1": "nothing"},
+        {"a.e.2.1": EXODUS},
+    ),
+    row("info a.ex2 --time-step 1", "there is no time step 1", "info a.ex2", {"a.ex2": EXODUS}),
+    # NetCDF and MINC
+    row(
+        "info a.nc",
+        "the file is truncated or damaged, write it anew",
+        None,
+        {"a.nc": netcdf_grid()[:-8]},
+        {"a.nc": netcdf_grid()},
+    ),
+    row(
+        "info a.nc", "give a file of a grid in space", None, {"a.nc": netcdf_grid(("y", "x"))}, {"a.nc": netcdf_grid()}
+    ),
+    row("info a.mnc", "the file is truncated or damaged, write it anew", None, {"a.mnc": MINC[:-30]}, {"a.mnc": MINC}),
+    # OpenFOAM
+    row(
+        "info case.foam",
+        "move it into the folder of a case, or name that folder",
+        "info case/case.foam",
+        {"case.foam": "", **FOAM, "case/case.foam": ""},
+    ),
+    row("info case.foam", "or name that folder", "info case", {"case.foam": "", **FOAM}),
+    row("info case", "write it anew", None, {**FOAM, "case/constant/polyMesh/owner": "nothing"}, FOAM),
+    row(
+        "info case",
+        "run reconstructPar, or decomposePar anew",
+        "info case",
+        {
+            "case/processor0/constant/x": "",
+            **foam_case("case/processor0/"),
+            "case/processor1/constant/polyMesh/x": "",
+            "case/system/controlDict": FOAM["case/system/controlDict"],
+        },
+        foam_case(),
+    ),
+    # PLOT3D
+    damaged("a.xyz", PLOT3D, "2 2 2\n0", "2 2 3\n0", "is truncated or of another kind (the solution goes with --q)"),
+    row(
+        "info a.bin",
+        "it is truncated or of another kind (the solution goes with --q)",
+        "info a.xyz",
+        {"a.bin": b"\2\0\0\0" * 9, "a.xyz": PLOT3D},
+    ),
+    damaged("a.xyz", PLOT3D, "0 1 0", "0 1d0 0", "write it with E"),
+    damaged("a.xyz", PLOT3D, "0 1 0", "2*0 1 0", "write each"),
+    damaged("a.xyz", PLOT3D, "0 1 0", "0 one 0", "PLOT3D in text is numbers alone"),
+    row(
+        "info a.xyz",
+        "is no whole number; mend it",
+        None,
+        {"a.xyz": PLOT3D + "1 1 1 1 1 1 1 0.5\n"},
+        {"a.xyz": PLOT3D + "1 1 1 1 1 1 1 1\n"},
+    ),
+    row("info a.xyz", "name one by --q", "info a.xyz --q b.q", {"a.xyz": PLOT3D, "b.q": SOLUTION}),
+    row(
+        "info a.xyz.gz",
+        "it has no field; name one by --q",
+        "info a.xyz --q b.q",
+        {"a.xyz.gz": gzip.compress(PLOT3D.encode()), "a.xyz": PLOT3D, "b.q": SOLUTION},
+    ),
+    solved("2 2 2", "2 2 3", "give the solution of this grid"),
+    solved("1 2 3 4 5 6 7 8\n", "", "it is truncated or of another kind (function, OVERFLOW)"),
+    row(
+        "info a.xyz --q a.q",
+        "give both in one form",
+        None,
+        {"a.xyz": PLOT3D, "a.q": b"\1\0\0\0" * 40},
+        {"a.q": SOLUTION},
+    ),
+    # DICOM
+    ct(
+        "of 3 numbers a sample, no values of a volume; give a series of one number a sample",
+        **{str(k): dicom(k, samples=3, bits=8, pixels=bytes(12)) for k in (1, 2, 3)},
+    ),
+    row("info ct", "give a folder of slices", None, {"ct/1.dcm": dicom(1)}, SLICES),
+    ct("give a folder", **{str(k): bytes(128) + b"DICM" + b"?" * 40 for k in (1, 2, 3)}),
+    ct("write it anew or leave it out", **{"2": dicom(2)[:-4]}),
+    ct("may be missing", "info ct", None, {**SLICES, "ct/4.dcm": dicom(4)}, **{"4": dicom(5, position=5)}),
+    ct(
+        "name one of its files for another",
+        "info ct",
+        "info ct/9.dcm",
+        {},
+        **{str(k): dicom(k, series="1.2.9") for k in (8, 9)},
+    ),
+    ct("there is no time step 5", "info ct --time-step 5", "info ct"),
+    # formats that are not read, and solvers'
+    row("info a.nek5000", "save it as .vtu in ParaView", "info m.vtu", {"a.nek5000": "nothing"}),
+    row("info a.vol", "convert it to .vtu with meshio", "info m.vtu", {"a.vol": "mesh3d\ndimension\n3\n"}),
+    row("info a.cdb", "convert it to .vtu with meshio", "info m.vtu", {"a.cdb": "*HEADING\n*NODE\n"}),
+    row("info a.odb", "export Exodus, EnSight or .vtu", "info m.vtu", {"a.odb": "nothing"}),
+    row("info a.plt", "write text, CGNS or .vtu", "info m.vtu", {"a.plt": "#!TDV112"}),
+    row("info a.mfem", "have MFEM write .vtu", "info m.vtu", {"a.mfem": "MFEM mesh v1.0\n\ndimension\n3\n"}),
+    cut("a.inp", UCD, len(UCD) // 2, "write it anew"),
+    row("info a.cas", "export CGNS or EnSight", "info m.vtu", {"a.cas": "(2 3)\n(10 (0 1 ffffffff 0))\n"}),
+    row(
+        "info a.dcm",
+        "give a folder or a file of slices",
+        "info ct",
+        {**SLICES, "a.dcm": bytes(128) + b"DICM" + b"?" * 40},
+    ),
+    row("info a.ex2.gz", "unpack it with gunzip", "info a.ex2", {"a.ex2.gz": gzip.compress(HDF5)}, {"a.ex2": EXODUS}),
+    row(
+        "info a.xdmf",
+        "time_step all shows them as a film".replace("time_step", "--time-step"),
+        "render a.xdmf -o a%d.png --size 16x16 --time-step all",
+        {"a.xdmf": TIMES},
+    ),
+    wrong_xdmf(
+        XDMF.replace(
+            item("1 2 3 4"),
+            '<DataItem ItemType="Function" Function="$0 + $0" Dimensions="4">' + item("1 2 3 4") + "</DataItem>",
+        ),
+        "have the program that made it write them",
+    ),
+    wrong_xdmf(XDMF.replace('"Tetrahedron"', '"Polyline" NodesPerElement="0"'), "nodes each; write it anew"),
+    wrong_xdmf(xdmf(xdmf_grid(origin="0 0")), "is not of three numbers; write it anew", GRID),
+    row(
+        "info a.xyz --q a.q",
+        "it is truncated or of another kind (function, OVERFLOW)",
+        None,
+        {"a.xyz": BINARY, "a.q": BINARY[:12] + bytes(40)},
+        {"a.q": BINARY[:12] + bytes(4 * 44)},
+    ),
+    row(
+        "info case",
+        "write it anew",
+        None,
+        {
+            **FOAM,
+            **{f"case/constant/polyMesh/{n}": foam("x", n, foam_list([])) for n in ("faces", "owner", "neighbour")},
+        },
+        FOAM,
+    ),
+]

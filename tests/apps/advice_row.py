@@ -1,0 +1,41 @@
+"""A row of the test of advice: a command that a message answers, and what to do then."""
+
+import sys
+from dataclasses import dataclass, field
+
+
+@dataclass
+class Row:
+    command: str
+    advice: str  # what the message has to say
+    mended: str  # the command with the advice followed
+    # Files by their names, which may end in / for a folder: text, bytes, ("program", text), ("link", target), None: away.
+    before: dict = field(default_factory=dict)  # for the first command
+    after: dict = field(default_factory=dict)  # what the advice makes of them
+    stdin: str = ""  # file that both commands read
+    env: dict = field(default_factory=dict)
+    terminal: str = ""  # what the first command has for a terminal: stdin or stdout; full: its output has no room
+    limits: str = ""  # what a shell does before it becomes the first command
+    alone: bool = False  # whether the first command is of a program without its helpers
+    line: str = ""
+
+
+def row(command, advice, mended=None, before=None, after=None, **more):
+    """Without `mended` the command is the same, and only files change."""
+    caller = sys._getframe(1)
+    while caller.f_code.co_filename.endswith("advice_row.py"):
+        caller = caller.f_back
+    place = f"{caller.f_code.co_filename.rsplit('/', 1)[-1]}:{caller.f_lineno}"
+    assert mended or after, place
+    return Row(command, advice, mended or command, before or {}, after or {}, line=place, **more)
+
+
+def damaged(name, whole, old, new, advice, command="info", beside=None):
+    """A file that is written anew after a change of it gave a message; `beside` are files that belong to it."""
+    assert old in whole, f"{name}: no {old!r}"
+    return row(f"{command} {name}", advice, None, {**(beside or {}), name: whole.replace(old, new, 1)}, {name: whole})
+
+
+def cut(name, whole, size, advice, command="info", beside=None):
+    """The same for a file that ends early."""
+    return row(f"{command} {name}", advice, None, {**(beside or {}), name: whole[:size]}, {name: whole})
