@@ -29,7 +29,20 @@ def traced(old, new, advice):
     return damaged("t.json", TRACE, old, new, advice, "timing")
 
 
+def knots(text, advice):
+    """Knots on the command line, then two that are right."""
+    command = R + "--transfer-function '{}'"
+    return row(command.format(text), advice, command.format('{"knots": [[0, 1, 0, 0, 1], [1, 0, 0, 1, 1]]}'))
+
+
 ROWS = [
+    # knots as JSON
+    knots('{"knots": 5}', "write [[value, red, green, blue, extinction], ...]"),
+    knots('{"knots": [[0, 1]]}', "write [value, red, green, blue, extinction]"),
+    knots('{"knots": [[0, 1, 0, 0, "much"]]}', "its extinction is not a finite number; write one"),
+    knots('{"knots": [[0, 1, 0, -1, 1]]}', "its blue is -1; it must not be negative"),
+    knots('{"knots": [[1, 0, 0, 1, 1], [0, 1, 0, 0, 1]]}', "sort the knots by value"),
+    knots('{"knots": [[0, 1, 0, 0, 1]], "points": 1}', "is unknown beside knots; leave it out"),
     # colours and ranges
     row(R + "--range 1", "write MIN,MAX", R + "--range 0,1"),
     row(R + "--range 1,0", "write the smaller number first", R + "--range 0,1"),

@@ -16,11 +16,16 @@ ANSWER = "checks a reader's answer; the reader refuses such files sooner, so tha
 HDF5 = "needs HDF5 files, which nothing but HDF5's library writes; io's tests of the format write them"
 HELPER = "needs a helper program that speaks and then dies or lies; io/helper_test.cpp has one"
 RARE = "needs rare cells or bounds that no small file has; io's tests of the format"
+SERVER = "said by a server, which does not end; server/serve_test.py and server/state_words_test.cpp"
 TIME = "takes minutes: a limit of time or of tets that sound files do not come near"
 
 EXCEPTIONS = {
     r"apps/main\.cpp:\d+: standard input: only one process has it": (1, RANKS),
-    r"this build leaves (out|\.jpg out); build with|^io/tetgen_absent": (10, OTHER_BUILD),
+    r"this build leaves (out|\.jpg out); build with|^io/tetgen_absent": (11, OTHER_BUILD),
+    r"this build has no server; configure": (1, OTHER_BUILD),
+    r"^apps/state_words\.cpp:\d+: state|^apps/serve_scene\.cpp:\d+": (11, SERVER),
+    r"^apps/serve_command\.cpp:\d+": (2, SERVER),
+    r"^io/json_transfer_function\.cpp:\d+: transfer function: it has no knot": (1, LIBRARY),
     r"please report": (5, DEFECT),
     r"2\^32|points are too many for|the 4 GiB of a \.tif|it lists more than \{\} blocks": (9, HUGE),
     r"; check the disk$|it cannot be mapped into memory|^io/image_jpeg\.cpp:\d+: \{\}: cannot be written": (7, DISK),
