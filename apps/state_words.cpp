@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <string_view>
 
+#include "apps/surface_options.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/error.hpp"
 #include "tessera/nearest_name.hpp"
@@ -148,10 +148,9 @@ std::vector<std::string> list_of(const std::string& name, const Json& value) {
 std::vector<std::string> surfaces_of(const std::string& name, const Json& value) {
   std::vector<std::string> texts = list_of(name, value);
   for (const std::string& text : texts) {
-    std::error_code unknown;
     // The longest name first: a file's may have colons.
     for (std::size_t end = text.size(); end != std::string::npos && end > 0; end = text.rfind(':', end - 1))
-      if (std::filesystem::is_regular_file(text.substr(0, end), unknown))
+      if (names_surface_file(text.substr(0, end)))
         throw bad_input(
             fmt::format("state: '{}' takes no files from a page; send boundary or a block of the mesh, like "
                         "boundary:COLOR:OPACITY",

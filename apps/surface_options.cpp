@@ -59,12 +59,6 @@ std::size_t end_of_name(const std::string& word) {
   return std::min(word.find(':'), word.size());
 }
 
-/// Whether a name is a file's rather than a block's.
-bool looks_like_file(const std::string& name) {
-  constexpr std::array<std::string_view, 7> extensions = {".ply", ".stl", ".vtp", ".vtk", ".poly", ".smesh", ".obj"};
-  return name.empty() || std::ranges::any_of(extensions, [&](std::string_view e) { return name.ends_with(e); });
-}
-
 void add_surface(const std::string& word, Surfaces& surfaces, std::vector<BlockSurfaceWord>& blocks) {
   const std::size_t end = end_of_name(word);
   const std::string name = word.substr(0, end);
@@ -75,7 +69,7 @@ void add_surface(const std::string& word, Surfaces& surfaces, std::vector<BlockS
   else if (std::filesystem::is_regular_file(name, unknown))
     surfaces.triangles.push_back(
         {std::make_shared<const TriangleMesh>(read_triangles(name)), look.color, look.opacity});
-  else if (!looks_like_file(name))
+  else if (!names_surface_file(name))
     blocks.push_back({name, look.color, look.opacity});
   else
     throw bad_input(
@@ -85,6 +79,13 @@ void add_surface(const std::string& word, Surfaces& surfaces, std::vector<BlockS
 }
 
 }  // namespace
+
+bool names_surface_file(const std::string& name) {
+  constexpr std::array<std::string_view, 7> extensions = {".ply", ".stl", ".vtp", ".vtk", ".poly", ".smesh", ".obj"};
+  std::error_code unknown;
+  return name.empty() || std::ranges::any_of(extensions, [&](std::string_view e) { return name.ends_with(e); }) ||
+         std::filesystem::is_regular_file(name, unknown);
+}
 
 void add_surface_options(CLI::App& command, SurfaceWords& words) {
   command

@@ -36,7 +36,6 @@ TEST(StateWords, NameNoFilesAndNoOtherOptions) {
                            R"({"transfer-function":"/etc/passwd"})",
                            R"({"transfer-function":"map.json"})",
                            R"({"surface":["wing.stl"]})",
-                           R"({"surface":["boundaryx"]})",
                            R"({"surface":"/etc/passwd:red:1"})",
                            R"({"output":"a.png"})",
                            R"({"report":"a"})",
@@ -63,6 +62,9 @@ TEST(StateWords, NameNoFilesAndNoOtherOptions) {
       EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << text;
     }
   }
+  // Blocks of the mesh and its boundary are no files.
+  EXPECT_EQ(state_words({}, Json::parse(R"({"surface":["boundary","boundary/walls:red:0.5","side set 1"]})")).size(),
+            1u);
 }
 
 TEST(StateWords, AreQuotedForAShell) {
