@@ -6,7 +6,7 @@
 #include <array>
 #include <string_view>
 
-#include "apps/surface_options.hpp"
+#include "apps/surface_file_name.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/error.hpp"
 #include "tessera/nearest_name.hpp"

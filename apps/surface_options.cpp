@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <string_view>
 #include <system_error>
 
 #include "apps/argument_values.hpp"
+#include "apps/surface_file_name.hpp"
 #include "tessera/error.hpp"
 #include "tessera/triangle_file.hpp"
 
@@ -79,13 +78,6 @@ void add_surface(const std::string& word, Surfaces& surfaces, std::vector<BlockS
 }
 
 }  // namespace
-
-bool names_surface_file(const std::string& name) {
-  constexpr std::array<std::string_view, 7> extensions = {".ply", ".stl", ".vtp", ".vtk", ".poly", ".smesh", ".obj"};
-  std::error_code unknown;
-  return name.empty() || std::ranges::any_of(extensions, [&](std::string_view e) { return name.ends_with(e); }) ||
-         std::filesystem::is_regular_file(name, unknown);
-}
 
 void add_surface_options(CLI::App& command, SurfaceWords& words) {
   command

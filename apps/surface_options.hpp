@@ -26,9 +26,6 @@ struct BlockSurfaceWord {
   double opacity = 1;
 };
 
-/// Whether a surface's name is a file's rather than a block's: by its extension, or since the file is there.
-bool names_surface_file(const std::string& name);
-
 void add_surface_options(CLI::App& command, SurfaceWords& words);
 
 /// What they say, with the triangles of files; names of blocks go to `blocks`. Throws Error(bad_input) naming the
