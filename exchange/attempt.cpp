@@ -86,17 +86,40 @@ class AttemptTransport final : public Transport {
         if (is_end(message.bytes)) take_end(channel, message);
       }
     }
+    leave_together();
     const std::lock_guard lock(mutex_);
     for (const auto& error : errors_)
       if (error) throw scene::Error(*error);
   }
 
  private:
-  void end_own_part() {
-    if (std::exchange(ended_, true)) return;
+  /// Who left sooner might send what another, still waiting for a third rank's end, would take for a leftover. So all
+  /// tell rank 0 by a second end that they have everybody's, and leave when it answers by one: on the channel of
+  /// agreement, where messages come from rank 0 or go to it, and none overtakes.
+  void leave_together() {
+    const Bytes message = end_message();
+    if (rank() != 0) {
+      beneath_.send(0, Channel::agreement, message);
+      while (!is_end(beneath_.receive(Channel::agreement).bytes)) {
+      }
+      return;
+    }
+    while (settled_ < size() - 1)
+      if (const Message other = beneath_.receive(Channel::agreement); is_end(other.bytes))
+        take_end(Channel::agreement, other);
+    for (int to = 1; to < size(); ++to) beneath_.send(to, Channel::agreement, message);
+  }
+
+  [[nodiscard]] Bytes end_message() const {
     Bytes message = begin_message(kind);
     append(message, static_cast<std::uint8_t>(own_error_ ? own_error_->code() : scene::ErrorCode{}));
     append_text(message, own_error_ ? own_error_->what() : "");
+    return message;
+  }
+
+  void end_own_part() {
+    if (std::exchange(ended_, true)) return;
+    const Bytes message = end_message();
     for (int to = 0; to < size(); ++to)
       for (std::size_t c = 0; c < channel_count; ++c) beneath_.send(to, static_cast<Channel>(c), message);
   }
@@ -108,6 +131,10 @@ class AttemptTransport final : public Transport {
     reader.finish();
     const std::lock_guard lock(mutex_);
     const auto from = static_cast<std::size_t>(message.from);
+    if (ends_[static_cast<std::size_t>(channel)][from]) {
+      ++settled_;
+      return;
+    }
     ends_[static_cast<std::size_t>(channel)][from] = true;
     if (code == scene::ErrorCode{}) return;
     errors_[from] = scene::Error(code, text);
@@ -124,6 +151,7 @@ class AttemptTransport final : public Transport {
   mutable std::mutex mutex_;
   std::atomic<bool> failed_ = false;
   bool ended_ = false;
+  int settled_ = 0;  ///< of rank 0: how many others have everybody's end
   std::optional<scene::Error> own_error_;
   std::vector<std::optional<scene::Error>> errors_;    ///< by rank
   std::array<std::vector<bool>, channel_count> ends_;  ///< by rank, whether it has ended on the channel

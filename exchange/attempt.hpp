@@ -11,7 +11,7 @@ namespace tessera::exchange {
 /// error of the transport beneath stays the run's. Collective.
 ///
 /// How  a rank that is through, well or not, says so to all on every channel, behind all that it has sent, and takes
-///      what there is until all have said so.
+///      what there is until all have said so; then they leave together.
 void attempt(Transport& beneath, const std::function<void(Transport&)>& work);
 
 }  // namespace tessera::exchange
