@@ -54,6 +54,7 @@ def main():
     parser.add_argument("--latency", default="100")
     parser.add_argument("--ranks", type=int, default=1)
     options = parser.parse_args()
+    os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     launcher = [] if options.ranks == 1 else ["mpirun", "--oversubscribe", "-n", str(options.ranks)]
     with Server(options.tessera, options.file, "--latency", options.latency, launcher=launcher,
                 environment=os.environ) as server:
