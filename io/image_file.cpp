@@ -137,6 +137,8 @@ void check_image_path(const std::filesystem::path& file) {
   if (format_of(file) == Format::unknown) throw unknown_extension(file);
   if (format_of(file) == Format::jpeg && !has_jpeg())
     throw scene::bad_input(file.string() + ": this build leaves .jpg out; build with TESSERA_JPEG=ON, or write .png");
+  if (format_of(file) == Format::tiff && !has_tiff())
+    throw scene::bad_input(file.string() + ": this build leaves .tif out; build with TESSERA_TIFF=ON, or write .png");
   // The only test that holds for every file system and user: begin such a file, and leave it.
   check_writable(file);
 }

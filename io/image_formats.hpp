@@ -21,6 +21,8 @@ std::vector<std::byte> exr_bytes(const scene::Image& image, const ImageFileOptio
 std::vector<std::byte> jpeg_bytes(const scene::Image& image, const ImageFileOptions& options);
 /// Whether write_jpeg() can.
 bool has_jpeg();
+/// Whether write_tiff() can.
+bool has_tiff();
 scene::Image read_exr(const std::filesystem::path& file);
 scene::Image read_pfm(const std::filesystem::path& file);
 

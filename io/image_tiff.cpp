@@ -1,13 +1,12 @@
-// TIFF 6.0 with its Adobe supplements: one image in strips, deflated (8) after horizontal differencing (predictor 2),
-// which all readers of TIFF know. Little endian, 32-bit offsets.
 #include <fmt/format.h>
-#include <zlib.h>
+#include <tiffio.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
-#include <limits>
-#include <new>
+#include <cstdarg>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "io/atomic_file.hpp"
@@ -19,140 +18,123 @@
 namespace tessera::io {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+/// What libtiff writes to. No exception may pass its frames, which are C: the first is kept.
+struct Target {
+  explicit Target(const std::filesystem::path& path) : file(path) {}
 
-void append_le(Bytes& bytes, std::uint32_t value, int count) {
-  for (int i = 0; i < count; ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
-}
-
-/// Each number less the one of the pixel before it.
-void difference(std::uint8_t* row, std::size_t row_bytes, int channels, int bits) {
-  const auto pixel = static_cast<std::size_t>(channels * bits / 8);
-  if (bits == 8) {
-    for (std::size_t i = row_bytes - 1; i >= pixel; --i) row[i] = static_cast<std::uint8_t>(row[i] - row[i - pixel]);
-    return;
-  }
-  const auto number = [&](std::size_t i) { return static_cast<unsigned>(row[i] | row[i + 1] << 8); };
-  for (std::size_t i = row_bytes - 2; i >= pixel; i -= 2) {
-    const unsigned less = number(i) - number(i - pixel);
-    row[i] = static_cast<std::uint8_t>(less & 0xff);
-    row[i + 1] = static_cast<std::uint8_t>(less >> 8 & 0xff);
-  }
-}
-
-Bytes zlib_stream(const Bytes& rows) {
-  uLongf size = compressBound(static_cast<uLong>(rows.size()));
-  Bytes out(size);
-  // With room for all only memory can fail.
-  if (compress2(out.data(), &size, rows.data(), static_cast<uLong>(rows.size()), deflate_level) != Z_OK)
-    throw std::bad_alloc();
-  out.resize(size);
-  return out;
-}
-
-/// The directory of tags, and behind it the numbers that do not fit into its entries.
-class Directory {
- public:
-  explicit Directory(std::uint32_t place) : place_(place) {}
-
-  void add(std::uint16_t tag, const std::vector<std::uint32_t>& numbers, bool is_short) {
-    Bytes content;
-    for (const std::uint32_t number : numbers) append_le(content, number, is_short ? 2 : 4);
-    entries_.push_back({tag, static_cast<std::uint16_t>(is_short ? 3 : 4), static_cast<std::uint32_t>(numbers.size()),
-                        std::move(content)});
-  }
-
-  [[nodiscard]] Bytes bytes() const {
-    Bytes out, behind;
-    append_le(out, static_cast<std::uint32_t>(entries_.size()), 2);
-    const auto after = place_ + 2 + 12 * static_cast<std::uint32_t>(entries_.size()) + 4;
-    for (const Entry& entry : entries_) {
-      append_le(out, entry.tag, 2);
-      append_le(out, entry.type, 2);
-      append_le(out, entry.count, 4);
-      Bytes content = entry.content;
-      content.resize(std::max<std::size_t>(content.size() + content.size() % 2, 4));
-      if (content.size() == 4) {
-        out.insert(out.end(), content.begin(), content.end());
-      } else {
-        append_le(out, after + static_cast<std::uint32_t>(behind.size()), 4);
-        behind.insert(behind.end(), content.begin(), content.end());
-      }
-    }
-    append_le(out, 0, 4);  // no further image
-    out.insert(out.end(), behind.begin(), behind.end());
-    return out;
-  }
-
- private:
-  struct Entry {
-    std::uint16_t tag, type;
-    std::uint32_t count;
-    Bytes content;
-  };
-  std::uint32_t place_;
-  std::vector<Entry> entries_;
+  AtomicFile file;
+  std::uint64_t size = 0;
+  std::string message;
+  std::exception_ptr error;
 };
 
+Target& target_of(void* handle) { return *static_cast<Target*>(handle); }
+
+tmsize_t on_write(thandle_t handle, void* bytes, tmsize_t count) {
+  Target& target = target_of(handle);
+  try {
+    target.file.write(bytes, static_cast<std::size_t>(count));
+    target.size = std::max(target.size, target.file.position());
+    return count;
+  } catch (...) {
+    target.error = std::current_exception();
+    return -1;
+  }
+}
+
+toff_t on_seek(thandle_t handle, toff_t offset, int whence) {
+  Target& target = target_of(handle);
+  try {
+    target.file.seek(whence == SEEK_SET   ? offset
+                     : whence == SEEK_CUR ? target.file.position() + offset
+                                          : target.size + offset);
+    return target.file.position();
+  } catch (...) {
+    target.error = std::current_exception();
+    return static_cast<toff_t>(-1);
+  }
+}
+
+tmsize_t on_read(thandle_t /*handle*/, void* /*bytes*/, tmsize_t /*count*/) { return 0; }
+toff_t on_size(thandle_t handle) { return target_of(handle).size; }
+int on_close(thandle_t /*handle*/) { return 0; }
+
+int on_error(TIFF* /*tiff*/, void* handle, const char* /*module*/, const char* format, va_list values) {
+  char text[256] = "";
+  std::vsnprintf(text, sizeof text, format, values);
+  target_of(handle).message = text;
+  return 1;
+}
+int on_warning(TIFF* /*tiff*/, void* /*handle*/, const char* /*module*/, const char* /*format*/, va_list /*values*/) {
+  return 1;
+}
+
+using Tiff = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
+
+/// Null where there is no memory. `large`: of more than 4 GiB, which few readers knew before 2010.
+Tiff open(Target& target, const char* name, bool large) {
+  const std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(TIFFOpenOptionsAlloc(),
+                                                                                 &TIFFOpenOptionsFree);
+  if (!options) return {nullptr, &TIFFClose};
+  TIFFOpenOptionsSetErrorHandlerExtR(options.get(), on_error, &target);
+  TIFFOpenOptionsSetWarningHandlerExtR(options.get(), on_warning, nullptr);
+  return {TIFFClientOpenExt(name, large ? "w8" : "w", &target, on_read, on_write, on_seek, on_close, on_size, nullptr,
+                            nullptr, options.get()),
+          &TIFFClose};
+}
+
+void set_tags(TIFF* tiff, scene::ImageSize size, int channels, int bits, int strip_rows) {
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(size.width));
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, static_cast<std::uint32_t>(size.height));
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, bits);
+  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, channels);
+  TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_RGB);
+  TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+  TIFFSetField(tiff, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
+  TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, static_cast<std::uint32_t>(strip_rows));
+  const std::uint16_t straight_alpha = EXTRASAMPLE_UNASSALPHA;
+  if (channels == 4) TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, &straight_alpha);
+  TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE);
+  TIFFSetField(tiff, TIFFTAG_PREDICTOR, PREDICTOR_HORIZONTAL);
+  TIFFSetField(tiff, TIFFTAG_ZIPQUALITY, deflate_level);
+}
+
 }  // namespace
+
+bool has_tiff() { return true; }
 
 void write_tiff(const scene::Image& image, const std::filesystem::path& file, const ImageFileOptions& options) {
   if (options.png_bits != 8 && options.png_bits != 16)
     throw scene::bad_input(fmt::format("{}: {} bits a channel; a .tif has 8 or 16", file.string(), options.png_bits));
-  AtomicFile target(file);
-  const int channels = options.background ? 3 : 4;
+  Target target(file);
+  const int channels = options.background ? 3 : 4, height = image.size.height;
   const DisplayRows display(image, file, options, channels, DisplayRows::Order::little);
   const std::size_t row_bytes = display.row_bytes();
-  const int rows = std::clamp(static_cast<int>(deflated_bytes / row_bytes), 1, image.size.height);
-  std::vector<Bytes> strips(static_cast<std::size_t>((image.size.height + rows - 1) / rows));
-  for_each_strip(image.size.height, rows, options.threads, [&](std::size_t strip, int begin, int end) {
-    Bytes plain(static_cast<std::size_t>(end - begin) * row_bytes);
-    std::vector<float> rgba;
-    for (int y = begin; y < end; ++y) {
-      std::uint8_t* const row = plain.data() + static_cast<std::size_t>(y - begin) * row_bytes;
-      display.row(y, rgba, row);
-      difference(row, row_bytes, channels, options.png_bits);
-    }
-    strips[strip] = zlib_stream(plain);
-  });
-
-  constexpr std::array<std::uint8_t, 8> head{'I', 'I', 42, 0, 0, 0, 0, 0};
-  target.write(head.data(), head.size());
-  std::vector<std::uint32_t> offsets, lengths;
-  std::uint64_t place = head.size();
-  for (Bytes& strip : strips) {
-    offsets.push_back(static_cast<std::uint32_t>(place));
-    lengths.push_back(static_cast<std::uint32_t>(strip.size()));
-    strip.resize(strip.size() + strip.size() % 2);
-    place += strip.size();
-    if (place > std::numeric_limits<std::uint32_t>::max() - (std::uint64_t{1} << 20))
-      throw scene::bad_input(file.string() + ": the picture takes more than the 4 GiB of a .tif; write .png or .exr");
-    target.write(strip.data(), strip.size());
-    strip = {};
+  const int strip_rows = std::clamp(static_cast<int>(deflated_bytes / row_bytes), 1, height);
+  const auto check = [&](bool done) {
+    if (target.error) std::rethrow_exception(target.error);
+    if (!done)
+      throw scene::Error(scene::ErrorCode::system_failure,
+                         fmt::format("{}: cannot be written: {}; write .png", file.string(), target.message));
+  };
+  const bool large = static_cast<double>(row_bytes) * height > 0xf0000000;
+  Tiff tiff = open(target, file.c_str(), large);
+  check(tiff != nullptr);
+  set_tags(tiff.get(), image.size, channels, options.png_bits, strip_rows);
+  std::vector<float> rgba;
+  std::vector<std::uint8_t> rows(static_cast<std::size_t>(strip_rows) * row_bytes);
+  for (int begin = 0; begin < height; begin += strip_rows) {
+    const int end = std::min(begin + strip_rows, height);
+    for (int y = begin; y < end; ++y)
+      display.row(y, rgba, rows.data() + static_cast<std::size_t>(y - begin) * row_bytes);
+    check(TIFFWriteEncodedStrip(tiff.get(), static_cast<std::uint32_t>(begin / strip_rows), rows.data(),
+                                static_cast<tmsize_t>(static_cast<std::size_t>(end - begin) * row_bytes)) >= 0);
   }
-  const auto n = static_cast<std::size_t>(channels);
-  Directory tags(static_cast<std::uint32_t>(place));
-  const auto bits = static_cast<std::uint32_t>(options.png_bits);
-  tags.add(256, {static_cast<std::uint32_t>(image.size.width)}, false);
-  tags.add(257, {static_cast<std::uint32_t>(image.size.height)}, false);
-  tags.add(258, std::vector<std::uint32_t>(n, bits), true);  // BitsPerSample
-  tags.add(259, {8}, true);                                  // Compression: deflate
-  tags.add(262, {2}, true);                                  // PhotometricInterpretation: RGB
-  tags.add(273, offsets, false);                             // StripOffsets
-  tags.add(277, {static_cast<std::uint32_t>(n)}, true);      // SamplesPerPixel
-  tags.add(278, {static_cast<std::uint32_t>(rows)}, false);  // RowsPerStrip
-  tags.add(279, lengths, false);                             // StripByteCounts
-  tags.add(284, {1}, true);                                  // PlanarConfiguration: pixel by pixel
-  tags.add(317, {2}, true);                                  // Predictor: horizontal differencing
-  if (channels == 4) tags.add(338, {2}, true);               // ExtraSamples: straight alpha
-  tags.add(339, std::vector<std::uint32_t>(n, 1), true);     // SampleFormat: unsigned
-  const Bytes directory = tags.bytes();
-  target.write(directory.data(), directory.size());
-  Bytes offset;
-  append_le(offset, static_cast<std::uint32_t>(place), 4);
-  target.seek(4);
-  target.write(offset.data(), offset.size());
-  target.commit();
+  check(TIFFWriteDirectory(tiff.get()) == 1);
+  tiff.reset();
+  check(true);
+  target.file.commit();
 }
 
 }  // namespace tessera::io

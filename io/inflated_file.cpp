@@ -6,30 +6,14 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
 #include <new>
 
+#include "io/free_memory.hpp"
 #include "io/gzip.hpp"
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
 
 namespace tessera::io {
-namespace {
-
-/// Memory that can be had without swapping: past it the system ends processes instead of refusing.
-std::uint64_t available_memory() {
-  std::ifstream facts("/proc/meminfo");
-  std::string word;
-  while (facts >> word)
-    if (word == "MemAvailable:") {
-      std::uint64_t kilobytes = 0;
-      if (facts >> kilobytes) return kilobytes * 1024;
-      break;
-    }
-  return UINT64_MAX;
-}
-
-}  // namespace
 
 InflatedFile::InflatedFile(const std::filesystem::path& file)
     : file_(file), descriptor_(::memfd_create("tessera", MFD_CLOEXEC)) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "io/foreign_surfaces.hpp"
+#include "io/free_memory.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/mapped_file.hpp"
@@ -46,6 +47,17 @@ double box_volume(const Surface& surface) {
   for (const glm::dvec3& p : surface.points)
     for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
   return (high.x - low.x) * (high.y - low.y) * (high.z - low.z);
+}
+
+/// Before TetGen begins to make more tets than there is room for, which may take it an hour to find out.
+void require_room(double volume, double max_volume, const std::string& source) {
+  const double tets = volume / max_volume;
+  constexpr double bytes_a_tet = 1024;  // measured (helper/limits.cpp)
+  const double room = std::min(static_cast<double>(available_memory()) / bytes_a_tet, 0x1p31);
+  if (tets > room)
+    throw scene::bad_input(fmt::format(
+        "{}: with a `max_volume` of {:.3g} TetGen makes about {:.2g} tets, which takes {:.3g} GiB; set {:.2g} or more",
+        source, max_volume, tets, tets * bytes_a_tet / 0x1p30, 1.1 * tets / room * max_volume));
 }
 
 }  // namespace
@@ -97,7 +109,11 @@ MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::o
   if (!(volume > 0))
     throw scene::bad_input(fmt::format("{}: the surface is flat, it encloses nothing; give a closed one", source));
   const double largest = max_volume.value_or(volume / default_tets);
-  if (progress) progress({ReadProgress::Stage::filling, 0});
+  if (max_volume) require_room(volume, largest, source);
+  // Measured on spheres (helper/limits.cpp). With fields it is filled twice, first without points inside.
+  const auto facets = static_cast<double>(surface.facets.size());
+  const double expected = (surface.attributes.empty() ? 2e-4 : 4e-4) * facets + 2e-5 * volume / largest;
+  if (progress) progress({ReadProgress::Stage::filling, 0, expected});
   FilledMesh filled = fill_surface(surface, {largest, volume / largest, max_volume.has_value()}, source);
   result.notes.push_back(fmt::format("surface of {} points and {} facets filled with {} tets of at most {:.4g}{}",
                                      surface.points.size(), surface.facets.size(), filled.tets.size() / 4, largest,

@@ -21,14 +21,14 @@ TIME = "takes minutes: a limit of time or of tets that sound files do not come n
 
 EXCEPTIONS = {
     r"apps/main\.cpp:\d+: standard input: only one process has it": (1, RANKS),
-    r"this build leaves (out|\.jpg out); build with|^io/tetgen_absent": (11, OTHER_BUILD),
+    r"this build leaves (out|\.(jpg|tif) out); build with|^io/tetgen_absent": (13, OTHER_BUILD),
     r"this build has no server; configure": (1, OTHER_BUILD),
     r"^apps/state_words\.cpp:\d+: state|^apps/serve_scene\.cpp:\d+": (11, SERVER),
     r"^apps/serve_command\.cpp:\d+": (2, SERVER),
     r"^io/json_transfer_function\.cpp:\d+: transfer function: it has no knot": (1, LIBRARY),
     r"please report": (5, DEFECT),
-    r"2\^32|points are too many for|the 4 GiB of a \.tif|it lists more than \{\} blocks": (9, HUGE),
-    r"; check the disk$|it cannot be mapped into memory|^io/image_jpeg\.cpp:\d+: \{\}: cannot be written": (7, DISK),
+    r"2\^32|points are too many for|it lists more than \{\} blocks": (8, HUGE),
+    r"; check the disk$|it cannot be mapped into memory|^io/image_(jpeg|tiff)\.cpp:\d+: \{\}: cannot be written": (8, DISK),
     r"^io/pvtu_writer\.cpp:\d+: \{\}: cannot be written": (1, "a folder that takes files and refuses to rename them"),
     r"cannot be opened; check (its permissions|that you may read it)": (3, ROOT),
     r"^io/(brick_file\.cpp:\d+: `block`|surface_files\.cpp:\d+: \{\}: the largest tet)": (2, LIBRARY),

@@ -106,6 +106,7 @@ ROWS = [
         {"a.poly": POLY.replace("4 0\n1\n3 0 2 1\n", "4 0\n1 1\n3 0 2 1\n1 0.2 0.2 0\n")},
         {"a.poly": POLY},
     ),
+    row("info a.ply --max-volume 1e-15", "or more", "info a.ply --max-volume 0.01", {"a.ply": PLY}),
     row("info a.ply --max-volume 0", "a number above 0", "info a.ply --max-volume 1", {"a.ply": PLY}),
     # AMReX
     amrex("Header", "Level_0/Cell\n", "", "it is truncated, write it anew"),

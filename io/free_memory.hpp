@@ -1,0 +1,11 @@
+#pragma once
+
+#include <cstdint>
+
+namespace tessera::io {
+
+/// Bytes of memory that can be had without swapping: past it the system ends processes instead of refusing. The largest
+/// number where the system does not say.
+std::uint64_t available_memory();
+
+}  // namespace tessera::io
