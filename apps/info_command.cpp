@@ -95,7 +95,7 @@ void info(const std::filesystem::path& input, const ReadOptions& options, bool a
   std::optional<MeshCheck> checked;
   if (check) {
     line.begin("checking " + input.filename().string());
-    checked = data.check();
+    checked = data.check([&line](double done) { line.advance(done); });
   }
   line.begin("looking through " + input.filename().string());
   const analysis::Description description = described(data);

@@ -150,10 +150,13 @@ Dataset open_watched(const std::filesystem::path& file, ReadOptions options, Sta
 bool shows_progress(bool quiet) { return !quiet && isatty(STDERR_FILENO) == 1; }
 
 std::string reading_words(const std::string& stage, const std::optional<ReadProgress>& progress, double seconds) {
-  std::string words = stage;
   if (progress && progress->stage == ReadProgress::Stage::filling)
-    words += ": filling it with tets";
-  else if (progress && progress->stage == ReadProgress::Stage::copying)
+    return stage + fmt::format(": filling it with tets, {:.0f} s{}", seconds,
+                               progress->expected_seconds >= 2 && seconds < progress->expected_seconds
+                                   ? fmt::format(" of about {:.0f}", progress->expected_seconds)
+                                   : "");
+  std::string words = stage;
+  if (progress && progress->stage == ReadProgress::Stage::copying)
     words += progress->done < 1
                  ? fmt::format(": {:.0f} % of its points and cells copied", std::floor(100 * progress->done))
                  : std::string(": making tets of its cells");

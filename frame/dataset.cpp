@@ -372,11 +372,11 @@ LoadedTransferFunction Dataset::transfer_function(const std::string& file_or_pre
   return frame::transfer_function_of(*state_, file_or_preset, options);
 }
 
-MeshCheck Dataset::check() const {
+MeshCheck Dataset::check(const CheckProgressFunction& progress) const {
   if (is_grid()) throw scene::bad_input(state_->source + ": is a grid, which nothing can be wrong with; check meshes");
   if (state_->ranks > 1)
     throw scene::bad_input(state_->source + ": this rank has a part of the mesh; open it on one rank to check it");
-  return frame::check_mesh(state_->mesh);
+  return frame::check_mesh(state_->mesh, progress);
 }
 
 std::size_t time_steps_of(const std::filesystem::path& file, const ReadOptions& options) {

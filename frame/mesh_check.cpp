@@ -126,18 +126,33 @@ struct Face {
 
 class Check {
  public:
-  explicit Check(const scene::TetMeshView& mesh) : mesh_(mesh) {
+  Check(const scene::TetMeshView& mesh, const CheckProgressFunction& progress) : mesh_(mesh), progress_(progress) {
     result_.tets = mesh.tets.size();
     name_points();
+    begin_part(0.07, 0.13);
     measure_tets();
+    begin_part(0.13, 0.2);
     match_faces();
+    begin_part(0.6, 0.62);
     find_non_conforming();
+    begin_part(0.62, 1);
     find_overlaps();
   }
 
   MeshCheck take() { return std::move(result_); }
 
  private:
+  /// Shares of the time that parts take, as they are of meshes of a million tets and more.
+  void begin_part(double begin, double end) {
+    part_begin_ = begin, part_length_ = end - begin;
+    tell(0, 1);
+  }
+  /// Of the part's `count` steps `n` are done.
+  void tell(std::size_t n, std::size_t count) const {
+    constexpr std::size_t steps = 1 << 15;
+    if (progress_ && n % steps == 0)
+      progress_(part_begin_ + part_length_ * static_cast<double>(n) / static_cast<double>(count));
+  }
   MeshCheck::Place place(std::size_t tet, std::size_t other) const {
     const Corners c = corners_of(mesh_, tet);
     return {mesh_.cell_of(tet), mesh_.cell_of(other), 0.25 * (c[0] + c[1] + c[2] + c[3]), 0};
@@ -183,6 +198,7 @@ class Check {
     solid_.assign(mesh_.tets.size(), 0);
     std::vector<std::pair<double, std::size_t>> worst;
     for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
+      tell(t, mesh_.tets.size());
       const Corners c = corners_of(mesh_, t);
       const double determinant = relative_determinant(c);
       if (std::abs(determinant) <= flat_determinant) {
@@ -226,15 +242,19 @@ class Check {
   void match_faces() {
     std::vector<Face> faces;
     faces.reserve(4 * mesh_.tets.size());
-    for (std::uint32_t t = 0; t < mesh_.tets.size(); ++t)
+    for (std::uint32_t t = 0; t < mesh_.tets.size(); ++t) {
+      tell(t, mesh_.tets.size());
       for (std::uint8_t k = 0; k < 4; ++k) {
         const scene::Tet& v = mesh_.tets[t];
         std::array<std::uint32_t, 3> p{name_[v[(k + 1u) % 4]], name_[v[(k + 2u) % 4]], name_[v[(k + 3u) % 4]]};
         std::sort(p.begin(), p.end());
         if (p[0] != p[1] && p[1] != p[2]) faces.push_back({p, t, k});
       }
+    }
+    begin_part(0.2, 0.5);
     std::sort(faces.begin(), faces.end(),
               [](const Face& a, const Face& b) { return a.points != b.points ? a.points < b.points : a.tet < b.tet; });
+    begin_part(0.5, 0.6);
     neighbor_.assign(4 * mesh_.tets.size(), none);
     std::vector<std::uint8_t> folded(mesh_.tets.size(), 0);
     for (std::size_t i = 0; i < faces.size();) {
@@ -265,6 +285,7 @@ class Check {
     const BoxTree tree(boxes);
     std::vector<std::uint8_t> found(boundary_.size(), 0);
     for (std::uint32_t i = 0; i < boundary_.size(); ++i) {
+      tell(i, boundary_.size());
       const auto a = triangle(boundary_[i]);
       const glm::dvec3 cross = glm::cross(a[1] - a[0], a[2] - a[0]);
       const double area = glm::length(cross);
@@ -328,7 +349,11 @@ class Check {
       result_.more_overlaps = seen.size() >= MeshCheck::most_overlaps;
     };
     for (const auto& [a, b] : seeds_) consider(a, b);
-    for (const Face& f : boundary_) tree.visit(box_of(triangle(f)), [&](std::uint32_t t) { consider(f.tet, t); });
+    for (std::size_t i = 0; i < boundary_.size(); ++i) {
+      tell(i, boundary_.size());
+      const std::uint32_t tet = boundary_[i].tet;
+      tree.visit(box_of(triangle(boundary_[i])), [&](std::uint32_t t) { consider(tet, t); });
+    }
     while (!pending.empty() && !result_.more_overlaps) {
       const auto [a, b] = pending.front();
       pending.pop();
@@ -338,6 +363,8 @@ class Check {
   }
 
   scene::TetMeshView mesh_;
+  const CheckProgressFunction& progress_;
+  double part_begin_ = 0, part_length_ = 0;
   MeshCheck result_;
   std::vector<std::uint32_t> name_, neighbor_;
   std::vector<std::uint8_t> solid_;  ///< neither flat nor a sliver beyond the overlap's tolerance
@@ -347,6 +374,8 @@ class Check {
 
 }  // namespace
 
-MeshCheck check_mesh(const scene::TetMeshView& mesh) { return Check(mesh).take(); }
+MeshCheck check_mesh(const scene::TetMeshView& mesh, const CheckProgressFunction& progress) {
+  return Check(mesh, progress).take();
+}
 
 }  // namespace tessera::frame

@@ -10,8 +10,9 @@
 
 namespace tessera::frame {
 
+using tessera::CheckProgressFunction;
 using tessera::MeshCheck;
 
-MeshCheck check_mesh(const scene::TetMeshView& mesh);
+MeshCheck check_mesh(const scene::TetMeshView& mesh, const CheckProgressFunction& progress = nullptr);
 
 }  // namespace tessera::frame

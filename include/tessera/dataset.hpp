@@ -234,8 +234,8 @@ class TESSERA_EXPORT Dataset {
                                                          const TransferFunctionOptions& options = {}) const;
 
   /// Overlapping cells, folds, unmatched faces, slivers, duplicates of a mesh that is whole on this rank. Throws
-  /// Error(bad_input) for a grid or a part.
-  [[nodiscard]] MeshCheck check() const;
+  /// Error(bad_input) for a grid or a part. `progress` hears how much is done, 0 to 1, on the calling thread.
+  [[nodiscard]] MeshCheck check(const CheckProgressFunction& progress = nullptr) const;
 
   struct State;
   /// For the library itself.

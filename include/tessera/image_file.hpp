@@ -20,8 +20,8 @@ namespace tessera {
 ///   .tif  as .png: 8 or 16 bits, deflated, alpha straight (.tiff too); BigTIFF beyond 4 GB.
 ///   .jpg  sRGB, 8 bits, colours in full (.jpeg too). No alpha: without a background it stands on black.
 ///   .pfm  linear RGB, premultiplied, 32-bit floats, little endian, bottom row first. No alpha.
-/// Throws Error(bad_input) for another extension, .jpg or .tif where the library was built without it, a folder that is not there, a number that half cannot hold;
-/// Error(system_failure) if the disk fails or a pixel is NaN or infinite.
+/// Throws Error(bad_input) for another extension, .jpg or .tif where the library was built without it, a folder that is
+/// not there, a number that half cannot hold; Error(system_failure) if the disk fails or a pixel is NaN or infinite.
 TESSERA_EXPORT void write_image(const Image& image, const std::filesystem::path& file,
                                 const ImageFileOptions& options = {});
 

@@ -1,10 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <vector>
 
 namespace tessera {
+
+/// Hears which share of a check is done, 0 to 1: some hundred times, in order. It must not throw.
+using CheckProgressFunction = std::function<void(double)>;
 
 /// What a mesh has that a mesh should not have. None of it stops a picture; overlapping cells alone make it wrong, as
 /// each of them contributes.

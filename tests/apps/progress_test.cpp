@@ -18,6 +18,10 @@ TEST(StatusLine, OfReadingSaysHowFarItIsAsFarAsThatIsKnown) {
             "reading a.vtu: making tets of its cells, 12 s");
   EXPECT_EQ(reading_words("reading a.ply", ReadProgress{ReadProgress::Stage::filling, 0}, 9),
             "reading a.ply: filling it with tets, 9 s");
+  EXPECT_EQ(reading_words("reading a.ply", ReadProgress{ReadProgress::Stage::filling, 0, 40}, 9),
+            "reading a.ply: filling it with tets, 9 s of about 40");
+  EXPECT_EQ(reading_words("reading a.ply", ReadProgress{ReadProgress::Stage::filling, 0, 40}, 41),
+            "reading a.ply: filling it with tets, 41 s");
 }
 
 TEST(StatusLine, OfOtherStagesSaysWhatIsLeftOnceThatMeansSomething) {

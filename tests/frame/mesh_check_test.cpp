@@ -34,6 +34,15 @@ TEST(MeshCheck, MeshesWhoseCellsMatchAreClean) {
   }
 }
 
+TEST(MeshCheck, SaysHowFarItIs) {
+  std::vector<double> heard;
+  check_mesh(datasets::cube(24), [&heard](double done) { heard.push_back(done); });
+  ASSERT_GE(heard.size(), 6u);  // six parts begin, and each 2^15 of 69,120 tets
+  EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end()));
+  EXPECT_GT(heard.front(), 0);
+  EXPECT_LT(heard.back(), 1);
+}
+
 TEST(MeshCheck, CountsTwinsAlongASeam) {
   const scene::TetMesh whole = datasets::regular_split(4, 4, 4), cut = datasets::with_seam(whole, 0, 0.4);
   const MeshCheck check = check_mesh(cut);
