@@ -90,11 +90,11 @@ HWY_INLINE void convert(const T* from, std::int64_t count, std::int64_t readable
     }
   }
   const DD d;
-  const auto factor = HN::Set(d, lanes.factor), term = HN::Set(d, lanes.term);
+  const auto factor = HN::Set(d, lanes.factor), term = HN::Set(d, lanes.term), lift = HN::Set(d, lanes.lift);
   const auto n = static_cast<std::int64_t>(HN::Lanes(d));
   const auto some = [&](const T* p, float* out) HWY_ATTR {
     const auto sample = load_doubles(p);
-    const auto exact = HN::MulAdd(sample, factor, term), lane = lanes.whole ? HN::Round(exact) : exact;
+    const auto exact = HN::MulAdd(HN::Mul(sample, lift), factor, term), lane = lanes.whole ? HN::Round(exact) : exact;
     // inf - inf and NaN - NaN are NaN, x - x is 0: blanks become NaN.
     HN::StoreU(HN::DemoteTo(DFH(), HN::Add(lane, HN::Sub(sample, sample))), DFH(), out);
   };

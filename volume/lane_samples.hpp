@@ -8,10 +8,12 @@
 
 namespace tessera::volume {
 
-/// From stored samples to the scalars of float lanes (integrals::lane_scalar): lane = round(factor * sample + term).
+/// From stored samples to the scalars of float lanes (integrals::lane_scalar): lane = round(factor * (lift * sample) +
+/// term).
 ///
 /// Unit    2^-29 of the largest distance between the origin and a value: products of few differences stay finite.
 /// Origin  zero, if the range holds or nearly holds it, so that float samples keep their bits; else the range's middle.
+/// Lift    a power of two, 1 but for values near the smallest of doubles, of which a unit's inverse would be infinite.
 /// One     value only: it is the origin, and its last place many units, so that all but the nearest knots are out of
 ///         reach, where the function's values beside it stand for them.
 /// Exact   a lane is (value - origin) / unit without rounding: its side of a step is the value's. Of floats only where
@@ -19,7 +21,7 @@ namespace tessera::volume {
 /// Blank   a sample that is not finite gives NaN.
 struct LaneSamples {
   double origin = 0, unit = 1;
-  double factor = 1, term = 0;
+  double factor = 1, term = 0, lift = 1;
   bool scales_floats = true;   ///< the factor is a power of two that floats hold, the term zero
   bool whole = true;           ///< lanes are rounded to whole numbers
   bool exact = false;          ///< see above
@@ -32,11 +34,12 @@ struct LaneSamples {
     if (range.low > width || range.high < -width) origin = 0.5 * (range.low + range.high);
     const double reach = std::max(std::abs(range.low - origin), std::abs(range.high - origin));
     if (reach > 0) {
-      unit = std::ldexp(1.0, std::max(std::ilogb(reach) + 1 - 29, -1000));
-      factor = grid.scale / unit;
+      unit = std::ldexp(1.0, std::max(std::ilogb(reach) + 1 - 29, -1074));
+      if (unit < 0x1p-1000) lift = 0x1p128;
+      factor = grid.scale / (unit * lift);
       term = (grid.shift - origin) / unit;
     } else {
-      unit = origin == 0 ? std::ldexp(1.0, -1000) : std::ldexp(1.0, std::max(std::ilogb(origin) - 52 - 27, -1000));
+      unit = origin == 0 ? std::ldexp(1.0, -1000) : std::ldexp(1.0, std::max(std::ilogb(origin) - 52 - 27, -1074));
       factor = term = 0;
     }
     int exponent = 0;
@@ -47,7 +50,7 @@ struct LaneSamples {
 
   [[nodiscard]] float lane(double sample) const {
     if (!std::isfinite(sample)) return NAN;
-    const double lane = std::fma(factor, sample, term);
+    const double lane = std::fma(factor, lift * sample, term);
     return static_cast<float>(whole ? std::nearbyint(lane) : lane);
   }
 

@@ -94,6 +94,23 @@ TEST(VolumeCaster, IndependentEmission) {
       1e-5);
 }
 
+TEST(VolumeCaster, VerySmallDoublesLookLikeOthers) {
+  const Volume v = make_volume({21, 18, 17}, Field::noise);
+  // All are normal numbers: powers of two, so that no sample and no knot is rounded.
+  const auto picture = [&](double scale) {
+    std::vector<double> values;
+    for (const float value : v.values) values.push_back(std::max(static_cast<double>(value), 0x1p-12) * scale);
+    const scene::TransferFunction function = smooth_function();
+    std::vector<scene::Knot> knots(function.knots().begin(), function.knots().end());
+    for (scene::Knot& knot : knots) knot.value *= scale;
+    scene::Grid grid = v.grid;
+    const auto source = scene::MemorySource::of(grid, values);
+    return volume::Renderer(*source, exact()).render(view("oblique"), size, scene::TransferFunction(knots));
+  };
+  const scene::Image expected = picture(1);
+  for (const double scale : {0x1p-900, 0x1p-975, 0x1p-1009}) EXPECT_TRUE(same_bits(picture(scale), expected)) << scale;
+}
+
 TEST(VolumeCaster, BlankSamplesBlankTheirVoxels) {
   Volume v = make_volume({21, 18, 17}, Field::noise);
   std::mt19937 random(3);
