@@ -7,6 +7,7 @@ import os
 import secrets
 import signal
 import socket
+import ssl
 import struct
 import subprocess
 import time
@@ -14,9 +15,11 @@ import urllib.parse
 
 
 class Server:
-    """`tessera serve`, from here on until stop(). `launcher`: what it is started by, like mpirun."""
+    """`tessera serve`, from here on until stop(). `launcher`: what it is started by, like mpirun. `trusted`: the
+    certificate that it shows, over https then."""
 
-    def __init__(self, tessera, file, *words, launcher=(), environment=None):
+    def __init__(self, tessera, file, *words, launcher=(), environment=None, trusted=None):
+        self.context = ssl.create_default_context(cafile=str(trusted)) if trusted else None
         environment = dict(os.environ, **(environment or {}))
         self.process = subprocess.Popen([*launcher, str(tessera), "serve", str(file), *words], stdout=subprocess.PIPE,
                                         stderr=subprocess.PIPE, text=True, env=environment)
@@ -29,7 +32,10 @@ class Server:
 
     def ask(self, method, path, body=None, headers=None, token=True, timeout=120):
         """(status, headers, bytes) of a request."""
-        connection = http.client.HTTPConnection(self.host, self.port, timeout=timeout)
+        if self.context:
+            connection = http.client.HTTPSConnection(self.host, self.port, timeout=timeout, context=self.context)
+        else:
+            connection = http.client.HTTPConnection(self.host, self.port, timeout=timeout)
         all_headers = {"Authorization": f"Bearer {self.token}"} if token else {}
         all_headers.update(headers or {})
         if isinstance(body, (dict, list)):
@@ -89,6 +95,8 @@ class WebSocket:
     def __init__(self, server, token=True, headers=None, timeout=60):
         self.stream = socket.create_connection((server.host, server.port), timeout=timeout)
         self.stream.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        if server.context:
+            self.stream = server.context.wrap_socket(self.stream, server_hostname=server.host)
         key = base64.b64encode(secrets.token_bytes(16)).decode()
         lines = [f"GET /socket{'?token=' + server.token if token else ''} HTTP/1.1", "Upgrade: websocket",
                  "Connection: Upgrade", f"Sec-WebSocket-Key: {key}", "Sec-WebSocket-Version: 13"]
@@ -177,3 +185,9 @@ class WebSocket:
 
     def close(self):
         self.stream.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()

@@ -2,7 +2,8 @@
 """Tests of `tessera serve` through the program: pictures are those of `tessera render`, whoever may not is refused,
 hostile clients harm nobody, and it ends in order.
 
-    serve_test.py --tessera PROGRAM [--part pictures|refusals|hostile|ends] [--without-mpi] [--sanitized]
+    serve_test.py --tessera PROGRAM [--part pictures|refusals|tls|hostile|ends] [--without-mpi]
+                  [--without-tls] [--sanitized]
 
 TESSERA_SERVE_MESSAGES: how many mutated messages are sent (30000), TESSERA_SERVE_FRAMES: over how many small frames
 memory is watched (500).
@@ -16,6 +17,7 @@ import shlex
 import shutil
 import signal
 import socket
+import ssl
 import subprocess
 import sys
 import tempfile
@@ -212,6 +214,62 @@ def part_refusals():
     with Server(options.tessera, file, "--allow-host", "viz.example.org") as server:
         headers = {"Host": "viz.example.org", "Origin": "https://viz.example.org"}
         check(server.ask("GET", "/", headers=headers)[0] == 200, "an allowed host")
+
+
+def certificate(name):
+    """(certificate, key): one that signs itself, for this machine."""
+    files = folder / f"{name}.pem", folder / f"{name}-key.pem"
+    subprocess.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", files[1], "-out", files[0],
+                    "-days", "2", "-subj", "/CN=localhost", "-addext", "subjectAltName=IP:127.0.0.1,DNS:localhost"],
+                   check=True, capture_output=True)
+    return files
+
+
+def part_tls():
+    if options.without_tls or not shutil.which("openssl"):
+        print("no TLS in this build, or no openssl to make a certificate with")
+        return
+    file = files()[0]
+    shown, key = certificate("own")
+    words = ("--tls-certificate", shown, "--tls-key", key)
+    with Server(options.tessera, file, *words, trusted=shown) as server:
+        check(server.url.startswith("https://127.0.0.1:"), server.url)
+        state = dict(server.data()["defaults"], size="80x60", integrator="exact")
+        with server.socket() as client:
+            check(client.status == 101 and client.receive()["type"] == "welcome", "no welcome")
+            client.state(1, state)
+            _, image = client.last_frame(1)
+        check(server.ask("POST", "/picture", {"state": state, "format": "png"})[2] == image, "picture is not the frame")
+        check(server.ask("GET", "/api/data", token=False)[0] == 403, "without the token")
+        check(server.socket(headers={"Origin": f"https://127.0.0.1:{server.port}"}).status == 101, "our own page")
+        check(server.socket(headers={"Origin": f"https://127.0.0.1:{server.port ^ 1}"}).status == 403, "another page")
+        _, headers, _ = server.ask("GET", f"/?token={server.token}", token=False)
+        check("Secure" in headers["Set-Cookie"], headers["Set-Cookie"])
+        # Nothing is answered in the clear, nor by an old protocol, nor to who does not trust it; and it goes on.
+        with socket.create_connection((server.host, server.port), timeout=20) as plain:
+            plain.sendall(f"GET /?token={server.token} HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".encode())
+            check(b"HTTP/" not in plain.recv(100), "an answer in the clear")
+        for change in ("old", "strange"):
+            context = ssl.create_default_context(cafile=str(certificate("other")[0]) if change == "strange" else str(shown))
+            if change == "old":
+                context.minimum_version, context.maximum_version = ssl.TLSVersion.TLSv1, ssl.TLSVersion.TLSv1_1
+                context.set_ciphers("ALL:@SECLEVEL=0")
+            try:
+                with socket.create_connection((server.host, server.port), timeout=20) as stream:
+                    context.wrap_socket(stream, server_hostname="127.0.0.1")
+                raise AssertionError(f"{change}: a connection")
+            except ssl.SSLError:
+                pass
+        check(server.ask("GET", "/api/data")[0] == 200, "it does not go on")
+        status, errors = server.stop()
+        check(status == 0 and errors == "", f"ended with {status}: {errors}")
+    (folder / "none.pem").write_text("none\n")
+    for bad in ((shown, certificate("other")[1]), (folder / "none.pem", key), (shown, folder / "none.pem"),
+                (folder / "missing.pem", key)):
+        result = subprocess.run([options.tessera, "serve", file, "--tls-certificate", bad[0], "--tls-key", bad[1]],
+                                capture_output=True, text=True, timeout=60, check=False)
+        check(result.returncode == 2 and result.stderr.count("\n") == 1 and ".pem" in result.stderr and
+              result.stdout == "", f"{bad}: {result.returncode} {result.stderr}")
 
 
 def mutated(rng, text):
@@ -472,15 +530,16 @@ def main():
     global options, folder
     parser = argparse.ArgumentParser()
     parser.add_argument("--tessera", required=True)
-    parser.add_argument("--part", choices=["pictures", "refusals", "hostile", "ends"])
+    parser.add_argument("--part", choices=["pictures", "refusals", "tls", "hostile", "ends"])
     parser.add_argument("--without-mpi", action="store_true")
+    parser.add_argument("--without-tls", action="store_true")
     parser.add_argument("--sanitized", action="store_true")
     options = parser.parse_args()
     options.tessera = str(Path(options.tessera).resolve())
     options.without_mpi = options.without_mpi or not shutil.which("mpirun")
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
-        for name in ("pictures", "refusals", "hostile", "ends"):
+        for name in ("pictures", "refusals", "tls", "hostile", "ends"):
             if options.part in (None, name):
                 start = time.monotonic()
                 globals()["part_" + name]()

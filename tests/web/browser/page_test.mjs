@@ -1,7 +1,7 @@
 // The page in Chromium, with the server behind it: one browser, one server, one thing after another.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
-import { mkdtempSync, rmSync } from "node:fs";
+import { execFileSync } from "node:child_process";
+import { chmodSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
@@ -41,6 +41,11 @@ async function opened_section(title) {
 }
 
 before(async () => {
+  // A stand-in for ffmpeg, which keeps the pictures as they come: what a film holds can then be told by its bytes.
+  mkdirSync(join(folder, "bin"));
+  writeFileSync(join(folder, "bin", "ffmpeg"), '#!/bin/sh\nfor last; do :; done\ncat > "$last"\n');
+  chmodSync(join(folder, "bin", "ffmpeg"), 0o755);
+  process.env.PATH = `${join(folder, "bin")}:${process.env.PATH}`;
   server = serve([file, "--size", "640x480"]);
   address = await server.address;
   proxy = await make_proxy(Number(address.port));
@@ -374,6 +379,33 @@ test("the picture is saved, and is what the copied command makes", async () => {
   assert.equal(readFileSync(await exr.path()).readUInt32LE(0), 20000630);
 });
 
+test("films go once round the data, and along key views", async () => {
+  const box = await opened_section("Picture and film");
+  await box.getByLabel("Width, pixels").fill("48");
+  await box.getByLabel("Height, pixels").fill("32");
+  await box.getByLabel("Frames", { exact: true }).fill("5");
+  const made = async () => {
+    const [download] = await Promise.all([page.waitForEvent("download"), box.getByRole("button", { name: "Make film" }).click()]);
+    assert.match(download.suggestedFilename(), /\.mp4$/);
+    const bytes = readFileSync(await download.path());
+    assert.equal(bytes.length, 5 * 48 * 32 * 3);
+    return [0, 1, 2, 3, 4].map((n) => bytes.subarray(n * 48 * 32 * 3, (n + 1) * 48 * 32 * 3));
+  };
+  const orbit = await made();
+  for (let n = 1; n < 5; ++n) assert.ok(!orbit[n].equals(orbit[n - 1]), `frame ${n} of the orbit is the one before`);
+  await box.getByLabel("Path").selectOption("views");
+  await box.getByRole("button", { name: "Make film" }).click();
+  await page.getByText("A film along key views needs two of them").waitFor();
+  await box.getByRole("button", { name: "Add this view" }).click();
+  await page.locator("#picture").focus();
+  await page.keyboard.press("ArrowRight");
+  await at_rest(page);
+  await box.getByRole("button", { name: "Add this view" }).click();
+  const along = await made();
+  assert.ok(!along[4].equals(along[0]), "the film ends where it began");
+  assert.ok(!along[2].equals(along[0]) && !along[2].equals(along[4]), "there is nothing between the key views");
+});
+
 test("a link opened by another browser gives the same bits", async () => {
   const own = await shown_bytes(page);
   await page.locator("#picture").focus();
@@ -523,6 +555,24 @@ test("a connection that nothing comes through any more is noticed, and made anew
   await at_rest(page);
   await page.evaluate(() => window.tessera.change({ log: undefined }));
   await at_rest(page);
+});
+
+test("the page works over https", { skip: process.env.TESSERA_WITHOUT_TLS === "1" && "built without TLS" }, async () => {
+  const [certificate, key] = ["own.pem", "own-key.pem"].map((name) => join(folder, name));
+  execFileSync("openssl", ["req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", key, "-out", certificate, "-days", "2", "-subj", "/CN=localhost", "-addext", "subjectAltName=IP:127.0.0.1"], { stdio: "ignore" });
+  const other = serve([file, "--size", "64x48", "--tls-certificate", certificate, "--tls-key", key]);
+  try {
+    const link = await other.address;
+    assert.equal(link.protocol, "https:");
+    const secure = await open(link.href, { ignoreHTTPSErrors: true });
+    await at_rest(secure);
+    assert.ok((await shown_bytes(secure)).length > 1000);
+    assert.ok(await secure.evaluate(() => window.isSecureContext));
+    await secure.context().close();
+  } finally {
+    other.child.kill("SIGTERM");
+  }
+  assert.equal(await other.ended, 0);
 });
 
 test("a server that ends says so, and ends well", async () => {

@@ -32,7 +32,7 @@ export function serve(words) {
   const address = new Promise((done, fail) => {
     child.stdout.on("data", (bytes) => {
       said += bytes;
-      const line = /^(http:\S+)/m.exec(said);
+      const line = /^(https?:\S+)/m.exec(said);
       if (line) done(new URL(line[1]));
     });
     child.on("error", fail);
