@@ -1,7 +1,6 @@
 """Rows of advice about what is written."""
 
 import gzip
-import os
 
 from advice_files import TETRAHEDRON, TETS
 from advice_row import row
@@ -9,7 +8,9 @@ from advice_row import row
 R = "render m.vtu -o a.png --size 16x16 "
 V = "render v.vti -o a.png --size 16x16 "
 
-FFMPEG = {"PATH": os.environ.get("PATH", "")}
+# A stand-in for ffmpeg in the folder, which keeps what comes, and what its shell needs.
+FFMPEG = {"PATH": ".:/usr/bin:/bin"}
+STAND_IN = {"ffmpeg": ("program", '#!/bin/sh\nfor last; do :; done\ncat > "$last"\n')}
 VIEW = (
     '{{"position": [0, 0, 9], "focal_point": [0, 0, 0], "view_up": [0, 1, 0], "parallel_scale": 2, "size": [{0}, {0}]}}'
 )
@@ -71,13 +72,14 @@ ROWS = [
         "render m.vtu -o a.gif --size 16x16 --frame-rate 2000",
         "is above 1000; give fewer",
         "render m.vtu -o a.gif --size 16x16 --frame-rate 20",
+        STAND_IN,
         env=FFMPEG,
     ),
     row(
         "render m.vtu -o a.gif --camera cc.json",
         "use --size",
         "render m.vtu -o a.gif --camera cc.json --size 16x16",
-        {"cc.json": CAMERAS},
+        {"cc.json": CAMERAS, **STAND_IN},
         env=FFMPEG,
     ),
     row("convert v.vti w.raw", "read it with --dims 8x8x8 --type", "info w.raw --dims 8x8x8 --type float32"),
