@@ -98,17 +98,20 @@ class Rule {
   [[nodiscard]] bool passes_corner(const Step& step, std::size_t tet) const {
     const scene::Tet& corners = prepared_.tets()[tet];
     const double error = lattice_error(step);
-    for (const std::uint32_t v : corners)
-      if (std::abs(mesh_.scalars[v] - step.value) <= error) return true;
-    for (std::size_t opposite = 0; opposite < 4; ++opposite) {
-      double low = infinity, high = -infinity;
-      for (std::size_t i = 0; i < 4; ++i) {
-        if (i == opposite) continue;
-        low = std::min(low, mesh_.scalars[corners[i]]), high = std::max(high, mesh_.scalars[corners[i]]);
-      }
-      if (step.value >= low - error && step.value <= high + error && high - low <= most_slope * error) return true;
-    }
-    return false;
+    std::array<double, 4> s;
+    for (std::size_t i = 0; i < 4; ++i) s[i] = mesh_.scalars[corners[i]];
+    for (const double scalar : s)
+      if (std::abs(scalar - step.value) <= error) return true;
+    // A face lacks one corner: it goes from the lowest or to the highest of all four.
+    const auto order = [&](std::size_t i, std::size_t j) {
+      const double low = std::min(s[i], s[j]), high = std::max(s[i], s[j]);
+      s[i] = low, s[j] = high;
+    };
+    order(0, 1), order(2, 3), order(0, 2), order(1, 3), order(1, 2);
+    const auto coincides = [&](double low, double high) {
+      return high - low <= most_slope * error && step.value >= low - error && step.value <= high + error;
+    };
+    return coincides(s[0], s[2]) || coincides(s[1], s[3]) || coincides(s[0], s[3]);
   }
 
   [[nodiscard]] bool inexact(const Step& step, double low, double high, std::size_t tet) const {

@@ -1,0 +1,158 @@
+// Which cells of a batch have surfaces, and how these lie, a cell a lane; included once per instruction set (Highway's
+// include guard idiom).
+
+#if defined(TESSERA_PROJECTION_LATTICE_NORMALS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TESSERA_PROJECTION_LATTICE_NORMALS_INL_H_
+#undef TESSERA_PROJECTION_LATTICE_NORMALS_INL_H_
+#else
+#define TESSERA_PROJECTION_LATTICE_NORMALS_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <limits>
+
+#include "projection/lattice_shapes-inl.h"
+#include "projection/lattice_surfaces.hpp"
+#include "projection/surface_crossings.hpp"
+
+HWY_BEFORE_NAMESPACE();
+#if HWY_TARGET != HWY_SCALAR
+namespace tessera::projection {
+namespace HWY_NAMESPACE {
+
+/// Three coordinates of as many cells as lanes.
+struct Vectors {
+  V x, y, z;
+};
+HWY_INLINE Vectors difference(const Vectors& a, const Vectors& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+HWY_INLINE Vectors quotient(const Vectors& a, V b) { return {hn::Div(a.x, b), hn::Div(a.y, b), hn::Div(a.z, b)}; }
+HWY_INLINE V dot(const Vectors& a, const Vectors& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+HWY_INLINE Vectors cross(const Vectors& a, const Vectors& b) {
+  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(b.y, a.z)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(b.z, a.x)),
+          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(b.x, a.y))};
+}
+HWY_INLINE V largest(const Vectors& v) { return hn::Max(hn::Max(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z)); }
+
+/// unit(gradient_direction()) of surface_crossings.hpp, a cell a lane.
+HWY_INLINE Vectors unit_gradient(const Vectors (&corner)[4], const V (&scalar)[4]) {
+  const V zero = hn::Zero(D());
+  Vectors edge[3];
+  V change[3], size = zero, most = zero;
+  for (std::size_t i = 0; i < 3; ++i) {
+    edge[i] = difference(corner[i + 1], corner[0]);
+    change[i] = hn::Sub(scalar[i + 1], scalar[0]);
+    size = hn::Max(size, largest(edge[i])), most = hn::Max(most, hn::Abs(change[i]));
+  }
+  const Vectors e0 = quotient(edge[0], size), e1 = quotient(edge[1], size), e2 = quotient(edge[2], size);
+  const Vectors n0 = cross(e1, e2), n1 = cross(e2, e0), n2 = cross(e0, e1);
+  const V c0 = hn::Div(change[0], most), c1 = hn::Div(change[1], most), c2 = hn::Div(change[2], most);
+  const auto sum = [&](V a, V b, V c)
+                       HWY_ATTR { return hn::Add(hn::Add(hn::Mul(c0, a), hn::Mul(c1, b)), hn::Mul(c2, c)); };
+  const Vectors direction{sum(n0.x, n1.x, n2.x), sum(n0.y, n1.y, n2.y), sum(n0.z, n1.z, n2.z)};
+  const V reach = largest(direction);
+  const Vectors of_size_one = quotient(direction, reach);
+  const Vectors unit = quotient(of_size_one, hn::Sqrt(dot(of_size_one, of_size_one)));
+  // Of a cell of no size, of one scalar, or flat, divisions by zero gave no numbers.
+  const auto is = hn::And(hn::Gt(reach, zero), hn::And(hn::Gt(size, zero), hn::Gt(most, zero)));
+  return {hn::IfThenElseZero(is, unit.x), hn::IfThenElseZero(is, unit.y), hn::IfThenElseZero(is, unit.z)};
+}
+
+/// Normals and cosines of some of a batch's cells, a bit each. To be called once find_surfaces()'s prefetches have had
+/// their time.
+HWY_INLINE void find_normals(const LatticeView& view, const CellBatch& batch, unsigned cells,
+                             LatticeSurfaces& surfaces) {
+  const D d;
+  constexpr std::size_t most = hn::MaxLanes(D());
+  const PreparedMesh& prepared = *view.projected.mesh;
+  const scene::TetMeshView& mesh = prepared.mesh();
+  const glm::dvec3 towards = view.perspective ? glm::dvec3(0) : view.projected.iso->space->direction(0, 0);
+  const Vectors ray{hn::Set(d, towards.x), hn::Set(d, towards.y), hn::Set(d, towards.z)};
+  while (cells != 0) {
+    // Position and scalar of the corners, by lane.
+    alignas(64) double numbers[4][4][most] = {};
+    std::size_t of_lane[most], count = 0;
+    for (; cells != 0 && count < most; cells &= cells - 1, ++count) {
+      of_lane[count] = static_cast<std::size_t>(__builtin_ctz(cells));
+      const scene::Tet& corners = prepared.tets()[batch.tet[of_lane[count]]];
+      for (std::size_t i = 0; i < 4; ++i) {
+        const glm::dvec3& p = mesh.positions[corners[i]];
+        numbers[i][0][count] = p.x, numbers[i][1][count] = p.y, numbers[i][2][count] = p.z;
+        numbers[i][3][count] = mesh.scalars[corners[i]];
+      }
+    }
+    Vectors corner[4];
+    V scalar[4];
+    for (std::size_t i = 0; i < 4; ++i) {
+      corner[i] = {hn::Load(d, numbers[i][0]), hn::Load(d, numbers[i][1]), hn::Load(d, numbers[i][2])};
+      scalar[i] = hn::Load(d, numbers[i][3]);
+    }
+    const Vectors normal = unit_gradient(corner, scalar);
+    const auto is = hn::Gt(largest(normal), hn::Zero(d));
+    const V one = hn::Set(d, 1), along = view.perspective ? hn::Zero(d) : hn::Min(hn::Abs(dot(ray, normal)), one);
+    alignas(64) double found[4][most];
+    hn::Store(normal.x, d, found[0]), hn::Store(normal.y, d, found[1]), hn::Store(normal.z, d, found[2]);
+    hn::Store(hn::IfThenElse(is, along, one), d, found[3]);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      for (std::size_t axis = 0; axis < 3; ++axis) surfaces.normal[axis][of_lane[lane]] = found[axis][lane];
+      surfaces.cosine[of_lane[lane]] = found[3][lane];
+    }
+  }
+}
+
+/// What find_normals() will read of cell t.
+HWY_INLINE void prefetch_corners(const LatticeView& view, const CellBatch& batch, int t) {
+  const scene::TetMeshView& mesh = view.projected.mesh->mesh();
+  for (const std::uint32_t v : view.projected.mesh->tets()[batch.tet[t]]) {
+    __builtin_prefetch(&mesh.positions[v]);
+    __builtin_prefetch(&mesh.scalars[v]);
+  }
+}
+
+/// Which of a batch's cells have surfaces, a bit each; irregular ones are taken to have none.
+HWY_INLINE unsigned find_surfaces(const LatticeView& view, const CellBatch& batch, LatticeSurfaces& surfaces) {
+  // Rounding may move a scalar over a value: a float's last place (64 steps at most), the value's own, and a gradient's
+  // over the square.
+  constexpr float margin = 256;
+  const F df;
+  const I d;
+  const std::span<const float> values = view.projected.iso->surfaces->on_lattice();
+  unsigned with = 0;
+  for (int from = 0; from < batch.size; from += lanes) {
+    const VF below = hn::Sub(hn::Load(df, batch.scalar_low + from), hn::Set(df, margin));
+    const VF above = hn::Add(hn::Load(df, batch.scalar_high + from), hn::Set(df, margin));
+    VI first = hn::Zero(d), last = hn::Zero(d);
+    const auto count_if = [&](MF mask, VI& count)
+                              HWY_ATTR { count = hn::Sub(count, hn::VecFromMask(d, hn::RebindMask(d, mask))); };
+    for (const float value : values) {
+      count_if(hn::Lt(hn::Set(df, value), below), first);
+      count_if(hn::Le(hn::Set(df, value), above), last);
+    }
+    const unsigned at_all = (1u << batch.size) - 1, here = ((1u << lanes) - 1) << from;
+    const unsigned regular = at_all & here & ~batch.irregular;
+    const unsigned some = lane_bits(hn::RebindMask(df, hn::Lt(first, last))) << from & regular;
+    with |= some;
+    hn::Store(first, d, surfaces.first + from);
+    hn::Store(hn::Sub(last, first), d, surfaces.count + from);
+    hn::Store(hn::Set(df, std::numeric_limits<float>::infinity()), df, surfaces.low + from);
+    hn::Store(hn::Set(df, -std::numeric_limits<float>::infinity()), df, surfaces.high + from);
+  }
+  for (unsigned left = with; left != 0; left &= left - 1) {
+    const int t = __builtin_ctz(left);
+    surfaces.low[t] = values[static_cast<std::size_t>(surfaces.first[t])];
+    prefetch_corners(view, batch, t);
+    surfaces.high[t] = values[static_cast<std::size_t>(surfaces.first[t] + surfaces.count[t] - 1)];
+  }
+  return with;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::projection
+#endif  // HWY_SCALAR
+HWY_AFTER_NAMESPACE();
+
+#endif
