@@ -143,13 +143,19 @@ class PixelGroup {
       // In three passes, each of chains short enough for a processor to work on several rows at once.
       to = rules.runs ? load<true>(from, most, final_step, rules) : load<false>(from, most, final_step, rules);
       light_.integrate(table_, to - from);
-      if (HWY_UNLIKELY(rules.surfaces != nullptr)) light_.put_surfaces(*rules.surfaces);
+      if (HWY_UNLIKELY(rules.surfaces != nullptr)) light_.put_surfaces(*rules.surfaces, rules.runs || some_unseen());
       if (!GroupLight(state_, light_, pixel_, table_.independent).add(to - from, rules) || to < most) break;
     }
     return keep_rest(rows);
   }
 
  private:
+  /// Whether some lane has shown nothing yet.
+  HWY_INLINE bool some_unseen() const {
+    const DI d;
+    return !HN::AllFalse(d, HN::Eq(HN::Load(d, &state_.first_back[pixel_]), HN::Set(d, no_key)));
+  }
+
   HWY_INLINE VI count() const {
     return HN::LoadU(DI(), reinterpret_cast<const std::int32_t*>(windows_.counts() + pixel_));
   }

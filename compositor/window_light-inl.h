@@ -64,7 +64,8 @@ struct LightRows {
     const auto takes = HN::And(HN::RebindMask(di, is_mark), open);
     const projection::HWY_NAMESPACE::LanePacker pack(takes);
     if (pack.count() > 0) {
-      HN::StoreU(pack(HN::Iota(di, static_cast<std::int32_t>(row * HN::Lanes(d)))), di, marked_at + marked);
+      HN::StoreU(pack(HN::Add(HN::Iota(di, 0), HN::Set(di, static_cast<std::int32_t>(row * HN::Lanes(d))))), di,
+                 marked_at + marked);
       HN::StoreU(pack(scalar_from), d, mark + marked);
       marked += pack.count();
       marked_rows |= 1u << row;
@@ -73,8 +74,9 @@ struct LightRows {
     const VI number = HN::IfThenElseZero(HN::RebindMask(di, is_mark), HN::Min(number_of(scalar_from), last));
     return HN::IfThenElse(is_mark, HN::GatherIndex(d, by_number.data(), number), scalar_from);
   }
-  /// After integrate(): puts the surfaces before what is behind them.
-  HWY_NOINLINE void put_surfaces(const scene::SurfaceSet& surfaces) {
+  /// After integrate(): puts the surfaces before what is behind them. `show_first`: where lanes begin to show may still
+  /// be asked.
+  HWY_NOINLINE void put_surfaces(const scene::SurfaceSet& surfaces, bool show_first) {
     const DF d;
     const DI di;
     for (std::size_t i = 0; i < marked; i += HN::Lanes(d)) {
@@ -89,8 +91,10 @@ struct LightRows {
         return sum;
       };
       put(light.red, red), put(light.green, green), put(light.blue, blue);
+      const VF hidden = put(light.opacity, alpha);
+      if (!show_first) continue;
       // Of the optical depth is only asked whether there is some.
-      HN::ScatterIndex(put(light.opacity, alpha), d, optical_depth, at);
+      HN::ScatterIndex(hidden, d, optical_depth, at);
       HN::ScatterIndex(marks, d, scalar_front, at);
     }
     for (; marked_rows != 0; marked_rows &= marked_rows - 1) lit[__builtin_ctz(marked_rows)] = true;

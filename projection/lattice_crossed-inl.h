@@ -25,12 +25,14 @@ struct CrossedSegments {
 };
 
 /// The segments from `first` on whose scalars reach from below the last of their cell's surfaces to the first or above.
-HWY_INLINE CrossedSegments crossed_segments(const SegmentStream& stream, std::size_t first, LatticeSurfaces& surfaces) {
+HWY_NOINLINE inline CrossedSegments crossed_segments(const SegmentStream& stream, std::size_t first,
+                                                     LatticeSurfaces& surfaces) {
   const I d;
   const F df;
   std::int32_t* const crossed = surfaces.numbers(stream.size - first);
   std::size_t count = 0;
   VI cells = hn::Zero(d);
+  VI number = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(first)));
   const auto of_cell = [&](const float* numbers, VI cell) HWY_ATTR {
     if constexpr (lanes == static_cast<int>(LatticeSurfaces::most_cells))
       return hn::TableLookupLanes(hn::Load(df, numbers), hn::IndicesFromVec(df, cell));
@@ -44,10 +46,11 @@ HWY_INLINE CrossedSegments crossed_segments(const SegmentStream& stream, std::si
     const auto reaches = hn::And(hn::Ge(hn::Max(from, to), of_cell(surfaces.low, cell)),
                                  hn::Lt(hn::Min(from, to), of_cell(surfaces.high, cell)));
     const auto is = hn::And(reaches, hn::FirstN(df, stream.size - i));
-    if (hn::AllFalse(df, is)) continue;
+    // Without a branch, which would go either way.
     const LanePacker pack(hn::RebindMask(d, is));
-    hn::StoreU(pack(hn::Iota(d, static_cast<std::int32_t>(i))), d, crossed + count);
+    hn::StoreU(pack(number), d, crossed + count);
     count += pack.count();
+    number = hn::Add(number, hn::Set(d, lanes));
     cells = hn::Or(cells, hn::IfThenElseZero(hn::RebindMask(d, is), hn::Shl(hn::Set(d, 1), cell)));
   }
   alignas(64) std::int32_t of_lane[lanes];

@@ -50,7 +50,7 @@ class SurfaceCuts {
         rays_(*view.projected.iso->space, x0, y0),
         out_(out) {}
 
-  HWY_INLINE void cut(const CrossedSegments& segments) {
+  HWY_NOINLINE void cut(const CrossedSegments& segments) {
     const I d;
     for (std::size_t i = 0; i < segments.count; i += lanes) {
       const auto here = hn::FirstN(d, segments.count - i);
@@ -142,7 +142,7 @@ class SurfaceCuts {
       part.scalar = hn::IfThenElse(hn::RebindMask(df, before), mark, part.scalar);
     }
     // Lanes without a segment go behind the last.
-    const VI spare = hn::Iota(d, static_cast<std::int32_t>(out_.size));
+    const VI spare = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(out_.size)));
     const VI own = hn::IfThenElse(here, segment, spare);
     hn::ScatterIndex(part.front, d, out_.front.data(), own);
     hn::ScatterIndex(part.scalar, df, out_.scalar_front.data(), own);

@@ -28,7 +28,7 @@ struct Vectors {
 HWY_INLINE Vectors difference(const Vectors& a, const Vectors& b) {
   return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
 }
-HWY_INLINE Vectors quotient(const Vectors& a, V b) { return {hn::Div(a.x, b), hn::Div(a.y, b), hn::Div(a.z, b)}; }
+HWY_INLINE Vectors product(const Vectors& a, V b) { return {hn::Mul(a.x, b), hn::Mul(a.y, b), hn::Mul(a.z, b)}; }
 HWY_INLINE V dot(const Vectors& a, const Vectors& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
@@ -38,7 +38,7 @@ HWY_INLINE Vectors cross(const Vectors& a, const Vectors& b) {
 }
 HWY_INLINE V largest(const Vectors& v) { return hn::Max(hn::Max(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z)); }
 
-/// unit(gradient_direction()) of surface_crossings.hpp, a cell a lane.
+/// unit(gradient_direction()) of surface_crossings.hpp but for rounding, a cell a lane.
 HWY_INLINE Vectors unit_gradient(const Vectors (&corner)[4], const V (&scalar)[4]) {
   const V zero = hn::Zero(D());
   Vectors edge[3];
@@ -48,48 +48,52 @@ HWY_INLINE Vectors unit_gradient(const Vectors (&corner)[4], const V (&scalar)[4
     change[i] = hn::Sub(scalar[i + 1], scalar[0]);
     size = hn::Max(size, largest(edge[i])), most = hn::Max(most, hn::Abs(change[i]));
   }
-  const Vectors e0 = quotient(edge[0], size), e1 = quotient(edge[1], size), e2 = quotient(edge[2], size);
+  // Edges of size one: of no mesh do squares or products of them leave a double's range.
+  const V one = hn::Set(D(), 1), per_size = hn::Div(one, size), per_change = hn::Div(one, most);
+  const Vectors e0 = product(edge[0], per_size), e1 = product(edge[1], per_size), e2 = product(edge[2], per_size);
   const Vectors n0 = cross(e1, e2), n1 = cross(e2, e0), n2 = cross(e0, e1);
-  const V c0 = hn::Div(change[0], most), c1 = hn::Div(change[1], most), c2 = hn::Div(change[2], most);
+  const V c0 = hn::Mul(change[0], per_change), c1 = hn::Mul(change[1], per_change), c2 = hn::Mul(change[2], per_change);
   const auto sum = [&](V a, V b, V c)
                        HWY_ATTR { return hn::Add(hn::Add(hn::Mul(c0, a), hn::Mul(c1, b)), hn::Mul(c2, c)); };
   const Vectors direction{sum(n0.x, n1.x, n2.x), sum(n0.y, n1.y, n2.y), sum(n0.z, n1.z, n2.z)};
-  const V reach = largest(direction);
-  const Vectors of_size_one = quotient(direction, reach);
-  const Vectors unit = quotient(of_size_one, hn::Sqrt(dot(of_size_one, of_size_one)));
-  // Of a cell of no size, of one scalar, or flat, divisions by zero gave no numbers.
-  const auto is = hn::And(hn::Gt(reach, zero), hn::And(hn::Gt(size, zero), hn::Gt(most, zero)));
+  const V square = dot(direction, direction);
+  const Vectors unit = product(direction, hn::Div(one, hn::Sqrt(square)));
+  // Of a cell of no size, of one scalar, or flat, divisions gave no numbers.
+  const V least = hn::Set(D(), 1e-300);
+  const auto is = hn::And(hn::Gt(square, zero), hn::And(hn::Gt(size, least), hn::Gt(most, least)));
   return {hn::IfThenElseZero(is, unit.x), hn::IfThenElseZero(is, unit.y), hn::IfThenElseZero(is, unit.z)};
 }
 
 /// Normals and cosines of some of a batch's cells, a bit each. To be called once find_surfaces()'s prefetches have had
 /// their time.
-HWY_INLINE void find_normals(const LatticeView& view, const CellBatch& batch, unsigned cells,
-                             LatticeSurfaces& surfaces) {
+HWY_NOINLINE inline void find_normals(const LatticeView& view, const CellBatch& batch, unsigned cells,
+                                      LatticeSurfaces& surfaces) {
   const D d;
+  const hn::RebindToSigned<D> di;
   constexpr std::size_t most = hn::MaxLanes(D());
   const PreparedMesh& prepared = *view.projected.mesh;
   const scene::TetMeshView& mesh = prepared.mesh();
+  const double* const positions = &mesh.positions.front().x;
+  static_assert(sizeof(glm::dvec3) == 3 * sizeof(double));
   const glm::dvec3 towards = view.perspective ? glm::dvec3(0) : view.projected.iso->space->direction(0, 0);
   const Vectors ray{hn::Set(d, towards.x), hn::Set(d, towards.y), hn::Set(d, towards.z)};
   while (cells != 0) {
-    // Position and scalar of the corners, by lane.
-    alignas(64) double numbers[4][4][most] = {};
+    // Lanes beyond the last read vertex 0.
+    alignas(64) std::int64_t vertices[4][most] = {};
     std::size_t of_lane[most], count = 0;
     for (; cells != 0 && count < most; cells &= cells - 1, ++count) {
       of_lane[count] = static_cast<std::size_t>(__builtin_ctz(cells));
       const scene::Tet& corners = prepared.tets()[batch.tet[of_lane[count]]];
-      for (std::size_t i = 0; i < 4; ++i) {
-        const glm::dvec3& p = mesh.positions[corners[i]];
-        numbers[i][0][count] = p.x, numbers[i][1][count] = p.y, numbers[i][2][count] = p.z;
-        numbers[i][3][count] = mesh.scalars[corners[i]];
-      }
+      for (std::size_t i = 0; i < 4; ++i) vertices[i][count] = corners[i];
     }
     Vectors corner[4];
     V scalar[4];
     for (std::size_t i = 0; i < 4; ++i) {
-      corner[i] = {hn::Load(d, numbers[i][0]), hn::Load(d, numbers[i][1]), hn::Load(d, numbers[i][2])};
-      scalar[i] = hn::Load(d, numbers[i][3]);
+      const auto vertex = hn::Load(di, vertices[i]);
+      const auto first = hn::Add(hn::Add(vertex, vertex), vertex);
+      corner[i] = {hn::GatherIndex(d, positions, first), hn::GatherIndex(d, positions + 1, first),
+                   hn::GatherIndex(d, positions + 2, first)};
+      scalar[i] = hn::GatherIndex(d, mesh.scalars.data(), vertex);
     }
     const Vectors normal = unit_gradient(corner, scalar);
     const auto is = hn::Gt(largest(normal), hn::Zero(d));
@@ -114,7 +118,7 @@ HWY_INLINE void prefetch_corners(const LatticeView& view, const CellBatch& batch
 }
 
 /// Which of a batch's cells have surfaces, a bit each; irregular ones are taken to have none.
-HWY_INLINE unsigned find_surfaces(const LatticeView& view, const CellBatch& batch, LatticeSurfaces& surfaces) {
+HWY_NOINLINE inline unsigned find_surfaces(const LatticeView& view, const CellBatch& batch, LatticeSurfaces& surfaces) {
   // Rounding may move a scalar over a value: a float's last place (64 steps at most), the value's own, and a gradient's
   // over the square.
   constexpr float margin = 256;
