@@ -47,6 +47,7 @@ class SurfaceCuts {
       : perspective_(view.perspective),
         set_(*view.projected.iso->surfaces),
         cells_(surfaces),
+        numbers_a_place_(static_cast<std::int32_t>(2 * set_.iso_values().size() + set_.faces())),
         rays_(*view.projected.iso->space, x0, y0),
         out_(out) {}
 
@@ -62,13 +63,15 @@ class SurfaceCuts {
  private:
   using MI = hn::Mask<I>;
 
-  /// Directions of the square's rays: at its first pixel, and from one to the next.
+  /// Perspective: directions of the square's rays, at its first pixel, and from one to the next.
   struct Rays {
-    glm::dvec3 corner, right, down;
-    Rays(const PixelSpace& space, int x0, int y0)
-        : corner(space.direction(x0 + 0.5, y0 + 0.5)),
-          right(space.direction(x0 + 1.5, y0 + 0.5) - corner),
-          down(space.direction(x0 + 0.5, y0 + 1.5) - corner) {}
+    glm::dvec3 corner{}, right{}, down{};
+    Rays(const PixelSpace& space, int x0, int y0) {
+      if (!space.perspective()) return;
+      corner = space.direction(x0 + 0.5, y0 + 0.5);
+      right = space.direction(x0 + 1.5, y0 + 0.5) - corner;
+      down = space.direction(x0 + 0.5, y0 + 1.5) - corner;
+    }
   };
 
   /// A part of the segments in the making: where it begins, and with which scalar or mark.
@@ -77,8 +80,9 @@ class SurfaceCuts {
     VF scalar;
   };
 
-  static HWY_INLINE VI number_of_cell(const std::int32_t* numbers, VI cell) {
-    const I d;
+  template <class T>
+  static HWY_INLINE hn::Vec<hn::ScalableTag<T>> number_of_cell(const T* numbers, VI cell) {
+    const hn::ScalableTag<T> d;
     if constexpr (lanes == static_cast<int>(LatticeSurfaces::most_cells))
       return hn::TableLookupLanes(hn::Load(d, numbers), hn::IndicesFromVec(d, cell));
     else
@@ -116,7 +120,7 @@ class SurfaceCuts {
       const VI passed = hn::IfThenElse(rises, kth, hn::Sub(hn::Sub(count, hn::Set(d, 1)), kth));
       const MI has = hn::Lt(kth, count);
       const VI surface = hn::IfThenElseZero(has, hn::Add(first, passed));
-      const VF value = hn::GatherIndex(df, set_.on_lattice().data(), surface);
+      const VF value = k == 0 ? first_values(rises, cell) : hn::GatherIndex(df, set_.on_lattice().data(), surface);
       const MI crossed = hn::And(has, hn::RebindMask(d, hn::Xor(hn::Ge(from, value), hn::Ge(to, value))));
       if (hn::AllFalse(d, crossed)) continue;
       const auto depth_at = [](V v, V f, V s, V l, V z) HWY_ATTR {
@@ -149,7 +153,14 @@ class SurfaceCuts {
   }
 
   using Place = scene::SurfaceSet::Place;
-  static HWY_INLINE VI place(Place p) { return hn::Set(I(), static_cast<std::int32_t>(p)); }
+  /// The lowest number of a crossing there.
+  HWY_INLINE VI place(Place p) const { return hn::Set(I(), static_cast<std::int32_t>(p) * numbers_a_place_); }
+
+  /// The surfaces that the cells' segments may cross first.
+  HWY_INLINE VF first_values(MI rises, VI cell) const {
+    return hn::IfThenElse(hn::RebindMask(F(), rises), number_of_cell(cells_.low, cell),
+                          number_of_cell(cells_.high, cell));
+  }
 
   /// Whole numbers of 31 bits.
   static HWY_INLINE VI in_steps(Doubles v) {
@@ -161,10 +172,8 @@ class SurfaceCuts {
   HWY_INLINE VF mark_of(VI surface, MI rises, VI at, VI cosine) const {
     const I d;
     const auto n = static_cast<std::int32_t>(set_.iso_values().size());
-    const auto places = static_cast<std::int32_t>(2 * set_.iso_values().size() + set_.faces());
     const VI within = hn::IfThenElse(rises, surface, hn::Sub(hn::Set(d, 2 * n - 1), surface));
-    const VI number = hn::Add(hn::Mul(at, hn::Set(d, places)), within);
-    const VI bits = hn::Or(hn::ShiftLeft<LatticeMark::cosine_bits>(number), cosine);
+    const VI bits = hn::Or(hn::ShiftLeft<LatticeMark::cosine_bits>(hn::Add(at, within)), cosine);
     return hn::BitCast(F(), hn::Add(bits, hn::Set(d, static_cast<std::int32_t>(LatticeMark::first_bits))));
   }
 
@@ -172,8 +181,8 @@ class SurfaceCuts {
   HWY_INLINE VI cosine_code(VI hit, VI cell) const {
     const I d;
     const F df;
-    const VF cosine = perspective_ ? cosine_of_rays(hit, cell) : of_cells(cells_.cosine, cell);
-    const VF codes = hn::Mul(cosine, hn::Set(df, static_cast<float>(LatticeMark::cosines)));
+    if (!perspective_) return number_of_cell(cells_.cosine_code, cell);
+    const VF codes = hn::Mul(cosine_of_rays(hit, cell), hn::Set(df, static_cast<float>(LatticeMark::cosines)));
     return hn::ConvertTo(d, hn::Add(codes, hn::Set(df, 0.5f)));
   }
 
@@ -181,7 +190,6 @@ class SurfaceCuts {
     const hn::Half<F> half;
     return hn::Combine(F(), hn::DemoteTo(half, v.high), hn::DemoteTo(half, v.low));
   }
-  static HWY_INLINE VF of_cells(const double* numbers, VI cell) { return in_float(doubles_of_cells(numbers, cell)); }
   static HWY_INLINE Doubles doubles_of_cells(const double* numbers, VI cell) {
     const D d;
     const hn::RebindToSigned<D> di;
@@ -209,12 +217,13 @@ class SurfaceCuts {
     };
     return in_float(in_halves(between, x, y, z, doubles_of_cells(cells_.normal[0], cell),
                               doubles_of_cells(cells_.normal[1], cell), doubles_of_cells(cells_.normal[2], cell),
-                              doubles_of_cells(cells_.cosine, cell)));
+                              doubles_of_cells(cells_.least_cosine, cell)));
   }
 
   bool perspective_;
   const scene::SurfaceSet& set_;
   const LatticeSurfaces& cells_;
+  std::int32_t numbers_a_place_;
   Rays rays_;
   SegmentStream& out_;
 };

@@ -96,14 +96,18 @@ HWY_NOINLINE inline void find_normals(const LatticeView& view, const CellBatch& 
       scalar[i] = hn::GatherIndex(d, mesh.scalars.data(), vertex);
     }
     const Vectors normal = unit_gradient(corner, scalar);
-    const auto is = hn::Gt(largest(normal), hn::Zero(d));
-    const V one = hn::Set(d, 1), along = view.perspective ? hn::Zero(d) : hn::Min(hn::Abs(dot(ray, normal)), one);
-    alignas(64) double found[4][most];
+    const V one = hn::Set(d, 1), zero = hn::Zero(d);
+    const V least = hn::IfThenElse(hn::Gt(largest(normal), zero), zero, one);
+    alignas(64) double found[5][most];
     hn::Store(normal.x, d, found[0]), hn::Store(normal.y, d, found[1]), hn::Store(normal.z, d, found[2]);
-    hn::Store(hn::IfThenElse(is, along, one), d, found[3]);
+    hn::Store(least, d, found[3]);
+    hn::Store(hn::Min(hn::Max(hn::Abs(dot(ray, normal)), least), one), d, found[4]);
     for (std::size_t lane = 0; lane < count; ++lane) {
-      for (std::size_t axis = 0; axis < 3; ++axis) surfaces.normal[axis][of_lane[lane]] = found[axis][lane];
-      surfaces.cosine[of_lane[lane]] = found[3][lane];
+      const std::size_t t = of_lane[lane];
+      for (std::size_t axis = 0; axis < 3; ++axis) surfaces.normal[axis][t] = found[axis][lane];
+      surfaces.least_cosine[t] = found[3][lane];
+      const auto cosine = static_cast<float>(found[4][lane]);
+      surfaces.cosine_code[t] = static_cast<std::int32_t>(LatticeMark::cosine_code(cosine));
     }
   }
 }

@@ -21,10 +21,11 @@ struct LatticeSurfaces {
   /// Between which values on the lattice a cell's surfaces are; a cell without has none that a segment could reach.
   alignas(64) float low[most_cells], high[most_cells];
   alignas(64) std::int32_t first[most_cells], count[most_cells];  ///< those surfaces, of SurfaceSet::on_lattice()
-  /// Of the field, unit; zero: none. Of cells with crossed segments alone, as is the cosine.
-  alignas(64) double normal[3][most_cells];
-  /// Orthographic: between all rays and the normal; perspective: 1 where there is no normal, else 0.
-  alignas(64) double cosine[most_cells];
+  // Of cells with crossed segments alone.
+  alignas(64) double normal[3][most_cells];     ///< the field's, unit; zero: none
+  alignas(64) double least_cosine[most_cells];  ///< 1 where there is no normal, else 0
+  /// Orthographic: LatticeMark::cosine_code() of all rays and the normal.
+  alignas(64) std::int32_t cosine_code[most_cells];
 
   /// Room for the numbers of `segments` segments and the padding.
   std::int32_t* numbers(std::size_t segments) {
