@@ -83,7 +83,7 @@ class PixelGroup {
 
   /// Loads the segments of the rows [from, to) before `final_step`, in pixels that are open; of runs it notes where
   /// they end. Returns where it ended: behind the last row with a final segment.
-  template <bool runs>
+  template <bool runs, bool with_surfaces>
   HWY_INLINE std::size_t load(std::size_t from, std::size_t to, std::int32_t final_step,
                               const scene::SurfaceSet* surfaces) {
     const DI d;
@@ -106,8 +106,9 @@ class PixelGroup {
       }
       done_ = count_if(HN::RebindMask(df, is_final), done_);
       VF scalar_front = s.scalar_front;
-      if (HWY_UNLIKELY(surfaces != nullptr))
-        scalar_front = light_.set_aside_surfaces(surfaces->on_lattice_by_number(), is_final, scalar_front, row - from);
+      if constexpr (with_surfaces)
+        scalar_front =
+            light_.set_aside_surfaces(surfaces->on_lattice_by_number(), is_final, open, scalar_front, row - from);
       const VF length = HN::Mul(HN::ConvertTo(df, HN::Sub(s.back, front)), length_per_step);
       const auto takes = HN::And(is_final, open);
       light_.put_segment(HN::IfThenElseZero(HN::RebindMask(df, takes), length), HN::IfThenElse(takes, front, none),
@@ -128,22 +129,33 @@ class PixelGroup {
     return to;
   }
 
+  template <bool runs>
+  HWY_INLINE std::size_t load(std::size_t from, std::size_t to, std::int32_t final_step, const WindowRules& rules) {
+    return rules.surfaces != nullptr ? load<runs, true>(from, to, final_step, rules.surfaces)
+                                     : load<runs, false>(from, to, final_step, nullptr);
+  }
+
   /// Composites what lies before `final_step`; returns how many segments are done with.
   HWY_INLINE std::uint64_t composite(std::size_t rows, std::int32_t final_step, const WindowRules& rules) {
     done_ = HN::Zero(DI());
     for (std::size_t from = 0, to; from < rows; from = to) {
       const std::size_t most = std::min(rows, from + LightRows::most);
       // In three passes, each of chains short enough for a processor to work on several rows at once.
-      to = rules.runs ? load<true>(from, most, final_step, rules.surfaces)
-                      : load<false>(from, most, final_step, rules.surfaces);
+      to = rules.runs ? load<true>(from, most, final_step, rules) : load<false>(from, most, final_step, rules);
       light_.integrate(table_, to - from);
-      if (HWY_UNLIKELY(rules.surfaces != nullptr)) light_.put_surfaces(*rules.surfaces);
+      if (HWY_UNLIKELY(rules.surfaces != nullptr)) light_.put_surfaces(*rules.surfaces, rules.runs || some_unseen());
       if (!GroupLight(state_, light_, pixel_, table_.independent).add(to - from, rules) || to < most) break;
     }
     return keep_rest(rows);
   }
 
  private:
+  /// Whether some lane has shown nothing yet.
+  HWY_INLINE bool some_unseen() const {
+    const DI d;
+    return !HN::AllFalse(d, HN::Eq(HN::Load(d, &state_.first_back[pixel_]), HN::Set(d, no_key)));
+  }
+
   HWY_INLINE VI count() const {
     return HN::LoadU(DI(), reinterpret_cast<const std::int32_t*>(windows_.counts() + pixel_));
   }

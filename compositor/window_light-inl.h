@@ -13,45 +13,17 @@
 #include <algorithm>
 #include <span>
 
+#include "compositor/surface_lights-inl.h"
 #include "compositor/window_kernel.hpp"
-#include "integrals/integrate_lanes-inl.h"
 #include "projection/pack_lanes-inl.h"
-#include "projection/surface_crossings.hpp"
 
 HWY_BEFORE_NAMESPACE();
 #if HWY_TARGET != HWY_SCALAR
 namespace tessera::compositor {
 namespace HWY_NAMESPACE {
 
-using namespace integrals::HWY_NAMESPACE;  // vectors, and the integral of a segment a lane
-using DD = HN::ScalableTag<double>;
-using VD = HN::Vec<DD>;
-using HalfF = HN::Half<DF>;
 constexpr std::int32_t no_key = WindowState::not_yet;  // behind all keys
-constexpr std::size_t most_lanes = HN::MaxLanes(DI());
 
-/// Lane values in double: two vectors.
-struct Doubles {
-  VD low, high;
-};
-HWY_INLINE Doubles load(const double* from) {
-  const DD d;
-  return {HN::Load(d, from), HN::Load(d, from + HN::Lanes(d))};
-}
-HWY_INLINE void store(Doubles v, double* to) {
-  const DD d;
-  HN::Store(v.low, d, to);
-  HN::Store(v.high, d, to + HN::Lanes(d));
-}
-HWY_INLINE Doubles load(const float* from) {
-  const DD d;
-  const HalfF half;
-  return {HN::PromoteTo(d, HN::Load(half, from)), HN::PromoteTo(d, HN::Load(half, from + HN::Lanes(half)))};
-}
-HWY_INLINE VF demote(Doubles v) {
-  const HalfF half;
-  return HN::Combine(DF(), HN::DemoteTo(half, v.high), HN::DemoteTo(half, v.low));
-}
 /// -1 where the mask is set, else 0.
 HWY_INLINE VI lanes_of(HN::Mask<DD> low, HN::Mask<DD> high) {
   const VD yes = HN::Set(DD(), -1);
@@ -73,46 +45,60 @@ struct LightRows {
   // Runs: where each lane's ends behind the rows (no_key: in none), and whether none ends between them.
   alignas(64) std::int32_t run_back[most_lanes];
   bool touching;
-  // Segments that begin at a surface: their marks while they are integrated (0: no surface), and the rows that have
+  // Segments that begin at a surface: where they are and their marks while they are integrated, and the rows that have
   // some, a bit each.
-  alignas(64) float mark[numbers];
+  alignas(64) std::int32_t marked_at[numbers + most_lanes];
+  alignas(64) float mark[numbers + most_lanes];
+  std::size_t marked = 0;
   std::uint32_t marked_rows = 0;
 
-  /// Of a row. Returns its front scalars, with the surfaces' values where they are marks.
-  HWY_INLINE VF set_aside_surfaces(std::span<const float> by_number, HN::Mask<DI> is_final, VF scalar_from,
-                                   std::size_t row) {
+  /// Of a row, whose lanes that are final and open take a segment. Returns its front scalars, with the surfaces' values
+  /// where they are marks.
+  HWY_INLINE VF set_aside_surfaces(std::span<const float> by_number, HN::Mask<DI> is_final, HN::Mask<DI> open,
+                                   VF scalar_from, std::size_t row) {
     using Mark = projection::LatticeMark;
     const DF d;
     const DI di;
-    const MF marked = HN::And(HN::RebindMask(d, is_final), HN::Ge(scalar_from, HN::Set(d, Mark::first)));
-    if (HN::AllFalse(d, marked)) return scalar_from;
-    HN::Store(HN::IfThenElseZero(marked, scalar_from), d, mark + row * HN::Lanes(d));
-    marked_rows |= 1u << row;
-    const VI code = HN::Sub(HN::BitCast(di, scalar_from), HN::Set(di, static_cast<std::int32_t>(Mark::first_bits)));
-    const VI last = HN::Set(di, static_cast<std::int32_t>(by_number.size()) - 1);
-    const VI number =
-        HN::IfThenElseZero(HN::RebindMask(di, marked), HN::Min(HN::ShiftRight<Mark::cosine_bits>(code), last));
-    return HN::IfThenElse(marked, HN::GatherIndex(d, by_number.data(), number), scalar_from);
-  }
-  /// After integrate(): puts the surfaces before what is behind them.
-  HWY_NOINLINE void put_surfaces(const scene::SurfaceSet& surfaces) {
-    const std::size_t lanes = HN::Lanes(DF());
-    for (; marked_rows != 0; marked_rows &= marked_rows - 1) {
-      const auto row = static_cast<std::size_t>(__builtin_ctz(marked_rows));
-      for (std::size_t at = row * lanes; at < (row + 1) * lanes; ++at) {
-        if (mark[at] == 0 || front[at] == no_key) continue;
-        scalar_front[at] = mark[at];
-        const projection::Crossing crossing = projection::crossing_of(mark[at]);
-        const scene::SurfaceSet::Light light = surfaces.light(crossing.number, crossing.cosine);
-        const double through = 1 - light.opacity;
-        red[at] = static_cast<float>(light.red + through * red[at]);
-        green[at] = static_cast<float>(light.green + through * green[at]);
-        blue[at] = static_cast<float>(light.blue + through * blue[at]);
-        alpha[at] = static_cast<float>(light.opacity + through * alpha[at]);
-        optical_depth[at] = alpha[at];  // of which only is asked whether there is some
-        lit[row] = true;
-      }
+    const MF is_mark = HN::And(HN::RebindMask(d, is_final), HN::Ge(scalar_from, HN::Set(d, Mark::first)));
+    if (HN::AllFalse(d, is_mark)) return scalar_from;
+    const auto takes = HN::And(HN::RebindMask(di, is_mark), open);
+    const projection::HWY_NAMESPACE::LanePacker pack(takes);
+    if (pack.count() > 0) {
+      HN::StoreU(pack(HN::Add(HN::Iota(di, 0), HN::Set(di, static_cast<std::int32_t>(row * HN::Lanes(d))))), di,
+                 marked_at + marked);
+      HN::StoreU(pack(scalar_from), d, mark + marked);
+      marked += pack.count();
+      marked_rows |= 1u << row;
     }
+    const VI last = HN::Set(di, static_cast<std::int32_t>(by_number.size()) - 1);
+    const VI number = HN::IfThenElseZero(HN::RebindMask(di, is_mark), HN::Min(number_of(scalar_from), last));
+    return HN::IfThenElse(is_mark, HN::GatherIndex(d, by_number.data(), number), scalar_from);
+  }
+  /// After integrate(): puts the surfaces before what is behind them. `show_first`: where lanes begin to show may still
+  /// be asked.
+  HWY_NOINLINE void put_surfaces(const scene::SurfaceSet& surfaces, bool show_first) {
+    const DF d;
+    const DI di;
+    for (std::size_t i = 0; i < marked; i += HN::Lanes(d)) {
+      // Lanes beyond the last do as the first does.
+      const auto here = HN::FirstN(d, marked - i);
+      const VI at = HN::IfThenElse(HN::RebindMask(di, here), HN::Load(di, marked_at + i), HN::Set(di, marked_at[i]));
+      const VF marks = HN::IfThenElse(here, HN::Load(d, mark + i), HN::Set(d, mark[i]));
+      const SurfaceLights light(surfaces, marks);
+      const auto put = [&](const Doubles& of_surface, float* to) HWY_ATTR {
+        const VF sum = demote(light.before(of_surface, promote(HN::GatherIndex(d, to, at))));
+        HN::ScatterIndex(sum, d, to, at);
+        return sum;
+      };
+      put(light.red, red), put(light.green, green), put(light.blue, blue);
+      const VF hidden = put(light.opacity, alpha);
+      if (!show_first) continue;
+      // Of the optical depth is only asked whether there is some.
+      HN::ScatterIndex(hidden, d, optical_depth, at);
+      HN::ScatterIndex(marks, d, scalar_front, at);
+    }
+    for (; marked_rows != 0; marked_rows &= marked_rows - 1) lit[__builtin_ctz(marked_rows)] = true;
+    marked = 0;
   }
 
   HWY_INLINE void put_segment(VF l, VI from, VI to, VF scalar_from, VF scalar_to, VI scalar_interval, std::size_t at) {

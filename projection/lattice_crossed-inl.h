@@ -17,13 +17,22 @@ HWY_BEFORE_NAMESPACE();
 namespace tessera::projection {
 namespace HWY_NAMESPACE {
 
+/// Numbers of segments, as many as `count` says and then any for a vector of lanes, and their cells, a bit each.
+struct CrossedSegments {
+  const std::int32_t* numbers;
+  std::size_t count;
+  unsigned cells;
+};
+
 /// The segments from `first` on whose scalars reach from below the last of their cell's surfaces to the first or above.
-/// Their numbers go to `crossed`, which has room for all and a vector more; returns how many they are.
-HWY_INLINE std::size_t crossed_segments(const SegmentStream& stream, std::size_t first,
-                                        const LatticeSurfaces::Limits& limits, std::uint32_t* crossed) {
+HWY_NOINLINE inline CrossedSegments crossed_segments(const SegmentStream& stream, std::size_t first,
+                                                     LatticeSurfaces& surfaces) {
   const I d;
   const F df;
+  std::int32_t* const crossed = surfaces.numbers(stream.size - first);
   std::size_t count = 0;
+  VI cells = hn::Zero(d);
+  VI number = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(first)));
   const auto of_cell = [&](const float* numbers, VI cell) HWY_ATTR {
     if constexpr (lanes == static_cast<int>(LatticeSurfaces::most_cells))
       return hn::TableLookupLanes(hn::Load(df, numbers), hn::IndicesFromVec(df, cell));
@@ -34,15 +43,21 @@ HWY_INLINE std::size_t crossed_segments(const SegmentStream& stream, std::size_t
     const VI cell = hn::And(hn::LoadU(d, stream.hit.data() + i),
                             hn::Set(d, static_cast<std::int32_t>(LatticeSurfaces::most_cells) - 1));
     const VF from = hn::LoadU(df, stream.scalar_front.data() + i), to = hn::LoadU(df, stream.scalar_back.data() + i);
-    const auto reaches = hn::And(hn::Ge(hn::Max(from, to), of_cell(limits.low, cell)),
-                                 hn::Lt(hn::Min(from, to), of_cell(limits.high, cell)));
+    const auto reaches = hn::And(hn::Ge(hn::Max(from, to), of_cell(surfaces.low, cell)),
+                                 hn::Lt(hn::Min(from, to), of_cell(surfaces.high, cell)));
     const auto is = hn::And(reaches, hn::FirstN(df, stream.size - i));
-    if (hn::AllFalse(df, is)) continue;
+    // Without a branch, which would go either way.
     const LanePacker pack(hn::RebindMask(d, is));
-    hn::StoreU(pack(hn::Iota(d, static_cast<std::int32_t>(i))), d, reinterpret_cast<std::int32_t*>(crossed) + count);
+    hn::StoreU(pack(number), d, crossed + count);
     count += pack.count();
+    number = hn::Add(number, hn::Set(d, lanes));
+    cells = hn::Or(cells, hn::IfThenElseZero(hn::RebindMask(d, is), hn::Shl(hn::Set(d, 1), cell)));
   }
-  return count;
+  alignas(64) std::int32_t of_lane[lanes];
+  hn::Store(cells, d, of_lane);
+  unsigned all = 0;
+  for (const std::int32_t bits : of_lane) all |= static_cast<unsigned>(bits);
+  return {crossed, count, all};
 }
 
 }  // namespace HWY_NAMESPACE

@@ -9,7 +9,8 @@
 
 #include "projection/lattice_cover-inl.h"
 #include "projection/lattice_cross-inl.h"
-#include "projection/lattice_crossed-inl.h"
+#include "projection/lattice_cut-inl.h"
+#include "projection/lattice_normals-inl.h"
 #include "projection/lattice_surfaces.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -117,7 +118,7 @@ void rasterize(const LatticeView& view, std::span<const TileEntry> entries, std:
       set_up_cells<false>(view, cells, rect, batch);
     for (unsigned irregular = batch.irregular; irregular != 0; irregular &= irregular - 1)
       rasterize_irregular(view, cells[static_cast<std::size_t>(__builtin_ctz(irregular))], rect, scratch, out, counts);
-    const std::uint32_t crossed = view.projected.iso != nullptr ? surfaces.find(view, cells, batch.irregular) : 0;
+    const unsigned crossed = view.projected.iso != nullptr ? find_surfaces(view, batch, surfaces) : 0;
     const std::size_t first = out.size;
     out.keeps_hits = crossed != 0;
     out.reserve(out.size + cells.size() * static_cast<std::size_t>(rect.area()));
@@ -128,9 +129,10 @@ void rasterize(const LatticeView& view, std::span<const TileEntry> entries, std:
       per_cell ? rasterize_cells<false, true>(view, batch, rect, square, open, cover_scratch, out, counts)
                : rasterize_cells<false, false>(view, batch, rect, square, open, cover_scratch, out, counts);
     if (crossed == 0) continue;
-    std::uint32_t* const numbers = surfaces.numbers(out.size - first);
-    surfaces.cross(view, {numbers, crossed_segments(out, first, surfaces.limits(), numbers)}, square.x0, square.y0,
-                   out);
+    const CrossedSegments segments = crossed_segments(out, first, surfaces);
+    if (segments.count == 0) continue;
+    find_normals(view, batch, segments.cells, surfaces);
+    SurfaceCuts(view, surfaces, square.x0, square.y0, out).cut(segments);
   }
 }
 #endif  // HWY_SCALAR

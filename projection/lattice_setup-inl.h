@@ -57,6 +57,7 @@ struct CellBatch {
   alignas(64) std::int32_t depth_c[4][most];
   alignas(64) float scalar_c[4][most];
   alignas(64) float cell_scalar[most];
+  alignas(64) float scalar_low[most], scalar_high[most];  ///< of a cell's corners; where there are surfaces alone
 
   /// Bit f: a front face. Of an irregular cell it says nothing.
   [[nodiscard]] unsigned front_faces(int t) const { return bits[t] & 15; }
@@ -330,6 +331,14 @@ HWY_INLINE void set_up_planes(const Corners& corners, const FaceShape (&shape)[4
   }
 }
 
+/// Stores the lowest and the highest of the corners' scalars.
+HWY_INLINE void store_scalar_range(const Corners& corners, int from, CellBatch& batch) {
+  const hn::Rebind<float, D> df;
+  const V(&s)[4] = corners.s;
+  hn::StoreU(hn::DemoteTo(df, hn::Min(hn::Min(s[0], s[1]), hn::Min(s[2], s[3]))), df, batch.scalar_low + from);
+  hn::StoreU(hn::DemoteTo(df, hn::Max(hn::Max(s[0], s[1]), hn::Max(s[2], s[3]))), df, batch.scalar_high + from);
+}
+
 /// One vector of cells: the first of them is cell `from` of the batch. `cell_scalar` is read of cell data only.
 template <bool perspective>
 HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds, const scene::Tet* const* tets,
@@ -392,6 +401,7 @@ HWY_INLINE void set_up_lanes(const LatticeView& view, const DepthBounds& bounds,
     hn::StoreU(hn::DemoteTo(df, hn::Round(scalar)), df, batch.cell_scalar + from);
   }
 
+  if (HWY_UNLIKELY(view.projected.iso != nullptr)) store_scalar_range(corners, from, batch);
   batch.irregular |= bits_of(irregular) << from;
 }
 

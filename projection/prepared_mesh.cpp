@@ -81,9 +81,9 @@ PreparedMesh::PreparedMesh(const scene::TetMeshView& mesh) : mesh_(mesh), tets_(
 std::array<double, 2> PreparedMesh::scalar_bounds(std::size_t tet) const {
   if (mesh_.association == scene::Association::cell) return {mesh_.scalars[tet], mesh_.scalars[tet]};
   const scene::Tet& t = mesh_.tets[tet];
-  const auto [low, high] =
-      std::minmax({mesh_.scalars[t[0]], mesh_.scalars[t[1]], mesh_.scalars[t[2]], mesh_.scalars[t[3]]});
-  return {low, high};
+  const double a = mesh_.scalars[t[0]], b = mesh_.scalars[t[1]], c = mesh_.scalars[t[2]], d = mesh_.scalars[t[3]];
+  // std::minmax of a list branches, either way.
+  return {std::min(std::min(a, b), std::min(c, d)), std::max(std::max(a, b), std::max(c, d))};
 }
 
 }  // namespace tessera::projection

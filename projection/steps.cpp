@@ -42,9 +42,12 @@ class Rule {
   }
 
   /// The number of pieces that the cell may have in a pixel; 0 if lattice or double precision do as they are.
-  [[nodiscard]] std::size_t pieces(std::size_t tet) const {
+  /// `passed`: how many steps lay below the last cell that was asked for, as mostly do below the next one in the file;
+  /// any number at first.
+  [[nodiscard]] std::size_t pieces(std::size_t tet, std::size_t& passed) const {
     const auto [low, high] = prepared_.scalar_bounds(tet);
-    for (std::size_t i = steps_passed(steps_, low - most_error_); i < steps_.size(); ++i) {
+    if (!passed_alone(passed, low - most_error_)) passed = steps_passed(steps_, low - most_error_);
+    for (std::size_t i = passed; i < steps_.size(); ++i) {
       if (steps_[i].value > high + most_error_) break;
       if (steps_[i].surface) {
         if (lattice_ == nullptr ? low < steps_[i].value && steps_[i].value <= high : passes_corner(steps_[i], tet))
@@ -65,6 +68,11 @@ class Rule {
   }
 
  private:
+  /// Whether the first `count` steps are at or below `value`, and no others.
+  [[nodiscard]] bool passed_alone(std::size_t count, double value) const {
+    return (count == 0 || steps_[count - 1].value <= value) && (count == steps_.size() || steps_[count].value > value);
+  }
+
   /// Of a cell with these scalars, crossings of surfaces included.
   [[nodiscard]] std::size_t most_pieces(double low, double high) const {
     return 1 + 2 * (steps_passed(steps_, high) - steps_passed(steps_, low));
@@ -98,17 +106,20 @@ class Rule {
   [[nodiscard]] bool passes_corner(const Step& step, std::size_t tet) const {
     const scene::Tet& corners = prepared_.tets()[tet];
     const double error = lattice_error(step);
-    for (const std::uint32_t v : corners)
-      if (std::abs(mesh_.scalars[v] - step.value) <= error) return true;
-    for (std::size_t opposite = 0; opposite < 4; ++opposite) {
-      double low = infinity, high = -infinity;
-      for (std::size_t i = 0; i < 4; ++i) {
-        if (i == opposite) continue;
-        low = std::min(low, mesh_.scalars[corners[i]]), high = std::max(high, mesh_.scalars[corners[i]]);
-      }
-      if (step.value >= low - error && step.value <= high + error && high - low <= most_slope * error) return true;
-    }
-    return false;
+    std::array<double, 4> s;
+    for (std::size_t i = 0; i < 4; ++i) s[i] = mesh_.scalars[corners[i]];
+    for (const double scalar : s)
+      if (std::abs(scalar - step.value) <= error) return true;
+    // A face lacks one corner: it goes from the lowest or to the highest of all four.
+    const auto order = [&](std::size_t i, std::size_t j) {
+      const double low = std::min(s[i], s[j]), high = std::max(s[i], s[j]);
+      s[i] = low, s[j] = high;
+    };
+    order(0, 1), order(2, 3), order(0, 2), order(1, 3), order(1, 2);
+    const auto coincides = [&](double low, double high) {
+      return high - low <= most_slope * error && step.value >= low - error && step.value <= high + error;
+    };
+    return coincides(s[0], s[2]) || coincides(s[1], s[3]) || coincides(s[0], s[3]);
   }
 
   [[nodiscard]] bool inexact(const Step& step, double low, double high, std::size_t tet) const {
@@ -174,10 +185,11 @@ CellsAtSteps::CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> s
       tbb::blocked_range<std::size_t>(0, bits_.size(), 64), Most{},
       [&](const auto& words, Most so_far) {
         scene::throw_if_stopped(stop);
+        std::size_t passed = 0;
         for (std::size_t word = words.begin(); word < words.end(); ++word) {
           if (rule.spares(word)) continue;
           for (std::size_t tet = 64 * word; tet < std::min(count, 64 * word + 64); ++tet) {
-            const std::size_t pieces = rule.pieces(tet);
+            const std::size_t pieces = rule.pieces(tet, passed);
             if (pieces == 0) continue;
             bits_[word] |= std::uint64_t{1} << tet % 64;
             so_far.pieces = std::max(so_far.pieces, pieces);

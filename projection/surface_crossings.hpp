@@ -45,9 +45,11 @@ struct LatticeMark {
   static constexpr std::uint32_t first_bits = 0x4f800000, cosine_bits = 19, cosines = (1u << cosine_bits) - 1;
   static_assert(std::bit_cast<std::uint32_t>(first) == first_bits);
 
+  static std::uint32_t cosine_code(float cosine) {
+    return static_cast<std::uint32_t>(std::floor(cosine * cosines + 0.5f));
+  }
   static float of(const Crossing& crossing) {
-    const auto cosine = static_cast<std::uint32_t>(std::floor(crossing.cosine * cosines + 0.5f));
-    return std::bit_cast<float>(first_bits + (crossing.number << cosine_bits | cosine));
+    return std::bit_cast<float>(first_bits + (crossing.number << cosine_bits | cosine_code(crossing.cosine)));
   }
 };
 inline bool is_crossing(float scalar_front) { return scalar_front >= LatticeMark::first; }

@@ -99,6 +99,7 @@ SurfaceSet::SurfaceSet(const Surfaces& surfaces, const TransferFunction& functio
     const std::uint32_t k = number % (2 * n + m);
     paint_of_.push_back(k < n ? k : k < 2 * n ? 2 * n - 1 - k : k - n);
   }
+  fill_columns();
   if (light_.shininess == std::floor(light_.shininess) && light_.shininess <= 1024)
     whole_shininess_ = static_cast<int>(light_.shininess);
   if (!empty()) max_color_ = max_color_ * (light_.ambient + light_.diffuse) + light_.specular;
@@ -107,6 +108,19 @@ SurfaceSet::SurfaceSet(const Surfaces& surfaces, const TransferFunction& functio
 void SurfaceSet::add_face(const std::optional<glm::dvec3>& color, double opacity) {
   paints_.push_back({color.value_or(glm::dvec3(0)), opacity, !color});
   max_color_ = std::max(max_color_, color ? std::max({color->x, color->y, color->z}) : function_.max_color());
+}
+
+void SurfaceSet::fill_columns() {
+  PaintColumns& to = paint_by_number_;
+  const auto add = [&](const glm::dvec3& color, double opacity) {
+    to.red.push_back(color.x), to.green.push_back(color.y), to.blue.push_back(color.z), to.opacity.push_back(opacity);
+  };
+  for (const std::uint32_t i : paint_of_) add(paints_[i].color, paints_[i].opacity);
+  add(glm::dvec3(0), 0);
+}
+
+double SurfaceSet::shine(double cosine) const {
+  return whole_shininess_ >= 0 ? whole_power(cosine, whole_shininess_) : std::pow(cosine, light_.shininess);
 }
 
 void SurfaceSet::place_on(const Lattice& lattice) {
@@ -121,10 +135,9 @@ SurfaceSet::Light SurfaceSet::light(std::uint32_t crossing, double cosine, doubl
   const Paint& paint = paints_[paint_of_[crossing]];
   const double c = std::clamp(cosine, 0.0, 1.0);
   const double matte = light_.ambient + light_.diffuse * c;
-  const double shine =
-      light_.specular * (whole_shininess_ >= 0 ? whole_power(c, whole_shininess_) : std::pow(c, light_.shininess));
+  const double bright = light_.specular * shine(c);
   const glm::dvec3 own = paint.by_field ? glm::dvec3(function_.evaluate(value).color) : paint.color;
-  const glm::dvec3 color = (own * matte + glm::dvec3(shine)) * paint.opacity;
+  const glm::dvec3 color = (own * matte + glm::dvec3(bright)) * paint.opacity;
   return {color.x, color.y, color.z, paint.opacity};
 }
 

@@ -69,6 +69,17 @@ class SurfaceSet {
   /// `cosine`: of the angle between ray and normal, 0 to 1. `value`: the field's there, for surfaces of triangles that
   /// have its colour. Nothing for a number that is none.
   [[nodiscard]] Light light(std::uint32_t crossing, double cosine, double value = 0) const;
+  /// What light() of iso-surfaces is made of, for lanes: by the crossing's number, and nothing for the one behind the
+  /// last.
+  struct PaintColumns {
+    std::vector<double> red, green, blue, opacity;
+  };
+  [[nodiscard]] const PaintColumns& paint_by_number() const { return paint_by_number_; }
+  [[nodiscard]] const SurfaceLight& parts_of_light() const { return light_; }
+  /// The cosine to the power of the light's shininess.
+  [[nodiscard]] double shine(double cosine) const;
+  /// The same power where it is done by squaring; else -1.
+  [[nodiscard]] int whole_shininess() const { return whole_shininess_; }
   /// No surface's colour is brighter.
   [[nodiscard]] double max_color() const { return max_color_; }
 
@@ -79,6 +90,7 @@ class SurfaceSet {
     bool by_field = false;  ///< then `color` is nothing
   };
   void add_face(const std::optional<glm::dvec3>& color, double opacity);
+  void fill_columns();
 
   std::vector<double> values_;
   std::vector<Paint> paints_;  ///< by value, as values_; then of surfaces of triangles
@@ -86,6 +98,7 @@ class SurfaceSet {
   TransferFunction function_;            ///< if a paint is by field
   std::vector<std::uint32_t> paint_of_;  ///< by crossing
   std::vector<float> on_lattice_, by_number_;
+  PaintColumns paint_by_number_;
   SurfaceLight light_;
   int whole_shininess_ = -1;  ///< -1: it is no whole number, or a large one
   double max_color_ = 0;

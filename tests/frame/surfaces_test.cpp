@@ -17,6 +17,7 @@
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
 #include "support/deep_pixels.hpp"
+#include "support/instruction_sets.hpp"
 
 /// Surfaces in the volume, against places and colours known in closed form and against the reference.
 namespace tessera::frame {
@@ -175,6 +176,27 @@ RandomCase random_surface_case(Random& random) {
 }
 
 TEST(IsoSurface, RandomOnesKeepThePromise) { expect_random_cases_right(7, 200, random_surface_case); }
+
+TEST(IsoSurface, ManyInACellKeepThePromiseOnEveryInstructionSet) {
+  const scene::TetMesh mesh = datasets::cube(3, 0.2);
+  const auto range = scene::scalar_range(mesh);
+  scene::Surfaces surfaces;
+  for (int i = 0; i < 40; ++i)
+    surfaces.iso.push_back({range[0] + (range[1] - range[0]) * (i + 0.5) / 40, {}, 0.02 + 0.01 * (i % 5)});
+  const scene::ImageSize size{36, 28};
+  tests::for_each_instruction_set([&](const char* name) {
+    for (const double shininess : {32.0, 7.5})
+      for (const auto kind : {ProjectionKind::orthographic, ProjectionKind::perspective}) {
+        surfaces.light.shininess = shininess;
+        const auto camera = view(kind, {2.9, 2.1, 4.3});
+        const auto image = Renderer(mesh, exact(surfaces, true)).render(camera, size, grey_fog());
+        const reference::Reference reference(mesh, camera, size, grey_fog(), scene::Emission::absorption, surfaces);
+        const auto judgement = reference::judge(image, reference, promised_error);
+        EXPECT_LE(judgement.max_error_not_excused, promised_error) << name << ", shininess " << shininess;
+        EXPECT_EQ(judgement.excused, 0u) << name << ", shininess " << shininess;
+      }
+  });
+}
 
 TEST(IsoSurface, AtAPlateausLevelKeepsThePromise) {
   for (const auto kind : {LastPlace::of_float, LastPlace::of_double})
