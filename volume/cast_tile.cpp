@@ -97,13 +97,14 @@ HWY_INLINE bool lay_out(const FrameView& frame, const RayAxes& axes, const Reach
 HWY_INLINE void cast_by_form(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
   // A pilot pass counts the work of exact integrals.
   if (chunk.frame.step > 0 && chunk.frame.tally == nullptr) return cast_chunk_in_steps(chunk, rays, counts);
+  const bool surfaces = chunk.frame.surfaces != nullptr;
   switch (CL::form_of(*chunk.frame.table)) {
     case CL::TableForm::one_vector:
-      return cast_chunk_one_vector(chunk, rays, counts);
+      return (surfaces ? cast_surfaces_one_vector : cast_chunk_one_vector)(chunk, rays, counts);
     case CL::TableForm::two_vectors:
-      return cast_chunk_two_vectors(chunk, rays, counts);
+      return (surfaces ? cast_surfaces_two_vectors : cast_chunk_two_vectors)(chunk, rays, counts);
     case CL::TableForm::many:
-      return cast_chunk_many(chunk, rays, counts);
+      return (surfaces ? cast_surfaces_many : cast_chunk_many)(chunk, rays, counts);
   }
 }
 
@@ -187,19 +188,10 @@ HWY_EXPORT(axis_codes_here);
 HWY_EXPORT(set_up_here);
 
 void cast_tile(const FrameView& frame, const VoxelBox& chunk, TileState& tile, TileMemory& memory, TileCounts& counts) {
-  const auto cast = [&](int code) {
-    HWY_DYNAMIC_DISPATCH(cast_rays_here)
-    (frame, RayAxes::of(code), chunk, tile.wanted(), tile.rays(code), memory, counts);
-  };
   for (int code = 0; code < RayAxes::codes; ++code) {
     if ((tile.codes() >> code & 1) == 0 || !tile.enter(frame, chunk, code)) continue;
-    if (frame.crossings == nullptr) {
-      cast(code);
-      continue;
-    }
-    tile.begin_parts(code);
-    do cast(code);
-    while (tile.next_parts(frame, code));
+    HWY_DYNAMIC_DISPATCH(cast_rays_here)
+    (frame, RayAxes::of(code), chunk, tile.wanted(), tile.rays(code), memory, counts);
   }
 }
 
