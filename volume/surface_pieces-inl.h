@@ -118,24 +118,22 @@ class SurfaceCast {
             surface_row(view_, view_.edge, HN::Add(number, HN::Set(DI(), 1)))};
   }
 
+  /// Lanes whose field `s` is nearer to a value that ends the gap than noise lets tell.
+  static HWY_INLINE MF touches(const Gap& in, VF s, VF noise, MF lanes) {
+    return HN::And(lanes,
+                   HN::Or(HN::Lt(HN::Abs(HN::Sub(s, in.low)), noise), HN::Lt(HN::Abs(HN::Sub(in.high, s)), noise)));
+  }
+
   /// Where a stretch begins or ends in a level side (see Level above), and along which axes that lies.
   struct LevelSide {
     MF any, across_i, across_j;
   };
-  /// For the end at u, where the field is s, which then is exact.
-  HWY_INLINE LevelSide level_side(const VoxelStretch& stretch, VF u, VF noise, MF lanes, VF& s) const {
-    const MF none = HN::Ne(s, s);
-    if (!view_.any_exact) return {none, none, none};
-    const Gap in = gap(surface_gap(view_, s));
-    const MF near = HN::And(lanes, HN::Or(HN::Lt(HN::Sub(s, in.low), noise), HN::Lt(HN::Sub(in.high, s), noise)));
-    if (HWY_LIKELY(HN::AllFalse(DF(), near))) return {none, none, none};
-    return near_level_side(stretch, in, u, near, s);
-  }
-  HWY_NOINLINE LevelSide near_level_side(const VoxelStretch& stretch, const Gap& in, VF u, MF near, VF& s) const {
+  /// For the end at u of lanes that are near a value there: their field `s` then is exact.
+  HWY_NOINLINE LevelSide level_side(const VoxelStretch& stretch, const Gap& in, VF u, MF near, VF& s) const {
     const DF d;
     const DI di;
     const VF zero = HN::Zero(d), one = HN::Set(d, 1.0f);
-    const MF upper = HN::Lt(HN::Sub(in.high, s), HN::Sub(s, in.low));
+    const MF upper = HN::Lt(HN::Abs(HN::Sub(in.high, s)), HN::Abs(HN::Sub(s, in.low)));
     const VF level = HN::IfThenElse(upper, in.high, in.low);
     const VI edge = HN::Add(in.number, HN::IfThenElseZero(HN::RebindMask(di, upper), HN::Set(di, 1)));
     const MF exact = HN::And(near, HN::Gt(surface_row(view_, view_.exact, edge), zero));
@@ -167,38 +165,49 @@ class SurfaceCast {
     const Cubic& c = stretch.cubic;
     const CornerRange range(stretch.corners);
     const VF noise = HN::MulAdd(HN::Set(d, place_off), range.width, HN::Mul(HN::Set(d, 0x1p-22f), range.largest));
+    const MF none = HN::Ne(zero, zero);
+    LevelSide front{none, none, none}, back = front;
     VF s_0 = c.p_0, s_1 = HN::IfThenElseZero(whole, stretch.piece.s_1);
-    const LevelSide front = level_side(stretch, stretch.begin, noise, whole, s_0),
-                    back = level_side(stretch, HN::Add(stretch.begin, stretch.extent), noise, whole, s_1);
     VF turn_1 = one, turn_2 = one;
     if (!HN::AllFalse(d, HN::AndNot(is_monotone(c), whole))) find_extrema(c, turn_1, turn_2);
     Gap in = gap(surface_gap(view_, s_0));
-    note_touch(in, s_0, noise, HN::AndNot(front.any, whole));
+    if (const MF near = touches(in, s_0, noise, whole); HWY_UNLIKELY(!HN::AllFalse(d, near))) {
+      if (view_.any_exact) front = level_side(stretch, in, stretch.begin, near, s_0);
+      in = gap(surface_gap(view_, s_0));
+      note(HN::AndNot(front.any, near));
+    }
     VF v = zero, s = s_0, lit = zero, s_lit = s_0;  // light has been added up to `lit`
     MF going = whole;
     // Each round ends at a surface, a turn or the stretch's end.
     for (int round = 0; round < 4096; ++round) {
       const VF turn = HN::IfThenElse(HN::Lt(v, turn_1), turn_1, HN::IfThenElse(HN::Lt(v, turn_2), turn_2, one));
-      const MF last = HN::Eq(turn, one), level_back = HN::And(last, back.any);
-      const VF s_turn = HN::IfThenElse(last, s_1, c.at(turn));
+      const MF last = HN::Eq(turn, one);
+      VF s_turn = HN::IfThenElse(last, s_1, c.at(turn));
+      if (const MF near = touches(in, s_turn, noise, going); HWY_UNLIKELY(!HN::AllFalse(d, near))) {
+        const MF at_back = HN::And(near, last);
+        if (view_.any_exact && !HN::AllFalse(d, at_back)) {
+          add_level(level_side(stretch, in, HN::Add(stretch.begin, stretch.extent), at_back, s_1), back);
+          s_turn = HN::IfThenElse(last, s_1, s_turn);
+        }
+        // Before the surface is met, as it may hide what is behind it.
+        note(HN::AndNot(HN::And(last, back.any), near));
+      }
       const MF up = HN::Ge(s_turn, s);
       const MF crosses =
           HN::And(going, HN::Or(HN::And(up, HN::Ge(s_turn, in.high)), HN::AndNot(up, HN::Lt(s_turn, in.low))));
       if (!HN::AllFalse(d, crosses)) {
         const VF level = HN::IfThenElse(up, in.high, in.low);
-        // Seen before the surface, which may hide what is behind it.
-        note(HN::AndNot(level_back, HN::And(crosses, HN::Lt(HN::Abs(HN::Sub(s_turn, level)), noise))));
-        // Its own voxel is where it is met: not beside another one.
-        const MF at_front = HN::And(HN::Eq(v, zero), HN::Eq(level, s_0)), at_back = HN::And(last, HN::Eq(level, s_1));
-        const auto sides = [&](MF of_front, MF of_back)
-                               HWY_ATTR { return HN::Or(HN::And(at_front, of_front), HN::And(at_back, of_back)); };
-        const MF across_i = sides(front.across_i, back.across_i), across_j = sides(front.across_j, back.across_j);
         const VI upward = HN::IfThenElseZero(HN::RebindMask(di, up), HN::Set(di, 1)), edge = HN::Add(in.number, upward);
-        VF at = HN::IfThenElse(crosses, find_crossing(c, v, turn, s, s_turn, level, crosses), v);
-        const Place place = place_of(stretch, v, turn, at, level, surface_row(view_, view_.rest, edge));
-        at = HN::IfThenElse(crosses, place.at, v);
+        const VF guess = HN::IfThenElse(crosses, find_crossing(c, v, turn, s, s_turn, level, crosses), v);
+        const Place place = place_of(stretch, v, turn, guess, level, surface_row(view_, view_.rest, edge));
+        const VF at = HN::IfThenElse(crosses, place.at, v);
         add_light(stretch, lit, at, s_lit, level, crosses);
-        note_beside(stretch, place, HN::AndNot(across_i, crosses), HN::AndNot(across_j, crosses));
+        // In a level side it is met in this voxel, not beside another one.
+        const MF at_front = HN::And(HN::Eq(v, zero), HN::Eq(level, s_0)), at_back = HN::And(last, HN::Eq(level, s_1));
+        const auto beside = [&](MF of_front, MF of_back) HWY_ATTR {
+          return HN::AndNot(HN::Or(HN::And(at_front, of_front), HN::And(at_back, of_back)), crosses);
+        };
+        note_beside(stretch, place, beside(front.across_i, back.across_i), beside(front.across_j, back.across_j));
         add_surface(stretch, range, place, edge, level, crosses);
         lit = HN::IfThenElse(crosses, at, lit), s_lit = HN::IfThenElse(crosses, level, s_lit);
         v = HN::IfThenElse(crosses, at, v), s = HN::IfThenElse(crosses, level, s);
@@ -206,7 +215,6 @@ class SurfaceCast {
         in = gap(HN::IfThenElse(HN::RebindMask(di, crosses), number, in.number));
       }
       const MF ends = HN::AndNot(crosses, going);
-      note_touch(in, s_turn, noise, HN::AndNot(level_back, ends));
       v = HN::IfThenElse(ends, turn, v), s = HN::IfThenElse(ends, s_turn, s);
       going = HN::AndNot(HN::And(ends, HN::Ge(v, one)), going);
       if (HN::AllFalse(d, going)) break;
@@ -215,15 +223,15 @@ class SurfaceCast {
     add_light(stretch, lit, one, s_lit, s_1, whole);
   }
 
+  static HWY_INLINE void add_level(const LevelSide& more, LevelSide& side) {
+    side.any = HN::Or(side.any, more.any);
+    side.across_i = HN::Or(side.across_i, more.across_i), side.across_j = HN::Or(side.across_j, more.across_j);
+  }
+
   /// Notes that lanes are to be cast again, if something is seen of them.
   HWY_INLINE void note(MF unsure) {
     const VF seen = HN::Mul(progress_.transmittance, HN::Set(DF(), view_.brightest));
     notes_.error_bound = HN::Add(notes_.error_bound, HN::IfThenElseZero(unsure, seen));
-  }
-
-  /// Lanes whose field `s`, in the gap, is nearer to the value of a surface than noise lets tell.
-  HWY_INLINE void note_touch(const Gap& in, VF s, VF noise, MF lanes) {
-    note(HN::And(lanes, HN::Or(HN::Lt(HN::Sub(s, in.low), noise), HN::Lt(HN::Sub(in.high, s), noise))));
   }
 
   /// A place of the cubic, of the slab, and what the field is like there.
@@ -239,14 +247,12 @@ class SurfaceCast {
     const VF low = HN::MulAdd(v, stretch.extent, stretch.begin), high = HN::MulAdd(turn, stretch.extent, stretch.begin);
     Place place;
     place.u = HN::MulAdd(at, stretch.extent, stretch.begin);
-    for (int n = 0; n < 2; ++n) {
-      const VF height = from_level.at(place.u, lanes_.bx, lanes_.by);
-      from_level.gradient(place.u, lanes_.bx, lanes_.by, place.g_i, place.g_j, place.g_k);
-      place.slope = HN::MulAdd(lanes_.bx, place.g_i, HN::MulAdd(lanes_.by, place.g_j, place.g_k));
-      const VF next = HN::Sub(place.u, HN::Div(height, place.slope));
-      // Where the field is level that may be anything.
-      place.u = HN::IfThenElse(HN::And(HN::Ge(next, low), HN::Le(next, high)), next, place.u);
-    }
+    const VF height = from_level.at(place.u, lanes_.bx, lanes_.by);
+    from_level.gradient(place.u, lanes_.bx, lanes_.by, place.g_i, place.g_j, place.g_k);
+    place.slope = HN::MulAdd(lanes_.bx, place.g_i, HN::MulAdd(lanes_.by, place.g_j, place.g_k));
+    // find_crossing() is near enough for the field's slopes, not for its place. Where it is level that may be anything.
+    const VF next = HN::Sub(place.u, HN::Div(height, place.slope));
+    place.u = HN::IfThenElse(HN::And(HN::Ge(next, low), HN::Le(next, high)), next, place.u);
     const VF in_stretch = HN::Div(HN::Sub(place.u, stretch.begin), stretch.extent);
     place.at = HN::Min(HN::Max(in_stretch, v), turn);
     return place;

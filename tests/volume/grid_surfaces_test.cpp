@@ -10,6 +10,7 @@
 #include "reference/grid_reference.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
+#include "support/instruction_sets.hpp"
 #include "volume/chunk_cast.hpp"
 #include "volume/image_sink.hpp"
 #include "volume/render.hpp"
@@ -359,6 +360,21 @@ TEST(GridSurface, RandomOnesKeepThePromise) {
   EXPECT_GT(seen, static_cast<std::size_t>(last - first) * 3 / 4);
   std::printf("cases %d to %d: largest error %.3g, %zu of %zu pixels excused\n", first, last - 1, worst, excused,
               pixels);
+}
+
+/// Vectors of four and eight lanes look values of surfaces up in memory, those of sixteen hold some.
+TEST(GridSurface, RandomOnesKeepThePromiseOnEveryInstructionSet) {
+  const scene::ImageSize small{24, 20};
+  for_each_instruction_set([&](const std::string& name) {
+    for (unsigned number = 0; number < 24; ++number) {
+      const Case c = random_case(number);
+      const auto image = volume::Renderer(*c.source, c.settings).render(c.camera, small, c.function);
+      const reference::GridReference truth(*c.source, c.camera, small, c.function, c.settings.emission,
+                                           c.settings.shading, c.settings.clip, c.settings.surfaces);
+      EXPECT_LE(reference::judge(image, truth, promised_error, {}, 2).max_error_not_excused, promised_error)
+          << name << ", case " << number;
+    }
+  });
 }
 
 TEST(GridSurface, BitsDoNotDependOnBricksThreadsOrRegionsNorLightOnSkippedSpace) {
