@@ -97,14 +97,13 @@ HWY_INLINE bool lay_out(const FrameView& frame, const RayAxes& axes, const Reach
 HWY_INLINE void cast_by_form(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
   // A pilot pass counts the work of exact integrals.
   if (chunk.frame.step > 0 && chunk.frame.tally == nullptr) return cast_chunk_in_steps(chunk, rays, counts);
-  const bool surfaces = chunk.frame.surfaces != nullptr;
   switch (CL::form_of(*chunk.frame.table)) {
     case CL::TableForm::one_vector:
-      return (surfaces ? cast_surfaces_one_vector : cast_chunk_one_vector)(chunk, rays, counts);
+      return cast_chunk_one_vector(chunk, rays, counts);
     case CL::TableForm::two_vectors:
-      return (surfaces ? cast_surfaces_two_vectors : cast_chunk_two_vectors)(chunk, rays, counts);
+      return cast_chunk_two_vectors(chunk, rays, counts);
     case CL::TableForm::many:
-      return (surfaces ? cast_surfaces_many : cast_chunk_many)(chunk, rays, counts);
+      return cast_chunk_many(chunk, rays, counts);
   }
 }
 

@@ -363,7 +363,9 @@ class SurfaceCast {
     const DF d;
     const VF half = HN::Set(d, 0.5f), zero = HN::Zero(d), one = HN::Set(d, 1.0f);
     const VF extent = HN::Sub(b, a), middle = HN::Mul(half, HN::Add(a, b));
-    const MF there = HN::And(lanes, HN::Gt(extent, zero));
+    // What nothing gets through to is done, though its packet is not.
+    const MF seen = HN::Ge(progress_.transmittance, HN::Set(d, frame_.least_transmittance));
+    const MF there = HN::And(HN::And(lanes, seen), HN::Gt(extent, zero));
     if (HN::AllFalse(d, there)) return;
     const auto kept = [&](VF v) HWY_ATTR { return HN::IfThenElseZero(there, v); };
     const Piece piece{kept(s_a),
