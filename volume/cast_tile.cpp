@@ -187,11 +187,12 @@ HWY_EXPORT(axis_codes_here);
 HWY_EXPORT(set_up_here);
 
 void cast_tile(const FrameView& frame, const VoxelBox& chunk, TileState& tile, TileMemory& memory, TileCounts& counts) {
-  for (int code = 0; code < RayAxes::codes; ++code) {
-    if ((tile.codes() >> code & 1) == 0 || !tile.enter(frame, chunk, code)) continue;
+  const auto cast = [&](int code) {
     HWY_DYNAMIC_DISPATCH(cast_rays_here)
     (frame, RayAxes::of(code), chunk, tile.wanted(), tile.rays(code), memory, counts);
-  }
+  };
+  for (int code = 0; code < RayAxes::codes; ++code)
+    if ((tile.codes() >> code & 1) != 0 && tile.enter(frame, chunk, code)) cast(code);
 }
 
 unsigned axis_codes_of_tile(const PixelRays& rays, int x0, int y0) {
