@@ -24,6 +24,7 @@ namespace tessera::volume {
 
 HWY_EXPORT(cast_chunk_many_here);
 void cast_chunk_many(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
+  if (chunk.frame.surfaces != nullptr) return cast_surfaces_many(chunk, rays, counts);
   HWY_DYNAMIC_DISPATCH(cast_chunk_many_here)(chunk, rays, counts);
 }
 

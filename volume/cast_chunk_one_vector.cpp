@@ -24,6 +24,7 @@ namespace tessera::volume {
 
 HWY_EXPORT(cast_chunk_one_vector_here);
 void cast_chunk_one_vector(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
+  if (chunk.frame.surfaces != nullptr) return cast_surfaces_one_vector(chunk, rays, counts);
   HWY_DYNAMIC_DISPATCH(cast_chunk_one_vector_here)(chunk, rays, counts);
 }
 

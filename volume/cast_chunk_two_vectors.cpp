@@ -24,6 +24,7 @@ namespace tessera::volume {
 
 HWY_EXPORT(cast_chunk_two_vectors_here);
 void cast_chunk_two_vectors(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
+  if (chunk.frame.surfaces != nullptr) return cast_surfaces_two_vectors(chunk, rays, counts);
   HWY_DYNAMIC_DISPATCH(cast_chunk_two_vectors_here)(chunk, rays, counts);
 }
 

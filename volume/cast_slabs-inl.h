@@ -3,7 +3,8 @@
 // Slabs go in groups of eight. First the field of all slabs in the group that every live ray crosses from plane to
 // plane is found as lines (slab_lines-inl.h), one slab independent of the next, then their light is added front to
 // back: so the processor overlaps slabs. Where the field is smooth enough for it, one line stands for two slabs. Slabs
-// in which rays begin or end, shaded ones and cell data go voxel by voxel (voxel_pieces-inl.h).
+// in which rays begin or end, shaded ones and cell data go voxel by voxel (voxel_pieces-inl.h); so do lanes whose field
+// may meet the value of a surface (surface_pieces-inl.h), while the others of their slab go on as they are.
 
 #if defined(TESSERA_VOLUME_CAST_SLABS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TESSERA_VOLUME_CAST_SLABS_INL_H_
@@ -19,6 +20,7 @@
 
 #include "volume/packet_slabs-inl.h"
 #include "volume/slab_lines-inl.h"
+#include "volume/surface_pieces-inl.h"
 #include "volume/voxel_pieces-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -26,7 +28,7 @@ namespace tessera::volume {
 namespace HWY_NAMESPACE {
 
 /// One packet, or some lanes of it, on its way through a chunk.
-template <bool cell_data, class Window, class Lookup>
+template <bool cell_data, class Surfaces, class Window, class Lookup>
 class PacketCast {
  public:
   HWY_INLINE PacketCast(const ChunkView& chunk, const Lookup& lookup, const PacketSlabs& slabs, const Lanes& lanes,
@@ -39,6 +41,7 @@ class PacketCast {
         mirrored_(lanes, std::is_same_v<Window, GatherWindow> ? static_cast<int>(chunk.block.pitch) : Window::columns),
         current_(current),
         counts_(counts),
+        surfaces_(chunk.frame),
         before_(before),
         has_steps_(chunk.frame.error_bound != nullptr && !chunk.frame.error_bound->step.empty()) {
     const DF d;
@@ -142,7 +145,8 @@ class PacketCast {
       if constexpr (!cell_data) {
         const WindowPlace place = place_of(n);
         const Window window(place.front, place.back, chunk_.block.pitch);
-        if (frame_.some_clear && current_.holds(window, *place.front) && current_.clear()) {
+        if (frame_.some_clear && current_.holds(window, *place.front) && current_.clear() &&
+            surfaces_.none_in(window, *place.front)) {
           kind = Kind::empty;
           continue;
         }
@@ -186,7 +190,7 @@ class PacketCast {
       const VF r = HN::MulAdd(HN::Zero(d), HN::Add(a.rho, b.rho), HN::Max(a.rho, b.rho));
       const VF low = HN::Sub(HN::Min(HN::Min(a.s_0, a.s_1), b.s_1), r),
                high = HN::Add(HN::Max(HN::Max(a.s_0, a.s_1), b.s_1), r);
-      if (HWY_LIKELY(current_.around(low, high, mirrored_.live))) {
+      if (HWY_LIKELY(current_.around(low, high, mirrored_.live)) && surfaces_.none_between(low, high, mirrored_.live)) {
         if (current_.clear()) return 2;
         const VF length = HN::Add(lanes_.length, lanes_.length), span = HN::Sub(b.s_1, a.s_0);
         const VF middle = HN::Mul(half, HN::Add(a.s_0, b.s_1)), tent = HN::Sub(a.s_1, middle);
@@ -214,6 +218,14 @@ class PacketCast {
       length = HN::IfThenElseZero(live, length);
     }
     const VF low = HN::Sub(HN::Min(a.s_0, a.s_1), a.rho), high = HN::Add(HN::Max(a.s_0, a.s_1), a.rho);
+    if constexpr (has_surfaces) {
+      if (HWY_UNLIKELY(!surfaces_.none_between(low, high, live))) {
+        live = add_met(n, low, high, live);
+        if (HN::AllFalse(d, live)) return 1;
+        a = kept(a, live);
+        length = HN::IfThenElseZero(live, length);
+      }
+    }
     const bool uniform = current_.around(low, high, live) || (has_steps_ && on_one_side(n));
     if (HWY_LIKELY(uniform)) {
       if (current_.clear()) return 1;
@@ -304,6 +316,19 @@ class PacketCast {
     cast_stretches(frame_, lookup_, lanes_.length, lines, m, n, apart, progress_, notes_, counts_);
   }
 
+  /// Adds the lanes that may meet surfaces in slab n, where they are between `low` and `high`: those that are left.
+  HWY_NOINLINE MF add_met(int n, VF low, VF high, MF live) {
+    const MF met = surfaces_.met(low, high, live);
+    const WindowPlace place = place_of(n);
+    const Window window(place.front, place.back, chunk_.block.pitch);
+    add_surfaces(path_of(lanes_, n, slabs_.i_window[n], slabs_.j_window[n]), window, met);
+    return HN::AndNot(met, live);
+  }
+  HWY_INLINE void add_surfaces(const SlabPath& path, const Window& window, MF lanes) {
+    SurfaceCast<Lookup>(frame_, chunk_.axes, lookup_, lanes_, current_, surfaces_, progress_, notes_, counts_)
+        .cast(path, window, lanes);
+  }
+
   /// A slab in which lanes begin or end, cell data, shaded.
   HWY_NOINLINE void add_parts(int n) {
     const DF d;
@@ -311,11 +336,22 @@ class PacketCast {
     const Window window(place.front, place.back, chunk_.block.pitch);
     const bool uniform =
         current_.holds(window, *place.front) || (has_steps_ && std::is_same_v<Window, GatherWindow> && on_one_side(n));
-    if (uniform && current_.clear()) return;
+    const bool meets_none = surfaces_.none_in(window, *place.front);
+    if (uniform && current_.clear() && meets_none) return;
     const SlabPath path = path_of(lanes_, n, slabs_.i_window[n], slabs_.j_window[n]);
     for (const Stretch& stretch : path.stretches)
       counts_.voxels_visited += HN::CountTrue(d, HN::Gt(stretch.end, stretch.begin));
     const VF before = progress_.transmittance, light[3] = {progress_.red, progress_.green, progress_.blue};
+    if constexpr (has_surfaces) {
+      if (!meets_none) {
+        const MF there = HN::Gt(path.to, path.from);
+        add_surfaces(path, window, there);
+        if (HWY_UNLIKELY(frame_.shading == nullptr && frame_.error_bound != nullptr && frame_.error_bound->ends))
+          note_ends(*frame_.error_bound, lookup_, part_line(lanes_, path, window), path, there, lanes_.length, before,
+                    light, progress_, notes_);
+        return;
+      }
+    }
     if (cell_data || frame_.shading != nullptr) {
       cast_voxels<cell_data>(frame_, chunk_.axes, lookup_, lanes_, path, window,
                              uniform ? &current_.uniform() : nullptr, HN::Gt(path.to, path.from), progress_, notes_,
@@ -338,6 +374,8 @@ class PacketCast {
     }
   }
 
+  static constexpr bool has_surfaces = std::is_same_v<Surfaces, LaneSurfaces>;
+
   const ChunkView& chunk_;
   const FrameView& frame_;
   const Lookup& lookup_;
@@ -346,6 +384,7 @@ class PacketCast {
   MirroredLanes mirrored_;
   CurrentInterval& current_;
   TileCounts& counts_;
+  [[no_unique_address]] Surfaces surfaces_;
   VF before_;       ///< transmittance up to the chunk
   bool has_steps_;  ///< of the transfer function, that matter
   VF crossings_;
@@ -355,7 +394,7 @@ class PacketCast {
 };
 
 /// Lanes [ray, ray + Lanes()) of a packet through the chunk.
-template <bool cell_data, class Window, class Lookup>
+template <bool cell_data, class Surfaces, class Window, class Lookup>
 HWY_NOINLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int ray, const Reach& reach,
                              const PacketSlabs& slabs, CurrentInterval& current, TileRays& rays, TileCounts& counts) {
   const DF d;
@@ -365,7 +404,7 @@ HWY_NOINLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int r
   const VF before = HN::LoadU(d, rays.transmittance + ray);
   lanes.k_out =
       HN::IfThenElse(HN::Lt(before, HN::Set(d, chunk.frame.least_transmittance)), HN::Set(d, -1.0f), lanes.k_out);
-  PacketCast<cell_data, Window, Lookup> cast(chunk, lookup, slabs, lanes, before, current, counts);
+  PacketCast<cell_data, Surfaces, Window, Lookup> cast(chunk, lookup, slabs, lanes, before, current, counts);
   const VF alpha_before = HN::LoadU(d, rays.alpha + ray);
   const MF seen_before = HN::Gt(alpha_before, HN::Zero(d));
   cast.notes_ = {HN::Set(d, -1.0f), seen_before, HN::Zero(d), HN::Zero(d)};
@@ -391,7 +430,7 @@ HWY_NOINLINE void cast_lanes(const ChunkView& chunk, const Lookup& lookup, int r
   }
 }
 
-template <bool cell_data, CL::TableForm form>
+template <bool cell_data, class Surfaces, CL::TableForm form>
 HWY_NOINLINE void cast_chunk_as(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
   const CL::Lookup<form> lookup(*chunk.frame.table);
   CurrentInterval current(*chunk.frame.table, chunk.frame);
@@ -405,8 +444,8 @@ HWY_NOINLINE void cast_chunk_as(const ChunkView& chunk, TileRays& rays, TileCoun
     const auto cast = [&]<class Window>() HWY_ATTR {
       slabs.template place_windows<Window>(chunk.block, chunk.box.slabs);
       for (int lane = 0; lane < TileRays::packet_rays; lane += static_cast<int>(HN::Lanes(DF())))
-        cast_lanes<cell_data, Window>(chunk, lookup, packet * TileRays::packet_rays + lane, reach, slabs, current, rays,
-                                      counts);
+        cast_lanes<cell_data, Surfaces, Window>(chunk, lookup, packet * TileRays::packet_rays + lane, reach, slabs,
+                                                current, rays, counts);
     };
 #if HWY_TARGET <= HWY_AVX3
     if (slabs.widest_i <= SmallWindow::columns - 2 && slabs.widest_j <= SmallWindow::rows - 2)
@@ -422,9 +461,15 @@ HWY_NOINLINE void cast_chunk_as(const ChunkView& chunk, TileRays& rays, TileCoun
 template <CL::TableForm form>
 HWY_INLINE void cast_chunk(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
   if (chunk.frame.cell_data)
-    cast_chunk_as<true, form>(chunk, rays, counts);
+    cast_chunk_as<true, NoSurfaces, form>(chunk, rays, counts);
   else
-    cast_chunk_as<false, form>(chunk, rays, counts);
+    cast_chunk_as<false, NoSurfaces, form>(chunk, rays, counts);
+}
+
+/// Point data with surfaces (FrameView::surfaces).
+template <CL::TableForm form>
+HWY_INLINE void cast_chunk_with_surfaces(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
+  cast_chunk_as<false, LaneSurfaces, form>(chunk, rays, counts);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -191,16 +191,8 @@ void cast_tile(const FrameView& frame, const VoxelBox& chunk, TileState& tile, T
     HWY_DYNAMIC_DISPATCH(cast_rays_here)
     (frame, RayAxes::of(code), chunk, tile.wanted(), tile.rays(code), memory, counts);
   };
-  for (int code = 0; code < RayAxes::codes; ++code) {
-    if ((tile.codes() >> code & 1) == 0 || !tile.enter(frame, chunk, code)) continue;
-    if (frame.crossings == nullptr) {
-      cast(code);
-      continue;
-    }
-    tile.begin_parts(code);
-    do cast(code);
-    while (tile.next_parts(frame, code));
-  }
+  for (int code = 0; code < RayAxes::codes; ++code)
+    if ((tile.codes() >> code & 1) != 0 && tile.enter(frame, chunk, code)) cast(code);
 }
 
 unsigned axis_codes_of_tile(const PixelRays& rays, int x0, int y0) {

@@ -24,12 +24,15 @@ struct ChunkView {
 
 // The kernels of one chunk of 32 slabs, on the best instruction set: what each packet that `reach` has gathers in it.
 // Three for exact integrals, by how many vectors hold a column of the transfer function's table
-// (integrals/integrate_lanes-inl.h), and one for steps. They are sources of their own because they take long to
-// compile.
+// (integrals/integrate_lanes-inl.h), three that they leave frames with surfaces to, and one for steps. They are sources
+// of their own because they take long to compile.
 
 void cast_chunk_one_vector(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
 void cast_chunk_two_vectors(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
 void cast_chunk_many(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
+void cast_surfaces_one_vector(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
+void cast_surfaces_two_vectors(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
+void cast_surfaces_many(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
 void cast_chunk_in_steps(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
 
 }  // namespace tessera::volume

@@ -1,6 +1,7 @@
 #include "volume/frame_setup.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/glm.hpp>
 
@@ -16,6 +17,16 @@ double longest_in_voxel(const scene::GridGeometry& geometry) {
   return sides;
 }
 
+/// The linear part of the map from world to index times `unit`.
+std::array<glm::dvec3, 3> index_rows(const scene::GridGeometry& geometry, double unit) {
+  const glm::dmat3 to_local = scene::world_to_local(geometry);
+  std::array<glm::dvec3, 3> rows;
+  for (int a = 0; a < 3; ++a)
+    rows[static_cast<std::size_t>(a)] =
+        glm::dvec3(to_local[0][a], to_local[1][a], to_local[2][a]) * (unit / geometry.spacing[a]);
+  return rows;
+}
+
 ShadingView shading_view(const scene::Shading& s, const scene::Camera& camera, const scene::GridGeometry& geometry,
                          double voxel_side) {
   ShadingView view{s.ambient, s.diffuse, s.specular, s.shininess, voxel_side, {}, {}, {}};
@@ -24,13 +35,10 @@ ShadingView shading_view(const scene::Shading& s, const scene::Camera& camera, c
   const glm::dvec3 light = s.camera_light ? basis.right * l.x + basis.up * l.y - basis.forward * l.z : l;
   view.light_eye[0] = glm::dot(light, basis.right), view.light_eye[1] = glm::dot(light, basis.up);
   view.light_eye[2] = -glm::dot(light, basis.forward);
-  const glm::dmat3 to_local = scene::world_to_local(geometry);
-  glm::dvec3 rows[3];
-  for (int a = 0; a < 3; ++a)
-    rows[a] = glm::dvec3(to_local[0][a], to_local[1][a], to_local[2][a]) * (voxel_side / geometry.spacing[a]);
-  for (int a = 0; a < 3; ++a) {
+  const std::array<glm::dvec3, 3> rows = index_rows(geometry, voxel_side);
+  for (std::size_t a = 0; a < 3; ++a) {
     view.light[a] = glm::dot(rows[a], light);
-    for (int b = 0; b < 3; ++b) view.metric[a][b] = glm::dot(rows[a], rows[b]);
+    for (std::size_t b = 0; b < 3; ++b) view.metric[a][b] = glm::dot(rows[a], rows[b]);
   }
   return view;
 }
@@ -50,6 +58,7 @@ double voxel_side_of(const scene::GridGeometry& geometry) {
 FrameSetup::FrameSetup(RendererState& state, const scene::Camera& camera, scene::ImageSize size,
                        const scene::TransferFunction& function, WorkTally* tally)
     : rays_(camera, size, state.source.geometry(), state.settings.clip), table_(state.table_of(function)) {
+  surfaces_ = state.surfaces_of(function);
   find_visible(state);
   const scene::GridGeometry& geometry = state.source.geometry();
   view_.rays = &rays_;
@@ -68,16 +77,15 @@ FrameSetup::FrameSetup(RendererState& state, const scene::Camera& camera, scene:
   view_.piece_tolerance = static_cast<float>(state.accuracy() / 64);
   view_.largest_color = static_cast<float>(std::max(1e-30, function.max_color()));
   view_.lanes = state.ranges.lanes;
-  view_.lanes.whole = state.in_steps() || !table_.has_steps;
+  // Surfaces of small values ask for them as they are.
+  view_.lanes.whole = state.in_steps() || (!table_.has_steps && !surfaces_.any());
   view_.tally = tally;
   // A thousand packets or more, whatever the picture's size.
   const double tiles_in_picture = static_cast<double>(size.width) * size.height / (TileRays::side * TileRays::side);
   view_.pilot_packets = static_cast<int>(std::clamp(1024 / tiles_in_picture, 2.0, 32.0));
   view_.trace = state.settings.trace;
-  surfaces_ = state.surfaces_of(function);
-  if (surfaces_.any())
-    view_.crossings = &crossings_.emplace(state.source, camera, size, state.settings.clip, surfaces_);
   set_up_method(state, function);
+  if (surfaces_.any()) set_up_surfaces(state, function);
   if (state.settings.shading)
     view_.shading = &shading_.emplace(shading_view(*state.settings.shading, camera, geometry, state.voxel_side));
 }
@@ -90,7 +98,22 @@ void FrameSetup::find_visible(RendererState& state) {
                                                       : visible_cells(state.ranges, table_);
   if (!settings.use.culling || !settings.use.skipping)
     show_more(state.ranges, state.bricks.layout(), !settings.use.culling, !settings.use.skipping, visible_);
+  if (surfaces_.any())
+    for (std::size_t cell = 0; cell < visible_.size(); ++cell) visible_[cell] |= surfaces_.holding()[cell];
   brick_visible_ = visible_bricks(state.ranges, visible_, state.bricks.layout());
+}
+
+void FrameSetup::set_up_surfaces(const RendererState& state, const scene::TransferFunction& function) {
+  SurfaceView& view = surface_view_.emplace(state.settings.surfaces, function, view_.lanes);
+  view.noise = 4 * error_bound_.noise;  // no less than that of any voxel (surface_pieces-inl.h)
+  view.brightest = static_cast<float>(std::max(1.0, state.brightest(function)));
+  view.unit = state.voxel_side;
+  const std::array<glm::dvec3, 3> rows = index_rows(state.source.geometry(), view.unit);
+  for (std::size_t a = 0; a < 3; ++a) {
+    view.stretched = std::max(a == 0 ? 0.0f : view.stretched, static_cast<float>(glm::length(rows[a])));
+    for (std::size_t b = 0; b < 3; ++b) view.metric[a][b] = glm::dot(rows[a], rows[b]);
+  }
+  view_.surfaces = &view;
 }
 
 /// What only some methods have.

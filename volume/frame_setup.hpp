@@ -7,7 +7,6 @@
 #include "volume/frame_view.hpp"
 #include "volume/lane_error_bound.hpp"
 #include "volume/preintegrated_table.hpp"
-#include "volume/ray_crossings.hpp"
 #include "volume/renderer_state.hpp"
 
 namespace tessera::volume {
@@ -30,6 +29,7 @@ class FrameSetup {
 
  private:
   void find_visible(RendererState& state);
+  void set_up_surfaces(const RendererState& state, const scene::TransferFunction& function);
   void set_up_method(const RendererState& state, const scene::TransferFunction& function);
 
   PixelRays rays_;
@@ -39,7 +39,7 @@ class FrameSetup {
   std::optional<PreintegratedTable> preintegrated_;
   std::optional<ShadingView> shading_;
   GridSurfaces surfaces_;
-  std::optional<RayCrossings> crossings_;
+  std::optional<SurfaceView> surface_view_;
   FrameView view_{};
 };
 

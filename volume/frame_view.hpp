@@ -16,6 +16,7 @@
 #include "volume/learned_work.hpp"
 #include "volume/preintegrated_table.hpp"
 #include "volume/render.hpp"
+#include "volume/surface_view.hpp"
 
 namespace tessera::volume {
 
@@ -51,8 +52,6 @@ struct ShadingView {
   double light_eye[3];  ///< l along the camera's right and up axes and towards the eye
 };
 
-class RayCrossings;
-
 /// All that one frame's tiles share; read-only while they are made.
 struct FrameView {
   const PixelRays* rays;
@@ -75,7 +74,7 @@ struct FrameView {
   double step = 0;                                    ///< sampled, preintegrated: length in the table's unit; else 0
   const PreintegratedTable* preintegrated = nullptr;  ///< null: sampled
   const ShadingView* shading = nullptr;               ///< null: none
-  const RayCrossings* crossings = nullptr;            ///< with surfaces; null: there are none
+  const SurfaceView* surfaces = nullptr;              ///< null: there are none
   WorkTally* tally = nullptr;                         ///< not null: a pilot pass, which counts where work would be
   int pilot_packets = 0;                              ///< of each tile
   scene::Trace* trace;

@@ -67,13 +67,6 @@ void TileState::begin(const FrameView& frame, int x0, int y0, const scene::Pixel
     if (!of_code) of_code = std::make_unique<TileRays>();
     TileRays& rays = *of_code;
     set_up_tile(frame, x0, y0, code, rays);
-    if (frame.crossings != nullptr) {
-      std::unique_ptr<TileSurfaces>& surfaces = surfaces_[static_cast<std::size_t>(code)];
-      if (!surfaces) surfaces = std::make_unique<TileSurfaces>();
-      // Where other packets are must not depend on which ones are wanted, but in a pilot pass.
-      const std::uint64_t packets = frame.tally != nullptr ? wanted_ : ~std::uint64_t{0};
-      surfaces->begin(*frame.crossings, x0, y0, packets, frame.least_transmittance, rays);
-    }
     rays.clear_light();
     std::fill_n(rays.carried, TileRays::count, std::numeric_limits<float>::quiet_NaN());
     std::fill_n(rays.reached, TileRays::count, -infinity);

@@ -10,7 +10,6 @@
 #include "volume/frame_view.hpp"
 #include "volume/lane_error_bound.hpp"
 #include "volume/tile_rays.hpp"
-#include "volume/tile_surfaces.hpp"
 #include "volume/voxel_box.hpp"
 
 namespace tessera::volume {
@@ -22,7 +21,7 @@ namespace tessera::volume {
 /// A tile is one thread's at a time.
 ///
 /// Axes     rays of one tile may have several (TileRays): there is a TileRays for each, and a ray is in one of them.
-/// Memory   150 KB for each of these, mostly one; with surfaces 30 KB and the crossings more. begin() uses it again.
+/// Memory   150 KB for each of these, mostly one. begin() uses it again.
 class TileState {
  public:
   /// The tile whose first pixel is (x0, y0), multiples of 32; of its pixels those in `region` count. A pilot pass
@@ -31,11 +30,6 @@ class TileState {
 
   /// Sets TileRays::from and to of the rays of one axis code: their parts in a chunk. False if none has one.
   bool enter(const FrameView& frame, const VoxelBox& chunk, int code);
-  /// With surfaces (FrameView::crossings): TileSurfaces::begin_parts() and next_parts() of those parts.
-  void begin_parts(int code) { surfaces_[static_cast<std::size_t>(code)]->begin_parts(rays(code)); }
-  bool next_parts(const FrameView& frame, int code) {
-    return surfaces_[static_cast<std::size_t>(code)]->next_parts(frame.least_transmittance, rays(code));
-  }
 
   /// Whether something may be added to the ray of a pixel: it meets the volume behind what has been cast, lets light
   /// through and has not been closed.
@@ -69,7 +63,6 @@ class TileState {
   std::uint64_t wanted_ = 0;
   unsigned codes_ = 0;  ///< bit n: rays of axis code n
   std::array<std::unique_ptr<TileRays>, RayAxes::codes> rays_;
-  std::array<std::unique_ptr<TileSurfaces>, RayAxes::codes> surfaces_;
 };
 
 }  // namespace tessera::volume

@@ -10,6 +10,7 @@
 #include "reference/grid_reference.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
+#include "support/instruction_sets.hpp"
 #include "volume/chunk_cast.hpp"
 #include "volume/image_sink.hpp"
 #include "volume/render.hpp"
@@ -130,6 +131,67 @@ TEST(GridSurface, AtTheValueOfSamplesIsMetOnce) {
           for (int x = 6; x < 27; ++x) EXPECT_NEAR(image.rgba[4 * image.index(x, y) + 3], 0.5, 1e-6) << x << ' ' << y;
       }
   }
+}
+
+/// More values than a vector has lanes.
+TEST(GridSurface, ManyInOneVoxelAreAllMetInTheirOrder) {
+  constexpr int count = 40;
+  constexpr double opacity = 0.02;
+  Surfaces surfaces;
+  surfaces.light = {1, 0, 0, 1};
+  for (int n = 0; n < count; ++n)
+    surfaces.iso.push_back({0.505 + 0.11 * n / count, glm::dvec3(n + 1 == count ? 1 : 0, n == 0 ? 1 : 0, 0), opacity});
+  const auto source = volume_of(cube(), ramp);
+  const double first = opacity, last = opacity * std::pow(1 - opacity, count - 1);
+  for (const bool shaded : {false, true})
+    for (const double side : {1.0, -1.0}) {
+      volume::RenderSettings settings = exact_with(surfaces);
+      if (shaded) settings.shading.emplace();
+      const auto image = volume::Renderer(*source, settings).render(from({1, 0.7, 4 * side}), {24, 24}, clear());
+      const std::size_t middle = 4 * image.index(12, 12);
+      EXPECT_NEAR(image.rgba[middle], side > 0 ? first : last, 1e-6);
+      EXPECT_NEAR(image.rgba[middle + 1], side > 0 ? last : first, 1e-6);
+      EXPECT_NEAR(image.rgba[middle + 3], 1 - std::pow(1 - opacity, count), 2e-6);
+    }
+}
+
+TEST(GridSurface, FewRaysThatMeetThemAreCastAgainInDoublePrecision) {
+  const Volume volume = make_volume({45, 37, 41}, Field::smooth);
+  Surfaces surfaces;
+  for (int n = 1; n < 10; ++n)
+    surfaces.iso.push_back({0.1 * n + 0.037, std::nullopt, 0.3});  // of no side of the volume
+  for (const char* name : {"oblique", "perspective"}) {
+    volume::RenderStatistics statistics;
+    volume::Renderer(*volume.source, exact_with(surfaces)).render(view(name), size, smooth_function(), &statistics);
+    EXPECT_LT(static_cast<double>(statistics.pixels_again), 0.005 * static_cast<double>(statistics.rays)) << name;
+  }
+}
+
+/// Whole numbers, many of which are a surface's value: sides of voxels, edges and whole voxels of it.
+TEST(GridSurface, OfWholeNumbersAreFoundInLanesWhereSidesOfVoxelsHaveTheirValue) {
+  scene::Grid grid;
+  grid.geometry.points = {33, 29, 31};
+  const scene::GridIndex n = grid.geometry.points;
+  std::vector<std::uint8_t> values;
+  for (std::int64_t k = 0; k < n[2]; ++k)
+    for (std::int64_t j = 0; j < n[1]; ++j)
+      for (std::int64_t i = 0; i < n[0]; ++i)
+        values.push_back(static_cast<std::uint8_t>(std::lround(
+            20 + 14 * std::sin(0.3 * double(i)) + 10 * std::cos(0.25 * double(j)) * std::sin(0.2 * double(k)))));
+  const auto source = scene::MemorySource::of(grid, values);
+  const TransferFunction function({{0, {0.2, 0.4, 0.6}, 0.01}, {40, {0.9, 0.4, 0.1}, 0.05}});
+  Surfaces surfaces;
+  surfaces.iso = {{10, std::nullopt, 0.3}, {20, glm::dvec3(0, 1, 0.5), 0.3}, {30, std::nullopt, 0.3}};
+  scene::Camera camera;
+  camera.focal_point = {16, 14, 15};
+  camera.position = {50, 33, 61};
+  camera.projection = ProjectionKind::orthographic;
+  camera.parallel_scale = 25;
+  volume::RenderStatistics statistics;
+  const auto image = volume::Renderer(*source, exact_with(surfaces)).render(camera, size, function, &statistics);
+  const reference::GridReference truth(*source, camera, size, function, scene::Emission::absorption, {}, {}, surfaces);
+  EXPECT_LE(reference::judge(image, truth, promised_error, {}, 2).max_error_not_excused, promised_error);
+  EXPECT_LT(static_cast<double>(statistics.pixels_again), 0.05 * static_cast<double>(statistics.rays));
 }
 
 TEST(GridSurface, BeyondTheFieldsRangeOrOnlyOnTheBoundaryIsNone) {
@@ -298,6 +360,21 @@ TEST(GridSurface, RandomOnesKeepThePromise) {
   EXPECT_GT(seen, static_cast<std::size_t>(last - first) * 3 / 4);
   std::printf("cases %d to %d: largest error %.3g, %zu of %zu pixels excused\n", first, last - 1, worst, excused,
               pixels);
+}
+
+/// Vectors of four and eight lanes look values of surfaces up in memory, those of sixteen hold some.
+TEST(GridSurface, RandomOnesKeepThePromiseOnEveryInstructionSet) {
+  const scene::ImageSize small{24, 20};
+  for_each_instruction_set([&](const std::string& name) {
+    for (unsigned number = 0; number < 24; ++number) {
+      const Case c = random_case(number);
+      const auto image = volume::Renderer(*c.source, c.settings).render(c.camera, small, c.function);
+      const reference::GridReference truth(*c.source, c.camera, small, c.function, c.settings.emission,
+                                           c.settings.shading, c.settings.clip, c.settings.surfaces);
+      EXPECT_LE(reference::judge(image, truth, promised_error, {}, 2).max_error_not_excused, promised_error)
+          << name << ", case " << number;
+    }
+  });
 }
 
 TEST(GridSurface, BitsDoNotDependOnBricksThreadsOrRegionsNorLightOnSkippedSpace) {
