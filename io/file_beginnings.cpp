@@ -166,6 +166,11 @@ bool begins_as_gmsh(const FileBeginning& file) {
   return lines[0] == "$Comments" && file.text.find("$MeshFormat") != std::string_view::npos;
 }
 
+/// ParaView's .p3d: JSON that names grids and solutions.
+bool begins_as_plot3d_list(const FileBeginning& file) {
+  return without_blanks(file.text).starts_with('{') && file.text.find("\"filenames\"") != std::string_view::npos &&
+         file.text.find("\"xyz\"") != std::string_view::npos;
+}
 bool begins_as_su2(const FileBeginning& file) {
   if (!is_text(file.text)) return false;
   const auto lines = first_lines(file.text, '%', 1);

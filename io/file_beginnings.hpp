@@ -37,6 +37,7 @@ bool begins_as_gambit(const FileBeginning& file);
 bool begins_as_gmsh(const FileBeginning& file);
 bool begins_as_medit(const FileBeginning& file);
 bool begins_as_su2(const FileBeginning& file);
+bool begins_as_plot3d_list(const FileBeginning& file);
 bool begins_as_avs_ucd(const FileBeginning& file);
 bool begins_as_tecplot(const FileBeginning& file);
 bool begins_as_stl(const FileBeginning& file);

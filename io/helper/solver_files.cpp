@@ -21,9 +21,14 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -119,14 +124,50 @@ void order_gambit_corners(vtkDataObject& data) {
   }
 }
 
+/// The case files that a master file of several servers lists, each with a part of the mesh; or the file itself.
+std::vector<std::filesystem::path> ensight_cases(const std::filesystem::path& file) {
+  std::ifstream text(file);
+  std::vector<std::filesystem::path> cases;
+  bool is_master = false;
+  for (std::string line; std::getline(text, line) && cases.size() < 65536;) {
+    std::istringstream words(line);
+    std::string key, value;
+    words >> key >> value;
+    if (key == "type:" && value == "master_server") is_master = true;
+    if (is_master && key == "casefile:" && !value.empty()) cases.push_back(file.parent_path() / value);
+  }
+  if (!is_master) return {file};
+  if (cases.empty())
+    throw scene::bad_input(
+        fmt::format("{}: it is a list of EnSight's servers without a `casefile:`; {}", file.string(), write_anew));
+  return cases;
+}
+
 }  // namespace
 
 ForeignContents read_ensight(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {
   allow_for_folder(file.has_parent_path() ? file.parent_path() : std::filesystem::path("."));
-  vtkNew<vtkGenericEnSightReader> reader;
-  reader->SetCaseFileName(file.c_str());
-  reader->ReadAllVariablesOn();
-  return read_by(holdings, *reader, file, request, "EnSight", [] {});
+  const std::vector<std::filesystem::path> cases = ensight_cases(file);
+  ForeignContents contents;
+  for (const std::filesystem::path& each : cases) {
+    if (!std::filesystem::is_regular_file(each))
+      throw scene::bad_input(fmt::format("{}: it lists {}, and there is no such file; put it there", file.string(),
+                                         each.filename().string()));
+    vtkNew<vtkGenericEnSightReader> reader;
+    reader->SetCaseFileName(each.c_str());
+    reader->ReadAllVariablesOn();
+    ForeignContents some = read_by(holdings, *reader, each, request, "EnSight", [] {});
+    if (cases.size() > 1)
+      for (ForeignPart& part : some.parts)
+        part.name = each.stem().string() + (part.name.empty() ? "" : "/" + part.name);
+    if (&each == &cases.front()) {
+      contents = std::move(some);
+      continue;
+    }
+    std::move(some.parts.begin(), some.parts.end(), std::back_inserter(contents.parts));
+    std::move(some.notes.begin(), some.notes.end(), std::back_inserter(contents.notes));
+  }
+  return contents;
 }
 
 ForeignContents read_cgns(Holdings& holdings, const std::filesystem::path& file, const nlohmann::json& request) {

@@ -107,6 +107,9 @@ std::string with_quiet_vtk(const std::string& source, const std::string& remedy,
   // What a file that is cut short gives VTK's legacy reader to say is a warning to it.
   if (quiet.trap->error.empty() && quiet.trap->warning.find("Error reading") != std::string::npos)
     throw scene::bad_input(fmt::format("{}: it ends before its data do; {}", source, remedy));
+  // Legacy files of fields alone.
+  if (quiet.trap->error.find("did not create output") != std::string::npos)
+    throw scene::bad_input(fmt::format("{}: it holds no points and cells; give the file that does", source));
   // Some readers begin with the file's name themselves.
   if (quiet.trap->error.starts_with(source + ": ")) quiet.trap->error.erase(0, source.size() + 2);
   if (!quiet.trap->error.empty()) throw scene::bad_input(fmt::format("{}: {}; {}", source, quiet.trap->error, remedy));

@@ -80,6 +80,16 @@ PARTS = (
     "</Collection></VTKFile>"
 )
 
+ONLY_FIELDS = "# vtk DataFile Version 3.0\nt\nASCII\n\nFIELD all 1\nf 1 4 float\n0 1 2 3\n"
+SERVERS = "FORMAT\ntype: master_server gold\nSERVERS\nnumber of servers: 1\ncasefile: m.case\n"
+ENSIGHT = {
+    "m.case": "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: m.geo\nVARIABLE\nscalar per node: f m.f\n",
+    "m.geo": "made\nhere\nnode id off\nelement id off\npart\n         1\nbox\ncoordinates\n         4\n"
+    + "".join(f"{x:12.5e}\n" for x in (0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1))
+    + "tetra4\n         1\n         1         2         3         4\n",
+    "m.f": "f\npart\n         1\ncoordinates\n" + "".join(f"{x:12.5e}\n" for x in range(4)),
+}
+
 ROWS = [
     # unstructured grids
     mesh(unstructured(cells="0 1 2 9"), "the file holds 4 points; write cells and points from one mesh"),
@@ -107,6 +117,9 @@ ROWS = [
     damaged("a.vtu", TET, "</Points>", "</Point>", "write it anew"),
     damaged("a.vtu", TET, "VTKFile type", "File type", "check that it is one"),
     damaged("a.vtu", TET, '"UnstructuredGrid"', '"Table"', "give a mesh"),
+    row("info a.vtk", "give the file that does", None, {"a.vtk": ONLY_FIELDS}, {"a.vtk": LEGACY}),
+    row("info a.sos", "put it there", None, {"a.sos": SERVERS}, ENSIGHT),
+    damaged("a.sos", SERVERS, "casefile:", "file:", "write it anew", beside=ENSIGHT),
     damaged("a.vtk", LEGACY, "# vtk DataFile Version 3.0", "vtk", "check that it is a legacy VTK file"),
     damaged("a.vtk", LEGACY, "CELL_TYPES 1\n10", "CELL_TYPES 1\n64", "(ParaView: Tetrahedralize)"),
     damaged("a.vtk", LEGACY, "POINTS 4 float", "POINTS 4 flat", "write it anew"),

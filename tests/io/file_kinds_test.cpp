@@ -65,6 +65,8 @@ const Beginning beginnings[] = {
     {"MFEM", "MFEM mesh v1.0\n"},
     {"SU2", "% mesh\nNDIME= 3\n"},
     {"XDMF", "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">"},
+    {"EnSight 6 or Gold", "FORMAT\ntype: master_server gold\nSERVERS\n"},
+    {"PLOT3D list", "{ \"auto-detect-format\" : true, \"filenames\" : [ { \"xyz\" : \"a.xyz\" } ] }"},
     {"Abaqus or Ansys input", "*HEADING\nmodel\n"},
 };
 

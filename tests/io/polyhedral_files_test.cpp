@@ -305,7 +305,25 @@ TEST(PolyhedralFiles, EnSightGoldHasThemAsNfaced) {
                                    "m.f\nscalar per element: c m.c\n");
     expect_like(read_field(file, "f"), block);
     expect_like(read_field(file, "c"), block);
+    const std::string server = "machine id: here\nexecutable: none\ncasefile: m.case\n";
+    const auto list = [&](int servers) {
+      std::string lines = fmt::format("FORMAT\ntype: master_server gold\nSERVERS\nnumber of servers: {}\n", servers);
+      for (int n = 0; n < servers; ++n) lines += server;
+      return folder.write(fmt::format("m{}.sos", servers), lines);
+    };
+    expect_like(read_field(list(1), "c"), block);
+    EXPECT_EQ(read_field(list(2), "c").mesh.tets.size(), 2 * read_field(file, "c").mesh.tets.size());
   }
+}
+
+TEST(PolyhedralFiles, AnEnSightListNamesWhatIsMissing) {
+  const test::TemporaryFolder folder;
+  const auto file =
+      folder.write("m.sos", "FORMAT\ntype: master_server gold\nSERVERS\nnumber of servers: 1\ncasefile: none.case\n");
+  EXPECT_NE(testing::message_of([&] { read_mesh(file); }).find("it lists none.case, and there is no such file"),
+            std::string::npos);
+  const auto empty = folder.write("e.sos", "FORMAT\ntype: master_server gold\nSERVERS\nnumber of servers: 0\n");
+  EXPECT_NE(testing::message_of([&] { read_mesh(empty); }).find("without a `casefile:`"), std::string::npos);
 }
 
 TEST(PolyhedralFiles, FluentsConvexCellsAreReadAsPolyhedra) {
