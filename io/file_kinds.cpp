@@ -119,7 +119,7 @@ constexpr std::array rows = {
     FormatRow{FileKind::unread, "Nek5000", ".nek5000", FileHolds::not_read, Needs::nothing,
               "VTK's reader is not packaged; save it as .vtu in ParaView", begins_as_nek5000},
     FormatRow{FileKind::unread, "PLOT3D list", "", FileHolds::not_read, Needs::nothing,
-              "give the grid that its `xyz` names; the solution goes with --q", begins_as_plot3d_list},
+              "give the grid that it names; `q` takes the solution", begins_as_plot3d_list},
     FormatRow{FileKind::unread, "MFEM", "", FileHolds::not_read, Needs::nothing,
               "its library is not packaged; have MFEM write .vtu", begins_as_mfem},
     FormatRow{FileKind::unread, "Netgen", ".vol", FileHolds::not_read, Needs::nothing,
