@@ -82,7 +82,7 @@ CurvedCells::CurvedCells(const CellBlock& block, std::span<const glm::dvec3> poi
   // A cell that takes far more than others, which is a damaged file's, takes no long time.
   double cost = 1;
   for (const auto& [key, made] : lattices_) cost = std::max(cost, cost_of_tet(made));
-  if (cost > 1 && settings_.limit > enough_of_a_cell)
+  if (!settings_.is_chosen && cost > 1 && settings_.limit > enough_of_a_cell)
     settings_.limit = std::max(enough_of_a_cell, static_cast<std::size_t>(static_cast<double>(settings_.limit) / cost));
 }
 

@@ -24,6 +24,8 @@ struct CurvedSettings {
   std::size_t limit = 0;  ///< tets that one cell may become; 0: none is divided
   /// Tets that all cells may become, beside 64 of each.
   std::uint64_t all = std::numeric_limits<std::uint64_t>::max() / 2;
+  /// `limit` is a user's, and holds for cells of high order too, which take longer.
+  bool is_chosen = false;
 };
 
 /// What a thread needs to divide them, of one cell after another.

@@ -134,6 +134,7 @@ HigherOrderPlan planned(const MeshOptions& options, const CurvedSettings& asked,
   const bool is_chosen = options.higher_order_tets != default_higher_order_tets;
   const std::uint64_t most = is_chosen ? options.higher_order_tets : usual_tets(tally);
   const double factor = tolerance_factor(tally, most);
+  plan.settings.is_chosen = is_chosen;
   plan.tolerance = factor * options.higher_order_tolerance;
   plan.settings.tolerance.position *= factor;
   plan.settings.tolerance.field *= factor;
