@@ -256,8 +256,8 @@ const Segments& SplitRasterizer<Segments>::rasterize(const ProjectedMesh& projec
     split(i, near, origin);
     if (surfaces.first == surfaces.last) continue;
     const auto pixel = static_cast<int>(whole_.pixel(i));
-    const glm::dvec3 ray =
-        projected.iso->space->direction(rect.x0 + pixel % rect.width() + 0.5, rect.y0 + pixel / rect.width() + 0.5);
+    const int x = rect.x0 + pixel % rect.width(), y = rect.y0 + pixel / rect.width();
+    const glm::dvec3 ray = projected.iso->space->direction(x + 0.5, y + 0.5);
     cross(i, *projected.iso, surfaces, origin, ray, normal);
   }
   return pieces_;
