@@ -35,7 +35,7 @@ LINK = 1.25e9  # bytes a second and direction: 10 Gbit
 STAGES = {"projector": ("transform", "cull", "bin", "project", "sort", "integrate", "composite", "pack", "send", "other"),
           "compositor": ("receive", "sort", "integrate", "composite", "assemble", "write", "send", "other")}
 BY_TET = ("transform", "cull", "bin")  # stages that smaller pictures do not shorten
-COLOURS = ("#4e79a7", "#f28e2b", "#e15759", "#76b7b2", "#59a14f", "#edc948", "#b07aa1", "#ff9da7", "#9c755f", "#bab0ac")
+COLOURS = ("#4e79a7", "#f28e2b", "#e15759", "#76b7b2", "#59a14f", "#edc948", "#b07aa1", "#ff9da7", "#9c755f", "#bab0ac", "#1b9e77", "#a6761d", "#7570b3")
 
 
 def as_rank(folder, command):
