@@ -194,7 +194,7 @@ def main():
     print("\n".join(table), flush=True)
     with tempfile.TemporaryDirectory() as folder:
         for name, size, own, others in measure(args, args.work or pathlib.Path(folder)):
-            wall, cpu, memory = (a / b for a, b in zip(own, others))
+            wall, cpu, memory = (a / b for a, b in zip(own[:3], others[:3]))
             reader = f"{own[3] / others[1]:.2f}x, {own[4] / others[2]:.2f}x" if own[4] > 0 else "-"
             table.append(f"| {name} | {size:.0f} | {others[1]:.2f}, {others[2] / 2**20:.0f} | {reader} | {cpu:.2f}x, {memory:.2f}x, {wall:.2f}x |")
             print(table[-1], flush=True)
