@@ -104,7 +104,7 @@ void FrameSetup::find_visible(RendererState& state) {
 }
 
 void FrameSetup::set_up_surfaces(const RendererState& state, const scene::TransferFunction& function) {
-  SurfaceView& view = surface_view_.emplace(state.settings.surfaces, function, view_.lanes);
+  SurfaceView& view = surface_view_.emplace(surfaces_.set(), view_.lanes);
   view.noise = 4 * error_bound_.noise;  // no less than that of any voxel (surface_pieces-inl.h)
   view.brightest = static_cast<float>(std::max(1.0, state.brightest(function)));
   view.unit = state.voxel_side;

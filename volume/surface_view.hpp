@@ -3,9 +3,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "scene/transfer_function.hpp"
-#include "tessera/surfaces.hpp"
-#include "volume/cell_ranges.hpp"
+#include "scene/surface_set.hpp"
+#include "volume/lane_samples.hpp"
 
 namespace tessera::volume {
 
@@ -31,7 +30,7 @@ struct SurfaceView {
   float stretched = 1;       ///< longest world gradient of a step of one a voxel
 
   SurfaceView() = default;
-  SurfaceView(const Surfaces& surfaces, const scene::TransferFunction& function, const LaneSamples& lanes);
+  SurfaceView(const scene::SurfaceSet& surfaces, const LaneSamples& lanes);
 };
 
 }  // namespace tessera::volume
