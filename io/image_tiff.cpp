@@ -133,7 +133,7 @@ void write_tiff(const scene::Image& image, const std::filesystem::path& file, co
   }
   check(TIFFWriteDirectory(tiff.get()) == 1);
   tiff.reset();
-  check(true);
+  check(target.message.empty());  // closing writes, too, and says nothing else of how it went
   target.file.commit();
 }
 

@@ -14,7 +14,7 @@ struct ReadProgress {
   };
   Stage stage = Stage::reading;
   double done = 0;  ///< of that stage, 0 to 1, as far as the library says: it need not grow evenly
-  /// Of filling, what sound surfaces of as many facets and tets take on one core of 2020; 0: not known.
+  /// Of filling, what a sound surface of as many facets takes at most, where that was measured; 0: not known.
   double expected_seconds = 0;
 };
 
