@@ -144,7 +144,7 @@ std::vector<std::array<double, 2>> even_extinctions(const ValueShares& shares, c
 Draft draft_values(const DefaultField& field, const std::array<double, 2>& range, const ValueShares& shares, bool body,
                    const TransferFunctionOptions& options) {
   Draft draft;
-  DefaultRange r = default_range(field, range);
+  DefaultRange r = default_range(field, shares, range);
   if (options.range) r.low = (*options.range)[0], r.high = (*options.range)[1];
   if (options.range) r.has_ground = r.has_ground && r.ground > r.low && r.ground < r.high;
   draft.extinctions = even_extinctions(shares, r);
@@ -242,8 +242,7 @@ DefaultKind default_kind(const DefaultField& field, const std::array<double, 2>&
   return patient && field.is_grid ? DefaultKind::body : DefaultKind::values;
 }
 
-DefaultRange default_range(const DefaultField& field, const std::array<double, 2>& range) {
-  const ValueShares shares(*field.samples);
+DefaultRange default_range(const DefaultField& field, const ValueShares& shares, const std::array<double, 2>& range) {
   DefaultRange r{range[0], range[1], range[0]};
   if (shares.empty()) return r;
   const double low = shares.quantile(0.001), high = shares.quantile(0.999), width = (high - low) / 32;

@@ -62,13 +62,13 @@ class ValueShares {
 /// Which kind a field is of.
 DefaultKind default_kind(const DefaultField& field, const std::array<double, 2>& range);
 
-/// Range of body and values: [low, high], and where the ground ends (low if there is none).
+/// Range of body and values: [low, high], and where the ground ends (low if there is none). `shares` of its samples.
 struct DefaultRange {
   double low = 0, high = 1, ground = 0;
   bool about_zero = false, has_ground = false;
   double ground_share = 0;
 };
-DefaultRange default_range(const DefaultField& field, const std::array<double, 2>& range);
+DefaultRange default_range(const DefaultField& field, const ValueShares& shares, const std::array<double, 2>& range);
 
 /// The function; its name says kind and range. With `options.opacity_points` these instead of the opacities above; with
 /// `options.range` that range.

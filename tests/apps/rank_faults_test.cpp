@@ -222,7 +222,8 @@ TEST_F(RankFaults, UnderAMemoryLimitRanksSayOneLineInAllWhereverTheyDie) {
 TEST_F(RankFaults, AStoppedRankIsNamedAndWaitedFor) {
   if (!has_mpirun()) GTEST_SKIP() << "there is no mpirun";
   for (const std::string& input : inputs_)
-    for (const auto& [ranks, stopped] : std::vector<std::pair<int, int>>{{2, 1}, {2, 0}, {3, 2}, {3, 0}}) {
+    for (const auto& [ranks, stopped] : input == inputs_[0] ? std::vector<std::pair<int, int>>{{2, 1}, {3, 0}}
+                                                            : std::vector<std::pair<int, int>>{{2, 0}, {3, 2}}) {
       std::filesystem::create_directory(pictures_);
       Words words = film(input, {"--stall-timeout", "1.5"}, "60");
       if (input == inputs_[0]) words.insert(words.end(), {"--exchange", "segments"});  // the bytes of one process
@@ -257,7 +258,8 @@ TEST_F(RankFaults, AStoppedRankIsNamedAndWaitedFor) {
 TEST_F(RankFaults, AStoppedRankEndsTheRunWhereThatIsAsked) {
   if (!has_mpirun()) GTEST_SKIP() << "there is no mpirun";
   for (const std::string& input : inputs_)
-    for (const auto& [ranks, stopped] : std::vector<std::pair<int, int>>{{2, 1}, {2, 0}, {4, 3}, {4, 0}}) {
+    for (const auto& [ranks, stopped] : input == inputs_[0] ? std::vector<std::pair<int, int>>{{2, 0}, {4, 3}}
+                                                            : std::vector<std::pair<int, int>>{{2, 1}, {4, 0}}) {
       std::filesystem::create_directory(pictures_);
       Running running(command(ranks, film(input, {"--stall-timeout", "1.5", "--on-stall", "abort"})));
       ASSERT_TRUE(wait_for_pictures(running, 3)) << running.wait().err;
@@ -314,18 +316,18 @@ TEST_F(RankFaults, LongFilmsTakeNoMoreMemoryThanShortOnes) {
     for (const int ranks : {0, 2}) {
       if (ranks > 0 && !has_mpirun()) continue;
       std::filesystem::create_directory(pictures_);
-      const Words words{"render",    input, "-o",     pictures_ + "/f_%04d.pfm", "--size", "16x16", "--orbit", "1200",
+      const Words words{"render",    input, "-o",     pictures_ + "/f_%04d.pfm", "--size", "16x16", "--orbit", "800",
                         "--threads", "1",   "--quiet"};
       Running running(command(ranks, words));
       ASSERT_TRUE(wait_for_pictures(running, 300)) << running.wait().err;
       const pid_t process = ranks > 0 ? ranks_with(pictures_).at(0) : running.process();
       const long early = own_memory(process);
-      ASSERT_TRUE(wait_for_pictures(running, 1100)) << running.wait().err;
+      ASSERT_TRUE(wait_for_pictures(running, 750)) << running.wait().err;
       const long late = own_memory(process);
       EXPECT_EQ(running.wait().status, 0);
       std::filesystem::remove_all(pictures_);
       EXPECT_GT(early, 0);
-      // Records of 3 KB a frame would be 2,400.
+      // Records of 3 KB a frame would be 1,350.
       EXPECT_LT(late - early, 600) << input << " on " << ranks;
     }
 }

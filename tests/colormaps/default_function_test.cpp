@@ -37,7 +37,7 @@ TEST(DefaultFunction, AnOutlierDoesNotDecideTheRange) {
     return y > 0.99F ? 0 : x < 0.04F && y < 0.04F ? 1e6 : x;
   });
   const DefaultField field{&samples};
-  const DefaultRange range = default_range(field, {0, 1e6});
+  const DefaultRange range = default_range(field, ValueShares(*field.samples), {0, 1e6});
   EXPECT_LT(range.high, 1);
   EXPECT_GE(range.low, 0);
 }
@@ -77,9 +77,9 @@ TEST(DefaultFunction, AirOfACtIsClearAndBoneIsDenserThanMuscle) {
 
 TEST(DefaultFunction, TheGroundOfAGridIsClear) {
   const auto samples = cube_of([](float x, float, float z) { return x < 0.6F ? 0.01 * z : x; });
-  const DefaultRange range = default_range({&samples, true}, {0, 1});
+  const DefaultRange range = default_range({&samples, true}, ValueShares(samples), {0, 1});
   EXPECT_TRUE(range.has_ground);
-  EXPECT_FALSE(default_range({&samples, false}, {0, 1}).has_ground);
+  EXPECT_FALSE(default_range({&samples, false}, ValueShares(samples), {0, 1}).has_ground);
   const auto function = default_function({&samples, true}, options_over(0, 1)).function;
   EXPECT_EQ(function.evaluate(0.005).extinction, 0);
   EXPECT_GT(function.evaluate(0.8).extinction, 0);
@@ -87,7 +87,7 @@ TEST(DefaultFunction, TheGroundOfAGridIsClear) {
 
 TEST(DefaultFunction, SignedFieldsAreShownAboutZero) {
   const auto samples = cube_of([](float x, float, float) { return 3.0 * x - 1; });
-  const DefaultRange range = default_range({&samples}, {-1, 2});
+  const DefaultRange range = default_range({&samples}, ValueShares(samples), {-1, 2});
   EXPECT_TRUE(range.about_zero);
   EXPECT_EQ(range.low, -range.high);
 }
