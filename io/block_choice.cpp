@@ -51,6 +51,17 @@ void require_blocks(const BlockChoice& choice, std::span<const std::string> bloc
   }
 }
 
+std::string note_on_surfaces(std::string_view what, std::span<const std::string> names) {
+  constexpr std::size_t most = 20;
+  std::string text;
+  for (const std::string& name : names.first(std::min(names.size(), most)))
+    text += (text.empty() ? "" : ", ") + scene::quote(name);
+  if (names.size() > most) text += fmt::format(" and {} more", names.size() - most);
+  return names.size() == 1
+             ? fmt::format("1 {} is a surface and is left out: {} (`surface` shows it)", what, text)
+             : fmt::format("{} {}s are surfaces and are left out: {} (`surface` shows one)", names.size(), what, text);
+}
+
 std::vector<std::string> distinct_names(std::vector<std::string> names) {
   std::unordered_set<std::string> known{""};
   std::erase_if(names, [&](const std::string& name) { return !known.insert(name).second; });

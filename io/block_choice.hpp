@@ -18,9 +18,13 @@ bool means_block(std::string_view name, std::string_view block);
 bool is_chosen(const BlockChoice& choice, std::string_view block);
 
 /// Throws Error(bad_input) for a name that means none of a file's blocks, with those that there are and the nearest;
-/// `with_surfaces`: with all of them, for `info` does not list surfaces.
+/// `with_surfaces`: with all of them, for `info` lists few surfaces.
 void require_blocks(const BlockChoice& choice, std::span<const std::string> blocks, const std::string& source,
                     bool with_surfaces = false);
+
+/// A note for `info` on parts of a file that are surfaces beside its volume, `what` of them ("side set"): how many
+/// there are, and the first twenty names.
+std::string note_on_surfaces(std::string_view what, std::span<const std::string> names);
 
 /// The names without empty ones and repetitions, in their order.
 std::vector<std::string> distinct_names(std::vector<std::string> names);

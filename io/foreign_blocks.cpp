@@ -368,18 +368,15 @@ std::vector<CellBlock> blocks_of(const ForeignFile& file, std::vector<std::strin
       if (*array) bytes += (*array)->bytes();
   file.helper->expect(bytes);
   std::vector<CellBlock> blocks;
-  std::size_t surfaces = 0;
+  std::vector<std::string> surfaces;
   for (const ForeignPart& part : file.contents.parts) {
     if (part.kind == ForeignPart::Kind::surface && file.contents.parts.size() > 1 && !file.with_surfaces) {
-      ++surfaces;
+      surfaces.push_back(part.name);
       continue;
     }
     blocks.push_back(block_of(file, part, grids));
   }
-  if (surfaces > 0)
-    notes.push_back(fmt::format("{} left out", surfaces == 1
-                                                   ? "1 block is a surface and is"
-                                                   : fmt::format("{} blocks are surfaces and are", surfaces)));
+  if (!surfaces.empty()) notes.push_back(note_on_surfaces("block", surfaces));
   return blocks;
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "io/block_choice.hpp"
 #include "io/file_beginnings.hpp"
 #include "io/foreign_file.hpp"
 #include "io/inflated_file.hpp"
@@ -47,7 +48,8 @@ void add_pieces_of_whole(const std::filesystem::path& file, const std::string& b
   });
 }
 
-void add_block(ListedPiece listed, const BlockChoice& choice, PieceList& list, std::size_t& surfaces_left_out) {
+void add_block(ListedPiece listed, const BlockChoice& choice, PieceList& list,
+               std::vector<std::string>& surfaces_left_out) {
   if (!is_chosen(choice, listed.block)) {  // nor looked into, so that it may be a surface
     list.block_names.push_back(listed.block);
     return;
@@ -55,7 +57,7 @@ void add_block(ListedPiece listed, const BlockChoice& choice, PieceList& list, s
   listed.type = type_of(listed.file);
   const bool is_wanted = list.with_surfaces && listed.type == surfaces.front();
   if (is_any_of(listed.type, surfaces) && !is_wanted) {
-    ++surfaces_left_out;
+    surfaces_left_out.push_back(std::move(listed.block));
     return;
   }
   list.block_names.push_back(listed.block);
@@ -68,7 +70,8 @@ void add_block(ListedPiece listed, const BlockChoice& choice, PieceList& list, s
 
 void add_blocks(const std::filesystem::path& file, const BlockChoice& choice, PieceList& list) {
   std::vector<std::string> path;  // of names, by depth
-  std::size_t count = 0, surfaces_left_out = 0;
+  std::size_t count = 0;
+  std::vector<std::string> surfaces_left_out;
   each_xml_element(read_text_file(file), file.string(), [&](const XmlElement& element) {
     const std::string* const own = element.find("name");
     path.resize(element.parents.size());
@@ -83,10 +86,7 @@ void add_blocks(const std::filesystem::path& file, const BlockChoice& choice, Pi
     ++count;
     add_block({file.parent_path() / *listed, file.string(), std::move(name), ""}, choice, list, surfaces_left_out);
   });
-  if (surfaces_left_out > 0)
-    list.notes.push_back(fmt::format(
-        "{} left out", surfaces_left_out == 1 ? "1 block is a surface and is"
-                                              : fmt::format("{} blocks are surfaces and are", surfaces_left_out)));
+  if (!surfaces_left_out.empty()) list.notes.push_back(note_on_surfaces("block", surfaces_left_out));
 }
 
 void require_piece(const ListedPiece& piece, const std::string& type) {

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "io/block_choice.hpp"
 #include "io/helper/exodus_faces.hpp"
 #include "io/helper/exodus_sets.hpp"
 #include "io/helper/netcdf_size.hpp"
@@ -274,6 +275,7 @@ class Reading {
       blocks_.back().of = std::move(of);
     }
     result_.block_names.insert(result_.block_names.end(), sets.names().begin(), sets.names().end());
+    if (!sets.sides_left_out().empty()) result_.notes.push_back(note_on_surfaces("side set", sets.sides_left_out()));
     for (const std::int64_t set : sets.sides())
       add_sides(
           file_->id(), set, init_.num_nodes, most_values_, [this](const std::string& what) { file_->fail(what); },

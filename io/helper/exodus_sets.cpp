@@ -71,10 +71,9 @@ ExodusSets::ExodusSets(int id, const ex_init_params& init, const BlockChoice& ch
   const std::vector<std::int64_t> sides = ids_of(id, EX_SIDE_SET, init.num_side_sets, most_values, fail);
   if (!with_sides) refuse(id, EX_SIDE_SET, sides, "side set", "faces", choice, source);
   for (const std::int64_t set : sides) {
-    if (!with_sides) break;
     const std::string given = exodus_name(id, EX_SIDE_SET, set);
-    names_.push_back(given.empty() ? fmt::format("side set {}", set) : given);
-    if (!choice.empty() && is_chosen(choice, names_.back())) sides_.push_back(set);
+    (with_sides ? names_ : sides_left_out_).push_back(given.empty() ? fmt::format("side set {}", set) : given);
+    if (with_sides && !choice.empty() && is_chosen(choice, names_.back())) sides_.push_back(set);
   }
   refuse(id, EX_NODE_SET, ids_of(id, EX_NODE_SET, init.num_node_sets, most_values, fail), "node set", "points", choice,
          source);

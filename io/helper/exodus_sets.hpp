@@ -29,11 +29,14 @@ class ExodusSets {
   /// Which of the elements [first, first + count), from 0, are in chosen sets: numbers from 0 to count - 1, ascending.
   [[nodiscard]] std::vector<std::uint64_t> chosen_of(std::uint64_t first, std::uint64_t count) const;
 
+  /// Names of the side sets that were not asked for.
+  [[nodiscard]] const std::vector<std::string>& sides_left_out() const { return sides_left_out_; }
+
   /// Ids of the chosen side sets.
   [[nodiscard]] const std::vector<std::int64_t>& sides() const { return sides_; }
 
  private:
-  std::vector<std::string> names_;
+  std::vector<std::string> names_, sides_left_out_;
   std::vector<std::int64_t> sides_;
   std::vector<std::uint64_t> elements_;  ///< of the chosen sets, from 0, ascending, each once
 };

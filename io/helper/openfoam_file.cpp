@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "io/block_choice.hpp"
 #include "io/gzip.hpp"
 #include "io/helper/readers.hpp"
 #include "io/helper/time_steps.hpp"
@@ -126,6 +127,18 @@ int processor_folders(const std::filesystem::path& folder) {
   return count;
 }
 
+/// Names of the patches of all regions, after UpdateInformation(); not of those between processors.
+std::vector<std::string> patches_of(vtkOpenFOAMReader& reader) {
+  std::vector<std::string> patches;
+  for (int k = 0; k < reader.GetNumberOfPatchArrays(); ++k) {
+    const std::string name = reader.GetPatchArrayName(k);
+    const std::size_t slash = name.rfind('/');
+    const std::string own = slash == std::string::npos ? name : name.substr(slash + 1);
+    if (own != "internalMesh" && !own.starts_with("procBoundary")) patches.push_back(own);
+  }
+  return distinct_names(std::move(patches));
+}
+
 /// The request's share of the processors, one by one, as whole and shares alike are read: their blocks in their order.
 void read_processors(Holdings& holdings, ProcessorReader& reader, const std::filesystem::path& folder,
                      const std::string& source, const nlohmann::json& request, ForeignContents& contents) {
@@ -177,7 +190,10 @@ ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::path& n
     reader->UpdateInformation();
     reader->EnableAllCellArrays();
     reader->EnableAllPointArrays();
-    if (request.value("surfaces", false)) reader->EnableAllPatchArrays();  // without, the volume alone is on
+    if (request.value("surfaces", false))
+      reader->EnableAllPatchArrays();  // without, the volume alone is on
+    else if (const std::vector<std::string> patches = patches_of(*reader); !patches.empty())
+      contents.notes.push_back(note_on_surfaces("patch", patches));
     if (is_decomposed) return read_processors(holdings, *reader, folder, source, request, contents);
     update_at_step(*reader, request, source, contents.time_step);
     if (vtkDataObject* const data = reader->GetOutputDataObject(0); data != nullptr)

@@ -311,11 +311,12 @@ TEST(Render, WithoutAnyOfItsMechanismsThePictureIsTheSame) {
 
   const auto culling = render("culling");
   EXPECT_EQ(counter(culling, "tets_invisible"), 0u);
-  EXPECT_GT(counter(culling, "segments"), counter(all, "segments"));
   EXPECT_EQ(culling["method"]["without"], "culling");
   const auto lattice = render("lattice");
   EXPECT_EQ(lattice["frames"][0]["arithmetic"], "double");
   const auto termination = render("termination");
+  // How many segments termination spares depends on which threads come first and how many lanes they have.
+  EXPECT_GT(counter(render("culling,termination"), "segments"), counter(termination, "segments"));
   EXPECT_LE(termination["frames"][0]["verify"]["max_error"], all["frames"][0]["verify"]["max_error"]);
   render("culling,skipping,termination,lattice,merging");
 
