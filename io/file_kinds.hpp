@@ -26,6 +26,7 @@ enum class FileKind : std::uint8_t {
   gmsh,        ///< what Gmsh's library reads; FormatRow::reader
   su2,
   plot3d,
+  plot3d_list,
   tetgen_mesh,     ///< .node and .ele
   tetgen_surface,  ///< .poly and .smesh
   stl,

@@ -13,6 +13,7 @@
 #include "io/mesh_formats.hpp"
 #include "io/mesh_shares.hpp"
 #include "io/plot3d_layout.hpp"
+#include "io/plot3d_list.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -167,6 +168,23 @@ MeshBlocks read_plot3d(const std::filesystem::path& file, const MeshOptions& opt
                                     {"iblank", layout.iblank}},
                                    options);
   result.notes.insert(result.notes.begin(), notes.begin(), notes.end());
+  return result;
+}
+
+MeshBlocks read_plot3d_list(const std::filesystem::path& file, const MeshOptions& options) {
+  require_beside_others(file);
+  const std::vector<Plot3dStep> steps = parse_plot3d_list(read_text_file(file), file);
+  const TimeStepRead chosen = chosen_step(options.time_step, steps.size(), file.string());
+  const Plot3dStep& step = steps[chosen.step];
+  MeshOptions of_step = options;
+  of_step.time_step.reset();
+  if (of_step.plot3d_q.empty()) of_step.plot3d_q = step.solution;
+  MeshBlocks result = read_plot3d(step.grid, of_step);
+  for (CellBlock& block : result.blocks)
+    if (block.source.empty()) block.source = step.grid.string();
+  result.time_step = chosen;
+  if (step.has_functions)
+    result.notes.emplace_back("the list names a file of functions beside the solution, which is not read");
   return result;
 }
 

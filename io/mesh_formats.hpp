@@ -82,6 +82,10 @@ MeshBlocks read_hdf5(const std::filesystem::path& file, const MeshOptions& optio
 /// looked for beside the grid by its name, and if there is none the mesh has no field. IBLANK 0 hides a point's cells.
 MeshBlocks read_plot3d(const std::filesystem::path& file, const MeshOptions& options);
 
+/// The same of one time of ParaView's list of such files (.p3d, plot3d_list.hpp), by default the last. `plot3d_q` takes
+/// the place of the solution that it names.
+MeshBlocks read_plot3d_list(const std::filesystem::path& file, const MeshOptions& options);
+
 /// A surface (.stl .vtp .ply .poly .smesh) filled by TetGen with tets of at most `max_volume`, or of a 30,000th of what
 /// it encloses. Point fields: "depth", the distance to the surface in world units, after the file's own attributes.
 MeshBlocks read_surface(const std::filesystem::path& file, FileKind kind, std::optional<double> max_volume,

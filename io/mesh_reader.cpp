@@ -53,6 +53,8 @@ MeshBlocks read_content(const std::filesystem::path& file, const FormatRow& row,
       return {parse_su2(MappedFile(file).text(), file.string()), {}, "SU2"};
     case FileKind::plot3d:
       return read_plot3d(file, options);
+    case FileKind::plot3d_list:
+      return read_plot3d_list(file, options);
     case FileKind::tetgen_mesh:
       return read_node_ele(file);
     case FileKind::stl:

@@ -192,7 +192,7 @@ FrameOutcome Renderer::make_frame(const FrameOrder& order) {
   if (order.level == Level::moving) view.size = shrunk(view.size, shrinks.at(order.shrink));
   const LoadedTransferFunction& loaded = stage_.function(*held, *scene);
   FrameProgress progress(order, queue_, view.size);
-  const bool stand_in = order.level == Level::moving && order.stand_in && stage_.has_stand_in(held);
+  const bool stand_in = order.level == Level::moving && order.stand_in && stage_.has_stand_in(state, held);
   RenderedFrame rendered = stand_in ? stage_.render_stand_in(*scene, *held, view, &progress, order.stop.get_token())
                                     : stage_.render(state, *scene, *held, view, {}, &progress, order.stop.get_token());
   if (rendered.stopped || order.stop.stop_requested()) {

@@ -208,9 +208,25 @@ RenderedFrame Stage::render_stand_in(const Scene& scene, HeldData& held, const V
   return held.stand_in_session->render(view, loaded.function, {}, sink, stop);
 }
 
-bool Stage::has_stand_in(const std::shared_ptr<HeldData>& held) {
+void Stage::make_stand_in_together(const Json& state, HeldData& held) {
+  held.stand_in_tried = true;
+  const bool is_first = job_.rank() == 0;
+  if (held.data.is_grid() && !is_first) return;  // of a grid every rank has all samples
+  tell({{"do", "stand_in"}, {"state", state}});
+  try {
+    std::optional<Dataset> made = coarse_stand_in(held.data, {}, {}, job_.communicator());
+    if (is_first) held.stand_in = std::move(made);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::bad_input) throw;  // else there is none, as if nobody had asked
+  }
+}
+
+bool Stage::has_stand_in(const Json& state, const std::shared_ptr<HeldData>& held) {
   if (held->stand_in) return true;
-  if (ranks() > 1) return false;  // all ranks would have to make it at one time
+  if (ranks() > 1) {
+    if (!held->stand_in_tried) make_stand_in_together(state, *held);
+    return held->stand_in.has_value();
+  }
   {
     const std::lock_guard lock(mutex_);
     if (making_ != nullptr) return false;
@@ -252,7 +268,7 @@ Session& Stage::session(const Json& /*state*/, const Scene& scene, HeldData& hel
   while (sessions_.size() >= most) sessions_.pop_back();
   if (held.data.is_grid()) settings.memory_bytes = std::max(settings.memory_bytes / most, std::uint64_t{1} << 20);
   KeptSession kept{key, std::make_unique<Trace>(), nullptr};
-  if (ranks() == 1) settings.trace = kept.trace.get();
+  settings.trace = kept.trace.get();
   kept.session = std::make_unique<Session>(held.data, settings, job_.communicator());
   sessions_.push_front(std::move(kept));
   return *sessions_.front().session;
@@ -333,6 +349,7 @@ void Stage::obey(const Json& order) {
   }
   const auto held = find(*scene);
   if (!held) throw Error(ErrorCode::system_failure, "server", "this rank has other data than the first", "report this");
+  if (order.at("do") == "stand_in") return make_stand_in_together(state, *held);
   View view = scene->view(held->data);
   if (order.at("do") == "probe") {
     probe(state, *scene, *held, view, {order.at("x").get<int>(), order.at("y").get<int>()},

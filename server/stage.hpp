@@ -58,12 +58,12 @@ class Stage {
   /// A picture of the scene, in a size that may be another than the scene's. Collective.
   RenderedFrame render(const Json& state, const Scene& scene, HeldData& held, const View& view,
                        const FrameSettings& settings, Sink* sink, const std::stop_token& stop);
-  /// Of that picture, how long each stage took: its share of the frame's time. One process.
+  /// Of that picture, how long each stage took: its share of the frame's time. Of several ranks of this one.
   std::map<std::string, double> stage_times(double frame_ms);
-  /// Whether there is a stand-in for the data; making one begins with the first question. On several ranks there is
-  /// none.
-  bool has_stand_in(const std::shared_ptr<HeldData>& held);
-  /// The picture of the stand-in, without surfaces of meshes.
+  /// Whether there is a stand-in for the scene's data; making one begins with the first question. On several ranks all
+  /// make it before that is answered.
+  bool has_stand_in(const Json& state, const std::shared_ptr<HeldData>& held);
+  /// The picture of the stand-in, without surfaces of meshes, by this process alone.
   RenderedFrame render_stand_in(const Scene& scene, HeldData& held, const View& view, Sink* sink,
                                 const std::stop_token& stop);
   /// The session of the scene's last picture.
@@ -101,6 +101,7 @@ class Stage {
   void keep(const Scene& scene, Dataset data);
   void drop(const std::string& key);
   void read_in_background(std::shared_ptr<const Scene> scene);
+  void make_stand_in_together(const Json& state, HeldData& held);
   /// Throws Error(bad_input) for what takes too much memory.
   void check_size(ImageSize size) const;
   Dataset open_together(const Scene& scene);

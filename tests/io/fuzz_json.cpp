@@ -1,4 +1,5 @@
-// Any text is a ParaView colour map, knots, a ParaView file series, a JSON camera, or refused in one line.
+// Any text is a ParaView colour map, knots, a ParaView file series or list of PLOT3D files, a JSON camera, or refused
+// in one line.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include "io/camera_file.hpp"
 #include "io/json_transfer_function.hpp"
 #include "io/paraview_color_map.hpp"
+#include "io/plot3d_list.hpp"
 #include "io/time_series.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -15,6 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   test::parse_or_refuse([&] { io::parse_json_cameras(text, "f"); });
   test::parse_or_refuse([&] { test::require(!io::parse_file_series(text, "f").empty()); });
+  test::parse_or_refuse([&] { test::require(!io::parse_plot3d_list(text, "f").empty()); });
   test::parse_or_refuse([&] {
     colormaps::TransferFunctionOptions options;
     options.field_range = {-3, 1e6};

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "io/mesh_checks.hpp"
@@ -229,6 +230,40 @@ TEST(Plot3d, TheSolutionIsFoundByNameOrGiven) {
   folder.write("finxyz.bin", "");
   folder.write("finq.bin", "");
   EXPECT_EQ(find_plot3d_solution(folder / "finxyz.bin"), folder / "finq.bin");
+}
+
+TEST(Plot3d, ListsOfFilesAreReadOneTimeEach) {
+  const test::TemporaryFolder folder;
+  const Plot3dLayout small{true, false, false, false, false, {{2, 2, 2}}};
+  const Plot3dLayout large{false, true, true, true, false, {{3, 2, 2}, {2, 2, 2}}};
+  folder.write("small.bin", grid_bytes(small));
+  folder.write("small_9.bin", solution_bytes(small));
+  folder.write("large.bin", grid_bytes(large));
+  const auto list = folder.write("a.p3d", R"({"auto-detect-format": true, "functions": [110], "filenames": [
+      {"time": 4.5, "xyz": "small.bin", "q": "small_9.bin", "function": "f.bin"},
+      {"time": 3.5, "xyz": "large.bin"}]})");
+  const MeshFile last = read_mesh(list);
+  EXPECT_EQ(last.mesh.field_name, "Density");
+  EXPECT_NEAR(testing::volume(last.mesh), 1, 1e-12);
+  EXPECT_EQ(last.time_step.count, 2u);
+  EXPECT_EQ(last.time_step.step, 1u);
+  EXPECT_EQ(std::ranges::count_if(last.notes, [](const auto& n) { return n.find("functions") != n.npos; }), 1);
+  MeshOptions first;
+  first.time_step = 0;
+  const MeshFile before = read_mesh(list, first);
+  EXPECT_EQ(before.mesh.field_name, "none");
+  EXPECT_NEAR(testing::volume(before.mesh), 3, 1e-12);
+  EXPECT_EQ(time_steps_of_mesh(list, {}), 2u);
+  first.time_step = 2;
+  test::expect_bad_input([&] { read_mesh(list, first); }, {"a.p3d: there is no time step 2, the file has 2"});
+  for (const auto& [entries, words] : std::vector<std::pair<std::string, std::string>>{
+           {"[{\"xyz\": \"no.bin\"}]", "no.bin"},
+           {"[{\"xyz\": 3}]", "b.p3d: entry 0 of \"filenames\" has a name that is none"},
+           {"[{\"xyz\": \"small.bin\", \"time\": \"x\"}]", "has a \"time\" that is no number"},
+           {"[{\"xyz\": \"small.bin\"}, {\"q\": \"small_9.bin\"}]", "entry 1 of \"filenames\" has no \"xyz\""},
+           {"[7]", "entry 0 of \"filenames\" is no object"}})
+    test::expect_bad_input(
+        [&] { read_mesh(folder.write("b.p3d", "{\"filenames\": " + entries + ", \"of\": {\"xyz\": 1}}")); }, {words});
 }
 
 TEST(Plot3d, DamagedFilesAreTold) {

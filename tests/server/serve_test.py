@@ -170,6 +170,26 @@ def answers(file):
         server.json("GET", "/api/camera", expect=405)
 
 
+def stand_in_of(file, launcher=()):
+    """What moves is shown by a stand-in where nothing else is in time; what rests never is."""
+    with Server(options.tessera, file, "--latency", "1", launcher=launcher, environment=MPI if launcher else None) as server:
+        state = dict(server.data()["defaults"], size="200x150")
+        client = server.socket()
+        seen = []
+        for number in range(1, 200):
+            client.state(number, dict(state, azimuth=str(number)), moving=True)
+            header, image = client.frame()
+            seen.append(header["stand_in"])
+            if seen[-1]:
+                check(image.startswith(b"\xff\xd8"), "a stand-in that is no JPEG")
+                break
+        check(seen[-1] and not seen[0], f"{file.name}: stand-ins are {seen}")
+        client.state(1000, state)
+        header, _ = client.last_frame(1000)
+        check(header["final"] and not header["stand_in"], header)
+        check(header["stages"] and abs(sum(header["stages"].values()) - header["milliseconds"]) < 1, header)
+
+
 def part_pictures():
     for file in files():
         pictures_of(file)
@@ -177,6 +197,10 @@ def part_pictures():
         answers(file)
         if not options.without_mpi and file.name != "cells.vtu":
             pictures_of(file, MPIRUN)
+    stand_in_of(folder / "cells.vtu")
+    if not options.without_mpi:
+        for name in ("ball.vtu", "ripples.vti"):
+            stand_in_of(folder / name, MPIRUN)
 
 
 def part_refusals():

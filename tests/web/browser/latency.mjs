@@ -1,6 +1,6 @@
 // How long from event to painted picture, as the page measures it: turns the view by the mouse for some seconds.
 //
-//   TESSERA_PROGRAM=... TESSERA_WEB_PACKAGES=... node latency.mjs FILE [SECONDS [WIDTHxHEIGHT [OPTIONS OF SERVE...]]]
+//   TESSERA_PROGRAM=... TESSERA_WEB_PACKAGES=... [TESSERA_RANKS=2] node latency.mjs FILE [SECONDS [WIDTHxHEIGHT [OPTIONS OF SERVE...]]]
 import { at_rest, launch, missing, serve } from "./support.mjs";
 
 const [file, seconds = "10", size = "1280x800", ...words] = process.argv.slice(2);
@@ -10,7 +10,8 @@ if (reason) {
   process.exit(2);
 }
 const [width, height] = size.split("x").map(Number);
-const server = serve([file, ...words]);
+const ranks = Number(process.env.TESSERA_RANKS ?? 1);
+const server = serve([file, ...words], ranks);
 const address = await server.address;
 const browser = await launch();
 const page = await browser.newPage({ viewport: { width, height } });
@@ -31,7 +32,7 @@ await page.mouse.up();
 await at_rest(page).catch(() => {});
 const still = await page.evaluate(() => window.tessera.shown());
 console.log(JSON.stringify({
-  file, window: size, frames: moving.count, frames_a_second: moving.count / Number(seconds), median_ms: moving.median, p95_ms: moving.p95,
+  file, ranks, window: size, frames: moving.count, frames_a_second: moving.count / Number(seconds), median_ms: moving.median, p95_ms: moving.p95,
   moving: { size: `${moving.shown.width}x${moving.shown.height}`, stand_in: moving.shown.stand_in, milliseconds: moving.shown.milliseconds },
   still: { level: still.level, size: `${still.width}x${still.height}`, milliseconds: still.milliseconds },
 }, null, 1));

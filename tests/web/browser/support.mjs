@@ -23,9 +23,12 @@ export async function launch() {
   return chromium.launch({ executablePath: chromium_file, args });
 }
 
-/** `tessera serve` with these words. @param {string[]} words */
-export function serve(words) {
-  const child = spawn(program, ["serve", ...words], { stdio: ["ignore", "pipe", "pipe"] });
+/** `tessera serve` with these words, on several ranks if told. @param {string[]} words @param {number} ranks */
+export function serve(words, ranks = 1) {
+  const launcher = ranks > 1 ? ["mpirun", "-n", String(ranks), "--oversubscribe"] : [];
+  const [command, ...rest] = [...launcher, program, "serve", ...words];
+  const as_root = { OMPI_ALLOW_RUN_AS_ROOT: "1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM: "1" };
+  const child = spawn(command, rest, { stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, ...as_root } });
   let said = "", errors = "";
   child.stderr.on("data", (bytes) => { errors += bytes; });
   const ended = new Promise((done) => child.on("close", (code) => done(code)));
