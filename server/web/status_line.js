@@ -25,7 +25,7 @@ export class StatusLine {
     this.verdict = element("span", { class: "verdict", role: "status" });
     this.stages = by_id("stages");
     by_id("status").append(this.level, this.size, this.time, this.error, this.latency, this.verdict, this.verify);
-    /** Of each frame while moving: milliseconds from the event that made its state to its painting. @type {number[]} */
+    /** Of each frame while moving: milliseconds from the event that made its state to its painting. @type {{ latency: number, stand_in: boolean }[]} */
     this.moving_latencies = [];
     /** @type {FrameHeader | undefined} */
     this.header = undefined;
@@ -44,7 +44,7 @@ export class StatusLine {
     this.error.textContent = header.promised_error ? `error ≤ ${short_number(header.promised_error, 2)}` : header.stand_in ? "no error promised" : "";
     if (header.level === "moving") {
       if (latency !== undefined) {
-        this.moving_latencies.push(latency);
+        this.moving_latencies.push({ latency, stand_in: header.stand_in });
         if (this.moving_latencies.length > most_latencies) this.moving_latencies.shift();
       }
     } else {
@@ -54,9 +54,10 @@ export class StatusLine {
     if (header.level === "moving") this.verdict.textContent = "";
   }
 
-  /** Of frames while moving. */
-  latencies() {
-    return median_and_95(this.moving_latencies);
+  /** Of frames while moving; of those of stand-ins, or of the data themselves, alone. @param {boolean} [stand_in] */
+  latencies(stand_in) {
+    const meant = this.moving_latencies.filter((frame) => stand_in === undefined || frame.stand_in === stand_in);
+    return median_and_95(meant.map((frame) => frame.latency));
   }
 
   /** @param {string} text */
