@@ -44,7 +44,7 @@ export class StatusLine {
     this.error.textContent = header.promised_error ? `error ≤ ${short_number(header.promised_error, 2)}` : header.stand_in ? "no error promised" : "";
     if (header.level === "moving") {
       if (latency !== undefined) {
-        this.moving_latencies.push({ latency, stand_in: header.stand_in });
+        this.moving_latencies.push({ latency, stand_in: header.stand_in === true });
         if (this.moving_latencies.length > most_latencies) this.moving_latencies.shift();
       }
     } else {
