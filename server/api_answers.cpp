@@ -92,8 +92,12 @@ Json resolved(const ApiContext& context, const OpenScene& open) {
     state.erase(view_word);
   state["size"] = fmt::format("{}x{}", view.size.width, view.size.height);
   if (!data.shows_shape()) state["field"] = open.scene->field_word(data);
-  if (data.time_steps() > 1 && !state.contains("time-step"))
-    state["time-step"] = fmt::format("{}", data.time_steps() - 1);
+  const std::uint64_t steps = std::max<std::uint64_t>(data.time_steps(), context.reader.times().size());
+  if (steps > 1 && !state.contains("time-step")) {
+    const Json base = context.reader.base();  // of a series, its first step
+    const auto begun_with = base.find("time-step");
+    state["time-step"] = begun_with != base.end() ? *begun_with : Json(fmt::format("{}", steps - 1));
+  }
   if (!state.contains("transfer-function")) {
     // The very function of the first picture, which goes by how the field's values share the volume.
     state["transfer-function"] = Json::parse(transfer_function_json(loaded.function));

@@ -5,8 +5,9 @@
  * @typedef {import("./types.js").Vector} Vector
  */
 import { basis_of } from "./camera.js";
-import { button, checkbox, choice, element, icon_button } from "./dom.js";
+import { button, checkbox, choice, element, icon_button, show_value, typed } from "./dom.js";
 import { DoubleSlider } from "./double_slider.js";
+import { parsed_number, short_number } from "./numbers.js";
 import { dot, scale, unit } from "./vector.js";
 
 /** @type {[string, Vector][]} */
@@ -106,12 +107,18 @@ export class ClipEditor {
       const [low, high] = this.#span(normal);
       write(normal, low + (Number(slider.value) / 1000) * (high - low), moving);
     };
+    const typed_place = typed(`Place of clip plane ${index + 1} along its direction`, (text) => {
+      const offset = parsed_number(text);
+      if (!Number.isFinite(offset)) return false;
+      write(read().normal, offset, false);
+      return true;
+    }, { class: "short" });
     const direction = choice(`Direction of clip plane ${index + 1}`, (word) => {
       const { point } = read();
       const normal = word === "eye" ? scale(basis_of(this.page.camera).forward, -1) : normals[Number(word)]?.[1];
       if (normal) write(normal, dot(point, normal), false);
     }, [...normals.map(([text], i) => /** @type {[string, string]} */ ([String(i), text])), ["eye", "towards the eye"], ["own", "its own"]]);
-    return element("div", { class: "row plane" }, direction, slider, icon_button("trash", `Remove clip plane ${index + 1}`, () => this.#set_plane(index, undefined, false)));
+    return element("div", { class: "row plane" }, direction, slider, typed_place, icon_button("trash", `Remove clip plane ${index + 1}`, () => this.#set_plane(index, undefined, false)));
   }
 
   /** @param {number} index @param {number[]} plane */
@@ -120,7 +127,9 @@ export class ClipEditor {
     const normal = unit(/** @type {Vector} */ (plane.slice(3)));
     const [low, high] = this.#span(normal);
     const slider = /** @type {HTMLInputElement} */ (line.querySelector("input"));
-    slider.value = String(Math.round(((dot(/** @type {Vector} */ (plane.slice(0, 3)), normal) - low) / (high - low || 1)) * 1000));
+    const offset = dot(/** @type {Vector} */ (plane.slice(0, 3)), normal);
+    show_value(/** @type {HTMLInputElement} */ (line.querySelector("input[type=text]")), short_number(offset, 5));
+    slider.value = String(Math.round(((offset - low) / (high - low || 1)) * 1000));
     const known = normals.findIndex(([, n]) => dot(n, normal) > 1 - 1e-6);
     /** @type {HTMLSelectElement} */ (line.querySelector("select")).value = known < 0 ? "own" : String(known);
   }

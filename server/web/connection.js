@@ -117,7 +117,8 @@ export class Connection {
     this.asked_at = 0;
     // A socket does not say why it was not opened; a request does.
     try {
-      if (!this.ended) await ask("api/data", AbortSignal.timeout(this.answer_time));
+      // A server that was started anew has another token, and says so.
+      if (!this.ended || this.tries > 0) await ask("api/data", AbortSignal.timeout(this.answer_time));
     } catch (error) {
       if (error instanceof Refused) {
         this.listeners.status("refused", { sentence: error.message });

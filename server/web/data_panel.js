@@ -90,6 +90,8 @@ export class DataPanel {
     fill_choice(this.part, [["mag", "length"], ...letters.map((w) => /** @type {[string, string]} */ ([w, w]))]);
     this.part.value = part || "mag";
     this.smooth.input.checked = page.option("smooth") === true;
+    const found = page.data.fields.find((f) => (name.includes(":") ? `${f.association}:${f.name}` : f.name) === name);
+    this.smooth.input.disabled = found?.association === "point" && !this.smooth.input.checked;
     const step = this.current_step;
     show_value(this.step, String(step));
     show_value(this.step_text, String(step));

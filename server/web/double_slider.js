@@ -47,14 +47,13 @@ export class DoubleSlider {
   #typed(end, word) {
     const value = parsed_number(word);
     if (Number.isNaN(value) || (end === 0 ? value >= this.ends[1] : value <= this.ends[0])) return false;
-    this.#set(end, value, false);
+    this.#set(end, value, false, 0);
     return true;
   }
 
-  /** @param {0|1} end @param {number} value @param {boolean} moving */
-  #set(end, value, moving) {
+  /** @param {0|1} end @param {number} value @param {boolean} moving @param {number} least distance of the ends */
+  #set(end, value, moving, least = (this.limits[1] - this.limits[0]) / 1000) {
     const ends = /** @type {[number, number]} */ ([...this.ends]);
-    const least = (this.limits[1] - this.limits[0]) / 1000;
     ends[end] = end === 0 ? Math.min(value, ends[1] - least) : Math.max(value, ends[0] + least);
     this.show(this.limits, ends);
     this.change(ends, moving);

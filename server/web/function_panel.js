@@ -15,8 +15,11 @@ import * as functions from "./transfer_function.js";
 
 /** What of the state a function depends on, and what its histogram does. */
 const data_words = ["field", "time-step", "block", "smooth"];
-const function_words = [...data_words, "transfer-function", "range", "log", "opacity", "unit-distance"];
+const function_words = [...data_words, "threshold", "clip", "transfer-function", "range", "log", "opacity", "unit-distance"];
 const histogram_words = [...data_words, "threshold", "clip", "log"];
+
+/** A point as it comes back from the server. @param {number[]} point */
+const rounded = (point) => point.map((v) => Number(v.toPrecision(6)));
 
 export class FunctionPanel {
   /** @param {Page} page */
@@ -30,6 +33,8 @@ export class FunctionPanel {
     this.reply = undefined;
     /** @type {import("./types.js").HistogramReply | undefined} */
     this.histogram = undefined;
+    /** The shape that was chosen last, and its points: it is shown until they are edited. @type {{ name: string, opacities: number[][] } | undefined} */
+    this.chosen_shape = undefined;
     this.editor = new FunctionEditor({
       edit: (edited, moving) => this.#edit(edited, moving),
       range: (range, moving) => this.#set_range(range, moving),
@@ -147,7 +152,10 @@ export class FunctionPanel {
     if (function_key !== this.function_key) {
       this.function_key = function_key;
       work.push(this.function_question.ask("api/function", { state: this.page.full_state() })
-        .then((reply) => { if (reply && function_key === this.#key(function_words)) this.#take(reply); }).catch(() => { this.function_key = ""; }));
+        .then((reply) => { if (reply && function_key === this.#key(function_words)) this.#take(reply); }).catch(() => {
+          this.function_key = "";
+          this.element.inert = false;
+        }));
     }
     if (work.length === 0) return;
     await Promise.all(work);
@@ -158,6 +166,7 @@ export class FunctionPanel {
   #take(reply) {
     this.reply = reply;
     // What is being edited is not replaced under the hand; the reply to its last state comes too.
+    this.element.inert = false;
     if (this.editor.dragging) return;
     const own = this.page.history.state["transfer-function"];
     this.editor.edited = functions.edited_function(reply, own, Number(this.page.option("opacity") ?? 1));
@@ -174,7 +183,9 @@ export class FunctionPanel {
     show_value(this.distance, short_number(reply.unit_distance, 5));
     const [name, shape] = this.#words();
     for (const swatch of this.swatches.children) {
-      const chosen = swatch.getAttribute("data-preset") === name;
+      // The server's own function says of which colours it is: "cool-warm over 0 to 1, ...".
+      const preset = swatch.getAttribute("data-preset");
+      const chosen = preset === name || editor.edited.name.startsWith(`${preset} over `);
       swatch.setAttribute("aria-pressed", String(chosen));
     }
     this.shape.value = shape ?? "";
@@ -192,8 +203,9 @@ export class FunctionPanel {
       const [name, shape] = word.split(":");
       return [name, shape ?? this.page.data.opacities[0]];
     }
-    const name = this.editor.edited?.name;
-    return [this.page.data.presets.some((preset) => preset.name === name) ? name : undefined, undefined];
+    const { edited } = this.editor, shape = this.chosen_shape;
+    const has_shape = edited && shape && same(edited.opacities.map(rounded), shape.opacities.map(rounded));
+    return [this.page.data.presets.some((preset) => preset.name === edited?.name) ? edited?.name : undefined, has_shape ? shape.name : undefined];
   }
 
   /**
@@ -206,14 +218,18 @@ export class FunctionPanel {
     const word = this.page.history.state["transfer-function"];
     if (typeof word === "string" || (colors === undefined && name !== undefined) || this.editor.edited === undefined) {
       const both = `${colors ?? name ?? "cool-warm"}:${shape ?? old_shape ?? "ramp"}`;
+      if (both !== word) this.element.inert = true; // what is drawn is the function before, until the server has answered
       this.page.history.change({ "transfer-function": both });
       return;
     }
     const state = { ...this.page.full_state(), opacity: null, "transfer-function": `${colors ?? "gray"}:${shape ?? "ramp"}`, range: this.editor.edited.range.join(",") };
+    this.element.inert = true;
     const reply = await this.page.messages.of(ask_about("api/function", { state }), "function");
+    this.element.inert = false;
     if (!reply) return;
     const preset = functions.edited_function(reply);
     const { edited } = this.editor;
+    if (shape) this.chosen_shape = { name: shape, opacities: preset.opacities };
     this.#edit(shape ? { ...edited, opacities: preset.opacities }
       : { ...edited, colors: preset.colors, color_space: preset.color_space, hsv_wrap: preset.hsv_wrap, name: colors ?? edited.name }, false);
   }
@@ -323,7 +339,10 @@ export class FunctionPanel {
     this.remove.disabled = !point || !list || selection?.index === 0 || selection?.index === list.length - 1;
     this.point_value.placeholder = "value";
     this.point_opacity.placeholder = "opacity";
-    if (!edited || !point) return;
+    if (!edited || !point) {
+      for (const input of [this.point_value, this.point_opacity]) show_value(input, "");
+      return;
+    }
     this.point_value.disabled = selection?.index === 0 || selection?.index === (list?.length ?? 0) - 1;
     show_value(this.point_value, short_number(functions.value_at(edited, point[0]), 6));
     show_value(this.point_opacity, selection?.kind === "opacity" ? short_number(point[1], 4) : "");

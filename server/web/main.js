@@ -21,7 +21,7 @@ import { PicturePanel } from "./picture_panel.js";
 import { PictureView } from "./picture_view.js";
 import { ProbePanel } from "./probe_panel.js";
 import { LatestQuestion, Refused, StillReading } from "./requests.js";
-import { StateHistory } from "./state.js";
+import { same, StateHistory } from "./state.js";
 import { StatusLine } from "./status_line.js";
 import { ViewPanel } from "./view_panel.js";
 
@@ -179,6 +179,7 @@ function show_error(message) {
   by_id("frame-progress").hidden = true;
   const action = history.can_undo ? { text: "Undo", act: () => history.undo() } : { text: "Default view", act: () => history.load(first_state({})) };
   messages.complain(message.error, { about: "state", action });
+  status.outdated("not the state's: see the message");
   document.body.dataset.shown = `${message.number ?? 0} error`;
 }
 
@@ -200,7 +201,10 @@ function show_connection(state, detail) {
   document.body.dataset.connection = state;
   clearInterval(countdown);
   if (state === "open") {
-    if (!banner.hidden) messages.tell("The connection is back.");
+    if (!banner.hidden) {
+      messages.clear_errors();
+      messages.tell("The connection is back.");
+    }
     banner.hidden = true;
     view.forget_numbers();
     if (page.ready) sender.opened();
@@ -333,6 +337,8 @@ let turning = false;
 history.listen(({ state, before, moving }) => {
   if (!page.ready) return;
   turning = state.camera !== before.camera;
+  status.outdated(connection.is_open ? undefined : "not the state's: no connection");
+  if ([...data_words, "iso", "surface"].some((word) => !same(state[word], before[word]))) probe.forget();
   const size = /^(\d+)x(\d+)$/.exec(state.size ?? "");
   if (state.size !== before.size || (size === null) !== (view.fixed === undefined)) view.fix_size(size ? { width: Number(size[1]), height: Number(size[2]) } : undefined);
   const badge = by_id("fixed-size");
@@ -402,6 +408,11 @@ const keys = {
   1: () => void page.look("front"), 2: () => void page.look("back"), 3: () => void page.look("left"), 4: () => void page.look("right"),
   5: () => void page.look("top"), 6: () => void page.look("bottom"), 7: () => void page.look("iso"),
 };
+
+document.addEventListener("untaken", (event) => {
+  const { label, text, held } = /** @type {CustomEvent} */ (event).detail;
+  messages.tell(`${label || "This value"}: "${text}" cannot be used here${held ? `; ${held} stays in force` : ""}.`);
+});
 
 document.addEventListener("keydown", (event) => {
   const target = event.target instanceof Element ? event.target : document.body;

@@ -32,6 +32,10 @@ export class Messages {
     this.shown.delete(about);
   }
 
+  clear_errors() {
+    for (const [about, line] of [...this.shown]) if (line.classList.contains("error")) this.clear(about);
+  }
+
   /** Says what a promise failed at. @template T @param {Promise<T>} work @param {string} [about] @returns {Promise<T | undefined>} */
   async of(work, about) {
     try {

@@ -11,6 +11,9 @@ import { LatestQuestion } from "./requests.js";
 
 const plot = { width: 320, height: 150, left: 40, right: 30, top: 8, bottom: 24 };
 
+/** @type {Record<string, string>} */
+const meanings = { Value: "at the first visible point of the ray", "Half-way value": "where the ray's opacity is half of what it comes to" };
+
 export class ProbePanel {
   /** @param {Page} page @param {(value: number) => void} add_surface */
   constructor(page, add_surface) {
@@ -31,6 +34,16 @@ export class ProbePanel {
   }
 
   begin() {}
+
+  /** The data are others: what was found is of those before. */
+  forget() {
+    this.point = undefined;
+    this.value = undefined;
+    this.facts.replaceChildren();
+    this.plot.setAttribute("hidden", "");
+    this.actions.hidden = true;
+    this.place_marker();
+  }
 
   /** @param {{x: number, y: number}} place picture coordinates */
   async probe(place) {
@@ -57,8 +70,11 @@ export class ProbePanel {
         reply.rgba && ["Colour", reply.rgba.map((/** @type {number} */ v) => short_number(v, 3)).join(", ")]]
       : [["Nothing", "no visible point on this ray"]];
     this.facts.replaceChildren(element("dt", {}, "Pixel"), element("dd", {}, `${pixel.x}, ${pixel.y}`),
-      ...lines.filter(Boolean).flatMap((line) => [element("dt", {}, line[0]), element("dd", {}, line[1])]));
+      ...lines.filter(Boolean).flatMap((line) => [element("dt", { title: meanings[line[0]] }, line[0]), element("dd", {}, line[1])]));
     this.actions.hidden = !reply.hit;
+    this.marker.dataset.value = reply.hit ? short_number(reply.value, 6) : "";
+    if (!reply.hit) this.page.messages.tell("There is no visible point on this ray.");
+    this.element.scrollIntoView({ block: "nearest" });
     this.#draw(reply.profile, reply.hit ? reply.depth : undefined);
     this.place_marker();
   }

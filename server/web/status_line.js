@@ -54,6 +54,15 @@ export class StatusLine {
     if (header.level === "moving") this.verdict.textContent = "";
   }
 
+  /** The state has changed: what was said is of the picture before. `sentence`: why there is no new one, if there is none to come. @param {string} [sentence] */
+  outdated(sentence) {
+    this.verdict.textContent = "";
+    if (sentence) {
+      this.busy(sentence);
+      this.error.textContent = "";
+    }
+  }
+
   /** Of frames while moving; of those of stand-ins, or of the data themselves, alone. @param {boolean} [stand_in] */
   latencies(stand_in) {
     const meant = this.moving_latencies.filter((frame) => stand_in === undefined || frame.stand_in === stand_in);

@@ -198,6 +198,12 @@ def part_pictures():
         if not options.without_mpi and file.name != "cells.vtu":
             pictures_of(file, MPIRUN)
     stand_in_of(folder / "cells.vtu")
+    (folder / "s.pvd").write_text("<VTKFile type='Collection'><Collection><DataSet timestep='1' file='ball.vtu'/>"
+                                  "<DataSet timestep='2' file='ball.vtu'/></Collection></VTKFile>")
+    for words, step in ((), "0"), (("--time-step", "1"), "1"):
+        with Server(options.tessera, folder / "s.pvd", *words) as server:
+            found = server.data()
+            check(found["defaults"]["time-step"] == step and found["times"] == [1, 2], found)
     if not options.without_mpi:
         for name in ("ball.vtu", "ripples.vti"):
             stand_in_of(folder / name, MPIRUN)

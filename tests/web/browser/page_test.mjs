@@ -447,6 +447,26 @@ test("a probe tells the value and draws the profile", async () => {
   await page.locator("#marker").waitFor({ state: "visible" });
 });
 
+test("what was found goes when the data change, and what cannot be used is said", async () => {
+  assert.match(await page.locator("#marker").getAttribute("data-value"), /^-?[0-9]/);
+  await page.evaluate(() => window.tessera.change({ threshold: "0,1e9" }));
+  await page.locator("#marker").waitFor({ state: "hidden" });
+  await page.evaluate(() => window.tessera.change({ threshold: undefined }));
+  await at_rest(page);
+  const panel = await opened_section("Colour and opacity");
+  const low = panel.locator("input[aria-label='Low end of the range']");
+  const held = await low.inputValue();
+  await low.fill("abc");
+  await low.press("Enter");
+  await page.getByText(`"abc" cannot be used here; ${held} stays in force`).first().waitFor();
+  await page.evaluate(() => document.activeElement.blur());
+  for (const name of ["rise", "ramp"]) {
+    await panel.locator("#shape").selectOption(name);
+    await at_rest(page);
+    await page.waitForFunction((wanted) => !document.querySelector("#shape").closest("[inert]") && document.querySelector("#shape").value === wanted, name);
+  }
+});
+
 test("pixels are verified on request", async () => {
   await page.getByRole("button", { name: "Verify" }).click();
   await page.locator(".verdict[data-good='true']").waitFor({ timeout: 30000 });
