@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "apps/argument_values.hpp"
+#include "apps/progress.hpp"
 #include "apps/serve_scene.hpp"
 #include "server/serve.hpp"
 #include "tessera/error.hpp"
@@ -60,6 +61,7 @@ void serve(const RenderWords& words, const ServeWords& serve_words, const CLI::A
   events.listening = [](const std::string& url) {
     fmt::print("{}\n", url);
     std::fflush(stdout);
+    if (shows_progress(false)) fmt::print(stderr, "Open this address in a browser; Ctrl-C ends the server.\n");
   };
   events.ended_while_reading = [] {
     abandon_outputs();

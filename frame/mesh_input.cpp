@@ -10,7 +10,7 @@ namespace tessera::frame {
 io::MeshFile read_input(const std::filesystem::path& input, const io::MeshOptions& options) {
   if (io::is_time_series(input))
     throw scene::bad_input(
-        fmt::format("{}: is a time series, which only render takes; give one of its meshes", input.string()));
+        fmt::format("{}: it is a time series, which render and serve take; give one of its meshes", input.string()));
   return io::read_mesh(input, options);
 }
 

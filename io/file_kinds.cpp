@@ -206,7 +206,7 @@ void refuse_as_mesh(const std::filesystem::path& file) {
     throw scene::bad_input(fmt::format("{}: it is {}, which is not read; {}", file.string(), row->name, row->remark));
   if (row->holds == FileHolds::series)
     throw scene::bad_input(
-        fmt::format("{}: is a time series, which only render takes; give one of its meshes", file.string()));
+        fmt::format("{}: it is a time series, which render and serve take; give one of its meshes", file.string()));
   throw scene::bad_input(
       fmt::format("{}: it is a regular grid, no mesh; give it alone or among volumes", file.string()));
 }
