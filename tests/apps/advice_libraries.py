@@ -11,6 +11,7 @@ from advice_library_files import (
     MEDIT,
     MINC,
     PLOT3D,
+    PLOT3D_LIST,
     SLICES,
     SOLUTION,
     UCD,
@@ -208,6 +209,8 @@ ROWS = [
         foam_case(),
     ),
     # PLOT3D
+    damaged("a.p3d", PLOT3D_LIST, '[{"xyz": "a.xyz"}]', '{"xyz": "a.xyz"}', "check that it is ParaView's", beside={"a.xyz": PLOT3D}),
+    damaged("a.p3d", PLOT3D_LIST, '"a.xyz"', "3", "write it anew", beside={"a.xyz": PLOT3D}),
     damaged("a.xyz", PLOT3D, "2 2 2\n0", "2 2 3\n0", "is truncated or of another kind (the solution goes with --q)"),
     row(
         "info a.bin",

@@ -22,6 +22,7 @@ UCD = (
 )
 
 CUBE = [[(k & 1), (k >> 1) & 1, k >> 2] for k in range(8)]
+PLOT3D_LIST = '{"filenames": [{"xyz": "a.xyz"}]}'
 PLOT3D = "2 2 2\n" + "".join(" ".join(str(p[axis]) for p in CUBE) + "\n" for axis in range(3))
 SOLUTION = "2 2 2\n0.5 0 1 0\n" + "".join(" ".join("12345678") + "\n" for _ in range(5))
 
