@@ -267,10 +267,10 @@ Session& Stage::session(const Json& /*state*/, const Scene& scene, HeldData& hel
   const std::size_t most = ranks() > 1 ? 1 : most_sessions;
   while (sessions_.size() >= most) sessions_.pop_back();
   if (held.data.is_grid()) settings.memory_bytes = std::max(settings.memory_bytes / most, std::uint64_t{1} << 20);
-  KeptSession kept{key, std::make_unique<Trace>(), nullptr};
-  settings.trace = kept.trace.get();
-  kept.session = std::make_unique<Session>(held.data, settings, job_.communicator());
-  sessions_.push_front(std::move(kept));
+  auto trace = std::make_unique<Trace>();
+  settings.trace = trace.get();
+  auto session = std::make_unique<Session>(held.data, settings, job_.communicator());
+  sessions_.push_front({key, std::move(trace), std::move(session)});
   return *sessions_.front().session;
 }
 
