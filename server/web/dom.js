@@ -80,8 +80,8 @@ export function fill_choice(select, options) {
 }
 
 /**
- * A typed value that counts when it is left or Enter is pressed; `change` says false if it is none. An
- * event "untaken" tells so.
+ * A typed value that counts when it is left or Enter is pressed; `change` says false if it is none, which
+ * the event "untaken" tells.
  * @param {string} label @param {(text: string) => boolean | void} change @param {Record<string, any>} [attributes]
  */
 export function typed(label, change, attributes = {}) {
@@ -90,9 +90,12 @@ export function typed(label, change, attributes = {}) {
     on_change: () => {
       const taken = change(input.value) !== false;
       input.setAttribute("aria-invalid", String(!taken));
-      const label = input.getAttribute("aria-label") ?? input.labels?.[0]?.textContent ?? "";
-      if (!taken) input.dispatchEvent(new CustomEvent("untaken", { bubbles: true, detail: { label, text: input.value, held: input.dataset.held } }));
-      if (taken) input.dataset.held = input.value;
+      if (taken) {
+        input.dataset.held = input.value;
+        return;
+      }
+      const named = label || (input.labels?.[0]?.textContent ?? "");
+      input.dispatchEvent(new CustomEvent("untaken", { bubbles: true, detail: { label: named, text: input.value, held: input.dataset.held } }));
     },
     on_focus: () => { input.dataset.held = input.value; },
   });

@@ -28,6 +28,8 @@ export class FunctionPanel {
     this.function_question = new LatestQuestion();
     this.histogram_question = new LatestQuestion();
     this.function_key = "";
+    /** Of the reply that is shown. */
+    this.taken_key = "";
     this.histogram_key = "";
     /** @type {FunctionReply | undefined} */
     this.reply = undefined;
@@ -68,6 +70,8 @@ export class FunctionPanel {
     this.remove = icon_button("trash", "Remove the point (Delete)", () => this.editor.remove());
     this.point_row = element("div", { class: "row point-row" }, this.point_value, this.point_opacity, this.point_color, add, this.remove);
 
+    this.curve = element("div", { class: "curve" }, this.editor.element, this.point_row);
+
     this.few = button("Edit colours", () => this.editor.edited && this.#edit(functions.with_few_colors(this.editor.edited), false),
       { title: "Keep the few colours that say most, each with a handle on the bar" });
 
@@ -96,7 +100,7 @@ export class FunctionPanel {
     this.element.append(
       this.swatches,
       element("div", { class: "row" }, element("label", { for: "shape" }, "Shape"), this.shape, icon_button("swap", "Reverse the colours", () => this.#reverse())),
-      this.editor.element, this.point_row,
+      this.curve,
       element("div", { class: "checks" }, log_axis.label, this.log.label, close.label, this.few),
       element("div", { class: "row" }, element("span", { class: "label" }, "Range"), this.low, this.high), ranges,
       row("Opacity ×", this.strength, this.strength_text), row("Distance", this.distance),
@@ -152,21 +156,32 @@ export class FunctionPanel {
     if (function_key !== this.function_key) {
       this.function_key = function_key;
       work.push(this.function_question.ask("api/function", { state: this.page.full_state() })
-        .then((reply) => { if (reply && function_key === this.#key(function_words)) this.#take(reply); }).catch(() => {
+        .then((reply) => {
+          if (!reply || function_key !== this.#key(function_words)) return;
+          this.taken_key = function_key;
+          this.#hold(false);
+          this.#take(reply);
+        }).catch(() => {
           this.function_key = "";
-          this.element.inert = false;
+          this.#hold(false);
         }));
+    } else if (function_key === this.taken_key) {
+      this.#hold(false); // a choice that was undone before anything was asked
     }
     if (work.length === 0) return;
     await Promise.all(work);
     this.editor.show(this.editor.edited, this.histogram);
   }
 
+  /** Whether the curve waits for the server; what was chosen from keeps the focus. @param {boolean} on */
+  #hold(on) {
+    this.curve.inert = on;
+  }
+
   /** @param {FunctionReply} reply */
   #take(reply) {
     this.reply = reply;
     // What is being edited is not replaced under the hand; the reply to its last state comes too.
-    this.element.inert = false;
     if (this.editor.dragging) return;
     const own = this.page.history.state["transfer-function"];
     this.editor.edited = functions.edited_function(reply, own, Number(this.page.option("opacity") ?? 1));
@@ -183,9 +198,7 @@ export class FunctionPanel {
     show_value(this.distance, short_number(reply.unit_distance, 5));
     const [name, shape] = this.#words();
     for (const swatch of this.swatches.children) {
-      // The server's own function says of which colours it is: "cool-warm over 0 to 1, ...".
-      const preset = swatch.getAttribute("data-preset");
-      const chosen = preset === name || editor.edited.name.startsWith(`${preset} over `);
+      const chosen = swatch.getAttribute("data-preset") === name;
       swatch.setAttribute("aria-pressed", String(chosen));
     }
     this.shape.value = shape ?? "";
@@ -218,14 +231,14 @@ export class FunctionPanel {
     const word = this.page.history.state["transfer-function"];
     if (typeof word === "string" || (colors === undefined && name !== undefined) || this.editor.edited === undefined) {
       const both = `${colors ?? name ?? "cool-warm"}:${shape ?? old_shape ?? "ramp"}`;
-      if (both !== word) this.element.inert = true; // what is drawn is the function before, until the server has answered
+      if (both !== word) this.#hold(true); // what is drawn is the function before, until the server has answered
       this.page.history.change({ "transfer-function": both });
       return;
     }
     const state = { ...this.page.full_state(), opacity: null, "transfer-function": `${colors ?? "gray"}:${shape ?? "ramp"}`, range: this.editor.edited.range.join(",") };
-    this.element.inert = true;
+    this.#hold(true);
     const reply = await this.page.messages.of(ask_about("api/function", { state }), "function");
-    this.element.inert = false;
+    this.#hold(false);
     if (!reply) return;
     const preset = functions.edited_function(reply);
     const { edited } = this.editor;

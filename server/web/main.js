@@ -179,7 +179,7 @@ function show_error(message) {
   by_id("frame-progress").hidden = true;
   const action = history.can_undo ? { text: "Undo", act: () => history.undo() } : { text: "Default view", act: () => history.load(first_state({})) };
   messages.complain(message.error, { about: "state", action });
-  status.outdated("not the state's: see the message");
+  status.outdated("an older picture: see the message");
   document.body.dataset.shown = `${message.number ?? 0} error`;
 }
 
@@ -213,7 +213,8 @@ function show_connection(state, detail) {
     end_reading();
     const again = element("span");
     const retry = button("Try now", () => connection.retry());
-    const text = state === "refused" ? `${detail.sentence ?? "The server refuses this page."} Open the address that tessera serve printed.`
+    const refusal = detail.sentence ?? "The server refuses this page.";
+    const text = state === "refused" ? `${refusal}${/open the/i.test(refusal) ? "" : " Open the address that tessera serve printed."}`
       : state === "ended" ? `The server has ended. ${/^the server (was|has) ended/i.test(detail.sentence ?? "") ? "" : detail.sentence ?? ""}` : "The connection to the server is lost; the picture stays, and changes are shown once it is back.";
     banner.replaceChildren(element("span", {}, text), " ", again, ...(state === "refused" ? [] : [retry]));
     banner.hidden = false;
@@ -337,8 +338,8 @@ let turning = false;
 history.listen(({ state, before, moving }) => {
   if (!page.ready) return;
   turning = state.camera !== before.camera;
-  status.outdated(connection.is_open ? undefined : "not the state's: no connection");
-  if ([...data_words, "iso", "surface"].some((word) => !same(state[word], before[word]))) probe.forget();
+  status.outdated(connection.is_open ? undefined : "an older picture: no connection");
+  if (data_words.some((word) => !same(state[word], before[word]))) probe.forget();
   const size = /^(\d+)x(\d+)$/.exec(state.size ?? "");
   if (state.size !== before.size || (size === null) !== (view.fixed === undefined)) view.fix_size(size ? { width: Number(size[1]), height: Number(size[2]) } : undefined);
   const badge = by_id("fixed-size");
