@@ -233,8 +233,8 @@ DefaultKind default_kind(const DefaultField& field, const std::array<double, 2>&
   if (field.shape) return DefaultKind::shape;
   const bool patient = field.axes != BodyAxes::none;
   if ((patient || field.format == "DICOM CT") && range[0] <= -900 && range[1] >= 200) return DefaultKind::ct;
-  const ValueShares shares(*field.samples, true);
-  if (whole(range[0]) && whole(range[1]) && !shares.empty()) {
+  if (whole(range[0]) && whole(range[1]) && !field.samples->samples.empty()) {
+    const ValueShares shares(*field.samples, true);
     const std::vector<double> labels = shares.distinct(highest_label + 1);
     const bool few = labels.size() <= most_labels || (range[0] >= 0 && range[1] <= highest_label);
     if (labels.size() > 2 && few && std::ranges::all_of(labels, whole)) return DefaultKind::labels;

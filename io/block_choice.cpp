@@ -57,9 +57,9 @@ std::string note_on_surfaces(std::string_view what, std::span<const std::string>
   for (const std::string& name : names.first(std::min(names.size(), most)))
     text += (text.empty() ? "" : ", ") + scene::quote(name);
   if (names.size() > most) text += fmt::format(" and {} more", names.size() - most);
-  return names.size() == 1
-             ? fmt::format("1 {} is a surface and is left out: {} (`surface` shows it)", what, text)
-             : fmt::format("{} {}s are surfaces and are left out: {} (`surface` shows one)", names.size(), what, text);
+  return names.size() == 1 ? fmt::format("1 {} is a surface and is left out: {} (`surface` shows it)", what, text)
+                           : fmt::format("{} {}{} are surfaces and are left out: {} (`surface` shows one)",
+                                         names.size(), what, what.ends_with("ch") ? "es" : "s", text);
 }
 
 std::vector<std::string> distinct_names(std::vector<std::string> names) {

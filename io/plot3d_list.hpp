@@ -8,9 +8,9 @@ namespace tessera::io {
 
 /// One time of a list of PLOT3D files.
 struct Plot3dStep {
-  double time = 0;  ///< its place in the list where none is given
-  std::filesystem::path grid, solution;
-  bool has_functions = false;  ///< a file of functions, which is not read
+  double time = 0;                       ///< its place in the list where none is given
+  std::filesystem::path grid, solution;  ///< solution: empty if none is named
+  bool has_functions = false;            ///< a file of functions, which is not read
 };
 
 /// The text of ParaView's list of PLOT3D files (.p3d), {"filenames": [{"time", "xyz", "q", "function"}, ...]}, in the

@@ -30,7 +30,6 @@ MeshBlocks read_vtk_legacy(const std::filesystem::path& file, const MeshOptions&
 MeshBlocks read_exodus(const std::filesystem::path& file, const MeshOptions&) { refuse(file); }
 MeshBlocks read_solver_file(const std::filesystem::path& file, const char*, const MeshOptions&) { refuse(file); }
 MeshBlocks read_plot3d(const std::filesystem::path& file, const MeshOptions&) { refuse(file); }
-
 MeshBlocks read_plot3d_list(const std::filesystem::path& file, const MeshOptions&) { refuse(file); }
 OpenedAmr open_amr_list(const std::filesystem::path& file) { refuse(file); }
 OpenedAmr open_hyper_trees(const std::filesystem::path& file) { refuse(file); }

@@ -127,11 +127,13 @@ int processor_folders(const std::filesystem::path& folder) {
   return count;
 }
 
-/// Names of the patches of all regions, after UpdateInformation(); not of those between processors.
+/// Names of the patches of all regions, after UpdateInformation(); not of those between processors, nor of groups of
+/// patches, which are no surfaces of their own.
 std::vector<std::string> patches_of(vtkOpenFOAMReader& reader) {
   std::vector<std::string> patches;
   for (int k = 0; k < reader.GetNumberOfPatchArrays(); ++k) {
     const std::string name = reader.GetPatchArrayName(k);
+    if (name.find("group/") != std::string::npos) continue;
     const std::size_t slash = name.rfind('/');
     const std::string own = slash == std::string::npos ? name : name.substr(slash + 1);
     if (own != "internalMesh" && !own.starts_with("procBoundary")) patches.push_back(own);

@@ -31,6 +31,15 @@ std::string zone(int number, int x) {
          " 0 0\n" + at + " 1 0\n" + at + " 0 1\n";
 }
 
+TEST(BlockChoice, SurfacesAreNotedByName) {
+  const std::vector<std::string> two{"inlet", "walls"}, many(23, "x");
+  EXPECT_EQ(note_on_surfaces("patch", two),
+            "2 patches are surfaces and are left out: 'inlet', 'walls' (`surface` shows one)");
+  EXPECT_EQ(note_on_surfaces("side set", std::span(two).first(1)),
+            "1 side set is a surface and is left out: 'inlet' (`surface` shows it)");
+  EXPECT_NE(note_on_surfaces("block", many).find("'x' and 3 more (`surface`"), std::string::npos);
+}
+
 TEST(BlockChoice, OnlyTheNamedBlocksAreRead) {
   const test::TemporaryFolder folder;
   const auto file = folder.write("a.su2", "NZONE= 3\n" + zone(1, 0) + zone(2, 10) + zone(3, 20));
