@@ -14,6 +14,7 @@
 #include "io/mesh_shares.hpp"
 #include "io/plot3d_layout.hpp"
 #include "io/plot3d_list.hpp"
+#include "io/text_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
