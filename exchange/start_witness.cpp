@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -10,19 +9,14 @@
 #include <cerrno>
 #include <string>
 
+#include "exchange/first_contact.hpp"
 #include "exchange/one_line.hpp"
 
 namespace tessera::exchange {
 namespace {
 
 std::string words(const std::string& program) {
-  rlimit space{};
-  getrlimit(RLIMIT_AS, &space);
-  const std::string remedy =
-      space.rlim_cur == RLIM_INFINITY
-          ? std::string("see the settings of MPI and of this machine")
-          : fmt::format("a rank may use {} MiB of address space (ulimit -v), raise that limit", space.rlim_cur >> 20);
-  return fmt::format("{}: MPI: a rank ended while MPI started, its words are above; {}\n", program, remedy);
+  return fmt::format("{}: MPI: a rank ended while MPI started, its words are above; {}\n", program, memory_remedy());
 }
 
 /// Returns when the other end has written or is gone: whether it has written.

@@ -11,6 +11,7 @@
 
 #include "exchange/attempt.hpp"
 #include "exchange/collectives.hpp"
+#include "exchange/first_contact.hpp"
 #include "exchange/instruction_sets.hpp"
 #include "exchange/loopback_transport.hpp"
 #include "exchange/mpi_transport.hpp"
@@ -47,9 +48,16 @@ struct Job::State {
     if (mpi) return *mpi;
     return alone->rank(0);
   }
+
+  /// Before ranks first wait for one another.
+  void meet() {
+    if (!has_met) exchange::make_first_contact(transport(), exchange::first_contact_patience());
+    has_met = true;
+  }
+  bool has_met = false;
 };
 
-Job::Job(JobVoice voice) : state_(std::make_unique<State>(State{std::move(voice), nullptr, nullptr})) {
+Job::Job(JobVoice voice) : state_(std::make_unique<State>(State{std::move(voice), nullptr, nullptr, false})) {
   if (exchange::launched_by_mpi()) {
     // A launcher that goes while MPI starts closes its sockets: an error of a write, not the death of a rank by a
     // signal of which nobody says a word.
@@ -71,6 +79,7 @@ int Job::size() const { return state_->transport().size(); }
 Communicator Job::communicator() { return frame::communicator_over(state_->transport()); }
 
 void Job::answer_termination() {
+  state_->meet();
   if (size() > 1)
     exchange::answer_termination(state_->transport(), state_->voice.program, state_->voice.remedy,
                                  io::abandon_in_handler);
@@ -81,6 +90,7 @@ void Job::watch_stalls(const StallSettings& settings) {
 }
 
 void Job::agree_instruction_sets() {
+  state_->meet();
   if (size() > 1) exchange::agree_instruction_sets(state_->transport());
 }
 

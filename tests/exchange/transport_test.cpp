@@ -5,6 +5,7 @@
 #include <string>
 
 #include "exchange/collectives.hpp"
+#include "exchange/first_contact.hpp"
 #include "exchange/loopback_transport.hpp"
 
 namespace tessera::exchange {
@@ -64,6 +65,59 @@ TEST(LoopbackTransport, OneRanksErrorEndsAllThatWaitWithTheSameWords) {
     EXPECT_STREQ(error.what(), "mesh.vtu: is empty; give another");
   }
   EXPECT_EQ(ended, 3);
+}
+
+TEST(FirstContact, IsMadeByAnyNumberOfRanksAndLeavesNothingBehind) {
+  for (const int ranks : {1, 2, 5})
+    for (const int patience : {0, 60000})
+      run_ranks(ranks, [&](Transport& transport) {
+        make_first_contact(transport, std::chrono::milliseconds(patience));
+        barrier(transport);
+        EXPECT_FALSE(transport.receive(Channel::agreement, std::chrono::milliseconds(1)).has_value());
+      });
+}
+
+/// Loses what its rank sends from message `first` on, as Open MPI does where memory was short at its start.
+class Losing final : public Transport {
+ public:
+  Losing(Transport& whole, int first) : whole_(whole), first_(first) {}
+  using Transport::receive;
+  using Transport::send;
+  [[nodiscard]] int rank() const override { return whole_.rank(); }
+  [[nodiscard]] int size() const override { return whole_.size(); }
+  void send(int to, Channel channel, Bytes bytes, std::int32_t frame) override {
+    if (sent_++ < first_) whole_.send(to, channel, std::move(bytes), frame);
+  }
+  std::optional<Message> receive(Channel channel, std::chrono::milliseconds timeout) override {
+    return whole_.receive(channel, timeout);
+  }
+  void fail(const scene::Error& error) override { whole_.fail(error); }
+  void check() const override { whole_.check(); }
+  void trace_to(scene::Trace* projecting, scene::Trace* compositing) override {
+    whole_.trace_to(projecting, compositing);
+  }
+  [[nodiscard]] Traffic sent(Channel channel) const override { return whole_.sent(channel); }
+
+ private:
+  Transport& whole_;
+  int first_, sent_ = 0;
+};
+
+TEST(FirstContact, EndsTheRunWhicheverMessageIsLost) {
+  for (const int mute : {0, 1, 2})
+    for (const int first : {0, 1}) {
+      try {
+        run_ranks(3, [&](Transport& transport) {
+          Losing losing(transport, transport.rank() == mute ? first : 1000);
+          make_first_contact(losing, std::chrono::milliseconds(300));
+          barrier(losing);  // where a rank waits that was not told
+        });
+        ADD_FAILURE() << "rank " << mute << ", message " << first << ": nobody noticed";
+      } catch (const scene::Error& error) {
+        EXPECT_EQ(error.code(), scene::ErrorCode::system_failure);
+        EXPECT_NE(std::string(error.what()).find("hears nothing of"), std::string::npos) << error.what();
+      }
+    }
 }
 
 TEST(Collectives, GiveEveryRankTheSameInRankOrderHoweverOftenAndFromWhateverRoot) {
