@@ -3,7 +3,8 @@
 
     bench/reading.py --tessera PROGRAM [--work FOLDER] [--repeat 5] [--only TEXT] [--results bench/RESULTS.md]
 
-    bench/reading.py --tessera PROGRAM --old PROGRAM ...    the two programs beside each other instead
+    bench/reading.py --tessera PROGRAM --old PROGRAM ...    the two programs beside each other instead: `tessera render`, 8 x 8 pixels with
+                                                            a function given, so that neither looks for a first picture
 
 Files are generated (reading_files.py) and kept in --work. Runs alternate; figures are the least of --repeat. Of Tessera they are of the
 whole program, making tets and looking at them included: CPU and wall time, and the largest sum of the memory of both processes, looked at
@@ -24,6 +25,7 @@ import time
 import results_file
 
 PYTHON = sys.executable
+FUNCTION, CAMERA = (pathlib.Path(__file__).with_name(f"{name}.txt") for name in ("transfer_function", "camera"))
 
 
 def children_of(process):
@@ -74,10 +76,10 @@ class Watch(threading.Thread):
         self.join()
 
 
-def run_tessera(program, file):
+def run_tessera(program, *words):
     """Seconds of wall and CPU, bytes; of the reading program seconds of CPU and bytes."""
     begin = time.monotonic()
-    process = subprocess.Popen([str(program), "info", str(file)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    process = subprocess.Popen([str(program), *map(str, words)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
     watch = Watch(process.pid)
     message = process.stderr.read()
     _, status, usage = os.wait4(process.pid, 0)
@@ -165,8 +167,11 @@ def measure(args, work):
                 (work / f"{folder.name}.name").write_text(str(file.relative_to(work)))
             file = work / (work / f"{folder.name}.name").read_text()
             first, second = [], []
-            sides = [(first, lambda: run_tessera(args.tessera, file)),
-                     (second, lambda: run_tessera(args.old, file) if args.old else run_vtk(reader, file))]
+            tiny = ["render", file, "-o", work / "tiny.pfm", "--size", "8x8", "--quiet", "--transfer-function", FUNCTION,
+                    "--camera", CAMERA]
+            words = tiny if args.old else ["info", file]
+            sides = [(first, lambda: run_tessera(args.tessera, *words)),
+                     (second, lambda: run_tessera(args.old, *words) if args.old else run_vtk(reader, file))]
             for turn in range(args.repeat):
                 for runs, run in sides if turn % 2 == 0 else sides[::-1]:
                     runs.append(run())
@@ -190,7 +195,7 @@ def main():
     args = parser.parse_args()
     load = os.getloadavg()[0]
     other = "before" if args.old else "VTK"
-    table = [f"| format | MB | {other}: CPU [s], memory [MiB] | reading program: CPU, memory | `tessera info`: CPU, memory, wall |", "|---|---:|---:|---:|---:|"]
+    table = [f"| format | MB | {other}: CPU [s], memory [MiB] | reading program: CPU, memory | {'`tessera render`' if args.old else '`tessera info`'}: CPU, memory, wall |", "|---|---:|---:|---:|---:|"]
     print("\n".join(table), flush=True)
     with tempfile.TemporaryDirectory() as folder:
         for name, size, own, others in measure(args, args.work or pathlib.Path(folder)):
@@ -199,7 +204,7 @@ def main():
             table.append(f"| {name} | {size:.0f} | {others[1]:.2f}, {others[2] / 2**20:.0f} | {reader} | {cpu:.2f}x, {memory:.2f}x, {wall:.2f}x |")
             print(table[-1], flush=True)
     if args.results:
-        what = ("`tessera info` now beside before the reading programs" if args.old else
+        what = ("`tessera render` of 8 x 8 pixels with view and function given, beside an older program" if args.old else
                 "`tessera info`, the whole program, beside VTK 9.1's reader alone, without loading it")
         caption = (f"{results_file.made(load)} `{results_file.command('reading.py')}`: {what}; the least of {args.repeat} runs; CPU and wall time and peak "
                    f"memory as multiples of the others'")
