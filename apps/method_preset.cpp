@@ -1,10 +1,14 @@
 #include "apps/method_preset.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 
 #include "apps/argument_values.hpp"
 #include "apps/compositing_options.hpp"
+#include "tessera/dataset.hpp"
+#include "tessera/nearest_name.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -27,6 +31,9 @@ void add_method_preset_option(CLI::App& render, RenderWords& words) {
 
 void apply_method_preset(const CLI::App& render, int ranks, RenderWords& words) {
   if (words.preset.empty()) return;
+  if (const auto colors = nearest_name(words.preset, preset_names()))  // what other programs call a preset
+    throw bad_input(fmt::format("--preset: '{}' is no published method; for colours write --transfer-function {}",
+                                words.preset, *colors));
   check_word("--preset", words.preset, {"juliachs-2007"});
   const auto set = [&](const char* option, std::string& word, const std::string& value) {
     if (render.get_option(option)->count() == 0) word = value;

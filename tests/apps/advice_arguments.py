@@ -20,6 +20,7 @@ ROWS = [
     row(R + "--field g", "it has point:'f'", R + "--field point:f"),
     row("render mm.vtu -o a.png --size 16x16", "did you mean m.vtu?", R),
     row("info nowhere/n.vtu", "check the name", "info m.vtu"),
+    row(R + "--preset virids", "write --transfer-function viridis", R + "--transfer-function viridis"),
     row("completion tcsh", "use bash, zsh or fish", "completion zsh"),
     row(
         "info folder",
