@@ -11,7 +11,7 @@ export class Framing {
   /** @param {Page} page */
   constructor(page) {
     this.page = page;
-    /** Width over height of the picture. */
+    /** Width over height of the window that the picture fills. */
     this.shape = 0;
     /** The camera that was chosen, and the picture's shape then: back in it, the camera is the same again. @type {{ camera: Camera, shape: number } | undefined} */
     this.chosen = undefined;
@@ -20,7 +20,7 @@ export class Framing {
   }
 
   get #shape_now() {
-    const { width, height } = this.page.view.size();
+    const { width, height } = this.page.view.window_size();
     return width / height;
   }
 

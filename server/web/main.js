@@ -374,8 +374,8 @@ const resize_rest = debounced(() => {
 }, 250);
 view.resized = () => {
   if (!page.ready) return;
+  framing.follow();
   if (!view.fixed) {
-    framing.follow();
     offer(true);
     resize_rest();
   }

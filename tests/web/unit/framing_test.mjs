@@ -10,7 +10,7 @@ const camera = { position: [0, 0, 5], focal_point: [0, 0, 0], view_up: [0, 1, 0]
 /** A page of this size. */
 function framed(size) {
   const history = new StateHistory({ camera });
-  const page = { history, view: { size: () => size, fixed: undefined }, get camera() { return history.state.camera; } };
+  const page = { history, view: { window_size: () => size, fixed: undefined }, get camera() { return history.state.camera; } };
   const framing = new Framing(page);
   framing.begin();
   return { page, framing, resize: (width, height) => {
