@@ -14,9 +14,9 @@ export const controls = {
 export const sentence_of = (line) => `${line.charAt(0).toUpperCase()}${line.slice(1)}${/[.!?]$/.test(line) ? "" : "."}`;
 
 /**
- * A sentence of the server's with the page's names. Commands in backquotes stay, and so do options without a control:
- * they are those that the server was started with.
+ * A sentence of the server's with the page's names, and without the advice to read the program's help. Commands in
+ * backquotes stay, and so do options without a control: they are those that the server was started with.
  * @param {string} sentence
  */
-export const in_page_words = (sentence) => sentence.replace(/`[^`]*`|(?<![\w'-])--([a-z]+(?:-[a-z]+)*)/g,
+export const in_page_words = (sentence) => sentence.replace(/; see `tessera [^`]*--help[^`]*`/g, "").replace(/`[^`]*`|(?<![\w'-])--([a-z]+(?:-[a-z]+)*)/g,
   (/** @type {string} */ found, /** @type {string | undefined} */ option) => (option && controls[option] ? `“${controls[option]}”` : found));
