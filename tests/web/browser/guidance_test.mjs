@@ -39,7 +39,7 @@ const change = (keys) => page.evaluate((keys) => window.tessera.change(keys), ke
 const section = (title) => page.locator("details.section", { has: page.locator(`summary:text-is("${title}")`) });
 
 test("the field stands at the panel's top", async () => {
-  const [panel, field] = await Promise.all([page.locator("#panel").boundingBox(), page.getByLabel("Field").boundingBox()]);
+  const [panel, field] = await Promise.all([page.locator("#panel").boundingBox(), page.getByLabel("Field", { exact: true }).boundingBox()]);
   assert.ok(field.y - panel.y < 40, `${field.y - panel.y} pixels below`);
 });
 
@@ -68,7 +68,7 @@ test("of a logarithm it is said what becomes of values that have none", async ()
   await page.getByLabel("Log values").check();
   await page.getByText(/^Values of 0 and below count as \S+, the smallest positive one found, for “Log values”\.$/).waitFor({ state: "visible" });
   await page.getByLabel("Log values").uncheck();
-  await page.getByText("Values of 0 and below").waitFor({ state: "hidden" });
+  await page.locator("#panel .warning", { hasText: "Values of 0 and below" }).waitFor({ state: "hidden" });
   await at_rest(page);
 });
 
