@@ -85,6 +85,7 @@ test("surfaces that the file names are offered", async () => {
   const plain = await shown_bytes(page);
   await page.getByRole("button", { name: "Add a surface" }).click();
   const what = page.getByLabel("What surface 1 is");
+  await what.waitFor();
   assert.deepEqual(await what.locator("option").allTextContents(), ["boundary", "inlet", "fluid"]);
   await what.selectOption("inlet");
   await at_rest(page);
