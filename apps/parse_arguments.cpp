@@ -83,6 +83,11 @@ bool parse(CommandLine& line, int argc, const char* const* argv, bool says) {
     const std::string help = command == nullptr ? "tessera --help" : fmt::format("tessera {} --help", first);
     const CLI::App& of = command == nullptr ? line.app : *command;
     if (const auto word = unknown_option(of)) throw no_option(of, *word, help);
+    if (first == "serve" && !of.remaining().empty())
+      throw bad_input(
+          fmt::format("arguments: serve shows one file, and '{}' is a second; give a series as a pattern of its names, "
+                      "like 'a_%d.vtu', or a .pvd or .series that lists them",
+                      of.remaining().front()));
     throw bad_input(fmt::format("arguments: {}; see {}", error.what(), help));
   }
   if (*line.render && !line.words.save_config.empty() && says) save_scene(*line.render, line.words.save_config);

@@ -57,10 +57,10 @@ enum class MessageKind : std::uint16_t {
   read_in_parts = 21,     ///< u8: 1: all projectors read
   field_tallies = 22,     ///< u64 fields; of each a field, u8 any_finite; f64 box of higher-order cells[6],
                           ///< texts of block names
-  part_summary =
-      23,  ///< MeshCounts, HigherOrderCells, TimeStepRead, texts of reading, of cells, u64 words of used points
-  mesh_description = 24,  ///< MeshCounts, HigherOrderCells, u64 fields, fields, u64 notes, texts, text format, u64 time
-                          ///< steps, u64 step, text field, u8 association
+  part_summary = 23,      ///< MeshCounts, HigherOrderCells, TimeStepRead, texts of reading, of cells, of surfaces, u64
+                          ///< words of used points
+  mesh_description = 24,  ///< MeshCounts, HigherOrderCells, u64 fields, fields, texts of notes, of blocks, of surfaces,
+                          ///< text format, u64 time steps, u64 step, text field, u8 association
   mesh_facts = 25,        ///< f64 box[6], f64 scalar range[2], u64 tets, u8 association
   mesh_volume = 26,       ///< 128-bit scene::VolumeSum
   tet_count = 27,         ///< u64

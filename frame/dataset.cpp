@@ -105,6 +105,7 @@ void take_description(io::MeshFile&& file, Dataset::State& state) {
   state.fields = std::move(file.fields);
   state.notes = std::move(file.notes);
   state.blocks = std::move(file.blocks);
+  state.surfaces = std::move(file.surfaces);
   state.format = std::move(file.format);
   state.counts = file.counts;
   state.higher_order = file.higher_order;
@@ -333,6 +334,7 @@ std::vector<std::string> Dataset::warnings() const {
 }
 std::size_t Dataset::time_steps() const { return state_->time_steps; }
 std::span<const std::string> Dataset::blocks() const { return state_->blocks; }
+std::span<const std::string> Dataset::surfaces() const { return state_->surfaces; }
 const std::string& Dataset::format() const { return state_->format; }
 const std::string& Dataset::source() const { return state_->source; }
 std::uint64_t Dataset::tet_count() const { return state_->facts.tets; }

@@ -20,7 +20,7 @@ namespace tessera {
 struct TESSERA_HIDDEN Dataset::State {
   std::string source, format, field_name;
   std::vector<FieldInfo> fields;
-  std::vector<std::string> notes, blocks;
+  std::vector<std::string> notes, blocks, surfaces;
   std::size_t time_steps = 1;
   scene::MeshFacts facts;  ///< of the whole; grids have no tets
   MeshCounts counts;

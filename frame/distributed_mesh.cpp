@@ -96,6 +96,7 @@ Bytes message_of(const io::MeshFile& file) {
   for (const io::FieldSummary& f : file.fields) append_field(message, f);
   append_texts(message, file.notes);
   append_texts(message, file.blocks);
+  append_texts(message, file.surfaces);
   append_text(message, file.format);
   append(message, file.time_step.count);
   append(message, file.time_step.step);
@@ -111,6 +112,7 @@ io::MeshFile description_in(MessageReader& reader) {
   for (auto left = reader.take<std::uint64_t>(); left > 0; --left) file.fields.push_back(take_field(reader));
   file.notes = take_texts(reader);
   file.blocks = take_texts(reader);
+  file.surfaces = take_texts(reader);
   file.format = reader.take_text();
   file.time_step.count = reader.take<std::uint64_t>();
   file.time_step.step = reader.take<std::uint64_t>();
@@ -185,6 +187,7 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
   append(message, s.time_step);
   append_texts(message, s.reading_notes);
   append_texts(message, s.cell_notes);
+  append_texts(message, s.surfaces);
   append(message, std::uint64_t{s.used_points.size()});
   gather(transport, MessageKind::part_summary, std::move(message), projectors, [&](MessageReader& reader) {
     io::PartSummary& summary = summaries.emplace_back();
@@ -193,6 +196,7 @@ DistributedMesh read_parts(Transport& transport, const std::filesystem::path& in
     summary.time_step = reader.take<io::TimeStepRead>();
     summary.reading_notes = take_texts(reader);
     summary.cell_notes = take_texts(reader);
+    summary.surfaces = take_texts(reader);
     words = std::max(words, reader.take<std::uint64_t>());
     reader.finish();
     if (summaries.size() <= part) first_tet += summary.counts.tets_made;

@@ -40,7 +40,8 @@ Dataset selected_part(const std::shared_ptr<const Dataset::State>& from, const S
   state->owner = std::move(kept);
   state->facts = scene::facts_of(state->mesh, 0);
   state->source = from->source, state->format = from->format, state->field_name = from->field_name;
-  state->fields = from->fields, state->notes = from->notes, state->blocks = from->blocks;
+  state->fields = from->fields, state->notes = from->notes, state->blocks = from->blocks,
+  state->surfaces = from->surfaces;
   state->higher_order = from->higher_order;
   state->time_steps = from->time_steps;
   state->options = from->options;

@@ -308,6 +308,9 @@ ForeignFile open_foreign(std::shared_ptr<HelperProcess> helper, const std::files
         fmt::format("{}: its reader says nothing sensible of it; it is damaged, write it anew", opened.source));
   }
   ForeignContents& contents = opened.contents;
+  if (!opened.with_surfaces && contents.parts.size() > 1)
+    for (const ForeignPart& part : contents.parts)
+      if (part.kind == ForeignPart::Kind::surface) contents.surface_names.push_back(part.name);
   if (!contents.block_names.empty()) return opened;  // the reader has seen to it
   for (const ForeignPart& part : contents.parts)
     if (part.kind != ForeignPart::Kind::surface || opened.with_surfaces) contents.block_names.push_back(part.name);

@@ -155,6 +155,7 @@ std::vector<std::uint8_t> bytes_of(const ForeignContents& contents) {
                         {"notes", contents.notes},
                         {"format", contents.format},
                         {"block_names", contents.block_names},
+                        {"surface_names", contents.surface_names},
                         {"time_steps", contents.time_step.count},
                         {"time_step", contents.time_step.step},
                         {"has_levels", contents.has_levels}});
@@ -167,6 +168,7 @@ ForeignContents contents_of(std::span<const std::uint8_t> bytes) {
   json.at("notes").get_to(contents.notes);
   json.at("format").get_to(contents.format);
   json.at("block_names").get_to(contents.block_names);
+  json.at("surface_names").get_to(contents.surface_names);
   json.at("time_steps").get_to(contents.time_step.count);
   json.at("time_step").get_to(contents.time_step.step);
   json.at("has_levels").get_to(contents.has_levels);

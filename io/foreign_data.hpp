@@ -106,7 +106,8 @@ struct ForeignContents {
   std::vector<ForeignPart> parts;
   std::vector<std::string> notes;
   std::string format;
-  std::vector<std::string> block_names{};  ///< of all blocks, where parts are not the blocks; empty: of the parts
+  std::vector<std::string> block_names{};    ///< of all blocks, where parts are not the blocks; empty: of the parts
+  std::vector<std::string> surface_names{};  ///< of surfaces beside the volume, where they are left out
   TimeStepRead time_step{};
   bool has_levels = false;  ///< the parts, images, are blocks of several levels of refinement
 };

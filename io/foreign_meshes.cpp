@@ -57,6 +57,7 @@ MeshBlocks read_foreign(const std::filesystem::path& file, nlohmann::json reques
   result.notes = opened.contents.notes;
   result.time_step = opened.contents.time_step;
   result.block_names = opened.contents.block_names;
+  result.surface_names = opened.contents.surface_names;
   result.blocks = blocks_of(opened, result.notes);
   return result;
 }
@@ -67,6 +68,7 @@ MeshBlocks blocks_of_solver(const ForeignFile& opened) {
   result.notes = opened.contents.notes;
   result.time_step = opened.contents.time_step;
   result.block_names = opened.contents.block_names;
+  result.surface_names = opened.contents.surface_names;
   result.blocks = blocks_of(opened, result.notes, GridsAre::hexahedra);
   return result;
 }
@@ -94,6 +96,7 @@ MeshBlocks read_vtk_xml(const std::filesystem::path& file, const MeshOptions& op
   MeshBlocks result = named_format(*kind, extension);
   MeshBlocks read = read_foreign(file, {{"reader", "vtk_xml"}, {"type", type}}, options);
   add_notes(read.notes, result.notes);
+  result.surface_names = std::move(read.surface_names);
   result.blocks = std::move(read.blocks);
   return result;
 }

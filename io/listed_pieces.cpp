@@ -48,8 +48,7 @@ void add_pieces_of_whole(const std::filesystem::path& file, const std::string& b
   });
 }
 
-void add_block(ListedPiece listed, const BlockChoice& choice, PieceList& list,
-               std::vector<std::string>& surfaces_left_out) {
+void add_block(ListedPiece listed, const BlockChoice& choice, PieceList& list) {
   if (!is_chosen(choice, listed.block)) {  // nor looked into, so that it may be a surface
     list.block_names.push_back(listed.block);
     return;
@@ -57,7 +56,7 @@ void add_block(ListedPiece listed, const BlockChoice& choice, PieceList& list,
   listed.type = type_of(listed.file);
   const bool is_wanted = list.with_surfaces && listed.type == surfaces.front();
   if (is_any_of(listed.type, surfaces) && !is_wanted) {
-    surfaces_left_out.push_back(std::move(listed.block));
+    list.surface_names.push_back(std::move(listed.block));
     return;
   }
   list.block_names.push_back(listed.block);
@@ -71,7 +70,6 @@ void add_block(ListedPiece listed, const BlockChoice& choice, PieceList& list,
 void add_blocks(const std::filesystem::path& file, const BlockChoice& choice, PieceList& list) {
   std::vector<std::string> path;  // of names, by depth
   std::size_t count = 0;
-  std::vector<std::string> surfaces_left_out;
   each_xml_element(read_text_file(file), file.string(), [&](const XmlElement& element) {
     const std::string* const own = element.find("name");
     path.resize(element.parents.size());
@@ -84,9 +82,9 @@ void add_blocks(const std::filesystem::path& file, const BlockChoice& choice, Pi
       if (!word.empty()) name += (name.empty() ? "" : "/") + word;
     if (name.empty()) name = std::to_string(count);
     ++count;
-    add_block({file.parent_path() / *listed, file.string(), std::move(name), ""}, choice, list, surfaces_left_out);
+    add_block({file.parent_path() / *listed, file.string(), std::move(name), ""}, choice, list);
   });
-  if (!surfaces_left_out.empty()) list.notes.push_back(note_on_surfaces("block", surfaces_left_out));
+  if (!list.surface_names.empty()) list.notes.push_back(note_on_surfaces("block", list.surface_names));
 }
 
 void require_piece(const ListedPiece& piece, const std::string& type) {
@@ -125,7 +123,7 @@ PieceList piece_list(const std::filesystem::path& file, const BlockChoice& choic
 
 MeshBlocks read_pieces(const PieceList& list, std::size_t first, std::size_t last,
                        const ReadProgressFunction& progress) {
-  MeshBlocks result{{}, list.notes, list.format, list.block_names};
+  MeshBlocks result{{}, list.notes, list.format, list.block_names, list.surface_names};
   std::shared_ptr<HelperProcess> helper;
   for (std::size_t k = first; k < last; ++k) {
     const ListedPiece& piece = list.pieces[k];

@@ -18,8 +18,8 @@ struct ListedPiece {
 };
 
 struct PieceList {
-  std::vector<ListedPiece> pieces;  ///< in their order; the chosen blocks' volumes
-  std::vector<std::string> block_names, notes;
+  std::vector<ListedPiece> pieces;                             ///< in their order; the chosen blocks' volumes
+  std::vector<std::string> block_names, surface_names, notes;  ///< surfaces: those that are left out
   std::string format;
   bool with_surfaces = false;  ///< of the chosen blocks
 };

@@ -21,8 +21,9 @@ struct MeshBlocks {
   std::vector<CellBlock> blocks;
   std::vector<std::string> notes;
   std::string format;
-  std::vector<std::string> block_names{};  ///< of all, those too that were not chosen; empty: of `blocks`
-  std::vector<FieldSummary> fields{};      ///< of the file, where the blocks have the chosen one alone, as options ask
+  std::vector<std::string> block_names{};    ///< of all, those too that were not chosen; empty: of `blocks`
+  std::vector<std::string> surface_names{};  ///< of surfaces beside the volume, which are left out
+  std::vector<FieldSummary> fields{};  ///< of the file, where the blocks have the chosen one alone, as options ask
   TimeStepRead time_step{};
 };
 

@@ -159,6 +159,7 @@ MeshFilePart MeshPartReading::finish(const ExcessTally& excess_of_all) {
     if (auto note = note_on(part.summary.time_step, state_->options.time_step))
       part.summary.reading_notes.push_back(*std::move(note));
     add_notes(state_->blocks.notes, part.summary.reading_notes);
+    part.summary.surfaces = distinct_names(std::move(state_->blocks.surface_names));
     if (is_tets(state_->file)) {
       part.summary.counts.points_read = state_->counts_points ? state_->file_vertices : 0;
       part.summary.counts.points_unused = 0;
@@ -188,6 +189,7 @@ MeshFile joined(const MeshFilePart& own, std::span<const PartSummary> summaries,
     whole.counts += part.counts;
     whole.higher_order += part.higher_order;
     add(part.reading_notes);
+    add_notes(part.surfaces, whole.surfaces);
     if (part.time_step.count > whole.time_step.count) whole.time_step = part.time_step;
     used.resize(std::max(used.size(), part.used_points.size()), 0);
     for (std::size_t w = 0; w < part.used_points.size(); ++w) used[w] |= part.used_points[w];

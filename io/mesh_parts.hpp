@@ -43,7 +43,7 @@ struct PartSummary {
   /// Bit v is set if this part uses point v of a .tets file; empty for other formats. All parts' bits together tell
   /// how many points are unused.
   std::vector<std::uint64_t> used_points;
-  std::vector<std::string> reading_notes, cell_notes;
+  std::vector<std::string> reading_notes, cell_notes, surfaces;  ///< surfaces: as MeshFile has them
   HigherOrderCells higher_order;
   TimeStepRead time_step{};  ///< of a part without files, of one step
 };

@@ -163,6 +163,7 @@ MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options
     if (!read.fields.empty()) result.fields = std::move(read.fields);
     result.format = std::move(read.format);
     result.blocks = std::move(read.block_names);
+    result.surfaces = distinct_names(std::move(read.surface_names));
     result.notes.insert(result.notes.begin(), read.notes.begin(), read.notes.end());
     result.time_step = read.time_step;
     if (auto note = note_on(read.time_step, options.time_step)) result.notes.insert(result.notes.begin(), *note);
@@ -196,6 +197,7 @@ MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptio
       if (auto note = note_on(read.time_step, options.time_step)) read.notes.insert(read.notes.begin(), *note);
       all.time_step = read.time_step;
       add_notes(read.notes, all.notes);
+      add_notes(read.surface_names, all.surface_names);
     });
   }
   const std::string source = files.empty() ? "mesh" : files.front().string();
@@ -205,6 +207,7 @@ MeshFile read_mesh(std::span<const std::filesystem::path> files, const MeshOptio
     MeshFile result = assemble_mesh(std::move(all.blocks), options, source);
     result.format = fmt::format("{} files: {}", files.size(), all.format);
     result.blocks = std::move(all.block_names);
+    result.surfaces = std::move(all.surface_names);
     result.time_step = all.time_step;
     result.notes.insert(result.notes.begin(), all.notes.begin(), all.notes.end());
     return result;

@@ -49,8 +49,9 @@ struct MeshFile {
   MeshCounts counts;
   HigherOrderCells higher_order;
   std::vector<FieldSummary> fields;
-  std::vector<std::string> notes;   ///< one line each: what was chosen, or odd about the file
-  std::vector<std::string> blocks;  ///< names of all that the file has, read or not
+  std::vector<std::string> notes;     ///< one line each: what was chosen, or odd about the file
+  std::vector<std::string> blocks;    ///< names of all that the file has, read or not
+  std::vector<std::string> surfaces;  ///< names of those beside the volume, which block_surface.hpp reads
   TimeStepRead time_step{};
   std::string format;  ///< "VTK XML unstructured grid", "PLOT3D", "TetGen .node/.ele", ...
 };

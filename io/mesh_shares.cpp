@@ -50,6 +50,7 @@ nlohmann::json request_for(const char* reader, const MeshOptions& options) {
 void add_blocks(const ForeignFile& opened, MeshBlocks& blocks, const std::string& source) {
   add_notes(opened.contents.notes, blocks.notes);
   add_notes(opened.contents.block_names, blocks.block_names);
+  add_notes(opened.contents.surface_names, blocks.surface_names);
   blocks.time_step = opened.contents.time_step;
   for (CellBlock& block : blocks_of(opened, blocks.notes, GridsAre::hexahedra)) {
     block.source = source;

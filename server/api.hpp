@@ -69,6 +69,8 @@ Json probe_answer(const ApiContext& context, const OpenScene& open, const Json& 
 Json verify_answer(const ApiContext& context, const OpenScene& open, const Json& body);
 Json check_answer(const OpenScene& open);
 
+/// What films can be made here: "formats", and the "problem" with those that are left out, or null.
+Json films_json();
 /// A film, by frames (api_film.cpp).
 std::unique_ptr<ApiWork> make_film_work(Json body, const ApiContext& context, const std::stop_token& gone);
 

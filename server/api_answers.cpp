@@ -147,6 +147,7 @@ Json data_answer(const ApiContext& context, const OpenScene& open) {
           {"time_steps", times.empty() ? data.time_steps() : times.size()},
           {"times", times.empty() ? Json() : Json(times)},
           {"blocks", data.blocks()},
+          {"surfaces", data.surfaces()},
           {"notes", notes},
           {"warnings", warnings},
           {"ranks", context.stage.ranks()},
@@ -154,6 +155,7 @@ Json data_answer(const ApiContext& context, const OpenScene& open) {
           {"tessera", TESSERA_VERSION},
           {"presets", presets_json()},
           {"opacities", preset_opacity_names()},
+          {"films", films_json()},
           {"defaults", resolved(context, open)}};
 }
 

@@ -20,6 +20,7 @@ namespace tessera::server {
 namespace {
 
 constexpr std::int64_t most_frames = 10'000, most_views = 1000;
+constexpr std::array<std::string_view, 3> film_formats = {"mp4", "webm", "gif"};
 
 /// A folder of its own, gone with this.
 class ScratchFolder {
@@ -82,7 +83,7 @@ class FilmWork final : public ApiWork {
       : body_(std::move(body)), context_(context), gone_(std::move(gone)) {
     const auto format = body_.find("format");
     if (format != body_.end()) format_ = format->is_string() ? format->get<std::string>() : "";
-    if (std::ranges::find(formats, format_) == formats.end())
+    if (std::ranges::find(film_formats, format_) == film_formats.end())
       throw bad_input("format: is none of a film; use mp4, webm or gif");
     if (const auto rate = body_.find("rate"); rate != body_.end()) {
       if (!rate->is_number() || !(rate->get<double>() > 0) || rate->get<double>() > 1000)
@@ -139,8 +140,6 @@ class FilmWork final : public ApiWork {
     return {std::move(response)};
   }
 
-  static constexpr std::array<std::string_view, 3> formats = {"mp4", "webm", "gif"};
-
   std::shared_ptr<const Scene> scene(const Json& state) {
     if (!scene_) scene_ = context_.reader.scene(state);
     return scene_;
@@ -168,6 +167,20 @@ class FilmWork final : public ApiWork {
 };
 
 }  // namespace
+
+Json films_json() {
+  Json made = Json::array(), problem;
+  for (const std::string_view format : film_formats) {
+    try {
+      check_film_file(std::filesystem::temp_directory_path() / fmt::format("tessera-film.{}", format));
+      made.push_back(std::string(format));
+    } catch (const std::exception& thrown) {
+      const auto* const error = dynamic_cast<const Error*>(&thrown);
+      problem = error != nullptr ? error->problem() : thrown.what();
+    }
+  }
+  return {{"formats", std::move(made)}, {"problem", std::move(problem)}};
+}
 
 std::unique_ptr<ApiWork> make_film_work(Json body, const ApiContext& context, const std::stop_token& gone) {
   return std::make_unique<FilmWork>(std::move(body), context, gone);

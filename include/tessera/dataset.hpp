@@ -188,6 +188,8 @@ class TESSERA_EXPORT Dataset {
   [[nodiscard]] std::size_t time_steps() const;
   /// Names of a file's blocks (ReadOptions::blocks), of those too that were not read.
   [[nodiscard]] std::span<const std::string> blocks() const;
+  /// Names of the surfaces beside a mesh that were left out, which read_block_surface() reads: side sets, patches.
+  [[nodiscard]] std::span<const std::string> surfaces() const;
   /// "VTK XML unstructured grid", "NRRD", ...; "arrays" of the caller's.
   [[nodiscard]] const std::string& format() const;
   /// What messages call it: the file, or "mesh" or "grid".

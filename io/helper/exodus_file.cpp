@@ -275,7 +275,8 @@ class Reading {
       blocks_.back().of = std::move(of);
     }
     result_.block_names.insert(result_.block_names.end(), sets.names().begin(), sets.names().end());
-    if (!sets.sides_left_out().empty()) result_.notes.push_back(note_on_surfaces("side set", sets.sides_left_out()));
+    result_.surface_names = sets.sides_left_out();
+    if (!result_.surface_names.empty()) result_.notes.push_back(note_on_surfaces("side set", result_.surface_names));
     for (const std::int64_t set : sets.sides())
       add_sides(
           file_->id(), set, init_.num_nodes, most_values_, [this](const std::string& what) { file_->fail(what); },
@@ -428,6 +429,7 @@ ForeignContents read_exodus(Holdings& holdings, const std::filesystem::path& fil
   contents.time_step = read.time_step;
   contents.format = std::move(read.format);
   contents.block_names = std::move(read.block_names);
+  contents.surface_names = std::move(read.surface_names);
   return contents;
 }
 

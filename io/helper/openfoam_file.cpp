@@ -194,8 +194,8 @@ ForeignContents read_openfoam(Holdings& holdings, const std::filesystem::path& n
     reader->EnableAllPointArrays();
     if (request.value("surfaces", false))
       reader->EnableAllPatchArrays();  // without, the volume alone is on
-    else if (const std::vector<std::string> patches = patches_of(*reader); !patches.empty())
-      contents.notes.push_back(note_on_surfaces("patch", patches));
+    else if (contents.surface_names = patches_of(*reader); !contents.surface_names.empty())
+      contents.notes.push_back(note_on_surfaces("patch", contents.surface_names));
     if (is_decomposed) return read_processors(holdings, *reader, folder, source, request, contents);
     update_at_step(*reader, request, source, contents.time_step);
     if (vtkDataObject* const data = reader->GetOutputDataObject(0); data != nullptr)

@@ -11,6 +11,7 @@
  */
 import { back_off, decoded_frame } from "./frames.js";
 import { ask, Refused, StillReading } from "./requests.js";
+import { in_page_words } from "./wording.js";
 
 /** Where the socket is, beside the page. */
 function socket_address() {
@@ -109,6 +110,7 @@ export class Connection {
       return;
     }
     const message = JSON.parse(bytes);
+    if (typeof message.error === "string") message.error = in_page_words(message.error);
     if (message.type === "ended") this.ended = message.error ?? "It was asked to end.";
     this.listeners.message(message);
   }

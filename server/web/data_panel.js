@@ -1,5 +1,5 @@
 /**
- * What of the data is drawn: field, time, blocks, cuts, surfaces.
+ * What of the data is drawn: field, which stands at the panel's top, time, blocks, cuts, surfaces.
  *
  * @typedef {import("./page.js").Page} Page
  */
@@ -21,7 +21,9 @@ export class DataPanel {
     this.last_step = 0;
     this.field = choice("", (name) => this.#choose_field(name));
     this.part = choice("Component", (part) => this.#choose_part(part));
+    // At the panel's top: what is drawn comes before how.
     this.field_row = row("Field", this.field, this.part);
+    this.field_row.classList.add("panel-top");
     this.smooth = checkbox("Smooth", (on) => page.set_option("smooth", on ? true : undefined), "Average cell values to the points");
     this.step = element("input", { type: "range", min: 0, step: 1, "aria-label": "Time step", on_input: () => this.#set_step(Number(this.step.value), true), on_change: () => page.history.settle("step") });
     this.step_text = typed("Time step", (text) => this.#type_step(text), { class: "short" });
@@ -34,7 +36,7 @@ export class DataPanel {
     this.clip = new ClipEditor(page);
     this.surfaces = new SurfaceEditor(page);
     this.element = element("div", { class: "panel-body" },
-      this.field_row, element("div", { class: "checks" }, this.smooth.label), this.time, this.blocks,
+      element("div", { class: "checks" }, this.smooth.label), this.time, this.blocks,
       element("div", { class: "checks" }, this.threshold_on.label), this.threshold.element, this.clip.element, this.surfaces.element);
   }
 

@@ -6,17 +6,21 @@
  * @typedef {import("./types.js").Preset} Preset
  * @typedef {import("./transfer_function.js").EditedFunction} EditedFunction
  */
-import { button, checkbox, choice, debounced, element, fill_choice, icon_button, preference, row, save_file, set_preference, show_value, typed } from "./dom.js";
+import { button, checkbox, choice, debounced, element, fill_choice, icon_button, preference, row, set_preference, show_value, typed } from "./dom.js";
 import { FunctionEditor } from "./function_editor.js";
 import { fraction_of, parsed_number, short_number } from "./numbers.js";
 import { ask_about, LatestQuestion } from "./requests.js";
 import { same } from "./state.js";
 import * as functions from "./transfer_function.js";
+import { in_page_words, sentence_of } from "./wording.js";
 
 /** What of the state a function depends on, and what its histogram does. */
 const data_words = ["field", "time-step", "block", "smooth"];
 const function_words = [...data_words, "threshold", "clip", "transfer-function", "range", "log", "opacity", "unit-distance"];
 const histogram_words = [...data_words, "threshold", "clip", "log"];
+
+/** The colours that a function's name begins with. @param {string | undefined} name */
+const preset_of = (name) => /^[\w-]+(?=$|[ :])/.exec(name ?? "")?.[0];
 
 /** A point as it comes back from the server. @param {number[]} point */
 const rounded = (point) => point.map((v) => Number(v.toPrecision(6)));
@@ -93,7 +97,7 @@ export class FunctionPanel {
     this.bar_title = typed("", (text) => this.page.history.change({ "color-bar-title": text.trim() || this.page.unset("color-bar-title") }),
       { inputmode: "text", placeholder: "the field's name", title: "{field}, {time}, {file}, {min} and {max} are filled in" });
     this.bar_row = row("Bar's title", this.bar_title);
-    this.warning = element("p", { class: "warning", hidden: true });
+    this.warning = element("p", { class: "warning", role: "status", hidden: true });
 
     const file = element("input", { type: "file", accept: ".json,application/json", hidden: true, on_change: () => void this.#import() });
     this.file = file;
@@ -101,10 +105,10 @@ export class FunctionPanel {
       this.swatches,
       element("div", { class: "row" }, element("label", { for: "shape" }, "Shape"), this.shape, icon_button("swap", "Reverse the colours", () => this.#reverse())),
       this.curve,
-      element("div", { class: "checks" }, log_axis.label, this.log.label, close.label, this.few),
+      element("div", { class: "checks" }, log_axis.label, this.log.label, close.label, this.few), this.warning,
       element("div", { class: "row" }, element("span", { class: "label" }, "Range"), this.low, this.high), ranges,
       row("Opacity ×", this.strength, this.strength_text), row("Distance", this.distance),
-      element("div", { class: "checks" }, this.bar.label), this.bar_row, this.warning,
+      element("div", { class: "checks" }, this.bar.label), this.bar_row,
       element("div", { class: "buttons" }, button("Import…", () => file.click(), { title: "A colour map of ParaView's, .json" }),
         button("Export", () => this.#export(), { title: "As ParaView's colour map, .json" })), file);
     this.shape.id = "shape";
@@ -123,6 +127,8 @@ export class FunctionPanel {
       }, bar, element("span", {}, preset.name));
     }));
     fill_choice(this.shape, [["", "as drawn"], ...opacities.map((name) => /** @type {[string, string]} */ ([name, name]))]);
+    // It says what is there, and is nothing to choose.
+    this.shape.options[0].disabled = true;
     this.update();
   }
 
@@ -185,7 +191,7 @@ export class FunctionPanel {
     if (this.editor.dragging) return;
     const own = this.page.history.state["transfer-function"];
     this.editor.edited = functions.edited_function(reply, own, Number(this.page.option("opacity") ?? 1));
-    if (typeof own === "string") this.editor.edited.name = own.split(":")[0];
+    if (typeof own !== "object") this.editor.edited.name = preset_of(own ?? reply.name) ?? this.editor.edited.name;
     this.#show();
   }
 
@@ -205,7 +211,7 @@ export class FunctionPanel {
     this.few.hidden = editor.edited.colors.length <= functions.most_handles;
     const warnings = reply.warnings ?? [];
     this.warning.hidden = warnings.length === 0;
-    this.warning.textContent = warnings.join(" ");
+    this.warning.textContent = warnings.map((line) => sentence_of(in_page_words(line))).join(" ");
     this.#show_selection();
   }
 
@@ -226,10 +232,10 @@ export class FunctionPanel {
    * @param {string | undefined} colors @param {string | undefined} shape
    */
   async #choose(colors, shape) {
-    if (shape === "") return;
     const [name, old_shape] = this.#words();
     const word = this.page.history.state["transfer-function"];
-    if (typeof word === "string" || (colors === undefined && name !== undefined) || this.editor.edited === undefined) {
+    // The server's own function keeps its range, which a word would not.
+    if (typeof word === "string" || (word !== undefined && colors === undefined && name !== undefined) || this.editor.edited === undefined) {
       const both = `${colors ?? name ?? "cool-warm"}:${shape ?? old_shape ?? "ramp"}`;
       if (both !== word) this.#hold(true); // what is drawn is the function before, until the server has answered
       this.page.history.change({ "transfer-function": both });
@@ -404,7 +410,7 @@ export class FunctionPanel {
 
   #export() {
     if (!this.reply) return;
-    save_file(new Blob([JSON.stringify(this.reply.paraview, null, 1)], { type: "application/json" }), "transfer-function.json");
+    this.page.save(new Blob([JSON.stringify(this.reply.paraview, null, 1)], { type: "application/json" }), "transfer-function.json");
   }
 }
 

@@ -14,8 +14,8 @@ const dialog = () => /** @type {HTMLDialogElement} */ (by_id("help"));
 
 export function show_help() {
   if (dialog().childElementCount === 0)
-    dialog().append(element("h2", { id: "help-title" }, "Mouse, fingers and keys"),
-      element("div", { class: "topics" }, ...topics.map(([title, lines]) => element("section", {}, element("h3", {}, title), element("dl", {}, ...lines.flatMap(([keys, text]) => [element("dt", {}, keys), element("dd", {}, text)]))))),
-      button("Close", () => dialog().close(), { class: "primary", autofocus: true }));
+    // The button stands first: a dialog scrolls to what has the focus.
+    dialog().append(element("div", { class: "title" }, element("h2", { id: "help-title" }, "Mouse, fingers and keys"), button("Close", () => dialog().close(), { class: "primary", autofocus: true })),
+      element("div", { class: "topics" }, ...topics.map(([title, lines]) => element("section", {}, element("h3", {}, title), element("dl", {}, ...lines.flatMap(([keys, text]) => [element("dt", {}, keys), element("dd", {}, text)]))))));
   dialog().showModal();
 }

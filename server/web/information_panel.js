@@ -6,6 +6,7 @@
 import { button, element } from "./dom.js";
 import { counted, short_number } from "./numbers.js";
 import { ask_about } from "./requests.js";
+import { in_page_words } from "./wording.js";
 
 export class InformationPanel {
   /** @param {Page} page */
@@ -38,7 +39,7 @@ export class InformationPanel {
   tell_notes(warnings) {
     const { data } = this.page;
     const lines = [...new Set([...(data.warnings ?? []), ...warnings, ...(data.notes ?? [])])];
-    this.notes.replaceChildren(...lines.map((line) => element("li", {}, line)));
+    this.notes.replaceChildren(...lines.map((line) => element("li", {}, in_page_words(line))));
   }
 
   async #check() {

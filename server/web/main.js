@@ -11,12 +11,13 @@ import { Connection } from "./connection.js";
 import { DataPanel } from "./data_panel.js";
 import { being_typed, button, by_id, debounced, element, icon_button, preference, set_preference } from "./dom.js";
 import { StateSender } from "./frames.js";
+import { Framing } from "./framing.js";
 import { FunctionPanel } from "./function_panel.js";
 import { Gestures } from "./gestures.js";
 import { show_help } from "./help.js";
 import { InformationPanel } from "./information_panel.js";
 import { Messages } from "./messages.js";
-import { Page } from "./page.js";
+import { dark, Page } from "./page.js";
 import { PicturePanel } from "./picture_panel.js";
 import { PictureView } from "./picture_view.js";
 import { ProbePanel } from "./probe_panel.js";
@@ -64,7 +65,7 @@ function section(title, body, open) {
 }
 const probe_section = section("Probe", probe.element, false);
 by_id("panel").append(
-  section("Colour and opacity", functions.element, true), section("Data", data_panel.element, true), section("View", view_panel.element, false),
+  data_panel.field_row, section("Colour and opacity", functions.element, true), section("Data", data_panel.element, true), section("View", view_panel.element, false),
   section("Picture and film", picture_panel.element, false), probe_section, section("Information", information.element, false));
 
 // Tools.
@@ -177,7 +178,7 @@ function show_error(message) {
   data_panel.stop();
   end_reading();
   by_id("frame-progress").hidden = true;
-  const action = history.can_undo ? { text: "Undo", act: () => history.undo() } : { text: "Default view", act: () => history.load(first_state({})) };
+  const action = history.can_undo ? { text: "Undo", act: () => history.undo() } : { text: "Default view", act: () => history.load({}) };
   messages.complain(message.error, { about: "state", action });
   status.outdated("an older picture: see the message");
   document.body.dataset.shown = `${message.number ?? 0} error`;
@@ -278,12 +279,6 @@ async function load_data() {
   }
 }
 
-/** The state to begin with: a background that suits the page, unless one is asked for. @param {import("./types.js").State} state */
-function first_state(state) {
-  if (state.background !== undefined || page.data.defaults.background) return state;
-  return { ...state, background: window.matchMedia("(prefers-color-scheme: dark)").matches ? "#15171b" : "#ffffff" };
-}
-
 /** @param {import("./types.js").Data} data */
 function begin(data) {
   if (page.ready) {
@@ -304,7 +299,8 @@ function begin(data) {
     messages.complain(error instanceof Error ? error.message : String(error), { about: "link" });
   }
   page.ready = true;
-  history.begin(first_state(state));
+  history.begin(state);
+  framing.begin();
   for (const panel of panels) panel.begin();
   if (connection.is_open) sender.opened();
 }
@@ -371,9 +367,14 @@ const ask_anew = debounced(async () => {
   update_soon();
 }, 150);
 
-const resize_rest = debounced(() => offer(false), 250);
+const framing = new Framing(page);
+const resize_rest = debounced(() => {
+  offer(false);
+  write_address();
+}, 250);
 view.resized = () => {
   if (!page.ready) return;
+  framing.follow();
   if (!view.fixed) {
     offer(true);
     resize_rest();
@@ -384,10 +385,16 @@ view.resized = () => {
 window.addEventListener("hashchange", () => {
   if (!page.ready || location.hash === fragment_of(history.state)) return;
   try {
-    history.load(first_state(state_of_fragment(location.hash) ?? {}));
+    history.load(state_of_fragment(location.hash) ?? {});
   } catch (error) {
     messages.complain(error instanceof Error ? error.message : String(error), { about: "link" });
   }
+});
+
+// A background that nobody chose goes with the page.
+dark.addEventListener("change", () => {
+  offer(false);
+  update_soon();
 });
 
 document.addEventListener("visibilitychange", () => {

@@ -21,6 +21,9 @@ export function short_time(milliseconds) {
   return `${(milliseconds / 1000).toFixed(milliseconds < 10000 ? 2 : 1)} s`;
 }
 
+/** @param {number} bytes */
+export const short_bytes = (bytes) => (bytes < 1000 ? `${bytes} bytes` : bytes < 1e6 ? `${short_number(bytes / 1e3, 3)} kB` : `${short_number(bytes / 1e6, 3)} MB`);
+
 /**
  * A typed number; decimal commas are understood. NaN for anything else.
  * @param {string} text

@@ -6,6 +6,8 @@
  * @typedef {import("./types.js").State} State
  * @typedef {import("./types.js").Vector} Vector
  */
+import { save_file } from "./dom.js";
+import { short_bytes } from "./numbers.js";
 import { ask_about, LatestQuestion } from "./requests.js";
 import { length, subtract } from "./vector.js";
 
@@ -51,9 +53,14 @@ export class Page {
     return this.history.state.camera ?? this.data.defaults.camera;
   }
 
+  /** The picture's: the one that was chosen, or one that suits the page. @returns {string | null} */
+  get background() {
+    return this.option("background") ?? (this.history.state.background === null ? null : page_background());
+  }
+
   /** All that makes the picture. @returns {State} */
   full_state() {
-    return { ...this.history.state, camera: this.camera, size: size_word(this.view.size()) };
+    return { ...this.history.state, background: this.background, camera: this.camera, size: size_word(this.view.size()) };
   }
 
   /** Length of the data's diagonal, world units. */
@@ -73,6 +80,12 @@ export class Page {
     if (cut && this.whole_ranges.size > 0) return;
     this.whole_bounds = data.bounds;
     if (data.range) this.whole_ranges.set(this.#field_key, data.range);
+  }
+
+  /** Offers bytes as a file, and says so. @param {Blob} blob @param {string} name @param {string} [shape] of the picture */
+  save(blob, name, shape) {
+    save_file(blob, name);
+    this.messages.tell(`Saved ${name}: ${shape ? `${shape}, ` : ""}${short_bytes(blob.size)}.`);
   }
 
   /** The field's range, or 0 to 1 where it is not known. @returns {[number, number]} */
@@ -108,6 +121,10 @@ export class Page {
     this.history.change({ field, range: undefined, threshold: undefined, iso: undefined, "transfer-function": typeof own === "string" ? own : undefined });
   }
 }
+
+/** Whether the page is dark, as the browser has it. */
+export const dark = window.matchMedia("(prefers-color-scheme: dark)");
+const page_background = () => (dark.matches ? "#15171b" : "#ffffff");
 
 /** As the option has it. @param {import("./types.js").Size} size */
 export const size_word = ({ width, height }) => `${width}x${height}`;

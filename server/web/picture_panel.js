@@ -5,10 +5,13 @@
  * @typedef {import("./types.js").Camera} Camera
  */
 import { link_of } from "./address.js";
-import { button, checkbox, choice, element, icon_button, row, save_file, show_value, typed } from "./dom.js";
-import { parsed_number, short_number } from "./numbers.js";
+import { button, checkbox, choice, element, fill_choice, icon_button, row, show_value, typed } from "./dom.js";
+import { counted, parsed_number, short_number } from "./numbers.js";
 import { command_of } from "./page.js";
 import { ask, post } from "./requests.js";
+
+/** @type {Record<string, string>} */
+const film_names = { mp4: "MP4", webm: "WebM", gif: "GIF" };
 
 export class PicturePanel {
   /** @param {Page} page @param {() => void} size_changed */
@@ -34,24 +37,31 @@ export class PicturePanel {
     this.kind = choice("", () => this.#show_film(), [["orbit", "once round the data"], ["views", "along key views"]]);
     this.frames = typed("", (text) => parsed_number(text) >= 2, { value: "120", class: "short", inputmode: "numeric" });
     this.rate = typed("Frames a second", (text) => parsed_number(text) > 0, { value: "25", class: "short" });
-    this.film_format = choice("Form of the film", () => {}, [["mp4", "MP4"], ["webm", "WebM"], ["gif", "GIF"]]);
+    this.film_format = choice("Form of the film", () => {});
     this.view_list = element("ol", { class: "key-views" });
     this.view_part = element("div", { class: "group", hidden: true }, this.view_list, element("div", { class: "buttons" }, button("Add this view", () => this.#add_view())));
     this.film_button = button("Make film", () => void this.#film(), { class: "primary" });
     this.film_progress = element("progress", { max: 1, hidden: true, "aria-label": "Progress of the film" });
     this.film_stop = button("Stop", () => this.filming?.abort(), { hidden: true });
+    this.film_part = element("div", { class: "group" },
+      row("Path", this.kind), this.view_part, row("Frames", this.frames, element("span", { class: "times" }, "at"), this.rate, element("span", { class: "times", title: "frames a second" }, "per s")),
+      element("div", { class: "row" }, this.film_format, this.film_button, this.film_stop), this.film_progress);
+    this.no_film = element("p", { class: "hint" });
     this.element = element("div", { class: "panel-body" },
       element("div", { class: "row" }, element("span", { class: "label" }, "Size"), this.width, element("span", { class: "times" }, "×"), this.height, icon_button("fit", "The window's size", () => this.#take_window())),
       element("div", { class: "checks" }, this.fixed.label),
       row("Accuracy", this.accuracy),
       row("Format", this.format, this.save_button), element("div", { class: "checks" }, this.clear.label),
       element("div", { class: "buttons" }, button("Copy link", () => void this.copy_link()), button("Copy command", () => void this.copy_command(), { title: "The tessera render command of this picture" })),
-      element("div", { class: "heading" }, "Film"),
-      row("Path", this.kind), this.view_part, row("Frames", this.frames, element("span", { class: "times" }, "at"), this.rate, element("span", { class: "times", title: "frames a second" }, "per s")),
-      element("div", { class: "row" }, this.film_format, this.film_button, this.film_stop), this.film_progress);
+      element("div", { class: "heading" }, "Film"), this.no_film, this.film_part);
   }
 
   begin() {
+    const { formats, problem } = this.page.data.films;
+    fill_choice(this.film_format, formats.map((format) => /** @type {[string, string]} */ ([format, film_names[format] ?? format])));
+    this.film_part.hidden = formats.length === 0;
+    this.no_film.hidden = problem === null;
+    this.no_film.textContent = `${formats.length === 0 ? "No films" : "Not all forms of films"} are offered: ${problem}; mend that on the server's machine (Debian: apt install ffmpeg), and reload this page.`;
     this.update();
   }
 
@@ -103,7 +113,7 @@ export class PicturePanel {
     }
     await this.#busy(this.save_button, async () => {
       const response = await post("picture", { state, format });
-      save_file(await response.blob(), name_of(response) ?? `${this.#stem()}.${format}`);
+      this.page.save(await response.blob(), name_of(response) ?? `${this.#stem()}.${format}`, `${size.width} × ${size.height} pixels`);
     }, "save");
   }
 
@@ -186,7 +196,7 @@ export class PicturePanel {
     await this.#busy(this.film_button, async () => {
       try {
         const response = await post("film", { state, ...(views ? { views: this.views, frames } : { orbit: frames }), format, rate }, signal);
-        save_file(await response.blob(), name_of(response) ?? `${this.#stem()}.${format}`);
+        this.page.save(await response.blob(), name_of(response) ?? `${this.#stem()}.${format}`, `${counted(frames)} frames`);
       } catch (error) {
         if (!signal.aborted) throw error;
         this.page.messages.tell("The film was stopped.");

@@ -35,8 +35,9 @@ export class ProbePanel {
 
   begin() {}
 
-  /** The data are others: what was found is of those before. */
+  /** The data are others: what was found is of those before, and so is an answer under way. */
   forget() {
+    this.question.drop();
     this.point = undefined;
     this.value = undefined;
     this.facts.replaceChildren();

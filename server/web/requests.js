@@ -3,6 +3,7 @@
  *
  * @typedef {import("./types.js").State} State
  */
+import { in_page_words } from "./wording.js";
 
 /** The data is still being read. */
 export class StillReading extends Error {
@@ -30,7 +31,7 @@ async function answered(path, options) {
   if (response.ok) return response;
   const said = await response.json().catch(() => ({}));
   if (response.status === 503 && said.reading) throw new StillReading(said);
-  const sentence = said.error ?? `The server answered ${response.status} to ${path}.`;
+  const sentence = said.error ? in_page_words(said.error) : `The server answered ${response.status} to ${path}.`;
   throw response.status === 403 ? new Refused(sentence) : new Error(sentence);
 }
 
@@ -53,7 +54,12 @@ export class LatestQuestion {
     this.running = undefined;
   }
 
-  /** @param {string} path @param {Record<string, any>} question @returns {Promise<any | undefined>} undefined if another came */
+  /** The answer under way is of no use any more, and never comes. */
+  drop() {
+    this.running?.abort();
+  }
+
+  /** @param {string} path @param {Record<string, any>} question @returns {Promise<any | undefined>} undefined if another came, or it was dropped */
   async ask(path, question) {
     this.running?.abort();
     const mine = (this.running = new AbortController());

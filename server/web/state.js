@@ -7,7 +7,7 @@
  * @property {State} state
  * @property {State} before
  * @property {boolean} moving more of it is to come
- * @property {"change"|"undo"|"redo"|"load"} cause
+ * @property {"change"|"undo"|"redo"|"load"|"adjust"} cause
  */
 
 /** Steps kept. */
@@ -76,6 +76,20 @@ export class StateHistory {
     this.moving = false;
     this.#remember("");
     this.#tell({ state: this.state, before, moving: false, cause: "load" });
+  }
+
+  /**
+   * Keys that follow the window, which no step undoes: steps that hold what the state holds follow it too.
+   * @param {State} keys
+   */
+  adjust(keys) {
+    const before = this.state;
+    const adjusted = (/** @type {State} */ state) => tidied({ ...state, ...Object.fromEntries(Object.entries(keys).filter(([key]) => same(state[key], before[key]))) });
+    this.state = adjusted(before);
+    this.at_rest = adjusted(this.at_rest);
+    this.done = this.done.map(adjusted);
+    this.undone = this.undone.map(adjusted);
+    this.#tell({ state: this.state, before, moving: true, cause: "adjust" });
   }
 
   /** The state, without a step that undoes it: how the page begins. @param {State} state */

@@ -1,8 +1,8 @@
 /**
- * Iso-surfaces, the boundary and blocks of the mesh, lit, within the volume: options "WHAT[:COLOUR[:OPACITY]]".
+ * Iso-surfaces, the boundary, blocks and named surfaces of the mesh, lit, within the volume: options "WHAT[:COLOUR[:OPACITY]]".
  *
  * @typedef {import("./page.js").Page} Page
- * @typedef {{what: string, color?: string, opacity: number}} Surface what: a value of the field, "boundary", a block's name
+ * @typedef {{what: string, color?: string, opacity: number}} Surface what: a value of the field, "boundary", a name of a block or of a surface
  */
 import { button, checkbox, choice, element, icon_button, show_value, typed } from "./dom.js";
 import { fraction_of, parsed_number, short_number } from "./numbers.js";
@@ -96,8 +96,9 @@ export class SurfaceEditor {
     this.others = new SurfaceList(page, "surface", (_, change) => choice("", change, this.#names().map((name) => [name, name])),
       (select, what) => { select.value = what; }, () => "#cccccc");
     this.shade = checkbox("Shade the volume", (on) => page.set_option("shade", on ? true : undefined), "Lit by a light at the eye");
-    this.add_other = button("Add a surface", () => this.#add_other(), { title: "The mesh's boundary, or a block of it" });
-    this.element = element("div", { class: "surfaces" }, this.isos.element, this.others.element,
+    this.add_other = button("Add a surface", () => this.#add_other(), { title: "The mesh's boundary, a surface that the file names, or a block" });
+    this.unseen = element("p", { class: "warning", role: "status", hidden: true });
+    this.element = element("div", { class: "surfaces" }, this.isos.element, this.unseen, this.others.element,
       element("div", { class: "buttons" }, button("Add an iso-surface", () => this.add()), this.add_other), element("div", { class: "checks" }, this.shade.label));
   }
 
@@ -109,7 +110,7 @@ export class SurfaceEditor {
   }
 
   #names() {
-    return ["boundary", ...(this.page.data.blocks ?? [])];
+    return [...new Set(["boundary", ...(this.page.data.surfaces ?? []), ...(this.page.data.blocks ?? [])])];
   }
 
   /** A surface at a value of the field. @param {number} [value] default: the middle of the function's range */
@@ -118,7 +119,7 @@ export class SurfaceEditor {
     this.isos.set([...this.isos.surfaces, { what: String(Number((value ?? (range[0] + range[1]) / 2).toPrecision(6))), opacity: 1 }], false);
   }
 
-  /** The boundary, then the first block that is not there yet. */
+  /** The boundary, then the first surface or block that is not there yet. */
   #add_other() {
     const there = this.others.surfaces;
     const what = this.#names().find((name) => !there.some((surface) => surface.what === name)) ?? "boundary";
@@ -131,8 +132,19 @@ export class SurfaceEditor {
     return edited ? hex_color(color_at(edited, Math.max(0, Math.min(1, fraction_of(value, edited.range, edited.log))))) : "#cccccc";
   }
 
+  /** Values that the field does not reach. A surface at its very smallest value is none either. */
+  #tell_unseen() {
+    const { range } = this.page.data;
+    const unseen = range ? this.isos.surfaces.map((surface) => Number(surface.what)).filter((value) => !(range[0] < value && value <= range[1])) : [];
+    this.unseen.hidden = unseen.length === 0;
+    const text = unseen.length === 0 || !range ? "" : `Nothing is seen at ${unseen.map((value) => short_number(value, 6)).join(", ")}: the field goes from ${short_number(range[0], 6)} to ${short_number(range[1], 6)}.`;
+    // Said once, and not with every update.
+    if (this.unseen.textContent !== text) this.unseen.textContent = text;
+  }
+
   update() {
     this.isos.update();
+    this.#tell_unseen();
     this.others.update();
     this.shade.input.checked = this.page.option("shade") === true;
   }

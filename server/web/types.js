@@ -44,6 +44,7 @@
  * @property {number} [time_steps]
  * @property {number[]|null} [times]
  * @property {string[]} [blocks]
+ * @property {string[]} [surfaces] beside a mesh, by their names in the file
  * @property {string[]} [notes]
  * @property {string[]} [warnings]
  * @property {number} [ranks]
@@ -51,10 +52,12 @@
  * @property {string} [tessera]
  * @property {Preset[]} presets
  * @property {string[]} opacities
+ * @property {{formats: string[], problem: string|null}} films that can be made, and why not all
  * @property {State} defaults
  *
  * @typedef {object} FunctionReply what api/function says; colours are sRGB, 0 to 1
  * @property {[number, number]} range
+ * @property {string} [name] for people; of a preset it begins with the preset's
  * @property {number[][]} colors [value, r, g, b]
  * @property {number[][]} opacities [value, opacity per unit distance]
  * @property {number} unit_distance

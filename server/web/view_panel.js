@@ -58,7 +58,7 @@ export class ViewPanel {
     this.axes.value = !axes ? "none" : axes === true ? "triad" : axes;
     this.outline.input.checked = Boolean(page.option("outline"));
     this.scale_bar.input.checked = Boolean(page.option("scale-bar"));
-    const background = String(page.option("background") ?? "");
+    const background = page.background ?? "";
     if (/^#[0-9a-f]{6}$/i.test(background)) show_value(this.background, background);
     for (const [word, input] of Object.entries(this.numbers))
       show_value(input, /** @type {Vector} */ (camera[/** @type {"position"} */ (word)]).map((v) => short_number(v, 6)).join(", "));

@@ -24,7 +24,7 @@ EXCEPTIONS = {
     r"this build leaves (out|\.(jpg|tif) out); build with|^io/tetgen_absent": (13, OTHER_BUILD),
     r"this build has no server; configure": (1, OTHER_BUILD),
     r"^apps/state_words\.cpp:\d+: state|^apps/serve_scene\.cpp:\d+": (11, SERVER),
-    r"^apps/serve_command\.cpp:\d+": (2, SERVER),
+    r"^apps/serve_command\.cpp:\d+|: arguments: serve shows one file": (3, SERVER),
     r"^io/json_transfer_function\.cpp:\d+: transfer function: it has no knot": (1, LIBRARY),
     r"please report": (5, DEFECT),
     r"2\^32|points are too many for|it lists more than \{\} blocks": (8, HUGE),

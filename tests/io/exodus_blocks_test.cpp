@@ -115,6 +115,7 @@ TEST(ExodusBlocks, ElementSetsAreChosenLikeBlocks) {
   EXPECT_NEAR(testing::volume(read({"ends", "element set 4"}).mesh), 3, 1e-12);
   EXPECT_NEAR(testing::volume(read({"ends", "steel"}).mesh), 3, 1e-12);
   const auto notes = read({}).notes;
+  EXPECT_EQ(read({}).surfaces, std::vector<std::string>{"inlet"});
   EXPECT_EQ(std::ranges::count(notes, "1 side set is a surface and is left out: 'inlet' (`surface` shows it)"), 1);
   test::expect_bad_input([&] { read({"inlet"}); }, {"'inlet' is a side set", "element sets", "`surface`"});
   test::expect_bad_input([&] { read({"node set 5"}); }, {"'node set 5' is a node set"});

@@ -81,6 +81,7 @@ inline void expect_as_whole(const std::filesystem::path& file, const MeshOptions
     EXPECT_EQ(read.whole.notes, whole.notes);
     EXPECT_EQ(read.whole.format, whole.format);
     EXPECT_EQ(read.whole.blocks, whole.blocks);
+    EXPECT_EQ(read.whole.surfaces, whole.surfaces);
     EXPECT_EQ(read.whole.mesh.field_name, whole.mesh.field_name);
     EXPECT_EQ(read.whole.mesh.association, whole.mesh.association);
   }

@@ -325,6 +325,7 @@ TEST(SolverFiles, AMultiBlockFilesVolumesAreDrawnTogether) {
       std::find(file.notes.begin(), file.notes.end(), "1 block is a surface and is left out: '2' (`surface` shows it)"),
       file.notes.end());
   EXPECT_EQ(file.blocks, (std::vector<std::string>{"fluid", "1"}));
+  EXPECT_EQ(file.surfaces, std::vector<std::string>{"2"});
   MeshOptions options;
   options.blocks = {"solid"};
   // The block that is not asked for is not even there.

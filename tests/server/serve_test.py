@@ -244,6 +244,8 @@ def part_refusals():
     with Server(options.tessera, file, "--allow-host", "viz.example.org") as server:
         headers = {"Host": "viz.example.org", "Origin": "https://viz.example.org"}
         check(server.ask("GET", "/", headers=headers)[0] == 200, "an allowed host")
+    two = subprocess.run([options.tessera, "serve", "a.vtu", "b.vtu"], capture_output=True, text=True, check=False)
+    check(two.returncode != 0 and "'b.vtu' is a second" in two.stderr and "'a_%d.vtu'" in two.stderr, two.stderr)
 
 
 def certificate(name):

@@ -46,3 +46,18 @@ export function write_flow_series(folder) {
   writeFileSync(file, `<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1"><Collection>\n${lines.join("\n")}\n</Collection></VTKFile>\n`);
   return file;
 }
+
+/** Writes a mesh with a surface beside it, "inlet"; the name of the list of the two. @param {string} folder */
+export function write_flow_with_inlet(folder) {
+  write_flow_series(folder);
+  writeFileSync(join(folder, "inlet.vtp"), `<?xml version="1.0"?>
+<VTKFile type="PolyData" version="0.1" byte_order="LittleEndian"><PolyData><Piece NumberOfPoints="3" NumberOfPolys="1">
+<Points><DataArray type="Float32" Name="Points" NumberOfComponents="3" format="ascii">0 0 0 0 1 0 0 0 1</DataArray></Points>
+<Polys><DataArray type="Int64" Name="connectivity" format="ascii">0 1 2</DataArray><DataArray type="Int64" Name="offsets" format="ascii">3</DataArray></Polys>
+</Piece></PolyData></VTKFile>
+`);
+  const file = join(folder, "flow.vtm");
+  writeFileSync(file, `<?xml version="1.0"?>\n<VTKFile type="vtkMultiBlockDataSet" version="1.0"><vtkMultiBlockDataSet>
+<DataSet index="0" name="fluid" file="flow_0.vtu"/><DataSet index="1" name="inlet" file="inlet.vtp"/>\n</vtkMultiBlockDataSet></VTKFile>\n`);
+  return file;
+}

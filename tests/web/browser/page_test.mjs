@@ -302,15 +302,16 @@ test("a colour map of ParaView's is imported, and exported again", async () => {
 test("field, component and time step change the picture", async () => {
   const data = await opened_section("Data");
   const before_field = await shown_bytes(page);
-  await data.getByLabel("Field").selectOption("velocity");
+  const field = page.locator(".panel-top");
+  await field.getByLabel("Field").selectOption("velocity");
   await at_rest(page);
   assert.equal((await state()).field, "velocity:mag");
-  await data.getByLabel("Component").selectOption("y");
+  await field.getByLabel("Component").selectOption("y");
   await at_rest(page);
   assert.equal((await page.evaluate(() => window.tessera.shown())).field, "velocity:y");
-  await data.getByLabel("Field").selectOption("region");
+  await field.getByLabel("Field").selectOption("region");
   await at_rest(page);
-  await data.getByLabel("Field").selectOption("pressure");
+  await field.getByLabel("Field").selectOption("pressure");
   await at_rest(page);
   const step = data.getByLabel("Time step").and(page.locator("input[type=text]"));
   const old_step = await step.inputValue();
@@ -363,6 +364,7 @@ test("the picture is saved, and is what the copied command makes", async () => {
   await box.getByLabel("Height, pixels").fill("222");
   const [download] = await Promise.all([page.waitForEvent("download"), box.getByRole("button", { name: "Save", exact: true }).click()]);
   const saved = readFileSync(await download.path());
+  await page.getByText(`Saved picture.png: 333 × 222 pixels, ${Number((saved.length / 1000).toPrecision(3))} kB.`).first().waitFor();
   await box.getByLabel("Show at this size").check();
   await at_rest(page);
   await box.getByRole("button", { name: "Copy command" }).click();
@@ -388,6 +390,7 @@ test("films go once round the data, and along key views", async () => {
     const [download] = await Promise.all([page.waitForEvent("download"), box.getByRole("button", { name: "Make film" }).click()]);
     assert.match(download.suggestedFilename(), /\.mp4$/);
     const bytes = readFileSync(await download.path());
+    await page.getByText("Saved film.mp4: 5 frames, 23 kB.").first().waitFor();
     assert.equal(bytes.length, 5 * 48 * 32 * 3);
     return [0, 1, 2, 3, 4].map((n) => bytes.subarray(n * 48 * 32 * 3, (n + 1) * 48 * 32 * 3));
   };
@@ -529,7 +532,13 @@ test("all controls have names, and text can be read on its ground", async () => 
         const [low, high] = [panel, luminance(getComputedStyle(c).color)].sort((a, b) => a - b);
         return (high + 0.05) / (low + 0.05) < 4.5;
       });
-      return [...nameless, ...faint].map((c) => c.outerHTML.slice(0, 120));
+      // A field's own ground, and no part of it let through.
+      const faint_hints = [...document.querySelectorAll("#panel input[placeholder]")].filter((c) => {
+        const hint = getComputedStyle(c, "::placeholder");
+        const [low, high] = [getComputedStyle(c).backgroundColor, hint.color].map(luminance).sort((a, b) => a - b);
+        return (high + 0.05) / (low + 0.05) < 4.5 || Number(hint.opacity) * Number(getComputedStyle(c).opacity) < 1;
+      });
+      return [...nameless, ...faint, ...faint_hints].map((c) => c.outerHTML.slice(0, 120));
     });
     assert.deepEqual(bad, [], scheme);
   }

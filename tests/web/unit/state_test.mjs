@@ -30,6 +30,21 @@ test("a drag is one step", () => {
   assert.ok(!history.can_undo);
 });
 
+test("what follows the window is no step, and steps that held the same follow it", () => {
+  const history = new StateHistory({ view: 1 });
+  history.change({ log: true });
+  history.change({ view: 2 });
+  history.change({ log: undefined });
+  history.adjust({ view: 3 });
+  assert.deepEqual(history.state, { view: 3 });
+  history.undo();
+  assert.deepEqual(history.state, { view: 3, log: true });
+  history.undo();
+  assert.deepEqual(history.state, { view: 1, log: true });
+  history.redo();
+  assert.deepEqual(history.state, { view: 3, log: true });
+});
+
 test("undo in the middle of a drag goes back to before it", () => {
   const history = new StateHistory({ x: 0 });
   history.change({ x: 5 }, { moving: true });

@@ -1,0 +1,43 @@
+/**
+ * Keeps in the picture what is in it when its shape changes, as by the panel on a phone: a camera says how much is seen
+ * from top to bottom, so that a narrower picture would be cut at its sides.
+ *
+ * @typedef {import("./page.js").Page} Page
+ * @typedef {import("./types.js").Camera} Camera
+ */
+import { zoomed } from "./camera.js";
+
+export class Framing {
+  /** @param {Page} page */
+  constructor(page) {
+    this.page = page;
+    /** Width over height of the window that the picture fills. */
+    this.shape = 0;
+    /** The camera that was chosen, and the picture's shape then: back in it, the camera is the same again. @type {{ camera: Camera, shape: number } | undefined} */
+    this.chosen = undefined;
+    /** What became of it. @type {Camera | undefined} */
+    this.made = undefined;
+  }
+
+  get #shape_now() {
+    const { width, height } = this.page.view.window_size();
+    return width / height;
+  }
+
+  /** The data are there, and a camera that suits the picture's shape. */
+  begin() {
+    this.shape = this.#shape_now;
+  }
+
+  /** The picture's shape has changed. */
+  follow() {
+    const { page } = this;
+    const before = this.shape;
+    this.shape = this.#shape_now;
+    if (page.history.moving || page.view.fixed || this.shape === before) return;
+    if (!this.chosen || page.camera !== this.made) this.chosen = { camera: page.camera, shape: before };
+    const shrink = Math.min(1, this.shape / this.chosen.shape);
+    this.made = shrink < 1 ? zoomed(this.chosen.camera, shrink) : this.chosen.camera;
+    if (this.made !== page.camera) page.history.adjust({ camera: this.made });
+  }
+}

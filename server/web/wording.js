@@ -1,0 +1,22 @@
+/** The server speaks of options of `tessera render`; who uses the page has its controls, and reads their names. */
+
+/** @type {Record<string, string>} */
+export const controls = {
+  size: "Size", camera: "View", view: "View", up: "View", azimuth: "View", elevation: "View", zoom: "View", fit: "Fit", projection: "Projection",
+  field: "Field", "time-step": "Time step", block: "Blocks", smooth: "Smooth", threshold: "Threshold", clip: "Clip", iso: "Iso-surface", surface: "Surface",
+  shade: "Shade the volume", "no-shade": "Shade the volume", "transfer-function": "Colour and opacity", rescale: "Whole", range: "Range", log: "Log values",
+  opacity: "Opacity ×", "opacity-scale": "Opacity ×", "opacity-points": "Shape", "unit-distance": "Distance", "color-bar": "Colour bar",
+  "color-bar-title": "Bar's title", "color-bar-range": "Colour bar", "color-bar-scale": "Colour bar", background: "Background", axes: "Axes",
+  outline: "Outline", "scale-bar": "Scale bar", accuracy: "Accuracy",
+};
+
+/** A line of the server's that begins small and has no stop. @param {string} line */
+export const sentence_of = (line) => `${line.charAt(0).toUpperCase()}${line.slice(1)}${/[.!?]$/.test(line) ? "" : "."}`;
+
+/**
+ * A sentence of the server's with the page's names, and without the advice to read the program's help. Commands in
+ * backquotes stay, and so do options without a control: they are those that the server was started with.
+ * @param {string} sentence
+ */
+export const in_page_words = (sentence) => sentence.replace(/; see `tessera [^`]*--help[^`]*`/g, "").replace(/`[^`]*`|(?<![\w'-])--([a-z]+(?:-[a-z]+)*)/g,
+  (/** @type {string} */ found, /** @type {string | undefined} */ option) => (option && controls[option] ? `“${controls[option]}”` : found));
