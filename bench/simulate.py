@@ -40,6 +40,7 @@ class Settings:
         self.bytes_per_second = None  # of a link, one direction; None: endless
         self.latency = 0.0
         self.cores, self.shared = 2.0, False  # of a node; of all nodes together
+        self.others = 0.0  # threads of other programs that want these cores
         self.threads = 1  # of a rank
         self.in_flight = 2
         self.memory = 4 << 30
@@ -58,9 +59,9 @@ class Model:
         self.nodes = max(work.projectors, work.compositors)
         looks = LOOK_CPU * (work.projectors + work.compositors) if settings.look else 0.0
         if settings.shared:
-            self.cores = [Cores(self.clock, max(0.1, settings.cores - looks))] * self.nodes
+            self.cores = [Cores(self.clock, max(0.1, settings.cores - looks), settings.others)] * self.nodes
         else:
-            self.cores = [Cores(self.clock, max(0.1, settings.cores - looks / self.nodes)) for _ in range(self.nodes)]
+            self.cores = [Cores(self.clock, max(0.1, settings.cores - looks / self.nodes), settings.others) for _ in range(self.nodes)]
         self.links = Links(self.clock, settings.bytes_per_second)
         self.inbox = [collections.deque() for _ in range(work.projectors + work.compositors)]
         self.window = min(max(settings.memory // 8 // work.projectors, 256 << 10), 8 << 20)
@@ -164,12 +165,13 @@ class Projector:
         self.model, self.rank = model, rank
         self.lanes = collections.defaultdict(Lane)
         self.frame, self.left, self.working = 0, 0, False
-        self.next, self.threads, self.stuck, self.ending = 0, 0, [], False
+        self.next, self.threads, self.stuck, self.ending, self.idle = 0, 0, [], False, False
         self.early, self.finished = {}, set()
 
     def start(self):
         model = self.model
-        if self.frame >= model.work.frames or self.frame >= self.left + model.set.in_flight:
+        self.idle = self.frame >= model.work.frames or self.frame >= self.left + model.set.in_flight
+        if self.idle:
             return
         self.working, self.next, self.ending, self.early, self.finished = True, 0, False, {}, set()
         self.tiles = model.work.tiles.get((self.frame, self.rank), [])
@@ -262,7 +264,7 @@ class Projector:
 
     def frame_left(self):
         self.left += 1
-        if not self.working and not self.ending and self.frame == self.left + self.model.set.in_flight - 1:
+        if self.idle:
             self.start()
 
 

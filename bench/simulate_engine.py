@@ -31,16 +31,16 @@ class Clock:
 
 
 class Cores:
-    """Cores that threads share. `count` may be a fraction: what others leave."""
+    """Cores that threads share with so many threads of `others`, which may be a fraction: of the time, or of a thread's weight."""
 
-    def __init__(self, clock, count):
-        self.clock, self.count = clock, count
+    def __init__(self, clock, count, others=0.0):
+        self.clock, self.count, self.others = clock, count, others
         self.tasks, self.order = [], itertools.count()  # by the virtual time of their ends
         self.virtual, self.last, self.version = 0.0, 0.0, 0
         self.busy = 0.0  # core seconds spent
 
     def rate(self):
-        return min(1.0, self.count / len(self.tasks)) if self.tasks else 0.0
+        return min(1.0, self.count / (len(self.tasks) + self.others)) if self.tasks else 0.0
 
     def advance(self):
         gone = (self.clock.now - self.last) * self.rate()
