@@ -76,11 +76,11 @@ class Model:
         self.projectors = [Projector(self, p) for p in range(work.projectors)]
 
     def run(self):
-        """Seconds a frame: from the first frame that leaves to the last."""
+        """Seconds a frame: from the first picture that is written to the last."""
         for projector in self.projectors:
             projector.start()
         self.clock.run()
-        left = self.assembler.left
+        left = self.assembler.pictures
         if len(left) < self.work.frames:
             raise RuntimeError(f"the model stands still: {len(left)} of {self.work.frames} frames have left")
         return (left[-1] - left[0]) / (len(left) - 1) if len(left) > 1 else left[0]
@@ -380,7 +380,7 @@ class Assembler:
     def __init__(self, model):
         self.model, self.rank = model, model.work.projectors
         self.unread, self.reading = collections.deque(), False
-        self.ends, self.left = 0, []
+        self.ends, self.left, self.pictures = 0, [], []  # when frames left, and their pictures were written
         self.writing, self.waiting, self.blocked = False, 0, False
 
     def send(self, source, size, ends):
@@ -405,14 +405,18 @@ class Assembler:
         self.ends += ends
         if ends and self.ends % self.model.work.compositors == 0:
             self.left.append(self.model.clock.now)
-            for projector in self.model.projectors:
-                self.model.clock.after(self.model.set.latency + self.model.look(projector.rank), projector.frame_left)
+            self.model.compute(self.rank, self.model.work.send[0] * len(self.model.projectors) if self.model.set.assembly else 0.0, self.tell)
             self.waiting += 1
             self.write()
             if self.waiting > 1:  # one may wait; with more, who assembles does
                 self.blocked, self.reading = True, False
                 return
         self.read()
+
+    def tell(self):
+        """The projectors, that a frame has left."""
+        for projector in self.model.projectors:
+            self.model.clock.after(self.model.set.latency + self.model.look(projector.rank), projector.frame_left)
 
     def write(self):
         if self.waiting and not self.writing:
@@ -421,6 +425,7 @@ class Assembler:
 
     def written(self):
         self.writing = False
+        self.pictures.append(self.model.clock.now)
         self.write()
         if self.blocked and self.waiting <= 1:
             self.blocked = False
