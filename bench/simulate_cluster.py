@@ -127,8 +127,8 @@ def foretell(small, large, frames, case):
 def line(case, whole, parts):
     cores, gbit, millions, nodes = case
     tets = f"{millions} M" if millions < 1000 else f"10^{round(math.log10(millions)) + 6}"
-    return (f"| {cores} | {gbit} | {tets} | {nodes} | {1e3 * whole:.0f} | {millions * 1e3 / whole:.3g} | " +
-            " | ".join(f"{100 * parts[name] / whole:.0f}" for name in PARTS) + " |")
+    return (f"| {cores} | {gbit} | {tets} | {nodes} | {1e3 * whole:.0f} | {millions / whole:.3g} | " +
+            " | ".join(f"{round(100 * parts[name] / whole)}" for name in PARTS) + " |")
 
 
 def main():
@@ -148,7 +148,7 @@ def main():
     a, b = cells_and_segments(small, large)
     cases = [(*machine, millions, nodes) for machine in MACHINES for millions in MILLIONS for nodes in map(int, args.nodes.split(","))
              if nodes < MANY or millions in (MILLIONS[0], MILLIONS[-1])]
-    lines = ["| cores a node | Gbit/s | tets | nodes | frame [ms] | kTets/s | " + " | ".join(f"{p} [%]" for p in PARTS) + " |",
+    lines = ["| cores a node | Gbit/s | tets | nodes | frame [ms] | MTets/s | " + " | ".join(f"{p} [%]" for p in PARTS) + " |",
              "|---:|---:|---:|---:|---:|---:|" + "---:|" * len(PARTS)]
     with multiprocessing.Pool(args.jobs) as pool:
         for case, (whole, parts) in zip(cases, pool.imap(functools.partial(foretell, small, large, args.frames), cases)):
