@@ -229,7 +229,7 @@ class MpiTransport::Engine {
     if (message.tag == static_cast<int>(Channel::fragments) || message.tag == static_cast<int>(Channel::mesh))
       trace = projecting_;
     if (message.tag == static_cast<int>(Channel::tiles)) trace = compositing_;
-    return {trace, "send", message.frame, message.bytes.size(), 1};
+    return {trace, "send", message.frame, message.bytes.size(), 1, message.to};
   }
 
   /// Hands on what has arrived, in the order of its coming.

@@ -121,7 +121,7 @@ class CompositorLoop {
     // What a rank sends to itself does not move.
     const bool moved = from != run_.transport.rank();
     const scene::TraceScope timing(trace_, "receive", static_cast<std::int32_t>(number), moved ? message->size() : 0,
-                                   moved ? 1 : 0);
+                                   moved ? 1 : 0, from);
     const auto& projectors = run_.settings.roles.projectors;
     const auto projector = static_cast<int>(std::find(projectors.begin(), projectors.end(), from) - projectors.begin());
     if (static_cast<std::size_t>(projector) == projectors.size()) reader.refuse_kind();
@@ -225,6 +225,7 @@ class CompositorLoop {
       all = waiting.all;
       lock.unlock();
       {
+        const scene::TraceTile of_tile(trace_, tile);
         const scene::TraceScope timing(trace_, "composite", static_cast<std::int32_t>(of.number));
         if (run_.stop.stop_requested()) waiting.parts.clear(), of.stopped = true;
         if (merge.merger == nullptr && !waiting.parts.empty())
@@ -298,7 +299,7 @@ std::exception_ptr run_assembler(const DistributedRun& run, const DistributedCal
     }();
     std::optional<compositor::AssembledFrame> assembled;
     {
-      const scene::TraceScope timing(settings.compositing, "assemble");
+      const scene::TraceScope timing(settings.compositing, "assemble", -1, 0, 0, message.from);
       assembled = assembly.accept(message);
     }
     if (!assembled) continue;

@@ -68,8 +68,9 @@ class Worker final : public TileWorker {
   using Sink = typename TileRenderer<Source>::Sink;
   template <class... More>
   Worker(std::unique_ptr<Sink> sink, const TileContext& context, const More&... more)
-      : renderer_(context, more...), sink_(std::move(sink)) {}
+      : trace_(context.trace), renderer_(context, more...), sink_(std::move(sink)) {}
   void render(std::size_t tile, const scene::PixelRect& rect, std::span<projection::TileEntry> entries) override {
+    const scene::TraceTile of_tile(trace_, tile);
     sink_->begin_tile(tile, rect);
     renderer_.render(rect, entries, *sink_);
     sink_->end_tile();
@@ -85,6 +86,7 @@ class Worker final : public TileWorker {
   }
 
  private:
+  scene::Trace* trace_;
   TileRenderer<Source> renderer_;
   std::unique_ptr<Sink> sink_;
 };

@@ -61,6 +61,8 @@ class EventText {
     if (span.frame >= 0) count(R"(,"frame":)", static_cast<std::uint64_t>(span.frame));
     if (span.bytes > 0) count(R"(,"bytes":)", span.bytes);
     if (span.messages > 0) count(R"(,"messages":)", span.messages);
+    if (span.tile >= 0) count(R"(,"tile":)", static_cast<std::uint64_t>(span.tile));
+    if (span.peer >= 0) count(R"(,"peer":)", static_cast<std::uint64_t>(span.peer));
     text_ += "}}";
   }
 

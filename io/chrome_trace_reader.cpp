@@ -20,13 +20,13 @@ constexpr double absent = std::numeric_limits<double>::quiet_NaN();
 /// One event while its fields come by.
 struct Event {
   std::string name, category, phase, role;
-  double pid, tid, start_us, wall_us, cpu_us, frame, bytes, messages;
+  double pid, tid, start_us, wall_us, cpu_us, frame, bytes, messages, tile, peer;
 
   void clear() {
     for (std::string* word : {&name, &category, &phase, &role}) word->clear();
     pid = tid = start_us = wall_us = absent;
     cpu_us = bytes = messages = 0;
-    frame = -1;
+    frame = tile = peer = -1;
   }
 };
 
@@ -132,7 +132,9 @@ class Reader final : public nlohmann::json_sax<nlohmann::json> {
       for (const auto& [name, field] : {std::pair{"cpu_us", &Event::cpu_us},
                                         {"frame", &Event::frame},
                                         {"bytes", &Event::bytes},
-                                        {"messages", &Event::messages}})
+                                        {"messages", &Event::messages},
+                                        {"tile", &Event::tile},
+                                        {"peer", &Event::peer}})
         if (key_ == name) event_.*field = value;
     } else if (here() == Place::run) {
       if (key_ == "tets") file_.run.tets = static_cast<std::uint64_t>(run_number(value, 1e15));
@@ -174,6 +176,8 @@ class Reader final : public nlohmann::json_sax<nlohmann::json> {
     span.frame = static_cast<std::int32_t>(checked("frame", event_.frame, -1, 1e9, true));
     span.bytes = static_cast<std::uint64_t>(checked("bytes", event_.bytes, 0, most_count, true));
     span.messages = static_cast<std::uint64_t>(checked("messages", event_.messages, 0, most_count, true));
+    span.tile = static_cast<std::int32_t>(checked("tile", event_.tile, -1, 1e9, true));
+    span.peer = static_cast<std::int32_t>(checked("peer", event_.peer, -1, 1e9, true));
     if (event_.role == "projector")
       span.role = scene::TraceRole::projector;
     else if (event_.role == "compositor")

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <thread>
 #include <unordered_map>
+#include <utility>
 
 namespace tessera {
 namespace {
@@ -22,6 +23,7 @@ struct Trace::ThreadSpans {
   std::mutex mutex;
   std::vector<TraceSpan> spans;
   std::uint32_t number = 0;
+  std::int32_t tile = -1;                     ///< that its thread works for
   double wall_us = -adjacent_us, cpu_us = 0;  ///< when its thread last looked at its CPU clock
 
   /// The thread's CPU time at `now_us`. That clock is a system call and dear (0.2 to 0.5 us); where one scope begins
@@ -118,8 +120,8 @@ void TraceScope::end() {
   Trace::ThreadSpans& mine = trace_->mine();
   // A time carried over from an adjacent look may be a little ahead of the clock.
   const double cpu_us = std::max(0.0, mine.cpu_time(end_us) - start_cpu_us_);
-  const TraceSpan span{stage_, mine.number, start_us_, end_us - start_us_, cpu_us,
-                       frame_, bytes_,      messages_, trace_->role()};
+  const TraceSpan span{stage_, mine.number, start_us_,      end_us - start_us_, cpu_us, frame_,
+                       bytes_, messages_,   trace_->role(), mine.tile,          peer_};
   const std::lock_guard lock(mine.mutex);
   mine.spans.push_back(span);
 }
@@ -163,10 +165,14 @@ void StageTimer::end() {
   for (std::size_t i = 0; i < stages_ && all > 0; ++i) {
     const double share = static_cast<double>(sums_[i].ticks) / all;
     trace_->add({sums_[i].stage, trace_->mine().number, at_us, wall_us * share, cpu_us * share, trace_->frame(), 0, 0,
-                 trace_->role()});
+                 trace_->role(), trace_->mine().tile});
     at_us += wall_us * share;
   }
 }
+
+void TraceTile::begin(std::int32_t tile) { before_ = std::exchange(trace_->mine().tile, tile); }
+
+void TraceTile::end() { trace_->mine().tile = before_; }
 
 }  // namespace scene
 }  // namespace tessera

@@ -47,4 +47,25 @@ class StageTimer {
   double start_us_ = 0, start_cpu_us_ = 0;
 };
 
+/// While it lives, spans that its thread ends are of this tile, through whichever face of the recording. Does nothing
+/// if `trace` is null.
+class TraceTile {
+ public:
+  TraceTile(Trace* trace, std::size_t tile) : trace_(trace) {
+    if (trace_ != nullptr) begin(static_cast<std::int32_t>(tile));
+  }
+  ~TraceTile() {
+    if (trace_ != nullptr) end();
+  }
+  TraceTile(const TraceTile&) = delete;
+  TraceTile& operator=(const TraceTile&) = delete;
+
+ private:
+  void begin(std::int32_t tile);
+  void end();
+
+  Trace* trace_;
+  std::int32_t before_ = -1;
+};
+
 }  // namespace tessera::scene

@@ -10,7 +10,8 @@
 namespace tessera {
 namespace scene {
 class StageTimer;
-}
+class TraceTile;
+}  // namespace scene
 
 /// For whom a process worked. A rank may project and composite at once, and a projector composites its own runs, so
 /// that the stage alone does not say it.
@@ -45,6 +46,8 @@ struct TraceSpan {
   std::uint64_t bytes = 0;     ///< moved (pack, send, receive, read, write)
   std::uint32_t messages = 0;  ///< moved (send, receive)
   TraceRole role = TraceRole::both;
+  std::int32_t tile = -1;  ///< that the work was for, -1: for no single one
+  std::int32_t peer = -1;  ///< rank that a message went to or came from (send, receive, assemble), -1: none
 };
 
 /// Collects spans of all threads of a process. Give work a null pointer instead and timing costs nothing. Settings and
@@ -85,6 +88,7 @@ class TESSERA_EXPORT Trace {
   struct Recording;
   friend class TraceScope;
   friend class scene::StageTimer;
+  friend class scene::TraceTile;
   ThreadSpans& mine();
 
   std::shared_ptr<Recording> recording_;
@@ -99,9 +103,11 @@ class TESSERA_EXPORT TraceScope {
     if (trace_ != nullptr) begin(stage, frame);
   }
   /// With what it moves known beforehand.
-  TraceScope(Trace* trace, const char* stage, std::int32_t frame, std::uint64_t bytes, std::uint32_t messages)
+  TraceScope(Trace* trace, const char* stage, std::int32_t frame, std::uint64_t bytes, std::uint32_t messages,
+             std::int32_t peer = -1)
       : TraceScope(trace, stage, frame) {
     moved(bytes, messages);
+    peer_ = peer;
   }
   ~TraceScope() {
     if (trace_ != nullptr) end();
@@ -116,7 +122,7 @@ class TESSERA_EXPORT TraceScope {
 
   Trace* trace_;
   const char* stage_ = nullptr;
-  std::int32_t frame_ = -1;
+  std::int32_t frame_ = -1, peer_ = -1;
   std::uint32_t messages_ = 0;
   std::uint64_t bytes_ = 0;
   double start_us_ = 0, start_cpu_us_ = 0;

@@ -36,6 +36,8 @@ struct FileSpan {
   std::uint32_t thread = 0;
   std::int32_t rank = 0;
   std::int32_t frame = -1;  ///< -1: of no frame
+  std::int32_t tile = -1;   ///< -1: of no single tile
+  std::int32_t peer = -1;   ///< rank at the other end of a message, -1: none
   std::uint16_t stage = 0;  ///< place in TraceFile::stages
   TraceRole role = TraceRole::both;
 };

@@ -78,14 +78,22 @@ TEST_F(Mpirun, RunsMeetTheReferenceAndTheReportSaysTheJobsShape) {
   // The trace has all ranks, and the projectors' sends moved the bytes that the report counts.
   const auto trace = nlohmann::json::parse(contents(folder / "trace.json"));
   std::set<int> ranks;
+  std::set<int> peers, projected, composited;  // ranks sent to, tiles
   std::uint64_t sent = 0;
   for (const auto& event : trace.at("traceEvents")) {
     ranks.insert(event.at("pid").get<int>());
+    if (event.at("name") == "project") projected.insert(event.at("args").at("tile").get<int>());
+    if (event.at("name") == "composite") composited.insert(event.at("args").at("tile").get<int>());
+    if (event.at("name") == "send" && event.at("args").value("frame", -1) == 0)
+      peers.insert(event.at("args").at("peer").get<int>());
     if (event.at("name") == "send" && event.at("args").value("frame", -1) == 0 && event.at("pid") != 3)
       sent += event.at("args").at("bytes").get<std::uint64_t>();
   }
   EXPECT_EQ(ranks, (std::set<int>{0, 1, 2, 3}));
   EXPECT_EQ(sent, counters.at("exchange_bytes").get<std::uint64_t>());
+  EXPECT_EQ(peers, (std::set<int>{3}));
+  EXPECT_EQ(projected, (std::set<int>{0, 1, 2, 3}));
+  EXPECT_EQ(composited, projected);
 }
 
 TEST_F(Mpirun, BadInputIsOneLineInAllAndStatusTwo) {

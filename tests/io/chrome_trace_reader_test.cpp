@@ -18,7 +18,7 @@ const std::string good =
 TEST(ChromeTraceReader, ReadsBackWhatWasWritten) {
   scene::Trace first, second;
   first.add({"read", 0, 1.5, 20, 19, -1, 123'456'789'012, 0});
-  first.add({"send", 3, 31, 2.25, 2, 6, 99, 12, TraceRole::projector});
+  first.add({"send", 3, 31, 2.25, 2, 6, 99, 12, TraceRole::projector, 41, 0});
   second.add({"frame", 0, 0, 50, 0, 6, 0, 0, TraceRole::compositor});
   const std::array<std::string, 2> events = {chrome_trace_events(first, 0, "rank 0", 0),
                                              chrome_trace_events(second, 1, "rank 1", -1000)};
@@ -33,12 +33,16 @@ TEST(ChromeTraceReader, ReadsBackWhatWasWritten) {
   EXPECT_EQ(file.spans[0].wall_us, 20);
   EXPECT_EQ(file.spans[0].cpu_us, 19);
   EXPECT_EQ(file.spans[0].frame, -1);
+  EXPECT_EQ(file.spans[0].tile, -1);
+  EXPECT_EQ(file.spans[0].peer, -1);
   EXPECT_EQ(file.spans[0].bytes, 123'456'789'012u);
   EXPECT_EQ(file.spans[0].role, TraceRole::both);
   EXPECT_EQ(file.spans[1].thread, 3u);
   EXPECT_EQ(file.spans[1].frame, 6);
   EXPECT_EQ(file.spans[1].messages, 12u);
   EXPECT_EQ(file.spans[1].role, TraceRole::projector);
+  EXPECT_EQ(file.spans[1].tile, 41);
+  EXPECT_EQ(file.spans[1].peer, 0);
   EXPECT_EQ(file.spans[2].rank, 1);
   EXPECT_EQ(file.spans[2].start_us, -1000);
   EXPECT_EQ(file.spans[2].role, TraceRole::compositor);
@@ -91,6 +95,8 @@ TEST(ChromeTraceReader, AnEventThatMakesNoSenseIsNamedByItsNumber) {
       {R"("cpu_us":1)", R"("frame":0.5)", "frame is 0.5"},
       {R"("cpu_us":1)", R"("bytes":-1)", "bytes is -1"},
       {R"("cpu_us":1)", R"("messages":1e30)", "messages is 1e+30"},
+      {R"("cpu_us":1)", R"("tile":-2)", "tile is -2"},
+      {R"("cpu_us":1)", R"("peer":0.5)", "peer is 0.5"},
       {R"("cpu_us":1)", R"("role":"king")", "'king'"},
       {R"("name":"sort",)", "", "name is missing"},
   };

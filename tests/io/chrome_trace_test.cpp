@@ -30,7 +30,7 @@ json event(const json& events, const std::string& phase, const std::string& name
 TEST(ChromeTrace, HoldsOneCompleteEventASpanWithAllItKnows) {
   scene::Trace trace;
   trace.add({"project", 0, 10.5, 20, 19});
-  trace.add({"send", 3, 31, 2.25, 2, 6, 5'000'000'000, 12, TraceRole::projector});
+  trace.add({"send", 3, 31, 2.25, 2, 6, 5'000'000'000, 12, TraceRole::projector, 41, 2});
   const auto events = json::parse(chrome_trace_events(trace, 7, "rank 7 \"projector\"", 100));
   for (const auto& e : events) EXPECT_EQ(e.at("pid"), 7);
   EXPECT_EQ(event(events, "M", "process_name").at("args").at("name"), "rank 7 \"projector\"");
@@ -42,8 +42,13 @@ TEST(ChromeTrace, HoldsOneCompleteEventASpanWithAllItKnows) {
   EXPECT_EQ(send.at("tid"), 3);
   EXPECT_EQ(send.at("ts"), 131);
   EXPECT_EQ(send.at("dur"), 2.25);
-  EXPECT_EQ(send.at("args"),
-            (json{{"cpu_us", 2}, {"role", "projector"}, {"frame", 6}, {"bytes", 5'000'000'000}, {"messages", 12}}));
+  EXPECT_EQ(send.at("args"), (json{{"cpu_us", 2},
+                                   {"role", "projector"},
+                                   {"frame", 6},
+                                   {"bytes", 5'000'000'000},
+                                   {"messages", 12},
+                                   {"tile", 41},
+                                   {"peer", 2}}));
 }
 
 TEST(ChromeTrace, ThreadsAreNamedByTheRoleTheyHaveIfOnlyOne) {

@@ -68,6 +68,26 @@ TEST(Trace, ASpanTakesItsFacesFrameUnlessItNamesOne) {
   EXPECT_EQ(spans[3].role, TraceRole::compositor);
 }
 
+TEST(Trace, SpansOfATileCarryItsNumberThroughEveryFace) {
+  Trace trace;
+  Trace other(trace, TraceRole::compositor);
+  {
+    const TraceTile of_tile(&trace, 7);
+    { const TraceScope scope(&other, "composite"); }
+    StageTimer timer(&trace);
+    timer.record("project");
+  }
+  { const TraceScope scope(&trace, "send", 0, 10, 1, 3); }
+  const TraceTile off(nullptr, 7);  // nothing happens
+  const auto spans = trace.spans();
+  ASSERT_EQ(spans.size(), 3u);
+  EXPECT_EQ(spans[0].tile, 7);
+  EXPECT_EQ(spans[1].tile, 7);
+  EXPECT_EQ(std::string(spans[1].stage), "project");
+  EXPECT_EQ(spans[2].tile, -1);
+  EXPECT_EQ(spans[2].peer, 3);
+}
+
 TEST(Trace, RecordingsThatFollowOrAlternateDoNotMix) {
   // The allocator likes to give the second recording the first one's place.
   for (int i = 0; i < 100; ++i) {

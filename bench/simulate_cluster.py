@@ -1,0 +1,169 @@
+#!/usr/bin/env python3
+"""What bench/simulate.py foretells for machines that are not here: 8, 64 and 1024 nodes, 15.7 million to 10^10 tetrahedra.
+
+    bench/simulate_cluster.py --tessera PROGRAM --work FOLDER [--results docs/SCALING.md] [--sides 69,138] [--frames 4] [--jobs 1]
+
+Traces cubes of two sizes on 8 nodes (1024 x 1024 pixels), and scales their work to M tets and N nodes by these rules:
+
+- Culling and binning: as M, from the larger cube, divided evenly.
+- Tiles' CPU time on projectors: a M + b M^(1/3), cells and ray segments, through both cubes. Nothing is saved where cells are smaller than pixels.
+- A projector's part of the mesh covers N^(-2/3) of the picture, and all tiles that this touches: a square of side s+1 tiles where its own is
+  s. The bytes of all fragments and their compositing go as N^(1/3) and as the power of M that both cubes show, not above 1/3.
+- How projectors differ in work, how tiles differ in depth, and what a message, a byte, assembly and writing take: as measured with the larger cube on 8 nodes.
+- Threads of a rank share its work without loss. Only Python's standard library.
+"""
+import argparse
+import collections
+import functools
+import math
+import multiprocessing
+import os
+import pathlib
+import re
+
+import results_file
+from simulate import GOODPUT, Settings, losses
+from simulate_check import call, mpirun
+from simulate_work import Work, work_of
+
+SIZE, TILE, BASE_NODES = 1024, 32, 8
+PARTS = ("projection", "imbalance", "last tile", "compositing", "assembly", "wire")
+MILLIONS = (15.7, 51.1, 1e3, 1e4)
+MANY = 512  # nodes: a run of the model takes so long that only the least and the most tets are
+MACHINES = ((32, 10), (2, 10), (32, 1), (32, 100))  # cores a node, Gbit/s
+
+
+class Base:
+    """Sums over a trace's frames, a frame each."""
+
+    def __init__(self, work, side):
+        self.work, self.millions = work, 6e-6 * side ** 3
+        self.depth = collections.Counter()  # seconds of a tile, over all projectors
+        self.merge = collections.Counter()
+        own = collections.Counter()
+        self.setup, self.bytes, self.pairs = sum(work.setup.values()) / work.frames, 0.0, 0.0
+        for (_, p), tiles in work.tiles.items():
+            own[p] += work.setup.get((_, p), 0.0) / work.frames
+            for tile, seconds, size in tiles:
+                self.depth[tile] += seconds / work.frames
+                own[p] += seconds / work.frames
+                self.bytes += size / work.frames
+                self.pairs += 1 / work.frames
+        for (_, tile), seconds in work.merge.items():
+            self.merge[tile] += seconds / work.frames
+        self.project = sum(self.depth.values())
+        mean = sum(own.values()) / work.projectors
+        self.uneven = [own[p] / mean for p in range(work.projectors)]
+
+
+def cells_and_segments(small, large):
+    """(a, b) of a M + b M^(1/3), neither below 0."""
+    m, n = small.millions, large.millions
+    a = (large.project - small.project * (n / m) ** (1 / 3)) / (n - m * (n / m) ** (1 / 3))
+    a = min(max(a, 0.0), large.project / n)
+    return a, (large.project - a * n) / n ** (1 / 3)
+
+
+def power(small, large, of):
+    return min(max(math.log(of(large) / of(small)) / math.log(large.millions / small.millions), 0.0), 1 / 3)
+
+
+def scaled(small, large, millions, nodes, frames):
+    """The work of M million tets on N nodes."""
+    a, b = cells_and_segments(small, large)
+    project = a * millions + b * millions ** (1 / 3)
+    setup = large.setup * millions / large.millions
+    grow, more = millions / large.millions, (nodes / BASE_NODES) ** (1 / 3)
+    size = large.bytes * more * grow ** power(small, large, lambda x: x.bytes)
+    merge = more * grow ** power(small, large, lambda x: sum(x.merge.values()))
+    side = (math.sqrt(large.pairs / BASE_NODES) - 1) * (nodes / BASE_NODES) ** (-1 / 3) + 1
+    across = SIZE // TILE
+    work = Work(nodes, nodes)
+    work.__dict__.update({k: getattr(large.work, k) for k in ("send", "receive", "assemble", "write", "tile_bytes")})
+    work.frames = frames
+    windows = [window(large.depth, (p + 0.5) / nodes, side, across) for p in range(nodes)]
+    pairs = sum(map(len, windows))
+    for p, tiles in enumerate(windows):
+        uneven = large.uneven[p % len(large.uneven)]
+        share, depth = uneven / nodes, sum(large.depth[t] for t in tiles)
+        for f in range(frames):
+            work.setup[f, p] = setup * share
+            work.tiles[f, p] = [[t, project * share * large.depth[t] / depth, size / pairs] for t in tiles]
+    work.owner = {t: t % nodes for t in range(across * across)}
+    work.merge = {(f, t): seconds * merge for t, seconds in large.merge.items() for f in range(frames)}
+    return work
+
+
+def window(depth, quantile, side, across):
+    """The tiles of a square about the tile up to which that part of all depth lies; those that have any."""
+    left = quantile * sum(depth.values())
+    for centre in sorted(depth):
+        left -= depth[centre]
+        if left <= 0:
+            break
+    y, x = divmod(centre, across)
+    half, count = (side - 1) / 2, max(1, round(side))
+    rows, columns = (range(max(0, round(v - half)), min(across, round(v - half) + count)) for v in (y, x))
+    return sorted({across * j + i for j in rows for i in columns if depth.get(across * j + i)} | {centre})
+
+
+def base(args, side):
+    mesh, out = args.work / f"cube-{side}.tets", args.work / f"cube-{side}.trace.json"
+    if not mesh.exists():
+        call(args.tessera, "generate", "cube", mesh, f"n={side}", "--quiet")
+    if not out.exists():
+        mpirun(["mpirun", "--oversubscribe", "-n", 2 * BASE_NODES, args.tessera, "render", mesh, "--size", f"{SIZE}x{SIZE}", "--orbit", args.frames,
+                "-o", args.work / "frame_%04d.png", "--threads", "1", "--projectors", BASE_NODES, "--compositors", BASE_NODES, "--timing", out,
+                "--quiet"], [])
+    return Base(work_of(out), side)
+
+
+def foretell(small, large, frames, case):
+    cores, gbit, millions, nodes = case
+    settings = Settings(bytes_per_second=gbit * 1e9 / 8 * GOODPUT, latency=20e-6, cores=cores, threads=max(1, cores - 2))
+    return losses(scaled(small, large, millions, nodes, frames), settings)
+
+
+def line(case, whole, parts):
+    cores, gbit, millions, nodes = case
+    tets = f"{millions} M" if millions < 1000 else f"10^{round(math.log10(millions)) + 6}"
+    return (f"| {cores} | {gbit} | {tets} | {nodes} | {1e3 * whole:.0f} | {millions / whole:.3g} | " +
+            " | ".join(f"{round(100 * parts[name] / whole)}" for name in PARTS) + " |")
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--tessera", type=pathlib.Path, required=True)
+    parser.add_argument("--work", type=pathlib.Path, required=True)
+    parser.add_argument("--results", type=pathlib.Path)
+    parser.add_argument("--sides", default="69,138")
+    parser.add_argument("--nodes", default="8,64,1024")
+    parser.add_argument("--frames", type=int, default=4)
+    parser.add_argument("--jobs", type=int, default=1)
+    args = parser.parse_args()
+    args.tessera, args.work = args.tessera.resolve(), args.work.resolve()
+    args.work.mkdir(parents=True, exist_ok=True)
+    load = os.getloadavg()[0]
+    small, large = (base(args, int(side)) for side in args.sides.split(","))
+    a, b = cells_and_segments(small, large)
+    cases = [(*machine, millions, nodes) for machine in MACHINES for millions in MILLIONS for nodes in map(int, args.nodes.split(","))
+             if nodes < MANY or millions in (MILLIONS[0], MILLIONS[-1])]
+    lines = ["| cores a node | Gbit/s | tets | nodes | frame [ms] | MTets/s | " + " | ".join(f"{p} [%]" for p in PARTS) + " |",
+             "|---:|---:|---:|---:|---:|---:|" + "---:|" * len(PARTS)]
+    with multiprocessing.Pool(args.jobs) as pool:
+        for case, (whole, parts) in zip(cases, pool.imap(functools.partial(foretell, small, large, args.frames), cases)):
+            lines.append(line(case, whole, parts))
+            print(lines[-1], flush=True)
+    found = (f"From {small.millions:.1f} and {large.millions:.1f} M tets on {BASE_NODES} nodes: tiles on all projectors "
+             f"{1e3 * a:.1f} ms a M + {1e3 * b:.0f} ms M^(1/3) of CPU time for M million tets, culling and binning {1e3 * large.setup / large.millions:.1f} ms a M, "
+             f"fragments {large.bytes / 1e6:.1f} MB (as M^{power(small, large, lambda x: x.bytes):.2f}), their compositing "
+             f"{1e3 * sum(large.merge.values()):.0f} ms, writing {1e3 * large.work.write:.0f} ms; {large.pairs / BASE_NODES:.0f} of {len(large.depth)} tiles "
+             f"a projector.")
+    print(found)
+    if args.results:
+        made = re.sub(r"\.$", "", results_file.made(load))
+        results_file.put(args.results, "simulate_cluster.py", f"{made}. `{results_file.command('simulate_cluster.py')}`. {found}", lines)
+
+
+if __name__ == "__main__":
+    main()
