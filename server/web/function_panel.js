@@ -74,7 +74,7 @@ export class FunctionPanel {
     this.remove = icon_button("trash", "Remove the point (Delete)", () => this.editor.remove());
     this.point_row = element("div", { class: "row point-row" }, this.point_value, this.point_opacity, this.point_color, add, this.remove);
 
-    this.curve = element("div", { class: "curve" }, this.editor.element, this.point_row);
+    this.curve = element("div", { class: "curve-row" }, this.editor.element, this.point_row);
 
     this.few = button("Edit colours", () => this.editor.edited && this.#edit(functions.with_few_colors(this.editor.edited), false),
       { title: "Keep the few colours that say most, each with a handle on the bar" });

@@ -55,6 +55,15 @@ test("the colours that the server chose are marked, and stay so while opacities 
   assert.deepEqual(await marked(), []);
 });
 
+test("the opacity's curve is drawn through its points", async () => {
+  const [curve, points] = await page.evaluate(() => [document.querySelectorAll(".function-editor path.curve"), document.querySelectorAll(".opacity-handle")]
+    .map((all) => [...all].map((one) => one.getBoundingClientRect().toJSON())));
+  assert.equal(curve.length, 1);
+  assert.ok(points.length > 2);
+  const [first, last] = [points[0], points.at(-1)];
+  assert.ok(curve[0].width > 0.9 * (last.x - first.x), `${curve[0].width} pixels wide between ${first.x} and ${last.x}`);
+});
+
 test("the shape as drawn is said and cannot be chosen", async () => {
   assert.deepEqual(await page.evaluate(() => {
     const shape = document.querySelector("#shape");

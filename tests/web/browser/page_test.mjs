@@ -466,7 +466,7 @@ test("what was found goes when the data change, and what cannot be used is said"
   for (const name of ["rise", "ramp"]) {
     await panel.locator("#shape").selectOption(name);
     await at_rest(page);
-    await page.waitForFunction((wanted) => !document.querySelector(".curve").inert && document.querySelector("#shape").value === wanted, name);
+    await page.waitForFunction((wanted) => !document.querySelector(".curve-row").inert && document.querySelector("#shape").value === wanted, name);
   }
 });
 
