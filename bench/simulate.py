@@ -15,7 +15,7 @@ CPU time of sending, receiving, assembling and writing. What happens when is the
 - tiles go to the first compositor, which puts them together, tells all projectors that a frame has left, and writes the picture while one
   more may wait; a projector is at most F frames ahead of the last one that left;
 - a message of more than 64 KiB asks first (Open MPI's TCP); each rank looks for messages now and then, seldom while it projects
-  (exchange/mpi_transport.cpp), and takes them up in the order in which they were announced to it.
+  (exchange/mpi_transport.cpp), and takes up those of one sender in their order.
 
 A frame's losses are differences of runs of the model: the whole; without time on the wire; then without assembly and writing; then without
 compositing; then without the last tile (so many frames in flight that the end of one is always behind the next); then with projectors that
@@ -63,7 +63,7 @@ class Model:
         else:
             self.cores = [Cores(self.clock, max(0.1, settings.cores - looks / self.nodes), settings.others) for _ in range(self.nodes)]
         self.links = Links(self.clock, settings.bytes_per_second)
-        self.inbox = [collections.deque() for _ in range(work.projectors + work.compositors)]
+        self.inbox = collections.defaultdict(collections.deque)  # of a sender and a receiver
         self.window = min(max(settings.memory // 8 // work.projectors, 256 << 10), 8 << 20)
         self.backlog = min(settings.memory // 16, 64 << 20)
         self.contributors = work.contributors()
@@ -113,7 +113,7 @@ class Model:
             self.on_wire(source, target, size, entry)
             return
         def announced():
-            self.inbox[target].append(entry)
+            self.inbox[source, target].append(entry)
             self.clock.after(self.set.latency + self.look(source), self.on_wire, source, target, size, entry)
         self.clock.after(self.set.latency + self.look(target), announced)
 
@@ -122,11 +122,11 @@ class Model:
 
     def on_land(self, source, target, size, entry):
         def seen():
-            self.compute(target, self.set.byte_cpu * size, self.arrive, target, size, entry)
+            self.compute(target, self.set.byte_cpu * size, self.arrive, source, target, size, entry)
         self.clock.after(self.set.latency + self.look(target), seen)
 
-    def arrive(self, target, size, entry):
-        queue = self.inbox[target]
+    def arrive(self, source, target, size, entry):
+        queue = self.inbox[source, target]
         entry[0] = True
         if size <= EAGER:
             queue.append(entry)

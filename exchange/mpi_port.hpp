@@ -39,7 +39,7 @@ class MpiPort {
     Message message;
     int tag;
   };
-  /// What has arrived, in the order of its coming: one at a time.
+  /// What has arrived, one at a time: those of one rank in the order in which it sent them.
   std::optional<Arrived> next();
   [[nodiscard]] bool is_receiving() const;
 

@@ -232,7 +232,7 @@ class MpiTransport::Engine {
     return {trace, "send", message.frame, message.bytes.size(), 1, message.to};
   }
 
-  /// Hands on what has arrived, in the order of its coming.
+  /// Hands on what has arrived.
   bool deliver() {
     bool moved = false;
     for (; auto arrived = port_.next(); moved = true) {
