@@ -8,6 +8,7 @@
 #include "apps/argument_values.hpp"
 #include "apps/compositing_options.hpp"
 #include "tessera/dataset.hpp"
+#include "tessera/error.hpp"
 #include "tessera/nearest_name.hpp"
 
 namespace tessera::apps {
