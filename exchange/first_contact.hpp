@@ -11,8 +11,8 @@ namespace tessera::exchange {
 /// What to do where a rank lacks memory: names the limit of address space if there is one.
 std::string memory_remedy();
 
-/// Collective, before all else. Returns when every rank has heard of every other, twice. Throws Error(system_failure)
-/// on a rank that has not within `patience`; 0 waits for ever.
+/// Collective, before all else. Returns when rank 0 has heard of all others and each of them of rank 0, twice. Throws
+/// Error(system_failure) on a rank that has not within `patience`; 0 waits for ever.
 void make_first_contact(Transport& transport, std::chrono::milliseconds patience);
 
 /// How long a rank of this process's limits should wait: for ever, unless its address space is limited.

@@ -62,6 +62,8 @@ class TESSERA_EXPORT Job {
   void watch_stalls(const StallSettings& settings);
   /// Restricts every rank's kernels to the instruction sets that all ranks have, as bits differ between sets and a
   /// picture must not depend on which machine made a tile. Collective, before the first kernel runs; of the process.
+  /// Throws Error(system_failure), as does answer_termination(), on a rank whose address space is limited and which has
+  /// heard nothing of the others for 20 seconds: MPI starts ranks that lack the memory to send.
   void agree_instruction_sets();
   /// `bytes` of rank `root`, on every rank. Collective. Throws the run's error.
   std::vector<std::byte> broadcast(int root, std::vector<std::byte> bytes);
