@@ -27,22 +27,17 @@ class RunMerger final : public TileMerger {
         first_of_(static_cast<std::size_t>(rect.area()), none) {}
 
   void add(const exchange::TilePart& part) override {
-    if ((runs_.size() + part.fragments) * sizeof(Run) > budget_)
+    const std::uint64_t held = runs_.size() + in_streams_;
+    if ((held + part.fragments) * sizeof(Run) > budget_)
       throw scene::Error(scene::ErrorCode::system_failure,
                          fmt::format("the tile at pixel {},{} holds {} runs at once, beyond the memory budget; raise "
                                      "`memory` or make `tile_size` smaller",
-                                     rect_.x0, rect_.y0, runs_.size() + part.fragments));
-    exchange::RecordReader reader(part.records.bytes());
-    const auto check = [&](std::uint32_t pixel) {
-      if (pixel < first_of_.size()) return;
-      throw scene::Error(
-          scene::ErrorCode::system_failure,
-          fmt::format("exchange: the runs of tile {} are malformed; all ranks must run the same program", part.tile));
-    };
+                                     rect_.x0, rect_.y0, held + part.fragments));
     if (part.kind == exchange::RecordKind::runs) {
+      exchange::RecordReader reader(part.records.bytes());
       while (!reader.empty()) {
         const auto run = reader.take<exchange::RunRecord>();
-        check(run.pixel);
+        if (run.pixel >= first_of_.size()) refuse(part.tile);
         push(run.pixel, {run.front, run.thickness, run.red, run.green, run.blue, run.opacity});
       }
       return;
@@ -50,40 +45,40 @@ class RunMerger final : public TileMerger {
     if (context_.lattice == nullptr || context_.table == nullptr)
       throw scene::Error(scene::ErrorCode::system_failure,
                          "exchange: runs on a lattice without one; all ranks must run the same program");
-    const scene::Lattice& lattice = *context_.lattice;
-    single_.clear();
-    while (!reader.empty()) {
-      const auto header = reader.take<exchange::RunsHeader>();
-      check(header.pixel);
-      for (int i = 0; i < header.runs; ++i) {
-        const auto run = reader.take<exchange::LatticeRun>();
-        const double front = lattice.depth(run.front);
-        push(header.pixel,
-             {front, static_cast<float>(lattice.depth(run.back) - front), run.red, run.green, run.blue, run.opacity});
-      }
-      for (int i = 0; i < header.segments; ++i)
-        single_.push_back({header.pixel, reader.take<projection::LatticeSegment>()});
-    }
-    integrate_single();
+    if (part.segments || !part.ascending) push_records(part, !part.ascending);
+    if (!part.ascending) return;
+    streams_.emplace_back(part);
+    in_streams_ += part.fragments;
   }
 
   void advance(double final_depth) override {
     const bool all = final_depth == std::numeric_limits<double>::infinity();
-    if (runs_.empty() && !all) return;
-    if (pixels_.empty() && !all) pixels_.resize(first_of_.size());
-    if (all) image_ = scene::Image({rect_.width(), rect_.height()});
-    std::vector<Run> runs = std::exchange(runs_, {});
-    for (std::size_t p = 0; p < first_of_.size(); ++p) {
-      const std::uint32_t first = std::exchange(first_of_[p], none);
-      if (first == none && (!all || pixels_.empty())) continue;
+    if (!all) {
+      // What is left would have to be kept in order.
+      for (const Stream& stream : streams_) push_runs(stream);
+      streams_.clear();
+      in_streams_ = 0;
+      if (runs_.empty()) return;
+      if (pixels_.empty()) pixels_.resize(first_of_.size());
+    } else {
+      image_ = scene::Image({rect_.width(), rect_.height()});
+    }
+    const std::vector<Run> runs = std::exchange(runs_, {});
+    for (std::uint32_t p = 0; p < first_of_.size(); ++p) {
+      here_.clear();
+      for (std::uint32_t i = std::exchange(first_of_[p], none); i != none; i = runs[i].next) here_.push_back(runs[i]);
+      for (Stream& stream : streams_)
+        if (stream.header.pixel == p) take_here(stream);
+      if (here_.empty() && (!all || pixels_.empty())) continue;
       MergedPixel pixel = pixels_.empty() ? MergedPixel{} : pixels_[p];
-      const auto composited = composite(runs, first, final_depth, pixel);
-      for (auto left = composited; left != order_.end(); ++left) push(static_cast<std::uint32_t>(p), **left);
+      for (std::size_t left = composite(final_depth, pixel); left < here_.size(); ++left) push(p, here_[left]);
       if (all)
         pixel.write(image_, p);
       else
         pixels_[p] = pixel;
     }
+    for (const Stream& stream : streams_)
+      if (stream.header.pixel != none) refuse(stream.tile);
   }
 
   MergedTile finish() override { return {std::move(image_), {}, {}}; }
@@ -98,27 +93,89 @@ class RunMerger final : public TileMerger {
     std::uint32_t next = none;
   };
 
+  /// An ascending part, read pixel by pixel beside the others. Its single segments are not read here.
+  struct Stream {
+    explicit Stream(const exchange::TilePart& part) : records(part.records), reader(records.bytes()), tile(part.tile) {
+      read_header();
+    }
+    /// The header's pixel is `none` at the end.
+    void read_header() {
+      const std::uint32_t before = std::exchange(header, {none, 0, 0}).pixel;
+      if (reader.empty()) return;
+      header = reader.take<exchange::RunsHeader>();
+      if (header.pixel == none || (before != none && header.pixel <= before)) refuse(tile);
+    }
+    exchange::Records records;  ///< keeps the bytes
+    exchange::RecordReader reader;
+    std::uint32_t tile;
+    exchange::RunsHeader header{none, 0, 0};
+  };
+
+  [[noreturn]] static void refuse(std::uint32_t tile) {
+    throw scene::Error(
+        scene::ErrorCode::system_failure,
+        fmt::format("exchange: the runs of tile {} are malformed; all ranks must run the same program", tile));
+  }
+
   void push(std::uint32_t pixel, Run run) {
     run.next = std::exchange(first_of_[pixel], static_cast<std::uint32_t>(runs_.size()));
     runs_.push_back(run);
   }
 
-  /// A pixel's runs before `final_depth`, front to back. Leaves all of them ordered; returns the first that is not.
-  std::vector<const Run*>::const_iterator composite(const std::vector<Run>& runs, std::uint32_t first,
-                                                    double final_depth, MergedPixel& pixel) {
-    order_.clear();
-    for (std::uint32_t i = first; i != none; i = runs[i].next) order_.push_back(&runs[i]);
+  [[nodiscard]] Run world_run(const exchange::LatticeRun& run) const {
+    const double front = context_.lattice->depth(run.front);
+    return {front,      static_cast<float>(context_.lattice->depth(run.back) - front), run.red, run.green, run.blue,
+            run.opacity};
+  }
+
+  /// Keeps a part's single segments, and its other runs too if `runs`.
+  void push_records(const exchange::TilePart& part, bool runs) {
+    exchange::RecordReader reader(part.records.bytes());
+    single_.clear();
+    while (!reader.empty()) {
+      const auto header = reader.take<exchange::RunsHeader>();
+      if (header.pixel >= first_of_.size()) refuse(part.tile);
+      if (!runs) reader.take_bytes(header.runs * sizeof(exchange::LatticeRun));
+      for (int i = 0; runs && i < header.runs; ++i) push(header.pixel, world_run(reader.take<exchange::LatticeRun>()));
+      for (int i = 0; i < header.segments; ++i)
+        single_.push_back({header.pixel, reader.take<projection::LatticeSegment>()});
+    }
+    integrate_single();
+  }
+
+  void push_runs(Stream stream) {
+    for (; stream.header.pixel < first_of_.size(); stream.read_header()) {
+      for (int i = 0; i < stream.header.runs; ++i)
+        push(stream.header.pixel, world_run(stream.reader.take<exchange::LatticeRun>()));
+      stream.reader.take_bytes(stream.header.segments * sizeof(projection::LatticeSegment));
+    }
+    if (stream.header.pixel != none) refuse(stream.tile);
+  }
+
+  void take_here(Stream& stream) {
+    for (int i = 0; i < stream.header.runs; ++i) here_.push_back(world_run(stream.reader.take<exchange::LatticeRun>()));
+    stream.reader.take_bytes(stream.header.segments * sizeof(projection::LatticeSegment));
+    stream.read_header();
+  }
+
+  /// The pixel's runs before `final_depth`, front to back. Leaves all of them ordered; returns the first that is not.
+  std::size_t composite(double final_depth, MergedPixel& pixel) {
     // By all a run holds: equal runs are interchangeable, so the order of arrival shows nowhere.
-    const auto before = [](const Run* a, const Run* b) {
+    const auto before = [](const Run& a, const Run& b) {
+      if (a.front != b.front) return a.front < b.front;
       const auto key = [](const Run& run) {
-        return std::tie(run.front, run.thickness, run.opacity, run.red, run.green, run.blue);
+        return std::tie(run.thickness, run.opacity, run.red, run.green, run.blue);
       };
-      return key(*a) < key(*b);
+      return key(a) < key(b);
     };
-    if (order_.size() > 1) std::sort(order_.begin(), order_.end(), before);
-    auto at = order_.cbegin();
-    for (; at != order_.cend() && (*at)->front < final_depth; ++at) {
-      const Run& run = **at;
+    if (here_.size() == 2) {
+      if (before(here_[1], here_[0])) std::swap(here_[0], here_[1]);
+    } else if (here_.size() > 2) {
+      std::sort(here_.begin(), here_.end(), before);
+    }
+    std::size_t at = 0;
+    for (; at < here_.size() && here_[at].front < final_depth; ++at) {
+      const Run& run = here_[at];
       if (!pixel.open) continue;
       if (run.opacity > 0) pixel.first_depth = std::min(pixel.first_depth, run.front);
       pixel.add(run.red, run.green, run.blue, run.opacity);
@@ -179,7 +236,9 @@ class RunMerger final : public TileMerger {
   std::vector<MergedPixel> pixels_;      ///< once something was composited before the last
   std::vector<std::uint32_t> first_of_;  ///< by pixel: its last run that came, which has the others' numbers
   std::vector<Run> runs_;
-  std::vector<const Run*> order_;  ///< one pixel's
+  std::vector<Run> here_;  ///< one pixel's
+  std::vector<Stream> streams_;
+  std::uint64_t in_streams_ = 0;  ///< runs
   scene::Image image_;
   struct Single {
     std::uint32_t pixel;

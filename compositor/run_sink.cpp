@@ -1,7 +1,10 @@
 #include "compositor/run_sink.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
+#include <iterator>
 #include <limits>
 #include <type_traits>
 
@@ -17,15 +20,31 @@ double planar_depth(const TileScene& scene, std::int64_t step) {
   return scene.lattice.depth(static_cast<double>(step));
 }
 
-void append_run(const TileScene& scene, const WindowState::Run& run, exchange::Bytes& out) {
+/// Writes a run's record to `to`; where it ends. Field by field: what is put together elsewhere and copied waits for
+/// its own stores.
+std::byte* write_run(const TileScene& scene, const WindowState::Run& run, std::byte* to) {
+  const auto put = [&](const auto& value) {
+    std::memcpy(to, &value, sizeof value);
+    to += sizeof value;
+  };
   if (!run.several) {
-    exchange::append(out, run.first);
-    return;
+    put(run.first);
+    return to;
   }
   const double front = first_visible_depth(scene.lattice, run.first, *scene.integrator);
-  exchange::append(out, exchange::LatticeRun{scene.lattice.depth_step(front), run.back, static_cast<float>(run.red),
-                                             static_cast<float>(run.green), static_cast<float>(run.blue),
-                                             static_cast<float>(run.opacity)});
+  put(scene.lattice.depth_step(front));
+  put(run.back);
+  for (const double value : {run.red, run.green, run.blue, run.opacity}) put(static_cast<float>(value));
+  return to;
+}
+
+constexpr std::size_t most_bytes_a_run = sizeof(exchange::LatticeRun);
+static_assert(sizeof(projection::LatticeSegment) <= most_bytes_a_run);
+
+void append_run(const TileScene& scene, const WindowState::Run& run, exchange::Bytes& out) {
+  std::array<std::byte, most_bytes_a_run> record;
+  const std::byte* const end = write_run(scene, run, record.data());
+  out.insert(out.end(), static_cast<const std::byte*>(record.data()), end);
 }
 
 void write_runs(const TileScene&, std::vector<TilePixels<DoubleEncoding>::Run>& runs, exchange::PartWriter& writer) {
@@ -48,6 +67,8 @@ void write_runs(const TileScene& scene, std::vector<WindowState::Run>& runs, exc
     auto last = first;
     while (last != runs.end() && last->pixel == first->pixel && static_cast<std::size_t>(last - first) < most) ++last;
     const auto segments = std::partition(first, last, [](const WindowState::Run& run) { return run.several; });
+    if (first == runs.begin() || std::prev(first)->pixel == first->pixel) writer.begin_ascending();
+    if (segments != last) writer.note_segments();
     exchange::append(out,
                      exchange::RunsHeader{writer.tile_pixel(first->pixel), static_cast<std::uint16_t>(segments - first),
                                           static_cast<std::uint16_t>(last - segments)});
@@ -61,22 +82,30 @@ void write_runs(const TileScene& scene, std::vector<WindowState::Run>& runs, exc
 void write_only_runs(const TileScene& scene, const WindowState& state, exchange::PartWriter& writer) {
   const scene::PixelRect& rect = writer.rect();
   exchange::Bytes& out = writer.records();
-  out.reserve(out.size() +
-              static_cast<std::size_t>(rect.area()) * (sizeof(exchange::RunsHeader) + sizeof(exchange::LatticeRun)));
+  constexpr std::size_t most_bytes = sizeof(exchange::RunsHeader) + most_bytes_a_run;
+  out.reserve(out.size() + static_cast<std::size_t>(rect.area()) * most_bytes);
+  std::array<std::byte, projection::SegmentWindows::side * most_bytes> of_row;
   std::uint64_t runs = 0;
+  bool segments = false;
   std::size_t p = 0;
   for (int y = rect.y0; y < rect.y1; ++y) {
     const std::uint32_t row = writer.tile_pixel(p);
+    std::byte* to = of_row.data();
     for (std::uint32_t x = 0; x < static_cast<std::uint32_t>(rect.width()); ++x, ++p) {
       if (state.first_back[p] == WindowState::not_yet) continue;
       const WindowState::Run run = state.run(p);
-      exchange::append(out, exchange::RunsHeader{row + x, static_cast<std::uint16_t>(run.several),
-                                                 static_cast<std::uint16_t>(!run.several)});
-      append_run(scene, run, out);
+      const exchange::RunsHeader header{row + x, static_cast<std::uint16_t>(run.several),
+                                        static_cast<std::uint16_t>(!run.several)};
+      segments |= !run.several;
+      std::memcpy(to, &header, sizeof header);
+      to = write_run(scene, run, to + sizeof header);
       ++runs;
     }
+    out.insert(out.end(), static_cast<const std::byte*>(of_row.data()), static_cast<const std::byte*>(to));
   }
   writer.count(runs);
+  writer.begin_ascending();
+  if (segments) writer.note_segments();
 }
 
 auto& ended_of(TilePixels<DoubleEncoding>& pixels) { return pixels.ended; }

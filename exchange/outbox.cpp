@@ -95,7 +95,7 @@ void Outbox::write(Lane& lane, const TilePart& part) {
                                 static_cast<std::uint8_t>(part.stopped ? 2
                                                           : part.last  ? 1
                                                                        : 0),
-                                0, part.records.size(), part.final_depth, part.fragments});
+                                part.ascending, part.segments, part.records.size(), part.final_depth, part.fragments});
   append_values(lane.batch, part.records.bytes());
   lane.waiting += lane.batch.size() - before;
   fragments_ += part.fragments;

@@ -16,6 +16,8 @@ void PartWriter::begin_tile(std::size_t tile, const scene::PixelRect& rect) {
   final_depth_ = -std::numeric_limits<double>::infinity();
   records_.clear();
   fragments_ = 0;
+  ascents_ = 0;
+  segments_ = false;
 }
 
 void PartWriter::end_tile() {
@@ -40,7 +42,11 @@ void PartWriter::send_if_full() {
 
 void PartWriter::send(bool last) {
   TilePart part{tile_, kind_, last, false, final_depth_, fragments_, std::exchange(records_, {})};
+  part.ascending = ascents_ == 1;
+  part.segments = segments_;
   fragments_ = 0;
+  ascents_ = 0;
+  segments_ = false;
   deliver_(std::move(part));
 }
 

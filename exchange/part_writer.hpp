@@ -26,6 +26,10 @@ class PartWriter {
   /// Room for the records; fragments are to be counted.
   Bytes& records() { return records_; }
   void count(std::uint64_t fragments) { fragments_ += fragments; }
+  /// The next records, or those just written, are of ascending pixels, each once; some are single segments
+  /// (PartHeader).
+  void begin_ascending() { ++ascents_; }
+  void note_segments() { segments_ = true; }
 
   /// Number within the tile of a pixel of the current rectangle.
   [[nodiscard]] std::uint32_t tile_pixel(std::size_t pixel) const;
@@ -45,6 +49,8 @@ class PartWriter {
   scene::PixelRect tile_rect_{0, 0, 0, 0}, rect_{0, 0, 0, 0};
   double final_depth_ = 0;
   std::uint64_t fragments_ = 0;
+  int ascents_ = 0;
+  bool segments_ = false;
   Bytes records_;
 };
 

@@ -57,7 +57,8 @@ struct PartHeader {
   std::uint32_t tile;
   RecordKind kind;
   std::uint8_t last;  ///< 1: this projector's last part of the tile; 2: the same, and some are missing: it was stopped
-  std::uint16_t reserved = 0;
+  std::uint8_t ascending = 0;  ///< lattice_runs: 1: each pixel has one header, and their numbers ascend
+  std::uint8_t segments = 0;   ///< of an ascending part: 1: some of its runs are single segments
   std::uint64_t bytes;
   double final_depth;       ///< planar; all of this projector's fragments of the tile before it have been sent
   std::uint64_t fragments;  ///< runs, links or tuples in the part
@@ -148,7 +149,8 @@ struct TilePart {
   double final_depth = 0;
   std::uint64_t fragments = 0;
   Records records;
-  int projector = 0;       ///< at the compositor: whose part, 0 .. N-1
+  bool ascending = false, segments = false;  ///< as in PartHeader
+  int projector = 0;                         ///< at the compositor: whose part, 0 .. N-1
   double start_depth = 0;  ///< at the compositor: the projector's part before this one was complete to here
 };
 

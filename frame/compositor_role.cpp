@@ -147,9 +147,9 @@ class CompositorLoop {
           const auto records = reader.take_bytes(part.bytes);
           const bool stopped = part.last == 2;
           if (stopped) to.stopped = true;
-          const double start =
-              to.collector.add(projector, {part.tile, part.kind, part.last != 0, stopped, part.final_depth,
-                                           part.fragments, exchange::Records(message, records)});
+          const double start = to.collector.add(
+              projector, {part.tile, part.kind, part.last != 0, stopped, part.final_depth, part.fragments,
+                          exchange::Records(message, records), part.ascending != 0, part.segments != 0});
           to.collector.owe(projector, part.tile, start, part.bytes);
           credit -= part.bytes;
           to.merges.try_emplace(part.tile);
