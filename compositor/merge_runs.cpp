@@ -95,7 +95,8 @@ class RunMerger final : public TileMerger {
 
   /// An ascending part, read pixel by pixel beside the others. Its single segments are not read here.
   struct Stream {
-    explicit Stream(const exchange::TilePart& part) : records(part.records), reader(records.bytes()), tile(part.tile) {
+    explicit Stream(const exchange::TilePart& part)
+        : records(part.records), reader(records.bytes()), tile(part.tile), segments(part.segments) {
       read_header();
     }
     /// The header's pixel is `none` at the end.
@@ -104,10 +105,12 @@ class RunMerger final : public TileMerger {
       if (reader.empty()) return;
       header = reader.take<exchange::RunsHeader>();
       if (header.pixel == none || (before != none && header.pixel <= before)) refuse(tile);
+      if (header.segments != 0 && !segments) refuse(tile);
     }
     exchange::Records records;  ///< keeps the bytes
     exchange::RecordReader reader;
     std::uint32_t tile;
+    bool segments;
     exchange::RunsHeader header{none, 0, 0};
   };
 

@@ -148,7 +148,7 @@ struct TilePart {
   bool stopped = false;  ///< last, and some of the tile is missing
   double final_depth = 0;
   std::uint64_t fragments = 0;
-  Records records;
+  Records records{};
   bool ascending = false, segments = false;  ///< as in PartHeader
   int projector = 0;                         ///< at the compositor: whose part, 0 .. N-1
   double start_depth = 0;  ///< at the compositor: the projector's part before this one was complete to here
