@@ -5,6 +5,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <atomic>
@@ -153,6 +154,7 @@ void FrameProjector::place_on_lattice(const scene::Lattice& lattice, bool perspe
   lattice_vertices_.reset(vertices_.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, vertices_.size(), 4096), [&](const auto& range) {
     scene::throw_if_stopped(stop);
+    const scene::TraceScope timing(settings_.trace, "transform");
     const std::size_t n = range.end() - range.begin();
     projection::make_lattice_vertices(
         std::span(vertices_).subspan(range.begin(), n),
@@ -202,10 +204,45 @@ void render_tiles(const FrameProjector::Task& task, projection::TileLists& lists
 
 }  // namespace
 
+namespace {
+
+/// A task's work beside the mesh, ended when this is.
+class Beside {
+ public:
+  Beside(const FrameProjector::Task& task, scene::Trace* trace) {
+    if (!task.beside) return;
+    group_.run([&task, trace] {
+      const scene::TraceScope timing(trace, "prepare", task.frame);
+      task.beside();
+    });
+  }
+  ~Beside() {
+    if (waited_for_) return;
+    try {
+      group_.wait();
+    } catch (...) {  // the frame ends with another error
+    }
+  }
+  Beside(const Beside&) = delete;
+  Beside& operator=(const Beside&) = delete;
+  /// Throws what the work threw.
+  void wait() {
+    waited_for_ = true;
+    group_.wait();
+  }
+
+ private:
+  tbb::task_group group_;
+  bool waited_for_ = false;
+};
+
+}  // namespace
+
 FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   const projection::PixelSpace& space = *task.space;
   const std::stop_token stop = task.watch != nullptr ? task.watch->stop() : std::stop_token();
   scene::throw_if_stopped(stop);
+  Beside beside(task, settings_.trace);
   project_vertices(space, task.frame, stop);
   projection::ProjectedMesh projected{prepared_.get(), vertices_, space.near_depth(), space.far_depth(),
                                       space.pixels_per_tangent()};
@@ -263,6 +300,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
         context.at_steps};
     return std::make_unique<Worker<LatticeSource>>(task.make_lattice_sink(), context, view);
   });
+  beside.wait();
   const std::uint64_t most_list_bytes = render_bands(task, *lists, held, [&](std::size_t first, std::size_t last) {
     render_tiles(task, *lists, faces_or_null, workers, first, last, stop);
   });

@@ -48,6 +48,8 @@ class FrameProjector {
     scene::FrameWatch* watch = nullptr;
     /// The picture that sinks write to, so that `watch` hears of its tiles; null: they go elsewhere.
     const scene::Image* image = nullptr;
+    /// Done once before the first tile, by one thread while others look at the mesh. May be empty.
+    std::function<void()> beside;
     /// Called once before the first tile: which tiles have cells or triangles of this process, so will be given to a
     /// sink. May be empty.
     std::function<void(const std::vector<bool>& has_any)> announce;

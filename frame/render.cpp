@@ -115,8 +115,9 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   const RenderSettings& settings = state_->settings;
   const projection::PixelSpace space(camera, size);
   const integrals::SegmentIntegrator& integrator = state_->integrator(transfer_function);
-  scene::Image image(size);
+  scene::Image image;
   FrameProjector::Task task;
+  task.beside = [&] { image = scene::Image(size); };  // whose pages are new, so slow to fill
   task.space = &space;
   task.grid = {size, settings.tile_size};
   task.function = &transfer_function;
