@@ -19,6 +19,7 @@
 #include "apps/setting_words.hpp"
 #include "tessera/image_file.hpp"
 #include "tessera/session.hpp"
+#include "tessera/statistics.hpp"
 #include "tessera/trace.hpp"
 #include "tessera/view.hpp"
 
@@ -327,17 +328,22 @@ class Film final : public Sink {
     for (const auto& output : of_cost.outputs) write_image(shown.cost, output, options_.image);
   }
 
-  /// Pictures of a film are written behind it, but for those so large that memory should not hold two.
-  [[nodiscard]] bool writes_behind() const {
+  /// Pictures of a film are written behind it, but for those so large that memory should not hold two. One thread
+  /// compresses a PNG in the time in which some ten make the picture; films and annotations are made in order.
+  [[nodiscard]] int writers() const {
     constexpr std::int64_t most_pixels = 4096 * 4096;
+    constexpr int makers_a_writer = 8;
     std::size_t left = 0;
-    std::int64_t pixels = 0;
+    std::int64_t pixels = 1;
     for (const FilmFrame& frame : frames_)
       if (!frame.finished) {
         ++left;
         pixels = std::max(pixels, std::int64_t{frame.size.width} * frame.size.height);
       }
-    return writes_ && left > 1 && pixels <= most_pixels;
+    if (!writes_ || left < 2 || pixels > most_pixels) return 0;
+    if (options_.annotation.annotation || !options_.films.empty() || options_.to_standard_output) return 1;
+    const auto wanted = std::min<std::int64_t>(threads_for(settings_.threads) / makers_a_writer, most_pixels / pixels);
+    return static_cast<int>(std::max<std::int64_t>(wanted, 1));
   }
 
   /// On the writing rank, of a frame that is written, or will be before the run ends without an error.
@@ -405,7 +411,7 @@ class Film final : public Sink {
   std::size_t jobs_before_ = 0;    ///< pictures of the lists before
 
   PictureWriter picture_writer_{options_};
-  PictureQueue pictures_{writes_behind()};  ///< last: what it writes refers to all above
+  PictureQueue pictures_{writers()};  ///< last: what it writes refers to all above
 };
 
 }  // namespace

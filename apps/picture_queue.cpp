@@ -1,25 +1,29 @@
 #include "apps/picture_queue.hpp"
 
+#include <iterator>
+#include <system_error>
 #include <utility>
 
 namespace tessera::apps {
 
-PictureQueue::PictureQueue(bool behind) {
-  if (behind) thread_ = std::thread([this] { run(); });
+PictureQueue::PictureQueue(int writers) {
+  try {
+    while (std::ssize(threads_) < writers) threads_.emplace_back([this] { run(); });
+  } catch (const std::system_error&) {  // a system that gives no more: those that there are do it
+  }
 }
 
 PictureQueue::~PictureQueue() {
-  if (!thread_.joinable()) return;
   {
     const std::lock_guard lock(mutex_);
     ends_ = true;
   }
   changed_.notify_all();
-  thread_.join();
+  for (std::thread& thread : threads_) thread.join();
 }
 
 void PictureQueue::add(Write write) {
-  if (!thread_.joinable()) return write();
+  if (threads_.empty()) return write();
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return thrown_ || waiting_.size() < most_waiting; });
   if (thrown_) std::rethrow_exception(thrown_);
@@ -28,9 +32,8 @@ void PictureQueue::add(Write write) {
 }
 
 void PictureQueue::finish() {
-  if (!thread_.joinable()) return;
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return thrown_ || (waiting_.empty() && !busy_); });
+  changed_.wait(lock, [this] { return busy_ == 0 && (thrown_ || waiting_.empty()); });
   if (thrown_) std::rethrow_exception(thrown_);
 }
 
@@ -39,7 +42,7 @@ void PictureQueue::run() {
   while (true) {
     changed_.wait(lock, [this] { return ends_ || !waiting_.empty(); });
     if (waiting_.empty()) return;
-    busy_ = true;
+    ++busy_;
     {
       const Write write = std::move(waiting_.front());  // its picture goes with it, before the next is let in
       waiting_.pop_front();
@@ -53,11 +56,11 @@ void PictureQueue::run() {
       }
       lock.lock();
       if (thrown) {
-        thrown_ = thrown;
+        if (!thrown_) thrown_ = thrown;
         waiting_.clear();
       }
     }
-    busy_ = false;
+    --busy_;
     changed_.notify_all();
   }
 }

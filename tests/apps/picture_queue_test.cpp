@@ -14,14 +14,33 @@ namespace tessera::apps {
 namespace {
 
 TEST(PictureQueue, WritesAllInOrder) {
-  for (const bool behind : {false, true}) {
+  for (const int writers : {0, 1}) {
     std::vector<int> written;
-    PictureQueue queue(behind);
+    PictureQueue queue(writers);
     for (int i = 0; i < 20; ++i) queue.add([&written, i] { written.push_back(i); });
     queue.finish();
     ASSERT_EQ(written.size(), 20u);
     for (int i = 0; i < 20; ++i) EXPECT_EQ(written[static_cast<std::size_t>(i)], i);
   }
+}
+
+TEST(PictureQueue, SeveralWritersWriteAtOnceAndEachPictureOnce) {
+  std::vector<std::atomic<int>> written(50);
+  std::atomic<int> at_once = 0, most = 0;
+  PictureQueue queue(3);
+  for (auto& count : written)
+    queue.add([&] {
+      const int now = ++at_once;
+      for (int seen = most; seen < now && !most.compare_exchange_weak(seen, now);) {
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      ++count;
+      --at_once;
+    });
+  queue.finish();
+  for (const auto& count : written) EXPECT_EQ(count, 1);
+  EXPECT_GT(most, 1);
+  EXPECT_LE(most, 3);
 }
 
 TEST(PictureQueue, HoldsOneBeingWrittenAndOneThatWaits) {
@@ -31,7 +50,7 @@ TEST(PictureQueue, HoldsOneBeingWrittenAndOneThatWaits) {
     ~Picture() { --held; }
     std::atomic<int>& held;
   };
-  PictureQueue queue(true);
+  PictureQueue queue(1);
   for (int i = 0; i < 10; ++i) {
     const auto picture = std::make_shared<Picture>(held);
     queue.add([picture] { std::this_thread::sleep_for(std::chrono::milliseconds(5)); });
@@ -44,7 +63,7 @@ TEST(PictureQueue, HoldsOneBeingWrittenAndOneThatWaits) {
 
 TEST(PictureQueue, AnErrorEndsTheWritingAndReachesWhoMadeThePictures) {
   std::atomic<int> written = 0;
-  PictureQueue queue(true);
+  PictureQueue queue(1);
   queue.add([] { throw std::runtime_error("full"); });
   EXPECT_THROW(
       {
@@ -59,7 +78,7 @@ TEST(PictureQueue, AnErrorEndsTheWritingAndReachesWhoMadeThePictures) {
 TEST(PictureQueue, WhatWaitsIsWrittenAtAnEarlyEnd) {
   std::atomic<int> written = 0;
   {
-    PictureQueue queue(true);
+    PictureQueue queue(1);
     for (int i = 0; i < 4; ++i)
       queue.add([&written] {
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
