@@ -1,6 +1,7 @@
 // What a frame does before its first ray segment: vertices to pixels, cull and count, fill, order. CPU nanoseconds of
 // all threads together, a vertex (transform), a tet (cull, fill) or an entry of a list (order); by threads, by
-// instruction set, and with the transfer function that shows 5 % of the cells.
+// instruction set, and with the transfer function that shows 5 % of the cells. For cull and fill also what they read:
+// 64 threads on fewer cores do the work that they would do on 64.
 //
 //   tile_lists_bench [MESH_FILE] --benchmark_filter=cull
 //
@@ -20,6 +21,7 @@
 #include <functional>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -118,19 +120,39 @@ void transform(benchmark::State& state, Stage& s) {
   });
 }
 
+/// What was read, a tet, between two counts; `serial`: of that, while all threads but one wait.
+void show_reads(benchmark::State& state, const Stage& s, const projection::TileListReads& before,
+                const projection::TileListReads& after) {
+  const auto tets = static_cast<double>(s.mesh.tets.size());
+  state.counters["cells_read_a_tet"] = static_cast<double>(after.cells - before.cells) / tets;
+  state.counters["counters_a_tet"] = static_cast<double>(after.counters - before.counters) / tets;
+  state.counters["serial_a_tet"] = static_cast<double>(after.serial_counters - before.serial_counters) / tets;
+}
+
 void cull(benchmark::State& state, Stage& s, const scene::TransferFunction& function) {
+  projection::TileListReads reads;
   measure(state, "cpu_ns_a_tet", [&] {
     projection::TileLists lists(s.projected, s.grid, function, false, nullptr, &s.buffers);
+    reads = lists.reads();
     return s.mesh.tets.size();
   });
+  show_reads(state, s, {}, reads);
 }
 
 void fill(benchmark::State& state, Stage& s, const scene::TransferFunction& function) {
-  projection::TileLists lists(s.projected, s.grid, function, false, nullptr, &s.buffers);
+  // Runs are as many as the arena that culls asks for.
+  tbb::task_arena arena(static_cast<int>(state.range(0)));
+  std::optional<projection::TileLists> made;
+  arena.execute([&] { made.emplace(s.projected, s.grid, function, false, nullptr, &s.buffers); });
+  projection::TileLists& lists = *made;
+  projection::TileListReads before, after;
   measure(state, "cpu_ns_a_tet", [&] {
+    before = lists.reads();
     lists.fill(0, s.grid.count());
+    after = lists.reads();
     return s.mesh.tets.size();
   });
+  show_reads(state, s, before, after);
   state.counters["bytes_a_tet"] = static_cast<double>(lists.bytes()) / static_cast<double>(s.mesh.tets.size());
 }
 
@@ -175,7 +197,7 @@ void add(const std::string& name, const std::shared_ptr<Stage>& stage) {
                                                hwy::GetChosenTarget().Update(hwy::SupportedTargets());
                                              });
       b->Unit(benchmark::kMillisecond)->UseRealTime()->ArgName("threads")->Arg(1);
-      if (target == HWY_AVX3) b->Arg(2);
+      if (target == HWY_AVX3) b->Arg(2)->Arg(64);
     }
   };
   each("transform", transform);

@@ -151,6 +151,13 @@ TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
       tile_counts_[i] += here;
     }
   }
+  add_reads(tile_counts_.size());
+  reads_.serial_counters += runs_.size() * tile_counts_.size();
+}
+
+void TileLists::add_reads(std::size_t tiles) {
+  for (Run& run : runs_) reads_.cells += std::exchange(run.cells_read, 0);
+  reads_.counters += runs_.size() * tiles;
 }
 
 void TileLists::cull(Run& run, const ClearIntervals& clear) {
@@ -165,6 +172,7 @@ void TileLists::cull(Run& run, const ClearIntervals& clear) {
     if (block % blocks_a_check == 0) scene::throw_if_stopped(stop_);
     const std::size_t first = block * cull_block_cells;
     const std::size_t n = std::min(cull_block_cells, mesh.tets.size() - first);
+    run.cells_read += n;
     const auto [low, high] = prepared.block_scalar_bounds(block);
     if (clear.hold(low, high)) {
       counts.invisible += n;
@@ -238,10 +246,11 @@ void TileLists::fill(std::size_t first, std::size_t last) {
         fill(r, first, last);
       },
       tbb::simple_partitioner());
+  add_reads(last - first);
 }
 
 void TileLists::fill(std::size_t r, std::size_t first, std::size_t last) {
-  const Run& run = runs_[r];
+  Run& run = runs_[r];
   std::vector<std::uint64_t> next(last - first);
   bool any = false;
   for (std::size_t i = first; i < last; ++i) {
@@ -259,6 +268,7 @@ void TileLists::fill(std::size_t r, std::size_t first, std::size_t last) {
   for (std::size_t block = run.first_block; block < run.last_block; ++block) {
     if (block % blocks_a_check == 0) scene::throw_if_stopped(stop_);
     const std::size_t first_tet = block * cull_block_cells;
+    run.cells_read += static_cast<std::uint64_t>(std::popcount(projected_tets_[block]));
     for_each_of(in_one_tile_[block], first_tet, [&](std::size_t tet) { add(tet, buffers_->places[tet]); });
     for_each_of(projected_tets_[block] & ~in_one_tile_[block], first_tet,
                 [&](std::size_t tet) { for_each_tile(tet, [&](std::size_t tile) { add(tet, tile); }); });

@@ -34,6 +34,13 @@ struct CullCounts {
   std::uint64_t projected = 0;
 };
 
+/// What the passes have read, of all threads together: it grows with the number of runs only by their counters.
+struct TileListReads {
+  std::uint64_t cells = 0;            ///< cells of which extents or places were read, with blocks that show nothing
+  std::uint64_t counters = 0;         ///< tile counters of runs
+  std::uint64_t serial_counters = 0;  ///< of these, on one thread while the others wait
+};
+
 /// Memory of TileLists, kept from frame to frame.
 struct TileListBuffers {
   LargeArray<CullVertex> vertices;
@@ -77,6 +84,9 @@ class TileLists {
   /// A tile of the last fill; the caller may reorder it.
   [[nodiscard]] std::span<TileEntry> tile(std::size_t tile);
 
+  /// Of the first pass and every second one so far.
+  [[nodiscard]] const TileListReads& reads() const { return reads_; }
+
   /// Bytes held now.
   [[nodiscard]] std::size_t bytes() const;
 
@@ -84,11 +94,13 @@ class TileLists {
   struct Run {
     std::size_t first_block = 0, last_block = 0;
     CullCounts culled;
+    std::uint64_t cells_read = 0;
     std::vector<std::uint32_t> tiles;  ///< entries in each tile; later those of the runs before
   };
   void cull(Run& run, const ClearIntervals& clear);
   bool cull_exactly(std::size_t tet, const ClearIntervals& clear, CullCounts& counts);
   void fill(std::size_t run, std::size_t first, std::size_t last);
+  void add_reads(std::size_t tiles);
   template <class Visit>
   void for_each_tile(std::size_t tet, Visit visit) const;
 
@@ -102,6 +114,7 @@ class TileLists {
   double depth_origin_;
   CullView view_;
   CullCounts counts_;
+  TileListReads reads_;
   std::vector<Run> runs_;
   std::vector<std::uint64_t> projected_tets_;  ///< a bit a tet
   std::vector<std::uint64_t> in_one_tile_;     ///< the same, of those projected

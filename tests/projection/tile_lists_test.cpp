@@ -303,5 +303,25 @@ TEST(TileLists, AreTheSameForAnyNumberOfThreads) {
   }
 }
 
+TEST(TileLists, ReadEachCellTwiceHoweverManyTasks) {
+  const scene::TetMesh mesh = datasets::cube(24, 0.2);
+  scene::Camera camera;
+  camera.position = {3, 2, 4};
+  camera.parallel_scale = 1.7;
+  for (const int threads : {1, 64}) {
+    tbb::task_arena arena(threads);
+    arena.execute([&] {
+      Lists all(mesh, camera, {200, 150}, 16, opaque());
+      EXPECT_EQ(all.lists->reads().cells, mesh.tets.size()) << threads << " threads";
+      const std::uint64_t counters = all.lists->reads().counters;
+      all.lists->fill(0, all.grid.count());
+      EXPECT_EQ(all.lists->reads().cells, mesh.tets.size() + all.lists->counts().projected) << threads << " threads";
+      // Eight runs a thread, each with its counters.
+      EXPECT_EQ(all.lists->reads().serial_counters, counters);
+      EXPECT_EQ(counters, 8 * static_cast<std::uint64_t>(threads) * all.grid.count()) << threads << " threads";
+    });
+  }
+}
+
 }  // namespace
 }  // namespace tessera::projection
