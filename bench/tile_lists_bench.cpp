@@ -70,7 +70,7 @@ scene::TransferFunction five_percent(const scene::TetMesh& mesh) {
 
 struct Stage {
   Stage(const scene::TetMesh& m)
-      : mesh(m), prepared(m), space(camera(m), {1024, 1024}), grid{{1024, 1024}, 32}, vertices(m.positions.size()) {
+      : mesh(m), prepared(mesh), space(camera(m), {1024, 1024}), grid{{1024, 1024}, 32}, vertices(m.positions.size()) {
     space.project(mesh.positions, vertices);
     projected = {&prepared, vertices, space.near_depth(), space.far_depth(), space.pixels_per_tangent()};
     figures = datasets::benchmark_transfer_function();

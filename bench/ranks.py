@@ -1,0 +1,120 @@
+#!/usr/bin/env python3
+"""What ranks cost: the same frames by one process and by several, in pairs, old program and new.
+
+    bench/ranks.py --tessera PROGRAM [--old PROGRAM] [--pairs 10] [--repeat 8] [--work FOLDER] [--results FILE]
+
+Cube 64 (1.57 million tets), view and transfer function of all speed figures, 1024 x 1024, `exact`. A pair is one process of two threads, then
+two ranks of one thread, then 8 projectors and 8 compositors of one thread. *Time* is the median of the pair's frames, each alone
+(`--repeat`), in memory. *CPU* is that of a frame: all processes, mpirun included, of a run of REPEAT frames more than another run,
+so without starting and reading, over that number. The table has medians of the pairs' ratios to the one process, and the least and largest ratio;
+`--old` adds the same of another program, its pairs in turn with the others. *Serial* is of one process: what of a frame no thread is in any stage
+for (`other`), and waiting, as a share of the frame's CPU time.
+
+Ratios of time on two cores that others use too say more of the neighbours than of the program where their range is wide. Needs mpirun and Python's
+standard library.
+"""
+import argparse
+import csv
+import json
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+
+import results_file
+
+HERE = pathlib.Path(__file__).resolve().parent
+MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+VIEW = ["--camera", HERE / "camera.txt", "--transfer-function", HERE / "transfer_function.txt", "--integrator", "exact", "--size", "1024x1024"]
+ONE, TWO, EIGHT = "one process of two threads", "two ranks of one thread", "8 projectors and 8 compositors"
+ARRANGEMENTS = {ONE: (1, ["--threads", "2"]), TWO: (2, ["--threads", "1"]),
+                EIGHT: (16, ["--threads", "1", "--projectors", "8", "--compositors", "8"])}
+BASE = 2  # frames of the run that is subtracted
+
+
+def run(command):
+    """Seconds of CPU of a command; of mpirun, of it and the ranks that it waited for."""
+    process = subprocess.Popen([str(c) for c in command], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=os.environ | MPI)
+    message = process.stderr.read()
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode != 0:
+        sys.exit(f"ranks.py: {' '.join(str(c) for c in command)}\n{message.decode().strip()}")
+    return usage.ru_utime + usage.ru_stime
+
+
+def frames(program, mesh, work, arrangement, repeat, *more):
+    """(CPU seconds of the run, milliseconds of its frames)."""
+    ranks, threads = ARRANGEMENTS[arrangement]
+    report = work / "report.json"
+    launch = ["mpirun", "--oversubscribe", "-n", ranks] if ranks > 1 else []
+    cpu = run(launch + [program, "render", mesh, "-o", work / "picture.pfm", "--repeat", repeat, "--report", report, "--quiet", *VIEW, *threads, *more])
+    return cpu, json.loads(report.read_text())["frames"][0]["frame_ms"]
+
+
+def measure(program, mesh, work, arrangement, repeat):
+    """(median time, CPU time) of a frame, milliseconds."""
+    short, _ = frames(program, mesh, work, arrangement, BASE)
+    long, times = frames(program, mesh, work, arrangement, BASE + repeat)
+    return statistics.median(times), 1000 * (long - short) / repeat
+
+
+def serial(program, mesh, work, repeat):
+    """(serial milliseconds of a frame of one process, its CPU milliseconds); all but the last frame, which is written."""
+    trace, table = work / "trace.json", work / "stages.csv"
+    frames(program, mesh, work, ONE, repeat, "--timing", trace)
+    run([program, "timing", trace, "--csv", table])
+    with open(table) as lines:
+        rows = [row for row in csv.DictReader(lines) if row["part"] == "frame"]
+    alone = sum(float(row["average_ms"]) for row in rows if row["stage"] in ("other", "wait"))
+    cpu = sum(float(row["cpu_ms"]) for row in rows if row["cpu_ms"] and row["stage"] not in ("whole", "other", "wait", "write"))
+    return alone, cpu
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--tessera", type=pathlib.Path, required=True)
+    parser.add_argument("--old", type=pathlib.Path)
+    parser.add_argument("--pairs", type=int, default=10)
+    parser.add_argument("--repeat", type=int, default=8)
+    parser.add_argument("--work", type=pathlib.Path)
+    parser.add_argument("--results", type=pathlib.Path)
+    args = parser.parse_args()
+    programs = {"new": args.tessera.resolve()} | ({"old": args.old.resolve()} if args.old else {})
+    load = os.getloadavg()[0]
+    with tempfile.TemporaryDirectory() as folder:
+        work = args.work or pathlib.Path(folder)
+        work.mkdir(parents=True, exist_ok=True)
+        mesh = work / "cube64.tets"
+        if not mesh.exists():
+            run([programs["new"], "generate", "cube", mesh, "n=64", "--quiet"])
+        figures = {which: {arrangement: [] for arrangement in ARRANGEMENTS} for which in programs}
+        for _ in range(args.pairs):
+            for which, program in programs.items():
+                for arrangement in ARRANGEMENTS:
+                    figures[which][arrangement].append(measure(program, mesh, work, arrangement, args.repeat))
+        alone = {which: serial(program, mesh, work, args.repeat) for which, program in programs.items()}
+
+    def words(values, of):
+        return f"{statistics.median(values):.2f} ({min(values):.2f} to {max(values):.2f}); {of:.0f} ms"
+
+    table = ["| program | arrangement | time beside one process: median (range); a frame | CPU beside one process: median (range); a frame |", "|---|---|---|---|"]
+    for which in programs:
+        one = figures[which][ONE]
+        for arrangement in ARRANGEMENTS:
+            mine = figures[which][arrangement]
+            time, cpu = ([m[i] / o[i] for m, o in zip(mine, one)] for i in (0, 1))
+            middle = [statistics.median(m[i] for m in mine) for i in (0, 1)]
+            table.append(f"| {which} | {arrangement} | {words(time, middle[0])} | {words(cpu, middle[1])} |")
+        ms, of = alone[which]
+        table.append(f"| {which} | serial in {ONE} | {ms:.1f} ms | {100 * ms / of:.2f} % of {of:.0f} ms |")
+    print("\n".join(table))
+    if args.results:
+        caption = f"{results_file.made(load)} `{results_file.command('ranks.py')}`: what ranks cost, pairs in turn"
+        results_file.put(args.results, "ranks.py", caption, table)
+
+
+if __name__ == "__main__":
+    main()
