@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace tessera::analysis {
 namespace {
 
@@ -83,6 +85,18 @@ class MeshMethods final : public MethodList {
     method.settings.mesh.device.method = gl;
     method.settings.mesh.device.half = half;
   }
+  /// As `render --preset` does it, in one process.
+  void juliachs_2007() {
+    ChartMethod& method = rasterized(Rasterizer::scanline, "juliachs-2007", "juliachs-2007",
+                                     {.kind = IntegratorKind::sampled, .samples = 4});
+    method.family = method.name = method.preset = "juliachs-2007";
+    method.cost = 30;
+    method.settings.mesh.device.backends = {Backend::osmesa};
+    method.settings.mesh.device.method = GlMethod::fragment;
+    method.settings.mesh.device.half = true;
+    const ImageSize size = scene_.view.size;
+    method.settings.mesh.tile_size = std::min((std::max(size.width, size.height) + 15) / 16, 1024);
+  }
 };
 
 std::vector<ChartMethod> mesh_methods(const ChartScene& scene) {
@@ -90,6 +104,7 @@ std::vector<ChartMethod> mesh_methods(const ChartScene& scene) {
   using enum Rasterizer;
   for (const double accuracy : {1e-4, 1e-2, 1e-3, 1e-5}) list.automatic(accuracy);
   list.plain(planes, IntegratorKind::exact, "exact");
+  list.juliachs_2007();
   for (const int n : {1, 4}) list.sampled(planes, n);
   list.table(planes, 128);
   list.plain(planes, IntegratorKind::partial, "partial");

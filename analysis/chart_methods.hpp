@@ -32,6 +32,7 @@ struct ChartMethod {
   Settings settings;
   int ranks = 1;         ///< more than one: threads of this process that speak as processes do
   double cost = 1;       ///< its time over the first method's, roughly: whether to try it is decided by that
+  std::string preset;    ///< of `render`, if that is all there is to say
   std::string left_out;  ///< why it cannot be had here; empty: it can
   bool by_slices = false;
 

@@ -37,6 +37,7 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 /// What makes `tessera render` do it.
 std::string options_text(const analysis::ChartMethod& method, bool is_grid) {
   if (method.by_slices) return "--renderer slice";
+  if (!method.preset.empty()) return "--preset " + method.preset;
   const Settings& s = method.settings;
   if (method.ranks > 1)
     return fmt::format("mpirun -n {}, --exchange {} --partition random", method.ranks,
