@@ -74,7 +74,7 @@ Json higher_order_json(const Description& data) {
 const char* word(Association association) { return association == Association::point ? "point" : "cell"; }
 
 const char* word(Balance balance) {
-  constexpr std::array words = {"accurate", "backface", "splatting", "previous", "even"};
+  constexpr std::array words = {"learned", "accurate", "backface", "splatting", "previous", "even"};
   return words[static_cast<std::size_t>(balance)];
 }
 
@@ -176,15 +176,19 @@ Json counters_json(const FrameStatistics& statistics, bool is_grid) {
 
 Json balance_json(Balance balance, const FrameStatistics& statistics) {
   Json processes = Json::array();
+  std::vector<double> cpu = statistics.cpu_seconds;
+  for (std::size_t rank = 0; rank < cpu.size(); ++rank) cpu[rank] += statistics.split_cpu_seconds[rank];
   for (std::size_t rank = 0; rank < statistics.samples.size(); ++rank) {
     const PixelRect& r = statistics.rectangles[rank];
     processes.push_back({{"rectangle", {r.x0, r.y0, r.x1, r.y1}},
                          {"samples", statistics.samples[rank]},
-                         {"cpu_ms", 1e3 * statistics.cpu_seconds[rank]}});
+                         {"cpu_ms", 1e3 * statistics.cpu_seconds[rank]},
+                         {"split_cpu_ms", 1e3 * statistics.split_cpu_seconds[rank]}});
   }
   return {{"method", word(balance)},
           {"samples_deviation", deviation({statistics.samples.begin(), statistics.samples.end()})},
-          {"cpu_deviation", deviation(statistics.cpu_seconds)},
+          {"cpu_deviation", deviation(cpu)},
+          {"rendering_cpu_deviation", deviation(statistics.cpu_seconds)},
           {"processes", processes}};
 }
 

@@ -121,9 +121,10 @@ Json grid_method_json(const RenderOptions& options, int ranks) {
   json["preload"] = s.preload_limit;
   json["memory_bytes"] = settings.memory_bytes;
   json["ranks"] = ranks;
-  json["balance"] = {{"method", word(settings.ranks.balance)},
-                     {"resolution", settings.ranks.balance_resolution},
-                     {"weights", settings.ranks.balance_weights}};
+  json["balance"] = {
+      {"method", word(settings.ranks.balance)},
+      {"resolution", settings.ranks.balance_resolution},
+      {"weights", settings.ranks.balance_measured ? Json("measured") : Json(settings.ranks.balance_weights)}};
   return json;
 }
 

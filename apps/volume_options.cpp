@@ -63,8 +63,8 @@ void add_volume_render_options(CLI::App& command, RenderWords& words) {
       ->type_name("BRICKS");
   command
       .add_option("--balance", words.balance,
-                  "volumes, under mpirun: how the picture is split between processes (default accurate)")
-      ->type_name("accurate|backface|splatting|previous|even");
+                  "volumes, under mpirun: how the picture is split between processes (default learned)")
+      ->type_name("learned|accurate|backface|splatting|previous|even");
   command
       .add_option("--balance-resolution", words.balance_resolution,
                   "volumes: of the cost map, its pixels an image pixel along each axis (default 0.5)")
@@ -72,7 +72,7 @@ void add_volume_render_options(CLI::App& command, RenderWords& words) {
   command
       .add_option("--balance-weights", words.balance_weights,
                   "volumes, under mpirun: how much of the work each process gets (default: all the same)")
-      ->type_name("W,W,...");
+      ->type_name("W,W,...|measured");
   command
       .add_option("--show", words.show,
                   "volumes: bricks drawn in the colours of the processes, and the cost map as a second picture")
@@ -162,18 +162,16 @@ void set_grid(const RenderWords& words, Settings& settings) {
 }
 
 void set_balance(const RenderWords& words, RankSettings& ranks) {
-  constexpr std::pair<const char*, Balance> known[] = {{"accurate", Balance::accurate},
-                                                       {"backface", Balance::backface},
-                                                       {"splatting", Balance::splatting},
-                                                       {"previous", Balance::previous},
-                                                       {"even", Balance::even}};
+  constexpr std::pair<const char*, Balance> known[] = {
+      {"learned", Balance::learned},     {"accurate", Balance::accurate}, {"backface", Balance::backface},
+      {"splatting", Balance::splatting}, {"previous", Balance::previous}, {"even", Balance::even}};
   const auto* const found =
       std::ranges::find_if(known, [&](const auto& choice) { return words.balance == choice.first; });
   if (found != std::end(known))
     ranks.balance = found->second;
   else if (!words.balance.empty())
-    throw bad_input(
-        fmt::format("--balance: '{}' is unknown; use accurate, backface, splatting, previous or even", words.balance));
+    throw bad_input(fmt::format(
+        "--balance: '{}' is unknown; use learned, accurate, backface, splatting, previous or even", words.balance));
   if (!words.balance_resolution.empty()) {
     ranks.balance_resolution = parse_positive("--balance-resolution", words.balance_resolution);
     if (ranks.balance_resolution > 1 || ranks.balance_resolution < 1e-3)
@@ -181,7 +179,8 @@ void set_balance(const RenderWords& words, RankSettings& ranks) {
   }
   if (!words.show.empty() && words.show != "balance")
     throw bad_input(fmt::format("--show: '{}' is unknown; use balance", words.show));
-  if (!words.balance_weights.empty())
+  ranks.balance_measured = words.balance_weights == "measured";
+  if (!words.balance_weights.empty() && !ranks.balance_measured)
     for (const std::string& weight : split_at_commas(words.balance_weights))
       ranks.balance_weights.push_back(parse_positive("--balance-weights", weight));
 }

@@ -1,28 +1,36 @@
 #!/usr/bin/env python3
-"""How evenly processes share the image of a volume: over a turn and a zoom, with 0, 2 and 4 frames left out between
-those that are rendered, for each --balance (Moloney, Ray Coherence in Parallel Volume Rendering, 2008, chapter 4).
+"""Moloney, Ray Coherence in Parallel Volume Rendering (2008), Tables 6.4 and 6.5: how evenly processes share a picture.
 
-    bench/balance.py --tessera build/release/apps/tessera [--processes 6] [--size 512x512] [--volume FILE] [--animations turn,zoom]
-        [--transfer-function FILE] [--results bench/RESULTS.md]
+    bench/balance.py --tessera PROGRAM [--document docs/EXPERIMENTS.md] [--processes 6] [--size 1024x1024] [--brick-size 64] [--volume FILE]
+                     [--transfer-function NAME] [--frames 60]
 
-Prints (largest - least) / mean of the samples (pieces) that processes counted, worst and mean over frames, and the mean
-of the same for CPU time. The first frame, in which nothing is known yet, is named apart. A row a measurement goes to
-standard output, a row an animation and method to the results file.
+Two smooth recorded animations: a turn of two degrees a frame round an oblique axis, which shows all of the volume, and a zoom from
+outside to the middle. A frame's *deviation* is the thesis's: what the process that took longest took more than the one that took least,
+over their mean. Where it says time, this says a process's CPU time, of finding the split and of rendering together: on fewer cores than processes
+nothing else says what each had to do. Tables have the mean over frames but the first, in which nothing is known yet, and the standard deviation.
+
+    Table 6.4  --balance learned, accurate, splatting, backface; cost maps of as many pixels as the picture, and of a quarter
+    Table 6.5  the cost map (backface, a quarter; ours: learned) against the frame before, with 0, 2 and 4 frames of the turn left out
+
+Needs mpirun and Python's standard library.
 """
 import argparse
 import json
 import math
 import os
 import pathlib
+import statistics
 import subprocess
 import sys
 import tempfile
 
 import results_file
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
-METHODS = ("accurate", "backface", "splatting", "previous", "even")
-LEFT_OUT = (0, 2, 4)
+METHODS = ("learned", "accurate", "splatting", "backface")
+RESOLUTIONS = {"full": 1, "a quarter": 0.5}
+PRINTED_4 = {("rotation", "full"): (13.7, 10.8, 17.3), ("rotation", "a quarter"): (14.0, 10.9, 17.4), ("zoom", "full"): (10.3, 9.1, 14.7)}
+PRINTED_5 = {0: ("17.0 ± 12.7", "22.8 ± 23.3"), 2: ("17.6 ± 13.0", "46.9 ± 34.0"), 4: ("18.2 ± 13.6", "60.6 ± 34.2")}
+DEGREES = 2  # a frame of the turn
 
 
 def run(words):
@@ -33,69 +41,98 @@ def run(words):
 
 
 def views(kind, box, frames):
-    """A turn round an oblique axis, or a way from far outside to the middle of the box."""
     low, high = box
     centre = [(a + b) / 2 for a, b in zip(low, high)]
     radius = math.dist(low, high) / 2
     for n in range(frames):
-        t = n / frames
-        if kind == "turn":
-            a = 2 * math.pi * t
+        if kind == "rotation":
+            a = math.radians(DEGREES * n)
             away = [math.cos(a), 0.45 * math.sin(2 * a) + 0.3, math.sin(a)]
             distance, angle = 3 * radius, 45
         else:
-            away, distance, angle = [0.55, 0.35, 0.75], radius * (4 - 3.2 * t), 40
+            away, distance, angle = [0.55, 0.35, 0.75], radius * (4 - 3.2 * n / frames), 40
         length = math.hypot(*away)
         yield {"position": [c + d / length * distance for c, d in zip(centre, away)], "focal_point": centre,
                "view_up": [0, 1, 0], "view_angle": angle}
 
 
+class Bench:
+    def __init__(self, args, folder):
+        self.args, self.folder = args, folder
+        self.volume = args.volume or folder / "ripples.nrrd"
+        if not args.volume:
+            run([args.tessera, "generate", "ripples", self.volume, "n=256", "bits=8", "--quiet"])
+        info = subprocess.run([str(args.tessera), "info", str(self.volume), "--json"], capture_output=True, text=True, check=True)
+        self.box = json.loads(info.stdout)["bounds"]
+
+    def frames(self, kind, method, resolution, left_out):
+        """What the report says of the balance of all frames but the first."""
+        path = list(views(kind, self.box, self.args.frames))[::left_out + 1]
+        (self.folder / "path.json").write_text(json.dumps(path))
+        report = self.folder / "report.json"
+        run(["mpirun", "--oversubscribe", "-n", self.args.processes, self.args.tessera, "render", self.volume, "-o", self.folder / "f%d.pfm",
+             "--camera", self.folder / "path.json", "--size", self.args.size, "--threads", "1", "--transfer-function", self.args.transfer_function,
+             "--brick-size", self.args.brick_size, "--balance", method, "--balance-resolution", resolution, "--quiet", "--report", report])
+        return [frame["balance"] for frame in json.loads(report.read_text())["frames"]][1:]
+
+
+def deviation(frames):
+    of = [100 * f["cpu_deviation"] for f in frames]
+    return f"{statistics.mean(of):.1f} ± {statistics.stdev(of):.1f}"
+
+
+def split_share(frames):
+    """CPU time of finding the split over that of rendering, of all processes [%]."""
+    split, render = (sum(p[part] for f in frames for p in f["processes"]) for part in ("split_cpu_ms", "cpu_ms"))
+    return 100 * split / render
+
+
+def table_4(bench):
+    lines = ["| animation, cost map | learned | accurate: here | printed | splatting: here | printed | back face: here | printed |", "|---|---|---|---|---|---|---|---|"]
+    shares = {}
+    for kind in ("rotation", "zoom"):
+        for name, resolution in RESOLUTIONS.items():
+            measured = {method: bench.frames(kind, method, resolution, 0) for method in METHODS}
+            for method, frames in measured.items():
+                shares.setdefault((method, name), []).append(split_share(frames))
+            printed = [f"{p} %" for p in PRINTED_4.get((kind, name), ())] or ["at most 0.5 points worse"] * 3
+            here = [deviation(measured[method]) + " %" for method in METHODS]
+            lines.append(f"| {kind}, {name} | {here[0]} | " + " | ".join(f"{h} | {p}" for h, p in zip(here[1:], printed)) + " |")
+            print(lines[-1], flush=True)
+    lines += ["", "CPU time of finding the split, over that of rendering (of the turn, of the zoom):", "", "| cost map | " + " | ".join(METHODS) + " |",
+              "|---|" + "---|" * len(METHODS)]
+    for name in RESOLUTIONS:
+        lines.append(f"| {name} | " + " | ".join(" / ".join(f"{s:.1f}" for s in shares[method, name]) + " %" for method in METHODS) + " |")
+    return lines
+
+
+def table_5(bench):
+    lines = ["| frames left out | back face, a quarter: here | printed | learned | the frame before: here | printed |", "|---:|---|---|---|---|---|"]
+    for left_out, (cost, before) in PRINTED_5.items():
+        here = [deviation(bench.frames("rotation", method, 0.5, left_out)) + " %" for method in ("backface", "learned", "previous")]
+        lines.append(f"| {left_out} | {here[0]} | {cost} % | {here[1]} | {here[2]} | {before} % |")
+        print(lines[-1], flush=True)
+    return lines
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--tessera", default=ROOT / "build/release/apps/tessera")
+    parser.add_argument("--tessera", type=pathlib.Path, required=True)
     parser.add_argument("--processes", type=int, default=6)
-    parser.add_argument("--size", default="512x512")
-    parser.add_argument("--frames", type=int, default=30)
-    parser.add_argument("--volume", help="default: ripples of 128^3 samples")
+    parser.add_argument("--size", default="1024x1024")
+    parser.add_argument("--brick-size", type=int, default=64)
+    parser.add_argument("--frames", type=int, default=60)
+    parser.add_argument("--volume", type=pathlib.Path, help="default: ripples of 256^3 samples of 8 bits")
     parser.add_argument("--transfer-function", default="cool-warm:rise")
-    parser.add_argument("--methods", default=",".join(METHODS))
-    parser.add_argument("--animations", default="turn,zoom")
-    parser.add_argument("--results", type=pathlib.Path)
+    parser.add_argument("--document", type=pathlib.Path)
     args = parser.parse_args()
-    load_before, figures = os.getloadavg()[0], {}
-    print("| animation | balance | left out | first frame | worst after | mean after | CPU time, mean |\n|---|---|---|---|---|---|---|")
-    with tempfile.TemporaryDirectory() as folder:
-        folder = pathlib.Path(folder)
-        volume = args.volume or folder / "ripples.nrrd"
-        if not args.volume:
-            run([args.tessera, "generate", "ripples", volume, "n=128", "--quiet"])
-        info = json.loads(subprocess.run([str(args.tessera), "info", str(volume), "--json"], capture_output=True,
-                                         text=True, check=True).stdout)
-        for kind in args.animations.split(","):
-            path = list(views(kind, info["bounds"], args.frames))
-            for left_out in LEFT_OUT:
-                for method in args.methods.split(","):
-                    (folder / "path.json").write_text(json.dumps(path[::left_out + 1]))
-                    run(["mpirun", "--oversubscribe", "-n", args.processes, args.tessera, "render", volume, "-o",
-                         folder / "f%d.pfm", "--camera", folder / "path.json", "--size", args.size, "--threads", "1",
-                         "--transfer-function", args.transfer_function, "--balance", method, "--quiet", "--report",
-                         folder / "r.json"])
-                    frames = [f["balance"] for f in json.loads((folder / "r.json").read_text())["frames"]]
-                    samples = [100 * f["samples_deviation"] for f in frames]
-                    cpu = [100 * f["cpu_deviation"] for f in frames[1:]]
-                    later = samples[1:]
-                    row = samples[0], max(later), sum(later) / len(later), sum(cpu) / len(cpu)
-                    figures.setdefault((kind, method), []).append(row)
-                    print(f"| {kind} | {method} | {left_out} | " + " | ".join(f"{x:.1f} %" for x in row) + " |", flush=True)
-    table = ["| animation | balance | first frame | worst after | mean after | CPU time, mean |", "|---" * 6 + "|"]
-    for (kind, method), rows in figures.items():
-        first, *others = zip(*rows)  # the first frame is the same, however many are left out after it
-        table.append(f"| {kind} | {method} | {first[0]:.1f} % | " + " | ".join(" / ".join(f"{x:.1f}" for x in o) + " %" for o in others) + " |")
-    print("\n".join(["", *table]))
-    if args.results:
-        caption = (f"{results_file.made(load_before)} `{results_file.command('balance.py')}`: (largest - least) / mean of the samples that "
-                   f"{args.processes} processes counted, with {' / '.join(map(str, LEFT_OUT))} frames left out; the same of their CPU time")
-        results_file.put(args.results, "balance.py", caption, table)
+    for name, table in (("table 6.4", table_4), ("table 6.5", table_5)):
+        load = os.getloadavg()[0]
+        with tempfile.TemporaryDirectory() as folder:
+            lines = table(Bench(args, pathlib.Path(folder)))
+        if args.document:
+            caption = f"{results_file.made(load)} `{results_file.command('balance.py')}`: deviation of CPU time, mean ± standard deviation over frames"
+            results_file.put(args.document, f"balance.py {name}", caption, lines)
 
 
 if __name__ == "__main__":

@@ -77,6 +77,7 @@ enum class MessageKind : std::uint16_t {
   process_on_host = 38,   ///< exchange/one_line.cpp
   field_samples = 39,     ///< list of scene::FieldSample: of a rank's part (frame/field_samples.cpp)
   open_faces = 47,        ///< list of OpenFace (frame/boundary_faces.cpp): that one tet of a rank's part has alone
+  speed = 50,             ///< f64 samples a second of the last frame, 0: unknown
   ray_tets = 48,          ///< list of RayTet (frame/probe.cpp): those of a rank's part that a ray meets
   curved_part = 40,  ///< frame/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
   // All channels.

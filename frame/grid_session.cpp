@@ -35,6 +35,7 @@ FrameStatistics statistics_of(const frame::FinishedVolumeFrame& frame, const cha
   }
   statistics.samples = frame.samples;
   statistics.cpu_seconds = frame.cpu_seconds;
+  statistics.split_cpu_seconds = frame.split_cpu_seconds;
   return statistics;
 }
 

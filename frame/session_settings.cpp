@@ -81,6 +81,7 @@ SortFirstSettings sort_first_settings(const Settings& s) {
   settings.balance = s.ranks.balance;
   settings.resolution = s.ranks.balance_resolution;
   settings.weights = s.ranks.balance_weights;
+  settings.measured = s.ranks.balance_measured;
   return settings;
 }
 

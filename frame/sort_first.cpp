@@ -7,6 +7,7 @@
 #include <cmath>
 #include <ctime>
 #include <exception>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -35,10 +36,10 @@ struct RegionHeader {
   std::uint64_t frame;
   PixelRect region;
   GridCounters counters;
-  double cpu_seconds;
+  double cpu_seconds, split_cpu_seconds;
   std::uint64_t stopped;  ///< 1: no pixels follow
 };
-static_assert(sizeof(RegionHeader) == sizeof(GridCounters) + 5 * 8);
+static_assert(sizeof(RegionHeader) == sizeof(GridCounters) + 6 * 8);
 
 double process_cpu_seconds() {
   timespec t{};
@@ -56,12 +57,14 @@ PixelRect scaled(const PixelRect& r, double resolution, scene::ImageSize map, sc
 
 volume::CostMethod method_of(Balance balance) {
   switch (balance) {
+    case Balance::accurate:
+      return volume::CostMethod::accurate;
     case Balance::backface:
       return volume::CostMethod::backface;
     case Balance::splatting:
       return volume::CostMethod::splatting;
     default:
-      return volume::CostMethod::accurate;
+      return volume::CostMethod::visited;
   }
 }
 
@@ -79,6 +82,8 @@ class SortFirst::State {
     if (weights_.size() != static_cast<std::size_t>(transport.size()))
       throw scene::bad_input(
           fmt::format("balance: {} weights for {} processes; give one for each", weights_.size(), transport.size()));
+    if (settings_.measured && !settings_.weights.empty())
+      throw scene::bad_input("`balance_weights`: they are either given or measured; leave one of the two out");
     if (!std::all_of(weights_.begin(), weights_.end(), [](double w) { return w > 0 && std::isfinite(w); }))
       throw scene::bad_input("balance: weights must be positive numbers");
   }
@@ -117,6 +122,7 @@ class SortFirst::State {
       exchange::barrier(transport_);
     }
     const auto begin = std::chrono::steady_clock::now();
+    const double cpu_at_first = process_cpu_seconds();
     const ImageSplit split = [&] {
       const scene::TraceScope timing(settings_.trace, "partition", static_cast<std::int32_t>(number));
       sample_work(renderer, function, job, watch);
@@ -124,6 +130,7 @@ class SortFirst::State {
     }();
     const PixelRect mine = split.region(transport_.rank());
     const double cpu_before = process_cpu_seconds();
+    const auto render_begin = std::chrono::steady_clock::now();
     volume::RenderStatistics statistics;
     std::vector<float> error_bounds;
     scene::Image image;
@@ -136,9 +143,10 @@ class SortFirst::State {
     }
     const double cpu = process_cpu_seconds() - cpu_before;
     if (settings_.balance == Balance::previous) share_times(cpu);
+    if (settings_.measured) learn_speed(static_cast<double>(statistics.samples), render_begin, stopped);
     last_split_ = split;
     last_size_ = job.size;
-    RegionHeader header{number, mine, statistics, cpu, stopped ? 1u : 0u};
+    RegionHeader header{number, mine, statistics, cpu, cpu_before - cpu_at_first, stopped ? 1u : 0u};
     if (transport_.rank() != 0) {
       send(header, image, error_bounds);
       return std::nullopt;
@@ -154,6 +162,7 @@ class SortFirst::State {
     finished.cost = std::move(cost_);
     finished.samples.assign(static_cast<std::size_t>(transport_.size()), statistics.samples);
     finished.cpu_seconds.assign(static_cast<std::size_t>(transport_.size()), cpu);
+    finished.split_cpu_seconds.assign(finished.cpu_seconds.size(), header.split_cpu_seconds);
     for (int others = transport_.size() - 1; others > 0; --others) {
       const exchange::Message message = [&] {
         const scene::TraceScope timing(settings_.trace, "wait", static_cast<std::int32_t>(number));
@@ -208,7 +217,7 @@ class SortFirst::State {
   /// rectangle it had in the frame before, whose bricks it holds. Collective.
   void sample_work(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
                    scene::FrameWatch& watch) {
-    if ((transport_.size() == 1 && !settings_.keep_cost) || settings_.balance != Balance::accurate) return;
+    if ((transport_.size() == 1 && !settings_.keep_cost) || settings_.balance != Balance::learned) return;
     const bool has_last = last_split_.has_value() && last_size_ == job.size;
     const PixelRect area = volume::footprint(job.camera, job.size, renderer.geometry());
     const PixelRect part = has_last ? last_split_->region(transport_.rank())
@@ -257,6 +266,21 @@ class SortFirst::State {
   }
 
   void share_times(double cpu) { times_ = exchange::gather_values(transport_, MessageKind::seconds, cpu); }
+
+  /// Weights by what ranks did a second, half of it of this frame: one that was disturbed is not all that counts.
+  /// Collective.
+  void learn_speed(double samples, std::chrono::steady_clock::time_point begin, bool stopped) {
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const double speed = stopped || !(seconds > 0) ? 0 : samples / seconds;
+    std::vector<double> speeds = exchange::gather_values(transport_, MessageKind::speed, speed);
+    // Who had next to nothing to do says nothing of its speed.
+    const double most = *std::max_element(speeds.begin(), speeds.end());
+    if (!std::all_of(speeds.begin(), speeds.end(), [&](double s) { return s > 0.01 * most; })) return;
+    const double sum = std::accumulate(speeds.begin(), speeds.end(), 0.0);
+    const auto ranks = static_cast<double>(speeds.size());
+    for (std::size_t rank = 0; rank < speeds.size(); ++rank)
+      weights_[rank] = 0.5 * weights_[rank] + 0.5 * ranks * speeds[rank] / sum;
+  }
 
   /// The times of the last frame, each spread over its rectangle.
   [[nodiscard]] CostMap map_of_times(scene::ImageSize size) const {
@@ -309,6 +333,7 @@ class SortFirst::State {
     finished.statistics += header.counters;
     finished.samples[static_cast<std::size_t>(message.from)] = header.counters.samples;
     finished.cpu_seconds[static_cast<std::size_t>(message.from)] = header.cpu_seconds;
+    finished.split_cpu_seconds[static_cast<std::size_t>(message.from)] = header.split_cpu_seconds;
   }
 
   exchange::Transport& transport_;

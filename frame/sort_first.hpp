@@ -18,9 +18,10 @@ namespace tessera::frame {
 using tessera::Balance;
 
 struct SortFirstSettings {
-  Balance balance = Balance::accurate;
+  Balance balance = Balance::learned;
   double resolution = 0.5;      ///< of the cost map, map pixels an image pixel along each axis
   std::vector<double> weights;  ///< how much of the work each rank should get; empty: equal
+  bool measured = false;        ///< in place of weights: each rank's speed in the frames before
   bool keep_cost = false;       ///< rank 0 finds the cost of the whole picture too, to be shown
   bool keep_error_bounds =
       false;  ///< rank 0 gets each pixel's error bound (volume::Renderer::render) too; alike on all ranks
@@ -38,12 +39,13 @@ struct FinishedVolumeFrame {
   scene::Image image;
   volume::RenderStatistics statistics;  ///< of all ranks, put together as tessera::grid_counters says
   volume::ImageSplit split;
-  std::vector<std::uint64_t> samples;  ///< of each rank
-  std::vector<double> cpu_seconds;     ///< of each rank's rendering, all its threads
-  double frame_ms;                     ///< from when all ranks were ready to the picture in memory, split included
-  volume::CostMap cost;                ///< of the whole picture, if SortFirstSettings::keep_cost
-  std::vector<float> error_bounds;     ///< by pixel, if SortFirstSettings::keep_error_bounds
-  bool stopped = false;                ///< the image lacks pixels
+  std::vector<std::uint64_t> samples;     ///< of each rank
+  std::vector<double> cpu_seconds;        ///< of each rank's rendering, all its threads
+  std::vector<double> split_cpu_seconds;  ///< of each rank's part in finding the split
+  double frame_ms;                        ///< from when all ranks were ready to the picture in memory, split included
+  volume::CostMap cost;                   ///< of the whole picture, if SortFirstSettings::keep_cost
+  std::vector<float> error_bounds;        ///< by pixel, if SortFirstSettings::keep_error_bounds
+  bool stopped = false;                   ///< the image lacks pixels
 };
 
 /// Renders pictures of volumes with all ranks of `transport` (sort first): each casts the rays of one rectangle through

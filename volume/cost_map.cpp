@@ -282,24 +282,6 @@ class Costs {
 
 }  // namespace
 
-std::vector<CostBox> visible_boxes(const VisibleCells& cells, const scene::GridIndex& voxels) {
-  const std::span<const std::uint8_t> visible = cells.visible;
-  std::vector<CostBox> boxes;
-  std::size_t n = 0;
-  for (std::int64_t c = 0; c < cells.cells[2]; ++c)
-    for (std::int64_t b = 0; b < cells.cells[1]; ++b)
-      for (std::int64_t a = 0, first = 0; a < cells.cells[0]; ++a, ++n) {
-        if (visible[n] == 0) continue;
-        if (a == 0 || visible[n - 1] == 0) first = a;
-        if (a + 1 < cells.cells[0] && visible[n + 1] != 0) continue;
-        const auto edge = [&](std::int64_t cell, std::size_t axis) {
-          return static_cast<double>(std::min(cell * CellRanges::side, voxels[axis]));
-        };
-        boxes.push_back({{edge(first, 0), edge(b, 1), edge(c, 2)}, {edge(a + 1, 0), edge(b + 1, 1), edge(c + 1, 2)}});
-      }
-  return boxes;
-}
-
 scene::ImageSize map_size(scene::ImageSize image, double resolution) {
   if (!(resolution > 0 && resolution <= 1))
     throw scene::bad_input(fmt::format("balance resolution {}: it must be above 0 and at most 1", resolution));
@@ -327,7 +309,8 @@ scene::PixelRect footprint(const scene::Camera& camera, scene::ImageSize image, 
 }
 
 CostMap cost_map(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,
-                 const VisibleCells& cells, const CostSettings& settings, std::optional<scene::PixelRect> region) {
+                 const VisibleCells& cells, std::span<const CostBox> bricks, const CostSettings& settings,
+                 std::optional<scene::PixelRect> region) {
   CostMap map;
   map.resolution = settings.resolution;
   map.size = map_size(image, settings.resolution);
@@ -336,18 +319,17 @@ CostMap cost_map(const scene::Camera& camera, scene::ImageSize image, const scen
       static_cast<std::size_t>(std::max(0, map.width())) * static_cast<std::size_t>(std::max(0, map.height())), 0);
   if (map.cost.empty()) return map;
   const Costs costs(camera, image, geometry, settings, map.region);
-  const std::vector<CostBox> boxes =
-      settings.method == CostMethod::accurate ? std::vector<CostBox>() : visible_boxes(cells, geometry.voxels());
+  const std::span<const CostBox> boxes = settings.method == CostMethod::visited ? std::span<const CostBox>() : bricks;
   std::vector<Outline> outlines(boxes.size());
   tbb::parallel_for(std::size_t{0}, boxes.size(), [&](std::size_t i) { outlines[i] = costs.outline(boxes[i]); });
   const int bands = (map.height() + band_rows - 1) / band_rows;
   tbb::parallel_for(0, bands, [&](int band) {
     const int y0 = map.region.y0 + band * band_rows, y1 = std::min(map.region.y1, y0 + band_rows);
     std::vector<double> cost(static_cast<std::size_t>(y1 - y0) * static_cast<std::size_t>(map.width()));
-    if (settings.method == CostMethod::accurate) costs.add_visited(cells, y0, y1, cost.data());
+    if (settings.method == CostMethod::visited) costs.add_visited(cells, y0, y1, cost.data());
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       const Outline& o = outlines[i];
-      if (o.behind_eye)
+      if (o.behind_eye || settings.method == CostMethod::accurate)
         costs.add_way(boxes[i], o, y0, y1, cost.data());
       else if (settings.method == CostMethod::backface)
         costs.add_back_faces(boxes[i], o, y0, y1, cost.data());

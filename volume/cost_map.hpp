@@ -13,12 +13,13 @@
 
 namespace tessera::volume {
 
-/// How the cost of a pixel is found from the boxes behind it (Moloney, "Ray Coherence in Parallel Volume Rendering",
-/// SFU 2008, 4.1).
+/// How the cost of a pixel is found: from the cells that the caster visits, or from the visible bricks behind the pixel
+/// (Moloney, "Ray Coherence in Parallel Volume Rendering", SFU 2008, 4.1).
 enum class CostMethod {
-  accurate,  ///< each ray's way through what the caster visits of it
-  backface,  ///< back faces alone, a weight at each corner, linear between
-  splatting  ///< a sphere round each box
+  visited,   ///< each ray's way through what the caster visits of it
+  accurate,  ///< each ray's way through the bricks
+  backface,  ///< back faces of bricks alone, a weight at each corner, linear between
+  splatting  ///< a sphere round each brick
 };
 
 /// Cells of 8^3 voxels (CellRanges) and which of them the transfer function shows.
@@ -27,24 +28,21 @@ struct VisibleCells {
   std::span<const std::uint8_t> visible;  ///< one byte a cell
 };
 
-/// Voxels that will be visited, a box in index space.
+/// A brick, in index space.
 struct CostBox {
   glm::dvec3 low, high;
 };
 
 struct CostSettings {
-  CostMethod method = CostMethod::accurate;
+  CostMethod method = CostMethod::visited;
   double resolution = 0.5;  ///< map pixels an image pixel along each axis, in (0, 1]; 0.5 is the thesis's "quarter"
   /// What a stretch of ray costs: the voxels it crosses (exact integrals), or else its length (samples at steps).
   bool by_voxels = true;
-  /// accurate, not null: samples a slab as a pilot pass has taught, and rays end where they let nothing through.
+  /// visited, not null: samples a slab as a pilot pass has taught, and rays end where they let nothing through.
   const WorkRates* learned = nullptr;
   double length_unit = 1;   ///< world units, of the optical depths learned
   double most_depth = 1e9;  ///< optical depth at which rays end
 };
-
-/// The visible cells of 8^3 voxels as boxes, joined along the first axis where they touch.
-std::vector<CostBox> visible_boxes(const VisibleCells& cells, const scene::GridIndex& voxels);
 
 /// Size of the map of an image.
 scene::ImageSize map_size(scene::ImageSize image, double resolution);
@@ -54,16 +52,17 @@ scene::PixelRect footprint(const scene::Camera& camera, scene::ImageSize image, 
 
 /// The cost of the map pixels of `region` (default: all), in 1/64 voxels (or mean voxel sides).
 ///
-/// `accurate` marches the ray of each map pixel's centre as the caster does: eight slabs of voxels at a time, which
+/// `visited` marches the ray of each map pixel's centre as the caster does: eight slabs of voxels at a time, which
 /// count if a packet of 4 x 4 pixels round the ray may meet a visible cell in them; with what was learned, samples
-/// count instead of voxels, until the ray is dark. The approximations sum over visible_boxes(), each with its true
-/// total by the depth of its centre: `backface` counts a corner 1 inside the box's outline and 0.25 on it, faces cut in
-/// two triangles through the inner corner (Moloney 2008, A.4); `splatting` the chords of a sphere as wide as the box.
-/// Boxes that reach behind the eye are done by each ray's way through them.
+/// count instead of voxels, until the ray is dark. The others sum over `bricks`: `accurate` by the ray of each map
+/// pixel's centre; the approximations give each brick its true total by the depth of its centre: `backface` counts a
+/// corner 1 inside the brick's outline and 0.25 on it, faces cut in two triangles through the inner corner (Moloney
+/// 2008, A.4); `splatting` the chords of a sphere as wide as the brick. Bricks that reach behind the eye are done by
+/// each ray's way through them.
 ///
 /// Throws Error(bad_input) for a resolution out of range. Uses the calling thread's arena.
 CostMap cost_map(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,
-                 const VisibleCells& cells, const CostSettings& settings,
+                 const VisibleCells& cells, std::span<const CostBox> bricks, const CostSettings& settings,
                  std::optional<scene::PixelRect> region = std::nullopt);
 
 }  // namespace tessera::volume

@@ -99,23 +99,32 @@ scene::ValueRange Renderer::range() const { return state_->ranges.range; }
 
 const scene::GridGeometry& Renderer::geometry() const { return state_->source.geometry(); }
 
-std::vector<std::array<glm::dvec3, 2>> Renderer::visible_bricks(
-    const scene::TransferFunction& transfer_function) const {
-  const RendererState& state = *state_;
-  const integrals::LaneTable table = state.table_of(transfer_function);
+namespace {
+
+/// The bricks that hold any of the visible cells.
+std::vector<CostBox> bricks_shown(const RendererState& state, const std::vector<std::uint8_t>& cells) {
   const BrickLayout& layout = state.bricks.layout();
-  const std::vector<std::uint8_t> shown =
-      volume::visible_bricks(state.ranges, visible_cells(state.ranges, table), layout);
-  std::vector<std::array<glm::dvec3, 2>> boxes;
+  const std::vector<std::uint8_t> shown = volume::visible_bricks(state.ranges, cells, layout);
+  std::vector<CostBox> boxes;
   for (std::size_t brick = 0; brick < shown.size(); ++brick) {
     if (shown[brick] == 0) continue;
     const scene::GridIndex place = layout.place(brick);
-    std::array<glm::dvec3, 2>& box = boxes.emplace_back();
+    CostBox& box = boxes.emplace_back();
     for (std::size_t a = 0; a < 3; ++a) {
-      box[0][static_cast<int>(a)] = static_cast<double>(place[a] * layout.size);
-      box[1][static_cast<int>(a)] = static_cast<double>(std::min((place[a] + 1) * layout.size, layout.voxels[a]));
+      box.low[static_cast<int>(a)] = static_cast<double>(place[a] * layout.size);
+      box.high[static_cast<int>(a)] = static_cast<double>(std::min((place[a] + 1) * layout.size, layout.voxels[a]));
     }
   }
+  return boxes;
+}
+
+}  // namespace
+
+std::vector<std::array<glm::dvec3, 2>> Renderer::visible_bricks(
+    const scene::TransferFunction& transfer_function) const {
+  std::vector<std::array<glm::dvec3, 2>> boxes;
+  for (const CostBox& box : bricks_shown(*state_, visible_cells(state_->ranges, state_->table_of(transfer_function))))
+    boxes.push_back({box.low, box.high});
   return boxes;
 }
 
@@ -235,10 +244,12 @@ CostMap Renderer::cost_map(const scene::Camera& camera, scene::ImageSize size,
   const GridSurfaces surfaces = state.surfaces_of(transfer_function);
   for (std::size_t cell = 0; cell < surfaces.holding().size(); ++cell) visible[cell] |= surfaces.holding()[cell];
   const bool by_voxels = state.settings.method == Method::automatic || state.settings.method == Method::exact;
+  std::vector<CostBox> bricks;
+  if (method != CostMethod::visited) bricks = bricks_shown(state, visible);
   CostMap map;
   tbb::task_arena arena(scene::threads_for(state.settings.threads));
   arena.execute([&] {
-    map = volume::cost_map(camera, size, geometry, {state.ranges.cells, visible},
+    map = volume::cost_map(camera, size, geometry, {state.ranges.cells, visible}, bricks,
                            {method, resolution, by_voxels, learned, state.length_unit,
                             -std::log(static_cast<double>(state.least_transmittance(transfer_function)))},
                            region);

@@ -106,8 +106,8 @@ class Renderer {
                    scene::FrameWatch* watch = nullptr);
 
   /// What each pixel will cost, for the split of the image between processes (cost_map.hpp): from the cells of 8^3
-  /// voxels that the transfer function shows, and from what a pilot pass has taught, if given. `region`: in
-  /// map pixels.
+  /// voxels, or the bricks, that the transfer function shows, and from what a pilot pass has taught, if given.
+  /// `region`: in map pixels.
   [[nodiscard]] CostMap cost_map(const scene::Camera& camera, scene::ImageSize size,
                                  const scene::TransferFunction& transfer_function, CostMethod method, double resolution,
                                  std::optional<scene::PixelRect> region = std::nullopt,

@@ -40,11 +40,13 @@ struct Partition {
   std::uint64_t seed = 1;  ///< of `random`
 };
 
-/// How the picture of a grid is split between processes (Moloney 2008, chapter 4).
+/// How the picture of a grid is split between processes (Moloney 2008, chapter 4): `accurate`, `backface` and
+/// `splatting` are the thesis's cost maps, from bricks that show.
 enum class Balance {
-  accurate,   ///< by what each pixel will cost, as a pilot pass of every 32nd ray tells
-  backface,   ///< by the back faces of boxes of 8^3 voxels that show
-  splatting,  ///< by spheres as wide as those boxes
+  learned,    ///< by what each pixel will cost, as a pilot pass of every 32nd ray tells
+  accurate,   ///< by each ray's way through the bricks
+  backface,   ///< by the back faces of the bricks
+  splatting,  ///< by spheres as wide as the bricks
   previous,   ///< by the CPU times of the frame before, each spread evenly over its rectangle; to compare with
   even        ///< equal rectangles of the volume's bounding box
 };
@@ -109,9 +111,12 @@ struct RankSettings {
   Partition partition;
   int frames_in_flight = 2;               ///< frames a projector may be ahead of the assembled picture, at least 1
   std::uint64_t tile_seed = 1;            ///< of the map from tiles to compositors
-  Balance balance = Balance::accurate;    ///< grids
+  Balance balance = Balance::learned;     ///< grids
   double balance_resolution = 0.5;        ///< grids: of the cost map, map pixels an image pixel along each axis
   std::vector<double> balance_weights{};  ///< grids: how much of the work each rank should get; empty: equal
+  /// Grids: each rank gets as much as its speed in the frames before says (samples a second of wall clock), in place of
+  /// weights; equal parts in the first frame.
+  bool balance_measured = false;
 };
 
 struct Settings;

@@ -28,6 +28,7 @@ struct FrameStatistics {
   std::vector<PixelRect> rectangles;
   std::vector<std::uint64_t> samples;
   std::vector<double> cpu_seconds;
+  std::vector<double> split_cpu_seconds;  ///< the same, of finding the rectangles: cost map, pilot pass
 };
 
 }  // namespace tessera

@@ -42,7 +42,7 @@ ROWS = [
     row(V + "--iso 0.5 --integrator sampled", "leave one of the two out", V + "--iso 0.5 --integrator exact"),
     row(V + "--threshold 7,8", "give a wider range", V + "--threshold=-1,1"),
     row(V + "--integrator partial", "use auto, exact, sampled or preintegrated", V + "--integrator exact"),
-    row(V + "--balance best", "use accurate, backface", V + "--balance backface"),
+    row(V + "--balance best", "use learned, accurate, backface", V + "--balance backface"),
     row(V + "--balance-resolution 7", "from 0.001 to 1", V + "--balance-resolution 0.5"),
     row(V + "--show cost", "use balance", V + "--show balance"),
     row(V + "--type int7", "use int8, uint8", "info v.raw --dims 8x8x8 --type float32"),
