@@ -17,6 +17,7 @@
 #include "apps/report.hpp"
 #include "apps/run_output.hpp"
 #include "apps/setting_words.hpp"
+#include "apps/spare_images.hpp"
 #include "tessera/image_file.hpp"
 #include "tessera/session.hpp"
 #include "tessera/trace.hpp"
@@ -114,13 +115,20 @@ class Film final : public Sink {
     FrameRecord record;
     record.camera = camera_of(frame);
     const auto number = static_cast<std::int32_t>(jobs_before_ + rendered.number);
-    const auto picture = std::make_shared<const RenderedFrame>(std::move(rendered));
+    // Written and forgotten, its memory is a later picture's.
+    const std::shared_ptr<const RenderedFrame> picture(new RenderedFrame(std::move(rendered)),
+                                                       [this](RenderedFrame* written) {
+                                                         spare_images_.keep(std::move(written->image));
+                                                         delete written;
+                                                       });
     pictures_.add([this, picture, annotated = annotated_frame(frame, record.camera), number] {
       const TraceScope scope(timed() ? &compositing_ : nullptr, "write", number);
       write_annotated(picture->image, picture->deep, annotated, picture_writer_);
     });
     say(frame, *picture, std::move(record));
   }
+
+  Image spare_image(ImageSize size) override { return spare_images_.take(size); }
 
  private:
   [[nodiscard]] bool timed() const { return !options_.timing.empty(); }
@@ -405,6 +413,7 @@ class Film final : public Sink {
   std::size_t jobs_before_ = 0;    ///< pictures of the lists before
 
   PictureWriter picture_writer_{options_};
+  SpareImages spare_images_;
   PictureQueue pictures_{writes_behind()};  ///< last: what it writes refers to all above
 };
 

@@ -4,15 +4,16 @@
     bench/simulate.py TRACE.json [--gbit 1] [--latency-us 50] [--cores 2 [--shared]] [--threads 1] [--frames-in-flight 2] [--memory-mib 4096]
 
 TRACE.json: of `mpirun -n 2N tessera render ... --projectors N --compositors N --timing TRACE.json`: node i has projector i and compositor i.
-Of it come, by rank, frame and tile: CPU time of projection and of compositing, bytes of fragments, which compositor makes which tile, and the
-CPU time of sending, receiving, assembling and writing. What happens when is the model's; it does as the program does:
+Of it come, by rank, frame and tile: CPU time of projection and of compositing (packing of finished tiles included), bytes of fragments, which
+compositor makes which tile; the mean bytes of a finished tile on its way; and the CPU time of sending, receiving, assembling (unpacking included, but
+not the faults of a film's first, fresh pictures) and writing. What happens when is the model's; it does as the program does:
 
 - a projector culls and bins, announces the frame to all compositors, projects its tiles in order, and hands the fragments of each to the
   lane of its compositor; a lane sends messages of 256 KiB while the compositor has given it credit, and a thread that finds too much
   waiting stops (exchange/outbox.cpp);
 - a compositor merges a tile when all parts are there, and gives the credit of its first unfinished tile and of those before it back, an
   eighth of the window at a time (frame/compositor_role.cpp);
-- tiles go to the first compositor, which puts them together, tells all projectors that a frame has left, and writes the picture while one
+- tiles go to the first compositor, whose threads, 8 at most, put a message's tiles into the picture each; it tells all projectors that a frame has left, and writes the picture while one
   more may wait; a projector is at most F frames ahead of the last one that left;
 - a message of more than 64 KiB asks first (Open MPI's TCP); each rank looks for messages now and then, seldom while it projects
   (exchange/mpi_transport.cpp), and takes up those of one sender in their order.
@@ -28,7 +29,8 @@ import pathlib
 from simulate_engine import Clock, Cores, Links
 from simulate_work import balanced, work_of
 
-BATCH, TILES_BATCH, EAGER = 256 << 10, 512 << 10, 64 << 10  # bytes of a message; what is larger asks first
+BATCH, TILES_BATCH, EAGER = 256 << 10, 128 << 10, 64 << 10  # bytes of a message; what is larger asks first
+ASSEMBLING = 8  # threads at most that put a picture together (frame/compositor_role.cpp)
 LOOK_WORKING, LOOK_MOVING, LOOK_IDLE = 1e-3, 0.25e-3, 1e-3  # seconds until a rank looks for messages, on average: half of its nap
 LOOK_CPU = 25e-6 / 2.5e-3  # cores that a rank's looks take
 IDLE_CREDIT = 20e-3  # credit that has not come together is given back after so long
@@ -279,7 +281,7 @@ class Compositor:
         self.debts = collections.defaultdict(list)
         self.owed = collections.Counter()  # credit by projector
         self.paying = False
-        self.outgoing = collections.Counter()  # tiles' bytes by frame
+        self.outgoing = collections.Counter()  # tiles by frame
 
     def receive(self, projector, frame, parts, size):
         self.unread.append((projector, frame, parts, size))
@@ -325,8 +327,8 @@ class Compositor:
     def merged(self, frame, tile):
         self.running -= 1
         self.done.add((frame, tile))
-        self.outgoing[frame] += self.model.work.tile_bytes
-        if self.outgoing[frame] >= TILES_BATCH:
+        self.outgoing[frame] += 1
+        if self.outgoing[frame] * self.model.work.tile_bytes >= TILES_BATCH:
             self.flush(frame)
         for projector, part in self.debts.pop((frame, tile), ()):
             self.give(projector, part)
@@ -334,9 +336,9 @@ class Compositor:
         self.work()
 
     def flush(self, frame):
-        size = self.outgoing.pop(frame, 0)
-        if size:
-            self.model.assembler.send(self.rank, size, False)
+        tiles = self.outgoing.pop(frame, 0)
+        if tiles:
+            self.model.assembler.send(self.rank, frame, tiles, tiles * self.model.work.tile_bytes)
 
     def settle(self):
         """Goes on to the first unfinished tile, whose credit is due, and ends frames."""
@@ -352,7 +354,7 @@ class Compositor:
             if ("end", self.frame) not in self.heard:
                 return
             self.flush(self.frame)
-            self.model.assembler.send(self.rank, 400, True)
+            self.model.assembler.send(self.rank, self.frame, 0, 400)
             self.frame, self.first = self.frame + 1, 0
 
     def give(self, projector, size):
@@ -380,37 +382,66 @@ class Assembler:
     def __init__(self, model):
         self.model, self.rank = model, model.work.projectors
         self.unread, self.reading = collections.deque(), False
+        self.todo, self.running = collections.deque(), 0  # messages whose tiles are to be placed: of which frame, how many
+        self.placing = collections.Counter()  # such messages of a frame
         self.ends, self.left, self.pictures = 0, [], []  # when frames left, and their pictures were written
-        self.writing, self.waiting, self.blocked = False, 0, False
+        self.writing, self.waiting, self.blocked, self.complete = False, 0, False, None
 
-    def send(self, source, size, ends):
+    def send(self, source, frame, tiles, size):
+        """A message of finished tiles; of none, the end of the frame."""
         if self.model.set.assembly:
-            self.model.post(source, self.rank, size, self.receive, size, ends)
+            self.model.post(source, self.rank, size, self.receive, frame, tiles)
         else:
-            self.receive(0, ends)
+            self.receive(frame, tiles)
 
-    def receive(self, size, ends):
-        self.unread.append((size, ends))
+    def receive(self, frame, tiles):
+        self.unread.append((frame, tiles))
         if not self.reading and not self.blocked:
             self.read()
 
     def read(self):
         self.reading = bool(self.unread)
         if self.reading:
-            size, ends = self.unread.popleft()
-            message, byte = self.model.work.assemble
-            self.model.compute(self.rank, message + byte * size if self.model.set.assembly else 0.0, self.accept, ends)
+            frame, tiles = self.unread.popleft()
+            self.model.compute(self.rank, self.model.work.assemble[0] if self.model.set.assembly else 0.0, self.accept, frame, tiles)
 
-    def accept(self, ends):
-        self.ends += ends
-        if ends and self.ends % self.model.work.compositors == 0:
-            self.left.append(self.model.clock.now)
-            self.model.compute(self.rank, self.model.work.send[0] * len(self.model.projectors) if self.model.set.assembly else 0.0, self.tell)
-            self.waiting += 1
-            self.write()
-            if self.waiting > 1:  # one may wait; with more, who assembles does
-                self.blocked, self.reading = True, False
+    def accept(self, frame, tiles):
+        if tiles:
+            self.placing[frame] += 1
+            self.todo.append((frame, tiles))
+            self.work()
+        else:
+            self.ends += 1
+            if self.ends % self.model.work.compositors == 0:
+                self.complete = frame
+                self.leave()
                 return
+        self.read()
+
+    def work(self):
+        while self.todo and self.running < min(self.model.set.threads, ASSEMBLING):
+            frame, tiles = self.todo.popleft()
+            self.running += 1
+            self.model.compute(self.rank, self.model.work.assemble[1] * tiles if self.model.set.assembly else 0.0, self.placed, frame)
+
+    def placed(self, frame):
+        self.running -= 1
+        self.placing[frame] -= 1
+        self.work()
+        self.leave()
+
+    def leave(self):
+        """A frame that has ended leaves once its last tiles are in place; who reads messages waits for that."""
+        if self.complete is None or self.placing[self.complete] > 0:
+            return
+        self.complete = None
+        self.left.append(self.model.clock.now)
+        self.model.compute(self.rank, self.model.work.send[0] * len(self.model.projectors) if self.model.set.assembly else 0.0, self.tell)
+        self.waiting += 1
+        self.write()
+        if self.waiting > 1:  # one may wait; with more, who assembles does
+            self.blocked, self.reading = True, False
+            return
         self.read()
 
     def tell(self):

@@ -21,7 +21,7 @@ namespace tessera::exchange {
 static_assert(std::endian::native == std::endian::little, "messages are little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 18;        ///< the next one whenever a message changes
+inline constexpr std::uint16_t wire_version = 19;        ///< the next one whenever a message changes
 
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
@@ -32,8 +32,8 @@ enum class MessageKind : std::uint16_t {
   // Channel credit.
   credit = 4,  ///< u64 bytes that the receiver may send again
   // Channel tiles.
-  tiles = 5,   ///< u64 frame; until the end: u64 tile, f32 RGBA of its pixels row by row, f32 depths, u64 deep
-               ///< samples in the tile; unless that is 0 u32 samples of each pixel, scene::DeepImageSample each
+  tiles = 5,   ///< u64 frame; until the end: u64 tile, its pixels (packed_pixels.hpp), u64 deep samples in the tile;
+               ///< unless that is 0 u32 samples of each pixel, scene::DeepImageSample each
   region = 6,  ///< RegionHeader (frame/sort_first.cpp); unless stopped, for each row f32 RGBA, depths, error estimates
   deep_rows = 7,  ///< u64 samples of each pixel of the sender's rows, scene::DeepImageSample each
   // Channel frames.
