@@ -58,8 +58,8 @@ def work_of(trace):
             frame, tile = args.get("frame", -1), args.get("tile", -1)
             if stage == "send" and frame > 0 and rank < projectors or stage == "receive" and args.get("bytes"):
                 moved[stage].append((args["bytes"], seconds))
-            elif stage == "assemble" and (frame > 0 or not args.get("bytes")):
-                moved[stage].append((args.get("bytes", 0), seconds))
+            elif stage == "assemble" and frame != 0:
+                moved["place" if frame > 0 else stage].append(seconds)
             elif stage == "write":
                 writes.append(seconds)
             if stage == "send" and frame > 0 and rank >= projectors and args["bytes"] > END:
@@ -88,9 +88,9 @@ def work_of(trace):
     work.send, work.receive = line(moved["send"]), line(moved["receive"])
     elsewhere = sum(work.owner[t] != 0 for _, t in work.merge)
     work.tile_bytes = finished / elsewhere if elsewhere else 0.0
-    # A film's first pictures have fresh memory, whose faults are in the longest of the spans without bytes: those do not count.
-    messages = sorted(s for b, s in moved["assemble"] if b == 0)
-    work.assemble = messages[len(messages) // 2] if messages else 0.0, sum(s for b, s in moved["assemble"] if b > 0) / max(1, len(work.merge))
+    # Who reads messages also makes a film's first pictures, of fresh memory: the few long spans do not count.
+    messages = sorted(moved["assemble"])
+    work.assemble = messages[len(messages) // 2] if messages else 0.0, sum(moved["place"]) / max(1, len(work.merge))
     work.write = sum(writes[1:]) / max(1, len(writes) - 1)
     return work
 

@@ -31,7 +31,7 @@ struct PixelBand {
 /// Where the streams have come to.
 template <class Byte>
 struct Streams {
-  Byte* words;
+  Byte *words, *last;    ///< the first 16 words, and the last that may be read
   std::size_t bits = 0;  ///< in each
   [[nodiscard]] Byte* word() const { return words + bits / 32 * word_bytes; }
   [[nodiscard]] int shift() const { return static_cast<int>(bits % 32); }
@@ -125,35 +125,39 @@ HWY_INLINE unsigned differ(const std::uint32_t* HWY_RESTRICT next, std::uint32_t
   return 32u - static_cast<unsigned>(std::countl_zero(HN::GetLane(HN::MaxOfLanes(du, all))));
 }
 
-HWY_INLINE void put(const std::uint32_t* differences, unsigned width, Streams<std::byte>& to) {
+// Widths are as good as random: neither of these branches on one.
+
+HWY_INLINE void put(const std::uint32_t* HWY_RESTRICT differences, unsigned width, Streams<std::byte>& to,
+                    std::uint32_t* HWY_RESTRICT unfinished) {
   const DU du;
   const std::size_t lanes = HN::Lanes(du);
   const int shift = to.shift();
   std::byte* word = to.word();
-  const bool crosses = static_cast<unsigned>(shift) + width > 32;
+  const U finishes = HN::Set(du, static_cast<unsigned>(shift) + width >= 32 ? ~std::uint32_t{0} : 0);
   for (std::size_t c = 0; c < columns; c += lanes, word += lanes * sizeof(std::uint32_t)) {
     const U difference = HN::Load(du, differences + c);
-    const U shifted = HN::ShiftLeftSame(difference, shift);
-    store_words(shift == 0 ? shifted : HN::Or(load_words(word), shifted), word);
-    if (crosses) store_words(HN::ShiftRightSame(difference, 32 - shift), word + word_bytes);
+    const U all = HN::Or(HN::Load(du, unfinished + c), HN::ShiftLeftSame(difference, shift));
+    store_words(all, word);
+    const U rest = HN::ShiftRightSame(HN::ShiftRight<1>(difference), 31 - shift);
+    HN::Store(HN::Or(HN::And(finishes, rest), HN::AndNot(finishes, all)), du, unfinished + c);
   }
   to.bits += width;
 }
 
-/// Takes differences of a width above 0 and makes of them, and of the rows above, the next row.
+/// Takes differences and makes of them, and of the rows above, the next row.
 HWY_INLINE void get(unsigned width, Streams<const std::byte>& from, std::uint32_t* HWY_RESTRICT value,
                     std::uint32_t* HWY_RESTRICT step) {
   const DU du;
   const DI di;
   const std::size_t lanes = HN::Lanes(du);
   const int shift = from.shift();
-  const std::byte* word = from.word();
-  const bool crosses = static_cast<unsigned>(shift) + width > 32;
-  const U mask = HN::Set(du, ~std::uint32_t{0} >> (32 - width));
-  for (std::size_t c = 0; c < columns; c += lanes, word += lanes * sizeof(std::uint32_t)) {
-    U difference = HN::ShiftRightSame(load_words(word), shift);
-    if (crosses) difference = HN::Or(difference, HN::ShiftLeftSame(load_words(word + word_bytes), 32 - shift));
-    difference = HN::And(difference, mask);
+  const std::byte *word = from.word(), *next = std::min(word + word_bytes, from.last);
+  word = std::min(word, from.last);
+  const U mask = HN::Set(du, static_cast<std::uint32_t>((std::uint64_t{1} << width) - 1));
+  for (std::size_t c = 0; c < columns; c += lanes) {
+    const U low = HN::ShiftRightSame(load_words(word + c * sizeof(std::uint32_t)), shift);
+    const U high = HN::ShiftLeftSame(HN::ShiftLeft<1>(load_words(next + c * sizeof(std::uint32_t))), 31 - shift);
+    const U difference = HN::And(HN::Or(low, high), mask);
     const U sign = HN::BitCast(du, HN::Neg(HN::BitCast(di, HN::And(difference, HN::Set(du, 1)))));
     const U now = HN::Add(HN::Load(du, step + c), HN::Xor(HN::ShiftRight<1>(difference), sign));
     HN::Store(now, du, step + c);
@@ -162,15 +166,9 @@ HWY_INLINE void get(unsigned width, Streams<const std::byte>& from, std::uint32_
   from.bits += width;
 }
 
-/// The same for differences that are all 0.
-HWY_INLINE void go_on(std::uint32_t* HWY_RESTRICT value, const std::uint32_t* HWY_RESTRICT step) {
-  const DU du;
-  const std::size_t lanes = HN::Lanes(du);
-  for (std::size_t c = 0; c < columns; c += lanes)
-    HN::Store(HN::Add(HN::Load(du, value + c), HN::Load(du, step + c)), du, value + c);
-}
-
-void pack_band(const PixelBand<const float>& band, std::uint8_t* widths, Streams<std::byte>& to) {
+/// `unfinished`: of each stream the bits of the word that is not full.
+void pack_band(const PixelBand<const float>& band, std::uint8_t* widths, Streams<std::byte>& to,
+               std::uint32_t* unfinished) {
   Rows next, above{}, step{}, differences;
   float rgba[color_channels * columns] = {}, depth[columns] = {};
   for (std::size_t y = 0; y < band.height; ++y) {
@@ -184,7 +182,7 @@ void pack_band(const PixelBand<const float>& band, std::uint8_t* widths, Streams
     for (std::size_t k = 0; k < channels; ++k) {
       const unsigned width = differ(next.of[k], above.of[k], step.of[k], differences.of[k]);
       *widths++ = static_cast<std::uint8_t>(width);
-      if (width > 0) put(differences.of[k], width, to);
+      put(differences.of[k], width, to, unfinished);
     }
   }
 }
@@ -193,10 +191,7 @@ void unpack_band(const std::uint8_t* widths, Streams<const std::byte>& from, con
   Rows value{}, step{};
   float rgba[color_channels * columns], depth[columns];
   for (std::size_t y = 0; y < band.height; ++y) {
-    for (std::size_t k = 0; k < channels; ++k) {
-      const unsigned width = *widths++;
-      width > 0 ? get(width, from, value.of[k], step.of[k]) : go_on(value.of[k], step.of[k]);
-    }
+    for (std::size_t k = 0; k < channels; ++k) get(*widths++, from, value.of[k], step.of[k]);
     float *row_rgba = band.rgba + color_channels * band.row * y, *row_depth = band.depth + band.row * y;
     if (band.width == columns) {
       join_channels(value, row_rgba, row_depth);
@@ -253,11 +248,14 @@ void append_raw(Bytes& bytes, const scene::Image& image, const PixelRect& rect) 
 void append_pixels(Bytes& bytes, const scene::Image& image, const PixelRect& rect, bool pack) {
   if (rect.empty() || !pack) return append_raw(bytes, image, rect);
   const std::size_t begin = bytes.size(), count = bands(rect) * widths_of_band(rect);
-  bytes.resize(begin + sizeof(std::uint32_t) + count + count * word_bytes);
+  bytes.resize(begin + sizeof(std::uint32_t) + count + (count + 1) * word_bytes);
   auto* widths = reinterpret_cast<std::uint8_t*>(bytes.data() + begin + sizeof(std::uint32_t));
-  Streams<std::byte> to{bytes.data() + begin + sizeof(std::uint32_t) + count};
+  std::byte* words = bytes.data() + begin + sizeof(std::uint32_t) + count;
+  Streams<std::byte> to{words, words + count * word_bytes};
+  HWY_ALIGN_MAX std::uint32_t unfinished[columns] = {};
   for (std::size_t b = 0; b < bands(rect); ++b, widths += widths_of_band(rect))
-    HWY_DYNAMIC_DISPATCH(pack_band)(band_of<const float>(image, rect, b), widths, to);
+    HWY_DYNAMIC_DISPATCH(pack_band)(band_of<const float>(image, rect, b), widths, to, unfinished);
+  std::memcpy(to.word(), unfinished, word_bytes);
   const std::size_t packed = count + (to.bits + 31) / 32 * word_bytes;
   if (packed >= raw_bytes(rect)) {
     bytes.resize(begin);
@@ -291,7 +289,9 @@ void take_pixels(RecordReader& reader, scene::Image& image, const PixelRect& rec
   }
   if (widest > 32) reader.refuse("packs a pixel's value into more than 32 bits");
   if (packed.size() != count + (bits + 31) / 32 * word_bytes) reader.refuse("has other pixels than its widths say");
-  Streams<const std::byte> from{packed.data() + count};
+  static constexpr std::byte nothing[word_bytes] = {};  // where all differences are 0
+  Streams<const std::byte> from{nothing, nothing};
+  if (bits > 0) from = {packed.data() + count, packed.data() + packed.size() - word_bytes};
   for (std::size_t b = 0; b < bands(rect); ++b, widths += widths_of_band(rect))
     HWY_DYNAMIC_DISPATCH(unpack_band)(widths, from, band_of<float>(image, rect, b));
 }
