@@ -32,9 +32,11 @@ enum class MessageKind : std::uint16_t {
   // Channel credit.
   credit = 4,  ///< u64 bytes that the receiver may send again
   // Channel tiles.
-  tiles = 5,   ///< u64 frame; until the end: u64 tile, its pixels (packed_pixels.hpp), u64 deep samples in the tile;
-               ///< unless that is 0 u32 samples of each pixel, scene::DeepImageSample each
-  region = 6,  ///< RegionHeader (frame/sort_first.cpp); unless stopped, for each row f32 RGBA, depths, error estimates
+  tiles = 5,  ///< u64 frame; until the end: u64 tile, its pixels (packed_pixels.hpp), u64 deep samples in the tile;
+              ///< unless that is 0 u32 samples of each pixel, scene::DeepImageSample each
+  region =
+      6,  ///< RegionHeader (frame/sort_first.cpp); unless stopped, pixels (packed_pixels.hpp) of 64 rows at a time,
+          ///< and if they are kept f32 error estimates row by row
   deep_rows = 7,  ///< u64 samples of each pixel of the sender's rows, scene::DeepImageSample each
   // Channel frames.
   frame_left = 8,  ///< nothing: one frame less is on its way
