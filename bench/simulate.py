@@ -26,11 +26,11 @@ import argparse
 import collections
 import pathlib
 
+from simulate_assembly import Assembler
 from simulate_engine import Clock, Cores, Links
 from simulate_work import balanced, work_of
 
 BATCH, TILES_BATCH, EAGER = 256 << 10, 128 << 10, 64 << 10  # bytes of a message; what is larger asks first
-ASSEMBLING = 8  # threads at most that put a picture together (frame/compositor_role.cpp)
 LOOK_WORKING, LOOK_MOVING, LOOK_IDLE = 1e-3, 0.25e-3, 1e-3  # seconds until a rank looks for messages, on average: half of its nap
 LOOK_CPU = 25e-6 / 2.5e-3  # cores that a rank's looks take
 IDLE_CREDIT = 20e-3  # credit that has not come together is given back after so long
@@ -137,21 +137,29 @@ class Model:
             done(*args)
 
     def control(self, kind, frame, projector, sent):
-        """`begin` or `end` from a projector to all compositors; they act when they have those of all projectors."""
+        """`begin` from a projector to all compositors, `end` to one (exchange/wire.hpp); they act when they have all that come to them."""
+        compositors, awaited = self.compositors, self.work.projectors
+        if kind == "end":
+            compositors = [self.compositors[projector % len(self.compositors)]]
+            awaited = self.share(compositors[0].number)
         def come():
-            times = self.controls[kind, frame]
+            times = self.controls[kind, frame, len(compositors), compositors[0].number]
             times.append(self.clock.now)
-            if len(times) < self.work.projectors:
+            if len(times) < awaited:
                 return
             read = 0.0
             for time in times:  # one after the other
                 read = max(read, time) + (self.work.receive[0] if self.set.compositing else 0.0)
-            for compositor in self.compositors:
+            for compositor in compositors:
                 self.clock.at(max(read, self.clock.now), compositor.hear, kind, frame)
         def gone():
             self.clock.after(self.set.latency + (LOOK_MOVING if self.set.look else 0.0), come)
             sent()
-        self.compute(projector, self.work.send[0] * self.work.compositors, gone)
+        self.compute(projector, self.work.send[0] * len(compositors), gone)
+
+    def share(self, compositor):
+        """Projectors whose ends come to the compositor."""
+        return len(range(compositor, self.work.projectors, self.work.compositors))
 
 
 class Lane:
@@ -351,7 +359,7 @@ class Compositor:
                     for projector, part in self.debts.pop((self.frame, tiles[self.first]), ()):
                         self.give(projector, part)
                 return
-            if ("end", self.frame) not in self.heard:
+            if ("end", self.frame) not in self.heard and self.model.share(self.number):
                 return
             self.flush(self.frame)
             self.model.assembler.send(self.rank, self.frame, 0, 400)
@@ -374,93 +382,6 @@ class Compositor:
         size = self.owed.pop(projector, 0)
         if size:
             self.model.clock.after(self.model.set.latency + self.model.look(projector.rank), projector.credit, self.number, size)
-
-
-class Assembler:
-    """The first compositor's: puts pictures together and writes them."""
-
-    def __init__(self, model):
-        self.model, self.rank = model, model.work.projectors
-        self.unread, self.reading = collections.deque(), False
-        self.todo, self.running = collections.deque(), 0  # messages whose tiles are to be placed: of which frame, how many
-        self.placing = collections.Counter()  # such messages of a frame
-        self.ends, self.left, self.pictures = 0, [], []  # when frames left, and their pictures were written
-        self.writing, self.waiting, self.blocked, self.complete = False, 0, False, None
-
-    def send(self, source, frame, tiles, size):
-        """A message of finished tiles; of none, the end of the frame."""
-        if self.model.set.assembly:
-            self.model.post(source, self.rank, size, self.receive, frame, tiles)
-        else:
-            self.receive(frame, tiles)
-
-    def receive(self, frame, tiles):
-        self.unread.append((frame, tiles))
-        if not self.reading and not self.blocked:
-            self.read()
-
-    def read(self):
-        self.reading = bool(self.unread)
-        if self.reading:
-            frame, tiles = self.unread.popleft()
-            self.model.compute(self.rank, self.model.work.assemble[0] if self.model.set.assembly else 0.0, self.accept, frame, tiles)
-
-    def accept(self, frame, tiles):
-        if tiles:
-            self.placing[frame] += 1
-            self.todo.append((frame, tiles))
-            self.work()
-        else:
-            self.ends += 1
-            if self.ends % self.model.work.compositors == 0:
-                self.complete = frame
-                self.leave()
-                return
-        self.read()
-
-    def work(self):
-        while self.todo and self.running < min(self.model.set.threads, ASSEMBLING):
-            frame, tiles = self.todo.popleft()
-            self.running += 1
-            self.model.compute(self.rank, self.model.work.assemble[1] * tiles if self.model.set.assembly else 0.0, self.placed, frame)
-
-    def placed(self, frame):
-        self.running -= 1
-        self.placing[frame] -= 1
-        self.work()
-        self.leave()
-
-    def leave(self):
-        """A frame that has ended leaves once its last tiles are in place; who reads messages waits for that."""
-        if self.complete is None or self.placing[self.complete] > 0:
-            return
-        self.complete = None
-        self.left.append(self.model.clock.now)
-        self.model.compute(self.rank, self.model.work.send[0] * len(self.model.projectors) if self.model.set.assembly else 0.0, self.tell)
-        self.waiting += 1
-        self.write()
-        if self.waiting > 1:  # one may wait; with more, who assembles does
-            self.blocked, self.reading = True, False
-            return
-        self.read()
-
-    def tell(self):
-        """The projectors, that a frame has left."""
-        for projector in self.model.projectors:
-            self.model.clock.after(self.model.set.latency + self.model.look(projector.rank), projector.frame_left)
-
-    def write(self):
-        if self.waiting and not self.writing:
-            self.writing, self.waiting = True, self.waiting - 1
-            self.model.compute(self.rank, self.model.work.write if self.model.set.assembly else 0.0, self.written)
-
-    def written(self):
-        self.writing = False
-        self.pictures.append(self.model.clock.now)
-        self.write()
-        if self.blocked and self.waiting <= 1:
-            self.blocked = False
-            self.read()
 
 
 def losses(work, settings):

@@ -28,7 +28,8 @@ enum class MessageKind : std::uint16_t {
   // Channel fragments; the structures are in wire.hpp.
   begin = 1,  ///< u64 frame, FrameBegin, one bit a tile of the receiver in its order, lowest bit first: 1: parts come
   parts = 2,  ///< u64 frame; until the end: PartHeader, `bytes` bytes of records
-  end = 3,    ///< u64 frame, FrameEnd: the sender has no more of this frame. Also on channel tiles
+  end = 3,    ///< u64 frame, FrameEnd: the sender has no more of this frame, and this is what it took. Also on channel
+              ///< tiles
   // Channel credit.
   credit = 4,  ///< u64 bytes that the receiver may send again
   // Channel tiles.
