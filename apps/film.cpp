@@ -110,7 +110,8 @@ class Film final : public Sink {
     if (!writes_) return;
     const std::size_t at = jobs_[rendered.number];
     frame_ms_.push_back(rendered.statistics.milliseconds);
-    if (rendered.number + 1 < jobs_.size() && jobs_[rendered.number + 1] == at) return;
+    if (rendered.number + 1 < jobs_.size() && jobs_[rendered.number + 1] == at)
+      return spare_images_.keep(std::move(rendered.image));
     const FilmFrame& frame = frames_[at];
     FrameRecord record;
     record.camera = camera_of(frame);

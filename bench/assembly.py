@@ -2,11 +2,14 @@
 """What it takes to put a picture together on one rank: bytes that come, and CPU time of the stage `assemble`.
 
     bench/assembly.py --tessera PROGRAM [--tessera BEFORE ...] --work FOLDER [--results docs/SCALING.md] [--nodes 8] [--frames 20] [--repeat 3]
+                      [--packing PROGRAM]
 
 Each program renders the same films of 1024 x 1024 pixels, in turn with the others, with a projector and a compositor process of one thread
 a node: a cube, which fills half of the picture, the wake of `tessera generate demo`, with much empty about it, and a cube of cell data,
 whose pixels are noisy. Bytes are those of all messages of tiles that other ranks send to the first compositor; CPU time is that of its
-stage `assemble`. Both are of the frames behind the first four, whose memory is fresh. Medians of the runs. Only Python's standard library.
+stage `assemble`. Both are of the frames behind the first four, whose memory is fresh. Medians of the runs.
+
+With --packing, the build's bench/pixel_packing, a second table says what one picture of each takes to pack and unpack. Only Python's standard library.
 """
 import argparse
 import json
@@ -14,6 +17,7 @@ import os
 import pathlib
 import re
 import statistics
+import subprocess
 
 import results_file
 from scaling import exclusive
@@ -42,6 +46,7 @@ def main():
     parser.add_argument("--tessera", type=pathlib.Path, action="append", required=True)
     parser.add_argument("--work", type=pathlib.Path, required=True)
     parser.add_argument("--results", type=pathlib.Path)
+    parser.add_argument("--packing", type=pathlib.Path)
     parser.add_argument("--nodes", type=int, default=8)
     parser.add_argument("--frames", type=int, default=20)
     parser.add_argument("--repeat", type=int, default=3)
@@ -66,6 +71,13 @@ def main():
             lines.append(f"| {name} | {which} | {megabytes:.2f} | {1e6 * megabytes / SIZE ** 2:.2f} | {statistics.median(ms for ms, _ in found):.1f} | "
                          f"{', '.join(f'{ms:.1f}' for ms, _ in found)} |")
             print(lines[-1], flush=True)
+    if args.packing:
+        pictures = [args.work / f"{name.replace(' ', '-')}.exr" for name in MESHES]
+        for picture, (_, file, *_) in zip(pictures, MESHES.values()):
+            call(programs[0], "render", args.work / file, "--size", f"{SIZE}x{SIZE}", "-o", picture, "--quiet")
+        table = subprocess.run([args.packing, *pictures], check=True, capture_output=True, text=True).stdout
+        print(table)
+        lines += ["", *table.splitlines()]
     if args.results:
         made = re.sub(r"\.$", "", results_file.made(load))
         results_file.put(args.results, "assembly.py", f"{made}. `{results_file.command('assembly.py')}`.", lines)

@@ -171,18 +171,17 @@ void ImageAssembly::wait_for(const Frame& frame) {
 
 void ImageAssembly::fill_what_lacks(Frame& frame, std::uint32_t number) {
   constexpr std::size_t tiles_at_once = 64;
-  std::vector<scene::PixelRect> lacking;
   for (std::size_t tile = 0; tile < frame.has_come.size(); ++tile)
-    if (!frame.has_come[tile]) lacking.push_back(frame.grid.rect(tile));
-  for (std::size_t first = 0; first < lacking.size(); first += tiles_at_once)
-    start(frame, [this, &frame, &lacking, first, number] {
+    if (!frame.has_come[tile]) frame.lacking.push_back(frame.grid.rect(tile));
+  for (std::size_t first = 0; first < frame.lacking.size(); first += tiles_at_once)
+    start(frame, [this, &frame, first, number] {
       const scene::TraceScope timing(settings_.trace, "assemble", static_cast<std::int32_t>(number));
-      for (std::size_t k = first; k < std::min(first + tiles_at_once, lacking.size()); ++k)
-        clear(frame.image, lacking[k]);
+      const std::size_t end = std::min(first + tiles_at_once, frame.lacking.size());
+      for (std::size_t k = first; k < end; ++k) clear(frame.image, frame.lacking[k]);
     });
   wait_for(frame);
   if (!settings_.finished || frame.sums.stopped > 0) return;
-  for (const scene::PixelRect& rect : lacking) settings_.finished(number, rect, frame.image);
+  for (const scene::PixelRect& rect : frame.lacking) settings_.finished(number, rect, frame.image);
 }
 
 }  // namespace tessera::compositor

@@ -87,6 +87,7 @@ class ImageAssembly {
     int ended = 0, working = 0;  ///< working: guarded by mutex_
     std::unique_ptr<DeepCollector> deep;
     std::vector<std::atomic<bool>> has_come;  ///< by tile
+    std::vector<scene::PixelRect> lacking;    ///< at the end: tiles that have not
   };
 
   Frame& frame_of(std::uint32_t number);
