@@ -17,6 +17,7 @@
 #include "apps/report.hpp"
 #include "apps/run_output.hpp"
 #include "apps/setting_words.hpp"
+#include "apps/spare_images.hpp"
 #include "tessera/image_file.hpp"
 #include "tessera/session.hpp"
 #include "tessera/statistics.hpp"
@@ -110,18 +111,26 @@ class Film final : public Sink {
     if (!writes_) return;
     const std::size_t at = jobs_[rendered.number];
     frame_ms_.push_back(rendered.statistics.milliseconds);
-    if (rendered.number + 1 < jobs_.size() && jobs_[rendered.number + 1] == at) return;
+    if (rendered.number + 1 < jobs_.size() && jobs_[rendered.number + 1] == at)
+      return spare_images_.keep(std::move(rendered.image));
     const FilmFrame& frame = frames_[at];
     FrameRecord record;
     record.camera = camera_of(frame);
     const auto number = static_cast<std::int32_t>(jobs_before_ + rendered.number);
-    const auto picture = std::make_shared<const RenderedFrame>(std::move(rendered));
+    // Written and forgotten, its memory is a later picture's.
+    const std::shared_ptr<const RenderedFrame> picture(new RenderedFrame(std::move(rendered)),
+                                                       [this](RenderedFrame* written) {
+                                                         spare_images_.keep(std::move(written->image));
+                                                         delete written;
+                                                       });
     pictures_.add([this, picture, annotated = annotated_frame(frame, record.camera), number] {
       const TraceScope scope(timed() ? &compositing_ : nullptr, "write", number);
       write_annotated(picture->image, picture->deep, annotated, picture_writer_);
     });
     say(frame, *picture, std::move(record));
   }
+
+  Image spare_image(ImageSize size) override { return spare_images_.take(size); }
 
  private:
   [[nodiscard]] bool timed() const { return !options_.timing.empty(); }
@@ -411,6 +420,7 @@ class Film final : public Sink {
   std::size_t jobs_before_ = 0;    ///< pictures of the lists before
 
   PictureWriter picture_writer_{options_};
+  SpareImages spare_images_;
   PictureQueue pictures_{writers()};  ///< last: what it writes refers to all above
 };
 

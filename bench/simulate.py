@@ -4,15 +4,16 @@
     bench/simulate.py TRACE.json [--gbit 1] [--latency-us 50] [--cores 2 [--shared]] [--threads 1] [--frames-in-flight 2] [--memory-mib 4096]
 
 TRACE.json: of `mpirun -n 2N tessera render ... --projectors N --compositors N --timing TRACE.json`: node i has projector i and compositor i.
-Of it come, by rank, frame and tile: CPU time of projection and of compositing, bytes of fragments, which compositor makes which tile, and the
-CPU time of sending, receiving, assembling and writing. What happens when is the model's; it does as the program does:
+Of it come, by rank, frame and tile: CPU time of projection and of compositing (packing of finished tiles included), bytes of fragments, which
+compositor makes which tile; the mean bytes of a finished tile on its way; and the CPU time of sending, receiving, assembling (unpacking included, but
+not the faults of a film's first, fresh pictures) and writing. What happens when is the model's; it does as the program does:
 
 - a projector culls and bins, announces the frame to all compositors, projects its tiles in order, and hands the fragments of each to the
   lane of its compositor; a lane sends messages of 256 KiB while the compositor has given it credit, and a thread that finds too much
   waiting stops (exchange/outbox.cpp);
 - a compositor merges a tile when all parts are there, and gives the credit of its first unfinished tile and of those before it back, an
   eighth of the window at a time (frame/compositor_role.cpp);
-- tiles go to the first compositor, which puts them together, tells all projectors that a frame has left, and writes the picture while one
+- tiles go to the first compositor, whose threads, 8 at most, put a message's tiles into the picture each; it tells all projectors that a frame has left, and writes the picture while one
   more may wait; a projector is at most F frames ahead of the last one that left;
 - a message of more than 64 KiB asks first (Open MPI's TCP); each rank looks for messages now and then, seldom while it projects
   (exchange/mpi_transport.cpp), and takes up those of one sender in their order.
@@ -25,10 +26,11 @@ import argparse
 import collections
 import pathlib
 
+from simulate_assembly import Assembler
 from simulate_engine import Clock, Cores, Links
 from simulate_work import balanced, work_of
 
-BATCH, TILES_BATCH, EAGER = 256 << 10, 512 << 10, 64 << 10  # bytes of a message; what is larger asks first
+BATCH, TILES_BATCH, EAGER = 256 << 10, 128 << 10, 64 << 10  # bytes of a message; what is larger asks first
 LOOK_WORKING, LOOK_MOVING, LOOK_IDLE = 1e-3, 0.25e-3, 1e-3  # seconds until a rank looks for messages, on average: half of its nap
 LOOK_CPU = 25e-6 / 2.5e-3  # cores that a rank's looks take
 IDLE_CREDIT = 20e-3  # credit that has not come together is given back after so long
@@ -135,21 +137,29 @@ class Model:
             done(*args)
 
     def control(self, kind, frame, projector, sent):
-        """`begin` or `end` from a projector to all compositors; they act when they have those of all projectors."""
+        """`begin` from a projector to all compositors, `end` to one (exchange/wire.hpp); they act when they have all that come to them."""
+        compositors, awaited = self.compositors, self.work.projectors
+        if kind == "end":
+            compositors = [self.compositors[projector % len(self.compositors)]]
+            awaited = self.share(compositors[0].number)
         def come():
-            times = self.controls[kind, frame]
+            times = self.controls[kind, frame, len(compositors), compositors[0].number]
             times.append(self.clock.now)
-            if len(times) < self.work.projectors:
+            if len(times) < awaited:
                 return
             read = 0.0
             for time in times:  # one after the other
                 read = max(read, time) + (self.work.receive[0] if self.set.compositing else 0.0)
-            for compositor in self.compositors:
+            for compositor in compositors:
                 self.clock.at(max(read, self.clock.now), compositor.hear, kind, frame)
         def gone():
             self.clock.after(self.set.latency + (LOOK_MOVING if self.set.look else 0.0), come)
             sent()
-        self.compute(projector, self.work.send[0] * self.work.compositors, gone)
+        self.compute(projector, self.work.send[0] * len(compositors), gone)
+
+    def share(self, compositor):
+        """Projectors whose ends come to the compositor."""
+        return len(range(compositor, self.work.projectors, self.work.compositors))
 
 
 class Lane:
@@ -279,7 +289,7 @@ class Compositor:
         self.debts = collections.defaultdict(list)
         self.owed = collections.Counter()  # credit by projector
         self.paying = False
-        self.outgoing = collections.Counter()  # tiles' bytes by frame
+        self.outgoing = collections.Counter()  # tiles by frame
 
     def receive(self, projector, frame, parts, size):
         self.unread.append((projector, frame, parts, size))
@@ -325,8 +335,8 @@ class Compositor:
     def merged(self, frame, tile):
         self.running -= 1
         self.done.add((frame, tile))
-        self.outgoing[frame] += self.model.work.tile_bytes
-        if self.outgoing[frame] >= TILES_BATCH:
+        self.outgoing[frame] += 1
+        if self.outgoing[frame] * self.model.work.tile_bytes >= TILES_BATCH:
             self.flush(frame)
         for projector, part in self.debts.pop((frame, tile), ()):
             self.give(projector, part)
@@ -334,9 +344,9 @@ class Compositor:
         self.work()
 
     def flush(self, frame):
-        size = self.outgoing.pop(frame, 0)
-        if size:
-            self.model.assembler.send(self.rank, size, False)
+        tiles = self.outgoing.pop(frame, 0)
+        if tiles:
+            self.model.assembler.send(self.rank, frame, tiles, tiles * self.model.work.tile_bytes)
 
     def settle(self):
         """Goes on to the first unfinished tile, whose credit is due, and ends frames."""
@@ -349,10 +359,10 @@ class Compositor:
                     for projector, part in self.debts.pop((self.frame, tiles[self.first]), ()):
                         self.give(projector, part)
                 return
-            if ("end", self.frame) not in self.heard:
+            if ("end", self.frame) not in self.heard and self.model.share(self.number):
                 return
             self.flush(self.frame)
-            self.model.assembler.send(self.rank, 400, True)
+            self.model.assembler.send(self.rank, self.frame, 0, 400)
             self.frame, self.first = self.frame + 1, 0
 
     def give(self, projector, size):
@@ -372,64 +382,6 @@ class Compositor:
         size = self.owed.pop(projector, 0)
         if size:
             self.model.clock.after(self.model.set.latency + self.model.look(projector.rank), projector.credit, self.number, size)
-
-
-class Assembler:
-    """The first compositor's: puts pictures together and writes them."""
-
-    def __init__(self, model):
-        self.model, self.rank = model, model.work.projectors
-        self.unread, self.reading = collections.deque(), False
-        self.ends, self.left, self.pictures = 0, [], []  # when frames left, and their pictures were written
-        self.writing, self.waiting, self.blocked = False, 0, False
-
-    def send(self, source, size, ends):
-        if self.model.set.assembly:
-            self.model.post(source, self.rank, size, self.receive, size, ends)
-        else:
-            self.receive(0, ends)
-
-    def receive(self, size, ends):
-        self.unread.append((size, ends))
-        if not self.reading and not self.blocked:
-            self.read()
-
-    def read(self):
-        self.reading = bool(self.unread)
-        if self.reading:
-            size, ends = self.unread.popleft()
-            message, byte = self.model.work.assemble
-            self.model.compute(self.rank, message + byte * size if self.model.set.assembly else 0.0, self.accept, ends)
-
-    def accept(self, ends):
-        self.ends += ends
-        if ends and self.ends % self.model.work.compositors == 0:
-            self.left.append(self.model.clock.now)
-            self.model.compute(self.rank, self.model.work.send[0] * len(self.model.projectors) if self.model.set.assembly else 0.0, self.tell)
-            self.waiting += 1
-            self.write()
-            if self.waiting > 1:  # one may wait; with more, who assembles does
-                self.blocked, self.reading = True, False
-                return
-        self.read()
-
-    def tell(self):
-        """The projectors, that a frame has left."""
-        for projector in self.model.projectors:
-            self.model.clock.after(self.model.set.latency + self.model.look(projector.rank), projector.frame_left)
-
-    def write(self):
-        if self.waiting and not self.writing:
-            self.writing, self.waiting = True, self.waiting - 1
-            self.model.compute(self.rank, self.model.work.write if self.model.set.assembly else 0.0, self.written)
-
-    def written(self):
-        self.writing = False
-        self.pictures.append(self.model.clock.now)
-        self.write()
-        if self.blocked and self.waiting <= 1:
-            self.blocked = False
-            self.read()
 
 
 def losses(work, settings):

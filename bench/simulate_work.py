@@ -5,7 +5,7 @@ import pathlib
 
 from scaling import exclusive
 
-PIXEL = 20  # bytes of a finished one on its way
+END = 1024  # bytes: more than the message that ends a frame
 
 
 class Work:
@@ -18,8 +18,9 @@ class Work:
         self.tiles = {}  # of (frame, projector): [tile, seconds, bytes] in order
         self.merge = {}  # of (frame, tile)
         self.owner = {}  # compositor of a tile
-        self.tile_bytes = 32 * 32 * PIXEL + 24
-        self.send, self.receive, self.assemble = (0.0, 0.0), (0.0, 0.0), (0.0, 0.0)  # seconds a message and a byte
+        self.tile_bytes = 0.0  # of a finished tile on its way to another rank
+        self.send, self.receive = (0.0, 0.0), (0.0, 0.0)  # seconds a message and a byte
+        self.assemble = 0.0, 0.0  # seconds a message and a tile
         self.write = 0.0  # of a picture
 
     def contributors(self):
@@ -50,16 +51,19 @@ def work_of(trace):
             threads[event["pid"], event["tid"]].append(event)
     setup, tiles = collections.Counter(), collections.defaultdict(dict)
     merge, moved, writes, frames = collections.Counter(), collections.defaultdict(list), [], set()
+    finished = 0  # bytes of tiles that went to the first compositor
     for (rank, _), spans in threads.items():
         for span, seconds in exclusive(spans):
             args, stage, seconds = span["args"], span["name"], max(seconds, 0.0)
             frame, tile = args.get("frame", -1), args.get("tile", -1)
             if stage == "send" and frame > 0 and rank < projectors or stage == "receive" and args.get("bytes"):
                 moved[stage].append((args["bytes"], seconds))
-            elif stage == "assemble":
-                moved[stage].append((0, seconds))
+            elif stage == "assemble" and frame != 0:
+                moved["place" if frame > 0 else stage].append(seconds)
             elif stage == "write":
                 writes.append(seconds)
+            if stage == "send" and frame > 0 and rank >= projectors and args["bytes"] > END:
+                finished += args["bytes"]
             if frame < 1 or stage in ("wait", "send", "receive", "assemble", "write"):
                 continue
             frames.add(frame)
@@ -82,8 +86,11 @@ def work_of(trace):
     for f, t in set((f, t) for (f, _), of in work.tiles.items() for t, _, _ in of):
         work.owner.setdefault(t, t % compositors)  # of a tile that got nothing
     work.send, work.receive = line(moved["send"]), line(moved["receive"])
-    count = len(work.merge) + 1
-    work.assemble = 0.0, sum(s for _, s in moved["assemble"]) / (run["frames"] * count / max(1, work.frames) * work.tile_bytes)
+    elsewhere = sum(work.owner[t] != 0 for _, t in work.merge)
+    work.tile_bytes = finished / elsewhere if elsewhere else 0.0
+    # Who reads messages also makes a film's first pictures, of fresh memory: the few long spans do not count.
+    messages = sorted(moved["assemble"])
+    work.assemble = messages[len(messages) // 2] if messages else 0.0, sum(moved["place"]) / max(1, len(work.merge))
     work.write = sum(writes[1:]) / max(1, len(writes) - 1)
     return work
 

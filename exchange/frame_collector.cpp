@@ -19,7 +19,10 @@ FrameCollector::FrameCollector(int projectors, const TileMap& map, int composito
     : projectors_(projectors),
       numbers_(&map.tiles(compositor)),
       tiles_(numbers_->size()),
-      debts_(static_cast<std::size_t>(projectors)) {}
+      debts_(static_cast<std::size_t>(projectors)) {
+  for (int projector = 0; projector < projectors; ++projector)
+    ends_awaited_ += end_goes_to(projector, map.compositors()) == compositor ? 1 : 0;
+}
 
 FrameCollector::Tile& FrameCollector::tile(std::uint32_t number) {
   return const_cast<Tile&>(std::as_const(*this).tile(number));

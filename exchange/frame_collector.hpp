@@ -21,7 +21,8 @@ class FrameCollector {
   double add(int projector, TilePart part);
 
   [[nodiscard]] bool has_all_begins() const { return begins_ == projectors_; }
-  [[nodiscard]] bool has_all_ends() const { return ends_ == projectors_; }
+  /// Of the projectors whose ends come here.
+  [[nodiscard]] bool has_all_ends() const { return ends_ == ends_awaited_; }
   [[nodiscard]] double longest_ray() const { return longest_ray_; }
   [[nodiscard]] float longest_edge() const { return longest_edge_; }
   /// Of the frame's lattice segments; units of 0 without.
@@ -40,7 +41,7 @@ class FrameCollector {
 
   /// Marks a tile as composited.
   void finish(std::uint32_t tile);
-  [[nodiscard]] bool finished() const;  ///< all tiles are, and all projectors have ended
+  [[nodiscard]] bool finished() const;  ///< all tiles are, and all ends have come
 
   /// Bytes of a part are owed to their projector while the part is ahead: its tile comes after the first one that is
   /// not composited, or it begins deeper in that tile than other projectors have come. pay() returns what is due now.
@@ -66,7 +67,7 @@ class FrameCollector {
   const std::vector<std::uint32_t>* numbers_;  ///< this compositor's tiles in order
   std::vector<Tile> tiles_;                    ///< likewise
   std::size_t first_unfinished_ = 0;
-  int begins_ = 0, ends_ = 0;
+  int begins_ = 0, ends_ = 0, ends_awaited_ = 0;
   double longest_ray_ = 0;
   float longest_edge_ = 0;
   scene::Lattice lattice_;

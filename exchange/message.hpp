@@ -28,13 +28,16 @@ enum class MessageKind : std::uint16_t {
   // Channel fragments; the structures are in wire.hpp.
   begin = 1,  ///< u64 frame, FrameBegin, one bit a tile of the receiver in its order, lowest bit first: 1: parts come
   parts = 2,  ///< u64 frame; until the end: PartHeader, `bytes` bytes of records
-  end = 3,    ///< u64 frame, FrameEnd: the sender has no more of this frame. Also on channel tiles
+  end = 3,    ///< u64 frame, FrameEnd: the sender has no more of this frame, and this is what it took. Also on channel
+              ///< tiles
   // Channel credit.
   credit = 4,  ///< u64 bytes that the receiver may send again
   // Channel tiles.
-  tiles = 5,   ///< u64 frame; until the end: u64 tile, f32 RGBA of its pixels row by row, f32 depths, u64 deep
-               ///< samples in the tile; unless that is 0 u32 samples of each pixel, scene::DeepImageSample each
-  region = 6,  ///< RegionHeader (frame/sort_first.cpp); unless stopped, for each row f32 RGBA, depths, error estimates
+  tiles = 5,  ///< u64 frame; until the end: u64 tile, its pixels (packed_pixels.hpp), u64 deep samples in the tile;
+              ///< unless that is 0 u32 samples of each pixel, scene::DeepImageSample each
+  region =
+      6,  ///< RegionHeader (frame/sort_first.cpp); unless stopped, pixels (packed_pixels.hpp) of 64 rows at a time,
+          ///< and if they are kept f32 error estimates row by row
   deep_rows = 7,  ///< u64 samples of each pixel of the sender's rows, scene::DeepImageSample each
   // Channel frames.
   frame_left = 8,  ///< nothing: one frame less is on its way

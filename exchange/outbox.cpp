@@ -189,25 +189,21 @@ void Outbox::end_tiles() {
 
 void Outbox::end_frame(FrameEnd sums) {
   std::unique_lock lock(mutex_);
+  if (lanes_.empty()) return;
+  for (Lane& lane : lanes_) seal(lane);
   FrameEnd traffic{};
   traffic.counters.fragments = fragments_;
-  for (Lane& lane : lanes_) seal(lane);
-  constexpr std::uint64_t end_bytes = sizeof(MessageHeader) + sizeof(std::uint64_t) + sizeof(FrameEnd);
-  traffic.counters.exchange_bytes = bytes_ + lanes_.size() * end_bytes;
-  traffic.counters.exchange_messages = messages_ + lanes_.size();
+  traffic.counters.exchange_bytes = bytes_ + sizeof(MessageHeader) + sizeof(std::uint64_t) + sizeof(FrameEnd);
+  traffic.counters.exchange_messages = messages_ + 1;
   for (const Lane& lane : lanes_)
     traffic.counters.exchange_bytes += lane.waiting, traffic.counters.exchange_messages += lane.ready.size();
-  for (Lane& lane : lanes_) {
-    // Once a projector: the first compositor's copy speaks for all of them.
-    const FrameEnd end = &lane == &lanes_.front() ? sum(sums, traffic) : FrameEnd{};
-    Bytes message = frame_message(MessageKind::end, sizeof end);
-    append(message, end);
-    lane.waiting += message.size();
-    lane.ready.push_back(std::move(message));
-    drain(lane);
-  }
+  Lane& told = lanes_[static_cast<std::size_t>(end_goes_to(settings_.projector, static_cast<int>(lanes_.size())))];
+  Bytes message = frame_message(MessageKind::end, sizeof(FrameEnd));
+  append(message, sum(sums, traffic));
+  told.waiting += message.size();
+  told.ready.push_back(std::move(message));
+  drain(told);
   // The next frame's tiles must not pass this one's: put() of a first tile would wait on a lane that holds old ones.
-  if (lanes_.empty()) return;
   const scene::TraceScope timing(settings_.trace, "wait", static_cast<std::int32_t>(frame_));
   const auto is_sent = [&] {
     return std::all_of(lanes_.begin(), lanes_.end(), [](const Lane& lane) { return lane.ready.empty(); });

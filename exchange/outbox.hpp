@@ -32,6 +32,7 @@ class Outbox {
     std::uint64_t window_bytes;   ///< to each compositor, beyond what it has given back
     std::uint64_t backlog_bytes;  ///< that may wait here before put() blocks
     scene::Trace* trace = nullptr;
+    int projector = 0;  ///< which one this is, 0 .. N-1
   };
   Outbox(Transport& transport, Settings settings);
   ~Outbox();
@@ -50,7 +51,8 @@ class Outbox {
   /// Ends all tiles of the frame that have not been ended, as they are: the frame is stopped.
   void end_tiles();
 
-  /// All parts of the frame have been put. The traffic that the frame made here is added to `sums`.
+  /// All parts of the frame have been put: says so to one compositor (end_goes_to()). The traffic that the frame made
+  /// here is added to `sums`.
   void end_frame(FrameEnd sums);
 
  private:

@@ -18,6 +18,7 @@ class TileMap {
   [[nodiscard]] const std::vector<std::uint32_t>& tiles(int compositor) const {
     return tiles_[static_cast<std::size_t>(compositor)];
   }
+  [[nodiscard]] int compositors() const { return static_cast<int>(tiles_.size()); }
   [[nodiscard]] std::size_t size() const { return owners_.size(); }
 
  private:

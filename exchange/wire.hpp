@@ -12,8 +12,9 @@
 /// What travels from projectors to compositors: the structures of messages `begin`, `parts` and `end` (message.hpp),
 /// and the records of a part. Little endian, no padding.
 ///
-/// A projector sends each compositor, frame after frame: one begin; the parts of its tiles in tile order, tile by tile;
-/// one end. So a compositor knows from the begins what a tile still lacks.
+/// A projector sends each compositor, frame after frame: one begin; the parts of its tiles in tile order, tile by tile.
+/// So a compositor knows from the begins what a tile still lacks. Then it sends one end, to one compositor, which
+/// passes its sums on: end_goes_to().
 ///
 /// Records of a part:
 ///   runs       RunRecord each
@@ -123,6 +124,10 @@ struct FrameEnd {
 static_assert(sizeof(FrameEnd) == sizeof(scene::FrameCounters) + 24);
 /// Two processes' counts put together.
 FrameEnd sum(const FrameEnd& a, const FrameEnd& b);
+
+/// Which of P compositors gets the end of a projector: each that of its share. With ends for all, N P of them would be
+/// half of a frame's messages.
+inline int end_goes_to(int projector, int compositors) { return projector % compositors; }
 
 /// Records that nobody changes: in memory of their own, or in that of the message they came in.
 class Records {

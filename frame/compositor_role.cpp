@@ -30,6 +30,12 @@ int worker_count(const DistributedRun& run) {
   return scene::threads_for(run.settings.render.threads) + (run.device.device != nullptr ? tiles_in_flight : 0);
 }
 
+/// A picture of 1024 x 1024 pixels is a few milliseconds of one thread's work.
+int assembling_threads(const DistributedSettings& settings) {
+  constexpr int most = 8;
+  return std::min(scene::threads_for(settings.render.threads), most);
+}
+
 std::optional<compositor::MatterLight> light_of(const DistributedRun& run, const FrameJob& job) {
   if (!run.settings.render.shading) return std::nullopt;
   return compositor::MatterLight(*run.settings.render.shading, job.camera);
@@ -269,7 +275,9 @@ std::exception_ptr run_assembler(const DistributedRun& run, const DistributedCal
                                  const std::function<void()>& stop_all) {
   // What a caller's function throws is the caller's: all ranks end their frames in order before it gets it.
   std::exception_ptr thrown;
+  std::mutex calls;  // one at a time
   const auto guarded = [&](const auto& call) {
+    const std::lock_guard lock(calls);
     if (thrown) return;
     try {
       call();
@@ -278,19 +286,31 @@ std::exception_ptr run_assembler(const DistributedRun& run, const DistributedCal
       stop_all();
     }
   };
-  compositor::ImageAssembly::Finished finished_tile;
-  if (callbacks.tile)
-    finished_tile = [&](std::uint32_t frame, const scene::PixelRect& rect, const scene::Image& image) {
-      if (!run.stop.stop_requested()) guarded([&] { callbacks.tile(frame - run.first, rect, image); });
-    };
   const DistributedSettings& settings = run.settings;
   const integrals::SegmentIntegrator integrator(run.function, settings.render.integrator, settings.render.emission);
-  compositor::ImageAssembly assembly(
-      static_cast<int>(settings.roles.compositors.size()),
-      [&](std::uint32_t frame) {
-        return projection::TileGrid{job_of(run, frame).size, settings.render.tile_size};
-      },
-      settings.deep ? settings.render.memory_bytes / 2 : 0, std::move(finished_tile));
+  // Before the assembly, which waits for what they do.
+  std::optional<WorkerThreads> workers;
+  compositor::AssemblySettings how;
+  how.grid_of = [&](std::uint32_t frame) {
+    return projection::TileGrid{job_of(run, frame).size, settings.render.tile_size};
+  };
+  how.deep_bytes = settings.deep ? settings.render.memory_bytes / 2 : 0;
+  how.trace = settings.compositing;
+  if (callbacks.tile)
+    how.finished = [&](std::uint32_t frame, const scene::PixelRect& rect, const scene::Image& image) {
+      if (!run.stop.stop_requested()) guarded([&] { callbacks.tile(frame - run.first, rect, image); });
+    };
+  if (callbacks.memory)
+    how.memory = [&](scene::ImageSize size) {
+      scene::Image memory;
+      guarded([&] { memory = callbacks.memory(size); });
+      return memory;
+    };
+  if (const int threads = assembling_threads(settings); threads > 1) {
+    workers.emplace(threads, [&](const std::exception& fault) { run.transport.fail(run_error(run.transport, fault)); });
+    how.run = [&](std::function<void()> work) { workers->run(std::move(work)); };
+  }
+  compositor::ImageAssembly assembly(static_cast<int>(settings.roles.compositors.size()), std::move(how));
   auto last = run.start;
   for (std::size_t left = 0; left < run.jobs.size();) {
     exchange::Message message = [&] {
@@ -299,8 +319,8 @@ std::exception_ptr run_assembler(const DistributedRun& run, const DistributedCal
     }();
     std::optional<compositor::AssembledFrame> assembled;
     {
-      const scene::TraceScope timing(settings.compositing, "assemble", -1, 0, 0, message.from);
-      assembled = assembly.accept(message);
+      const scene::TraceScope timing(settings.compositing, "assemble");
+      assembled = assembly.accept(std::move(message));
     }
     if (!assembled) continue;
     for (const int projector : settings.roles.projectors)

@@ -190,7 +190,7 @@ void render_distributed(exchange::Transport& transport, const DistributedSetting
                         std::span<const FrameJob> jobs, const scene::TransferFunction& function,
                         const std::function<ProjectorMesh(std::size_t)>& mesh_of,
                         const std::function<void(FinishedFrame)>& done) {
-  DistributedRenderer(transport, settings, mesh_of).render(jobs, function, {done, {}});
+  DistributedRenderer(transport, settings, mesh_of).render(jobs, function, {done, {}, {}});
 }
 
 }  // namespace tessera::frame

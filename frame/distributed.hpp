@@ -59,12 +59,14 @@ struct FinishedFrame {
   bool stopped = false;        ///< the image lacks tiles
 };
 
-/// What the assembling rank's caller is told, from a thread of its own, one call at a time. An exception stops the run
-/// on all ranks and comes out of render() on this one.
+/// What the assembling rank's caller is told, from any thread, one call at a time. An exception stops the run on all
+/// ranks and comes out of render() on this one.
 struct DistributedCallbacks {
   std::function<void(FinishedFrame)> frame;  ///< every frame, in order, stopped ones too
   /// Pixels of a frame that are final; perhaps of a later frame than the one at hand. May be empty.
   std::function<void(std::size_t frame, const scene::PixelRect& rect, const scene::Image& image)> tile;
+  /// An image whose memory a frame may have, whatever is in it; of another size: none. May be empty.
+  std::function<scene::Image(scene::ImageSize size)> memory;
 };
 
 /// Renders pictures of meshes with all ranks of a transport: each makes one, with the same arguments but for the traces

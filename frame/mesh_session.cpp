@@ -151,6 +151,11 @@ class MeshOnRanks final : public Session::State {
       callbacks.tile = [&](std::size_t number, const PixelRect& rect, const Image& image) {
         frame::call_sink([&] { sink.tile({number, rect, image}); });
       };
+    callbacks.memory = [&](ImageSize size) {
+      Image memory;
+      frame::call_sink([&] { memory = sink.spare_image(size); });
+      return memory;
+    };
     std::exception_ptr thrown;
     try {
       renderer_->render(jobs, function, callbacks, stop);

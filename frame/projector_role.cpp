@@ -29,6 +29,12 @@ void wait_for_turn(const DistributedRun& run, std::size_t frame, std::size_t& le
   for (; frame >= left + in_flight; ++left) await_frame(run);
 }
 
+/// Which projector this rank is, 0 .. N-1.
+int number_of(const DistributedRun& run) {
+  const auto& projectors = run.settings.roles.projectors;
+  return static_cast<int>(std::find(projectors.begin(), projectors.end(), run.transport.rank()) - projectors.begin());
+}
+
 exchange::FrameEnd counts_of(const FrameStatistics& s) { return {s, s.on_lattice ? 1u : 0u, 0, 0}; }
 
 /// What a frame's sinks refer to, and the sinks.
@@ -108,11 +114,9 @@ void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t 
   task.grid = {job.size, settings.render.tile_size};
   task.function = &run.function;
   task.surfaces = &sinks.surfaces();
-  const auto& projectors = settings.roles.projectors;
-  const auto own = std::find(projectors.begin(), projectors.end(), run.transport.rank()) - projectors.begin();
-  const std::vector<projection::SurfaceFaces> faces =
-      faces_of(settings.render.surfaces, sinks.surfaces(), loaded.boundary(), static_cast<std::uint32_t>(own),
-               static_cast<std::uint32_t>(projectors.size()));
+  const std::vector<projection::SurfaceFaces> faces = faces_of(
+      settings.render.surfaces, sinks.surfaces(), loaded.boundary(), static_cast<std::uint32_t>(number_of(run)),
+      static_cast<std::uint32_t>(settings.roles.projectors.size()));
   task.faces = faces;
   task.frame = number;
   task.longest_edge = mesh.longest_edge;
@@ -157,7 +161,8 @@ void run_projector(const DistributedRun& run, LoadedMesh& loaded) {
   const DistributedSettings& settings = run.settings;
   const ExchangeBudget budget = exchange_budget(settings);
   scene::Trace* const trace = settings.projecting;
-  exchange::Outbox outbox(run.transport, {settings.roles.compositors, budget.window, budget.backlog, trace});
+  exchange::Outbox outbox(run.transport,
+                          {settings.roles.compositors, budget.window, budget.backlog, trace, number_of(run)});
   std::size_t left = 0;  // frames that have left the assembling rank
   for (std::size_t frame = 0; frame < run.jobs.size(); ++frame) {
     const FrameJob& job = run.jobs[frame];

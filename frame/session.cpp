@@ -30,6 +30,7 @@ class OneFrame final : public Sink {
   [[nodiscard]] bool wants_tiles() const override { return tiles_ != nullptr && tiles_->wants_tiles(); }
   void tile(const Tile& tile) override { tiles_->tile(tile); }
   void frame(RenderedFrame&& frame) override { frame_ = std::move(frame); }
+  Image spare_image(ImageSize size) override { return tiles_ != nullptr ? tiles_->spare_image(size) : Image(); }
   RenderedFrame take() { return std::move(frame_); }
 
  private:

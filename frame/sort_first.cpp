@@ -9,9 +9,12 @@
 #include <exception>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "exchange/collectives.hpp"
+#include "exchange/packed_pixels.hpp"
 #include "frame/reduce.hpp"
 #include "frame/stop_relay.hpp"
 #include "scene/error.hpp"
@@ -40,6 +43,15 @@ struct RegionHeader {
   std::uint64_t stopped;  ///< 1: no pixels follow
 };
 static_assert(sizeof(RegionHeader) == sizeof(GridCounters) + 6 * 8);
+
+/// A rectangle's rows, few at a time: what is packed at once is no larger.
+std::vector<PixelRect> strips_of(const PixelRect& rect) {
+  constexpr int rows = 64;
+  std::vector<PixelRect> strips;
+  for (int y = rect.y0; y < rect.y1 && rect.x0 < rect.x1; y += rows)
+    strips.push_back({rect.x0, y, rect.x1, std::min(y + rows, rect.y1)});
+  return strips;
+}
 
 double process_cpu_seconds() {
   timespec t{};
@@ -303,12 +315,12 @@ class SortFirst::State {
 
   void send(const RegionHeader& header, const scene::Image& image, const std::vector<float>& error_bounds) {
     Bytes bytes = message_of(MessageKind::region, header);
-    const PixelRect& r = header.region;
-    for (int y = r.y0; y < r.y1 && header.stopped == 0; ++y) {
-      const auto width = static_cast<std::size_t>(r.x1 - r.x0);
-      append_values(bytes, std::span(image.rgba).subspan(4 * image.index(r.x0, y), 4 * width));
-      append_values(bytes, std::span(image.depth).subspan(image.index(r.x0, y), width));
-      if (!error_bounds.empty()) append_values(bytes, std::span(error_bounds).subspan(image.index(r.x0, y), width));
+    if (header.stopped == 0) {
+      const PixelRect& r = header.region;
+      for (const PixelRect& strip : strips_of(r)) exchange::append_pixels(bytes, image, strip, true);
+      for (int y = r.y0; y < r.y1 && !error_bounds.empty(); ++y)
+        append_values(bytes,
+                      std::span(error_bounds).subspan(image.index(r.x0, y), static_cast<std::size_t>(r.width())));
     }
     transport_.send(0, Channel::tiles, std::move(bytes), static_cast<std::int32_t>(header.frame));
   }
@@ -318,15 +330,15 @@ class SortFirst::State {
     const auto header = reader.take<RegionHeader>();
     const PixelRect& r = header.region;
     const scene::ImageSize size = finished.image.size;
-    if (header.frame != finished.frame || r.x0 < 0 || r.y0 < 0 || r.x1 > size.width || r.y1 > size.height)
+    if (header.frame != finished.frame || r.x0 < 0 || r.y0 < 0 || r.x1 > size.width || r.y1 > size.height ||
+        r.x0 > r.x1 || r.y0 > r.y1)
       reader.refuse("is a rectangle of another picture");
     finished.stopped = finished.stopped || header.stopped != 0;
-    for (int y = r.y0; y < r.y1 && header.stopped == 0; ++y) {
-      const auto width = static_cast<std::size_t>(r.x1 - r.x0);
-      reader.take_values(std::span(finished.image.rgba).subspan(4 * finished.image.index(r.x0, y), 4 * width));
-      reader.take_values(std::span(finished.image.depth).subspan(finished.image.index(r.x0, y), width));
-      if (!finished.error_bounds.empty())
-        reader.take_values(std::span(finished.error_bounds).subspan(finished.image.index(r.x0, y), width));
+    if (header.stopped == 0) {
+      for (const PixelRect& strip : strips_of(r)) exchange::take_pixels(reader, finished.image, strip);
+      for (int y = r.y0; y < r.y1 && !finished.error_bounds.empty(); ++y)
+        reader.take_values(std::span(finished.error_bounds)
+                               .subspan(finished.image.index(r.x0, y), static_cast<std::size_t>(r.width())));
     }
     reader.finish();
     if (header.stopped == 0) tell(watch, {r.x0, r.y0, r.x1, r.y1}, finished);

@@ -43,8 +43,8 @@ struct TraceSpan {
   double start_us, wall_us;
   double cpu_us;               ///< of this thread alone, even where other threads helped; to 1 us
   std::int32_t frame = -1;     ///< number in the run, -1 for work of no frame
-  std::uint64_t bytes = 0;     ///< moved (pack, send, receive, read, write)
-  std::uint32_t messages = 0;  ///< moved (send, receive)
+  std::uint64_t bytes = 0;     ///< moved (pack, send, receive, assemble, read, write)
+  std::uint32_t messages = 0;  ///< moved (send, receive, assemble)
   TraceRole role = TraceRole::both;
   std::int32_t tile = -1;  ///< that the work was for, -1: for no single one
   std::int32_t peer = -1;  ///< rank that a message went to or came from (send, receive, assemble), -1: none

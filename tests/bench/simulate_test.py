@@ -119,6 +119,17 @@ class Frames(unittest.TestCase):
         self.assertAlmostEqual(model.run(), 0.5)
         self.assertAlmostEqual(model.assembler.left[-1] - model.assembler.left[-2], 0.5)  # one is written, one waits, one is held
 
+    def test_threads_share_the_tiles_of_a_picture(self):
+        # Two compositors' messages of 4 tiles each: 0.4 s of work one after the other, 0.2 s at once.
+        work = uniform(2, 2, 8, 8, 0.001)
+        work.assemble, work.tile_bytes = (0.0, 0.05), 100.0
+        self.assertAlmostEqual(Model(work, ideal()).run(), 0.4, places=2)
+        self.assertAlmostEqual(Model(work, ideal(threads=2)).run(), 0.2, places=2)
+
+    def test_ends_go_to_one_compositor_each(self):
+        for projectors, compositors in ((3, 2), (1, 4), (5, 1)):
+            self.assertAlmostEqual(Model(uniform(projectors, compositors, 5, 4, 0.1), ideal()).run(), 0.4)
+
     def test_credit_holds_a_projector_back_to_its_compositors_pace(self):
         work = uniform(1, 1, 2, 64, 0.001, 1 << 20, 0.01)
         self.assertAlmostEqual(Model(work, ideal(memory=4 << 20, in_flight=1)).run(), 0.64, delta=0.05)
@@ -137,7 +148,9 @@ class Traces(unittest.TestCase):
         for f in range(3):
             at = 1000 * f
             events += [span(0, "cull", at, 100, frame=f), span(0, "bin", at + 50, 20, frame=f), span(0, "project", at + 100, 50, frame=f, tile=3),
-                       span(0, "pack", at + 150, 10, frame=f, tile=3, bytes=777), span(1, "composite", at + 200, 30, frame=f, tile=3)]
+                       span(0, "pack", at + 150, 10, frame=f, tile=3, bytes=777), span(1, "composite", at + 200, 30, frame=f, tile=3),
+                       span(1, "assemble", at + 300, 9000 if f == 0 else 30), span(1, "assemble", at + 310, 18, frame=f, bytes=5000),
+                       span(1, "send", at + 350, 2, frame=f, bytes=4096)]
         with tempfile.TemporaryDirectory() as folder:
             trace = pathlib.Path(folder) / "t.json"
             trace.write_text(json.dumps({"otherData": {"projectors": 1, "compositors": 1, "ranks": 2, "frames": 3}, "traceEvents": events}))
@@ -149,6 +162,9 @@ class Traces(unittest.TestCase):
         self.assertAlmostEqual(seconds, 60e-6)
         self.assertAlmostEqual(work.merge[1, 3], 30e-6)
         self.assertEqual(work.owner, {3: 0})
+        self.assertAlmostEqual(work.assemble[1], 18e-6)
+        self.assertAlmostEqual(work.assemble[0], 12e-6)
+        self.assertEqual(work.tile_bytes, 0)  # the first compositor's own
 
 
 if __name__ == "__main__":

@@ -4,12 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
+#include <mutex>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "exchange/loopback_transport.hpp"
+#include "exchange/packed_pixels.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::compositor {
@@ -21,14 +25,44 @@ using exchange::MessageKind;
 constexpr scene::ImageSize size{70, 45};  // tiles at the rim are narrower
 constexpr projection::TileGrid grid{size, 32};
 
+AssemblySettings settings_of_grid(std::uint64_t deep_bytes = 0) {
+  AssemblySettings settings;
+  settings.grid_of = [](std::uint32_t) { return grid; };
+  settings.deep_bytes = deep_bytes;
+  return settings;
+}
+
+/// Runs each piece of work on a thread of its own.
+class ThreadEach {
+ public:
+  ThreadEach() = default;
+  ~ThreadEach() {
+    for (std::thread& thread : threads_) thread.join();
+  }
+  ThreadEach(const ThreadEach&) = delete;
+  ThreadEach& operator=(const ThreadEach&) = delete;
+  void run(std::function<void()> work) {
+    threads_.emplace_back([work = std::move(work)] {
+      try {
+        work();
+      } catch (const scene::Error&) {  // accept() throws it once more
+      }
+    });
+  }
+
+ private:
+  std::vector<std::thread> threads_;
+};
+
 /// A tile with pixels, and perhaps deep samples, drawn at random.
 MergedTile random_tile(std::size_t tile, bool deep, std::mt19937& random) {
   const scene::PixelRect rect = grid.rect(tile);
   MergedTile made;
   made.image = scene::Image({rect.x1 - rect.x0, rect.y1 - rect.y0});
   std::uniform_real_distribution<float> uniform(0, 1);
+  const float step = random() % 2 == 0 ? 1 : 1e-4f;  // noise, or so smooth that packing pays
   for (auto* values : {&made.image.rgba, &made.image.depth})
-    for (float& value : *values) value = uniform(random);
+    for (float& value : *values) value = 0.5f + step * uniform(random);
   if (!deep) return made;
   for (std::int64_t p = 0; p < rect.area(); ++p) made.deep_counts.push_back(random() % 3);
   for (const std::uint32_t count : made.deep_counts)
@@ -99,15 +133,26 @@ TEST(ImageAssembly, TilesFromAnyoneInAnyOrderMakeThePictureOnce) {
     job.collect();
 
     std::map<std::size_t, int> told;  // by the tile's first pixel
-    ImageAssembly assembly(
-        compositors, [](std::uint32_t) { return grid; }, deep ? 1 << 24 : 0,
-        [&](std::uint32_t frame, const scene::PixelRect& rect, const scene::Image& image) {
-          EXPECT_EQ(frame, 9u);
-          ++told[expected.index(rect.x0, rect.y0)];
-          for (int y = rect.y0; y < rect.y1; ++y)
-            for (int x = rect.x0; x < rect.x1; ++x)
-              EXPECT_EQ(image.depth[image.index(x, y)], expected.depth[expected.index(x, y)]);
-        });
+    std::mutex telling;
+    ThreadEach threads;
+    AssemblySettings settings = settings_of_grid(deep ? 1 << 24 : 0);
+    settings.finished = [&](std::uint32_t frame, const scene::PixelRect& rect, const scene::Image& image) {
+      const std::lock_guard lock(telling);
+      EXPECT_EQ(frame, 9u);
+      ++told[expected.index(rect.x0, rect.y0)];
+      for (int y = rect.y0; y < rect.y1; ++y)
+        for (int x = rect.x0; x < rect.x1; ++x)
+          EXPECT_EQ(image.depth[image.index(x, y)], expected.depth[expected.index(x, y)]);
+    };
+    if (seed % 3 > 0) settings.run = [&](std::function<void()> work) { threads.run(std::move(work)); };
+    if (seed % 5 > 0)
+      settings.memory = [&](scene::ImageSize of) {  // of another picture
+        scene::Image memory(seed % 5 == 1 ? scene::ImageSize{of.height, of.width} : of);
+        std::fill(memory.rgba.begin(), memory.rgba.end(), 7.0f);
+        std::fill(memory.depth.begin(), memory.depth.end(), std::numeric_limits<float>::quiet_NaN());
+        return memory;
+      };
+    ImageAssembly assembly(compositors, std::move(settings));
     std::optional<AssembledFrame> done;
     std::size_t left = 0;
     for (const auto& messages : job.sent) left += messages.size();
@@ -153,7 +198,7 @@ TEST(ImageAssembly, FramesThatOverlapDoNotMix) {
     early.end({});
   }
   job.collect();
-  ImageAssembly assembly(2, [](std::uint32_t) { return grid; });
+  ImageAssembly assembly(2, settings_of_grid());
   std::map<std::uint32_t, scene::Image> images;
   for (const auto& messages : job.sent)
     for (const exchange::Message& message : messages)
@@ -172,14 +217,26 @@ TEST(ImageAssembly, AStoppedFrameTellsOnlyOfTilesThatCame) {
   }
   job.collect();
   int told = 0;
-  ImageAssembly assembly(
-      1, [](std::uint32_t) { return grid; }, 0,
-      [&](std::uint32_t, const scene::PixelRect&, const scene::Image&) { ++told; });
+  AssemblySettings settings = settings_of_grid();
+  settings.finished = [&](std::uint32_t, const scene::PixelRect&, const scene::Image&) { ++told; };
+  ImageAssembly assembly(1, std::move(settings));
   std::optional<AssembledFrame> done;
   for (const exchange::Message& message : job.sent[0]) done = assembly.accept(message);
   ASSERT_TRUE(done.has_value());
   EXPECT_EQ(done->sums.stopped, 1u);
   EXPECT_EQ(told, 1);
+}
+
+/// Whether a message is refused, as Error(system_failure).
+bool is_refused(const Bytes& bytes) {
+  ImageAssembly assembly(1, settings_of_grid(1 << 24));
+  try {
+    assembly.accept({1, bytes});
+    return false;
+  } catch (const scene::Error& error) {
+    EXPECT_EQ(error.code(), scene::ErrorCode::system_failure);
+    return true;
+  }
 }
 
 TEST(ImageAssembly, WhatIsCutChangedOrNotTilesIsRefused) {
@@ -192,17 +249,7 @@ TEST(ImageAssembly, WhatIsCutChangedOrNotTilesIsRefused) {
   }
   job.collect();
   ASSERT_EQ(job.sent[0].size(), 2u);
-  const auto refused = [&](const Bytes& bytes) {
-    ImageAssembly assembly(
-        1, [](std::uint32_t) { return grid; }, 1 << 24);
-    try {
-      assembly.accept({1, bytes});
-      return false;
-    } catch (const scene::Error& error) {
-      EXPECT_EQ(error.code(), scene::ErrorCode::system_failure);
-      return true;
-    }
-  };
+  const auto refused = is_refused;
   const auto frame_and = [](MessageKind kind, std::uint64_t tile) {
     Bytes message = exchange::message_of(kind, std::uint64_t{0});
     exchange::append(message, tile);
@@ -225,9 +272,15 @@ TEST(ImageAssembly, WhatIsCutChangedOrNotTilesIsRefused) {
   EXPECT_TRUE(refused(frame_and(MessageKind::tiles, ~std::uint64_t{0})));
   EXPECT_TRUE(refused(frame_and(MessageKind::parts, 0)));
 
-  // The number of deep samples, behind 32 x 13 pixels of tile 2: more than there are, however many.
+  // The number of deep samples, behind the pixels of tile 2: more than there are, however many.
   const scene::PixelRect rect = grid.rect(2);
-  const std::size_t at = empty + sizeof(std::uint64_t) + static_cast<std::size_t>(rect.area()) * 5 * sizeof(float);
+  scene::Image image(size);
+  exchange::MessageReader reader(job.sent[0][0].bytes, 1);
+  reader.take_bytes(2 * sizeof(std::uint64_t));
+  exchange::take_pixels(reader, image, rect);
+  std::size_t left = 0;
+  while (!reader.empty()) reader.take_bytes(1), ++left;
+  const std::size_t at = job.sent[0][0].bytes.size() - left;
   for (const std::size_t byte : {0, 1, 4, 7}) {
     Bytes bytes = job.sent[0][0].bytes;
     bytes[at + byte] ^= std::byte{0x40};
@@ -237,6 +290,51 @@ TEST(ImageAssembly, WhatIsCutChangedOrNotTilesIsRefused) {
   Bytes bytes = job.sent[0][0].bytes;
   bytes[at + sizeof(std::uint64_t)] ^= std::byte{8};
   EXPECT_TRUE(refused(bytes));
+}
+
+TEST(ImageAssembly, DamagedMessagesAreRefusedOrChangePixelsOnly) {
+  Job job(1);
+  std::mt19937 random(1);
+  {
+    TileSender sender = job.sender(0, 0);
+    for (const std::uint32_t tile : {0u, 1u, 2u, 5u}) sender.send(tile, random_tile(tile, tile == 1, random));
+    sender.end({});
+  }
+  job.collect();
+  const Bytes& whole = job.sent[0][0].bytes;
+  int refused = 0;
+  for (int k = 0; k < 2000; ++k) {
+    Bytes bytes = whole;
+    for (unsigned changes = 1 + random() % 3; changes > 0; --changes)
+      bytes[random() % bytes.size()] = static_cast<std::byte>(random());
+    refused += is_refused(bytes) ? 1 : 0;
+  }
+  EXPECT_GT(refused, 20);
+  EXPECT_LT(refused, 2000);
+}
+
+TEST(ImageAssembly, ATileThatComesTwiceIsRefused) {
+  for (const bool threaded : {false, true}) {
+    Job job(2);
+    std::mt19937 random(1);
+    for (const int compositor : {0, 1}) {
+      TileSender sender = job.sender(compositor, 0);
+      sender.send(3, random_tile(3, false, random));
+      sender.end({});
+    }
+    job.collect();
+    ThreadEach threads;
+    AssemblySettings settings = settings_of_grid();
+    if (threaded) settings.run = [&](std::function<void()> work) { threads.run(std::move(work)); };
+    ImageAssembly assembly(2, std::move(settings));
+    try {
+      for (auto& messages : job.sent)
+        for (exchange::Message& message : messages) EXPECT_FALSE(assembly.accept(std::move(message)).has_value());
+      FAIL() << "it was taken";
+    } catch (const scene::Error& error) {
+      EXPECT_NE(std::string(error.what()).find("brings tile 3 once more"), std::string::npos) << error.what();
+    }
+  }
 }
 
 }  // namespace

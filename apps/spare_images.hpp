@@ -1,0 +1,43 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "tessera/image.hpp"
+
+namespace tessera::apps {
+
+/// Pictures that are no longer needed, whose memory later ones have: two at most, so that memory holds no film. Any
+/// thread.
+class SpareImages {
+ public:
+  void keep(Image image) {
+    const std::lock_guard lock(mutex_);
+    if (images_.size() < most) images_.push_back(std::move(image));
+  }
+  /// One of this size, if there is one; others go.
+  Image take(ImageSize size) {
+    const std::lock_guard lock(mutex_);
+    images_.erase(
+        std::remove_if(images_.begin(), images_.end(), [&](const Image& image) { return !fits(image, size); }),
+        images_.end());
+    if (images_.empty()) return {};
+    Image taken = std::move(images_.back());
+    images_.pop_back();
+    return taken;
+  }
+
+ private:
+  static bool fits(const Image& image, ImageSize size) {
+    return image.size.width == size.width && image.size.height == size.height;
+  }
+
+  static constexpr std::size_t most = 2;
+  std::mutex mutex_;
+  std::vector<Image> images_;
+};
+
+}  // namespace tessera::apps

@@ -1,0 +1,300 @@
+#include "exchange/packed_pixels.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "exchange/packed_pixels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#ifndef TESSERA_EXCHANGE_PACKED_PIXELS
+#define TESSERA_EXCHANGE_PACKED_PIXELS
+namespace tessera::exchange {
+
+constexpr std::size_t columns = 16, channels = 5, color_channels = 4;
+constexpr std::size_t word_bytes = columns * sizeof(std::uint32_t);
+
+/// A band of a picture's columns.
+template <class Float>
+struct PixelBand {
+  Float *rgba, *depth;  ///< of its first pixel
+  std::size_t row;      ///< pixels from one row to the next
+  std::size_t width;    ///< at most 16
+  std::size_t height;
+};
+
+/// Where the streams have come to.
+template <class Byte>
+struct Streams {
+  Byte *words, *last;    ///< the first 16 words, and the last that may be read
+  std::size_t bits = 0;  ///< in each
+  [[nodiscard]] Byte* word() const { return words + bits / 32 * word_bytes; }
+  [[nodiscard]] int shift() const { return static_cast<int>(bits % 32); }
+};
+
+}  // namespace tessera::exchange
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace tessera::exchange {
+namespace HWY_NAMESPACE {
+namespace HN = hwy::HWY_NAMESPACE;
+
+using DU = HN::CappedTag<std::uint32_t, columns>;
+using DI = HN::RebindToSigned<DU>;
+using DF = HN::RebindToFloat<DU>;
+using U = HN::Vec<DU>;
+
+/// Of each channel, one value a column.
+struct Rows {
+  HWY_ALIGN_MAX std::uint32_t of[channels][columns];
+};
+
+// In messages words lie anywhere.
+#if HWY_TARGET == HWY_SCALAR
+HWY_INLINE U load_words(const std::byte* from) {
+  std::uint32_t word;
+  std::memcpy(&word, from, sizeof word);
+  return HN::Set(DU(), word);
+}
+HWY_INLINE void store_words(U words, std::byte* to) {
+  const std::uint32_t word = HN::GetLane(words);
+  std::memcpy(to, &word, sizeof word);
+}
+#else
+using DB = HN::Repartition<std::uint8_t, DU>;
+HWY_INLINE U load_words(const std::byte* from) {
+  return HN::BitCast(DU(), HN::LoadU(DB(), reinterpret_cast<const std::uint8_t*>(from)));
+}
+HWY_INLINE void store_words(U words, std::byte* to) {
+  HN::StoreU(HN::BitCast(DB(), words), DB(), reinterpret_cast<std::uint8_t*>(to));
+}
+#endif
+
+/// 16 pixels' channels apart.
+HWY_INLINE void split_channels(const float* rgba, const float* depth, Rows& rows) {
+  const DU du;
+  const DF df;
+  const std::size_t lanes = HN::Lanes(du);
+  for (std::size_t c = 0; c < columns; c += lanes) {
+    HN::Vec<DF> red, green, blue, alpha;
+    HN::LoadInterleaved4(df, rgba + color_channels * c, red, green, blue, alpha);
+    HN::Store(HN::BitCast(du, red), du, &rows.of[0][c]);
+    HN::Store(HN::BitCast(du, green), du, &rows.of[1][c]);
+    HN::Store(HN::BitCast(du, blue), du, &rows.of[2][c]);
+    HN::Store(HN::BitCast(du, alpha), du, &rows.of[3][c]);
+    HN::Store(HN::BitCast(du, HN::LoadU(df, depth + c)), du, &rows.of[4][c]);
+  }
+}
+
+HWY_INLINE void join_channels(const Rows& rows, float* rgba, float* depth) {
+  const DU du;
+  const DF df;
+  const std::size_t lanes = HN::Lanes(du);
+  for (std::size_t c = 0; c < columns; c += lanes) {
+    const auto channel = [&](std::size_t k) { return HN::BitCast(df, HN::Load(du, &rows.of[k][c])); };
+    HN::StoreInterleaved4(channel(0), channel(1), channel(2), channel(3), df, rgba + color_channels * c);
+    HN::StoreU(channel(4), df, depth + c);
+  }
+}
+
+/// What the rows above foretell wrongly of `next`, as whole numbers without sign; then `next` is above. Returns the
+/// width of the largest.
+HWY_INLINE unsigned differ(const std::uint32_t* HWY_RESTRICT next, std::uint32_t* HWY_RESTRICT above,
+                           std::uint32_t* HWY_RESTRICT step, std::uint32_t* HWY_RESTRICT differences) {
+  const DU du;
+  const DI di;
+  const std::size_t lanes = HN::Lanes(du);
+  U all = HN::Zero(du);
+  for (std::size_t c = 0; c < columns; c += lanes) {
+    const U value = HN::Load(du, next + c);
+    const U now = HN::Sub(value, HN::Load(du, above + c));
+    const U off = HN::Sub(now, HN::Load(du, step + c));
+    const U sign = HN::BitCast(du, HN::ShiftRight<31>(HN::BitCast(di, off)));
+    const U difference = HN::Xor(HN::ShiftLeft<1>(off), sign);
+    HN::Store(value, du, above + c);
+    HN::Store(now, du, step + c);
+    HN::Store(difference, du, differences + c);
+    all = HN::Or(all, difference);
+  }
+  return 32u - static_cast<unsigned>(std::countl_zero(HN::GetLane(HN::MaxOfLanes(du, all))));
+}
+
+// Widths are as good as random: neither of these branches on one.
+
+HWY_INLINE void put(const std::uint32_t* HWY_RESTRICT differences, unsigned width, Streams<std::byte>& to,
+                    std::uint32_t* HWY_RESTRICT unfinished) {
+  const DU du;
+  const std::size_t lanes = HN::Lanes(du);
+  const int shift = to.shift();
+  std::byte* word = to.word();
+  const U finishes = HN::Set(du, static_cast<unsigned>(shift) + width >= 32 ? ~std::uint32_t{0} : 0);
+  for (std::size_t c = 0; c < columns; c += lanes, word += lanes * sizeof(std::uint32_t)) {
+    const U difference = HN::Load(du, differences + c);
+    const U all = HN::Or(HN::Load(du, unfinished + c), HN::ShiftLeftSame(difference, shift));
+    store_words(all, word);
+    const U rest = HN::ShiftRightSame(HN::ShiftRight<1>(difference), 31 - shift);
+    HN::Store(HN::Or(HN::And(finishes, rest), HN::AndNot(finishes, all)), du, unfinished + c);
+  }
+  to.bits += width;
+}
+
+/// Takes differences and makes of them, and of the rows above, the next row.
+HWY_INLINE void get(unsigned width, Streams<const std::byte>& from, std::uint32_t* HWY_RESTRICT value,
+                    std::uint32_t* HWY_RESTRICT step) {
+  const DU du;
+  const DI di;
+  const std::size_t lanes = HN::Lanes(du);
+  const int shift = from.shift();
+  const std::byte *word = from.word(), *next = std::min(word + word_bytes, from.last);
+  word = std::min(word, from.last);
+  const U mask = HN::Set(du, static_cast<std::uint32_t>((std::uint64_t{1} << width) - 1));
+  for (std::size_t c = 0; c < columns; c += lanes) {
+    const U low = HN::ShiftRightSame(load_words(word + c * sizeof(std::uint32_t)), shift);
+    const U high = HN::ShiftLeftSame(HN::ShiftLeft<1>(load_words(next + c * sizeof(std::uint32_t))), 31 - shift);
+    const U difference = HN::And(HN::Or(low, high), mask);
+    const U sign = HN::BitCast(du, HN::Neg(HN::BitCast(di, HN::And(difference, HN::Set(du, 1)))));
+    const U now = HN::Add(HN::Load(du, step + c), HN::Xor(HN::ShiftRight<1>(difference), sign));
+    HN::Store(now, du, step + c);
+    HN::Store(HN::Add(HN::Load(du, value + c), now), du, value + c);
+  }
+  from.bits += width;
+}
+
+/// `unfinished`: of each stream the bits of the word that is not full.
+void pack_band(const PixelBand<const float>& band, std::uint8_t* widths, Streams<std::byte>& to,
+               std::uint32_t* unfinished) {
+  Rows next, above{}, step{}, differences;
+  float rgba[color_channels * columns] = {}, depth[columns] = {};
+  for (std::size_t y = 0; y < band.height; ++y) {
+    const float *row_rgba = band.rgba + color_channels * band.row * y, *row_depth = band.depth + band.row * y;
+    if (band.width < columns) {
+      std::memcpy(rgba, row_rgba, band.width * color_channels * sizeof(float));
+      std::memcpy(depth, row_depth, band.width * sizeof(float));
+      row_rgba = rgba, row_depth = depth;
+    }
+    split_channels(row_rgba, row_depth, next);
+    for (std::size_t k = 0; k < channels; ++k) {
+      const unsigned width = differ(next.of[k], above.of[k], step.of[k], differences.of[k]);
+      *widths++ = static_cast<std::uint8_t>(width);
+      put(differences.of[k], width, to, unfinished);
+    }
+  }
+}
+
+void unpack_band(const std::uint8_t* widths, Streams<const std::byte>& from, const PixelBand<float>& band) {
+  Rows value{}, step{};
+  float rgba[color_channels * columns], depth[columns];
+  for (std::size_t y = 0; y < band.height; ++y) {
+    for (std::size_t k = 0; k < channels; ++k) get(*widths++, from, value.of[k], step.of[k]);
+    float *row_rgba = band.rgba + color_channels * band.row * y, *row_depth = band.depth + band.row * y;
+    if (band.width == columns) {
+      join_channels(value, row_rgba, row_depth);
+      continue;
+    }
+    join_channels(value, rgba, depth);
+    std::memcpy(row_rgba, rgba, band.width * color_channels * sizeof(float));
+    std::memcpy(row_depth, depth, band.width * sizeof(float));
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tessera::exchange
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tessera::exchange {
+HWY_EXPORT(pack_band);
+HWY_EXPORT(unpack_band);
+
+namespace {
+
+std::size_t raw_bytes(const PixelRect& rect) {
+  return static_cast<std::size_t>(rect.area()) * channels * sizeof(float);
+}
+
+/// How many widths a band has.
+std::size_t widths_of_band(const PixelRect& rect) { return channels * static_cast<std::size_t>(rect.height()); }
+
+std::size_t bands(const PixelRect& rect) { return (static_cast<std::size_t>(rect.width()) + columns - 1) / columns; }
+
+/// Band `b` of the rectangle in an image.
+template <class Float, class Image>
+PixelBand<Float> band_of(Image& image, const PixelRect& rect, std::size_t b) {
+  const std::size_t first = image.index(rect.x0, rect.y0) + b * columns;
+  return {image.rgba.data() + color_channels * first, image.depth.data() + first,
+          static_cast<std::size_t>(image.size.width),
+          std::min(columns, static_cast<std::size_t>(rect.width()) - b * columns),
+          static_cast<std::size_t>(rect.height())};
+}
+
+void append_raw(Bytes& bytes, const scene::Image& image, const PixelRect& rect) {
+  append(bytes, std::uint32_t{0});
+  const auto width = static_cast<std::size_t>(rect.width());
+  for (int y = rect.y0; y < rect.y1; ++y)
+    append_values(bytes,
+                  std::span(image.rgba).subspan(color_channels * image.index(rect.x0, y), color_channels * width));
+  for (int y = rect.y0; y < rect.y1; ++y)
+    append_values(bytes, std::span(image.depth).subspan(image.index(rect.x0, y), width));
+}
+
+}  // namespace
+
+void append_pixels(Bytes& bytes, const scene::Image& image, const PixelRect& rect, bool pack) {
+  if (rect.empty() || !pack) return append_raw(bytes, image, rect);
+  const std::size_t begin = bytes.size(), count = bands(rect) * widths_of_band(rect);
+  bytes.resize(begin + sizeof(std::uint32_t) + count + (count + 1) * word_bytes);
+  auto* widths = reinterpret_cast<std::uint8_t*>(bytes.data() + begin + sizeof(std::uint32_t));
+  std::byte* words = bytes.data() + begin + sizeof(std::uint32_t) + count;
+  Streams<std::byte> to{words, words + count * word_bytes};
+  HWY_ALIGN_MAX std::uint32_t unfinished[columns] = {};
+  for (std::size_t b = 0; b < bands(rect); ++b, widths += widths_of_band(rect))
+    HWY_DYNAMIC_DISPATCH(pack_band)(band_of<const float>(image, rect, b), widths, to, unfinished);
+  std::memcpy(to.word(), unfinished, word_bytes);
+  const std::size_t packed = count + (to.bits + 31) / 32 * word_bytes;
+  if (packed >= raw_bytes(rect)) {
+    bytes.resize(begin);
+    return append_raw(bytes, image, rect);
+  }
+  const auto size = static_cast<std::uint32_t>(packed);
+  std::memcpy(bytes.data() + begin, &size, sizeof size);
+  bytes.resize(begin + sizeof size + packed);
+}
+
+void take_pixels(RecordReader& reader, scene::Image& image, const PixelRect& rect) {
+  const auto size = reader.take<std::uint32_t>();
+  if (size == 0) {
+    const auto width = static_cast<std::size_t>(rect.width());
+    for (int y = rect.y0; y < rect.y1; ++y)
+      reader.take_values(
+          std::span(image.rgba).subspan(color_channels * image.index(rect.x0, y), color_channels * width));
+    for (int y = rect.y0; y < rect.y1; ++y)
+      reader.take_values(std::span(image.depth).subspan(image.index(rect.x0, y), width));
+    return;
+  }
+  const auto packed = reader.take_bytes(size);
+  const std::size_t count = bands(rect) * widths_of_band(rect);
+  if (count > packed.size()) reader.refuse("has fewer widths than its pixels need");
+  const auto* widths = reinterpret_cast<const std::uint8_t*>(packed.data());
+  std::size_t bits = 0;
+  unsigned widest = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    bits += widths[i];
+    widest = std::max<unsigned>(widest, widths[i]);
+  }
+  if (widest > 32) reader.refuse("packs a pixel's value into more than 32 bits");
+  if (packed.size() != count + (bits + 31) / 32 * word_bytes) reader.refuse("has other pixels than its widths say");
+  static constexpr std::byte nothing[word_bytes] = {};  // where all differences are 0
+  Streams<const std::byte> from{nothing, nothing};
+  if (bits > 0) from = {packed.data() + count, packed.data() + packed.size() - word_bytes};
+  for (std::size_t b = 0; b < bands(rect); ++b, widths += widths_of_band(rect))
+    HWY_DYNAMIC_DISPATCH(unpack_band)(widths, from, band_of<float>(image, rect, b));
+}
+
+}  // namespace tessera::exchange
+#endif  // HWY_ONCE
