@@ -217,9 +217,9 @@ TEST_P(GlRasterizerOn, CellsWithoutVolumeAreThoseOfPlanes) {
     const auto any = [&] { return static_cast<std::uint32_t>(random() % vertices); };
     for (int i = 0; i < 60; ++i) {
       const std::uint32_t a = any(), b = any(), c = any();
-      if (flat) {  // a point of the plane of a, b and c
+      if (flat) {  // a point between a, b and c: which face is the front is noise, and makes no difference
         mesh.positions.push_back(0.25 * mesh.positions[a] + 0.25 * mesh.positions[b] + 0.5 * mesh.positions[c]);
-        mesh.scalars.push_back(0.5);
+        mesh.scalars.push_back(0.25 * mesh.scalars[a] + 0.25 * mesh.scalars[b] + 0.5 * mesh.scalars[c]);
         mesh.tets.push_back({a, b, c, static_cast<std::uint32_t>(mesh.positions.size() - 1)});
       } else {
         mesh.tets.push_back({a, b, i % 2 == 0 ? b : a, c});  // two or three corners in one
