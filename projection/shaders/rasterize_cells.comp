@@ -23,7 +23,8 @@ layout(std430, binding = 6) readonly buffer Parts { Part parts[]; };
 
 layout(location = 0) uniform uint part_number;
 
-// Faces by their corners a < b < c and the edges bc, ac, ab; edges by theirs: 01 02 03 12 13 23.
+// Edges by their ends, and faces by their corners a < b < c and the edges bc, ac, ab.
+const ivec2 edge_ends[6] = ivec2[6](ivec2(0, 1), ivec2(0, 2), ivec2(0, 3), ivec2(1, 2), ivec2(1, 3), ivec2(2, 3));
 const ivec3 face_corners[4] = ivec3[4](ivec3(0, 1, 2), ivec3(0, 1, 3), ivec3(0, 2, 3), ivec3(1, 2, 3));
 const ivec3 face_edges[4] = ivec3[4](ivec3(3, 1, 0), ivec3(4, 2, 0), ivec3(5, 2, 1), ivec3(5, 4, 3));
 
@@ -81,12 +82,9 @@ void main() {
     const ivec2 at = first + ivec2(int(k) % box.x, int(k) / box.x);
     const dvec2 ray = dvec2(at) + 0.5lf;
     for (int i = 0; i < 4; ++i) place[i] = corners[i] - ray;
-    edges[0] = edge(place[0], place[1]);
-    edges[1] = edge(place[0], place[2]);
-    edges[2] = edge(place[0], place[3]);
-    edges[3] = edge(place[1], place[2]);
-    edges[4] = edge(place[1], place[3]);
-    edges[5] = edge(place[2], place[3]);
+    for (int e = 0; e < 6; ++e) edges[e] = edge(place[edge_ends[e].x], place[edge_ends[e].y]);
+    for (int e = 0; e < 6; ++e)
+      if (edges[e].side == 0) edges[e] = exact_edge(place[edge_ends[e].x], place[edge_ends[e].y]);
     int plus = -1, minus = -1;
     for (int f = 0; f < 4; ++f) {
       const int way = passes(f);

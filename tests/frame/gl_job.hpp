@@ -52,6 +52,7 @@ struct GlJobSetup {
   std::optional<scene::Camera> view{};  ///< in place of camera(inside)
   scene::TransferFunction function = bands();
   int tile_size = 16;
+  bool software_will_do = true;  ///< for Backend::automatic
   [[nodiscard]] scene::Camera camera_used() const { return view ? *view : camera(inside); }
 };
 constexpr ImageSize gl_job_size{48, 40};
@@ -66,7 +67,7 @@ inline std::vector<FinishedFrame> rendered(const GlJobSetup& setup, const scene:
   settings.render.threads = 1;
   settings.render.tile_size = setup.tile_size;
   settings.exchange = setup.exchange;
-  settings.compositing_on = {setup.backends, setup.gl, true};
+  settings.compositing_on = {setup.backends, setup.gl, setup.software_will_do};
   settings.roles = assign_roles(ranks, setup.projectors, setup.compositors);
   std::vector<FinishedFrame> frames;
   exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
