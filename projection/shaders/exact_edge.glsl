@@ -82,7 +82,8 @@ Edge exact_edge(dvec2 a, dvec2 b) {
 // The same in double; side 0 where that does not tell.
 Edge edge(dvec2 a, dvec2 b) {
   const double p = a.x * b.y, q = b.x * a.y, e = p - q;
-  // Three roundings of 2^-53 each, or two where the compiler fuses: half of this.
+  // Three roundings of 2^-53 each, or two: half of this. Rounded alike, products keep their order, and only a zero does
+  // not tell; where the compiler fuses one of them, anything below the bound may be wrong.
   const bool certain = abs(e) > 4.5e-16lf * (abs(p) + abs(q));
   return Edge(abs(e), certain ? (e > 0.0lf ? 1 : -1) : 0);
 }

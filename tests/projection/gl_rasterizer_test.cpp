@@ -3,11 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
+#include <memory>
+#include <numeric>
 #include <random>
-#include <set>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
@@ -268,6 +273,47 @@ TEST_P(GlRasterizerOn, EdgesWithinTheLastPlacesOfPixelCentresAreDecidedExactly) 
       mesh.positions.emplace_back(place(32), place(32), static_cast<double>(random() % 7) - 3);
       mesh.scalars.push_back(0.1 * static_cast<double>(random() % 10));
     }
+    mesh.tets.push_back({first, first + 1, first + 2, first + 3});
+  }
+  scene::Camera camera;
+  camera.position = {0, 0, 10};
+  camera.parallel_scale = 16;
+  expect_like_planes(*context_, Scene(mesh, camera, {32, 32}));
+}
+
+/// Whole numbers with m * v - n * u = 1, of m and n without a common factor (Euclid).
+std::array<std::int64_t, 2> beside(std::int64_t m, std::int64_t n) {
+  std::int64_t r0 = m, r1 = n, s0 = 1, s1 = 0, t0 = 0, t1 = 1;
+  while (r1 != 0) {
+    const std::int64_t q = r0 / r1;
+    std::tie(r0, r1) = std::pair{r1, r0 - q * r1};
+    std::tie(s0, s1) = std::pair{s1, s0 - q * s1};
+    std::tie(t0, t1) = std::pair{t1, t0 - q * t1};
+  }
+  EXPECT_EQ(r0, 1);
+  return {-t0, s0};  // m * s0 + n * t0 = 1
+}
+
+/// The smallest E that there is but zero, 2^-64: doubles take it for zero, or, where a product is fused, for anything.
+TEST_P(GlRasterizerOn, EdgesThatPassCentresByLessThanDoublesTellAreDecidedExactly) {
+  std::mt19937_64 random(3);
+  scene::TetMesh mesh;
+  const auto add = [&](double x, double y) {
+    mesh.positions.emplace_back(x, y, static_cast<double>(random() % 5) - 2);
+    mesh.scalars.push_back(0.1 * static_cast<double>(random() % 10));
+  };
+  for (int i = 0; i < 400; ++i) {
+    const double x = static_cast<double>(random() % 20) - 9.5, y = static_cast<double>(random() % 20) - 9.5;
+    std::int64_t m = 0, n = 0;
+    do m = static_cast<std::int64_t>(random() >> 29) | 1, n = static_cast<std::int64_t>(random() >> 29);
+    while (n == 0 || std::gcd(m, n) != 1);
+    const auto [u, v] = beside(m, n);
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    const double step = i % 2 == 0 ? 0x1p-32 : -0x1p-32;
+    add(x + step * static_cast<double>(m), y + step * static_cast<double>(n));
+    add(x - step * static_cast<double>(u), y - step * static_cast<double>(v));
+    for (int corner = 0; corner < 2; ++corner)
+      add(static_cast<double>(random() % 64) / 2 - 16, static_cast<double>(random() % 64) / 2 - 16);
     mesh.tets.push_back({first, first + 1, first + 2, first + 3});
   }
   scene::Camera camera;
