@@ -4,7 +4,8 @@ gl-fragment.
 
 Every compositor renders the same image from the same ray segments; stages are self times of its trace (device stages
 by the device's own clock, CPU stages summed over threads and divided by them; cells are rasterized by the CPU but
-where it says otherwise). Prints a markdown table.
+where it says otherwise). gl-fragment is the paper's, and left out where the integrator is not sampled:N. Prints a
+markdown table.
 """
 import argparse
 import collections
@@ -59,6 +60,8 @@ def main():
             ("gl-compute", ["--compositor", "gl-compute", "--backend", arguments.backend]),
             ("gl-compute, cells on the device",
              ["--compositor", "gl-compute", "--rasterizer", "device", "--backend", arguments.backend]),
+        ]
+        cases += [] if not arguments.integrator.startswith("sampled") else [
             ("gl-fragment, half", ["--compositor", "gl-fragment", "--backend", arguments.backend]),
             ("gl-fragment, float",
              ["--compositor", "gl-fragment", "--framebuffer", "float", "--backend", arguments.backend]),
