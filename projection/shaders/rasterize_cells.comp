@@ -82,9 +82,15 @@ void main() {
     const ivec2 at = first + ivec2(int(k) % box.x, int(k) / box.x);
     const dvec2 ray = dvec2(at) + 0.5lf;
     for (int i = 0; i < 4; ++i) place[i] = corners[i] - ray;
-    for (int e = 0; e < 6; ++e) edges[e] = edge(place[edge_ends[e].x], place[edge_ends[e].y]);
-    for (int e = 0; e < 6; ++e)
-      if (edges[e].side == 0) edges[e] = exact_edge(place[edge_ends[e].x], place[edge_ends[e].y]);
+    uint unsure = 0u;  // a bit an edge
+    for (int e = 0; e < 6; ++e) {
+      edges[e] = edge(place[edge_ends[e].x], place[edge_ends[e].y]);
+      if (edges[e].side == 0) unsure |= 1u << e;
+    }
+    for (; unsure != 0u; unsure &= unsure - 1u) {  // hardly ever: one text of it, not six
+      const int e = findLSB(unsure);
+      edges[e] = exact_edge(place[edge_ends[e].x], place[edge_ends[e].y]);
+    }
     int plus = -1, minus = -1;
     for (int f = 0; f < 4; ++f) {
       const int way = passes(f);
