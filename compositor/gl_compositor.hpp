@@ -25,7 +25,7 @@ struct GlSettings {
   bool by_local_rank = false;  ///< --egl-device local-rank
   gl::EglDevice egl_device;
   std::size_t batch_fragments = 1 << 20;  ///< that should come in one job
-  std::size_t batch_cells = 1 << 17;      ///< that are on the device at once
+  std::size_t batch_cells = 1 << 16;      ///< that are on the device at once
   // Tests:
   int texture_limit = 0;  ///< fragment: largest texture, if the device's is not to be used up; 0: the device's
   GlFault fault = GlFault::none;

@@ -282,7 +282,6 @@ class GlMerger final : public TileMerger {
     std::uint64_t before = 0;
     for (std::size_t p = 0; p < pixels_.size(); ++p) by.begin[p + 1] += static_cast<std::uint32_t>(before += counts[p]);
     if (by.begin_given.back() + before > std::numeric_limits<std::uint32_t>::max()) refuse(before, "ray segments");
-    if (context_.segments != nullptr) *context_.segments += before;
     return by;
   }
 
@@ -325,6 +324,7 @@ class GlMerger final : public TileMerger {
     }
     // All of them before one is used: if the device fails, the tile's cells are rasterized here.
     for (Portion& portion : portions) portion.lights = lights_of(portion, fragments, by);
+    count(by.begin.back() - by.begin_given.back());
     for (const Portion& portion : portions) {
       std::size_t list = 0;
       for (std::size_t p = portion.first_pixel; p < portion.end_pixel; ++p) {
@@ -385,10 +385,12 @@ class GlMerger final : public TileMerger {
 
   /// The cells' segments become fragments like others: the device has failed.
   void rasterize_here() {
+    const std::shared_ptr<const GlCells> from = std::exchange(cells_, std::make_shared<GlCells>());
     projection::rasterize_records(
-        cells_->records, rect_, context_.space->pixels_per_tangent(),
+        from->records, rect_, context_.space->pixels_per_tangent(),
         [&](const projection::RaySegments& segments, std::span<const projection::CellRecord> cells) {
           reserve(fragments_.size() + segments.size);
+          count(segments.size);
           const auto in_units = [&](double depth) {
             return on_lattice() ? (depth - units_.depth_origin) / units_.depth_unit : depth;
           };
@@ -403,7 +405,11 @@ class GlMerger final : public TileMerger {
                   static_cast<std::uint32_t>(cells[segments.tet(i)].tet)});
           }
         });
-    cells_->records.clear();
+  }
+
+  /// Segments of cells, which no projector has counted.
+  void count(std::uint64_t segments) const {
+    if (context_.segments != nullptr) *context_.segments += segments;
   }
 
   /// All of the light lies behind what the pixel has.
