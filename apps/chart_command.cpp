@@ -48,6 +48,7 @@ std::string options_text(const analysis::ChartMethod& method, bool is_grid) {
     words.push_back(fmt::format("--backend osmesa --compositor {}", fragment ? "gl-fragment" : "gl-compute"));
     if (fragment) words.push_back(fmt::format("--framebuffer {}", s.mesh.device.half ? "half" : "float"));
   }
+  if (s.mesh.rasterizer == Rasterizer::device) words.emplace_back("--rasterizer device");
   if (s.mesh.rasterizer == Rasterizer::scanline) words.emplace_back("--rasterizer scanline");
   if (s.integrator.kind == IntegratorKind::automatic)
     words.push_back(fmt::format("--accuracy {:g}", s.integrator.accuracy));

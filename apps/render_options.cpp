@@ -40,7 +40,7 @@ int thread_count(const RenderWords& words) {
 /// What meshes and grids share, and what is of meshes.
 void set_common(const RenderWords& words, RenderOptions& options) {
   check_word("--emission", words.emission, {"absorption", "independent"});
-  check_word("--rasterizer", words.rasterizer, {"planes", "scanline"});
+  check_word("--rasterizer", words.rasterizer, {"planes", "scanline", "device"});
   Settings& settings = options.settings;
   if (!options.is_grid()) {
     settings.integrator = mesh_integrator(words);
@@ -48,6 +48,7 @@ void set_common(const RenderWords& words, RenderOptions& options) {
     if (!options.fixed_higher_order) options.read.higher_order_tolerance = settings.integrator.accuracy;
   }
   if (words.rasterizer == "scanline") settings.mesh.rasterizer = Rasterizer::scanline;
+  if (words.rasterizer == "device") settings.mesh.rasterizer = Rasterizer::device;
   if (words.emission == "independent") settings.emission = Emission::independent;
   if (!words.deep_accuracy.empty())
     options.frame.deep_accuracy = parse_positive("--deep-accuracy", words.deep_accuracy);
@@ -201,9 +202,10 @@ void add_render_options(CLI::App& command, RenderWords& words) {
   command.add_option("--emission", words.emission, "source term (default: absorption)")
       ->type_name("absorption|independent");
   command
-      .add_option("--rasterizer", words.rasterizer,
-                  "how cells become ray segments (default: planes; the paper's: scanline)")
-      ->type_name("planes|scanline");
+      .add_option(
+          "--rasterizer", words.rasterizer,
+          "how cells become ray segments (default: planes; the paper's: scanline; device: as planes, by gl-compute)")
+      ->type_name("planes|scanline|device");
   add_compositing_options(command, words);
   add_volume_render_options(command, words);
   command.add_option("--threads", words.threads, "threads (default: all cores)")->type_name("T");

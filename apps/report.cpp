@@ -22,7 +22,9 @@ using analysis::deviation;
 using analysis::word;
 using Json = nlohmann::ordered_json;
 
-const char* word(Rasterizer rasterizer) { return rasterizer == Rasterizer::planes ? "planes" : "scanline"; }
+const char* word(Rasterizer rasterizer) {
+  return rasterizer == Rasterizer::planes ? "planes" : rasterizer == Rasterizer::scanline ? "scanline" : "device";
+}
 
 std::string method_words(const Settings& settings) {
   std::string words = method_word(settings.integrator.kind);

@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
-"""Stage times of the compositors on one mesh in one run: CPU, gl-compute, gl-fragment.
+"""Stage times of the compositors on one mesh in one run: CPU, gl-compute, the same with cells rasterized by the device,
+gl-fragment.
 
 Every compositor renders the same image from the same ray segments; stages are self times of its trace (device stages
-by the device's own clock, CPU stages summed over threads and divided by them). Prints a markdown table.
+by the device's own clock, CPU stages summed over threads and divided by them; cells are rasterized by the CPU but
+where it says otherwise). gl-fragment is the paper's, and left out where the integrator is not sampled:N. Prints a
+markdown table.
 """
 import argparse
 import collections
@@ -55,13 +58,17 @@ def main():
         cases = [
             ("CPU", []),
             ("gl-compute", ["--compositor", "gl-compute", "--backend", arguments.backend]),
+            ("gl-compute, cells on the device",
+             ["--compositor", "gl-compute", "--rasterizer", "device", "--backend", arguments.backend]),
+        ]
+        cases += [] if not arguments.integrator.startswith("sampled") else [
             ("gl-fragment, half", ["--compositor", "gl-fragment", "--backend", arguments.backend]),
             ("gl-fragment, float",
              ["--compositor", "gl-fragment", "--framebuffer", "float", "--backend", arguments.backend]),
         ]
         print(f"{results_file.made(os.getloadavg()[0])}\n`{results_file.command('gl_stages.py')}`\n")
-        print("| compositor | frame [ms] | sort [ms] | integrate [ms] | composite [ms] | sort passes |")
-        print("|---|---|---|---|---|---|")
+        print("| compositor | frame [ms] | project [ms] | sort [ms] | integrate [ms] | composite [ms] | sort passes |")
+        print("|---|---|---|---|---|---|---|")
         for name, options in cases:
             trace, report = os.path.join(folder, "trace.json"), os.path.join(folder, "report.json")
             subprocess.run(
@@ -75,7 +82,9 @@ def main():
             device = bool(options)
             per = 1 if device else arguments.threads
             cell = lambda stage: f"{times[(device, stage)] / per:.0f}" if times[(device, stage)] else "in composite"
-            print(f"| {name} | {frame['frame_ms'][0]:.0f} | {cell('sort')} | {cell('integrate')} | "
+            rasterizes = "device" in options
+            project = times[(rasterizes, "project")] / (1 if rasterizes else arguments.threads)
+            print(f"| {name} | {frame['frame_ms'][0]:.0f} | {project:.0f} | {cell('sort')} | {cell('integrate')} | "
                   f"{cell('composite')} | {passes[(device, 'sort')] or '-'} |")
         print(f"\n{frame['counters']['segments']} ray segments; {frame['backend']}")
 

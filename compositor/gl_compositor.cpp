@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -29,22 +30,25 @@ class GlCompositor::Worker {
 
   std::string opened() { return opened_.get_future().get(); }
 
-  std::future<std::vector<GlLight>> take(GlFragments fragments, const GlRules& rules) {
-    GlJob job{std::move(fragments), rules, {}};
+  std::future<std::vector<GlLight>> take(GlJob job) { return put(std::move(job), jobs_); }
+  std::future<std::vector<std::uint32_t>> take(GlCount job) { return put(std::move(job), counts_); }
+
+ private:
+  using Batch = std::vector<GlJob>;
+
+  template <class Job>
+  auto put(Job job, std::deque<Job>& queue) -> decltype(job.done.get_future()) {
     auto future = job.done.get_future();
     {
       const std::lock_guard lock(mutex_);
       if (failure_)
         job.done.set_exception(failure_);
       else
-        jobs_.push_back(std::move(job));
+        queue.push_back(std::move(job));
     }
     changed_.notify_all();
     return future;
   }
-
- private:
-  using Batch = std::vector<GlJob>;
 
   /// The thread: the context lives and dies here.
   void live(gl::Platform platform) {
@@ -52,7 +56,7 @@ class GlCompositor::Worker {
     std::unique_ptr<GlKernel> kernel;
     try {
       context = gl::open_context(platform, settings_.egl_device);
-      kernel = settings_.method == GlMethod::compute ? make_compute_kernel(*context, trace_)
+      kernel = settings_.method == GlMethod::compute ? make_compute_kernel(*context, settings_, trace_)
                                                      : make_fragment_kernel(*context, settings_, trace_);
       opened_.set_value(context->name());
     } catch (...) {
@@ -68,12 +72,21 @@ class GlCompositor::Worker {
   }
 
   void work(gl::Context& context, GlKernel& kernel, std::deque<Batch>& under_way) {
-    for (int batches = 0;;) {
+    auto begin_batch = [&, batches = 0]() mutable {
+      if (settings_.fault != GlFault::none && batches++ >= settings_.fault_after)
+        context.pretend(settings_.fault == GlFault::lost ? GL_CONTEXT_LOST : GL_OUT_OF_MEMORY);
+    };
+    for (;;) {
       Batch batch = next(under_way.empty());
+      if (counting_) {
+        begin_batch();
+        counting_->done.set_value(kernel.count(*counting_));
+        counting_.reset();
+        continue;
+      }
       if (batch.empty() && under_way.empty()) return;
       if (!batch.empty()) {
-        if (settings_.fault != GlFault::none && batches++ >= settings_.fault_after)
-          context.pretend(settings_.fault == GlFault::lost ? GL_CONTEXT_LOST : GL_OUT_OF_MEMORY);
+        begin_batch();
         under_way.push_back(std::move(batch));
         kernel.begin(under_way.back());
         context.check("compositing");
@@ -86,17 +99,22 @@ class GlCompositor::Worker {
     }
   }
 
-  /// Jobs of one frame, as many as make a batch. Waits for some if `wait`; none: the end, or there are none now.
+  /// Jobs of one frame, as many as make a batch. Waits for some if `wait`; none: the end, or there are none now, or
+  /// something is to be counted, which goes first (counting_): its tile's jobs are still to come.
   Batch next(bool wait) {
     std::unique_lock lock(mutex_);
-    if (wait) changed_.wait(lock, [&] { return ending_ || !jobs_.empty(); });
+    if (wait) changed_.wait(lock, [&] { return ending_ || !jobs_.empty() || !counts_.empty(); });
     Batch batch;
+    if (!ending_ && !counts_.empty()) {
+      counting_.emplace(std::move(counts_.front()));
+      counts_.pop_front();
+      return batch;
+    }
     std::size_t fragments = 0;
     while (!ending_ && !jobs_.empty()) {
       const GlJob& job = jobs_.front();
-      fragments += job.fragments.keys.size();
-      if (!batch.empty() &&
-          (job.rules.frame != batch.front().rules.frame || fragments > GlCompositor::comfortable_fragments))
+      fragments += job.fragments.size();
+      if (!batch.empty() && (job.rules.frame != batch.front().rules.frame || fragments > settings_.batch_fragments))
         break;
       batch.push_back(std::move(jobs_.front()));
       jobs_.pop_front();
@@ -111,6 +129,9 @@ class GlCompositor::Worker {
       for (GlJob& job : batch) job.done.set_exception(failure);
     for (GlJob& job : jobs_) job.done.set_exception(failure);
     jobs_.clear();
+    if (counting_) counting_->done.set_exception(failure);
+    for (GlCount& job : counts_) job.done.set_exception(failure);
+    counts_.clear();
   }
 
   GlSettings settings_;
@@ -118,14 +139,18 @@ class GlCompositor::Worker {
   std::mutex mutex_;  // guards what follows
   std::condition_variable changed_;
   std::deque<GlJob> jobs_;
+  std::deque<GlCount> counts_;
   std::exception_ptr failure_;
   bool ending_ = false;
+  std::optional<GlCount> counting_;  // the thread's own
   std::promise<std::string> opened_;
   std::thread thread_;  // last: it uses all of the above
 };
 
 GlCompositor::GlCompositor(gl::Platform platform, const GlSettings& settings, scene::Trace* trace)
-    : method_(settings.method), worker_(std::make_unique<Worker>(platform, settings, trace)) {
+    : method_(settings.method),
+      comfortable_fragments_(settings.batch_fragments),
+      worker_(std::make_unique<Worker>(platform, settings, trace)) {
   name_ =
       fmt::format("{} ({})", settings.method == GlMethod::compute ? "gl-compute" : "gl-fragment", worker_->opened());
 }
@@ -133,7 +158,12 @@ GlCompositor::GlCompositor(gl::Platform platform, const GlSettings& settings, sc
 GlCompositor::~GlCompositor() = default;
 
 std::future<std::vector<GlLight>> GlCompositor::composite(GlFragments fragments, const GlRules& rules) {
-  return worker_->take(std::move(fragments), rules);
+  return worker_->take(GlJob{std::move(fragments), rules, {}});
+}
+
+std::future<std::vector<std::uint32_t>> GlCompositor::count(std::shared_ptr<const GlCells> cells,
+                                                            const scene::PixelRect& rect, std::uint32_t frame) {
+  return worker_->take(GlCount{std::move(cells), rect, frame, {}});
 }
 
 }  // namespace tessera::compositor

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <future>
 #include <memory>
 #include <string>
@@ -22,6 +24,8 @@ struct GlSettings {
   bool half = true;            ///< fragment: 16-bit framebuffer, as the paper's; false: 32-bit
   bool by_local_rank = false;  ///< --egl-device local-rank
   gl::EglDevice egl_device;
+  std::size_t batch_fragments = 1 << 20;  ///< that should come in one job
+  std::size_t batch_cells = 1 << 16;      ///< that are on the device at once
   // Tests:
   int texture_limit = 0;  ///< fragment: largest texture, if the device's is not to be used up; 0: the device's
   GlFault fault = GlFault::none;
@@ -48,12 +52,18 @@ class GlCompositor {
   /// ones.
   std::future<std::vector<GlLight>> composite(GlFragments fragments, const GlRules& rules);
 
-  /// Most fragments that should come in one job; a single pixel may have more.
-  static constexpr std::size_t comfortable_fragments = 1 << 20;
+  /// How many segments the cells have in every pixel of `rect`, row by row: the lists to give to composite() are then
+  /// known. `frame`: for the trace. From any thread, and fails as composite(). GlMethod::compute.
+  std::future<std::vector<std::uint32_t>> count(std::shared_ptr<const GlCells> cells, const scene::PixelRect& rect,
+                                                std::uint32_t frame);
+
+  /// Most fragments that should come in one job; a single row of pixels may have more.
+  [[nodiscard]] std::size_t comfortable_fragments() const { return comfortable_fragments_; }
 
  private:
   class Worker;
   GlMethod method_;
+  std::size_t comfortable_fragments_;
   std::string name_;
   std::unique_ptr<Worker> worker_;
 };

@@ -27,7 +27,7 @@ std::vector<GlLight> composite_on_cpu(const GlFragments& fragments, const GlRule
     const auto key = [](const sorting::GlKey& k) { return std::tie(k.front, k.back, k.tie, k.element); };
     std::sort(first, last, [&](const auto& a, const auto& b) { return key(a) < key(b); });
     double red = 0, green = 0, blue = 0, optical_depth = 0;
-    GlLight light{0, 0, 0, 0, GlLight::no_fragment, {}};
+    GlLight light{0, 0, 0, 0, GlLight::no_fragment, 0, 0, 0};
     for (auto k = first; k != last; ++k) {
       const std::size_t i = k->element;
       const auto& value = fragments.values[i];

@@ -143,7 +143,7 @@ class FragmentKernel final : public GlKernel {
     for (const GlFragments::List& list : lists) {
       const std::size_t x = list.pixel % width, y = list.pixel / width - top;
       const float* color = &colors[4 * (y * row + x)];
-      GlLight light{color[0], color[1], color[2], 0, GlLight::no_fragment, {}};
+      GlLight light{color[0], color[1], color[2], 0, GlLight::no_fragment, 0, 0, 0};
       light.optical_depth = optical_depth_of(color[3]);
       const float first = firsts[y * row + x];
       if (first > 0) light.first = list.begin + static_cast<std::uint32_t>(first) - 1;

@@ -19,6 +19,14 @@ struct GlJob {
   std::promise<std::vector<GlLight>> done;
 };
 
+/// Cells whose segments are to be counted.
+struct GlCount {
+  std::shared_ptr<const GlCells> cells;
+  scene::PixelRect rect;
+  std::uint32_t frame;
+  std::promise<std::vector<std::uint32_t>> done;
+};
+
 /// Lives on the context's thread. Batches are begun and finished in turn, at most `in_flight()` at once.
 class GlKernel {
  public:
@@ -28,9 +36,13 @@ class GlKernel {
   /// Waits for the oldest batch and gives its lights, job by job, list by list.
   virtual std::vector<std::vector<GlLight>> finish() = 0;
   [[nodiscard]] virtual int in_flight() const = 0;
+  /// Every pixel's number of segments, row by row; waits for the device, batches begun included. Of `compute` alone, to
+  /// which cells go alone.
+  virtual std::vector<std::uint32_t> count(const GlCount& /*job*/) { return {}; }
 };
 
-std::unique_ptr<GlKernel> make_compute_kernel(const gl::Context& context, scene::Trace* trace);
+std::unique_ptr<GlKernel> make_compute_kernel(const gl::Context& context, const GlSettings& settings,
+                                              scene::Trace* trace);
 std::unique_ptr<GlKernel> make_fragment_kernel(const gl::Context& context, const GlSettings& settings,
                                                scene::Trace* trace);
 

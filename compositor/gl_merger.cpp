@@ -7,6 +7,7 @@
 #include <cmath>
 #include <future>
 #include <limits>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,7 @@ namespace {
 
 /// So many fragments of a tile wait for the rest of it before what is final goes to the device.
 constexpr std::size_t patient_fragments = 1 << 20;
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A float's bits as an integer in the same order.
 std::uint32_t ordered(float x) {
@@ -56,6 +58,13 @@ class GlMerger final : public TileMerger {
   void add(const exchange::TilePart& part) override {
     reserve(fragments_.size() + part.fragments);
     exchange::RecordReader reader(part.records.bytes());
+    if (part.kind == exchange::RecordKind::cells) {
+      const std::size_t count = part.records.size() / sizeof(projection::CellRecord);
+      const std::size_t all = cells_->records.size() + count;
+      if (all * sizeof(projection::CellRecord) > context_.budget_bytes) refuse(all, "cells");
+      reader.take_onto(cells_->records, count);
+      return;
+    }
     while (!reader.empty()) switch (part.kind) {
         case exchange::RecordKind::lattice: {
           const auto header = reader.take<exchange::LatticeHeader>();
@@ -93,6 +102,7 @@ class GlMerger final : public TileMerger {
         case exchange::RecordKind::chains_of_cells:
           add_chain(part, reader);
           break;
+        case exchange::RecordKind::cells:
         case exchange::RecordKind::lit_chains:  // a device gives no light
           throw scene::Error(scene::ErrorCode::system_failure,
                              "exchange: lit segments on a device; all ranks must run the same program");
@@ -113,6 +123,7 @@ class GlMerger final : public TileMerger {
 
   void advance(double final_depth) override {
     const bool all = std::isinf(final_depth) && final_depth > 0;
+    if (!all && !cells_->records.empty()) return;  // what lies before, the device finds
     if (!all && fragments_.size() < patient_fragments &&
         fragments_.size() * sizeof(Fragment) < context_.budget_bytes / 2)
       return;
@@ -120,8 +131,17 @@ class GlMerger final : public TileMerger {
     const auto rest = std::partition(fragments_.begin(), fragments_.end(), [&](const Fragment& fragment) {
       return all || (by_back_ ? fragment.back : fragment.front) < final_step;
     });
-    composite({fragments_.begin(), rest});
-    fragments_.erase(fragments_.begin(), rest);
+    try {
+      composite({fragments_.begin(), rest});
+      fragments_.erase(fragments_.begin(), rest);
+    } catch (const scene::Error&) {
+      if (context_.device_failed == nullptr || cells_->records.empty()) throw;
+      *context_.device_failed = true;
+      rasterize_here();
+      composite(fragments_);
+      fragments_.clear();
+    }
+    if (!cells_->records.empty()) cells_ = std::make_shared<GlCells>();  // the device may still hold the last ones
   }
 
   MergedTile finish() override { return {image_of(pixels_, {rect_.width(), rect_.height()}), {}, {}}; }
@@ -151,10 +171,13 @@ class GlMerger final : public TileMerger {
 
   void reserve(std::size_t count) {
     if (count * sizeof(Fragment) > context_.budget_bytes || count > std::numeric_limits<std::uint32_t>::max())
-      throw scene::Error(scene::ErrorCode::system_failure,
-                         fmt::format("the tile at pixel {},{} holds {} fragments at once, beyond the memory budget; "
-                                     "raise `memory` or make `tile_size` smaller",
-                                     rect_.x0, rect_.y0, count));
+      refuse(count, "fragments");
+  }
+  [[noreturn]] void refuse(std::uint64_t count, const char* what) const {
+    throw scene::Error(scene::ErrorCode::system_failure,
+                       fmt::format("the tile at pixel {},{} holds {} {} at once, beyond the memory budget; raise "
+                                   "`memory` or make `tile_size` smaller",
+                                   rect_.x0, rect_.y0, count, what));
   }
 
   void push(const Fragment& fragment) {
@@ -220,90 +243,188 @@ class GlMerger final : public TileMerger {
       return static_cast<std::uint32_t>(std::min((depth - origin) * per_unit, 4294967294.0));
     }
   };
-  static Steps steps_of(std::span<const Fragment> fragments) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
+  [[nodiscard]] Steps steps_of(std::span<const Fragment> fragments) const {
+    double low = infinity, high = -low;
     for (const Fragment& f : fragments) low = std::min(low, f.front), high = std::max(high, f.back);
+    for (const projection::CellRecord& cell : cells_->records)
+      for (const auto& corner : cell.corner) {
+        const double depth = on_lattice() ? (corner.depth - units_.depth_origin) / units_.depth_unit : corner.depth;
+        low = std::min(low, depth), high = std::max(high, depth);
+      }
     if (!(high > low)) return {low, 1};
     return {low, std::exp2(std::floor(std::log2(4294967295.0 / (high - low))))};
   }
 
-  void composite(std::span<const Fragment> fragments) {
-    if (fragments.empty()) return;
-    const Steps steps = steps_of(fragments);
-    std::vector<std::uint32_t> begin(pixels_.size() + 1, 0), order(fragments.size());
-    for (const Fragment& f : fragments) ++begin[f.pixel + 1];
-    for (std::size_t p = 0; p < pixels_.size(); ++p) begin[p + 1] += begin[p];
-    std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
-    for (std::size_t i = 0; i < fragments.size(); ++i)
-      order[next[fragments[i].pixel]++] = static_cast<std::uint32_t>(i);
+  /// Fragments and the cells' segments, pixel by pixel.
+  struct ByPixel {
+    std::vector<std::uint32_t> order;        ///< of fragments
+    std::vector<std::uint32_t> begin_given;  ///< pixel p's are order[begin_given[p]] to order[begin_given[p + 1]]
+    std::vector<std::uint32_t> begin;        ///< the same, the segments behind them counted too
+    Steps steps;
+    [[nodiscard]] std::uint32_t count(std::size_t p) const { return begin[p + 1] - begin[p]; }
+    [[nodiscard]] std::uint32_t given(std::size_t p) const { return begin_given[p + 1] - begin_given[p]; }
+  };
 
-    // Whole rows of pixels to a job, as many as are comfortable.
-    struct Portion {
-      std::size_t first_pixel, end_pixel;
-      std::future<std::vector<GlLight>> lights;
-    };
+  ByPixel by_pixel(std::span<const Fragment> fragments) const {
+    ByPixel by{std::vector<std::uint32_t>(fragments.size()),
+               std::vector<std::uint32_t>(pixels_.size() + 1, 0),
+               {},
+               steps_of(fragments)};
+    for (const Fragment& f : fragments) ++by.begin_given[f.pixel + 1];
+    for (std::size_t p = 0; p < pixels_.size(); ++p) by.begin_given[p + 1] += by.begin_given[p];
+    std::vector<std::uint32_t> next(by.begin_given.begin(), by.begin_given.end() - 1);
+    for (std::size_t i = 0; i < fragments.size(); ++i)
+      by.order[next[fragments[i].pixel]++] = static_cast<std::uint32_t>(i);
+    by.begin = by.begin_given;
+    if (cells_->records.empty()) return by;
+    cells_->units = cell_units(by.steps);
+    const std::vector<std::uint32_t> counts = answer_of(context_.device->count(cells_, rect_, context_.frame));
+    std::uint64_t before = 0;
+    for (std::size_t p = 0; p < pixels_.size(); ++p) by.begin[p + 1] += static_cast<std::uint32_t>(before += counts[p]);
+    if (by.begin_given.back() + before > std::numeric_limits<std::uint32_t>::max()) refuse(before, "ray segments");
+    return by;
+  }
+
+  [[nodiscard]] projection::CellUnits cell_units(const Steps& steps) const {
+    const scene::ImageSize size = context_.space->size();
+    projection::CellUnits units{0.5 * size.width, 0.5 * size.height, context_.space->pixels_per_tangent(),
+                                units_,           steps.origin,      steps.per_unit};
+    if (on_lattice()) {
+      units.key_origin = units_.depth(steps.origin);
+      units.keys_per_depth = steps.per_unit / units_.depth_unit;
+    }
+    return units;
+  }
+
+  template <class Answer>
+  Answer answer_of(std::future<Answer> future) const {
+    const scene::TraceScope timing(context_.trace, "wait", static_cast<std::int32_t>(context_.frame));
+    return future.get();
+  }
+
+  /// Whole rows of pixels to a job, as many as are comfortable.
+  struct Portion {
+    std::size_t first_pixel, end_pixel;
+    std::future<std::vector<GlLight>> future;
+    std::vector<GlLight> lights{};
+  };
+
+  void composite(std::span<const Fragment> fragments) {
+    if (fragments.empty() && cells_->records.empty()) return;
+    const ByPixel by = by_pixel(fragments);
     std::vector<Portion> portions;
     const auto width = static_cast<std::size_t>(rect_.width());
     for (std::size_t p = 0; p < pixels_.size();) {
       const std::size_t first = p;
       do p = std::min(p + width, pixels_.size());
-      while (p < pixels_.size() &&
-             begin[std::min(p + width, pixels_.size())] - begin[first] <= GlCompositor::comfortable_fragments);
-      if (begin[p] == begin[first]) continue;
-      portions.push_back(
-          {first, p, context_.device->composite(portion(fragments, order, begin, first, p, steps), rules_)});
+      while (p < pixels_.size() && by.begin[std::min(p + width, pixels_.size())] - by.begin[first] <=
+                                       context_.device->comfortable_fragments());
+      if (by.begin[p] == by.begin[first]) continue;
+      portions.push_back({first, p, context_.device->composite(portion(fragments, by, first, p), rules_)});
     }
-    for (Portion& portion : portions) {
-      const std::vector<GlLight> lights = [&] {
-        const scene::TraceScope timing(context_.trace, "wait", static_cast<std::int32_t>(context_.frame));
-        try {
-          return portion.lights.get();
-        } catch (const scene::Error&) {
-          if (context_.device_failed == nullptr) throw;
-          *context_.device_failed = true;
-          const GlFragments again =
-              this->portion(fragments, order, begin, portion.first_pixel, portion.end_pixel, steps);
-          return composite_on_cpu(again, rules_, *context_.integrator, units_);
-        }
-      }();
+    // All of them before one is used: if the device fails, the tile's cells are rasterized here.
+    for (Portion& portion : portions) portion.lights = lights_of(portion, fragments, by);
+    count(by.begin.back() - by.begin_given.back());
+    for (const Portion& portion : portions) {
       std::size_t list = 0;
       for (std::size_t p = portion.first_pixel; p < portion.end_pixel; ++p) {
-        if (begin[p] == begin[p + 1]) continue;
-        const GlLight& light = lights[list++];
-        const Fragment* first =
-            light.first == GlLight::no_fragment ? nullptr : &fragments[order[begin[portion.first_pixel] + light.first]];
-        add_light(light, first, pixels_[p]);
+        if (by.count(p) == 0) continue;
+        const GlLight& light = portion.lights[list++];
+        if (light.first == GlLight::no_fragment)
+          add_light(light, infinity, pixels_[p]);
+        else if (light.first == GlLight::rasterized_one)
+          add_light(light, visible_depth(light, by.steps), pixels_[p]);
+        else
+          add_light(
+              light,
+              visible_depth(
+                  fragments[by.order[by.begin_given[p] + light.first - (by.begin[p] - by.begin[portion.first_pixel])]]),
+              pixels_[p]);
       }
     }
   }
 
-  GlFragments portion(std::span<const Fragment> fragments, const std::vector<std::uint32_t>& order,
-                      const std::vector<std::uint32_t>& begin, std::size_t first, std::size_t end,
-                      const Steps& steps) const {
+  std::vector<GlLight> lights_of(Portion& portion, std::span<const Fragment> fragments, const ByPixel& by) const {
+    try {
+      return answer_of(std::move(portion.future));
+    } catch (const scene::Error&) {
+      if (context_.device_failed == nullptr || !cells_->records.empty()) throw;
+      *context_.device_failed = true;
+      const GlFragments again = this->portion(fragments, by, portion.first_pixel, portion.end_pixel);
+      return composite_on_cpu(again, rules_, *context_.integrator, units_);
+    }
+  }
+
+  GlFragments portion(std::span<const Fragment> fragments, const ByPixel& by, std::size_t first,
+                      std::size_t end) const {
     GlFragments out;
     out.width = rect_.width();
-    out.keys.reserve(begin[end] - begin[first]);
-    out.values.reserve(begin[end] - begin[first]);
+    const std::size_t given = by.begin_given[end] - by.begin_given[first];
+    out.keys.reserve(given);
+    out.values.reserve(given);
     for (std::size_t p = first; p < end; ++p) {
-      if (begin[p] == begin[p + 1]) continue;
-      out.lists.push_back({static_cast<std::uint32_t>(p), begin[p] - begin[first], begin[p + 1] - begin[p]});
-      for (std::uint32_t i = begin[p]; i < begin[p + 1]; ++i) {
-        const Fragment& f = fragments[order[i]];
+      if (by.count(p) == 0) continue;
+      std::uint32_t element = by.begin[p] - by.begin[first];
+      out.lists.push_back({static_cast<std::uint32_t>(p), element, by.count(p), by.count(p) - by.given(p)});
+      for (std::uint32_t i = by.begin_given[p]; i < by.begin_given[p + 1]; ++i) {
+        const Fragment& f = fragments[by.order[i]];
         // With the back as the key the front says nothing.
-        out.keys.push_back({by_back_ ? steps.of(f.back) : steps.of(f.front), steps.of(f.back), f.tie,
-                            static_cast<std::uint32_t>(out.keys.size())});
+        out.keys.push_back(
+            {by_back_ ? by.steps.of(f.back) : by.steps.of(f.front), by.steps.of(f.back), f.tie, element++});
         out.values.push_back(f.value);
       }
     }
+    if (by.begin[end] - by.begin[first] == given) return out;
+    const int width = rect_.width();
+    out.cells = cells_;
+    out.rows = {rect_.x0, rect_.y0 + static_cast<int>(first) / width, rect_.x1,
+                rect_.y0 + static_cast<int>(end) / width};
+    out.first_pixel = static_cast<std::uint32_t>(first);
     return out;
   }
 
+  /// The cells' segments become fragments like others: the device has failed.
+  void rasterize_here() {
+    const std::shared_ptr<const GlCells> from = std::exchange(cells_, std::make_shared<GlCells>());
+    projection::rasterize_records(
+        from->records, rect_, context_.space->pixels_per_tangent(),
+        [&](const projection::RaySegments& segments, std::span<const projection::CellRecord> cells) {
+          reserve(fragments_.size() + segments.size);
+          count(segments.size);
+          const auto in_units = [&](double depth) {
+            return on_lattice() ? (depth - units_.depth_origin) / units_.depth_unit : depth;
+          };
+          for (std::size_t i = 0; i < segments.size; ++i) {
+            const std::uint32_t pixel = segments.pixel(i);
+            const double length = (segments.back[i] - segments.front[i]) * length_[pixel] / units_.depth_unit;
+            push({in_units(segments.front[i]),
+                  in_units(segments.back[i]),
+                  {static_cast<float>(length), device_scalar(segments.scalar_front[i], units_),
+                   device_scalar(segments.scalar_back[i], units_), -1},
+                  pixel,
+                  static_cast<std::uint32_t>(cells[segments.tet(i)].tet)});
+          }
+        });
+  }
+
+  /// Segments of cells, which no projector has counted.
+  void count(std::uint64_t segments) const {
+    if (context_.segments != nullptr) *context_.segments += segments;
+  }
+
   /// All of the light lies behind what the pixel has.
-  void add_light(const GlLight& light, const Fragment* first, MergedPixel& pixel) const {
+  void add_light(const GlLight& light, double first_depth, MergedPixel& pixel) const {
     if (!pixel.open) return;
-    if (first != nullptr && std::isinf(pixel.first_depth)) pixel.first_depth = visible_depth(*first);
+    if (std::isinf(pixel.first_depth)) pixel.first_depth = first_depth;
     pixel.add(light.red, light.green, light.blue, -std::expm1(-double{light.optical_depth}));
     pixel.open = (1 - pixel.opacity) * weight_ >= context_.integrator->termination_error();
+  }
+
+  /// Of GlLight::rasterized_one.
+  [[nodiscard]] double visible_depth(const GlLight& light, const Steps& steps) const {
+    const double along = light.along;
+    const double at = steps.origin + ((1 - along) * light.front + along * light.back) / steps.per_unit;
+    return on_lattice() ? units_.depth(at) : at;
   }
 
   [[nodiscard]] double visible_depth(const Fragment& f) const {
@@ -322,6 +443,7 @@ class GlMerger final : public TileMerger {
   std::vector<MergedPixel> pixels_;
   std::vector<double> length_;  ///< world length per unit of planar depth, by pixel
   std::vector<Fragment> fragments_;
+  std::shared_ptr<GlCells> cells_ = std::make_shared<GlCells>();  ///< that wait for all else of the tile
   integrals::SegmentBatch batch_;
   bool by_back_ = false;
   std::uint32_t arrivals_ = 0;

@@ -41,8 +41,9 @@ struct MergeContext {
   std::uint32_t frame = 0;
   /// Not null: where the device fails the CPU takes over, and this is set.
   std::atomic<bool>* device_failed = nullptr;
-  const scene::SurfaceSet* surfaces = nullptr;  ///< in the volume; null: none
-  const MatterLight* light = nullptr;           ///< on the matter of a mesh, by the CPU; null: none
+  std::atomic<std::uint64_t>* segments = nullptr;  ///< grows by those that the device makes of cells; null: nobody asks
+  const scene::SurfaceSet* surfaces = nullptr;     ///< in the volume; null: none
+  const MatterLight* light = nullptr;              ///< on the matter of a mesh, by the CPU; null: none
 
   /// What may still come behind a pixel of transmittance 1.
   [[nodiscard]] double opacity_weight() const {

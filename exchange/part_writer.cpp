@@ -40,6 +40,10 @@ void PartWriter::send_if_full() {
   if (records_.size() >= part_bytes) send(false);
 }
 
+void PartWriter::send_rest() {
+  if (!records_.empty()) send(false);
+}
+
 void PartWriter::send(bool last) {
   TilePart part{tile_, kind_, last, false, final_depth_, fragments_, std::exchange(records_, {})};
   part.ascending = ascents_ == 1;

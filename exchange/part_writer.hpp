@@ -39,6 +39,8 @@ class PartWriter {
   void complete_to(double depth);
   /// Sends what there is if that is worth a message.
   void send_if_full();
+  /// Sends what there is, if anything; the tile goes on by another writer.
+  void send_rest();
 
  private:
   void send(bool last);

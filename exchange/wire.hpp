@@ -33,6 +33,9 @@
 ///   lattice_runs  RunsHeader, `runs` LatticeRuns and `segments` LatticeSegments each: runs of one pixel. A run of one
 ///              segment is that segment, 16 bytes, integrated by the compositor.
 ///   tuples     TupleRecord each (compositor/tuple_record.hpp), in the order of their cells: Juliachs et al. 2007, 4.1
+///   cells      CellRecord each (projection/cell_record.hpp), no fragments yet: for the compositor's device to
+///   rasterize.
+///              They come before the projector's other parts of the tile.
 namespace tessera::exchange {
 
 enum class RecordKind : std::uint8_t {
@@ -42,7 +45,8 @@ enum class RecordKind : std::uint8_t {
   tuples = 4,
   lattice = 5,
   lattice_runs = 6,
-  lit_chains = 7
+  lit_chains = 7,
+  cells = 8
 };
 
 struct FrameBegin {
@@ -62,7 +66,7 @@ struct PartHeader {
   std::uint8_t segments = 0;   ///< of an ascending part: 1: some of its runs are single segments
   std::uint64_t bytes;
   double final_depth;       ///< planar; all of this projector's fragments of the tile before it have been sent
-  std::uint64_t fragments;  ///< runs, links or tuples in the part
+  std::uint64_t fragments;  ///< runs, links, tuples or cells in the part
 };
 static_assert(sizeof(PartHeader) == 32);
 

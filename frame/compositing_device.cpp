@@ -41,6 +41,22 @@ std::string reason(const scene::Error& error) {
 
 }  // namespace
 
+void check_device_rasterizer(const RenderSettings& render, const CompositingSettings& settings) {
+  if (render.rasterizer != Rasterizer::device) return;
+  const std::vector<Backend>& backends = settings.backends;
+  const auto on_cpu = static_cast<std::size_t>(std::count(backends.begin(), backends.end(), Backend::cpu));
+  if (on_cpu == backends.size())
+    throw scene::bad_input(
+        "`rasterizer` device: it is for `compositor` gl-compute; add that, or use `rasterizer` planes");
+  if (on_cpu > 0)
+    throw scene::bad_input(
+        "`rasterizer` device: `backend` leaves some compositors to the CPU; name a device for each, or use "
+        "`rasterizer` planes");
+  if (settings.gl.method == compositor::GlMethod::fragment)
+    throw scene::bad_input(
+        "`rasterizer` device: `compositor` gl-fragment takes ray segments; use gl-compute, or `rasterizer` planes");
+}
+
 void open_compositing_device(const CompositingSettings& settings, const Roles& roles, exchange::Transport& transport,
                              scene::Trace* trace, CompositingDevice& made) {
   const std::vector<Backend>& backends = settings.backends;
@@ -74,6 +90,7 @@ void open_compositing_device(const CompositingSettings& settings, const Roles& r
   for (std::string& other : gather_texts(transport, exchange::MessageKind::device, name))
     if (!other.empty() && std::find(names.begin(), names.end(), other) == names.end())
       names.push_back(std::move(other));
+  made.everywhere = std::none_of(names.begin(), names.end(), [](const auto& n) { return n.starts_with("cpu"); });
   made.name = fmt::format("{}", fmt::join(names, " + "));
 }
 

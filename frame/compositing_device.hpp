@@ -7,6 +7,7 @@
 
 #include "compositor/gl_compositor.hpp"
 #include "exchange/transport.hpp"
+#include "frame/render.hpp"
 #include "frame/roles.hpp"
 
 namespace tessera::frame {
@@ -24,10 +25,14 @@ struct CompositingSettings {
 /// "cpu (EGL: no hardware device answers)"; several kinds are joined by " + ".
 struct CompositingDevice {
   std::unique_ptr<compositor::GlCompositor> device;
+  bool everywhere = false;                   ///< every compositor has one
   bool may_fail = false;                     ///< the CPU takes over then (Backend::automatic)
   mutable std::atomic<bool> failed = false;  ///< it did
   std::string name;
 };
+
+/// Throws Error(bad_input) if devices are to rasterize and it is known that some compositor has none that can.
+void check_device_rasterizer(const RenderSettings& render, const CompositingSettings& settings);
 
 /// Opens this rank's device into `made`. Collective. Throws Error(bad_input) if there is neither one backend nor one
 /// for each compositor, Error(system_failure) if a device that was asked for by name cannot be opened.

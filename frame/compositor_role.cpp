@@ -66,7 +66,8 @@ struct Frame {
   std::optional<integrals::LaneTable> table;  ///< of lattice segments, or for a device
   scene::Lattice units;                       ///< on a device: the table's
   double start_us = 0;
-  std::atomic<bool> stopped = false;  ///< from now on tiles lack fragments, and are not sent
+  std::atomic<std::uint64_t> segments = 0;  ///< of cells that the device rasterized
+  std::atomic<bool> stopped = false;        ///< from now on tiles lack fragments, and are not sent
 
   struct Merge {
     std::unique_ptr<compositor::TileMerger> merger;
@@ -196,6 +197,7 @@ class CompositorLoop {
       if (first.number - run_.first != frames_finished_ || !first.collector.finished()) return;
       exchange::FrameEnd sums = first.collector.sums();
       sums.failed_devices += run_.device.failed ? 1 : 0;
+      sums.counters.segments += first.segments;
       sums.stopped += first.stopped ? 1 : 0;
       first.sender.end(sums);
       if (trace_ != nullptr) trace_->add_frame(static_cast<std::int32_t>(first.number), first.start_us);
@@ -242,8 +244,8 @@ class CompositorLoop {
                run_.settings.deep ? run_.settings.render.deep_accuracy : 0,
                run_.device.device != nullptr ? &of.units : &of.collector.lattice(), of.table ? &*of.table : nullptr,
                trace_, run_.device.device.get(), on_lattice, of.number,
-               run_.device.may_fail ? &run_.device.failed : nullptr, of.surfaces.empty() ? nullptr : &of.surfaces,
-               of.light ? &*of.light : nullptr},
+               run_.device.may_fail ? &run_.device.failed : nullptr, &of.segments,
+               of.surfaces.empty() ? nullptr : &of.surfaces, of.light ? &*of.light : nullptr},
               of.grid.rect(tile));
         if (merge.merger != nullptr) compositor::merge(*merge.merger, waiting.parts, waiting.final_depth, budget_.tile);
         // A tile that got nothing stays as empty as the assembled picture is.

@@ -68,6 +68,7 @@ void check(const DistributedSettings& settings) {
     throw scene::bad_input("`exchange` runs: segments of `rasterizer` scanline do not touch; use `exchange` segments");
   if (settings.deep && settings.exchange == Exchange::runs)
     throw scene::bad_input("`exchange` runs: a deep picture needs the segments that runs are made of; use segments");
+  check_device_rasterizer(settings.render, settings.compositing_on);
   const auto& backends = settings.compositing_on.backends;
   const bool on_device = std::any_of(backends.begin(), backends.end(), [](Backend b) { return b != Backend::cpu; });
   if (on_device && !settings.render.surfaces.empty())

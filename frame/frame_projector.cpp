@@ -68,12 +68,17 @@ class Worker final : public TileWorker {
  public:
   using Sink = typename TileRenderer<Source>::Sink;
   template <class... More>
-  Worker(std::unique_ptr<Sink> sink, const TileContext& context, const More&... more)
-      : trace_(context.trace), renderer_(context, more...), sink_(std::move(sink)) {}
+  Worker(std::unique_ptr<Sink> sink, std::unique_ptr<compositor::CellSink> cells, const TileContext& context,
+         const More&... more)
+      : context_(context), renderer_(context, more...), sink_(std::move(sink)), cells_(std::move(cells)) {}
   void render(std::size_t tile, const scene::PixelRect& rect, std::span<projection::TileEntry> entries) override {
-    const scene::TraceTile of_tile(trace_, tile);
+    const scene::TraceTile of_tile(context_.trace, tile);
+    if (cells_ != nullptr) {
+      const scene::TraceScope timing(context_.trace, "project");
+      entries = cells_->take(tile, rect, *context_.projected, context_.at_steps, entries);
+    }
     sink_->begin_tile(tile, rect);
-    renderer_.render(rect, entries, *sink_);
+    if (cells_ == nullptr || !entries.empty()) renderer_.render(rect, entries, *sink_);
     sink_->end_tile();
   }
   void add_to(FrameStatistics& statistics) const override {
@@ -84,12 +89,14 @@ class Worker final : public TileWorker {
     statistics.exact_sign_tests += counts.raster.exact_sign_tests;
     statistics.unpaired += counts.raster.unpaired;
     statistics.tiles_split += counts.tiles_split;
+    if (cells_ != nullptr) statistics.cells_on_device += cells_->cells();
   }
 
  private:
-  scene::Trace* trace_;
+  TileContext context_;
   TileRenderer<Source> renderer_;
   std::unique_ptr<Sink> sink_;
+  std::unique_ptr<compositor::CellSink> cells_;  ///< null: the CPU rasterizes all
 };
 
 /// What is left of the budget for segments, shared by the threads.
@@ -255,8 +262,8 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   const double longest_ray = task.longest_ray > 0 ? task.longest_ray : diagonal_;
   // Sampling promises nothing that steps could break.
   const bool exact =
-      settings_.rasterizer == Rasterizer::planes && (settings_.integrator.kind == scene::IntegratorKind::exact ||
-                                                     settings_.integrator.kind == scene::IntegratorKind::automatic);
+      settings_.rasterizer != Rasterizer::scanline && (settings_.integrator.kind == scene::IntegratorKind::exact ||
+                                                       settings_.integrator.kind == scene::IntegratorKind::automatic);
   std::vector<projection::Step> steps;
   projection::CellsAtSteps at_steps;
   std::optional<projection::TileLists> lists;
@@ -289,7 +296,9 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
                             faces_or_null,
                             stop};
   Workers workers([&]() -> std::unique_ptr<TileWorker> {
-    if (task.lattice == nullptr) return std::make_unique<Worker<DoubleSource>>(task.make_sink(), context);
+    auto cells = task.make_cell_sink ? task.make_cell_sink() : nullptr;
+    if (task.lattice == nullptr)
+      return std::make_unique<Worker<DoubleSource>>(task.make_sink(), std::move(cells), context);
     const projection::LatticeView view{
         projected,
         {lattice_vertices_.data(), lattice_vertices_.size()},
@@ -298,7 +307,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
         depth_limits_of(space, *task.lattice, *task.function, settings_.emission, longest_ray),
         steps,
         context.at_steps};
-    return std::make_unique<Worker<LatticeSource>>(task.make_lattice_sink(), context, view);
+    return std::make_unique<Worker<LatticeSource>>(task.make_lattice_sink(), std::move(cells), context, view);
   });
   beside.wait();
   const std::uint64_t most_list_bytes = render_bands(task, *lists, held, [&](std::size_t first, std::size_t last) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "compositor/cell_sink.hpp"
 #include "compositor/tile_sink.hpp"
 #include "frame/render.hpp"
 #include "projection/large_array.hpp"
@@ -44,6 +45,9 @@ class FrameProjector {
     /// If set, tiles are rendered on this lattice and go to sinks of make_lattice_sink; else in double precision.
     const scene::Lattice* lattice = nullptr;
     std::function<std::unique_ptr<compositor::TileSink<sorting::LatticeEncoding>>()> make_lattice_sink;
+    /// If set, a sink for one thread that takes the cells of tiles which a device can rasterize; the others' segments
+    /// go on to the sinks above. There are no surfaces then.
+    std::function<std::unique_ptr<compositor::CellSink>()> make_cell_sink;
     /// Asked all along whether to stop; then project() throws scene::FrameStopped. Null: nobody looks on.
     scene::FrameWatch* watch = nullptr;
     /// The picture that sinks write to, so that `watch` hears of its tiles; null: they go elsewhere.

@@ -52,7 +52,7 @@ std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, co
   using scene::Lattice;
   const bool exact = settings.integrator.kind == scene::IntegratorKind::exact ||
                      settings.integrator.kind == scene::IntegratorKind::automatic;
-  if (!settings.use.lattice || settings.rasterizer != Rasterizer::planes || !exact || box.empty() ||
+  if (!settings.use.lattice || settings.rasterizer == Rasterizer::scanline || !exact || box.empty() ||
       settings.surfaces.has_faces() || settings.shading || !projection::lattice_available())
     return std::nullopt;
   const auto [near, far] = depth_range(space, box);

@@ -21,7 +21,7 @@ namespace tessera::frame {
 ///   - two steps of the function lie so close together that the lattice takes them for one;
 ///   - there are surfaces of triangles, which cut segments in double precision, or the mesh is shaded, by the tets of
 ///     segments, which the lattice's do not know;
-///   - it is switched off, the integrator is neither exact nor automatic, or the rasterizer is not `planes`;
+///   - it is switched off, the integrator is neither exact nor automatic, or the rasterizer is `scanline`;
 ///   - nothing is in front of the eye, or the processor has no lanes, and Highway emulates them.
 std::optional<scene::Lattice> lattice_of(const projection::PixelSpace& space, const scene::Box& box,
                                          const std::array<double, 2>& scalar_range,

@@ -47,6 +47,7 @@ class MeshAlone final : public Session::State {
     check_method(settings);
     frame::check_surfaces(traced(settings), data().mesh.association);
     frame::check_shading(traced(settings));
+    frame::check_device_rasterizer(traced(settings), frame::compositing_settings(settings.mesh.device));
     frame::assign_roles(1, settings.ranks.projectors, settings.ranks.compositors);  // of one rank there are not more
   }
 

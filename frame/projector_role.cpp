@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "compositor/cell_sink.hpp"
 #include "compositor/run_sink.hpp"
 #include "compositor/segment_sink.hpp"
 #include "exchange/outbox.hpp"
@@ -79,6 +80,13 @@ class FrameSinks {
           mesh_.part.association == scene::Association::cell, mesh_.global_tet, deliver_, scene_.normals);
     return std::make_unique<compositor::RunSink<sorting::DoubleEncoding>>(scene_, cut_, deliver_);
   }
+  /// Whether devices rasterize: where light of segments is beyond them (GlMerger), the CPU does it all.
+  [[nodiscard]] bool have_cells() const {
+    return settings_.render.rasterizer == Rasterizer::device && (lattice_ || integrator_.samples() > 0);
+  }
+  [[nodiscard]] std::unique_ptr<compositor::CellSink> make_for_cells() const {
+    return std::make_unique<compositor::CellSink>(mesh_.global_tet, deliver_);
+  }
   [[nodiscard]] std::unique_ptr<compositor::TileSink<sorting::LatticeEncoding>> make_on_lattice() const {
     if (settings_.exchange == Exchange::segments)
       return std::make_unique<compositor::SegmentSink<sorting::LatticeEncoding>>(*lattice_, deliver_);
@@ -126,6 +134,7 @@ void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t 
     task.lattice = &*sinks.lattice();
     task.make_lattice_sink = [&] { return sinks.make_on_lattice(); };
   }
+  if (run.device.everywhere && sinks.have_cells()) task.make_cell_sink = [&] { return sinks.make_for_cells(); };
   const exchange::TileMap map(task.grid.count(), static_cast<int>(settings.roles.compositors.size()),
                               settings.tile_seed);
   bool announced = false, stopped = false;

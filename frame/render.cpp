@@ -25,7 +25,7 @@ namespace tessera::frame {
 void check_deep(const RenderSettings& settings, const scene::TransferFunction& function) {
   if (!(settings.deep_accuracy >= 1e-6 && settings.deep_accuracy <= 1))
     throw scene::bad_input(fmt::format("`deep_accuracy` {}: it must be 1e-6 to 1", settings.deep_accuracy));
-  if (settings.rasterizer != Rasterizer::planes)
+  if (settings.rasterizer == Rasterizer::scanline)
     throw scene::bad_input("deep picture: `rasterizer` scanline leaves gaps and overlaps in depth; use planes");
   const integrals::SegmentIntegrator integrator(function, settings.integrator, settings.emission);
   if (integrator.name() != "exact")
@@ -40,7 +40,7 @@ void check_surfaces(const RenderSettings& settings, scene::Association associati
   const scene::Surfaces& surfaces = settings.surfaces;
   scene::validate(surfaces);
   if (surfaces.empty()) return;
-  if (settings.rasterizer != Rasterizer::planes)
+  if (settings.rasterizer == Rasterizer::scanline)
     throw scene::bad_input(
         fmt::format("{}: `rasterizer` scanline knows no surfaces; use `rasterizer` planes", surface_word(surfaces)));
   if (association == scene::Association::cell && !surfaces.iso.empty())
@@ -51,7 +51,7 @@ void check_surfaces(const RenderSettings& settings, scene::Association associati
 void check_shading(const RenderSettings& settings) {
   if (!settings.shading) return;
   const scene::Shading& shading = *settings.shading;
-  if (settings.rasterizer != Rasterizer::planes)
+  if (settings.rasterizer == Rasterizer::scanline)
     throw scene::bad_input("`shade`: `rasterizer` scanline knows no shading; use `rasterizer` planes");
   if (settings.emission == scene::Emission::independent)
     throw scene::bad_input("`shade`: shading needs emission in proportion to extinction; leave one of the two out");

@@ -54,6 +54,12 @@ void Buffer::copy_from(const Buffer& from, std::size_t from_byte, std::size_t by
                                           static_cast<GLsizeiptr>(bytes));
 }
 
+void Buffer::clear(std::size_t bytes) const {
+  if (bytes > 0)
+    context_->gl().ClearNamedBufferSubData(name_, GL_R32UI, 0, static_cast<GLsizeiptr>(bytes), GL_RED_INTEGER,
+                                           GL_UNSIGNED_INT, nullptr);
+}
+
 Fence::~Fence() {
   if (sync_ != nullptr) context_->gl().DeleteSync(sync_);
 }

@@ -32,6 +32,8 @@ class Buffer {
   void bind(GLuint binding) const { context_->gl().BindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name_); }
   /// The first `bytes` of `from`, from `from_byte` on, to the beginning of this one.
   void copy_from(const Buffer& from, std::size_t from_byte, std::size_t bytes) const;
+  /// Zeros in the first `bytes`, a multiple of four.
+  void clear(std::size_t bytes) const;
 
  private:
   void release();

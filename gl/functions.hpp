@@ -13,6 +13,7 @@ namespace tessera::gl {
   X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                         \
   X(PFNGLBLENDFUNCPROC, BlendFunc)                                     \
   X(PFNGLCHECKNAMEDFRAMEBUFFERSTATUSPROC, CheckNamedFramebufferStatus) \
+  X(PFNGLCLEARNAMEDBUFFERSUBDATAPROC, ClearNamedBufferSubData)         \
   X(PFNGLCLEARNAMEDFRAMEBUFFERFVPROC, ClearNamedFramebufferfv)         \
   X(PFNGLCLIENTWAITSYNCPROC, ClientWaitSync)                           \
   X(PFNGLCOMPILESHADERPROC, CompileShader)                             \

@@ -24,6 +24,7 @@ struct FrameCounters {
   std::uint64_t unpaired = 0;
   std::uint64_t tiles_split = 0;
   std::uint64_t deep_samples = 0;
+  std::uint64_t cells_on_device = 0;
   std::uint64_t fragments = 0;
   std::uint64_t exchange_bytes = 0;
   std::uint64_t exchange_messages = 0;
@@ -65,7 +66,7 @@ using FrameCounter = Counter<FrameCounters>;
 using GridCounter = Counter<GridCounters>;
 
 /// All of them, in the order of reports. tets_total is the sum of the four that follow.
-inline constexpr std::array<FrameCounter, 15> frame_counters{{
+inline constexpr std::array<FrameCounter, 16> frame_counters{{
     {"tets_total", &FrameCounters::tets_total, FrameCounter::Together::sum, false, "tetrahedra of the mesh"},
     {"tets_invisible", &FrameCounters::tets_invisible, FrameCounter::Together::sum, false,
      "never projected: the transfer function is zero over all of their scalars"},
@@ -87,8 +88,10 @@ inline constexpr std::array<FrameCounter, 15> frame_counters{{
     {"tiles_split", &FrameCounters::tiles_split, FrameCounter::Together::sum, false,
      "tiles worked through in parts to stay within the memory budget"},
     {"deep_samples", &FrameCounters::deep_samples, FrameCounter::Together::sum, true, "of the deep picture"},
+    {"cells_on_device", &FrameCounters::cells_on_device, FrameCounter::Together::sum, true,
+     "tetrahedra that OpenGL devices rasterized, once for each tile that they show in"},
     {"fragments", &FrameCounters::fragments, FrameCounter::Together::sum, true,
-     "runs or segments that projectors sent to compositors"},
+     "runs, segments or cells that projectors sent to compositors"},
     {"exchange_bytes", &FrameCounters::exchange_bytes, FrameCounter::Together::sum, true,
      "of the messages they went in, those to the same process included"},
     {"exchange_messages", &FrameCounters::exchange_messages, FrameCounter::Together::sum, true, "how many"},

@@ -16,9 +16,12 @@ class Trace;
 
 /// How cells of a mesh become ray segments.
 enum class Rasterizer {
-  planes,   ///< exact hits, double precision: the default
-  scanline  ///< Juliachs et al. 2007, 4.1-4.2 as printed: float32, no tie rule, segments ordered by z_back alone;
-            ///< orthographic only
+  planes,    ///< exact hits, double precision: the default
+  scanline,  ///< Juliachs et al. 2007, 4.1-4.2 as printed: float32, no tie rule, segments ordered by z_back alone;
+             ///< orthographic only
+  device     ///< as planes, by the OpenGL devices that composite: for GlMethod::compute, on every compositor. Cells
+             ///< that reach behind the eye or cross the clipping range or a step of the transfer function, and
+             ///< frames whose light devices do not integrate, are left to the CPU
 };
 
 /// What projectors send to compositors (meshes on several ranks).

@@ -89,6 +89,13 @@ ROWS = [
     row(V + "--compositor gl-fragment", "leave them out", V),
     row(R + "--compositor gl-fragment --backend cpu", "or use --compositor cpu", R + "--compositor cpu --backend cpu"),
     row(R + "--compositor cpu --backend osmesa", "leave one of the two out", R + "--compositor cpu"),
+    row(R + "--rasterizer device", "or use --rasterizer planes", R + "--rasterizer planes"),
+    row(R + "--rasterizer device", "add that", R + "--rasterizer device --compositor gl-compute"),
+    row(
+        R + "--rasterizer device --compositor gl-fragment --backend osmesa",
+        "use gl-compute",
+        R + "--rasterizer device --compositor gl-compute --backend osmesa",
+    ),
     row(R + "--compositor gpu", "is unknown; use cpu", R + "--compositor cpu"),
     row(R + "--without merging --exchange runs", "leave one of the two out", R + "--without merging"),
     row(R + "--higher-order-tets=-1", "a whole number from 0", R + "--higher-order-tets 1"),

@@ -122,6 +122,44 @@ TEST_F(GlRender, RanksCompositeOnDevicesOrPartlyOnTheCpu) {
   }
 }
 
+TEST_F(GlRender, DevicesRasterizeCellsWithinTheExactPromise) {
+  const Folder folder;
+  const auto run = tessera(render_arguments(
+      folder.cube(), folder / "device.pfm",
+      {"--rasterizer", "device", "--compositor", "gl-compute", "--backend", "osmesa", "--integrator", "exact",
+       "--verify", "200", "--report", folder / "report.json", "--timing", folder / "trace.json"}));
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.err.find("device, exact"), std::string::npos) << run.err;
+  EXPECT_NE(run.out.find("bound 2e-05 met"), std::string::npos) << run.out;
+  const auto report = nlohmann::json::parse(contents(folder / "report.json"));
+  EXPECT_EQ(report.at("method").at("rasterizer"), "device");
+  const auto& counters = report.at("frames").at(0).at("counters");
+  EXPECT_GT(counters.at("cells_on_device").get<int>(), 0);
+  EXPECT_GT(counters.at("segments").get<int>(), 0);
+}
+
+TEST_F(GlRender, DevicesOfRanksInAnyRolesRasterizeCells) {
+  if (!has_mpirun()) GTEST_SKIP() << "there is no mpirun";
+  const Folder folder;
+  const std::string mesh = folder.cube();
+  ASSERT_EQ(tessera(render_arguments(mesh, folder / "one.pfm", {"--quiet", "--integrator", "exact"})).status, 0);
+  for (const int ranks : {2, 4}) {  // in both roles, or in one each
+    std::vector<std::string> more{"--integrator", "exact", "--projectors", "2",          "--compositors", "2",
+                                  "--tile-size",  "8",     "--compositor", "gl-compute", "--rasterizer",  "device",
+                                  "--backend"};
+    more.emplace_back("osmesa");
+    const auto run = mpirun(ranks, render_arguments(mesh, folder / "ranks.pfm", more));
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.err.find("device, exact"), std::string::npos) << run.err;
+    EXPECT_LT(picture_difference(folder / "one.pfm", folder / "ranks.pfm"), 5e-6);
+    more.back() = "cpu,osmesa";
+    const auto mixed = mpirun(ranks, render_arguments(mesh, folder / "x.pfm", more));
+    EXPECT_EQ(mixed.status, 2);
+    EXPECT_NE(mixed.err.find("--rasterizer device: --backend leaves some compositors to the CPU"), std::string::npos)
+        << mixed.err;
+  }
+}
+
 /// Juliachs et al. 2007 as a whole, by one word and by its parts.
 TEST_F(GlRender, ThePresetIsThePrintedPipeline) {
   const Folder folder;

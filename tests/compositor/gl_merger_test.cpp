@@ -252,6 +252,59 @@ TEST(GlCompute, RunsAreCompositedAsTheyCome) {
   }
 }
 
+/// A cell in front of all pixels.
+exchange::TilePart cell_part(std::size_t cells) {
+  const projection::CellRecord cell{{{0.5, 0.5, 2, 0}, {15.5, 0.5, 2.5, 0.4}, {0.5, 7.5, 3, 0.8}, {8.5, 4.5, 3.5, 1}},
+                                    7};
+  exchange::Bytes bytes;
+  for (std::size_t i = 0; i < cells; ++i) exchange::append(bytes, cell);
+  return part_of(exchange::RecordKind::cells, std::move(bytes), cells);
+}
+
+TEST(GlCompute, CellsBeyondTheMemoryBudgetAreRefusedInOneLine) {
+  TESSERA_DEVICE_OR_SKIP(device, compute());
+  const GlFrame frame(exact);
+  MergeContext context = frame.context(true);
+  context.device = &device;
+  context.budget_bytes = 100 * sizeof(projection::CellRecord);
+  const auto merger = make_tile_merger(exchange::RecordKind::cells, context, {0, 0, 16, 8});
+  merger->add(cell_part(100));
+  try {
+    merger->add(cell_part(1));
+    ADD_FAILURE() << "no error";
+  } catch (const scene::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("holds 101 cells at once, beyond the memory budget; raise `memory`"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(GlCompute, NothingOfATileWithCellsIsCompositedBeforeAllOfItIsThere) {
+  TESSERA_DEVICE_OR_SKIP(device, compute());
+  const GlFrame frame(exact);
+  const auto merged = [&](bool advanced) {
+    MergeContext context = frame.context(true);
+    context.device = &device;
+    context.frame = advanced ? 1001 : 1000;
+    const auto merger = make_tile_merger(exchange::RecordKind::cells, context, {0, 0, 16, 8});
+    merger->add(cell_part(1));
+    merger->add(lattice_part(frame, shallow));
+    if (advanced) merger->advance(3);
+    merger->advance(infinity);
+    return merger->finish().image;
+  };
+  const scene::Image at_once = merged(false), in_steps = merged(true);
+  EXPECT_EQ(at_once.rgba, in_steps.rgba);
+  EXPECT_EQ(at_once.depth, in_steps.depth);
+  const scene::Image without = frame.merged(&device, {lattice_part(frame, shallow)});
+  EXPECT_NE(at_once.rgba, without.rgba);
+}
+
+TEST(TileMerger, CellsAtACompositorWithoutADeviceAreRefused) {
+  const GlFrame frame(exact);
+  EXPECT_THROW(make_tile_merger(exchange::RecordKind::cells, frame.context(true), {0, 0, 16, 8}), scene::Error);
+}
+
 class Arrangements : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(All, Arrangements, testing::Values("sorted", "reversed", "shuffled"));
 

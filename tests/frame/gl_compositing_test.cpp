@@ -1,104 +1,10 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
-
-#include "datasets/boxes.hpp"
-#include "datasets/modify.hpp"
-#include "datasets/shapes.hpp"
-#include "exchange/loopback_transport.hpp"
-#include "frame/distributed.hpp"
-#include "projection/segment_tuple.hpp"
+#include "frame/gl_job.hpp"
 #include "reference/judge.hpp"
-#include "scene/mesh_facts.hpp"
-#include "support/gl_context.hpp"
 
 namespace tessera::frame {
 namespace {
-
-using scene::Image;
-using scene::ImageSize;
-
-scene::TransferFunction bands() {
-  return scene::TransferFunction({{0, {0, 0, 0.3}, 0},
-                                  {0.3, {0.1, 0.3, 0.9}, 0.4},
-                                  {0.5, {0.2, 0.9, 0.3}, 0},
-                                  {0.7, {0.9, 0.8, 0.1}, 3},
-                                  {0.8, {1, 0.3, 0}, 0.2},
-                                  {1, {1, 1, 1}, 8}});
-}
-
-scene::Camera camera(bool inside) {
-  scene::Camera camera;
-  camera.position = inside ? glm::dvec3(0.1, 0.2, 0.15) : glm::dvec3(3.1, 2.3, 4.2);
-  camera.parallel_scale = 1.8;
-  camera.view_angle = 80;
-  if (inside) camera.projection = scene::ProjectionKind::perspective;
-  return camera;
-}
-
-/// A small cube of 6 * 6^3 tets on `projectors` + `compositors` ranks, each third tet to the same projector.
-struct GlJobSetup {
-  int projectors = 1, compositors = 1;
-  std::vector<Backend> backends = {Backend::osmesa};
-  Exchange exchange = Exchange::segments;
-  scene::IntegratorKind integrator = scene::IntegratorKind::exact;
-  Rasterizer rasterizer = Rasterizer::planes;
-  bool inside = false, shared = false;
-  compositor::GlSettings gl{};
-  int frames = 1;
-};
-
-std::vector<FinishedFrame> rendered(const GlJobSetup& setup, const scene::TetMesh& mesh) {
-  const scene::MeshFacts facts = scene::facts_of(mesh);
-  const int ranks = setup.shared ? std::max(setup.projectors, setup.compositors) : setup.projectors + setup.compositors;
-  DistributedSettings settings;
-  settings.render.integrator.kind = setup.integrator;
-  settings.render.integrator.samples = 5;
-  settings.render.rasterizer = setup.rasterizer;
-  settings.render.threads = 1;
-  settings.render.tile_size = 16;
-  settings.exchange = setup.exchange;
-  settings.compositing_on = {setup.backends, setup.gl, true};
-  settings.roles = assign_roles(ranks, setup.projectors, setup.compositors);
-  std::vector<FinishedFrame> frames;
-  exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
-    render_distributed(
-        transport, settings,
-        std::vector<FrameJob>(static_cast<std::size_t>(setup.frames), {camera(setup.inside), {48, 40}}), bands(),
-        [&](std::size_t) {
-          ProjectorMesh part;
-          auto tets = std::make_shared<scene::TetMesh>(mesh);
-          tets->tets.clear();
-          for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-            if (static_cast<int>(t / 3) % setup.projectors == transport.rank()) {
-              tets->tets.push_back(mesh.tets[t]);
-              part.global_tet.push_back(t);
-            }
-          part.part = *tets;
-          part.owner = tets;
-          part.diagonal = 4;
-          part.box = facts.box;
-          part.scalar_range = facts.scalar_range;
-          part.longest_edge = projection::longest_edge(mesh);
-          return part;
-        },
-        [&](FinishedFrame frame) { frames.push_back(std::move(frame)); });
-  });
-  return frames;
-}
-
-scene::TetMesh small_cube() { return datasets::cube(6); }
-
-double difference(const Image& a, const Image& b) {
-  double most = 0;
-  for (std::size_t i = 0; i < a.rgba.size(); ++i) most = std::max(most, std::fabs(double{a.rgba[i]} - b.rgba[i]));
-  return most;
-}
-
-#define TESSERA_NEEDS_OSMESA() \
-  if (tests::osmesa_or_none() == nullptr) GTEST_SKIP() << "OSMesa cannot be opened"
 
 TEST(GlCompositing, ExactIsWithinItsPromiseOfTheReference) {
   TESSERA_NEEDS_OSMESA();

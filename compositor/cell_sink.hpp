@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "exchange/part_writer.hpp"
+#include "projection/cell_record.hpp"
+#include "projection/planes_rasterizer.hpp"
+#include "projection/steps.hpp"
+
+namespace tessera::compositor {
+
+/// Sends a tile's cells as they are, for the device of the tile's compositor to rasterize, before what else of the tile
+/// this process sends: its parts are complete to no depth, so that nothing of the tile is composited without them.
+///
+/// One sink serves one thread.
+class CellSink {
+ public:
+  /// `global_tet` as SegmentSink's. Both must outlive the sink.
+  CellSink(std::span<const std::uint64_t> global_tet, exchange::PartWriter::Deliver deliver)
+      : global_tet_(global_tet), writer_(exchange::RecordKind::cells, std::move(deliver)) {}
+
+  /// Sends what cells of `entries` a device can do (projection::cell_record()), but for those that are to be cut at
+  /// steps of the transfer function (`at_steps`; null: none). Returns the others; `entries` changes its order.
+  std::span<projection::TileEntry> take(std::size_t tile, const scene::PixelRect& rect,
+                                        const projection::ProjectedMesh& projected,
+                                        const projection::CellsAtSteps* at_steps,
+                                        std::span<projection::TileEntry> entries);
+
+  /// Cells sent so far.
+  [[nodiscard]] std::uint64_t cells() const { return cells_; }
+
+ private:
+  std::span<const std::uint64_t> global_tet_;
+  exchange::PartWriter writer_;
+  std::uint64_t cells_ = 0;
+};
+
+}  // namespace tessera::compositor

@@ -1,0 +1,43 @@
+// Where light begins, of lists whose first fragment to show was rasterized here: the host knows no depths of it.
+layout(local_size_x = 64) in;
+
+layout(std430, binding = 0) readonly buffer Keys { uvec4 keys[]; };      // by element
+layout(std430, binding = 1) readonly buffer Scalars { vec2 scalars[]; };  // likewise: at front and back
+layout(std430, binding = 4) readonly buffer Lists { uvec4 lists[]; };    // as composite.comp; last: how many were given
+struct Light {
+  vec4 light;
+  uvec4 first;
+};
+layout(std430, binding = 5) buffer Lights { Light lights[]; };
+
+layout(location = 0) uniform uint first_list;
+layout(location = 1) uniform uint list_count;
+
+float extinction(uint interval, float s) {
+  return at(half_extinction_slope, interval) * (s - at(base, interval)) + at(half_extinction, interval);
+}
+
+// integrals::SegmentIntegrator::first_visible().
+float first_visible(float front, float back) {
+  if (front == back) return 0.0;
+  const bool up = back >= front;
+  uint interval = locate(front, up);
+  for (float s = front;;) {
+    const float knot = at(edge, up ? interval + 1u : interval);
+    const float end = up ? min(knot, back) : max(knot, back);
+    if (end != s && (extinction(interval, s) > 0.0 || extinction(interval, end) > 0.0)) return (s - front) / (back - front);
+    if (end == back) return 0.0;
+    s = end;
+    interval += up ? 1u : 0xffffffffu;
+  }
+}
+
+void main() {
+  const uint i = gl_GlobalInvocationID.x;
+  if (i >= list_count) return;
+  const uvec4 list = lists[first_list + i];
+  const uint element = lights[i].first.x;
+  if (element == 0xffffffffu || element < list.x + list.w) return;
+  const vec2 ends = scalars[element];
+  lights[i].first = uvec4(0xfffffffeu, keys[element].xy, floatBitsToUint(first_visible(ends.x, ends.y)));
+}
