@@ -3,14 +3,16 @@
 /// are.
 ///
 /// Usage: pixel_packing PICTURE.exr ...; prints one Markdown row a picture. Times are processor time, the least of some
-/// repetitions. Tiles of 32 x 32 pixels, as a run has them; tiles in which nothing is count with their pixels and not
-/// with bytes or time, as compositors do not send them.
+/// repetitions. Tiles of 32 x 32 pixels, as a run has them, in a random order, as they come; tiles in which nothing is
+/// count with their pixels and not with bytes or time, as compositors do not send them.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <ctime>
 #include <filesystem>
 #include <limits>
+#include <numeric>
+#include <random>
 #include <span>
 #include <vector>
 
@@ -43,8 +45,11 @@ struct Tiles {
 
 Tiles tiles_of(const Image& picture) {
   const projection::TileGrid grid{picture.size, 32};
+  std::vector<std::size_t> order(grid.count());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::shuffle(order.begin(), order.end(), std::mt19937(1));
   Tiles tiles;
-  for (std::size_t t = 0; t < grid.count(); ++t) {
+  for (const std::size_t t : order) {
     const PixelRect rect = grid.rect(t);
     if (is_empty(picture, rect)) continue;
     Image tile({rect.width(), rect.height()});

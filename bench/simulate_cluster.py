@@ -11,7 +11,7 @@ Traces cubes of two sizes on 8 nodes (1024 x 1024 pixels), and scales their work
   s. The bytes of all fragments and their compositing go as N^(1/3) and as the power of M that both cubes show, not above 1/3.
 - How projectors differ in work, how tiles differ in depth, and what a message, a byte, assembly and writing take: as measured with the larger cube on 8
   nodes.
-- Threads of a rank share its work without loss; of a picture that is written at most 12, the strips in which a .png of this size is compressed.
+- Threads of a rank share its work without loss; of a picture that is put together at most 8, of one that is written at most 12, the strips in which a .png of this size is compressed.
 Only Python's standard library.
 """
 import argparse
