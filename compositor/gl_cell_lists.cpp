@@ -52,7 +52,7 @@ std::vector<std::uint32_t> GlCellLists::next_elements(std::span<const GlJob> job
     const GlFragments& fragments = jobs[i].fragments;
     if (fragments.cells == nullptr) continue;
     const std::size_t before = next.size();
-    next.resize(before + static_cast<std::size_t>(fragments.rows.area()));
+    next.resize(before + static_cast<std::size_t>(fragments.rect.area()));
     for (const GlFragments::List& list : fragments.lists)
       next[before + list.pixel - fragments.first_pixel] = first[i] + list.begin + list.count - list.rasterized;
   }
@@ -83,8 +83,8 @@ void GlCellLists::fill(const Batch& batch, const Buffer& keys, const Buffer& val
   for (const GlJob& job : batch.jobs) {
     const GlFragments& fragments = job.fragments;
     if (fragments.cells == nullptr) continue;
-    jobs.push_back({fragments.cells->records, fragments.cells->units, fragments.rows, first_pixel});
-    first_pixel += static_cast<std::uint32_t>(fragments.rows.area());
+    jobs.push_back({fragments.cells->records, fragments.cells->units, fragments.rect, first_pixel});
+    first_pixel += static_cast<std::uint32_t>(fragments.rect.area());
   }
   rasterizer_.fill(jobs, {&next_, &keys, &values, &scalars_});
 }

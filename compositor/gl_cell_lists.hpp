@@ -21,7 +21,7 @@ class GlCellLists {
   /// GlKernel::count().
   std::vector<std::uint32_t> count(const GlCount& job);
 
-  /// For every pixel of the rows of jobs with cells, job by job: its list's first element that is the device's to make.
+  /// For every pixel of jobs with cells, job by job: its list's first element that is the device's to make.
   /// `first`: where a job's lists begin among those of its batch.
   static std::vector<std::uint32_t> next_elements(std::span<const GlJob> jobs, std::span<const std::uint32_t> first);
 

@@ -57,7 +57,8 @@ class GlCompositor {
   std::future<std::vector<std::uint32_t>> count(std::shared_ptr<const GlCells> cells, const scene::PixelRect& rect,
                                                 std::uint32_t frame);
 
-  /// Most fragments that should come in one job; a single row of pixels may have more.
+  /// Most fragments that should come in one job; without cells a row of pixels may have more,
+  /// and a pixel in any case.
   [[nodiscard]] std::size_t comfortable_fragments() const { return comfortable_fragments_; }
 
  private:

@@ -35,10 +35,10 @@ struct GlFragments {
   /// A ray segment {length, scalar at entry, scalar at exit, -1}, in the table's units; or a run {red, green, blue,
   /// optical depth}.
   std::vector<std::array<float, 4>> values;
-  /// What `rasterized` fragments come from, the rows of the picture that the lists are of, and the tile's number of
-  /// their first pixel; null: there are none.
+  /// What `rasterized` fragments come from, the pixels of the picture that the lists are of (whole rows of the tile, or
+  /// some of one), and the tile's number of the first; null: there are none.
   std::shared_ptr<const GlCells> cells{};
-  scene::PixelRect rows{};
+  scene::PixelRect rect{};
   std::uint32_t first_pixel = 0;
 
   /// Given or not.

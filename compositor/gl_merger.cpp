@@ -302,7 +302,7 @@ class GlMerger final : public TileMerger {
     return future.get();
   }
 
-  /// Whole rows of pixels to a job, as many as are comfortable.
+  /// A job's pixels.
   struct Portion {
     std::size_t first_pixel, end_pixel;
     std::future<std::vector<GlLight>> future;
@@ -313,12 +313,9 @@ class GlMerger final : public TileMerger {
     if (fragments.empty() && cells_->records.empty()) return;
     const ByPixel by = by_pixel(fragments);
     std::vector<Portion> portions;
-    const auto width = static_cast<std::size_t>(rect_.width());
     for (std::size_t p = 0; p < pixels_.size();) {
       const std::size_t first = p;
-      do p = std::min(p + width, pixels_.size());
-      while (p < pixels_.size() && by.begin[std::min(p + width, pixels_.size())] - by.begin[first] <=
-                                       context_.device->comfortable_fragments());
+      p = portion_end(by, first);
       if (by.begin[p] == by.begin[first]) continue;
       portions.push_back({first, p, context_.device->composite(portion(fragments, by, first, p), rules_)});
     }
@@ -342,6 +339,21 @@ class GlMerger final : public TileMerger {
               pixels_[p]);
       }
     }
+  }
+
+  /// Whole rows of pixels from `first` on, as many as are comfortable; of a row that is not, where the device fills its
+  /// lists, as many pixels.
+  [[nodiscard]] std::size_t portion_end(const ByPixel& by, std::size_t first) const {
+    const auto width = static_cast<std::size_t>(rect_.width());
+    const std::size_t row_end = first - first % width + width;
+    const auto fits = [&](std::size_t end) {
+      return by.begin[end] - by.begin[first] <= context_.device->comfortable_fragments();
+    };
+    const bool in_row = !cells_->records.empty() && (first % width != 0 || !fits(row_end));
+    const std::size_t last = in_row ? row_end : pixels_.size(), step = in_row ? 1 : width;
+    std::size_t end = first + step;
+    while (end < last && fits(end + step)) end += step;
+    return end;
   }
 
   std::vector<GlLight> lights_of(Portion& portion, std::span<const Fragment> fragments, const ByPixel& by) const {
@@ -375,10 +387,11 @@ class GlMerger final : public TileMerger {
       }
     }
     if (by.begin[end] - by.begin[first] == given) return out;
-    const int width = rect_.width();
+    const int width = rect_.width(), y = rect_.y0 + static_cast<int>(first) / width,
+              x = rect_.x0 + static_cast<int>(first) % width, pixels = static_cast<int>(end - first);
     out.cells = cells_;
-    out.rows = {rect_.x0, rect_.y0 + static_cast<int>(first) / width, rect_.x1,
-                rect_.y0 + static_cast<int>(end) / width};
+    out.rect = pixels < width ? scene::PixelRect{x, y, x + pixels, y + 1}
+                              : scene::PixelRect{rect_.x0, y, rect_.x1, y + pixels / width};
     out.first_pixel = static_cast<std::uint32_t>(first);
     return out;
   }

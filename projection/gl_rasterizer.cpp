@@ -6,8 +6,11 @@
 #include "projection/shader_files.hpp"
 
 namespace tessera::projection {
+namespace {
 
 constexpr GLuint threads_a_cell = 8, threads_a_group = 64;  // the shader's
+
+}  // namespace
 
 /// Part of rasterize_cells.comp.
 struct GlRasterizer::Part {
