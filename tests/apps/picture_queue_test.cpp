@@ -8,7 +8,10 @@
 #include <memory>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 #include <vector>
+
+#include "apps/spare_images.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -86,6 +89,23 @@ TEST(PictureQueue, WhatWaitsIsWrittenAtAnEarlyEnd) {
       });
   }
   EXPECT_EQ(written, 4);
+}
+
+TEST(SpareImages, GiveAnImageOfTheSizeOnceAndKeepFew) {
+  SpareImages spare;
+  EXPECT_TRUE(spare.take({4, 3}).rgba.empty());
+  Image kept({4, 3});
+  const float* const memory = kept.rgba.data();
+  spare.keep(std::move(kept));
+  EXPECT_EQ(spare.take({4, 3}).rgba.data(), memory);
+  EXPECT_TRUE(spare.take({4, 3}).rgba.empty());
+  spare.keep(Image({4, 3}));
+  EXPECT_TRUE(spare.take({3, 4}).rgba.empty());
+  EXPECT_TRUE(spare.take({4, 3}).rgba.empty()) << "what fits no later picture goes";
+  for (int i = 0; i < 5; ++i) spare.keep(Image({4, 3}));
+  int left = 0;
+  while (!spare.take({4, 3}).rgba.empty()) ++left;
+  EXPECT_EQ(left, 2);
 }
 
 }  // namespace
