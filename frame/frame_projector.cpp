@@ -190,6 +190,13 @@ void announce(const FrameProjector::Task& task, const projection::TileLists& lis
   task.announce(any);
 }
 
+void count_culled(const projection::CullCounts& culled, FrameStatistics& statistics) {
+  statistics.tets_invisible = culled.invisible;
+  statistics.tets_outside_view = culled.outside_view;
+  statistics.tets_between_pixels = culled.between_pixels;
+  statistics.tets_projected = culled.projected;
+}
+
 /// Renders tiles [first, last) of a task, whose lists are filled.
 void render_tiles(const FrameProjector::Task& task, projection::TileLists& lists, const projection::FrameFaces* faces,
                   Workers& workers, std::size_t first, std::size_t last, const std::stop_token& stop) {
@@ -317,11 +324,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   FrameStatistics statistics;
   statistics.tets_total = prepared_->tet_count();
   statistics.on_lattice = task.lattice != nullptr;
-  const projection::CullCounts& culled = lists->counts();
-  statistics.tets_invisible = culled.invisible;
-  statistics.tets_outside_view = culled.outside_view;
-  statistics.tets_between_pixels = culled.between_pixels;
-  statistics.tets_projected = culled.projected;
+  count_culled(lists->counts(), statistics);
   statistics.peak_buffer_bytes = vertex_bytes + most_list_bytes;
   for (const std::unique_ptr<TileWorker>& worker : workers) worker->add_to(statistics);
   return statistics;
