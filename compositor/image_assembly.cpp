@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -49,8 +50,9 @@ TileSender::TileSender(exchange::Transport& transport, int assembler, std::uint3
 
 void TileSender::send(std::uint32_t tile, const MergedTile& merged) {
   const scene::ImageSize size = merged.image.size;
-  exchange::Bytes record;
-  exchange::append(record, std::uint64_t{tile});
+  const std::uint64_t number = tile;
+  exchange::Bytes record(sizeof number);
+  std::memcpy(record.data(), &number, sizeof number);
   exchange::append_pixels(record, merged.image, {0, 0, size.width, size.height}, assembler_ != transport_.rank());
   exchange::append(record, std::uint64_t{merged.deep_samples.size()});
   if (!merged.deep_samples.empty()) {
