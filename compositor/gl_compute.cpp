@@ -106,7 +106,7 @@ class ComputeKernel final : public GlKernel {
     const std::byte* from = slot.readback.mapped();
     for (const Counts& job : slot.jobs) {
       auto& of_job = lights.emplace_back(job.lists);
-      std::memcpy(of_job.data(), from, job.lists * sizeof(GlLight));
+      if (job.lists > 0) std::memcpy(of_job.data(), from, job.lists * sizeof(GlLight));
       from += job.lists * sizeof(GlLight);
       for (GlLight& light : of_job)
         if (light.first < GlLight::rasterized_one) light.first -= job.first_fragment;
@@ -192,13 +192,14 @@ class ComputeKernel final : public GlKernel {
       GlFragments& of_job = jobs[i].fragments;
       for (sorting::GlKey& key : of_job.keys) key.element += slot.jobs[i].first_fragment;
       const std::size_t count = of_job.keys.size();
+      if (count == 0) continue;
       std::memcpy(keys, of_job.keys.data(), count * sizeof(sorting::GlKey));
       std::memcpy(values, of_job.values.data(), 16 * count);
       keys += count * sizeof(sorting::GlKey);
       values += 16 * count;
     }
     std::byte* tables = slot.upload.mapped() + key_bytes + value_bytes;
-    std::memcpy(tables, passes.data(), passes.size_bytes());
+    if (!passes.empty()) std::memcpy(tables, passes.data(), passes.size_bytes());
     tables += 16 * std::size_t{slot.first_list};
     for (std::size_t i = 0; i < lists_.size(); ++i) {
       const sorting::GlList& list = lists_[i];
