@@ -19,30 +19,16 @@ import json
 import os
 import pathlib
 import statistics
-import subprocess
-import sys
 import tempfile
 
 import results_file
+from same_speed import EXACT, VIEW, run
 
-HERE = pathlib.Path(__file__).resolve().parent
-MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-VIEW = ["--camera", HERE / "camera.txt", "--transfer-function", HERE / "transfer_function.txt", "--integrator", "exact", "--size", "1024x1024"]
+FRAME = VIEW + EXACT + ["--size", "1024x1024"]
 ONE, TWO, EIGHT = "one process of two threads", "two ranks of one thread", "8 projectors and 8 compositors"
 ARRANGEMENTS = {ONE: (1, ["--threads", "2"]), TWO: (2, ["--threads", "1"]),
                 EIGHT: (16, ["--threads", "1", "--projectors", "8", "--compositors", "8"])}
 BASE = 2  # frames of the run that is subtracted
-
-
-def run(command):
-    """Seconds of CPU of a command; of mpirun, of it and the ranks that it waited for."""
-    process = subprocess.Popen([str(c) for c in command], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=os.environ | MPI)
-    message = process.stderr.read()
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode != 0:
-        sys.exit(f"ranks.py: {' '.join(str(c) for c in command)}\n{message.decode().strip()}")
-    return usage.ru_utime + usage.ru_stime
 
 
 def frames(program, mesh, work, arrangement, repeat, *more):
@@ -50,7 +36,7 @@ def frames(program, mesh, work, arrangement, repeat, *more):
     ranks, threads = ARRANGEMENTS[arrangement]
     report = work / "report.json"
     launch = ["mpirun", "--oversubscribe", "-n", ranks] if ranks > 1 else []
-    cpu = run(launch + [program, "render", mesh, "-o", work / "picture.pfm", "--repeat", repeat, "--report", report, "--quiet", *VIEW, *threads, *more])
+    cpu, _ = run(launch + [program, "render", mesh, "-o", work / "picture.pfm", "--repeat", repeat, "--report", report, "--quiet", *FRAME, *threads, *more])
     return cpu, json.loads(report.read_text())["frames"][0]["frame_ms"]
 
 

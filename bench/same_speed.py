@@ -52,7 +52,7 @@ def run(command):
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode != 0:
-        sys.exit(f"same_speed.py: {' '.join(str(c) for c in command)}\n{message.decode().strip()}")
+        sys.exit(f"{pathlib.Path(sys.argv[0]).name}: {' '.join(str(c) for c in command)}\n{message.decode().strip()}")
     return usage.ru_utime + usage.ru_stime, usage.ru_maxrss
 
 

@@ -129,8 +129,8 @@ static_assert(sizeof(FrameEnd) == sizeof(scene::FrameCounters) + 24);
 /// Two processes' counts put together.
 FrameEnd sum(const FrameEnd& a, const FrameEnd& b);
 
-/// Which of P compositors gets the end of a projector: each that of its share. With ends for all, N P of them would be
-/// half of a frame's messages.
+/// Which of P compositors gets the end of a projector: each that of its share. With ends for all there would be N P
+/// of them.
 inline int end_goes_to(int projector, int compositors) { return projector % compositors; }
 
 /// Records that nobody changes: in memory of their own, or in that of the message they came in.

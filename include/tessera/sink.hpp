@@ -42,9 +42,9 @@ class Sink {
   virtual void tile(const Tile& /*tile*/) {}
   /// Of a list of frames: each as it is complete, in order; the last one may be stopped, which every rank is told.
   virtual void frame(RenderedFrame&& /*frame*/) {}
-  /// Before a frame's first pixel on several ranks: an image that the sink no longer needs, for the frame to be made in
-  /// its memory, whatever is in it: fresh memory may cost more page faults than its pixels cost time. One of another
-  /// size is not used; by default there is none.
+  /// Before the first pixel of a mesh's frame on several ranks: an image that the sink no longer needs, for the frame to
+  /// be made in its memory, whatever is in it, as fresh memory is slow to fill. One of another size is not used; by
+  /// default there is none.
   virtual Image spare_image(ImageSize /*size*/) { return {}; }
 };
 
