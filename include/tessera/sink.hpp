@@ -42,8 +42,8 @@ class Sink {
   virtual void tile(const Tile& /*tile*/) {}
   /// Of a list of frames: each as it is complete, in order; the last one may be stopped, which every rank is told.
   virtual void frame(RenderedFrame&& /*frame*/) {}
-  /// Before the first pixel of a mesh's frame on several ranks: an image that the sink no longer needs, for the frame to
-  /// be made in its memory, whatever is in it, as fresh memory is slow to fill. One of another size is not used; by
+  /// Before the first pixel of a mesh's frame on several ranks: an image that the sink no longer needs, for the frame
+  /// to be made in its memory, whatever is in it, as fresh memory is slow to fill. One of another size is not used; by
   /// default there is none.
   virtual Image spare_image(ImageSize /*size*/) { return {}; }
 };
