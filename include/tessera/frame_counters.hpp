@@ -48,6 +48,10 @@ struct GridCounters {
   std::uint64_t bytes_resident = 0;
   std::uint64_t peak_bytes = 0;
   std::uint64_t blank_samples = 0;
+  std::uint64_t bricks_preloaded = 0;
+  std::uint64_t load_us = 0;
+  std::uint64_t cull_us = 0;
+  std::uint64_t evict_us = 0;
 
   GridCounters& operator+=(const GridCounters& other);
 };
@@ -97,7 +101,7 @@ inline constexpr std::array<FrameCounter, 16> frame_counters{{
     {"exchange_messages", &FrameCounters::exchange_messages, FrameCounter::Together::sum, true, "how many"},
 }};
 /// All of a grid's, in the order of reports. What is the same on all processes is put together as the largest.
-inline constexpr std::array<GridCounter, 13> grid_counters{{
+inline constexpr std::array<GridCounter, 17> grid_counters{{
     {"rays", &GridCounters::rays, GridCounter::Together::sum, false, "rays that meet the volume"},
     {"voxels_visited", &GridCounters::voxels_visited, GridCounter::Together::sum, false,
      "stretches of rays in one voxel that were evaluated"},
@@ -118,6 +122,14 @@ inline constexpr std::array<GridCounter, 13> grid_counters{{
      "of bricks, most in memory since the start"},
     {"blank_samples", &GridCounters::blank_samples, GridCounter::Together::largest, false,
      "of the whole volume: not a number, or infinite"},
+    {"bricks_preloaded", &GridCounters::bricks_preloaded, GridCounter::Together::sum, true,
+     "loaded since the frame before, ahead of their use"},
+    {"brick_load_us", &GridCounters::load_us, GridCounter::Together::sum, true,
+     "microseconds that threads spent on reading bricks that a ray waited for"},
+    {"brick_cull_us", &GridCounters::cull_us, GridCounter::Together::sum, true,
+     "microseconds of finding which cells and bricks show"},
+    {"brick_evict_us", &GridCounters::evict_us, GridCounter::Together::sum, true,
+     "microseconds of making room for bricks"},
 }};
 static_assert(sizeof(FrameCounters) == frame_counters.size() * sizeof(std::uint64_t), "a counter is not in the list");
 static_assert(sizeof(GridCounters) == grid_counters.size() * sizeof(std::uint64_t), "a counter is not in the list");

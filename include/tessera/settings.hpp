@@ -54,6 +54,18 @@ enum class Balance {
   even        ///< equal rectangles of the volume's bounding box
 };
 
+/// What each of several processes has of a grid's frame (Moloney 2008, 2.3).
+enum class Distribution {
+  sort_first,  ///< a rectangle of the picture, and all of the volume along its rays
+  sort_last    ///< a part of the volume, and the whole picture of it; pictures are composited front to back
+};
+
+/// How sort-last's processes give each other the pixels that they composite (Moloney 2008, 5.2.2 and A.5).
+enum class DirectSend {
+  asynchronous,  ///< packet by packet, composited as they come: Algorithm 1
+  synchronous    ///< all pixels of a pair of processes at once, pair after pair; to compare with
+};
+
 /// What the brick cache throws out first (Moloney 2008, 3.3).
 enum class CachePolicy {
   lru,       ///< the brick that has not been used for longest
@@ -112,9 +124,11 @@ struct RankSettings {
   std::optional<int> projectors, compositors;
   std::optional<Exchange> exchange;  ///< meshes; nothing: see exchange_of()
   Partition partition;
-  int frames_in_flight = 2;               ///< frames a projector may be ahead of the assembled picture, at least 1
-  std::uint64_t tile_seed = 1;            ///< of the map from tiles to compositors
-  Balance balance = Balance::learned;     ///< grids
+  int frames_in_flight = 2;     ///< frames a projector may be ahead of the assembled picture, at least 1
+  std::uint64_t tile_seed = 1;  ///< of the map from tiles to compositors
+  Distribution distribution = Distribution::sort_first;  ///< grids
+  DirectSend direct_send = DirectSend::asynchronous;     ///< grids, sort_last
+  Balance balance = Balance::learned;                    ///< grids
   double balance_resolution = 0.5;        ///< grids: of the cost map, map pixels an image pixel along each axis
   std::vector<double> balance_weights{};  ///< grids: how much of the work each rank should get; empty: equal
   /// Grids: each rank gets as much as its speed in the frames before says (samples a second of wall clock), in place of
@@ -163,6 +177,13 @@ struct Settings {
   Trace* trace = nullptr;
 };
 
+/// Opacity peeling (Moloney 2008, 5.3; Rezk-Salama and Kolb 2006): every ray is cut where its opacity, counted from the
+/// last cut on, reaches the threshold.
+struct Peel {
+  double threshold = 0.95;  ///< above 0, below 1
+  int layers = 4;           ///< at most so many, the last of which ends with the ray; 1 to 64
+};
+
 /// Of one frame.
 struct FrameSettings {
   /// The deep picture of the same frame too: flattened it is the image; cut anywhere in depth by OpenEXR's rules its
@@ -173,6 +194,8 @@ struct FrameSettings {
   bool keep_uncertainty = false;
   /// Grids: what Session::balance_pictures() draws.
   bool keep_cost = false;
+  /// The picture in layers too: RenderedFrame::layers.
+  std::optional<Peel> peel;
 };
 
 }  // namespace tessera

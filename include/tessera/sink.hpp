@@ -19,6 +19,9 @@ struct RenderedFrame {
   FrameStatistics statistics;  ///< on the rank that assembles
   /// If FrameSettings::keep_uncertainty, of grids: by pixel, what single precision may err there in linear RGBA.
   std::vector<float> uncertainty;
+  /// If FrameSettings::peel: each ray's light between two cuts, as if nothing lay in front of it, from the eye on;
+  /// composited front to back they are the image. `depth` is where a layer's light begins.
+  std::vector<Image> layers;
 };
 
 /// Pixels of a frame that have their final values.

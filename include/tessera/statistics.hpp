@@ -29,6 +29,7 @@ struct FrameStatistics {
   std::vector<std::uint64_t> samples;
   std::vector<double> cpu_seconds;
   std::vector<double> split_cpu_seconds;  ///< the same, of finding the rectangles: cost map, pilot pass
+  std::vector<GridCounters> ranks;        ///< what `grid` is put together of
 };
 
 }  // namespace tessera
