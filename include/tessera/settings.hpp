@@ -195,7 +195,7 @@ struct FrameSettings {
   /// Grids: what Session::balance_pictures() draws.
   bool keep_cost = false;
   /// The picture in layers too: RenderedFrame::layers.
-  std::optional<Peel> peel;
+  std::optional<Peel> peel{};
 };
 
 }  // namespace tessera

@@ -21,7 +21,7 @@ struct RenderedFrame {
   std::vector<float> uncertainty;
   /// If FrameSettings::peel: each ray's light between two cuts, as if nothing lay in front of it, from the eye on;
   /// composited front to back they are the image. `depth` is where a layer's light begins.
-  std::vector<Image> layers;
+  std::vector<Image> layers{};
 };
 
 /// Pixels of a frame that have their final values.
