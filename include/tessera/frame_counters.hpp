@@ -52,6 +52,9 @@ struct GridCounters {
   std::uint64_t load_us = 0;
   std::uint64_t cull_us = 0;
   std::uint64_t evict_us = 0;
+  std::uint64_t exchange_bytes = 0;
+  std::uint64_t exchange_messages = 0;
+  std::uint64_t composite_us = 0;
 
   GridCounters& operator+=(const GridCounters& other);
 };
@@ -101,7 +104,7 @@ inline constexpr std::array<FrameCounter, 16> frame_counters{{
     {"exchange_messages", &FrameCounters::exchange_messages, FrameCounter::Together::sum, true, "how many"},
 }};
 /// All of a grid's, in the order of reports. What is the same on all processes is put together as the largest.
-inline constexpr std::array<GridCounter, 17> grid_counters{{
+inline constexpr std::array<GridCounter, 20> grid_counters{{
     {"rays", &GridCounters::rays, GridCounter::Together::sum, false, "rays that meet the volume"},
     {"voxels_visited", &GridCounters::voxels_visited, GridCounter::Together::sum, false,
      "stretches of rays in one voxel that were evaluated"},
@@ -130,6 +133,11 @@ inline constexpr std::array<GridCounter, 17> grid_counters{{
      "microseconds of finding which cells and bricks show"},
     {"brick_evict_us", &GridCounters::evict_us, GridCounter::Together::sum, true,
      "microseconds of making room for bricks"},
+    {"exchange_bytes", &GridCounters::exchange_bytes, GridCounter::Together::sum, true,
+     "sort-last: of pixels on their way to the process that composites them"},
+    {"exchange_messages", &GridCounters::exchange_messages, GridCounter::Together::sum, true, "how many they went in"},
+    {"composite_us", &GridCounters::composite_us, GridCounter::Together::largest, true,
+     "sort-last: microseconds from a process's last ray to its last composited pixel, waiting included"},
 }};
 static_assert(sizeof(FrameCounters) == frame_counters.size() * sizeof(std::uint64_t), "a counter is not in the list");
 static_assert(sizeof(GridCounters) == grid_counters.size() * sizeof(std::uint64_t), "a counter is not in the list");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -30,6 +31,8 @@ struct FrameStatistics {
   std::vector<double> cpu_seconds;
   std::vector<double> split_cpu_seconds;  ///< the same, of finding the rectangles: cost map, pilot pass
   std::vector<GridCounters> ranks;        ///< what `grid` is put together of
+  /// Sort-last, of each rank: the voxels that it has, from the lowest up to those that it has no longer.
+  std::vector<std::array<std::array<std::int64_t, 3>, 2>> parts;
 };
 
 }  // namespace tessera
