@@ -184,8 +184,9 @@ Json balance_json(Balance balance, const FrameStatistics& statistics) {
                          {"samples", statistics.samples[rank]},
                          {"cpu_ms", 1e3 * statistics.cpu_seconds[rank]},
                          {"split_cpu_ms", 1e3 * statistics.split_cpu_seconds[rank]}});
+    if (!statistics.parts.empty()) processes.back()["part"] = statistics.parts[rank];
   }
-  return {{"method", word(balance)},
+  return {{"method", statistics.parts.empty() ? word(balance) : "sort-last"},
           {"samples_deviation", deviation({statistics.samples.begin(), statistics.samples.end()})},
           {"cpu_deviation", deviation(cpu)},
           {"rendering_cpu_deviation", deviation(statistics.cpu_seconds)},

@@ -34,8 +34,8 @@ constexpr std::array topics = {
           "preset integrator deep-accuracy rasterizer tile-size repeat without step brick-size cache preload"},
     Topic{"Devices", "", "compositor backend framebuffer egl-device"},
     Topic{"Under mpirun", "",
-          "projectors compositors exchange partition frames-in-flight seed balance balance-resolution "
-          "balance-weights show stall-timeout on-stall"},
+          "projectors compositors exchange partition frames-in-flight seed distribution direct-send balance "
+          "balance-resolution balance-weights show stall-timeout on-stall"},
     Topic{"Settings in files", "config save-config", ""},
 };
 

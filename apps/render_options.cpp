@@ -312,6 +312,7 @@ RenderOptions render_options(const RenderWords& words, bool is_grid) {
     options.read = volume_options(words);
     options.read.threads = threads;
     set_grid(words, settings);
+    set_distribution(words, settings.ranks);
     set_balance(words, settings.ranks);
     options.show_balance = options.frame.keep_cost = !words.show.empty();
     refuse_mesh_words(words);

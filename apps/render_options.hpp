@@ -66,7 +66,7 @@ struct RenderWords {
   std::string without;
   std::string threads, tile_size, memory, background, png_bits = "8", frame_rate, repeat, verify, report, timing;
   std::string dims, type, spacing, origin, endian, skip, step, brick_size, cache, preload, light;
-  std::string balance, balance_resolution, balance_weights, show;
+  std::string distribution, direct_send, balance, balance_resolution, balance_weights, show;
   std::string projectors, compositors, exchange, partition = "curve", frames_in_flight, seed;
   std::string preset, config, save_config;
   AnnotationWords annotation;

@@ -40,8 +40,10 @@ std::string balance_words(const RenderOptions& options, const FrameRecord& recor
   const auto& by_rank = record.statistics.samples;
   if (by_rank.size() < 2) return {};
   const std::vector<double> samples(by_rank.begin(), by_rank.end());
-  return fmt::format(", {} processes by {}: samples uneven by {:.1f} %", samples.size(),
-                     word(options.settings.ranks.balance), 100 * deviation(samples));
+  const bool sorts_last = !record.statistics.parts.empty();
+  return fmt::format(", {} processes {}: samples uneven by {:.1f} %", samples.size(),
+                     sorts_last ? "sort-last" : fmt::format("by {}", word(options.settings.ranks.balance)),
+                     100 * deviation(samples));
 }
 
 }  // namespace
@@ -123,6 +125,13 @@ Json grid_method_json(const RenderOptions& options, int ranks) {
   json["preload"] = s.preload_limit;
   json["memory_bytes"] = settings.memory_bytes;
   json["ranks"] = ranks;
+  if (settings.ranks.distribution == Distribution::sort_last) {
+    const bool waits = settings.ranks.direct_send == DirectSend::synchronous;
+    json["distribution"] = "sort-last";
+    json["direct_send"] = waits ? "synchronous" : "asynchronous";
+    return json;
+  }
+  json["distribution"] = "sort-first";
   json["balance"] = {
       {"method", word(settings.ranks.balance)},
       {"resolution", settings.ranks.balance_resolution},

@@ -62,6 +62,14 @@ void add_volume_render_options(CLI::App& command, RenderWords& words) {
                   "volumes, --cache proximity: bricks near the view that are loaded ahead, a frame (default 0)")
       ->type_name("BRICKS");
   command
+      .add_option("--distribution", words.distribution,
+                  "volumes, under mpirun: each process a part of the picture, or of the volume (default sort-first)")
+      ->type_name("sort-first|sort-last");
+  command
+      .add_option("--direct-send", words.direct_send,
+                  "--distribution sort-last: how processes exchange pixels (default asynchronous)")
+      ->type_name("asynchronous|synchronous");
+  command
       .add_option("--balance", words.balance,
                   "volumes, under mpirun: how the picture is split between processes (default learned)")
       ->type_name("learned|accurate|backface|splatting|previous|even");
@@ -161,6 +169,30 @@ void set_grid(const RenderWords& words, Settings& settings) {
   }
 }
 
+void set_distribution(const RenderWords& words, RankSettings& ranks) {
+  const auto chosen = [](const char* option, const std::string& word, const char* first, const char* second) {
+    if (!word.empty() && word != first && word != second)
+      throw bad_input(fmt::format("{}: '{}' is unknown; use {} or {}", option, word, first, second));
+    return word == second;
+  };
+  if (chosen("--distribution", words.distribution, "sort-first", "sort-last"))
+    ranks.distribution = Distribution::sort_last;
+  if (chosen("--direct-send", words.direct_send, "asynchronous", "synchronous"))
+    ranks.direct_send = DirectSend::synchronous;
+  const bool sorts_last = ranks.distribution == Distribution::sort_last;
+  if (!sorts_last && !words.direct_send.empty())
+    throw bad_input("--direct-send: has no effect without --distribution sort-last; add it, or leave it out");
+  const std::pair<const char*, bool> of_sort_first[] = {{"--balance", !words.balance.empty()},
+                                                        {"--balance-resolution", !words.balance_resolution.empty()},
+                                                        {"--balance-weights", !words.balance_weights.empty()},
+                                                        {"--show", !words.show.empty()}};
+  for (const auto& [option, is_given] : of_sort_first)
+    if (sorts_last && is_given)
+      throw bad_input(fmt::format(
+          "{}: has no effect with --distribution sort-last, which splits the volume; leave one of the two out",
+          option));
+}
+
 void set_balance(const RenderWords& words, RankSettings& ranks) {
   constexpr std::pair<const char*, Balance> known[] = {
       {"learned", Balance::learned},     {"accurate", Balance::accurate}, {"backface", Balance::backface},
@@ -206,6 +238,8 @@ void refuse_volume_options(const RenderWords& words) {
                                                 {"--brick-size", !words.brick_size.empty()},
                                                 {"--cache", !words.cache.empty()},
                                                 {"--preload", !words.preload.empty()},
+                                                {"--distribution", !words.distribution.empty()},
+                                                {"--direct-send", !words.direct_send.empty()},
                                                 {"--balance", !words.balance.empty()},
                                                 {"--balance-resolution", !words.balance_resolution.empty()},
                                                 {"--balance-weights", !words.balance_weights.empty()},

@@ -23,6 +23,7 @@ std::optional<Shading> shading_of(const RenderWords& words);
 void set_grid(const RenderWords& words, Settings& settings);
 
 /// Sets how a volume's picture is split between ranks. Throws as set_grid().
+void set_distribution(const RenderWords& words, RankSettings& ranks);
 void set_balance(const RenderWords& words, RankSettings& ranks);
 
 /// Throws if an option of jobs that render meshes is given.

@@ -21,7 +21,7 @@ namespace tessera::exchange {
 static_assert(std::endian::native == std::endian::little, "messages are little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 19;        ///< the next one whenever a message changes
+inline constexpr std::uint16_t wire_version = 20;        ///< the next one whenever a message changes
 
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
@@ -30,13 +30,15 @@ enum class MessageKind : std::uint16_t {
   parts = 2,  ///< u64 frame; until the end: PartHeader, `bytes` bytes of records
   end = 3,    ///< u64 frame, FrameEnd: the sender has no more of this frame, and this is what it took. Also on channel
               ///< tiles
+  packet = 51,  ///< PacketHeader (exchange/direct_send.cpp); unless stopped or empty, pixels (packed_pixels.hpp), and
+                ///< if they are kept f32 error estimates row by row
   // Channel credit.
   credit = 4,  ///< u64 bytes that the receiver may send again
   // Channel tiles.
   tiles = 5,  ///< u64 frame; until the end: u64 tile, its pixels (packed_pixels.hpp), u64 deep samples in the tile;
               ///< unless that is 0 u32 samples of each pixel, scene::DeepImageSample each
   region =
-      6,  ///< RegionHeader (frame/sort_first.cpp); unless stopped, pixels (packed_pixels.hpp) of 64 rows at a time,
+      6,  ///< RegionHeader (frame/region_gather.cpp); unless stopped, pixels (packed_pixels.hpp) of 64 rows at a time,
           ///< and if they are kept f32 error estimates row by row
   deep_rows = 7,  ///< u64 samples of each pixel of the sender's rows, scene::DeepImageSample each
   // Channel frames.

@@ -13,6 +13,7 @@
 #include "frame/run_error.hpp"
 #include "frame/session_state.hpp"
 #include "frame/sort_first.hpp"
+#include "frame/sort_last.hpp"
 #include "frame/verify.hpp"
 #include "scene/error.hpp"
 
@@ -29,11 +30,10 @@ FrameStatistics statistics_of(const frame::FinishedVolumeFrame& frame, const cha
   statistics.instruction_set = s.instruction_set;
   statistics.integrator = integrator;
   statistics.milliseconds = frame.frame_ms;
-  for (int process = 0; process < frame.split.processes(); ++process) {
-    const scene::PixelRect r = frame.split.region(process);
-    statistics.rectangles.push_back({r.x0, r.y0, r.x1, r.y1});
-  }
-  statistics.samples = frame.samples;
+  statistics.rectangles = frame.regions;
+  statistics.ranks = frame.ranks;
+  for (const GridCounters& rank : frame.ranks) statistics.samples.push_back(rank.samples);
+  for (const volume::VoxelBox& part : frame.parts) statistics.parts.push_back({part.low, part.high});
   statistics.cpu_seconds = frame.cpu_seconds;
   statistics.split_cpu_seconds = frame.split_cpu_seconds;
   return statistics;
@@ -57,7 +57,7 @@ class GridByRays final : public Session::State {
       : State(std::move(dataset), settings), transport_(std::move(transport)), trace_(settings.trace) {
     check();
     make_renderer({});
-    make_sort_first();
+    make_frames();
   }
 
   std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
@@ -65,7 +65,8 @@ class GridByRays final : public Session::State {
     if (settings.deep) check_deep(settings);
     if (settings.keep_uncertainty != keeps_uncertainty_ || settings.keep_cost != keeps_cost_) {
       keeps_uncertainty_ = settings.keep_uncertainty, keeps_cost_ = settings.keep_cost;
-      make_sort_first();
+      check(settings);
+      make_frames();
     }
     for (std::size_t i = 0; i < views.size(); ++i) {
       make_renderer(views[i].size);
@@ -104,17 +105,32 @@ class GridByRays final : public Session::State {
   }
 
  private:
-  void make_sort_first() {
+  [[nodiscard]] bool sorts_last() const { return settings().ranks.distribution == Distribution::sort_last; }
+
+  void make_frames() {
+    if (sorts_last()) {
+      frames_ = std::make_unique<frame::SortLast>(
+          *transport_, frame::SortLastSettings{settings().ranks.direct_send, keeps_uncertainty_, trace_});
+      return;
+    }
     frame::SortFirstSettings sort_first = frame::sort_first_settings(settings());
     sort_first.keep_error_bounds = keeps_uncertainty_;
     sort_first.keep_cost = keeps_cost_;
     sort_first.trace = trace_;
-    sort_first_.emplace(*transport_, std::move(sort_first));
+    frames_ = std::make_unique<frame::SortFirst>(*transport_, std::move(sort_first));
   }
 
   void check() const {
     if (settings().mesh.rasterizer != Rasterizer::planes)
       throw scene::bad_input("`rasterizer`: is for meshes, and the data set is a grid; leave it out");
+    if (sorts_last() && settings().integrator.kind == IntegratorKind::preintegrated)
+      throw scene::bad_input(
+          "`distribution` sort-last: a pre-integrated step from one process's part to the next would be missed; use "
+          "`integrator` automatic, exact or sampled, or sort-first");
+  }
+  void check(const FrameSettings& frame) const {
+    if (sorts_last() && frame.keep_cost)
+      throw scene::bad_input("`keep_cost`: sort-last splits the volume, not the picture by its cost; use sort-first");
   }
   void check_deep(const FrameSettings& frame) const {
     if (!(frame.deep_accuracy >= 1e-6 && frame.deep_accuracy <= 1))
@@ -130,6 +146,7 @@ class GridByRays final : public Session::State {
   void make_renderer(std::optional<ImageSize> size) {
     volume::RenderSettings grid = frame::grid_settings(settings());
     grid.clip = data().clip;
+    if (sorts_last()) grid.parts = transport_->size();
     if (!size) {
       // Only for its checks.
       const volume::Renderer checked(*data().samples, grid, data().ranges);
@@ -150,7 +167,7 @@ class GridByRays final : public Session::State {
     try {
       // A trace's numbers are its caller's.
       const std::size_t traced = trace_ != nullptr ? static_cast<std::size_t>(std::max(trace_->frame(), 0)) : number;
-      finished = sort_first_->render(*renderer_, function, {view.camera, view.size}, traced, &watch);
+      finished = frames_->render(*renderer_, function, {view.camera, view.size}, traced, &watch);
     } catch (const frame::SinkFailure& failure) {
       of_sink = failure.cause;
     }
@@ -158,7 +175,7 @@ class GridByRays final : public Session::State {
     std::optional<DeepImage> deep;
     if (settings.deep) try {
         const scene::TraceScope timing(trace_, "project");
-        frame::StopRelay::Run relayed(sort_first_->relay(), stop);
+        frame::StopRelay::Run relayed(frames_->relay(), stop);
         const volume::GridSurfaces surfaces(this->settings().surfaces, function, *data().ranges);
         deep = frame::deep_rows(*transport_, *data().samples, view.camera, view.size, function,
                                 {settings.deep_accuracy, this->settings().emission, this->settings().threads,
@@ -212,7 +229,7 @@ class GridByRays final : public Session::State {
   const std::uint64_t resident_ = frame::resident_bytes();
   std::optional<volume::Renderer> renderer_;
   bool keeps_uncertainty_ = false, keeps_cost_ = false;
-  std::optional<frame::SortFirst> sort_first_;
+  std::unique_ptr<frame::VolumeFrames> frames_;
 };
 
 }  // namespace

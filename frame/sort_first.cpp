@@ -5,18 +5,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <ctime>
-#include <exception>
 #include <numeric>
 #include <optional>
-#include <span>
 #include <utility>
 #include <vector>
 
 #include "exchange/collectives.hpp"
-#include "exchange/packed_pixels.hpp"
 #include "frame/reduce.hpp"
-#include "frame/stop_relay.hpp"
+#include "frame/region_gather.hpp"
 #include "scene/error.hpp"
 #include "volume/learned_work.hpp"
 
@@ -24,40 +20,13 @@ namespace tessera::frame {
 namespace {
 
 using exchange::append_list;
-using exchange::append_values;
 using exchange::Bytes;
-using exchange::Channel;
 using exchange::message_of;
 using exchange::MessageKind;
 using exchange::MessageReader;
 using scene::PixelRect;
 using volume::CostMap;
 using volume::ImageSplit;
-
-/// What travels before the pixels of a rank's rectangle.
-struct RegionHeader {
-  std::uint64_t frame;
-  PixelRect region;
-  GridCounters counters;
-  double cpu_seconds, split_cpu_seconds;
-  std::uint64_t stopped;  ///< 1: no pixels follow
-};
-static_assert(sizeof(RegionHeader) == sizeof(GridCounters) + 6 * 8);
-
-/// A rectangle's rows, few at a time: what is packed at once is no larger.
-std::vector<PixelRect> strips_of(const PixelRect& rect) {
-  constexpr int rows = 64;
-  std::vector<PixelRect> strips;
-  for (int y = rect.y0; y < rect.y1 && rect.x0 < rect.x1; y += rows)
-    strips.push_back({rect.x0, y, rect.x1, std::min(y + rows, rect.y1)});
-  return strips;
-}
-
-double process_cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 PixelRect scaled(const PixelRect& r, double resolution, scene::ImageSize map, scene::ImageSize image) {
   const auto edge = [&](int v, int length, int map_length) {
@@ -87,7 +56,6 @@ class SortFirst::State {
  public:
   State(exchange::Transport& transport, SortFirstSettings settings)
       : transport_(transport),
-        relay_(transport),
         settings_(std::move(settings)),
         weights_(settings_.weights.empty() ? std::vector<double>(static_cast<std::size_t>(transport.size()), 1.0)
                                            : settings_.weights) {
@@ -100,32 +68,6 @@ class SortFirst::State {
       throw scene::bad_input("balance: weights must be positive numbers");
   }
 
-  std::optional<FinishedVolumeFrame> render(volume::Renderer& renderer, const scene::TransferFunction& function,
-                                            const VolumeJob& job, std::size_t number, scene::FrameWatch* watch) {
-    scene::FrameWatch nobody;
-    if (watch == nullptr) watch = &nobody;
-    StopRelay::Run relayed(relay_, watch->stop());
-    // What the caller's function throws stops all ranks in order before the caller gets it.
-    std::exception_ptr thrown;
-    scene::FrameWatch here(relayed.token());
-    if (watch->wants_tiles() && transport_.rank() == 0)
-      here.listen([&](const PixelRect& rect, const scene::Image& image) {
-        try {
-          watch->finished(rect, image);
-        } catch (...) {
-          thrown = std::current_exception();
-          relayed.stop();
-          throw scene::FrameStopped();
-        }
-      });
-    auto finished = make(renderer, function, job, number, here);
-    if (thrown) std::rethrow_exception(thrown);
-    return finished;
-  }
-
-  StopRelay& relay() { return relay_; }
-
- private:
   std::optional<FinishedVolumeFrame> make(volume::Renderer& renderer, const scene::TransferFunction& function,
                                           const VolumeJob& job, std::size_t number, scene::FrameWatch& watch) {
     {
@@ -158,12 +100,12 @@ class SortFirst::State {
     if (settings_.measured) learn_speed(static_cast<double>(statistics.samples), render_begin, stopped);
     last_split_ = split;
     last_size_ = job.size;
-    RegionHeader header{number, mine, statistics, cpu, cpu_before - cpu_at_first, stopped ? 1u : 0u};
+    const RegionHeader header{number, mine, statistics, cpu, cpu_before - cpu_at_first, stopped ? 1u : 0u};
     if (transport_.rank() != 0) {
-      send(header, image, error_bounds);
+      send_region(transport_, header, image, error_bounds);
       return std::nullopt;
     }
-    FinishedVolumeFrame finished;
+    FinishedVolumeFrame finished{};
     finished.frame = number;
     finished.stopped = stopped;
     if (stopped) image = scene::Image(job.size);
@@ -172,32 +114,12 @@ class SortFirst::State {
     finished.statistics = statistics;
     finished.split = split;
     finished.cost = std::move(cost_);
-    finished.samples.assign(static_cast<std::size_t>(transport_.size()), statistics.samples);
-    finished.cpu_seconds.assign(static_cast<std::size_t>(transport_.size()), cpu);
-    finished.split_cpu_seconds.assign(finished.cpu_seconds.size(), header.split_cpu_seconds);
-    for (int others = transport_.size() - 1; others > 0; --others) {
-      const exchange::Message message = [&] {
-        const scene::TraceScope timing(settings_.trace, "wait", static_cast<std::int32_t>(number));
-        return transport_.receive(Channel::tiles);
-      }();
-      const scene::TraceScope timing(settings_.trace, "assemble", static_cast<std::int32_t>(number),
-                                     message.bytes.size(), 1);
-      place(message, finished, watch);
-    }
+    gather_regions(transport_, header, finished, watch, settings_.trace);
     finished.frame_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
     return finished;
   }
 
-  /// On rank 0, of pixels that came from another.
-  static void tell(scene::FrameWatch& watch, const PixelRect& rect, FinishedVolumeFrame& finished) {
-    if (finished.stopped || watch.stopped()) return;
-    try {
-      watch.finished(rect, finished.image);
-    } catch (const scene::FrameStopped&) {
-      finished.stopped = true;
-    }
-  }
-
+ private:
   ImageSplit split_of(const volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job) {
     const int processes = transport_.size();
     const Balance balance = settings_.balance;
@@ -313,43 +235,7 @@ class SortFirst::State {
     return map;
   }
 
-  void send(const RegionHeader& header, const scene::Image& image, const std::vector<float>& error_bounds) {
-    Bytes bytes = message_of(MessageKind::region, header);
-    if (header.stopped == 0) {
-      const PixelRect& r = header.region;
-      for (const PixelRect& strip : strips_of(r)) exchange::append_pixels(bytes, image, strip, true);
-      for (int y = r.y0; y < r.y1 && !error_bounds.empty(); ++y)
-        append_values(bytes,
-                      std::span(error_bounds).subspan(image.index(r.x0, y), static_cast<std::size_t>(r.width())));
-    }
-    transport_.send(0, Channel::tiles, std::move(bytes), static_cast<std::int32_t>(header.frame));
-  }
-
-  void place(const exchange::Message& message, FinishedVolumeFrame& finished, scene::FrameWatch& watch) {
-    MessageReader reader(message, MessageKind::region);
-    const auto header = reader.take<RegionHeader>();
-    const PixelRect& r = header.region;
-    const scene::ImageSize size = finished.image.size;
-    if (header.frame != finished.frame || r.x0 < 0 || r.y0 < 0 || r.x1 > size.width || r.y1 > size.height ||
-        r.x0 > r.x1 || r.y0 > r.y1)
-      reader.refuse("is a rectangle of another picture");
-    finished.stopped = finished.stopped || header.stopped != 0;
-    if (header.stopped == 0) {
-      for (const PixelRect& strip : strips_of(r)) exchange::take_pixels(reader, finished.image, strip);
-      for (int y = r.y0; y < r.y1 && !finished.error_bounds.empty(); ++y)
-        reader.take_values(std::span(finished.error_bounds)
-                               .subspan(finished.image.index(r.x0, y), static_cast<std::size_t>(r.width())));
-    }
-    reader.finish();
-    if (header.stopped == 0) tell(watch, {r.x0, r.y0, r.x1, r.y1}, finished);
-    finished.statistics += header.counters;
-    finished.samples[static_cast<std::size_t>(message.from)] = header.counters.samples;
-    finished.cpu_seconds[static_cast<std::size_t>(message.from)] = header.cpu_seconds;
-    finished.split_cpu_seconds[static_cast<std::size_t>(message.from)] = header.split_cpu_seconds;
-  }
-
   exchange::Transport& transport_;
-  StopRelay relay_;
   const SortFirstSettings settings_;
   std::vector<double> weights_, times_;
   std::optional<volume::WorkRates> rates_;
@@ -359,15 +245,12 @@ class SortFirst::State {
 };
 
 SortFirst::SortFirst(exchange::Transport& transport, SortFirstSettings settings)
-    : state_(std::make_unique<State>(transport, std::move(settings))) {}
+    : VolumeFrames(transport), state_(std::make_unique<State>(transport, std::move(settings))) {}
 SortFirst::~SortFirst() = default;
 
-StopRelay& SortFirst::relay() { return state_->relay(); }
-
-std::optional<FinishedVolumeFrame> SortFirst::render(volume::Renderer& renderer,
-                                                     const scene::TransferFunction& function, const VolumeJob& job,
-                                                     std::size_t number, scene::FrameWatch* watch) {
-  return state_->render(renderer, function, job, number, watch);
+std::optional<FinishedVolumeFrame> SortFirst::make(volume::Renderer& renderer, const scene::TransferFunction& function,
+                                                   const VolumeJob& job, std::size_t number, scene::FrameWatch& watch) {
+  return state_->make(renderer, function, job, number, watch);
 }
 
 }  // namespace tessera::frame

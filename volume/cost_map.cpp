@@ -290,12 +290,17 @@ scene::ImageSize map_size(scene::ImageSize image, double resolution) {
 }
 
 scene::PixelRect footprint(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry) {
+  return footprint(camera, image, geometry, VoxelBox::all_of(geometry));
+}
+
+scene::PixelRect footprint(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,
+                           const VoxelBox& part) {
   const scene::PixelView space(camera, image);
-  const scene::GridIndex voxels = geometry.voxels();
   glm::dvec2 low(1e300), high(-1e300);
   for (int c = 0; c < 8; ++c) {
-    const glm::dvec3 index((c & 1) * static_cast<double>(voxels[0]), (c >> 1 & 1) * static_cast<double>(voxels[1]),
-                           (c >> 2) * static_cast<double>(voxels[2]));
+    glm::dvec3 index;
+    for (std::size_t a = 0; a < 3; ++a)
+      index[static_cast<int>(a)] = static_cast<double>((c >> a & 1) != 0 ? part.high[a] : part.low[a]);
     const scene::PixelPlace v = space.project(scene::world_of_index(geometry, index));
     if (!(v.w > 0) || !(v.depth > 0)) return {0, 0, image.width, image.height};
     low = glm::min(low, glm::dvec2(v.x, v.y) / v.w);

@@ -10,6 +10,7 @@
 #include "volume/cell_ranges.hpp"
 #include "volume/image_split.hpp"
 #include "volume/learned_work.hpp"
+#include "volume/voxel_box.hpp"
 
 namespace tessera::volume {
 
@@ -49,6 +50,9 @@ scene::ImageSize map_size(scene::ImageSize image, double resolution);
 
 /// The image pixels that the volume may cover; all of them if it reaches behind the eye.
 scene::PixelRect footprint(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry);
+/// The same of a part of it.
+scene::PixelRect footprint(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,
+                           const VoxelBox& part);
 
 /// The cost of the map pixels of `region` (default: all), in 1/64 voxels (or mean voxel sides).
 ///

@@ -28,10 +28,10 @@ struct Worker {
 
 }  // namespace
 
-TileCounts cast_frame(const FrameSetup& setup, const scene::PixelRect& wanted, FragmentSink* sink,
+TileCounts cast_frame(const FrameSetup& setup, const VoxelBox& part, const scene::PixelRect& wanted, FragmentSink* sink,
                       VoxelCaster* in_double, const std::stop_token& stop) {
   const FrameView& frame = setup.view();
-  const VoxelBox all{{0, 0, 0}, frame.voxels};
+  const bool all = part == VoxelBox{{0, 0, 0}, frame.voxels};
   const auto tiles = tiles_of(wanted);
   tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers([] { return std::make_unique<Worker>(); });
   tbb::parallel_for(
@@ -41,13 +41,17 @@ TileCounts cast_frame(const FrameSetup& setup, const scene::PixelRect& wanted, F
         for (std::size_t n = some.begin(); n != some.end(); ++n) {
           scene::throw_if_stopped(stop);
           Worker& worker = *workers.local();
+          const std::uint64_t rays_before = worker.counts.rays;
           worker.tile.begin(frame, tiles[n].first, tiles[n].second, wanted, worker.counts);
-          cast_tile(frame, all, worker.tile, worker.memory, worker.counts);
+          cast_tile(frame, part, worker.tile, worker.memory, worker.counts);
           if (sink == nullptr) continue;
           const std::size_t uncertain_before = worker.uncertain.size();
           worker.fragments.clear();
           worker.tile.fragments(frame, worker.fragments, worker.uncertain);
           sink->take(worker.fragments);
+          // begin() counts those that meet the volume.
+          const std::size_t met = worker.fragments.size() + worker.uncertain.size() - uncertain_before;
+          if (!all) worker.counts.rays = rays_before + met;
           if (worker.uncertain.size() == uncertain_before)
             sink->finished(worker.tile.pixels());
           else

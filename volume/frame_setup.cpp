@@ -121,7 +121,7 @@ void FrameSetup::set_up_method(const RendererState& state, const scene::Transfer
   if (state.in_steps()) {
     view_.step = state.settings.step * state.voxel_side / state.length_unit;
   } else if (view_.tally == nullptr) {
-    view_.error_tolerance = static_cast<float>(std::max(state.accuracy(), 1e-5) / 2);
+    view_.error_tolerance = static_cast<float>(std::max(state.accuracy(), 1e-5) / 2 / state.settings.parts);
     error_bound_ =
         LaneErrorBound(function, table_, state.ranges,
                        {view_.cell_data, view_.largest_color, state.brightest(function), view_.error_tolerance,

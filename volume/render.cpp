@@ -16,8 +16,10 @@
 #include "volume/cost_map.hpp"
 #include "volume/frame_cast.hpp"
 #include "volume/image_sink.hpp"
+#include "volume/object_split.hpp"
 #include "volume/renderer_state.hpp"
 #include "volume/view_cone.hpp"
+#include "volume/voxel_box.hpp"
 #include "volume/voxel_cast.hpp"
 
 namespace tessera::volume {
@@ -101,6 +103,14 @@ const scene::GridGeometry& Renderer::geometry() const { return state_->source.ge
 
 namespace {
 
+/// By cell: whether the function, or a surface, shows anything of it.
+std::vector<std::uint8_t> cells_shown(const RendererState& state, const scene::TransferFunction& function) {
+  std::vector<std::uint8_t> visible = visible_cells(state.ranges, state.table_of(function));
+  const GridSurfaces surfaces = state.surfaces_of(function);
+  for (std::size_t cell = 0; cell < surfaces.holding().size(); ++cell) visible[cell] |= surfaces.holding()[cell];
+  return visible;
+}
+
 /// The bricks that hold any of the visible cells.
 std::vector<CostBox> bricks_shown(const RendererState& state, const std::vector<std::uint8_t>& cells) {
   const BrickLayout& layout = state.bricks.layout();
@@ -137,8 +147,14 @@ struct Cast {
   std::uint64_t blocks_read = 0, block_bytes = 0;  ///< rectilinear grids
 };
 
+/// What is to be cast.
+struct Wanted {
+  VoxelBox part;
+  scene::PixelRect pixels;
+};
+
 Cast cast_regular(RendererState& state, const scene::Camera& camera, scene::ImageSize size,
-                  const scene::TransferFunction& function, const scene::PixelRect& wanted, FragmentSink& sink,
+                  const scene::TransferFunction& function, const Wanted& wanted, FragmentSink& sink,
                   const std::stop_token& stop) {
   Cast cast;
   tbb::task_arena arena(scene::threads_for(state.settings.threads));
@@ -146,14 +162,14 @@ Cast cast_regular(RendererState& state, const scene::Camera& camera, scene::Imag
     const FrameSetup setup(state, camera, size, function, nullptr);
     VoxelCaster in_double(state.source, camera, size, function,
                           state.voxel_settings(function, setup.visible(), setup.surfaces()));
-    cast.counts = cast_frame(setup, wanted, &sink, &in_double, stop);
+    cast.counts = cast_frame(setup, wanted.part, wanted.pixels, &sink, &in_double, stop);
     cast.brick_visible = setup.brick_visible();
   });
   return cast;
 }
 
 Cast cast_rectilinear(RendererState& state, const scene::Camera& camera, scene::ImageSize size,
-                      const scene::TransferFunction& function, const scene::PixelRect& wanted, FragmentSink& sink,
+                      const scene::TransferFunction& function, const Wanted& wanted, FragmentSink& sink,
                       const std::stop_token& stop) {
   Cast cast;
   const integrals::LaneTable table = state.table_of(function);
@@ -164,7 +180,7 @@ Cast cast_rectilinear(RendererState& state, const scene::Camera& camera, scene::
     const scene::TraceScope scope(state.settings.trace, "project");
     const GridSurfaces surfaces = state.surfaces_of(function);
     VoxelCaster caster(state.source, camera, size, function, state.voxel_settings(function, visible, &surfaces));
-    caster.cast(wanted, sink, stop);
+    caster.cast(wanted.part, wanted.pixels, sink, stop);
     const VoxelCastCounts counts = caster.counts();
     cast.counts.rays = counts.rays, cast.counts.voxels_visited = counts.voxels;
     cast.counts.samples = counts.lines;
@@ -175,21 +191,37 @@ Cast cast_rectilinear(RendererState& state, const scene::Camera& camera, scene::
 
 }  // namespace
 
+ObjectSplit Renderer::object_split(const scene::TransferFunction& transfer_function, int processes) const {
+  const RendererState& state = *state_;
+  return {state.source.geometry().voxels(), cells_shown(state, transfer_function), state.settings.brick_size,
+          processes};
+}
+
 scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size,
                               const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
                               std::optional<scene::PixelRect> region, std::vector<float>* error_bounds,
                               scene::FrameWatch* watch) {
+  scene::validate(size);
+  return render_part(VoxelBox::all_of(state_->source.geometry()), camera, size, transfer_function, statistics,
+                     within(size, region), error_bounds, watch);
+}
+
+scene::Image Renderer::render_part(const VoxelBox& part, const scene::Camera& camera, scene::ImageSize size,
+                                   const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
+                                   const scene::PixelRect& region, std::vector<float>* error_bounds,
+                                   scene::FrameWatch* watch) {
   scene::validate(camera);
   scene::validate(size);
   RendererState& state = *state_;
   const RenderSettings& settings = state.settings;
   const scene::TraceScope frame_scope(settings.trace, "frame");
-  const scene::PixelRect wanted = within(size, region);
+  const Wanted wanted{part, within(size, region)};
   state.end_preload();
   const BrickCache::Counts before = state.counts_before;
   const bool near_ones = settings.cache == CachePolicy::proximity;
   if (near_ones)
-    state.bricks.set_distances(cone_distances(camera, size, wanted, state.source.geometry(), state.bricks.layout()));
+    state.bricks.set_distances(
+        cone_distances(camera, size, wanted.pixels, state.source.geometry(), state.bricks.layout()));
   scene::FrameWatch nobody;
   if (watch == nullptr) watch = &nobody;
   watch->check();
@@ -230,7 +262,8 @@ void Renderer::sample_work(const scene::Camera& camera, scene::ImageSize size,
   tbb::task_arena arena(scene::threads_for(state_->settings.threads));
   arena.execute([&] {
     const FrameSetup setup(*state_, camera, size, transfer_function, &tally);
-    cast_frame(setup, within(size, region), nullptr, nullptr, watch == nullptr ? std::stop_token() : watch->stop());
+    cast_frame(setup, VoxelBox::all_of(state_->source.geometry()), within(size, region), nullptr, nullptr,
+               watch == nullptr ? std::stop_token() : watch->stop());
   });
 }
 
@@ -240,9 +273,7 @@ CostMap Renderer::cost_map(const scene::Camera& camera, scene::ImageSize size,
   const RendererState& state = *state_;
   const scene::GridGeometry& geometry = state.source.geometry();
   if (geometry.rectilinear()) return cost_of_planes(camera, size, geometry, state_->settings.clip, resolution, region);
-  std::vector<std::uint8_t> visible = visible_cells(state.ranges, state.table_of(transfer_function));
-  const GridSurfaces surfaces = state.surfaces_of(transfer_function);
-  for (std::size_t cell = 0; cell < surfaces.holding().size(); ++cell) visible[cell] |= surfaces.holding()[cell];
+  const std::vector<std::uint8_t> visible = cells_shown(state, transfer_function);
   const bool by_voxels = state.settings.method == Method::automatic || state.settings.method == Method::exact;
   std::vector<CostBox> bricks;
   if (method != CostMethod::visited) bricks = bricks_shown(state, visible);

@@ -51,7 +51,8 @@ struct RenderSettings {
   int preload_limit = 0;  ///< proximity: bricks near the frustum loaded ahead between frames, at most; asynchronously
   std::vector<scene::HalfSpace> clip{};  ///< that rays are kept in (tessera/selection.hpp)
   Surfaces surfaces{};                   ///< of point data, with exact and automatic
-  scene::Mechanisms use;                 ///< what saves work
+  int parts = 1;          ///< that rays are composited of, each by one process: all of them together are `accurate`
+  scene::Mechanisms use;  ///< what saves work
   scene::Trace* trace = nullptr;
 };
 
@@ -68,6 +69,8 @@ struct CostMap;
 struct RendererState;
 class WorkTally;
 class WorkRates;
+class ObjectSplit;
+struct VoxelBox;
 enum class CostMethod;
 
 /// Casts rays through one volume many times, in one process, by the ranges of values in its cells, by which empty space
@@ -99,6 +102,14 @@ class Renderer {
                       std::optional<scene::PixelRect> region = std::nullopt, std::vector<float>* error_bounds = nullptr,
                       scene::FrameWatch* watch = nullptr);
 
+  /// Sort-last: the light of a part of the volume, as if the rest of it were empty, of the pixels of `region`, which
+  /// hold all that the part may cover (footprint() in cost_map.hpp). Pictures of parts that make up the volume,
+  /// composited front to back, are the picture to rounding. Reads bricks that hold voxels of the part, no others.
+  /// Method::preintegrated would miss steps from one part to the next. As render() otherwise.
+  scene::Image render_part(const VoxelBox& part, const scene::Camera& camera, scene::ImageSize size,
+                           const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
+                           const scene::PixelRect& region, std::vector<float>* error_bounds, scene::FrameWatch* watch);
+
   /// The pilot pass: casts every 32nd ray of the picture (more of a small one), or of a region of it, and counts where
   /// in the volume the work was (learned_work.hpp); makes no light. As render() otherwise.
   void sample_work(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
@@ -112,6 +123,9 @@ class Renderer {
                                  const scene::TransferFunction& transfer_function, CostMethod method, double resolution,
                                  std::optional<scene::PixelRect> region = std::nullopt,
                                  const WorkRates* learned = nullptr) const;
+
+  /// The volume cut into boxes for so many processes, for this transfer function (object_split.hpp).
+  [[nodiscard]] ObjectSplit object_split(const scene::TransferFunction& transfer_function, int processes) const;
 
   /// Of the whole volume, blank samples left out.
   [[nodiscard]] scene::ValueRange range() const;

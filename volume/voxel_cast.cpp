@@ -232,7 +232,8 @@ VoxelRay VoxelCaster::part_in(const VoxelBox& chunk, const VoxelRay& ray) const 
 
 void VoxelCaster::add(const VoxelRay& ray, RaySum& sum) { state_->pixels.local()->add(ray, sum); }
 
-void VoxelCaster::cast(const scene::PixelRect& region, FragmentSink& sink, const std::stop_token& stop) {
+void VoxelCaster::cast(const VoxelBox& part, const scene::PixelRect& region, FragmentSink& sink,
+                       const std::stop_token& stop) {
   if (region.empty()) return;
   constexpr int side = 32;
   tbb::parallel_for(tbb::blocked_range2d<int>(region.y0, region.y1, side, region.x0, region.x1, side),
@@ -241,7 +242,7 @@ void VoxelCaster::cast(const scene::PixelRect& region, FragmentSink& sink, const
                       std::vector<RayFragment> fragments;
                       for (int y = tile.rows().begin(); y != tile.rows().end(); ++y)
                         for (int x = tile.cols().begin(); x != tile.cols().end(); ++x) {
-                          const VoxelRay through = ray(x, y);
+                          const VoxelRay through = part_in(part, ray(x, y));
                           if (!(through.begin < through.end)) continue;
                           RaySum sum;
                           add(through, sum);

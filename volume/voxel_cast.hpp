@@ -65,9 +65,10 @@ class VoxelCaster {
   /// Adds what `ray` meets behind what `sum` has; nothing if it is empty.
   void add(const VoxelRay& ray, RaySum& sum);
 
-  /// The whole rays of the pixels of a region, by rectangles of 32x32 that the sink hears of as they are finished.
-  /// Throws scene::FrameStopped once `stop` is asked for. Uses the calling thread's arena, as cast() below does.
-  void cast(const scene::PixelRect& region, FragmentSink& sink, const std::stop_token& stop = {});
+  /// The rays of the pixels of a region, so far as they are in `part`, by rectangles of 32x32 that the sink hears of as
+  /// they are finished. Throws scene::FrameStopped once `stop` is asked for. Uses the calling thread's arena, as cast()
+  /// below does.
+  void cast(const VoxelBox& part, const scene::PixelRect& region, FragmentSink& sink, const std::stop_token& stop = {});
   void cast(std::span<const UncertainRay> rays, FragmentSink& sink, const std::stop_token& stop = {});
 
   [[nodiscard]] VoxelCastCounts counts() const;

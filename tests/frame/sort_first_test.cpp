@@ -45,6 +45,12 @@ std::vector<VolumeJob> orbit(int frames) {
   return jobs;
 }
 
+std::vector<std::uint64_t> samples_of(const FinishedVolumeFrame& frame) {
+  std::vector<std::uint64_t> samples;
+  for (const GridCounters& rank : frame.ranks) samples.push_back(rank.samples);
+  return samples;
+}
+
 std::vector<FinishedVolumeFrame> render(int ranks, const SortFirstSettings& settings,
                                         const std::vector<VolumeJob>& jobs) {
   const auto source = ball();
@@ -80,8 +86,9 @@ TEST(SortFirst, AnyNumberOfProcessesAndAnyBalanceGivesTheBitsOfOne) {
         EXPECT_EQ(frames[i].frame, i);
         EXPECT_EQ(frames[i].image.rgba, expected[i].rgba) << ranks << " ranks, frame " << i;
         EXPECT_EQ(frames[i].image.depth, expected[i].depth);
-        EXPECT_EQ(frames[i].samples.size(), static_cast<std::size_t>(ranks));
-        EXPECT_EQ(std::accumulate(frames[i].samples.begin(), frames[i].samples.end(), std::uint64_t{0}),
+        const std::vector<std::uint64_t> samples = samples_of(frames[i]);
+        EXPECT_EQ(samples.size(), static_cast<std::size_t>(ranks));
+        EXPECT_EQ(std::accumulate(samples.begin(), samples.end(), std::uint64_t{0}),
                   frames[i].statistics.samples);
       }
     }
@@ -134,7 +141,7 @@ TEST(SortFirst, LearnedBalanceSharesCountedSamplesFromTheFirstFrameOnAndWhereRay
       render.threads = 1;
       volume::Renderer renderer(*source, render);
       render_sort_first(transport, settings, jobs, opaque, renderer,
-                        [&](const FinishedVolumeFrame& frame) { worst = std::max(worst, deviation(frame.samples)); });
+                        [&](const FinishedVolumeFrame& frame) { worst = std::max(worst, deviation(samples_of(frame))); });
     });
     return worst;
   };
@@ -149,7 +156,7 @@ TEST(SortFirst, WeightsShareTheWorkAndWrongOnesAreRefused) {
   const auto frames = render(2, settings, orbit(2));
   ASSERT_EQ(frames.size(), 3u);
   // A hundred pixels, edges on every fourth.
-  for (const FinishedVolumeFrame& frame : frames) EXPECT_GT(frame.samples[0], 2 * frame.samples[1]);
+  for (const FinishedVolumeFrame& frame : frames) EXPECT_GT(frame.ranks[0].samples, 2 * frame.ranks[1].samples);
   settings.weights = {1, 1, 1};
   EXPECT_THROW(static_cast<void>(render(2, settings, orbit(1))), scene::Error);
 }

@@ -1,0 +1,141 @@
+#include "frame/sort_last.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+#include <vector>
+
+#include "exchange/collectives.hpp"
+#include "exchange/direct_send.hpp"
+#include "frame/region_gather.hpp"
+#include "volume/object_split.hpp"
+
+namespace tessera::frame {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using scene::PixelRect;
+
+/// Of pixels that a part may cover, those within the footprint of the whole: rounding may put a corner's beside it.
+PixelRect within(const PixelRect& rect, const PixelRect& area) {
+  PixelRect both{std::max(rect.x0, area.x0), std::max(rect.y0, area.y0), std::min(rect.x1, area.x1),
+                 std::min(rect.y1, area.y1)};
+  return both.empty() ? PixelRect{area.x0, area.y0, area.x0, area.y0} : both;
+}
+
+/// A rank's band of the footprint, and what lies beside the footprint: all ranks' make up the picture.
+PixelRect region_of(const PixelRect& area, int rank, int ranks, scene::ImageSize size) {
+  const PixelRect band = exchange::band_of(area, rank, ranks);
+  return {0, rank == 0 ? 0 : band.y0, size.width, rank == ranks - 1 ? size.height : band.y1};
+}
+
+}  // namespace
+
+/// One rank's part.
+class SortLast::State {
+ public:
+  State(exchange::Transport& transport, const SortLastSettings& settings)
+      : transport_(transport), settings_(settings) {}
+
+  std::optional<FinishedVolumeFrame> make(volume::Renderer& renderer, const scene::TransferFunction& function,
+                                          const VolumeJob& job, std::size_t number, scene::FrameWatch& watch) {
+    {
+      // No rank runs ahead of the picture that rank 0 puts together, and a frame's time does not count reading.
+      const scene::TraceScope timing(settings_.trace, "wait", static_cast<std::int32_t>(number));
+      exchange::barrier(transport_);
+    }
+    const auto begin = Clock::now();
+    divide(renderer, function);
+    const int rank = transport_.rank(), ranks = transport_.size();
+    const scene::GridGeometry& geometry = renderer.geometry();
+    const volume::VoxelBox& part = split_->boxes()[static_cast<std::size_t>(rank)];
+    const std::vector<int> order = split_->front_to_back(geometry, job.camera);
+    PixelRect area = volume::footprint(job.camera, job.size, geometry);
+    if (area.empty()) area = {0, 0, 0, 0};
+
+    exchange::DirectSendTask task{order, area, {area.x0, area.y0, area.x0, area.y0}, number, false, settings_.trace};
+    if (part.low != part.high) task.own = within(volume::footprint(job.camera, job.size, geometry, part), area);
+    Picture mine = cast(renderer, function, job, part, task.own, watch);
+    task.stopped = mine.stopped;
+    const auto cast_end = Clock::now();
+    const exchange::DirectSendResult sent =
+        exchange::direct_send(transport_, settings_.direct_send, task, mine.image, mine.error_bounds);
+    GridCounters counters = mine.statistics;
+    counters.exchange_bytes = sent.bytes, counters.exchange_messages = sent.messages;
+    counters.composite_us = static_cast<std::uint64_t>(
+        std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - cast_end).count());
+
+    const RegionHeader header{
+        number, region_of(area, rank, ranks, job.size), counters, mine.cpu_seconds, 0, sent.stopped ? 1u : 0u};
+    if (rank != 0) {
+      send_region(transport_, header, mine.image, mine.error_bounds);
+      return std::nullopt;
+    }
+    FinishedVolumeFrame finished{};
+    finished.frame = number;
+    finished.image = std::move(mine.image);
+    finished.error_bounds = std::move(mine.error_bounds);
+    finished.statistics = std::move(mine.statistics);
+    static_cast<GridCounters&>(finished.statistics) = counters;
+    finished.parts = split_->boxes();
+    finished.stopped = sent.stopped;
+    tell(watch, header.region, finished);
+    gather_regions(transport_, header, finished, watch, settings_.trace);
+    finished.frame_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    return finished;
+  }
+
+ private:
+  /// What a rank sees of its part.
+  struct Picture {
+    scene::Image image;
+    std::vector<float> error_bounds;
+    volume::RenderStatistics statistics;
+    double cpu_seconds = 0;
+    bool stopped = false;
+  };
+
+  /// Every rank finds the same boxes: all know what every cell of the volume holds.
+  void divide(const volume::Renderer& renderer, const scene::TransferFunction& function) {
+    if (split_ && std::ranges::equal(function.knots(), knots_)) return;
+    const scene::TraceScope timing(settings_.trace, "partition");
+    split_.emplace(renderer.object_split(function, transport_.size()));
+    knots_.assign(function.knots().begin(), function.knots().end());
+  }
+
+  Picture cast(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
+               const volume::VoxelBox& part, const PixelRect& region, const scene::FrameWatch& watch) const {
+    Picture mine;
+    // Nobody is told of pixels that lack other parts.
+    scene::FrameWatch quiet(watch.stop());
+    const double cpu_before = process_cpu_seconds();
+    try {
+      if (!region.empty())
+        mine.image = renderer.render_part(part, job.camera, job.size, function, &mine.statistics, region,
+                                          settings_.keep_error_bounds ? &mine.error_bounds : nullptr, &quiet);
+      mine.stopped = watch.stopped();
+    } catch (const scene::FrameStopped&) {
+      mine.stopped = true;
+    }
+    mine.cpu_seconds = process_cpu_seconds() - cpu_before;
+    if (mine.image.size.width == 0) mine.image = scene::Image(job.size);
+    if (settings_.keep_error_bounds) mine.error_bounds.resize(mine.image.depth.size(), 0.0f);
+    return mine;
+  }
+
+  exchange::Transport& transport_;
+  const SortLastSettings settings_;
+  std::optional<volume::ObjectSplit> split_;
+  std::vector<tessera::Knot> knots_;  ///< that it is for
+};
+
+SortLast::SortLast(exchange::Transport& transport, const SortLastSettings& settings)
+    : VolumeFrames(transport), state_(std::make_unique<State>(transport, settings)) {}
+SortLast::~SortLast() = default;
+
+std::optional<FinishedVolumeFrame> SortLast::make(volume::Renderer& renderer, const scene::TransferFunction& function,
+                                                  const VolumeJob& job, std::size_t number, scene::FrameWatch& watch) {
+  return state_->make(renderer, function, job, number, watch);
+}
+
+}  // namespace tessera::frame
