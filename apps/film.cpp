@@ -90,7 +90,7 @@ class Film final : public Sink {
         if (!frames_[last].finished) group.push_back(last);
       if (!group.empty()) {
         hold(frames_[group.front()]);
-        overlaps_ ? make_overlapping(group) : make_one_by_one(group);
+        overlaps_ || grids_overlap(group) ? make_overlapping(group) : make_one_by_one(group);
       }
       first = last;
     }
@@ -124,7 +124,7 @@ class Film final : public Sink {
                                                          delete written;
                                                        });
     pictures_.add([this, picture, annotated = annotated_frame(frame, record.camera), number] {
-      const TraceScope scope(timed() ? &compositing_ : nullptr, "write", number);
+      const TraceScope scope(writing(), "write", number);
       write_annotated(picture->image, picture->deep, annotated, picture_writer_);
     });
     say(frame, *picture, std::move(record));
@@ -266,6 +266,11 @@ class Film final : public Sink {
     session_.emplace(*data_, settings_, job_.communicator());
   }
 
+  /// Of several pictures of a volume one is cast while the one before is gathered.
+  [[nodiscard]] bool grids_overlap(const std::vector<std::size_t>& group) const {
+    return options_.is_grid() && job_.size() > 1 && group.size() > 1 && !options_.frame.deep && !options_.show_balance;
+  }
+
   void make_one_by_one(const std::vector<std::size_t>& group) {
     for (const std::size_t at : group) {
       const FilmFrame& frame = frames_[at];
@@ -317,6 +322,7 @@ class Film final : public Sink {
         views.push_back({camera_of(frames_[at]), frames_[at].size});
       }
     output_.line().begin(rendering_words(frames_[group.front()]));
+    if (options_.is_grid() && trace() != nullptr) trace()->set_frame(static_cast<std::int32_t>(jobs_before_));
     session_->render(views, loaded_.function, options_.frame, *this);
     jobs_before_ += jobs_.size();
   }

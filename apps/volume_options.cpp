@@ -222,7 +222,6 @@ void refuse_mesh_words(const RenderWords& words) {
                                                 {"--compositors", !words.compositors.empty()},
                                                 {"--exchange", !words.exchange.empty()},
                                                 {"--partition", words.partition != "curve"},
-                                                {"--frames-in-flight", !words.frames_in_flight.empty()},
                                                 {"--seed", !words.seed.empty()},
                                                 {"--tile-size", !words.tile_size.empty()}};
   for (const auto& [option, is_given] : given)

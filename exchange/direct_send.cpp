@@ -77,8 +77,10 @@ void put_behind(const float* back, float back_depth, float* front, float& front_
 /// One frame's exchange on one rank.
 class Exchange {
  public:
-  Exchange(Transport& transport, const DirectSendTask& task, scene::Image& image, std::span<float> error_bounds)
+  Exchange(Transport& transport, std::vector<Message>& early, const DirectSendTask& task, scene::Image& image,
+           std::span<float> error_bounds)
       : transport_(transport),
+        early_(early),
         task_(task),
         image_(image),
         error_bounds_(error_bounds),
@@ -88,6 +90,7 @@ class Exchange {
         packets_(packets_of(band_of(task.area, transport.rank(), transport.size()))) {
     result_.stopped = task.stopped;
     came_.resize(static_cast<std::size_t>(transport.size()));
+    for (Message& message : std::exchange(early_, {})) take(std::move(message));
   }
 
   DirectSendResult asynchronous() {
@@ -137,7 +140,13 @@ class Exchange {
     take(transport_.receive(Channel::fragments));
   }
 
-  void take(Message message) { came_.at(static_cast<std::size_t>(message.from)).push_back(std::move(message)); }
+  void take(Message message) {
+    const auto frame = MessageReader(message, MessageKind::packet).take<PacketHeader>().frame;
+    if (frame > task_.frame)
+      early_.push_back(std::move(message));
+    else
+      came_.at(static_cast<std::size_t>(message.from)).push_back(std::move(message));
+  }
 
   /// All that is next in order and has come.
   void composite() {
@@ -178,6 +187,7 @@ class Exchange {
   }
 
   Transport& transport_;
+  std::vector<Message>& early_;
   const DirectSendTask& task_;
   scene::Image& image_;
   std::span<float> error_bounds_;
@@ -193,9 +203,9 @@ class Exchange {
 
 }  // namespace
 
-DirectSendResult direct_send(Transport& transport, DirectSend how, const DirectSendTask& task, scene::Image& image,
-                             std::span<float> error_bounds) {
-  Exchange exchange(transport, task, image, error_bounds);
+DirectSendResult DirectSender::run(DirectSend how, const DirectSendTask& task, scene::Image& image,
+                                   std::span<float> error_bounds) {
+  Exchange exchange(transport_, early_, task, image, error_bounds);
   return how == DirectSend::synchronous ? exchange.synchronous() : exchange.asynchronous();
 }
 

@@ -48,16 +48,27 @@ struct DirectSendResult {
   std::uint64_t bytes = 0, messages = 0;  ///< that this rank sent to others
 };
 
-/// Replaces this rank's band of its picture by all ranks' pixels there, composited; of the others' bands nothing
-/// changes. `error_bounds`, if not empty, are added up likewise (by pixel, as volume::Renderer::render() gives them);
-/// all ranks have them or none. Collective; one call a frame, and no rank may be a frame ahead. Channel `fragments`.
-/// Throws what the transport throws, and Error(system_failure) for messages that are not of this exchange.
+/// A rank's part in the exchanges of many frames.
 ///
 ///   asynchronous  packets of `packet_rows` rows go out one by one, and what has come meanwhile is composited: a band
 ///                 is done soon after its last packet came
 ///   synchronous   rank p gives rank p + 1 all of its band and waits for its own from rank p - 1, then p + 2 and p - 2,
 ///                 and so on, and composites when it has them all
-DirectSendResult direct_send(Transport& transport, DirectSend how, const DirectSendTask& task, scene::Image& image,
-                             std::span<float> error_bounds);
+class DirectSender {
+ public:
+  /// `transport` must outlive it.
+  explicit DirectSender(Transport& transport) : transport_(transport) {}
+
+  /// Replaces this rank's band of its picture by all ranks' pixels there, composited; of the others' bands nothing
+  /// changes. `error_bounds`, if not empty, are added up likewise (by pixel, as volume::Renderer::render() gives them);
+  /// all ranks have them or none. Collective, one call a frame, frames in order; ranks may be frames ahead. Channel
+  /// `fragments`. Throws what the transport throws, and Error(system_failure) for messages that are not of these
+  /// exchanges.
+  DirectSendResult run(DirectSend how, const DirectSendTask& task, scene::Image& image, std::span<float> error_bounds);
+
+ private:
+  Transport& transport_;
+  std::vector<Message> early_;  ///< of later frames, in the order in which they came
+};
 
 }  // namespace tessera::exchange

@@ -85,6 +85,7 @@ enum class MessageKind : std::uint16_t {
   speed = 50,             ///< f64 samples a second of the last frame, 0: unknown
   ray_tets = 48,          ///< list of RayTet (frame/probe.cpp): those of a rank's part that a ray meets
   curved_part = 40,  ///< frame/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
+  next_frame = 52,   ///< u8: 1: there is one more
   // All channels.
   attempt_end = 49,  ///< u8 ErrorCode, 0 if all went well, text: the sender has no more of this attempt (attempt.hpp)
   // The transport's own.

@@ -68,6 +68,7 @@ class GridByRays final : public Session::State {
       check(settings);
       make_frames();
     }
+    if (!settings.deep && !settings.keep_cost) return render_list(views, function, sink, stop);
     for (std::size_t i = 0; i < views.size(); ++i) {
       make_renderer(views[i].size);
       bool stopped = false;
@@ -75,11 +76,7 @@ class GridByRays final : public Session::State {
       try {
         stopped = !make(i, views[i], function, settings, sink, stop, of_sink);
       } catch (const std::exception& fault) {
-        // The others wait for this rank.
-        if (transport_->size() > 1) {
-          transport_->fail(frame::run_error(*transport_, fault));
-          transport_->check();
-        }
+        tell_others(fault);
         throw;
       }
       if (of_sink) std::rethrow_exception(of_sink);
@@ -123,6 +120,9 @@ class GridByRays final : public Session::State {
   void check() const {
     if (settings().mesh.rasterizer != Rasterizer::planes)
       throw scene::bad_input("`rasterizer`: is for meshes, and the data set is a grid; leave it out");
+    if (settings().ranks.frames_in_flight < 1)
+      throw scene::bad_input(
+          fmt::format("`frames_in_flight` {}: it must be at least 1", settings().ranks.frames_in_flight));
     if (sorts_last() && settings().integrator.kind == IntegratorKind::preintegrated)
       throw scene::bad_input(
           "`distribution` sort-last: a pre-integrated step from one process's part to the next would be missed; use "
@@ -159,15 +159,62 @@ class GridByRays final : public Session::State {
     renderer_.emplace(*data().samples, grid, data().ranges);
   }
 
+  /// The others wait for a rank that has failed; throws what ends the run on all.
+  void tell_others(const std::exception& fault) {
+    if (transport_->size() == 1) return;
+    transport_->fail(frame::run_error(*transport_, fault));
+    transport_->check();
+  }
+
+  /// A trace's numbers are its caller's.
+  [[nodiscard]] std::size_t traced(std::size_t number) const {
+    return trace_ != nullptr ? static_cast<std::size_t>(std::max(trace_->frame(), 0)) : number;
+  }
+
+  /// Pictures that overlap.
+  std::size_t render_list(std::span<const View> views, const TransferFunction& function, Sink& sink,
+                          const std::stop_token& stop) {
+    if (views.empty()) return 0;
+    ImageSize largest = views.front().size;
+    std::vector<frame::VolumeJob> jobs;
+    for (const View& view : views) {
+      jobs.push_back({view.camera, view.size});
+      if (std::int64_t{view.size.width} * view.size.height > std::int64_t{largest.width} * largest.height)
+        largest = view.size;
+    }
+    frame::VolumeCallbacks callbacks;
+    callbacks.frame = [&](frame::FinishedVolumeFrame&& finished) {
+      if (finished.stopped) return;  // every rank is told below
+      RenderedFrame frame;
+      frame.number = finished.frame;
+      frame.statistics = statistics_of(finished, name_of(this->settings().integrator.kind));
+      frame.image = std::move(finished.image);
+      frame.uncertainty = std::move(finished.error_bounds);
+      sink.frame(std::move(frame));
+    };
+    if (sink.wants_tiles())
+      callbacks.tile = [&](std::size_t number, const PixelRect& rect, const Image& image) {
+        sink.tile({number, rect, image});
+      };
+    try {
+      make_renderer(largest);
+    } catch (const std::exception& fault) {
+      tell_others(fault);
+      throw;
+    }
+    const std::size_t complete =
+        frames_->render(*renderer_, function, jobs, traced(0), callbacks, stop, settings().ranks.frames_in_flight);
+    if (complete < views.size()) sink.frame(stopped_frame(complete));
+    return complete;
+  }
+
   /// False if it was stopped; what the sink threw, if that stopped it, is in `of_sink`.
   bool make(std::size_t number, const View& view, const TransferFunction& function, const FrameSettings& settings,
             Sink& sink, const std::stop_token& stop, std::exception_ptr& of_sink) {
     scene::FrameWatch watch(stop, tiles_to(sink, number));
     std::optional<frame::FinishedVolumeFrame> finished;
     try {
-      // A trace's numbers are its caller's.
-      const std::size_t traced = trace_ != nullptr ? static_cast<std::size_t>(std::max(trace_->frame(), 0)) : number;
-      finished = frames_->render(*renderer_, function, {view.camera, view.size}, traced, &watch);
+      finished = frames_->render(*renderer_, function, {view.camera, view.size}, traced(number), &watch);
     } catch (const frame::SinkFailure& failure) {
       of_sink = failure.cause;
     }

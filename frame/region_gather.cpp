@@ -1,7 +1,6 @@
 #include "frame/region_gather.hpp"
 
 #include <algorithm>
-#include <ctime>
 #include <span>
 #include <utility>
 
@@ -31,13 +30,71 @@ void note(const RegionHeader& header, int rank, FinishedVolumeFrame& finished) {
   finished.split_cpu_seconds[r] = header.split_cpu_seconds;
 }
 
-void place(const exchange::Message& message, FinishedVolumeFrame& finished, scene::FrameWatch& watch) {
+}  // namespace
+
+void tell(scene::FrameWatch& watch, const PixelRect& rect, FinishedVolumeFrame& finished) {
+  if (finished.stopped || watch.stopped() || rect.empty()) return;
+  try {
+    watch.finished(rect, finished.image);
+  } catch (const scene::FrameStopped&) {
+    finished.stopped = true;
+  }
+}
+
+void send_region(exchange::Transport& transport, const VolumePart& part) {
+  const RegionHeader& header = part.header;
+  const scene::Image& image = part.finished.image;
+  exchange::Bytes bytes = exchange::message_of(exchange::MessageKind::region, header);
+  if (header.stopped == 0) {
+    const PixelRect& r = header.region;
+    for (const PixelRect& strip : strips_of(r)) exchange::append_pixels(bytes, image, strip, true);
+    const std::span bounds(part.finished.error_bounds);
+    for (int y = r.y0; y < r.y1 && !bounds.empty(); ++y)
+      exchange::append_values(bytes, bounds.subspan(image.index(r.x0, y), static_cast<std::size_t>(r.width())));
+  }
+  transport.send(0, exchange::Channel::tiles, std::move(bytes), static_cast<std::int32_t>(header.frame));
+}
+
+FinishedVolumeFrame RegionGather::gather(VolumePart own, scene::FrameWatch& watch) {
+  FinishedVolumeFrame finished = std::move(own.finished);
+  const auto ranks = static_cast<std::size_t>(transport_.size());
+  finished.regions.resize(ranks), finished.ranks.resize(ranks);
+  finished.cpu_seconds.resize(ranks), finished.split_cpu_seconds.resize(ranks);
+  finished.stopped = own.header.stopped != 0;
+  note(own.header, transport_.rank(), finished);
+  for (int others = transport_.size() - 1; others > 0; --others) {
+    const exchange::Message message = next(own.header.frame);
+    const scene::TraceScope timing(trace_, "assemble", static_cast<std::int32_t>(own.header.frame),
+                                   message.bytes.size(), 1);
+    place(message, own.header.frame, finished, watch);
+  }
+  return finished;
+}
+
+exchange::Message RegionGather::next(std::uint64_t frame) {
+  const scene::TraceScope timing(trace_, "wait", static_cast<std::int32_t>(frame));
+  for (;;) {
+    if (const auto early = early_.find(frame); early != early_.end()) {
+      exchange::Message message = std::move(early->second.back());
+      early->second.pop_back();
+      if (early->second.empty()) early_.erase(early);
+      return message;
+    }
+    exchange::Message message = transport_.receive(exchange::Channel::tiles);
+    const auto of = MessageReader(message, exchange::MessageKind::region).take<RegionHeader>().frame;
+    if (of == frame) return message;
+    early_[of].push_back(std::move(message));
+  }
+}
+
+void RegionGather::place(const exchange::Message& message, std::uint64_t frame, FinishedVolumeFrame& finished,
+                         scene::FrameWatch& watch) const {
   MessageReader reader(message, exchange::MessageKind::region);
   const auto header = reader.take<RegionHeader>();
   const PixelRect& r = header.region;
   const scene::ImageSize size = finished.image.size;
-  if (header.frame != finished.frame || r.x0 < 0 || r.y0 < 0 || r.x1 > size.width || r.y1 > size.height ||
-      r.x0 > r.x1 || r.y0 > r.y1)
+  if (header.frame != frame || r.x0 < 0 || r.y0 < 0 || r.x1 > size.width || r.y1 > size.height || r.x0 > r.x1 ||
+      r.y0 > r.y1)
     reader.refuse("is a rectangle of another picture");
   finished.stopped = finished.stopped || header.stopped != 0;
   if (header.stopped == 0) {
@@ -50,53 +107,6 @@ void place(const exchange::Message& message, FinishedVolumeFrame& finished, scen
   if (header.stopped == 0) tell(watch, r, finished);
   finished.statistics += header.counters;
   note(header, message.from, finished);
-}
-
-}  // namespace
-
-void tell(scene::FrameWatch& watch, const PixelRect& rect, FinishedVolumeFrame& finished) {
-  if (finished.stopped || watch.stopped() || rect.empty()) return;
-  try {
-    watch.finished(rect, finished.image);
-  } catch (const scene::FrameStopped&) {
-    finished.stopped = true;
-  }
-}
-
-double process_cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-void send_region(exchange::Transport& transport, const RegionHeader& header, const scene::Image& image,
-                 const std::vector<float>& error_bounds) {
-  exchange::Bytes bytes = exchange::message_of(exchange::MessageKind::region, header);
-  if (header.stopped == 0) {
-    const PixelRect& r = header.region;
-    for (const PixelRect& strip : strips_of(r)) exchange::append_pixels(bytes, image, strip, true);
-    for (int y = r.y0; y < r.y1 && !error_bounds.empty(); ++y)
-      exchange::append_values(
-          bytes, std::span(error_bounds).subspan(image.index(r.x0, y), static_cast<std::size_t>(r.width())));
-  }
-  transport.send(0, exchange::Channel::tiles, std::move(bytes), static_cast<std::int32_t>(header.frame));
-}
-
-void gather_regions(exchange::Transport& transport, const RegionHeader& own, FinishedVolumeFrame& finished,
-                    scene::FrameWatch& watch, scene::Trace* trace) {
-  const auto ranks = static_cast<std::size_t>(transport.size());
-  finished.regions.resize(ranks), finished.ranks.resize(ranks);
-  finished.cpu_seconds.resize(ranks), finished.split_cpu_seconds.resize(ranks);
-  note(own, transport.rank(), finished);
-  const auto number = static_cast<std::int32_t>(own.frame);
-  for (int others = transport.size() - 1; others > 0; --others) {
-    const exchange::Message message = [&] {
-      const scene::TraceScope timing(trace, "wait", number);
-      return transport.receive(exchange::Channel::tiles);
-    }();
-    const scene::TraceScope timing(trace, "assemble", number, message.bytes.size(), 1);
-    place(message, finished, watch);
-  }
 }
 
 }  // namespace tessera::frame

@@ -1,33 +1,36 @@
 #pragma once
 
+#include <map>
+#include <vector>
+
 #include "exchange/transport.hpp"
 #include "frame/volume_frames.hpp"
 
 namespace tessera::frame {
 
-/// What a rank says of its finished rectangle.
-struct RegionHeader {
-  std::uint64_t frame;
-  scene::PixelRect region;
-  GridCounters counters;
-  double cpu_seconds, split_cpu_seconds;
-  std::uint64_t stopped;  ///< 1: no pixels follow
+/// To rank 0: the pixels of the part's rectangle, and their error bounds if it has some.
+void send_region(exchange::Transport& transport, const VolumePart& part);
+
+/// On rank 0, all ranks' rectangles of one picture after the other. Those of later pictures wait until theirs is asked
+/// for.
+class RegionGather {
+ public:
+  RegionGather(exchange::Transport& transport, scene::Trace* trace) : transport_(transport), trace_(trace) {}
+
+  /// Completes this rank's part by those of the others, whose pixels `watch` hears of.
+  FinishedVolumeFrame gather(VolumePart own, scene::FrameWatch& watch);
+
+ private:
+  exchange::Message next(std::uint64_t frame);
+  void place(const exchange::Message& message, std::uint64_t frame, FinishedVolumeFrame& finished,
+             scene::FrameWatch& watch) const;
+
+  exchange::Transport& transport_;
+  scene::Trace* trace_;
+  std::map<std::uint64_t, std::vector<exchange::Message>> early_;  ///< by their frame
 };
-static_assert(sizeof(RegionHeader) == sizeof(GridCounters) + 6 * 8);
 
 /// Tells `watch` of pixels that are final on rank 0; what it throws of a stop stops the frame.
 void tell(scene::FrameWatch& watch, const scene::PixelRect& rect, FinishedVolumeFrame& finished);
-
-/// Processor time of all threads of this process so far.
-double process_cpu_seconds();
-
-/// To rank 0: the header's pixels of the image, and of `error_bounds` unless that is empty.
-void send_region(exchange::Transport& transport, const RegionHeader& header, const scene::Image& image,
-                 const std::vector<float>& error_bounds);
-
-/// On rank 0: what it has itself goes into `finished`, with those of the others, whose pixels `watch` hears of; of
-/// error bounds if `finished` has those of this rank.
-void gather_regions(exchange::Transport& transport, const RegionHeader& own, FinishedVolumeFrame& finished,
-                    scene::FrameWatch& watch, scene::Trace* trace);
 
 }  // namespace tessera::frame

@@ -12,7 +12,6 @@
 
 #include "exchange/collectives.hpp"
 #include "frame/reduce.hpp"
-#include "frame/region_gather.hpp"
 #include "scene/error.hpp"
 #include "volume/learned_work.hpp"
 
@@ -68,14 +67,8 @@ class SortFirst::State {
       throw scene::bad_input("balance: weights must be positive numbers");
   }
 
-  std::optional<FinishedVolumeFrame> make(volume::Renderer& renderer, const scene::TransferFunction& function,
-                                          const VolumeJob& job, std::size_t number, scene::FrameWatch& watch) {
-    {
-      // No rank runs ahead of the picture that rank 0 puts together, and a frame's time does not count reading.
-      const scene::TraceScope timing(settings_.trace, "wait", static_cast<std::int32_t>(number));
-      exchange::barrier(transport_);
-    }
-    const auto begin = std::chrono::steady_clock::now();
+  VolumePart make(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
+                  std::size_t number, scene::FrameWatch& watch) {
     const double cpu_at_first = process_cpu_seconds();
     const ImageSplit split = [&] {
       const scene::TraceScope timing(settings_.trace, "partition", static_cast<std::int32_t>(number));
@@ -100,23 +93,14 @@ class SortFirst::State {
     if (settings_.measured) learn_speed(static_cast<double>(statistics.samples), render_begin, stopped);
     last_split_ = split;
     last_size_ = job.size;
-    const RegionHeader header{number, mine, statistics, cpu, cpu_before - cpu_at_first, stopped ? 1u : 0u};
-    if (transport_.rank() != 0) {
-      send_region(transport_, header, image, error_bounds);
-      return std::nullopt;
-    }
-    FinishedVolumeFrame finished{};
-    finished.frame = number;
-    finished.stopped = stopped;
-    if (stopped) image = scene::Image(job.size);
-    finished.image = std::move(image);
-    finished.error_bounds = std::move(error_bounds);
-    finished.statistics = statistics;
-    finished.split = split;
-    finished.cost = std::move(cost_);
-    gather_regions(transport_, header, finished, watch, settings_.trace);
-    finished.frame_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-    return finished;
+    VolumePart part;
+    part.header = {number, mine, statistics, cpu, cpu_before - cpu_at_first, stopped ? 1u : 0u};
+    part.finished.image = stopped ? scene::Image(job.size) : std::move(image);
+    part.finished.error_bounds = std::move(error_bounds);
+    part.finished.statistics = statistics;
+    part.finished.split = split;
+    part.finished.cost = std::move(cost_);
+    return part;
   }
 
  private:
@@ -147,8 +131,10 @@ class SortFirst::State {
     return search.find_columns(gather_columns(volume::SplitSearch::column_sums(costs, table, search.map_rows())));
   }
 
-  /// What a pilot pass of every 32nd ray teaches of the work that this view takes: each rank casts those of the
-  /// rectangle it had in the frame before, whose bricks it holds. Collective.
+  /// What a pilot pass of every 32nd ray teaches of the work in the volume's cells: each rank casts those of the
+  /// rectangle it had in the frame before, whose bricks it holds. A cell's work changes little from view to view, so
+  /// that later frames of a transfer function cast an eighth of these rays each, and learn from eight frames' together.
+  /// Collective.
   void sample_work(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
                    scene::FrameWatch& watch) {
     if ((transport_.size() == 1 && !settings_.keep_cost) || settings_.balance != Balance::learned) return;
@@ -156,14 +142,23 @@ class SortFirst::State {
     const PixelRect area = volume::footprint(job.camera, job.size, renderer.geometry());
     const PixelRect part = has_last ? last_split_->region(transport_.rank())
                                     : volume::even_split(transport_.size(), job.size, area).region(transport_.rank());
-    volume::WorkTally tally(renderer.geometry().voxels());
+    if (!tally_ || !std::ranges::equal(function.knots(), learned_knots_)) {
+      tally_.emplace(renderer.geometry().voxels());
+      learned_knots_.assign(function.knots().begin(), function.knots().end());
+      learned_.assign(2 * tally_->cells().count(), 0);
+      pilots_ = 0;
+    }
+    constexpr std::size_t turns = 8;
     try {
-      renderer.sample_work(job.camera, job.size, function, tally, part, &watch);
+      renderer.sample_work(job.camera, job.size, function, *tally_, part, &watch,
+                           pilots_ == 0 ? volume::PilotTurns{} : volume::PilotTurns{pilots_, turns});
     } catch (const scene::FrameStopped&) {
       // The others wait for what this rank has learnt; the picture is dropped all the same.
     }
+    if (pilots_++ % turns != 0) return;
+    volume::WorkRates::add(reduce_all(transport_, tally_->take(), Reduction::sum), learned_);
     rates_.emplace(renderer.geometry().voxels());
-    rates_->learn(reduce_all(transport_, tally.take(), Reduction::sum));
+    rates_->learn(learned_);
   }
 
   std::vector<volume::RowSums> gather_rows(const volume::RowSums& own) {
@@ -238,6 +233,10 @@ class SortFirst::State {
   exchange::Transport& transport_;
   const SortFirstSettings settings_;
   std::vector<double> weights_, times_;
+  std::optional<volume::WorkTally> tally_;
+  std::vector<std::uint64_t> learned_;  ///< tallies of all ranks so far, of the transfer function of
+  std::vector<tessera::Knot> learned_knots_;
+  std::size_t pilots_ = 0;  ///< of it
   std::optional<volume::WorkRates> rates_;
   std::optional<ImageSplit> last_split_;
   scene::ImageSize last_size_{0, 0};
@@ -245,11 +244,11 @@ class SortFirst::State {
 };
 
 SortFirst::SortFirst(exchange::Transport& transport, SortFirstSettings settings)
-    : VolumeFrames(transport), state_(std::make_unique<State>(transport, std::move(settings))) {}
+    : VolumeFrames(transport, settings.trace), state_(std::make_unique<State>(transport, std::move(settings))) {}
 SortFirst::~SortFirst() = default;
 
-std::optional<FinishedVolumeFrame> SortFirst::make(volume::Renderer& renderer, const scene::TransferFunction& function,
-                                                   const VolumeJob& job, std::size_t number, scene::FrameWatch& watch) {
+VolumePart SortFirst::make(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
+                           std::size_t number, scene::FrameWatch& watch) {
   return state_->make(renderer, function, job, number, watch);
 }
 

@@ -36,8 +36,8 @@ class SortFirst final : public VolumeFrames {
   ~SortFirst() override;
 
  private:
-  std::optional<FinishedVolumeFrame> make(volume::Renderer& renderer, const scene::TransferFunction& function,
-                                          const VolumeJob& job, std::size_t number, scene::FrameWatch& watch) override;
+  VolumePart make(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
+                  std::size_t number, scene::FrameWatch& watch) override;
 
   class State;
   std::unique_ptr<State> state_;

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <utility>
 #include <vector>
 
-#include "exchange/collectives.hpp"
 #include "exchange/direct_send.hpp"
 #include "frame/region_gather.hpp"
 #include "volume/object_split.hpp"
@@ -35,16 +35,10 @@ PixelRect region_of(const PixelRect& area, int rank, int ranks, scene::ImageSize
 class SortLast::State {
  public:
   State(exchange::Transport& transport, const SortLastSettings& settings)
-      : transport_(transport), settings_(settings) {}
+      : transport_(transport), settings_(settings), sender_(transport) {}
 
-  std::optional<FinishedVolumeFrame> make(volume::Renderer& renderer, const scene::TransferFunction& function,
-                                          const VolumeJob& job, std::size_t number, scene::FrameWatch& watch) {
-    {
-      // No rank runs ahead of the picture that rank 0 puts together, and a frame's time does not count reading.
-      const scene::TraceScope timing(settings_.trace, "wait", static_cast<std::int32_t>(number));
-      exchange::barrier(transport_);
-    }
-    const auto begin = Clock::now();
+  VolumePart make(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
+                  std::size_t number, scene::FrameWatch& watch) {
     divide(renderer, function);
     const int rank = transport_.rank(), ranks = transport_.size();
     const scene::GridGeometry& geometry = renderer.geometry();
@@ -58,31 +52,25 @@ class SortLast::State {
     Picture mine = cast(renderer, function, job, part, task.own, watch);
     task.stopped = mine.stopped;
     const auto cast_end = Clock::now();
-    const exchange::DirectSendResult sent =
-        exchange::direct_send(transport_, settings_.direct_send, task, mine.image, mine.error_bounds);
-    GridCounters counters = mine.statistics;
+    const exchange::DirectSendResult sent = sender_.run(settings_.direct_send, task, mine.image, mine.error_bounds);
+    GridCounters& counters = mine.statistics;
     counters.exchange_bytes = sent.bytes, counters.exchange_messages = sent.messages;
     counters.composite_us = static_cast<std::uint64_t>(
         std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - cast_end).count());
 
-    const RegionHeader header{
+    VolumePart made;
+    made.header = {
         number, region_of(area, rank, ranks, job.size), counters, mine.cpu_seconds, 0, sent.stopped ? 1u : 0u};
-    if (rank != 0) {
-      send_region(transport_, header, mine.image, mine.error_bounds);
-      return std::nullopt;
+    made.finished.image = std::move(mine.image);
+    made.finished.error_bounds = std::move(mine.error_bounds);
+    made.finished.statistics = std::move(mine.statistics);
+    made.finished.parts = split_->boxes();
+    if (rank == 0) {
+      made.finished.stopped = sent.stopped;
+      tell(watch, made.header.region, made.finished);
+      made.header.stopped = made.finished.stopped ? 1 : 0;
     }
-    FinishedVolumeFrame finished{};
-    finished.frame = number;
-    finished.image = std::move(mine.image);
-    finished.error_bounds = std::move(mine.error_bounds);
-    finished.statistics = std::move(mine.statistics);
-    static_cast<GridCounters&>(finished.statistics) = counters;
-    finished.parts = split_->boxes();
-    finished.stopped = sent.stopped;
-    tell(watch, header.region, finished);
-    gather_regions(transport_, header, finished, watch, settings_.trace);
-    finished.frame_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-    return finished;
+    return made;
   }
 
  private:
@@ -125,16 +113,17 @@ class SortLast::State {
 
   exchange::Transport& transport_;
   const SortLastSettings settings_;
+  exchange::DirectSender sender_;
   std::optional<volume::ObjectSplit> split_;
   std::vector<tessera::Knot> knots_;  ///< that it is for
 };
 
 SortLast::SortLast(exchange::Transport& transport, const SortLastSettings& settings)
-    : VolumeFrames(transport), state_(std::make_unique<State>(transport, settings)) {}
+    : VolumeFrames(transport, settings.trace), state_(std::make_unique<State>(transport, settings)) {}
 SortLast::~SortLast() = default;
 
-std::optional<FinishedVolumeFrame> SortLast::make(volume::Renderer& renderer, const scene::TransferFunction& function,
-                                                  const VolumeJob& job, std::size_t number, scene::FrameWatch& watch) {
+VolumePart SortLast::make(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
+                          std::size_t number, scene::FrameWatch& watch) {
   return state_->make(renderer, function, job, number, watch);
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include "frame/volume_frames.hpp"
 #include "tessera/settings.hpp"
@@ -29,8 +28,8 @@ class SortLast final : public VolumeFrames {
   ~SortLast() override;
 
  private:
-  std::optional<FinishedVolumeFrame> make(volume::Renderer& renderer, const scene::TransferFunction& function,
-                                          const VolumeJob& job, std::size_t number, scene::FrameWatch& watch) override;
+  VolumePart make(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
+                  std::size_t number, scene::FrameWatch& watch) override;
 
   class State;
   std::unique_ptr<State> state_;

@@ -29,10 +29,12 @@ struct Worker {
 }  // namespace
 
 TileCounts cast_frame(const FrameSetup& setup, const VoxelBox& part, const scene::PixelRect& wanted, FragmentSink* sink,
-                      VoxelCaster* in_double, const std::stop_token& stop) {
+                      VoxelCaster* in_double, const std::stop_token& stop, PilotTurns turns) {
   const FrameView& frame = setup.view();
   const bool all = part == VoxelBox{{0, 0, 0}, frame.voxels};
-  const auto tiles = tiles_of(wanted);
+  auto tiles = tiles_of(wanted);
+  std::size_t n_th = 0;
+  std::erase_if(tiles, [&](const auto&) { return n_th++ % turns.of != turns.number % turns.of; });
   tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers([] { return std::make_unique<Worker>(); });
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, tiles.size(), 1),

@@ -18,6 +18,18 @@ std::vector<std::uint64_t> WorkTally::take() {
   return taken;
 }
 
+void WorkRates::add(std::span<const std::uint64_t> tally, std::span<std::uint64_t> sums) {
+  constexpr std::uint64_t low = 0xffffffffu, most = std::uint64_t{1} << 31;
+  bool large = false;
+  for (std::size_t word = 0; word < sums.size(); ++word) {
+    sums[word] += tally[word];
+    large = large || sums[word] >= most << 32 || (word % 2 == 0 && (sums[word] & low) >= most);
+  }
+  if (!large) return;
+  for (std::size_t word = 0; word < sums.size(); ++word)
+    sums[word] = word % 2 == 0 ? (sums[word] >> 33 << 32) | (sums[word] & low) >> 1 : sums[word] >> 1;
+}
+
 void WorkRates::learn(std::span<const std::uint64_t> tally) {
   struct Sums {
     double samples = 0, slabs = 0, depth = 0;

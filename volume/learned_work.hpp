@@ -56,6 +56,9 @@ class WorkRates {
  public:
   explicit WorkRates(const scene::GridIndex& voxels) : cells_(voxels), rates_(cells_.count()) {}
 
+  /// Adds a tally to others; all halved where a sum would no longer fit.
+  static void add(std::span<const std::uint64_t> tally, std::span<std::uint64_t> sums);
+
   /// From WorkTally::take(), summed over ranks.
   void learn(std::span<const std::uint64_t> tally);
 

@@ -214,7 +214,6 @@ scene::Image Renderer::render_part(const VoxelBox& part, const scene::Camera& ca
   scene::validate(size);
   RendererState& state = *state_;
   const RenderSettings& settings = state.settings;
-  const scene::TraceScope frame_scope(settings.trace, "frame");
   const Wanted wanted{part, within(size, region)};
   state.end_preload();
   const BrickCache::Counts before = state.counts_before;
@@ -255,7 +254,7 @@ scene::Image Renderer::render_part(const VoxelBox& part, const scene::Camera& ca
 
 void Renderer::sample_work(const scene::Camera& camera, scene::ImageSize size,
                            const scene::TransferFunction& transfer_function, WorkTally& tally,
-                           std::optional<scene::PixelRect> region, scene::FrameWatch* watch) {
+                           std::optional<scene::PixelRect> region, scene::FrameWatch* watch, PilotTurns turns) {
   scene::validate(camera);
   scene::validate(size);
   if (state_->source.geometry().rectilinear()) return;
@@ -263,7 +262,7 @@ void Renderer::sample_work(const scene::Camera& camera, scene::ImageSize size,
   arena.execute([&] {
     const FrameSetup setup(*state_, camera, size, transfer_function, &tally);
     cast_frame(setup, VoxelBox::all_of(state_->source.geometry()), within(size, region), nullptr, nullptr,
-               watch == nullptr ? std::stop_token() : watch->stop());
+               watch == nullptr ? std::stop_token() : watch->stop(), turns);
   });
 }
 

@@ -64,6 +64,11 @@ struct RenderStatistics : GridCounters {
 /// Regions that begin and end at multiples of this many pixels share no work with their neighbours.
 inline constexpr int region_grain = 4;
 
+/// Which tiles a pilot pass casts.
+struct PilotTurns {
+  std::size_t number = 0, of = 1;
+};
+
 struct CellRanges;
 struct CostMap;
 struct RendererState;
@@ -111,10 +116,11 @@ class Renderer {
                            const scene::PixelRect& region, std::vector<float>* error_bounds, scene::FrameWatch* watch);
 
   /// The pilot pass: casts every 32nd ray of the picture (more of a small one), or of a region of it, and counts where
-  /// in the volume the work was (learned_work.hpp); makes no light. As render() otherwise.
+  /// in the volume the work was (learned_work.hpp); makes no light. Of tiles of rays one in `turns.of` is cast, another
+  /// with each `turns.number`. As render() otherwise.
   void sample_work(const scene::Camera& camera, scene::ImageSize size, const scene::TransferFunction& transfer_function,
                    WorkTally& tally, std::optional<scene::PixelRect> region = std::nullopt,
-                   scene::FrameWatch* watch = nullptr);
+                   scene::FrameWatch* watch = nullptr, PilotTurns turns = {});
 
   /// What each pixel will cost, for the split of the image between processes (cost_map.hpp): from the cells of 8^3
   /// voxels, or the bricks, that the transfer function shows, and from what a pilot pass has taught, if given.

@@ -114,7 +114,7 @@ TEST(DirectSend, BandsAreTheDepthOrdersComposite) {
         DirectSendTask task{order, area, seen[rank].rect, 5};
         images[rank] = seen[rank].image;
         if (with_bounds) bounds[rank] = seen[rank].bounds;
-        const DirectSendResult result = direct_send(transport, how, task, images[rank], bounds[rank]);
+        const DirectSendResult result = DirectSender(transport).run(how, task, images[rank], bounds[rank]);
         EXPECT_FALSE(result.stopped);
         EXPECT_EQ(result.messages > 0, ranks > 1);
       });
@@ -149,7 +149,7 @@ TEST(DirectSend, ARankThatWasStoppedIsMissedByAllBands) {
       DirectSendTask task{order, area, area, 0};
       task.stopped = transport.rank() == 1;
       scene::Image image(size);
-      EXPECT_TRUE(direct_send(transport, how, task, image, {}).stopped);
+      EXPECT_TRUE(DirectSender(transport).run(how, task, image, {}).stopped);
     });
 }
 
@@ -162,7 +162,7 @@ TEST(DirectSend, MessagesOfAnotherPictureEndTheRun) {
     std::uint64_t stopped;
   };
   const PixelRect rows{0, 0, size.width, 16};
-  const Header wrong[] = {{8, rows, rows, 0},
+  const Header wrong[] = {{6, rows, rows, 0},
                           {7, {0, 1, size.width, 16}, rows, 0},
                           {7, rows, {0, 0, size.width + 1, 16}, 0},
                           {7, rows, {0, -1, size.width, 16}, 0},
@@ -180,7 +180,7 @@ TEST(DirectSend, MessagesOfAnotherPictureEndTheRun) {
                              }
                              scene::Image image(size);
                              const DirectSendTask task{order, area, area, 7};
-                             direct_send(transport, tessera::DirectSend::asynchronous, task, image, {});
+                             DirectSender(transport).run(tessera::DirectSend::asynchronous, task, image, {});
                            }),
                  scene::Error);
   }
