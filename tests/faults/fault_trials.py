@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 """Breaks runs under mpirun on purpose and checks how they end.
 
-    fault_trials.py --tessera PROGRAM [--trials N] [--seed S] [--ranks R] [--volume] [--only KIND,...]
+    fault_trials.py --tessera PROGRAM [--trials N] [--seed S] [--ranks R] [--volume [--sort-last]] [--only KIND,...]
 
 Each trial renders a short film on R ranks and breaks it: a rank is killed or told to end at a random time, mpirun is
 told to end or is killed itself, a rank is stopped and goes on or does not, the folder of the pictures is moved away, the
 disk is full (a small tmpfs, where this user may mount one), or one rank's piece of the mesh is damaged. Checked after
 each: the run is over within 10 s of the fault; no process of it is left; one line of ours says what happened; the status
 is what it should be; the folder holds whole pictures only, each with the bytes of an undisturbed run. Every fourth trial
-then runs the same command with --resume, which must complete the film. --volume films a volume.
+then runs the same command with --resume, which must complete the film. --volume films a volume,
+by --sort-last in parts of it.
 
 Prints a line a trial and a table of the stages that were reached. Exit status 1 if any check failed.
 """
@@ -47,10 +48,11 @@ def processes_of(token):
 class Film:
     """The command that every trial runs, and what it gives when nobody disturbs it."""
 
-    def __init__(self, tessera, ranks, root, volume=False):
+    def __init__(self, tessera, ranks, root, volume=False, sort_last=False):
         self.tessera, self.ranks, self.root = str(tessera), ranks, root
         self.frames = 24
         self.volume = volume
+        self.how = ["--distribution", "sort-last"] if sort_last else [] if volume else ["--exchange", "segments"]
         self.mesh = root / ("volume.nrrd" if volume else "mesh.pvtu")
         if volume:
             self.run_tool("generate", "ripples", self.mesh, "n=64")
@@ -79,7 +81,7 @@ class Film:
     def command(self, folder, mesh):
         return ["mpirun", "--oversubscribe", "-n", str(self.ranks), self.tessera, "render", str(mesh), "-o",
                 str(folder / "frame_%03d.pfm"), "--size", "200x200", "--orbit", str(self.frames), "--threads", "1",
-                "--quiet", *([] if self.volume else ["--exchange", "segments"])]
+                "--quiet", *self.how]
 
     def random_time(self, source):
         """When to break the run: at any time, or while some stage is under way, each as likely, however short it is."""
@@ -225,6 +227,7 @@ def main():
     arguments.add_argument("--ranks", type=int, default=4)
     arguments.add_argument("--seed", type=int, default=1)
     arguments.add_argument("--volume", action="store_true")
+    arguments.add_argument("--sort-last", action="store_true")
     arguments.add_argument("--only", default="", metavar="KIND,...")
     options = arguments.parse_args()
     if shutil.which("mpirun") is None:
@@ -234,7 +237,7 @@ def main():
     root = Path(tempfile.mkdtemp(prefix="tessera_faults_"))
     failures, kinds, stages = 0, collections.Counter(), collections.Counter()
     try:
-        film = Film(options.tessera.resolve(), options.ranks, root, options.volume)
+        film = Film(options.tessera.resolve(), options.ranks, root, options.volume, options.sort_last)
         print(f"seed {options.seed}, {options.ranks} ranks, {film.seconds:.1f} s undisturbed")
         for number in range(options.trials):
             kinds_of = [kind for kind in options.only.split(",") if kind] or [

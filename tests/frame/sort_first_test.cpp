@@ -88,8 +88,7 @@ TEST(SortFirst, AnyNumberOfProcessesAndAnyBalanceGivesTheBitsOfOne) {
         EXPECT_EQ(frames[i].image.depth, expected[i].depth);
         const std::vector<std::uint64_t> samples = samples_of(frames[i]);
         EXPECT_EQ(samples.size(), static_cast<std::size_t>(ranks));
-        EXPECT_EQ(std::accumulate(samples.begin(), samples.end(), std::uint64_t{0}),
-                  frames[i].statistics.samples);
+        EXPECT_EQ(std::accumulate(samples.begin(), samples.end(), std::uint64_t{0}), frames[i].statistics.samples);
       }
     }
 }
@@ -140,8 +139,9 @@ TEST(SortFirst, LearnedBalanceSharesCountedSamplesFromTheFirstFrameOnAndWhereRay
       volume::RenderSettings render;
       render.threads = 1;
       volume::Renderer renderer(*source, render);
-      render_sort_first(transport, settings, jobs, opaque, renderer,
-                        [&](const FinishedVolumeFrame& frame) { worst = std::max(worst, deviation(samples_of(frame))); });
+      render_sort_first(transport, settings, jobs, opaque, renderer, [&](const FinishedVolumeFrame& frame) {
+        worst = std::max(worst, deviation(samples_of(frame)));
+      });
     });
     return worst;
   };

@@ -1,0 +1,233 @@
+// Lists of pictures of a volume, of which the next one is cast while the one before is gathered.
+#include "frame/volume_frames.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "exchange/loopback_transport.hpp"
+#include "frame/sort_first.hpp"
+#include "frame/sort_last.hpp"
+#include "scene/error.hpp"
+#include "scene/sample_source.hpp"
+#include "volume/cell_ranges.hpp"
+
+namespace tessera::frame {
+namespace {
+
+constexpr scene::ImageSize size{70, 50};
+constexpr std::size_t pictures = 7;
+
+std::unique_ptr<scene::MemorySource> waves() {
+  scene::Grid grid;
+  constexpr std::int64_t n = 33;
+  grid.geometry.points = {n, n, n};
+  grid.geometry.origin = glm::dvec3(-1);
+  grid.geometry.spacing = glm::dvec3(2.0 / (n - 1));
+  std::vector<float> values;
+  for (std::int64_t k = 0; k < n; ++k)
+    for (std::int64_t j = 0; j < n; ++j)
+      for (std::int64_t i = 0; i < n; ++i)
+        values.push_back(static_cast<float>(0.5 + 0.5 * std::sin(0.3 * double(i)) * std::cos(0.2 * double(j + k))));
+  return scene::MemorySource::of(grid, std::move(values));
+}
+
+scene::TransferFunction haze() { return scene::TransferFunction({{0.1, {0.2, 0.4, 1}, 0}, {0.9, {1, 0.5, 0.2}, 5}}); }
+
+std::vector<VolumeJob> turn() {
+  std::vector<VolumeJob> jobs;
+  scene::Camera camera;
+  camera.position = {2.5, 1.8, 3.3};
+  camera.parallel_scale = 1.6;
+  for (std::size_t i = 0; i < pictures; ++i) jobs.push_back({scene::orbit(camera, double(i) / pictures), size});
+  return jobs;
+}
+
+enum class Way { first, last };
+
+std::unique_ptr<VolumeFrames> frames_of(Way way, exchange::Transport& transport) {
+  if (way == Way::first) return std::make_unique<SortFirst>(transport, SortFirstSettings{});
+  return std::make_unique<SortLast>(transport, SortLastSettings{});
+}
+
+/// Calls `work` on every rank with its renderer, its frames and the list.
+void on_ranks(Way way, int ranks, const scene::SampleSource& source,
+              const std::function<void(exchange::Transport&, volume::Renderer&, VolumeFrames&)>& work) {
+  const auto ranges = std::make_shared<const volume::CellRanges>(source, 1);
+  exchange::run_ranks(ranks, [&](exchange::Transport& transport) {
+    volume::RenderSettings settings;
+    settings.threads = 1;
+    settings.brick_size = 8;
+    settings.parts = way == Way::last ? ranks : 1;
+    volume::Renderer renderer(source, settings, ranges);
+    const auto frames = frames_of(way, transport);
+    work(transport, renderer, *frames);
+  });
+}
+
+class VolumeLists : public testing::TestWithParam<Way> {};
+INSTANTIATE_TEST_SUITE_P(Ways, VolumeLists, testing::Values(Way::first, Way::last),
+                         [](const auto& way) { return way.param == Way::first ? "SortFirst" : "SortLast"; });
+
+TEST_P(VolumeLists, GiveTheBitsOfPicturesOneByOneInOrderWithEveryPixelToldOnce) {
+  const auto source = waves();
+  const std::vector<VolumeJob> jobs = turn();
+  for (const int ranks : {1, 2, 5}) {
+    std::vector<scene::Image> one_by_one;
+    on_ranks(GetParam(), ranks, *source, [&](exchange::Transport&, volume::Renderer& renderer, VolumeFrames& frames) {
+      for (std::size_t i = 0; i < jobs.size(); ++i)
+        if (auto made = frames.render(renderer, haze(), jobs[i], i)) one_by_one.push_back(std::move(made->image));
+    });
+    ASSERT_EQ(one_by_one.size(), pictures);
+    for (const int in_flight : {1, 2, 4}) {
+      std::vector<std::size_t> order;
+      std::vector<std::vector<int>> told(pictures,
+                                         std::vector<int>(static_cast<std::size_t>(size.width * size.height)));
+      VolumeCallbacks callbacks;
+      callbacks.frame = [&](FinishedVolumeFrame&& frame) {
+        EXPECT_FALSE(frame.stopped);
+        EXPECT_EQ(frame.image.rgba, one_by_one[frame.frame].rgba) << ranks << " ranks, picture " << frame.frame;
+        EXPECT_EQ(frame.image.depth, one_by_one[frame.frame].depth);
+        order.push_back(frame.frame);
+      };
+      callbacks.tile = [&](std::size_t frame, const scene::PixelRect& r, const scene::Image& image) {
+        for (int y = r.y0; y < r.y1; ++y)
+          for (int x = r.x0; x < r.x1; ++x) {
+            ++told[frame][image.index(x, y)];
+            const std::size_t at = 4 * image.index(x, y);
+            EXPECT_EQ(std::memcmp(&image.rgba[at], &one_by_one[frame].rgba[at], 16), 0);
+          }
+      };
+      on_ranks(GetParam(), ranks, *source,
+               [&](exchange::Transport& transport, volume::Renderer& renderer, VolumeFrames& frames) {
+                 const VolumeCallbacks none{[](FinishedVolumeFrame&&) { FAIL(); }, {}};
+                 EXPECT_EQ(
+                     frames.render(renderer, haze(), jobs, 20, transport.rank() == 0 ? callbacks : none, {}, in_flight),
+                     pictures);
+               });
+      ASSERT_EQ(order.size(), pictures);
+      for (std::size_t i = 0; i < pictures; ++i) EXPECT_EQ(order[i], i);
+      for (const auto& pixels : told)
+        for (const int count : pixels) ASSERT_EQ(count, 1);
+    }
+  }
+}
+
+TEST_P(VolumeLists, AStopOnAnyRankEndsTheListOnAllAtOnePicture) {
+  const auto source = waves();
+  const std::vector<VolumeJob> jobs = turn();
+  for (const int asker : {0, 2}) {
+    std::stop_source stop;
+    std::atomic<std::size_t> handed_out = 0;
+    std::vector<std::size_t> complete(3);
+    std::size_t whole_after = 0;
+    on_ranks(GetParam(), 3, *source,
+             [&](exchange::Transport& transport, volume::Renderer& renderer, VolumeFrames& frames) {
+               VolumeCallbacks callbacks;
+               callbacks.frame = [&](FinishedVolumeFrame&& frame) {
+                 if (!frame.stopped) ++handed_out;
+                 if (handed_out == 2) stop.request_stop();
+               };
+               const auto rank = static_cast<std::size_t>(transport.rank());
+               complete[rank] = frames.render(renderer, haze(), jobs, 0, callbacks,
+                                              transport.rank() == asker ? stop.get_token() : std::stop_token(), 2);
+               const std::size_t after = frames.render(renderer, haze(), jobs, 0, callbacks, {}, 2);
+               if (rank == 0) whole_after = after;
+             });
+    EXPECT_GE(complete[0], 2u);
+    EXPECT_LT(complete[0], pictures);
+    EXPECT_EQ(complete[1], complete[0]);
+    EXPECT_EQ(complete[2], complete[0]);
+    EXPECT_EQ(whole_after, pictures);
+  }
+}
+
+struct OfCaller : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+TEST_P(VolumeLists, WhatACallbackThrowsIsTheCallersAndTheOthersGoOn) {
+  const auto source = waves();
+  const std::vector<VolumeJob> jobs = turn();
+  for (const bool by_tile : {false, true})
+    for (const int ranks : {1, 3}) {
+      std::atomic<int> thrown = 0;
+      std::vector<std::size_t> complete(3, 99);
+      on_ranks(GetParam(), ranks, *source,
+               [&](exchange::Transport& transport, volume::Renderer& renderer, VolumeFrames& frames) {
+                 VolumeCallbacks callbacks;
+                 callbacks.frame = [&](FinishedVolumeFrame&& frame) {
+                   if (!by_tile && frame.frame == 2) throw OfCaller("enough");
+                 };
+                 callbacks.tile = [&](std::size_t frame, const scene::PixelRect&, const scene::Image&) {
+                   if (by_tile && frame == 2) throw OfCaller("enough");
+                 };
+                 try {
+                   complete[static_cast<std::size_t>(transport.rank())] =
+                       frames.render(renderer, haze(), jobs, 0, callbacks, {}, 2);
+                 } catch (const OfCaller&) {
+                   EXPECT_EQ(transport.rank(), 0);
+                   ++thrown;
+                 }
+                 std::size_t after = 0;
+                 callbacks.frame = [&](FinishedVolumeFrame&&) { ++after; };
+                 callbacks.tile = {};
+                 EXPECT_EQ(frames.render(renderer, haze(), jobs, 0, callbacks, {}, 2), pictures);
+                 EXPECT_EQ(after, transport.rank() == 0 ? pictures : 0);
+               });
+      EXPECT_EQ(thrown, 1);
+      for (int rank = 1; rank < ranks; ++rank) EXPECT_LE(complete[static_cast<std::size_t>(rank)], 2u);
+    }
+}
+
+/// Of which a brick cannot be read after some.
+class Failing final : public scene::SampleSource {
+ public:
+  explicit Failing(const scene::SampleSource& all) : SampleSource(all.grid(), "failing"), all_(all) {}
+  mutable std::atomic<int> left = 1000000;
+
+ private:
+  void read_samples(const scene::SampleBox& box, const scene::SampleLayout& layout,
+                    std::byte* destination) const override {
+    if (--left < 0) throw scene::Error(scene::ErrorCode::system_failure, "the disk is gone");
+    all_.read(box, layout, {destination, static_cast<std::size_t>(1) << 40});
+  }
+  const scene::SampleSource& all_;
+};
+
+TEST_P(VolumeLists, AFaultOnAnyRankEndsTheRunOnAll) {
+  const auto source = waves();
+  const std::vector<VolumeJob> jobs = turn();
+  const auto ranges = std::make_shared<const volume::CellRanges>(*source, 1);
+  for (const int faulty : {0, 1, 2}) {
+    std::atomic<int> failed = 0;
+    const auto run = [&](exchange::Transport& transport) {
+      const Failing failing(*source);
+      failing.left = transport.rank() == faulty ? 5 : 1000000;
+      volume::RenderSettings settings;
+      settings.threads = 1, settings.brick_size = 8, settings.parts = GetParam() == Way::last ? 3 : 1;
+      volume::Renderer renderer(failing, settings, ranges);
+      const auto frames = frames_of(GetParam(), transport);
+      const VolumeCallbacks callbacks{[](FinishedVolumeFrame&&) {}, {}};
+      try {
+        frames->render(renderer, haze(), jobs, 0, callbacks, {}, 2);
+      } catch (const scene::Error& error) {
+        EXPECT_NE(std::string(error.what()).find("the disk is gone"), std::string::npos) << error.what();
+        ++failed;
+        throw;
+      }
+    };
+    EXPECT_THROW(exchange::run_ranks(3, run), scene::Error);
+    EXPECT_EQ(failed, 3) << "rank " << faulty << " failed";
+  }
+}
+
+}  // namespace
+}  // namespace tessera::frame
