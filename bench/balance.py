@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Moloney, Ray Coherence in Parallel Volume Rendering (2008), Tables 6.4 and 6.5: how evenly processes share a picture.
+"""Moloney, Ray Coherence in Parallel Volume Rendering (2008), Tables 6.4 and 6.5, Figures 6.8 to 6.10: how evenly processes share a picture.
 
-    bench/balance.py --tessera PROGRAM [--document docs/EXPERIMENTS.md] [--processes 6] [--size 1024x1024] [--brick-size 64] [--volume FILE]
+    bench/balance.py --tessera PROGRAM [--document docs/EXPERIMENTS.md] [--only "table 6.4"] [--processes 6] [--size 1024x1024] [--brick-size 64] [--volume FILE]
                      [--transfer-function NAME] [--frames 60]
 
 Two smooth recorded animations: a turn of two degrees a frame round an oblique axis, which shows all of the volume, and a zoom from
@@ -11,6 +11,9 @@ nothing else says what each had to do. Tables have the mean over frames but the 
 
     Table 6.4  --balance learned, accurate, splatting, backface; cost maps of as many pixels as the picture, and of a quarter
     Table 6.5  the cost map (backface, a quarter; ours: learned) against the frame before, with 0, 2 and 4 frames of the turn left out
+    Figure 6.8   CPU time of the cost map, by number of bricks, for 128 x 128 map pixels, on one process
+    Figure 6.9   the same of 729 bricks, by map pixels
+    Figure 6.10  of 10,648 bricks and 1024 x 1024 map pixels, by number of processes: of the process that took longest, with the search for the split
 
 Needs mpirun and Python's standard library.
 """
@@ -37,7 +40,7 @@ def run(words):
     env = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     done = subprocess.run([str(w) for w in words], capture_output=True, text=True, env=env)
     if done.returncode != 0:
-        sys.exit(f"balance.py: {' '.join(map(str, words))}\n{done.stderr.strip()}")
+        sys.exit(f"{pathlib.Path(sys.argv[0]).name}: {' '.join(map(str, words))}\n{done.stderr.strip()}")
 
 
 def views(kind, box, frames):
@@ -115,6 +118,47 @@ def table_5(bench):
     return lines
 
 
+MAPS = ("accurate", "backface", "splatting")
+BRICKS = {128: 8, 64: 64, 32: 512, 16: 4096, 12: 10648, 8: 32768}  # of 255 voxels along each axis, by their size
+
+
+def map_ms(bench, method, processes, brick, map_side, resolution=1.0):
+    """CPU milliseconds of finding the split, of the process that took longest; median over frames."""
+    (bench.folder / "path.json").write_text(json.dumps(list(views("rotation", bench.box, 7))))
+    report = bench.folder / "report.json"
+    side = round(map_side / resolution)
+    # One process has nothing to split, but shows what it would go by.
+    run(["mpirun", "--oversubscribe", "-n", processes, bench.args.tessera, "render", bench.volume, "-o", bench.folder / "f%d.pfm", "--camera",
+         bench.folder / "path.json", "--size", f"{side}x{side}", "--threads", "1", "--transfer-function", bench.args.transfer_function, "--brick-size", brick,
+         "--balance", method, "--balance-resolution", resolution, *(["--show", "balance"] if processes == 1 else []), "--quiet", "--report", report])
+    frames = json.loads(report.read_text())["frames"][1:]
+    return statistics.median(max(p["split_cpu_ms"] for p in frame["balance"]["processes"]) for frame in frames)
+
+
+def by_method(bench, heading, rows):
+    """A line for each row: its name, and the time by each method with the arguments that follow it."""
+    lines = [f"| {heading} | " + " | ".join(f"{method}, ms" for method in MAPS) + " |", "|---:|" + "---:|" * len(MAPS)]
+    for name, *arguments in rows:
+        lines.append(f"| {name} | " + " | ".join(f"{map_ms(bench, method, *arguments):.1f}" for method in MAPS) + " |")
+        print(lines[-1], flush=True)
+    return lines
+
+
+def figure_8(bench):
+    return by_method(bench, "bricks", [(count, 1, brick, 128, 0.5) for brick, count in BRICKS.items()])
+
+
+def figure_9(bench):
+    return by_method(bench, "map pixels", [(f"{side}x{side}", 1, 29, side) for side in (64, 128, 256, 512, 1024)])
+
+
+def figure_10(bench):
+    return by_method(bench, "processes", [(units, units, 12, 1024) for units in range(1, 7)])
+
+
+TABLES = {"table 6.4": table_4, "table 6.5": table_5, "figure 6.8": figure_8, "figure 6.9": figure_9, "figure 6.10": figure_10}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--tessera", type=pathlib.Path, required=True)
@@ -125,13 +169,17 @@ def main():
     parser.add_argument("--volume", type=pathlib.Path, help="default: ripples of 256^3 samples of 8 bits")
     parser.add_argument("--transfer-function", default="cool-warm:rise")
     parser.add_argument("--document", type=pathlib.Path)
+    parser.add_argument("--only", choices=TABLES)
     args = parser.parse_args()
-    for name, table in (("table 6.4", table_4), ("table 6.5", table_5)):
+    for name, table in TABLES.items():
+        if args.only not in (None, name):
+            continue
         load = os.getloadavg()[0]
         with tempfile.TemporaryDirectory() as folder:
             lines = table(Bench(args, pathlib.Path(folder)))
         if args.document:
-            caption = f"{results_file.made(load)} `{results_file.command('balance.py')}`: deviation of CPU time, mean ± standard deviation over frames"
+            says = ": deviation of CPU time, mean ± standard deviation over frames" if name.startswith("table") else ""
+            caption = f"{results_file.made(load)} `{results_file.command('balance.py')}`{says}"
             results_file.put(args.document, f"balance.py {name}", caption, lines)
 
 
