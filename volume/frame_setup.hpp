@@ -29,6 +29,7 @@ class FrameSetup {
 
  private:
   void find_visible(RendererState& state);
+  [[nodiscard]] std::vector<std::uint8_t> visible_to_table(const RendererState& state) const;
   void set_up_surfaces(const RendererState& state, const scene::TransferFunction& function);
   void set_up_method(const RendererState& state, const scene::TransferFunction& function);
 
