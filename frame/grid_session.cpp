@@ -34,6 +34,7 @@ FrameStatistics statistics_of(const frame::FinishedVolumeFrame& frame, const cha
     statistics.rectangles.push_back({r.x0, r.y0, r.x1, r.y1});
   }
   statistics.samples = frame.samples;
+  statistics.ranks = frame.ranks;
   statistics.cpu_seconds = frame.cpu_seconds;
   statistics.split_cpu_seconds = frame.split_cpu_seconds;
   return statistics;

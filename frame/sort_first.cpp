@@ -173,6 +173,7 @@ class SortFirst::State {
     finished.split = split;
     finished.cost = std::move(cost_);
     finished.samples.assign(static_cast<std::size_t>(transport_.size()), statistics.samples);
+    finished.ranks.assign(finished.samples.size(), statistics);
     finished.cpu_seconds.assign(static_cast<std::size_t>(transport_.size()), cpu);
     finished.split_cpu_seconds.assign(finished.cpu_seconds.size(), header.split_cpu_seconds);
     for (int others = transport_.size() - 1; others > 0; --others) {
@@ -344,6 +345,7 @@ class SortFirst::State {
     if (header.stopped == 0) tell(watch, {r.x0, r.y0, r.x1, r.y1}, finished);
     finished.statistics += header.counters;
     finished.samples[static_cast<std::size_t>(message.from)] = header.counters.samples;
+    finished.ranks[static_cast<std::size_t>(message.from)] = header.counters;
     finished.cpu_seconds[static_cast<std::size_t>(message.from)] = header.cpu_seconds;
     finished.split_cpu_seconds[static_cast<std::size_t>(message.from)] = header.split_cpu_seconds;
   }

@@ -40,6 +40,7 @@ struct FinishedVolumeFrame {
   volume::RenderStatistics statistics;  ///< of all ranks, put together as tessera::grid_counters says
   volume::ImageSplit split;
   std::vector<std::uint64_t> samples;     ///< of each rank
+  std::vector<GridCounters> ranks;        ///< what `statistics` is put together of
   std::vector<double> cpu_seconds;        ///< of each rank's rendering, all its threads
   std::vector<double> split_cpu_seconds;  ///< of each rank's part in finding the split
   double frame_ms;                        ///< from when all ranks were ready to the picture in memory, split included

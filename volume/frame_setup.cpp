@@ -101,12 +101,14 @@ FrameSetup::FrameSetup(RendererState& state, const scene::Camera& camera, scene:
 void FrameSetup::find_visible(RendererState& state) {
   const RenderSettings& settings = state.settings;
   const scene::TraceScope scope(settings.trace, "cull");
+  const auto begin = std::chrono::steady_clock::now();
   visible_ = settings.method == Method::preintegrated ? visible_to_table(state) : visible_cells(state.ranges, table_);
   if (!settings.use.culling || !settings.use.skipping)
     show_more(state.ranges, state.bricks.layout(), !settings.use.culling, !settings.use.skipping, visible_);
   if (surfaces_.any())
     for (std::size_t cell = 0; cell < visible_.size(); ++cell) visible_[cell] |= surfaces_.holding()[cell];
   brick_visible_ = visible_bricks(state.ranges, visible_, state.bricks.layout());
+  cull_us_ = microseconds_since(begin);
 }
 
 /// A step between two values may show what neither of them shows, and the table is linear between its entries.

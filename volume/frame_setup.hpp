@@ -25,6 +25,8 @@ class FrameSetup {
   /// By cell of 8^3 voxels, and by brick: whether something of it shows.
   [[nodiscard]] const std::vector<std::uint8_t>& visible() const { return visible_; }
   [[nodiscard]] const std::vector<std::uint8_t>& brick_visible() const { return brick_visible_; }
+  /// Microseconds that finding them took.
+  [[nodiscard]] std::uint64_t cull_us() const { return cull_us_; }
   [[nodiscard]] const GridSurfaces* surfaces() const { return &surfaces_; }
 
  private:
@@ -36,6 +38,7 @@ class FrameSetup {
   PixelRays rays_;
   integrals::LaneTable table_;
   std::vector<std::uint8_t> visible_, brick_visible_;
+  std::uint64_t cull_us_ = 0;
   LaneErrorBound error_bound_;
   std::optional<PreintegratedTable> preintegrated_;
   std::optional<ShadingView> shading_;

@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <utility>
@@ -17,7 +18,6 @@
 #include "volume/frame_cast.hpp"
 #include "volume/image_sink.hpp"
 #include "volume/renderer_state.hpp"
-#include "volume/view_cone.hpp"
 #include "volume/voxel_cast.hpp"
 
 namespace tessera::volume {
@@ -134,6 +134,7 @@ namespace {
 struct Cast {
   std::vector<std::uint8_t> brick_visible;
   TileCounts counts;
+  std::uint64_t cull_us = 0;
   std::uint64_t blocks_read = 0, block_bytes = 0;  ///< rectilinear grids
 };
 
@@ -144,10 +145,13 @@ Cast cast_regular(RendererState& state, const scene::Camera& camera, scene::Imag
   tbb::task_arena arena(scene::threads_for(state.settings.threads));
   arena.execute([&] {
     const FrameSetup setup(state, camera, size, function, nullptr);
+    if (state.look_ahead) state.look_ahead->frame_shows(setup.brick_visible());
     VoxelCaster in_double(state.source, camera, size, function,
                           state.voxel_settings(function, setup.visible(), setup.surfaces()));
     cast.counts = cast_frame(setup, wanted, &sink, &in_double, stop);
     cast.brick_visible = setup.brick_visible();
+    cast.cull_us = setup.cull_us();
+    if (state.look_ahead) state.look_ahead->frame_cast(cast.brick_visible);
   });
   return cast;
 }
@@ -159,8 +163,10 @@ Cast cast_rectilinear(RendererState& state, const scene::Camera& camera, scene::
   const integrals::LaneTable table = state.table_of(function);
   tbb::task_arena arena(scene::threads_for(state.settings.threads));
   arena.execute([&] {
+    const auto begin = std::chrono::steady_clock::now();
     const std::vector<std::uint8_t> visible = state.visible_to_walks(table);
     cast.brick_visible = visible_bricks(state.ranges, visible, state.bricks.layout());
+    cast.cull_us = microseconds_since(begin);
     const scene::TraceScope scope(state.settings.trace, "project");
     const GridSurfaces surfaces = state.surfaces_of(function);
     VoxelCaster caster(state.source, camera, size, function, state.voxel_settings(function, visible, &surfaces));
@@ -185,11 +191,8 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   const RenderSettings& settings = state.settings;
   const scene::TraceScope frame_scope(settings.trace, "frame");
   const scene::PixelRect wanted = within(size, region);
-  state.end_preload();
   const BrickCache::Counts before = state.counts_before;
-  const bool near_ones = settings.cache == CachePolicy::proximity;
-  if (near_ones)
-    state.bricks.set_distances(cone_distances(camera, size, wanted, state.source.geometry(), state.bricks.layout()));
+  if (state.look_ahead) state.look_ahead->begin(camera, size, wanted);
   scene::FrameWatch nobody;
   if (watch == nullptr) watch = &nobody;
   watch->check();
@@ -201,7 +204,6 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   const Cast cast = cast_by(state, camera, size, transfer_function, wanted, sink, watch->stop());
   const BrickCache::Counts after = state.bricks.counts();
   state.counts_before = after;
-  if (near_ones && settings.preload_limit > 0 && !rectilinear) state.begin_preload(cast.brick_visible);
   if (statistics != nullptr) {
     RenderStatistics s;
     s.rays = cast.counts.rays, s.voxels_visited = cast.counts.voxels_visited, s.samples = cast.counts.samples;
@@ -211,6 +213,8 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
     s.brick_hits = after.hits - before.hits, s.bricks_loaded = after.loads - before.loads;
     s.bricks_evicted = after.evictions - before.evictions, s.bytes_loaded = after.bytes_loaded - before.bytes_loaded;
     s.bytes_resident = after.bytes, s.peak_bytes = after.peak_bytes;
+    s.bricks_preloaded = after.preloads - before.preloads, s.load_us = (after.load_ns - before.load_ns) / 1000;
+    s.cull_us = cast.cull_us, s.evict_us = (after.evict_ns - before.evict_ns) / 1000;
     if (rectilinear) s.bricks_loaded = cast.blocks_read, s.bytes_loaded = cast.block_bytes;
     s.pixels_again = cast.counts.again;
     s.blank_samples = state.ranges.range.blanks;
