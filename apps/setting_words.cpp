@@ -13,7 +13,7 @@ constexpr std::string_view setting_names =
     "accuracy all allow_host annotate annotation_color annotation_layer annotation_size axes azimuth "
     "backend background balance balance_resolution balance_weights bind blend block brick_size "
     "budget_seconds cache camera check clip color_bar color_bar_range color_bar_scale color_bar_title "
-    "compositor compositors config csv deep_accuracy dims egl_device elevation emission endian exchange "
+    "compositor compositors config csv deep_accuracy dims edge_bricks egl_device elevation emission endian exchange "
     "field field_unit figure fit frame_rate framebuffer frames_in_flight half help help_all "
     "higher_order_tets higher_order_tolerance integrator iso json latency length_unit light log "
     "max_volume memory no_shade on_stall opacity opacity_points opacity_scale orbit origin outline output "
