@@ -53,9 +53,16 @@ Json mesh_counters_json(const FrameStatistics& statistics) {
   return json;
 }
 
-Json grid_counters_json(const FrameStatistics& statistics) {
+Json counters_of(const GridCounters& counters) {
   Json json;
-  for (const GridCounter& counter : grid_counters) json[std::string(counter.name)] = statistics.grid.*counter.member;
+  for (const GridCounter& counter : grid_counters)
+    if (const std::uint64_t count = counters.*counter.member; count > 0 || !counter.if_any)
+      json[std::string(counter.name)] = count;
+  return json;
+}
+
+Json grid_counters_json(const FrameStatistics& statistics) {
+  Json json = counters_of(statistics.grid);
   if (statistics.mesh.deep_samples > 0) json["deep_samples"] = statistics.mesh.deep_samples;
   return json;
 }
@@ -183,7 +190,8 @@ Json balance_json(Balance balance, const FrameStatistics& statistics) {
     processes.push_back({{"rectangle", {r.x0, r.y0, r.x1, r.y1}},
                          {"samples", statistics.samples[rank]},
                          {"cpu_ms", 1e3 * statistics.cpu_seconds[rank]},
-                         {"split_cpu_ms", 1e3 * statistics.split_cpu_seconds[rank]}});
+                         {"split_cpu_ms", 1e3 * statistics.split_cpu_seconds[rank]},
+                         {"counters", counters_of(statistics.ranks[rank])}});
     if (!statistics.parts.empty()) processes.back()["part"] = statistics.parts[rank];
   }
   return {{"method", statistics.parts.empty() ? word(balance) : "sort-last"},

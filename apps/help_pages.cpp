@@ -31,7 +31,8 @@ constexpr std::array topics = {
           "annotation-layer"},
     Topic{"Output", "output orbit frame-rate report", "half png-bits resume timing progress quiet"},
     Topic{"Accuracy and speed", "accuracy threads memory verify",
-          "preset integrator deep-accuracy rasterizer tile-size repeat without step brick-size cache preload"},
+          "preset integrator deep-accuracy rasterizer tile-size repeat without step brick-size edge-bricks "
+          "cache preload"},
     Topic{"Devices", "", "compositor backend framebuffer egl-device"},
     Topic{"Under mpirun", "",
           "projectors compositors exchange partition frames-in-flight seed distribution direct-send balance "

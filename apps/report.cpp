@@ -121,6 +121,7 @@ Json grid_method_json(const RenderOptions& options, int ranks) {
   json["blend"] = options.function.display_colors ? "display" : "linear";
   json["threads"] = settings.threads;
   json["brick_size"] = s.brick_size;
+  json["edge_bricks"] = s.edge_bricks == EdgeBricks::variable ? "variable" : "fixed";
   json["cache"] = s.cache == CachePolicy::lru ? "lru" : "proximity";
   json["preload"] = s.preload_limit;
   json["memory_bytes"] = settings.memory_bytes;

@@ -55,11 +55,16 @@ void add_volume_render_options(CLI::App& command, RenderWords& words) {
       ->type_name("[world:]X,Y,Z");
   command.add_option("--brick-size", words.brick_size, "volumes: voxels a side of a brick (default 32)")
       ->type_name("VOXELS");
+  command
+      .add_option("--edge-bricks", words.edge_bricks,
+                  "volumes: memory of a brick at the end of an axis, as much as of the others or as it needs (default "
+                  "variable)")
+      ->type_name("fixed|variable");
   command.add_option("--cache", words.cache, "volumes: which brick goes first when memory is full (default lru)")
       ->type_name("lru|proximity");
   command
       .add_option("--preload", words.preload,
-                  "volumes, --cache proximity: bricks near the view that are loaded ahead, a frame (default 0)")
+                  "volumes, --cache proximity: bricks that the next view will need, loaded ahead, a frame (default 0)")
       ->type_name("BRICKS");
   command
       .add_option("--distribution", words.distribution,
@@ -158,6 +163,10 @@ void set_grid(const RenderWords& words, Settings& settings) {
   if (words.shade && words.no_shade) throw bad_input("--no-shade: contradicts --shade; leave one of the two out");
   grid.shading = shading_of(words);
   if (!words.brick_size.empty()) grid.brick_size = parse_count("--brick-size", words.brick_size, 2, 1 << 20);
+  if (words.edge_bricks == "fixed")
+    grid.edge_bricks = EdgeBricks::fixed;
+  else if (!words.edge_bricks.empty() && words.edge_bricks != "variable")
+    throw bad_input(fmt::format("--edge-bricks: '{}' is unknown; use fixed or variable", words.edge_bricks));
   if (words.cache == "proximity")
     grid.cache = CachePolicy::proximity;
   else if (!words.cache.empty() && words.cache != "lru")
@@ -235,6 +244,7 @@ void refuse_volume_options(const RenderWords& words) {
   const std::pair<const char*, bool> given[] = {{"--step", !words.step.empty()},
                                                 {"--no-shade", words.no_shade},
                                                 {"--brick-size", !words.brick_size.empty()},
+                                                {"--edge-bricks", !words.edge_bricks.empty()},
                                                 {"--cache", !words.cache.empty()},
                                                 {"--preload", !words.preload.empty()},
                                                 {"--distribution", !words.distribution.empty()},

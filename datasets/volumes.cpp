@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "datasets/fields.hpp"
+#include "datasets/volume_fields.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::datasets {
@@ -25,10 +27,27 @@ scene::Grid cube_grid(std::int64_t n, int bits) {
   return grid;
 }
 
+/// A field on [-1, 1]^3, of values in [0, 1]; null: the checker, which goes by the point's number.
+using Field = double (*)(const glm::dvec3&);
+
+struct Kind {
+  const char *name, *help;
+  Field field;
+  int points;  ///< by default
+};
+constexpr std::array<Kind, 5> kinds{{
+    {"ripples", "volume of a smooth field on [-1, 1]^3, as the benchmarks use it", smooth_field, 64},
+    {"radial", "volume that decreases from its middle to its corners", radial_field, 64},
+    {"head", "volume of a skull in a case, about half of it empty: show values above 0.25", head_field, 64},
+    {"turbulence", "volume of two fluids that mix, rough everywhere: show 0.3 to 0.7 for what lies between",
+     turbulence_field, 64},
+    {"checker", "volume that alternates 0 and 1 from point to point", nullptr, 16},
+}};
+
 class ComputedVolume final : public scene::SampleSource {
  public:
-  ComputedVolume(std::int64_t n, int bits, bool checker)
-      : SampleSource(cube_grid(n, bits), "generate"), top_(bits == 32 ? 0 : std::exp2(bits) - 1), checker_(checker) {}
+  ComputedVolume(std::int64_t n, int bits, Field field)
+      : SampleSource(cube_grid(n, bits), "generate"), top_(bits == 32 ? 0 : std::exp2(bits) - 1), field_(field) {}
 
  private:
   void read_samples(const scene::SampleBox& box, const scene::SampleLayout& layout,
@@ -39,7 +58,7 @@ class ComputedVolume final : public scene::SampleSource {
         for (std::int64_t i = box.low[0]; i < box.high[0]; ++i) {
           const glm::dvec3 p = scene::world_of_index(
               geometry(), {static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
-          const double value = checker_ ? static_cast<double>((i + j + k) % 2) : smooth_field(p);
+          const double value = field_ == nullptr ? static_cast<double>((i + j + k) % 2) : field_(p);
           const std::int64_t at =
               (k - box.low[2]) * layout.slice_pitch + (j - box.low[1]) * layout.row_pitch + i - box.low[0];
           put(value, layout.type, destination + static_cast<std::size_t>(at) * size);
@@ -64,16 +83,19 @@ class ComputedVolume final : public scene::SampleSource {
   }
 
   double top_;
-  bool checker_;
+  Field field_;
 };
 
 }  // namespace
 
 std::vector<Generator> volume_generators() {
-  return {{"ripples",
-           "volume of a smooth field on [-1, 1]^3, as the benchmarks use it",
-           {{"n", 64, "points a side, 2 to 4096"}, {"bits", 32, "8 or 16: whole numbers; 32: floats"}}},
-          {"checker", "volume that alternates 0 and 1 from point to point", {{"n", 16, "points a side, 2 to 4096"}}}};
+  std::vector<Generator> generators;
+  for (const Kind& kind : kinds) {
+    generators.push_back({kind.name, kind.help, {{"n", static_cast<double>(kind.points), "points a side, 2 to 4096"}}});
+    if (kind.field != nullptr)
+      generators.back().parameters.push_back({"bits", 32, "8 or 16: whole numbers; 32: floats"});
+  }
+  return generators;
 }
 
 std::unique_ptr<scene::SampleSource> generate_volume(const std::string& kind,
@@ -81,14 +103,16 @@ std::unique_ptr<scene::SampleSource> generate_volume(const std::string& kind,
   const auto known = volume_generators();
   const auto generator = std::find_if(known.begin(), known.end(), [&](const Generator& g) { return g.name == kind; });
   if (generator == known.end())
-    throw scene::bad_input(fmt::format("generate: there is no volume '{}'; use ripples or checker", kind));
+    throw scene::bad_input(
+        fmt::format("generate: there is no volume '{}'; use ripples, radial, head, turbulence or checker", kind));
   std::map<std::string, double> values = with_defaults(kind, generator->parameters, parameters);
   const double n = values["n"], bits = values.count("bits") > 0 ? values["bits"] : 32;
   if (!(n >= 2 && n <= most_points) || n != std::floor(n))
     throw scene::bad_input(fmt::format("generate: n is {}; give a whole number from 2 to 4096", n));
   if (bits != 8 && bits != 16 && bits != 32)
     throw scene::bad_input(fmt::format("generate: bits is {}; give 8, 16 or 32", bits));
-  return std::make_unique<ComputedVolume>(static_cast<std::int64_t>(n), static_cast<int>(bits), kind == "checker");
+  return std::make_unique<ComputedVolume>(static_cast<std::int64_t>(n), static_cast<int>(bits),
+                                          kinds[static_cast<std::size_t>(generator - known.begin())].field);
 }
 
 }  // namespace tessera::datasets

@@ -3,10 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <limits>
 
 #include "scene/error.hpp"
 
 namespace tessera::volume {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::uint64_t nanoseconds_since(Clock::time_point begin) {
+  return static_cast<std::uint64_t>(std::chrono::nanoseconds(Clock::now() - begin).count());
+}
+
+}  // namespace
 
 BrickCache::BrickCache(const scene::SampleSource& source, const BrickLayout& layout, std::uint64_t budget_bytes,
                        CachePolicy policy)
@@ -34,32 +45,86 @@ std::uint64_t BrickCache::bytes_of(std::size_t brick) const {
 void BrickCache::forget(std::size_t brick) {
   Entry& entry = entries_[brick];
   by_use_.erase(entry.used);
-  if (policy_ == CachePolicy::proximity) by_distance_.erase({distances_.empty() ? 0.0f : distances_[brick], brick});
+  if (policy_ == CachePolicy::proximity) by_distance_.erase({distance_of(brick), brick});
   entry.ready.store(nullptr, std::memory_order_relaxed);
   counts_.bytes -= bytes_of(brick);
   ++counts_.evictions;
 }
 
-/// Throws bricks out that nobody holds until `bytes` more fit; false if too many are held. A thrown-out brick's memory
-/// of the right size comes back as `buffer`, so that the heap does not grow by its gaps.
-bool BrickCache::make_room(std::uint64_t bytes, std::unique_ptr<std::byte[]>& buffer) {
+/// The first to go of those that nobody holds and, by proximity, that are farther than `beyond`; or none, the number of
+/// bricks.
+std::size_t BrickCache::victim(float beyond) const {
+  if (policy_ == CachePolicy::proximity) {
+    for (auto it = by_distance_.rbegin(); it != by_distance_.rend() && it->first > beyond; ++it)
+      if (entries_[it->second].users == 0) return it->second;
+  } else {
+    for (const std::size_t brick : by_use_)
+      if (entries_[brick].users == 0) return brick;
+  }
+  return entries_.size();
+}
+
+/// Throws bricks out until `bytes` more fit; false if there are too few to go. A thrown-out brick's memory of the right
+/// size comes back as `buffer`, so that the heap does not grow by its gaps.
+bool BrickCache::make_room(std::uint64_t bytes, float beyond, std::unique_ptr<std::byte[]>& buffer) {
   while (counts_.bytes + bytes > budget_) {
-    std::size_t victim = entries_.size();
-    if (policy_ == CachePolicy::proximity) {
-      for (auto it = by_distance_.rbegin(); it != by_distance_.rend() && victim == entries_.size(); ++it)
-        if (entries_[it->second].users == 0) victim = it->second;
-    } else {
-      for (auto it = by_use_.begin(); it != by_use_.end() && victim == entries_.size(); ++it)
-        if (entries_[*it].users == 0) victim = *it;
-    }
-    if (victim == entries_.size()) return false;
-    forget(victim);
-    if (bytes_of(victim) == bytes)
-      buffer = std::move(entries_[victim].bytes);
+    const std::size_t goes = victim(beyond);
+    if (goes == entries_.size()) return false;
+    forget(goes);
+    if (bytes_of(goes) == bytes)
+      buffer = std::move(entries_[goes].bytes);
     else
-      entries_[victim].bytes.reset();
+      entries_[goes].bytes.reset();
   }
   return true;
+}
+
+/// Of any brick that is not held. Looks at the clock only where something has to go.
+bool BrickCache::make_room_timed(std::uint64_t bytes, std::unique_ptr<std::byte[]>& buffer) {
+  if (counts_.bytes + bytes <= budget_) return true;
+  const auto begin = Clock::now();
+  const bool fits = make_room(bytes, -std::numeric_limits<float>::infinity(), buffer);
+  counts_.evict_ns += nanoseconds_since(begin);
+  return fits;
+}
+
+/// Reads a brick that there is room for, with the lock released meanwhile; then nobody holds it yet.
+void BrickCache::load(std::size_t brick, std::unique_ptr<std::byte[]> buffer, bool ahead,
+                      std::unique_lock<std::mutex>& lock, scene::Trace* trace) {
+  Entry& entry = entries_[brick];
+  const std::uint64_t bytes = bytes_of(brick);
+  entry.loading = true;
+  loading_for_rays_ += ahead ? 0 : 1;
+  counts_.bytes += bytes;
+  counts_.peak_bytes = std::max(counts_.peak_bytes, counts_.bytes);
+  lock.unlock();
+  const auto begin = Clock::now();
+  const auto end = [&] {
+    lock.lock();
+    entry.loading = false;
+    loading_for_rays_ -= ahead ? 0 : 1;
+    if (!ahead) counts_.load_ns += nanoseconds_since(begin);
+    changed_.notify_all();
+  };
+  try {
+    const scene::TraceScope scope(trace, "read", -1, bytes, 0);
+    if (!buffer) buffer = std::make_unique_for_overwrite<std::byte[]>(bytes);
+    const scene::GridIndex place = layout_.place(brick), room = layout_.room(place);
+    const scene::SampleLayout layout{source_.grid().type, room[0], room[0] * room[1]};
+    source_.read(layout_.box(place), layout, {buffer.get(), bytes});
+  } catch (...) {
+    end();
+    counts_.bytes -= bytes;
+    throw;
+  }
+  end();
+  entry.bytes = std::move(buffer);
+  entry.users = 0;
+  entry.used = by_use_.insert(by_use_.end(), brick);
+  if (policy_ == CachePolicy::proximity) by_distance_.insert({distance_of(brick), brick});
+  ++(ahead ? counts_.preloads : counts_.loads);
+  counts_.bytes_loaded += bytes;
+  entry.ready.store(entry.bytes.get(), std::memory_order_release);
 }
 
 const std::byte* BrickCache::acquire(std::size_t brick, scene::Trace* trace) {
@@ -72,7 +137,6 @@ const std::byte* BrickCache::acquire(std::size_t brick, scene::Trace* trace) {
     }
   }
   std::unique_lock lock(mutex_);
-  const std::uint64_t bytes = bytes_of(brick);
   std::unique_ptr<std::byte[]> buffer;
   for (;;) {
     if (const std::byte* ready = entry.ready.load(std::memory_order_relaxed)) {
@@ -81,36 +145,11 @@ const std::byte* BrickCache::acquire(std::size_t brick, scene::Trace* trace) {
       by_use_.splice(by_use_.end(), by_use_, entry.used);
       return ready;
     }
-    if (!entry.loading && make_room(bytes, buffer)) break;
+    if (!entry.loading && make_room_timed(bytes_of(brick), buffer)) break;
     changed_.wait(lock);
   }
-  entry.loading = true;
-  counts_.bytes += bytes;
-  counts_.peak_bytes = std::max(counts_.peak_bytes, counts_.bytes);
-  lock.unlock();
-  try {
-    const scene::TraceScope scope(trace, "read", -1, bytes, 0);
-    if (!buffer) buffer = std::make_unique_for_overwrite<std::byte[]>(bytes);
-    const scene::GridIndex place = layout_.place(brick), room = layout_.room(place);
-    const scene::SampleLayout layout{source_.grid().type, room[0], room[0] * room[1]};
-    source_.read(layout_.box(place), layout, {buffer.get(), bytes});
-  } catch (...) {
-    lock.lock();
-    entry.loading = false;
-    counts_.bytes -= bytes;
-    changed_.notify_all();
-    throw;
-  }
-  lock.lock();
-  entry.loading = false;
-  entry.bytes = std::move(buffer);
+  load(brick, std::move(buffer), false, lock, trace);
   entry.users = 1;
-  entry.used = by_use_.insert(by_use_.end(), brick);
-  if (policy_ == CachePolicy::proximity) by_distance_.insert({distances_.empty() ? 0.0f : distances_[brick], brick});
-  ++counts_.loads;
-  counts_.bytes_loaded += bytes;
-  entry.ready.store(entry.bytes.get(), std::memory_order_release);
-  changed_.notify_all();
   return entry.bytes.get();
 }
 
@@ -120,35 +159,23 @@ void BrickCache::release(std::size_t brick) {
   if (--entries_[brick].users == 0) changed_.notify_all();
 }
 
-void BrickCache::set_distances(std::vector<float> distances) {
+void BrickCache::set_distances(std::vector<float> distances, float in_use) {
   const std::lock_guard lock(mutex_);
   distances_ = std::move(distances);
+  in_use_ = in_use;
   if (policy_ != CachePolicy::proximity) return;
   by_distance_.clear();
   for (const std::size_t brick : by_use_) by_distance_.insert({distances_[brick], brick});
 }
 
-void BrickCache::preload(int limit, const std::vector<std::uint8_t>& wanted, const std::atomic<bool>& stop,
-                         scene::Trace* trace) {
-  std::vector<std::pair<float, std::size_t>> missing;
-  for (std::size_t brick = 0; brick < distances_.size(); ++brick)
-    if (wanted[brick] != 0 && !resident(brick)) missing.emplace_back(distances_[brick], brick);
-  const std::size_t count = std::min(missing.size(), static_cast<std::size_t>(limit));
-  std::partial_sort(missing.begin(), missing.begin() + static_cast<std::ptrdiff_t>(count), missing.end());
-  for (std::size_t n = 0; n < count && !stop.load(std::memory_order_relaxed); ++n) {
-    const auto [distance, brick] = missing[n];
-    {
-      const std::lock_guard lock(mutex_);
-      const bool fits = counts_.bytes + bytes_of(brick) <= budget_;
-      if (!fits && (by_distance_.empty() || by_distance_.rbegin()->first <= distance)) return;
-    }
-    try {
-      acquire(brick, trace);
-    } catch (const scene::Error&) {
-      return;
-    }
-    release(brick);
-  }
+BrickCache::Ahead BrickCache::preload(std::size_t brick, scene::Trace* trace) {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return loading_for_rays_ == 0; });
+  if (resident(brick) || entries_[brick].loading) return Ahead::was_there;
+  std::unique_ptr<std::byte[]> buffer;
+  if (!make_room(bytes_of(brick), std::max(in_use_, distance_of(brick)), buffer)) return Ahead::no_room;
+  load(brick, std::move(buffer), true, lock, trace);
+  return Ahead::loaded;
 }
 
 bool BrickCache::resident(std::size_t brick) const {

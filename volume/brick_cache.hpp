@@ -28,7 +28,10 @@ class BrickCache {
  public:
   struct Counts {
     std::uint64_t hits = 0, loads = 0, evictions = 0, bytes_loaded = 0, bytes = 0, peak_bytes = 0;
+    std::uint64_t preloads = 0;               ///< ahead of their use, not among `loads`
+    std::uint64_t load_ns = 0, evict_ns = 0;  ///< of acquire(): all of its reading, and making room
   };
+  enum class Ahead { loaded, was_there, no_room };
 
   /// Throws Error(bad_input) if the budget does not hold the largest brick.
   BrickCache(const scene::SampleSource& source, const BrickLayout& layout, std::uint64_t budget_bytes,
@@ -38,13 +41,13 @@ class BrickCache {
   const std::byte* acquire(std::size_t brick, scene::Trace* trace);
   void release(std::size_t brick);
 
-  /// proximity: distances by brick number that the next evictions go by, the largest first.
-  void set_distances(std::vector<float> distances);
+  /// proximity: distances by brick number that the next evictions go by, the largest first. A brick no farther than
+  /// `in_use` may be needed at any time, and makes no room for what is loaded ahead.
+  void set_distances(std::vector<float> distances, float in_use = 0);
 
-  /// proximity: loads up to `limit` of the bricks that are `wanted` (by number) and not in memory, the nearest to the
-  /// cone first, as long as they fit without throwing out one that is nearer, and until `stop`. Between frames, on any
-  /// thread; what the source throws is kept for the frame that asks for the brick.
-  void preload(int limit, const std::vector<std::uint8_t>& wanted, const std::atomic<bool>& stop, scene::Trace* trace);
+  /// proximity: loads a brick that nobody has asked for yet, unless that would throw out one that is no farther, or one
+  /// in use. On any thread; waits while acquire() reads on another, which goes first. Throws as acquire() does.
+  Ahead preload(std::size_t brick, scene::Trace* trace);
 
   [[nodiscard]] Counts counts() const;
   [[nodiscard]] const BrickLayout& layout() const { return layout_; }
@@ -62,8 +65,13 @@ class BrickCache {
   };
 
   std::uint64_t bytes_of(std::size_t brick) const;
-  bool make_room(std::uint64_t bytes, std::unique_ptr<std::byte[]>& buffer);
+  float distance_of(std::size_t brick) const { return distances_.empty() ? 0.0f : distances_[brick]; }
+  std::size_t victim(float beyond) const;
+  bool make_room(std::uint64_t bytes, float beyond, std::unique_ptr<std::byte[]>& buffer);
+  bool make_room_timed(std::uint64_t bytes, std::unique_ptr<std::byte[]>& buffer);
   void forget(std::size_t brick);
+  void load(std::size_t brick, std::unique_ptr<std::byte[]> buffer, bool ahead, std::unique_lock<std::mutex>& lock,
+            scene::Trace* trace);
 
   const scene::SampleSource& source_;
   BrickLayout layout_;
@@ -78,6 +86,8 @@ class BrickCache {
   std::list<std::size_t> by_use_;                        ///< least recently used first
   std::set<std::pair<float, std::size_t>> by_distance_;  ///< proximity: nearest first
   std::vector<float> distances_;
+  float in_use_ = 0;
+  int loading_for_rays_ = 0;
   Counts counts_;
   std::atomic<std::uint64_t> unlocked_hits_ = 0;
 };

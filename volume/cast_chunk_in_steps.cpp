@@ -15,6 +15,8 @@ void cast_chunk_in_steps_here(const ChunkView& chunk, TileRays& rays, TileCounts
   sample_chunk(chunk, rays, counts);
 }
 
+void skip_chunk_in_steps_here(const ChunkView& chunk, TileRays& rays) { skip_chunk(chunk, rays); }
+
 }  // namespace HWY_NAMESPACE
 }  // namespace tessera::volume
 HWY_AFTER_NAMESPACE();
@@ -25,6 +27,11 @@ namespace tessera::volume {
 HWY_EXPORT(cast_chunk_in_steps_here);
 void cast_chunk_in_steps(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
   HWY_DYNAMIC_DISPATCH(cast_chunk_in_steps_here)(chunk, rays, counts);
+}
+
+HWY_EXPORT(skip_chunk_in_steps_here);
+void skip_chunk_in_steps(const ChunkView& chunk, TileRays& rays) {
+  HWY_DYNAMIC_DISPATCH(skip_chunk_in_steps_here)(chunk, rays);
 }
 
 }  // namespace tessera::volume

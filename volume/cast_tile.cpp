@@ -151,7 +151,11 @@ HWY_INLINE void cast_rays(const FrameView& frame, const RayAxes& axes, const Vox
         tile.y_high[e] = std::max(tile.y_high[e], reach[p].y_high[e]);
       }
     }
-    if (!tile.any || !lay_out(frame, axes, tile, box, memory.block)) continue;
+    if (!tile.any) continue;
+    if (!lay_out(frame, axes, tile, box, memory.block)) {
+      if (frame.preintegrated != nullptr) skip_chunk_in_steps({frame, axes, memory.block, box, reach}, rays);
+      continue;
+    }
     bool any = false;
     for (int p = 0; p < TileRays::packets; ++p) {
       reach[p].any = reach[p].any && (wanted >> p & 1) != 0;

@@ -180,11 +180,15 @@ bool any_clear(const CellRanges& ranges, const integrals::LaneTable& table) {
   return shown_before[last + 1] - shown_before[first] < last + 1 - first;
 }
 
-std::vector<std::uint8_t> visible_cells(const CellRanges& ranges, const integrals::LaneTable& table) {
+namespace {
+
+/// One byte an interval of lane scalars; none of low > high.
+std::vector<std::uint8_t> visible_intervals(const std::vector<float>& low, const std::vector<float>& high,
+                                            bool whole_numbers, const integrals::LaneTable& table) {
   const std::vector<std::size_t> shown_before = shown_intervals(table);
   // Rounding may have moved values and steps, or knots, across each other: by two places of a float and a unit.
   const auto uncertain = [&](std::size_t edge) {
-    return table.is_moved[edge] != 0 || (table.has_steps && !ranges.lanes.whole_numbers);
+    return table.is_moved[edge] != 0 || (table.has_steps && !whole_numbers);
   };
   bool any = false;
   for (std::size_t edge = 1; edge <= table.knot_count; ++edge) any = any || uncertain(edge);
@@ -196,13 +200,57 @@ std::vector<std::uint8_t> visible_cells(const CellRanges& ranges, const integral
     while (n > last && uncertain(n)) --n;
     return n;
   };
-  std::vector<std::uint8_t> visible(ranges.count(), 0);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, ranges.count(), 4096), [&](const auto& some) {
+  std::vector<std::uint8_t> visible(low.size(), 0);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, low.size(), 4096), [&](const auto& some) {
     for (std::size_t cell = some.begin(); cell != some.end(); ++cell)
-      if (ranges.low[cell] <= ranges.high[cell])
-        visible[cell] = shown_before[interval(ranges.high[cell], 1) + 1] > shown_before[interval(ranges.low[cell], -1)];
+      if (low[cell] <= high[cell])
+        visible[cell] = shown_before[interval(high[cell], 1) + 1] > shown_before[interval(low[cell], -1)];
   });
   return visible;
+}
+
+/// Each cell's value becomes the `best` of those up to `radius` cells away along an axis.
+template <class Best>
+void spread(const scene::GridIndex& cells, std::size_t axis, std::int64_t radius, const Best& best,
+            std::vector<float>& values) {
+  const std::int64_t length = cells[axis];
+  const auto stride = static_cast<std::size_t>(axis == 0 ? 1 : axis == 1 ? cells[0] : cells[0] * cells[1]);
+  const std::size_t lines = values.size() / static_cast<std::size_t>(length);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, lines, 256), [&](const auto& some) {
+    std::vector<float> line(static_cast<std::size_t>(length));
+    for (std::size_t n = some.begin(); n != some.end(); ++n) {
+      float* const first = &values[n / stride * stride * line.size() + n % stride];
+      for (std::size_t i = 0; i < line.size(); ++i) line[i] = first[i * stride];
+      for (std::int64_t i = 0; i < length; ++i) {
+        const auto from = line.begin() + std::max<std::int64_t>(0, i - radius),
+                   to = line.begin() + std::min(length, i + radius + 1);
+        first[static_cast<std::size_t>(i) * stride] = *best(from, to);
+      }
+    }
+  });
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> visible_cells(const CellRanges& ranges, const integrals::LaneTable& table) {
+  return visible_intervals(ranges.low, ranges.high, ranges.lanes.whole_numbers, table);
+}
+
+std::vector<std::uint8_t> visible_to_steps(const CellRanges& ranges, const integrals::LaneTable& table,
+                                           const std::array<double, 3>& reach, float margin) {
+  std::vector<float> low = ranges.low, high = ranges.high;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double far = std::min(std::ceil(reach[axis] / CellRanges::side), static_cast<double>(ranges.cells[axis]));
+    const auto radius = std::max<std::int64_t>(1, static_cast<std::int64_t>(far));
+    spread(
+        ranges.cells, axis, radius, [](auto from, auto to) { return std::min_element(from, to); }, low);
+    spread(
+        ranges.cells, axis, radius, [](auto from, auto to) { return std::max_element(from, to); }, high);
+  }
+  for (float& value : low) value -= margin;
+  for (float& value : high) value += margin;
+  // Between knots and values whole numbers need no care, but these are widened.
+  return visible_intervals(low, high, false, table);
 }
 
 namespace {

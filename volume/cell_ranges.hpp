@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -53,6 +54,12 @@ struct CellRanges {
 
 /// One byte a cell: 1 where the transfer function shows anything of its range.
 std::vector<std::uint8_t> visible_cells(const CellRanges& ranges, const integrals::LaneTable& table);
+
+/// The same for steps from one value straight to another, no farther than `reach` voxels along each axis: 0 where no
+/// step that begins or ends in the cell shows anything, as the function shows nothing of the values of the cell and of
+/// all that a step may reach, nor of those less than `margin` lane scalars beyond.
+std::vector<std::uint8_t> visible_to_steps(const CellRanges& ranges, const integrals::LaneTable& table,
+                                           const std::array<double, 3>& reach, float margin);
 
 /// Whether the transfer function shows nothing of some value in the volume's range.
 bool any_clear(const CellRanges& ranges, const integrals::LaneTable& table);

@@ -256,7 +256,6 @@ ChunkCast::ChunkCast(Renderer& renderer, const scene::Camera& camera, scene::Ima
   scene::validate(camera);
   scene::validate(size);
   RendererState& state = *renderer.state_;
-  state.end_preload();
   const scene::PixelRect wanted = within(size, region);
   if (state.source.geometry().rectilinear())
     state_ = std::make_unique<VoxelChunks>(state, camera, size, function, wanted);

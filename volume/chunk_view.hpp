@@ -35,4 +35,7 @@ void cast_surfaces_two_vectors(const ChunkView& chunk, TileRays& rays, TileCount
 void cast_surfaces_many(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
 void cast_chunk_in_steps(const ChunkView& chunk, TileRays& rays, TileCounts& counts);
 
+/// Of a chunk that shows nothing, whose block is empty: pre-integrated steps that begin in it show nothing either.
+void skip_chunk_in_steps(const ChunkView& chunk, TileRays& rays);
+
 }  // namespace tessera::volume

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <utility>
 
 #include "volume/tile_rays.hpp"
 
@@ -25,6 +26,13 @@ std::array<glm::dvec3, 3> index_rows(const scene::GridGeometry& geometry, double
     rows[static_cast<std::size_t>(a)] =
         glm::dvec3(to_local[0][a], to_local[1][a], to_local[2][a]) * (unit / geometry.spacing[a]);
   return rows;
+}
+
+/// Lowest and highest lane scalar of the volume.
+std::pair<float, float> lane_range(const CellRanges& ranges) {
+  if (ranges.range.empty()) return {0.0f, 0.0f};
+  return {integrals::lane_scalar(ranges.range.low, ranges.lanes.origin, ranges.lanes.unit),
+          integrals::lane_scalar(ranges.range.high, ranges.lanes.origin, ranges.lanes.unit)};
 }
 
 ShadingView shading_view(const scene::Shading& s, const scene::Camera& camera, const scene::GridGeometry& geometry,
@@ -93,14 +101,26 @@ FrameSetup::FrameSetup(RendererState& state, const scene::Camera& camera, scene:
 void FrameSetup::find_visible(RendererState& state) {
   const RenderSettings& settings = state.settings;
   const scene::TraceScope scope(settings.trace, "cull");
-  // A step between two values may show what neither of them shows, so pre-integration needs the true ones.
-  visible_ = settings.method == Method::preintegrated ? std::vector<std::uint8_t>(state.ranges.count(), 1)
-                                                      : visible_cells(state.ranges, table_);
+  const auto begin = std::chrono::steady_clock::now();
+  visible_ = settings.method == Method::preintegrated ? visible_to_table(state) : visible_cells(state.ranges, table_);
   if (!settings.use.culling || !settings.use.skipping)
     show_more(state.ranges, state.bricks.layout(), !settings.use.culling, !settings.use.skipping, visible_);
   if (surfaces_.any())
     for (std::size_t cell = 0; cell < visible_.size(); ++cell) visible_[cell] |= surfaces_.holding()[cell];
   brick_visible_ = visible_bricks(state.ranges, visible_, state.bricks.layout());
+  cull_us_ = microseconds_since(begin);
+}
+
+/// A step between two values may show what neither of them shows, and the table is linear between its entries.
+std::vector<std::uint8_t> FrameSetup::visible_to_table(const RendererState& state) const {
+  const auto [low, high] = lane_range(state.ranges);
+  const float entry =
+      std::max(high - low, 1.0f) / static_cast<float>(PreintegratedTable::size_for(table_, low, high) - 1);
+  const std::array<glm::dvec3, 3> rows = index_rows(state.source.geometry(), state.settings.step * state.voxel_side);
+  std::array<double, 3> reach;
+  // Places along rays are rounded by much less.
+  for (std::size_t a = 0; a < 3; ++a) reach[a] = glm::length(rows[a]) + 0.05;
+  return visible_to_steps(state.ranges, table_, reach, 1.25f * entry);
 }
 
 void FrameSetup::set_up_surfaces(const RendererState& state, const scene::TransferFunction& function) {
@@ -129,10 +149,7 @@ void FrameSetup::set_up_method(const RendererState& state, const scene::Transfer
     if (error_bound_.any()) view_.error_bound = &error_bound_;
   }
   if (state.settings.method != Method::preintegrated || view_.tally != nullptr) return;
-  const LaneSamples& lanes = state.ranges.lanes;
-  const auto lane_of = [&](double value) { return integrals::lane_scalar(value, lanes.origin, lanes.unit); };
-  const scene::ValueRange& range = state.ranges.range;
-  const float low = range.empty() ? 0.0f : lane_of(range.low), high = range.empty() ? 0.0f : lane_of(range.high);
+  const auto [low, high] = lane_range(state.ranges);
   preintegrated_.emplace(table_, low, high, static_cast<float>(view_.step),
                          PreintegratedTable::size_for(table_, low, high));
   view_.preintegrated = &*preintegrated_;

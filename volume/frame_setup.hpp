@@ -25,16 +25,20 @@ class FrameSetup {
   /// By cell of 8^3 voxels, and by brick: whether something of it shows.
   [[nodiscard]] const std::vector<std::uint8_t>& visible() const { return visible_; }
   [[nodiscard]] const std::vector<std::uint8_t>& brick_visible() const { return brick_visible_; }
+  /// Microseconds that finding them took.
+  [[nodiscard]] std::uint64_t cull_us() const { return cull_us_; }
   [[nodiscard]] const GridSurfaces* surfaces() const { return &surfaces_; }
 
  private:
   void find_visible(RendererState& state);
+  [[nodiscard]] std::vector<std::uint8_t> visible_to_table(const RendererState& state) const;
   void set_up_surfaces(const RendererState& state, const scene::TransferFunction& function);
   void set_up_method(const RendererState& state, const scene::TransferFunction& function);
 
   PixelRays rays_;
   integrals::LaneTable table_;
   std::vector<std::uint8_t> visible_, brick_visible_;
+  std::uint64_t cull_us_ = 0;
   LaneErrorBound error_bound_;
   std::optional<PreintegratedTable> preintegrated_;
   std::optional<ShadingView> shading_;

@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <utility>
@@ -18,7 +19,6 @@
 #include "volume/image_sink.hpp"
 #include "volume/object_split.hpp"
 #include "volume/renderer_state.hpp"
-#include "volume/view_cone.hpp"
 #include "volume/voxel_box.hpp"
 #include "volume/voxel_cast.hpp"
 
@@ -144,6 +144,7 @@ namespace {
 struct Cast {
   std::vector<std::uint8_t> brick_visible;
   TileCounts counts;
+  std::uint64_t cull_us = 0;
   std::uint64_t blocks_read = 0, block_bytes = 0;  ///< rectilinear grids
 };
 
@@ -153,6 +154,16 @@ struct Wanted {
   scene::PixelRect pixels;
 };
 
+/// Of the bricks that show, those with voxels of a part.
+std::vector<std::uint8_t> bricks_in(const VoxelBox& part, const BrickLayout& layout, std::vector<std::uint8_t> shown) {
+  for (std::size_t brick = 0; brick < shown.size(); ++brick) {
+    const scene::GridIndex place = layout.place(brick);
+    for (std::size_t a = 0; a < 3; ++a)
+      if ((place[a] + 1) * layout.size <= part.low[a] || place[a] * layout.size >= part.high[a]) shown[brick] = 0;
+  }
+  return shown;
+}
+
 Cast cast_regular(RendererState& state, const scene::Camera& camera, scene::ImageSize size,
                   const scene::TransferFunction& function, const Wanted& wanted, FragmentSink& sink,
                   const std::stop_token& stop) {
@@ -160,10 +171,14 @@ Cast cast_regular(RendererState& state, const scene::Camera& camera, scene::Imag
   tbb::task_arena arena(scene::threads_for(state.settings.threads));
   arena.execute([&] {
     const FrameSetup setup(state, camera, size, function, nullptr);
+    const std::vector<std::uint8_t> of_part = bricks_in(wanted.part, state.bricks.layout(), setup.brick_visible());
+    if (state.look_ahead) state.look_ahead->frame_shows(of_part);
     VoxelCaster in_double(state.source, camera, size, function,
                           state.voxel_settings(function, setup.visible(), setup.surfaces()));
     cast.counts = cast_frame(setup, wanted.part, wanted.pixels, &sink, &in_double, stop);
     cast.brick_visible = setup.brick_visible();
+    cast.cull_us = setup.cull_us();
+    if (state.look_ahead) state.look_ahead->frame_cast(of_part);
   });
   return cast;
 }
@@ -175,8 +190,10 @@ Cast cast_rectilinear(RendererState& state, const scene::Camera& camera, scene::
   const integrals::LaneTable table = state.table_of(function);
   tbb::task_arena arena(scene::threads_for(state.settings.threads));
   arena.execute([&] {
+    const auto begin = std::chrono::steady_clock::now();
     const std::vector<std::uint8_t> visible = state.visible_to_walks(table);
     cast.brick_visible = visible_bricks(state.ranges, visible, state.bricks.layout());
+    cast.cull_us = microseconds_since(begin);
     const scene::TraceScope scope(state.settings.trace, "project");
     const GridSurfaces surfaces = state.surfaces_of(function);
     VoxelCaster caster(state.source, camera, size, function, state.voxel_settings(function, visible, &surfaces));
@@ -215,12 +232,8 @@ scene::Image Renderer::render_part(const VoxelBox& part, const scene::Camera& ca
   RendererState& state = *state_;
   const RenderSettings& settings = state.settings;
   const Wanted wanted{part, within(size, region)};
-  state.end_preload();
   const BrickCache::Counts before = state.counts_before;
-  const bool near_ones = settings.cache == CachePolicy::proximity;
-  if (near_ones)
-    state.bricks.set_distances(
-        cone_distances(camera, size, wanted.pixels, state.source.geometry(), state.bricks.layout()));
+  if (state.look_ahead) state.look_ahead->begin(camera, size, wanted.pixels);
   scene::FrameWatch nobody;
   if (watch == nullptr) watch = &nobody;
   watch->check();
@@ -232,7 +245,6 @@ scene::Image Renderer::render_part(const VoxelBox& part, const scene::Camera& ca
   const Cast cast = cast_by(state, camera, size, transfer_function, wanted, sink, watch->stop());
   const BrickCache::Counts after = state.bricks.counts();
   state.counts_before = after;
-  if (near_ones && settings.preload_limit > 0 && !rectilinear) state.begin_preload(cast.brick_visible);
   if (statistics != nullptr) {
     RenderStatistics s;
     s.rays = cast.counts.rays, s.voxels_visited = cast.counts.voxels_visited, s.samples = cast.counts.samples;
@@ -242,6 +254,8 @@ scene::Image Renderer::render_part(const VoxelBox& part, const scene::Camera& ca
     s.brick_hits = after.hits - before.hits, s.bricks_loaded = after.loads - before.loads;
     s.bricks_evicted = after.evictions - before.evictions, s.bytes_loaded = after.bytes_loaded - before.bytes_loaded;
     s.bytes_resident = after.bytes, s.peak_bytes = after.peak_bytes;
+    s.bricks_preloaded = after.preloads - before.preloads, s.load_us = (after.load_ns - before.load_ns) / 1000;
+    s.cull_us = cast.cull_us, s.evict_us = (after.evict_ns - before.evict_ns) / 1000;
     if (rectilinear) s.bricks_loaded = cast.blocks_read, s.bytes_loaded = cast.block_bytes;
     s.pixels_again = cast.counts.again;
     s.blank_samples = state.ranges.range.blanks;

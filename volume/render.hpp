@@ -48,7 +48,7 @@ struct RenderSettings {
   EdgeBricks edge_bricks = EdgeBricks::variable;
   std::uint64_t memory_bytes = 4ull << 30;  ///< budget of the bricks in memory
   CachePolicy cache = CachePolicy::lru;
-  int preload_limit = 0;  ///< proximity: bricks near the frustum loaded ahead between frames, at most; asynchronously
+  int preload_limit = 0;  ///< proximity: bricks of the next view loaded ahead, at most, a frame (look_ahead.hpp)
   std::vector<scene::HalfSpace> clip{};  ///< that rays are kept in (tessera/selection.hpp)
   Surfaces surfaces{};                   ///< of point data, with exact and automatic
   int parts = 1;          ///< that rays are composited of, each by one process: all of them together are `accurate`

@@ -1,21 +1,21 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <span>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "integrals/lane_table.hpp"
-#include "scene/start_thread.hpp"
 #include "volume/brick_cache.hpp"
 #include "volume/cell_ranges.hpp"
 #include "volume/grid_surfaces.hpp"
+#include "volume/look_ahead.hpp"
 #include "volume/render.hpp"
 #include "volume/voxel_cast.hpp"
 
@@ -26,6 +26,11 @@ double voxel_side_of(const scene::GridGeometry& geometry);
 /// World units: a power of two near the mean voxel's side.
 double length_unit_of(double voxel_side);
 
+inline std::uint64_t microseconds_since(std::chrono::steady_clock::time_point begin) {
+  return static_cast<std::uint64_t>(
+      std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - begin).count());
+}
+
 /// What a Renderer keeps from frame to frame.
 struct RendererState {
   RendererState(const scene::SampleSource& source_, const RenderSettings& settings_,
@@ -35,7 +40,10 @@ struct RendererState {
         ranges_owner(std::move(ranges_)),
         ranges(*ranges_owner),
         bricks(source_, BrickLayout(source_.geometry(), settings_.brick_size, settings_.edge_bricks),
-               settings_.memory_bytes, settings_.cache) {}
+               settings_.memory_bytes, settings_.cache) {
+    if (settings_.cache == CachePolicy::proximity && !source.geometry().rectilinear())
+      look_ahead.emplace(bricks, settings_.preload_limit, settings_.trace);
+  }
 
   [[nodiscard]] bool in_steps() const {
     return settings.method == Method::sampled || settings.method == Method::preintegrated;
@@ -80,30 +88,14 @@ struct RendererState {
     return visible;
   }
 
-  /// Bricks near the view, while the picture is gathered and written; the next frame ends it.
-  void begin_preload(std::vector<std::uint8_t> wanted) {
-    stop_preload = false;
-    preloading = scene::start_thread([this, wanted = std::move(wanted)] {
-      const scene::TraceScope scope(settings.trace, "prepare");
-      bricks.preload(settings.preload_limit, wanted, stop_preload, settings.trace);
-    });
-  }
-  void end_preload() {
-    if (!preloading.joinable()) return;
-    stop_preload = true;
-    preloading.join();
-  }
-  ~RendererState() { end_preload(); }
-
   const scene::SampleSource& source;
   RenderSettings settings;
   double voxel_side = voxel_side_of(source.geometry()), length_unit = length_unit_of(voxel_side);
   std::shared_ptr<const CellRanges> ranges_owner;
   const CellRanges& ranges;
   BrickCache bricks;
-  BrickCache::Counts counts_before;  ///< as the last frame's statistics ended: loads ahead count for the next one
-  std::atomic<bool> stop_preload = false;
-  std::thread preloading;
+  std::optional<LookAhead> look_ahead;  ///< proximity, of regular grids
+  BrickCache::Counts counts_before;     ///< as the last frame's statistics ended: loads ahead count for the next one
 };
 
 }  // namespace tessera::volume

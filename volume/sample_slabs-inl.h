@@ -277,6 +277,18 @@ HWY_NOINLINE void sample_chunk_as(const ChunkView& chunk, TileRays& rays, TileCo
   }
 }
 
+/// Where a ray's field is not known, as the chunk is hidden, a blank is carried on: its next step then shows nothing,
+/// as it would with the field (visible_to_steps() in cell_ranges.hpp).
+HWY_INLINE void skip_chunk(const ChunkView& chunk, TileRays& rays) {
+  const auto lanes = static_cast<int>(HN::Lanes(DF()));
+  for (int ray = 0; ray < TileRays::count; ray += lanes) {
+    if (!chunk.reach[ray / TileRays::packet_rays].any) continue;
+    const ChunkSteps steps(chunk, ray, rays);
+    for (int l = 0; l < lanes; ++l)
+      if (steps.count[l] > 0 || steps.entry[l] >= 0) rays.carried[ray + l] = std::numeric_limits<float>::quiet_NaN();
+  }
+}
+
 HWY_INLINE void sample_chunk(const ChunkView& chunk, TileRays& rays, TileCounts& counts) {
   const auto as = [&]<CL::TableForm form>() HWY_ATTR {
     if (chunk.frame.cell_data)

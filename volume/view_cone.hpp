@@ -15,4 +15,13 @@ namespace tessera::volume {
 std::vector<float> cone_distances(const scene::Camera& camera, scene::ImageSize size, const scene::PixelRect& region,
                                   const scene::GridGeometry& geometry, const BrickLayout& layout);
 
+/// By brick: how far its centre lies outside the view frustum of a region's pixels, or how deep inside (negative): the
+/// largest distance to one of its side planes and that of the eye, world units. A brick whose half diagonal is less
+/// is not in the view.
+std::vector<float> frustum_distances(const scene::Camera& camera, scene::ImageSize size, const scene::PixelRect& region,
+                                     const scene::GridGeometry& geometry, const BrickLayout& layout);
+
+/// World units: no point of a brick is farther from its centre, samples of cells counted as lying at their low corners.
+double half_brick(const scene::GridGeometry& geometry, const BrickLayout& layout);
+
 }  // namespace tessera::volume

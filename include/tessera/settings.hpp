@@ -114,7 +114,7 @@ struct GridSettings {
   int brick_size = 32;             ///< voxels a side, 2 or more; bricks share their border samples
   EdgeBricks edge_bricks = EdgeBricks::variable;
   CachePolicy cache = CachePolicy::lru;
-  int preload_limit = 0;  ///< proximity: bricks near the frustum loaded ahead between frames, at most
+  int preload_limit = 0;  ///< proximity: bricks that the next view will need, loaded ahead, at most, a frame
 };
 
 /// Of jobs of several ranks.

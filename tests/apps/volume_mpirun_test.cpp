@@ -80,14 +80,17 @@ TEST_F(VolumeMpirun, TheReportAndTheTraceHaveEveryRanksPart) {
   EXPECT_EQ(report.at("method").at("ranks"), 3);
   const auto& frame = report.at("frames").at(0);
   ASSERT_EQ(frame.at("balance").at("processes").size(), 3u);
-  std::uint64_t samples = 0;
+  std::uint64_t samples = 0, loads = 0;
   int pixels = 0;
   for (const auto& process : frame.at("balance").at("processes")) {
     samples += process.at("samples").get<std::uint64_t>();
+    loads += process.at("counters").at("bricks_loaded").get<std::uint64_t>();
     const auto r = process.at("rectangle").get<std::vector<int>>();
     pixels += (r[2] - r[0]) * (r[3] - r[1]);
   }
   EXPECT_EQ(samples, frame.at("counters").at("samples").get<std::uint64_t>());
+  EXPECT_GT(loads, 0u);
+  EXPECT_EQ(loads, frame.at("counters").at("bricks_loaded").get<std::uint64_t>());
   EXPECT_EQ(pixels, 70 * 50);
   const auto trace = nlohmann::json::parse(contents(folder_ / "t.json"));
   std::set<int> ranks;

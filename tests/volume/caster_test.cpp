@@ -329,51 +329,6 @@ TEST(BrickCache, TheLastBrickOf2048CubedIsFound) {
   EXPECT_EQ(sample(0, 0, 2047), 203);
 }
 
-TEST(BrickCache, ProximityThrowsOutTheFarthestAndLoadsTheNearestAhead) {
-  const Volume v = make_volume({65, 65, 65}, Field::smooth);
-  const volume::BrickLayout layout(v.grid.geometry, 16, volume::EdgeBricks::variable);
-  volume::BrickCache cache(*v.source, layout, 4 * 17 * 17 * 17 * 4, volume::CachePolicy::proximity);
-  std::vector<float> distances(layout.count());
-  for (std::size_t n = 0; n < distances.size(); ++n) distances[n] = static_cast<float>(n);
-  cache.set_distances(distances);
-  for (const std::size_t brick : {0u, 1u, 60u, 2u, 3u}) {
-    cache.acquire(brick, nullptr);
-    cache.release(brick);
-  }
-  EXPECT_FALSE(cache.resident(60));
-  for (const std::size_t brick : {0u, 1u, 2u, 3u}) EXPECT_TRUE(cache.resident(brick));
-  const std::vector<std::uint8_t> wanted(layout.count(), 1);
-  cache.preload(2, wanted, false, nullptr);
-  EXPECT_EQ(cache.counts().loads, 5u) << "nothing nearer is missing";
-  std::reverse(distances.begin(), distances.end());
-  cache.set_distances(distances);
-  cache.preload(2, wanted, false, nullptr);
-  for (const std::size_t brick : {63u, 62u, 2u, 3u}) EXPECT_TRUE(cache.resident(brick));
-  EXPECT_EQ(cache.counts().evictions, 3u);
-}
-
-TEST(VolumeCaster, AVolumeFourTimesTheBudgetStaysWithinItAndPreloadsBetweenFrames) {
-  const Volume v = make_volume({65, 65, 65}, Field::smooth);
-  const scene::Image whole = render(v, view("perspective"), smooth_function());
-  for (const auto cache : {volume::CachePolicy::lru, volume::CachePolicy::proximity}) {
-    volume::RenderSettings s;
-    s.threads = 2;
-    s.brick_size = 16;
-    s.memory_bytes = 65 * 65 * 65 * sizeof(float) / 4;
-    s.cache = cache;
-    s.preload_limit = cache == volume::CachePolicy::proximity ? 6 : 0;
-    volume::Renderer renderer(*v.source, s);
-    volume::RenderStatistics statistics;
-    for (int frame = 0; frame < 3; ++frame) {
-      EXPECT_TRUE(same_bits(renderer.render(view("perspective"), size, smooth_function(), &statistics), whole));
-      EXPECT_LE(statistics.peak_bytes, s.memory_bytes);
-      EXPECT_GT(statistics.bricks_loaded, 0u);
-      EXPECT_GT(statistics.bricks_evicted, 0u);
-    }
-    // The last frame's preloading may still go on: the renderer ends it.
-  }
-}
-
 TEST(VolumeCaster, ABudgetBelowOneBrickIsRefused) {
   const Volume v = make_volume({37, 30, 26}, Field::smooth);
   volume::RenderSettings s;
