@@ -94,7 +94,7 @@ Json mesh_method_json(const RenderOptions& options) {
   if (!settings.surfaces.iso.empty()) json["iso"] = iso_json(settings.surfaces);
   if (settings.surfaces.has_faces() || !options.block_surfaces.empty())
     json["surface"] = faces_json(settings.surfaces, options.block_surfaces);
-  if (options.frame.deep) json["deep_accuracy"] = options.frame.deep_accuracy;
+  if (options.frame.deep && !options.frame.peel) json["deep_accuracy"] = options.frame.deep_accuracy;
   json["rasterizer"] = word(settings.mesh.rasterizer);
   const DeviceSettings& on = settings.mesh.device;
   const bool fragment = on.method == GlMethod::fragment;
@@ -143,6 +143,7 @@ Json grid_method_json(const RenderOptions& options, int ranks) {
 
 Json method_json(const RenderOptions& options, int ranks) {
   Json json = options.is_grid() ? grid_method_json(options, ranks) : mesh_method_json(options);
+  if (const auto& peel = options.frame.peel) json["peel"] = {{"threshold", peel->threshold}, {"layers", peel->layers}};
   if (!options.annotation.given.empty()) json["annotation"] = options.annotation.given;
   return json;
 }
@@ -153,7 +154,7 @@ Json job_json(const RenderOptions& options, int ranks, const Roles& roles) {
   return {{"ranks", ranks},
           {"projectors", roles.projectors},
           {"compositors", roles.compositors},
-          {"exchange", exchange_word(exchange_of(options.settings, options.frame.deep))},
+          {"exchange", exchange_word(exchange_of(options.settings, options.frame.deep || options.frame.peel))},
           {"partition", partitions[static_cast<std::size_t>(settings.partition.kind)]},
           {"frames_in_flight", settings.frames_in_flight},
           {"seed", settings.tile_seed}};
@@ -317,6 +318,9 @@ std::string verification_line(const Verification& v, int frame_number) {
   line += fmt::format("; worst: {}; chosen: {} random", v.worst_reason, v.tallies.front().pixels);
   for (const Verification::Tally& tally : std::span(v.tallies).subspan(1))
     line += fmt::format(", {} {}", tally.pixels, tally.reason);
+  for (const Verification::Tally& layer : v.layers)
+    line += fmt::format("; {}: max {:.3g}, {} excused", layer.reason, layer.max_error, layer.excused);
+  if (!v.layers.empty()) line += fmt::format(", bound {:.3g}", v.layer_bound);
   return line;
 }
 

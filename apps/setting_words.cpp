@@ -18,7 +18,7 @@ constexpr std::string_view setting_names =
     "field field_unit figure fit frame_rate framebuffer frames_in_flight half help help_all "
     "higher_order_tets higher_order_tolerance integrator iso json latency length_unit light log "
     "max_volume memory no_shade on_stall opacity opacity_points opacity_scale orbit origin outline output "
-    "partition peer pieces pixels png_bits port preload preset progress projection projectors q quiet range "
+    "partition peel peer pieces pixels png_bits port preload preset progress projection projectors q quiet range "
     "rasterizer repeat report rescale resume save_config scale_bar seed shade show size skip smooth "
     "spacing stall_timeout step subdivide surface threads threshold tile_size time_step timing "
     "tls_certificate tls_key transfer_function type unit_distance up verify version view without zoom";
