@@ -213,7 +213,7 @@ Json verification_json(const Verification& v) {
   if (!v.layers.empty()) {
     Json layers = Json::array();
     for (const Verification::Tally& layer : v.layers) layers.push_back(tally_json(layer));
-    json["layers"] = {{"bound", v.layer_bound}, {"layers", std::move(layers)}};
+    json["layers"] = {{"bound", v.layer_bound}, {"met", v.layers_met}, {"layers", std::move(layers)}};
   }
   return json;
 }

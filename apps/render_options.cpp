@@ -328,7 +328,7 @@ RenderOptions render_options(const RenderWords& words, bool is_grid) {
   }
   options.no_shade = words.no_shade;
   options.frame.deep = std::ranges::any_of(plan.outputs, is_deep_name);
-  if (!options.frame.deep && !words.deep_accuracy.empty())
+  if (!options.frame.deep && words.peel.empty() && !words.deep_accuracy.empty())
     throw bad_input("--deep-accuracy: is for a deep picture; name one with -o FILE.deep.exr, or leave it out");
   set_peel(words, options);
   options.image = image_options(words);

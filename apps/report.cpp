@@ -310,17 +310,21 @@ std::string run_line(const RenderOptions& options, const Description& data, cons
 }
 
 std::string verification_line(const Verification& v, int frame_number) {
+  const bool met = v.met || (!v.layers_met && v.over_bound == v.excused);  // the picture alone
   const auto verdict =
-      v.bound ? fmt::format("bound {:.3g} {}", *v.bound, v.met ? "met" : "NOT met") : std::string("no bound promised");
+      v.bound ? fmt::format("bound {:.3g} {}", *v.bound, met ? "met" : "NOT met") : std::string("no bound promised");
   std::string line =
       fmt::format("verify frame {}: {} pixels, max {:.3g} rms {:.3g}, worst at ({}, {}), {} excused; {}", frame_number,
                   v.pixels_checked, v.max_error, v.rms_error, v.worst_x, v.worst_y, v.excused, verdict);
   line += fmt::format("; worst: {}; chosen: {} random", v.worst_reason, v.tallies.front().pixels);
   for (const Verification::Tally& tally : std::span(v.tallies).subspan(1))
     line += fmt::format(", {} {}", tally.pixels, tally.reason);
-  for (const Verification::Tally& layer : v.layers)
-    line += fmt::format("; {}: max {:.3g}, {} excused", layer.reason, layer.max_error, layer.excused);
-  if (!v.layers.empty()) line += fmt::format(", bound {:.3g}", v.layer_bound);
+  if (v.layers.empty()) return line;
+  const auto worst = std::ranges::max_element(v.layers, {}, &Verification::Tally::max_error);
+  std::size_t excused = 0;
+  for (const Verification::Tally& layer : v.layers) excused += layer.excused;
+  line += fmt::format("; {} layers: max {:.3g} in {}, {} excused; bound {:.3g} {}", v.layers.size(), worst->max_error,
+                      worst->reason, excused, v.layer_bound, v.layers_met ? "met" : "NOT met");
   return line;
 }
 

@@ -63,7 +63,7 @@ Verification public_form(const frame::Verified& verified) {
       result.tallies.push_back(tally(reference::name_of(static_cast<reference::Suspicion>(kind)), v.chosen[kind]));
   result.bound = v.bound;
   result.met = v.met() && verified.layers.met;
-  result.layer_bound = verified.layers.bound;
+  result.layer_bound = verified.layers.bound, result.layers_met = verified.layers.met;
   for (const reference::Tally& layer : verified.layers.layers)
     result.layers.push_back(tally(fmt::format("layer {}", result.layers.size() + 1), layer));
   return result;

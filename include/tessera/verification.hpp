@@ -34,6 +34,7 @@ struct Verification {
   /// Of a picture in layers, one each from the eye on: the same pixels, to the bound below.
   std::vector<Tally> layers{};
   double layer_bound = 0;
+  bool layers_met = true;
   /// No pixel is over the bound but excused ones, of which there are not too many; of layers likewise.
   bool met = true;
 };
