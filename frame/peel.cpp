@@ -28,6 +28,7 @@ void check_peel(const Peel& peel, scene::ImageSize size, std::uint64_t memory_by
 
 std::vector<scene::Image> layer_images(const scene::DeepImage& layers, int count) {
   std::vector<scene::Image> images;
+  images.reserve(static_cast<std::size_t>(count));
   for (int n = 0; n < count; ++n) images.emplace_back(layers.size);
   for (std::size_t p = 0; p + 1 < layers.begin.size(); ++p) {
     const auto pixel = layers.pixel(p);
