@@ -54,7 +54,7 @@ void add_peel_options(CLI::App& command, std::string& word) {
   command
       .add_option("--peel", word,
                   "the picture in layers too, a cut wherever a ray's opacity since the last cut reaches THRESHOLD: "
-                  "a.exr has a.layer1.exr ..., a .deep.exr has a sample a layer (4 layers)")
+                  "a.exr has a.layer1.exr ..., a .deep.exr has a sample a layer (default: 4 layers)")
       ->type_name("THRESHOLD[:LAYERS]");
 }
 
