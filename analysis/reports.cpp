@@ -218,6 +218,11 @@ Json verification_json(const Verification& v) {
   for (const Verification::Tally& tally : std::span(v.tallies).subspan(1)) chosen[tally.reason] = tally_json(tally);
   json["chosen"] = std::move(chosen);
   if (v.bound) json["bound"] = *v.bound;
+  if (!v.layers.empty()) {
+    Json layers = Json::array();
+    for (const Verification::Tally& layer : v.layers) layers.push_back(tally_json(layer));
+    json["layers"] = {{"bound", v.layer_bound}, {"met", v.layers_met}, {"layers", std::move(layers)}};
+  }
   return json;
 }
 

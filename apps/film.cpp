@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "apps/frame_annotation.hpp"
+#include "apps/peel_options.hpp"
 #include "apps/picture_queue.hpp"
 #include "apps/picture_writer.hpp"
 #include "apps/progress.hpp"
@@ -38,6 +39,7 @@ std::vector<FilmFrame> frames_of(const RenderOptions& options) {
   FilmPlan plan = options.plan;
   if (!options.annotation.layer.empty()) plan.outputs.push_back(options.annotation.layer);
   std::vector<FilmFrame> frames = plan_film(plan);
+  name_layers(options, frames);
   if (!options.show_balance) return frames;
   for (FilmFrame& frame : frames) {
     const std::size_t pictures = frame.outputs.size();
@@ -126,6 +128,7 @@ class Film final : public Sink {
     pictures_.add([this, picture, annotated = annotated_frame(frame, record.camera), number] {
       const TraceScope scope(writing(), "write", number);
       write_annotated(picture->image, picture->deep, annotated, picture_writer_);
+      write_layers(*picture, annotated.frame, options_);
     });
     say(frame, *picture, std::move(record));
   }
@@ -268,7 +271,8 @@ class Film final : public Sink {
 
   /// Of several pictures of a volume one is cast while the one before is gathered.
   [[nodiscard]] bool grids_overlap(const std::vector<std::size_t>& group) const {
-    return options_.is_grid() && job_.size() > 1 && group.size() > 1 && !options_.frame.deep && !options_.show_balance;
+    const FrameSettings& frame = options_.frame;
+    return options_.is_grid() && job_.size() > 1 && group.size() > 1 && !frame.deep && !frame.peel && !frame.keep_cost;
   }
 
   void make_one_by_one(const std::vector<std::size_t>& group) {
@@ -306,6 +310,7 @@ class Film final : public Sink {
           const TraceScope scope(trace(), "write", frame.number);
           shown ? write_balance(*shown, picture->deep, frame)
                 : write_annotated(picture->image, picture->deep, annotated, picture_writer_);
+          write_layers(*picture, frame, options_);
         }
         if (trace() != nullptr) trace()->add_frame(frame.number, frame_begin);
       });
@@ -390,7 +395,7 @@ class Film final : public Sink {
       traced.ranks = job_.size();
       traced.projectors = static_cast<int>(roles_.projectors.size());
       traced.compositors = static_cast<int>(roles_.compositors.size());
-      traced.exchange = exchange_word(exchange_of(settings_, options_.frame.deep));
+      traced.exchange = exchange_word(exchange_of(settings_, options_.frame.deep || options_.frame.peel));
       const bool projects = roles_.projects(job_.rank()), composites = roles_.composites(job_.rank());
       process += projects && composites ? " projector + compositor" : projects ? " projector" : " compositor";
     }

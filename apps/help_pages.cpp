@@ -29,7 +29,7 @@ constexpr std::array topics = {
     Topic{"In the picture", "color-bar axes outline scale-bar annotate",
           "color-bar-title color-bar-range color-bar-scale field-unit length-unit annotation-color annotation-size "
           "annotation-layer"},
-    Topic{"Output", "output orbit frame-rate report", "half png-bits resume timing progress quiet"},
+    Topic{"Output", "output orbit frame-rate report", "peel half png-bits resume timing progress quiet"},
     Topic{"Accuracy and speed", "accuracy threads memory verify",
           "preset integrator deep-accuracy rasterizer tile-size repeat without step brick-size edge-bricks "
           "cache preload"},

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <span>
 #include <string_view>
 
 #include "apps/standard_streams.hpp"
@@ -24,7 +26,8 @@ void PictureWriter::check(const RenderOptions& options, std::span<const FilmFram
 
 void PictureWriter::write(const Image& image, const DeepImage& deep, const FilmFrame& frame) {
   try {
-    for (const auto& output : frame.outputs) {
+    const std::size_t planned = std::min(frame.outputs.size(), options_.plan.outputs.size());
+    for (const auto& output : std::span(frame.outputs).first(planned)) {
       if (is_deep_name(output))
         write_deep_image(deep, output);
       else

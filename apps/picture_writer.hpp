@@ -21,7 +21,8 @@ class PictureWriter {
   /// Before any rendering: throws Error(bad_input) if a film cannot be made of these frames.
   static void check(const RenderOptions& options, std::span<const FilmFrame> frames);
 
-  /// Of frames in their order. Deep pictures are written from `deep`. Throws Error(system_failure) if a picture cannot
+  /// Of frames in their order, the outputs that were planned, which come first. Deep pictures are written from `deep`.
+  /// Throws Error(system_failure) if a picture cannot
   /// be written any more, as check_film_outputs() found it could.
   void write(const Image& image, const DeepImage& deep, const FilmFrame& frame);
   /// One more picture into a file of its own. Throws as write().

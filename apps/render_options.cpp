@@ -10,6 +10,7 @@
 #include "apps/argument_values.hpp"
 #include "apps/compositing_options.hpp"
 #include "apps/film_options.hpp"
+#include "apps/peel_options.hpp"
 #include "apps/report.hpp"
 #include "apps/setting_words.hpp"
 #include "apps/time_options.hpp"
@@ -237,6 +238,7 @@ void add_render_options(CLI::App& command, RenderWords& words) {
                   "linear R,G,B, sRGB #rrggbb or CSS's name; without it the picture has alpha")
       ->type_name("R,G,B|#RRGGBB|NAME");
   add_film_options(command, words);
+  add_peel_options(command, words.peel);
   command.add_flag("--half", words.half, ".exr with 16-bit floats");
   command.add_option("--png-bits", words.png_bits, "of .png and .tif (default: 8)")->type_name("8|16");
 
@@ -326,8 +328,9 @@ RenderOptions render_options(const RenderWords& words, bool is_grid) {
   }
   options.no_shade = words.no_shade;
   options.frame.deep = std::ranges::any_of(plan.outputs, is_deep_name);
-  if (!options.frame.deep && !words.deep_accuracy.empty())
+  if (!options.frame.deep && words.peel.empty() && !words.deep_accuracy.empty())
     throw bad_input("--deep-accuracy: is for a deep picture; name one with -o FILE.deep.exr, or leave it out");
+  set_peel(words, options);
   options.image = image_options(words);
   options.annotation = annotation_options(words.annotation, options.image);
   if (options.annotation.annotation) refuse_unannotated(options);
@@ -353,13 +356,13 @@ void refuse_mesh_options(const RenderWords& words, const RenderOptions& options)
     throw bad_input(fmt::format("{}: is for meshes, and the input is a volume; leave it out", option));
   };
   const ReadOptions& read = mesh_options(words);
-  if (options.frame.deep && takes_steps(options.settings.integrator))
+  const bool deep = options.frame.deep && !options.frame.peel;
+  if (deep && takes_steps(options.settings.integrator))
     throw bad_input(
         fmt::format("deep picture: --integrator {} gives a step other light than its parts; use auto or "
                     "exact",
                     method_word(options.settings.integrator.kind)));
-  if (options.frame.deep && options.settings.grid.shading)
-    throw bad_input("deep picture: it is not shaded; leave --shade out");
+  if (deep && options.settings.grid.shading) throw bad_input("deep picture: it is not shaded; leave --shade out");
   if (options.frame.deep && options.show_balance)
     throw bad_input("deep picture: --show balance draws none; name an .exr, .png or .pfm");
   if (options.settings.mesh.rasterizer != Rasterizer::planes) refuse("--rasterizer");
@@ -387,7 +390,8 @@ LoadedTransferFunction transfer_function_of(const Dataset& data, const RenderOpt
 
 bool shades_by_default(const LoadedTransferFunction& loaded, const RenderOptions& options) {
   const Settings& settings = options.settings;
-  if (!loaded.shaded || options.no_shade || options.frame.deep || settings.grid.shading) return false;
+  if (!loaded.shaded || options.no_shade || (options.frame.deep && !options.frame.peel) || settings.grid.shading)
+    return false;
   return !takes_steps(settings.integrator) && settings.emission == Emission::absorption;
 }
 

@@ -94,7 +94,7 @@ Json mesh_method_json(const RenderOptions& options) {
   if (!settings.surfaces.iso.empty()) json["iso"] = iso_json(settings.surfaces);
   if (settings.surfaces.has_faces() || !options.block_surfaces.empty())
     json["surface"] = faces_json(settings.surfaces, options.block_surfaces);
-  if (options.frame.deep) json["deep_accuracy"] = options.frame.deep_accuracy;
+  if (options.frame.deep && !options.frame.peel) json["deep_accuracy"] = options.frame.deep_accuracy;
   json["rasterizer"] = word(settings.mesh.rasterizer);
   const DeviceSettings& on = settings.mesh.device;
   const bool fragment = on.method == GlMethod::fragment;
@@ -144,6 +144,7 @@ Json grid_method_json(const RenderOptions& options, int ranks) {
 
 Json method_json(const RenderOptions& options, int ranks) {
   Json json = options.is_grid() ? grid_method_json(options, ranks) : mesh_method_json(options);
+  if (const auto& peel = options.frame.peel) json["peel"] = {{"threshold", peel->threshold}, {"layers", peel->layers}};
   if (!options.annotation.given.empty()) json["annotation"] = options.annotation.given;
   return json;
 }
@@ -154,7 +155,7 @@ Json job_json(const RenderOptions& options, int ranks, const Roles& roles) {
   return {{"ranks", ranks},
           {"projectors", roles.projectors},
           {"compositors", roles.compositors},
-          {"exchange", exchange_word(exchange_of(options.settings, options.frame.deep))},
+          {"exchange", exchange_word(exchange_of(options.settings, options.frame.deep || options.frame.peel))},
           {"partition", partitions[static_cast<std::size_t>(settings.partition.kind)]},
           {"frames_in_flight", settings.frames_in_flight},
           {"seed", settings.tile_seed}};
@@ -310,14 +311,21 @@ std::string run_line(const RenderOptions& options, const Description& data, cons
 }
 
 std::string verification_line(const Verification& v, int frame_number) {
+  const bool met = v.met || (!v.layers_met && v.over_bound == v.excused);  // the picture alone
   const auto verdict =
-      v.bound ? fmt::format("bound {:.3g} {}", *v.bound, v.met ? "met" : "NOT met") : std::string("no bound promised");
+      v.bound ? fmt::format("bound {:.3g} {}", *v.bound, met ? "met" : "NOT met") : std::string("no bound promised");
   std::string line =
       fmt::format("verify frame {}: {} pixels, max {:.3g} rms {:.3g}, worst at ({}, {}), {} excused; {}", frame_number,
                   v.pixels_checked, v.max_error, v.rms_error, v.worst_x, v.worst_y, v.excused, verdict);
   line += fmt::format("; worst: {}; chosen: {} random", v.worst_reason, v.tallies.front().pixels);
   for (const Verification::Tally& tally : std::span(v.tallies).subspan(1))
     line += fmt::format(", {} {}", tally.pixels, tally.reason);
+  if (v.layers.empty()) return line;
+  const auto worst = std::ranges::max_element(v.layers, {}, &Verification::Tally::max_error);
+  std::size_t excused = 0;
+  for (const Verification::Tally& layer : v.layers) excused += layer.excused;
+  line += fmt::format("; {} layers: max {:.3g} in {}, {} excused; bound {:.3g} {}", v.layers.size(), worst->max_error,
+                      worst->reason, excused, v.layer_bound, v.layers_met ? "met" : "NOT met");
   return line;
 }
 

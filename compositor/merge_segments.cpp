@@ -9,6 +9,7 @@
 
 #include "compositor/deep_sink.hpp"
 #include "compositor/merge_kinds.hpp"
+#include "compositor/peel_sink.hpp"
 #include "compositor/picture_sink.hpp"
 #include "compositor/tuple_record.hpp"
 #include "projection/surface_crossings.hpp"
@@ -60,10 +61,14 @@ class SegmentMerger : public TileMerger {
 
   void open(Square& square) {
     const ImageWindow window{&image_, rect_.x0, rect_.y0};
-    if constexpr (std::is_same_v<Encoding, DoubleEncoding>)
-      if (context_.deep_accuracy > 0)
+    if constexpr (std::is_same_v<Encoding, DoubleEncoding>) {
+      if (context_.peel)
+        square.sink =
+            std::make_unique<PeelSink>(scene_, window, *context_.function, context_.emission, *context_.peel, deep_);
+      else if (context_.deep_accuracy > 0)
         square.sink = std::make_unique<DeepSink>(scene_, window, *context_.function, context_.emission,
                                                  context_.deep_accuracy, deep_);
+    }
     if (!square.sink) square.sink = std::make_unique<PictureSink<Encoding>>(scene_, window);
     square.sink->start(square.rect);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "compositor/matter_light.hpp"
@@ -16,6 +17,7 @@
 #include "scene/lattice.hpp"
 #include "scene/surface_set.hpp"
 #include "scene/transfer_function.hpp"
+#include "tessera/settings.hpp"
 
 namespace tessera::compositor {
 
@@ -31,6 +33,7 @@ struct MergeContext {
   std::uint64_t budget_bytes;                         ///< for one tile's fragments that cannot be composited yet
   const scene::TransferFunction* function = nullptr;  ///< with deep samples
   double deep_accuracy = 0;                           ///< > 0: raw segments give deep samples too (deep_sink.hpp)
+  std::optional<Peel> peel{};                         ///< then these are layers (peel_sink.hpp)
   // Lattice segments:
   const scene::Lattice* lattice = nullptr;
   const integrals::LaneTable* table = nullptr;  ///< on that lattice

@@ -215,6 +215,27 @@ class CompositorLoop {
     workers_.run([this, &of, tile] { merge_tile(of, tile); });
   }
 
+  /// What the mergers of a frame know of it.
+  compositor::MergeContext context_of(Frame& of, double longest_ray, float longest_edge, bool on_lattice) {
+    const RenderSettings& render = run_.settings.render;
+    compositor::MergeContext context{
+        &of.space, &of.integrator, run_.function.max_color(), longest_ray, longest_edge, render.emission, budget_.tile};
+    context.function = &run_.function;
+    context.deep_accuracy = run_.settings.deep ? render.deep_accuracy : 0;
+    context.peel = render.peel;
+    context.lattice = run_.device.device != nullptr ? &of.units : &of.collector.lattice();
+    context.table = of.table ? &*of.table : nullptr;
+    context.trace = trace_;
+    context.device = run_.device.device.get();
+    context.on_lattice = on_lattice;
+    context.frame = of.number;
+    context.device_failed = run_.device.may_fail ? &run_.device.failed : nullptr;
+    context.segments = &of.segments;
+    context.surfaces = of.surfaces.empty() ? nullptr : &of.surfaces;
+    context.light = of.light ? &*of.light : nullptr;
+    return context;
+  }
+
   /// On a worker. `of` lives until all its tiles are finished.
   void merge_tile(Frame& of, std::uint32_t tile) {
     std::unique_lock lock(mutex_);
@@ -240,15 +261,7 @@ class CompositorLoop {
         if (run_.stop.stop_requested()) waiting.parts.clear(), of.stopped = true;
         if (merge.merger == nullptr && !waiting.parts.empty())
           merge.merger = compositor::make_tile_merger(
-              waiting.parts.front().kind,
-              {&of.space, &of.integrator, run_.function.max_color(), longest_ray, longest_edge,
-               run_.settings.render.emission, budget_.tile, &run_.function,
-               run_.settings.deep ? run_.settings.render.deep_accuracy : 0,
-               run_.device.device != nullptr ? &of.units : &of.collector.lattice(), of.table ? &*of.table : nullptr,
-               trace_, run_.device.device.get(), on_lattice, of.number,
-               run_.device.may_fail ? &run_.device.failed : nullptr, &of.segments,
-               of.surfaces.empty() ? nullptr : &of.surfaces, of.light ? &*of.light : nullptr},
-              of.grid.rect(tile));
+              waiting.parts.front().kind, context_of(of, longest_ray, longest_edge, on_lattice), of.grid.rect(tile));
         if (merge.merger != nullptr) compositor::merge(*merge.merger, waiting.parts, waiting.final_depth, budget_.tile);
         // A tile that got nothing stays as empty as the assembled picture is.
         if (all && merge.merger != nullptr && !of.stopped) of.sender.send(tile, merge.merger->finish());

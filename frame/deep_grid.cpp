@@ -16,19 +16,47 @@
 #include "compositor/deep_fragments.hpp"
 #include "compositor/deep_pieces.hpp"
 #include "compositor/deep_sink.hpp"
+#include "compositor/peel_sink.hpp"
 #include "integrals/segment_batch.hpp"
 #include "integrals/segment_integrator.hpp"
 #include "scene/error.hpp"
 #include "scene/frame_watch.hpp"
 #include "scene/threads.hpp"
 #include "volume/surface_walk.hpp"
+#include "volume/voxel_layers.hpp"
 #include "volume/voxel_walk.hpp"
 
 namespace tessera::frame {
 namespace {
 
-/// One thread's way of making deep pixels.
-class DeepPixels final : public volume::WalkSink {
+/// One thread's way of making pixels.
+class PixelSamples {
+ public:
+  virtual ~PixelSamples() = default;
+  /// Appends the pixel's samples.
+  virtual void add(const volume::VoxelRay& ray, std::vector<scene::DeepImageSample>& to) = 0;
+};
+
+/// Samples that are layers.
+class LayerPixels final : public PixelSamples {
+ public:
+  LayerPixels(const scene::SampleSource& source, const scene::Camera& camera, const scene::TransferFunction& function,
+              const DeepSettings& settings)
+      : rays_(source, camera, function, {settings.emission, *settings.peel, settings.shading, settings.surfaces}) {}
+
+  void add(const volume::VoxelRay& ray, std::vector<scene::DeepImageSample>& to) override {
+    layers_.clear();
+    rays_.add(ray, layers_);
+    compositor::append_layers(layers_, to);
+  }
+
+ private:
+  volume::VoxelLayers rays_;
+  std::vector<integrals::RayLayer> layers_;
+};
+
+/// Samples that may be cut.
+class DeepPixels final : public PixelSamples, public volume::WalkSink {
  public:
   DeepPixels(const scene::SampleSource& source, const scene::TransferFunction& function, const DeepSettings& settings)
       : cutter_(volume::over_knot_numbers(function), settings.emission, settings.accuracy),
@@ -39,8 +67,7 @@ class DeepPixels final : public volume::WalkSink {
     if (settings.surfaces != nullptr && settings.surfaces->any()) surfaces_.emplace(source, *settings.surfaces);
   }
 
-  /// Appends the pixel's samples.
-  void add(const volume::VoxelRay& ray, std::vector<scene::DeepImageSample>& to) {
+  void add(const volume::VoxelRay& ray, std::vector<scene::DeepImageSample>& to) override {
     pieces_.clear();
     transmittance_ = 1;
     length_per_depth_ = ray.length_per_depth;
@@ -141,8 +168,10 @@ scene::DeepImage deep_image(const scene::SampleSource& source, const scene::Came
   compositor::DeepCollector collector(size, settings.memory_bytes / 2);
   tbb::task_arena arena(scene::threads_for(settings.threads));
   arena.execute([&] {
-    tbb::enumerable_thread_specific<std::unique_ptr<DeepPixels>> pixels(
-        [&] { return std::make_unique<DeepPixels>(source, function, settings); });
+    tbb::enumerable_thread_specific<std::unique_ptr<PixelSamples>> pixels([&]() -> std::unique_ptr<PixelSamples> {
+      if (settings.peel) return std::make_unique<LayerPixels>(source, camera, function, settings);
+      return std::make_unique<DeepPixels>(source, function, settings);
+    });
     constexpr int side = 32;
     const int across = (size.width + side - 1) / side, down = (std::max(0, y1 - y0) + side - 1) / side;
     tbb::parallel_for(0, across * down, [&](int tile) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <stop_token>
 #include <vector>
 
@@ -9,7 +10,9 @@
 #include "scene/optical_model.hpp"
 #include "scene/sample_source.hpp"
 #include "scene/selection.hpp"
+#include "scene/shading.hpp"
 #include "scene/transfer_function.hpp"
+#include "tessera/settings.hpp"
 #include "volume/grid_surfaces.hpp"
 
 namespace tessera::frame {
@@ -21,6 +24,8 @@ struct DeepSettings {
   std::uint64_t memory_bytes = 4ull << 30;         ///< half of it may be samples
   std::vector<scene::HalfSpace> clip{};            ///< that rays are kept in
   const volume::GridSurfaces* surfaces = nullptr;  ///< in the volume; null: none
+  std::optional<Peel> peel{};                      ///< samples are layers (volume/voxel_layers.hpp), not tidy
+  std::optional<scene::Shading> shading{};         ///< of layers alone
 };
 
 /// The deep picture of a volume's rows y0 <= y < y1; the others stay empty. Regular and rectilinear grids, point and

@@ -11,6 +11,7 @@
 
 #include "exchange/collectives.hpp"
 #include "frame/distributed_roles.hpp"
+#include "frame/peel.hpp"
 #include "frame/run_error.hpp"
 #include "frame/stop_relay.hpp"
 #include "scene/error.hpp"
@@ -67,7 +68,8 @@ void check(const DistributedSettings& settings) {
   if (settings.render.rasterizer == Rasterizer::scanline && settings.exchange == Exchange::runs)
     throw scene::bad_input("`exchange` runs: segments of `rasterizer` scanline do not touch; use `exchange` segments");
   if (settings.deep && settings.exchange == Exchange::runs)
-    throw scene::bad_input("`exchange` runs: a deep picture needs the segments that runs are made of; use segments");
+    throw scene::bad_input(fmt::format("`exchange` runs: {} needs the segments that runs are made of; use segments",
+                                       settings.render.peel ? "`peel`" : "a deep picture"));
   check_device_rasterizer(settings.render, settings.compositing_on);
   const auto& backends = settings.compositing_on.backends;
   const bool on_device = std::any_of(backends.begin(), backends.end(), [](Backend b) { return b != Backend::cpu; });
@@ -77,7 +79,8 @@ void check(const DistributedSettings& settings) {
   if (on_device && settings.render.shading)
     throw scene::bad_input("`shade`: meshes are shaded on the CPU; leave out `compositor` and `backend`");
   if (on_device && settings.deep)
-    throw scene::bad_input("deep picture: it is made on the CPU; leave out `compositor` and `backend`");
+    throw scene::bad_input(fmt::format("{}: it is made on the CPU; leave out `compositor` and `backend`",
+                                       deep_word(settings.render.peel.has_value())));
   if (on_device && settings.compositing_on.gl.method == compositor::GlMethod::fragment &&
       settings.exchange == Exchange::runs)
     throw scene::bad_input("`exchange` runs: `compositor` gl-fragment takes ray segments; use `exchange` segments");
@@ -97,11 +100,12 @@ class DistributedRenderer::State {
     if (settings_.roles.projects(transport.rank())) loaded_.emplace(transport_, settings_, mesh_of_);
   }
 
-  void set_deep(bool deep, double accuracy, Exchange exchange) {
+  void set_deep(bool deep, double accuracy, const std::optional<Peel>& peel, Exchange exchange) {
     DistributedSettings settings = settings_;
     settings.deep = deep;
     settings.exchange = exchange;
     settings.render.deep_accuracy = accuracy;
+    settings.render.peel = peel;
     check(settings);
     settings_ = std::move(settings);
   }
@@ -178,8 +182,8 @@ DistributedRenderer::DistributedRenderer(exchange::Transport& transport, Distrib
     : state_(std::make_unique<State>(transport, std::move(settings), std::move(mesh_of))) {}
 DistributedRenderer::~DistributedRenderer() = default;
 
-void DistributedRenderer::set_deep(bool deep, double accuracy, Exchange exchange) {
-  state_->set_deep(deep, accuracy, exchange);
+void DistributedRenderer::set_deep(bool deep, double accuracy, const std::optional<Peel>& peel, Exchange exchange) {
+  state_->set_deep(deep, accuracy, peel, exchange);
 }
 
 void DistributedRenderer::render(std::span<const FrameJob> jobs, const scene::TransferFunction& function,

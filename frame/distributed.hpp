@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stop_token>
 
@@ -22,7 +23,7 @@ struct DistributedSettings {
   Roles roles;
   Exchange exchange = Exchange::runs;
   CompositingSettings compositing_on;
-  bool deep = false;                    ///< deep pictures too (Renderer::render); they need raw segments
+  bool deep = false;                    ///< deep pictures, or layers, too (Renderer::render); they need raw segments
   int frames_in_flight = 2;             ///< frames a projector may be ahead of the assembled picture, at least 1
   std::uint64_t tile_seed = 1;          ///< of the tile map
   scene::Trace* projecting = nullptr;   ///< face of this rank's trace for its projector; null: no timing
@@ -90,9 +91,9 @@ class DistributedRenderer {
   /// Throws the run's error, on every rank.
   void render(std::span<const FrameJob> jobs, const scene::TransferFunction& function,
               const DistributedCallbacks& callbacks, const std::stop_token& stop = {});
-  /// Of later lists: whether deep pictures are made, and what is sent. Throws Error(bad_input) where the settings
-  /// cannot do it.
-  void set_deep(bool deep, double accuracy, Exchange exchange);
+  /// Of later lists: whether deep pictures are made and of what, and what is sent. Throws Error(bad_input) where the
+  /// settings cannot do it.
+  void set_deep(bool deep, double accuracy, const std::optional<Peel>& peel, Exchange exchange);
 
  private:
   class State;

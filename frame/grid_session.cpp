@@ -10,6 +10,7 @@
 #include "frame/balance_picture.hpp"
 #include "frame/brick_memory.hpp"
 #include "frame/deep_rows.hpp"
+#include "frame/peel.hpp"
 #include "frame/run_error.hpp"
 #include "frame/session_state.hpp"
 #include "frame/sort_first.hpp"
@@ -62,13 +63,13 @@ class GridByRays final : public Session::State {
 
   std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
                      Sink& sink, const std::stop_token& stop) override {
-    if (settings.deep) check_deep(settings);
+    if (settings.deep || settings.peel) check_deep(settings);
     if (settings.keep_uncertainty != keeps_uncertainty_ || settings.keep_cost != keeps_cost_) {
       keeps_uncertainty_ = settings.keep_uncertainty, keeps_cost_ = settings.keep_cost;
       check(settings);
       make_frames();
     }
-    if (!settings.deep && !settings.keep_cost) return render_list(views, function, sink, stop);
+    if (!settings.deep && !settings.peel && !settings.keep_cost) return render_list(views, function, sink, stop);
     for (std::size_t i = 0; i < views.size(); ++i) {
       make_renderer(views[i].size);
       bool stopped = false;
@@ -137,9 +138,11 @@ class GridByRays final : public Session::State {
       throw scene::bad_input(fmt::format("`deep_accuracy` {}: it must be 1e-6 to 1", frame.deep_accuracy));
     if (!frame::promised_error(frame::grid_settings(settings())))
       throw scene::bad_input(
-          "deep picture: steps along rays give light other than that of their parts; set `integrator` automatic or "
-          "exact");
-    if (settings().grid.shading) throw scene::bad_input("deep picture: it is not shaded; leave `shade` out");
+          fmt::format("{}: steps along rays give light other than that of their parts; set `integrator` automatic or "
+                      "exact",
+                      frame::deep_word(frame.peel.has_value())));
+    if (settings().grid.shading && !frame.peel)
+      throw scene::bad_input("deep picture: it is not shaded; leave `shade` out");
   }
 
   /// Bricks get what the budget leaves beside a picture of this size: the renderer is made once it is known.
@@ -220,14 +223,15 @@ class GridByRays final : public Session::State {
     }
     if (agreed(of_sink || (finished && finished->stopped))) return false;
     std::optional<DeepImage> deep;
-    if (settings.deep) try {
+    if (settings.deep || settings.peel) try {
         const scene::TraceScope timing(trace_, "project");
         frame::StopRelay::Run relayed(frames_->relay(), stop);
         const volume::GridSurfaces surfaces(this->settings().surfaces, function, *data().ranges);
-        deep = frame::deep_rows(*transport_, *data().samples, view.camera, view.size, function,
-                                {settings.deep_accuracy, this->settings().emission, this->settings().threads,
-                                 this->settings().memory_bytes, data().clip, &surfaces},
-                                static_cast<std::int32_t>(number), relayed.token());
+        deep = frame::deep_rows(
+            *transport_, *data().samples, view.camera, view.size, function,
+            {settings.deep_accuracy, this->settings().emission, this->settings().threads, this->settings().memory_bytes,
+             data().clip, &surfaces, settings.peel, this->settings().grid.shading},
+            static_cast<std::int32_t>(number), relayed.token());
       } catch (const scene::FrameStopped&) {
         return false;
       }
@@ -241,10 +245,7 @@ class GridByRays final : public Session::State {
       split_ = std::move(finished->split);
       cost_ = std::move(finished->cost);
     }
-    if (deep) {
-      frame.deep = std::move(*deep);
-      frame.statistics.mesh.deep_samples = frame.deep.samples.size();
-    }
+    if (deep) frame::put_deep(std::move(*deep), settings, frame);
     return true;
   }
 

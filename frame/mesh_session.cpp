@@ -9,6 +9,7 @@
 #include "exchange/collectives.hpp"
 #include "frame/distributed.hpp"
 #include "frame/mesh_input.hpp"
+#include "frame/peel.hpp"
 #include "frame/session_state.hpp"
 #include "integrals/segment_integrator.hpp"
 #include "projection/partition.hpp"
@@ -53,16 +54,18 @@ class MeshAlone final : public Session::State {
 
   std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
                      Sink& sink, const std::stop_token& stop) override {
-    renderer_.set_deep_accuracy(settings.deep_accuracy);
+    renderer_.set_deep(settings.deep_accuracy, settings.peel);
+    const bool deep = settings.deep || settings.peel;
     for (std::size_t i = 0; i < views.size(); ++i) {
       RenderedFrame frame;
       frame.number = i;
+      DeepImage made;
       frame::FrameStatistics statistics;
       scene::FrameWatch watch(stop, tiles_to(sink, i));
       const auto start = Clock::now();
       try {
-        frame.image = renderer_.render(views[i].camera, views[i].size, function, &statistics,
-                                       settings.deep ? &frame.deep : nullptr, &watch);
+        frame.image =
+            renderer_.render(views[i].camera, views[i].size, function, &statistics, deep ? &made : nullptr, &watch);
       } catch (const scene::FrameStopped&) {
         sink.frame(stopped_frame(i));
         return i;
@@ -71,6 +74,7 @@ class MeshAlone final : public Session::State {
       }
       frame.statistics =
           statistics_of(statistics, std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+      if (deep) frame::put_deep(std::move(made), settings, frame);
       sink.frame(std::move(frame));
     }
     return views.size();
@@ -125,9 +129,10 @@ class MeshOnRanks final : public Session::State {
 
   std::size_t render(std::span<const View> views, const TransferFunction& function, const FrameSettings& settings,
                      Sink& sink, const std::stop_token& stop) override {
-    const Exchange exchange = exchange_of(this->settings(), settings.deep);
+    const bool deep = settings.deep || settings.peel;
+    const Exchange exchange = exchange_of(this->settings(), deep);
     check_exchange(exchange);
-    renderer_->set_deep(settings.deep, settings.deep_accuracy, exchange);
+    renderer_->set_deep(deep, settings.deep_accuracy, settings.peel, exchange);
     std::vector<frame::FrameJob> jobs;
     for (const View& view : views) jobs.push_back({view.camera, view.size, 0});
     std::size_t complete = 0;
@@ -144,8 +149,8 @@ class MeshOnRanks final : public Session::State {
       RenderedFrame frame;
       frame.number = finished.frame;
       frame.image = std::move(finished.image);
-      frame.deep = std::move(finished.deep);
       frame.statistics = statistics_of(finished.statistics, finished.frame_ms);
+      if (deep) frame::put_deep(std::move(finished.deep), settings, frame);
       frame::call_sink([&] { sink.frame(std::move(frame)); });
     };
     if (sink.wants_tiles())

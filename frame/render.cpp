@@ -12,10 +12,12 @@
 #include "compositor/deep_collector.hpp"
 #include "compositor/deep_sink.hpp"
 #include "compositor/matter_light.hpp"
+#include "compositor/peel_sink.hpp"
 #include "compositor/picture_sink.hpp"
 #include "frame/boundary_faces.hpp"
 #include "frame/frame_projector.hpp"
 #include "frame/lattice_frame.hpp"
+#include "frame/peel.hpp"
 #include "integrals/segment_integrator.hpp"
 #include "projection/planes_rasterizer.hpp"
 #include "scene/error.hpp"
@@ -23,15 +25,16 @@
 
 namespace tessera::frame {
 void check_deep(const RenderSettings& settings, const scene::TransferFunction& function) {
+  const char* const what = deep_word(settings.peel.has_value());
   if (!(settings.deep_accuracy >= 1e-6 && settings.deep_accuracy <= 1))
     throw scene::bad_input(fmt::format("`deep_accuracy` {}: it must be 1e-6 to 1", settings.deep_accuracy));
   if (settings.rasterizer == Rasterizer::scanline)
-    throw scene::bad_input("deep picture: `rasterizer` scanline leaves gaps and overlaps in depth; use planes");
+    throw scene::bad_input(
+        fmt::format("{}: `rasterizer` scanline leaves gaps and overlaps in depth; use planes", what));
   const integrals::SegmentIntegrator integrator(function, settings.integrator, settings.emission);
   if (integrator.name() != "exact")
-    throw scene::bad_input(
-        fmt::format("deep picture: `integrator` {} gives a segment other light than its parts; use exact or auto",
-                    integrator.name()));
+    throw scene::bad_input(fmt::format(
+        "{}: `integrator` {} gives a segment other light than its parts; use exact or auto", what, integrator.name()));
 }
 
 const char* surface_word(const scene::Surfaces& surfaces) { return surfaces.has_faces() ? "`surface`" : "`iso`"; }
@@ -107,7 +110,10 @@ Renderer::Renderer(const std::shared_ptr<const projection::PreparedMesh>& mesh, 
 
 Renderer::~Renderer() = default;
 
-void Renderer::set_deep_accuracy(double accuracy) { state_->settings.deep_accuracy = accuracy; }
+void Renderer::set_deep(double accuracy, const std::optional<Peel>& peel) {
+  state_->settings.deep_accuracy = accuracy;
+  state_->settings.peel = peel;
+}
 
 scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size,
                               const scene::TransferFunction& transfer_function, FrameStatistics* statistics,
@@ -146,6 +152,9 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
   const compositor::ImageWindow window{&image};
   task.make_sink = [&]() -> std::unique_ptr<compositor::TileSink<sorting::DoubleEncoding>> {
     if (!collector) return std::make_unique<compositor::PictureSink<sorting::DoubleEncoding>>(scene, window);
+    if (settings.peel)
+      return std::make_unique<compositor::PeelSink>(scene, window, transfer_function, settings.emission, *settings.peel,
+                                                    *collector);
     return std::make_unique<compositor::DeepSink>(scene, window, transfer_function, settings.emission,
                                                   settings.deep_accuracy, *collector);
   };

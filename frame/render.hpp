@@ -37,6 +37,7 @@ struct RenderSettings {
   scene::Surfaces surfaces{};               ///< checked by check_surfaces()
   std::optional<scene::Shading> shading{};  ///< of point data, checked by check_shading()
   double deep_accuracy = 1e-3;              ///< of a deep picture, cut anywhere: largest error in linear RGBA
+  std::optional<Peel> peel{};               ///< deep pictures are layers, as PeelSink gives them, not tidy
   scene::Mechanisms use;                    ///< what saves work
   bool bounded = true;                      ///< false: composited on a device whose error is only reported
   int threads = 0;                          ///< 0: all cores
@@ -84,8 +85,8 @@ class Renderer {
                       const scene::TransferFunction& transfer_function, FrameStatistics* statistics = nullptr,
                       scene::DeepImage* deep = nullptr, scene::FrameWatch* watch = nullptr);
 
-  /// RenderSettings::deep_accuracy of later frames.
-  void set_deep_accuracy(double accuracy);
+  /// RenderSettings::deep_accuracy and RenderSettings::peel of later frames.
+  void set_deep(double accuracy, const std::optional<Peel>& peel);
 
  private:
   struct State;

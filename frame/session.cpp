@@ -1,11 +1,14 @@
 #include "tessera/session.hpp"
 
+#include <fmt/format.h>
+
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "frame/communicator.hpp"
+#include "frame/peel.hpp"
 #include "frame/session_state.hpp"
 #include "frame/uncut_mesh.hpp"
 #include "frame/verify.hpp"
@@ -38,7 +41,8 @@ class OneFrame final : public Sink {
   RenderedFrame frame_;
 };
 
-Verification public_form(const reference::Verification& v) {
+Verification public_form(const frame::Verified& verified) {
+  const reference::Verification& v = verified.picture;
   const auto reason = [](const std::optional<reference::Suspicion>& why) -> std::string {
     return why ? reference::name_of(*why) : "random";
   };
@@ -58,7 +62,10 @@ Verification public_form(const reference::Verification& v) {
     if (v.chosen[kind].pixels > 0)
       result.tallies.push_back(tally(reference::name_of(static_cast<reference::Suspicion>(kind)), v.chosen[kind]));
   result.bound = v.bound;
-  result.met = v.met();
+  result.met = v.met() && verified.layers.met;
+  result.layer_bound = verified.layers.bound, result.layers_met = verified.layers.met;
+  for (const reference::Tally& layer : verified.layers.layers)
+    result.layers.push_back(tally(fmt::format("layer {}", result.layers.size() + 1), layer));
   return result;
 }
 
@@ -92,7 +99,10 @@ std::size_t Session::render(std::span<const View> views, const TransferFunction&
                             const FrameSettings& settings, Sink& sink, const std::stop_token& stop) {
   if (transfer_function.knots().empty())
     throw scene::bad_input("transfer function: it has no knots; give at least one, or load a preset");
-  for (const View& view : views) check_view(view);
+  for (const View& view : views) {
+    check_view(view);
+    if (settings.peel) frame::check_peel(*settings.peel, view.size, this->settings().memory_bytes);
+  }
   return state_->render(views, transfer_function, settings, sink, stop);
 }
 
@@ -108,16 +118,17 @@ Verification Session::verify(const RenderedFrame& frame, const View& view, const
   check_view(view);
   if (frame.image.size != view.size)
     throw scene::bad_input("verify: the frame is not of this view's size; give the view it was rendered with");
+  const frame::Layers layers{frame.layers, frame.peel};
   const Dataset::State& data = dataset().state();
   if (dataset().is_grid()) {
     volume::RenderSettings grid = frame::grid_settings(settings());
     grid.clip = data.clip;
-    return public_form(
-        frame::verify(frame.image, *data.samples, view.camera, transfer_function, grid, frame.uncertainty, count));
+    return public_form(frame::verify_all(frame.image, layers, *data.samples, view.camera, transfer_function, grid,
+                                         frame.uncertainty, count));
   }
   const frame::RenderSettings settings = frame::mesh_settings(this->settings());
   return public_form(
-      frame::verify(frame.image, frame::uncut_mesh(data), view.camera, transfer_function, settings, count));
+      frame::verify_all(frame.image, layers, frame::uncut_mesh(data), view.camera, transfer_function, settings, count));
 }
 
 BalancePictures Session::State::balance_pictures(const RenderedFrame&, const View&, const TransferFunction&) const {

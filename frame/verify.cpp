@@ -160,23 +160,53 @@ reference::Suspects suspects(const scene::Image& image, const scene::SampleSourc
   return found;
 }
 
-reference::Verification verify(const scene::Image& image, const UncutMesh& mesh, const scene::Camera& camera,
-                               const scene::TransferFunction& transfer_function, const RenderSettings& settings,
-                               std::size_t count) {
+double layer_bound(const std::optional<double>& promised) { return std::min(promised.value_or(1e-5), 1e-5); }
+
+namespace {
+
+/// Of a reference that knows layers too.
+template <class Reference>
+Verified judged(const scene::Image& image, const Layers& layers, const Reference& reference,
+                const std::optional<double>& promised, std::size_t count, const reference::Suspects& where,
+                int threads) {
+  Verified verified{reference::verify(image, reference, promised, count, where, threads), {}};
+  if (layers.peel)
+    verified.layers =
+        reference::verify_layers(layers.images, reference, *layers.peel, layer_bound(promised), count, where, threads);
+  return verified;
+}
+
+}  // namespace
+
+Verified verify_all(const scene::Image& image, const Layers& layers, const UncutMesh& mesh, const scene::Camera& camera,
+                    const scene::TransferFunction& transfer_function, const RenderSettings& settings,
+                    std::size_t count) {
   const reference::Suspects where = suspects(image, mesh.rendered, camera, transfer_function, settings, count);
   const reference::Reference reference(mesh.mesh, camera, image.size, transfer_function, settings.emission,
                                        settings.surfaces, mesh.kept, settings.shading);
-  return reference::verify(image, reference, promised_error(settings), count, where, settings.threads);
+  return judged(image, layers, reference, promised_error(settings), count, where, settings.threads);
+}
+
+Verified verify_all(const scene::Image& image, const Layers& layers, const scene::SampleSource& source,
+                    const scene::Camera& camera, const scene::TransferFunction& transfer_function,
+                    const volume::RenderSettings& settings, std::span<const float> error_bounds, std::size_t count) {
+  const reference::Suspects where = suspects(image, source, camera, transfer_function, settings, error_bounds, count);
+  const reference::GridReference reference(source, camera, image.size, transfer_function, settings.emission,
+                                           settings.shading, settings.clip, settings.surfaces);
+  return judged(image, layers, reference, promised_error(settings), count, where, settings.threads);
+}
+
+reference::Verification verify(const scene::Image& image, const UncutMesh& mesh, const scene::Camera& camera,
+                               const scene::TransferFunction& transfer_function, const RenderSettings& settings,
+                               std::size_t count) {
+  return verify_all(image, {}, mesh, camera, transfer_function, settings, count).picture;
 }
 
 reference::Verification verify(const scene::Image& image, const scene::SampleSource& source,
                                const scene::Camera& camera, const scene::TransferFunction& transfer_function,
                                const volume::RenderSettings& settings, std::span<const float> error_bounds,
                                std::size_t count) {
-  const reference::Suspects where = suspects(image, source, camera, transfer_function, settings, error_bounds, count);
-  const reference::GridReference reference(source, camera, image.size, transfer_function, settings.emission,
-                                           settings.shading, settings.clip, settings.surfaces);
-  return reference::verify(image, reference, promised_error(settings), count, where, settings.threads);
+  return verify_all(image, {}, source, camera, transfer_function, settings, error_bounds, count).picture;
 }
 
 }  // namespace tessera::frame

@@ -6,6 +6,7 @@
 
 #include "frame/render.hpp"
 #include "frame/uncut_mesh.hpp"
+#include "reference/layer_verification.hpp"
 #include "reference/verification.hpp"
 #include "scene/camera.hpp"
 #include "scene/image.hpp"
@@ -36,7 +37,31 @@ reference::Suspects suspects(const scene::Image& image, const scene::SampleSourc
                              const scene::TransferFunction& transfer_function, const volume::RenderSettings& settings,
                              std::span<const float> error_bounds, std::size_t count);
 
-/// Checks `count` pixels of a finished picture against the reference: a third at random, the rest of its suspects.
+/// What is found of a picture, and of its layers if there are any.
+struct Verified {
+  reference::Verification picture;
+  reference::LayerVerification layers;
+};
+
+/// The layers of a picture, and how they were cut; none: there are none.
+struct Layers {
+  std::span<const scene::Image> images{};
+  std::optional<Peel> peel{};
+};
+
+/// The largest error of a layer, in linear RGBA: 1e-5, or the picture's promise if that is less.
+double layer_bound(const std::optional<double>& promised);
+
+/// Checks `count` pixels of a finished picture against the reference: a third at random, the rest of its suspects; of
+/// its layers the same ones.
+Verified verify_all(const scene::Image& image, const Layers& layers, const UncutMesh& mesh, const scene::Camera& camera,
+                    const scene::TransferFunction& transfer_function, const RenderSettings& settings,
+                    std::size_t count);
+Verified verify_all(const scene::Image& image, const Layers& layers, const scene::SampleSource& source,
+                    const scene::Camera& camera, const scene::TransferFunction& transfer_function,
+                    const volume::RenderSettings& settings, std::span<const float> error_bounds, std::size_t count);
+
+/// The same of pictures without layers.
 reference::Verification verify(const scene::Image& image, const UncutMesh& mesh, const scene::Camera& camera,
                                const scene::TransferFunction& transfer_function, const RenderSettings& settings,
                                std::size_t count);

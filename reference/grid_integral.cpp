@@ -51,9 +51,9 @@ double crossing(const Cubic& p, double u0, double u1, double value) {
 
 }  // namespace
 
-double GridIntegral::opacity() const { return -std::expm1(-optical_depth_); }
+double GridIntegral::opacity() const { return -std::expm1(-sum_.optical_depth); }
 
-bool GridIntegral::opaque() const { return optical_depth_ > depth_of_nothing; }
+bool GridIntegral::opaque() const { return sum_.optical_depth > depth_of_nothing; }
 
 void GridIntegral::add(double length, const Cubic& scalar, double depth_front, double depth_back, const Light& light,
                        double origin) {
@@ -77,10 +77,11 @@ void GridIntegral::add(double length, const Cubic& scalar, double depth_front, d
 
 void GridIntegral::add_surface(const std::array<double, 3>& color, double opacity, double depth) {
   if (!(opacity > 0)) return;
-  const double seen = std::exp(-optical_depth_) * opacity;
-  for (std::size_t i = 0; i < 3; ++i) color_[i] += seen * color[i];
-  if (std::isinf(first_visible_depth_)) first_visible_depth_ = depth;
-  optical_depth_ -= std::log1p(-opacity);
+  const double seen = std::exp(-sum_.optical_depth) * opacity;
+  for (std::size_t i = 0; i < 3; ++i) sum_.color[i] += seen * color[i];
+  if (std::isinf(sum_.first_visible_depth)) sum_.first_visible_depth = depth;
+  sum_.optical_depth -= std::log1p(-opacity);
+  if (cuts_ && cuts_->ends(sum_.optical_depth)) cuts_->end(sum_);
 }
 
 void GridIntegral::add_piece(double length, const Cubic& scalar, double u0, double u1, double depth_front,
@@ -105,16 +106,28 @@ void GridIntegral::add_piece(double length, const Cubic& scalar, double u0, doub
   };
   const std::array<Cubic, 3> color = {lit(low.color.x, high.color.x), lit(low.color.y, high.color.y),
                                       lit(low.color.z, high.color.z)};
-  if (low.extinction > 0 || high.extinction > 0)
-    if (std::isinf(first_visible_depth_)) first_visible_depth_ = depth_front + (depth_back - depth_front) * u0;
-  add_color(length, u0, u1, 0, extinction, color, 0);
-  optical_depth_ += std::max(0.0, length * area(extinction, u0, u1));
+  const auto add_part = [&](double begin, double end) {
+    if (low.extinction > 0 || high.extinction > 0)
+      if (std::isinf(sum_.first_visible_depth))
+        sum_.first_visible_depth = depth_front + (depth_back - depth_front) * begin;
+    add_color(length, begin, end, 0, extinction, color, 0);
+    sum_.optical_depth += std::max(0.0, length * area(extinction, begin, end));
+  };
+  const auto reached = [&](double u) { return sum_.optical_depth + length * area(extinction, u0, u); };
+  while (cuts_ && cuts_->ends(reached(u1))) {
+    const double u = cuts_->place(u0, u1, reached);
+    add_part(u0, u);
+    cuts_->end(sum_);
+    u0 = u;
+    if (!(u0 < u1)) return;
+  }
+  add_part(u0, u1);
 }
 
 void GridIntegral::add_color(double length, double u0, double u1, double before, const Cubic& extinction,
                              const std::array<Cubic, 3>& color, int depth) {
   constexpr int deepest = 50;
-  if (optical_depth_ + before > depth_of_nothing) return;
+  if (sum_.optical_depth + before > depth_of_nothing) return;
   if (length * area(extinction, u0, u1) > largest_optical_step && depth < deepest) {
     const double middle = (u0 + u1) / 2;
     add_color(length, u0, middle, before, extinction, color, depth + 1);
@@ -125,9 +138,9 @@ void GridIntegral::add_color(double length, double u0, double u1, double before,
     for (const double side : {-x, x}) {
       const double u = u0 + (u1 - u0) * (1 + side) / 2;
       const double source = emission_ == scene::Emission::absorption ? extinction.at(u) : 1;
-      const double seen = std::exp(-(optical_depth_ + before + length * area(extinction, u0, u)));
+      const double seen = std::exp(-(sum_.optical_depth + before + length * area(extinction, u0, u)));
       const double factor = weight / 2 * (u1 - u0) * length * source * seen;
-      for (std::size_t i = 0; i < 3; ++i) color_[i] += factor * color[i].at(u);
+      for (std::size_t i = 0; i < 3; ++i) sum_.color[i] += factor * color[i].at(u);
     }
 }
 

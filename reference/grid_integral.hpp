@@ -2,8 +2,11 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <span>
+#include <vector>
 
+#include "reference/layers.hpp"
 #include "scene/optical_model.hpp"
 #include "scene/transfer_function.hpp"
 
@@ -26,7 +29,11 @@ struct Cubic {
 class GridIntegral {
  public:
   /// The knots must outlive the integral.
-  GridIntegral(std::span<const scene::Knot> knots, scene::Emission emission) : knots_(knots), emission_(emission) {}
+  GridIntegral(std::span<const scene::Knot> knots, scene::Emission emission,
+               const std::optional<Peel>& peel = std::nullopt)
+      : knots_(knots), emission_(emission) {
+    if (peel) cuts_.emplace(*peel);
+  }
 
   /// What shading makes of colour c over a stretch: own * c + white.
   struct Light {
@@ -44,11 +51,14 @@ class GridIntegral {
   /// A surface of no thickness: its own colour, as lit, its opacity and where it is.
   void add_surface(const std::array<double, 3>& color, double opacity, double depth);
 
-  [[nodiscard]] std::array<double, 3> color() const { return color_; }  ///< linear RGB, premultiplied
+  [[nodiscard]] std::array<double, 3> color() const { return sum_.color; }  ///< linear RGB, premultiplied
   [[nodiscard]] double opacity() const;
-  [[nodiscard]] double optical_depth() const { return optical_depth_; }
-  [[nodiscard]] double first_visible_depth() const { return first_visible_depth_; }
+  [[nodiscard]] double optical_depth() const { return sum_.optical_depth; }
+  [[nodiscard]] double first_visible_depth() const { return sum_.first_visible_depth; }
   [[nodiscard]] bool opaque() const;  ///< nothing behind can be seen
+
+  /// With a Peel, of which all else tells the layer at hand alone.
+  [[nodiscard]] std::vector<Pixel> layers() const { return cuts_->pixels(sum_); }
 
  private:
   /// A piece u0 to u1 of a stretch in which the transfer function is linear.
@@ -60,9 +70,8 @@ class GridIntegral {
 
   std::span<const scene::Knot> knots_;
   scene::Emission emission_;
-  std::array<double, 3> color_{0, 0, 0};
-  double optical_depth_ = 0;
-  double first_visible_depth_ = std::numeric_limits<double>::infinity();
+  LayerSum sum_;
+  std::optional<LayerCuts> cuts_;
 };
 
 }  // namespace tessera::reference

@@ -223,10 +223,8 @@ void GridReference::add_stretch(const LocalRay& ray, const Voxel& voxel, double 
   add_part(ray, voxel, at, z1, integral);
 }
 
-Pixel GridReference::pixel(double x, double y) const {
+void GridReference::integrate(double x, double y, GridIntegral& integral, Pixel& pixel) const {
   const LocalRay ray = local_ray(x, y);
-  GridIntegral integral(knots_, emission_);
-  Pixel pixel;
   const std::vector<double> cuts = plane_depths(ray);
   for (std::size_t c = 0; c + 1 < cuts.size() && !integral.opaque(); ++c) {
     const double z0 = cuts[c], z1 = cuts[c + 1];
@@ -236,6 +234,12 @@ Pixel GridReference::pixel(double x, double y) const {
     pixel.length += (z1 - z0) * ray.length_per_depth;
     ++pixel.segments;
   }
+}
+
+Pixel GridReference::pixel(double x, double y) const {
+  GridIntegral integral(knots_, emission_);
+  Pixel pixel;
+  integrate(x, y, integral, pixel);
   pixel.r = integral.color()[0], pixel.g = integral.color()[1], pixel.b = integral.color()[2];
   pixel.a = integral.opacity();
   pixel.z = integral.first_visible_depth();
@@ -248,6 +252,24 @@ std::vector<Pixel> GridReference::pixels(std::span<const PixelIndex> wanted, int
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, wanted.size(),
                       [&](std::size_t i) { result[i] = pixel(wanted[i].x + 0.5, wanted[i].y + 0.5); });
+  });
+  return result;
+}
+
+std::vector<Pixel> GridReference::layers(double x, double y, const Peel& peel) const {
+  GridIntegral integral(knots_, emission_, peel);
+  Pixel pixel;
+  integrate(x, y, integral, pixel);
+  return integral.layers();
+}
+
+std::vector<std::vector<Pixel>> GridReference::layers(std::span<const PixelIndex> wanted, const Peel& peel,
+                                                      int threads) const {
+  std::vector<std::vector<Pixel>> result(wanted.size());
+  tbb::task_arena arena(scene::threads_for(threads));
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, wanted.size(),
+                      [&](std::size_t i) { result[i] = layers(wanted[i].x + 0.5, wanted[i].y + 0.5, peel); });
   });
   return result;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reference/grid_integral.hpp"
+#include "reference/layers.hpp"
 #include "reference/ray_reference.hpp"
 #include "reference/surface_on_ray.hpp"
 #include "reference/view.hpp"
@@ -32,7 +33,7 @@ namespace tessera::reference {
 ///          gap's sides are none.
 /// Error    about 1e-12 in linear RGBA.
 /// Cost     a microsecond or two a voxel met. It keeps no samples: volumes larger than memory can be checked.
-class GridReference final : public RayReference {
+class GridReference final : public RayReference, public LayerReference {
  public:
   /// The source must outlive the reference. Throws scene::Error(bad_input) for an invalid camera or size, or an empty
   /// transfer function, or for shading of light that does not depend on extinction. What of rays lies in all
@@ -46,6 +47,9 @@ class GridReference final : public RayReference {
   /// `length` and `segments` count what is not blank.
   [[nodiscard]] Pixel pixel(double x, double y) const override;
   [[nodiscard]] std::vector<Pixel> pixels(std::span<const PixelIndex> wanted, int threads = 0) const override;
+  [[nodiscard]] std::vector<Pixel> layers(double x, double y, const Peel& peel) const override;
+  [[nodiscard]] std::vector<std::vector<Pixel>> layers(std::span<const PixelIndex> wanted, const Peel& peel,
+                                                       int threads = 0) const override;
   [[nodiscard]] scene::ImageSize size() const override { return size_; }
 
  private:
@@ -69,6 +73,8 @@ class GridReference final : public RayReference {
   [[nodiscard]] std::vector<double> plane_depths(const LocalRay& ray) const;
   /// The one that has the middle of a stretch. False if it is a gap.
   [[nodiscard]] bool read_voxel(const LocalRay& ray, const glm::dvec3& middle, Voxel& voxel) const;
+  /// The whole ray; `pixel`'s length and segments are counted.
+  void integrate(double x, double y, GridIntegral& integral, Pixel& pixel) const;
   void add_stretch(const LocalRay& ray, const Voxel& voxel, double z0, double z1, GridIntegral& integral) const;
   /// The part of a stretch between two surfaces.
   void add_part(const LocalRay& ray, const Voxel& voxel, double z0, double z1, GridIntegral& integral) const;

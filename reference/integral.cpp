@@ -16,7 +16,7 @@ double mixed(double a, double b, double u) { return a + (b - a) * u; }
 
 }  // namespace
 
-double Integral::opacity() const { return -std::expm1(-optical_depth_); }
+double Integral::opacity() const { return -std::expm1(-sum_.optical_depth); }
 
 Integral::Optics Integral::optics(double s, double within, double origin) const {
   const auto value_less = [origin](double value, const scene::Knot& knot) { return value < knot.value - origin; };
@@ -54,25 +54,47 @@ void Integral::add(double length, double scalar_front, double scalar_back, doubl
     Optics a = optics(s0, middle, origin), b = optics(s1, middle, origin);
     for (Optics* end : {&a, &b})
       for (double& c : end->color) c = light.own * c + light.white;
-    if (std::isinf(first_visible_depth_) && (a.extinction > 0 || b.extinction > 0))
-      first_visible_depth_ = mixed(depth_front, depth_back, cuts[i]);
-    add_linear(length * (cuts[i + 1] - cuts[i]), a, b);
+    add_piece(length * (cuts[i + 1] - cuts[i]), a, b, mixed(depth_front, depth_back, cuts[i]),
+              mixed(depth_front, depth_back, cuts[i + 1]));
   }
 }
 
 void Integral::add_surface(const std::array<double, 3>& color, double opacity, double depth) {
   if (!(opacity > 0)) return;
-  const double transmittance = std::exp(-optical_depth_);
-  for (int i = 0; i < 3; ++i) color_[i] += transmittance * opacity * color[i];
-  if (std::isinf(first_visible_depth_)) first_visible_depth_ = depth;
-  optical_depth_ -= std::log1p(-opacity);
+  const double transmittance = std::exp(-sum_.optical_depth);
+  for (int i = 0; i < 3; ++i) sum_.color[i] += transmittance * opacity * color[i];
+  if (std::isinf(sum_.first_visible_depth)) sum_.first_visible_depth = depth;
+  sum_.optical_depth -= std::log1p(-opacity);
+  if (cuts_ && cuts_->ends(sum_.optical_depth)) cuts_->end(sum_);
+}
+
+void Integral::add_piece(double length, Optics a, const Optics& b, double depth_front, double depth_back) {
+  const auto begin = [&] {
+    if (std::isinf(sum_.first_visible_depth) && (a.extinction > 0 || b.extinction > 0))
+      sum_.first_visible_depth = depth_front;
+  };
+  const auto reached = [&](double u) {
+    return sum_.optical_depth + length * u * (a.extinction + (b.extinction - a.extinction) * u / 2);
+  };
+  while (cuts_ && cuts_->ends(reached(1))) {
+    const double u = cuts_->place(0, 1, reached);
+    Optics at{mixed(a.extinction, b.extinction, u), {}};
+    for (int i = 0; i < 3; ++i) at.color[i] = mixed(a.color[i], b.color[i], u);
+    begin();
+    add_linear(length * u, a, at);
+    cuts_->end(sum_);
+    a = at, length *= 1 - u, depth_front = mixed(depth_front, depth_back, u);
+    if (!(length > 0)) return;
+  }
+  begin();
+  add_linear(length, a, b);
 }
 
 void Integral::add_linear(double length, const Optics& a, const Optics& b) {
   const double rise = b.extinction - a.extinction;
-  const double optical_depth_before = optical_depth_;
+  const double optical_depth_before = sum_.optical_depth;
   const double total = length * (a.extinction + b.extinction) / 2;
-  for (double begin = 0; begin < 1 && optical_depth_ < opaque_depth;) {
+  for (double begin = 0; begin < 1 && sum_.optical_depth < opaque_depth;) {
     const double extinction = a.extinction + rise * begin;
     // The longest step d with (extinction + max(rise, 0) d) d length <= largest_step.
     const double q = largest_step / length;
@@ -87,14 +109,14 @@ void Integral::add_linear(double length, const Optics& a, const Optics& b) {
         const double d = width * (1 + x) / 2, u = begin + d;
         const double source = emission_ == scene::Emission::absorption ? extinction + rise * d : 1;
         const double weight =
-            node.weight / 2 * width * length * source * std::exp(-(optical_depth_ + optical_depth_at(d)));
-        for (int i = 0; i < 3; ++i) color_[i] += weight * mixed(a.color[i], b.color[i], u);
+            node.weight / 2 * width * length * source * std::exp(-(sum_.optical_depth + optical_depth_at(d)));
+        for (int i = 0; i < 3; ++i) sum_.color[i] += weight * mixed(a.color[i], b.color[i], u);
       }
-    optical_depth_ += optical_depth_at(width);
+    sum_.optical_depth += optical_depth_at(width);
     begin = end;
   }
   // The whole piece in closed form, free of the steps' rounding and also right where the loop stopped early.
-  optical_depth_ = optical_depth_before + total;
+  sum_.optical_depth = optical_depth_before + total;
 }
 
 }  // namespace tessera::reference

@@ -2,8 +2,11 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <span>
+#include <vector>
 
+#include "reference/layers.hpp"
 #include "scene/optical_model.hpp"
 #include "scene/transfer_function.hpp"
 
@@ -20,7 +23,10 @@ namespace tessera::reference {
 class Integral {
  public:
   /// The knots must outlive the integral.
-  Integral(std::span<const scene::Knot> knots, scene::Emission emission) : knots_(knots), emission_(emission) {}
+  Integral(std::span<const scene::Knot> knots, scene::Emission emission, const std::optional<Peel>& peel = std::nullopt)
+      : knots_(knots), emission_(emission) {
+    if (peel) cuts_.emplace(*peel);
+  }
 
   /// What shading makes of colour c over a segment: own * c + white.
   struct Light {
@@ -40,12 +46,15 @@ class Integral {
   /// A surface of no thickness: its own colour, as lit, its opacity and where it is.
   void add_surface(const std::array<double, 3>& color, double opacity, double depth);
 
-  [[nodiscard]] std::array<double, 3> color() const { return color_; }  ///< linear RGB, premultiplied
-  [[nodiscard]] double opacity() const;                                 ///< A = 1 - T, without cancellation
-  [[nodiscard]] double optical_depth() const { return optical_depth_; }
+  [[nodiscard]] std::array<double, 3> color() const { return sum_.color; }  ///< linear RGB, premultiplied
+  [[nodiscard]] double opacity() const;                                     ///< A = 1 - T, without cancellation
+  [[nodiscard]] double optical_depth() const { return sum_.optical_depth; }
 
   /// Planar depth where the optical depth starts to grow; infinite if it does nowhere.
-  [[nodiscard]] double first_visible_depth() const { return first_visible_depth_; }
+  [[nodiscard]] double first_visible_depth() const { return sum_.first_visible_depth; }
+
+  /// With a Peel, of which all else tells the layer at hand alone.
+  [[nodiscard]] std::vector<Pixel> layers() const { return cuts_->pixels(sum_); }
 
  private:
   struct Optics {
@@ -54,14 +63,14 @@ class Integral {
   };
   /// The transfer function at `s`, by the straight line between the two knots that have `within` between them.
   [[nodiscard]] Optics optics(double s, double within, double origin) const;
-  /// A stretch on which extinction and colour go linearly from `a` to `b`.
+  /// A stretch on which extinction and colour go linearly from `a` to `b`, cut where layers end.
+  void add_piece(double length, Optics a, const Optics& b, double depth_front, double depth_back);
   void add_linear(double length, const Optics& a, const Optics& b);
 
   std::span<const scene::Knot> knots_;
   scene::Emission emission_;
-  std::array<double, 3> color_{0, 0, 0};
-  double optical_depth_ = 0;
-  double first_visible_depth_ = std::numeric_limits<double>::infinity();
+  LayerSum sum_;
+  std::optional<LayerCuts> cuts_;
 };
 
 }  // namespace tessera::reference

@@ -169,12 +169,33 @@ std::vector<RaySegment> Reference::segments(double x, double y) const {
 
 Pixel Reference::pixel(double x, double y) const { return shaded(segments(x, y), x, y); }
 
+std::vector<Pixel> Reference::layers(double x, double y, const Peel& peel) const {
+  return layers(segments(x, y), x, y, peel);
+}
+
 std::vector<Pixel> Reference::pixels(std::span<const PixelIndex> wanted, int threads) const {
+  std::vector<Pixel> result(wanted.size());
+  each_ray(wanted, threads, [&](std::size_t i, std::span<const RaySegment> segments) {
+    result[i] = shaded(segments, wanted[i].x + 0.5, wanted[i].y + 0.5);
+  });
+  return result;
+}
+
+std::vector<std::vector<Pixel>> Reference::layers(std::span<const PixelIndex> wanted, const Peel& peel,
+                                                  int threads) const {
+  std::vector<std::vector<Pixel>> result(wanted.size());
+  each_ray(wanted, threads, [&](std::size_t i, std::span<const RaySegment> segments) {
+    result[i] = layers(segments, wanted[i].x + 0.5, wanted[i].y + 0.5, peel);
+  });
+  return result;
+}
+
+void Reference::each_ray(std::span<const PixelIndex> wanted, int threads,
+                         const std::function<void(std::size_t, std::span<const RaySegment>)>& take) const {
   std::vector<std::size_t> order(wanted.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return row_major_less(wanted[a], wanted[b]); });
-  std::vector<Pixel> result(wanted.size());
 
   const auto pass = [&](std::span<const std::size_t> some) {
     std::vector<std::vector<RaySegment>> segments(some.size());
@@ -201,7 +222,7 @@ std::vector<Pixel> Reference::pixels(std::span<const PixelIndex> wanted, int thr
     }
     for (std::size_t i = 0; i < some.size(); ++i) {
       sort_front_to_back(segments[i]);
-      result[some[i]] = shaded(segments[i], wanted[some[i]].x + 0.5, wanted[some[i]].y + 0.5);
+      take(some[i], segments[i]);
     }
   };
 
@@ -213,7 +234,6 @@ std::vector<Pixel> Reference::pixels(std::span<const PixelIndex> wanted, int thr
       pass(std::span(order).subspan(begin, std::min(pixels_per_pass, order.size() - begin)));
     });
   });
-  return result;
 }
 
 std::vector<Pixel> Reference::image(int threads) const { return pixels(all_pixels(size_), threads); }

@@ -3,10 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "reference/layers.hpp"
 #include "reference/matter_light.hpp"
 #include "reference/ray_reference.hpp"
 #include "reference/ray_tet.hpp"
@@ -47,7 +49,7 @@ struct RaySegment {
 /// Shading  of point data by each tet's own gradient (scene/shading.hpp).
 /// Threads  const functions may be called from several threads; `pixels` and `image` use all cores themselves.
 /// Cost     256x256 pixels over 0.5 M tets: seconds to a minute. One point query is a pass over all tets' boxes.
-class Reference final : public RayReference {
+class Reference final : public RayReference, public LayerReference {
  public:
   /// The mesh must outlive the reference. Of every ray what lies in all half-spaces counts (kept_interval.hpp); cells
   /// are not cut. Throws scene::Error(bad_input) for an invalid camera or size, an empty transfer function, or a mesh
@@ -65,6 +67,10 @@ class Reference final : public RayReference {
 
   /// The rays through the centres of `wanted`, in that order. `threads` 0: all cores.
   [[nodiscard]] std::vector<Pixel> pixels(std::span<const PixelIndex> wanted, int threads = 0) const override;
+
+  [[nodiscard]] std::vector<Pixel> layers(double x, double y, const Peel& peel) const override;
+  [[nodiscard]] std::vector<std::vector<Pixel>> layers(std::span<const PixelIndex> wanted, const Peel& peel,
+                                                       int threads = 0) const override;
 
   /// Every pixel, row-major, row 0 at the top.
   [[nodiscard]] std::vector<Pixel> image(int threads = 0) const;
@@ -87,6 +93,11 @@ class Reference final : public RayReference {
   class Ray;
   /// Of segments in order.
   [[nodiscard]] Pixel shaded(std::span<const RaySegment> segments, double x, double y) const;
+  [[nodiscard]] std::vector<Pixel> layers(std::span<const RaySegment> segments, double x, double y,
+                                          const Peel& peel) const;
+  /// Gives each ray's segments in order, with its place in `wanted`, to a function that any thread calls.
+  void each_ray(std::span<const PixelIndex> wanted, int threads,
+                const std::function<void(std::size_t, std::span<const RaySegment>)>& take) const;
 
   scene::TetMeshView mesh_;
   scene::ImageSize size_;

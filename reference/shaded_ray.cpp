@@ -23,21 +23,36 @@ constexpr double most_reach = 1e-9;
 /// One ray's light.
 class Reference::Ray {
  public:
-  Ray(const Reference& reference, std::span<const RaySegment> segments, double x, double y)
+  Ray(const Reference& reference, std::span<const RaySegment> segments, double x, double y,
+      const std::optional<Peel>& peel = std::nullopt)
       : reference_(reference),
         segments_(segments),
         x_(x),
         y_(y),
-        integral_(reference.knots_, reference.emission_),
+        integral_(reference.knots_, reference.emission_, peel),
         direction_(reference.view_.ray(x, y).step),
         kept_(kept_interval(reference.view_, x, y, reference.kept_)) {
     add_marks();
     put_marks_in_order();
     progress_.resize(segments.size());
     for (std::size_t s = 0; s < segments.size(); ++s) cut(s);
+    integrate();
   }
 
-  Pixel shaded() {
+  [[nodiscard]] Pixel shaded() const {
+    Pixel pixel;
+    std::tie(pixel.r, pixel.g, pixel.b) = std::tuple_cat(integral_.color());
+    pixel.a = integral_.opacity();
+    pixel.z = integral_.first_visible_depth();
+    for (const RaySegment& s : segments_) pixel.length += s.length;
+    pixel.segments = segments_.size();
+    return pixel;
+  }
+
+  [[nodiscard]] std::vector<Pixel> layers() const { return integral_.layers(); }
+
+ private:
+  void integrate() {
     std::stable_sort(pieces_.begin(), pieces_.end(), [](const Piece& a, const Piece& b) {
       return std::tuple(a.before, a.at, a.front, a.back) < std::tuple(b.before, b.at, b.front, b.back);
     });
@@ -50,16 +65,8 @@ class Reference::Ray {
       for (; piece != pieces_.end() && piece->before == p; ++piece) integrate(*piece);
       for (; m < places_[p].last; ++m) add_face(marks_[m]);
     }
-    Pixel pixel;
-    std::tie(pixel.r, pixel.g, pixel.b) = std::tuple_cat(integral_.color());
-    pixel.a = integral_.opacity();
-    pixel.z = integral_.first_visible_depth();
-    for (const RaySegment& s : segments_) pixel.length += s.length;
-    pixel.segments = segments_.size();
-    return pixel;
   }
 
- private:
   /// Where a ray meets a face of a surface.
   struct Mark {
     double depth, reach;
@@ -255,6 +262,10 @@ class Reference::Ray {
 
 Pixel Reference::shaded(std::span<const RaySegment> segments, double x, double y) const {
   return Ray(*this, segments, x, y).shaded();
+}
+
+std::vector<Pixel> Reference::layers(std::span<const RaySegment> segments, double x, double y, const Peel& peel) const {
+  return Ray(*this, segments, x, y, peel).layers();
 }
 
 }  // namespace tessera::reference

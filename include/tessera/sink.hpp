@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "tessera/deep_image.hpp"
 #include "tessera/image.hpp"
 #include "tessera/pixel_rect.hpp"
+#include "tessera/settings.hpp"
 #include "tessera/statistics.hpp"
 
 namespace tessera {
@@ -19,9 +21,13 @@ struct RenderedFrame {
   FrameStatistics statistics;  ///< on the rank that assembles
   /// If FrameSettings::keep_uncertainty, of grids: by pixel, what single precision may err there in linear RGBA.
   std::vector<float> uncertainty;
-  /// If FrameSettings::peel: each ray's light between two cuts, as if nothing lay in front of it, from the eye on;
-  /// composited front to back they are the image. `depth` is where a layer's light begins.
+  /// If FrameSettings::peel: Peel::layers images, each ray's light between two cuts, as if nothing lay in front of it,
+  /// from the eye on; composited front to back they are the image. `depth` is where a layer's light begins, infinite
+  /// where a layer has none, as behind a ray's end. Each is right to 1e-5. A surface, which has no inside to cut, is
+  /// the end of the layer that reaches the threshold with it. With FrameSettings::deep the deep picture's samples are
+  /// the layers: their density is not constant, so that they err where they are cut.
   std::vector<Image> layers{};
+  std::optional<Peel> peel{};  ///< how the layers were cut; none: there are none
 };
 
 /// Pixels of a frame that have their final values.

@@ -31,7 +31,11 @@ struct Verification {
   std::string worst_reason;       ///< why the worst pixel was chosen
   std::vector<Tally> tallies;     ///< those at random first
   std::optional<double> bound{};  ///< none: errors are reported, nothing is promised
-  /// No pixel is over the bound but excused ones, of which there are not too many.
+  /// Of a picture in layers, one each from the eye on: the same pixels, to the bound below.
+  std::vector<Tally> layers{};
+  double layer_bound = 0;
+  bool layers_met = true;
+  /// No pixel is over the bound but excused ones, of which there are not too many; of layers likewise.
   bool met = true;
 };
 

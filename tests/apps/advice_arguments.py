@@ -52,6 +52,18 @@ ROWS = [
     row(R + "--on-stall abort --stall-timeout 0", "leave one of the two out", R + "--on-stall abort"),
     row(R + "--stall-timeout 0.01", "is not 0 or 0.2 to", R + "--stall-timeout 0.2"),
     row(R + "--deep-accuracy 1e-3", "name one with -o FILE.deep.exr", R + "--deep-accuracy 1e-3 -o a.deep.exr"),
+    row(R + "--peel 1", "like 0.95:4", R + "--peel 0.95:4"),
+    row(R + "--peel 0.5:65", "has no number of layers, 1 to 64", R + "--peel 0.5:64"),
+    row(R + "--peel 0.5 --deep-accuracy 1e-3", "leave one of the two out", R + "--peel 0.5 -o a.deep.exr"),
+    row(R + "--peel 0.5 --rasterizer scanline", "use planes", R + "--peel 0.5 --rasterizer planes"),
+    row(R + "--peel 0.5 --integrator sampled:4", "use auto or exact", R + "--peel 0.5 --integrator exact"),
+    row(V + "--peel 0.5 --integrator sampled", "use auto or exact", V + "--peel 0.5 --integrator exact"),
+    row(V + "--peel 0.5 --show balance", "leave one of the two out", V + "--peel 0.5"),
+    row(
+        "render m.vtu -o a.png --size 64x64 --peel 0.5:64 --memory 1M",
+        "raise it, or ask for fewer layers",
+        "render m.vtu -o a.png --size 64x64 --peel 0.5:64 --memory 64M",
+    ),
     row(R + "--balance even", "leave it out", R),
     row(R + "--clip 0,0,0,0,0,9 --clip 5,0,0,1,0,0", "turn the normal round or move it", R + "--clip 5,0,0,-1,0,0"),
     row(

@@ -55,6 +55,12 @@ ROWS = [
     row("generate cube b.vtu n", "write NAME=VALUE", "generate cube b.vtu n=2"),
     row("generate cube b.vtu n=2 n=3", "give it once", "generate cube b.vtu n=3"),
     row("chart m.vtu -o a.png", "see tessera chart --help", "chart --help"),
+    row(
+        "render m.vtu -o a.mp4 --peel 0.5 --size 16x16",
+        "name pictures, as -o a_%04d.png",
+        "render m.vtu -o a_%04d.png --peel 0.5 --size 16x16",
+    ),
+    row("render m.vtu -o - --peel 0.5 --size 16x16", "name a file with -o", "render m.vtu -o a.png --peel 0.5 --size 9x9"),
     # a film where no ffmpeg is: pictures in its place
     row("render m.vtu -o a.mp4 --size 16x16", "write a_%04d.png", "render m.vtu -o a_%04d.png --size 16x16"),
     row("render m.vtu -o a_%04d.mp4 --size 16x16", "write a_%04d.png", "render m.vtu -o a_%04d.png --size 16x16"),

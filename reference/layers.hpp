@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "reference/ray_reference.hpp"
+#include "tessera/settings.hpp"
+
+/// Opacity peeling (tessera::Peel), written out for the reference: an integral along a ray is begun anew wherever its
+/// own optical depth has come to -log(1 - threshold), until the last layer, which has the rest.
+namespace tessera::reference {
+
+/// What an integral has gathered since the last cut.
+struct LayerSum {
+  std::array<double, 3> color{0, 0, 0};  ///< linear RGB, premultiplied, as if nothing lay before the cut
+  double optical_depth = 0;
+  double first_visible_depth = std::numeric_limits<double>::infinity();
+};
+
+/// The layers that a ray has ended, and whether it is to end another.
+class LayerCuts {
+ public:
+  explicit LayerCuts(const Peel& peel)
+      : limit_(-std::log1p(-peel.threshold)), count_(static_cast<std::size_t>(peel.layers)) {}
+
+  /// Whether the layer at hand ends at this optical depth or before. Rounding, as of surfaces whose opacities are the
+  /// threshold together, is granted.
+  [[nodiscard]] bool ends(double optical_depth) const {
+    constexpr double granted = 1e-12;
+    return ended_.size() + 1 < count_ && optical_depth >= limit_ * (1 - granted);
+  }
+  [[nodiscard]] double limit() const { return limit_; }
+  void end(LayerSum& sum) {
+    ended_.push_back(sum);
+    sum = {};
+  }
+
+  /// Where in a stretch from u0 to u1 the layer ends: optical_depth(u) grows with u, and ends() is true of it at u1. By
+  /// halving, down to neighbouring doubles.
+  template <class OpticalDepth>
+  [[nodiscard]] double place(double u0, double u1, const OpticalDepth& optical_depth) const {
+    double low = u0, high = u1;
+    while (true) {
+      const double middle = low + (high - low) / 2;
+      if (!(middle > low && middle < high)) return high;
+      (optical_depth(middle) < limit_ ? low : high) = middle;
+    }
+  }
+
+  /// All of a ray's layers, with the one at hand: those that it does not come to are empty.
+  [[nodiscard]] std::vector<Pixel> pixels(const LayerSum& at_hand) const;
+
+ private:
+  double limit_;
+  std::size_t count_;
+  std::vector<LayerSum> ended_;
+};
+
+/// A truth that layers are judged against.
+class LayerReference {
+ public:
+  virtual ~LayerReference() = default;
+
+  /// The layers of the ray through pixel coordinates (x, y), Peel::layers of them. From any thread.
+  [[nodiscard]] virtual std::vector<Pixel> layers(double x, double y, const Peel& peel) const = 0;
+
+  /// Of the rays through the centres of `wanted`, in that order. `threads` 0: all cores.
+  [[nodiscard]] virtual std::vector<std::vector<Pixel>> layers(std::span<const PixelIndex> wanted, const Peel& peel,
+                                                               int threads = 0) const = 0;
+
+ protected:
+  LayerReference() = default;
+  LayerReference(const LayerReference&) = default;
+  LayerReference& operator=(const LayerReference&) = default;
+};
+
+}  // namespace tessera::reference
