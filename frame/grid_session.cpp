@@ -131,7 +131,8 @@ class GridByRays final : public Session::State {
   }
   void check(const FrameSettings& frame) const {
     if (sorts_last() && frame.keep_cost)
-      throw scene::bad_input("`keep_cost`: sort-last splits the volume, not the picture by its cost; use sort-first");
+      throw scene::bad_input(
+          "balance pictures: sort-last splits the volume, not the picture by its cost; use sort-first");
   }
   void check_deep(const FrameSettings& frame) const {
     if (!(frame.deep_accuracy >= 1e-6 && frame.deep_accuracy <= 1))

@@ -230,7 +230,6 @@ scene::Image Renderer::render_part(const VoxelBox& part, const scene::Camera& ca
   scene::validate(camera);
   scene::validate(size);
   RendererState& state = *state_;
-  const RenderSettings& settings = state.settings;
   const Wanted wanted{part, within(size, region)};
   const BrickCache::Counts before = state.counts_before;
   if (state.look_ahead) state.look_ahead->begin(camera, size, wanted.pixels);

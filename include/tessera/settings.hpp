@@ -124,9 +124,9 @@ struct RankSettings {
   std::optional<int> projectors, compositors;
   std::optional<Exchange> exchange;  ///< meshes; nothing: see exchange_of()
   Partition partition;
-  int frames_in_flight = 2;  ///< pictures of a list on their way at once, at least 1: the next ones are begun before
-                             ///< one is put together
-  std::uint64_t tile_seed = 1;                           ///< of the map from tiles to compositors
+  int frames_in_flight = 2;     ///< pictures of a list on their way at once, at least 1: the next ones are begun before
+                                ///< one is put together
+  std::uint64_t tile_seed = 1;  ///< of the map from tiles to compositors
   Distribution distribution = Distribution::sort_first;  ///< grids
   DirectSend direct_send = DirectSend::asynchronous;     ///< grids, sort_last
   Balance balance = Balance::learned;                    ///< grids

@@ -1,0 +1,62 @@
+#!/usr/bin/env python3
+"""Moloney, Ray Coherence in Parallel Volume Rendering (2008), Figures 1.2, 4.1 and 4.4: who renders what, and what it is thought to cost.
+
+    bench/balance_pictures.py --tessera PROGRAM [--images docs/images]
+
+    Figure 1.2  figure-1-2-1.png, -2.png: the rectangles of four processes, and the bricks in their colours, in two views
+    Figure 4.1  figure-4-1-METHOD.png: the cost map of one brick
+    Figure 4.4  figure-4-4-METHOD.png: those of `head` for eight processes; figure-4-4.png the picture, figure-4-4-bricks.png with bricks
+
+Needs mpirun and Python's standard library.
+"""
+import argparse
+import json
+import pathlib
+import tempfile
+
+from balance import run
+
+METHODS = ("accurate", "backface", "splatting")
+VIEWS = [{"position": [2.6, -3.6, 1.6], "focal_point": [0, 0, 0], "view_up": [0, 0, 1], "view_angle": 38},
+         {"position": [-0.9, 1.3, 0.9], "focal_point": [0.3, -0.2, 0.1], "view_up": [0, 0, 1], "view_angle": 60}]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--tessera", type=pathlib.Path, required=True)
+    parser.add_argument("--images", type=pathlib.Path, default=pathlib.Path("docs/images"))
+    args = parser.parse_args()
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        head, brick, function, everything = folder / "head.nrrd", folder / "brick.nrrd", folder / "function.txt", folder / "everything.txt"
+        run([args.tessera, "generate", "head", head, "n=128", "bits=8", "--quiet"])
+        run([args.tessera, "generate", "radial", brick, "n=33", "bits=8", "--quiet"])
+        function.write_text("64 0.8 0.5 0.4 0\n255 1 1 0.9 12\n")
+        everything.write_text("0 1 1 1 1\n255 1 1 1 1\n")
+
+        def render(processes, volume, colours, output, *words):
+            """output.png; with --show balance output.cost.png too."""
+            run(["mpirun", "--oversubscribe", "-n", processes, args.tessera, "render", volume, "-o", output, "--transfer-function", colours, "--size",
+                 "220x220", "--threads", "1", "--background", "black", "--quiet", *words])
+
+        def keep(made, kept):
+            (args.images / kept).write_bytes((folder / made).read_bytes())
+
+        views = folder / "views.json"
+        views.write_text(json.dumps(VIEWS))
+        render(4, head, function, folder / "a%d.png", "--camera", views, "--brick-size", "16", "--show", "balance")
+        for n in range(2):
+            keep(f"a{n}.png", f"figure-1-2-{n + 1}.png")
+        for method in METHODS:
+            words = ["--show", "balance", "--balance", method, "--balance-resolution", "1"]
+            render(1, brick, everything, folder / "one.png", "--brick-size", "32", *words)
+            keep("one.cost.png", f"figure-4-1-{method}.png")
+            render(8, head, function, folder / "head.png", "--brick-size", "8", *words)
+            keep("head.cost.png", f"figure-4-4-{method}.png")
+        keep("head.png", "figure-4-4-bricks.png")
+        render(1, head, function, folder / "plain.png")
+        keep("plain.png", "figure-4-4.png")
+
+
+if __name__ == "__main__":
+    main()
