@@ -282,9 +282,11 @@ TEST(Peel, RanksAndThreadsChangeNoBit) {
     threaded.threads = 2;
     threaded.mesh.tile_size = 7;
     expect_the_same(Session(data, threaded).render(view, function, how));
-    for (const int ranks : {1, 2, 4})
+    for (const int ranks : {1, 2, 3, 4})
       run_ranks(ranks, [&](const Communicator& communicator) {
-        Session session(is_grid ? data : tests::part_of(mesh, communicator), settings, communicator);
+        Settings shared = settings;
+        if (is_grid && ranks == 3) shared.ranks.distribution = Distribution::sort_last;
+        Session session(is_grid ? data : tests::part_of(mesh, communicator), shared, communicator);
         const RenderedFrame frame = session.render(view, function, how);
         if (session.assembles())
           expect_the_same(frame);
