@@ -168,12 +168,13 @@ void BrickCache::set_distances(std::vector<float> distances, float in_use) {
   for (const std::size_t brick : by_use_) by_distance_.insert({distances_[brick], brick});
 }
 
-BrickCache::Ahead BrickCache::preload(std::size_t brick, scene::Trace* trace) {
+BrickCache::Ahead BrickCache::preload(std::size_t brick, bool evicts, scene::Trace* trace) {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return loading_for_rays_ == 0; });
   if (resident(brick) || entries_[brick].loading) return Ahead::was_there;
   std::unique_ptr<std::byte[]> buffer;
-  if (!make_room(bytes_of(brick), std::max(in_use_, distance_of(brick)), buffer)) return Ahead::no_room;
+  const float beyond = evicts ? std::max(in_use_, distance_of(brick)) : std::numeric_limits<float>::infinity();
+  if (!make_room(bytes_of(brick), beyond, buffer)) return Ahead::no_room;
   load(brick, std::move(buffer), true, lock, trace);
   return Ahead::loaded;
 }

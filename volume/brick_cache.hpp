@@ -46,8 +46,9 @@ class BrickCache {
   void set_distances(std::vector<float> distances, float in_use = 0);
 
   /// proximity: loads a brick that nobody has asked for yet, unless that would throw out one that is no farther, or one
-  /// in use. On any thread; waits while acquire() reads on another, which goes first. Throws as acquire() does.
-  Ahead preload(std::size_t brick, scene::Trace* trace);
+  /// in use; with `evicts` false, any. On any thread; waits while acquire() reads on another, which goes first. Throws
+  /// as acquire() does.
+  Ahead preload(std::size_t brick, bool evicts, scene::Trace* trace);
 
   [[nodiscard]] Counts counts() const;
   [[nodiscard]] const BrickLayout& layout() const { return layout_; }

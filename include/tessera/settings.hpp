@@ -69,7 +69,7 @@ enum class DirectSend {
 /// What the brick cache throws out first (Moloney 2008, 3.3).
 enum class CachePolicy {
   lru,       ///< the brick that has not been used for longest
-  proximity  ///< the brick whose centre is farthest from a cone round the view frustum
+  proximity  ///< the brick that is farthest from the view frustum and from that of the next view
 };
 
 /// How much memory a brick at the volume's high end takes (Moloney 2008, Table 6.2).

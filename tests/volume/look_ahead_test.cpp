@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "small_volume.hpp"
-#include "volume/view_cone.hpp"
+#include "volume/view_frustum.hpp"
 #include "volume/view_motion.hpp"
 
 namespace tessera {
@@ -52,10 +52,9 @@ TEST(NextView, TakesAJumpForNoMotion) {
   EXPECT_EQ(volume::next_view(view("oblique"), start), start);
 }
 
-TEST(ViewCone, NoPointInTheViewIsOutsideOfIt) {
+TEST(ViewFrustum, NoPointInTheViewIsOutsideOfIt) {
   const Volume v = make_volume({33, 29, 25}, Field::smooth);
   const volume::BrickLayout layout(v.grid.geometry, 4, volume::EdgeBricks::variable);
-  const double half = volume::half_brick(v.grid.geometry, layout);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(0, 1);
   int far = 0;
@@ -81,8 +80,8 @@ TEST(ViewCone, NoPointInTheViewIsOutsideOfIt) {
         const double y = size.height / 2.0 - glm::dot(from_eye, basis.up) / unit * size.height / 2.0;
         any = any || (depth > 0 && x > region.x0 && x < region.x1 && y > region.y0 && y < region.y1);
       }
-      EXPECT_TRUE(!any || outside[brick] <= half) << name << " " << brick;
-      seen += any ? 1 : 0, far += outside[brick] > half ? 1 : 0;
+      EXPECT_TRUE(!any || outside[brick] <= 0) << name << " " << brick;
+      seen += any ? 1 : 0, far += outside[brick] > 0 ? 1 : 0;
     }
     EXPECT_GT(seen, 0) << name;
   }
@@ -102,13 +101,14 @@ TEST(BrickCache, ProximityThrowsOutTheFarthestAndLoadsTheNearestAhead) {
   }
   EXPECT_FALSE(cache.resident(60));
   for (const std::size_t brick : {0u, 1u, 2u, 3u}) EXPECT_TRUE(cache.resident(brick));
-  EXPECT_EQ(cache.preload(4, nullptr), BrickCache::Ahead::no_room) << "all that are there are nearer";
-  EXPECT_EQ(cache.preload(3, nullptr), BrickCache::Ahead::was_there);
+  EXPECT_EQ(cache.preload(4, true, nullptr), BrickCache::Ahead::no_room) << "all that are there are nearer";
+  EXPECT_EQ(cache.preload(3, true, nullptr), BrickCache::Ahead::was_there);
+  EXPECT_EQ(cache.preload(60, false, nullptr), BrickCache::Ahead::no_room);
   std::reverse(distances.begin(), distances.end());
   cache.set_distances(distances, 61.5f);
-  EXPECT_EQ(cache.preload(63, nullptr), BrickCache::Ahead::loaded) << "0 has distance 63";
-  EXPECT_EQ(cache.preload(62, nullptr), BrickCache::Ahead::loaded) << "1 has distance 62";
-  EXPECT_EQ(cache.preload(61, nullptr), BrickCache::Ahead::no_room) << "2 has distance 61: it may be in use";
+  EXPECT_EQ(cache.preload(63, true, nullptr), BrickCache::Ahead::loaded) << "0 has distance 63";
+  EXPECT_EQ(cache.preload(62, true, nullptr), BrickCache::Ahead::loaded) << "1 has distance 62";
+  EXPECT_EQ(cache.preload(61, true, nullptr), BrickCache::Ahead::no_room) << "2 has distance 61: it may be in use";
   for (const std::size_t brick : {63u, 62u, 2u, 3u}) EXPECT_TRUE(cache.resident(brick));
   const BrickCache::Counts counts = cache.counts();
   EXPECT_EQ(counts.loads, 5u);
@@ -146,7 +146,6 @@ TEST(LookAhead, GoesOnFromFrameToFrameAndChangesNoBit) {
   volume::RenderSettings s;
   s.threads = 2;
   s.brick_size = 8;
-  s.memory_bytes = 65 * 65 * 65 * sizeof(float);  // of 1.4 times as much
   volume::Renderer by_need(slow, s);
   s.cache = volume::CachePolicy::proximity;
   s.preload_limit = 60;
@@ -157,14 +156,13 @@ TEST(LookAhead, GoesOnFromFrameToFrameAndChangesNoBit) {
     volume::RenderStatistics with, without;
     const scene::Image image = ahead.render(turned(frame), size, smooth_function(), &with);
     EXPECT_TRUE(same_bits(image, by_need.render(turned(frame), size, smooth_function(), &without))) << frame;
-    EXPECT_LE(with.peak_bytes, s.memory_bytes);
     // The limit holds for a frame; what was planned for the one before may have been under way.
     EXPECT_LE(with.bricks_preloaded, 2u * 60 + 1);
     if (frame < 2) continue;
     loads += with.bricks_loaded, loads_ahead += with.bricks_preloaded, loads_by_need += without.bricks_loaded;
   }
   EXPECT_GT(loads_ahead, 0u);
-  EXPECT_LT(loads, loads_by_need) << "most bricks were there before they were needed";
+  EXPECT_LT(loads, loads_by_need) << "bricks were there before they were needed";
 }
 
 TEST(LookAhead, LoadsWhileFramesFollowEachOtherAtOnce) {
