@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -133,8 +134,7 @@ class SortFirst::State {
 
   /// What a pilot pass of every 32nd ray teaches of the work in the volume's cells: each rank casts those of the
   /// rectangle it had in the frame before, whose bricks it holds. A cell's work changes little from view to view, so
-  /// that later frames of a transfer function cast an eighth of these rays each, and learn from eight frames' together.
-  /// Collective.
+  /// that frames whose view is near that before cast a quarter of these rays, and learn from both. Collective.
   void sample_work(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
                    scene::FrameWatch& watch) {
     if ((transport_.size() == 1 && !settings_.keep_cost) || settings_.balance != Balance::learned) return;
@@ -142,23 +142,35 @@ class SortFirst::State {
     const PixelRect area = volume::footprint(job.camera, job.size, renderer.geometry());
     const PixelRect part = has_last ? last_split_->region(transport_.rank())
                                     : volume::even_split(transport_.size(), job.size, area).region(transport_.rank());
-    if (!tally_ || !std::ranges::equal(function.knots(), learned_knots_)) {
+    if (!tally_ || !std::ranges::equal(function.knots(), learned_knots_) || !is_near(job.camera, renderer.geometry())) {
       tally_.emplace(renderer.geometry().voxels());
       learned_knots_.assign(function.knots().begin(), function.knots().end());
       learned_.assign(2 * tally_->cells().count(), 0);
       pilots_ = 0;
     }
-    constexpr std::size_t turns = 8;
+    learned_view_ = job.camera;
+    constexpr std::size_t turns = 4;
     try {
       renderer.sample_work(job.camera, job.size, function, *tally_, part, &watch,
                            pilots_ == 0 ? volume::PilotTurns{} : volume::PilotTurns{pilots_, turns});
     } catch (const scene::FrameStopped&) {
       // The others wait for what this rank has learnt; the picture is dropped all the same.
     }
-    if (pilots_++ % turns != 0) return;
+    ++pilots_;
     volume::WorkRates::add(reduce_all(transport_, tally_->take(), Reduction::sum), learned_);
     rates_.emplace(renderer.geometry().voxels());
     rates_->learn(learned_);
+  }
+
+  /// Whether rays go through the volume about as they did in the frame before.
+  [[nodiscard]] bool is_near(const scene::Camera& camera, const scene::GridGeometry& geometry) const {
+    if (!learned_view_ || camera.projection != learned_view_->projection) return false;
+    constexpr double most = 0.1;  // radians; of the distance to the volume's middle
+    const scene::Box box = scene::bounds(geometry);
+    const double distance = glm::length(0.5 * (box.low + box.high) - camera.position);
+    const glm::dvec3 forward = scene::view_basis(camera).forward;
+    return glm::length(forward - scene::view_basis(*learned_view_).forward) < most &&
+           glm::length(camera.position - learned_view_->position) < most * distance;
   }
 
   std::vector<volume::RowSums> gather_rows(const volume::RowSums& own) {
@@ -237,6 +249,7 @@ class SortFirst::State {
   std::vector<std::uint64_t> learned_;  ///< tallies of all ranks so far, of the transfer function of
   std::vector<tessera::Knot> learned_knots_;
   std::size_t pilots_ = 0;  ///< of it
+  std::optional<scene::Camera> learned_view_;
   std::optional<volume::WorkRates> rates_;
   std::optional<ImageSplit> last_split_;
   scene::ImageSize last_size_{0, 0};

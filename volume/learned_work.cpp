@@ -19,15 +19,13 @@ std::vector<std::uint64_t> WorkTally::take() {
 }
 
 void WorkRates::add(std::span<const std::uint64_t> tally, std::span<std::uint64_t> sums) {
-  constexpr std::uint64_t low = 0xffffffffu, most = std::uint64_t{1} << 31;
-  bool large = false;
+  // Of what was known a quarter is forgotten, of two numbers in one word each by itself.
+  constexpr std::uint64_t low = 0xffffffffu;
   for (std::size_t word = 0; word < sums.size(); ++word) {
-    sums[word] += tally[word];
-    large = large || sums[word] >= most << 32 || (word % 2 == 0 && (sums[word] & low) >= most);
+    std::uint64_t& sum = sums[word];
+    const std::uint64_t a = word % 2 == 0 ? sum & low : sum, b = word % 2 == 0 ? sum >> 32 : 0;
+    sum = (a - a / 4) + ((b - b / 4) << 32) + tally[word];
   }
-  if (!large) return;
-  for (std::size_t word = 0; word < sums.size(); ++word)
-    sums[word] = word % 2 == 0 ? (sums[word] >> 33 << 32) | (sums[word] & low) >> 1 : sums[word] >> 1;
 }
 
 void WorkRates::learn(std::span<const std::uint64_t> tally) {

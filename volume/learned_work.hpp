@@ -56,7 +56,8 @@ class WorkRates {
  public:
   explicit WorkRates(const scene::GridIndex& voxels) : cells_(voxels), rates_(cells_.count()) {}
 
-  /// Adds a tally to others; all halved where a sum would no longer fit.
+  /// Adds a tally to those of frames before, of which each frame forgets a quarter: a cell's work changes with the
+  /// direction of rays.
   static void add(std::span<const std::uint64_t> tally, std::span<std::uint64_t> sums);
 
   /// From WorkTally::take(), summed over ranks.
