@@ -89,7 +89,10 @@ std::int64_t grain_of(const scene::GridIndex& voxels, int brick_size, int proces
   std::int64_t grain = brick_size;
   const auto count = [&] {
     double count = 1;
-    for (const std::int64_t n : voxels) count *= static_cast<double>((n + grain - 1) / grain);
+    for (const std::int64_t n : voxels) {
+      const std::int64_t along = (n + grain - 1) / grain;
+      count *= static_cast<double>(along);
+    }
     return count;
   };
   while (grain / 2 >= CellRanges::side && count() < 8.0 * processes) grain /= 2;

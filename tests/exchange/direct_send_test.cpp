@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 #include <random>
 #include <vector>
@@ -136,7 +135,7 @@ TEST(DirectSend, BandsAreTheDepthOrdersComposite) {
     }
     for (int rank = 0; rank < ranks; ++rank) {
       const auto r = static_cast<std::size_t>(rank);
-      EXPECT_EQ(std::memcmp(by_way[0][r].rgba.data(), by_way[1][r].rgba.data(), by_way[0][r].rgba.size() * 4), 0);
+      EXPECT_EQ(by_way[0][r].rgba, by_way[1][r].rgba);
     }
   }
 }

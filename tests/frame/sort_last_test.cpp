@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
 #include <memory>
 #include <optional>
@@ -293,8 +292,8 @@ TEST(SortLast, TheSameJobGivesTheSameBitsEitherWayItSends) {
   const auto synchronous = render(c, {60, 50});
   ASSERT_TRUE(first && again && synchronous);
   for (const auto* other : {&again, &synchronous}) {
-    EXPECT_EQ(std::memcmp(first->image.rgba.data(), (*other)->image.rgba.data(), first->image.rgba.size() * 4), 0);
-    EXPECT_EQ(std::memcmp(first->image.depth.data(), (*other)->image.depth.data(), first->image.depth.size() * 4), 0);
+    EXPECT_EQ(first->image.rgba, (*other)->image.rgba);
+    EXPECT_EQ(first->image.depth, (*other)->image.depth);
   }
 }
 
@@ -317,7 +316,7 @@ TEST(SortLast, AStopOnAnyRankEndsThePictureOnAllAndTheNextIsWhole) {
   EXPECT_TRUE(stopped->stopped);
   EXPECT_FALSE(whole->stopped);
   const auto alone = render(c, size);
-  EXPECT_EQ(std::memcmp(whole->image.rgba.data(), alone->image.rgba.data(), alone->image.rgba.size() * 4), 0);
+  EXPECT_EQ(whole->image.rgba, alone->image.rgba);
 }
 
 TEST(SortLast, AVolumeOutOfViewIsAnEmptyPicture) {
