@@ -100,6 +100,7 @@ TEST(DirectSend, BandsAreTheDepthOrdersComposite) {
     std::iota(order.begin(), order.end(), 0);
     std::shuffle(order.begin(), order.end(), random);
     std::vector<Seen> seen;
+    seen.reserve(static_cast<std::size_t>(ranks));
     for (int rank = 0; rank < ranks; ++rank) seen.push_back(random_picture(area, random, trial % 3 == 0));
     const bool with_bounds = trial % 2 == 0;
 
