@@ -43,6 +43,12 @@ def run(words):
         sys.exit(f"{pathlib.Path(sys.argv[0]).name}: {' '.join(map(str, words))}\n{done.stderr.strip()}")
 
 
+def bounds_of(tessera, volume):
+    """Low and high corner, world units."""
+    info = subprocess.run([str(tessera), "info", str(volume), "--json"], capture_output=True, text=True, check=True)
+    return json.loads(info.stdout)["bounds"]
+
+
 def views(kind, box, frames):
     low, high = box
     centre = [(a + b) / 2 for a, b in zip(low, high)]
@@ -65,8 +71,7 @@ class Bench:
         self.volume = args.volume or folder / "ripples.nrrd"
         if not args.volume:
             run([args.tessera, "generate", "ripples", self.volume, "n=256", "bits=8", "--quiet"])
-        info = subprocess.run([str(args.tessera), "info", str(self.volume), "--json"], capture_output=True, text=True, check=True)
-        self.box = json.loads(info.stdout)["bounds"]
+        self.box = bounds_of(args.tessera, self.volume)
 
     def frames(self, kind, method, resolution, left_out):
         """What the report says of the balance of all frames but the first."""

@@ -18,7 +18,7 @@ import pathlib
 import tempfile
 
 import results_file
-from balance import run
+from balance import bounds_of, run
 
 VOLUMES = ("head", "radial", "turbulence")
 FUNCTIONS = {"high opacity": 60, "low opacity": 1.5}  # extinction of the highest value, a world unit
@@ -62,9 +62,7 @@ def table(args, folder):
     for name in VOLUMES:
         volume = folder / f"{name}.nrrd"
         run([args.tessera, "generate", name, volume, f"n={args.samples}", "bits=8", "--quiet"])
-        info = folder / "info.json"
-        run(["sh", "-c", f"'{args.tessera}' info '{volume}' --json > '{info}'"])
-        low, high = json.loads(info.read_text())["bounds"]
+        low, high = bounds_of(args.tessera, volume)
         (folder / "path.json").write_text(json.dumps(list(path([(a + b) / 2 for a, b in zip(low, high)], math.dist(low, high) / 2, args.frames))))
         for words, extinction in FUNCTIONS.items():
             function = folder / "function.txt"

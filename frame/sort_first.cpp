@@ -246,10 +246,10 @@ class SortFirst::State {
   const SortFirstSettings settings_;
   std::vector<double> weights_, times_;
   std::optional<volume::WorkTally> tally_;
-  std::vector<std::uint64_t> learned_;  ///< tallies of all ranks so far, of the transfer function of
-  std::vector<tessera::Knot> learned_knots_;
-  std::size_t pilots_ = 0;  ///< of it
-  std::optional<scene::Camera> learned_view_;
+  std::vector<std::uint64_t> learned_;         ///< tallies of all ranks, since the last full pilot pass
+  std::size_t pilots_ = 0;                     ///< passes since then
+  std::vector<tessera::Knot> learned_knots_;   ///< of the frame before
+  std::optional<scene::Camera> learned_view_;  ///< the same
   std::optional<volume::WorkRates> rates_;
   std::optional<ImageSplit> last_split_;
   scene::ImageSize last_size_{0, 0};

@@ -7,6 +7,7 @@
 
 #include "exchange/loopback_transport.hpp"
 #include "frame/render_sort_first.hpp"
+#include "frame/small_grid.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::frame {
@@ -14,20 +15,10 @@ namespace {
 
 /// A bright ball off the centre of a hazy box.
 std::unique_ptr<scene::MemorySource> ball() {
-  scene::Grid grid;
-  constexpr std::int64_t n = 40;
-  grid.geometry.points = {n, n, n};
-  grid.geometry.origin = glm::dvec3(-1);
-  grid.geometry.spacing = glm::dvec3(2.0 / (n - 1));
-  std::vector<float> values;
-  for (std::int64_t k = 0; k < n; ++k)
-    for (std::int64_t j = 0; j < n; ++j)
-      for (std::int64_t i = 0; i < n; ++i) {
-        const glm::dvec3 p =
-            2.0 * glm::dvec3(double(i), double(j), double(k)) / double(n - 1) - 1.0 - glm::dvec3(0.4, 0.3, 0.2);
-        values.push_back(static_cast<float>(std::exp(-4 * (p.x * p.x + p.y * p.y + p.z * p.z))));
-      }
-  return scene::MemorySource::of(grid, std::move(values));
+  return small_grid(40, [](const glm::dvec3& place) {
+    const glm::dvec3 p = place - glm::dvec3(0.4, 0.3, 0.2);
+    return std::exp(-4 * (p.x * p.x + p.y * p.y + p.z * p.z));
+  });
 }
 
 scene::TransferFunction haze() { return scene::TransferFunction({{0.1, {0.2, 0.4, 1}, 0}, {0.9, {1, 0.5, 0.2}, 5}}); }

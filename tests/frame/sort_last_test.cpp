@@ -15,6 +15,7 @@
 
 #include "exchange/loopback_transport.hpp"
 #include "frame/random_cases.hpp"
+#include "frame/small_grid.hpp"
 #include "reference/grid_reference.hpp"
 #include "reference/judge.hpp"
 #include "scene/error.hpp"
@@ -166,19 +167,7 @@ TEST(SortLast, PicturesAreWithinAccuracyInRandomCases) {
 
 Case ball(int ranks) {
   Case c;
-  scene::Grid grid;
-  constexpr std::int64_t n = 65;
-  grid.geometry.points = {n, n, n};
-  grid.geometry.origin = glm::dvec3(-1);
-  grid.geometry.spacing = glm::dvec3(2.0 / (n - 1));
-  std::vector<float> values;
-  for (std::int64_t k = 0; k < n; ++k)
-    for (std::int64_t j = 0; j < n; ++j)
-      for (std::int64_t i = 0; i < n; ++i) {
-        const glm::dvec3 p = 2.0 * glm::dvec3(double(i), double(j), double(k)) / double(n - 1) - 1.0;
-        values.push_back(static_cast<float>(std::exp(-2 * glm::dot(p, p))));
-      }
-  c.source = scene::MemorySource::of(grid, std::move(values));
+  c.source = small_grid(65, [](const glm::dvec3& p) { return std::exp(-2 * glm::dot(p, p)); });
   c.camera.position = {2.5, 1.8, 3.3};
   c.camera.parallel_scale = 1.6;
   c.knots = {{0, {0.2, 0.4, 1}, 0.1}, {1, {1, 0.5, 0.2}, 5}};

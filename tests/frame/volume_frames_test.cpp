@@ -4,14 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <chrono>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <stdexcept>
-#include <thread>
 #include <vector>
 
 #include "exchange/loopback_transport.hpp"
+#include "frame/small_grid.hpp"
 #include "frame/sort_first.hpp"
 #include "frame/sort_last.hpp"
 #include "scene/error.hpp"
@@ -25,17 +25,8 @@ constexpr scene::ImageSize size{70, 50};
 constexpr std::size_t pictures = 7;
 
 std::unique_ptr<scene::MemorySource> waves() {
-  scene::Grid grid;
-  constexpr std::int64_t n = 33;
-  grid.geometry.points = {n, n, n};
-  grid.geometry.origin = glm::dvec3(-1);
-  grid.geometry.spacing = glm::dvec3(2.0 / (n - 1));
-  std::vector<float> values;
-  for (std::int64_t k = 0; k < n; ++k)
-    for (std::int64_t j = 0; j < n; ++j)
-      for (std::int64_t i = 0; i < n; ++i)
-        values.push_back(static_cast<float>(0.5 + 0.5 * std::sin(0.3 * double(i)) * std::cos(0.2 * double(j + k))));
-  return scene::MemorySource::of(grid, std::move(values));
+  return small_grid(33,
+                    [](const glm::dvec3& p) { return 0.5 + 0.5 * std::sin(4.8 * p.x) * std::cos(3.2 * (p.y + p.z)); });
 }
 
 scene::TransferFunction haze() { return scene::TransferFunction({{0.1, {0.2, 0.4, 1}, 0}, {0.9, {1, 0.5, 0.2}, 5}}); }
