@@ -20,8 +20,8 @@ struct SortLastSettings {
 /// function only.
 ///
 /// A ray ends early within a box, not for what lies in front of it in another's: what that costs is
-/// docs/EXPERIMENTS.md, Figure 6.15. Pictures of other numbers of ranks differ by rounding; with one number the bits
-/// are always the same.
+/// docs/EXPERIMENTS.md, Figure 6.15. Pictures of other numbers of ranks, or brick sizes, differ by
+/// rounding; else the bits are always the same.
 class SortLast final : public VolumeFrames {
  public:
   SortLast(exchange::Transport& transport, const SortLastSettings& settings);
