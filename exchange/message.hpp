@@ -21,7 +21,7 @@ namespace tessera::exchange {
 static_assert(std::endian::native == std::endian::little, "messages are little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 20;        ///< the next one whenever a message changes
+inline constexpr std::uint16_t wire_version = 21;        ///< the next one whenever a message changes
 
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
@@ -86,6 +86,9 @@ enum class MessageKind : std::uint16_t {
   ray_tets = 48,          ///< list of RayTet (frame/probe.cpp): those of a rank's part that a ray meets
   curved_part = 40,  ///< frame/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
   next_frame = 52,   ///< u8: 1: there is one more
+  machine = 53,      ///< text: which machine's memory the sender sees, empty: it joins no team (exchange/host_team.cpp)
+  team_offer = 54,   ///< u64 process, u64 key, i64 descriptor of the team's shared pages, -1: none
+  team_joined = 55,  ///< u8: 1: the sender sees the pages
   // All channels.
   attempt_end = 49,  ///< u8 ErrorCode, 0 if all went well, text: the sender has no more of this attempt (attempt.hpp)
   // The transport's own.

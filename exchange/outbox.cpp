@@ -146,8 +146,7 @@ bool Outbox::must_wait(std::uint32_t tile) const {
   return lane.waiting > std::max<std::uint64_t>(settings_.window_bytes, message_bytes);
 }
 
-void Outbox::put(TilePart part) {
-  std::unique_lock lock(mutex_);
+void Outbox::accept(TilePart part) {
   const std::uint32_t tile = part.tile;
   Lane& lane = lanes_[static_cast<std::size_t>(map_->owner(tile))];
   if (part.last) {
@@ -161,6 +160,12 @@ void Outbox::put(TilePart part) {
     early_bytes_ += part.records.size();
     early_[tile].parts.push_back(std::move(part));
   }
+}
+
+void Outbox::put(TilePart part) {
+  std::unique_lock lock(mutex_);
+  const std::uint32_t tile = part.tile;
+  accept(std::move(part));
   changed_.notify_all();
   if (!must_wait(tile)) return;
   for (Lane& each : lanes_) seal(each);  // who waits keeps nothing back that others may wait for
@@ -171,6 +176,21 @@ void Outbox::put(TilePart part) {
     transport_.check();
   }
   if (--threads_waiting_ == 0) transport_.set_working(true);
+}
+
+void Outbox::pass(std::uint32_t tile) {
+  TilePart nothing;
+  nothing.tile = tile;
+  nothing.last = true;
+  nothing.final_depth = std::numeric_limits<double>::infinity();
+  const std::lock_guard lock(mutex_);
+  accept(std::move(nothing));
+  changed_.notify_all();
+}
+
+void Outbox::flush() {
+  const std::lock_guard lock(mutex_);
+  for (Lane& each : lanes_) seal(each);
 }
 
 void Outbox::end_tiles() {

@@ -48,6 +48,13 @@ class Outbox {
   /// error.
   void put(TilePart part);
 
+  /// No part of tile `tile` will be put, though it was announced: others have it all. In order with the parts of other
+  /// tiles of the thread. Does not block.
+  void pass(std::uint32_t tile);
+
+  /// Sends what is there of messages that are not full: who waits for other ranks keeps nothing back.
+  void flush();
+
   /// Ends all tiles of the frame that have not been ended, as they are: the frame is stopped.
   void end_tiles();
 
@@ -69,6 +76,7 @@ class Outbox {
     std::deque<std::uint32_t> order;  ///< the frame's tiles that are not complete here, first one first
   };
   void take_credit();
+  void accept(TilePart part);
   [[nodiscard]] Bytes frame_message(MessageKind kind, std::size_t room = 0) const;
   void write(Lane& lane, const TilePart& part);
   void seal(Lane& lane);

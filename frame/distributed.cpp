@@ -11,6 +11,7 @@
 
 #include "exchange/collectives.hpp"
 #include "frame/distributed_roles.hpp"
+#include "frame/host_mesh.hpp"
 #include "frame/peel.hpp"
 #include "frame/run_error.hpp"
 #include "frame/stop_relay.hpp"
@@ -31,8 +32,8 @@ ExchangeBudget exchange_budget(const DistributedSettings& settings) {
 }
 
 LoadedMesh::LoadedMesh(exchange::Transport& transport, const DistributedSettings& settings,
-                       const std::function<ProjectorMesh(std::size_t)>& mesh_of)
-    : transport_(transport), settings_(settings.render), mesh_of_(mesh_of) {
+                       const std::function<ProjectorMesh(std::size_t)>& mesh_of, exchange::HostTeam* team)
+    : transport_(transport), settings_(settings.render), mesh_of_(mesh_of), team_(team) {
   settings_.memory_bytes = exchange_budget(settings).projection;
   settings_.trace = settings.projecting;
 }
@@ -43,12 +44,25 @@ void LoadedMesh::load(std::size_t number) {
   mesh_ = {};
   boundary_.reset();
   mesh_ = mesh_of_(number);
+  if (team_ != nullptr) share_mesh();
   if (!settings_.surfaces.boundary.empty()) boundary_ = boundary_faces(mesh_.part, transport_);
   if (mesh_.prepared != nullptr)
     projector_.emplace(mesh_.prepared, scene::bounds(mesh_.part, settings_.threads), settings_);
   else
     projector_.emplace(mesh_.part, settings_);
   number_ = number;
+}
+
+void LoadedMesh::share_mesh() {
+  team_->begin();
+  if (mesh_.prepared == nullptr) mesh_.prepared = std::make_shared<const projection::PreparedMesh>(mesh_.part);
+  const HostMesh host = HostMesh::made(*team_, mesh_.part, mesh_.prepared->tets(), mesh_.global_tet);
+  shared_ = !host.mesh.tets.empty();
+  if (!shared_) return;
+  mesh_.part = host.mesh;
+  mesh_.global_tet = host.global_tet;
+  mesh_.prepared.reset();
+  mesh_.owner.reset();
 }
 
 const FrameJob& job_of(const DistributedRun& run, std::uint32_t number) {
@@ -97,7 +111,6 @@ class DistributedRenderer::State {
   State(exchange::Transport& transport, DistributedSettings settings, MeshOf mesh_of)
       : transport_(transport), settings_(std::move(settings)), mesh_of_(std::move(mesh_of)), relay_(transport) {
     check(settings_);
-    if (settings_.roles.projects(transport.rank())) loaded_.emplace(transport_, settings_, mesh_of_);
   }
 
   void set_deep(bool deep, double accuracy, const std::optional<Peel>& peel, Exchange exchange) {
@@ -115,6 +128,13 @@ class DistributedRenderer::State {
     if (settings_.deep) check_deep(settings_.render, function);
     StopRelay::Run relayed(relay_, asked);
     const std::stop_token stop = relayed.token();
+    if (!opened_) {
+      const bool projects = settings_.roles.projects(transport_.rank());
+      // Triangles of surfaces are each rank's own.
+      if (settings_.share_memory && settings_.roles.projectors.size() > 1 && !settings_.render.surfaces.has_faces())
+        team_ = exchange::HostTeam::form(transport_, projects);
+      if (projects) loaded_.emplace(transport_, settings_, mesh_of_, team_.get());
+    }
     if (!jobs.empty()) load(jobs.front().mesh);
     if (!opened_) {
       open_compositing_device(settings_.compositing_on, settings_.roles, transport_, settings_.compositing, device_);
@@ -172,7 +192,8 @@ class DistributedRenderer::State {
   DistributedSettings settings_;
   const MeshOf mesh_of_;
   StopRelay relay_;
-  std::optional<LoadedMesh> loaded_;   ///< of a projector
+  std::unique_ptr<exchange::HostTeam> team_;  ///< of a projector whose machine has others
+  std::optional<LoadedMesh> loaded_;          ///< of a projector
   std::optional<std::size_t> number_;  ///< of the mesh that was loaded last
   CompositingDevice device_;
   bool opened_ = false;

@@ -24,6 +24,7 @@ struct DistributedSettings {
   Exchange exchange = Exchange::runs;
   CompositingSettings compositing_on;
   bool deep = false;                    ///< deep pictures, or layers, too (Renderer::render); they need raw segments
+  bool share_memory = true;             ///< projectors of one machine project together (exchange/host_team.hpp)
   int frames_in_flight = 2;             ///< frames a projector may be ahead of the assembled picture, at least 1
   std::uint64_t tile_seed = 1;          ///< of the tile map
   scene::Trace* projecting = nullptr;   ///< face of this rank's trace for its projector; null: no timing
@@ -40,10 +41,10 @@ struct FrameJob {
 /// This projector's part of a mesh.
 struct ProjectorMesh {
   scene::TetMeshView part;            ///< may have no tets
-  std::shared_ptr<const void> owner;  ///< keeps its arrays
+  std::shared_ptr<const void> owner;  ///< keeps its arrays, and the indices
   /// The part prepared for projection, if somebody has done it; null: it is done here.
   std::shared_ptr<const projection::PreparedMesh> prepared{};
-  std::vector<std::uint64_t> global_tet;  ///< index in the whole mesh of each tet, ascending; empty: its own
+  std::span<const std::uint64_t> global_tet{};  ///< index in the whole mesh of each tet, ascending; empty: its own
   double diagonal = 0;                    ///< of the whole mesh's box, world units
   scene::Box box;                         ///< of the whole mesh
   std::array<double, 2> scalar_range{};   ///< of the whole mesh

@@ -4,6 +4,7 @@
 #include <exception>
 #include <optional>
 
+#include "exchange/host_team.hpp"
 #include "frame/boundary_faces.hpp"
 #include "frame/distributed.hpp"
 #include "frame/frame_projector.hpp"
@@ -29,20 +30,28 @@ const FrameJob& job_of(const DistributedRun& run, std::uint32_t number);
 /// A projector's part of the mesh at hand, prepared.
 class LoadedMesh {
  public:
+  /// `team`: of the projectors of this machine, which share what they load; null: none. Both must outlive this object.
   LoadedMesh(exchange::Transport& transport, const DistributedSettings& settings,
-             const std::function<ProjectorMesh(std::size_t)>& mesh_of);
+             const std::function<ProjectorMesh(std::size_t)>& mesh_of, exchange::HostTeam* team);
   /// Loads mesh `number` unless that is the one at hand. Collective.
   void load(std::size_t number);
+  /// With a team, the parts of all its members.
   [[nodiscard]] const ProjectorMesh& mesh() const { return mesh_; }
+  /// With whom this mesh is projected; null: with nobody.
+  [[nodiscard]] exchange::HostTeam* team() const { return shared_ ? team_ : nullptr; }
   [[nodiscard]] FrameProjector& projector() { return *projector_; }
   [[nodiscard]] const BoundaryFaces* boundary() const { return boundary_ ? &*boundary_ : nullptr; }
 
  private:
+  void share_mesh();
+
   exchange::Transport& transport_;
   RenderSettings settings_;
   const std::function<ProjectorMesh(std::size_t)>& mesh_of_;
+  exchange::HostTeam* team_;
   std::optional<std::size_t> number_;
   ProjectorMesh mesh_;
+  bool shared_ = false;  ///< mesh_ is in the team's memory
   std::optional<FrameProjector> projector_;
   std::optional<BoundaryFaces> boundary_;  ///< if the settings have surfaces of it
 };

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <atomic>
 #include <glm/geometric.hpp>
+#include <mutex>
 #include <optional>
 
 #include "frame/double_source.hpp"
@@ -142,31 +143,45 @@ FrameProjector::FrameProjector(std::shared_ptr<const projection::PreparedMesh> m
     longest_edge_ = arena_.execute([&] { return projection::longest_edge(prepared_->mesh()); });
 }
 
-void FrameProjector::project_vertices(const projection::PixelSpace& space, std::int32_t frame,
-                                      const std::stop_token& stop) {
-  const scene::TraceScope timing(settings_.trace, "transform", frame);
+namespace {
+
+/// Room for `size` elements of no value, in the team's memory if there is one.
+template <class T>
+void make_room(projection::LargeArray<T>& array, std::size_t size, scene::Team* team, scene::Team::Room room) {
+  if (team == nullptr)
+    array.reset(size);
+  else
+    array.refer(team->memory_of<T>(room, size), size);
+}
+
+}  // namespace
+
+void FrameProjector::project_vertices(const Task& task, const std::stop_token& stop) {
+  const scene::TraceScope timing(settings_.trace, "transform", task.frame);
   const std::span<const glm::dvec3> positions = prepared_->mesh().positions;
-  vertices_.resize(positions.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size(), 4096), [&](const auto& range) {
+  make_room(vertices_, positions.size(), task.team, scene::Team::Room::vertices);
+  const scene::Share own = scene::share_of(positions.size(), task.team);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(own.first, own.last, 4096), [&](const auto& range) {
     scene::throw_if_stopped(stop);
-    const scene::TraceScope helping(settings_.trace, "transform", frame);
+    const scene::TraceScope helping(settings_.trace, "transform", task.frame);
     const std::size_t n = range.end() - range.begin();
-    space.project(positions.subspan(range.begin(), n), std::span(vertices_).subspan(range.begin(), n));
+    task.space->project(positions.subspan(range.begin(), n), {vertices_.data() + range.begin(), n});
   });
 }
 
-void FrameProjector::place_on_lattice(const scene::Lattice& lattice, bool perspective, const std::stop_token& stop) {
+void FrameProjector::place_on_lattice(const Task& task, const std::stop_token& stop) {
   const scene::TetMeshView& mesh = prepared_->mesh();
   const bool per_point = mesh.association == scene::Association::point;
-  lattice_vertices_.reset(vertices_.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, vertices_.size(), 4096), [&](const auto& range) {
+  make_room(lattice_vertices_, vertices_.size(), task.team, scene::Team::Room::lattice_vertices);
+  const scene::Share own = scene::share_of(vertices_.size(), task.team);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(own.first, own.last, 4096), [&](const auto& range) {
     scene::throw_if_stopped(stop);
     const scene::TraceScope timing(settings_.trace, "transform");
     const std::size_t n = range.end() - range.begin();
     projection::make_lattice_vertices(
-        std::span(vertices_).subspan(range.begin(), n),
-        per_point ? std::span(mesh.scalars).subspan(range.begin(), n) : std::span<const double>(), lattice, perspective,
-        {lattice_vertices_.data() + range.begin(), n});
+        std::span<const projection::PixelVertex>(vertices_.data() + range.begin(), n),
+        per_point ? std::span(mesh.scalars).subspan(range.begin(), n) : std::span<const double>(), *task.lattice,
+        task.space->perspective(), {lattice_vertices_.data() + range.begin(), n});
   });
 }
 
@@ -178,17 +193,76 @@ namespace {
 
 using Workers = tbb::enumerable_thread_specific<std::unique_ptr<TileWorker>>;
 
-bool has_any(const projection::TileLists& lists, const projection::FrameFaces* faces, std::size_t tile) {
-  return lists.entry_count(tile) > 0 || (faces != nullptr && faces->owns_in(tile));
+/// Who makes a tile.
+enum class Maker : std::uint8_t { nobody, self, another, first_to_come };
+
+/// Who makes which tile: of a process alone, itself those that have cells or triangles. A team's members get half of the
+/// cells beforehand, equally many each: a tile goes to the one that is preferred, unless that has a hundredth more than
+/// another, then to the one that has least. The rest, the tiles that come last, are drawn one by one, so that none waits
+/// for a slower one at the end.
+std::vector<Maker> makers(const FrameProjector::Task& task, const projection::TileLists& lists,
+                          const projection::FrameFaces* faces) {
+  std::vector<Maker> made_by(task.grid.count(), Maker::nobody);
+  std::uint64_t all = 0;
+  for (std::size_t tile = 0; tile < made_by.size(); ++tile) {
+    if (lists.entry_count(tile) > 0 || (faces != nullptr && faces->owns_in(tile))) made_by[tile] = Maker::self;
+    all += lists.entry_count(tile);
+  }
+  if (task.team == nullptr) return made_by;
+  std::vector<std::uint64_t> given(static_cast<std::size_t>(task.team->size()));
+  const std::uint64_t most_ahead = all / given.size() / 100;
+  std::uint64_t shared_out = 0;
+  for (std::size_t tile = 0; tile < made_by.size(); ++tile) {
+    if (made_by[tile] == Maker::nobody) continue;
+    if (2 * shared_out >= all) {
+      made_by[tile] = Maker::first_to_come;
+      continue;
+    }
+    auto least = std::min_element(given.begin(), given.end());
+    const int preferred = task.preferred ? task.preferred(tile) : -1;
+    if (preferred >= 0 && given[static_cast<std::size_t>(preferred)] <= *least + most_ahead)
+      least = given.begin() + preferred;
+    *least += lists.entry_count(tile);
+    shared_out += lists.entry_count(tile);
+    made_by[tile] = least - given.begin() == task.team->rank() ? Maker::self : Maker::another;
+  }
+  return made_by;
 }
 
-void announce(const FrameProjector::Task& task, const projection::TileLists& lists,
-              const projection::FrameFaces* faces) {
+void announce(const FrameProjector::Task& task, const std::vector<Maker>& made_by) {
   if (!task.announce) return;
-  std::vector<bool> any(task.grid.count());
-  for (std::size_t tile = 0; tile < any.size(); ++tile) any[tile] = has_any(lists, faces, tile);
-  task.announce(any);
+  std::vector<bool> may_come(made_by.size());
+  for (std::size_t tile = 0; tile < made_by.size(); ++tile)
+    may_come[tile] = made_by[tile] == Maker::self || made_by[tile] == Maker::first_to_come;
+  task.announce(may_come);
 }
+
+/// The tiles that a team's members draw, for the threads of one.
+class DrawnTiles {
+ public:
+  DrawnTiles(const FrameProjector::Task& task, const std::vector<Maker>& made_by) : task_(&task) {
+    for (std::size_t tile = 0; tile < made_by.size(); ++tile)
+      if (made_by[tile] == Maker::first_to_come) tiles_.push_back(tile);
+  }
+  /// The next tile before `last`; `last` if there is none.
+  std::size_t next(std::size_t last) {
+    if (tiles_.empty()) return last;
+    const auto count = static_cast<std::size_t>(std::lower_bound(tiles_.begin(), tiles_.end(), last) - tiles_.begin());
+    const std::lock_guard lock(mutex_);  // what other threads of this process draw is not another member's
+    const std::size_t drawn = task_->team->draw(static_cast<std::uint32_t>(count));
+    for (; passed_ < drawn; ++passed_)
+      if (task_->pass) task_->pass(tiles_[passed_]);
+    if (drawn >= count) return last;
+    ++passed_;
+    return tiles_[drawn];
+  }
+
+ private:
+  const FrameProjector::Task* task_;
+  std::vector<std::size_t> tiles_;
+  std::mutex mutex_;
+  std::size_t passed_ = 0;  ///< that this process has drawn or passed
+};
 
 void count_culled(const projection::CullCounts& culled, FrameStatistics& statistics) {
   statistics.tets_invisible = culled.invisible;
@@ -198,8 +272,9 @@ void count_culled(const projection::CullCounts& culled, FrameStatistics& statist
 }
 
 /// Renders tiles [first, last) of a task, whose lists are filled.
-void render_tiles(const FrameProjector::Task& task, projection::TileLists& lists, const projection::FrameFaces* faces,
-                  Workers& workers, std::size_t first, std::size_t last, const std::stop_token& stop) {
+void render_tiles(const FrameProjector::Task& task, projection::TileLists& lists, const std::vector<Maker>& made_by,
+                  DrawnTiles& drawn, Workers& workers, std::size_t first, std::size_t last,
+                  const std::stop_token& stop) {
   // Threads draw tiles in order: fragments then leave in the order in which all processes send them.
   std::atomic<std::size_t> next = first;
   tbb::parallel_for(
@@ -209,8 +284,12 @@ void render_tiles(const FrameProjector::Task& task, projection::TileLists& lists
         for (std::size_t tile = next++; tile < last; tile = next++) {
           scene::throw_if_stopped(stop);
           const scene::PixelRect rect = task.grid.rect(tile);
-          if (has_any(lists, faces, tile)) worker.render(tile, rect, lists.tile(tile));
+          if (made_by[tile] == Maker::self) worker.render(tile, rect, lists.tile(tile));
           if (task.image != nullptr && task.watch != nullptr) task.watch->finished(rect, *task.image);
+        }
+        for (std::size_t tile = drawn.next(last); tile < last; tile = drawn.next(last)) {
+          scene::throw_if_stopped(stop);
+          worker.render(tile, task.grid.rect(tile), lists.tile(tile));
         }
       },
       tbb::simple_partitioner());
@@ -257,14 +336,17 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   const std::stop_token stop = task.watch != nullptr ? task.watch->stop() : std::stop_token();
   scene::throw_if_stopped(stop);
   Beside beside(task, settings_.trace);
-  project_vertices(space, task.frame, stop);
-  projection::ProjectedMesh projected{prepared_.get(), vertices_, space.near_depth(), space.far_depth(),
+  project_vertices(task, stop);
+  projection::ProjectedMesh projected{prepared_.get(), {vertices_.data(), vertices_.size()}, space.near_depth(), space.far_depth(),
                                       space.pixels_per_tangent()};
   const projection::IsoView iso{task.surfaces, &space, task.lattice};
   if (task.surfaces != nullptr && !task.surfaces->iso_values().empty()) projected.iso = &iso;
   const float longest_edge = task.longest_edge > 0 ? task.longest_edge : longest_edge_;
-  if (settings_.rasterizer == Rasterizer::scanline) check_scanline(projected, space, longest_edge);
-  if (task.lattice != nullptr) place_on_lattice(*task.lattice, space.perspective(), stop);
+  if (settings_.rasterizer == Rasterizer::scanline) {
+    if (task.team != nullptr) task.team->barrier();
+    check_scanline(projected, space, longest_edge);
+  }
+  if (task.lattice != nullptr) place_on_lattice(task, stop);
 
   const double longest_ray = task.longest_ray > 0 ? task.longest_ray : diagonal_;
   // Sampling promises nothing that steps could break.
@@ -280,16 +362,19 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
     if (exact || projected.iso != nullptr) {
       if (exact) steps = projection::steps_of(*task.function, settings_.emission, longest_ray);
       steps = projection::with_surfaces(std::move(steps), projected.iso);
-      at_steps = projection::CellsAtSteps(*prepared_, steps, longest_ray, task.lattice, stop);
+      at_steps = projection::CellsAtSteps(*prepared_, steps, longest_ray, task.lattice, stop, task.team);
     }
     lists.emplace(projected, task.grid, *task.function, settings_.emission == scene::Emission::independent,
-                  settings_.trace, &list_buffers_, settings_.use.culling, stop);
+                  settings_.trace, &list_buffers_, settings_.use.culling, stop, task.team);
     if (!task.faces.empty()) faces.emplace(task.faces, space, task.grid);
   }
   const projection::FrameFaces* const faces_or_null = faces ? &*faces : nullptr;
-  announce(task, *lists, faces_or_null);
+  const std::vector<Maker> made_by = makers(task, *lists, faces_or_null);
+  announce(task, made_by);
+  DrawnTiles drawn(task, made_by);
 
-  const std::uint64_t vertex_bytes = vertices_.capacity() * sizeof(projection::PixelVertex) + lattice_vertices_.bytes();
+  const std::uint64_t members = task.team != nullptr ? static_cast<std::uint64_t>(task.team->size()) : 1;
+  const std::uint64_t vertex_bytes = (vertices_.bytes() + lattice_vertices_.bytes()) / members;
   const std::uint64_t held = vertex_bytes + lists->bytes() + (faces ? faces->bytes() : 0) + task.kept_bytes;
   const TileContext context{&projected,
                             lists->depth_origin(),
@@ -318,11 +403,13 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   });
   beside.wait();
   const std::uint64_t most_list_bytes = render_bands(task, *lists, held, [&](std::size_t first, std::size_t last) {
-    render_tiles(task, *lists, faces_or_null, workers, first, last, stop);
+    render_tiles(task, *lists, made_by, drawn, workers, first, last, stop);
   });
 
   FrameStatistics statistics;
-  statistics.tets_total = prepared_->tet_count();
+  const scene::Share blocks = scene::share_of(prepared_->block_count(), task.team);
+  statistics.tets_total = std::min(blocks.last * projection::PreparedMesh::block_tets, prepared_->tet_count()) -
+                          blocks.first * projection::PreparedMesh::block_tets;
   statistics.on_lattice = task.lattice != nullptr;
   count_culled(lists->counts(), statistics);
   statistics.peak_buffer_bytes = vertex_bytes + most_list_bytes;
@@ -334,14 +421,22 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
 /// rest is for segments. Returns the most bytes of lists.
 std::uint64_t FrameProjector::render_bands(const Task& task, projection::TileLists& lists, std::uint64_t held,
                                            const std::function<void(std::size_t, std::size_t)>& render) const {
+  const std::uint64_t members = task.team != nullptr ? static_cast<std::uint64_t>(task.team->size()) : 1;
   const std::uint64_t most_entries =
-      std::max<std::uint64_t>(segment_budget(settings_, held, 1) / 4 / sizeof(projection::TileEntry), 1);
+      scene::least_of(
+          std::max<std::uint64_t>(segment_budget(settings_, held, 1) / 4 / sizeof(projection::TileEntry), 1),
+          task.team) *
+      members;
   std::uint64_t most_bytes = 0;
   for (std::size_t first = 0; first < task.grid.count();) {
     std::size_t last = first;
     for (std::uint64_t entries = 0; last < task.grid.count(); ++last) {
       entries += lists.entry_count(last);
       if (last > first && entries > most_entries) break;
+    }
+    if (first > 0 && task.team != nullptr) {
+      if (task.before_waiting) task.before_waiting();
+      task.team->barrier();  // nobody reads the last band's lists any more
     }
     {
       const scene::TraceScope timing(settings_.trace, "bin", task.frame);

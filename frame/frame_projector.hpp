@@ -16,6 +16,7 @@
 #include "projection/tile_lists.hpp"
 #include "scene/frame_watch.hpp"
 #include "scene/surface_set.hpp"
+#include "scene/team.hpp"
 #include "sorting/encodings.hpp"
 
 namespace tessera::frame {
@@ -54,9 +55,18 @@ class FrameProjector {
     const scene::Image* image = nullptr;
     /// Done once before the first tile, by one thread while others look at the mesh. May be empty.
     std::function<void()> beside;
-    /// Called once before the first tile: which tiles have cells or triangles of this process, so will be given to a
-    /// sink. May be empty.
+    /// Called once before the first tile: which tiles have cells or triangles and will be given to a sink of this
+    /// process, but for those that pass() is called for. May be empty.
     std::function<void(const std::vector<bool>& has_any)> announce;
+    /// Those with whom this process makes the frame: they have one mesh in shared memory and do the same task, without
+    /// `faces` and `image`, each its share of the passes and some of the tiles. Null: alone.
+    scene::Team* team = nullptr;
+    /// Which member should make tile `tile` if that is as well as any other; -1: no matter which. Empty: none.
+    std::function<int(std::size_t tile)> preferred;
+    /// Called for each announced tile that turns out to be another member's, before the next tile is begun.
+    std::function<void(std::size_t tile)> pass;
+    /// Called before this process waits for its team while parts of tiles may be on their way. May be empty.
+    std::function<void()> before_waiting;
   };
 
   /// Fills all of the statistics but the names. Throws Error(bad_input) for a view that the rasterizer cannot do.
@@ -71,8 +81,8 @@ class FrameProjector {
   FrameStatistics project_in_arena(const Task& task);
   std::uint64_t render_bands(const Task& task, projection::TileLists& lists, std::uint64_t held,
                              const std::function<void(std::size_t, std::size_t)>& render) const;
-  void project_vertices(const projection::PixelSpace& space, std::int32_t frame, const std::stop_token& stop);
-  void place_on_lattice(const scene::Lattice& lattice, bool perspective, const std::stop_token& stop);
+  void project_vertices(const Task& task, const std::stop_token& stop);
+  void place_on_lattice(const Task& task, const std::stop_token& stop);
 
   RenderSettings settings_;
   tbb::task_arena arena_;
@@ -80,7 +90,7 @@ class FrameProjector {
   scene::Box box_;
   double diagonal_ = 0;
   float longest_edge_ = 0;  ///< scanline only
-  std::vector<projection::PixelVertex> vertices_;
+  projection::LargeArray<projection::PixelVertex> vertices_;
   projection::LargeArray<projection::LatticeVertex> lattice_vertices_;
   projection::TileListBuffers list_buffers_;
 };

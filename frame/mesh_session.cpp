@@ -205,19 +205,24 @@ class MeshOnRanks final : public Session::State {
       return mesh;
     }
     const auto own = std::find(projectors.begin(), projectors.end(), transport_->rank());
-    auto share = std::make_shared<scene::TetMesh>();
-    share->association = state.mesh.association;
+    struct Share {
+      scene::TetMesh mesh;
+      std::vector<std::uint64_t> numbers;
+    };
+    auto share = std::make_shared<Share>();
+    share->mesh.association = state.mesh.association;
     if (own != projectors.end()) {
       const auto part_of =
           projection::parts_of_whole(state.mesh, settings().ranks.partition, static_cast<int>(projectors.size()));
       std::vector<std::uint32_t> mine;
       for (std::uint32_t tet = 0; tet < part_of.size(); ++tet)
         if (part_of[tet] == static_cast<std::uint32_t>(own - projectors.begin())) mine.push_back(tet);
-      *share = scene::subset(state.mesh, mine);
-      mesh.global_tet.assign(mine.begin(), mine.end());
+      share->mesh = scene::subset(state.mesh, mine);
+      share->numbers.assign(mine.begin(), mine.end());
     }
-    frame::order_corners(*share, distributed_.render);
-    mesh.part = *share;
+    frame::order_corners(share->mesh, distributed_.render);
+    mesh.part = share->mesh;
+    mesh.global_tet = share->numbers;
     mesh.owner = std::move(share);
     return mesh;
   }

@@ -108,6 +108,16 @@ class FrameSinks {
   std::optional<integrals::LaneTable> table_;
 };
 
+/// Which member of a team is compositor c, by c; -1: none.
+std::vector<int> members_that_composite(const DistributedRun& run, const exchange::HostTeam& team) {
+  std::vector<int> members;
+  for (const int rank : run.settings.roles.compositors) {
+    const auto found = std::find(team.ranks().begin(), team.ranks().end(), rank);
+    members.push_back(found != team.ranks().end() ? static_cast<int>(found - team.ranks().begin()) : -1);
+  }
+  return members;
+}
+
 /// Projects frame `number` and sends what its sinks make.
 void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t number, LoadedMesh& loaded,
                    exchange::Outbox& outbox) {
@@ -137,6 +147,14 @@ void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t 
   if (run.device.everywhere && sinks.have_cells()) task.make_cell_sink = [&] { return sinks.make_for_cells(); };
   const exchange::TileMap map(task.grid.count(), static_cast<int>(settings.roles.compositors.size()),
                               settings.tile_seed);
+  std::vector<int> members;
+  if (loaded.team() != nullptr) {
+    task.team = loaded.team();
+    task.pass = [&](std::size_t tile) { outbox.pass(static_cast<std::uint32_t>(tile)); };
+    task.before_waiting = [&] { outbox.flush(); };
+    members = members_that_composite(run, *loaded.team());
+    task.preferred = [&](std::size_t tile) { return members[static_cast<std::size_t>(map.owner(tile))]; };
+  }
   bool announced = false, stopped = false;
   task.announce = [&](const std::vector<bool>& has_any) {
     announced = true;
@@ -151,11 +169,13 @@ void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t 
   task.watch = &watch;
   exchange::FrameEnd end{};
   run.transport.set_working(true);
+  if (loaded.team() != nullptr) loaded.team()->begin();
   try {
     end = counts_of(loaded.projector().project(task));
   } catch (const scene::FrameStopped&) {
     // The others wait for what they were told of: it ends here, empty.
     stopped = true;
+    if (loaded.team() != nullptr) loaded.team()->leave();
     if (!announced) task.announce(std::vector<bool>(task.grid.count(), false));
     outbox.end_tiles();
     end.stopped = 1;

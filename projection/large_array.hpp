@@ -42,6 +42,13 @@ class LargeArray {
     size_ = size;
   }
 
+  /// `size` elements that somebody else keeps, until the next reset().
+  void refer(T* data, std::size_t size) {
+    elements_ = Room(data, Free{0});
+    size_ = size;
+    capacity_ = 0;
+  }
+
   /// No elements; their room stays.
   void clear() { size_ = 0; }
 
@@ -55,8 +62,10 @@ class LargeArray {
  private:
   static constexpr std::size_t page = std::size_t{1} << 21, line = 64;
   struct Free {
-    std::size_t alignment = line;
-    void operator()(T* p) const { ::operator delete(p, std::align_val_t(alignment)); }
+    std::size_t alignment = line;  ///< 0: somebody else keeps it
+    void operator()(T* p) const {
+      if (alignment > 0) ::operator delete(p, std::align_val_t(alignment));
+    }
   };
   using Room = std::unique_ptr<T, Free>;
 

@@ -172,21 +172,27 @@ std::vector<Step> with_surfaces(std::vector<Step> steps, const IsoView* iso) {
 }
 
 CellsAtSteps::CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> steps, double longest_ray,
-                           const scene::Lattice* lattice, const std::stop_token& stop) {
+                           const scene::Lattice* lattice, const std::stop_token& stop, scene::Team* team) {
   const std::size_t count = prepared.tets().size();
   if (steps.empty() || count == 0) return;
   if (lattice == nullptr && prepared.mesh().association == scene::Association::cell) return;
   const Rule rule(prepared, steps, longest_ray, lattice);
-  bits_.assign((count + 63) / 64, 0);
+  const std::size_t words = (count + 63) / 64;
+  if (team == nullptr)
+    bits_.reset(words);
+  else
+    bits_.refer(team->memory_of<std::uint64_t>(scene::Team::Room::cells_at_steps, words), words);
+  const scene::Share own = scene::share_of(words, team);
+  std::fill(bits_.data() + own.first, bits_.data() + own.last, 0);
   struct Most {
     std::size_t pieces = 0;
   };
   const Most most = tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, bits_.size(), 64), Most{},
-      [&](const auto& words, Most so_far) {
+      tbb::blocked_range<std::size_t>(own.first, own.last, 64), Most{},
+      [&](const auto& range, Most so_far) {
         scene::throw_if_stopped(stop);
         std::size_t passed = 0;
-        for (std::size_t word = words.begin(); word < words.end(); ++word) {
+        for (std::size_t word = range.begin(); word < range.end(); ++word) {
           if (rule.spares(word)) continue;
           for (std::size_t tet = 64 * word; tet < std::min(count, 64 * word + 64); ++tet) {
             const std::size_t pieces = rule.pieces(tet, passed);
@@ -198,8 +204,9 @@ CellsAtSteps::CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> s
         return so_far;
       },
       [](Most a, Most b) { return Most{std::max(a.pieces, b.pieces)}; });
-  if (most.pieces == 0) bits_ = {};
-  most_pieces_ = std::max<std::size_t>(most.pieces, 1);
+  const std::size_t pieces = scene::largest_of(std::uint64_t{most.pieces}, team);
+  if (pieces == 0) bits_ = {};
+  most_pieces_ = std::max<std::size_t>(pieces, 1);
 }
 
 namespace {

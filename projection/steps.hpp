@@ -6,9 +6,11 @@
 #include <stop_token>
 #include <vector>
 
+#include "projection/large_array.hpp"
 #include "projection/planes_rasterizer.hpp"
 #include "scene/lattice.hpp"
 #include "scene/optical_model.hpp"
+#include "scene/team.hpp"
 #include "scene/transfer_function.hpp"
 
 /// Steps of the transfer function. A field may lie within a few last places of a step's value over a whole region, as
@@ -39,19 +41,20 @@ class CellsAtSteps {
  public:
   CellsAtSteps() = default;
   /// `steps` must outlive this object. `lattice`: on which scalars are kept; null: in double precision. Work runs in
-  /// the caller's task arena (oneTBB). Throws scene::FrameStopped once `stop` is asked for.
+  /// the caller's task arena (oneTBB). Throws scene::FrameStopped once `stop` is asked for. A team's members look at
+  /// their share of the cells each, and all have all answers.
   CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> steps, double longest_ray,
-               const scene::Lattice* lattice, const std::stop_token& stop = {});
+               const scene::Lattice* lattice, const std::stop_token& stop = {}, scene::Team* team = nullptr);
 
   [[nodiscard]] bool contain(std::uint32_t tet) const {
-    return !bits_.empty() && (bits_[tet / 64] >> tet % 64 & 1) != 0;
+    return !empty() && (bits_[tet / 64] >> tet % 64 & 1) != 0;
   }
-  [[nodiscard]] bool empty() const { return bits_.empty(); }
+  [[nodiscard]] bool empty() const { return bits_.size() == 0; }
   /// Bounds the segments that one of these cells has in a pixel.
   [[nodiscard]] std::size_t most_pieces() const { return most_pieces_; }
 
  private:
-  std::vector<std::uint64_t> bits_;  ///< one a tet; empty if there are none
+  LargeArray<std::uint64_t> bits_;  ///< one a tet; empty if there are none
   std::size_t most_pieces_ = 1;
 };
 

@@ -24,14 +24,15 @@ float depth_behind(double origin, double depth) {
                                                : std::nextafter(nearest, -std::numeric_limits<float>::infinity());
 }
 
-double nearest_depth(const ProjectedMesh& projected) {
+double nearest_depth(const ProjectedMesh& projected, scene::Team* team) {
+  const scene::Share own = scene::share_of(projected.vertices.size(), team);
   const double nearest = tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, projected.vertices.size(), 8192), std::numeric_limits<double>::max(),
+      tbb::blocked_range<std::size_t>(own.first, own.last, 8192), std::numeric_limits<double>::max(),
       [&](const auto& range, double least) {
         return std::min(least, smallest_depth(projected.vertices.subspan(range.begin(), range.end() - range.begin())));
       },
       [](double a, double b) { return std::min(a, b); });
-  return std::max(projected.near_depth, nearest);
+  return std::max(projected.near_depth, scene::least_of(nearest, team));
 }
 
 std::array<PixelVertex, 4> corners_of(const ProjectedMesh& projected, std::size_t tet) {
@@ -96,25 +97,33 @@ void TileLists::for_each_tile(std::size_t tet, Visit visit) const {
 
 TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
                      const scene::TransferFunction& transfer_function, bool emits_without_extinction,
-                     scene::Trace* trace, TileListBuffers* buffers, bool cull_invisible, std::stop_token stop)
+                     scene::Trace* trace, TileListBuffers* buffers, bool cull_invisible, std::stop_token stop,
+                     scene::Team* team)
     : projected_(&projected),
       trace_(trace),
       grid_(grid),
       stop_(std::move(stop)),
+      team_(team),
       columns_(static_cast<std::size_t>(grid.columns())),
       buffers_(buffers != nullptr ? buffers : &own_),
-      depth_origin_(nearest_depth(projected)),
+      depth_origin_(nearest_depth(projected, team)),
       view_(projected.near_depth, projected.far_depth, depth_origin_, grid.image, grid.tile_size),
       projected_tets_(projected.mesh->block_count()),
       in_one_tile_(projected_tets_.size()),
       tile_counts_(grid.count(), 0) {
   const scene::TetMeshView& mesh = projected.mesh->mesh();
-  buffers_->vertices.reset(projected.vertices.size());
+  if (team_ == nullptr)
+    buffers_->vertices.reset(projected.vertices.size());
+  else
+    buffers_->vertices.refer(
+        team_->memory_of<CullVertex>(scene::Team::Room::cull_vertices, projected.vertices.size()),
+        projected.vertices.size());
   buffers_->places.reset(projected_tets_.size() * cull_block_cells);
   buffers_->near_depths.reset(projected_tets_.size() * cull_block_cells);
   buffers_->entries.clear();
   const bool per_cell = mesh.association == scene::Association::cell;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, projected.vertices.size(), 4096), [&](const auto& range) {
+  const scene::Share vertices = scene::share_of(projected.vertices.size(), team_);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(vertices.first, vertices.last, 4096), [&](const auto& range) {
     scene::throw_if_stopped(stop_);
     const scene::TraceScope timing(trace_, "cull");
     const std::size_t n = range.end() - range.begin();
@@ -127,11 +136,12 @@ TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
       cull_invisible ? ClearIntervals(transfer_function, emits_without_extinction,
                                       projected.iso != nullptr ? projected.iso->values() : std::span<const double>())
                      : ClearIntervals();
-  const std::size_t blocks = projected_tets_.size();
-  runs_.resize(run_count(blocks, grid.count()));
+  if (team_ != nullptr) team_->barrier();
+  const scene::Share blocks = scene::share_of(projected_tets_.size(), team_);
+  runs_.resize(run_count(blocks.size(), grid.count()));
   for (std::size_t r = 0; r < runs_.size(); ++r) {
-    runs_[r].first_block = blocks * r / runs_.size();
-    runs_[r].last_block = blocks * (r + 1) / runs_.size();
+    runs_[r].first_block = blocks.first + blocks.size() * r / runs_.size();
+    runs_[r].last_block = blocks.first + blocks.size() * (r + 1) / runs_.size();
   }
   tbb::parallel_for(
       std::size_t{0}, runs_.size(),
@@ -140,19 +150,41 @@ TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
         cull(runs_[r], clear);
       },
       tbb::simple_partitioner());
+  add_counts();
+  add_reads(tile_counts_.size());
+  reads_.serial_counters += runs_.size() * tile_counts_.size();
+}
+
+void TileLists::add_counts() {
+  const std::size_t tiles = tile_counts_.size();
+  std::vector<std::uint64_t> all;  // entries of all members, where there are several
+  if (team_ != nullptr) {
+    const auto members = static_cast<std::size_t>(team_->size()), rank = static_cast<std::size_t>(team_->rank());
+    auto* const shared = team_->memory_of<std::uint32_t>(scene::Team::Room::tile_counts, members * tiles);
+    std::uint32_t* const own = shared + rank * tiles;
+    std::fill_n(own, tiles, 0);
+    for (const Run& run : runs_)
+      for (std::size_t i = 0; i < tiles; ++i) own[i] += run.tiles[i];
+    team_->barrier();
+    all.assign(tiles, 0);
+    for (std::size_t m = 0; m < members; ++m) {
+      if (m == rank) tile_counts_ = all;  // this member's entries come behind those of the members before
+      for (std::size_t i = 0; i < tiles; ++i) all[i] += shared[m * tiles + i];
+    }
+  }
   for (Run& run : runs_) {
     counts_.invisible += run.culled.invisible;
     counts_.outside_view += run.culled.outside_view;
     counts_.between_pixels += run.culled.between_pixels;
     counts_.projected += run.culled.projected;
-    for (std::size_t i = 0; i < tile_counts_.size(); ++i) {
+    for (std::size_t i = 0; i < tiles; ++i) {
       const std::uint32_t here = run.tiles[i];
       run.tiles[i] = static_cast<std::uint32_t>(tile_counts_[i]);  // below the number of tets, so 32 bits hold it
       tile_counts_[i] += here;
     }
   }
-  add_reads(tile_counts_.size());
-  reads_.serial_counters += runs_.size() * tile_counts_.size();
+  ends_ = tile_counts_;
+  if (team_ != nullptr) tile_counts_ = std::move(all);
 }
 
 void TileLists::add_reads(std::size_t tiles) {
@@ -238,7 +270,10 @@ void TileLists::fill(std::size_t first, std::size_t last) {
   first_ = first;
   offsets_.assign(last - first + 1, 0);
   for (std::size_t i = first; i < last; ++i) offsets_[i - first + 1] = offsets_[i - first] + tile_counts_[i];
-  buffers_->entries.reset(offsets_.back());
+  if (team_ == nullptr)
+    buffers_->entries.reset(offsets_.back());
+  else
+    buffers_->entries.refer(team_->memory_of<TileEntry>(scene::Team::Room::entries, offsets_.back()), offsets_.back());
   tbb::parallel_for(
       std::size_t{0}, runs_.size(),
       [&](std::size_t r) {
@@ -247,6 +282,7 @@ void TileLists::fill(std::size_t first, std::size_t last) {
       },
       tbb::simple_partitioner());
   add_reads(last - first);
+  if (team_ != nullptr) team_->barrier();
 }
 
 void TileLists::fill(std::size_t r, std::size_t first, std::size_t last) {
@@ -255,7 +291,7 @@ void TileLists::fill(std::size_t r, std::size_t first, std::size_t last) {
   bool any = false;
   for (std::size_t i = first; i < last; ++i) {
     next[i - first] = offsets_[i - first] + run.tiles[i];
-    any |= (r + 1 < runs_.size() ? runs_[r + 1].tiles[i] : tile_counts_[i]) > run.tiles[i];
+    any |= (r + 1 < runs_.size() ? runs_[r + 1].tiles[i] : ends_[i]) > run.tiles[i];
   }
   if (!any) return;
   TileEntry* const entries = buffers_->entries.data();
@@ -281,10 +317,12 @@ std::span<TileEntry> TileLists::tile(std::size_t tile) {
 }
 
 std::size_t TileLists::bytes() const {
-  return buffers_->vertices.bytes() + buffers_->places.bytes() + buffers_->near_depths.bytes() +
-         buffers_->entries.bytes() + (projected_tets_.capacity() + in_one_tile_.capacity()) * sizeof(std::uint64_t) +
+  // Of a team's memory a member has its share, and of what it keeps itself its share alone is ever touched.
+  const std::size_t members = team_ != nullptr ? static_cast<std::size_t>(team_->size()) : 1;
+  return (buffers_->vertices.bytes() + buffers_->places.bytes() + buffers_->near_depths.bytes() +
+          buffers_->entries.bytes()) / members + (projected_tets_.capacity() + in_one_tile_.capacity()) * sizeof(std::uint64_t) +
          runs_.size() * grid_.count() * sizeof(std::uint32_t) +
-         (tile_counts_.capacity() + offsets_.capacity()) * sizeof(std::uint64_t);
+         (tile_counts_.capacity() + ends_.capacity() + offsets_.capacity()) * sizeof(std::uint64_t);
 }
 
 }  // namespace tessera::projection

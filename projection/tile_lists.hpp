@@ -9,6 +9,7 @@
 #include "projection/footprint.hpp"
 #include "projection/large_array.hpp"
 #include "projection/planes_rasterizer.hpp"
+#include "scene/team.hpp"
 #include "scene/trace.hpp"
 #include "scene/transfer_function.hpp"
 
@@ -63,9 +64,13 @@ class TileLists {
   /// and `bin` of the threads that help. `buffers`, if any, must outlive this object and serve no other meanwhile.
   /// Without `cull_invisible` cells of which the transfer function shows nothing are listed like others. Both passes
   /// throw scene::FrameStopped once `stop` is asked for.
+  ///
+  /// With a team the members make the lists together: each culls and fills its share of the blocks and counts its own
+  /// cells and reads, and all have all lists. The mesh and `projected.vertices` are in shared memory, of the latter each
+  /// member's share is there.
   TileLists(const ProjectedMesh& projected, const TileGrid& grid, const scene::TransferFunction& transfer_function,
             bool emits_without_extinction, scene::Trace* trace = nullptr, TileListBuffers* buffers = nullptr,
-            bool cull_invisible = true, std::stop_token stop = {});
+            bool cull_invisible = true, std::stop_token stop = {}, scene::Team* team = nullptr);
   TileLists(const TileLists&) = delete;
   TileLists& operator=(const TileLists&) = delete;
 
@@ -78,7 +83,7 @@ class TileLists {
   /// Entries of tile `tile`.
   [[nodiscard]] std::size_t entry_count(std::size_t tile) const { return tile_counts_[tile]; }
 
-  /// Second pass: makes the lists of tiles [first, last).
+  /// Second pass: makes the lists of tiles [first, last). No member of a team reads those of the pass before any more.
   void fill(std::size_t first, std::size_t last);
 
   /// A tile of the last fill; the caller may reorder it.
@@ -100,6 +105,7 @@ class TileLists {
   void cull(Run& run, const ClearIntervals& clear);
   bool cull_exactly(std::size_t tet, const ClearIntervals& clear, CullCounts& counts);
   void fill(std::size_t run, std::size_t first, std::size_t last);
+  void add_counts();
   void add_reads(std::size_t tiles);
   template <class Visit>
   void for_each_tile(std::size_t tet, Visit visit) const;
@@ -108,6 +114,7 @@ class TileLists {
   scene::Trace* trace_;
   TileGrid grid_;
   std::stop_token stop_;
+  scene::Team* team_;
   std::size_t columns_;  ///< of the grid, which would divide for them tet by tet
   TileListBuffers own_;
   TileListBuffers* buffers_;
@@ -119,6 +126,7 @@ class TileLists {
   std::vector<std::uint64_t> projected_tets_;  ///< a bit a tet
   std::vector<std::uint64_t> in_one_tile_;     ///< the same, of those projected
   std::vector<std::uint64_t> tile_counts_;     ///< one a tile
+  std::vector<std::uint64_t> ends_;            ///< one a tile: where in its list the entries of the last run end
   std::size_t first_ = 0;                      ///< of the last fill
   std::vector<std::uint64_t> offsets_;         ///< one a tile of the last fill, and the end
 };

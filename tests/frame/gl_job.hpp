@@ -79,12 +79,14 @@ inline std::vector<FinishedFrame> rendered(const GlJobSetup& setup, const scene:
           ProjectorMesh part;
           auto tets = std::make_shared<scene::TetMesh>(mesh);
           tets->tets.clear();
+          tets->original_cell.clear();
           for (std::size_t t = 0; t < mesh.tets.size(); ++t)
             if (static_cast<int>(t / 3) % setup.projectors == transport.rank()) {
               tets->tets.push_back(mesh.tets[t]);
-              part.global_tet.push_back(t);
+              tets->original_cell.push_back(t);
             }
           part.part = *tets;
+          part.global_tet = tets->original_cell;
           part.owner = tets;
           part.diagonal = 4;
           part.box = facts.box;

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "scene/team.hpp"
+#include "scene/tet_mesh.hpp"
+
+namespace tessera::frame {
+
+/// The parts of a mesh that a team's members have, as one mesh in the memory that they share. Its tets stand in the
+/// order of the whole mesh, so that ties in depth are broken as in one process.
+struct HostMesh {
+  scene::TetMeshView mesh;                     ///< no tets: it was not made
+  std::span<const std::uint64_t> global_tet{};  ///< index in the whole mesh of each tet; empty: its own
+
+  /// Of this member's tets `tets`, whose corners are in canonical order, of mesh `part`; `global_tet` as above. Makes
+  /// none where it would take more than half of the memory that the machine has left, or is too large for 32 bits.
+  /// Within an epoch of the team, collective; valid until the next one is made.
+  static HostMesh made(scene::Team& team, const scene::TetMeshView& part, std::span<const scene::Tet> tets,
+                       std::span<const std::uint64_t> global_tet);
+};
+
+}  // namespace tessera::frame
