@@ -7,47 +7,17 @@
 #include <optional>
 #include <vector>
 
+#include "exchange/shared_pages.hpp"
 #include "exchange/transport.hpp"
 #include "scene/team.hpp"
 
 namespace tessera::exchange {
 
-/// Pages that several processes see, or one process twice. Linux: a file in memory that has no name.
-class SharedPages {
- public:
-  /// New ones, all zero, not yet mapped. Throws Error(system_failure) if there are none.
-  static SharedPages made(std::size_t bytes);
-  /// Those that process `process` made and knows as `descriptor`; none if this one may not have them.
-  static std::optional<SharedPages> opened(std::uint64_t process, int descriptor, std::size_t bytes);
-  SharedPages(SharedPages&& other) noexcept;
-  SharedPages& operator=(SharedPages&& other) noexcept;
-  ~SharedPages();
-
-  /// Has the system find memory for the bytes [first, last), which it otherwise does when they are written, and ends
-  /// the process if there is none. Returns whether it could.
-  bool reserve(std::size_t first, std::size_t last) const;
-  /// Maps them; false: there is no room in this process.
-  bool map();
-  /// What opened() needs; the pages last for as long as somebody maps them.
-  [[nodiscard]] int descriptor() const { return descriptor_; }
-  void close_descriptor();
-  [[nodiscard]] std::byte* data() const { return data_; }
-  [[nodiscard]] std::size_t bytes() const { return bytes_; }
-
- private:
-  SharedPages(int descriptor, std::size_t bytes) : descriptor_(descriptor), bytes_(bytes) {}
-  void release();
-
-  int descriptor_;
-  std::size_t bytes_;
-  std::byte* data_ = nullptr;
-};
-
 /// Ranks of one machine that make frames together, and others' ranks do not see it: the team's members wait for each
 /// other in shared memory, and find the run's error, another's death included, through the transport.
 ///
-/// An epoch is a frame, or whatever else they do together: all members begin the same ones in the same order. Who leaves
-/// one early says so; who waits for it in that epoch then throws FrameStopped.
+/// An epoch is a frame, or whatever else they do together: all members begin the same ones in the same order. Who
+/// leaves one early says so; who waits for it in that epoch then throws FrameStopped.
 class HostTeam final : public scene::Team {
  public:
   /// The team of this rank and the others of its machine that join; null if there are none, they may not see each

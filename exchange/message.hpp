@@ -86,9 +86,11 @@ enum class MessageKind : std::uint16_t {
   ray_tets = 48,          ///< list of RayTet (frame/probe.cpp): those of a rank's part that a ray meets
   curved_part = 40,  ///< frame/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
   next_frame = 52,   ///< u8: 1: there is one more
-  machine = 53,      ///< text: which machine's memory the sender sees, empty: it joins no team (exchange/host_team.cpp)
-  team_offer = 54,   ///< u64 process, u64 key, i64 descriptor of the team's shared pages, -1: none
-  team_joined = 55,  ///< u8: 1: the sender sees the pages
+  machine = 53,      ///< text: which machine's memory the sender sees, empty: it shares none (shared_pages.cpp)
+  pages_offer = 54,  ///< u64 process, u64 key, i64 descriptor of pages for ranks of one machine, -1: none
+  pages_seen = 55,   ///< u8: 1: the sender sees the pages
+  // Channel fragments, to oneself.
+  wake = 56,  ///< nothing: all frames of the list are finished
   // All channels.
   attempt_end = 49,  ///< u8 ErrorCode, 0 if all went well, text: the sender has no more of this attempt (attempt.hpp)
   // The transport's own.

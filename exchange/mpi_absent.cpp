@@ -20,6 +20,7 @@ void MpiPort::start() {}
 void MpiPort::send(int, int, Bytes) {}  // NOLINT(performance-unnecessary-value-param): the other port keeps them
 void MpiPort::complete() {}
 bool MpiPort::is_sending() const { return false; }
+void MpiPort::for_each_receiver(const std::function<void(int)>&) const {}
 bool MpiPort::take() { return false; }
 std::optional<MpiPort::Arrived> MpiPort::next() { return std::nullopt; }
 bool MpiPort::is_receiving() const { return false; }

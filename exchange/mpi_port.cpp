@@ -60,6 +60,7 @@ MpiShape mpi_shape(int fortran_handle) {
 struct MpiPort::State {
   struct Outgoing {
     Bytes bytes;
+    int to = 0;
     MPI_Request request = MPI_REQUEST_NULL;
   };
   struct Incoming {
@@ -106,6 +107,7 @@ void MpiPort::start() {
 void MpiPort::send(int to, int tag, Bytes bytes) {
   State::Outgoing& posted = state_->outgoing.emplace_back();
   posted.bytes = std::move(bytes);
+  posted.to = to;
   // Whether it has gone is asked of all that are on their way, in complete().
   // NOLINTNEXTLINE(clang-analyzer-optin.mpi.MPI-Checker)
   state_->checked(MPI_Isend(posted.bytes.data(), static_cast<int>(posted.bytes.size()), MPI_BYTE, to, tag, state_->comm,
@@ -163,6 +165,10 @@ std::optional<MpiPort::Arrived> MpiPort::next() {
     return arrived;
   }
   return std::nullopt;
+}
+
+void MpiPort::for_each_receiver(const std::function<void(int rank)>& visit) const {
+  for (const State::Outgoing& message : state_->outgoing) visit(message.to);
 }
 
 bool MpiPort::is_receiving() const { return !state_->incoming.empty(); }

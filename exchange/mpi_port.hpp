@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -31,6 +32,8 @@ class MpiPort {
   void complete();
   /// Whether some have not left.
   [[nodiscard]] bool is_sending() const;
+  /// Calls `visit` with the receiver of each message that has not left.
+  void for_each_receiver(const std::function<void(int rank)>& visit) const;
 
   /// Begins to receive what is there; without waiting, as a long message needs its sender's looks at MPI, too. Returns
   /// whether there was anything.

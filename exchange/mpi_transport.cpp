@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "exchange/bells.hpp"
 #include "exchange/heartbeats.hpp"
 #include "exchange/mailboxes.hpp"
 #include "exchange/message.hpp"
@@ -37,6 +38,9 @@ struct Naps {
 constexpr Naps idle_naps{microseconds(100), microseconds(500), microseconds(2000)};
 // While the rank's cores project, a look in time for the next part of the frame is soon enough.
 constexpr Naps working_naps{microseconds(2000), microseconds(2000), microseconds(5000)};
+
+// Where others ring when they send.
+constexpr microseconds longest_nap_with_bells(20'000);
 
 /// For the others to hear of the error that a stalled rank is; at most the transport's patience.
 constexpr auto stall_grace = std::chrono::seconds(1);
@@ -102,7 +106,7 @@ class MpiTransport::Engine {
       const std::lock_guard lock(mutex_);
       if (!own_fault_) own_fault_ = error;
     }
-    changed_.notify_all();
+    wake();
   }
 
   std::optional<scene::Error> finish() {
@@ -110,17 +114,22 @@ class MpiTransport::Engine {
       const std::lock_guard lock(mutex_);
       finishing_ = true;
     }
-    changed_.notify_all();
+    wake();
     if (thread_.joinable()) thread_.join();
     return mailboxes.error();
   }
 
   void set_working(bool working) {
+    working_ = working;
+    if (!working) wake();
+  }
+
+  void use_bells(std::shared_ptr<Bells> bells) {
     {
       const std::lock_guard lock(mutex_);
-      working_ = working;
+      bells_ = std::move(bells);
     }
-    if (!working) changed_.notify_all();
+    changed_.notify_all();
   }
 
   void watch_stalls(const StallSettings& settings) {
@@ -152,7 +161,31 @@ class MpiTransport::Engine {
       const std::lock_guard lock(mutex_);
       queue_.push_back(std::move(message));
     }
+    wake();
+  }
+
+  /// The engine's thread, from its nap.
+  void wake() {
     changed_.notify_all();
+    std::shared_ptr<Bells> bells;
+    {
+      const std::lock_guard lock(mutex_);
+      bells = bells_;
+    }
+    if (bells != nullptr) bells->ring(rank);
+  }
+
+  /// Until there is something to do, for `most` at the longest. Returns whether a bell rang.
+  bool nap(Bells* bells, std::uint32_t heard, microseconds most) {
+    std::unique_lock lock(mutex_);
+    if (!queue_.empty()) return false;
+    if (bells == nullptr) {
+      changed_.wait_for(lock, most);
+      return false;
+    }
+    lock.unlock();
+    bells->wait(heard, most);
+    return bells->heard() != heard;
   }
 
   void run() {
@@ -170,12 +203,20 @@ class MpiTransport::Engine {
     changed_.notify_all();
     if (start_error_) return;
 
-    microseconds nap = idle_naps.shortest;
+    microseconds length = idle_naps.shortest;
+    bool woken = false;
     while (!all_clear_) {
       bool came = false;
+      const std::shared_ptr<Bells> bells = [&] {
+        const std::lock_guard lock(mutex_);
+        return bells_;
+      }();
+      const std::uint32_t heard = bells != nullptr ? bells->heard() : 0;
       try {
-        post();
+        post(bells.get());
         port_.complete();
+        // MPI may have held a message back until now.
+        if (bells != nullptr) port_.for_each_receiver([&](int to) { bells->ring(to); });
         came = port_.take();
         came = deliver() || came;
       } catch (const scene::Error& error) {
@@ -188,10 +229,15 @@ class MpiTransport::Engine {
       settle_end();
       if (all_clear_) break;
       const bool moving = port_.is_sending() || port_.is_receiving();
-      std::unique_lock lock(mutex_);
-      const Naps& naps = working_ ? working_naps : idle_naps;
-      nap = came ? naps.shortest : std::clamp(2 * nap, naps.shortest, moving ? naps.longest_moving : naps.longest);
-      if (queue_.empty()) changed_.wait_for(lock, nap);
+      // Rung for while its cores project, a rank would look too often.
+      Bells* const listens_to = working_ ? nullptr : bells.get();
+      Naps naps = working_ ? working_naps : idle_naps;
+      if (listens_to != nullptr && bells->of_all() && !moving) naps.longest = longest_nap_with_bells;
+      // The bell may ring a little before MPI shows the message.
+      const bool soon = came || woken;
+      length =
+          soon ? naps.shortest : std::clamp(2 * length, naps.shortest, moving ? naps.longest_moving : naps.longest);
+      woken = nap(listens_to, heard, length);
     }
     given_up_ ? port_.abandon() : port_.finish();
     {
@@ -202,7 +248,7 @@ class MpiTransport::Engine {
   }
 
   /// Hands queued messages to MPI.
-  void post() {
+  void post(Bells* bells) {
     std::deque<Outgoing> queue;
     {
       const std::lock_guard lock(mutex_);
@@ -214,6 +260,7 @@ class MpiTransport::Engine {
       if (mailboxes.failed() && !is_ours) continue;
       const scene::TraceScope timing = traced(message);
       port_.send(message.to, message.tag, std::move(message.bytes));
+      if (bells != nullptr) bells->ring(message.to);
     }
     if (queue.empty()) return;
     {
@@ -368,7 +415,7 @@ class MpiTransport::Engine {
     if (rank == 0 && ranks_done_ == size) {
       if (mailboxes.failed() && hooks_.speak) hooks_.speak(*mailboxes.error());
       tell_all(begin_message(MessageKind::clear));
-      post();
+      post(nullptr);
       all_clear_ = true;
     }
   }
@@ -384,7 +431,9 @@ class MpiTransport::Engine {
   std::deque<Outgoing> queue_;
   std::optional<scene::Error> own_fault_, start_error_;
   std::optional<StallSettings> stalls_;  ///< until the engine has begun to watch
-  bool started_ = false, ended_ = false, finishing_ = false, fault_told_ = false, working_ = false;
+  bool started_ = false, ended_ = false, finishing_ = false, fault_told_ = false;
+  std::atomic<bool> working_ = false;
+  std::shared_ptr<Bells> bells_;
 
   // The engine's thread alone.
   MpiPort port_;
@@ -418,6 +467,7 @@ std::optional<Message> MpiTransport::receive(Channel channel, std::chrono::milli
 }
 void MpiTransport::fail(const scene::Error& error) { engine_->fail(error); }
 void MpiTransport::set_working(bool working) { engine_->set_working(working); }
+void MpiTransport::use_bells(std::shared_ptr<Bells> bells) { engine_->use_bells(std::move(bells)); }
 void MpiTransport::watch_stalls(const StallSettings& settings) { engine_->watch_stalls(settings); }
 void MpiTransport::check() const { engine_->mailboxes.check(); }
 void MpiTransport::trace_to(scene::Trace* projecting, scene::Trace* compositing) {

@@ -25,7 +25,8 @@ MpiShape mpi_shape(int fortran_handle);
 /// speaks MPI itself it takes MPI_THREAD_MULTIPLE. It always takes what arrives: no send waits for the other side to
 /// look, and a rank that waits sleeps instead of spinning. It looks for messages whenever it sends, 100 microseconds
 /// after one came, and then ever less often, down to every 2 milliseconds; set_working(true) makes that every 2 to 5
-/// milliseconds.
+/// milliseconds. Where all ranks have bells it
+/// looks when they ring, unless it works, and else every 20 milliseconds.
 ///
 /// Faults: a rank that fails tells rank 0, which decides on the first one it hears of and tells all. A rank that cannot
 /// end in an orderly way within `patience` after that (it hangs in a read, or its peers are gone) speaks and
@@ -70,6 +71,7 @@ class MpiTransport final : public Transport {
   void fail(const scene::Error& error) override;
   void check() const override;
   void set_working(bool working) override;
+  void use_bells(std::shared_ptr<Bells> bells) override;
   void trace_to(scene::Trace* projecting, scene::Trace* compositing) override;
   [[nodiscard]] Traffic sent(Channel channel) const override;
 

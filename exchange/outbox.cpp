@@ -26,13 +26,15 @@ Outbox::~Outbox() {
     const std::lock_guard lock(mutex_);
     closing_ = true;
   }
+  // Wakes the thread at once.
+  transport_.send(transport_.rank(), Channel::credit, message_of(MessageKind::credit, std::uint64_t{0}));
   credit_thread_.join();
 }
 
 void Outbox::take_credit() {
   try {
     for (;;) {
-      const auto message = transport_.receive(Channel::credit, std::chrono::milliseconds(20));
+      const auto message = transport_.receive(Channel::credit, std::chrono::seconds(1));
       const std::lock_guard lock(mutex_);
       if (closing_) return;
       if (!message) continue;

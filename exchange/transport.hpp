@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "scene/trace.hpp"
 
 namespace tessera::exchange {
+
+class Bells;
 
 /// What a message is about. Each channel is a queue of its own, so that the readers of one never see another's.
 enum class Channel : std::uint8_t {
@@ -68,6 +71,9 @@ class Transport {
 
   /// Whether this rank's cores have other work than messages now: then they are looked for less often. Not at first.
   virtual void set_working(bool /*working*/) {}
+
+  /// Ranks of this machine wake each other by these from now on; null: they do not. Collective.
+  virtual void use_bells(std::shared_ptr<Bells> /*bells*/) {}
 
   /// Where spans of `send` go from now on: fragments and meshes to the projector's face, tiles to the compositor's.
   /// Null: nowhere. The faces must outlive the transport or be taken back.

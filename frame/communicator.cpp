@@ -1,5 +1,6 @@
 #include "frame/communicator.hpp"
 
+#include "exchange/bells.hpp"
 #include "exchange/loopback_transport.hpp"
 #include "exchange/mpi_transport.hpp"
 
@@ -21,7 +22,9 @@ Communicator Communicator::of_handle(int fortran_handle) {
   if (shape.size == 1) return {};
   return Communicator(std::make_shared<const State>(
       State{shape.rank, shape.size, [fortran_handle]() -> std::shared_ptr<exchange::Transport> {
-              return std::make_shared<exchange::MpiTransport>(fortran_handle);
+              auto transport = std::make_shared<exchange::MpiTransport>(fortran_handle);
+              transport->use_bells(exchange::Bells::hung(*transport));
+              return transport;
             }}));
 }
 

@@ -99,6 +99,7 @@ class CompositorLoop {
         return next();
       }();
       if (message.bytes.empty()) continue;
+      if (exchange::MessageReader(message.bytes, message.from).kind() == exchange::MessageKind::wake) continue;
       const std::lock_guard lock(mutex_);
       accept(message.from, std::make_shared<const exchange::Bytes>(std::move(message.bytes)));
     }
@@ -204,7 +205,9 @@ class CompositorLoop {
       first.sender.end(sums);
       if (trace_ != nullptr) trace_->add_frame(static_cast<std::int32_t>(first.number), first.start_us);
       frames_.erase(frames_.begin());
-      ++frames_finished_;
+      if (++frames_finished_ == run_.jobs.size())  // the loop may wait for a message that will not come
+        run_.transport.send(run_.transport.rank(), Channel::fragments,
+                            exchange::begin_message(exchange::MessageKind::wake));
     }
   }
 

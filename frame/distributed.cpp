@@ -194,7 +194,7 @@ class DistributedRenderer::State {
   StopRelay relay_;
   std::unique_ptr<exchange::HostTeam> team_;  ///< of a projector whose machine has others
   std::optional<LoadedMesh> loaded_;          ///< of a projector
-  std::optional<std::size_t> number_;  ///< of the mesh that was loaded last
+  std::optional<std::size_t> number_;         ///< of the mesh that was loaded last
   CompositingDevice device_;
   bool opened_ = false;
 };

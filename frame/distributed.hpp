@@ -45,10 +45,10 @@ struct ProjectorMesh {
   /// The part prepared for projection, if somebody has done it; null: it is done here.
   std::shared_ptr<const projection::PreparedMesh> prepared{};
   std::span<const std::uint64_t> global_tet{};  ///< index in the whole mesh of each tet, ascending; empty: its own
-  double diagonal = 0;                    ///< of the whole mesh's box, world units
-  scene::Box box;                         ///< of the whole mesh
-  std::array<double, 2> scalar_range{};   ///< of the whole mesh
-  float longest_edge = 0;                 ///< scanline: of the whole mesh, world units
+  double diagonal = 0;                          ///< of the whole mesh's box, world units
+  scene::Box box;                               ///< of the whole mesh
+  std::array<double, 2> scalar_range{};         ///< of the whole mesh
+  float longest_edge = 0;                       ///< scanline: of the whole mesh, world units
 };
 
 /// A finished picture, on the assembling rank.

@@ -196,10 +196,10 @@ using Workers = tbb::enumerable_thread_specific<std::unique_ptr<TileWorker>>;
 /// Who makes a tile.
 enum class Maker : std::uint8_t { nobody, self, another, first_to_come };
 
-/// Who makes which tile: of a process alone, itself those that have cells or triangles. A team's members get half of the
-/// cells beforehand, equally many each: a tile goes to the one that is preferred, unless that has a hundredth more than
-/// another, then to the one that has least. The rest, the tiles that come last, are drawn one by one, so that none waits
-/// for a slower one at the end.
+/// Who makes which tile: of a process alone, itself those that have cells or triangles. A team's members get half of
+/// the cells beforehand, equally many each: a tile goes to the one that is preferred, unless that has a hundredth more
+/// than another, then to the one that has least. The rest, the tiles that come last, are drawn one by one, so that none
+/// waits for a slower one at the end.
 std::vector<Maker> makers(const FrameProjector::Task& task, const projection::TileLists& lists,
                           const projection::FrameFaces* faces) {
   std::vector<Maker> made_by(task.grid.count(), Maker::nobody);
@@ -337,7 +337,10 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   scene::throw_if_stopped(stop);
   Beside beside(task, settings_.trace);
   project_vertices(task, stop);
-  projection::ProjectedMesh projected{prepared_.get(), {vertices_.data(), vertices_.size()}, space.near_depth(), space.far_depth(),
+  projection::ProjectedMesh projected{prepared_.get(),
+                                      {vertices_.data(), vertices_.size()},
+                                      space.near_depth(),
+                                      space.far_depth(),
                                       space.pixels_per_tangent()};
   const projection::IsoView iso{task.surfaces, &space, task.lattice};
   if (task.surfaces != nullptr && !task.surfaces->iso_values().empty()) projected.iso = &iso;

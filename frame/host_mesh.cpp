@@ -76,8 +76,7 @@ HostMesh HostMesh::made(Team& team, const scene::TetMeshView& part, std::span<co
     std::iota(numbers.begin(), numbers.end(), std::uint64_t{0});
   }
   // Are these all tets of the whole mesh? Then their numbers are their places.
-  const bool whole =
-      scene::largest_of(numbers.empty() ? 0 : numbers.back() + 1, &team) == cells.all;
+  const bool whole = scene::largest_of(numbers.empty() ? 0 : numbers.back() + 1, &team) == cells.all;
   const std::vector<std::uint64_t> places = whole ? std::move(numbers) : places_of(team, numbers);
 
   auto* const positions = team.memory_of<glm::dvec3>(Team::Room::positions, vertices.all);

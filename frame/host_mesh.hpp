@@ -11,7 +11,7 @@ namespace tessera::frame {
 /// The parts of a mesh that a team's members have, as one mesh in the memory that they share. Its tets stand in the
 /// order of the whole mesh, so that ties in depth are broken as in one process.
 struct HostMesh {
-  scene::TetMeshView mesh;                     ///< no tets: it was not made
+  scene::TetMeshView mesh;                      ///< no tets: it was not made
   std::span<const std::uint64_t> global_tet{};  ///< index in the whole mesh of each tet; empty: its own
 
   /// Of this member's tets `tets`, whose corners are in canonical order, of mesh `part`; `global_tet` as above. Makes

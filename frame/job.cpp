@@ -8,8 +8,10 @@
 #include <cstdlib>
 #include <memory>
 #include <string_view>
+#include <utility>
 
 #include "exchange/attempt.hpp"
+#include "exchange/bells.hpp"
 #include "exchange/collectives.hpp"
 #include "exchange/first_contact.hpp"
 #include "exchange/instruction_sets.hpp"
@@ -51,8 +53,9 @@ struct Job::State {
 
   /// Before ranks first wait for one another.
   void meet() {
-    if (!has_met) exchange::make_first_contact(transport(), exchange::first_contact_patience());
-    has_met = true;
+    if (std::exchange(has_met, true)) return;
+    exchange::make_first_contact(transport(), exchange::first_contact_patience());
+    if (transport().size() > 1) transport().use_bells(exchange::Bells::hung(transport()));
   }
   bool has_met = false;
 };

@@ -46,9 +46,7 @@ class CellsAtSteps {
   CellsAtSteps(const PreparedMesh& prepared, std::span<const Step> steps, double longest_ray,
                const scene::Lattice* lattice, const std::stop_token& stop = {}, scene::Team* team = nullptr);
 
-  [[nodiscard]] bool contain(std::uint32_t tet) const {
-    return !empty() && (bits_[tet / 64] >> tet % 64 & 1) != 0;
-  }
+  [[nodiscard]] bool contain(std::uint32_t tet) const { return !empty() && (bits_[tet / 64] >> tet % 64 & 1) != 0; }
   [[nodiscard]] bool empty() const { return bits_.size() == 0; }
   /// Bounds the segments that one of these cells has in a pixel.
   [[nodiscard]] std::size_t most_pieces() const { return most_pieces_; }

@@ -115,9 +115,8 @@ TileLists::TileLists(const ProjectedMesh& projected, const TileGrid& grid,
   if (team_ == nullptr)
     buffers_->vertices.reset(projected.vertices.size());
   else
-    buffers_->vertices.refer(
-        team_->memory_of<CullVertex>(scene::Team::Room::cull_vertices, projected.vertices.size()),
-        projected.vertices.size());
+    buffers_->vertices.refer(team_->memory_of<CullVertex>(scene::Team::Room::cull_vertices, projected.vertices.size()),
+                             projected.vertices.size());
   buffers_->places.reset(projected_tets_.size() * cull_block_cells);
   buffers_->near_depths.reset(projected_tets_.size() * cull_block_cells);
   buffers_->entries.clear();
@@ -320,7 +319,9 @@ std::size_t TileLists::bytes() const {
   // Of a team's memory a member has its share, and of what it keeps itself its share alone is ever touched.
   const std::size_t members = team_ != nullptr ? static_cast<std::size_t>(team_->size()) : 1;
   return (buffers_->vertices.bytes() + buffers_->places.bytes() + buffers_->near_depths.bytes() +
-          buffers_->entries.bytes()) / members + (projected_tets_.capacity() + in_one_tile_.capacity()) * sizeof(std::uint64_t) +
+          buffers_->entries.bytes()) /
+             members +
+         (projected_tets_.capacity() + in_one_tile_.capacity()) * sizeof(std::uint64_t) +
          runs_.size() * grid_.count() * sizeof(std::uint32_t) +
          (tile_counts_.capacity() + ends_.capacity() + offsets_.capacity()) * sizeof(std::uint64_t);
 }

@@ -66,8 +66,8 @@ class TileLists {
   /// throw scene::FrameStopped once `stop` is asked for.
   ///
   /// With a team the members make the lists together: each culls and fills its share of the blocks and counts its own
-  /// cells and reads, and all have all lists. The mesh and `projected.vertices` are in shared memory, of the latter each
-  /// member's share is there.
+  /// cells and reads, and all have all lists. The mesh and `projected.vertices` are in shared memory, of the latter
+  /// each member's share is there.
   TileLists(const ProjectedMesh& projected, const TileGrid& grid, const scene::TransferFunction& transfer_function,
             bool emits_without_extinction, scene::Trace* trace = nullptr, TileListBuffers* buffers = nullptr,
             bool cull_invisible = true, std::stop_token stop = {}, scene::Team* team = nullptr);
