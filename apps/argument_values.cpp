@@ -124,18 +124,16 @@ Integrator parse_integrator(const std::string& option, const std::string& text, 
 
 WithoutWords parse_without(const std::string& option, const std::string& text) {
   WithoutWords without;
-  const std::pair<std::string_view, bool*> switches[] = {{"culling", &without.use.culling},
-                                                         {"skipping", &without.use.skipping},
-                                                         {"termination", &without.use.termination},
-                                                         {"lattice", &without.use.lattice},
-                                                         {"merging", &without.merging}};
+  const std::pair<std::string_view, bool*> switches[] = {
+      {"culling", &without.use.culling}, {"skipping", &without.use.skipping}, {"termination", &without.use.termination},
+      {"lattice", &without.use.lattice}, {"sharing", &without.use.sharing},   {"merging", &without.merging}};
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find(',', at), text.size());
     const std::string_view word = std::string_view(text).substr(at, end - at);
     const auto* found =
         std::find_if(std::begin(switches), std::end(switches), [&](auto& s) { return s.first == word; });
     if (found == std::end(switches) || end + 1 == text.size())
-      throw wrong(option, text, "known; write some of culling, skipping, termination, lattice, merging");
+      throw wrong(option, text, "known; write some of culling, skipping, termination, lattice, sharing, merging");
     *found->second = false;
     at = end + 1;
   }

@@ -30,8 +30,8 @@ struct WithoutWords {
   bool merging = true;  ///< of touching segments before they are sent
 };
 
-/// What is to be left out of culling, skipping, termination, lattice and merging, with commas between; nothing if
-/// empty.
+/// What is to be left out of culling, skipping, termination, lattice, sharing and merging, with commas between; nothing
+/// if empty.
 WithoutWords parse_without(const std::string& option, const std::string& text);
 
 /// `R,G,B` as linear light, each >= 0; `#rrggbb` or `#rgb` as sRGB; or a name of CSS's (apps/color_names.hpp).

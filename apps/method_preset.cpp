@@ -48,6 +48,7 @@ void apply_method_preset(const CLI::App& render, int ranks, RenderWords& words) 
   set("--tile-size", words.tile_size, tile_side(words.size));
   if (ranks < 2) return;
   set("--exchange", words.exchange, "segments");
+  set("--without", words.without, "sharing");
   if (render.get_option("--compositors")->count() == 0)
     set("--projectors", words.projectors, std::to_string((ranks + 1) / 2));
 }

@@ -7,10 +7,10 @@
 /// `render --preset NAME`: a published method as a whole, option by option; options that are given win.
 ///
 /// juliachs-2007  Juliachs, Carrard, Nomine 2007 as printed: scanline rasterization of 4-tuples (4.1, 4.2), raw
-/// segments
-///                sent to compositing processes (3), four samples a segment and fragment shaders that sort and blend
-///                with 16 bits (4.3), 16 x 16 tiles, 64 pixels a side of a 1024 x 1024 picture; half of several
-///                processes project, the others composite. OpenGL is Mesa's software unless --backend names another.
+///                segments sent to compositing processes (3), four samples a segment and fragment shaders that sort and
+///                blend with 16 bits (4.3), 16 x 16 tiles, 64 pixels a side of a 1024 x 1024 picture; half of several
+///                processes project, each its own part, the others composite. OpenGL is Mesa's software unless
+///                --backend names another.
 namespace tessera::apps {
 
 /// Declares --preset.

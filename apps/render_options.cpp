@@ -247,7 +247,8 @@ void add_render_options(CLI::App& command, RenderWords& words) {
   command
       .add_option(
           "--without", words.without,
-          "leave out what saves work, to see what it is worth: culling, skipping, termination, lattice, merging")
+          "leave out what saves work, to see what it is worth: culling, skipping, termination, lattice, sharing, "
+          "merging")
       ->type_name("WORD,...");
   command.add_flag("--resume", words.resume, "skip frames whose pictures exist");
   command.add_option("--repeat", words.repeat, "render each frame K times and print frame_ms median and min")

@@ -99,7 +99,7 @@ def run(args, million, nodes, method):
         old.unlink()
     words = ["render", mesh, "--size", f"{size}x{size}", "--orbit", str(frames), "-o", scratch / "frame_%04d.png", "--threads", "1",
              "--timing", scratch / "trace.json", "--report", scratch / "report.json", "--quiet"]
-    words += ["--preset", "juliachs-2007"] if method == "preset" else ["--projectors", str(nodes), "--compositors", str(nodes)]
+    words += ["--preset", "juliachs-2007"] if method == "preset" else ["--without", "sharing", "--projectors", str(nodes), "--compositors", str(nodes)]
     environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
                        LP_NUM_THREADS="0")  # OpenGL in software works in the thread that asks, so that its CPU time is seen
     begin, load = time.monotonic(), os.getloadavg()[0]

@@ -94,9 +94,9 @@ def words_of(args, nodes, out):
     mesh = args.work / f"cube-{args.side}.tets"
     if not mesh.exists():
         call(args.tessera, "generate", "cube", mesh, f"n={args.side}", "--quiet")
-    # A session each: the kernel shares cores among sessions first.
+    # Nodes share no memory. A session each: the kernel shares cores among sessions first.
     return ["setsid", "--wait", args.tessera, "render", mesh, "--size", f"{args.size}x{args.size}", "--orbit", args.frames, "-o", args.work / "frame_%04d.png",
-            "--threads", "1", "--projectors", nodes, "--compositors", nodes, "--report", out.with_suffix(".report.json"),
+            "--threads", "1", "--without", "sharing", "--projectors", nodes, "--compositors", nodes, "--report", out.with_suffix(".report.json"),
             "--timing", out.with_suffix(".trace.json"), "--quiet"]
 
 

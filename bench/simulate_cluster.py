@@ -116,7 +116,7 @@ def base(args, side):
         call(args.tessera, "generate", "cube", mesh, f"n={side}", "--quiet")
     if not out.exists():
         mpirun(["mpirun", "--oversubscribe", "-n", 2 * BASE_NODES, args.tessera, "render", mesh, "--size", f"{SIZE}x{SIZE}", "--orbit", args.frames,
-                "-o", args.work / "frame_%04d.png", "--threads", "1", "--projectors", BASE_NODES, "--compositors", BASE_NODES, "--timing", out,
+                "-o", args.work / "frame_%04d.png", "--threads", "1", "--without", "sharing", "--projectors", BASE_NODES, "--compositors", BASE_NODES, "--timing", out,
                 "--quiet"], [])
     return Base(work_of(out), side)
 

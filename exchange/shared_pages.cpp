@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <random>
 #include <string>
 #include <utility>
@@ -33,17 +34,26 @@ std::size_t whole_pages(std::size_t bytes) {
 
 }  // namespace
 
+std::uint64_t available_memory() {
+  std::ifstream facts("/proc/meminfo");
+  for (std::string name, rest; facts >> name; std::getline(facts, rest))
+    if (std::uint64_t kibibytes = 0; name == "MemAvailable:" && facts >> kibibytes) return kibibytes << 10;
+  return std::numeric_limits<std::uint64_t>::max();
+}
+
 scene::Error no_shared_memory(std::size_t bytes) {
   return {
       scene::ErrorCode::system_failure,
-      fmt::format("memory ran out: ranks of this machine share {} MiB more than there are; use `share_memory` no, or "
-                  "more machines",
-                  (bytes >> 20) + 1)};
+      fmt::format(
+          "memory ran out: ranks of this machine share {} MiB more than it has; leave out sharing (`without`), or use "
+          "more machines",
+          (bytes >> 20) + 1)};
 }
 
 #ifdef __linux__
 
 SharedPages SharedPages::made(std::size_t bytes) {
+  if (bytes > available_memory()) throw no_shared_memory(bytes);
   bytes = whole_pages(bytes);
   SharedPages pages(memfd_create("tessera", MFD_CLOEXEC), bytes);
   if (pages.descriptor_ < 0 || ftruncate(pages.descriptor_, static_cast<off_t>(bytes)) != 0)

@@ -1,24 +1,16 @@
 #include "frame/host_mesh.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <limits>
 #include <numeric>
-#include <string>
 #include <vector>
+
+#include "exchange/shared_pages.hpp"
 
 namespace tessera::frame {
 namespace {
 
 using scene::Team;
-
-/// Bytes of memory that the machine can still give; the largest number if it does not say.
-std::uint64_t available_memory() {
-  std::ifstream facts("/proc/meminfo");
-  for (std::string name, unit; facts >> name; std::getline(facts, unit))
-    if (std::uint64_t kibibytes = 0; name == "MemAvailable:" && facts >> kibibytes) return kibibytes << 10;
-  return std::numeric_limits<std::uint64_t>::max();
-}
 
 /// Numbers of all members, and how many those before this one have.
 struct Counts {
@@ -67,7 +59,7 @@ HostMesh HostMesh::made(Team& team, const scene::TetMeshView& part, std::span<co
   const std::uint64_t scalars = part.association == scene::Association::point ? vertices.all : cells.all;
   const std::uint64_t bytes = vertices.all * sizeof(glm::dvec3) + cells.all * (sizeof(scene::Tet) + 8) + scalars * 8;
   constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
-  const bool fits = vertices.all <= most && cells.all <= most && bytes <= available_memory() / 2;
+  const bool fits = vertices.all <= most && cells.all <= most && bytes <= exchange::available_memory() / 2;
   if (scene::least_of(std::uint64_t{fits && cells.all > 0}, &team) == 0) return {};
 
   std::vector<std::uint64_t> numbers(global_tet.begin(), global_tet.end());

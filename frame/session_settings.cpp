@@ -103,6 +103,7 @@ DistributedSettings distributed_settings(const Settings& s, int ranks) {
   settings.frames_in_flight = s.ranks.frames_in_flight;
   settings.compositing_on = compositing_settings(s.mesh.device);
   settings.tile_seed = s.ranks.tile_seed;
+  settings.share_memory = s.use.sharing;
   return settings;
 }
 

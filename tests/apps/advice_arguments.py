@@ -85,7 +85,7 @@ ROWS = [
     row(
         R + "--integrator fast", "use exact, sampled:N, preintegrated[:N], partial or auto", R + "--integrator partial"
     ),
-    row(R + "--without sleep", "write some of culling", R + "--without culling,skipping,termination,lattice,merging"),
+    row(R + "--without sleep", "write some of culling", R + "--without culling,skipping,termination,lattice,sharing,merging"),
     row(R + "--background lightgrai", "a colour; did you mean lightgray?", R + "--background lightgray"),
     row(R + "--background qqqqqqqq", "or a name of CSS", R + "--background #102030"),
     row(R + "--background 1,2", "write R,G,B (linear light", R + "--background 0,0.5,1"),

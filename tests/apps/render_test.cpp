@@ -318,7 +318,7 @@ TEST(Render, WithoutAnyOfItsMechanismsThePictureIsTheSame) {
   // How many segments termination spares differs from build to build; without it the counts are the same.
   EXPECT_GT(counter(render("culling,termination"), "segments"), counter(termination, "segments"));
   EXPECT_LE(termination["frames"][0]["verify"]["max_error"], all["frames"][0]["verify"]["max_error"]);
-  render("culling,skipping,termination,lattice,merging");
+  render("culling,skipping,termination,lattice,sharing,merging");
 
   for (const char* words : {"foo", "culling,", ",culling", "culling,,lattice"}) {
     const auto run = tessera({"render", mesh, "-o", folder / "a.pfm", "--without", words});

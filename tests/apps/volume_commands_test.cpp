@@ -87,7 +87,7 @@ TEST(VolumeCommands, WithoutAnyOfItsMechanismsThePictureIsTheSame) {
   EXPECT_EQ(both["bricks_invisible"], 0);
   const auto termination = render("termination");
   EXPECT_GE(termination["voxels_visited"], all["voxels_visited"]);
-  render("culling,skipping,termination,lattice,merging");
+  render("culling,skipping,termination,lattice,sharing,merging");
 }
 
 TEST(VolumeCommands, EveryFormatThatConvertWritesGivesTheSamePicture) {

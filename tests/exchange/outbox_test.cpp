@@ -11,6 +11,7 @@
 #include <random>
 #include <string>
 #include <thread>
+#include <tuple>
 
 #include "exchange/loopback_transport.hpp"
 #include "scene/error.hpp"
@@ -251,6 +252,29 @@ TEST(Outbox, ALaterTileWaitsButTheFirstUnfinishedOneIsNotHeldUp) {
   std::vector<std::uint32_t> order;
   for (const PartHeader& part : heard_of(job.received[0], 0).parts) order.push_back(part.tile);
   EXPECT_EQ(order, (std::vector<std::uint32_t>{0, 1, 2}));
+}
+
+TEST(Outbox, TilesThatArePassedEndWithoutRecordsInTheirOrder) {
+  Job job(1, 100 << 10, 50 << 10);
+  const TileMap map(4, 1, 1);
+  Outbox outbox(job.network.rank(0), job.settings);
+  outbox.begin_frame(0, map, {true, true, true, true}, {});
+  outbox.pass(1);
+  outbox.put(part_of(2, 0, 64, true));
+  outbox.put(part_of(0, 0, 32, false));
+  outbox.flush();  // not full, but it leaves
+  ASSERT_TRUE(job.take(0, true, milliseconds(2000)));
+  ASSERT_TRUE(job.take(0, true, milliseconds(2000)));
+  outbox.put(part_of(0, 1, 32, true));
+  outbox.pass(3);
+  outbox.end_frame({});
+  while (MessageReader(job.received[0].back(), 0).kind() != MessageKind::end)
+    ASSERT_TRUE(job.take(0, true, milliseconds(2000)));
+  const Heard heard = heard_of(job.received[0], 0);
+  std::vector<std::tuple<std::uint32_t, std::uint64_t, bool>> parts;
+  for (const PartHeader& part : heard.parts) parts.emplace_back(part.tile, part.bytes, part.last != 0);
+  EXPECT_EQ(parts, (std::vector<std::tuple<std::uint32_t, std::uint64_t, bool>>{
+                       {0, 32, false}, {0, 32, true}, {1, 0, true}, {2, 64, true}, {3, 0, true}}));
 }
 
 TEST(Outbox, AThreadThatWaitsKeepsNothingBackThatOthersAwait) {

@@ -83,9 +83,9 @@ void PrintTo(const Shape& shape, std::ostream* out) {
   *out << shape.projectors << "x" << shape.compositors << " on " << shape.ranks;
 }
 
-std::vector<FinishedFrame> render(const Parts& parts, const Shape& shape, DistributedSettings settings,
-                                  const std::vector<FrameJob>& jobs, const TransferFunction& function,
-                                  double diagonal = 4, float longest_edge = 0) {
+std::vector<FinishedFrame> render_once(const Parts& parts, const Shape& shape, const DistributedSettings& settings,
+                                       const std::vector<FrameJob>& jobs, const TransferFunction& function,
+                                       double diagonal, float longest_edge) {
   std::vector<FinishedFrame> frames;
   scene::MeshFacts whole;
   for (const scene::TetMesh& part : parts) whole = scene::joined(whole, scene::facts_of(part));
@@ -118,6 +118,33 @@ double difference(const Image& a, const Image& b) {
   double most = 0;
   for (std::size_t i = 0; i < a.rgba.size(); ++i) most = std::max(most, std::fabs(double{a.rgba[i]} - b.rgba[i]));
   return most;
+}
+
+/// Each projector by itself, as on machines of its own, but the pictures that projectors make together are the same.
+std::vector<FinishedFrame> render(const Parts& parts, const Shape& shape, DistributedSettings settings,
+                                  const std::vector<FrameJob>& jobs, const TransferFunction& function,
+                                  double diagonal = 4, float longest_edge = 0) {
+  settings.share_memory = false;
+  auto frames = render_once(parts, shape, settings, jobs, function, diagonal, longest_edge);
+  if (shape.projectors < 2) return frames;
+  settings.share_memory = true;
+  const auto shared = render_once(parts, shape, settings, jobs, function, diagonal, longest_edge);
+  EXPECT_EQ(shared.size(), frames.size());
+  for (std::size_t i = 0; i < std::min(shared.size(), frames.size()); ++i) {
+    const Image &one = frames[i].image, &other = shared[i].image;
+    EXPECT_EQ(one.rgba.size(), other.rgba.size());
+    // Runs are cut and rounded once a projector.
+    if (settings.exchange == Exchange::segments && settings.render.rasterizer != Rasterizer::scanline)
+      EXPECT_TRUE(same_bits(one, other)) << "frame " << i;
+    else
+      EXPECT_LE(difference(one, other), 2e-6) << "frame " << i;
+    const FrameStatistics &a = frames[i].statistics, &b = shared[i].statistics;
+    EXPECT_EQ(a.tets_total, b.tets_total);
+    EXPECT_EQ(a.tets_projected, b.tets_projected);
+    EXPECT_EQ(a.tets_invisible, b.tets_invisible);
+    EXPECT_EQ(a.on_lattice, b.on_lattice);
+  }
+  return frames;
 }
 
 constexpr Shape shapes[] = {{2, 1, 1}, {4, 1, 3}, {4, 3, 1}, {6, 4, 2}, {3, 3, 3}, {8, 8, 8}, {5, 5, 2}, {1, 1, 1}};
