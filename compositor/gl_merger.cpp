@@ -103,9 +103,10 @@ class GlMerger final : public TileMerger {
           add_chain(part, reader);
           break;
         case exchange::RecordKind::cells:
+        case exchange::RecordKind::pixels:
         case exchange::RecordKind::lit_chains:  // a device gives no light
           throw scene::Error(scene::ErrorCode::system_failure,
-                             "exchange: lit segments on a device; all ranks must run the same program");
+                             "exchange: what no device takes; all ranks must run the same program");
         case exchange::RecordKind::tuples: {
           const auto record = reader.take<TupleRecord>();
           check(part, record.pixel);

@@ -51,9 +51,11 @@ TileSender::TileSender(exchange::Transport& transport, int assembler, std::uint3
 void TileSender::send(std::uint32_t tile, const MergedTile& merged) {
   const scene::ImageSize size = merged.image.size;
   const std::uint64_t number = tile;
-  exchange::Bytes record(sizeof number);
+  exchange::Bytes record(sizeof number + merged.pixels.size());
   std::memcpy(record.data(), &number, sizeof number);
-  exchange::append_pixels(record, merged.image, {0, 0, size.width, size.height}, assembler_ != transport_.rank());
+  std::copy(merged.pixels.begin(), merged.pixels.end(), record.begin() + sizeof number);
+  if (merged.pixels.empty())
+    exchange::append_pixels(record, merged.image, {0, 0, size.width, size.height}, assembler_ != transport_.rank());
   exchange::append(record, std::uint64_t{merged.deep_samples.size()});
   if (!merged.deep_samples.empty()) {
     exchange::append_values(record, merged.deep_counts);

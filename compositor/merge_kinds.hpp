@@ -9,5 +9,6 @@ std::unique_ptr<TileMerger> make_segment_merger(const MergeContext& context, con
 std::unique_ptr<TileMerger> make_tuple_merger(const MergeContext& context, const scene::PixelRect& rect);
 std::unique_ptr<TileMerger> make_window_merger(const MergeContext& context, const scene::PixelRect& rect);
 std::unique_ptr<TileMerger> make_run_merger(const MergeContext& context, const scene::PixelRect& rect);
+std::unique_ptr<TileMerger> make_pixel_merger();
 
 }  // namespace tessera::compositor

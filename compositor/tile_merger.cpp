@@ -41,6 +41,8 @@ std::unique_ptr<TileMerger> make_tile_merger(exchange::RecordKind kind, const Me
       return make_window_merger(context, rect);
     case exchange::RecordKind::tuples:
       return make_tuple_merger(context, rect);
+    case exchange::RecordKind::pixels:
+      return make_pixel_merger();
     case exchange::RecordKind::cells:  // for devices alone
       break;
   }

@@ -62,6 +62,8 @@ struct MergedTile {
   /// Deep samples, row by row: how many in each pixel, and all of them. Empty without.
   std::vector<std::uint32_t> deep_counts;
   std::vector<scene::DeepImageSample> deep_samples;
+  /// The tile's pixels as bytes (exchange/packed_pixels.hpp), in place of the image.
+  exchange::Bytes pixels{};
 };
 
 /// One tile of the picture from the fragments of all projectors.

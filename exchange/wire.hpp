@@ -18,14 +18,13 @@
 ///
 /// Records of a part:
 ///   runs       RunRecord each
-///   chains, chains_of_cells  ChainHeader and `links` ChainLinks each: segments of one pixel that touch end to end.
-///   Where one ends
+///   chains, chains_of_cells
+///              ChainHeader and `links` ChainLinks each: segments of one pixel that touch end to end. Where one ends
 ///              the next begins, at the same depth and scalar, so 24 bytes a segment carry all of it in double
 ///              precision: the compositor's picture has the bits of a single process's. Scalars of cell data are the
 ///              same at both ends of a link and are not shared with the next.
-///   lit_chains  the same as chains, with a LinkNormal behind each ChainLink: what light there is on the matter is of
-///   the
-///              compositor's making.
+///   lit_chains the same as chains, with a LinkNormal behind each ChainLink: what light there is on the matter is of
+///              the compositor's making.
 ///   lattice    LatticeHeader and `segments` LatticeSegments each: segments of one pixel in any order, on the frame's
 ///              integer lattice, 16 bytes each (projection/segment_windows.hpp: front, back, scalars): the compositor's
 ///              picture has the bits of a single process's. Where a segment begins at a surface in the volume its front
@@ -34,8 +33,8 @@
 ///              segment is that segment, 16 bytes, integrated by the compositor.
 ///   tuples     TupleRecord each (compositor/tuple_record.hpp), in the order of their cells: Juliachs et al. 2007, 4.1
 ///   cells      CellRecord each (projection/cell_record.hpp), no fragments yet: for the compositor's device to
-///   rasterize.
-///              They come before the projector's other parts of the tile.
+///              rasterize. They come before the projector's other parts of the tile.
+///   pixels     the tile's finished pixels (packed_pixels.hpp), of a projector that has all of its cells: one part
 namespace tessera::exchange {
 
 enum class RecordKind : std::uint8_t {
@@ -46,7 +45,8 @@ enum class RecordKind : std::uint8_t {
   lattice = 5,
   lattice_runs = 6,
   lit_chains = 7,
-  cells = 8
+  cells = 8,
+  pixels = 9
 };
 
 struct FrameBegin {
@@ -66,7 +66,7 @@ struct PartHeader {
   std::uint8_t segments = 0;   ///< of an ascending part: 1: some of its runs are single segments
   std::uint64_t bytes;
   double final_depth;       ///< planar; all of this projector's fragments of the tile before it have been sent
-  std::uint64_t fragments;  ///< runs, links, tuples or cells in the part
+  std::uint64_t fragments;  ///< runs, links, tuples, cells or pixels in the part
 };
 static_assert(sizeof(PartHeader) == 32);
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "compositor/cell_sink.hpp"
+#include "compositor/pixel_sink.hpp"
 #include "compositor/run_sink.hpp"
 #include "compositor/segment_sink.hpp"
 #include "exchange/outbox.hpp"
@@ -41,9 +42,13 @@ exchange::FrameEnd counts_of(const FrameStatistics& s) { return {s, s.on_lattice
 /// What a frame's sinks refer to, and the sinks.
 class FrameSinks {
  public:
-  FrameSinks(const DistributedRun& run, const FrameJob& job, const ProjectorMesh& mesh,
-             exchange::PartWriter::Deliver deliver)
+  /// `packs(tile)`: whether its pixels leave this process.
+  FrameSinks(const DistributedRun& run, const FrameJob& job, const ProjectorMesh& mesh, bool has_all_cells,
+             std::function<bool(std::size_t tile)> packs, exchange::PartWriter::Deliver deliver)
       : settings_(run.settings),
+        makes_pixels_(has_all_cells && run.settings.exchange == Exchange::runs &&
+                      run.settings.compositing_on.backends.empty()),
+        packs_(std::move(packs)),
         mesh_(mesh),
         deliver_(std::move(deliver)),
         cut_(exchange_budget(run.settings).cut),
@@ -73,6 +78,8 @@ class FrameSinks {
   [[nodiscard]] const scene::SurfaceSet& surfaces() const { return surfaces_; }
 
   [[nodiscard]] std::unique_ptr<compositor::TileSink<sorting::DoubleEncoding>> make() const {
+    if (makes_pixels_)
+      return std::make_unique<compositor::PixelSink<sorting::DoubleEncoding>>(scene_, packs_, deliver_);
     if (settings_.render.rasterizer == Rasterizer::scanline)
       return std::make_unique<compositor::TupleSink>(mesh_.longest_edge, deliver_);
     if (settings_.exchange == Exchange::segments)
@@ -88,6 +95,8 @@ class FrameSinks {
     return std::make_unique<compositor::CellSink>(mesh_.global_tet, deliver_);
   }
   [[nodiscard]] std::unique_ptr<compositor::TileSink<sorting::LatticeEncoding>> make_on_lattice() const {
+    if (makes_pixels_)
+      return std::make_unique<compositor::PixelSink<sorting::LatticeEncoding>>(scene_, packs_, deliver_);
     if (settings_.exchange == Exchange::segments)
       return std::make_unique<compositor::SegmentSink<sorting::LatticeEncoding>>(*lattice_, deliver_);
     return std::make_unique<compositor::RunSink<sorting::LatticeEncoding>>(scene_, cut_, deliver_);
@@ -95,6 +104,8 @@ class FrameSinks {
 
  private:
   const DistributedSettings& settings_;
+  bool makes_pixels_;  ///< in place of runs
+  std::function<bool(std::size_t tile)> packs_;
   const ProjectorMesh& mesh_;
   exchange::PartWriter::Deliver deliver_;
   std::uint64_t cut_;
@@ -123,13 +134,21 @@ void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t 
                    exchange::Outbox& outbox) {
   const DistributedSettings& settings = run.settings;
   const ProjectorMesh& mesh = loaded.mesh();
-  const FrameSinks sinks(run, job, mesh, [&](exchange::TilePart part) {
+  const projection::TileGrid grid{job.size, settings.render.tile_size};
+  const exchange::TileMap map(grid.count(), static_cast<int>(settings.roles.compositors.size()), settings.tile_seed);
+  const std::size_t projectors = loaded.team() != nullptr ? loaded.team()->ranks().size() : 1;
+  const auto packs = [&](std::size_t tile) {
+    const int compositor = settings.roles.compositors[static_cast<std::size_t>(map.owner(tile))];
+    return compositor != run.transport.rank() || compositor != settings.roles.assembler();
+  };
+  const bool has_all_cells = projectors == settings.roles.projectors.size();
+  const FrameSinks sinks(run, job, mesh, has_all_cells, packs, [&](exchange::TilePart part) {
     const scene::TraceScope timing(settings.projecting, "pack", number, part.records.size(), 0);
     outbox.put(std::move(part));
   });
   FrameProjector::Task task;
   task.space = &sinks.space();
-  task.grid = {job.size, settings.render.tile_size};
+  task.grid = grid;
   task.function = &run.function;
   task.surfaces = &sinks.surfaces();
   const std::vector<projection::SurfaceFaces> faces = faces_of(
@@ -145,8 +164,6 @@ void project_frame(const DistributedRun& run, const FrameJob& job, std::int32_t 
     task.make_lattice_sink = [&] { return sinks.make_on_lattice(); };
   }
   if (run.device.everywhere && sinks.have_cells()) task.make_cell_sink = [&] { return sinks.make_for_cells(); };
-  const exchange::TileMap map(task.grid.count(), static_cast<int>(settings.roles.compositors.size()),
-                              settings.tile_seed);
   std::vector<int> members;
   if (loaded.team() != nullptr) {
     task.team = loaded.team();

@@ -35,8 +35,11 @@ TEST_F(Mpirun, RawSegmentsGiveTheBytesOfOneProcessForEveryPartitionAndShape) {
   const Folder folder;
   const std::string mesh = folder.cube();
   ASSERT_EQ(tessera({"render", mesh, "-o", folder / "one.pfm", "--size", "70x50", "--quiet"}).status, 0);
-  const std::vector<std::vector<std::string>> shapes{
-      {"--partition", "file"}, {"--partition", "random", "--seed", "7"}, {"--projectors", "1"}, {"--compositors", "1"}};
+  const std::vector<std::vector<std::string>> shapes{{"--partition", "file"},
+                                                     {"--partition", "random", "--seed", "7"},
+                                                     {"--projectors", "1"},
+                                                     {"--compositors", "1"},
+                                                     {"--without", "sharing"}};
   for (const auto& shape : shapes) {
     std::vector<std::string> arguments{"render",  mesh,         "-o",       folder / "ranks.pfm", "--size", "70x50",
                                        "--quiet", "--exchange", "segments", "--threads",          "1"};

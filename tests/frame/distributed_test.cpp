@@ -133,7 +133,7 @@ std::vector<FinishedFrame> render(const Parts& parts, const Shape& shape, Distri
   for (std::size_t i = 0; i < std::min(shared.size(), frames.size()); ++i) {
     const Image &one = frames[i].image, &other = shared[i].image;
     EXPECT_EQ(one.rgba.size(), other.rgba.size());
-    // Runs are cut and rounded once a projector.
+    // Parts are rounded run by run.
     if (settings.exchange == Exchange::segments && settings.render.rasterizer != Rasterizer::scanline)
       EXPECT_TRUE(same_bits(one, other)) << "frame " << i;
     else
@@ -305,6 +305,22 @@ TEST(Distributed, RunsCostTheirRecordsAndLittleMoreAndNeverMoreThanSegments) {
     EXPECT_LE(static_cast<double>(runs.exchange_bytes), 1.1 * static_cast<double>(counted * 32));
     EXPECT_LE(runs.exchange_bytes, segments.exchange_bytes);
   }
+}
+
+TEST(Distributed, ProjectorsThatShareMemoryMakeEachTileOnce) {
+  const scene::TetMesh mesh = datasets::cube(6, 0.2);
+  const auto parts = datasets::parts(mesh, 4, datasets::Partition::interleaved, 5);
+  DistributedSettings settings;
+  settings.render = exact();
+  const std::vector<FrameJob> jobs{{oblique(), {96, 80}}};
+  std::uint64_t runs[2];
+  for (const bool shared : {false, true}) {
+    settings.share_memory = shared;
+    runs[shared ? 1 : 0] = render_once(parts, {4, 4, 4}, settings, jobs, six_knots(), 4, 0).at(0).statistics.fragments;
+  }
+  // Together they send finished pixels, each once; scattered parts are several runs a pixel.
+  EXPECT_LE(runs[1], 96u * 80u);
+  EXPECT_GT(runs[0], 2 * runs[1]);
 }
 
 TEST(Distributed, TakesRanksWithoutCellsARankWithOneAndMoreCompositorsThanTiles) {
