@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "scene/threads.hpp"
+#include "volume/sample_blocks.hpp"
 
 namespace tessera::frame {
 
@@ -16,13 +17,31 @@ std::uint64_t resident_bytes() {
   return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
-std::uint64_t brick_memory(std::uint64_t memory, std::uint64_t resident, scene::ImageSize picture, int threads) {
-  constexpr std::uint64_t mib = 1 << 20, least = 16 * mib, mapped = 8 * mib, a_thread = 2 * mib;
+std::uint64_t bytes_of_frames(const scene::GridGeometry& geometry, const volume::CellRanges& ranges,
+                              const volume::RenderSettings& settings) {
+  // Flags of the frame, those that sort-last splits by, those of surfaces and a copy.
+  std::uint64_t a_cell = 1;
+  if (settings.parts > 1) a_cell += 1;
+  if (!settings.surfaces.empty()) a_cell += 2;
+  if (settings.method == volume::Method::preintegrated) a_cell += 2 * sizeof(float);  // ranges within reach of a step
+  const bool in_steps = settings.method == volume::Method::preintegrated || settings.method == volume::Method::sampled;
+  // A thread that casts rays again, and one that walks to surfaces, have blocks of samples each.
+  const std::uint64_t walks = (in_steps ? 0 : 1) + (settings.surfaces.empty() ? 0 : 1);
+  const auto threads = static_cast<std::uint64_t>(scene::threads_for(settings.threads));
+  return ranges.count() * a_cell + threads * walks * volume::SampleBlocks::most_bytes(geometry) +
+         volume::BrickCache::bytes_of_table({geometry, settings.brick_size, settings.edge_bricks});
+}
+
+std::uint64_t brick_memory(std::uint64_t memory, const BesideBricks& rest, std::uint64_t brick) {
+  constexpr std::uint64_t mib = 1 << 20, least = 16 * mib, a_thread = 2 * mib, heap = 8 * mib;
   constexpr std::uint64_t a_pixel = 5 * sizeof(float);  // RGBA and depth
-  const auto threads_here = static_cast<std::uint64_t>(scene::threads_for(threads));
-  const std::uint64_t pixels = static_cast<std::uint64_t>(picture.width) * static_cast<std::uint64_t>(picture.height);
-  const std::uint64_t rest = resident + 2 * a_pixel * pixels + threads_here * a_thread + mapped;
-  return std::max(std::min(memory, least), memory > rest ? memory - rest : 0);
+  const auto threads = static_cast<std::uint64_t>(scene::threads_for(rest.threads));
+  const auto pixels = static_cast<std::uint64_t>(rest.picture.width) * static_cast<std::uint64_t>(rest.picture.height);
+  const std::uint64_t taken = rest.resident + rest.frames + 2 * a_pixel * pixels + threads * a_thread + heap;
+  const std::uint64_t left = memory > taken ? memory - taken : 0;
+  const double bricks =
+      static_cast<double>(brick) / static_cast<double>(brick + volume::BrickCache::bytes_beside_brick);
+  return std::max(std::min(memory, least), static_cast<std::uint64_t>(static_cast<double>(left) * bricks));
 }
 
 }  // namespace tessera::frame

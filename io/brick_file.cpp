@@ -1,20 +1,20 @@
 #include "io/brick_file.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "io/atomic_file.hpp"
 #include "io/field_choice.hpp"
+#include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
 #include "io/json_text.hpp"
+#include "io/positional_file.hpp"
 #include "io/text_file.hpp"
 #include "io/volume_formats.hpp"
 #include "scene/error.hpp"
@@ -67,41 +67,12 @@ class Blocks {
   std::int64_t side_;
 };
 
-/// An open file that is read by position.
-class Descriptor {
- public:
-  explicit Descriptor(const std::filesystem::path& file)
-      : name_(file.string()), descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
-    if (descriptor_ < 0) fail("cannot be opened");
-  }
-  ~Descriptor() { ::close(descriptor_); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  void read(std::uint64_t at, std::byte* to, std::uint64_t count) const {
-    while (count > 0) {
-      const ssize_t got = ::pread(descriptor_, to, count, static_cast<off_t>(at));
-      if (got < 0 && errno == EINTR) continue;
-      if (got <= 0) fail(fmt::format("cannot be read at byte {}", at));
-      at += static_cast<std::uint64_t>(got), to += got, count -= static_cast<std::uint64_t>(got);
-    }
-  }
-
- private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw scene::Error(scene::ErrorCode::system_failure,
-                       fmt::format("{}: it {}: {}; check the disk", name_, what, std::strerror(errno)));
-  }
-  std::string name_;
-  int descriptor_;
-};
-
 class BrickSource final : public scene::SampleSource {
  public:
-  BrickSource(scene::Grid grid, const std::filesystem::path& file, std::int64_t side, scene::ValueRange whole,
-              std::vector<BlockRange> ranges, std::uint64_t first_byte)
-      : SampleSource(std::move(grid), file.string()),
-        file_(file),
+  BrickSource(scene::Grid grid, const std::filesystem::path& file, const std::string& name, std::int64_t side,
+              scene::ValueRange whole, std::vector<BlockRange> ranges, std::uint64_t first_byte)
+      : SampleSource(std::move(grid), name.empty() ? file.string() : name),
+        file_(file, name),
         side_(side),
         blocks_(geometry().samples(), side),
         whole_(whole),
@@ -174,7 +145,7 @@ class BrickSource final : public scene::SampleSource {
     }
   }
 
-  Descriptor file_;
+  PositionalFile file_;
   std::int64_t side_;
   Blocks blocks_;
   scene::ValueRange whole_;
@@ -251,13 +222,13 @@ BrickHeader parse_brick_header(const std::string& text, const std::filesystem::p
 
 bool looks_like_bricks(std::string_view beginning) { return beginning.starts_with(brick_magic); }
 
-VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& options) {
+VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& options, const std::string& name) {
   const std::uint64_t size = require_file(file);
   std::uint64_t length = 0;
   const std::uint64_t before = brick_magic.size() + sizeof length;
   std::string text;
   {
-    const Descriptor opened(file);
+    const PositionalFile opened(file);
     if (size < before) throw damaged(file, "its header is cut off");
     opened.read(brick_magic.size(), reinterpret_cast<std::byte*>(&length), sizeof length);
     if (length > longest_brick_header || length > size - before) throw damaged(file, "its header is cut off");
@@ -274,7 +245,7 @@ VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& o
       left - count * sizeof(BlockRange) != samples * scene::size_of(header.grid.type))
     throw damaged(file, fmt::format("{} samples in {} blocks do not fit its {} bytes", samples, count, size));
   std::vector<BlockRange> ranges(count);
-  const Descriptor opened(file);
+  const PositionalFile opened(file);
   opened.read(before + length, reinterpret_cast<std::byte*>(ranges.data()), count * sizeof(BlockRange));
 
   VolumeFile result;
@@ -287,58 +258,106 @@ VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& o
   field.nan_count = header.range.blanks;
   result.fields.push_back(field);
   choose_field(options.field, result.fields, file.string());  // refuses any other
-  result.source = std::make_unique<BrickSource>(std::move(header.grid), file, header.side, header.range,
+  result.in_memory = is_inflated(file);
+  result.source = std::make_unique<BrickSource>(std::move(header.grid), file, name, header.side, header.range,
                                                 std::move(ranges), before + length + count * sizeof(BlockRange));
   return result;
 }
+
+namespace {
+
+/// Writes a brick file of a source that it reads once: a row of blocks at a time, blocks on several threads.
+class BrickWriter {
+ public:
+  BrickWriter(const scene::SampleSource& source, int side)
+      : source_(source), grid_(source.grid()), side_(side), blocks_(grid_.geometry.samples(), side) {
+    // Room for ranges as long as numbers can be: these are known last.
+    header_bytes_ = brick_header_of(grid_, side, {}).dump().size() + 3 * 32;
+  }
+
+  [[nodiscard]] std::uint64_t bytes() const {
+    return first_range() + static_cast<std::uint64_t>(blocks_.total()) * sizeof(BlockRange) +
+           static_cast<std::uint64_t>(grid_.geometry.all_samples().count()) * scene::size_of(grid_.type);
+  }
+
+  template <class Out>
+  void write(Out& out) {
+    out.seek(first_range() + static_cast<std::uint64_t>(blocks_.total()) * sizeof(BlockRange));
+    const GridIndex& count = blocks_.count();
+    std::vector<BlockRange> ranges(static_cast<std::size_t>(blocks_.total()));
+    std::vector<std::vector<std::byte>> row(static_cast<std::size_t>(count[0]));
+    scene::ValueRange whole;
+    for (std::int64_t k = 0; k < count[2]; ++k)
+      for (std::int64_t j = 0; j < count[1]; ++j) {
+        tbb::parallel_for(std::int64_t{0}, count[0], [&](std::int64_t i) {
+          const GridIndex b{i, j, k};
+          ranges[static_cast<std::size_t>(blocks_.number(b))] = read(b, row[static_cast<std::size_t>(i)]);
+        });
+        for (std::int64_t i = 0; i < count[0]; ++i) {
+          const std::vector<std::byte>& samples = row[static_cast<std::size_t>(i)];
+          out.write(samples.data(), samples.size());
+          const BlockRange& range = ranges[static_cast<std::size_t>(blocks_.number({i, j, k}))];
+          whole.low = std::min(whole.low, range.low);
+          whole.high = std::max(whole.high, range.high);
+          whole.blanks += range.blanks;
+        }
+      }
+    std::string header = brick_header_of(grid_, side_, whole).dump();
+    header.resize(header_bytes_, ' ');
+    out.seek(0);
+    out.write(brick_magic);
+    out.write(&header_bytes_, sizeof header_bytes_);
+    out.write(header);
+    out.write(ranges.data(), ranges.size() * sizeof(BlockRange));
+  }
+
+ private:
+  [[nodiscard]] std::uint64_t first_range() const { return brick_magic.size() + sizeof header_bytes_ + header_bytes_; }
+
+  BlockRange read(const GridIndex& b, std::vector<std::byte>& samples) const {
+    const SampleBox box = blocks_.box(b);
+    samples.resize(static_cast<std::size_t>(box.count()) * scene::size_of(grid_.type));
+    source_.read(box, {.type = grid_.type}, samples);
+    std::vector<double> values(static_cast<std::size_t>(box.count()));
+    scene::convert_samples(samples.data(), grid_.type, 1, false, box.count(),
+                           reinterpret_cast<std::byte*>(values.data()), scene::SampleType::float64);
+    scene::ValueRange range;
+    for (const double sample : values) {
+      if (!std::isfinite(sample)) {
+        ++range.blanks;
+        continue;
+      }
+      const double value = grid_.value(sample);
+      range.low = std::min(range.low, value);
+      range.high = std::max(range.high, value);
+    }
+    return {range.low, range.high, range.blanks};
+  }
+
+  const scene::SampleSource& source_;
+  const scene::Grid& grid_;
+  int side_;
+  Blocks blocks_;
+  std::uint64_t header_bytes_ = 0;
+};
+
+}  // namespace
 
 void write_bricks(const scene::SampleSource& source, const std::filesystem::path& file, int side) {
   if (side < least_side || side > most_side)
     throw scene::bad_input(
         fmt::format("`block`: {} is not a block's side; give {} to {}", side, least_side, most_side));
-  const scene::Grid& grid = source.grid();
-  const std::size_t size = scene::size_of(grid.type);
-  const Blocks blocks(grid.geometry.samples(), side);
-  std::vector<BlockRange> ranges(static_cast<std::size_t>(blocks.total()));
-  scene::ValueRange whole = scene::value_range(source);
-  const std::string header = brick_header_of(grid, side, whole).dump();
-  const std::uint64_t length = header.size();
-
+  BrickWriter writer(source, side);
   AtomicFile out(file);
-  out.write(brick_magic);
-  out.write(&length, sizeof length);
-  out.write(header);
-  const std::uint64_t table = out.position();
-  out.write(ranges.data(), ranges.size() * sizeof(BlockRange));
-  std::vector<std::byte> samples;
-  std::vector<double> values;
-  GridIndex b{};
-  for (b[2] = 0; b[2] < blocks.count()[2]; ++b[2])
-    for (b[1] = 0; b[1] < blocks.count()[1]; ++b[1])
-      for (b[0] = 0; b[0] < blocks.count()[0]; ++b[0]) {
-        const SampleBox box = blocks.box(b);
-        const auto count = static_cast<std::size_t>(box.count());
-        samples.resize(count * size);
-        source.read(box, {.type = grid.type}, samples);
-        out.write(samples.data(), samples.size());
-        values.resize(count);
-        scene::convert_samples(samples.data(), grid.type, 1, false, box.count(),
-                               reinterpret_cast<std::byte*>(values.data()), scene::SampleType::float64);
-        scene::ValueRange range;
-        for (const double sample : values) {
-          if (!std::isfinite(sample)) {
-            ++range.blanks;
-            continue;
-          }
-          const double value = grid.value(sample);
-          range.low = std::min(range.low, value);
-          range.high = std::max(range.high, value);
-        }
-        ranges[static_cast<std::size_t>(blocks.number(b))] = {range.low, range.high, range.blanks};
-      }
-  out.seek(table);
-  out.write(ranges.data(), ranges.size() * sizeof(BlockRange));
+  writer.write(out);
   out.commit();
+}
+
+std::unique_ptr<ScratchFile> scratch_bricks(const scene::SampleSource& source, const std::string& subject) {
+  BrickWriter writer(source, 64);
+  auto out = std::make_unique<ScratchFile>(subject, writer.bytes());
+  writer.write(*out);
+  return out;
 }
 
 }  // namespace tessera::io

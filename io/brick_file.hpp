@@ -1,8 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <string>
 #include <string_view>
 
+#include "io/scratch_file.hpp"
 #include "io/volume_reader.hpp"
 #include "scene/sample_source.hpp"
 
@@ -13,18 +16,26 @@ namespace tessera::io {
 ///
 ///   bytes 0..7     "TESSBRK1"
 ///   bytes 8..15    uint64 length H of the header
-///   bytes 16..     H bytes of JSON: points [3], association, origin [3], direction [9, column by column], spacing [3],
+///   bytes 16..     H bytes of JSON, blanks at its end: points [3], association, origin [3], direction [9, column by
+///   column], spacing [3],
 ///                  coordinates [3 lists, empty where regular], type, scale, shift, field, block (a side, in samples),
 ///                  low, high, blanks (of all values)
 ///   then           for each block, i fastest: float64 low, float64 high, uint64 blanks (24 bytes)
 ///   then           the samples of each block in the same order, i fastest in it, without padding; blocks at the upper
 ///                  boundary are smaller
 /// Everything little endian. No sample is stored twice: a brick with a border reads from up to 27 blocks.
-VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& options);
+///
+/// `name`: in the messages of later reads; empty: the file's.
+VolumeFile open_bricks(const std::filesystem::path& file, const VolumeOptions& options, const std::string& name = {});
 bool looks_like_bricks(std::string_view beginning);
 
-/// Writes one with blocks of `side` samples (8 to 1024). Reads `source` one layer of blocks at a time. Appears by
-/// rename. Throws Error(bad_input) for a side out of range, Error(system_failure) if it cannot be written.
+/// Writes one with blocks of `side` samples (8 to 1024). Reads `source` once, one row of blocks at a time, on the
+/// threads of the caller's arena. Appears by rename. Throws Error(bad_input) for a side out of range,
+/// Error(system_failure) if it cannot be written.
 void write_bricks(const scene::SampleSource& source, const std::filesystem::path& file, int side = 64);
+
+/// The same as a file of this process's that others can open (scratch_file.hpp), for open_bricks(). Throws
+/// Error(bad_input) of `subject` if there is no room for it.
+std::unique_ptr<ScratchFile> scratch_bricks(const scene::SampleSource& source, const std::string& subject);
 
 }  // namespace tessera::io

@@ -54,7 +54,7 @@ VolumePayload payload_of_file(const StoredVolume& volume, const std::filesystem:
   auto mapped = std::make_shared<const MappedFile>(file);
   const auto kept = [&](std::vector<std::byte> unpacked, std::uint64_t before) {
     auto bytes = std::make_shared<const std::vector<std::byte>>(std::move(unpacked));
-    return VolumePayload{std::span<const std::byte>(*bytes).subspan(before), bytes, false};
+    return VolumePayload{std::span<const std::byte>(*bytes).subspan(before), bytes};
   };
   if (volume.compressed) {
     const std::uint64_t skip = volume.compressed_whole ? 0 : volume.offset;
@@ -71,11 +71,13 @@ VolumePayload payload_of_file(const StoredVolume& volume, const std::filesystem:
                     : samples_of_text(text, end / scene::size_of(volume.number), volume.number, source),
                 wanted.first);
   }
-  if (volume.at_end && wanted.all <= size)
-    return {mapped->bytes().subspan(size - wanted.all + wanted.first, wanted.count), mapped, true};
+  const auto lies_from = [&](std::uint64_t first_byte) {
+    return VolumePayload{mapped->bytes().subspan(first_byte, wanted.count), mapped, {{file, first_byte}}};
+  };
+  if (volume.at_end && wanted.all <= size) return lies_from(size - wanted.all + wanted.first);
   if (volume.offset > size || end > size - volume.offset || (volume.exact_size && end != size - volume.offset))
     throw too_few(volume, wanted, size > volume.offset ? size - volume.offset : 0, source);
-  return {mapped->bytes().subspan(volume.offset + wanted.first, wanted.count), mapped, true};
+  return lies_from(volume.offset + wanted.first);
 }
 
 /// Files of equal parts, one after the other.
@@ -92,10 +94,10 @@ VolumePayload payload_of_slices(const StoredVolume& volume, const Wanted& wanted
     const std::uint64_t last = std::min(wanted.first + wanted.count, (k + 1) * part) - k * part;
     const VolumePayload slice = payload_of_file(volume, volume.slices[k], {first, last - first, part});
     // All at once only where the files can hold it: text and gzip tell as they are read.
-    if (k * part <= wanted.first && slice.from_file) bytes->reserve(std::min(wanted.count, files * part));
+    if (k * part <= wanted.first && slice.in_file) bytes->reserve(std::min(wanted.count, files * part));
     bytes->insert(bytes->end(), slice.bytes.begin(), slice.bytes.end());
   }
-  return {std::span<const std::byte>(*bytes), bytes, false};
+  return {std::span<const std::byte>(*bytes), bytes};
 }
 
 }  // namespace
@@ -114,7 +116,7 @@ VolumePayload interleaved(const StoredVolume& volume, const VolumePayload& plana
   for (std::size_t k = 0; k < samples; ++k)
     for (std::size_t c = 0; c < components; ++c)
       std::memcpy(bytes->data() + (k * components + c) * width, planar.bytes.data() + c * plane + k * width, width);
-  return {std::span<const std::byte>(*bytes), bytes, false};
+  return {std::span<const std::byte>(*bytes), bytes};
 }
 
 }  // namespace tessera::io

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -11,9 +14,13 @@ namespace tessera::io {
 
 /// The samples of a volume, where they lie in the file or, if they had to be unpacked or put together, in memory.
 struct VolumePayload {
-  std::span<const std::byte> bytes;
+  struct Place {
+    std::filesystem::path file;
+    std::uint64_t first_byte;
+  };
+  std::span<const std::byte> bytes;  ///< of a mapping where they lie in the file
   std::shared_ptr<const void> owner;
-  bool from_file = false;
+  std::optional<Place> in_file{};
 };
 
 /// The samples of one step of a volume; with interleaved steps, of all. They are as many as the header says. Throws

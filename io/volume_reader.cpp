@@ -10,6 +10,7 @@
 #include "io/clean_errors.hpp"
 #include "io/field_choice.hpp"
 #include "io/file_kinds.hpp"
+#include "io/file_source.hpp"
 #include "io/gzip.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
@@ -93,7 +94,7 @@ VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const 
       const bool is_signed = volume.wide == StoredVolume::Wide::int64;
       auto values =
           std::make_shared<const std::vector<double>>(doubles_of_int64(payload.bytes, is_signed, volume.swapped));
-      payload = {std::as_bytes(std::span<const double>(*values)), values, false};
+      payload = {std::as_bytes(std::span<const double>(*values)), values};
       volume.swapped = false;
     }
     volume.notes.emplace_back("64-bit integers are held as doubles");
@@ -107,7 +108,7 @@ VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const 
   FieldSummary field{.name = "samples", .components = volume.components, .type = listed_type(volume.number)};
   field.high = 1;  // until it is known; nobody chooses by it
   const FieldChoice choice = choose_field(options.field, std::span(&field, 1), source);
-  const auto source_with = [&](int component) {
+  const auto source_with = [&](int component) -> std::unique_ptr<scene::SampleSource> {
     scene::Grid grid = volume.grid;
     grid.type = volume.number;
     grid.field_name = choice.label;
@@ -126,10 +127,14 @@ VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const 
         volume.interleaved_steps
             ? scene::ComponentChoice{static_cast<int>(volume.steps), static_cast<int>(step), volume.number}
             : scene::ComponentChoice{volume.components, component == magnitude ? -1 : component, volume.number};
+    if (payload.in_file)
+      return std::make_unique<FileSource>(std::move(grid), payload.in_file->file, payload.in_file->first_byte, source,
+                                          of_tuple, volume.swapped);
     return std::make_unique<scene::MemorySource>(std::move(grid), payload.bytes, payload.owner, source, of_tuple,
-                                                 volume.swapped, payload.from_file);
+                                                 volume.swapped);
   };
   result.source = source_with(choice.component);
+  result.in_memory = !payload.in_file || is_inflated(payload.in_file->file);
   field.low = 1, field.high = 0;  // the source's
   if (volume.components > 1 && choice.component != magnitude && volume.grid.shift == 0)
     list_range(scene::value_range(*source_with(magnitude)), field);

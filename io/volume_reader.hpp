@@ -33,6 +33,7 @@ struct VolumeOptions {
 /// A volume whose samples wait in the file, or in memory where they had to be decompressed.
 struct VolumeFile {
   std::unique_ptr<scene::SampleSource> source;
+  bool in_memory = true;             ///< all samples are, so that they could be unpacked or put together
   scene::ValueRange range;           ///< of the chosen field, and its blanks; empty until set_range()
   std::vector<FieldSummary> fields;  ///< low > high: not known until set_range()
   std::vector<std::string> notes;    ///< one line each: what was chosen or applied, or odd about the file
@@ -54,8 +55,8 @@ void require_volume(const std::filesystem::path& file);
 ///   .vti .pvti .vtr .pvtr, .vtk of structured points or a rectilinear grid: by VTK, all of it in memory. Extent,
 ///       origin, spacing and direction apply; pieces have to fill the whole and to agree on its coordinates. A
 ///       curvilinear .vtk is a mesh. 64-bit integers become doubles. Hidden samples are blank.
-///   .mhd .mha: origin, spacing, orientation, slope and offset apply; raw (mapped), compressed or text.
-///   .nrrd .nhdr: space origin and directions, else axis minimums and spacings; raw (mapped), gzip, ascii or hex. A
+///   .mhd .mha: origin, spacing, orientation, slope and offset apply; raw (in place), compressed or text.
+///   .nrrd .nhdr: space origin and directions, else axis minimums and spacings; raw (in place), gzip, ascii or hex. A
 ///       first axis of components is allowed; content "old min" and the measurement frame mean nothing here. Slices in
 ///       several files (LIST, NAME%03d), here and of MetaImage, are put together in memory.
 ///   .nii .nii.gz (NIfTI-1 and 2), or in two files .hdr and .img: sform, else qform, else the spacing alone; slope and
@@ -64,7 +65,7 @@ void require_volume(const std::filesystem::path& file);
 ///       rescale; the slices of one series by their places. Uneven ones are a rectilinear grid.
 ///   NetCDF of three dimensions beside time, MINC 1 and 2, XDMF of one regular or rectilinear grid: by their libraries,
 ///       all of it in memory. Whether NetCDF, HDF5 and XDMF files are volumes, they tell.
-///   .raw: described by the options or by its name, mapped. .bricks: what write_bricks made, read brick by brick.
+///   .raw: described by the options or by its name, in place. .bricks: what write_bricks made, read brick by brick.
 ///   A gzip file of any of these is inflated into memory first, whatever its name.
 ///
 /// World coordinates are the file's own (NIfTI's point right, anterior, up, DICOM's left,

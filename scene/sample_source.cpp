@@ -1,8 +1,6 @@
 #include "scene/sample_source.hpp"
 
 #include <fmt/format.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
@@ -69,77 +67,48 @@ void convert_samples(const std::byte* source, SampleType from, std::int64_t stri
   });
 }
 
-MemorySource::MemorySource(Grid grid, std::span<const std::byte> bytes, std::shared_ptr<const void> owner,
-                           std::string source, std::optional<ComponentChoice> choice, bool swapped, bool from_file)
-    : SampleSource(std::move(grid), std::move(source)),
-      bytes_(bytes),
-      owner_(std::move(owner)),
-      swapped_(swapped),
-      from_file_(from_file) {
-  choice_ = choice ? *choice : ComponentChoice{.type = this->grid().type};
-  const auto tuple = static_cast<std::uint64_t>(choice_.components) * size_of(choice_.type);
-  const auto needed = static_cast<std::uint64_t>(geometry().all_samples().count()) * tuple;
-  if (bytes_.size() < needed)
+void convert_tuples(const std::byte* tuples, const ComponentChoice& choice, bool swapped, std::int64_t count,
+                    std::byte* destination, SampleType to) {
+  const std::size_t number = size_of(choice.type), to_size = size_of(to);
+  if (choice.component >= 0)
+    return convert_samples(tuples + static_cast<std::size_t>(choice.component) * number, choice.type, choice.components,
+                           swapped, count, destination, to);
+  const std::size_t tuple = number * static_cast<std::size_t>(choice.components);
+  with_sample_type(choice.type, [&](auto type) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+      write_as(to, tuple_length<decltype(type)>(tuples + i * tuple, choice.components, swapped),
+               destination + i * to_size);
+  });
+}
+
+void require_samples(const Grid& grid, const ComponentChoice& choice, std::uint64_t bytes, const std::string& source) {
+  const auto tuple = static_cast<std::uint64_t>(choice.components) * size_of(choice.type);
+  const std::int64_t samples = grid.geometry.all_samples().count();
+  const auto needed = static_cast<std::uint64_t>(samples) * tuple;
+  if (bytes < needed)
     throw bad_input(
         fmt::format("{}: {} samples of {} bytes are {} bytes, {} are there; the file is truncated or its "
                     "size is stated wrongly, write it anew",
-                    source_name(), geometry().all_samples().count(), tuple, needed, bytes_.size()));
+                    source, samples, tuple, needed, bytes));
 }
 
-std::uint64_t MemorySource::bytes_read() const { return bytes_read_.load(std::memory_order_relaxed); }
-
-namespace {
-
-/// Threads that read meanwhile get their pages anew.
-void drop_pages(std::span<const std::byte> mapped) {
-  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-  const std::size_t before = (page - reinterpret_cast<std::uintptr_t>(mapped.data()) % page) % page;
-  if (mapped.size() < before + page) return;
-  const auto pages = mapped.subspan(before, (mapped.size() - before) / page * page);
-  madvise(const_cast<std::byte*>(pages.data()), pages.size(), MADV_DONTNEED);
+MemorySource::MemorySource(Grid grid, std::span<const std::byte> bytes, std::shared_ptr<const void> owner,
+                           std::string source, std::optional<ComponentChoice> choice, bool swapped)
+    : SampleSource(std::move(grid), std::move(source)), bytes_(bytes), owner_(std::move(owner)), swapped_(swapped) {
+  choice_ = choice ? *choice : ComponentChoice{.type = this->grid().type};
+  require_samples(this->grid(), choice_, bytes_.size(), source_name());
 }
-
-/// Bytes of a mapped file that count as this process's once rows of `row` bytes, `stride` apart, have been read: the
-/// system maps pages by sixteen.
-std::uint64_t mapped_bytes(std::int64_t rows, std::int64_t row, std::int64_t stride) {
-  constexpr std::int64_t around = 16 * 4096;
-  return static_cast<std::uint64_t>(stride < around ? (rows - 1) * stride + row + around : rows * (row + around));
-}
-
-}  // namespace
 
 void MemorySource::read_samples(const SampleBox& box, const SampleLayout& layout, std::byte* destination) const {
   const GridIndex n = geometry().samples();
-  const std::size_t to_size = size_of(layout.type), number = size_of(choice_.type);
-  const auto tuple = static_cast<std::int64_t>(number) * choice_.components;
-  const std::int64_t count = box.extent(0);
+  const auto to_size = static_cast<std::int64_t>(size_of(layout.type));
+  const auto tuple = static_cast<std::int64_t>(size_of(choice_.type)) * choice_.components;
   for (std::int64_t k = 0; k < box.extent(2); ++k)
     for (std::int64_t j = 0; j < box.extent(1); ++j) {
       const std::int64_t first = ((box.low[2] + k) * n[1] + box.low[1] + j) * n[0] + box.low[0];
-      const std::byte* from = bytes_.data() + first * tuple;
-      std::byte* to =
-          destination + (k * layout.slice_pitch + j * layout.row_pitch) * static_cast<std::int64_t>(to_size);
-      if (choice_.component >= 0) {
-        convert_samples(from + static_cast<std::size_t>(choice_.component) * number, choice_.type, choice_.components,
-                        swapped_, count, to, layout.type);
-        continue;
-      }
-      with_sample_type(choice_.type, [&](auto type) {
-        for (std::int64_t i = 0; i < count; ++i)
-          write_as(layout.type, tuple_length<decltype(type)>(from + i * tuple, choice_.components, swapped_),
-                   to + i * static_cast<std::int64_t>(to_size));
-      });
+      convert_tuples(bytes_.data() + first * tuple, choice_, swapped_, box.extent(0),
+                     destination + (k * layout.slice_pitch + j * layout.row_pitch) * to_size, layout.type);
     }
-  if (!from_file_) return;
-  bytes_read_.fetch_add(static_cast<std::uint64_t>(box.count() * tuple), std::memory_order_relaxed);
-  // Pages of a mapped file count as this process's until they are given back; the system keeps them as it can.
-  constexpr std::uint64_t kept = 8 << 20;
-  const bool whole = count == n[0] && box.extent(1) == n[1];
-  const std::uint64_t mapped =
-      whole ? mapped_bytes(1, box.count() * tuple, 0)
-            : static_cast<std::uint64_t>(box.extent(2)) * mapped_bytes(box.extent(1), count * tuple, n[0] * tuple);
-  const std::uint64_t before = bytes_mapped_.fetch_add(mapped, std::memory_order_relaxed);
-  if (before / kept != (before + mapped) / kept) drop_pages(bytes_);
 }
 
 namespace {

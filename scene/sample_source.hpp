@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -32,19 +31,26 @@ struct ComponentChoice {
   SampleType type = SampleType::float32;  ///< of the tuple's numbers; Grid::type unless the magnitude is asked for
 };
 
-/// Samples in memory or in a mapped file, in the file's order (k slowest, i fastest, components interleaved).
+/// The samples of `count` tuples, `swapped` if of the other byte order: the chosen number of each, as it is or
+/// converted to float32 or float64.
+void convert_tuples(const std::byte* tuples, const ComponentChoice& choice, bool swapped, std::int64_t count,
+                    std::byte* destination, SampleType to);
+
+/// Throws Error(bad_input) unless `bytes` are as many as the grid's samples need, each a tuple; `source` names the
+/// file.
+void require_samples(const Grid& grid, const ComponentChoice& choice, std::uint64_t bytes, const std::string& source);
+
+/// Samples in memory, in the order of files (k slowest, i fastest, components interleaved).
 class MemorySource final : public SampleSource {
  public:
   /// Keeps a copy of the bytes' owner, not of the bytes. Throws Error(bad_input) unless the bytes are as many as the
   /// grid needs. `swapped`: they are of the other byte order than this machine.
   MemorySource(Grid grid, std::span<const std::byte> bytes, std::shared_ptr<const void> owner, std::string source,
-               std::optional<ComponentChoice> choice = std::nullopt, bool swapped = false, bool from_file = false);
+               std::optional<ComponentChoice> choice = std::nullopt, bool swapped = false);
 
   /// Of numbers that it then owns; grid.type becomes theirs.
   template <class T>
   static std::unique_ptr<MemorySource> of(Grid grid, std::vector<T> values, std::string source = "volume");
-
-  [[nodiscard]] std::uint64_t bytes_read() const override;
 
  private:
   void read_samples(const SampleBox& box, const SampleLayout& layout, std::byte* destination) const override;
@@ -52,8 +58,7 @@ class MemorySource final : public SampleSource {
   std::span<const std::byte> bytes_;
   std::shared_ptr<const void> owner_;
   ComponentChoice choice_;
-  bool swapped_, from_file_;
-  mutable std::atomic<std::uint64_t> bytes_read_ = 0, bytes_mapped_ = 0;
+  bool swapped_;
 };
 
 /// Range and blanks of a whole volume: its known_range(), or by reading all of it once, a few MiB at a time.

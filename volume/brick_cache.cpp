@@ -21,12 +21,7 @@ std::uint64_t nanoseconds_since(Clock::time_point begin) {
 
 BrickCache::BrickCache(const scene::SampleSource& source, const BrickLayout& layout, std::uint64_t budget_bytes,
                        CachePolicy policy)
-    : source_(source),
-      layout_(layout),
-      budget_(budget_bytes),
-      policy_(policy),
-      sample_bytes_(scene::size_of(source.grid().type)),
-      entries_(layout.count()) {
+    : source_(source), layout_(layout), budget_(budget_bytes), policy_(policy), entries_(layout.count()) {
   const std::uint64_t largest = bytes_of(0);
   if (largest > budget_)
     throw scene::bad_input(fmt::format(
@@ -37,10 +32,12 @@ BrickCache::BrickCache(const scene::SampleSource& source, const BrickLayout& lay
   holds_all_ = all <= budget_;
 }
 
-std::uint64_t BrickCache::bytes_of(std::size_t brick) const {
-  const scene::GridIndex room = layout_.room(layout_.place(brick));
-  return static_cast<std::uint64_t>(room[0] * room[1] * room[2]) * sample_bytes_;
+std::uint64_t BrickCache::bytes_of(const BrickLayout& layout, std::size_t brick, scene::SampleType type) {
+  const scene::GridIndex room = layout.room(layout.place(brick));
+  return static_cast<std::uint64_t>(room[0] * room[1] * room[2]) * scene::size_of(type);
 }
+
+std::uint64_t BrickCache::bytes_of(std::size_t brick) const { return bytes_of(layout_, brick, source_.grid().type); }
 
 void BrickCache::forget(std::size_t brick) {
   Entry& entry = entries_[brick];

@@ -50,6 +50,15 @@ class BrickCache {
   /// as acquire() does.
   Ahead preload(std::size_t brick, bool evicts, scene::Trace* trace);
 
+  /// Of the samples of a brick.
+  static std::uint64_t bytes_of(const BrickLayout& layout, std::size_t brick, scene::SampleType type);
+  /// Of memory for where the bricks are, held or not, their distances, and which of them a frame shows.
+  static std::uint64_t bytes_of_table(const BrickLayout& layout) {
+    return layout.count() * (sizeof(Entry) + 2 * sizeof(float) + 2);
+  }
+  /// Of memory for a brick's places in the orders of use and distance, and what the heap adds to it.
+  static constexpr std::uint64_t bytes_beside_brick = 128;
+
   [[nodiscard]] Counts counts() const;
   [[nodiscard]] const BrickLayout& layout() const { return layout_; }
   [[nodiscard]] const scene::SampleSource& source() const { return source_; }
@@ -78,7 +87,6 @@ class BrickCache {
   BrickLayout layout_;
   std::uint64_t budget_;
   CachePolicy policy_;
-  std::size_t sample_bytes_;
   bool holds_all_;
 
   mutable std::mutex mutex_;

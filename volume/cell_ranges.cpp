@@ -16,7 +16,16 @@
 namespace tessera::volume {
 namespace {
 
-constexpr std::int64_t block_side = 64;
+/// Voxels, in whole cells, that are read at once: about 64^3, whole rows of what is stored slice by slice.
+scene::GridIndex scan_block_size(const scene::SampleSource& source) {
+  constexpr std::int64_t cell = CellRanges::side, cube = 64, most = cube * cube * cube;
+  if (source.storage_block()[2] > 1) return {cube, cube, cube};
+  const scene::GridIndex voxels = source.geometry().voxels();
+  const auto whole_cells = [](std::int64_t n) { return (n + cell - 1) / cell * cell; };
+  const std::int64_t width = std::min(whole_cells(voxels[0]), most / (cell * cell));
+  const std::int64_t height = std::min(whole_cells(voxels[1]), most / (width * cell) / cell * cell);
+  return {width, height, most / (width * height) / cell * cell};
+}
 
 /// Rounded outwards, so that a range in floats holds the doubles' one.
 float rounded_down(double x) {
@@ -34,9 +43,10 @@ struct BlockTotals {
   std::uint64_t blanks = 0;
 };
 
-/// Voxels from the first to those 64 on, or to the scan's last.
+/// Voxels from the first to a block's size on, or to the scan's last.
 template <class T>
-BlockTotals scan_block(const scene::SampleSource& source, const scene::GridIndex& first_voxel, CellScan& scan) {
+BlockTotals scan_block(const scene::SampleSource& source, const scene::GridIndex& first_voxel,
+                       const scene::GridIndex& size, CellScan& scan) {
   const scene::GridIndex samples = source.geometry().samples(), cells = cells_along(source.geometry());
   scene::GridIndex voxels = source.geometry().voxels();
   voxels[2] = std::min(voxels[2], scan.last * CellRanges::side);
@@ -44,7 +54,7 @@ BlockTotals scan_block(const scene::SampleSource& source, const scene::GridIndex
   scene::SampleBox box;
   for (std::size_t a = 0; a < 3; ++a) {
     box.low[a] = first_voxel[a];
-    box.high[a] = std::min(first_voxel[a] + block_side, voxels[a]) + shared;
+    box.high[a] = std::min(first_voxel[a] + size[a], voxels[a]) + shared;
   }
   std::vector<T> values(static_cast<std::size_t>(box.count()));
   source.read(box, std::span<T>(values));
@@ -103,17 +113,19 @@ CellScan scan_cells(const scene::SampleSource& source, std::int64_t first, std::
   scan.first = first, scan.last = last;
   scan.low.resize(static_cast<std::size_t>(cells[0] * cells[1] * (last - first)));
   scan.high.resize(scan.low.size());
-  constexpr std::int64_t layers = block_side / CellRanges::side;  // of cells in a block
-  const scene::GridIndex blocks{(voxels[0] + block_side - 1) / block_side, (voxels[1] + block_side - 1) / block_side,
+  const scene::GridIndex size = scan_block_size(source);
+  const std::int64_t layers = size[2] / CellRanges::side;  // of cells in a block
+  const scene::GridIndex blocks{(voxels[0] + size[0] - 1) / size[0], (voxels[1] + size[1] - 1) / size[1],
                                 (last - first + layers - 1) / layers};
   std::mutex mutex;
   tbb::task_arena arena(scene::threads_for(threads));
   arena.execute([&] {
     tbb::parallel_for(std::int64_t{0}, blocks[0] * blocks[1] * blocks[2], [&](std::int64_t n) {
-      const scene::GridIndex first_voxel{n % blocks[0] * block_side, n / blocks[0] % blocks[1] * block_side,
-                                         n / blocks[0] / blocks[1] * block_side + first * CellRanges::side};
-      const BlockTotals totals = scene::fits_float(source.grid().type) ? scan_block<float>(source, first_voxel, scan)
-                                                                       : scan_block<double>(source, first_voxel, scan);
+      const scene::GridIndex first_voxel{n % blocks[0] * size[0], n / blocks[0] % blocks[1] * size[1],
+                                         n / blocks[0] / blocks[1] * size[2] + first * CellRanges::side};
+      const BlockTotals totals = scene::fits_float(source.grid().type)
+                                     ? scan_block<float>(source, first_voxel, size, scan)
+                                     : scan_block<double>(source, first_voxel, size, scan);
       const std::lock_guard lock(mutex);
       scan.lowest = std::min(scan.lowest, totals.lowest);
       scan.highest = std::max(scan.highest, totals.highest);

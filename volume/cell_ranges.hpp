@@ -26,7 +26,8 @@ struct CellScan {
 /// Cells of 8^3 voxels along each axis.
 scene::GridIndex cells_along(const scene::GridGeometry& geometry);
 
-/// Reads the samples of layers first <= c < last once, in boxes of 64^3 voxels and the samples they share with others.
+/// Reads the samples of layers first <= c < last once, in boxes of some 64^3 voxels and the samples they share with
+/// others: cubes, or whole rows where a source is stored slice by slice.
 CellScan scan_cells(const scene::SampleSource& source, std::int64_t first, std::int64_t last, int threads);
 
 /// Smallest and largest lane scalar in every block of 8^3 voxels: what empty space is skipped by, for any brick size.
@@ -43,9 +44,6 @@ struct CellRanges {
   CellRanges(const scene::SampleSource& source, int threads);
 
   [[nodiscard]] std::size_t count() const { return low.size(); }
-  /// Of memory, with what each frame keeps of which cells are visible.
-  [[nodiscard]] std::size_t bytes() const { return count() * (2 * sizeof(float) + 1); }
-
   scene::GridIndex cells{0, 0, 0};
   std::vector<float> low, high;
   scene::ValueRange range;  ///< values, and number of blanks, of the whole volume

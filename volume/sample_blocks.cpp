@@ -18,6 +18,14 @@ SampleBlocks::SampleBlocks(const scene::SampleSource& source)
       shared_(source.geometry().association == scene::Association::point ? 1 : 0),
       blocks_(blocks_kept) {}
 
+std::uint64_t SampleBlocks::most_bytes(const scene::GridGeometry& geometry) {
+  double all = 1;
+  for (const std::int64_t n : geometry.voxels()) all *= static_cast<double>((n + block_side - 1) / block_side);
+  constexpr std::uint64_t side = block_side + 1;
+  return static_cast<std::uint64_t>(std::min(all, static_cast<double>(blocks_kept))) * side * side * side *
+         sizeof(double);
+}
+
 std::array<double, 8> SampleBlocks::corners(const scene::GridIndex& voxel) {
   const scene::GridIndex place{voxel[0] / block_side, voxel[1] / block_side, voxel[2] / block_side};
   Block& block = blocks_[static_cast<std::size_t>(place[0] + 7 * place[1] + 49 * place[2]) % blocks_kept];

@@ -14,6 +14,9 @@ class SampleBlocks {
  public:
   explicit SampleBlocks(const scene::SampleSource& source);
 
+  /// Of memory that one may come to hold.
+  static std::uint64_t most_bytes(const scene::GridGeometry& geometry);
+
   /// The values at a voxel's corners, (a, b, c) being number a + 2 b + 4 c; all the same for cell data. NaN where
   /// blank.
   [[nodiscard]] std::array<double, 8> corners(const scene::GridIndex& voxel);

@@ -1,0 +1,84 @@
+#include "io/scratch_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <system_error>
+#include <utility>
+
+#include "scene/error.hpp"
+
+namespace tessera::io {
+namespace {
+
+/// A file without a name; -1 and errno.
+int nameless_file(const std::filesystem::path& folder) {
+  const int file = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  // EISDIR and EOPNOTSUPP are how kernels and file systems without O_TMPFILE say so; other failures will show again.
+  if (file >= 0) return file;
+  std::string name = (folder / "tessera-XXXXXX").string();
+  const int named = ::mkostemp(name.data(), O_CLOEXEC);
+  if (named >= 0) ::unlink(name.c_str());
+  return named;
+}
+
+/// 0, or why there is no room for so many bytes, as far as can be known before they are written.
+int room_for(int file, std::uint64_t bytes) {
+  // Past this limit a signal comes, which would end the process.
+  rlimit most{};
+  if (::getrlimit(RLIMIT_FSIZE, &most) == 0 && most.rlim_cur != RLIM_INFINITY && bytes > most.rlim_cur) return EFBIG;
+  if (::fallocate(file, 0, 0, static_cast<off_t>(bytes)) == 0) return 0;
+  return errno == ENOSPC || errno == EDQUOT || errno == EFBIG ? errno : 0;
+}
+
+}  // namespace
+
+ScratchFile::ScratchFile(std::string subject, std::uint64_t bytes) : subject_(std::move(subject)), bytes_(bytes) {
+  const char* const named = std::getenv("TMPDIR");
+  folder_ = named != nullptr && *named != '\0' ? named : "/tmp";
+  descriptor_ = nameless_file(folder_);
+  if (descriptor_ < 0) fail(errno);
+  if (const int error_number = room_for(descriptor_, bytes_); error_number != 0) {
+    ::close(descriptor_);
+    fail(error_number);
+  }
+}
+
+ScratchFile::~ScratchFile() { ::close(descriptor_); }
+
+void ScratchFile::write(const void* bytes, std::size_t count) {
+  const char* next = static_cast<const char*>(bytes);
+  while (count > 0) {
+    const ssize_t written =
+        ::pwrite(descriptor_, next, std::min(count, std::size_t{1} << 30), static_cast<off_t>(position_));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(errno);
+    next += written;
+    position_ += static_cast<std::uint64_t>(written);
+    count -= static_cast<std::size_t>(written);
+  }
+}
+
+std::filesystem::path ScratchFile::path() const { return fmt::format("/proc/{}/fd/{}", ::getpid(), descriptor_); }
+
+void ScratchFile::fail(int error_number) const {
+  throw scene::Error(
+      scene::ErrorCode::bad_input, subject_,
+      fmt::format("its samples for all ranks of a machine, {}, cannot be kept in {}: {}", size_in_words(bytes_),
+                  folder_.string(), std::generic_category().message(error_number)),
+      "free some space there, set TMPDIR to another folder, or convert it to .bricks once and render that");
+}
+
+std::string size_in_words(std::uint64_t bytes) {
+  const auto b = static_cast<double>(bytes);
+  if (bytes >= 1'000'000'000) return fmt::format("{:.3g} GB", b * 1e-9);
+  if (bytes >= 1'000'000) return fmt::format("{:.3g} MB", b * 1e-6);
+  return fmt::format("{:.3g} kB", std::max(1.0, b * 1e-3));
+}
+
+}  // namespace tessera::io
