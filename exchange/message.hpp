@@ -21,7 +21,7 @@ namespace tessera::exchange {
 static_assert(std::endian::native == std::endian::little, "messages are little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 21;        ///< the next one whenever a message changes
+inline constexpr std::uint16_t wire_version = 22;        ///< the next one whenever a message changes
 
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
@@ -89,6 +89,9 @@ enum class MessageKind : std::uint16_t {
   machine = 53,      ///< text: which machine's memory the sender sees, empty: it shares none (shared_pages.cpp)
   pages_offer = 54,  ///< u64 process, u64 key, i64 descriptor of pages for ranks of one machine, -1: none
   pages_seen = 55,   ///< u8: 1: the sender sees the pages
+  volume_description = 57,  ///< nothing, unless the sender has read the file; text path of the samples, empty: the file
+  ///< itself, text folder, u64 bytes, u64 fields, fields, texts of notes, text format, u8 axes
+  ///< of a body, u64 time steps, u64 step
   // Channel fragments, to oneself.
   wake = 56,  ///< nothing: all frames of the list are finished
   // All channels.

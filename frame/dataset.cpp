@@ -17,6 +17,7 @@
 #include "frame/render.hpp"
 #include "frame/roles.hpp"
 #include "frame/scan_together.hpp"
+#include "frame/shared_volume.hpp"
 #include "frame/transfer_function_choice.hpp"
 #include "frame/uncut_mesh.hpp"
 #include "io/foreign_data.hpp"
@@ -58,7 +59,7 @@ std::shared_ptr<Dataset::State> opened_grid(const std::filesystem::path& file, c
   auto state = std::make_shared<Dataset::State>();
   io::VolumeFile volume = [&] {
     const scene::TraceScope timing(trace, "read");
-    return io::open_unscanned_volume(file, volume_options(options));
+    return frame::open_shared_volume(transport, file, volume_options(options), options.threads);
   }();
   const auto& threshold = options.selection.threshold;
   if (threshold)

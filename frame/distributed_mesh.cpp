@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "exchange/collectives.hpp"
+#include "frame/field_message.hpp"
 #include "frame/mesh_input.hpp"
 #include "frame/reduce.hpp"
 #include "io/block_choice.hpp"
@@ -20,46 +21,6 @@ using exchange::MessageReader;
 using exchange::Transport;
 
 // What ranks agree on of a mesh; exchange/message.hpp lists the messages.
-
-void append_texts(Bytes& message, const std::vector<std::string>& texts) {
-  append(message, std::uint64_t{texts.size()});
-  for (const std::string& text : texts) append_text(message, text);
-}
-
-std::vector<std::string> take_texts(MessageReader& reader) {
-  std::vector<std::string> texts;
-  for (auto left = reader.take<std::uint64_t>(); left > 0; --left) texts.push_back(reader.take_text());
-  return texts;
-}
-
-scene::Association take_association(MessageReader& reader) {
-  return reader.take<std::uint8_t>() == 0 ? scene::Association::point : scene::Association::cell;
-}
-
-/// Text name, u8 association, i32 components, text type, f64 low, high, u64 nan_count, u8 active.
-void append_field(Bytes& message, const io::FieldSummary& f) {
-  append_text(message, f.name);
-  append(message, static_cast<std::uint8_t>(f.association));
-  append(message, std::int32_t{f.components});
-  append_text(message, f.type);
-  append(message, f.low);
-  append(message, f.high);
-  append(message, f.nan_count);
-  append(message, std::uint8_t{f.active});
-}
-
-io::FieldSummary take_field(MessageReader& reader) {
-  io::FieldSummary f;
-  f.name = reader.take_text();
-  f.association = take_association(reader);
-  f.components = reader.take<std::int32_t>();
-  f.type = reader.take_text();
-  f.low = reader.take<double>();
-  f.high = reader.take<double>();
-  f.nan_count = reader.take<std::uint64_t>();
-  f.active = reader.take<std::uint8_t>() != 0;
-  return f;
-}
 
 Bytes message_of(const std::vector<io::FieldTally>& tallies, const scene::Box& box,
                  const std::vector<std::string>& block_names) {
@@ -92,8 +53,7 @@ Bytes message_of(const io::MeshFile& file) {
   Bytes message = exchange::begin_message(MessageKind::mesh_description);
   append(message, file.counts);
   append(message, file.higher_order);
-  append(message, std::uint64_t{file.fields.size()});
-  for (const io::FieldSummary& f : file.fields) append_field(message, f);
+  append_fields(message, file.fields);
   append_texts(message, file.notes);
   append_texts(message, file.blocks);
   append_texts(message, file.surfaces);
@@ -109,7 +69,7 @@ io::MeshFile description_in(MessageReader& reader) {
   io::MeshFile file;
   file.counts = reader.take<io::MeshCounts>();
   file.higher_order = reader.take<io::HigherOrderCells>();
-  for (auto left = reader.take<std::uint64_t>(); left > 0; --left) file.fields.push_back(take_field(reader));
+  file.fields = take_fields(reader);
   file.notes = take_texts(reader);
   file.blocks = take_texts(reader);
   file.surfaces = take_texts(reader);

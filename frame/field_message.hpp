@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "exchange/message.hpp"
+#include "io/mesh_reader.hpp"
+#include "scene/grid.hpp"
+
+/// What descriptions of data sets have in common as messages.
+namespace tessera::frame {
+
+/// u64 number, texts.
+void append_texts(exchange::Bytes& message, const std::vector<std::string>& texts);
+std::vector<std::string> take_texts(exchange::MessageReader& reader);
+
+scene::Association take_association(exchange::MessageReader& reader);
+
+/// Text name, u8 association, i32 components, text type, f64 low, high, u64 nan_count, u8 active.
+void append_field(exchange::Bytes& message, const io::FieldSummary& field);
+io::FieldSummary take_field(exchange::MessageReader& reader);
+
+/// u64 number, fields.
+void append_fields(exchange::Bytes& message, const std::vector<io::FieldSummary>& fields);
+std::vector<io::FieldSummary> take_fields(exchange::MessageReader& reader);
+
+}  // namespace tessera::frame
