@@ -84,14 +84,12 @@ enum class MessageKind : std::uint16_t {
   open_faces = 47,        ///< list of OpenFace (frame/boundary_faces.cpp): that one tet of a rank's part has alone
   speed = 50,             ///< f64 samples a second of the last frame, 0: unknown
   ray_tets = 48,          ///< list of RayTet (frame/probe.cpp): those of a rank's part that a ray meets
-  curved_part = 40,  ///< frame/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
-  next_frame = 52,   ///< u8: 1: there is one more
-  machine = 53,      ///< text: which machine's memory the sender sees, empty: it shares none (shared_pages.cpp)
-  pages_offer = 54,  ///< u64 process, u64 key, i64 descriptor of pages for ranks of one machine, -1: none
-  pages_seen = 55,   ///< u8: 1: the sender sees the pages
-  volume_description = 57,  ///< nothing, unless the sender has read the file; text path of the samples, empty: the file
-  ///< itself, text folder, u64 bytes, u64 fields, fields, texts of notes, text format, u8 axes
-  ///< of a body, u64 time steps, u64 step
+  curved_part = 40,   ///< frame/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
+  next_frame = 52,    ///< u8: 1: there is one more
+  machine = 53,       ///< text: which machine's memory the sender sees, empty: it shares none (shared_pages.cpp)
+  pages_offer = 54,   ///< u64 process, u64 key, i64 descriptor of pages for ranks of one machine, -1: none
+  pages_seen = 55,    ///< u8: 1: the sender sees the pages
+  volume_facts = 57,  ///< what the sender has read of a volume, and where its samples are (frame/shared_volume.cpp)
   // Channel fragments, to oneself.
   wake = 56,  ///< nothing: all frames of the list are finished
   // All channels.

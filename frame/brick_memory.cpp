@@ -7,6 +7,8 @@
 
 #include "scene/threads.hpp"
 #include "volume/sample_blocks.hpp"
+#include "volume/slab_block.hpp"
+#include "volume/tile_rays.hpp"
 
 namespace tessera::frame {
 
@@ -17,8 +19,23 @@ std::uint64_t resident_bytes() {
   return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
+namespace {
+
+/// Of samples that a thread lays out for a tile's rays (volume/slab_block.hpp), if the volume fills the picture. From
+/// farther away a tile sees more of it.
+std::uint64_t bytes_of_tile(const scene::GridGeometry& geometry, scene::ImageSize picture) {
+  constexpr double pixels = volume::TileRays::side, leaning = 1.5, beside = 10;
+  scene::GridIndex samples = geometry.samples();
+  std::ranges::sort(samples);
+  const double across = pixels * leaning * static_cast<double>(samples[2]) / std::min(picture.width, picture.height);
+  const auto along = [&](std::size_t a) { return std::min(across + beside, static_cast<double>(samples[a])); };
+  return static_cast<std::uint64_t>(along(1) * along(2)) * volume::SlabBlock::slices * sizeof(float);
+}
+
+}  // namespace
+
 std::uint64_t bytes_of_frames(const scene::GridGeometry& geometry, const volume::CellRanges& ranges,
-                              const volume::RenderSettings& settings) {
+                              const volume::RenderSettings& settings, scene::ImageSize picture) {
   // Flags of the frame, those that sort-last splits by, those of surfaces and a copy.
   std::uint64_t a_cell = 1;
   if (settings.parts > 1) a_cell += 1;
@@ -27,8 +44,9 @@ std::uint64_t bytes_of_frames(const scene::GridGeometry& geometry, const volume:
   const bool in_steps = settings.method == volume::Method::preintegrated || settings.method == volume::Method::sampled;
   // A thread that casts rays again, and one that walks to surfaces, have blocks of samples each.
   const std::uint64_t walks = (in_steps ? 0 : 1) + (settings.surfaces.empty() ? 0 : 1);
+  const std::uint64_t a_thread = walks * volume::SampleBlocks::most_bytes(geometry) + bytes_of_tile(geometry, picture);
   const auto threads = static_cast<std::uint64_t>(scene::threads_for(settings.threads));
-  return ranges.count() * a_cell + threads * walks * volume::SampleBlocks::most_bytes(geometry) +
+  return ranges.count() * a_cell + threads * a_thread +
          volume::BrickCache::bytes_of_table({geometry, settings.brick_size, settings.edge_bricks});
 }
 

@@ -20,10 +20,10 @@ struct BesideBricks {
   int threads = 0;
 };
 
-/// What frames keep of which cells and bricks show, the cache of where bricks are, and threads of samples for rays that
-/// are cast in double precision.
+/// What frames of this size keep: of which cells and bricks show, in the cache of where bricks are, and a thread of the
+/// samples of its tile and of those for rays that are cast in double precision.
 std::uint64_t bytes_of_frames(const scene::GridGeometry& geometry, const volume::CellRanges& ranges,
-                              const volume::RenderSettings& settings);
+                              const volume::RenderSettings& settings, scene::ImageSize picture);
 
 /// What of a process's `memory` is left for bricks of `brick` bytes beside the rest of it: what it holds, the picture
 /// and its copy on the way out, what each thread keeps for its tiles, what the heap and the cache add to each brick. At

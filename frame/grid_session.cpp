@@ -160,7 +160,7 @@ class GridByRays final : public Session::State {
     const scene::TraceScope timing(trace_, "prepare");
     grid.trace = trace_;
     const scene::Grid& samples = data().samples->grid();
-    const std::uint64_t frames = frame::bytes_of_frames(samples.geometry, *data().ranges, grid);
+    const std::uint64_t frames = frame::bytes_of_frames(samples.geometry, *data().ranges, grid, *size);
     const std::uint64_t brick =
         volume::BrickCache::bytes_of({samples.geometry, grid.brick_size, grid.edge_bricks}, 0, samples.type);
     grid.memory_bytes = frame::brick_memory(grid.memory_bytes, {resident_, frames, *size, grid.threads}, brick);

@@ -58,8 +58,10 @@ struct Place {
   std::uint64_t bytes = 0;
 };
 
+/// Text path, text folder, u64 bytes, fields, texts of notes, text format, u8 axes of a body, u64 time steps, u64 step.
+/// Nothing of a rank that has not read the file.
 Bytes message_of(const io::VolumeFile& volume, const Place& place) {
-  Bytes message = exchange::begin_message(MessageKind::volume_description);
+  Bytes message = exchange::begin_message(MessageKind::volume_facts);
   append_text(message, place.path);
   append_text(message, place.folder);
   append(message, place.bytes);
@@ -109,6 +111,7 @@ class Leader {
     if (!written_) return message_of(volume_, {});
     return message_of(volume_, {written_->path(), written_->folder(), written_->bytes()});
   }
+  [[nodiscard]] bool in_memory() const { return volume_.in_memory && !written_; }
   /// Null once they are written.
   std::unique_ptr<scene::SampleSource> take_samples() { return std::move(volume_.source); }
 
@@ -148,14 +151,14 @@ io::VolumeFile open_shared_volume(exchange::Transport& transport, const std::fil
   std::optional<Leader> own;
   if (leader_of[self] == self) own.emplace(file, options, ranks_of(self) > 1, threads);
   const std::vector<Bytes> all =
-      exchange::gather_all(transport, own ? own->message() : exchange::begin_message(MessageKind::volume_description));
+      exchange::gather_all(transport, own ? own->message() : exchange::begin_message(MessageKind::volume_facts));
 
   std::optional<Place> first;
   std::size_t sharing = 0, machines = 0;
   io::VolumeFile volume;
   for (std::size_t rank = 0; rank < all.size(); ++rank) {
     if (leader_of[rank] != rank) continue;
-    MessageReader reader(all[rank], static_cast<int>(rank), MessageKind::volume_description);
+    MessageReader reader(all[rank], static_cast<int>(rank), MessageKind::volume_facts);
     const Place place = place_in(reader);
     if (!place.path.empty()) {
       if (!first) first = place;
@@ -163,6 +166,7 @@ io::VolumeFile open_shared_volume(exchange::Transport& transport, const std::fil
     }
     if (rank != leader_of[self]) continue;
     volume = description_in(reader);
+    volume.in_memory = own && own->in_memory();
     if (own) volume.source = own->take_samples();
     if (!volume.source) volume.source = samples_at(place, file, options);
   }

@@ -10,7 +10,7 @@ DEFECT = "a defect of ours, which users are to report"
 HUGE = "takes more than 2^31 or 2^32 points or cells, or gigabytes"
 DISK = "needs a disk that fails while it is read or written"
 ROOT = "rights do not bind root, as which tests may run"
-RANKS = "needs several processes; apps/mpirun_test.cpp"
+RANKS = "needs several processes; apps/mpirun_test.cpp, apps/shared_volumes_test.cpp"
 LIBRARY = "only callers of the library can; the program asks the same sooner, in its own words, or has no such option"
 ANSWER = "checks a reader's answer; the reader refuses such files sooner, so that a row would need a damaged helper"
 HDF5 = "needs HDF5 files, which nothing but HDF5's library writes; io's tests of the format write them"
@@ -20,7 +20,7 @@ SERVER = "said by a server, which does not end; server/serve_test.py and server/
 TIME = "takes minutes: a limit of time or of tets that sound files do not come near"
 
 EXCEPTIONS = {
-    r"apps/main\.cpp:\d+: standard input: only one process has it": (1, RANKS),
+    r"apps/main\.cpp:\d+: standard input: only one process has it|^io/scratch_file\.cpp:\d+: ": (2, RANKS),
     r"this build leaves (out|\.(jpg|tif) out); build with|^io/tetgen_absent": (13, OTHER_BUILD),
     r"this build has no server; configure": (1, OTHER_BUILD),
     r"^apps/state_words\.cpp:\d+: state|^apps/serve_scene\.cpp:\d+": (11, SERVER),
