@@ -27,7 +27,7 @@ std::uint64_t bytes_of_frames(const scene::GridGeometry& geometry, const volume:
 
 /// What of a process's `memory` is left for bricks of `brick` bytes beside the rest of it: what it holds, the picture
 /// and its copy on the way out, what each thread keeps for its tiles, what the heap and the cache add to each brick. At
-/// least 16 MiB, or all of `memory` if that is less: so small budgets are exceeded by the program itself.
+/// least 8 MiB, or all of `memory` if that is less: so small budgets are exceeded by the program itself.
 std::uint64_t brick_memory(std::uint64_t memory, const BesideBricks& rest, std::uint64_t brick);
 
 }  // namespace tessera::frame

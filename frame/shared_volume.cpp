@@ -47,6 +47,7 @@ std::vector<std::size_t> leaders(exchange::Transport& transport) {
   for (const Bytes& message : exchange::gather_all(transport, std::move(own)))
     machines.push_back(MessageReader(message, static_cast<int>(machines.size()), MessageKind::host).take_text());
   std::vector<std::size_t> leaders;
+  leaders.reserve(machines.size());
   for (const std::string& name : machines)
     leaders.push_back(static_cast<std::size_t>(std::ranges::find(machines, name) - machines.begin()));
   return leaders;

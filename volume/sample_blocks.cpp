@@ -20,7 +20,10 @@ SampleBlocks::SampleBlocks(const scene::SampleSource& source)
 
 std::uint64_t SampleBlocks::most_bytes(const scene::GridGeometry& geometry) {
   double all = 1;
-  for (const std::int64_t n : geometry.voxels()) all *= static_cast<double>((n + block_side - 1) / block_side);
+  for (const std::int64_t n : geometry.voxels()) {
+    const std::int64_t blocks = (n + block_side - 1) / block_side;
+    all *= static_cast<double>(blocks);
+  }
   constexpr std::uint64_t side = block_side + 1;
   return static_cast<std::uint64_t>(std::min(all, static_cast<double>(blocks_kept))) * side * side * side *
          sizeof(double);

@@ -162,7 +162,7 @@ TEST(BrickMemory, IsWhatTheRestOfTheProcessLeaves) {
   // The picture twice (10 MiB), a thread, the heap; a hundredth for what each brick costs beside its samples.
   EXPECT_LT(left, (1024 - 200 - 30 - 10) * mib);
   EXPECT_GT(left, (1024 - 200 - 30 - 10 - 20) * mib * 99 / 100);
-  EXPECT_EQ(brick_memory(64 * mib, rest, brick), 16 * mib);
+  EXPECT_EQ(brick_memory(64 * mib, rest, brick), 8 * mib);
   EXPECT_EQ(brick_memory(mib, rest, brick), mib);
   // Small bricks cost more beside their samples.
   EXPECT_LT(brick_memory(1024 * mib, rest, 729), left * 9 / 10);
