@@ -28,9 +28,7 @@ void PixelSink<Encoding>::finish() {
 
 template <class Encoding>
 void PixelSink<Encoding>::end_tile() {
-  const auto area = static_cast<std::uint64_t>(tile_rect_.area());
   exchange::append_pixels(writer_.records(), image_, {0, 0, tile_rect_.width(), tile_rect_.height()}, packs_(tile_));
-  writer_.count(area);
   writer_.end_tile();
 }
 

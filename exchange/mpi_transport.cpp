@@ -124,10 +124,10 @@ class MpiTransport::Engine {
     if (!working) wake();
   }
 
-  void use_bells(std::shared_ptr<Bells> bells) {
+  void use_bells(const std::shared_ptr<Bells>& bells) {
     {
       const std::lock_guard lock(mutex_);
-      bells_ = std::move(bells);
+      bells_ = bells;
     }
     changed_.notify_all();
   }
@@ -467,7 +467,7 @@ std::optional<Message> MpiTransport::receive(Channel channel, std::chrono::milli
 }
 void MpiTransport::fail(const scene::Error& error) { engine_->fail(error); }
 void MpiTransport::set_working(bool working) { engine_->set_working(working); }
-void MpiTransport::use_bells(std::shared_ptr<Bells> bells) { engine_->use_bells(std::move(bells)); }
+void MpiTransport::use_bells(const std::shared_ptr<Bells>& bells) { engine_->use_bells(bells); }
 void MpiTransport::watch_stalls(const StallSettings& settings) { engine_->watch_stalls(settings); }
 void MpiTransport::check() const { engine_->mailboxes.check(); }
 void MpiTransport::trace_to(scene::Trace* projecting, scene::Trace* compositing) {

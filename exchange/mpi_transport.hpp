@@ -71,7 +71,7 @@ class MpiTransport final : public Transport {
   void fail(const scene::Error& error) override;
   void check() const override;
   void set_working(bool working) override;
-  void use_bells(std::shared_ptr<Bells> bells) override;
+  void use_bells(const std::shared_ptr<Bells>& bells) override;
   void trace_to(scene::Trace* projecting, scene::Trace* compositing) override;
   [[nodiscard]] Traffic sent(Channel channel) const override;
 

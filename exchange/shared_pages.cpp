@@ -88,13 +88,15 @@ bool SharedPages::map() {
 
 namespace {
 
-/// What tells whether two processes can see each other's descriptors; empty: unknown.
+/// What tells whether two processes can see each other's descriptors; empty: unknown. Processes in two networks are as
+/// on two machines, though they might: who gives them networks of their own wants machines.
 std::string machine() {
   std::string boot;
   std::getline(std::ifstream("/proc/sys/kernel/random/boot_id"), boot);
   struct stat processes {};
-  if (boot.empty() || stat("/proc/self/ns/pid", &processes) != 0) return {};
-  return fmt::format("{} {} {}", boot, processes.st_ino, geteuid());
+  struct stat network {};
+  if (boot.empty() || stat("/proc/self/ns/pid", &processes) != 0 || stat("/proc/self/ns/net", &network) != 0) return {};
+  return fmt::format("{} {} {} {}", boot, processes.st_ino, network.st_ino, geteuid());
 }
 
 }  // namespace

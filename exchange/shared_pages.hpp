@@ -44,8 +44,8 @@ class SharedPages {
   std::byte* data_ = nullptr;
 };
 
-/// Bytes of memory that the machine can still give; the largest number if it does not say. More than that is never asked
-/// for: the system would not refuse it, but end processes until it has it.
+/// Bytes of memory that the machine can still give; the largest number if it does not say. More than that is never
+/// asked for: the system would not refuse it, but end processes until it has it.
 std::uint64_t available_memory();
 
 /// That the system has no such pages.

@@ -73,7 +73,7 @@ class Transport {
   virtual void set_working(bool /*working*/) {}
 
   /// Ranks of this machine wake each other by these from now on; null: they do not. Collective.
-  virtual void use_bells(std::shared_ptr<Bells> /*bells*/) {}
+  virtual void use_bells(const std::shared_ptr<Bells>& /*bells*/) {}
 
   /// Where spans of `send` go from now on: fragments and meshes to the projector's face, tiles to the compositor's.
   /// Null: nowhere. The faces must outlive the transport or be taken back.

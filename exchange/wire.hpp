@@ -66,7 +66,7 @@ struct PartHeader {
   std::uint8_t segments = 0;   ///< of an ascending part: 1: some of its runs are single segments
   std::uint64_t bytes;
   double final_depth;       ///< planar; all of this projector's fragments of the tile before it have been sent
-  std::uint64_t fragments;  ///< runs, links, tuples, cells or pixels in the part
+  std::uint64_t fragments;  ///< runs, links, tuples or cells in the part
 };
 static_assert(sizeof(PartHeader) == 32);
 

@@ -31,9 +31,9 @@ const RenderSettings& checked(const RenderSettings& settings) {
   return settings;
 }
 
-void check_scanline(const projection::ProjectedMesh& projected, const projection::PixelSpace& space,
-                    float longest_edge) {
-  if (space.perspective())
+void check_scanline(const FrameProjector::Task& task, const projection::ProjectedMesh& projected, float longest_edge) {
+  if (task.team != nullptr) task.team->barrier();  // it looks at all vertices
+  if (task.space->perspective())
     throw scene::bad_input(
         "`rasterizer` scanline: it projects orthographically only; use an orthographic view, or `rasterizer` planes");
   if (!projection::fits_scanline(projected, longest_edge))
@@ -264,11 +264,28 @@ class DrawnTiles {
   std::size_t passed_ = 0;  ///< that this process has drawn or passed
 };
 
+std::uint64_t members_of(const FrameProjector::Task& task) {
+  return task.team != nullptr ? static_cast<std::uint64_t>(task.team->size()) : 1;
+}
+
 void count_culled(const projection::CullCounts& culled, FrameStatistics& statistics) {
   statistics.tets_invisible = culled.invisible;
   statistics.tets_outside_view = culled.outside_view;
   statistics.tets_between_pixels = culled.between_pixels;
   statistics.tets_projected = culled.projected;
+}
+
+/// Of this process's share and its workers.
+FrameStatistics counted(const FrameProjector::Task& task, const projection::PreparedMesh& mesh,
+                        const projection::TileLists& lists, const Workers& workers) {
+  constexpr std::size_t block = projection::PreparedMesh::block_tets;
+  const scene::Share blocks = scene::share_of(mesh.block_count(), task.team);
+  FrameStatistics statistics;
+  statistics.tets_total = std::min(blocks.last * block, mesh.tet_count()) - blocks.first * block;
+  statistics.on_lattice = task.lattice != nullptr;
+  count_culled(lists.counts(), statistics);
+  for (const std::unique_ptr<TileWorker>& worker : workers) worker->add_to(statistics);
+  return statistics;
 }
 
 /// Renders tiles [first, last) of a task, whose lists are filled.
@@ -345,10 +362,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   const projection::IsoView iso{task.surfaces, &space, task.lattice};
   if (task.surfaces != nullptr && !task.surfaces->iso_values().empty()) projected.iso = &iso;
   const float longest_edge = task.longest_edge > 0 ? task.longest_edge : longest_edge_;
-  if (settings_.rasterizer == Rasterizer::scanline) {
-    if (task.team != nullptr) task.team->barrier();
-    check_scanline(projected, space, longest_edge);
-  }
+  if (settings_.rasterizer == Rasterizer::scanline) check_scanline(task, projected, longest_edge);
   if (task.lattice != nullptr) place_on_lattice(task, stop);
 
   const double longest_ray = task.longest_ray > 0 ? task.longest_ray : diagonal_;
@@ -376,8 +390,7 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
   announce(task, made_by);
   DrawnTiles drawn(task, made_by);
 
-  const std::uint64_t members = task.team != nullptr ? static_cast<std::uint64_t>(task.team->size()) : 1;
-  const std::uint64_t vertex_bytes = (vertices_.bytes() + lattice_vertices_.bytes()) / members;
+  const std::uint64_t vertex_bytes = (vertices_.bytes() + lattice_vertices_.bytes()) / members_of(task);
   const std::uint64_t held = vertex_bytes + lists->bytes() + (faces ? faces->bytes() : 0) + task.kept_bytes;
   const TileContext context{&projected,
                             lists->depth_origin(),
@@ -409,14 +422,8 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
     render_tiles(task, *lists, made_by, drawn, workers, first, last, stop);
   });
 
-  FrameStatistics statistics;
-  const scene::Share blocks = scene::share_of(prepared_->block_count(), task.team);
-  statistics.tets_total = std::min(blocks.last * projection::PreparedMesh::block_tets, prepared_->tet_count()) -
-                          blocks.first * projection::PreparedMesh::block_tets;
-  statistics.on_lattice = task.lattice != nullptr;
-  count_culled(lists->counts(), statistics);
-  statistics.peak_buffer_bytes = vertex_bytes + most_list_bytes;
-  for (const std::unique_ptr<TileWorker>& worker : workers) worker->add_to(statistics);
+  FrameStatistics statistics = counted(task, *prepared_, *lists, workers);
+  statistics.peak_buffer_bytes += vertex_bytes + most_list_bytes;
   return statistics;
 }
 
@@ -424,12 +431,11 @@ FrameStatistics FrameProjector::project_in_arena(const Task& task) {
 /// rest is for segments. Returns the most bytes of lists.
 std::uint64_t FrameProjector::render_bands(const Task& task, projection::TileLists& lists, std::uint64_t held,
                                            const std::function<void(std::size_t, std::size_t)>& render) const {
-  const std::uint64_t members = task.team != nullptr ? static_cast<std::uint64_t>(task.team->size()) : 1;
   const std::uint64_t most_entries =
       scene::least_of(
           std::max<std::uint64_t>(segment_budget(settings_, held, 1) / 4 / sizeof(projection::TileEntry), 1),
           task.team) *
-      members;
+      members_of(task);
   std::uint64_t most_bytes = 0;
   for (std::size_t first = 0; first < task.grid.count();) {
     std::size_t last = first;

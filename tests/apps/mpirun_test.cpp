@@ -63,9 +63,16 @@ TEST_F(Mpirun, ADeepPictureHasTheBytesOfOneProcess) {
 
 TEST_F(Mpirun, RunsMeetTheReferenceAndTheReportSaysTheJobsShape) {
   const Folder folder;
-  const Outcome outcome = mpirun(4, {"render", folder.cube(), "-o", folder / "a.exr", "--size", "64x64", "--threads",
-                                     "1", "--projectors", "3", "--integrator", "exact", "--verify", "300", "--report",
-                                     folder / "report.json", "--timing", folder / "trace.json"});
+  const Outcome outcome = mpirun(4, {"render",       folder.cube(),
+                                     "-o",           folder / "a.exr",
+                                     "--size",       "64x64",
+                                     "--threads",    "1",
+                                     "--projectors", "3",
+                                     "--integrator", "exact",
+                                     "--verify",     "300",
+                                     "--without",    "sharing",
+                                     "--report",     folder / "report.json",
+                                     "--timing",     folder / "trace.json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1) << outcome.out;
   EXPECT_EQ(outcome.error_lines(), 1u) << outcome.err;

@@ -318,9 +318,9 @@ TEST(Distributed, ProjectorsThatShareMemoryMakeEachTileOnce) {
     settings.share_memory = shared;
     runs[shared ? 1 : 0] = render_once(parts, {4, 4, 4}, settings, jobs, six_knots(), 4, 0).at(0).statistics.fragments;
   }
-  // Together they send finished pixels, each once; scattered parts are several runs a pixel.
-  EXPECT_LE(runs[1], 96u * 80u);
-  EXPECT_GT(runs[0], 2 * runs[1]);
+  // Together they send finished pixels; scattered parts are several runs a pixel that shows something.
+  EXPECT_EQ(runs[1], 0u);
+  EXPECT_GT(runs[0], 96u * 80u);
 }
 
 TEST(Distributed, TakesRanksWithoutCellsARankWithOneAndMoreCompositorsThanTiles) {
