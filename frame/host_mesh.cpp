@@ -69,7 +69,8 @@ HostMesh HostMesh::made(Team& team, const scene::TetMeshView& part, std::span<co
   }
   // Are these all tets of the whole mesh? Then their numbers are their places.
   const bool whole = scene::largest_of(numbers.empty() ? 0 : numbers.back() + 1, &team) == cells.all;
-  const std::vector<std::uint64_t> places = whole ? std::move(numbers) : places_of(team, numbers);
+  const std::vector<std::uint64_t> found = whole ? std::vector<std::uint64_t>() : places_of(team, numbers);
+  const std::vector<std::uint64_t>& places = whole ? numbers : found;
 
   auto* const positions = team.memory_of<glm::dvec3>(Team::Room::positions, vertices.all);
   auto* const all_tets = team.memory_of<scene::Tet>(Team::Room::tets, cells.all);

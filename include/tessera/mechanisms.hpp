@@ -9,8 +9,8 @@ struct Mechanisms {
   bool skipping = true;     ///< volumes: so are the 8^3 voxels of which it shows nothing, within bricks
   bool termination = true;  ///< a ray ends behind matter through which nothing would show
   bool lattice = true;      ///< meshes: 32-bit integer depths and float lanes where they are good enough
-  bool sharing = true;      ///< meshes: ranks of one machine hold what they project in memory that they share, once more
-                            ///< than each has it alone, and make whole tiles; else each projects its part into all
+  bool sharing = true;      ///< meshes: ranks of one machine hold what they project in shared memory, and make whole
+                            ///< tiles; else each projects its part into all
   friend bool operator==(const Mechanisms&, const Mechanisms&) = default;
 };
 
