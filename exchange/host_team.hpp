@@ -13,8 +13,8 @@
 
 namespace tessera::exchange {
 
-/// Ranks of one machine that make frames together, and others' ranks do not see it: the team's members wait for each
-/// other in shared memory, and find the run's error, another's death included, through the transport.
+/// Ranks of one machine that make frames together. The team's members wait for each other in shared memory, and find
+/// the run's error, another's death included, through the transport; ranks of other machines take no part.
 ///
 /// An epoch is a frame, or whatever else they do together: all members begin the same ones in the same order. Who
 /// leaves one early says so; who waits for it in that epoch then throws FrameStopped.

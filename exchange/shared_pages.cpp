@@ -86,10 +86,6 @@ bool SharedPages::map() {
   return true;
 }
 
-namespace {
-
-/// What tells whether two processes can see each other's descriptors; empty: unknown. Processes in two networks are as
-/// on two machines, though they might: who gives them networks of their own wants machines.
 std::string machine() {
   std::string boot;
   std::getline(std::ifstream("/proc/sys/kernel/random/boot_id"), boot);
@@ -98,8 +94,6 @@ std::string machine() {
   if (boot.empty() || stat("/proc/self/ns/pid", &processes) != 0 || stat("/proc/self/ns/net", &network) != 0) return {};
   return fmt::format("{} {} {} {}", boot, processes.st_ino, network.st_ino, geteuid());
 }
-
-}  // namespace
 
 void wait_for_change(std::atomic<std::uint32_t>& word, std::uint32_t seen, std::chrono::microseconds most) {
   const auto count = most.count();
@@ -118,9 +112,7 @@ SharedPages SharedPages::made(std::size_t bytes) { throw no_shared_memory(bytes)
 std::optional<SharedPages> SharedPages::opened(std::uint64_t, int, std::size_t) { return std::nullopt; }
 bool SharedPages::reserve(std::size_t, std::size_t) const { return false; }
 bool SharedPages::map() { return false; }
-namespace {
 std::string machine() { return {}; }
-}  // namespace
 void wait_for_change(std::atomic<std::uint32_t>& word, std::uint32_t seen, std::chrono::microseconds most) {
   if (word == seen) std::this_thread::sleep_for(std::min(most, std::chrono::microseconds(100)));
 }

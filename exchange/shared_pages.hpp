@@ -6,12 +6,18 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "exchange/transport.hpp"
 
 /// Memory that ranks of one machine share. Linux alone has it; elsewhere nobody shares any.
 namespace tessera::exchange {
+
+/// The same text for processes that can open each other's files by their numbers: of one start of one machine, one
+/// space of process numbers, one user and one network (who gives processes networks of their own wants machines).
+/// Empty: unknown.
+std::string machine();
 
 /// Pages that several processes see, or one process twice. Linux: a file in memory that has no name.
 class SharedPages {

@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +11,7 @@
 #include <vector>
 
 #include "exchange/collectives.hpp"
+#include "exchange/shared_pages.hpp"
 #include "frame/field_message.hpp"
 #include "io/brick_file.hpp"
 #include "scene/error.hpp"
@@ -27,29 +26,18 @@ using exchange::Bytes;
 using exchange::MessageKind;
 using exchange::MessageReader;
 
-/// The same for processes that can open each other's files by their numbers: of one start of one machine (names of
-/// machines may be alike), one space of process numbers and one user.
-std::string machine() {
-  std::string start;
-  std::getline(std::ifstream("/proc/sys/kernel/random/boot_id"), start);
-  std::error_code unknown;
-  const std::string processes = std::filesystem::read_symlink("/proc/self/ns/pid", unknown).string();
-  // Who does not know where it is shares with nobody.
-  if (start.empty() || unknown) return fmt::format("{} {}", ::gethostid(), ::getpid());
-  return fmt::format("{} {} {}", start, processes, ::getuid());
-}
-
-/// By rank: the lowest rank of its machine.
+/// By rank: the lowest rank of its machine; who does not know where it is shares with nobody.
 std::vector<std::size_t> leaders(exchange::Transport& transport) {
   Bytes own = exchange::begin_message(MessageKind::host);
-  append_text(own, machine());
+  append_text(own, exchange::machine());
   std::vector<std::string> machines;
   for (const Bytes& message : exchange::gather_all(transport, std::move(own)))
     machines.push_back(MessageReader(message, static_cast<int>(machines.size()), MessageKind::host).take_text());
   std::vector<std::size_t> leaders;
   leaders.reserve(machines.size());
   for (const std::string& name : machines)
-    leaders.push_back(static_cast<std::size_t>(std::ranges::find(machines, name) - machines.begin()));
+    leaders.push_back(name.empty() ? leaders.size()
+                                   : static_cast<std::size_t>(std::ranges::find(machines, name) - machines.begin()));
   return leaders;
 }
 

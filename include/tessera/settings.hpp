@@ -26,7 +26,7 @@ enum class Rasterizer {
 
 /// What projectors send to compositors (meshes on several ranks).
 enum class Exchange {
-  runs,      ///< segments that touch end to end, composited: a few fragments a pixel. At most 2e-6 from `segments`
+  runs,      ///< segments that touch, composited; of a projector that has all cells, pixels. 2e-6 from `segments`
   segments,  ///< raw ray segments, as Juliachs et al. 2007: the bits of a single process whatever the job's shape, on
              ///< machines of one instruction set (scanline: up to the order of equal keys, of which the paper has many)
 };
