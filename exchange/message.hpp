@@ -21,7 +21,7 @@ namespace tessera::exchange {
 static_assert(std::endian::native == std::endian::little, "messages are little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 22;        ///< the next one whenever a message changes
+inline constexpr std::uint16_t wire_version = 23;        ///< the next one whenever a message changes
 
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
@@ -38,8 +38,8 @@ enum class MessageKind : std::uint16_t {
   tiles = 5,  ///< u64 frame; until the end: u64 tile, its pixels (packed_pixels.hpp), u64 deep samples in the tile;
               ///< unless that is 0 u32 samples of each pixel, scene::DeepImageSample each
   region =
-      6,  ///< RegionHeader (frame/region_gather.cpp); unless stopped, pixels (packed_pixels.hpp) of 64 rows at a time,
-          ///< and if they are kept f32 error estimates row by row
+      6,  ///< RegionHeader (frame/region_gather.cpp), list of the rectangles it is made of; unless stopped, of each
+          ///< pixels (packed_pixels.hpp) of 64 rows at a time, and if they are kept f32 error estimates row by row
   deep_rows = 7,  ///< u64 samples of each pixel of the sender's rows, scene::DeepImageSample each
   // Channel frames.
   frame_left = 8,  ///< nothing: one frame less is on its way
@@ -84,11 +84,13 @@ enum class MessageKind : std::uint16_t {
   open_faces = 47,        ///< list of OpenFace (frame/boundary_faces.cpp): that one tet of a rank's part has alone
   speed = 50,             ///< f64 samples a second of the last frame, 0: unknown
   ray_tets = 48,          ///< list of RayTet (frame/probe.cpp): those of a rank's part that a ray meets
-  curved_part = 40,   ///< frame/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
-  next_frame = 52,    ///< u8: 1: there is one more
-  machine = 53,       ///< text: which machine's memory the sender sees, empty: it shares none (shared_pages.cpp)
-  pages_offer = 54,   ///< u64 process, u64 key, i64 descriptor of pages for ranks of one machine, -1: none
-  pages_seen = 55,    ///< u8: 1: the sender sees the pages
+  curved_part = 40,  ///< frame/curved_parts.cpp: a rank's part of a caller's mesh; then MeshCounts, HigherOrderCells
+  next_frame = 52,   ///< u8: 1: there is one more
+  machine = 53,      ///< text: which machine's memory the sender sees, empty: it shares none (shared_pages.cpp)
+  pages_offer = 54,  ///< u64 process, u64 key, i64 descriptor of pages for ranks of one machine, -1: none
+  pages_seen = 55,   ///< u8: 1: the sender sees the pages
+  tile_times = 59,   ///< u8: 1: the last frame was not stopped, list of volume::TileTime
+  image_split = 58,  ///< u8: 1: it is known; then list of i32 rows, of each a list of i32 columns, of each one of steps
   volume_facts = 57,  ///< what the sender has read of a volume, and where its samples are (frame/shared_volume.cpp)
   // Channel fragments, to oneself.
   wake = 56,  ///< nothing: all frames of the list are finished

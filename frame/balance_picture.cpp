@@ -29,20 +29,22 @@ void draw_edges_of(scene::Image& image, const volume::ImageSplit& split) {
     if (x > 0 && y > 0 && x < image.size.width && y < image.size.height) put(image, x, y, Rgb(1), 1);
   };
   for (int process = 0; process < split.processes(); ++process) {
-    const scene::PixelRect r = split.region(process);
-    for (int x = r.x0; r.y0 > 0 && x < r.x1; ++x) white(x, r.y0);
-    for (int y = r.y0; r.x0 > 0 && y < r.y1; ++y) white(r.x0, y);
+    const std::vector<scene::PixelRect> parts = split.parts(process);
+    for (const scene::PixelRect& r : parts) {
+      for (int x = r.x0; r.y0 == parts.front().y0 && r.y0 > 0 && x < r.x1; ++x) white(x, r.y0);
+      for (int y = r.y0; r.x0 > 0 && y < r.y1; ++y) white(r.x0, y);
+    }
   }
 }
 
 std::vector<std::uint8_t> owners_of(const volume::ImageSplit& split, scene::ImageSize size) {
   std::vector<std::uint8_t> owners(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height));
   for (int process = 0; process < split.processes(); ++process) {
-    const scene::PixelRect r = split.region(process);
-    for (int y = r.y0; y < r.y1; ++y)
-      for (int x = r.x0; x < r.x1; ++x)
-        owners[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width) + static_cast<std::size_t>(x)] =
-            static_cast<std::uint8_t>(static_cast<std::size_t>(process) % process_colors.size());
+    for (const scene::PixelRect& r : split.parts(process))
+      for (int y = r.y0; y < r.y1; ++y)
+        for (int x = r.x0; x < r.x1; ++x)
+          owners[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width) + static_cast<std::size_t>(x)] =
+              static_cast<std::uint8_t>(static_cast<std::size_t>(process) % process_colors.size());
   }
   return owners;
 }

@@ -45,8 +45,9 @@ void send_region(exchange::Transport& transport, const VolumePart& part) {
   const RegionHeader& header = part.header;
   const scene::Image& image = part.finished.image;
   exchange::Bytes bytes = exchange::message_of(exchange::MessageKind::region, header);
-  if (header.stopped == 0) {
-    const PixelRect& r = header.region;
+  exchange::append_list(bytes, part.rectangles);
+  for (const PixelRect& r : part.rectangles) {
+    if (header.stopped != 0) break;
     for (const PixelRect& strip : strips_of(r)) exchange::append_pixels(bytes, image, strip, true);
     const std::span bounds(part.finished.error_bounds);
     for (int y = r.y0; y < r.y1 && !bounds.empty(); ++y)
@@ -91,20 +92,23 @@ void RegionGather::place(const exchange::Message& message, std::uint64_t frame, 
                          scene::FrameWatch& watch) const {
   MessageReader reader(message, exchange::MessageKind::region);
   const auto header = reader.take<RegionHeader>();
-  const PixelRect& r = header.region;
+  const auto rectangles = reader.take_list<PixelRect>();
   const scene::ImageSize size = finished.image.size;
-  if (header.frame != frame || r.x0 < 0 || r.y0 < 0 || r.x1 > size.width || r.y1 > size.height || r.x0 > r.x1 ||
-      r.y0 > r.y1)
-    reader.refuse("is a rectangle of another picture");
+  for (const PixelRect& r : rectangles)
+    if (header.frame != frame || r.x0 < 0 || r.y0 < 0 || r.x1 > size.width || r.y1 > size.height || r.x0 > r.x1 ||
+        r.y0 > r.y1)
+      reader.refuse("is a rectangle of another picture");
   finished.stopped = finished.stopped || header.stopped != 0;
-  if (header.stopped == 0) {
+  for (const PixelRect& r : rectangles) {
+    if (header.stopped != 0) break;
     for (const PixelRect& strip : strips_of(r)) exchange::take_pixels(reader, finished.image, strip);
     for (int y = r.y0; y < r.y1 && !finished.error_bounds.empty(); ++y)
       reader.take_values(
           std::span(finished.error_bounds).subspan(finished.image.index(r.x0, y), static_cast<std::size_t>(r.width())));
   }
   reader.finish();
-  if (header.stopped == 0) tell(watch, r, finished);
+  for (const PixelRect& r : rectangles)
+    if (header.stopped == 0) tell(watch, r, finished);
   finished.statistics += header.counters;
   note(header, message.from, finished);
 }

@@ -13,6 +13,7 @@
 
 #include "exchange/collectives.hpp"
 #include "frame/reduce.hpp"
+#include "frame/split_by_times.hpp"
 #include "scene/error.hpp"
 #include "volume/learned_work.hpp"
 
@@ -69,23 +70,27 @@ class SortFirst::State {
   }
 
   VolumePart make(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
-                  std::size_t number, scene::FrameWatch& watch) {
+                  std::size_t number, scene::FrameWatch& watch, double gather_seconds) {
     const double cpu_at_first = process_cpu_seconds();
     const ImageSplit split = [&] {
       const scene::TraceScope timing(settings_.trace, "partition", static_cast<std::int32_t>(number));
+      if (std::optional<ImageSplit> known = known_split(renderer, function, job, gather_seconds))
+        return std::move(*known);
       sample_work(renderer, function, job, watch);
       return split_of(renderer, function, job);
     }();
-    const PixelRect mine = split.region(transport_.rank());
+    const std::vector<PixelRect> mine = split.parts(transport_.rank());
     const double cpu_before = process_cpu_seconds();
     const auto render_begin = std::chrono::steady_clock::now();
     volume::RenderStatistics statistics;
     std::vector<float> error_bounds;
+    std::vector<volume::TileTime> times;
     scene::Image image;
     bool stopped = false;
     try {
-      image = renderer.render(job.camera, job.size, function, &statistics, mine,
-                              settings_.keep_error_bounds ? &error_bounds : nullptr, &watch);
+      image = renderer.render_regions(job.camera, job.size, function, &statistics, mine,
+                                      settings_.keep_error_bounds ? &error_bounds : nullptr, &watch,
+                                      goes_by_times() ? &times : nullptr);
     } catch (const scene::FrameStopped&) {
       stopped = true;
     }
@@ -95,16 +100,89 @@ class SortFirst::State {
     last_split_ = split;
     last_size_ = job.size;
     VolumePart part;
-    part.header = {number, mine, statistics, cpu, cpu_before - cpu_at_first, stopped ? 1u : 0u};
+    part.header = {number, split.region(transport_.rank()), statistics,
+                   cpu,    cpu_before - cpu_at_first,       stopped ? 1u : 0u};
+    part.rectangles = mine;
     part.finished.image = stopped ? scene::Image(job.size) : std::move(image);
     part.finished.error_bounds = std::move(error_bounds);
     part.finished.statistics = statistics;
     part.finished.split = split;
     part.finished.cost = std::move(cost_);
+    if (goes_by_times()) timed_ = job, times_here_ = {!stopped, std::move(times)};
     return part;
   }
 
  private:
+  /// Whether tiles are timed, and splits found from that. Weights share out work, which times alone do not tell, and a
+  /// cost that is shown is to be the same in each run.
+  [[nodiscard]] bool goes_by_times() const {
+    return settings_.balance == Balance::learned && transport_.size() > 1 && settings_.weights.empty() &&
+           !settings_.measured && !settings_.keep_cost;
+  }
+
+  /// What rank 0 knows from the pictures before; where that is no split, maybe how much each rank should get of one.
+  /// Collective.
+  std::optional<ImageSplit> known_split(const volume::Renderer& renderer, const scene::TransferFunction& function,
+                                        const VolumeJob& job, double gather_seconds) {
+    if (!goes_by_times()) return std::nullopt;
+    const scene::Box box = scene::bounds(renderer.geometry());
+    const bool alike = std::ranges::equal(function.knots(), timed_knots_);
+    timed_knots_.assign(function.knots().begin(), function.knots().end());
+    if (timed_) learn_times(*std::exchange(timed_, std::nullopt), box, gather_seconds);
+    if (!alike) by_times_ = {};
+    if (transport_.rank() != 0) return receive_split(exchange::broadcast(transport_, 0, {}));
+    const std::optional<ImageSplit> split = by_times_.find(job, box);
+    Bytes bytes = exchange::message_of(MessageKind::image_split, std::uint8_t{split.has_value()});
+    if (split) {
+      append_list(bytes, split->rows);
+      for (const std::vector<int>& columns : split->columns) append_list(bytes, columns);
+      for (const std::vector<int>& steps : split->steps) append_list(bytes, steps);
+    } else {
+      append_list(bytes, by_times_.weights());
+    }
+    return receive_split(exchange::broadcast(transport_, 0, std::move(bytes)));
+  }
+
+  std::optional<ImageSplit> receive_split(const Bytes& bytes) {
+    MessageReader reader(bytes, 0, MessageKind::image_split);
+    std::optional<ImageSplit> split;
+    if (reader.take<std::uint8_t>() != 0) {
+      split.emplace();
+      split->rows = reader.take_list<int>();
+      for (auto* edges : {&split->columns, &split->steps})
+        for (std::size_t row = 1; row < split->rows.size(); ++row) edges->push_back(reader.take_list<int>());
+    } else if (const auto weights = reader.take_list<double>(); !weights.empty()) {
+      weights_ = weights;
+    }
+    reader.finish();
+    return split;
+  }
+
+  /// Tells rank 0 what the picture of `job` took. Collective.
+  void learn_times(const VolumeJob& job, const scene::Box& box, double gather_seconds) {
+    if (transport_.rank() != 0) {
+      Bytes bytes = exchange::message_of(MessageKind::tile_times, std::uint8_t{times_here_.whole});
+      append_list(bytes, times_here_.tiles);
+      transport_.send(0, exchange::Channel::agreement, std::move(bytes));
+      return;
+    }
+    std::vector<CastTimes> ranks(static_cast<std::size_t>(transport_.size()));
+    ranks[0] = std::move(times_here_);
+    for (int others = transport_.size() - 1; others > 0; --others) {
+      const exchange::Message message = transport_.receive(exchange::Channel::agreement);
+      MessageReader reader(message, MessageKind::tile_times);
+      CastTimes& times = ranks[static_cast<std::size_t>(message.from)];
+      times.whole = reader.take<std::uint8_t>() != 0;
+      times.tiles = reader.take_list<volume::TileTime>();
+      reader.finish();
+      for (const auto& [pixels, microseconds] : times.tiles)
+        if (pixels.x0 < 0 || pixels.y0 < 0 || pixels.x1 > job.size.width || pixels.y1 > job.size.height ||
+            !(microseconds >= 0) || !std::isfinite(microseconds))
+          reader.refuse("has times of pixels outside of the picture");
+    }
+    by_times_.learn(job, box, ranks, gather_seconds);
+  }
+
   ImageSplit split_of(const volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job) {
     const int processes = transport_.size();
     const Balance balance = settings_.balance;
@@ -142,7 +220,8 @@ class SortFirst::State {
     const PixelRect area = volume::footprint(job.camera, job.size, renderer.geometry());
     const PixelRect part = has_last ? last_split_->region(transport_.rank())
                                     : volume::even_split(transport_.size(), job.size, area).region(transport_.rank());
-    if (!tally_ || !std::ranges::equal(function.knots(), learned_knots_) || !is_near(job.camera, renderer.geometry())) {
+    if (!tally_ || !std::ranges::equal(function.knots(), learned_knots_) || !learned_view_ ||
+        !is_near(job.camera, *learned_view_, scene::bounds(renderer.geometry()), 0.1)) {
       tally_.emplace(renderer.geometry().voxels());
       learned_knots_.assign(function.knots().begin(), function.knots().end());
       learned_.assign(2 * tally_->cells().count(), 0);
@@ -160,17 +239,6 @@ class SortFirst::State {
     volume::WorkRates::add(reduce_all(transport_, tally_->take(), Reduction::sum), learned_);
     rates_.emplace(renderer.geometry().voxels());
     rates_->learn(learned_);
-  }
-
-  /// Whether rays go through the volume about as they did in the frame before.
-  [[nodiscard]] bool is_near(const scene::Camera& camera, const scene::GridGeometry& geometry) const {
-    if (!learned_view_ || camera.projection != learned_view_->projection) return false;
-    constexpr double most = 0.1;  // radians; of the distance to the volume's middle
-    const scene::Box box = scene::bounds(geometry);
-    const double distance = glm::length(0.5 * (box.low + box.high) - camera.position);
-    const glm::dvec3 forward = scene::view_basis(camera).forward;
-    return glm::length(forward - scene::view_basis(*learned_view_).forward) < most &&
-           glm::length(camera.position - learned_view_->position) < most * distance;
   }
 
   std::vector<volume::RowSums> gather_rows(const volume::RowSums& own) {
@@ -253,6 +321,10 @@ class SortFirst::State {
   std::optional<volume::WorkRates> rates_;
   std::optional<ImageSplit> last_split_;
   scene::ImageSize last_size_{0, 0};
+  SplitByTimes by_times_;                   ///< rank 0
+  std::optional<VolumeJob> timed_;          ///< the frame before, until rank 0 hears what it took
+  CastTimes times_here_;                    ///< of it, on this rank
+  std::vector<tessera::Knot> timed_knots_;  ///< of the frame before
   CostMap cost_;
 };
 
@@ -262,7 +334,7 @@ SortFirst::~SortFirst() = default;
 
 VolumePart SortFirst::make(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
                            std::size_t number, scene::FrameWatch& watch) {
-  return state_->make(renderer, function, job, number, watch);
+  return state_->make(renderer, function, job, number, watch, gather_seconds());
 }
 
 }  // namespace tessera::frame

@@ -61,6 +61,7 @@ class SortLast::State {
     VolumePart made;
     made.header = {
         number, region_of(area, rank, ranks, job.size), counters, mine.cpu_seconds, 0, sent.stopped ? 1u : 0u};
+    made.rectangles = {made.header.region};
     made.finished.image = std::move(mine.image);
     made.finished.error_bounds = std::move(mine.error_bounds);
     made.finished.statistics = std::move(mine.statistics);

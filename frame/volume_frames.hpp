@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -27,7 +28,7 @@ struct FinishedVolumeFrame {
   std::size_t frame;  ///< in the list
   scene::Image image;
   volume::RenderStatistics statistics;    ///< of all ranks, put together as tessera::grid_counters says
-  std::vector<scene::PixelRect> regions;  ///< of each rank: the pixels that it finished
+  std::vector<scene::PixelRect> regions;  ///< of each rank: the pixels that it finished, but for steps in its edges
   std::vector<GridCounters> ranks;        ///< what `statistics` are put together of
   std::vector<double> cpu_seconds;        ///< of each rank's rendering, all its threads
   std::vector<double> split_cpu_seconds;  ///< sort-first: of each rank's part in finding the split
@@ -39,10 +40,10 @@ struct FinishedVolumeFrame {
   std::vector<volume::VoxelBox> parts;  ///< sort-last: of each rank
 };
 
-/// What a rank says of its finished rectangle.
+/// What a rank says of the pixels that it finished.
 struct RegionHeader {
-  std::uint64_t frame;  ///< its number
-  scene::PixelRect region;
+  std::uint64_t frame;      ///< its number
+  scene::PixelRect region;  ///< without the steps of its edges (volume::ImageSplit)
   GridCounters counters;
   double cpu_seconds, split_cpu_seconds;
   std::uint64_t stopped;  ///< 1: no pixels follow
@@ -52,7 +53,8 @@ static_assert(sizeof(RegionHeader) == sizeof(GridCounters) + 6 * 8);
 /// What a rank has made of a picture.
 struct VolumePart {
   RegionHeader header;
-  FinishedVolumeFrame finished;  ///< but for what the other ranks say, in `image` only the header's pixels
+  std::vector<scene::PixelRect> rectangles;  ///< that it has finished
+  FinishedVolumeFrame finished;              ///< but for what the other ranks say, in `image` only these pixels
 };
 
 /// On rank 0: who is told of what is made, in one call at a time, from any thread. What a call throws stops all ranks,
@@ -97,15 +99,20 @@ class VolumeFrames {
   virtual VolumePart make(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
                           std::size_t number, scene::FrameWatch& watch) = 0;
 
+  /// On rank 0: what gathering the last picture and handing it out took of the thread that does it [s].
+  [[nodiscard]] double gather_seconds() const { return gather_seconds_; }
+
   exchange::Transport& transport_;
   scene::Trace* trace_;
 
  private:
   class List;
   StopRelay relay_;
+  std::atomic<double> gather_seconds_ = 0;
 };
 
-/// Processor time of all threads of this process so far.
+/// Processor time of all threads of this process, and of this thread, so far.
 double process_cpu_seconds();
+double thread_cpu_seconds();
 
 }  // namespace tessera::frame

@@ -55,13 +55,13 @@ class LaneChunks final : public ChunkCast::State {
       setup_.emplace(state, camera, size, function_, nullptr);
       in_double_.emplace(state.source, camera, size, function_,
                          state.voxel_settings(function_, setup_->visible(), setup_->surfaces()));
-      places_ = tiles_of(region);
+      places_ = tiles_of({&region_, 1});
       tiles_.resize(places_.size());
       columns_ = (region.x1 + TileRays::side - 1) / TileRays::side - region.x0 / TileRays::side;
       numbers_.resize(places_.size());
-      for (std::size_t n = 0; n < places_.size(); ++n) numbers_[number_at(places_[n].first, places_[n].second)] = n;
+      for (std::size_t n = 0; n < places_.size(); ++n) numbers_[number_at(places_[n].x, places_[n].y)] = n;
       for_tiles({}, [&](std::size_t n, Worker& worker) {
-        tiles_[n].begin(setup_->view(), places_[n].first, places_[n].second, region_, worker.counts);
+        tiles_[n].begin(setup_->view(), places_[n].x, places_[n].y, region_, worker.counts);
       });
     });
   }
@@ -139,7 +139,7 @@ class LaneChunks final : public ChunkCast::State {
   scene::PixelRect region_;
   std::optional<FrameSetup> setup_;
   std::optional<VoxelCaster> in_double_;
-  std::vector<std::pair<int, int>> places_;  ///< of `tiles_`: their first pixels
+  std::vector<TilePlace> places_;  ///< of `tiles_`
   std::vector<TileState> tiles_;
   int columns_ = 0;
   std::vector<std::size_t> numbers_;  ///< of tiles, row by row

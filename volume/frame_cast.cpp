@@ -5,6 +5,7 @@
 #include <tbb/partitioner.h>
 
 #include <algorithm>
+#include <ctime>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -24,12 +25,21 @@ struct Worker {
   std::vector<RayFragment> fragments;   ///< of one tile
   std::vector<UncertainRay> uncertain;  ///< of all its tiles
   std::vector<scene::PixelRect> late;   ///< pixels of tiles that have some
+  std::vector<TileTime> times;
 };
+
+/// Processor time of this thread: what others that share its core take of it does not count.
+double thread_microseconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
+}
 
 }  // namespace
 
-TileCounts cast_frame(const FrameSetup& setup, const VoxelBox& part, const scene::PixelRect& wanted, FragmentSink* sink,
-                      VoxelCaster* in_double, const std::stop_token& stop, PilotTurns turns) {
+TileCounts cast_frame(const FrameSetup& setup, const VoxelBox& part, std::span<const scene::PixelRect> wanted,
+                      FragmentSink* sink, VoxelCaster* in_double, const std::stop_token& stop, PilotTurns turns,
+                      std::vector<TileTime>* times) {
   const FrameView& frame = setup.view();
   const bool all = part == VoxelBox{{0, 0, 0}, frame.voxels};
   auto tiles = tiles_of(wanted);
@@ -43,8 +53,9 @@ TileCounts cast_frame(const FrameSetup& setup, const VoxelBox& part, const scene
         for (std::size_t n = some.begin(); n != some.end(); ++n) {
           scene::throw_if_stopped(stop);
           Worker& worker = *workers.local();
+          const double begin = times == nullptr ? 0 : thread_microseconds();
           const std::uint64_t rays_before = worker.counts.rays;
-          worker.tile.begin(frame, tiles[n].first, tiles[n].second, wanted, worker.counts);
+          worker.tile.begin(frame, tiles[n].x, tiles[n].y, wanted[tiles[n].region], worker.counts);
           cast_tile(frame, part, worker.tile, worker.memory, worker.counts);
           if (sink == nullptr) continue;
           const std::size_t uncertain_before = worker.uncertain.size();
@@ -54,6 +65,8 @@ TileCounts cast_frame(const FrameSetup& setup, const VoxelBox& part, const scene
           // begin() counts those that meet the volume.
           const std::size_t met = worker.fragments.size() + worker.uncertain.size() - uncertain_before;
           if (!all) worker.counts.rays = rays_before + met;
+          if (times != nullptr)
+            worker.times.push_back({worker.tile.pixels(), static_cast<float>(thread_microseconds() - begin)});
           if (worker.uncertain.size() == uncertain_before)
             sink->finished(worker.tile.pixels());
           else
@@ -66,6 +79,7 @@ TileCounts cast_frame(const FrameSetup& setup, const VoxelBox& part, const scene
   for (const auto& worker : workers) {
     uncertain.insert(uncertain.end(), worker->uncertain.begin(), worker->uncertain.end());
     counts += worker->counts;
+    if (times != nullptr) times->insert(times->end(), worker->times.begin(), worker->times.end());
   }
   if (!uncertain.empty()) {
     const scene::TraceScope scope(frame.trace, "project");

@@ -67,6 +67,27 @@ scene::PixelRect ImageSplit::region(int process) const {
   return {columns[row][column], rows[row], columns[row][column + 1], rows[row + 1]};
 }
 
+std::vector<scene::PixelRect> ImageSplit::parts(int process) const {
+  const scene::PixelRect whole = region(process);
+  if (steps.empty()) return {whole};
+  std::size_t row = 0;
+  for (; process >= static_cast<int>(columns[row].size()) - 1; ++row)
+    process -= static_cast<int>(columns[row].size()) - 1;
+  const auto left = static_cast<std::size_t>(process), right = left + 1;
+  const auto edge = [&](std::size_t e, int y) {
+    return std::min(columns[row].back(), columns[row][e] + (y < steps[row][e] ? region_grain : 0));
+  };
+  std::vector<scene::PixelRect> parts;
+  int top = whole.y0;
+  const std::vector<int>& at = steps[row];
+  for (const int bottom : {std::min(at[left], at[right]), std::max(at[left], at[right]), whole.y1}) {
+    if (bottom <= top) continue;
+    parts.push_back({edge(left, top), top, edge(right, top), bottom});
+    top = bottom;
+  }
+  return parts;
+}
+
 std::vector<int> columns_of_rows(int processes, scene::ImageSize size) {
   const double wanted = std::sqrt(static_cast<double>(processes) * size.height / size.width);
   const int rows = std::clamp(static_cast<int>(std::lround(wanted)), 1, processes);

@@ -41,9 +41,15 @@ class SummedArea {
 struct ImageSplit {
   std::vector<int> rows;                  ///< edges in image pixels, from 0 to the height
   std::vector<std::vector<int>> columns;  ///< of each row: edges from 0 to the width
+  /// Of each of these edges: above this y it lies `region_grain` pixels further to the right; a multiple of a tile's
+  /// side, or the row's upper edge. Empty: none steps.
+  std::vector<std::vector<int>> steps{};
 
   [[nodiscard]] int processes() const;
+  /// The process's rectangle, without steps.
   [[nodiscard]] scene::PixelRect region(int process) const;
+  /// Its pixels, as rectangles from top to bottom. No two have pixels of one tile.
+  [[nodiscard]] std::vector<scene::PixelRect> parts(int process) const;
 };
 
 /// How many columns each row has, for `processes` rectangles that are not far from square.

@@ -62,6 +62,14 @@ scene::PixelRect within(scene::ImageSize size, const std::optional<scene::PixelR
           std::min(size.height, region->y1)};
 }
 
+/// The rectangle round all of them.
+scene::PixelRect around(std::span<const scene::PixelRect> regions) {
+  scene::PixelRect all = regions.empty() ? scene::PixelRect{0, 0, 0, 0} : regions.front();
+  for (const scene::PixelRect& r : regions)
+    all = {std::min(all.x0, r.x0), std::min(all.y0, r.y0), std::max(all.x1, r.x1), std::max(all.y1, r.y1)};
+  return all;
+}
+
 /// Pixels of a map, each with its ray's planes of the lattice.
 CostMap cost_of_planes(const scene::Camera& camera, scene::ImageSize image, const scene::GridGeometry& geometry,
                        std::span<const scene::HalfSpace> clip, double resolution,
@@ -138,6 +146,13 @@ std::vector<std::array<glm::dvec3, 2>> Renderer::visible_bricks(
   return boxes;
 }
 
+/// What is to be cast.
+struct CastRequest {
+  VoxelBox part;
+  std::vector<scene::PixelRect> regions;   ///< no two share a tile
+  std::vector<TileTime>* times = nullptr;  ///< null: not asked for
+};
+
 namespace {
 
 /// What a cast gives beside its light.
@@ -146,12 +161,6 @@ struct Cast {
   TileCounts counts;
   std::uint64_t cull_us = 0;
   std::uint64_t blocks_read = 0, block_bytes = 0;  ///< rectilinear grids
-};
-
-/// What is to be cast.
-struct Wanted {
-  VoxelBox part;
-  scene::PixelRect pixels;
 };
 
 /// Of the bricks that show, those with voxels of a part.
@@ -165,7 +174,7 @@ std::vector<std::uint8_t> bricks_in(const VoxelBox& part, const BrickLayout& lay
 }
 
 Cast cast_regular(RendererState& state, const scene::Camera& camera, scene::ImageSize size,
-                  const scene::TransferFunction& function, const Wanted& wanted, FragmentSink& sink,
+                  const scene::TransferFunction& function, const CastRequest& wanted, FragmentSink& sink,
                   const std::stop_token& stop) {
   Cast cast;
   tbb::task_arena arena(scene::threads_for(state.settings.threads));
@@ -175,7 +184,7 @@ Cast cast_regular(RendererState& state, const scene::Camera& camera, scene::Imag
     if (state.look_ahead) state.look_ahead->frame_shows(of_part);
     VoxelCaster in_double(state.source, camera, size, function,
                           state.voxel_settings(function, setup.visible(), setup.surfaces()));
-    cast.counts = cast_frame(setup, wanted.part, wanted.pixels, &sink, &in_double, stop);
+    cast.counts = cast_frame(setup, wanted.part, wanted.regions, &sink, &in_double, stop, {}, wanted.times);
     cast.brick_visible = setup.brick_visible();
     cast.cull_us = setup.cull_us();
     if (state.look_ahead) state.look_ahead->frame_cast(of_part);
@@ -184,7 +193,7 @@ Cast cast_regular(RendererState& state, const scene::Camera& camera, scene::Imag
 }
 
 Cast cast_rectilinear(RendererState& state, const scene::Camera& camera, scene::ImageSize size,
-                      const scene::TransferFunction& function, const Wanted& wanted, FragmentSink& sink,
+                      const scene::TransferFunction& function, const CastRequest& wanted, FragmentSink& sink,
                       const std::stop_token& stop) {
   Cast cast;
   const integrals::LaneTable table = state.table_of(function);
@@ -197,7 +206,7 @@ Cast cast_rectilinear(RendererState& state, const scene::Camera& camera, scene::
     const scene::TraceScope scope(state.settings.trace, "project");
     const GridSurfaces surfaces = state.surfaces_of(function);
     VoxelCaster caster(state.source, camera, size, function, state.voxel_settings(function, visible, &surfaces));
-    caster.cast(wanted.part, wanted.pixels, sink, stop);
+    for (const scene::PixelRect& region : wanted.regions) caster.cast(wanted.part, region, sink, stop);
     const VoxelCastCounts counts = caster.counts();
     cast.counts.rays = counts.rays, cast.counts.voxels_visited = counts.voxels;
     cast.counts.samples = counts.lines;
@@ -219,20 +228,35 @@ scene::Image Renderer::render(const scene::Camera& camera, scene::ImageSize size
                               std::optional<scene::PixelRect> region, std::vector<float>* error_bounds,
                               scene::FrameWatch* watch) {
   scene::validate(size);
-  return render_part(VoxelBox::all_of(state_->source.geometry()), camera, size, transfer_function, statistics,
-                     within(size, region), error_bounds, watch);
+  return cast({VoxelBox::all_of(geometry()), {within(size, region)}}, camera, size, transfer_function, statistics,
+              error_bounds, watch);
+}
+
+scene::Image Renderer::render_regions(const scene::Camera& camera, scene::ImageSize size,
+                                      const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
+                                      std::span<const scene::PixelRect> regions, std::vector<float>* error_bounds,
+                                      scene::FrameWatch* watch, std::vector<TileTime>* times) {
+  scene::validate(size);
+  CastRequest wanted{VoxelBox::all_of(geometry()), {}, times};
+  for (const scene::PixelRect& region : regions) wanted.regions.push_back(within(size, region));
+  return cast(wanted, camera, size, transfer_function, statistics, error_bounds, watch);
 }
 
 scene::Image Renderer::render_part(const VoxelBox& part, const scene::Camera& camera, scene::ImageSize size,
                                    const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
                                    const scene::PixelRect& region, std::vector<float>* error_bounds,
                                    scene::FrameWatch* watch) {
-  scene::validate(camera);
   scene::validate(size);
+  return cast({part, {within(size, region)}}, camera, size, transfer_function, statistics, error_bounds, watch);
+}
+
+scene::Image Renderer::cast(const CastRequest& wanted, const scene::Camera& camera, scene::ImageSize size,
+                            const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
+                            std::vector<float>* error_bounds, scene::FrameWatch* watch) {
+  scene::validate(camera);
   RendererState& state = *state_;
-  const Wanted wanted{part, within(size, region)};
   const BrickCache::Counts before = state.counts_before;
-  if (state.look_ahead) state.look_ahead->begin(camera, size, wanted.pixels);
+  if (state.look_ahead) state.look_ahead->begin(camera, size, around(wanted.regions));
   scene::FrameWatch nobody;
   if (watch == nullptr) watch = &nobody;
   watch->check();
@@ -241,22 +265,22 @@ scene::Image Renderer::render_part(const VoxelBox& part, const scene::Camera& ca
   ImageSink sink(image, error_bounds == nullptr ? nullptr : error_bounds->data(), *watch);
   const bool rectilinear = state.source.geometry().rectilinear();
   const auto cast_by = rectilinear ? cast_rectilinear : cast_regular;
-  const Cast cast = cast_by(state, camera, size, transfer_function, wanted, sink, watch->stop());
+  const Cast done = cast_by(state, camera, size, transfer_function, wanted, sink, watch->stop());
   const BrickCache::Counts after = state.bricks.counts();
   state.counts_before = after;
   if (statistics != nullptr) {
     RenderStatistics s;
-    s.rays = cast.counts.rays, s.voxels_visited = cast.counts.voxels_visited, s.samples = cast.counts.samples;
-    s.bricks_total = cast.brick_visible.size();
+    s.rays = done.counts.rays, s.voxels_visited = done.counts.voxels_visited, s.samples = done.counts.samples;
+    s.bricks_total = done.brick_visible.size();
     s.bricks_invisible =
-        static_cast<std::uint64_t>(std::count(cast.brick_visible.begin(), cast.brick_visible.end(), 0));
+        static_cast<std::uint64_t>(std::count(done.brick_visible.begin(), done.brick_visible.end(), 0));
     s.brick_hits = after.hits - before.hits, s.bricks_loaded = after.loads - before.loads;
     s.bricks_evicted = after.evictions - before.evictions, s.bytes_loaded = after.bytes_loaded - before.bytes_loaded;
     s.bytes_resident = after.bytes, s.peak_bytes = after.peak_bytes;
     s.bricks_preloaded = after.preloads - before.preloads, s.load_us = (after.load_ns - before.load_ns) / 1000;
-    s.cull_us = cast.cull_us, s.evict_us = (after.evict_ns - before.evict_ns) / 1000;
-    if (rectilinear) s.bricks_loaded = cast.blocks_read, s.bytes_loaded = cast.block_bytes;
-    s.pixels_again = cast.counts.again;
+    s.cull_us = done.cull_us, s.evict_us = (after.evict_ns - before.evict_ns) / 1000;
+    if (rectilinear) s.bricks_loaded = done.blocks_read, s.bytes_loaded = done.block_bytes;
+    s.pixels_again = done.counts.again;
     s.blank_samples = state.ranges.range.blanks;
     const std::int64_t sets = hwy::SupportedTargets() & HWY_TARGETS;
     s.instruction_set = hwy::TargetName(sets & -sets);
@@ -274,7 +298,8 @@ void Renderer::sample_work(const scene::Camera& camera, scene::ImageSize size,
   tbb::task_arena arena(scene::threads_for(state_->settings.threads));
   arena.execute([&] {
     const FrameSetup setup(*state_, camera, size, transfer_function, &tally);
-    cast_frame(setup, VoxelBox::all_of(state_->source.geometry()), within(size, region), nullptr, nullptr,
+    const scene::PixelRect pixels = within(size, region);
+    cast_frame(setup, VoxelBox::all_of(geometry()), {&pixels, 1}, nullptr, nullptr,
                watch == nullptr ? std::stop_token() : watch->stop(), turns);
   });
 }

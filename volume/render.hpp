@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,8 @@ class WorkTally;
 class WorkRates;
 class ObjectSplit;
 struct VoxelBox;
+struct TileTime;
+struct CastRequest;
 enum class CostMethod;
 
 /// Casts rays through one volume many times, in one process, by the ranges of values in its cells, by which empty space
@@ -106,6 +109,13 @@ class Renderer {
                       const scene::TransferFunction& transfer_function, RenderStatistics* statistics = nullptr,
                       std::optional<scene::PixelRect> region = std::nullopt, std::vector<float>* error_bounds = nullptr,
                       scene::FrameWatch* watch = nullptr);
+
+  /// Several regions, of which no two share a tile. `times` gets what each tile took (tile_costs.hpp); nothing of
+  /// rectilinear grids. As render() otherwise.
+  scene::Image render_regions(const scene::Camera& camera, scene::ImageSize size,
+                              const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
+                              std::span<const scene::PixelRect> regions, std::vector<float>* error_bounds,
+                              scene::FrameWatch* watch, std::vector<TileTime>* times);
 
   /// Sort-last: the light of a part of the volume, as if the rest of it were empty, of the pixels of `region`, which
   /// hold all that the part may cover (footprint() in cost_map.hpp). Pictures of parts that make up the volume,
@@ -143,6 +153,10 @@ class Renderer {
 
  private:
   friend class ChunkCast;
+  scene::Image cast(const CastRequest& wanted, const scene::Camera& camera, scene::ImageSize size,
+                    const scene::TransferFunction& transfer_function, RenderStatistics* statistics,
+                    std::vector<float>* error_bounds, scene::FrameWatch* watch);
+
   std::unique_ptr<RendererState> state_;
 };
 

@@ -120,8 +120,8 @@ double deviation(const std::vector<std::uint64_t>& samples) {
          static_cast<double>(std::accumulate(samples.begin(), samples.end(), std::uint64_t{0}));
 }
 
-TEST(SortFirst, LearnedBalanceSharesCountedSamplesFromTheFirstFrameOnAndWhereRaysEndEarly) {
-  // Each view far from the one before: nothing that was rendered then is of use. The ball is opaque.
+TEST(SortFirst, LearnedBalanceSharesCountedSamplesInTheFirstFrameAndWhereRaysEndEarly) {
+  // Each view by itself: nothing is known of it, nor what gathering takes of rank 0. The ball is opaque.
   std::vector<VolumeJob> jobs;
   scene::Camera camera;
   camera.position = {2.5, 1.8, 3.3};
@@ -137,15 +137,39 @@ TEST(SortFirst, LearnedBalanceSharesCountedSamplesFromTheFirstFrameOnAndWhereRay
       volume::RenderSettings render;
       render.threads = 1;
       volume::Renderer renderer(*source, render);
-      render_sort_first(transport, settings, jobs, opaque, renderer, [&](const FinishedVolumeFrame& frame) {
-        worst = std::max(worst, deviation(samples_of(frame)));
-      });
+      for (const VolumeJob& job : jobs)
+        render_sort_first(transport, settings, {job}, opaque, renderer, [&](const FinishedVolumeFrame& frame) {
+          worst = std::max(worst, deviation(samples_of(frame)));
+        });
     });
     return worst;
   };
   // Edges lie on every fourth pixel: two pixels of about a hundred on each side of a rectangle.
   EXPECT_LT(worst_of(Balance::learned), 0.16);
   EXPECT_GT(worst_of(Balance::even), 0.3);
+}
+
+TEST(SortFirst, LearnedBalanceGoesByTheTimesOfTilesWhereViewsAreNear) {
+  std::vector<VolumeJob> jobs;
+  scene::Camera camera;
+  camera.position = {2.5, 1.8, 3.3};
+  camera.parallel_scale = 1.6;
+  // The third is far from the second, the last of another size.
+  for (const double turn : {0.0, 0.005, 0.4, 0.405}) jobs.push_back({scene::orbit(camera, turn), {161, 107}});
+  jobs.push_back({jobs.back().camera, {67, 101}});
+  const auto source = ball();
+  volume::RenderSettings alone;
+  alone.threads = 1;
+  volume::Renderer renderer(*source, alone);
+  for (const int ranks : {2, 5}) {
+    const auto frames = render(ranks, {}, jobs);
+    ASSERT_EQ(frames.size(), jobs.size());
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+      // Only edges that are found from times step.
+      EXPECT_EQ(!frames[i].split.steps.empty(), i == 1 || i == 3) << i;
+      EXPECT_EQ(frames[i].image.rgba, renderer.render(jobs[i].camera, jobs[i].size, haze()).rgba) << ranks << ' ' << i;
+    }
+  }
 }
 
 TEST(SortFirst, WeightsShareTheWorkAndWrongOnesAreRefused) {

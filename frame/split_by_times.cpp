@@ -1,0 +1,61 @@
+#include "frame/split_by_times.hpp"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <numeric>
+
+#include "volume/balanced_split.hpp"
+
+namespace tessera::frame {
+
+namespace {
+
+// At ten degrees from picture to picture their times are as good as pilot rays, and free.
+constexpr double near_enough = 0.3;
+
+}  // namespace
+
+bool is_near(const scene::Camera& camera, const scene::Camera& other, const scene::Box& box, double most) {
+  if (camera.projection != other.projection) return false;
+  const double distance = glm::length(0.5 * (box.low + box.high) - camera.position);
+  return glm::length(scene::view_basis(camera).forward - scene::view_basis(other).forward) < most &&
+         glm::length(camera.position - other.position) < most * distance;
+}
+
+void SplitByTimes::learn(const VolumeJob& job, const scene::Box& box, const std::vector<CastTimes>& ranks,
+                         double gather_seconds) {
+  if (!std::ranges::all_of(ranks, &CastTimes::whole)) return;
+  std::vector<volume::TileTime> tiles;
+  for (const CastTimes& times : ranks) tiles.insert(tiles.end(), times.tiles.begin(), times.tiles.end());
+  if (tiles.empty()) return;
+  if (!costs_ || costs_->size() != job.size || !is_near(job.camera, costs_->camera(), box, near_enough))
+    costs_.emplace(job.camera, job.size, 0.5 * (box.low + box.high));
+  else
+    costs_->turn_to(job.camera);
+  costs_->learn(tiles);
+  tiles_ = std::accumulate(tiles.begin(), tiles.end(), 0.0, [](double sum, const volume::TileTime& time) {
+    return sum + 1e3 * static_cast<double>(time.microseconds);
+  });
+  beside_.resize(ranks.size());
+  // Little of it of one picture: writing one may have been disturbed.
+  beside_[0] += std::max(0.2, 1.0 / ++pictures_) * (1e9 * gather_seconds - beside_[0]);
+}
+
+std::vector<double> SplitByTimes::weights() const {
+  const double each =
+      (tiles_ + std::accumulate(beside_.begin(), beside_.end(), 0.0)) / static_cast<double>(beside_.size());
+  std::vector<double> weights;
+  for (const double beside : beside_) weights.push_back(std::max(0.1, 1 - beside / each));
+  return weights;
+}
+
+std::optional<volume::ImageSplit> SplitByTimes::find(const VolumeJob& job, const scene::Box& box) {
+  if (!costs_ || costs_->size() != job.size || !is_near(job.camera, costs_->camera(), box, near_enough))
+    return std::nullopt;
+  volume::TileCosts costs = *costs_;
+  costs.turn_to(job.camera);
+  costs.sum();
+  return volume::balanced_split(costs, beside_);
+}
+
+}  // namespace tessera::frame

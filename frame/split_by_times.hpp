@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "frame/volume_frames.hpp"
+#include "volume/image_split.hpp"
+#include "volume/tile_costs.hpp"
+
+namespace tessera::frame {
+
+/// What a rank says of its part of a picture.
+struct CastTimes {
+  bool whole = true;  ///< it was not stopped
+  std::vector<volume::TileTime> tiles;
+};
+
+/// Rank 0's share in `Balance::learned`: the split of a picture by what each tile of the pictures before took, where
+/// the view is near theirs.
+///
+/// A split gives each rank the same processor time. Rank 0 gathers as well, and so gets less of the tiles.
+class SplitByTimes {
+ public:
+  /// What the picture of `job` took, by rank, and what gathering one took rank 0 [s]; `box` holds the volume.
+  void learn(const VolumeJob& job, const scene::Box& box, const std::vector<CastTimes>& ranks, double gather_seconds);
+
+  /// Of a picture; nothing if too little is known.
+  [[nodiscard]] std::optional<volume::ImageSplit> find(const VolumeJob& job, const scene::Box& box);
+
+  /// How much of the tiles each rank should get. Empty if nothing is known.
+  [[nodiscard]] std::vector<double> weights() const;
+
+ private:
+  std::optional<volume::TileCosts> costs_;
+  int pictures_ = 0;            ///< that it has learned from
+  double tiles_ = 0;            ///< nanoseconds of the last picture
+  std::vector<double> beside_;  ///< nanoseconds of each rank, beside its tiles
+};
+
+/// Whether rays go through the box about as they do in another view of it: within `most` radians, and `most` of the
+/// distance to its middle.
+bool is_near(const scene::Camera& camera, const scene::Camera& other, const scene::Box& box, double most);
+
+}  // namespace tessera::frame
