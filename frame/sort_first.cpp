@@ -1,6 +1,7 @@
 #include "frame/sort_first.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -70,12 +71,11 @@ class SortFirst::State {
   }
 
   VolumePart make(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
-                  std::size_t number, scene::FrameWatch& watch, double gather_seconds) {
+                  std::size_t number, scene::FrameWatch& watch) {
     const double cpu_at_first = process_cpu_seconds();
     const ImageSplit split = [&] {
       const scene::TraceScope timing(settings_.trace, "partition", static_cast<std::int32_t>(number));
-      if (std::optional<ImageSplit> known = known_split(renderer, function, job, gather_seconds))
-        return std::move(*known);
+      if (std::optional<ImageSplit> known = known_split(renderer, function, job)) return std::move(*known);
       sample_work(renderer, function, job, watch);
       return split_of(renderer, function, job);
     }();
@@ -108,7 +108,7 @@ class SortFirst::State {
     part.finished.statistics = statistics;
     part.finished.split = split;
     part.finished.cost = std::move(cost_);
-    if (goes_by_times()) timed_ = job, times_here_ = {!stopped, std::move(times)};
+    if (goes_by_times()) timed_ = job, times_here_ = {!stopped, getpid(), cpu, std::move(times)};
     return part;
   }
 
@@ -123,12 +123,12 @@ class SortFirst::State {
   /// What rank 0 knows from the pictures before; where that is no split, maybe how much each rank should get of one.
   /// Collective.
   std::optional<ImageSplit> known_split(const volume::Renderer& renderer, const scene::TransferFunction& function,
-                                        const VolumeJob& job, double gather_seconds) {
+                                        const VolumeJob& job) {
     if (!goes_by_times()) return std::nullopt;
     const scene::Box box = scene::bounds(renderer.geometry());
     const bool alike = std::ranges::equal(function.knots(), timed_knots_);
     timed_knots_.assign(function.knots().begin(), function.knots().end());
-    if (timed_) learn_times(*std::exchange(timed_, std::nullopt), box, gather_seconds);
+    if (timed_) learn_times(*std::exchange(timed_, std::nullopt), box);
     if (!alike) by_times_ = {};
     if (transport_.rank() != 0) return receive_split(exchange::broadcast(transport_, 0, {}));
     const std::optional<ImageSplit> split = by_times_.find(job, box);
@@ -159,9 +159,11 @@ class SortFirst::State {
   }
 
   /// Tells rank 0 what the picture of `job` took. Collective.
-  void learn_times(const VolumeJob& job, const scene::Box& box, double gather_seconds) {
+  void learn_times(const VolumeJob& job, const scene::Box& box) {
     if (transport_.rank() != 0) {
       Bytes bytes = exchange::message_of(MessageKind::tile_times, std::uint8_t{times_here_.whole});
+      exchange::append(bytes, times_here_.process);
+      exchange::append(bytes, times_here_.cpu_seconds);
       append_list(bytes, times_here_.tiles);
       transport_.send(0, exchange::Channel::agreement, std::move(bytes));
       return;
@@ -173,6 +175,9 @@ class SortFirst::State {
       MessageReader reader(message, MessageKind::tile_times);
       CastTimes& times = ranks[static_cast<std::size_t>(message.from)];
       times.whole = reader.take<std::uint8_t>() != 0;
+      times.process = reader.take<std::int64_t>();
+      times.cpu_seconds = reader.take<double>();
+      if (!std::isfinite(times.cpu_seconds)) reader.refuse("has a time that is no number");
       times.tiles = reader.take_list<volume::TileTime>();
       reader.finish();
       for (const auto& [pixels, microseconds] : times.tiles)
@@ -180,7 +185,7 @@ class SortFirst::State {
             !(microseconds >= 0) || !std::isfinite(microseconds))
           reader.refuse("has times of pixels outside of the picture");
     }
-    by_times_.learn(job, box, ranks, gather_seconds);
+    by_times_.learn(job, box, ranks);
   }
 
   ImageSplit split_of(const volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job) {
@@ -334,7 +339,7 @@ SortFirst::~SortFirst() = default;
 
 VolumePart SortFirst::make(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
                            std::size_t number, scene::FrameWatch& watch) {
-  return state_->make(renderer, function, job, number, watch, gather_seconds());
+  return state_->make(renderer, function, job, number, watch);
 }
 
 }  // namespace tessera::frame

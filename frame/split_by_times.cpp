@@ -22,30 +22,41 @@ bool is_near(const scene::Camera& camera, const scene::Camera& other, const scen
          glm::length(camera.position - other.position) < most * distance;
 }
 
-void SplitByTimes::learn(const VolumeJob& job, const scene::Box& box, const std::vector<CastTimes>& ranks,
-                         double gather_seconds) {
+void SplitByTimes::learn(const VolumeJob& job, const scene::Box& box, const std::vector<CastTimes>& ranks) {
   if (!std::ranges::all_of(ranks, &CastTimes::whole)) return;
   std::vector<volume::TileTime> tiles;
-  for (const CastTimes& times : ranks) tiles.insert(tiles.end(), times.tiles.begin(), times.tiles.end());
+  std::vector<double> beside;
+  tiles_ = 0;
+  for (const CastTimes& times : ranks) {
+    double own = 0;
+    for (const volume::TileTime& time : times.tiles) own += 1e3 * static_cast<double>(time.microseconds);
+    beside.push_back(std::max(0.0, 1e9 * times.cpu_seconds - own));
+    tiles.insert(tiles.end(), times.tiles.begin(), times.tiles.end());
+    tiles_ += own;
+  }
+  // Of ranks in one process nobody knows who took its time.
+  for (auto rank = ranks.begin(); rank != ranks.end(); ++rank)
+    if (std::any_of(ranks.begin(), rank, [&](const CastTimes& other) { return other.process == rank->process; }))
+      beside.assign(ranks.size(), 0.0);
+  beside_.resize(ranks.size());
+  ++pictures_;
+  // Little of it of one picture: gathering one may fall into the time of another.
+  for (std::size_t rank = 0; rank < beside.size(); ++rank)
+    beside_[rank] += std::max(0.2, 1.0 / pictures_) * (beside[rank] - beside_[rank]);
   if (tiles.empty()) return;
   if (!costs_ || costs_->size() != job.size || !is_near(job.camera, costs_->camera(), box, near_enough))
     costs_.emplace(job.camera, job.size, 0.5 * (box.low + box.high));
   else
     costs_->turn_to(job.camera);
   costs_->learn(tiles);
-  tiles_ = std::accumulate(tiles.begin(), tiles.end(), 0.0, [](double sum, const volume::TileTime& time) {
-    return sum + 1e3 * static_cast<double>(time.microseconds);
-  });
-  beside_.resize(ranks.size());
-  // Little of it of one picture: writing one may have been disturbed.
-  beside_[0] += std::max(0.2, 1.0 / ++pictures_) * (1e9 * gather_seconds - beside_[0]);
 }
 
 std::vector<double> SplitByTimes::weights() const {
   const double each =
       (tiles_ + std::accumulate(beside_.begin(), beside_.end(), 0.0)) / static_cast<double>(beside_.size());
   std::vector<double> weights;
-  for (const double beside : beside_) weights.push_back(std::max(0.1, 1 - beside / each));
+  if (tiles_ > 0)
+    for (const double beside : beside_) weights.push_back(std::max(0.1, 1 - beside / each));
   return weights;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -11,18 +12,21 @@ namespace tessera::frame {
 
 /// What a rank says of its part of a picture.
 struct CastTimes {
-  bool whole = true;  ///< it was not stopped
+  bool whole = true;         ///< it was not stopped
+  std::int64_t process = 0;  ///< that the rank is in
+  double cpu_seconds = 0;    ///< of the process, for the picture
   std::vector<volume::TileTime> tiles;
 };
 
 /// Rank 0's share in `Balance::learned`: the split of a picture by what each tile of the pictures before took, where
 /// the view is near theirs.
 ///
-/// A split gives each rank the same processor time. Rank 0 gathers as well, and so gets less of the tiles.
+/// A split gives each process the same time: of its tiles and of all else that it does for a picture, as it was in the
+/// pictures before. Rank 0 gathers as well, and so gets less of the tiles.
 class SplitByTimes {
  public:
-  /// What the picture of `job` took, by rank, and what gathering one took rank 0 [s]; `box` holds the volume.
-  void learn(const VolumeJob& job, const scene::Box& box, const std::vector<CastTimes>& ranks, double gather_seconds);
+  /// What the picture of `job` took, by rank; `box` holds the volume.
+  void learn(const VolumeJob& job, const scene::Box& box, const std::vector<CastTimes>& ranks);
 
   /// Of a picture; nothing if too little is known.
   [[nodiscard]] std::optional<volume::ImageSplit> find(const VolumeJob& job, const scene::Box& box);

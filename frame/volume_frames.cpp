@@ -21,13 +21,9 @@ using exchange::MessageKind;
 /// The pictures of one call of render(): on rank 0 what becomes of them, elsewhere they are sent there.
 class VolumeFrames::List {
  public:
-  List(VolumeFrames& frames, StopRelay::Run& relayed, const VolumeCallbacks& callbacks, std::size_t first)
-      : frames_(frames),
-        transport_(frames.transport_),
-        relayed_(relayed),
-        callbacks_(callbacks),
-        first_(first),
-        gather_(frames.transport_, frames.trace_) {
+  List(exchange::Transport& transport, scene::Trace* trace, StopRelay::Run& relayed, const VolumeCallbacks& callbacks,
+       std::size_t first)
+      : transport_(transport), relayed_(relayed), callbacks_(callbacks), first_(first), gather_(transport, trace) {
     if (transport_.rank() == 0 && transport_.size() > 1) thread_ = scene::start_thread([this] { complete_all(); });
   }
   ~List() {
@@ -106,7 +102,6 @@ class VolumeFrames::List {
       parts_.pop_front();
     }
     const std::size_t frame = part.header.frame - first_;
-    const double cpu_before = thread_cpu_seconds();
     scene::FrameWatch watch(relayed_.token());
     listen(frame, watch);
     FinishedVolumeFrame finished = gather_.gather(std::move(part), watch);
@@ -114,7 +109,6 @@ class VolumeFrames::List {
     const auto now = std::chrono::steady_clock::now();
     finished.frame_ms = std::chrono::duration<double, std::milli>(now - std::exchange(last_, now)).count();
     hand_out(std::move(finished));
-    frames_.gather_seconds_ = thread_cpu_seconds() - cpu_before;
     {
       const std::lock_guard lock(mutex_);
       ++left_;
@@ -143,7 +137,6 @@ class VolumeFrames::List {
     return !thrown_;
   }
 
-  VolumeFrames& frames_;
   exchange::Transport& transport_;
   StopRelay::Run& relayed_;
   const VolumeCallbacks& callbacks_;
@@ -175,7 +168,7 @@ std::size_t VolumeFrames::render(volume::Renderer& renderer, const scene::Transf
     const scene::TraceScope timing(trace_, "wait", static_cast<std::int32_t>(first));
     exchange::barrier(transport_);
   }
-  List list(*this, relayed, callbacks, first);
+  List list(transport_, trace_, relayed, callbacks, first);
   std::size_t complete = 0;
   try {
     for (std::size_t frame = 0; frame < jobs.size(); ++frame) {
@@ -223,17 +216,10 @@ std::optional<FinishedVolumeFrame> VolumeFrames::render(volume::Renderer& render
   return made;
 }
 
-namespace {
-
-double seconds_of(clockid_t clock) {
+double process_cpu_seconds() {
   timespec t{};
-  clock_gettime(clock, &t);
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
-
-}  // namespace
-
-double process_cpu_seconds() { return seconds_of(CLOCK_PROCESS_CPUTIME_ID); }
-double thread_cpu_seconds() { return seconds_of(CLOCK_THREAD_CPUTIME_ID); }
 
 }  // namespace tessera::frame

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -99,20 +98,15 @@ class VolumeFrames {
   virtual VolumePart make(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
                           std::size_t number, scene::FrameWatch& watch) = 0;
 
-  /// On rank 0: what gathering the last picture and handing it out took of the thread that does it [s].
-  [[nodiscard]] double gather_seconds() const { return gather_seconds_; }
-
   exchange::Transport& transport_;
   scene::Trace* trace_;
 
  private:
   class List;
   StopRelay relay_;
-  std::atomic<double> gather_seconds_ = 0;
 };
 
-/// Processor time of all threads of this process, and of this thread, so far.
+/// Processor time of all threads of this process so far.
 double process_cpu_seconds();
-double thread_cpu_seconds();
 
 }  // namespace tessera::frame

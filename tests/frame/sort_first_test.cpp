@@ -138,7 +138,7 @@ TEST(SortFirst, LearnedBalanceSharesCountedSamplesInTheFirstFrameAndWhereRaysEnd
       render.threads = 1;
       volume::Renderer renderer(*source, render);
       for (const VolumeJob& job : jobs)
-        render_sort_first(transport, settings, {job}, opaque, renderer, [&](const FinishedVolumeFrame& frame) {
+        render_sort_first(transport, settings, {&job, 1}, opaque, renderer, [&](const FinishedVolumeFrame& frame) {
           worst = std::max(worst, deviation(samples_of(frame)));
         });
     });
