@@ -1,7 +1,6 @@
 #include "frame/sort_first.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -9,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <numeric>
 #include <optional>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -36,6 +36,15 @@ PixelRect scaled(const PixelRect& r, double resolution, scene::ImageSize map, sc
   };
   return {edge(r.x0, image.width, map.width), edge(r.y0, image.height, map.height), edge(r.x1, image.width, map.width),
           edge(r.y1, image.height, map.height)};
+}
+
+/// Tells this process from others on any machine.
+std::uint64_t process_token() {
+  static const std::uint64_t token = [] {
+    std::random_device device;
+    return std::uint64_t{device()} << 32 | device();
+  }();
+  return token;
 }
 
 volume::CostMethod method_of(Balance balance) {
@@ -108,7 +117,7 @@ class SortFirst::State {
     part.finished.statistics = statistics;
     part.finished.split = split;
     part.finished.cost = std::move(cost_);
-    if (goes_by_times()) timed_ = job, times_here_ = {!stopped, getpid(), cpu, std::move(times)};
+    if (goes_by_times()) timed_ = job, times_here_ = {!stopped, process_token(), cpu, std::move(times)};
     return part;
   }
 
@@ -175,7 +184,7 @@ class SortFirst::State {
       MessageReader reader(message, MessageKind::tile_times);
       CastTimes& times = ranks[static_cast<std::size_t>(message.from)];
       times.whole = reader.take<std::uint8_t>() != 0;
-      times.process = reader.take<std::int64_t>();
+      times.process = reader.take<std::uint64_t>();
       times.cpu_seconds = reader.take<double>();
       if (!std::isfinite(times.cpu_seconds)) reader.refuse("has a time that is no number");
       times.tiles = reader.take_list<volume::TileTime>();

@@ -12,9 +12,9 @@ namespace tessera::frame {
 
 /// What a rank says of its part of a picture.
 struct CastTimes {
-  bool whole = true;         ///< it was not stopped
-  std::int64_t process = 0;  ///< that the rank is in
-  double cpu_seconds = 0;    ///< of the process, for the picture
+  bool whole = true;          ///< it was not stopped
+  std::uint64_t process = 0;  ///< that the rank is in
+  double cpu_seconds = 0;     ///< of the process, for the picture
   std::vector<volume::TileTime> tiles;
 };
 
