@@ -46,4 +46,23 @@ std::optional<StallSettings> stall_settings(const StallWords& words, bool quiet)
   return settings;
 }
 
+std::chrono::milliseconds start_patience(std::span<const std::string> arguments) {
+  StallWords words;
+  const auto take = [&](std::size_t at, const std::string& name, std::string& value) {
+    if (arguments[at].starts_with(name + "=")) value = arguments[at].substr(name.size() + 1);
+    if (arguments[at] == name && at + 1 < arguments.size()) value = arguments[at + 1];
+  };
+  for (std::size_t at = 0; at < arguments.size(); ++at) {
+    take(at, "--stall-timeout", words.timeout);
+    take(at, "--on-stall", words.on_stall);
+  }
+  try {
+    const auto settings = stall_settings(words, true);
+    constexpr std::chrono::seconds grace(5);
+    if (settings && settings->ends_run) return settings->timeout + grace;
+  } catch (const Error&) {  // of which the command line's reader tells
+  }
+  return std::chrono::milliseconds(0);
+}
+
 }  // namespace tessera::apps

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "tessera/job.hpp"
@@ -19,5 +21,9 @@ void add_stall_options(CLI::App& command, StallWords& words);
 /// What they say; nothing if no rank is to be looked after. Notices go to stderr, one line each, unless `quiet`. Throws
 /// Error(bad_input).
 std::optional<StallSettings> stall_settings(const StallWords& words, bool quiet);
+
+/// JobVoice::start_patience, which is wanted before there is a command line to speak of: five seconds more than the
+/// timeout with --on-stall abort, else 0.
+std::chrono::milliseconds start_patience(std::span<const std::string> arguments);
 
 }  // namespace tessera::apps

@@ -21,7 +21,7 @@ namespace tessera::exchange {
 static_assert(std::endian::native == std::endian::little, "messages are little endian");
 
 inline constexpr std::uint32_t wire_magic = 0x57535354;  ///< "TSSW"
-inline constexpr std::uint16_t wire_version = 22;        ///< the next one whenever a message changes
+inline constexpr std::uint16_t wire_version = 23;        ///< the next one whenever a message changes
 
 /// All kinds, by channel, and what follows the header.
 enum class MessageKind : std::uint16_t {
@@ -80,6 +80,7 @@ enum class MessageKind : std::uint16_t {
   of_job = 36,            ///< list of bytes: the caller's own (tessera/job.hpp)
   higher_order = 37,      ///< u64[128]: tets by how far they are off (io/higher_order_plan.hpp)
   process_on_host = 38,   ///< exchange/one_line.cpp
+  arguments = 58,         ///< list of bytes: what the sender was started with (first_contact.cpp)
   field_samples = 39,     ///< list of scene::FieldSample: of a rank's part (frame/field_samples.cpp)
   open_faces = 47,        ///< list of OpenFace (frame/boundary_faces.cpp): that one tet of a rank's part has alone
   speed = 50,             ///< f64 samples a second of the last frame, 0: unknown

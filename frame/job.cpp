@@ -54,7 +54,7 @@ struct Job::State {
   /// Before ranks first wait for one another.
   void meet() {
     if (std::exchange(has_met, true)) return;
-    exchange::make_first_contact(transport(), exchange::first_contact_patience());
+    exchange::make_first_contact(transport(), exchange::first_contact_patience(), voice.arguments);
     if (transport().size() > 1) transport().use_bells(exchange::Bells::hung(transport()));
   }
   bool has_met = false;
@@ -68,8 +68,12 @@ Job::Job(JobVoice voice) : state_(std::make_unique<State>(State{std::move(voice)
     std::signal(SIGABRT, on_abort);  // which Open MPI leaves in place
     exchange::name_one_line();
     const exchange::StartWitness witness(state_->voice.program);
-    state_->mpi = std::make_unique<exchange::MpiTransport>(
-        exchange::MpiTransport::Hooks{state_->voice.speak, exchange::expect_end, exchange::ended_from_outside});
+    const exchange::TerminationWhileStarting remembered(state_->voice.remedy);
+    state_->mpi = std::make_unique<exchange::MpiTransport>(exchange::MpiTransport::Hooks{
+        state_->voice.speak, exchange::expect_end, exchange::ended_from_outside, state_->voice.start_patience,
+        [&](const Error& error) {
+          witness.leave_words(fmt::format("{}: {}\n", state_->voice.program, error.what()));
+        }});
   } else {
     state_->alone = std::make_unique<exchange::LoopbackNetwork>(1);
   }
