@@ -1,10 +1,8 @@
 #include "exchange/mpi_transport.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstdlib>
@@ -19,6 +17,7 @@
 #include "exchange/mailboxes.hpp"
 #include "exchange/message.hpp"
 #include "exchange/mpi_port.hpp"
+#include "exchange/run_faults.hpp"
 #include "scene/start_thread.hpp"
 
 namespace tessera::exchange {
@@ -45,24 +44,7 @@ constexpr microseconds longest_nap_with_bells(20'000);
 /// For the others to hear of the error that a stalled rank is; at most the transport's patience.
 constexpr auto stall_grace = std::chrono::seconds(1);
 /// What MPI's end may take beyond a stall's timeout: on a busy machine one of many ranks takes more than a second.
-constexpr auto end_grace = std::chrono::seconds(5);
-
-Bytes error_message(MessageKind kind, const scene::Error& error) {
-  Bytes message = message_of(kind, static_cast<std::uint8_t>(error.code()));
-  append_text(message, error.what());
-  return message;
-}
-
-std::string process_name() {
-  std::array<char, 256> host{};
-  gethostname(host.data(), host.size() - 1);
-  return fmt::format("process {} on {}", getpid(), host.data());
-}
-
-scene::Error take_error(MessageReader& reader) {
-  const auto code = static_cast<scene::ErrorCode>(reader.take<std::uint8_t>());
-  return {code, reader.take_text()};
-}
+constexpr std::chrono::milliseconds end_grace(5000);
 
 }  // namespace
 
@@ -261,6 +243,7 @@ class MpiTransport::Engine {
   /// MPI ends when all ranks are there, and no heartbeats come any more: who must not wait for ever looks at the time.
   void watch_end() {
     std::unique_lock lock(mutex_);
+    if (end_patience_ && hooks_.on_end) hooks_.on_end(*end_patience_ - end_grace / 2);
     changed_.wait(lock, [&] { return ending_mpi_ || ended_; });
     if (!end_patience_) return;
     // Rank 0 first, then the lowest that runs, as heartbeats have it.
@@ -274,13 +257,6 @@ class MpiTransport::Engine {
     const scene::Error error = missing_rank("start", time, "run the same command again");
     if (hooks_.on_start_missed) hooks_.on_start_missed(error);
     std::_Exit(static_cast<int>(error.code()));
-  }
-
-  /// A rank has not come to MPI's start or end.
-  static scene::Error missing_rank(const char* what, std::chrono::milliseconds time, const char* remedy) {
-    return {scene::ErrorCode::system_failure,
-            fmt::format("MPI: its {} has taken {:.3g} s: a rank's process is stopped or its machine hangs; {}", what,
-                        std::chrono::duration<double>(time).count(), remedy)};
   }
 
   [[noreturn]] void end_process(const scene::Error& error) const {

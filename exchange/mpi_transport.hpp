@@ -50,6 +50,9 @@ class MpiTransport final : public Transport {
     /// For how long MPI may start before this process ends, having called `on_start_missed`; 0: for ever.
     std::chrono::milliseconds start_patience{0};
     std::function<void(const scene::Error& error)> on_start_missed{};
+    /// Called at the end of a run that silence ends: to be ended in any case, and looked at again and again so often,
+    /// should somebody stop it. May be empty.
+    std::function<void(std::chrono::milliseconds every)> on_end{};
   };
 
   /// Starts MPI. Throws Error(system_failure) if that fails.

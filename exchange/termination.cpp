@@ -9,6 +9,7 @@
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -105,6 +106,18 @@ std::optional<scene::Error> ended_from_outside(int rank, int size) {
   return scene::Error(
       scene::ErrorCode::system_failure,
       fmt::format("the run was ended from outside (rank {} of {} got SIGTERM); {}", rank, size, remedy_of_run));
+}
+
+void go_on_if_stopped(std::chrono::milliseconds every) {
+  struct sigevent event {};
+  event.sigev_notify = SIGEV_SIGNAL;
+  event.sigev_signo = SIGCONT;  // does nothing to a process that runs
+  timer_t timer{};
+  if (timer_create(CLOCK_MONOTONIC, &event, &timer) != 0) return;
+  const auto count = every.count();
+  const timespec time{count / 1000, count % 1000 * 1'000'000};
+  const itimerspec times{time, time};
+  timer_settime(timer, 0, &times, nullptr);
 }
 
 void expect_end() { is_ending = true; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <csignal>
 #include <optional>
 #include <string>
@@ -31,6 +32,10 @@ class TerminationWhileStarting {
 
 /// The run's error, once this rank, of so many, got SIGTERM from somebody else than its launcher.
 std::optional<scene::Error> ended_from_outside(int rank, int size);
+
+/// This process goes on if it is found stopped `every` so long from now on: its part is over but for its exit, which
+/// the launcher waits for, and of its own ranks none may be left that could miss it.
+void go_on_if_stopped(std::chrono::milliseconds every);
 
 /// From now on a launcher that ends this rank only hurries it: other ranks may have ended already, with the status that
 /// all will have.

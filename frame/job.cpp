@@ -71,9 +71,8 @@ Job::Job(JobVoice voice) : state_(std::make_unique<State>(State{std::move(voice)
     const exchange::TerminationWhileStarting remembered(state_->voice.remedy);
     state_->mpi = std::make_unique<exchange::MpiTransport>(exchange::MpiTransport::Hooks{
         state_->voice.speak, exchange::expect_end, exchange::ended_from_outside, state_->voice.start_patience,
-        [&](const Error& error) {
-          witness.leave_words(fmt::format("{}: {}\n", state_->voice.program, error.what()));
-        }});
+        [&](const Error& error) { witness.leave_words(fmt::format("{}: {}\n", state_->voice.program, error.what())); },
+        exchange::go_on_if_stopped});
   } else {
     state_->alone = std::make_unique<exchange::LoopbackNetwork>(1);
   }
