@@ -46,7 +46,7 @@ std::optional<StallSettings> stall_settings(const StallWords& words, bool quiet)
   return settings;
 }
 
-std::chrono::milliseconds start_patience(std::span<const std::string> arguments) {
+std::optional<StallSettings> stalls_at_start(std::span<const std::string> arguments) {
   StallWords words;
   const auto take = [&](std::size_t at, const std::string& name, std::string& value) {
     if (arguments[at].starts_with(name + "=")) value = arguments[at].substr(name.size() + 1);
@@ -58,11 +58,10 @@ std::chrono::milliseconds start_patience(std::span<const std::string> arguments)
   }
   try {
     const auto settings = stall_settings(words, true);
-    constexpr std::chrono::seconds grace(5);
-    if (settings && settings->ends_run) return settings->timeout + grace;
+    if (settings && settings->ends_run) return settings;
   } catch (const Error&) {  // of which the command line's reader tells
   }
-  return std::chrono::milliseconds(0);
+  return std::nullopt;
 }
 
 }  // namespace tessera::apps

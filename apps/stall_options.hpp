@@ -1,7 +1,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <optional>
 #include <span>
 #include <string>
@@ -22,8 +21,7 @@ void add_stall_options(CLI::App& command, StallWords& words);
 /// Error(bad_input).
 std::optional<StallSettings> stall_settings(const StallWords& words, bool quiet);
 
-/// JobVoice::start_patience, which is wanted before there is a command line to speak of: five seconds more than the
-/// timeout with --on-stall abort, else 0.
-std::chrono::milliseconds start_patience(std::span<const std::string> arguments);
+/// The same where --on-stall abort is given, for JobVoice: before the command line is read.
+std::optional<StallSettings> stalls_at_start(std::span<const std::string> arguments);
 
 }  // namespace tessera::apps

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -69,10 +70,14 @@ Job::Job(JobVoice voice) : state_(std::make_unique<State>(State{std::move(voice)
     exchange::name_one_line();
     const exchange::StartWitness witness(state_->voice.program);
     const exchange::TerminationWhileStarting remembered(state_->voice.remedy);
+    const auto& stalls = state_->voice.stalls;
+    const std::chrono::milliseconds patience =
+        stalls && stalls->ends_run ? stalls->timeout + std::chrono::seconds(5) : std::chrono::seconds(0);
     state_->mpi = std::make_unique<exchange::MpiTransport>(exchange::MpiTransport::Hooks{
-        state_->voice.speak, exchange::expect_end, exchange::ended_from_outside, state_->voice.start_patience,
+        state_->voice.speak, exchange::expect_end, exchange::ended_from_outside, patience,
         [&](const Error& error) { witness.leave_words(fmt::format("{}: {}\n", state_->voice.program, error.what())); },
         exchange::go_on_if_stopped});
+    if (stalls) state_->mpi->watch_stalls(*stalls);
   } else {
     state_->alone = std::make_unique<exchange::LoopbackNetwork>(1);
   }

@@ -31,9 +31,9 @@ struct JobVoice {
   /// All ranks must have been started with the same: compared as they first meet, in answer_termination() or
   /// agree_instruction_sets(), which throw Error(bad_input) on all ranks if they differ.
   std::vector<std::string> arguments{};
-  /// For how long MPI may start before the process gives up: a rank that is stopped meanwhile, which MPI waits for and
-  /// cannot name. 0: for ever.
-  std::chrono::milliseconds start_patience{0};
+  /// Looks for ranks that have stopped from MPI's start on, as watch_stalls() does. Where silence ends the run, MPI's
+  /// start may take five seconds longer than it: MPI waits for a rank that is stopped meanwhile, and cannot name it.
+  std::optional<StallSettings> stalls{};
 };
 
 /// The ranks that a launcher (mpirun, srun) started this program as, or this process alone, without MPI. For programs
