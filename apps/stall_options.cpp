@@ -57,7 +57,7 @@ std::optional<StallSettings> stalls_at_start(std::span<const std::string> argume
     take(at, "--on-stall", words.on_stall);
   }
   try {
-    const auto settings = stall_settings(words, true);
+    auto settings = stall_settings(words, true);
     if (settings && settings->ends_run) return settings;
   } catch (const Error&) {  // of which the command line's reader tells
   }
