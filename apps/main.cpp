@@ -3,12 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "apps/argument_values.hpp"
 #include "apps/chart_command.hpp"
@@ -146,7 +149,9 @@ int main(int argc, char** argv) {
   std::optional<tessera::Job> job;
   try {
     constexpr auto remedy = "finished pictures stay, and the same command with --resume goes on from there";
-    job.emplace(tessera::JobVoice{"tessera", remedy, [](const Error& error) { fail(error); }});
+    const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+    job.emplace(tessera::JobVoice{"tessera", remedy, [](const Error& error) { fail(error); }, arguments,
+                                  tessera::apps::stalls_at_start(arguments)});
   } catch (...) {
     return fail(as_error());
   }

@@ -193,8 +193,7 @@ void set_distribution(const RenderWords& words, RankSettings& ranks) {
     throw bad_input("--direct-send: has no effect without --distribution sort-last; add it, or leave it out");
   const std::pair<const char*, bool> of_sort_first[] = {{"--balance", !words.balance.empty()},
                                                         {"--balance-resolution", !words.balance_resolution.empty()},
-                                                        {"--balance-weights", !words.balance_weights.empty()},
-                                                        {"--show", !words.show.empty()}};
+                                                        {"--balance-weights", !words.balance_weights.empty()}};
   for (const auto& [option, is_given] : of_sort_first)
     if (sorts_last && is_given)
       throw bad_input(fmt::format(

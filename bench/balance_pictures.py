@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Moloney, Ray Coherence in Parallel Volume Rendering (2008), Figures 1.2, 4.1 and 4.4: who renders what, and what it is thought to cost.
+"""Moloney, Ray Coherence in Parallel Volume Rendering (2008), Figures 1.1, 1.2, 4.1 and 4.4: who renders what, and what it is thought to cost.
 
     bench/balance_pictures.py --tessera PROGRAM [--images docs/images]
 
+    Figure 1.1  figure-1-1-1.png, -2.png: the parts of four processes of sort-last, and the bricks in their colours, from outside and from within;
+                prints the CPU time of each
     Figure 1.2  figure-1-2-1.png, -2.png: the rectangles of four processes, and the bricks in their colours, in two views
     Figure 4.1  figure-4-1-METHOD.png: the cost map of one brick
     Figure 4.4  figure-4-4-METHOD.png: those of `head` for eight processes; figure-4-4.png the picture, figure-4-4-bricks.png with bricks
@@ -19,6 +21,7 @@ from balance import run
 METHODS = ("accurate", "backface", "splatting")
 VIEWS = [{"position": [2.6, -3.6, 1.6], "focal_point": [0, 0, 0], "view_up": [0, 0, 1], "view_angle": 38},
          {"position": [-0.9, 1.3, 0.9], "focal_point": [0.3, -0.2, 0.1], "view_up": [0, 0, 1], "view_angle": 60}]
+INTO = [VIEWS[0], {"position": [-0.1, -0.6, 0.6], "focal_point": [-0.35, 0.4, 0.1], "view_up": [0, 0, 1], "view_angle": 30}]
 
 
 def main():
@@ -47,6 +50,12 @@ def main():
         render(4, head, function, folder / "a%d.png", "--camera", views, "--brick-size", "16", "--show", "balance")
         for n in range(2):
             keep(f"a{n}.png", f"figure-1-2-{n + 1}.png")
+        views.write_text(json.dumps(INTO))
+        render(4, head, function, folder / "b%d.png", "--camera", views, "--brick-size", "16", "--show", "balance", "--distribution", "sort-last",
+               "--report", folder / "b.json")
+        for n, frame in enumerate(json.loads((folder / "b.json").read_text())["frames"]):
+            keep(f"b{n}.png", f"figure-1-1-{n + 1}.png")
+            print(f"figure 1.1, view {n + 1}: CPU ms " + ", ".join(f"{p['cpu_ms']:.1f}" for p in frame["balance"]["processes"]))
         for method in METHODS:
             words = ["--show", "balance", "--balance", method, "--balance-resolution", "1"]
             render(1, brick, everything, folder / "one.png", "--brick-size", "32", *words)

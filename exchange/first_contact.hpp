@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <string>
+#include <vector>
 
 #include "exchange/transport.hpp"
 
@@ -12,8 +13,10 @@ namespace tessera::exchange {
 std::string memory_remedy();
 
 /// Collective, before all else. Returns when rank 0 has heard of all others and each of them of rank 0, twice. Throws
-/// Error(system_failure) on a rank that has not within `patience`; 0 waits for ever.
-void make_first_contact(Transport& transport, std::chrono::milliseconds patience);
+/// Error(system_failure) on a rank that has not within `patience`; 0 waits for ever. Throws Error(bad_input) on rank 0
+/// if another was started with other `arguments`: ranks that do different things would wait for one another for ever.
+void make_first_contact(Transport& transport, std::chrono::milliseconds patience,
+                        const std::vector<std::string>& arguments = {});
 
 /// How long a rank of this process's limits should wait: for ever, unless its address space is limited.
 std::chrono::milliseconds first_contact_patience();

@@ -80,6 +80,7 @@ enum class MessageKind : std::uint16_t {
   of_job = 36,            ///< list of bytes: the caller's own (tessera/job.hpp)
   higher_order = 37,      ///< u64[128]: tets by how far they are off (io/higher_order_plan.hpp)
   process_on_host = 38,   ///< exchange/one_line.cpp
+  arguments = 58,         ///< list of bytes: what the sender was started with (first_contact.cpp)
   field_samples = 39,     ///< list of scene::FieldSample: of a rank's part (frame/field_samples.cpp)
   open_faces = 47,        ///< list of OpenFace (frame/boundary_faces.cpp): that one tet of a rank's part has alone
   speed = 50,             ///< f64 samples a second of the last frame, 0: unknown

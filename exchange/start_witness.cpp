@@ -19,13 +19,22 @@ std::string words(const std::string& program) {
   return fmt::format("{}: MPI: a rank ended while MPI started, its words are above; {}\n", program, memory_remedy());
 }
 
-/// Returns when the other end has written or is gone: whether it has written.
-bool is_told(int descriptor) {
-  char word = 0;
-  ssize_t got = 0;
-  do got = read(descriptor, &word, 1);
-  while (got < 0 && errno == EINTR);
-  return got == 1;
+/// A zero: the process goes on. Else these are its last words, up to its end.
+std::string told(int descriptor) {
+  std::string all;
+  for (;;) {
+    char next = 0;
+    const ssize_t got = read(descriptor, &next, 1);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return all;
+    all.push_back(next);
+    if (next == '\0') return all;
+  }
+}
+
+void write_all(int descriptor, const std::string& text) {
+  const ssize_t ignored = write(descriptor, text.data(), text.size());
+  static_cast<void>(ignored);
 }
 
 }  // namespace
@@ -36,10 +45,9 @@ StartWitness::StartWitness(const std::string& program) {
   child_ = fork();
   if (child_ == 0) {
     close(ends[1]);
-    if (!is_told(ends[0]) && may_speak()) {
-      const std::string line = words(program);
-      const ssize_t ignored = write(STDERR_FILENO, line.data(), line.size());
-      static_cast<void>(ignored);
+    const std::string last = told(ends[0]);
+    if (!last.ends_with('\0') && may_speak()) {
+      write_all(STDERR_FILENO, last.empty() ? words(program) : last);
       hold_one_line();
     }
     _exit(0);
@@ -50,12 +58,13 @@ StartWitness::StartWitness(const std::string& program) {
 
 StartWitness::~StartWitness() {
   if (to_child_ < 0) return;
-  if (child_ > 0) {
-    const ssize_t ignored = write(to_child_, "", 1);
-    static_cast<void>(ignored);
-  }
+  if (child_ > 0) write_all(to_child_, std::string(1, '\0'));
   close(to_child_);
   if (child_ > 0) waitpid(child_, nullptr, 0);
+}
+
+void StartWitness::leave_words(const std::string& line) const {
+  if (child_ > 0) write_all(to_child_, line);
 }
 
 }  // namespace tessera::exchange

@@ -15,6 +15,9 @@ class StartWitness {
   explicit StartWitness(const std::string& program);
   /// This process goes on: the child ends without a word.
   ~StartWitness();
+  /// The child says `line` in place of its own words once this process has ended, and in the run's line too. It holds
+  /// the line when the launcher ends the others, whose children then keep silent.
+  void leave_words(const std::string& line) const;
   StartWitness(const StartWitness&) = delete;
   StartWitness& operator=(const StartWitness&) = delete;
 

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -23,7 +24,6 @@ namespace {
 
 bool speaks_for_the_lost = true;  ///< on the first rank's machine
 std::array<pid_t, 2> launchers{};
-int rank_of_run = 0, size_of_run = 1;
 std::string remedy_of_run, line_of_run;
 void (*before_end_of_run)() noexcept = nullptr;
 std::atomic<bool> is_ending = false, asked_to_end = false;
@@ -45,6 +45,13 @@ extern "C" void on_termination(int signal, siginfo_t* from, void* /*context*/) {
   }
   if (before_end_of_run != nullptr) before_end_of_run();
   _exit(static_cast<int>(scene::ErrorCode::system_failure));
+}
+
+extern "C" void on_early_termination(int signal, siginfo_t* from, void* /*context*/) {
+  const bool from_launcher = from->si_pid == launchers[0] || from->si_pid == launchers[1];
+  if (!from_launcher && !asked_to_end.exchange(true)) return;
+  std::signal(signal, SIG_DFL);
+  raise(signal);
 }
 
 pid_t parent_of(pid_t process) {
@@ -73,7 +80,6 @@ void answer_termination(Transport& transport, const std::string& program, const 
   before_end_of_run = before_end;
   line_of_run = fmt::format("{}: the run was ended from outside or has lost a rank (the launcher says which); {}\n",
                             program, remedy);
-  rank_of_run = transport.rank(), size_of_run = transport.size();
   speaks_for_the_lost = share_one_line(transport);
   launchers = find_launchers();
   struct sigaction action {};
@@ -84,11 +90,34 @@ void answer_termination(Transport& transport, const std::string& program, const 
   prctl(PR_SET_PDEATHSIG, SIGTERM);
 }
 
-std::optional<scene::Error> ended_from_outside() {
+TerminationWhileStarting::TerminationWhileStarting(const std::string& remedy) {
+  remedy_of_run = remedy;
+  launchers = find_launchers();
+  struct sigaction action {};
+  action.sa_sigaction = on_early_termination;
+  action.sa_flags = SA_SIGINFO | SA_RESTART;  // MPI's system calls go on
+  sigaction(SIGTERM, &action, &before_);
+}
+
+TerminationWhileStarting::~TerminationWhileStarting() { sigaction(SIGTERM, &before_, nullptr); }
+
+std::optional<scene::Error> ended_from_outside(int rank, int size) {
   if (!asked_to_end) return std::nullopt;
-  return scene::Error(scene::ErrorCode::system_failure,
-                      fmt::format("the run was ended from outside (rank {} of {} got SIGTERM); {}", rank_of_run,
-                                  size_of_run, remedy_of_run));
+  return scene::Error(
+      scene::ErrorCode::system_failure,
+      fmt::format("the run was ended from outside (rank {} of {} got SIGTERM); {}", rank, size, remedy_of_run));
+}
+
+void go_on_if_stopped(std::chrono::milliseconds every) {
+  struct sigevent event {};
+  event.sigev_notify = SIGEV_SIGNAL;
+  event.sigev_signo = SIGCONT;  // does nothing to a process that runs
+  timer_t timer{};
+  if (timer_create(CLOCK_MONOTONIC, &event, &timer) != 0) return;
+  const auto count = every.count();
+  const timespec time{count / 1000, count % 1000 * 1'000'000};
+  const itimerspec times{time, time};
+  timer_settime(timer, 0, &times, nullptr);
 }
 
 void expect_end() { is_ending = true; }

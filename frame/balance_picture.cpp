@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/glm.hpp>
+#include <numeric>
 #include <vector>
 
 #include "projection/pixel_space.hpp"
@@ -64,64 +66,151 @@ std::pair<double, double> inside(const glm::dvec2& a, const glm::dvec2& b, scene
   return {from, to};
 }
 
+/// A grid's boxes as lines over a picture. Where many lines cross, a pixel is as bright as where one does.
+class BoxLines {
+ public:
+  BoxLines(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry)
+      : space_(camera, size), size_(size), geometry_(geometry), covered_(scene::Image(size).depth.size()) {
+    colors_.resize(covered_.size());
+  }
+
+  /// The edges from `low` to `high`, in index space.
+  void add(const glm::dvec3& low, const glm::dvec3& high, const Rgb& color) {
+    for (int corner = 0; corner < 8; ++corner)
+      for (int axis = 0; axis < 3; ++axis) {
+        if ((corner >> axis & 1) != 0) continue;
+        const auto at = [&](int c) {
+          return space_.project(scene::world_of_index(
+              geometry_,
+              {(c & 1) != 0 ? high.x : low.x, (c & 2) != 0 ? high.y : low.y, (c & 4) != 0 ? high.z : low.z}));
+        };
+        add_edge(at(corner), at(corner | 1 << axis), color);
+      }
+  }
+
+  /// Each pixel of a line in the line's colour, or in that which `color_of` gives for the pixel's number.
+  void paint(scene::Image& image, const std::function<Rgb(std::size_t)>& color_of = nullptr) const {
+    for (int y = 0; y < size_.height; ++y)
+      for (int x = 0; x < size_.width; ++x) {
+        const std::size_t n = image.index(x, y);
+        if (covered_[n] > 0) put(image, x, y, color_of ? color_of(n) : colors_[n], static_cast<double>(covered_[n]));
+      }
+  }
+
+ private:
+  void add_edge(projection::PixelVertex a, projection::PixelVertex b, const Rgb& color) {
+    // Of an edge that reaches behind the eye only what lies before it.
+    constexpr double least = 1e-6;
+    const double near = least * std::max(std::abs(a.w), std::abs(b.w));
+    if (a.w <= near && b.w <= near) return;
+    if (a.w <= near) std::swap(a, b);
+    if (b.w <= near) {
+      const double u = (a.w - near) / (a.w - b.w);
+      b.x = a.x + u * (b.x - a.x), b.y = a.y + u * (b.y - a.y), b.w = near;
+    }
+    const glm::dvec2 p(a.x / a.w, a.y / a.w), q(b.x / b.w, b.y / b.w);
+    const auto [from, to] = inside(p, q, size_);
+    if (from > to) return;
+    const glm::dvec2 way = q - p;
+    const bool flat = std::abs(way.x) >= std::abs(way.y);
+    const int steps = static_cast<int>(std::ceil(std::max(std::abs(way.x), std::abs(way.y)) * (to - from))) + 1;
+    for (int n = 0; n <= steps; ++n) {
+      const glm::dvec2 r = p + way * (from + (to - from) * n / steps);
+      // Shared between the two pixels next to the line.
+      const double across = (flat ? r.y : r.x) - 0.5, part = across - std::floor(across);
+      touch(flat ? r.x : r.x - 0.5, flat ? r.y - 0.5 : r.y, 1 - part, color);
+      touch(flat ? r.x : r.x + 0.5, flat ? r.y + 0.5 : r.y, part, color);
+    }
+  }
+
+  void touch(double x, double y, double share, const Rgb& color) {
+    const int px = static_cast<int>(std::floor(x)), py = static_cast<int>(std::floor(y));
+    if (px < 0 || py < 0 || px >= size_.width || py >= size_.height) return;
+    const auto n = static_cast<std::size_t>(py) * static_cast<std::size_t>(size_.width) + static_cast<std::size_t>(px);
+    if (static_cast<float>(share) <= covered_[n]) return;
+    covered_[n] = static_cast<float>(share), colors_[n] = color;
+  }
+
+  projection::PixelSpace space_;
+  scene::ImageSize size_;
+  const scene::GridGeometry& geometry_;
+  std::vector<float> covered_;  ///< how much of each pixel its line covers
+  std::vector<Rgb> colors_;
+};
+
+void dim(scene::Image& image) {
+  for (std::size_t n = 0; n < image.rgba.size(); ++n) image.rgba[n] = n % 4 == 3 ? 1.0f : 0.5f * image.rgba[n];
+}
+
+/// 0 to 1: black, over blue, red and yellow, to white.
+Rgb heat_of(double share) {
+  constexpr std::array<Rgb, 6> heat = {Rgb{0, 0, 0},          Rgb{0.02, 0.03, 0.35}, Rgb{0.35, 0.02, 0.35},
+                                       Rgb{0.85, 0.08, 0.05}, Rgb{0.95, 0.65, 0.05}, Rgb{1, 1, 1}};
+  const double at = share * (heat.size() - 1);
+  const std::size_t n = std::min(static_cast<std::size_t>(at), heat.size() - 2);
+  return glm::mix(heat[n], heat[n + 1], at - static_cast<double>(n));
+}
+
+std::array<glm::dvec3, 2> corners_of(const volume::VoxelBox& box) {
+  std::array<glm::dvec3, 2> corners;
+  for (int a = 0; a < 3; ++a) {
+    corners[0][a] = static_cast<double>(box.low[static_cast<std::size_t>(a)]);
+    corners[1][a] = static_cast<double>(box.high[static_cast<std::size_t>(a)]);
+  }
+  return corners;
+}
+
 }  // namespace
 
 void draw_bricks(scene::Image& image, const scene::Camera& camera, const scene::GridGeometry& geometry,
                  std::span<const std::array<glm::dvec3, 2>> bricks, const volume::ImageSplit& split) {
-  const projection::PixelSpace space(camera, image.size);
   const std::vector<std::uint8_t> owners = owners_of(split, image.size);
-  for (std::size_t n = 0; n < image.rgba.size(); ++n) image.rgba[n] = n % 4 == 3 ? 1.0f : 0.5f * image.rgba[n];
-  // How much of each pixel lines cover: where many cross it is as bright as where one does.
-  std::vector<float> covered(owners.size());
-  const auto touch = [&](double x, double y, double share) {
-    const int px = static_cast<int>(std::floor(x)), py = static_cast<int>(std::floor(y));
-    if (px < 0 || py < 0 || px >= image.size.width || py >= image.size.height) return;
-    float& cover = covered[image.index(px, py)];
-    cover = std::max(cover, static_cast<float>(share));
-  };
-  for (const auto& [low, high] : bricks)
-    for (int corner = 0; corner < 8; ++corner)
-      for (int axis = 0; axis < 3; ++axis) {
-        if ((corner >> axis & 1) != 0) continue;
-        const auto at = [&, &low = low, &high = high](int c) {
-          return space.project(scene::world_of_index(
-              geometry, {(c & 1) != 0 ? high.x : low.x, (c & 2) != 0 ? high.y : low.y, (c & 4) != 0 ? high.z : low.z}));
-        };
-        projection::PixelVertex a = at(corner), b = at(corner | 1 << axis);
-        // Of an edge that reaches behind the eye only what lies before it.
-        constexpr double least = 1e-6;
-        const double near = least * std::max(std::abs(a.w), std::abs(b.w));
-        if (a.w <= near && b.w <= near) continue;
-        if (a.w <= near) std::swap(a, b);
-        if (b.w <= near) {
-          const double u = (a.w - near) / (a.w - b.w);
-          b.x = a.x + u * (b.x - a.x), b.y = a.y + u * (b.y - a.y), b.w = near;
-        }
-        const glm::dvec2 p(a.x / a.w, a.y / a.w), q(b.x / b.w, b.y / b.w);
-        const auto [from, to] = inside(p, q, image.size);
-        if (from > to) continue;
-        const glm::dvec2 way = q - p;
-        const bool flat = std::abs(way.x) >= std::abs(way.y);
-        const int steps = static_cast<int>(std::ceil(std::max(std::abs(way.x), std::abs(way.y)) * (to - from))) + 1;
-        for (int n = 0; n <= steps; ++n) {
-          const glm::dvec2 r = p + way * (from + (to - from) * n / steps);
-          // Shared between the two pixels next to the line.
-          const double across = (flat ? r.y : r.x) - 0.5, part = across - std::floor(across);
-          touch(flat ? r.x : r.x - 0.5, flat ? r.y - 0.5 : r.y, 1 - part);
-          touch(flat ? r.x : r.x + 0.5, flat ? r.y + 0.5 : r.y, part);
-        }
-      }
-  for (int y = 0; y < image.size.height; ++y)
-    for (int x = 0; x < image.size.width; ++x) {
-      const std::size_t n = image.index(x, y);
-      if (covered[n] > 0) put(image, x, y, process_colors[owners[n]], static_cast<double>(covered[n]));
-    }
+  dim(image);
+  BoxLines lines(camera, image.size, geometry);
+  for (const auto& [low, high] : bricks) lines.add(low, high, {});
+  lines.paint(image, [&](std::size_t n) { return process_colors[owners[n]]; });
   draw_edges_of(image, split);
 }
 
+void draw_bricks(scene::Image& image, const scene::Camera& camera, const scene::GridGeometry& geometry,
+                 std::span<const std::array<glm::dvec3, 2>> bricks, std::span<const volume::VoxelBox> parts) {
+  dim(image);
+  BoxLines of_bricks(camera, image.size, geometry), of_parts(camera, image.size, geometry);
+  for (std::size_t process = 0; process < parts.size(); ++process) {
+    const auto [low, high] = corners_of(parts[process]);
+    if (low == high) continue;
+    for (const auto& [from, to] : bricks) {
+      // A part's planes may cut a brick.
+      const glm::dvec3 a = glm::max(low, from), b = glm::min(high, to);
+      if (glm::all(glm::lessThan(a, b))) of_bricks.add(a, b, process_colors[process % process_colors.size()]);
+    }
+    of_parts.add(low, high, Rgb(1));
+  }
+  of_bricks.paint(image);
+  of_parts.paint(image);
+}
+
+scene::Image cost_of_parts(const scene::Camera& camera, scene::ImageSize size, const scene::GridGeometry& geometry,
+                           std::span<const volume::VoxelBox> parts, std::span<const double> seconds) {
+  scene::Image image(size);
+  dim(image);
+  const double most = seconds.empty() ? 0 : *std::ranges::max_element(seconds);
+  // The dearest last: it covers the lines that it shares with others.
+  std::vector<std::size_t> order(std::min(parts.size(), seconds.size()));
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t process) { return seconds[process]; });
+  for (const std::size_t process : order) {
+    const auto [low, high] = corners_of(parts[process]);
+    if (low == high || most <= 0) continue;
+    BoxLines lines(camera, size, geometry);
+    constexpr double least = 0.2;  // what costs nothing can be seen
+    lines.add(low, high, heat_of(least + (1 - least) * seconds[process] / most));
+    lines.paint(image);
+  }
+  return image;
+}
+
 scene::Image cost_picture(const volume::CostMap& cost, scene::ImageSize size, const volume::ImageSplit& split) {
-  constexpr std::array<Rgb, 6> heat = {Rgb{0, 0, 0},          Rgb{0.02, 0.03, 0.35}, Rgb{0.35, 0.02, 0.35},
-                                       Rgb{0.85, 0.08, 0.05}, Rgb{0.95, 0.65, 0.05}, Rgb{1, 1, 1}};
   scene::Image image(size);
   const std::uint32_t most = cost.cost.empty() ? 0 : *std::max_element(cost.cost.begin(), cost.cost.end());
   for (int y = 0; y < size.height; ++y)
@@ -133,9 +222,7 @@ scene::Image cost_picture(const volume::CostMap& cost, scene::ImageSize size, co
         share = static_cast<double>(cost.cost[static_cast<std::size_t>(my) * static_cast<std::size_t>(cost.width()) +
                                               static_cast<std::size_t>(mx)]) /
                 most;
-      const double at = share * (heat.size() - 1);
-      const std::size_t n = std::min(static_cast<std::size_t>(at), heat.size() - 2);
-      put(image, x, y, glm::mix(heat[n], heat[n + 1], at - static_cast<double>(n)), 1);
+      put(image, x, y, heat_of(share), 1);
     }
   draw_edges_of(image, split);
   return image;

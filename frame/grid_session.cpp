@@ -66,7 +66,6 @@ class GridByRays final : public Session::State {
     if (settings.deep || settings.peel) check_deep(settings);
     if (settings.keep_uncertainty != keeps_uncertainty_ || settings.keep_cost != keeps_cost_) {
       keeps_uncertainty_ = settings.keep_uncertainty, keeps_cost_ = settings.keep_cost;
-      check(settings);
       make_frames();
     }
     if (!settings.deep && !settings.peel && !settings.keep_cost) return render_list(views, function, sink, stop);
@@ -96,9 +95,15 @@ class GridByRays final : public Session::State {
                                                  const TransferFunction& function) const override {
     if (!keeps_cost_ || !renderer_)
       throw scene::bad_input("balance: the last frame did not keep its cost; ask for it in the frame's settings");
+    const scene::GridGeometry& geometry = data().samples->geometry();
+    if (sorts_last()) {
+      BalancePictures of_parts{
+          frame.image, frame::cost_of_parts(view.camera, view.size, geometry, parts_, frame.statistics.cpu_seconds)};
+      frame::draw_bricks(of_parts.bricks, view.camera, geometry, renderer_->visible_bricks(function), parts_);
+      return of_parts;
+    }
     BalancePictures pictures{frame.image, frame::cost_picture(cost_, view.size, split_)};
-    frame::draw_bricks(pictures.bricks, view.camera, data().samples->geometry(), renderer_->visible_bricks(function),
-                       split_);
+    frame::draw_bricks(pictures.bricks, view.camera, geometry, renderer_->visible_bricks(function), split_);
     return pictures;
   }
 
@@ -128,11 +133,6 @@ class GridByRays final : public Session::State {
       throw scene::bad_input(
           "`distribution` sort-last: a pre-integrated step from one process's part to the next would be missed; use "
           "`integrator` automatic, exact or sampled, or sort-first");
-  }
-  void check(const FrameSettings& frame) const {
-    if (sorts_last() && frame.keep_cost)
-      throw scene::bad_input(
-          "balance pictures: sort-last splits the volume, not the picture by its cost; use sort-first");
   }
   void check_deep(const FrameSettings& frame) const {
     if (!(frame.deep_accuracy >= 1e-6 && frame.deep_accuracy <= 1))
@@ -249,6 +249,7 @@ class GridByRays final : public Session::State {
       frame.uncertainty = std::move(finished->error_bounds);
       split_ = std::move(finished->split);
       cost_ = std::move(finished->cost);
+      parts_ = finished->parts;
     }
     if (deep) frame::put_deep(std::move(*deep), settings, frame);
     return true;
@@ -279,6 +280,7 @@ class GridByRays final : public Session::State {
   RenderedFrame made_;  ///< on its way to the sink
   volume::ImageSplit split_;
   volume::CostMap cost_;
+  std::vector<volume::VoxelBox> parts_;
   const std::uint64_t resident_ = frame::resident_bytes();
   std::optional<volume::Renderer> renderer_;
   bool keeps_uncertainty_ = false, keeps_cost_ = false;

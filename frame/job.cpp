@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -54,7 +55,7 @@ struct Job::State {
   /// Before ranks first wait for one another.
   void meet() {
     if (std::exchange(has_met, true)) return;
-    exchange::make_first_contact(transport(), exchange::first_contact_patience());
+    exchange::make_first_contact(transport(), exchange::first_contact_patience(), voice.arguments);
     if (transport().size() > 1) transport().use_bells(exchange::Bells::hung(transport()));
   }
   bool has_met = false;
@@ -68,8 +69,15 @@ Job::Job(JobVoice voice) : state_(std::make_unique<State>(State{std::move(voice)
     std::signal(SIGABRT, on_abort);  // which Open MPI leaves in place
     exchange::name_one_line();
     const exchange::StartWitness witness(state_->voice.program);
-    state_->mpi = std::make_unique<exchange::MpiTransport>(
-        exchange::MpiTransport::Hooks{state_->voice.speak, exchange::expect_end, exchange::ended_from_outside});
+    const exchange::TerminationWhileStarting remembered(state_->voice.remedy);
+    const auto& stalls = state_->voice.stalls;
+    const std::chrono::milliseconds patience =
+        stalls && stalls->ends_run ? stalls->timeout + std::chrono::seconds(5) : std::chrono::seconds(0);
+    state_->mpi = std::make_unique<exchange::MpiTransport>(exchange::MpiTransport::Hooks{
+        state_->voice.speak, exchange::expect_end, exchange::ended_from_outside, patience,
+        [&](const Error& error) { witness.leave_words(fmt::format("{}: {}\n", state_->voice.program, error.what())); },
+        exchange::go_on_if_stopped});
+    if (stalls) state_->mpi->watch_stalls(*stalls);
   } else {
     state_->alone = std::make_unique<exchange::LoopbackNetwork>(1);
   }

@@ -28,6 +28,12 @@ struct JobVoice {
   std::string remedy;   ///< of a run that was ended from outside: what to do
   /// Tells the user of the run's error, from any thread, on one rank before any rank can end.
   std::function<void(const Error&)> speak;
+  /// All ranks must have been started with the same: compared as they first meet, in answer_termination() or
+  /// agree_instruction_sets(), which throw Error(bad_input) on all ranks if they differ.
+  std::vector<std::string> arguments{};
+  /// Looks for ranks that have stopped from MPI's start on, as watch_stalls() does. Where silence ends the run, MPI's
+  /// start may take five seconds longer than it: MPI waits for a rank that is stopped meanwhile, and cannot name it.
+  std::optional<StallSettings> stalls{};
 };
 
 /// The ranks that a launcher (mpirun, srun) started this program as, or this process alone, without MPI. For programs
@@ -40,8 +46,9 @@ struct JobVoice {
 /// give up, ends it with a line.
 class TESSERA_EXPORT Job {
  public:
-  /// Starts MPI under a launcher. Should MPI end the process as it starts, a child of it says so in a line on stderr.
-  /// Throws Error(system_failure) if MPI cannot start.
+  /// Starts MPI under a launcher. A rank that gets SIGTERM meanwhile from somebody else ends the run, by an error, once
+  /// MPI has started; a second one ends it at once. Should MPI end the process as it starts, a child of it says so in a
+  /// line on stderr. Throws Error(system_failure) if MPI cannot start.
   explicit Job(JobVoice voice);
   ~Job();
   Job(const Job&) = delete;
@@ -58,7 +65,9 @@ class TESSERA_EXPORT Job {
   /// first that is ended on rank 0's machine speaks. A rank that anybody else ends ends the run for all, by an error. A
   /// launcher that dies takes its ranks with it. Collective; does nothing for one process (Linux).
   void answer_termination();
-  /// Looks for ranks that have stopped from now on. Every rank calls this, with the same settings but for `say`.
+  /// Looks for ranks that have stopped from now on. Every rank calls this, with the same settings but for `say`. Where
+  /// silence ends the run, so does an end of MPI that takes five seconds longer than it: then nobody can say which rank
+  /// is missing.
   void watch_stalls(const StallSettings& settings);
   /// Restricts every rank's kernels to the instruction sets that all ranks have, as bits differ between sets and a
   /// picture must not depend on which machine made a tile. Collective, before the first kernel runs; of the process.

@@ -19,10 +19,13 @@ namespace tessera {
 /// Who rendered what of a grid's picture, and what it was thought to cost (Moloney 2008, Figures 1.2, 4.1, 4.4).
 struct BalancePictures {
   /// The picture, dimmed, on black, and over it the outlines of the bricks that the transfer function shows, each pixel
-  /// of a line in the colour of the process that rendered it. White lines where rectangles of processes meet.
+  /// of a line in the colour of the process that rendered it. White lines where rectangles of processes meet. Of
+  /// sort-last each brick in the colour of the process in whose part of the volume it lies, and white lines round
+  /// parts.
   Image bricks;
   /// The cost of each pixel: black where nothing is to be done, over blue, red and yellow to white at the dearest
-  /// pixel; the same white lines. Opaque.
+  /// pixel; the same white lines. Opaque. Of sort-last the outlines of parts, from blue to white by the CPU time of the
+  /// process over that of the dearest.
   Image cost;
 };
 

@@ -193,7 +193,7 @@ struct FrameSettings {
   double deep_accuracy = 1e-3;
   /// Grids: what verify() looks at first, see RenderedFrame::uncertainty.
   bool keep_uncertainty = false;
-  /// Grids, sort_first: what Session::balance_pictures() draws.
+  /// Grids: what Session::balance_pictures() draws.
   bool keep_cost = false;
   /// The picture in layers too: RenderedFrame::layers.
   std::optional<Peel> peel{};

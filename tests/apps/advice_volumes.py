@@ -48,7 +48,6 @@ ROWS = [
         V + "--distribution sort-last --direct-send synchronous"),
     row(V + "--direct-send synchronous", "add it, or leave it out", V),
     row(V + "--distribution sort-last --balance even", "leave one of the two out", V + "--balance even"),
-    row(V + "--distribution sort-last --show balance", "leave one of the two out", V + "--show balance"),
     row(V + "--distribution sort-last --integrator preintegrated", "or sort-first",
         V + "--distribution sort-first --integrator preintegrated"),
     row(R + "--distribution sort-last", "leave it out", R),

@@ -270,6 +270,36 @@ TEST(CallersBalance, PicturesAreOfAFrameThatKeptItsCost) {
   EXPECT_THROW(static_cast<void>(of_mesh.balance_pictures(frame, view, function)), Error);
 }
 
+TEST(CallersBalance, OfSortLastBricksHaveTheColoursOfThePartsTheyLieIn) {
+  const Dataset data = Dataset::of(std::make_shared<const Waves>());
+  const View view{data.default_camera(size), size};
+  const TransferFunction function = data.transfer_function().function;
+  run_ranks(2, [&](const Communicator& communicator) {
+    Settings settings;
+    settings.threads = 1;
+    settings.ranks.distribution = Distribution::sort_last;
+    Session session(data, settings, communicator);
+    const RenderedFrame frame = session.render(view, function, {.keep_cost = true});
+    if (!session.assembles()) return;
+    ASSERT_EQ(frame.statistics.parts.size(), 2u);
+    const BalancePictures pictures = session.balance_pictures(frame, view, function);
+    int red = 0, green = 0, white = 0, costly = 0;
+    for (std::size_t n = 0; n < pictures.bricks.depth.size(); ++n) {
+      // Lines are drawn over a picture that is dimmed to half.
+      const float* const p = &pictures.bricks.rgba[4 * n];
+      red += p[0] > 0.7f && p[1] < 0.4f ? 1 : 0;
+      green += p[1] > 0.4f && p[0] < 0.3f ? 1 : 0;
+      white += p[0] > 0.9f && p[1] > 0.9f && p[2] > 0.9f ? 1 : 0;
+      ASSERT_EQ(pictures.cost.rgba[4 * n + 3], 1.0f);
+      costly += pictures.cost.rgba[4 * n] > 0.9f ? 1 : 0;
+    }
+    EXPECT_GT(red + white, 0);
+    EXPECT_GT(green + white, 0);
+    EXPECT_GT(white, 0) << "the outlines of the parts";
+    EXPECT_GT(costly, 0) << "the part that took most is white";
+  });
+}
+
 TEST(CallersDevice, WhatNoErrorIsPromisedOfSaysSo) {
   const Cubes cubes(1);
   const Dataset data = Dataset::of(cubes.arrays());

@@ -1,0 +1,34 @@
+#include "exchange/run_faults.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdint>
+
+namespace tessera::exchange {
+
+Bytes error_message(MessageKind kind, const scene::Error& error) {
+  Bytes message = message_of(kind, static_cast<std::uint8_t>(error.code()));
+  append_text(message, error.what());
+  return message;
+}
+
+std::string process_name() {
+  std::array<char, 256> host{};
+  gethostname(host.data(), host.size() - 1);
+  return fmt::format("process {} on {}", getpid(), host.data());
+}
+
+scene::Error take_error(MessageReader& reader) {
+  const auto code = static_cast<scene::ErrorCode>(reader.take<std::uint8_t>());
+  return {code, reader.take_text()};
+}
+
+scene::Error missing_rank(const char* what, std::chrono::milliseconds time, const char* remedy) {
+  return {scene::ErrorCode::system_failure,
+          fmt::format("MPI: its {} has taken {:.3g} s: a rank's process is stopped or its machine hangs; {}", what,
+                      std::chrono::duration<double>(time).count(), remedy)};
+}
+
+}  // namespace tessera::exchange
