@@ -112,7 +112,9 @@ TEST_F(SharedVolume, ByOneProcessIsOnDiskIfMemoryMayNotHoldIt) {
   const auto file = zipped("v.nii.gz", test::nifti());
   io::VolumeOptions options;
   options.most_in_memory = 47;  // of 24 numbers of two bytes
-  const io::VolumeFile alone = io::open_unscanned_volume(file), kept = opened(file, 1, options)[0];
+  const io::VolumeFile alone = io::open_unscanned_volume(file);
+  const std::vector<io::VolumeFile> by_one = opened(file, 1, options);
+  const io::VolumeFile& kept = by_one[0];
   EXPECT_EQ(samples_of(*kept.source), samples_of(*alone.source));
   EXPECT_GT(kept.source->bytes_read(), 0u);
   ASSERT_EQ(kept.notes.size(), alone.notes.size() + 1);
