@@ -62,9 +62,10 @@ void require_volume(const std::filesystem::path& file);
 
 /// Opens a volume.
 ///
-///   .vti .pvti .vtr .pvtr, .vtk of structured points or a rectilinear grid: by VTK, all of it in memory. Extent,
-///       origin, spacing and direction apply; pieces have to fill the whole and to agree on its coordinates. A
-///       curvilinear .vtk is a mesh. 64-bit integers become doubles. Hidden samples are blank.
+///   .vti .pvti .vtr .pvtr, .vtk of structured points or a rectilinear grid: by VTK, all of it in memory (a large .vti
+///       of one array: vti_file.hpp). Extent, origin, spacing and direction apply; pieces have to fill the whole and to
+///       agree on its coordinates. A curvilinear .vtk is a mesh. 64-bit integers become doubles. Hidden samples are
+///       blank.
 ///   .mhd .mha: origin, spacing, orientation, slope and offset apply; raw (in place), compressed or text.
 ///   .nrrd .nhdr: space origin and directions, else axis minimums and spacings; raw (in place), gzip, ascii or hex. A
 ///       first axis of components is allowed; content "old min" and the measurement frame mean nothing here. Slices in
@@ -78,6 +79,7 @@ void require_volume(const std::filesystem::path& file);
 ///   .raw: described by the options or by its name, in place. .bricks: what write_bricks made, read brick by brick.
 ///   A gzip file of any of these is inflated into memory first, whatever its name.
 ///
+/// In memory: VolumeOptions::most_in_memory says what of it goes into a file instead.
 /// World coordinates are the file's own (NIfTI's point right, anterior, up, DICOM's left,
 /// back, up; MetaImage's and NRRD's whatever they say).
 /// Headers are compared with the file's size before memory is asked for. Throws Error(bad_input) in one line for a

@@ -213,7 +213,7 @@ bool set_image(const ImageAttributes& found, StoredVolume& volume) {
   if (!read) return false;
   scene::GridGeometry& g = volume.grid.geometry;
   for (std::size_t a = 0; a < 3; ++a) {
-    constexpr std::int64_t most = 1 << 20;
+    constexpr std::int64_t most = 1 << 16;  // so that bytes can be counted
     const std::int64_t low = image.extent[2 * a], high = image.extent[2 * a + 1];
     if (low < -most || high > most || high <= low || !(image.spacing[a] > 0)) return false;
     g.points[a] = high - low + 1;

@@ -279,6 +279,29 @@ TEST_F(StreamedVolumes, ThatAreDamagedAreRefusedInOneLine) {
   }
 }
 
+TEST_F(StreamedVolumes, ThatAreDamagedAnywhereAreReadOrRefused) {
+  TESSERA_VTK_OR_SKIP();
+  std::mt19937 random(11);
+  int refused = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    const VtiCase c{(trial & 1) != 0, (trial & 1) == 0 || (trial & 2) != 0, (trial & 4) != 0, (trial & 8) != 0, false,
+                    "UInt8"};
+    std::string text = vti(c, noise(samples));
+    // Half of them where numbers of the array may be.
+    const std::size_t from = trial % 2 == 0 ? 0 : text.find("<DataArray"),
+                      room = trial % 3 == 0 ? text.size() - from : 700;
+    for (int k = 0; k < 3; ++k) text[from + random() % room] = static_cast<char>(random());
+    const auto file = folder.write("v.vti", text);
+    const test::Fault fault = test::fault_of([&] { open_volume(file, streaming()); });
+    if (!fault.code) continue;
+    ++refused;
+    EXPECT_EQ(fault.code, scene::ErrorCode::bad_input) << "trial " << trial << ": " << fault.message;
+    EXPECT_NE(fault.message.find("v.vti"), std::string::npos) << "trial " << trial << ": " << fault.message;
+  }
+  EXPECT_GT(refused, 10);
+  EXPECT_TRUE(scratch.names().empty());
+}
+
 TEST_F(StreamedVolumes, GoIntoAFileIfTheyAreLargeAndThereIsRoom) {
   const auto file = zipped("a.nii.gz", nifti_of(2, 1));
   VolumeOptions options;
