@@ -39,8 +39,8 @@ std::uint64_t BrickCache::bytes_of(const BrickLayout& layout, std::size_t brick,
 
 std::uint64_t BrickCache::bytes_of(std::size_t brick) const { return bytes_of(layout_, brick, source_.grid().type); }
 
-/// Bytes that are asked of the heap: bricks at the ends of axes that are hardly smaller get as much as the others. A gap
-/// that such a brick leaves would be too small for any other.
+/// Bytes that are asked of the heap: bricks at the ends of axes that are hardly smaller get as much as the others. A
+/// gap that such a brick leaves would be too small for any other.
 std::uint64_t BrickCache::room_for(std::uint64_t bytes) const {
   const std::uint64_t largest = bytes_of(0);
   return holds_all_ || bytes < largest - largest / 8 ? bytes : largest;
