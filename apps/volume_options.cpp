@@ -10,6 +10,7 @@
 #include "apps/time_options.hpp"
 #include "tessera/error.hpp"
 #include "tessera/input_file.hpp"
+#include "tessera/settings.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -98,6 +99,7 @@ ReadOptions volume_options(const RenderWords& words) {
   options.time_step = one_time_step(words.time_step);
   options.blocks = words.blocks;
   options.selection = selection_of(words.clip);
+  options.memory_bytes = words.memory.empty() ? Settings().memory_bytes : parse_bytes("--memory", words.memory);
   if (!words.dims.empty())
     options.dims =
         three<std::int64_t>("--dims", words.dims, 'x', "three sizes; write WxHxD", [](const std::string& word) {

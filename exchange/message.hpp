@@ -91,7 +91,7 @@ enum class MessageKind : std::uint16_t {
   pages_offer = 54,  ///< u64 process, u64 key, i64 descriptor of pages for ranks of one machine, -1: none
   pages_seen = 55,   ///< u8: 1: the sender sees the pages
   tile_times = 59,   ///< u8: 1: the last frame was not stopped, u64 process, f64 its processor time, list of TileTime
-  image_split = 58,  ///< u8: 1: it is known; then list of i32 rows, of each a list of i32 columns, of each one of steps
+  image_split = 60,  ///< u8: 1: it is known; then list of i32 rows, of each a list of i32 columns, of each one of steps
   volume_facts = 57,  ///< what the sender has read of a volume, and where its samples are (frame/shared_volume.cpp)
   // Channel fragments, to oneself.
   wake = 56,  ///< nothing: all frames of the list are finished

@@ -32,7 +32,10 @@ namespace tessera {
 namespace {
 
 io::VolumeOptions volume_options(const ReadOptions& o) {
-  return {o.field, o.dims, o.type, o.spacing, o.origin, o.big_endian, o.skip, o.time_step, o.progress};
+  io::VolumeOptions volume{o.field, o.dims, o.type, o.spacing, o.origin, o.big_endian, o.skip, o.time_step, o.progress};
+  // Bricks are copies, for which as much is to be left.
+  if (o.memory_bytes > 0) volume.most_in_memory = o.memory_bytes / 2;
+  return volume;
 }
 
 void check_grid_options(const std::filesystem::path& file, const ReadOptions& options) {

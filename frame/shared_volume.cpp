@@ -87,26 +87,26 @@ io::VolumeFile description_in(MessageReader& reader) {
 /// What a leader has read, and where the others of its machine find it.
 class Leader {
  public:
-  Leader(const std::filesystem::path& file, const io::VolumeOptions& options, bool shares, int threads)
-      : volume_(io::open_unscanned_volume(file, options)) {
-    if (!shares || !volume_.in_memory) return;
+  Leader(const std::filesystem::path& file, const io::VolumeOptions& options, bool shares, int threads) {
     tbb::task_arena(scene::threads_for(threads)).execute([&] {
-      written_ = io::scratch_bricks(*volume_.source, file.string());
+      volume_ = io::open_unscanned_volume(file, options);
+      // Some come as a whole only.
+      if (shares && volume_.in_memory) volume_.scratch = io::scratch_bricks(*volume_.source, file.string());
     });
-    volume_.source.reset();
+    if (shares && volume_.in_memory) volume_.source.reset();
   }
 
   [[nodiscard]] Bytes message() const {
-    if (!written_) return message_of(volume_, {});
-    return message_of(volume_, {written_->path(), written_->folder(), written_->bytes()});
+    const io::ScratchFile* const written = volume_.scratch.get();
+    if (written == nullptr) return message_of(volume_, {});
+    return message_of(volume_, {written->path(), written->folder(), written->bytes()});
   }
-  [[nodiscard]] bool in_memory() const { return volume_.in_memory && !written_; }
+  [[nodiscard]] bool in_memory() const { return volume_.in_memory && !volume_.scratch; }
   /// Null once they are written.
   std::unique_ptr<scene::SampleSource> take_samples() { return std::move(volume_.source); }
 
  private:
   io::VolumeFile volume_;
-  std::unique_ptr<io::ScratchFile> written_;
 };
 
 std::unique_ptr<scene::SampleSource> samples_at(const Place& place, const std::filesystem::path& file,
@@ -123,20 +123,33 @@ std::unique_ptr<scene::SampleSource> samples_at(const Place& place, const std::f
 
 std::string note_on(const std::filesystem::path& file, const Place& place, std::size_t ranks, std::size_t machines) {
   return fmt::format(
-      "{} is read as a whole: its samples are kept once for {} ranks, in a file of {} without a name in "
-      "{}{}, which goes with the run",
-      file.filename().string(), ranks, io::size_in_words(place.bytes), place.folder,
+      "{} is read as a whole: its samples are kept {}, in a file of {} without a name in {}{}, which "
+      "goes with the run",
+      file.filename().string(),
+      ranks > 1 ? fmt::format("once for {} ranks", ranks) : "on disk, as memory may not hold them",
+      io::size_in_words(place.bytes), place.folder,
       machines > 1 ? fmt::format(" on each of {} machines", machines) : "");
+}
+
+/// By one process, which keeps in memory what may be there.
+io::VolumeFile open_alone(const std::filesystem::path& file, const io::VolumeOptions& options, int threads) {
+  io::VolumeFile volume;
+  tbb::task_arena(scene::threads_for(threads)).execute([&] { volume = io::open_unscanned_volume(file, options); });
+  if (!volume.scratch) return volume;
+  const io::ScratchFile& scratch = *volume.scratch;
+  volume.notes.push_back(note_on(file, {scratch.path(), scratch.folder(), scratch.bytes()}, 1, 1));
+  return volume;
 }
 
 }  // namespace
 
 io::VolumeFile open_shared_volume(exchange::Transport& transport, const std::filesystem::path& file,
-                                  const io::VolumeOptions& options, int threads) {
-  if (transport.size() == 1) return io::open_unscanned_volume(file, options);
+                                  io::VolumeOptions options, int threads) {
+  if (transport.size() == 1) return open_alone(file, options, threads);
   const std::vector<std::size_t> leader_of = leaders(transport);
   const auto self = static_cast<std::size_t>(transport.rank());
   const auto ranks_of = [&](std::size_t leader) { return std::ranges::count(leader_of, leader); };
+  if (ranks_of(leader_of[self]) > 1) options.most_in_memory = 0, options.scratch_is_needed = true;
   std::optional<Leader> own;
   if (leader_of[self] == self) own.emplace(file, options, ranks_of(self) > 1, threads);
   const std::vector<Bytes> all =

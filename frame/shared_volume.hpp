@@ -9,16 +9,17 @@ namespace tessera::frame {
 
 /// io::open_unscanned_volume() by all ranks.
 ///
-/// Of a machine's ranks the lowest, its leader, reads the file first. If that leaves all samples in memory, as of
-/// formats that are unpacked or read by a library, the leader writes them as a brick file without a name into the
-/// folder for temporary files (io/scratch_file.hpp) and lets go of them; all ranks of the machine read that, brick by
-/// brick. So a machine holds the samples once, and for as long as it takes to write them. Files that are read in place
-/// every rank opens itself. A rank that is alone on its machine holds what it has read, as one process would.
+/// Of a machine's ranks the lowest, its leader, reads the file first. Samples that have to be unpacked, or that a
+/// library reads, it writes as a brick file without a name into the folder for temporary files (io/scratch_file.hpp);
+/// all ranks of the machine read that, brick by brick. It does so as they come, where they come in parts
+/// (VolumeOptions::most_in_memory); else it holds them once, for as long as it takes to write them. Files that are read
+/// in place every rank opens itself. A rank that is alone on its machine does as one process would, and keeps what it
+/// has read in memory up to `most_in_memory`.
 ///
 /// Every rank has the leader's description of the file; a note says what was written where. Samples are the same bits
 /// as of one process. Collective. Throws this rank's error, which the caller gives to transport.fail(), or the run's;
 /// nothing is left in the folder. `threads` write bricks; 0 is all cores.
 io::VolumeFile open_shared_volume(exchange::Transport& transport, const std::filesystem::path& file,
-                                  const io::VolumeOptions& options, int threads);
+                                  io::VolumeOptions options, int threads);
 
 }  // namespace tessera::frame

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/atomic_file.hpp"
+#include "io/brick_layout.hpp"
 #include "io/field_choice.hpp"
 #include "io/inflated_file.hpp"
 #include "io/input_file.hpp"
@@ -26,46 +27,7 @@ using BrickJson = nlohmann::json;
 using scene::GridIndex;
 using scene::SampleBox;
 
-static_assert(std::endian::native == std::endian::little, "brick files are written as they lie in memory");
-
-constexpr std::string_view brick_magic = "TESSBRK1";
-constexpr int least_side = 8, most_side = 1024;
 constexpr std::uint64_t longest_brick_header = 1 << 28;  // rectilinear coordinates are in it
-
-struct BlockRange {
-  double low, high;
-  std::uint64_t blanks;
-};
-static_assert(sizeof(BlockRange) == 24);
-
-/// The blocks of a volume and where their samples begin, in samples.
-class Blocks {
- public:
-  Blocks(const GridIndex& samples, std::int64_t side) : samples_(samples), side_(side) {
-    for (std::size_t a = 0; a < 3; ++a) count_[a] = (samples[a] + side - 1) / side;
-  }
-  [[nodiscard]] const GridIndex& count() const { return count_; }
-  [[nodiscard]] std::int64_t total() const { return count_[0] * count_[1] * count_[2]; }
-  [[nodiscard]] std::int64_t number(const GridIndex& b) const { return (b[2] * count_[1] + b[1]) * count_[0] + b[0]; }
-  [[nodiscard]] SampleBox box(const GridIndex& b) const {
-    SampleBox box;
-    for (std::size_t a = 0; a < 3; ++a) {
-      box.low[a] = b[a] * side_;
-      box.high[a] = std::min(samples_[a], box.low[a] + side_);
-    }
-    return box;
-  }
-  /// Samples of all blocks before this one: whole layers, whole rows of blocks in its layer, blocks in its row.
-  [[nodiscard]] std::int64_t first_sample(const GridIndex& b) const {
-    const SampleBox own = box(b);
-    return own.low[2] * samples_[1] * samples_[0] + own.extent(2) * own.low[1] * samples_[0] +
-           own.extent(2) * own.extent(1) * own.low[0];
-  }
-
- private:
-  GridIndex samples_, count_{};
-  std::int64_t side_;
-};
 
 class BrickSource final : public scene::SampleSource {
  public:
@@ -154,35 +116,12 @@ class BrickSource final : public scene::SampleSource {
   mutable std::atomic<std::uint64_t> bytes_read_ = 0;
 };
 
-BrickJson json_of_vector(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
-
 /// A whole number as such, not 1e38, which no integer holds. Throws BrickJson's exception for anything else.
 std::int64_t whole_number(const BrickJson& json) {
   return json.is_number_integer() ? json.get<std::int64_t>() : json.get_ref<const std::int64_t&>();
 }
 
 glm::dvec3 vector_of_json(const BrickJson& json) { return {json.at(0), json.at(1), json.at(2)}; }
-
-BrickJson brick_header_of(const scene::Grid& grid, int side, const scene::ValueRange& range) {
-  const scene::GridGeometry& g = grid.geometry;
-  BrickJson direction = BrickJson::array();
-  for (int column = 0; column < 3; ++column)
-    for (int row = 0; row < 3; ++row) direction.push_back(g.direction[column][row]);
-  return {{"points", g.points},
-          {"association", g.association == scene::Association::cell ? "cell" : "point"},
-          {"origin", json_of_vector(g.origin)},
-          {"direction", direction},
-          {"spacing", json_of_vector(g.spacing)},
-          {"coordinates", g.coordinates},
-          {"type", scene::name_of(grid.type)},
-          {"scale", grid.scale},
-          {"shift", grid.shift},
-          {"field", grid.field_name},
-          {"block", side},
-          {"low", range.low},
-          {"high", range.high},
-          {"blanks", range.blanks}};
-}
 
 struct BrickHeader {
   scene::Grid grid;
@@ -270,75 +209,42 @@ namespace {
 class BrickWriter {
  public:
   BrickWriter(const scene::SampleSource& source, int side)
-      : source_(source), grid_(source.grid()), side_(side), blocks_(grid_.geometry.samples(), side) {
-    // Room for ranges as long as numbers can be: these are known last.
-    header_bytes_ = brick_header_of(grid_, side, {}).dump().size() + 3 * 32;
-  }
+      : source_(source), grid_(source.grid()), layout_(grid_, side) {}
 
-  [[nodiscard]] std::uint64_t bytes() const {
-    return first_range() + static_cast<std::uint64_t>(blocks_.total()) * sizeof(BlockRange) +
-           static_cast<std::uint64_t>(grid_.geometry.all_samples().count()) * scene::size_of(grid_.type);
-  }
+  [[nodiscard]] std::uint64_t bytes() const { return layout_.bytes(); }
 
   template <class Out>
   void write(Out& out) {
-    out.seek(first_range() + static_cast<std::uint64_t>(blocks_.total()) * sizeof(BlockRange));
-    const GridIndex& count = blocks_.count();
-    std::vector<BlockRange> ranges(static_cast<std::size_t>(blocks_.total()));
+    out.seek(layout_.first_byte());
+    const GridIndex& count = layout_.blocks().count();
+    std::vector<BlockRange> ranges(static_cast<std::size_t>(layout_.blocks().total()));
     std::vector<std::vector<std::byte>> row(static_cast<std::size_t>(count[0]));
-    scene::ValueRange whole;
     for (std::int64_t k = 0; k < count[2]; ++k)
       for (std::int64_t j = 0; j < count[1]; ++j) {
         tbb::parallel_for(std::int64_t{0}, count[0], [&](std::int64_t i) {
           const GridIndex b{i, j, k};
-          ranges[static_cast<std::size_t>(blocks_.number(b))] = read(b, row[static_cast<std::size_t>(i)]);
+          ranges[static_cast<std::size_t>(layout_.blocks().number(b))] = read(b, row[static_cast<std::size_t>(i)]);
         });
-        for (std::int64_t i = 0; i < count[0]; ++i) {
-          const std::vector<std::byte>& samples = row[static_cast<std::size_t>(i)];
-          out.write(samples.data(), samples.size());
-          const BlockRange& range = ranges[static_cast<std::size_t>(blocks_.number({i, j, k}))];
-          whole.low = std::min(whole.low, range.low);
-          whole.high = std::max(whole.high, range.high);
-          whole.blanks += range.blanks;
-        }
+        for (const std::vector<std::byte>& samples : row) out.write(samples.data(), samples.size());
       }
-    std::string header = brick_header_of(grid_, side_, whole).dump();
-    header.resize(header_bytes_, ' ');
+    const std::string beginning = layout_.beginning(ranges);
     out.seek(0);
-    out.write(brick_magic);
-    out.write(&header_bytes_, sizeof header_bytes_);
-    out.write(header);
-    out.write(ranges.data(), ranges.size() * sizeof(BlockRange));
+    out.write(beginning);
   }
 
  private:
-  [[nodiscard]] std::uint64_t first_range() const { return brick_magic.size() + sizeof header_bytes_ + header_bytes_; }
-
   BlockRange read(const GridIndex& b, std::vector<std::byte>& samples) const {
-    const SampleBox box = blocks_.box(b);
+    const SampleBox box = layout_.blocks().box(b);
     samples.resize(static_cast<std::size_t>(box.count()) * scene::size_of(grid_.type));
     source_.read(box, {.type = grid_.type}, samples);
-    std::vector<double> values(static_cast<std::size_t>(box.count()));
-    scene::convert_samples(samples.data(), grid_.type, 1, false, box.count(),
-                           reinterpret_cast<std::byte*>(values.data()), scene::SampleType::float64);
-    scene::ValueRange range;
-    for (const double sample : values) {
-      if (!std::isfinite(sample)) {
-        ++range.blanks;
-        continue;
-      }
-      const double value = grid_.value(sample);
-      range.low = std::min(range.low, value);
-      range.high = std::max(range.high, value);
-    }
-    return {range.low, range.high, range.blanks};
+    BlockRange range;
+    range.add(grid_, samples);
+    return range;
   }
 
   const scene::SampleSource& source_;
   const scene::Grid& grid_;
-  int side_;
-  Blocks blocks_;
-  std::uint64_t header_bytes_ = 0;
+  BrickLayout layout_;
 };
 
 }  // namespace
@@ -358,6 +264,16 @@ std::unique_ptr<ScratchFile> scratch_bricks(const scene::SampleSource& source, c
   auto out = std::make_unique<ScratchFile>(subject, writer.bytes());
   writer.write(*out);
   return out;
+}
+
+bool unpacked_to_scratch(const StreamedSamples& samples, const VolumeOptions& options, const std::string& source,
+                         VolumeFile& volume) {
+  const std::uint64_t bytes = bytes_of(samples);
+  if (bytes <= options.most_in_memory || (!options.scratch_is_needed && !ScratchFile::has_room(bytes))) return false;
+  volume.scratch = scratch_bricks(samples, source);
+  volume.source = open_bricks(volume.scratch->path(), {}, source).source;
+  volume.in_memory = false;
+  return true;
 }
 
 }  // namespace tessera::io

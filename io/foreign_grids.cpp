@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "io/brick_file.hpp"
 #include "io/field_choice.hpp"
 #include "io/input_file.hpp"
 #include "io/volume_formats.hpp"
@@ -17,17 +18,6 @@ namespace {
 
 using scene::Association;
 using scene::SampleType;
-
-void set_image_geometry(const ForeignPart& image, scene::GridGeometry& g) {
-  std::array<glm::dvec3, 3> steps;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    steps[axis] =
-        glm::dvec3(image.direction[axis], image.direction[3 + axis], image.direction[6 + axis]) * image.spacing[axis];
-  set_axes(g, steps);
-  g.origin = {image.origin[0], image.origin[1], image.origin[2]};
-  for (std::size_t axis = 0; axis < 3; ++axis)  // origin is that of index 0, which need not be in the extent
-    if (image.extent[2 * axis] != 0) g.origin += steps[axis] * static_cast<double>(image.extent[2 * axis]);
-}
 
 /// Half a last place, relative, of what an array stores; 0 of whole numbers.
 double rounding_of(const ForeignArray& array) {
@@ -111,35 +101,52 @@ std::vector<std::size_t> hidden_samples(const ForeignFile& file, const ForeignPa
   return hidden;
 }
 
-std::unique_ptr<scene::MemorySource> source_of(const ForeignFile& file, const ForeignPart& part,
-                                               const FieldChoice& choice, const BlockField& field, scene::Grid grid,
-                                               std::vector<std::string>& notes) {
+/// The samples of one component, in memory or, if they are to be there, in a scratch file.
+void set_source(const ForeignFile& file, const ForeignPart& part, const FieldChoice& choice, const BlockField& field,
+                const VolumeOptions& options, scene::Grid grid, VolumeFile& result) {
   const auto& arrays = choice.association == Association::point ? part.point_fields : part.cell_fields;
   const auto array =
       std::find_if(arrays.begin(), arrays.end(), [&](const ForeignArray& a) { return a.name == choice.name; });
-  const auto hidden = hidden_samples(file, part, choice.association, grid.geometry, notes);
+  const auto hidden = hidden_samples(file, part, choice.association, grid.geometry, result.notes);
   const std::optional<SampleType> plain = array == arrays.end() ? std::nullopt : sample_type_of(array->type);
   const SampleType type = plain.value_or(SampleType::float64);
   // Floats hold numbers of up to 16 bits, and magnitudes of floats.
   const bool narrow = scene::size_of(type) < 4 || type == SampleType::float32;
   if (plain && hidden.empty()) {
-    auto owner = std::make_shared<const std::vector<std::byte>>(file.helper->copy(*array, file.source));
     grid.type = choice.component != magnitude ? type : narrow ? SampleType::float32 : SampleType::float64;
+    const scene::ComponentChoice of_tuple{field.components, choice.component == magnitude ? -1 : choice.component,
+                                          type};
+    const auto tuples = [&](const ByteSink& use) { file.helper->stream(*array, file.source, use); };
+    if (unpacked_to_scratch({grid, of_tuple, false, tuples}, options, file.source, result)) return;
+    auto owner = std::make_shared<const std::vector<std::byte>>(file.helper->copy(*array, file.source));
     const std::span<const std::byte> payload = *owner;
-    return std::make_unique<scene::MemorySource>(
-        std::move(grid), payload, std::move(owner), file.source,
-        scene::ComponentChoice{field.components, choice.component == magnitude ? -1 : choice.component, type});
+    result.source =
+        std::make_unique<scene::MemorySource>(std::move(grid), payload, std::move(owner), file.source, of_tuple);
+    return;
   }
   std::vector<double> values(field.tuples);
   field.read(choice.component, 0, values);
   for (const std::size_t k : hidden) values[k] = std::numeric_limits<double>::quiet_NaN();
-  if (!hidden.empty()) notes.push_back(fmt::format("{} hidden samples are blank", hidden.size()));
+  if (!hidden.empty()) result.notes.push_back(fmt::format("{} hidden samples are blank", hidden.size()));
   if (narrow)
-    return scene::MemorySource::of(std::move(grid), std::vector<float>(values.begin(), values.end()), file.source);
-  return scene::MemorySource::of(std::move(grid), std::move(values), file.source);
+    result.source =
+        scene::MemorySource::of(std::move(grid), std::vector<float>(values.begin(), values.end()), file.source);
+  else
+    result.source = scene::MemorySource::of(std::move(grid), std::move(values), file.source);
 }
 
 }  // namespace
+
+void set_image_geometry(const ForeignPart& image, scene::GridGeometry& g) {
+  std::array<glm::dvec3, 3> steps;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    steps[axis] =
+        glm::dvec3(image.direction[axis], image.direction[3 + axis], image.direction[6 + axis]) * image.spacing[axis];
+  set_axes(g, steps);
+  g.origin = {image.origin[0], image.origin[1], image.origin[2]};
+  for (std::size_t axis = 0; axis < 3; ++axis)  // origin is that of index 0, which need not be in the extent
+    if (image.extent[2 * axis] != 0) g.origin += steps[axis] * static_cast<double>(image.extent[2 * axis]);
+}
 
 VolumeFile grid_of(const ForeignFile& opened, const VolumeOptions& options) {
   if (opened.contents.parts.size() != 1)
@@ -173,7 +180,7 @@ VolumeFile grid_of(const ForeignFile& opened, const VolumeOptions& options) {
   grid.geometry.association = choice.association;
   grid.field_name = choice.label;
   scene::validate(grid, source);  // before an array is taken for samples that a flat grid has not
-  result.source = source_of(opened, part, choice, *field, std::move(grid), result.notes);
+  set_source(opened, part, choice, *field, options, std::move(grid), result);
   return result;
 }
 

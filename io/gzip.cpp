@@ -7,17 +7,45 @@
 #include <limits>
 
 #include "io/helper_messages.hpp"
+#include "io/positional_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
 namespace {
 
+constexpr int either_header = 15 + 32;  // zlib finds out whether it is gzip's or its own
+
+struct InflateState {
+  z_stream z{};
+  InflateState() {
+    if (inflateInit2(&z, either_header) != Z_OK) throw std::bad_alloc();
+  }
+  ~InflateState() { inflateEnd(&z); }
+  InflateState(const InflateState&) = delete;
+  InflateState& operator=(const InflateState&) = delete;
+};
+
+void require_possible(std::uint64_t packed, std::uint64_t count, const std::string& source) {
+  constexpr std::uint64_t best = 1040;  // 1032 and room for headers
+  if (count / best > packed)
+    throw scene::bad_input(
+        fmt::format("{}: its header asks for {} bytes, {} compressed ones cannot hold them; the file is truncated or "
+                    "damaged, write it anew",
+                    source, count, packed));
+}
+
+scene::Error ends_early(std::uint64_t made, std::uint64_t count, const std::string& source) {
+  return scene::bad_input(
+      fmt::format("{}: its compressed samples end or break after {} of {} bytes; the file is truncated or damaged, "
+                  "write it anew",
+                  source, made, count));
+}
+
 /// Fills `out` as far as the stream goes; the number of bytes written. Several gzip members follow one another.
 std::size_t inflate_into(std::span<const std::byte> stream, std::span<std::byte> out) {
   constexpr std::size_t most = std::numeric_limits<uInt>::max();
-  constexpr int either_header = 15 + 32;  // zlib finds out whether it is gzip's or its own
-  z_stream z{};
-  if (inflateInit2(&z, either_header) != Z_OK) throw std::bad_alloc();
+  InflateState state;
+  z_stream& z = state.z;
   std::size_t in_at = 0, out_at = 0;
   while (out_at < out.size() && in_at < stream.size()) {
     const auto in_now = static_cast<uInt>(std::min(most, stream.size() - in_at));
@@ -35,7 +63,6 @@ std::size_t inflate_into(std::span<const std::byte> stream, std::span<std::byte>
     }
     if (result != Z_OK) break;
   }
-  inflateEnd(&z);
   return out_at;
 }
 
@@ -48,35 +75,61 @@ std::vector<std::byte> inflate_beginning(std::span<const std::byte> stream, std:
 }
 
 std::vector<std::byte> inflate(std::span<const std::byte> stream, std::uint64_t count, const std::string& source) {
-  constexpr std::uint64_t best = 1040;  // 1032 and room for headers
-  if (count / best > stream.size())
-    throw scene::bad_input(
-        fmt::format("{}: its header asks for {} bytes, {} compressed ones cannot hold them; the file is truncated or "
-                    "damaged, write it anew",
-                    source, count, stream.size()));
+  require_possible(stream.size(), count, source);
   std::vector<std::byte> out(count);
   const std::size_t written = inflate_into(stream, out);
-  if (written != count)
-    throw scene::bad_input(
-        fmt::format("{}: its compressed samples end or break after {} of {} bytes; the file is truncated or damaged, "
-                    "write it anew",
-                    source, written, count));
+  if (written != count) throw ends_early(written, count, source);
   return out;
+}
+
+void inflate_parts(const std::filesystem::path& file, const InflatedRange& range, const std::string& source,
+                   const std::function<void(std::span<const std::byte>)>& use) {
+  const PositionalFile in(file, source);
+  const std::uint64_t size = in.size(), end = range.first + range.count;
+  std::uint64_t at = std::min(range.begin, size), made = 0;
+  require_possible(size - at, end, source);
+  InflateState state;
+  z_stream& z = state.z;
+  std::vector<std::byte> packed(128 << 10), out(256 << 10);
+  while (made < end) {
+    if (z.avail_in == 0 && at < size) {
+      const std::uint64_t now = std::min<std::uint64_t>(packed.size(), size - at);
+      in.read(at, packed.data(), now);
+      at += now;
+      z.next_in = reinterpret_cast<Bytef*>(packed.data());
+      z.avail_in = static_cast<uInt>(now);
+    }
+    z.next_out = reinterpret_cast<Bytef*>(out.data());
+    z.avail_out = static_cast<uInt>(std::min<std::uint64_t>(out.size(), end - made));
+    const uInt room = z.avail_out;
+    const int result = ::inflate(&z, Z_NO_FLUSH);
+    const std::uint64_t before = made;
+    made += room - z.avail_out;
+    if (made > range.first) {
+      const std::uint64_t skipped = range.first > before ? range.first - before : 0;
+      use(std::span<const std::byte>(out).subspan(skipped, made - before - skipped));
+    }
+    const bool ended = result == Z_STREAM_END;
+    if (ended && inflateReset(&z) != Z_OK) break;
+    // Of a stream that goes on no byte may be left; Z_BUF_ERROR says that nothing could be done.
+    if ((!ended && result != Z_OK) || (ended && z.avail_in == 0 && at == size)) break;
+  }
+  if (made < end) throw ends_early(made, end, source);
+}
+
+bool inflate_block(std::span<const std::byte> packed, std::span<std::byte> out) {
+  uLongf size = out.size();
+  return ::uncompress(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(packed.data()),
+                      packed.size()) == Z_OK &&
+         size == out.size();
 }
 
 std::uint64_t inflate_to(int file, std::span<const std::byte> stream, std::uint64_t most, const std::string& source) {
   constexpr std::size_t most_in = std::numeric_limits<uInt>::max(), chunk = 1 << 20;
-  constexpr int either_header = 15 + 32;
   const auto fail = [&](scene::ErrorCode code, const std::string& what, const char* remedy) {
     return scene::Error(code, source, what, remedy);
   };
-  struct Stream {
-    z_stream z{};
-    Stream() {
-      if (inflateInit2(&z, either_header) != Z_OK) throw std::bad_alloc();
-    }
-    ~Stream() { inflateEnd(&z); }
-  } state;
+  InflateState state;
   z_stream& z = state.z;
   std::vector<std::byte> out(chunk);
   std::uint64_t written = 0;

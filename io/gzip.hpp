@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,6 +19,19 @@ std::vector<std::byte> inflate_beginning(std::span<const std::byte> stream, std:
 /// Exactly `count` bytes. Throws Error(bad_input, "SOURCE: ...") if the stream is damaged or ends before, and before
 /// asking for memory if so few bytes could not hold them (deflate's best is 1032 to 1).
 std::vector<std::byte> inflate(std::span<const std::byte> stream, std::uint64_t count, const std::string& source);
+
+/// Bytes of what a stream that begins at byte `begin` of a file holds.
+struct InflatedRange {
+  std::uint64_t begin = 0, first = 0, count = 0;
+};
+
+/// Gives `use` those bytes in parts, with no more than a few hundred KiB in memory. Throws as inflate() does of all
+/// bytes up to the range's end, and what `use` throws.
+void inflate_parts(const std::filesystem::path& file, const InflatedRange& range, const std::string& source,
+                   const std::function<void(std::span<const std::byte>)>& use);
+
+/// The one zlib stream that `packed` is, into all of `out`. false: it is damaged or holds more or fewer bytes.
+bool inflate_block(std::span<const std::byte> packed, std::span<std::byte> out);
 
 /// Writes all that a gzip or zlib stream holds into an open file; the number of bytes. Throws Error(bad_input,
 /// "SOURCE: ...") if the stream is damaged or ends early, and Error(system_failure) if it holds more than `most` bytes

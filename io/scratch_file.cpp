@@ -51,15 +51,29 @@ ScratchFile::ScratchFile(std::string subject, std::uint64_t bytes) : subject_(st
 
 ScratchFile::~ScratchFile() { ::close(descriptor_); }
 
+bool ScratchFile::has_room(std::uint64_t bytes) {
+  try {
+    const ScratchFile tried("", bytes + bytes / 100);
+    return true;
+  } catch (const scene::Error&) {
+    return false;
+  }
+}
+
 void ScratchFile::write(const void* bytes, std::size_t count) {
+  write_at(position_, bytes, count);
+  position_ += count;
+}
+
+void ScratchFile::write_at(std::uint64_t position, const void* bytes, std::size_t count) const {
   const char* next = static_cast<const char*>(bytes);
   while (count > 0) {
     const ssize_t written =
-        ::pwrite(descriptor_, next, std::min(count, std::size_t{1} << 30), static_cast<off_t>(position_));
+        ::pwrite(descriptor_, next, std::min(count, std::size_t{1} << 30), static_cast<off_t>(position));
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail(errno);
     next += written;
-    position_ += static_cast<std::uint64_t>(written);
+    position += static_cast<std::uint64_t>(written);
     count -= static_cast<std::size_t>(written);
   }
 }
@@ -69,8 +83,8 @@ std::filesystem::path ScratchFile::path() const { return fmt::format("/proc/{}/f
 void ScratchFile::fail(int error_number) const {
   throw scene::Error(
       scene::ErrorCode::bad_input, subject_,
-      fmt::format("its samples for all ranks of a machine, {}, cannot be kept in {}: {}", size_in_words(bytes_),
-                  folder_.string(), std::generic_category().message(error_number)),
+      fmt::format("its samples, {} unpacked, cannot be kept in {}: {}", size_in_words(bytes_), folder_.string(),
+                  std::generic_category().message(error_number)),
       "free some space there, set TMPDIR to another folder, or convert it to .bricks once and render that");
 }
 

@@ -17,10 +17,14 @@ class ScratchFile {
   /// if there is no such folder or no room in it: `subject`, the input that is kept there, what is wrong, what to do.
   ScratchFile(std::string subject, std::uint64_t bytes);
   ~ScratchFile();
+  /// Whether there is, for so many bytes and some more, as far as can be known before they are written.
+  static bool has_room(std::uint64_t bytes);
   ScratchFile(const ScratchFile&) = delete;
   ScratchFile& operator=(const ScratchFile&) = delete;
 
   void write(const void* bytes, std::size_t count);
+  /// The same at a place, by any number of threads.
+  void write_at(std::uint64_t position, const void* bytes, std::size_t count) const;
   void write(std::string_view text) { write(text.data(), text.size()); }
   void seek(std::uint64_t position) { position_ = position; }
   [[nodiscard]] std::uint64_t position() const { return position_; }

@@ -19,7 +19,7 @@ std::uint64_t bytes_needed(const StoredVolume& volume, const std::string& source
   std::uint64_t needed = scene::size_of(volume.number) * static_cast<std::uint64_t>(volume.components);
   std::uint64_t all = 0;
   bool is_too_large = false;
-  for (const std::int64_t n : volume.grid.geometry.points)
+  for (const std::int64_t n : volume.grid.geometry.samples())
     is_too_large = is_too_large || __builtin_mul_overflow(needed, static_cast<std::uint64_t>(n), &needed);
   is_too_large = is_too_large || __builtin_mul_overflow(needed, volume.steps, &all) || all > (1ull << 62);
   if (is_too_large)
@@ -35,7 +35,7 @@ struct Wanted {
 
 /// Whose file is too small.
 scene::Error too_few(const StoredVolume& volume, const Wanted& wanted, std::uint64_t has, const std::string& source) {
-  const scene::GridIndex& n = volume.grid.geometry.points;
+  const scene::GridIndex n = volume.grid.geometry.samples();
   const std::string after = volume.offset > 0 ? fmt::format(" after its first {}", volume.offset) : "";
   if (!volume.slices.empty())
     return scene::bad_input(
@@ -48,6 +48,21 @@ scene::Error too_few(const StoredVolume& volume, const Wanted& wanted, std::uint
       volume.exact_size ? "give the right dimensions and type" : "the file is truncated, write it anew"));
 }
 
+/// What to unpack of a compressed volume's file.
+InflatedRange range_of(const StoredVolume& volume, const std::filesystem::path& file, const Wanted& wanted,
+                       std::uint64_t size) {
+  const std::uint64_t skip = volume.compressed_whole ? 0 : volume.offset;
+  const std::uint64_t before = (volume.compressed_whole ? volume.offset : 0) + volume.skip_inflated;
+  if (skip > size) throw damaged(file, fmt::format("its samples begin at byte {} of {}", skip, size));
+  return {skip, before + wanted.first, wanted.count};
+}
+
+/// The bytes of one step; with interleaved steps, of all.
+Wanted wanted_of(const StoredVolume& volume, std::size_t step, const std::string& source) {
+  const std::uint64_t needed = bytes_needed(volume, source), all = needed * volume.steps;
+  return volume.interleaved_steps ? Wanted{0, all, all} : Wanted{step * needed, needed, all};
+}
+
 VolumePayload payload_of_file(const StoredVolume& volume, const std::filesystem::path& file, const Wanted& wanted) {
   const std::string source = file.string();
   const std::uint64_t size = require_file(file), end = wanted.first + wanted.count;
@@ -57,10 +72,15 @@ VolumePayload payload_of_file(const StoredVolume& volume, const std::filesystem:
     return VolumePayload{std::span<const std::byte>(*bytes).subspan(before), bytes};
   };
   if (volume.compressed) {
-    const std::uint64_t skip = volume.compressed_whole ? 0 : volume.offset;
-    const std::uint64_t before = (volume.compressed_whole ? volume.offset : 0) + volume.skip_inflated;
-    if (skip > size) throw damaged(file, fmt::format("its samples begin at byte {} of {}", skip, size));
-    return kept(inflate(mapped->bytes().subspan(skip), before + end, source), before + wanted.first);
+    const InflatedRange range = range_of(volume, file, wanted, size);
+    return kept(inflate(mapped->bytes().subspan(range.begin), range.first + range.count, source), range.first);
+  }
+  if (volume.vtk_array) {
+    std::vector<std::byte> bytes;
+    bytes.reserve(wanted.count);
+    read_vtk_array(file, *volume.vtk_array, wanted.count, source,
+                   [&](std::span<const std::byte> part) { bytes.insert(bytes.end(), part.begin(), part.end()); });
+    return kept(std::move(bytes), 0);
   }
   if (volume.coding != StoredVolume::Coding::binary) {
     if (volume.offset > size)
@@ -103,10 +123,22 @@ VolumePayload payload_of_slices(const StoredVolume& volume, const Wanted& wanted
 }  // namespace
 
 VolumePayload payload_of(const StoredVolume& volume, std::size_t step, const std::string& source) {
-  const std::uint64_t needed = bytes_needed(volume, source), all = needed * volume.steps;
-  const Wanted wanted = volume.interleaved_steps ? Wanted{0, all, all} : Wanted{step * needed, needed, all};
+  const Wanted wanted = wanted_of(volume, step, source);
   return volume.slices.empty() ? payload_of_file(volume, volume.payload, wanted)
                                : payload_of_slices(volume, wanted, source);
+}
+
+bool comes_in_parts(const StoredVolume& volume) {
+  const bool as_it_comes = volume.coding == StoredVolume::Coding::binary && volume.wide == StoredVolume::Wide::no &&
+                           (!volume.planar || volume.components == 1);
+  return as_it_comes && volume.slices.empty() && (volume.compressed || volume.vtk_array);
+}
+
+void unpack_payload(const StoredVolume& volume, std::size_t step, const std::string& source, const ByteSink& use) {
+  const Wanted wanted = wanted_of(volume, step, source);
+  if (volume.vtk_array) return read_vtk_array(volume.payload, *volume.vtk_array, wanted.count, source, use);
+  const std::uint64_t size = require_file(volume.payload);
+  inflate_parts(volume.payload, range_of(volume, volume.payload, wanted, size), volume.payload.string(), use);
 }
 
 VolumePayload interleaved(const StoredVolume& volume, const VolumePayload& planar) {

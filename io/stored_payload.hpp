@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "io/streamed_bricks.hpp"
 #include "io/volume_formats.hpp"
 
 namespace tessera::io {
@@ -26,6 +27,13 @@ struct VolumePayload {
 /// The samples of one step of a volume; with interleaved steps, of all. They are as many as the header says. Throws
 /// Error(bad_input) for files that hold fewer, before memory is asked for that they could not fill.
 VolumePayload payload_of(const StoredVolume& volume, std::size_t step, const std::string& source);
+
+/// Whether what payload_of() gives comes out of one stream that can be unpacked a part at a time: gzip, zlib, a packed
+/// array of VTK's.
+bool comes_in_parts(const StoredVolume& volume);
+
+/// Gives `use` those bytes, in parts. Throws as payload_of(), or when the stream turns out to be damaged.
+void unpack_payload(const StoredVolume& volume, std::size_t step, const std::string& source, const ByteSink& use);
 
 /// The tuples of a volume whose components lie one after the other, each tuple together.
 VolumePayload interleaved(const StoredVolume& volume, const VolumePayload& planar);

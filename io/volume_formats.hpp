@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/volume_reader.hpp"
+#include "io/vti_file.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -28,9 +29,12 @@ struct StoredVolume {
   bool exact_size = false;                    ///< the file must end with the payload
   bool compressed = false;  ///< gzip or zlib from `offset` on; with `compressed_whole` from the beginning
   bool compressed_whole = false;
-  std::uint64_t skip_inflated = 0;  ///< compressed: bytes before the samples in what comes out
+  std::optional<VtkArrayPlace> vtk_array{};  ///< instead of an offset: a packed array of a VTK XML file
+  std::uint64_t skip_inflated = 0;           ///< compressed: bytes before the samples in what comes out
   enum class Coding { binary, text, hex } coding = Coding::binary;
   enum class Wide { no, int64, uint64 } wide = Wide::no;  ///< 64-bit integers; `number` is float64, which they become
+  std::string field = "samples";
+  bool active = false;  ///< the file marks it as its scalars
   std::string format;
   std::vector<std::string> notes;
   BodyAxes body_axes = BodyAxes::none;

@@ -81,11 +81,8 @@ TimeStepRead step_of(const StoredVolume& volume, const VolumeOptions& options, c
   return {};
 }
 
-/// Fields, choice and source of one array of samples.
-VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const std::string& source) {
-  scene::validate(volume.grid, source);
-  const TimeStepRead time_step = step_of(volume, options, source);
-  const std::uint64_t step = time_step.step;
+/// The samples as they are used, where they lie or in memory; `volume` says from now on how they are.
+VolumePayload usable_payload(StoredVolume& volume, std::size_t step, const std::string& source) {
   VolumePayload payload = payload_of(volume, step, source);
   if (volume.coding == StoredVolume::Coding::text) volume.swapped = false;
   if (volume.planar && volume.components > 1) payload = interleaved(volume, payload);
@@ -99,45 +96,79 @@ VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const 
     }
     volume.notes.emplace_back("64-bit integers are held as doubles");
   }
+  return payload;
+}
+
+/// One number of each tuple, or its length.
+struct ChosenSamples {
+  scene::Grid grid;
+  scene::ComponentChoice of_tuple;
+};
+
+ChosenSamples chosen_samples(const StoredVolume& volume, const FieldChoice& choice, int component, std::size_t step,
+                             const std::string& source) {
+  scene::Grid grid = volume.grid;
+  grid.type = volume.number;
+  grid.field_name = choice.label;
+  if (component == magnitude) {
+    grid.type = scene::size_of(volume.number) < 4 || volume.number == scene::SampleType::float32
+                    ? scene::SampleType::float32
+                    : scene::SampleType::float64;
+    if (grid.shift != 0)
+      throw scene::bad_input(
+          fmt::format("{}: its components are shifted by {}, so their magnitude has no meaning; choose one with "
+                      "`field` samples:0",
+                      source, grid.shift));
+    grid.scale = std::abs(grid.scale);
+  }
+  if (volume.interleaved_steps)
+    return {std::move(grid), {static_cast<int>(volume.steps), static_cast<int>(step), volume.number}};
+  return {std::move(grid), {volume.components, component == magnitude ? -1 : component, volume.number}};
+}
+
+std::unique_ptr<scene::SampleSource> source_of(const VolumePayload& payload, ChosenSamples samples, bool swapped,
+                                               const std::string& source) {
+  if (payload.in_file)
+    return std::make_unique<FileSource>(std::move(samples.grid), payload.in_file->file, payload.in_file->first_byte,
+                                        source, samples.of_tuple, swapped);
+  return std::make_unique<scene::MemorySource>(std::move(samples.grid), payload.bytes, payload.owner, source,
+                                               samples.of_tuple, swapped);
+}
+
+/// Fields, choice and source of one array of samples.
+VolumeFile open_stored(StoredVolume volume, const VolumeOptions& options, const std::string& source) {
+  scene::validate(volume.grid, source);
   VolumeFile result;
+  result.time_step = step_of(volume, options, source);
+  const std::size_t step = result.time_step.step;
+  FieldSummary field{.name = volume.field,
+                     .association = volume.grid.geometry.association,
+                     .components = volume.components,
+                     .type = listed_type(volume.number)};
+  field.active = volume.active;
+  field.high = 1;  // until it is known; nobody chooses by it
+  const FieldChoice choice = choose_field(options.field, std::span(&field, 1), source);
+  const auto chosen = [&](int component) { return chosen_samples(volume, choice, component, step, source); };
+  const auto streamed = [&](int component) {
+    ChosenSamples samples = chosen(component);
+    return StreamedSamples{std::move(samples.grid), samples.of_tuple, volume.swapped,
+                           [&](const ByteSink& use) { unpack_payload(volume, step, source, use); }};
+  };
+  field.low = 1, field.high = 0;  // the source's
+  const bool lists_lengths = volume.components > 1 && choice.component != magnitude && volume.grid.shift == 0;
+  if (comes_in_parts(volume) && unpacked_to_scratch(streamed(choice.component), options, source, result)) {
+    if (lists_lengths) list_range(value_range(streamed(magnitude)), field);
+  } else {
+    const VolumePayload payload = usable_payload(volume, step, source);
+    result.source = source_of(payload, chosen(choice.component), volume.swapped, source);
+    result.in_memory = !payload.in_file || is_inflated(payload.in_file->file);
+    if (lists_lengths)
+      list_range(scene::value_range(*source_of(payload, chosen(magnitude), volume.swapped, source)), field);
+  }
   result.format = std::move(volume.format);
   result.body_axes = volume.body_axes;
   result.notes = std::move(volume.notes);
-  result.time_step = time_step;
-
-  FieldSummary field{.name = "samples", .components = volume.components, .type = listed_type(volume.number)};
-  field.high = 1;  // until it is known; nobody chooses by it
-  const FieldChoice choice = choose_field(options.field, std::span(&field, 1), source);
-  const auto source_with = [&](int component) -> std::unique_ptr<scene::SampleSource> {
-    scene::Grid grid = volume.grid;
-    grid.type = volume.number;
-    grid.field_name = choice.label;
-    if (component == magnitude) {
-      grid.type = scene::size_of(volume.number) < 4 || volume.number == scene::SampleType::float32
-                      ? scene::SampleType::float32
-                      : scene::SampleType::float64;
-      if (grid.shift != 0)
-        throw scene::bad_input(
-            fmt::format("{}: its components are shifted by {}, so their magnitude has no meaning; choose one with "
-                        "`field` samples:0",
-                        source, grid.shift));
-      grid.scale = std::abs(grid.scale);
-    }
-    const scene::ComponentChoice of_tuple =
-        volume.interleaved_steps
-            ? scene::ComponentChoice{static_cast<int>(volume.steps), static_cast<int>(step), volume.number}
-            : scene::ComponentChoice{volume.components, component == magnitude ? -1 : component, volume.number};
-    if (payload.in_file)
-      return std::make_unique<FileSource>(std::move(grid), payload.in_file->file, payload.in_file->first_byte, source,
-                                          of_tuple, volume.swapped);
-    return std::make_unique<scene::MemorySource>(std::move(grid), payload.bytes, payload.owner, source, of_tuple,
-                                                 volume.swapped);
-  };
-  result.source = source_with(choice.component);
-  result.in_memory = !payload.in_file || is_inflated(payload.in_file->file);
-  field.low = 1, field.high = 0;  // the source's
-  if (volume.components > 1 && choice.component != magnitude && volume.grid.shift == 0)
-    list_range(scene::value_range(*source_with(magnitude)), field);
+  result.notes.insert(result.notes.end(), choice.notes.begin(), choice.notes.end());
   result.fields.push_back(std::move(field));
   return result;
 }
@@ -148,6 +179,8 @@ VolumeFile open_described(const std::filesystem::path& file, VolumeKind kind, co
   switch (kind) {
     case VolumeKind::vtk:
       require_no_time_step(options.time_step, source);
+      if (auto plain = read_plain_vti(file, options.most_in_memory))
+        return open_stored(*std::move(plain), options, source);
       return read_vtk_grid(file, options);
     case VolumeKind::bricks:
       require_no_time_step(options.time_step, source);

@@ -1,13 +1,16 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "io/mesh_reader.hpp"
+#include "io/scratch_file.hpp"
 #include "scene/sample_source.hpp"
 #include "tessera/default_view.hpp"
 
@@ -26,17 +29,24 @@ struct VolumeOptions {
   std::optional<std::size_t> time_step{};  ///< as MeshOptions::time_step
   ReadProgressFunction progress{};         ///< null: nobody hears
 
+  /// Samples that have to be unpacked and take more bytes than this go into a file of bricks without a name
+  /// (scratch_file.hpp) as they come, where the format lets them come in parts: gzip, an array of .vti, what a helper
+  /// holds. Without room for that they stay in memory, unless it is needed for others.
+  std::uint64_t most_in_memory = std::numeric_limits<std::uint64_t>::max();
+  bool scratch_is_needed = false;
+
   /// Whether one of the .raw options is given.
   [[nodiscard]] bool describes_raw() const { return dims || type || spacing || origin || big_endian || skip > 0; }
 };
 
-/// A volume whose samples wait in the file, or in memory where they had to be decompressed.
+/// A volume whose samples wait in the file or, where they had to be decompressed, in memory or a scratch file.
 struct VolumeFile {
   std::unique_ptr<scene::SampleSource> source;
-  bool in_memory = true;             ///< all samples are, so that they could be unpacked or put together
-  scene::ValueRange range;           ///< of the chosen field, and its blanks; empty until set_range()
-  std::vector<FieldSummary> fields;  ///< low > high: not known until set_range()
-  std::vector<std::string> notes;    ///< one line each: what was chosen or applied, or odd about the file
+  std::shared_ptr<const ScratchFile> scratch;  ///< where the source reads what was unpacked, for others too; else null
+  bool in_memory = true;                       ///< all samples are, so that they could be unpacked or put together
+  scene::ValueRange range;                     ///< of the chosen field, and its blanks; empty until set_range()
+  std::vector<FieldSummary> fields;            ///< low > high: not known until set_range()
+  std::vector<std::string> notes;              ///< one line each: what was chosen or applied, or odd about the file
   std::string format;
   BodyAxes body_axes = BodyAxes::none;
   TimeStepRead time_step{};
@@ -52,9 +62,10 @@ void require_volume(const std::filesystem::path& file);
 
 /// Opens a volume.
 ///
-///   .vti .pvti .vtr .pvtr, .vtk of structured points or a rectilinear grid: by VTK, all of it in memory. Extent,
-///       origin, spacing and direction apply; pieces have to fill the whole and to agree on its coordinates. A
-///       curvilinear .vtk is a mesh. 64-bit integers become doubles. Hidden samples are blank.
+///   .vti .pvti .vtr .pvtr, .vtk of structured points or a rectilinear grid: by VTK, all of it in memory (a large .vti
+///       of one array: vti_file.hpp). Extent, origin, spacing and direction apply; pieces have to fill the whole and to
+///       agree on its coordinates. A curvilinear .vtk is a mesh. 64-bit integers become doubles. Hidden samples are
+///       blank.
 ///   .mhd .mha: origin, spacing, orientation, slope and offset apply; raw (in place), compressed or text.
 ///   .nrrd .nhdr: space origin and directions, else axis minimums and spacings; raw (in place), gzip, ascii or hex. A
 ///       first axis of components is allowed; content "old min" and the measurement frame mean nothing here. Slices in
@@ -68,6 +79,7 @@ void require_volume(const std::filesystem::path& file);
 ///   .raw: described by the options or by its name, in place. .bricks: what write_bricks made, read brick by brick.
 ///   A gzip file of any of these is inflated into memory first, whatever its name.
 ///
+/// In memory: VolumeOptions::most_in_memory says what of it goes into a file instead.
 /// World coordinates are the file's own (NIfTI's point right, anterior, up, DICOM's left,
 /// back, up; MetaImage's and NRRD's whatever they say).
 /// Headers are compared with the file's size before memory is asked for. Throws Error(bad_input) in one line for a

@@ -39,6 +39,13 @@ std::uint64_t BrickCache::bytes_of(const BrickLayout& layout, std::size_t brick,
 
 std::uint64_t BrickCache::bytes_of(std::size_t brick) const { return bytes_of(layout_, brick, source_.grid().type); }
 
+/// Bytes that are asked of the heap: bricks at the ends of axes that are hardly smaller get as much as the others. A
+/// gap that such a brick leaves would be too small for any other.
+std::uint64_t BrickCache::room_for(std::uint64_t bytes) const {
+  const std::uint64_t largest = bytes_of(0);
+  return holds_all_ || bytes < largest - largest / 8 ? bytes : largest;
+}
+
 void BrickCache::forget(std::size_t brick) {
   Entry& entry = entries_[brick];
   by_use_.erase(entry.used);
@@ -68,7 +75,7 @@ bool BrickCache::make_room(std::uint64_t bytes, float beyond, std::unique_ptr<st
     const std::size_t goes = victim(beyond);
     if (goes == entries_.size()) return false;
     forget(goes);
-    if (bytes_of(goes) == bytes)
+    if (room_for(bytes_of(goes)) == room_for(bytes))
       buffer = std::move(entries_[goes].bytes);
     else
       entries_[goes].bytes.reset();
@@ -105,7 +112,7 @@ void BrickCache::load(std::size_t brick, std::unique_ptr<std::byte[]> buffer, bo
   };
   try {
     const scene::TraceScope scope(trace, "read", -1, bytes, 0);
-    if (!buffer) buffer = std::make_unique_for_overwrite<std::byte[]>(bytes);
+    if (!buffer) buffer = std::make_unique_for_overwrite<std::byte[]>(room_for(bytes));
     const scene::GridIndex place = layout_.place(brick), room = layout_.room(place);
     const scene::SampleLayout layout{source_.grid().type, room[0], room[0] * room[1]};
     source_.read(layout_.box(place), layout, {buffer.get(), bytes});

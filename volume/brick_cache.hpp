@@ -75,6 +75,7 @@ class BrickCache {
   };
 
   std::uint64_t bytes_of(std::size_t brick) const;
+  std::uint64_t room_for(std::uint64_t bytes) const;
   float distance_of(std::size_t brick) const { return distances_.empty() ? 0.0f : distances_[brick]; }
   std::size_t victim(float beyond) const;
   bool make_room(std::uint64_t bytes, float beyond, std::unique_ptr<std::byte[]>& buffer);

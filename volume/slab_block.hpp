@@ -3,11 +3,32 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "scene/grid.hpp"
 
 namespace tessera::volume {
+
+/// Room for floats that are written before they are read. Much of it lies in a mapping of its own: blocks that grow by
+/// and by leave gaps in the heap that nothing else fills, a third of a small budget.
+class FloatRoom {
+ public:
+  FloatRoom() = default;
+  ~FloatRoom() { let_go(); }
+  FloatRoom(const FloatRoom&) = delete;
+  FloatRoom& operator=(const FloatRoom&) = delete;
+
+  [[nodiscard]] float* data() { return first_; }
+  [[nodiscard]] const float* data() const { return first_; }
+  /// At least `count` floats; where there were fewer, all are 0 now.
+  void make_room(std::size_t count);
+
+ private:
+  void let_go();
+
+  float* first_ = nullptr;
+  std::size_t count_ = 0;
+  bool mapped_ = false;
+};
 
 /// What a chunk of 32 slabs has of the box of voxels that is cast: all that kernels know of either.
 struct ChunkBox {
@@ -32,7 +53,7 @@ struct SlabBlock {
   std::array<int, slices> low_i, low_j;
   std::array<int, slabs> slab_i, slab_i_last, slab_j, slab_j_last;
   std::ptrdiff_t pitch = 0, rows = 0;
-  std::vector<float> samples;
+  FloatRoom samples;
 
   [[nodiscard]] float* slice(int n) { return samples.data() + margin + n * pitch * rows; }
   [[nodiscard]] const float* slice(int n) const { return samples.data() + margin + n * pitch * rows; }
@@ -43,7 +64,7 @@ struct SlabBlock {
   /// Makes room for `pitch` and `rows` as they are; what is there is garbage, but finite or NaN.
   void reserve() {
     const auto size = static_cast<std::size_t>(2 * margin + slices * pitch * rows);
-    if (samples.size() < size) samples.resize(size, 0.0f);
+    samples.make_room(size);
   }
 };
 

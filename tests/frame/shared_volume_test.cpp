@@ -108,6 +108,24 @@ TEST_F(SharedVolume, IsKeptOnceWithTheDescriptionOfOneProcess) {
   }
 }
 
+TEST_F(SharedVolume, ByOneProcessIsOnDiskIfMemoryMayNotHoldIt) {
+  const auto file = zipped("v.nii.gz", test::nifti());
+  io::VolumeOptions options;
+  options.most_in_memory = 47;  // of 24 numbers of two bytes
+  const io::VolumeFile alone = io::open_unscanned_volume(file);
+  const std::vector<io::VolumeFile> by_one = opened(file, 1, options);
+  const io::VolumeFile& kept = by_one[0];
+  EXPECT_EQ(samples_of(*kept.source), samples_of(*alone.source));
+  EXPECT_GT(kept.source->bytes_read(), 0u);
+  ASSERT_EQ(kept.notes.size(), alone.notes.size() + 1);
+  for (const std::string& part : {std::string("v.nii.gz is read as a whole: its samples are kept on disk"),
+                                  scratch_.path().string(), std::string("goes with the run")})
+    EXPECT_NE(kept.notes.back().find(part), std::string::npos) << kept.notes.back();
+  EXPECT_TRUE(scratch_.names().empty());
+  options.most_in_memory = 48;
+  EXPECT_EQ(opened(file, 1, options)[0].notes.size(), alone.notes.size());
+}
+
 TEST_F(SharedVolume, OfAVectorHasTheComponentThatIsAskedForAndItsFieldsRange) {
   const std::string nrrd =
       "NRRD0004\ntype: short\ndimension: 4\nkinds: vector domain domain domain\nsizes: 2 4 3 2\n"

@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdlib>
 #include <cstring>
 #include <random>
 
 #include "io/brick_file.hpp"
 #include "io/file_source.hpp"
+#include "io/scratch_folder.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace tessera::io {
@@ -19,21 +19,7 @@ namespace {
 
 using test::expect_bad_input;
 using test::fault_of;
-
-/// The folder for temporary files while this lives.
-class ScratchFolder {
- public:
-  explicit ScratchFolder(const std::filesystem::path& folder) {
-    if (const char* before = std::getenv("TMPDIR")) before_ = before;
-    ::setenv("TMPDIR", folder.c_str(), 1);
-  }
-  ~ScratchFolder() { before_.empty() ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", before_.c_str(), 1); }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
- private:
-  std::string before_;
-};
+using test::ScratchFolder;
 
 std::vector<std::byte> random_bytes(std::size_t count) {
   std::mt19937 random(5);

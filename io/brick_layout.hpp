@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/sample_source.hpp"
+
+/// How a brick file (brick_file.hpp) is laid out, for those who read and write it.
+namespace tessera::io {
+
+inline constexpr std::string_view brick_magic = "TESSBRK1";
+inline constexpr int least_side = 8, most_side = 1024;
+
+/// Of a block's values, as it is stored.
+struct BlockRange {
+  double low = 1e300, high = -1e300;
+  std::uint64_t blanks = 0;
+
+  /// Takes in samples as the grid stores them.
+  void add(const scene::Grid& grid, std::span<const std::byte> samples);
+};
+static_assert(sizeof(BlockRange) == 24);
+
+/// The blocks of a volume and where their samples begin, in samples.
+class Blocks {
+ public:
+  Blocks(const scene::GridIndex& samples, std::int64_t side);
+
+  [[nodiscard]] const scene::GridIndex& count() const { return count_; }
+  [[nodiscard]] std::int64_t total() const { return count_[0] * count_[1] * count_[2]; }
+  [[nodiscard]] std::int64_t number(const scene::GridIndex& b) const {
+    return (b[2] * count_[1] + b[1]) * count_[0] + b[0];
+  }
+  [[nodiscard]] scene::SampleBox box(const scene::GridIndex& b) const;
+  /// Samples of all blocks before this one: whole layers, whole rows of blocks in its layer, blocks in its row.
+  [[nodiscard]] std::int64_t first_sample(const scene::GridIndex& b) const;
+
+ private:
+  scene::GridIndex samples_, count_{};
+  std::int64_t side_;
+};
+
+/// Where what of a file to be written is. Keeps a reference to the grid.
+class BrickLayout {
+ public:
+  BrickLayout(const scene::Grid& grid, int side);
+
+  [[nodiscard]] const Blocks& blocks() const { return blocks_; }
+  [[nodiscard]] std::int64_t side() const { return side_; }
+  /// Of the first block's samples.
+  [[nodiscard]] std::uint64_t first_byte() const;
+  [[nodiscard]] std::uint64_t bytes() const;
+  /// All that stands before the samples, once the ranges of all blocks are known.
+  [[nodiscard]] std::string beginning(std::span<const BlockRange> ranges) const;
+
+ private:
+  const scene::Grid& grid_;
+  int side_;
+  Blocks blocks_;
+  std::uint64_t header_bytes_ = 0;
+};
+
+}  // namespace tessera::io
