@@ -47,7 +47,7 @@ TileCosts::TileCosts(const scene::Camera& camera, scene::ImageSize size, const g
 
 float TileCosts::at(double x, double y) const {
   const auto along = [](double v, int length) {
-    const double place = std::clamp(v / side - 0.5, 0.0, length - 1.0);
+    const double place = std::min(std::max(0.0, v / side - 0.5), length - 1.0);  // 0 of what is no number
     const int low = std::min(static_cast<int>(place), std::max(0, length - 2));
     return std::pair(low, static_cast<float>(place - low));
   };
