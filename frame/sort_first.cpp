@@ -160,6 +160,10 @@ class SortFirst::State {
       split->rows = reader.take_list<int>();
       for (auto* edges : {&split->columns, &split->steps})
         for (std::size_t row = 1; row < split->rows.size(); ++row) edges->push_back(reader.take_list<int>());
+      for (std::size_t row = 0; row < split->columns.size(); ++row)
+        if (split->columns[row].empty() || split->columns[row].size() != split->steps[row].size())
+          reader.refuse("has edges without steps");
+      if (split->processes() != transport_.size()) reader.refuse("is a split for another number of ranks");
     } else if (const auto weights = reader.take_list<double>(); !weights.empty()) {
       weights_ = weights;
     }

@@ -26,9 +26,10 @@ struct SortFirstSettings {
 /// its own renderer of the same volume, rank 0 gathers (Moloney, "Ray Coherence in Parallel Volume Rendering", SFU
 /// 2008, 6.3.2). A single rank casts all and splits nothing.
 ///
-/// The split is found by all ranks together in two stages (volume/image_split.hpp): each finds the cost of the
-/// rectangle it had in the frame before, of an even tile in the first one. The bits of the picture are those of one
-/// process, for any split.
+/// With Balance::learned rank 0 finds the split from what tiles of the frame before took, where the view is near that
+/// frame's (split_by_times.hpp). Else it is found by all ranks together in two stages (volume/image_split.hpp): each
+/// finds the cost of the rectangle it had in the frame before, of an even tile in the first one. The bits of the
+/// picture are those of one process, for any split.
 class SortFirst final : public VolumeFrames {
  public:
   /// Throws Error(bad_input) unless there are no weights or as many positive ones as ranks.

@@ -13,11 +13,11 @@ struct StoredVolume;
 
 /// Where an array of a VTK XML file begins, and how it is packed there.
 ///
-/// raw           u32 or u64 number of bytes, bytes
-/// base64        the same as text, four characters for three bytes; padding (=) may end the number's and the bytes'
-/// text compressed    n, bytes of a block, bytes of the last block if that is shorter, else 0, packed bytes of each of
-/// n
-///               blocks, as u32 or u64; blocks, each a zlib stream. In base64 the numbers are a text by themselves.
+/// raw         u32 or u64 number of bytes, bytes
+/// base64      the same as text, four characters for three bytes; padding (=) may end the text of the number and that
+///             of the bytes
+/// compressed  as u32 or u64: n blocks, bytes of one, bytes of the last if it is shorter, else 0, packed bytes of each;
+///             then the blocks, each a zlib stream. In base64 the numbers are a text by themselves.
 ///
 /// Source: VTK File Formats, "XML File Formats", and what its writers write (vtkXMLWriter.cxx).
 struct VtkArrayPlace {

@@ -12,11 +12,6 @@ namespace {
 
 constexpr int tile_side = TileRays::side;
 
-/// A vertical edge: `x` pixels from the left, and a grain more above `step`.
-struct Edge {
-  int x, step;
-};
-
 /// The edges that a row of rectangles may have, numbered from left to right.
 class EdgesOfRow {
  public:
@@ -28,7 +23,7 @@ class EdgesOfRow {
 
   /// The number of the picture's right edge; the left one's is 0.
   [[nodiscard]] int last() const { return count_; }
-  [[nodiscard]] Edge operator[](int number) const {
+  [[nodiscard]] SteppedEdge operator[](int number) const {
     const int tile_rows = number % per_grain_;
     return {std::min(width_, number / per_grain_ * region_grain),
             tile_rows == 0 ? y0_ : std::min(y1_, (y0_ / tile_side + tile_rows) * tile_side)};
@@ -62,16 +57,10 @@ class Search {
 
  private:
   /// Cost of the pixels between two edges.
-  [[nodiscard]] double between(int y0, int y1, const Edge& left, const Edge& right) const {
+  [[nodiscard]] double between(int y0, int y1, const SteppedEdge& left, const SteppedEdge& right) const {
     double cost = 0;
-    int top = y0;
-    for (const int bottom : {std::min(left.step, right.step), std::max(left.step, right.step), y1}) {
-      if (bottom <= top) continue;
-      const int x0 = left.x + (top < left.step ? region_grain : 0),
-                x1 = right.x + (top < right.step ? region_grain : 0);
-      cost += costs_.of({x0, top, std::min(x1, costs_.size().width), bottom});
-      top = bottom;
-    }
+    each_rectangle(y0, y1, left, right, costs_.size().width,
+                   [&](const scene::PixelRect& part) { cost += costs_.of(part); });
     return cost;
   }
 

@@ -73,18 +73,13 @@ std::vector<scene::PixelRect> ImageSplit::parts(int process) const {
   std::size_t row = 0;
   for (; process >= static_cast<int>(columns[row].size()) - 1; ++row)
     process -= static_cast<int>(columns[row].size()) - 1;
-  const auto left = static_cast<std::size_t>(process), right = left + 1;
-  const auto edge = [&](std::size_t e, int y) {
-    return std::min(columns[row].back(), columns[row][e] + (y < steps[row][e] ? region_grain : 0));
+  const auto edge = [&](int number) {
+    const auto n = static_cast<std::size_t>(number);
+    return SteppedEdge{columns[row][n], steps[row][n]};
   };
   std::vector<scene::PixelRect> parts;
-  int top = whole.y0;
-  const std::vector<int>& at = steps[row];
-  for (const int bottom : {std::min(at[left], at[right]), std::max(at[left], at[right]), whole.y1}) {
-    if (bottom <= top) continue;
-    parts.push_back({edge(left, top), top, edge(right, top), bottom});
-    top = bottom;
-  }
+  each_rectangle(whole.y0, whole.y1, edge(process), edge(process + 1), columns[row].back(),
+                 [&](const scene::PixelRect& part) { parts.push_back(part); });
   return parts;
 }
 

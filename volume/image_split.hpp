@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -35,6 +36,24 @@ class SummedArea {
   int width_;
   std::vector<std::uint64_t> sums_;
 };
+
+/// A vertical edge of a rectangle: `x` pixels from the left, and `region_grain` further to the right above `step`.
+struct SteppedEdge {
+  int x, step;
+};
+
+/// Calls use(rectangle) for the pixels between two edges in lines [y0, y1), from top to bottom.
+template <class Use>
+void each_rectangle(int y0, int y1, const SteppedEdge& left, const SteppedEdge& right, int width, const Use& use) {
+  const auto at = [width](const SteppedEdge& edge, int y) {
+    return std::min(width, edge.x + (y < edge.step ? region_grain : 0));
+  };
+  for (const int bottom : {std::min(left.step, right.step), std::max(left.step, right.step), y1}) {
+    if (bottom <= y0) continue;
+    use(scene::PixelRect{at(left, y0), y0, at(right, y0), bottom});
+    y0 = bottom;
+  }
+}
 
 /// A picture cut into rows of columns, one rectangle a process (Moloney, "Ray Coherence in Parallel Volume Rendering",
 /// SFU 2008, 4.2): a row may have any number of columns, so any number of processes works.

@@ -46,7 +46,7 @@ struct Partition {
 /// How the picture of a grid is split between processes (Moloney 2008, chapter 4): `accurate`, `backface` and
 /// `splatting` are the thesis's cost maps, from bricks that show.
 enum class Balance {
-  learned,    ///< by what tiles of the frame before took, or where views differ by pilot rays
+  learned,    ///< by what tiles of the frame before took, or where views differ much by pilot rays
   accurate,   ///< by each ray's way through the bricks
   backface,   ///< by the back faces of the bricks
   splatting,  ///< by spheres as wide as the bricks

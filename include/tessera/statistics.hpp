@@ -25,7 +25,7 @@ struct FrameStatistics {
   std::string integrator;       ///< what `automatic` chose
   std::string composited_on;    ///< meshes on several ranks, or on a device
   double milliseconds = 0;      ///< from when all ranks were ready to the picture in memory
-  /// Grids, of each rank: its rectangle of the picture, pieces integrated, CPU time of all its threads.
+  /// Grids, of each rank: its rectangle of the picture (vertical edges may step by 4 pixels), pieces, CPU seconds.
   std::vector<PixelRect> rectangles;
   std::vector<std::uint64_t> samples;
   std::vector<double> cpu_seconds;
