@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
@@ -141,10 +142,18 @@ Error as_error() {
   std::_Exit(static_cast<int>(error.code()));
 }
 
+/// The first thread's stack grows as it is used. Where address space is limited there may be no room when it does, and
+/// the system ends the process without a word; so it grows now, to more than rendering takes of it.
+[[gnu::noinline]] void grow_stack() {
+  std::array<volatile char, 1 << 19> room;  // NOLINT(cppcoreguidelines-pro-type-member-init): touched below
+  for (std::size_t byte = 0; byte < room.size(); byte += 4096) room[byte] = 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   using tessera::apps::fail;
+  grow_stack();
   std::set_terminate(on_terminate);
   std::optional<tessera::Job> job;
   try {
