@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <string>
 
 #include "exchange/first_contact.hpp"
@@ -45,6 +46,8 @@ StartWitness::StartWitness(const std::string& program) {
   child_ = fork();
   if (child_ == 0) {
     close(ends[1]);
+    // A launcher that ends a rank ends the rank's process group, and would take the words with it.
+    std::signal(SIGTERM, SIG_IGN);
     const std::string last = told(ends[0]);
     if (!last.ends_with('\0') && may_speak()) {
       write_all(STDERR_FILENO, last.empty() ? words(program) : last);
