@@ -9,7 +9,4 @@ namespace tessera::io {
 /// for their rounding become regular. Throws Error(bad_input) for other parts and for fields that do not fit.
 VolumeFile grid_of(const ForeignFile& opened, const VolumeOptions& options);
 
-/// Origin, spacing and direction of an image.
-void set_image_geometry(const ForeignPart& image, scene::GridGeometry& geometry);
-
 }  // namespace tessera::io

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/foreign_grids.hpp"
+#include "io/foreign_geometry.hpp"
 #include "io/gzip.hpp"
 #include "io/input_file.hpp"
 #include "io/positional_file.hpp"

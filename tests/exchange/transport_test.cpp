@@ -80,18 +80,22 @@ TEST(FirstContact, IsMadeByAnyNumberOfRanksAndLeavesNothingBehind) {
 TEST(FirstContact, FindsTheFirstArgumentInWhichARankDiffers) {
   using Words = std::vector<std::string>;
   const Words first{"render", "a", "-o", ""};
-  for (const auto& [other, words] : std::vector<std::pair<Words, std::string>>{
+  struct Case {
+    Words other;
+    std::string message;
+  };
+  for (const Case& c : std::vector<Case>{
            {{"render", "b", "-o", ""}, "argument 2: rank 2 of 3 was given 'b' where the first was given 'a'"},
            {{"render", "a", "-o"}, "argument 4: rank 2 of 3 was given nothing where the first was given ''"},
            {{"render", "a", "-o", "", ""}, "argument 5: rank 2 of 3 was given '' where the first was given nothing"}})
     try {
       run_ranks(3, [&](Transport& transport) {
-        make_first_contact(transport, std::chrono::milliseconds(0), transport.rank() == 2 ? other : first);
+        make_first_contact(transport, std::chrono::milliseconds(0), transport.rank() == 2 ? c.other : first);
       });
-      ADD_FAILURE() << words;
+      ADD_FAILURE() << c.message;
     } catch (const scene::Error& error) {
       EXPECT_EQ(error.code(), scene::ErrorCode::bad_input);
-      EXPECT_EQ(std::string(error.what()).find(words), 0u) << error.what();
+      EXPECT_EQ(std::string(error.what()).find(c.message), 0u) << error.what();
     }
   run_ranks(3, [&](Transport& transport) { make_first_contact(transport, std::chrono::milliseconds(0), first); });
 }

@@ -1,7 +1,9 @@
-// Any bytes in a file of any volume format of our own reading (NRRD, NIfTI, MetaImage, bricks, by what they begin with)
-// are a volume whose samples can be read and lie in its range, or are refused in one line.
+// Any bytes in a file of any volume format of our own reading (NRRD, NIfTI, MetaImage, bricks, plain .vti, by what they
+// begin with) are a volume whose samples can be read and lie in its range, or are refused in one line; held in memory
+// or not makes no difference.
 #include <unistd.h>
 
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -38,12 +40,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace tessera;
   static const FuzzFile file;
   file.write(data, size);
+  std::vector<double> in_memory;
   test::parse_or_refuse([&] {
     const io::VolumeFile volume = io::open_volume(file.path, {});
     const scene::SampleBox all = volume.source->geometry().all_samples();
     test::require(all.count() > 0 && all.count() <= 64 * static_cast<std::int64_t>(size + 64));
     std::vector<double> values(static_cast<std::size_t>(all.count()));
     volume.source->read(all, std::span<double>(values));
+    in_memory = values;
     // Where floats hold the samples, they are floats, magnitudes too.
     if (scene::fits_float(volume.source->grid().type))
       for (double& v : values) v = static_cast<double>(static_cast<float>(v));
@@ -52,6 +56,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (const double value = volume.source->grid().value(v); std::isfinite(v) && std::isfinite(value))
         test::require(volume.format.find("rick") != std::string::npos ||
                       (value >= volume.range.low && value <= volume.range.high));
+  });
+  // The same samples by way of a scratch file, which also takes plain .vti files, or nothing again.
+  test::parse_or_refuse([&] {
+    io::VolumeOptions options;
+    options.most_in_memory = 0;
+    const io::VolumeFile volume = io::open_volume(file.path, options);
+    const scene::SampleBox all = volume.source->geometry().all_samples();
+    test::require(all.count() > 0 && all.count() <= 64 * static_cast<std::int64_t>(size + 64));
+    std::vector<double> values(static_cast<std::size_t>(all.count()));
+    volume.source->read(all, std::span<double>(values));
+    for (std::size_t k = 0; k < in_memory.size(); ++k)
+      test::require(std::bit_cast<std::uint64_t>(values.at(k)) == std::bit_cast<std::uint64_t>(in_memory[k]));
   });
   return 0;
 }
