@@ -38,6 +38,12 @@ PixelRect scaled(const PixelRect& r, double resolution, scene::ImageSize map, sc
           edge(r.y1, image.height, map.height)};
 }
 
+/// Of the cost map. One ray a packet is as good as more where pilot rays say what it costs.
+double resolution_of(const SortFirstSettings& settings) {
+  return settings.balance == Balance::learned ? std::min(settings.resolution, 1.0 / volume::region_grain)
+                                              : settings.resolution;
+}
+
 /// Tells this process from others on any machine.
 std::uint64_t process_token() {
   static const std::uint64_t token = [] {
@@ -204,33 +210,35 @@ class SortFirst::State {
   ImageSplit split_of(const volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job) {
     const int processes = transport_.size();
     const Balance balance = settings_.balance;
-    const auto cost_of = [&](std::optional<PixelRect> part) {
-      return renderer.cost_map(job.camera, job.size, function, method_of(balance), settings_.resolution, part,
+    const auto cost_of = [&](double resolution, std::optional<PixelRect> part) {
+      return renderer.cost_map(job.camera, job.size, function, method_of(balance), resolution, part,
                                rates_ ? &*rates_ : nullptr);
     };
     const bool by_times = balance == Balance::previous && !times_.empty();
-    if (settings_.keep_cost && transport_.rank() == 0) cost_ = by_times ? map_of_times(job.size) : cost_of({});
+    if (settings_.keep_cost && transport_.rank() == 0)
+      cost_ = by_times ? map_of_times(job.size) : cost_of(settings_.resolution, {});
     if (processes == 1) return {{0, job.size.height}, {{0, job.size.width}}};
     const PixelRect area = volume::footprint(job.camera, job.size, renderer.geometry());
     if (by_times) return volume::split(map_of_times(job.size), job.size, weights_, volume::region_grain);
     if (balance == Balance::even || balance == Balance::previous) return volume::even_split(processes, job.size, area);
 
-    const scene::ImageSize map = volume::map_size(job.size, settings_.resolution);
-    const PixelRect map_area = scaled(area, settings_.resolution, map, job.size);
+    const double resolution = resolution_of(settings_);
+    const scene::ImageSize map = volume::map_size(job.size, resolution);
+    const PixelRect map_area = scaled(area, resolution, map, job.size);
     const bool has_last = last_split_.has_value() && last_size_ == job.size;
-    const PixelRect part = has_last
-                               ? scaled(last_split_->region(transport_.rank()), settings_.resolution, map, job.size)
-                               : volume::even_split(processes, map, map_area).region(transport_.rank());
-    const CostMap costs = cost_of(part);
+    const PixelRect part = has_last ? scaled(last_split_->region(transport_.rank()), resolution, map, job.size)
+                                    : volume::even_split(processes, map, map_area).region(transport_.rank());
+    const CostMap costs = cost_of(resolution, part);
     const volume::SummedArea table(costs);
-    volume::SplitSearch search(job.size, settings_.resolution, map, weights_, volume::region_grain);
+    volume::SplitSearch search(job.size, resolution, map, weights_, volume::region_grain);
     search.find_rows(gather_rows(volume::SplitSearch::row_sums(costs, table)));
     return search.find_columns(gather_columns(volume::SplitSearch::column_sums(costs, table, search.map_rows())));
   }
 
-  /// What a pilot pass of every 32nd ray teaches of the work in the volume's cells: each rank casts those of the
-  /// rectangle it had in the frame before, whose bricks it holds. A cell's work changes little from view to view, so
-  /// that frames whose view is near that before cast a quarter of these rays, and learn from both. Collective.
+  /// What a pilot pass teaches of the work in the volume's cells: each rank casts every 128th ray of the rectangle it
+  /// had in the frame before, whose bricks it holds. Four times as many cost more than they gain. A cell's work
+  /// changes little from view to view: a frame whose view is near that before casts others, and learns from both.
+  /// Collective.
   void sample_work(volume::Renderer& renderer, const scene::TransferFunction& function, const VolumeJob& job,
                    scene::FrameWatch& watch) {
     if ((transport_.size() == 1 && !settings_.keep_cost) || settings_.balance != Balance::learned) return;
@@ -248,8 +256,7 @@ class SortFirst::State {
     learned_view_ = job.camera;
     constexpr std::size_t turns = 4;
     try {
-      renderer.sample_work(job.camera, job.size, function, *tally_, part, &watch,
-                           pilots_ == 0 ? volume::PilotTurns{} : volume::PilotTurns{pilots_, turns});
+      renderer.sample_work(job.camera, job.size, function, *tally_, part, &watch, {pilots_, turns});
     } catch (const scene::FrameStopped&) {
       // The others wait for what this rank has learnt; the picture is dropped all the same.
     }
@@ -332,7 +339,7 @@ class SortFirst::State {
   const SortFirstSettings settings_;
   std::vector<double> weights_, times_;
   std::optional<volume::WorkTally> tally_;
-  std::vector<std::uint64_t> learned_;         ///< tallies of all ranks, since the last full pilot pass
+  std::vector<std::uint64_t> learned_;         ///< tallies of all ranks, since the view last changed much
   std::size_t pilots_ = 0;                     ///< passes since then
   std::vector<tessera::Knot> learned_knots_;   ///< of the frame before
   std::optional<scene::Camera> learned_view_;  ///< the same
