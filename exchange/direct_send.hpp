@@ -15,7 +15,7 @@
 namespace tessera::exchange {
 
 /// Rows of a packet: enough for packed_pixels.hpp to foretell most of them, few enough for several a rank.
-inline constexpr int packet_rows = 16;
+inline constexpr int packet_rows = 64;
 
 /// The band of `area` that a rank composites: the same number of rows for each, so far as that goes.
 PixelRect band_of(const PixelRect& area, int rank, int ranks);

@@ -16,7 +16,7 @@
 namespace tessera::exchange {
 namespace {
 
-constexpr scene::ImageSize size{70, 61};
+constexpr scene::ImageSize size{70, 301};  ///< bands of up to four ranks have several packets
 
 TEST(DirectSend, OrdersAreThoseOfAlgorithm1Corrected) {
   const std::vector<int> order{4, 2, 0, 5, 1, 3};
@@ -95,7 +95,7 @@ TEST(DirectSend, BandsAreTheDepthOrdersComposite) {
   std::mt19937 random(7);
   for (int trial = 0; trial < 24; ++trial) {
     const int ranks = 1 + trial % 12;
-    const PixelRect area = trial % 5 == 4 ? PixelRect{3, 2, 50, 6} : PixelRect{2, 1, 69, 60};
+    const PixelRect area = trial % 5 == 4 ? PixelRect{3, 2, 50, 6} : PixelRect{2, 1, 69, 300};
     std::vector<int> order(static_cast<std::size_t>(ranks));
     std::iota(order.begin(), order.end(), 0);
     std::shuffle(order.begin(), order.end(), random);
@@ -161,12 +161,12 @@ TEST(DirectSend, MessagesOfAnotherPictureEndTheRun) {
     PixelRect rows, rect;
     std::uint64_t stopped;
   };
-  const PixelRect rows{0, 0, size.width, 16};
+  const PixelRect rows{0, 0, size.width, packet_rows};
   const Header wrong[] = {{6, rows, rows, 0},
-                          {7, {0, 1, size.width, 16}, rows, 0},
-                          {7, rows, {0, 0, size.width + 1, 16}, 0},
-                          {7, rows, {0, -1, size.width, 16}, 0},
-                          {7, rows, {9, 0, 3, 16}, 0},
+                          {7, {0, 1, size.width, packet_rows}, rows, 0},
+                          {7, rows, {0, 0, size.width + 1, packet_rows}, 0},
+                          {7, rows, {0, -1, size.width, packet_rows}, 0},
+                          {7, rows, {9, 0, 3, packet_rows}, 0},
                           {7, rows, rows, 0},           // pixels are missing
                           {7, rows, {0, 0, 0, 0}, 1}};  // stopped; with a byte too many
   for (const Header& header : wrong) {
