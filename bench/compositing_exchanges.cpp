@@ -23,7 +23,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <glm/glm.hpp>
 #include <limits>
 #include <map>
@@ -37,6 +36,7 @@
 #include <utility>
 #include <vector>
 
+#include "cpu_time.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/volumes.hpp"
 #include "exchange/direct_send.hpp"
@@ -49,6 +49,7 @@
 #include "projection/partition.hpp"
 #include "scene/error.hpp"
 #include "scene/mesh_facts.hpp"
+#include "scene/pixel_rect.hpp"
 #include "volume/cell_ranges.hpp"
 #include "volume/cost_map.hpp"
 #include "volume/object_split.hpp"
@@ -81,17 +82,6 @@ struct Run {
     return all;
   }
 };
-
-double thread_seconds() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-PixelRect common(const PixelRect& a, const PixelRect& b) {
-  const PixelRect both{std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
-  return both.empty() ? PixelRect{a.x0, a.y0, a.x0, a.y0} : both;
-}
 
 PixelRect hull(const PixelRect& a, const PixelRect& b) {
   if (a.empty()) return b;
@@ -159,7 +149,8 @@ class Swap {
       for (int j = 1; j < k; ++j) {
         const int member = (digit + j) % k;
         const int to = first + member * stride;
-        send(parts_.order[static_cast<std::size_t>(to)], common(exchange::band_of(region, member, k), shows), image);
+        send(parts_.order[static_cast<std::size_t>(to)], scene::common(exchange::band_of(region, member, k), shows),
+             image);
       }
       region = exchange::band_of(region, digit, k);
       for (int j = digit - 1; j >= 0; --j) composite(first + j * stride, stride, region, image, true);
@@ -195,7 +186,7 @@ class Swap {
     }
     exchange::MessageReader reader(*message, exchange::MessageKind::packet);
     const auto r = reader.take<PixelRect>();
-    if (const PixelRect expected = common(region, block(place / stride, stride));
+    if (const PixelRect expected = scene::common(region, block(place / stride, stride));
         !expected.empty() && (r.x0 != expected.x0 || r.y0 != expected.y0 || r.x1 != expected.x1 || r.y1 != expected.y1))
       throw scene::Error(scene::ErrorCode::system_failure, "compositing_exchanges: a message is of other pixels");
     if (r.empty()) return;
@@ -239,9 +230,9 @@ Cost measured(const Parts& parts, const Composite& composite) {
     exchange::run_ranks(static_cast<int>(ranks), [&](Transport& transport) {
       const auto rank = static_cast<std::size_t>(transport.rank());
       scene::Image image = parts.images[rank];
-      const double begin = thread_seconds();
+      const double begin = bench::thread_seconds();
       const PixelRect region = composite(transport, image, each[rank]);
-      each[rank].cpu_seconds = thread_seconds() - begin;
+      each[rank].cpu_seconds = bench::thread_seconds() - begin;
       each[rank].error = difference(image, parts.whole, region);
     });
     Cost cost;
@@ -255,13 +246,14 @@ Cost measured(const Parts& parts, const Composite& composite) {
 }
 
 Cost direct_send(const Parts& parts) {
+  const std::vector<int> bands = exchange::band_numbers(parts.own);
   return measured(parts, [&](Transport& transport, scene::Image& image, Cost& cost) {
+    const auto rank = static_cast<std::size_t>(transport.rank());
     exchange::DirectSender sender(transport);
-    const exchange::DirectSendTask task{parts.order, parts.area, parts.own[static_cast<std::size_t>(transport.rank())],
-                                        0,           false,      nullptr};
+    const exchange::DirectSendTask task{parts.order, bands, parts.area, parts.own[rank], 0, false, nullptr};
     const exchange::DirectSendResult sent = sender.run(DirectSend::asynchronous, task, image, {});
     cost.bytes = sent.bytes, cost.messages = sent.messages;
-    return exchange::band_of(parts.area, transport.rank(), transport.size());
+    return exchange::band_of(parts.area, bands[rank], transport.size());
   });
 }
 
@@ -336,7 +328,7 @@ void of_volume(const Run& run) {
       parts.area = volume::footprint(camera, size, renderer.geometry());
       parts.order = split.front_to_back(renderer.geometry(), camera);
       for (const volume::VoxelBox& box : split.boxes()) {
-        parts.own.push_back(common(parts.area, volume::footprint(camera, size, renderer.geometry(), box)));
+        parts.own.push_back(scene::common(parts.area, volume::footprint(camera, size, renderer.geometry(), box)));
         parts.images.push_back(
             renderer.render_part(box, camera, size, function, nullptr, parts.own.back(), nullptr, nullptr));
       }

@@ -103,6 +103,9 @@ TEST(DirectSend, BandsAreTheDepthOrdersComposite) {
     seen.reserve(static_cast<std::size_t>(ranks));
     for (int rank = 0; rank < ranks; ++rank) seen.push_back(random_picture(area, random, trial % 3 == 0));
     const bool with_bounds = trial % 2 == 0;
+    std::vector<PixelRect> own;
+    for (const Seen& of : seen) own.push_back(of.rect);
+    const std::vector<int> bands = band_numbers(own);
 
     std::vector<scene::Image> by_way[2];
     for (const tessera::DirectSend how : {tessera::DirectSend::asynchronous, tessera::DirectSend::synchronous}) {
@@ -111,7 +114,7 @@ TEST(DirectSend, BandsAreTheDepthOrdersComposite) {
       std::vector<std::vector<float>> bounds(static_cast<std::size_t>(ranks));
       run_ranks(ranks, [&](Transport& transport) {
         const auto rank = static_cast<std::size_t>(transport.rank());
-        DirectSendTask task{order, area, seen[rank].rect, 5};
+        DirectSendTask task{order, bands, area, seen[rank].rect, 5};
         images[rank] = seen[rank].image;
         if (with_bounds) bounds[rank] = seen[rank].bounds;
         const DirectSendResult result = DirectSender(transport).run(how, task, images[rank], bounds[rank]);
@@ -119,7 +122,7 @@ TEST(DirectSend, BandsAreTheDepthOrdersComposite) {
         EXPECT_EQ(result.messages > 0, ranks > 1);
       });
       for (int rank = 0; rank < ranks; ++rank) {
-        const PixelRect band = band_of(area, rank, ranks);
+        const PixelRect band = band_of(area, bands[static_cast<std::size_t>(rank)], ranks);
         const scene::Image& image = images[static_cast<std::size_t>(rank)];
         for (int y = band.y0; y < band.y1; ++y)
           for (int x = band.x0; x < band.x1; ++x) {
@@ -141,12 +144,18 @@ TEST(DirectSend, BandsAreTheDepthOrdersComposite) {
   }
 }
 
+TEST(DirectSend, BandsAreNearWhereRanksHavePixels) {
+  EXPECT_EQ(band_numbers({}), std::vector<int>());
+  const std::vector<PixelRect> own{{0, 200, 9, 300}, {0, 0, 9, 100}, {0, 0, 9, 290}, {0, 0, 9, 100}};
+  EXPECT_EQ(band_numbers(own), (std::vector<int>{3, 0, 2, 1}));
+}
+
 TEST(DirectSend, ARankThatWasStoppedIsMissedByAllBands) {
   for (const tessera::DirectSend how : {tessera::DirectSend::asynchronous, tessera::DirectSend::synchronous})
     run_ranks(3, [&](Transport& transport) {
-      const std::vector<int> order{2, 0, 1};
+      const std::vector<int> order{2, 0, 1}, bands{0, 1, 2};
       const PixelRect area{0, 0, size.width, size.height};
-      DirectSendTask task{order, area, area, 0};
+      DirectSendTask task{order, bands, area, area, 0};
       task.stopped = transport.rank() == 1;
       scene::Image image(size);
       EXPECT_TRUE(DirectSender(transport).run(how, task, image, {}).stopped);
@@ -179,7 +188,7 @@ TEST(DirectSend, MessagesOfAnotherPictureEndTheRun) {
                                return;
                              }
                              scene::Image image(size);
-                             const DirectSendTask task{order, area, area, 7};
+                             const DirectSendTask task{order, order, area, area, 7};
                              DirectSender(transport).run(tessera::DirectSend::asynchronous, task, image, {});
                            }),
                  scene::Error);
