@@ -39,7 +39,7 @@ inline std::vector<float> floats_of(const scene::SampleSource& source) {
 class StreamedVolumes : public ::testing::Test {
  protected:
   [[nodiscard]] std::filesystem::path zipped(const std::string& name, const std::string& content) const {
-    const std::filesystem::path file = folder / name;
+    std::filesystem::path file = folder / name;
     gzFile out = gzopen(file.c_str(), "wb");
     EXPECT_EQ(gzwrite(out, content.data(), static_cast<unsigned>(content.size())), static_cast<int>(content.size()));
     gzclose(out);
