@@ -47,12 +47,17 @@ struct GridElements {
   Attributes file, grid, piece;
   ElementFound samples, appended;
   std::vector<ElementFound> axes;
-  int pieces = 0, arrays = 0;
+  int pieces = 0, arrays = 0, coordinates = 0;
   bool of_cells = false, active = false;
   bool whole = false;  ///< nothing follows but appended arrays
 };
 
 struct WordsEnd {};
+
+std::string word(const Attributes& attributes, const std::string& name, const std::string& otherwise = "") {
+  const auto found = attributes.find(name);
+  return found == attributes.end() ? otherwise : found->second;
+}
 
 /// Elements up to where appended arrays come, or the words end.
 GridElements elements_of(std::string_view words, const std::string& source) {
@@ -63,7 +68,7 @@ GridElements elements_of(std::string_view words, const std::string& source) {
       const std::string parent = element.parents.empty() ? "" : element.parents.back();
       const bool fields = element.name == "PointData" || element.name == "CellData";
       if (element.name == "VTKFile") found.file = element.attributes;
-      if (element.name == "ImageData" || element.name == "RectilinearGrid") found.grid = element.attributes;
+      if (element.name == word(found.file, "type")) found.grid = element.attributes;
       if (element.name == "Piece") found.piece = element.attributes, ++found.pieces;
       if (fields) scalars = element.find("Scalars") != nullptr ? *element.find("Scalars") : "";
       if (element.name == "DataArray" && (parent == "PointData" || parent == "CellData")) {
@@ -71,7 +76,8 @@ GridElements elements_of(std::string_view words, const std::string& source) {
         found.of_cells = parent == "CellData", ++found.arrays;
         found.active = element.find("Name") != nullptr && *element.find("Name") == scalars;
       }
-      if (parent == "Coordinates") found.axes.push_back({element.attributes, element.text_at});
+      if (element.name == "Coordinates") ++found.coordinates;
+      if (parent == "Coordinates" && found.axes.size() < 4) found.axes.push_back({element.attributes, element.text_at});
       if (element.name == "AppendedData") {
         found.appended = {element.attributes, element.text_at};
         throw WordsEnd();
@@ -83,11 +89,6 @@ GridElements elements_of(std::string_view words, const std::string& source) {
   } catch (const scene::Error&) {  // it goes on behind these words; what was found has to be all that is needed
   }
   return found;
-}
-
-std::string word(const Attributes& attributes, const std::string& name, const std::string& otherwise = "") {
-  const auto found = attributes.find(name);
-  return found == attributes.end() ? otherwise : found->second;
 }
 
 template <class T, std::size_t n>
@@ -214,7 +215,7 @@ std::optional<AxisCoordinates> axis_of(const PositionalFile& file, const Element
 bool set_axes_of(const PositionalFile& file, const GridElements& found, const GridWords& words,
                  scene::GridGeometry& g) {
   std::array<AxisCoordinates, 3> axes;
-  if (found.axes.size() != axes.size()) return false;
+  if (found.coordinates != 1 || found.axes.size() != axes.size()) return false;
   for (std::size_t a = 0; a < axes.size(); ++a) {
     auto axis = axis_of(file, found.axes[a], found, words, g.points[a]);
     if (!axis) return false;

@@ -130,6 +130,7 @@ TEST_F(StreamedVtk, WithOddCoordinatesAreLeftToIt) {
   EXPECT_TRUE(is_plain(vtk_file(c, bytes)));
   EXPECT_FALSE(is_plain(with("<DataArray", "<Array><DataArray/></Array><DataArray")));  // four
   EXPECT_FALSE(is_plain(with("<Coordinates>", "<Axes>")));
+  EXPECT_FALSE(is_plain(with("<Coordinates>", "<Coordinates/><Coordinates>")));
   EXPECT_FALSE(is_plain(with("Float64", "Float32")));
   EXPECT_FALSE(is_plain(with("Float64", "String")));
   EXPECT_FALSE(is_plain(with("<DataArray", "<DataArray NumberOfComponents=\"3\"")));
