@@ -104,6 +104,7 @@ TEST(DirectSend, BandsAreTheDepthOrdersComposite) {
     for (int rank = 0; rank < ranks; ++rank) seen.push_back(random_picture(area, random, trial % 3 == 0));
     const bool with_bounds = trial % 2 == 0;
     std::vector<PixelRect> own;
+    own.reserve(seen.size());
     for (const Seen& of : seen) own.push_back(of.rect);
     const std::vector<int> bands = band_numbers(own);
 
