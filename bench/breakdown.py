@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Moloney, Ray Coherence in Parallel Volume Rendering (2008), Figure 6.24: what a frame's time goes to, stage by stage.
 
-    bench/breakdown.py --tessera PROGRAM [--document docs/EXPERIMENTS.md] [--processes 6] [--samples 128] [--frames 6]
+    bench/breakdown.py --tessera PROGRAM [--document docs/EXPERIMENTS.md] [--processes 6] [--samples 400] [--frames 13] [--zoom 8]
 
 Three volumes of `tessera generate` in place of the thesis's, two transfer functions that hide the same bricks, of which one is opaque, and pictures of
-1 and 2 megapixels (1024x1024 and 1792x1170): four rotations, about three axes and the diagonal, of seven degrees a frame. Figures are CPU milliseconds a
-frame and process (of `render --timing`), as two cores cannot show what six have; *gather* is process 0's, waiting left out.
+1 and 2 megapixels (1024x1024 and 1792x1170): four rotations, about three axes and the diagonal, of seven degrees a frame, and seven zooms, along three
+axes and four diagonals, from three radii of the volume to eight tenths of one; up to 7.5 MB of bricks of 32^3 loaded ahead a frame. Figures are CPU
+milliseconds a frame and process (of `render --timing`), as two cores cannot show what six have; *gather* is process 0's, waiting left out.
 
 Needs mpirun and Python's standard library.
 """
@@ -24,6 +25,9 @@ VOLUMES = ("head", "radial", "turbulence")
 FUNCTIONS = {"high opacity": 60, "low opacity": 1.5}  # extinction of the highest value, a world unit
 SIZES = {"1": "1024x1024", "2": "1792x1170"}
 AXES = ((1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1))
+ZOOMS = ((1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1))
+BRICK = 32
+AHEAD = int(7.5e6 / (BRICK + 1) ** 3)  # bricks of bytes, with the samples that they share
 STAGES = {"load balancing": ("partition",), "loading": ("read",), "culling": ("cull",), "rendering": ("project",), "gather": ("pack", "assemble")}
 
 
@@ -36,18 +40,24 @@ def turned(v, axis, angle):
     return [a * math.cos(angle) + b * math.sin(angle) + c * along for a, b, c in zip(v, cross, k)]
 
 
-def path(centre, radius, frames):
+def path(centre, radius, frames, zoom):
     for axis in AXES:
         for n in range(frames):
             away = turned([0.4, 0.5, 0.77], axis, math.radians(7 * n))
             yield {"position": [c + 3 * radius * a for c, a in zip(centre, away)], "focal_point": centre,
                    "view_up": turned([0.1, 0.8, -0.6], axis, math.radians(7 * n)), "view_angle": 40}
+    for axis in ZOOMS:
+        for n in range(zoom):
+            distance = 3 * radius * (0.8 / 3) ** (n / max(1, zoom - 1)) / math.sqrt(sum(a * a for a in axis))
+            yield {"position": [c + distance * a for c, a in zip(centre, axis)], "focal_point": centre, "view_up": [0.3, 0.8, -0.5],
+                   "view_angle": 40}
 
 
 def breakdown(args, folder, volume, function, size):
     trace, table, report = folder / "trace.json", folder / "trace.csv", folder / "report.json"
     run(["mpirun", "--oversubscribe", "-n", args.processes, args.tessera, "render", volume, "-o", folder / "f%d.pfm", "--camera", folder / "path.json",
-         "--size", size, "--threads", "1", "--transfer-function", function, "--brick-size", "16", "--quiet", "--report", report, "--timing", trace])
+         "--size", size, "--threads", "1", "--transfer-function", function, "--brick-size", BRICK, "--cache", "proximity", "--preload", AHEAD,
+         "--quiet", "--report", report, "--timing", trace])
     run([args.tessera, "timing", trace, "--csv", table])
     with open(table) as file:
         rows = {row["stage"]: row for row in csv.DictReader(file) if row["part"] == "frame"}
@@ -63,7 +73,7 @@ def table(args, folder):
         volume = folder / f"{name}.nrrd"
         run([args.tessera, "generate", name, volume, f"n={args.samples}", "bits=8", "--quiet"])
         low, high = bounds_of(args.tessera, volume)
-        (folder / "path.json").write_text(json.dumps(list(path([(a + b) / 2 for a, b in zip(low, high)], math.dist(low, high) / 2, args.frames))))
+        (folder / "path.json").write_text(json.dumps(list(path([(a + b) / 2 for a, b in zip(low, high)], math.dist(low, high) / 2, args.frames, args.zoom))))
         for words, extinction in FUNCTIONS.items():
             function = folder / "function.txt"
             function.write_text(f"64 0.8 0.5 0.4 0\n255 1 1 0.9 {extinction / math.dist(low, high) * 3.4}\n")
@@ -82,8 +92,9 @@ def main():
     parser.add_argument("--tessera", type=pathlib.Path, required=True)
     parser.add_argument("--document", type=pathlib.Path)
     parser.add_argument("--processes", type=int, default=6)
-    parser.add_argument("--samples", type=int, default=128)
-    parser.add_argument("--frames", type=int, default=6, help="of each rotation")
+    parser.add_argument("--samples", type=int, default=400)
+    parser.add_argument("--frames", type=int, default=13, help="of each rotation")
+    parser.add_argument("--zoom", type=int, default=8, help="frames of each zoom")
     args = parser.parse_args()
     load = os.getloadavg()[0]
     with tempfile.TemporaryDirectory() as folder:

@@ -9,23 +9,17 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
-#include <ctime>
 #include <map>
 #include <memory>
 #include <vector>
 
+#include "cpu_time.hpp"
 #include "datasets/volumes.hpp"
 #include "volume/render.hpp"
 
 namespace {
 
 using namespace tessera;
-
-double cpu_seconds() {
-  timespec now;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 int number(const char* name, int otherwise) {
   const char* const text = std::getenv(name);
@@ -68,9 +62,9 @@ void cast(benchmark::State& state, volume::RenderSettings settings, int bits, co
   const scene::TransferFunction f = function(kind, bits == 8 ? 255 : 1);
   volume::RenderStatistics statistics;
   renderer.render(camera, {1024, 1024}, f);
-  const double before = cpu_seconds();
+  const double before = bench::process_seconds();
   for (auto _ : state) benchmark::DoNotOptimize(renderer.render(camera, {1024, 1024}, f, &statistics));
-  const double each = (cpu_seconds() - before) / static_cast<double>(state.iterations());
+  const double each = (bench::process_seconds() - before) / static_cast<double>(state.iterations());
   state.counters["cpu_ms"] = 1e3 * each;
   state.counters["ns_voxel"] = 1e9 * each / static_cast<double>(statistics.voxels_visited);
   state.counters["pieces_voxel"] =

@@ -121,7 +121,7 @@ def of_processes(bench):
                ("the same, `.vti`, raw", bench.converted(head, f"raw_{n}.vti"), SMALL_BUDGET, turn),
                ("the same, `.vti`, zlib and base64", bench.packed_vti(head, n), SMALL_BUDGET, turn),
                ("the same, `.nii.gz`", bench.nifti(head, n), SMALL_BUDGET, turn),
-               ("the same, `.vtr`, by VTK in a helper", bench.converted(head, f"raw_{n}.vtr"), SMALL_BUDGET, turn),
+               ("the same, `.vtr`, raw", bench.converted(head, f"raw_{n}.vtr"), SMALL_BUDGET, turn),
                ("`head` of 400^3, raw, 70 x 50 pixels", few, SMALL_BUDGET, ["--size", "70x50", "--orbit", "12"])]
     lines = ["| volume | file, MiB | `--memory` | " + " | ".join(WAYS) + " |", "|---|---:|---|" + "---|" * len(WAYS)]
     for name, volume, memory, words in volumes:

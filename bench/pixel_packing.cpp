@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <filesystem>
 #include <limits>
 #include <numeric>
@@ -16,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "cpu_time.hpp"
 #include "exchange/packed_pixels.hpp"
 #include "projection/tile_lists.hpp"
 #include "tessera/image_file.hpp"
@@ -23,12 +23,6 @@
 using namespace tessera;
 
 namespace {
-
-double cpu_seconds() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 bool is_empty(const Image& image, const PixelRect& rect) {
   for (int y = rect.y0; y < rect.y1; ++y)
@@ -73,19 +67,19 @@ Cost cost_of(const Tiles& tiles, bool pack, Image& into) {
   Cost cost;
   std::vector<exchange::Bytes> messages(tiles.images.size());
   for (int repetition = 0; repetition < 9; ++repetition) {
-    double begin = cpu_seconds();
+    double begin = bench::thread_seconds();
     for (std::size_t t = 0; t < messages.size(); ++t) {
       messages[t].clear();
       const ImageSize size = tiles.images[t].size;
       exchange::append_pixels(messages[t], tiles.images[t], {0, 0, size.width, size.height}, pack);
     }
-    cost.append = std::min(cost.append, cpu_seconds() - begin);
-    begin = cpu_seconds();
+    cost.append = std::min(cost.append, bench::thread_seconds() - begin);
+    begin = bench::thread_seconds();
     for (std::size_t t = 0; t < messages.size(); ++t) {
       exchange::RecordReader reader(messages[t]);
       exchange::take_pixels(reader, into, tiles.rects[t]);
     }
-    cost.take = std::min(cost.take, cpu_seconds() - begin);
+    cost.take = std::min(cost.take, bench::thread_seconds() - begin);
   }
   for (const exchange::Bytes& message : messages) cost.bytes += message.size();
   return cost;

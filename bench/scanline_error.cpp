@@ -11,12 +11,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "compositor/picture_sink.hpp"
+#include "cpu_time.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/modify.hpp"
 #include "datasets/transfer_functions.hpp"
@@ -28,13 +28,6 @@
 using namespace tessera;
 
 namespace {
-
-/// Seconds of processor time of this thread: other work on the machine counts less than in wall time.
-double cpu_seconds() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 struct Picture {
   scene::Image image;
@@ -102,7 +95,7 @@ void measure(const std::string& name, const scene::TetMesh& mesh, const scene::C
   Cells cells;
   cells.wrong.assign(planes.image.depth.size(), 0);
   const auto rasterize = [&](std::size_t tile, bool paper, Picture& picture) {
-    const double start = cpu_seconds();
+    const double start = bench::thread_seconds();
     segments.size = 0;
     const scene::PixelRect rect = grid.rect(tile);
     const auto entries = lists.tile(tile);
@@ -111,7 +104,7 @@ void measure(const std::string& name, const scene::TetMesh& mesh, const scene::C
                     : rasterize_planes(projected, entries.subspan(next), rect, segments, counts);
       if (next < entries.size()) segments.reserve(2 * segments.capacity() + 8192);
     }
-    picture.seconds += cpu_seconds() - start;
+    picture.seconds += bench::thread_seconds() - start;
     picture.segments += segments.size;
   };
   const auto composite = [&](std::size_t tile, bool paper, Picture& picture) {

@@ -17,7 +17,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <ctime>
 #include <functional>
 #include <memory>
 #include <numeric>
@@ -25,6 +24,7 @@
 #include <random>
 #include <vector>
 
+#include "cpu_time.hpp"
 #include "datasets/boxes.hpp"
 #include "datasets/transfer_functions.hpp"
 #include "io/mesh_reader.hpp"
@@ -34,12 +34,6 @@
 namespace {
 
 using namespace tessera;
-
-double cpu_seconds() {
-  timespec now;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 /// The same mesh with nothing near its neighbours in memory.
 scene::TetMesh shuffled(const scene::TetMesh& mesh) {
@@ -102,9 +96,9 @@ void measure(benchmark::State& state, const char* each, Work work) {
   tbb::task_arena arena(static_cast<int>(state.range(0)));
   double cpu = 0, count = 0;
   for (auto _ : state) {
-    const double start = cpu_seconds();
+    const double start = bench::process_seconds();
     count += static_cast<double>(arena.execute(work));
-    cpu += cpu_seconds() - start;
+    cpu += bench::process_seconds() - start;
   }
   state.counters[each] = 1e9 * cpu / count;
 }
@@ -171,14 +165,14 @@ void order(benchmark::State& state, Stage& s) {
   double cpu = 0, count = 0;
   for (auto _ : state) {
     std::copy(entries.begin(), entries.end(), ordered.begin());
-    const double start = cpu_seconds();
+    const double start = bench::process_seconds();
     arena.execute([&] {
       tbb::parallel_for(std::size_t{0}, s.grid.count(), [&](std::size_t tile) {
         projection::order_by_depth(std::span(ordered).subspan(starts[tile], starts[tile + 1] - starts[tile]),
                                    scratch.local());
       });
     });
-    cpu += cpu_seconds() - start;
+    cpu += bench::process_seconds() - start;
     count += static_cast<double>(entries.size());
   }
   state.counters["cpu_ns_an_entry"] = 1e9 * cpu / count;

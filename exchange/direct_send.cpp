@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
-#include <optional>
+#include <numeric>
 #include <utility>
 
 #include "exchange/message.hpp"
@@ -12,11 +11,22 @@
 
 namespace tessera::exchange {
 
-PixelRect band_of(const PixelRect& area, int rank, int ranks) {
-  const auto row = [&](int r) {
-    return area.y0 + static_cast<int>(static_cast<std::int64_t>(std::max(0, area.height())) * r / ranks);
+PixelRect band_of(const PixelRect& area, int number, int ranks) {
+  const auto row = [&](int n) {
+    return area.y0 + static_cast<int>(static_cast<std::int64_t>(std::max(0, area.height())) * n / ranks);
   };
-  return {area.x0, row(rank), area.x1, row(rank + 1)};
+  return {area.x0, row(number), area.x1, row(number + 1)};
+}
+
+std::vector<int> band_numbers(std::span<const PixelRect> own) {
+  std::vector<int> ranks(own.size()), numbers(own.size());
+  std::iota(ranks.begin(), ranks.end(), 0);
+  std::ranges::stable_sort(ranks, {}, [&](int rank) {
+    const PixelRect& r = own[static_cast<std::size_t>(rank)];
+    return std::int64_t{r.y0} + r.y1;
+  });
+  for (std::size_t n = 0; n < ranks.size(); ++n) numbers[static_cast<std::size_t>(ranks[n])] = static_cast<int>(n);
+  return numbers;
 }
 
 std::vector<int> send_order(std::span<const int> order, std::size_t place) {
@@ -42,12 +52,6 @@ struct PacketHeader {
   std::uint64_t stopped;  ///< 1: no pixels follow
 };
 static_assert(sizeof(PacketHeader) == 8 + 2 * 16 + 8);
-
-PixelRect common(const PixelRect& a, const PixelRect& b) {
-  PixelRect both{std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
-  if (both.empty()) both = {a.x0, a.y0, a.x0, a.y0};
-  return both;
-}
 
 bool same(const PixelRect& a, const PixelRect& b) {
   return a.x0 == b.x0 && a.y0 == b.y0 && a.x1 == b.x1 && a.y1 == b.y1;
@@ -87,7 +91,7 @@ class Exchange {
         place_(static_cast<std::size_t>(std::find(task.order.begin(), task.order.end(), transport.rank()) -
                                         task.order.begin())),
         layers_(receive_order(task.order, place_)),
-        packets_(packets_of(band_of(task.area, transport.rank(), transport.size()))) {
+        packets_(packets_of(band(transport.rank()))) {
     result_.stopped = task.stopped;
     came_.resize(static_cast<std::size_t>(transport.size()));
     for (Message& message : std::exchange(early_, {})) take(std::move(message));
@@ -95,7 +99,7 @@ class Exchange {
 
   DirectSendResult asynchronous() {
     for (const int to : send_order(task_.order, place_))
-      for (const PixelRect& rows : packets_of(band_of(task_.area, to, transport_.size()))) {
+      for (const PixelRect& rows : packets_of(band(to))) {
         send(to, rows);
         while (auto message = transport_.receive(Channel::fragments, std::chrono::milliseconds(0)))
           take(std::move(*message));
@@ -112,7 +116,7 @@ class Exchange {
     const int ranks = transport_.size(), rank = transport_.rank();
     for (int step = 1; step < ranks; ++step) {
       const int to = (rank + step) % ranks, from = (rank + ranks - step) % ranks;
-      for (const PixelRect& rows : packets_of(band_of(task_.area, to, ranks))) send(to, rows);
+      for (const PixelRect& rows : packets_of(band(to))) send(to, rows);
       // Of this one alone: who is ahead waits.
       while (came_[static_cast<std::size_t>(from)].size() < packets_.size()) await();
     }
@@ -121,9 +125,13 @@ class Exchange {
   }
 
  private:
+  [[nodiscard]] PixelRect band(int rank) const {
+    return band_of(task_.area, task_.bands[static_cast<std::size_t>(rank)], transport_.size());
+  }
+
   void send(int to, const PixelRect& rows) {
     const scene::TraceScope timing(task_.trace, "pack", static_cast<std::int32_t>(task_.frame));
-    const PacketHeader header{task_.frame, rows, common(rows, task_.own), task_.stopped ? 1u : 0u};
+    const PacketHeader header{task_.frame, rows, scene::common(rows, task_.own), task_.stopped ? 1u : 0u};
     Bytes bytes = message_of(MessageKind::packet, header);
     if (!task_.stopped && !header.rect.empty()) {
       append_pixels(bytes, image_, header.rect, true);

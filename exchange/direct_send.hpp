@@ -15,10 +15,15 @@
 namespace tessera::exchange {
 
 /// Rows of a packet: enough for packed_pixels.hpp to foretell most of them, few enough for several a rank.
-inline constexpr int packet_rows = 16;
+inline constexpr int packet_rows = 64;
 
-/// The band of `area` that a rank composites: the same number of rows for each, so far as that goes.
-PixelRect band_of(const PixelRect& area, int rank, int ranks);
+/// The bands of `area` that ranks composite, one each, counted from the top: the same number of rows, so far as that
+/// goes.
+PixelRect band_of(const PixelRect& area, int number, int ranks);
+
+/// The number of each rank's band, by where ranks may have pixels: higher up for who has them higher up, so that much
+/// of what a rank has stays with it (up to a fifth of all bytes; docs/EXPERIMENTS.md, Exchanges).
+std::vector<int> band_numbers(std::span<const PixelRect> own);
 
 /// Whom the rank at `place` of a depth order (ranks, front to back) sends to, in this order: those behind it from the
 /// nearest on, then those in front from the nearest on.
@@ -36,6 +41,7 @@ std::vector<Layer> receive_order(std::span<const int> order, std::size_t place);
 
 struct DirectSendTask {
   std::span<const int> order;  ///< all ranks, front to back
+  std::span<const int> bands;  ///< of each rank, its band's number; the same on all
   PixelRect area{};            ///< pixels that any of them may have; the same on all
   PixelRect own{};             ///< pixels that this one may have, within `area`; the others are empty
   std::uint64_t frame = 0;

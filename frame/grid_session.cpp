@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <optional>
 #include <utility>
@@ -228,6 +229,7 @@ class GridByRays final : public Session::State {
     }
     if (agreed(of_sink || (finished && finished->stopped))) return false;
     std::optional<DeepImage> deep;
+    const auto flat = std::chrono::steady_clock::now();
     if (settings.deep || settings.peel) try {
         const scene::TraceScope timing(trace_, "project");
         frame::StopRelay::Run relayed(frames_->relay(), stop);
@@ -245,6 +247,9 @@ class GridByRays final : public Session::State {
     frame.number = number;
     if (finished) {
       frame.statistics = statistics_of(*finished, name_of(this->settings().integrator.kind));
+      if (deep)  // a pass of its own
+        frame.statistics.milliseconds +=
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - flat).count();
       frame.image = std::move(finished->image);
       frame.uncertainty = std::move(finished->error_bounds);
       split_ = std::move(finished->split);

@@ -16,17 +16,24 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using scene::PixelRect;
 
-/// Of pixels that a part may cover, those within the footprint of the whole: rounding may put a corner's beside it.
-PixelRect within(const PixelRect& rect, const PixelRect& area) {
-  PixelRect both{std::max(rect.x0, area.x0), std::max(rect.y0, area.y0), std::min(rect.x1, area.x1),
-                 std::min(rect.y1, area.y1)};
-  return both.empty() ? PixelRect{area.x0, area.y0, area.x0, area.y0} : both;
+/// A rank's band of the footprint, and what lies beside the footprint: all ranks' make up the picture.
+PixelRect region_of(const PixelRect& area, int number, int ranks, scene::ImageSize size) {
+  const PixelRect band = exchange::band_of(area, number, ranks);
+  return {0, number == 0 ? 0 : band.y0, size.width, number == ranks - 1 ? size.height : band.y1};
 }
 
-/// A rank's band of the footprint, and what lies beside the footprint: all ranks' make up the picture.
-PixelRect region_of(const PixelRect& area, int rank, int ranks, scene::ImageSize size) {
-  const PixelRect band = exchange::band_of(area, rank, ranks);
-  return {0, rank == 0 ? 0 : band.y0, size.width, rank == ranks - 1 ? size.height : band.y1};
+/// Pixels that each part may have.
+std::vector<PixelRect> footprints(const volume::ObjectSplit& split, const VolumeJob& job,
+                                  const scene::GridGeometry& geometry, const PixelRect& area) {
+  std::vector<PixelRect> own;
+  for (const volume::VoxelBox& part : split.boxes()) {
+    // Rounding may put a corner beside the whole's.
+    if (part.low != part.high)
+      own.push_back(scene::common(area, volume::footprint(job.camera, job.size, geometry, part)));
+    else
+      own.push_back({area.x0, area.y0, area.x0, area.y0});
+  }
+  return own;
 }
 
 }  // namespace
@@ -47,8 +54,10 @@ class SortLast::State {
     PixelRect area = volume::footprint(job.camera, job.size, geometry);
     if (area.empty()) area = {0, 0, 0, 0};
 
-    exchange::DirectSendTask task{order, area, {area.x0, area.y0, area.x0, area.y0}, number, false, settings_.trace};
-    if (part.low != part.high) task.own = within(volume::footprint(job.camera, job.size, geometry, part), area);
+    const std::vector<PixelRect> own = footprints(*split_, job, geometry, area);
+    const std::vector<int> bands = exchange::band_numbers(own);
+    exchange::DirectSendTask task{order,  bands, area,           own[static_cast<std::size_t>(rank)],
+                                  number, false, settings_.trace};
     Picture mine = cast(renderer, function, job, part, task.own, watch);
     task.stopped = mine.stopped;
     const auto cast_end = Clock::now();
@@ -59,8 +68,9 @@ class SortLast::State {
         std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - cast_end).count());
 
     VolumePart made;
+    const int band = bands[static_cast<std::size_t>(rank)];
     made.header = {
-        number, region_of(area, rank, ranks, job.size), counters, mine.cpu_seconds, 0, sent.stopped ? 1u : 0u};
+        number, region_of(area, band, ranks, job.size), counters, mine.cpu_seconds, 0, sent.stopped ? 1u : 0u};
     made.rectangles = {made.header.region};
     made.finished.image = std::move(mine.image);
     made.finished.error_bounds = std::move(mine.error_bounds);

@@ -20,45 +20,14 @@ namespace {
 using scene::Association;
 using scene::SampleType;
 
-/// Half a last place, relative, of what an array stores; 0 of whole numbers.
-double rounding_of(const ForeignArray& array) {
-  if (array.type == NumberType::float32) return 0x1p-24;
-  return array.type == NumberType::float64 ? 0x1p-53 : 0;
-}
-
-/// Coordinates of an axis; falling ones are turned over by a mirrored direction.
-void set_coordinates(const ForeignFile& file, const ForeignArray& array, int axis, scene::GridGeometry& g) {
-  const auto a = static_cast<std::size_t>(axis);
-  if (static_cast<std::int64_t>(array.tuples) != g.points[a] || array.components != 1)
+AxisCoordinates coordinates_of(const ForeignFile& file, const ForeignArray& array, std::size_t axis,
+                               std::int64_t points) {
+  if (static_cast<std::int64_t>(array.tuples) != points || array.components != 1)
     throw damaged(file.source,
-                  fmt::format("it has {} coordinates along {} for {} points", array.tuples, "xyz"[a], g.points[a]));
-  std::vector<double> c(array.tuples);
-  read_tuples(file.helper->take(array, file.source).bytes(), array.type, 1, 0, 0, c);
-  if (c.size() > 1 && c.back() < c.front()) {
-    for (double& x : c) x = -x;
-    g.direction[axis] = -g.direction[axis];
-  }
-  g.coordinates[a] = std::move(c);
-}
-
-/// Makes a rectilinear grid regular whose coordinates are even but for their rounding: many writers know no other kind,
-/// and regular grids are cast much faster.
-void make_regular_if_even(const ForeignPart& grid, scene::GridGeometry& g) {
-  glm::dvec3 first(0), spacing(1);
-  for (std::size_t a = 0; a < 3; ++a) {
-    const std::vector<double>& c = g.coordinates[a];
-    if (c.size() < 2 || !(c.back() > c.front())) return;
-    const double step = (c.back() - c.front()) / static_cast<double>(c.size() - 1);
-    // Both ends are rounded, the sums and products of writer and reader by a few places of a double more.
-    const double rounding = 2 * rounding_of(grid.coordinates[a]) + 0x1p-50;
-    const double most = std::min(rounding * std::max(std::abs(c.front()), std::abs(c.back())), 1e-3 * step);
-    for (std::size_t i = 0; i < c.size(); ++i)
-      if (!(std::abs(c[i] - (c.front() + step * static_cast<double>(i))) <= most)) return;
-    first[static_cast<int>(a)] = c.front(), spacing[static_cast<int>(a)] = step;
-  }
-  g.origin += g.direction * first;
-  g.spacing = spacing;
-  g.coordinates = {};
+                  fmt::format("it has {} coordinates along {} for {} points", array.tuples, "xyz"[axis], points));
+  AxisCoordinates c{array.type, std::vector<double>(array.tuples)};
+  read_tuples(file.helper->take(array, file.source).bytes(), array.type, 1, 0, 0, c.values);
+  return c;
 }
 
 scene::GridGeometry geometry_of(const ForeignFile& file, const ForeignPart& part) {
@@ -71,9 +40,9 @@ scene::GridGeometry geometry_of(const ForeignFile& file, const ForeignPart& part
     if (std::any_of(part.direction.begin(), part.direction.end(), [](double x) { return x != 0; }))
       for (std::size_t k = 0; k < 9; ++k)
         g.direction[static_cast<int>(k % 3)][static_cast<int>(k / 3)] = part.direction[k];
-    for (int axis = 0; axis < 3; ++axis)
-      set_coordinates(file, part.coordinates[static_cast<std::size_t>(axis)], axis, g);
-    make_regular_if_even(part, g);
+    std::array<AxisCoordinates, 3> axes;
+    for (std::size_t a = 0; a < 3; ++a) axes[a] = coordinates_of(file, part.coordinates[a], a, g.points[a]);
+    set_rectilinear_geometry(std::move(axes), g);
   } else {
     throw scene::bad_input(fmt::format("{}: it holds no regular or rectilinear grid; give a volume", file.source));
   }

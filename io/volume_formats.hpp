@@ -7,8 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "io/plain_vtk_grid.hpp"
 #include "io/volume_reader.hpp"
-#include "io/vti_file.hpp"
+#include "io/vtk_array.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {

@@ -179,7 +179,7 @@ VolumeFile open_described(const std::filesystem::path& file, VolumeKind kind, co
   switch (kind) {
     case VolumeKind::vtk:
       require_no_time_step(options.time_step, source);
-      if (auto plain = read_plain_vti(file, options.most_in_memory))
+      if (auto plain = read_plain_vtk_grid(file, options.most_in_memory))
         return open_stored(*std::move(plain), options, source);
       return read_vtk_grid(file, options);
     case VolumeKind::bricks:

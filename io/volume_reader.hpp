@@ -30,8 +30,8 @@ struct VolumeOptions {
   ReadProgressFunction progress{};         ///< null: nobody hears
 
   /// Samples that have to be unpacked and take more bytes than this go into a file of bricks without a name
-  /// (scratch_file.hpp) as they come, where the format lets them come in parts: gzip, an array of .vti, what a helper
-  /// holds. Without room for that they stay in memory, unless it is needed for others.
+  /// (scratch_file.hpp) as they come, where the format lets them come in parts: gzip, an array of .vti or .vtr, what a
+  /// helper holds. Without room for that they stay in memory, unless it is needed for others.
   std::uint64_t most_in_memory = std::numeric_limits<std::uint64_t>::max();
   bool scratch_is_needed = false;
 
@@ -63,9 +63,9 @@ void require_volume(const std::filesystem::path& file);
 /// Opens a volume.
 ///
 ///   .vti .pvti .vtr .pvtr, .vtk of structured points or a rectilinear grid: by VTK, all of it in memory (a large .vti
-///       of one array: vti_file.hpp). Extent, origin, spacing and direction apply; pieces have to fill the whole and to
-///       agree on its coordinates. A curvilinear .vtk is a mesh. 64-bit integers become doubles. Hidden samples are
-///       blank.
+///       or .vtr of one array: plain_vtk_grid.hpp). Extent, origin, spacing and direction apply; pieces have to fill
+///       the whole and to agree on its coordinates. A curvilinear .vtk is a mesh. 64-bit integers become doubles.
+///       Hidden samples are blank.
 ///   .mhd .mha: origin, spacing, orientation, slope and offset apply; raw (in place), compressed or text.
 ///   .nrrd .nhdr: space origin and directions, else axis minimums and spacings; raw (in place), gzip, ascii or hex. A
 ///       first axis of components is allowed; content "old min" and the measurement frame mean nothing here. Slices in

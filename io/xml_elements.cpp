@@ -28,6 +28,8 @@ void XMLCALL on_start(void* user, const XML_Char* name, const XML_Char** attribu
   if (walk.fault) return;
   try {
     XmlElement element{name, walk.parents, {}};
+    element.text_at = static_cast<std::size_t>(XML_GetCurrentByteIndex(walk.parser)) +
+                      static_cast<std::size_t>(XML_GetCurrentByteCount(walk.parser));
     for (; *attributes != nullptr; attributes += 2) element.attributes.emplace(attributes[0], attributes[1]);
     walk.visit(element);
     walk.parents.emplace_back(name);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <string>
@@ -8,11 +9,13 @@
 
 namespace tessera::io {
 
-/// One opening tag: its name, its parents' names from the root on, its attributes with entities resolved.
+/// One opening tag: its name, its parents' names from the root on, its attributes with entities resolved, and where in
+/// the text what is behind it begins.
 struct XmlElement {
   std::string_view name;
   const std::vector<std::string>& parents;
   std::map<std::string, std::string> attributes;
+  std::size_t text_at = 0;
 
   /// An attribute; null if it is not there.
   [[nodiscard]] const std::string* find(const std::string& attribute) const;

@@ -66,9 +66,9 @@ struct ReadOptions {
   /// Whether one of these is given.
   [[nodiscard]] bool describes_raw() const { return dims || type || spacing || origin || big_endian || skip > 0; }
 
-  /// Grids whose samples have to be unpacked (.vti, .nii.gz, ...): where these take more than half of so many bytes,
-  /// they go into a file without a name in the folder for temporary files, if there is room, and bricks are read from
-  /// there. 0: they stay in memory. On several ranks of a machine they go there in any case.
+  /// Grids whose samples have to be unpacked (.vti, .vtr, .nii.gz, ...): where these take more than half of so many
+  /// bytes, they go into a file without a name in the folder for temporary files, if there is room, and bricks are read
+  /// from there. 0: they stay in memory. On several ranks of a machine they go there in any case.
   std::uint64_t memory_bytes = 0;
 
   /// Of a rectilinear grid, which is a mesh too: its voxels as hexahedra.

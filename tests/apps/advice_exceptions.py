@@ -28,7 +28,7 @@ EXCEPTIONS = {
     r"^apps/serve_command\.cpp:\d+|: arguments: serve shows one file": (3, SERVER),
     r"^io/json_transfer_function\.cpp:\d+: transfer function: it has no knot": (1, LIBRARY),
     r"please report": (6, DEFECT),
-    r"^io/vti_file\.cpp:\d+: \{\}: its samples end or break": (1, BIG),
+    r"^io/vtk_array\.cpp:\d+: \{\}: its samples end or break": (1, BIG),
     r"2\^32|points are too many for|it lists more than \{\} blocks": (8, HUGE),
     r"; check the disk$|it cannot be mapped into memory|^io/image_(jpeg|tiff)\.cpp:\d+: \{\}: cannot be written": (8, DISK),
     r"^io/pvtu_writer\.cpp:\d+: \{\}: cannot be written": (1, "a folder that takes files and refuses to rename them"),

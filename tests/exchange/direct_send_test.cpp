@@ -16,7 +16,7 @@
 namespace tessera::exchange {
 namespace {
 
-constexpr scene::ImageSize size{70, 61};
+constexpr scene::ImageSize size{70, 301};  ///< bands of up to four ranks have several packets
 
 TEST(DirectSend, OrdersAreThoseOfAlgorithm1Corrected) {
   const std::vector<int> order{4, 2, 0, 5, 1, 3};
@@ -95,7 +95,7 @@ TEST(DirectSend, BandsAreTheDepthOrdersComposite) {
   std::mt19937 random(7);
   for (int trial = 0; trial < 24; ++trial) {
     const int ranks = 1 + trial % 12;
-    const PixelRect area = trial % 5 == 4 ? PixelRect{3, 2, 50, 6} : PixelRect{2, 1, 69, 60};
+    const PixelRect area = trial % 5 == 4 ? PixelRect{3, 2, 50, 6} : PixelRect{2, 1, 69, 300};
     std::vector<int> order(static_cast<std::size_t>(ranks));
     std::iota(order.begin(), order.end(), 0);
     std::shuffle(order.begin(), order.end(), random);
@@ -103,6 +103,10 @@ TEST(DirectSend, BandsAreTheDepthOrdersComposite) {
     seen.reserve(static_cast<std::size_t>(ranks));
     for (int rank = 0; rank < ranks; ++rank) seen.push_back(random_picture(area, random, trial % 3 == 0));
     const bool with_bounds = trial % 2 == 0;
+    std::vector<PixelRect> own;
+    own.reserve(seen.size());
+    for (const Seen& of : seen) own.push_back(of.rect);
+    const std::vector<int> bands = band_numbers(own);
 
     std::vector<scene::Image> by_way[2];
     for (const tessera::DirectSend how : {tessera::DirectSend::asynchronous, tessera::DirectSend::synchronous}) {
@@ -111,7 +115,7 @@ TEST(DirectSend, BandsAreTheDepthOrdersComposite) {
       std::vector<std::vector<float>> bounds(static_cast<std::size_t>(ranks));
       run_ranks(ranks, [&](Transport& transport) {
         const auto rank = static_cast<std::size_t>(transport.rank());
-        DirectSendTask task{order, area, seen[rank].rect, 5};
+        DirectSendTask task{order, bands, area, seen[rank].rect, 5};
         images[rank] = seen[rank].image;
         if (with_bounds) bounds[rank] = seen[rank].bounds;
         const DirectSendResult result = DirectSender(transport).run(how, task, images[rank], bounds[rank]);
@@ -119,7 +123,7 @@ TEST(DirectSend, BandsAreTheDepthOrdersComposite) {
         EXPECT_EQ(result.messages > 0, ranks > 1);
       });
       for (int rank = 0; rank < ranks; ++rank) {
-        const PixelRect band = band_of(area, rank, ranks);
+        const PixelRect band = band_of(area, bands[static_cast<std::size_t>(rank)], ranks);
         const scene::Image& image = images[static_cast<std::size_t>(rank)];
         for (int y = band.y0; y < band.y1; ++y)
           for (int x = band.x0; x < band.x1; ++x) {
@@ -141,12 +145,18 @@ TEST(DirectSend, BandsAreTheDepthOrdersComposite) {
   }
 }
 
+TEST(DirectSend, BandsAreNearWhereRanksHavePixels) {
+  EXPECT_EQ(band_numbers({}), std::vector<int>());
+  const std::vector<PixelRect> own{{0, 200, 9, 300}, {0, 0, 9, 100}, {0, 0, 9, 290}, {0, 0, 9, 100}};
+  EXPECT_EQ(band_numbers(own), (std::vector<int>{3, 0, 2, 1}));
+}
+
 TEST(DirectSend, ARankThatWasStoppedIsMissedByAllBands) {
   for (const tessera::DirectSend how : {tessera::DirectSend::asynchronous, tessera::DirectSend::synchronous})
     run_ranks(3, [&](Transport& transport) {
-      const std::vector<int> order{2, 0, 1};
+      const std::vector<int> order{2, 0, 1}, bands{0, 1, 2};
       const PixelRect area{0, 0, size.width, size.height};
-      DirectSendTask task{order, area, area, 0};
+      DirectSendTask task{order, bands, area, area, 0};
       task.stopped = transport.rank() == 1;
       scene::Image image(size);
       EXPECT_TRUE(DirectSender(transport).run(how, task, image, {}).stopped);
@@ -161,12 +171,12 @@ TEST(DirectSend, MessagesOfAnotherPictureEndTheRun) {
     PixelRect rows, rect;
     std::uint64_t stopped;
   };
-  const PixelRect rows{0, 0, size.width, 16};
+  const PixelRect rows{0, 0, size.width, packet_rows};
   const Header wrong[] = {{6, rows, rows, 0},
-                          {7, {0, 1, size.width, 16}, rows, 0},
-                          {7, rows, {0, 0, size.width + 1, 16}, 0},
-                          {7, rows, {0, -1, size.width, 16}, 0},
-                          {7, rows, {9, 0, 3, 16}, 0},
+                          {7, {0, 1, size.width, packet_rows}, rows, 0},
+                          {7, rows, {0, 0, size.width + 1, packet_rows}, 0},
+                          {7, rows, {0, -1, size.width, packet_rows}, 0},
+                          {7, rows, {9, 0, 3, packet_rows}, 0},
                           {7, rows, rows, 0},           // pixels are missing
                           {7, rows, {0, 0, 0, 0}, 1}};  // stopped; with a byte too many
   for (const Header& header : wrong) {
@@ -179,7 +189,7 @@ TEST(DirectSend, MessagesOfAnotherPictureEndTheRun) {
                                return;
                              }
                              scene::Image image(size);
-                             const DirectSendTask task{order, area, area, 7};
+                             const DirectSendTask task{order, order, area, area, 7};
                              DirectSender(transport).run(tessera::DirectSend::asynchronous, task, image, {});
                            }),
                  scene::Error);

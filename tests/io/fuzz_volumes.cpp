@@ -1,6 +1,6 @@
-// Any bytes in a file of any volume format of our own reading (NRRD, NIfTI, MetaImage, bricks, plain .vti, by what they
-// begin with) are a volume whose samples can be read and lie in its range, or are refused in one line; held in memory
-// or not makes no difference.
+// Any bytes in a file of any volume format of our own reading (NRRD, NIfTI, MetaImage, bricks, plain .vti and .vtr, by
+// what they begin with) are a volume whose samples can be read and lie in its range, or are refused in one line; held
+// in memory or not makes no difference.
 #include <unistd.h>
 
 #include <bit>
@@ -57,7 +57,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         test::require(volume.format.find("rick") != std::string::npos ||
                       (value >= volume.range.low && value <= volume.range.high));
   });
-  // The same samples by way of a scratch file, which also takes plain .vti files, or nothing again.
+  // The same samples by way of a scratch file, which also takes plain .vti and .vtr files, or nothing again.
   test::parse_or_refuse([&] {
     io::VolumeOptions options;
     options.most_in_memory = 0;

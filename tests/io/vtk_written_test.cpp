@@ -2,22 +2,32 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <vtkCellData.h>
 #include <vtkDoubleArray.h>
+#include <vtkFloatArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
+#include <vtkRectilinearGrid.h>
+#include <vtkUnsignedShortArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridWriter.h>
+#include <vtkXMLRectilinearGridWriter.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "frame/mesh_check.hpp"
 #include "io/mesh_reader.hpp"
+#include "io/plain_vtk_grid.hpp"
+#include "io/streamed_fixture.hpp"
 #include "io/temporary_folder.hpp"
+#include "io/volume_formats.hpp"
 
 namespace tessera::io {
 namespace {
@@ -85,6 +95,66 @@ TEST(VtkWritten, OverlappingHexahedraAreOnePairEachInEveryEncoding) {
     ASSERT_EQ(writer->Write(), 1);
     expect_pairs(file, n);
   }
+}
+
+/// Even along z, along x and y too only if it is `even`; falling along y.
+template <class Array>
+vtkNew<vtkRectilinearGrid> rectilinear(bool even, bool of_cells) {
+  const std::array<int, 3> n{21, 30, 47};
+  vtkNew<vtkRectilinearGrid> grid;
+  grid->SetExtent(2, n[0] + 1, -4, n[1] - 5, 0, n[2] - 1);
+  std::array<vtkNew<Array>, 3> axes;
+  for (std::size_t a = 0; a < 3; ++a)
+    for (int i = 0; i < n[a]; ++i) {
+      const double x = even || a == 2 ? i : i + 0.01 * i * i;
+      axes[a]->InsertNextValue(static_cast<typename Array::ValueType>(a == 0 ? 0.1 * x : a == 1 ? 5 - 0.3 * x : x));
+    }
+  grid->SetXCoordinates(axes[0]);
+  grid->SetYCoordinates(axes[1]);
+  grid->SetZCoordinates(axes[2]);
+  vtkNew<vtkUnsignedShortArray> field;
+  field->SetName("f");
+  const vtkIdType samples = of_cells ? grid->GetNumberOfCells() : grid->GetNumberOfPoints();
+  for (vtkIdType k = 0; k < samples; ++k) field->InsertNextValue(static_cast<unsigned short>(k * k % 65521));
+  if (of_cells)
+    grid->GetCellData()->SetScalars(field);
+  else
+    grid->GetPointData()->SetScalars(field);
+  return grid;
+}
+
+class RectilinearWritten : public test::StreamedVolumes {
+ protected:
+  void expect_the_same(vtkRectilinearGrid* grid, const std::string& name, bool regular) const {
+    for (const int mode : {vtkXMLWriter::Ascii, vtkXMLWriter::Binary, vtkXMLWriter::Appended})
+      for (const bool compressed : {false, true})
+        for (const bool base64 : {false, true}) {
+          vtkNew<vtkXMLRectilinearGridWriter> writer;
+          const auto file = folder / fmt::format("{}-{}-{}-{}.vtr", name, mode, compressed, base64);
+          writer->SetFileName(file.c_str());
+          writer->SetDataMode(mode);
+          writer->SetEncodeAppendedData(base64);
+          writer->SetBlockSize(4096);
+          writer->SetHeaderTypeToUInt64();
+          if (!compressed) writer->SetCompressorTypeToNone();
+          writer->SetInputData(grid);
+          ASSERT_EQ(writer->Write(), 1);
+          const auto plain = read_plain_vtk_grid(file, 0);
+          ASSERT_EQ(plain.has_value(), mode != vtkXMLWriter::Ascii) << file;
+          EXPECT_TRUE(!plain || plain->grid.geometry.rectilinear() == !regular) << file;
+          const bool in_place = mode == vtkXMLWriter::Appended && !compressed && !base64;
+          EXPECT_EQ(is_the_same_streamed(file), !in_place) << file;
+        }
+  }
+};
+
+TEST_F(RectilinearWritten, GridsAreReadAlikeWithAndWithoutVtkInEveryEncoding) {
+  for (const bool even : {false, true})
+    for (const bool of_cells : {false, true}) {
+      const std::string name = fmt::format("{}-{}", even, of_cells);
+      expect_the_same(rectilinear<vtkFloatArray>(even, of_cells), "float-" + name, even);
+      expect_the_same(rectilinear<vtkDoubleArray>(even, of_cells), "double-" + name, even);
+    }
 }
 
 }  // namespace

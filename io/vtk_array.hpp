@@ -1,15 +1,17 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "io/streamed_bricks.hpp"
 
 namespace tessera::io {
 
-struct StoredVolume;
+class PositionalFile;
 
 /// Where an array of a VTK XML file begins, and how it is packed there.
 ///
@@ -27,10 +29,14 @@ struct VtkArrayPlace {
   unsigned number_bytes = 4;  ///< 8: u64
 };
 
-/// What is said here of a .vti of one piece with one array whose samples take more than `most_in_memory` bytes, and
-/// that are raw, base64 or zlib: so that they can be read where they lie, or in their order a part at a time. None of
-/// any other file, nor of one in which anything is odd: that is VTK's to read, and to find fault with.
-std::optional<StoredVolume> read_plain_vti(const std::filesystem::path& file, std::uint64_t most_in_memory);
+/// Where an array of `count` bytes ends, or some blanks and padding before that if it is text. None if what it says of
+/// itself is not of so many bytes, or of more than the file has.
+std::optional<std::uint64_t> end_of_vtk_array(const PositionalFile& file, const VtkArrayPlace& place,
+                                              std::uint64_t count);
+
+/// All of an array that is small. None if it has not `count` bytes or is damaged.
+std::optional<std::vector<std::byte>> small_vtk_array(const PositionalFile& file, const VtkArrayPlace& place,
+                                                      std::uint64_t count);
 
 /// Gives `use` all `count` bytes of the array in parts. Throws Error(bad_input) of `source` if they are damaged or end
 /// before.

@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+"""Which exchange composites the parts of a picture with the fewest bytes, messages and CPU time: direct send, binary swap, radix-k, and of meshes runs.
+
+    bench/exchanges.py --program build/release/bench/compositing_exchanges [--document docs/EXPERIMENTS.md] [--only volumes]
+                       [--data ../shared/data --tessera PROGRAM]
+
+    volumes  parts of a k-d tree, as `--distribution sort-last` has them
+    meshes   parts of a space-filling curve, as `--partition curve` has them: runs as they are sent to other machines, beside pictures of the parts
+             composited in the order of their centres, which is right only where no part lies both in front of and behind another
+
+What bench/compositing_exchanges.cpp says it counts; medians would say the same, so means over views. A process's time is modelled: its CPU time, and
+what it sends over 95 MB/s (the thesis's bandwidth) or ten times that; waiting, which rounds have and direct send has not, is left out.
+
+Needs Python's standard library. Meshes of files need --data, and --tessera to convert them; they are left out without.
+"""
+import argparse
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+
+import results_file
+
+EXCHANGES = {"direct-send": "direct send", "binary-swap": "binary swap", "radix-k": "radix-k"}
+BANDWIDTHS = {"95 MB/s": 95e6, "950 MB/s": 950e6}
+MESHES = {"cube of 24^3, planes between parts": ("mesh=cube", "n=24", "jitter=0"), "the same, vertices moved by a fifth": ("mesh=cube", "n=24", "jitter=0.2")}
+FILES = {"notch": "notch/notch_stress_fixed.vtk", "disk-out": "disk-out/disk_out_ref.ex2"}
+
+
+def run(args, *words):
+    """Rows by number of ranks and exchange."""
+    done = subprocess.run([args.program, *map(str, words)], capture_output=True, text=True)
+    if done.returncode:
+        raise SystemExit(f"exchanges.py: {done.stderr.strip()}")
+    rows = {}
+    for line in done.stdout.splitlines():
+        row = json.loads(line)
+        rows.setdefault(row["ranks"], {})[row["exchange"]] = row
+    return rows
+
+
+def volumes(args, _):
+    rows = run(args, f"volume={args.volume}", f"n={args.samples}", f"size={args.size}", f"views={args.views}", f"ranks={args.ranks}")
+    columns = [f"{name}: MB | most | messages | CPU, ms" for name in EXCHANGES.values()]
+    columns += [f"ms at {speed}: " + " / ".join(EXCHANGES.values()) for speed in BANDWIDTHS]
+    lines = ["| processes | " + " | ".join(columns) + " |", "|---:|" + "---:|" * (4 * len(EXCHANGES)) + "---|" * len(BANDWIDTHS)]
+    for ranks, of in rows.items():
+        cells = []
+        for name in EXCHANGES:
+            row = of[name]
+            cells.append(f"{row['bytes'] / ranks / 1e6:.2f} | {row['most_bytes'] / 1e6:.2f} | {row['messages'] / ranks:.0f} | {row['cpu_ms']:.2f}")
+        for speed in BANDWIDTHS.values():
+            cells.append(" / ".join(f"{of[name]['cpu_ms'] + 1e3 * of[name]['most_bytes'] / speed:.1f}" for name in EXCHANGES))
+        lines.append(f"| {ranks} | " + " | ".join(cells) + " |")
+    worst = max(row["error"] for of in rows.values() for row in of.values())
+    return lines + ["", f"`{args.volume}` of {args.samples}^3, {args.size} x {args.size} pixels, means over {args.views} views; *MB* and *messages* that a process sends, *most*: "
+                    f"the one that sends most. All pictures are within {results_file.error(worst)} of that of one process."]
+
+
+def meshes(args, folder):
+    lines = ["| mesh | processes | runs, a process's in a pixel | runs: MB a process sends | messages | direct send: MB | messages | radix-k: MB | messages | error of runs | of direct send |",
+             "|---|" + "---:|" * 10]
+    files = {}
+    for name, path in (FILES if args.data else {}).items():
+        converted = folder / f"{name}.tets"
+        subprocess.run([args.tessera, "convert", args.data / path, converted, "--quiet"], check=True)
+        files[f"`{name}`"] = (f"mesh={converted}",)
+    for name, words in {**MESHES, **files}.items():
+        for ranks, of in run(args, *words, f"size={args.size // 2}", f"views={args.views // 2}", f"ranks={args.mesh_ranks}").items():
+            # One of the compositors, all of which get as many tiles, is in the same process.
+            sent = of["runs"]["bytes"] * (ranks - 1) / ranks
+            cells = [f"{of['runs']['runs_a_part']:.3f}", f"{sent / ranks / 1e6:.2f}", f"{of['runs']['messages'] * (ranks - 1) / ranks / ranks:.0f}"]
+            for exchange in ("direct-send", "radix-k"):
+                cells += [f"{of[exchange]['bytes'] / ranks / 1e6:.2f}", f"{of[exchange]['messages'] / ranks:.0f}"]
+            cells += [results_file.error(of[exchange]["error"]) for exchange in ("runs", "direct-send")]
+            lines.append(f"| {name} | {ranks} | " + " | ".join(cells) + " |")
+            print(lines[-1], flush=True)
+    return lines + ["", f"{args.size // 2} x {args.size // 2} pixels, means over {args.views // 2} views; errors are the largest differences from the picture of one process."]
+
+
+TABLES = {"volumes": volumes, "meshes": meshes}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", type=pathlib.Path, required=True)
+    parser.add_argument("--document", type=pathlib.Path)
+    parser.add_argument("--only", choices=TABLES)
+    parser.add_argument("--data", type=pathlib.Path)
+    parser.add_argument("--tessera", type=pathlib.Path)
+    parser.add_argument("--volume", default="head")
+    parser.add_argument("--samples", type=int, default=160)
+    parser.add_argument("--size", type=int, default=1024)
+    parser.add_argument("--views", type=int, default=8)
+    parser.add_argument("--ranks", default="2,3,4,5,6,8,12,16,32,64")
+    parser.add_argument("--mesh-ranks", default="2,4,8,16")
+    args = parser.parse_args()
+    if args.data and not args.tessera:
+        parser.error("--data needs --tessera")
+    for name, table in TABLES.items():
+        if args.only not in (None, name):
+            continue
+        load = os.getloadavg()[0]
+        with tempfile.TemporaryDirectory() as folder:
+            lines = table(args, pathlib.Path(folder))
+        print("\n".join(lines))
+        if args.document:
+            results_file.put(args.document, f"exchanges.py {name}", f"{results_file.made(load)} `{results_file.command('exchanges.py')}`", lines)
+
+
+if __name__ == "__main__":
+    main()
