@@ -132,6 +132,13 @@ void AtomicFile::commit() {
   const auto lock = io::naming_outputs();
   if (part_.empty()) {
     const std::string self = fmt::format("/proc/self/fd/{}", descriptor_);
+    // A new file gets its name at once, so that a process killed here leaves nothing else.
+    if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, target_.c_str(), AT_SYMLINK_FOLLOW) == 0) {
+      ::close(descriptor_);
+      descriptor_ = -1;
+      return;
+    }
+    if (errno != EEXIST) fail(errno, "cannot be given its name");
     fs::path candidate;
     for (unsigned number = 0;; ++number) {
       candidate = part_name(target_, number);

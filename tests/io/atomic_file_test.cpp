@@ -1,13 +1,17 @@
 #include "io/atomic_file.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/inotify.h>
 #include <sys/mount.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
+#include <cstring>
 
 #include "io/image_file.hpp"
 #include "io/unfinished.hpp"
@@ -29,6 +33,36 @@ TEST(AtomicFile, AppearsOnlyWhenCommitted) {
   file.commit();
   EXPECT_EQ(contents(folder / "out"), "hello");
   EXPECT_EQ(folder.names(), std::vector<std::string>{"out"});
+}
+
+/// Names that came to be in a folder while `work` ran.
+template <class Work>
+std::vector<std::string> names_made_by(const TemporaryFolder& folder, const Work& work) {
+  const int watch = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+  EXPECT_GE(inotify_add_watch(watch, (folder / "").c_str(), IN_CREATE | IN_MOVED_TO), 0);
+  work();
+  alignas(inotify_event) std::array<char, 4096> events{};
+  const ssize_t bytes = ::read(watch, events.data(), events.size());
+  ::close(watch);
+  std::vector<std::string> names;
+  for (ssize_t at = 0; at < bytes;) {
+    inotify_event event;
+    std::memcpy(&event, &events[static_cast<std::size_t>(at)], sizeof(event));
+    names.emplace_back(&events[static_cast<std::size_t>(at) + sizeof(event)]);
+    at += static_cast<ssize_t>(sizeof(event) + event.len);
+  }
+  return names;
+}
+
+TEST(AtomicFile, HasNoOtherNameBeforeItsOwnUnlessItReplacesAFile) {
+  const TemporaryFolder folder;
+  if (const int probe = ::open((folder / "").c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666); probe >= 0)
+    ::close(probe);
+  else
+    GTEST_SKIP() << "the file system has no files without a name";
+  const auto write = [&] { AtomicFile(folder / "out").commit(); };
+  EXPECT_EQ(names_made_by(folder, write), std::vector<std::string>{"out"});
+  EXPECT_EQ(names_made_by(folder, write).size(), 2u);
 }
 
 // In a process of its own, which it spoils for outputs.
