@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <signal.h>
 #include <sys/inotify.h>
 #include <sys/mount.h>
 #include <sys/stat.h>
@@ -100,7 +99,7 @@ TEST(AtomicFile, IsRemovedUnderItsTemporaryNameByASignalsHandlerToo) {
     done.commit();
     for (int k = 0; k < 200; ++k)
       static_cast<void>(AtomicFile(folder / "c").named_part());  // each takes a place and gives it back
-    const auto lock = naming_outputs();                          // whatever it interrupts
+    [[maybe_unused]] const auto lock = naming_outputs();         // whatever it interrupts
     std::raise(SIGTERM);
     _exit(1);
   }
