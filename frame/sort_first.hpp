@@ -13,7 +13,7 @@ using tessera::Balance;
 
 struct SortFirstSettings {
   Balance balance = Balance::learned;
-  double resolution = 0.5;      ///< of the cost map, map pixels an image pixel along each axis
+  double resolution = 0.5;      ///< of the cost map, map pixels an image pixel along each axis; learned: 0.25 at most
   std::vector<double> weights;  ///< how much of the work each rank should get; empty: equal
   bool measured = false;        ///< in place of weights: each rank's speed in the frames before
   bool keep_cost = false;       ///< rank 0 finds the cost of the whole picture too, to be shown

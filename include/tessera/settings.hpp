@@ -130,7 +130,8 @@ struct RankSettings {
   Distribution distribution = Distribution::sort_first;  ///< grids
   DirectSend direct_send = DirectSend::asynchronous;     ///< grids, sort_last
   Balance balance = Balance::learned;                    ///< grids
-  double balance_resolution = 0.5;        ///< grids: of the cost map, map pixels an image pixel along each axis
+  /// Grids: of the cost map, map pixels an image pixel along each axis; `learned` splits by 0.25 at most.
+  double balance_resolution = 0.5;
   std::vector<double> balance_weights{};  ///< grids: how much of the work each rank should get; empty: equal
   /// Grids: each rank gets as much as its speed in the frames before says (samples a second of wall clock), in place of
   /// weights; equal parts in the first frame.
