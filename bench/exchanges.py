@@ -8,8 +8,8 @@
     meshes   parts of a space-filling curve, as `--partition curve` has them: runs as they are sent to other machines, beside pictures of the parts
              composited in the order of their centres, which is right only where no part lies both in front of and behind another
 
-What bench/compositing_exchanges.cpp says it counts; medians would say the same, so means over views. A process's time is modelled: its CPU time, and
-what it sends over 95 MB/s (the thesis's bandwidth) or ten times that; waiting, which rounds have and direct send has not, is left out.
+What is counted bench/compositing_exchanges.cpp says; figures are means over views. A process's time is modelled: its CPU time, and what it sends over
+95 MB/s (the thesis's bandwidth) or ten times that; waiting for others is left out.
 
 Needs Python's standard library. Meshes of files need --data, and --tessera to convert them; they are left out without.
 """
