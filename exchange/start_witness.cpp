@@ -46,11 +46,17 @@ StartWitness::StartWitness(const std::string& program) {
   child_ = fork();
   if (child_ == 0) {
     close(ends[1]);
-    // A launcher that ends a rank ends the rank's process group, and would take the words with it.
-    std::signal(SIGTERM, SIG_IGN);
+    // A launcher that ends a rank ends the rank's process group, and would take the words with it, or the hold of the
+    // line while others still end.
+    setsid();
+    std::signal(SIGTERM, SIG_IGN);  // which may be meant for all processes of this name
     const std::string last = told(ends[0]);
     if (!last.ends_with('\0') && may_speak()) {
       write_all(STDERR_FILENO, last.empty() ? words(program) : last);
+      hold_one_line();
+      // Ranks end late where a machine is busy. The launcher need not wait for that.
+      for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) close(standard);
+      hold_one_line();
       hold_one_line();
     }
     _exit(0);
