@@ -124,7 +124,10 @@ export class Page {
 
 /** Whether the page is dark, as the browser has it. */
 export const dark = window.matchMedia("(prefers-color-scheme: dark)");
-const page_background = () => (dark.matches ? "#15171b" : "#ffffff");
+// By the event, before which `matches` may have changed already: else a state could differ from what was asked for.
+let is_dark = dark.matches;
+dark.addEventListener("change", () => { is_dark = dark.matches; });
+const page_background = () => (is_dark ? "#15171b" : "#ffffff");
 
 /** As the option has it. @param {import("./types.js").Size} size */
 export const size_word = ({ width, height }) => `${width}x${height}`;
