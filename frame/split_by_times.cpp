@@ -40,9 +40,10 @@ void SplitByTimes::learn(const VolumeJob& job, const scene::Box& box, const std:
       beside.assign(ranks.size(), 0.0);
   beside_.resize(ranks.size());
   ++pictures_;
-  // Little of it of one picture: gathering one may fall into the time of another.
-  for (std::size_t rank = 0; rank < beside.size(); ++rank)
-    beside_[rank] += std::max(0.2, 1.0 / pictures_) * (beside[rank] - beside_[rank]);
+  // The first pictures are unlike all others: of one none is gathered beside it, and memory is new. From then on little
+  // is taken of one picture: gathering one may fall into the time of another.
+  const double weight = std::max(0.2, 1.0 / std::max(1, pictures_ - 2));
+  for (std::size_t rank = 0; rank < beside.size(); ++rank) beside_[rank] += weight * (beside[rank] - beside_[rank]);
   if (tiles.empty()) return;
   if (!costs_ || costs_->size() != job.size || !is_near(job.camera, costs_->camera(), box, near_enough))
     costs_.emplace(job.camera, job.size, 0.5 * (box.low + box.high));
