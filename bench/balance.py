@@ -2,12 +2,12 @@
 """Moloney, Ray Coherence in Parallel Volume Rendering (2008), Tables 6.4 and 6.5, Figures 6.8 to 6.10: how evenly processes share a picture.
 
     bench/balance.py --tessera PROGRAM [--document docs/EXPERIMENTS.md] [--only "table 6.4"] [--processes 6] [--size 1024x1024] [--brick-size 64] [--volume FILE]
-                     [--transfer-function NAME] [--frames 60]
+                     [--transfer-function NAME] [--frames 60] [--runs 1]
 
 Two smooth recorded animations: a turn of two degrees a frame round an oblique axis, which shows all of the volume, and a zoom from
 outside to the middle. A frame's *deviation* is the thesis's: what the process that took longest took more than the one that took least,
 over their mean. Where it says time, this says a process's CPU time, of finding the split and of rendering together: on fewer cores than processes
-nothing else says what each had to do. Tables have the mean over frames but the first, in which nothing is known yet, and the standard deviation.
+nothing else says what each had to do. Tables have the mean over frames but a run's first, in which nothing is known yet, and the standard deviation.
 
     Table 6.4  --balance learned, accurate, splatting, backface; cost maps of as many pixels as the picture, and of a quarter
     Table 6.5  the cost map (backface, a quarter; ours: learned) against the frame before, with 0, 2 and 4 frames of the turn left out
@@ -74,14 +74,17 @@ class Bench:
         self.box = bounds_of(args.tessera, self.volume)
 
     def frames(self, kind, method, resolution, left_out):
-        """What the report says of the balance of all frames but the first."""
+        """What reports say of the balance of all frames but each run's first."""
         path = list(views(kind, self.box, self.args.frames))[::left_out + 1]
         (self.folder / "path.json").write_text(json.dumps(path))
         report = self.folder / "report.json"
-        run(["mpirun", "--oversubscribe", "-n", self.args.processes, self.args.tessera, "render", self.volume, "-o", self.folder / "f%d.pfm",
-             "--camera", self.folder / "path.json", "--size", self.args.size, "--threads", "1", "--transfer-function", self.args.transfer_function,
-             "--brick-size", self.args.brick_size, "--balance", method, "--balance-resolution", resolution, "--quiet", "--report", report])
-        return [frame["balance"] for frame in json.loads(report.read_text())["frames"]][1:]
+        frames = []
+        for _ in range(self.args.runs):
+            run(["mpirun", "--oversubscribe", "-n", self.args.processes, self.args.tessera, "render", self.volume, "-o", self.folder / "f%d.pfm",
+                 "--camera", self.folder / "path.json", "--size", self.args.size, "--threads", "1", "--transfer-function", self.args.transfer_function,
+                 "--brick-size", self.args.brick_size, "--balance", method, "--balance-resolution", resolution, "--quiet", "--report", report])
+            frames += [frame["balance"] for frame in json.loads(report.read_text())["frames"]][1:]
+        return frames
 
 
 def deviation(frames):
@@ -171,6 +174,7 @@ def main():
     parser.add_argument("--size", default="1024x1024")
     parser.add_argument("--brick-size", type=int, default=64)
     parser.add_argument("--frames", type=int, default=60)
+    parser.add_argument("--runs", type=int, default=1, help="of each animation, for tables")
     parser.add_argument("--volume", type=pathlib.Path, help="default: ripples of 256^3 samples of 8 bits")
     parser.add_argument("--transfer-function", default="cool-warm:rise")
     parser.add_argument("--document", type=pathlib.Path)

@@ -22,7 +22,8 @@ struct CastTimes {
 /// the view is near theirs.
 ///
 /// A split gives each process the same time: of its tiles and of all else that it does for a picture, as it was in the
-/// pictures before. Rank 0 gathers as well, and so gets less of the tiles.
+/// pictures before. Rank 0 gathers as well, and so gets less of the tiles. While a view moves, tiles of a rank take now
+/// more, now less than is foreseen, from picture to picture alike: that is learned too.
 class SplitByTimes {
  public:
   /// What the picture of `job` took, by rank; `box` holds the volume.
@@ -31,14 +32,18 @@ class SplitByTimes {
   /// Of a picture; nothing if too little is known.
   [[nodiscard]] std::optional<volume::ImageSplit> find(const VolumeJob& job, const scene::Box& box);
 
-  /// How much of the tiles each rank should get. Empty if nothing is known.
+  /// How much of the tiles each rank should get of a split that this one does not find. Empty if nothing is known.
   [[nodiscard]] std::vector<double> weights() const;
 
  private:
+  void compare_with_foreseen(const std::vector<double>& tiles_of);
+
   std::optional<volume::TileCosts> costs_;
-  int pictures_ = 0;            ///< that it has learned from
-  double tiles_ = 0;            ///< nanoseconds of the last picture
-  std::vector<double> beside_;  ///< nanoseconds of each rank, beside its tiles
+  int pictures_ = 0;              ///< that it has learned from
+  double tiles_ = 0;              ///< nanoseconds of the last picture
+  std::vector<double> beside_;    ///< nanoseconds of each rank, beside its tiles
+  std::vector<double> foreseen_;  ///< of each rank's tiles in the split last found, nanoseconds; else empty
+  std::vector<double> missed_;    ///< by how much each rank's share of all tiles' time is larger than foreseen
 };
 
 /// Whether rays go through the box about as they do in another view of it: within `most` radians, and `most` of the

@@ -3,13 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 #include <vector>
+
+#include "volume/tile_rays.hpp"
 
 namespace tessera::frame {
 namespace {
 
-constexpr int side = 64;
+constexpr int side = 64, tile = volume::TileRays::side;
 const scene::Box box{glm::dvec3(-1), glm::dvec3(1)};
 const VolumeJob job = [] {
   scene::Camera camera;
@@ -81,6 +84,52 @@ TEST(SplitByTimes, ASplitGivesRanksTheSameTime) {
   };
   EXPECT_NEAR(pixels(0) + pixels(1), 1, 1e-9);
   EXPECT_NEAR(pixels(0), 0.42, 0.02);  // to a step of the rectangles' edges
+}
+
+// What is foreseen goes with the box as the eye moves past it; what tiles take here stays where it is in the picture.
+// So at each step the same is missed: the split of one picture says little, that of many is even.
+TEST(SplitByTimes, WhatIsMissedFromPictureToPictureAlikeIsLearned) {
+  constexpr scene::ImageSize size{512, 512};
+  constexpr int ranks = 4;
+  const auto took = [](const scene::PixelRect& r) {  // microseconds: the more the farther to the right
+    return 0.02 * (r.y1 - r.y0) * (r.x1 - r.x0) * (0.2 + 0.5 * (r.x0 + r.x1) / size.width);
+  };
+  SplitByTimes splits;
+  std::vector<double> deviations;
+  std::vector<scene::PixelRect> parts;
+  for (int rank = 0; rank < ranks; ++rank)
+    parts.push_back({rank * size.width / ranks, 0, (rank + 1) * size.width / ranks, size.height});
+  std::vector<std::vector<scene::PixelRect>> of_ranks;
+  for (const scene::PixelRect& part : parts) of_ranks.push_back({part});
+  for (int picture = 0; picture < 24; ++picture) {
+    scene::Camera camera = job.camera;
+    camera.position.x = camera.focal_point.x = 0.2 * picture;
+    const VolumeJob moved{camera, size};
+    const auto split = splits.find(moved, box);
+    ASSERT_EQ(split.has_value(), picture > 0);
+    if (split)
+      for (int rank = 0; rank < ranks; ++rank) of_ranks[static_cast<std::size_t>(rank)] = split->parts(rank);
+    std::vector<CastTimes> measured(ranks);
+    std::vector<double> all;
+    for (std::size_t rank = 0; rank < ranks; ++rank) {
+      double own = 0;
+      measured[rank].process = rank + 1;
+      for (const scene::PixelRect& part : of_ranks[rank])
+        for (int y = part.y0 / tile * tile; y < part.y1; y += tile)
+          for (int x = part.x0 / tile * tile; x < part.x1; x += tile) {
+            const scene::PixelRect r = scene::common(part, {x, y, x + tile, y + tile});
+            measured[rank].tiles.push_back({r, static_cast<float>(took(r))});
+            own += took(r);
+          }
+      measured[rank].cpu_seconds = 1e-6 * own;
+      all.push_back(own);
+    }
+    const auto [least, most] = std::minmax_element(all.begin(), all.end());
+    deviations.push_back((*most - *least) * ranks / std::accumulate(all.begin(), all.end(), 0.0));
+    splits.learn(moved, box, measured);
+  }
+  EXPECT_GT(deviations[1], 0.1) << "nothing is missed";
+  for (std::size_t late = 16; late < deviations.size(); ++late) EXPECT_LT(deviations[late], 0.03) << late;
 }
 
 }  // namespace
