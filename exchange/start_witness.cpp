@@ -54,10 +54,6 @@ StartWitness::StartWitness(const std::string& program) {
     if (!last.ends_with('\0') && may_speak()) {
       write_all(STDERR_FILENO, last.empty() ? words(program) : last);
       hold_one_line();
-      // Ranks end late where a machine is busy. The launcher need not wait for that.
-      for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) close(standard);
-      hold_one_line();
-      hold_one_line();
     }
     _exit(0);
   }
