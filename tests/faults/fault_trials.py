@@ -9,8 +9,8 @@ disk is full (a small tmpfs, where this user may mount one), or one rank's piece
 each: the run is over within 10 s of the fault; no process of it is left; one line of ours says what happened; the status
 is what it should be; the folder holds whole pictures only, each with the bytes of an undisturbed run. Every fourth trial
 then runs the same command with --resume, which must complete the film. --volume films a volume, by --sort-last in parts
-of it, by --mixed in parts of it and of the picture in turn. A launcher that hangs alone after a rank was killed as MPI
-started is Open MPI's fault (4.1.4: PMIx's server locks itself out), and counted beside the others.
+of it, by --mixed in parts of it and of the picture in turn. A launcher that hangs or crashes alone after a rank was
+killed or stopped as MPI started is Open MPI's fault (4.1.4, as it ends PMIx's server), and counted beside the others.
 
 Prints a line a trial and a table of the stages that were reached. Exit status 1 if any check failed.
 """
@@ -189,7 +189,7 @@ def trial(film, kind, random_source, number):
     try:
         _, errors = run.communicate(timeout=limit)
     except subprocess.TimeoutExpired:
-        if kind == "kill" and not ranks_of(film, token) and not pictures_of(folder):
+        if kind in ("kill", "stall") and not ranks_of(film, token) and not pictures_of(folder):
             launcher_hangs = True
         else:
             problems.append(f"still runs {limit:.0f} s after the fault")
@@ -208,6 +208,7 @@ def trial(film, kind, random_source, number):
     lines = [line for line in errors.splitlines() if line.startswith("tessera: ")]
     finished = run.returncode == 0 and len(list(folder.iterdir())) == film.frames
     began = bool(pictures_of(folder))  # else MPI may not have started when it broke
+    launcher_crashes = kind in ("kill", "stall") and not began and run.returncode == -signal.SIGSEGV
     if not finished and not launcher_hangs:
         # A rank that dies before it could say anything leaves that to mpirun.
         speaks = kind in ("disk", "piece") or (kind in ("term", "stall", "folder") and began)
@@ -216,7 +217,7 @@ def trial(film, kind, random_source, number):
         wanted = {"kill": {137, 3}, "end": {143, 3, 1}, "launcher": {-9}, "disk": {3}, "piece": {2}, "pause": {0},
                   "term": {3} if began else {3, 143, 1}, "stall": {3},
                   "folder": {3} if began else {3, 2}}[kind]
-        if run.returncode not in wanted:
+        if run.returncode not in wanted and not launcher_crashes:
             problems.append(f"status {run.returncode}, not {sorted(wanted)}")
     elif kind in ("disk", "piece"):
         problems.append("succeeded")
@@ -231,8 +232,8 @@ def trial(film, kind, random_source, number):
     if mounted:
         subprocess.run(["umount", token], check=True)
     shutil.rmtree(folder)
-    if launcher_hangs and not problems:
-        kind = "kill that the launcher does not survive"
+    if (launcher_hangs or launcher_crashes) and not problems:
+        kind += " that the launcher does not survive"
     return kind, film.stages_at(delay) if delay else set(), problems
 
 
