@@ -96,11 +96,10 @@ TEST(SplitByTimes, WhatIsMissedFromPictureToPictureAlikeIsLearned) {
   };
   SplitByTimes splits;
   std::vector<double> deviations;
-  std::vector<scene::PixelRect> parts;
+  std::vector<std::vector<scene::PixelRect>> of_ranks(ranks);
   for (int rank = 0; rank < ranks; ++rank)
-    parts.push_back({rank * size.width / ranks, 0, (rank + 1) * size.width / ranks, size.height});
-  std::vector<std::vector<scene::PixelRect>> of_ranks;
-  for (const scene::PixelRect& part : parts) of_ranks.push_back({part});
+    of_ranks[static_cast<std::size_t>(rank)] = {
+        {rank * size.width / ranks, 0, (rank + 1) * size.width / ranks, size.height}};
   for (int picture = 0; picture < 24; ++picture) {
     scene::Camera camera = job.camera;
     camera.position.x = camera.focal_point.x = 0.2 * picture;
