@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <numeric>
-#include <utility>
 
 #include "volume/balanced_split.hpp"
 
@@ -58,12 +57,13 @@ void SplitByTimes::learn(const VolumeJob& job, const scene::Box& box, const std:
 }
 
 void SplitByTimes::compare_with_foreseen(const std::vector<double>& tiles_of) {
-  const std::vector<double> foreseen = std::exchange(foreseen_, {});
-  missed_.resize(tiles_of.size());
-  if (foreseen.empty() || tiles_ <= 0) return missed_.assign(tiles_of.size(), 0.0);
-  const double all = std::accumulate(foreseen.begin(), foreseen.end(), 0.0);
+  if (foreseen_.empty() || tiles_ <= 0) {
+    missed_.assign(tiles_of.size(), 0.0);
+    return;
+  }
+  const double all = std::accumulate(foreseen_.begin(), foreseen_.end(), 0.0);
   for (std::size_t rank = 0; rank < tiles_of.size(); ++rank)
-    missed_[rank] += part_of_missed * (tiles_of[rank] / tiles_ - foreseen[rank] / all - missed_[rank]);
+    missed_[rank] += part_of_missed * (tiles_of[rank] / tiles_ - foreseen_[rank] / all - missed_[rank]);
 }
 
 std::vector<double> SplitByTimes::weights() const {

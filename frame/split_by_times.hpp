@@ -36,13 +36,14 @@ class SplitByTimes {
   [[nodiscard]] std::vector<double> weights() const;
 
  private:
+  /// Learns `missed_` from the time of each rank's tiles, nanoseconds.
   void compare_with_foreseen(const std::vector<double>& tiles_of);
 
   std::optional<volume::TileCosts> costs_;
   int pictures_ = 0;              ///< that it has learned from
   double tiles_ = 0;              ///< nanoseconds of the last picture
   std::vector<double> beside_;    ///< nanoseconds of each rank, beside its tiles
-  std::vector<double> foreseen_;  ///< of each rank's tiles in the split last found, nanoseconds; else empty
+  std::vector<double> foreseen_;  ///< nanoseconds of each rank's tiles, in the split last found; empty: none was
   std::vector<double> missed_;    ///< by how much each rank's share of all tiles' time is larger than foreseen
 };
 
