@@ -40,8 +40,12 @@ if(TESSERA_SHARED)
   tessera_whole_library(shared)
   # Instances of templates of the standard library and oneTBB stay inside too.
   set(exports ${CMAKE_CURRENT_LIST_DIR}/tessera.map)
-  set_target_properties(tessera_shared PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}
-                                                  LINK_DEPENDS ${exports})
+  set_target_properties(
+    tessera_shared
+    PROPERTIES LINK_DEPENDS ${exports}
+               VERSION ${PROJECT_VERSION}
+               # Until 1.0 each minor version has an interface of its own.
+               SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_link_options(tessera_shared PRIVATE -Wl,--version-script=${exports} -Wl,--as-needed)
 endif()
 if(TESSERA_STATIC)

@@ -133,6 +133,8 @@ nlohmann::ordered_json to_json(const TraceRun& run) {
     if (number > 0) json[name] = number;
   };
   add_word("version", run.version);
+  add_word("commit", run.commit);
+  add_word("build", run.build);
   add_word("input", run.input);
   add_number("tets", run.tets);
   add_number("frames", run.frames);

@@ -58,6 +58,8 @@ class Reader final : public nlohmann::json_sax<nlohmann::json> {
       if (key_ == "role") event_.role = value;
     } else if (here() == Place::run) {
       for (const auto& [name, word] : {std::pair{"version", &TraceRun::version},
+                                       {"commit", &TraceRun::commit},
+                                       {"build", &TraceRun::build},
                                        {"input", &TraceRun::input},
                                        {"exchange", &TraceRun::exchange},
                                        {"rasterizer", &TraceRun::rasterizer},

@@ -86,7 +86,7 @@ TEST(ChromeTrace, OneFileHoldsAllRanksAndWhatWasRun) {
   const std::array<std::string, 4> events = {chrome_trace_events(a, 0, "rank 0"), "", "[]",
                                              chrome_trace_events(b, 3, "rank 3 compositor")};
   const test::TemporaryFolder folder;
-  TraceRun run{"1.2.3", "wake.vtu", 516096, 8, 640, 480, 4, 3, 1, 2, "runs", "planes", "exact"};
+  TraceRun run{"1.2.3", "wake.vtu", 516096, 8, 640, 480, 4, 3, 1, 2, "runs", "planes", "exact", "0123abcd", "GNU 12.2.0"};
   write_chrome_trace(events, run, folder / "trace.json");
   const auto root = json::parse(test::contents(folder / "trace.json"));
   std::set<int> ranks;
@@ -94,6 +94,8 @@ TEST(ChromeTrace, OneFileHoldsAllRanksAndWhatWasRun) {
   EXPECT_EQ(ranks, (std::set<int>{0, 3}));
   const json expected = {{"program", "tessera"},
                          {"version", "1.2.3"},
+                         {"commit", "0123abcd"},
+                         {"build", "GNU 12.2.0"},
                          {"input", "wake.vtu"},
                          {"tets", 516096},
                          {"frames", 8},

@@ -1,0 +1,14 @@
+# Writes OUTPUT, which defines TESSERA_COMMIT, if the commit of SOURCE has changed since: run at each build, so that a
+# program states the commit it was built from and nothing is compiled again while that stays the same.
+set(commit unknown) # sources outside a repository, or no git
+find_program(git git)
+if(git)
+  # safe.directory: the sources may belong to another user, as in containers.
+  execute_process(COMMAND ${git} -c safe.directory=* -C ${SOURCE} describe --always --dirty --abbrev=8 --exclude=*
+                  OUTPUT_VARIABLE found OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE result ERROR_QUIET)
+  # A repository around an unpacked archive is not that of the sources.
+  if(result EQUAL 0 AND EXISTS ${SOURCE}/.git)
+    set(commit ${found})
+  endif()
+endif()
+file(CONFIGURE OUTPUT ${OUTPUT} CONTENT "#define TESSERA_COMMIT \"${commit}\"\n")
