@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "analysis/reports.hpp"
@@ -152,7 +153,8 @@ Json data_answer(const ApiContext& context, const OpenScene& open) {
           {"warnings", warnings},
           {"ranks", context.stage.ranks()},
           {"threads", threads_for(context.threads)},
-          {"tessera", TESSERA_VERSION},
+          {"tessera", version()},
+          {"commit", commit()},
           {"presets", presets_json()},
           {"opacities", preset_opacity_names()},
           {"films", films_json()},

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "server/api.hpp"

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <boost/asio/ip/tcp.hpp>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -10,11 +9,9 @@
 #include "server/listener.hpp"
 #include "server/service.hpp"
 
-namespace boost::asio::ssl {
-class context;
-}
-
 namespace tessera::server {
+
+class Bytes;
 
 /// What all connections share. Of the network's thread alone.
 struct Network {
@@ -27,7 +24,6 @@ struct Network {
 };
 
 /// Takes care of a connection until it ends: HTTP requests one after the other, or a WebSocket.
-void start_plain_connection(boost::asio::ip::tcp::socket socket, Network& network);
-void start_tls_connection(boost::asio::ip::tcp::socket socket, Network& network, boost::asio::ssl::context& tls);
+void start_connection(std::unique_ptr<Bytes> bytes, Network& network);
 
 }  // namespace tessera::server

@@ -1,6 +1,7 @@
 #include "server/frame_message.hpp"
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 
 namespace tessera::server {
 

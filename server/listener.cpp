@@ -10,6 +10,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <thread>
 
+#include "server/byte_stream.hpp"
 #include "server/connection.hpp"
 #include "server/tls.hpp"
 #include "tessera/error.hpp"
@@ -73,8 +74,7 @@ struct Listener::State {
         socket.close(none);
       } else {
         socket.set_option(tcp::no_delay(true), none);
-        tls ? start_tls_connection(std::move(socket), network, *tls)
-            : start_plain_connection(std::move(socket), network);
+        start_connection(tls ? tls_bytes(std::move(socket), *tls) : plain_bytes(std::move(socket)), network);
       }
       accept();
     });

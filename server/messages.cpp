@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "tessera/error.hpp"
 #include "tessera/input_file.hpp"
 

@@ -1,6 +1,7 @@
 #include "server/renderer.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "server/api.hpp"
@@ -117,7 +118,7 @@ void Renderer::answer(Request request, std::stop_token gone, Reply reply) {
 ClientId Renderer::join(std::shared_ptr<Channel> channel) {
   channel->send_text(text_of({{"type", "welcome"},
                               {"version", protocol_version},
-                              {"tessera", TESSERA_VERSION},
+                              {"tessera", version()},
                               {"latency", settings_.latency_ms},
                               {"ready", first_came_.load()}}));
   if (const auto reading = stage_.reading()) channel->send_text(reading_text(*reading));

@@ -1,4 +1,4 @@
-#include "server/connection.hpp"
+#include "server/byte_stream.hpp"
 #include "server/tls.hpp"
 #include "tessera/error.hpp"
 
@@ -10,7 +10,8 @@ std::shared_ptr<boost::asio::ssl::context> tls_context(const std::filesystem::pa
                   ": this build has no TLS; configure with -DTESSERA_TLS=ON, or use an SSH tunnel");
 }
 
-void start_tls_connection(boost::asio::ip::tcp::socket /*socket*/, Network& /*network*/,
-                          boost::asio::ssl::context& /*tls*/) {}
+std::unique_ptr<Bytes> tls_bytes(boost::asio::ip::tcp::socket /*socket*/, boost::asio::ssl::context& /*tls*/) {
+  return nullptr;  // never called: tls_context() throws
+}
 
 }  // namespace tessera::server

@@ -1,6 +1,4 @@
-#pragma once
-
-// One text for plain and TLS connections: plain_connection.cpp and tls_connection.cpp include it, each once.
+#include "server/connection.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,10 +12,9 @@
 #include <deque>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <type_traits>
 #include <utility>
 
-#include "server/connection.hpp"
+#include "server/byte_stream.hpp"
 #include "server/web_page.hpp"
 
 namespace tessera::server {
@@ -93,10 +90,9 @@ Response page_response(int status, std::string text) {
 }
 
 /// A client's WebSocket: what it says goes to the service, what the service sends waits here for its turn.
-template <class Stream>
-class Socket final : public std::enable_shared_from_this<Socket<Stream>> {
+class Socket final : public std::enable_shared_from_this<Socket> {
  public:
-  Socket(Stream stream, Network& network) : stream_(std::move(stream)), network_(network) {}
+  Socket(ByteStream stream, Network& network) : stream_(std::move(stream)), network_(network) {}
   ~Socket() {
     if (client_) network_.service.leave(*client_);
     --network_.connections;
@@ -105,14 +101,14 @@ class Socket final : public std::enable_shared_from_this<Socket<Stream>> {
   Socket& operator=(const Socket&) = delete;
 
   void start(HttpRequest request) {
-    beast::get_lowest_layer(stream_).expires_never();  // from here on the WebSocket's own limits
+    stream_.next_layer().tcp().expires_never();  // from here on the WebSocket's own limits
     websocket::stream_base::timeout limits = websocket::stream_base::timeout::suggested(beast::role_type::server);
     limits.handshake_timeout = network_.limits.request;
     stream_.set_option(limits);
     stream_.read_message_max(network_.limits.message_bytes);
     stream_.auto_fragment(false);
     request_ = std::move(request);
-    stream_.async_accept(request_, [self = this->shared_from_this()](error_code error) {
+    stream_.async_accept(request_, [self = shared_from_this()](error_code error) {
       if (!error) self->open();
     });
   }
@@ -165,12 +161,12 @@ class Socket final : public std::enable_shared_from_this<Socket<Stream>> {
   };
 
   void open() {
-    client_ = network_.service.join(std::make_shared<ClientChannel>(this->shared_from_this()));
+    client_ = network_.service.join(std::make_shared<ClientChannel>(shared_from_this()));
     read();
   }
 
   void read() {
-    stream_.async_read(buffer_, [self = this->shared_from_this()](error_code error, std::size_t /*bytes*/) {
+    stream_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t /*bytes*/) {
       if (error) return self->drop();
       if (self->stream_.got_text())
         self->network_.service.message(*self->client_, beast::buffers_to_string(self->buffer_.data()));
@@ -188,10 +184,10 @@ class Socket final : public std::enable_shared_from_this<Socket<Stream>> {
         is_text ? boost::asio::buffer(message.text) : boost::asio::buffer(message.head),
         is_text ? boost::asio::const_buffer() : boost::asio::buffer(*message.image)};
     // The WebSocket's idle limit counts what comes, not what is not taken.
-    beast::get_lowest_layer(stream_).expires_after(2 * network_.limits.write);
-    stream_.async_write(buffers, [self = this->shared_from_this()](error_code error, std::size_t /*bytes*/) {
+    stream_.next_layer().tcp().expires_after(2 * network_.limits.write);
+    stream_.async_write(buffers, [self = shared_from_this()](error_code error, std::size_t /*bytes*/) {
       --self->network_.writing;
-      beast::get_lowest_layer(self->stream_).expires_never();
+      self->stream_.next_layer().tcp().expires_never();
       if (error) return self->drop();
       if (self->messages_.empty()) return;
       self->messages_.pop_front();
@@ -204,16 +200,16 @@ class Socket final : public std::enable_shared_from_this<Socket<Stream>> {
 
   void close() {
     if (std::exchange(closed_, true)) return;
-    stream_.async_close(websocket::close_code::normal, [self = this->shared_from_this()](error_code /*error*/) {});
+    stream_.async_close(websocket::close_code::normal, [self = shared_from_this()](error_code /*error*/) {});
   }
 
   /// Without a word to the other side, which is gone or does not listen.
   void drop() {
     closed_ = true;
-    beast::get_lowest_layer(stream_).close();
+    stream_.next_layer().tcp().close();
   }
 
-  websocket::stream<Stream> stream_;
+  websocket::stream<ByteStream> stream_;
   Network& network_;
   HttpRequest request_;
   std::optional<ClientId> client_;
@@ -223,10 +219,9 @@ class Socket final : public std::enable_shared_from_this<Socket<Stream>> {
 };
 
 /// HTTP requests of one connection, one after the other.
-template <class Stream>
-class Connection final : public std::enable_shared_from_this<Connection<Stream>> {
+class Connection final : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(Stream stream, Network& network)
+  Connection(ByteStream stream, Network& network)
       : stream_(std::move(stream)), network_(network), buffer_(network.limits.header_bytes + (64u << 10)) {
     ++network_.connections;
   }
@@ -238,29 +233,24 @@ class Connection final : public std::enable_shared_from_this<Connection<Stream>>
   Connection& operator=(const Connection&) = delete;
 
   void start() {
-    if constexpr (std::is_same_v<Stream, beast::tcp_stream>) {
-      read();
-    } else {
-      lowest().expires_after(network_.limits.request);
-      stream_.async_handshake(Stream::server, [self = this->shared_from_this()](error_code error) {
-        if (!error) self->read();
-      });
-    }
+    tcp().expires_after(network_.limits.request);
+    stream_.bytes().handshake([self = shared_from_this()](error_code error) {
+      if (!error) self->read();
+    });
   }
 
  private:
-  beast::tcp_stream& lowest() { return beast::get_lowest_layer(stream_); }
+  beast::tcp_stream& tcp() { return stream_.tcp(); }
 
   void read() {
     parser_.emplace();
     parser_->header_limit(static_cast<std::uint32_t>(network_.limits.header_bytes));
     parser_->body_limit(network_.limits.body_bytes);
-    lowest().expires_after(network_.limits.request);
-    http::async_read(stream_, buffer_, *parser_,
-                     [self = this->shared_from_this()](error_code error, std::size_t /*bytes*/) {
-                       if (!error) return self->answer();
-                       self->answer_broken(error);
-                     });
+    tcp().expires_after(network_.limits.request);
+    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t /*bytes*/) {
+      if (!error) return self->answer();
+      self->answer_broken(error);
+    });
   }
 
   /// What could not be read is answered where somebody is still there, and the connection ends.
@@ -273,7 +263,7 @@ class Connection final : public std::enable_shared_from_this<Connection<Stream>>
     else if (error.category() == http::make_error_code(http::error::bad_method).category() &&
              error != http::error::end_of_stream && error != http::error::partial_message)
       status = 400;
-    if (status == 0) return lowest().close();
+    if (status == 0) return tcp().close();
     HttpRequest none;
     none.version(11);
     none.keep_alive(false);
@@ -309,35 +299,34 @@ class Connection final : public std::enable_shared_from_this<Connection<Stream>>
 
   void become_socket() {
     is_socket_ = true;
-    lowest().expires_never();
-    std::make_shared<Socket<Stream>>(std::move(stream_), network_)->start(std::move(request_));
+    tcp().expires_never();
+    std::make_shared<Socket>(std::move(stream_), network_)->start(std::move(request_));
   }
 
   void ask_service(Request request) {
-    lowest().expires_never();
+    tcp().expires_never();
     watch_for_end();
     waiting_ = true;
     const auto executor = stream_.get_executor();
-    network_.service.answer(
-        std::move(request), gone_.get_token(),
-        [weak = this->weak_from_this(), executor, self = this->shared_from_this()](Response answer) mutable {
-          boost::asio::post(executor, [self = std::move(self), answer = std::move(answer)] {
-            self->waiting_ = false;
-            error_code none;
-            self->lowest().socket().cancel(none);  // the watch
-            self->send(make_response(self->request_, answer));
-          });
-        });
+    network_.service.answer(std::move(request), gone_.get_token(),
+                            [weak = weak_from_this(), executor, self = shared_from_this()](Response answer) mutable {
+                              boost::asio::post(executor, [self = std::move(self), answer = std::move(answer)] {
+                                self->waiting_ = false;
+                                error_code none;
+                                self->tcp().socket().cancel(none);  // the watch
+                                self->send(make_response(self->request_, answer));
+                              });
+                            });
   }
 
   /// Who goes away while an answer is made stops what makes it.
   void watch_for_end() {
-    lowest().socket().async_wait(tcp::socket::wait_read, [self = this->shared_from_this()](error_code error) {
+    tcp().socket().async_wait(tcp::socket::wait_read, [self = shared_from_this()](error_code error) {
       if (error || !self->waiting_) return;
       error_code unknown;
       char byte = 0;
-      const std::size_t there = self->lowest().socket().receive(boost::asio::buffer(&byte, 1),
-                                                                boost::asio::socket_base::message_peek, unknown);
+      const std::size_t there =
+          self->tcp().socket().receive(boost::asio::buffer(&byte, 1), boost::asio::socket_base::message_peek, unknown);
       if (there == 0 || unknown) self->gone_.request_stop();
     });
   }
@@ -351,38 +340,37 @@ class Connection final : public std::enable_shared_from_this<Connection<Stream>>
 
   /// Piece by piece, so that the limit is of a piece: the whole may be long and the way narrow.
   void write_some() {
-    lowest().expires_after(network_.limits.write);
-    http::async_write_some(stream_, *serializer_,
-                           [self = this->shared_from_this()](error_code error, std::size_t /*b*/) {
-                             if (!error && !self->serializer_->is_done()) return self->write_some();
-                             --self->network_.writing;
-                             if (error) return self->lowest().close();
-                             if (!self->response_->keep_alive()) return self->end();
-                             self->serializer_.reset();
-                             self->response_.reset();
-                             self->read();
-                           });
+    tcp().expires_after(network_.limits.write);
+    http::async_write_some(stream_, *serializer_, [self = shared_from_this()](error_code error, std::size_t /*b*/) {
+      if (!error && !self->serializer_->is_done()) return self->write_some();
+      --self->network_.writing;
+      if (error) return self->tcp().close();
+      if (!self->response_->keep_alive()) return self->end();
+      self->serializer_.reset();
+      self->response_.reset();
+      self->read();
+    });
   }
 
   void end() {
     error_code none;
-    lowest().socket().shutdown(tcp::socket::shutdown_send, none);
-    lowest().expires_after(network_.limits.request);
+    tcp().socket().shutdown(tcp::socket::shutdown_send, none);
+    tcp().expires_after(network_.limits.request);
     pass_over(0);
   }
 
   /// What comes after the last answer: who closes with bytes unread takes the answer from whoever still sends.
   void pass_over(std::size_t passed) {
     constexpr std::size_t most = 64u << 20;
-    if (passed > most) return lowest().close();
+    if (passed > most) return tcp().close();
     buffer_.clear();
-    lowest().async_read_some(buffer_.prepare(std::min<std::size_t>(16u << 10, buffer_.max_size())),
-                             [self = this->shared_from_this(), passed](error_code error, std::size_t bytes) {
-                               if (!error) self->pass_over(passed + bytes);
-                             });
+    tcp().async_read_some(buffer_.prepare(std::min<std::size_t>(16u << 10, buffer_.max_size())),
+                          [self = shared_from_this(), passed](error_code error, std::size_t bytes) {
+                            if (!error) self->pass_over(passed + bytes);
+                          });
   }
 
-  Stream stream_;
+  ByteStream stream_;
   Network& network_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
@@ -394,4 +382,9 @@ class Connection final : public std::enable_shared_from_this<Connection<Stream>>
 };
 
 }  // namespace
+
+void start_connection(std::unique_ptr<Bytes> bytes, Network& network) {
+  std::make_shared<Connection>(ByteStream(std::move(bytes)), network)->start();
+}
+
 }  // namespace tessera::server
