@@ -1,10 +1,12 @@
 #include "analysis/reports.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <span>
 #include <utility>
 
+#include "tessera/version.hpp"
 #include "tessera/view.hpp"
 
 namespace tessera::analysis {
@@ -104,6 +106,10 @@ Description::Description(const Dataset& data)
   if (is_mesh) return;
   geometry = data.grid_geometry();
   type = data.sample_type();
+}
+
+Json program_json() {
+  return {{"program", "tessera"}, {"version", version()}, {"commit", commit()}, {"build", build_facts()}};
 }
 
 Json data_json(const std::filesystem::path& input, const Description& data) {

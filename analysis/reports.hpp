@@ -2,7 +2,7 @@
 
 #include <array>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -34,6 +34,9 @@ struct Description {
   double scale = 1, shift = 0;
   std::uint64_t blanks = 0;
 };
+
+/// Program, version, commit and build (tessera/version.hpp): how a report begins.
+nlohmann::ordered_json program_json();
 
 /// File, format, what it is made of, bounds, chosen field, all fields, notes, warnings.
 nlohmann::ordered_json data_json(const std::filesystem::path& input, const Description& data);

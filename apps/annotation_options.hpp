@@ -1,12 +1,12 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/cli_fwd.hpp"
 #include "tessera/annotation.hpp"
 #include "tessera/image_file.hpp"
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -21,14 +22,13 @@
 #include "tessera/film.hpp"
 #include "tessera/output_file.hpp"
 #include "tessera/statistics.hpp"
-#include "tessera/version.hpp"
 
 namespace tessera::apps {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 using analysis::no_room;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr double bounds[] = {1e-2, 1e-3, 1e-4, 1e-5};
 
@@ -85,8 +85,8 @@ void print_table(const std::vector<analysis::ChartPoint>& points) {
   if (!crowded.empty()) fmt::print("  {}: {}\n", no_room, crowded);
 }
 
-Json point_json(const analysis::ChartPoint& p) {
-  Json json = {{"family", p.family}, {"name", p.name}, {"options", p.options}};
+OrderedJson point_json(const analysis::ChartPoint& p) {
+  OrderedJson json = {{"family", p.family}, {"name", p.name}, {"options", p.options}};
   if (!p.measured()) {
     json["left_out"] = p.left_out;
     return json;
@@ -94,9 +94,9 @@ Json point_json(const analysis::ChartPoint& p) {
   json["prepare_ms"] = p.prepare_ms;
   json["frame_ms"] = p.frame_ms;
   json["median_ms"] = p.median_ms();
-  json["max_error"] = p.error.finite ? Json(p.error.max) : Json("not finite");
+  json["max_error"] = p.error.finite ? OrderedJson(p.error.max) : OrderedJson("not finite");
   json["rms_error"] = p.error.rms;
-  json["error_999"] = p.error.finite ? Json(p.error.p999) : Json("not finite");
+  json["error_999"] = p.error.finite ? OrderedJson(p.error.p999) : OrderedJson("not finite");
   json["visible_share"] = p.error.visible_share;
   json["front"] = p.on_front;
   return json;
@@ -167,7 +167,7 @@ void chart(const RenderWords& words, const ChartWords& chart) {
   read_options.progress = line.listener();
   line.begin("reading " + options.input().filename().string());
   const Dataset data = Dataset::open(frame.data.files, read_options);
-  Json report = {{"program", "tessera"}, {"version", TESSERA_VERSION}};
+  OrderedJson report = analysis::program_json();
   report[data.is_grid() ? "volume" : "mesh"] = analysis::data_json(options.input(), described(data));
   const auto loaded = transfer_function_of(data, options);
   const View view{frame.view(data.bounds(), options.projection), frame.size};
@@ -223,10 +223,10 @@ void chart(const RenderWords& words, const ChartWords& chart) {
   if (measured.missing_seconds > 0)
     fmt::print("--budget-seconds {:.0f} would, by a rough guess, have room for all\n",
                std::ceil(1.1 * (seconds_since(read) + measured.missing_seconds)));
-  Json fastest = Json::array();
+  OrderedJson fastest = OrderedJson::array();
   for (const double bound : bounds) {
     const analysis::ChartPoint* best = analysis::fastest_within(alone, bound);
-    Json entry = {{"bound", bound}};
+    OrderedJson entry = {{"bound", bound}};
     if (best != nullptr) {
       fmt::print("fastest within {:g}: {} ({:.4g} ms){}\n", bound, best->name, best->median_ms(),
                  best->options.empty() ? "" : fmt::format(": {}", best->options));
@@ -241,7 +241,7 @@ void chart(const RenderWords& words, const ChartWords& chart) {
   report["instruction_set"] = instruction_set();
   report["seconds"] = seconds_since(read);
   report["reading_seconds"] = reading;
-  report["methods"] = Json::array();
+  report["methods"] = OrderedJson::array();
   for (const analysis::ChartPoint& p : points) report["methods"].push_back(point_json(p));
   report["fastest"] = fastest;
   if (!chart.json.empty()) write_json(report, chart.json);

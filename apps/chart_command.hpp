@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "apps/cli_fwd.hpp"
 #include "apps/render_options.hpp"
 
 namespace tessera::apps {

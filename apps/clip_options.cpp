@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <glm/common.hpp>
 
 #include "apps/argument_values.hpp"

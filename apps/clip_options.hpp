@@ -1,9 +1,9 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
+#include "apps/cli_fwd.hpp"
 #include "tessera/selection.hpp"
 
 namespace tessera::apps {

@@ -1,5 +1,9 @@
 #include "apps/command_line.hpp"
 
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
 #include "apps/generate_command.hpp"
 #include "apps/help_pages.hpp"
 #include "apps/method_preset.hpp"
@@ -11,7 +15,9 @@ namespace tessera::apps {
 CommandLine::CommandLine()
     : app("Tessera renders scientific volumes: unstructured meshes and regular grids, exactly, on the CPU.",
           "tessera") {
-  app.set_version_flag("--version", std::string("tessera ") + TESSERA_VERSION, "say the version and end");
+  app.set_version_flag("--version",
+                       fmt::format("tessera {}\ncommit {}\nbuilt by {}", version(), commit(), build_facts()),
+                       "print the version, the commit and how it was built, and end");
   app.set_help_flag("-h,--help", "say how it is called and end");
   app.require_subcommand(1);
   app.formatter(std::make_shared<HelpPages>());

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <initializer_list>
 #include <string>
 #include <string_view>
 
+#include "apps/cli_fwd.hpp"
 #include "tessera/settings.hpp"
 
 namespace tessera::apps {

@@ -1,5 +1,6 @@
 #include "apps/frame_reports.hpp"
 
+#include <nlohmann/json.hpp>
 #include <string_view>
 
 namespace tessera::apps {

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
+#include "apps/cli_fwd.hpp"
 #include "apps/render_options.hpp"
 
 /// `render --preset NAME`: a published method as a whole, option by option; options that are given win.

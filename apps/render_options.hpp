@@ -1,11 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "apps/annotation_options.hpp"
+#include "apps/cli_fwd.hpp"
 #include "apps/clip_options.hpp"
 #include "apps/function_options.hpp"
 #include "apps/surface_options.hpp"

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string_view>
 #include <utility>

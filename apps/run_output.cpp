@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "apps/standard_streams.hpp"
 #include "apps/stderr_lines.hpp"
@@ -32,8 +33,10 @@ void write_json(const Json& json, const std::filesystem::path& path) {
 RunOutput::RunOutput(const RenderOptions& options, const std::vector<FilmFrame>& frames, int ranks)
     : frames_(frames),
       line_(options.progress, frames.size()),
-      report_{{"program", "tessera"}, {"version", TESSERA_VERSION}, {"method", method_json(options, ranks)}},
-      frame_reports_(!options.report.empty()) {}
+      report_(analysis::program_json()),
+      frame_reports_(!options.report.empty()) {
+  report_["method"] = method_json(options, ranks);
+}
 
 void RunOutput::describe(const RenderOptions& options, analysis::Description data,
                          LoadedTransferFunction transfer_function) {
@@ -97,7 +100,9 @@ ExitCode RunOutput::finish(const RenderOptions& options) {
 TraceRun trace_run(const RenderOptions& options, std::uint64_t tets, const FilmFrame& frame, std::size_t rendered) {
   const Json method = method_json(options, 1);
   TraceRun traced;
-  traced.version = TESSERA_VERSION;
+  traced.version = version();
+  traced.commit = commit();
+  traced.build = build_facts();
   traced.input = options.input().string();
   traced.tets = tets;
   traced.frames = static_cast<int>(rendered) * std::max(options.repeat, 1);

@@ -1,3 +1,5 @@
+#include <CLI/CLI.hpp>
+
 #include "apps/serve_command.hpp"
 #include "tessera/error.hpp"
 

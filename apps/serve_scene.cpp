@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <list>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
 #include <utility>

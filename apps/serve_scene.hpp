@@ -1,9 +1,9 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 
+#include "apps/cli_fwd.hpp"
 #include "apps/render_options.hpp"
 #include "apps/state_words.hpp"
 #include "server/scene_reader.hpp"

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <span>
 #include <string>
 
+#include "apps/cli_fwd.hpp"
 #include "tessera/job.hpp"
 
 namespace tessera::apps {

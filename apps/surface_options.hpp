@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <filesystem>
 #include <glm/vec3.hpp>
@@ -9,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/cli_fwd.hpp"
 #include "tessera/dataset.hpp"
 #include "tessera/surfaces.hpp"
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstddef>
 #include <optional>
 #include <string>
 
+#include "apps/cli_fwd.hpp"
 #include "tessera/film.hpp"
 
 namespace tessera::apps {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+
 #include "apps/argument_values.hpp"
 #include "tessera/error.hpp"
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
+#include "apps/cli_fwd.hpp"
 #include "tessera/default_view.hpp"
 
 namespace tessera::apps {

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
+#include "apps/cli_fwd.hpp"
 #include "apps/render_options.hpp"
 
 namespace tessera::apps {

@@ -1,6 +1,8 @@
 // The public functions that read and write files, by io/'s.
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "frame/array_mesh.hpp"
 #include "frame/dataset.hpp"
 #include "io/camera_file.hpp"

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "io/atomic_file.hpp"
 #include "io/camera_words.hpp"

@@ -1,6 +1,8 @@
 // Regular and rectilinear grids in VTK's formats, read by the helper.
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "io/file_beginnings.hpp"
 #include "io/foreign_grids.hpp"
 #include "io/foreign_mixed.hpp"

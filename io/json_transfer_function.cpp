@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
+#include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 

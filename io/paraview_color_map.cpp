@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
+#include <nlohmann/json.hpp>
 
 #include "colormaps/function_options.hpp"
 #include "colormaps/presets.hpp"

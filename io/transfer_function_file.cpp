@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "colormaps/function_options.hpp"
 #include "colormaps/presets.hpp"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # lint.sh format   says which sources clang-format would change (lint.sh fix changes them)
-# lint.sh tidy     runs clang-tidy (.clang-tidy) over the sources, headers included by way of them; needs build/release
-#                  configured. Tests are left out, and io/helper, which includes VTK: its headers take minutes and the
+# lint.sh tidy     runs clang-tidy (.clang-tidy) over the sources, headers included by way of them, as build/tidy
+#                  is configured. Tests are left out, and io/helper, which includes VTK: its headers take minutes and the
 #                  warnings are not ours.
 # lint.sh changed  tidies only what differs from where this branch left the main one (with nothing of its own: what the
 #                  last commit changed), for at most 6 minutes: it names what it did not come to
@@ -20,8 +20,10 @@ format() { sources | xargs -r clang-format-14 --style=file "$@"; }
 one_set=(--extra-arg=-march=haswell --extra-arg=-DHWY_COMPILE_ONLY_STATIC)
 
 tidy_files() {  # tidy_files < LIST: as many at once as there are cores; says on stdout which it has finished
-  [ -f build/release/compile_commands.json ] || cmake --preset release >&2
-  xargs -r -P "$(nproc)" -I{} sh -c 'clang-tidy-14 -p build/release --quiet "$@" {} >&2 || exit 1; echo {}' \
+  # Each source by itself; the compiler's precompiled headers are not clang's.
+  cmake --preset release -B build/tidy -DCMAKE_UNITY_BUILD=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >&2
+  cmake --build build/tidy --target tessera_commit >&2
+  xargs -r -P "$(nproc)" -I{} sh -c 'clang-tidy-14 -p build/tidy --quiet "$@" {} >&2 || exit 1; echo {}' \
     tidy "${one_set[@]}" 2> >(grep -v 'warnings\? generated' >&2)
 }
 

@@ -31,14 +31,14 @@ stage() {  # stage NAME COMMAND...: runs it, remembers a failure
   echo "== $name: $((SECONDS - start)) s"
 }
 
-# Several sources compiled at once take half the time; --all compiles each by itself, which finds what one lacks.
-unity=(-DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=6)
-if [ "$extent" = all ]; then unity=(-DCMAKE_UNITY_BUILD=OFF); fi
+# --all compiles each source by itself, which finds a missing #include.
+options=()
+if [ "$extent" = all ]; then options=(-DCMAKE_UNITY_BUILD=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON); fi
 
 build_and_test() {  # build_and_test PRESET [CTEST_ARGUMENT...]
   local preset=$1
   shift
-  cmake --preset "$preset" "${unity[@]}" &&
+  cmake --preset "$preset" "${options[@]}" &&
     cmake --build --preset "$preset" -j"$(nproc)" &&
     ctest --preset "$preset" -j"$(nproc)" --no-tests=error "$@" 2>&1 | tee "build/$preset/ctest.log"
 }
@@ -50,7 +50,7 @@ if [ -n "$extent" ]; then
   sanitized=()
   if [ "$extent" = ci ]; then
     sanitized=(-LE alone)
-    unity+=(-DTESSERA_QUICK_SANITIZE=ON)
+    options+=(-DTESSERA_QUICK_SANITIZE=ON)
   fi
   stage sanitize build_and_test sanitize "${sanitized[@]}"
   presets=(sanitize release)
@@ -60,7 +60,7 @@ if [ -n "$extent" ]; then
 fi
 if [ "$extent" = ci ]; then stage tidy scripts/lint.sh changed; fi
 if [ "$extent" = all ]; then
-  unity=() # as the preset has it
+  options=() # as the preset has it
   stage threads build_and_test threads
   presets=(threads "${presets[@]}")
   stage tidy scripts/lint.sh tidy
