@@ -16,9 +16,9 @@ std::unique_ptr<Context> open_context(Platform platform, const EglDevice& device
 }
 
 void Context::load(const char* platform, const std::function<void*(const char*)>& address_of) {
-#define TESSERA_GL_LOAD(type, member)                            \
-  gl_.member = reinterpret_cast<type>(address_of("gl" #member)); \
-  if (gl_.member == nullptr)                                     \
+#define TESSERA_GL_LOAD(result, member, ...)                                     \
+  gl_.member = reinterpret_cast<decltype(gl_.member)>(address_of("gl" #member)); \
+  if (gl_.member == nullptr)                                                     \
     throw failure(fmt::format("{}: OpenGL 4.5 is needed, gl{} is missing; use `backend` cpu", platform, #member));
   TESSERA_GL_FUNCTIONS(TESSERA_GL_LOAD)
 #undef TESSERA_GL_LOAD

@@ -1,7 +1,6 @@
-#include <EGL/egl.h>
-#include <EGL/eglext.h>
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <string_view>
 #include <vector>
 
@@ -11,6 +10,35 @@
 
 namespace tessera::gl {
 namespace {
+
+// Of EGL 1.5 and its extensions for devices (Khronos), by their names and values: no header is needed.
+using EGLint = std::int32_t;
+using EGLBoolean = unsigned int;
+using EGLDisplay = void*;
+using EGLContext = void*;
+using EGLConfig = void*;
+using EGLSurface = void*;
+using EGLDeviceEXT = void*;
+constexpr void* EGL_NO_DISPLAY = nullptr;
+constexpr void* EGL_NO_CONTEXT = nullptr;
+constexpr void* EGL_NO_SURFACE = nullptr;
+constexpr void* EGL_NO_CONFIG_KHR = nullptr;
+constexpr EGLint EGL_TRUE = 1, EGL_NONE = 0x3038, EGL_EXTENSIONS = 0x3055, EGL_OPENGL_API = 0x30A2,
+                 EGL_PLATFORM_DEVICE_EXT = 0x313F, EGL_CONTEXT_MAJOR_VERSION = 0x3098,
+                 EGL_CONTEXT_MINOR_VERSION = 0x30FB, EGL_CONTEXT_OPENGL_PROFILE_MASK = 0x30FD,
+                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT = 1, EGL_CONTEXT_OPENGL_ROBUST_ACCESS = 0x31B2,
+                 EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY = 0x31BD, EGL_LOSE_CONTEXT_ON_RESET = 0x31BF;
+using AnyFunction = void (*)();
+using GetProcAddress = AnyFunction(const char* name);
+using GetPlatformDisplay = EGLDisplay(unsigned platform, void* device, const EGLint* attributes);
+using Initialize = EGLBoolean(EGLDisplay, EGLint* major, EGLint* minor);
+using QueryString = const char*(EGLDisplay, EGLint name);
+using BindApi = EGLBoolean(unsigned api);
+using CreateContext = EGLContext(EGLDisplay, EGLConfig, EGLContext shared, const EGLint* attributes);
+using MakeCurrent = EGLBoolean(EGLDisplay, EGLSurface draw, EGLSurface read, EGLContext);
+using DestroyContext = EGLBoolean(EGLDisplay, EGLContext);
+using QueryDevices = EGLBoolean(EGLint most, EGLDeviceEXT* devices, EGLint* count);
+using QueryDeviceString = const char*(EGLDeviceEXT, EGLint name);
 
 scene::Error no_egl(const std::string& what) {
   return {scene::ErrorCode::system_failure, fmt::format("EGL: {}; use `backend` osmesa or cpu", what)};
@@ -29,17 +57,16 @@ bool has(const char* extensions, std::string_view name) {
 class EglContext final : public Context {
  public:
   explicit EglContext(const EglDevice& wanted)
-      : library_("libEGL.so.1", "EGL", "libegl1"),
-        address_of_(library_.function<decltype(eglGetProcAddress)>("eglGetProcAddress")) {
+      : library_("libEGL.so.1", "EGL", "libegl1"), address_of_(library_.function<GetProcAddress>("eglGetProcAddress")) {
     const EGLDeviceEXT device = choose(wanted);
-    const auto get_display = function<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
+    const auto get_display = function<GetPlatformDisplay>("eglGetPlatformDisplayEXT");
     display_ = get_display(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
     // Displays are the process's, one a device, and stay: ending one would end those of other contexts.
-    if (display_ == EGL_NO_DISPLAY || function<PFNEGLINITIALIZEPROC>("eglInitialize")(display_, nullptr, nullptr) == 0)
+    if (display_ == EGL_NO_DISPLAY || function<Initialize>("eglInitialize")(display_, nullptr, nullptr) == 0)
       throw no_egl(fmt::format("device {} cannot be opened", number_));
-    const char* const extensions = function<PFNEGLQUERYSTRINGPROC>("eglQueryString")(display_, EGL_EXTENSIONS);
+    const char* const extensions = function<QueryString>("eglQueryString")(display_, EGL_EXTENSIONS);
     if (!has(extensions, "EGL_KHR_surfaceless_context") || !has(extensions, "EGL_KHR_no_config_context") ||
-        function<PFNEGLBINDAPIPROC>("eglBindAPI")(EGL_OPENGL_API) == 0)
+        function<BindApi>("eglBindAPI")(EGL_OPENGL_API) == 0)
       throw no_egl(fmt::format("device {} offers no OpenGL without a surface", number_));
     std::vector<EGLint> attributes = {EGL_CONTEXT_MAJOR_VERSION,       4,
                                       EGL_CONTEXT_MINOR_VERSION,       5,
@@ -48,7 +75,7 @@ class EglContext final : public Context {
       attributes.insert(attributes.end(), {EGL_CONTEXT_OPENGL_ROBUST_ACCESS, EGL_TRUE,
                                            EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
     attributes.push_back(EGL_NONE);
-    const auto create = function<PFNEGLCREATECONTEXTPROC>("eglCreateContext");
+    const auto create = function<CreateContext>("eglCreateContext");
     context_ = create(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
     if (context_ == EGL_NO_CONTEXT && attributes.size() > 7) {  // some offer robustness for OpenGL ES alone
       attributes.resize(6);
@@ -69,33 +96,33 @@ class EglContext final : public Context {
 
  private:
   template <class Function>
-  Function function(const char* name) const {
-    const auto found = reinterpret_cast<Function>(address_of_(name));
+  Function* function(const char* name) const {
+    const auto found = reinterpret_cast<Function*>(address_of_(name));
     if (found == nullptr) throw no_egl(fmt::format("the library lacks {}", name));
     return found;
   }
 
   EGLBoolean make_current(EGLContext context) const {
-    return function<PFNEGLMAKECURRENTPROC>("eglMakeCurrent")(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
+    return function<MakeCurrent>("eglMakeCurrent")(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
   }
 
   void close() {
     make_current(EGL_NO_CONTEXT);
-    function<PFNEGLDESTROYCONTEXTPROC>("eglDestroyContext")(display_, context_);
+    function<DestroyContext>("eglDestroyContext")(display_, context_);
   }
 
   EGLDeviceEXT choose(const EglDevice& wanted) {
-    const char* const client = function<PFNEGLQUERYSTRINGPROC>("eglQueryString")(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+    const char* const client = function<QueryString>("eglQueryString")(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     if (!has(client, "EGL_EXT_platform_device") ||
         !(has(client, "EGL_EXT_device_base") || has(client, "EGL_EXT_device_enumeration")))
       throw no_egl("the library cannot name devices");
-    const auto query = function<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
+    const auto query = function<QueryDevices>("eglQueryDevicesEXT");
     EGLint count = 0;
     if (query(0, nullptr, &count) == 0 || count < 1) throw no_egl("there is no device");
     std::vector<EGLDeviceEXT> devices(static_cast<std::size_t>(count));
     query(count, devices.data(), &count);
     std::vector<int> hardware, all;
-    const auto describe = function<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
+    const auto describe = function<QueryDeviceString>("eglQueryDeviceStringEXT");
     for (int i = 0; i < count; ++i) {
       all.push_back(i);
       if (!has(describe(devices[static_cast<std::size_t>(i)], EGL_EXTENSIONS), "EGL_MESA_device_software"))
@@ -111,7 +138,7 @@ class EglContext final : public Context {
   }
 
   Library library_;
-  decltype(&eglGetProcAddress) address_of_;
+  GetProcAddress* address_of_;
   int number_ = 0;
   EGLDisplay display_ = EGL_NO_DISPLAY;
   EGLContext context_ = EGL_NO_CONTEXT;

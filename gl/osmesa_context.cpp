@@ -1,15 +1,21 @@
-#include "gl/context.hpp"
-
-// Not before context.hpp: this brings gl.h, after which glcorearb.h would leave out what both have.
-#include <GL/osmesa.h>
-
 #include <array>
 
+#include "gl/context.hpp"
 #include "gl/library.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::gl {
 namespace {
+
+// Of Mesa's off-screen interface (OSMesa 22), by its names and values: no header is needed.
+using OsmesaHandle = struct osmesa_context*;
+constexpr int OSMESA_FORMAT = 0x22, OSMESA_DEPTH_BITS = 0x30, OSMESA_PROFILE = 0x33, OSMESA_CORE_PROFILE = 0x34,
+              OSMESA_CONTEXT_MAJOR_VERSION = 0x36, OSMESA_CONTEXT_MINOR_VERSION = 0x37, OSMESA_RGBA = GL_RGBA;
+using AnyFunction = void (*)();
+using CreateContextAttribs = OsmesaHandle(const int* attributes, OsmesaHandle shared);
+using DestroyContext = void(OsmesaHandle);
+using MakeCurrent = GLboolean(OsmesaHandle, void* buffer, GLenum type, GLsizei width, GLsizei height);
+using GetProcAddress = AnyFunction(const char* name);
 
 /// Mesa's off-screen interface: software, drawing into memory of ours. That is one pixel, as all drawing here goes into
 /// framebuffer objects.
@@ -17,10 +23,10 @@ class OsmesaContext final : public Context {
  public:
   OsmesaContext()
       : library_("libOSMesa.so.8", "OSMesa", "libosmesa6"),
-        destroy_(library_.function<decltype(OSMesaDestroyContext)>("OSMesaDestroyContext")) {
-    const auto create = library_.function<decltype(OSMesaCreateContextAttribs)>("OSMesaCreateContextAttribs");
-    const auto make_current = library_.function<decltype(OSMesaMakeCurrent)>("OSMesaMakeCurrent");
-    const auto address_of = library_.function<decltype(OSMesaGetProcAddress)>("OSMesaGetProcAddress");
+        destroy_(library_.function<DestroyContext>("OSMesaDestroyContext")) {
+    const auto create = library_.function<CreateContextAttribs>("OSMesaCreateContextAttribs");
+    const auto make_current = library_.function<MakeCurrent>("OSMesaMakeCurrent");
+    const auto address_of = library_.function<GetProcAddress>("OSMesaGetProcAddress");
     constexpr int attributes[] = {OSMESA_FORMAT,
                                   OSMESA_RGBA,
                                   OSMESA_DEPTH_BITS,
@@ -52,8 +58,8 @@ class OsmesaContext final : public Context {
 
  private:
   Library library_;
-  decltype(&OSMesaDestroyContext) destroy_;
-  OSMesaContext context_ = nullptr;
+  DestroyContext* destroy_;
+  OsmesaHandle context_ = nullptr;
   std::array<unsigned char, 4> pixel_{};
 };
 
