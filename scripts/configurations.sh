@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Builds the library with parts of it left out, by other compilers, and runs its fast tests: what is optional stays so.
 # Usage: scripts/configurations.sh [NAME...], all of them by default. Each lies in build/NAME.
-#   no-mpi no-tetgen no-gl   without VTK and that
-#   least                    with no part that is an option, by clang 14
-#   clang                    without VTK, by clang 14
+#   no-mpi no-gl   without reader programs and that
+#   least          with no part that is an option, by clang 14
+#   clang          without VTK, by clang 14
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-common=(-G Ninja -DCMAKE_BUILD_TYPE=Release -DTESSERA_APPS=OFF -DTESSERA_VTK=OFF
+common=(-G Ninja -DCMAKE_BUILD_TYPE=Release -DTESSERA_APPS=OFF
   -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=6)
 clang=(-DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14)
 if command -v ccache >/dev/null; then
@@ -16,16 +16,15 @@ fi
 
 options_of() {  # options_of NAME
   case $1 in
-    no-mpi) echo -DTESSERA_MPI=OFF ;;
-    no-tetgen) echo -DTESSERA_TETGEN=OFF ;;
-    no-gl) echo -DTESSERA_GL=OFF ;;
+    no-mpi) echo -DTESSERA_READERS=OFF -DTESSERA_MPI=OFF ;;
+    no-gl) echo -DTESSERA_READERS=OFF -DTESSERA_GL=OFF ;;
     least)
-      echo -DTESSERA_MPI=OFF -DTESSERA_TETGEN=OFF -DTESSERA_DICOM=OFF -DTESSERA_XDMF=OFF -DTESSERA_MED=OFF -DTESSERA_JPEG=OFF -DTESSERA_TIFF=OFF -DTESSERA_GL=OFF -DTESSERA_CAIRO=OFF "${clang[@]}" \
+      echo -DTESSERA_READERS=OFF -DTESSERA_MPI=OFF -DTESSERA_JPEG=OFF -DTESSERA_TIFF=OFF -DTESSERA_GL=OFF -DTESSERA_CAIRO=OFF "${clang[@]}" \
         -DCMAKE_DISABLE_FIND_PACKAGE_{VTK,MPI,TetGen,CLI11}=ON # as if they were not there
       ;;
-    clang) echo "${clang[@]}" ;;
+    clang) echo -DTESSERA_VTK=OFF "${clang[@]}" ;;
     *)
-      echo "configurations.sh: $1 is not one of no-mpi, no-tetgen, no-gl, least, clang" >&2
+      echo "configurations.sh: $1 is not one of no-mpi, no-gl, least, clang" >&2
       return 2
       ;;
   esac
@@ -40,7 +39,7 @@ build_and_test() {  # build_and_test NAME
   ctest --test-dir "build/$1" -L fast -j"$(nproc)" --no-tests=error --output-on-failure
 }
 
-if [ $# -eq 0 ]; then set -- no-mpi no-tetgen no-gl least clang; fi
+if [ $# -eq 0 ]; then set -- no-mpi no-gl least clang; fi
 mkdir -p build
 failed=()
 for name in "$@"; do
