@@ -6,10 +6,12 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/install_packages.sh build
+options=(-DTESSERA_TESTS=OFF)
 mpi=OFF
 if command -v mpicc >/dev/null; then mpi=ON; fi
+if [ ! -f build/demo/CMakeCache.txt ]; then options+=(-DTESSERA_READERS=OFF); fi # else as scripts/readers.sh left it
 # All of it is what `cmake --install build/demo` installs.
-cmake --preset release -DTESSERA_TESTS=OFF -DTESSERA_READERS=OFF -DTESSERA_MPI=$mpi -B build/demo
+cmake --preset release "${options[@]}" -DTESSERA_MPI=$mpi -B build/demo
 cmake --build build/demo -j"$(nproc)"
 
 tessera=build/demo/apps/tessera
@@ -20,5 +22,5 @@ echo "The picture is $PWD/build/demo.png; the mesh beside it, demo.vtu, opens in
 echo "To turn it in a browser: $tessera serve build/demo.vtu"
 echo "To read Exodus, OpenFOAM, Gmsh, DICOM and others (tessera formats lists them): scripts/readers.sh"
 if [ $mpi = OFF ]; then
-  echo "To render with several processes: scripts/install_packages.sh mpi, then scripts/demo.sh once more"
+  echo "To render with several processes: scripts/install_packages.sh mpi, then scripts/demo.sh again"
 fi

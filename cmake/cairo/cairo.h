@@ -1,7 +1,7 @@
 #pragma once
 
-// What the project calls of Cairo's C interface (version 1.16; libcairo.so.2), by its own names and values: a build needs
-// the library alone, not the package of its headers, which brings X11's, GLib's and Python.
+// What the project calls of Cairo's C interface (version 1.16; libcairo.so.2), by its own names and values: a build
+// needs the library alone, not the package of its headers, which brings X11's, GLib's and Python.
 extern "C" {
 
 typedef struct _cairo cairo_t;                            // NOLINT: theirs, as all names here
@@ -57,8 +57,7 @@ void cairo_stroke_preserve(cairo_t* cairo);
 void cairo_fill(cairo_t* cairo);
 void cairo_show_text(cairo_t* cairo, const char* utf8);
 
-cairo_font_face_t* cairo_toy_font_face_create(const char* family, cairo_font_slant_t slant,
-                                              cairo_font_weight_t weight);
+cairo_font_face_t* cairo_toy_font_face_create(const char* family, cairo_font_slant_t slant, cairo_font_weight_t weight);
 void cairo_font_face_destroy(cairo_font_face_t* face);
 void cairo_select_font_face(cairo_t* cairo, const char* family, cairo_font_slant_t slant, cairo_font_weight_t weight);
 void cairo_set_font_face(cairo_t* cairo, cairo_font_face_t* face);
