@@ -4,6 +4,7 @@
 #   no-mpi no-gl   without reader programs and that
 #   least          with no part that is an option, by clang 14
 #   clang          without VTK, by clang 14
+#   installed      what scripts/demo.sh builds on a machine without MPI, installed
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -24,14 +25,29 @@ options_of() {  # options_of NAME
       ;;
     clang) echo -DTESSERA_VTK=OFF "${clang[@]}" ;;
     *)
-      echo "configurations.sh: $1 is not one of no-mpi, no-gl, least, clang" >&2
+      echo "configurations.sh: $1 is not one of no-mpi, no-gl, least, clang, installed" >&2
       return 2
       ;;
   esac
 }
 
+build_and_install() {
+  local build=build/installed prefix=build/installed/prefix
+  cmake -S . -B $build "${common[@]}" -DTESSERA_APPS=ON -DTESSERA_TESTS=OFF -DTESSERA_READERS=OFF -DTESSERA_MPI=OFF \
+    >build/installed.log || return
+  cmake --build $build -j"$(nproc)" || return
+  rm -rf $prefix
+  cmake --install $build --prefix $prefix >>build/installed.log || return
+  $prefix/bin/tessera --version && [ -s $prefix/share/man/man1/tessera.1 ] && [ -s $prefix/include/tessera/tessera.hpp ] &&
+    [ ! -e $prefix/libexec ] && $prefix/bin/tessera formats | grep -q 'needs tessera-read-gmsh, which is not installed'
+}
+
 build_and_test() {  # build_and_test NAME
   local options
+  if [ "$1" = installed ]; then
+    build_and_install
+    return
+  fi
   options=$(options_of "$1") || return
   # shellcheck disable=SC2086
   cmake -S . -B "build/$1" "${common[@]}" $options >"build/$1.log" || return
@@ -39,7 +55,7 @@ build_and_test() {  # build_and_test NAME
   ctest --test-dir "build/$1" -L fast -j"$(nproc)" --no-tests=error --output-on-failure
 }
 
-if [ $# -eq 0 ]; then set -- no-mpi no-gl least clang; fi
+if [ $# -eq 0 ]; then set -- no-mpi no-gl least clang installed; fi
 mkdir -p build
 failed=()
 for name in "$@"; do
