@@ -76,11 +76,12 @@ bool has_reader(Reader reader) { return !find_reader(reader).empty(); }
 
 scene::Error missing_reader(Reader reader, const std::filesystem::path& file) {
   const FormatRow* const row = format_of(file);
+  const std::string_view format = row != nullptr ? row->name : "such";
   const ReaderProgram& program = reader_program(reader);
   return scene::bad_input(fmt::format(
       "{}: {} files are {} by {}, which is not installed; install it (scripts/readers.sh of the sources builds it), or "
       "{}",
-      file.string(), row != nullptr ? row->name : "such", program.does, program.program, other_remedy(reader, row)));
+      file.string(), format, program.does, program.program, other_remedy(reader, row)));
 }
 
 bool needs_reader(Needs needs, Reader reader) {

@@ -22,7 +22,7 @@ TIME = "takes minutes: a limit of time or of tets that sound files do not come n
 
 EXCEPTIONS = {
     r"apps/main\.cpp:\d+: standard input: only one process has it|^io/scratch_file\.cpp:\d+: ": (2, RANKS),
-    r"this build leaves (out|\.(jpg|tif) out); build with": (4, OTHER_BUILD),
+    r"this build leaves (out|\.(jpg|tif) out); build with": (6, OTHER_BUILD),
     r"this build has no server; configure": (1, OTHER_BUILD),
     r"^apps/state_words\.cpp:\d+: state|^apps/serve_scene\.cpp:\d+": (11, SERVER),
     r"^apps/serve_command\.cpp:\d+|: arguments: serve shows one file": (3, SERVER),

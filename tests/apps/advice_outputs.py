@@ -134,6 +134,13 @@ ROWS = [
     ),
     # the program without its helpers, or with one that does not run
     row("info g.vtk", "install it", None, {"g.vtk": LEGACY}, {"x": ""}, alone=True),
+    row(
+        "info g.vtk",
+        "install it with the library",
+        "info g.vtk",
+        {"g.vtk": LEGACY, "alone/libexec/tessera/tessera-read-vtk": ("program", "no program\n")},
+        alone=True,
+    ),
     row("info s.ply", "or give a mesh of tetrahedra", "info m.tets", {"s.ply": PLY, "m.tets": TETS}, alone=True),
     row(
         "info g.vtk",
