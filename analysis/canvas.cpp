@@ -1,6 +1,5 @@
 #include "analysis/canvas.hpp"
 
-#include <cairo-svg.h>
 #include <cairo.h>
 #include <fmt/format.h>
 

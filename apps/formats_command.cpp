@@ -38,7 +38,7 @@ void print_text(const std::vector<FileFormat>& all) {
   for (const FileFormat& format : all)
     fmt::print("{:<{}}  {:<{}}  {:<14}  {}{}{}\n", format.name, name_width,
                fmt::format("{}", fmt::join(format.extensions, " ")), ending_width, word(format.holds),
-               format.left_out.empty() ? "" : fmt::format("left out of this build, needs {}", format.left_out),
+               format.left_out.empty() ? "" : fmt::format("needs {}, which is not installed", format.left_out),
                format.left_out.empty() || format.remark.empty() ? "" : "; ", with_options(format.remark));
   fmt::print(
       "\nWhat a file is, is seen from what it begins with, then from its name (of PLOT3D, TetGen's files, .tets, .raw "

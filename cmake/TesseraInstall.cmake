@@ -21,9 +21,9 @@ if(NOT TARGET tessera::tessera)
   return()
 endif()
 
-# What there is, in the words of find_package(tessera COMPONENTS ...).
+# What there is, in the words of find_package(tessera COMPONENTS ...); reader programs are looked for when it is called.
 set(tessera_components)
-foreach(part shared static vtk mpi gl cairo tetgen gmsh dicom minc xdmf med apps)
+foreach(part shared static mpi gl cairo apps)
   string(TOUPPER TESSERA_${part} option)
   if(${option})
     list(APPEND tessera_components ${part})

@@ -13,6 +13,7 @@
 #include "io/clean_errors.hpp"
 #include "io/field_choice.hpp"
 #include "io/mesh_formats.hpp"
+#include "io/reader_programs.hpp"
 #include "scene/error.hpp"
 
 namespace tessera::io {
@@ -171,8 +172,9 @@ void OpenedAmr::add(ForeignFile opened) {
 
 MeshBlocks read_amr(const std::filesystem::path& file, const char* reader, const MeshOptions& options) {
   const std::string_view name = reader;
-  if (name == "amr_list") return mesh_of(open_amr_list(file), options, file.string());
   if (name == "amrex") return mesh_of(open_amrex(file), options, file.string());
+  require_reader(Reader::vtk, file);  // which would name a block of a list
+  if (name == "amr_list") return mesh_of(open_amr_list(file), options, file.string());
   if (name == "hyper_trees") return mesh_of(open_hyper_trees(file), options, file.string());
   return mesh_of(open_amr_by(reader, file), options, file.string());
 }

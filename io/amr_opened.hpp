@@ -29,7 +29,7 @@ OpenedAmr open_amr_list(const std::filesystem::path& file);
 /// VTK's trees, whole or in pieces, each of which is read by itself.
 OpenedAmr open_hyper_trees(const std::filesystem::path& file);
 
-/// What a reader of helper/main.cpp makes blocks of.
+/// What a reader of helper/vtk_main.cpp makes blocks of.
 OpenedAmr open_amr_by(const char* reader, const std::filesystem::path& file);
 
 }  // namespace tessera::io

@@ -3,22 +3,16 @@
 #include <algorithm>
 
 #include "io/file_kinds.hpp"
-#include "io/mesh_formats.hpp"
-#include "io/surface.hpp"
-#include "io/volume_formats.hpp"
+#include "io/reader_programs.hpp"
 
 namespace tessera::io {
 namespace {
 
+/// The first of a format's readers that is not installed; empty if all are.
 const char* left_out(Needs needs) {
-  const bool vtk = needs == Needs::vtk || needs == Needs::vtk_and_tetgen;
-  const bool tetgen = needs == Needs::tetgen || needs == Needs::vtk_and_tetgen;
-  if (vtk && !has_vtk()) return "VTK";
-  if (needs == Needs::gmsh && !has_gmsh()) return "Gmsh";
-  if (needs == Needs::dicom && !has_dicom()) return "GDCM";
-  if (needs == Needs::xdmf && !has_xdmf()) return "Xdmf";
-  if (needs == Needs::med && !has_med()) return "MED";
-  return tetgen && !can_fill_surfaces() ? "TetGen" : "";
+  for (const ReaderProgram& program : reader_programs())
+    if (needs_reader(needs, program.reader) && !has_reader(program.reader)) return program.program;
+  return "";
 }
 
 }  // namespace

@@ -4,11 +4,9 @@
 
 namespace tessera::io {
 
-bool has_dicom() { return true; }
-
 VolumeFile read_dicom(const std::filesystem::path& file, const VolumeOptions& options) {
   HelperTask task;
-  task.program = "tessera-read-dicom";
+  task.reader = Reader::dicom;
   return read_foreign_volume(file, {"dicom", std::move(task)}, options);
 }
 

@@ -6,10 +6,8 @@
 
 namespace tessera::io {
 
-bool can_fill_surfaces() { return true; }
-
 FilledMesh fill_surface(const Surface& surface, const FillSize& size, const std::string& source) {
-  HelperTask task{"filling it by TetGen", "mend the surface"};
+  HelperTask task{"filling it by TetGen", "mend the surface", Reader::tetgen};
   task.limit_remedy = size.is_chosen
                           ? "mend the surface, or set a larger `max_volume`"
                           : "mend the surface, or set `max_volume`, with which it may take more time and memory";

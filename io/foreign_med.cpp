@@ -3,11 +3,9 @@
 
 namespace tessera::io {
 
-bool has_med() { return true; }
-
 MeshBlocks read_med(const std::filesystem::path& file, const MeshOptions& options) {
   HelperTask task;
-  task.program = "tessera-read-med";
+  task.reader = Reader::med;
   return read_foreign_mesh(file, {"med", std::move(task)}, options, GridsAre::hexahedra);
 }
 

@@ -75,8 +75,6 @@ MeshBlocks blocks_of_solver(const ForeignFile& opened) {
 
 }  // namespace
 
-bool has_vtk() { return true; }
-
 MeshBlocks read_vtk_xml(const std::filesystem::path& file, const MeshOptions& options) {
   const std::string source = file.string(), extension = lower_extension(file), type = xml_type(file);
   const XmlKind* const kind = kind_of(type);

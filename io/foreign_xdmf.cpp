@@ -7,13 +7,11 @@ namespace {
 
 ForeignReader xdmf() {
   HelperTask task;
-  task.program = "tessera-read-xdmf";
+  task.reader = Reader::xdmf;
   return {"xdmf", task};
 }
 
 }  // namespace
-
-bool has_xdmf() { return true; }
 
 bool holds_xdmf_grid(const std::filesystem::path& file) { return holds_one_grid(file, xdmf()); }
 

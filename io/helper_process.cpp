@@ -1,6 +1,5 @@
 #include "io/helper_process.hpp"
 
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
@@ -16,7 +15,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
@@ -35,31 +33,6 @@ using Json = nlohmann::json;
 /// Of the window. One slot is used while the other is filled; both stay in the processor's cache.
 constexpr std::size_t slots = 2, slot_bytes = 2 << 20;
 
-/// The file that this code was loaded from: the library, or the program that has it linked in.
-std::filesystem::path own_file() {
-  Dl_info info{};
-  std::error_code unknown;
-  if (::dladdr(reinterpret_cast<const void*>(&own_file), &info) != 0 && info.dli_fname != nullptr) {
-    std::filesystem::path file = std::filesystem::canonical(info.dli_fname, unknown);
-    if (!unknown) return file;  // a program's name need not be one that leads to it
-  }
-  return std::filesystem::read_symlink("/proc/self/exe", unknown);
-}
-
-bool is_program(const std::filesystem::path& file) { return ::access(file.c_str(), X_OK) == 0; }
-
-/// Empty if there is none.
-std::filesystem::path find_helper(const char* program_name) {
-  std::error_code unknown;
-  for (std::filesystem::path start : {own_file(), std::filesystem::read_symlink("/proc/self/exe", unknown)})
-    for (int levels = 0; levels < 5 && start.has_relative_path(); ++levels) {
-      start = start.parent_path();
-      if (std::filesystem::path file = start / "libexec/tessera" / program_name; is_program(file)) return file;
-    }
-  const std::filesystem::path installed = std::filesystem::path(TESSERA_LIBEXEC) / program_name;
-  return is_program(installed) ? installed : std::filesystem::path();
-}
-
 /// The caller's environment without what would have the helper take itself for a rank.
 std::vector<char*> helper_environment() {
   // Large pages for malloc (glibc 2.35): readers fill hundreds of megabytes once, and most of that is page faults.
@@ -76,8 +49,8 @@ std::vector<char*> helper_environment() {
   return kept;
 }
 
-[[noreturn]] void fail_to_start(const char* program, const std::string& why) {
-  throw scene::Error(scene::ErrorCode::system_failure, program, why,
+[[noreturn]] void fail_to_start(Reader reader, const std::string& why) {
+  throw scene::Error(scene::ErrorCode::system_failure, reader_program(reader).program, why,
                      "it reads files of other programs' formats; install it with the library");
 }
 
@@ -94,7 +67,7 @@ HelperDeath death_of(int status, bool known, bool has_begun, const HelperTask& t
     return {system_failure,
             fmt::format("{} cannot be begun: {} ends as soon as it is started; see whether it runs, and "
                         "give it more memory",
-                        task.words, task.program)};
+                        task.words, reader_program(task.reader).program)};
   if (!known || !WIFSIGNALED(status))
     return {bad_input, fmt::format("{} ended in failure; {}", task.words, task.remedy)};
   switch (WTERMSIG(status)) {
@@ -175,15 +148,15 @@ SharedBytes& SharedBytes::operator=(SharedBytes&& other) noexcept {
 }
 
 HelperProcess::HelperProcess(HelperTask task) : task_(std::move(task)) {
-  const std::filesystem::path program = find_helper(task_.program);
-  if (program.empty()) fail_to_start(task_.program, "it is not where the library or program is installed");
+  const std::filesystem::path program = find_reader(task_.reader);
+  if (program.empty()) return;
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
-    fail_to_start(task_.program, fmt::format("there is no socket for it: {}", std::strerror(errno)));
+    fail_to_start(task_.reader, fmt::format("there is no socket for it: {}", std::strerror(errno)));
   socket_ = Descriptor(ends[0]);
   const Descriptor theirs(ends[1]);
 
-  constexpr int helper_end = 3;  // helper/main.cpp
+  constexpr int helper_end = 3;  // helper/serve.cpp
   // What a terminal sends to caller and helper alike is the caller's to answer, with whose end the helper ends.
   SpawnPlan plan({SIGINT, SIGTERM, SIGHUP, SIGQUIT});
   // First of all: it may be one of those that follow, where the caller has closed them.
@@ -194,7 +167,7 @@ HelperProcess::HelperProcess(HelperTask task) : task_(std::move(task)) {
   // It ends with its caller, but not before its own libraries are loaded: a caller that ends at once ends it too.
   pid_t process = -1;
   if (const int error = plan.start(program, {program.string()}, helper_environment().data(), process); error != 0)
-    fail_to_start(task_.program, fmt::format("{} cannot be started: {}", program.string(), std::strerror(error)));
+    fail_to_start(task_.reader, fmt::format("{} cannot be started: {}", program.string(), std::strerror(error)));
   process_ = process;
 }
 
@@ -233,6 +206,7 @@ HelperMessage HelperProcess::exchange(const Json& request, const std::string& su
 
 void HelperProcess::send(const Json& request, const std::string& subject, int file) {
   if (death_) report_death(subject);
+  if (process_ < 0) throw missing_reader(task_.reader, subject);
   if (!has_begun_) has_begun_ = receive_message(socket_.get()).has_value();
   if (!has_begun_ || !send_message(socket_.get(), Json::to_cbor(request), file)) report_death(subject);
 }

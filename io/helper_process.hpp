@@ -13,6 +13,7 @@
 
 #include "io/foreign_data.hpp"
 #include "io/helper_messages.hpp"
+#include "io/reader_programs.hpp"
 #include "scene/error.hpp"
 #include "tessera/read_progress.hpp"
 
@@ -46,7 +47,7 @@ class SharedBytes {
 /// which of the programs it is.
 struct HelperTask {
   std::string words = "reading it", remedy = "the file is damaged, write it anew";
-  const char* program = "tessera-read";
+  Reader reader = Reader::vtk;
   ReadProgressFunction progress{};  ///< hears how far it is; null: nobody
   std::string limit_remedy{};       ///< where it takes too long; empty: as ever
 };
@@ -60,8 +61,7 @@ struct HelperDeath {
 /// A running helper program (helper/README.md): a process of its own in which other people's readers, and TetGen, may
 /// crash, print and ask for memory. It ends with this object.
 ///
-/// Found    as libexec/tessera/PROGRAM in a folder above the library or program this code is in, else where it was
-///          to be installed.
+/// Found    by find_reader(). The first call() throws missing_reader() of its subject if it is not installed.
 /// Started  by posix_spawn: nothing of the caller's process is copied. It inherits no file and, of the environment,
 ///          nothing that MPI launchers set; what it prints goes nowhere.
 /// Limits   of memory and processor time, by the sizes of the files it opens or the surface it fills, which it sets
@@ -69,7 +69,7 @@ struct HelperDeath {
 /// Threads  calls wait for each other.
 class HelperProcess {
  public:
-  /// Throws Error(system_failure) if there is none or it cannot be started.
+  /// Throws Error(system_failure) if it is installed and cannot be started.
   explicit HelperProcess(HelperTask task = {});
   ~HelperProcess();
   HelperProcess(const HelperProcess&) = delete;

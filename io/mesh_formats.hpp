@@ -16,6 +16,8 @@ namespace tessera::io {
 
 struct ForeignFile;
 
+// What programs under helper/ read throws missing_reader() where they are not installed.
+
 /// What a file holds before its cells are split. Readers that take a choice of blocks read no others.
 struct MeshBlocks {
   std::vector<CellBlock> blocks;
@@ -29,10 +31,6 @@ struct MeshBlocks {
 
 /// Adds the notes that are not there yet: all pieces of a file may give rise to one.
 void add_notes(const std::vector<std::string>& more, std::vector<std::string>& notes);
-
-/// Whether this build has VTK's readers (CMake option TESSERA_VTK), in the helper program. Without them read_vtk_xml(),
-/// read_vtk_legacy(), read_exodus(), read_plot3d(), read_vtk_grid() and read_stl() throw Error(bad_input).
-bool has_vtk();
 
 /// VTK's XML files: .vtu .pvtu .vts .pvts .vtr .pvtr, and lists of them (.vtm .vtpc). The pieces of a .pvtu are a block
 /// each, their points not merged.
@@ -48,29 +46,23 @@ MeshBlocks read_vtk_legacy(const std::filesystem::path& file, const MeshOptions&
 /// the file's displacements, if it has some, as ParaView does. Variables NAME_x NAME_y NAME_z become one vector NAME.
 MeshBlocks read_exodus(const std::filesystem::path& file, const MeshOptions& options);
 
-/// A file of a solver, by the name of a reader in helper/main.cpp: all blocks, all arrays, one time step, by default
-/// the last. Grids become hexahedra.
+/// A file of a solver, by the name of a reader in helper/vtk_main.cpp: all blocks, all arrays, one time step, by
+/// default the last. Grids become hexahedra.
 MeshBlocks read_solver_file(const std::filesystem::path& file, const char* reader, const MeshOptions& options);
 
-/// Whether this build has Gmsh's library (CMake option TESSERA_GMSH), in a helper program of its own.
-bool has_gmsh();
-
 /// What Gmsh's library reads, by the name of a reader in helper/gmsh_main.cpp: a block a physical group, one time step,
-/// by default the last. Without the library throws Error(bad_input).
+/// by default the last.
 MeshBlocks read_by_gmsh(const std::filesystem::path& file, const char* reader, const MeshOptions& options);
 
-/// XDMF by its library (has_xdmf()): a block a grid, all attributes of nodes and cells, one time step, by default the
-/// last. Without the library throws Error(bad_input).
+/// XDMF by its library: a block a grid, all attributes of nodes and cells, one time step, by default the last.
 MeshBlocks read_xdmf_mesh(const std::filesystem::path& file, const MeshOptions& options);
 
-/// Whether this build has MED's library (CMake option TESSERA_MED), in a helper program of its own; and what it reads:
-/// a block a mesh, fields of nodes and cells, one time step, by default the last.
-bool has_med();
+/// MED by its library: a block a mesh, fields of nodes and cells, one time step, by default the last.
 MeshBlocks read_med(const std::filesystem::path& file, const MeshOptions& options);
 
-/// Meshes with levels of refinement, by the name of a reader in helper/main.cpp, or "amr_list", VTK's lists of blocks.
-/// Cells that finer ones cover are left out; the chosen field alone is read. Cell data are voxels; point data and
-/// `smooth` are cells that meet across levels (amr_cells.hpp).
+/// Meshes with levels of refinement, by the name of a reader in helper/vtk_main.cpp, or "amr_list", VTK's lists of
+/// blocks. Cells that finer ones cover are left out; the chosen field alone is read. Cell data are voxels; point data
+/// and `smooth` are cells that meet across levels (amr_cells.hpp).
 MeshBlocks read_amr(const std::filesystem::path& file, const char* reader, const MeshOptions& options);
 
 /// The same of a file that the helper found to be one (ForeignContents::has_levels).

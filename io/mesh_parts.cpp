@@ -25,7 +25,7 @@ bool readable_in_parts(const std::filesystem::path& file, const MeshOptions& opt
   require_file(file);
   if (options.smooth) return false;
   if (is_tets(file)) return options.blocks.empty();
-  return has_vtk() && ((!std::filesystem::is_directory(file) && lists_pieces(file)) || has_shares(file));
+  return (!std::filesystem::is_directory(file) && lists_pieces(file)) || has_shares(file);
 }
 
 std::vector<std::filesystem::path> files_of_parts(const std::filesystem::path& file) {

@@ -25,9 +25,6 @@ struct Surface {
   std::vector<std::vector<double>> attributes;
 };
 
-/// Whether this build has TetGen (CMake option TESSERA_TETGEN): the helper program links it, nothing else does.
-bool can_fill_surfaces();
-
 /// A surface filled by TetGen (Si, "TetGen, a Delaunay-Based Quality Tetrahedral Mesh Generator", ACM TOMS 2015) with
 /// tets of at most `max_volume` and radius-edge ratio 2, and the fields that go with it.
 struct FilledMesh {
@@ -45,9 +42,9 @@ struct FillSize {
       false;  ///< by the user, who may know that it takes long: then 40 times as long, and 8 times the memory
 };
 
-/// By the helper. Throws Error(bad_input, "SOURCE: ...") if the surface is not closed, cuts itself, TetGen gives up or
-/// takes more memory or time than the facets and tets explain (io/helper/limits.cpp), and always without
-/// TESSERA_TETGEN.
+/// By tessera-read-tetgen, which links TetGen; nothing else does. Throws Error(bad_input, "SOURCE: ...") if the surface
+/// is not closed, cuts itself, TetGen gives up or takes more memory or time than the facets and tets explain
+/// (io/helper/limits.cpp), or missing_reader().
 FilledMesh fill_surface(const Surface& surface, const FillSize& size, const std::string& source);
 
 /// Makes points at one place one point, drops polygons that this collapses. What STL has no other way to say.

@@ -51,20 +51,17 @@ StoredVolume describe_raw(const std::filesystem::path& file, const VolumeOptions
 /// .vti .pvti .vtr .pvtr .vtk by VTK.
 VolumeFile read_vtk_grid(const std::filesystem::path& file, const VolumeOptions& options);
 
-/// Whether a file of VTK's other formats, by the name of a reader in helper/main.cpp, holds one regular or rectilinear
-/// grid, so that it is a volume; and that grid.
+/// Whether a file of VTK's other formats, by the name of a reader in helper/vtk_main.cpp, holds one regular or
+/// rectilinear grid, so that it is a volume; and that grid.
 bool holds_grid_by_vtk(const std::filesystem::path& file, const char* reader);
 VolumeFile read_by_vtk(const std::filesystem::path& file, const char* reader, const VolumeOptions& options);
 
-/// Whether this build has XDMF's library (CMake option TESSERA_XDMF), in a helper program of its own; whether a file
-/// holds one regular or rectilinear grid, so that it is a volume; and that grid.
-bool has_xdmf();
+/// Whether an XDMF file holds one regular or rectilinear grid, so that it is a volume; and that grid.
 bool holds_xdmf_grid(const std::filesystem::path& file);
 VolumeFile read_xdmf_grid(const std::filesystem::path& file, const VolumeOptions& options);
 
 /// DICOM: a folder of slices, or one of its files, or frames in one file.
 VolumeFile read_dicom(const std::filesystem::path& file, const VolumeOptions& options);
-bool has_dicom();
 
 /// Whether the beginning of a file is that of the format.
 bool looks_like_nifti(const std::filesystem::path& file);

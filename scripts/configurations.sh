@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Builds the library with parts of it left out, by other compilers, and runs its fast tests: what is optional stays so.
 # Usage: scripts/configurations.sh [NAME...], all of them by default. Each lies in build/NAME.
-#   no-mpi no-tetgen no-gl   without VTK and that
-#   least                    with no part that is an option, by clang 14
-#   clang                    without VTK, by clang 14
+#   no-mpi no-gl   without reader programs and that
+#   least          with no part that is an option, by clang 14
+#   clang          without VTK, by clang 14
+#   installed      what scripts/demo.sh builds on a machine without MPI, installed
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-common=(-G Ninja -DCMAKE_BUILD_TYPE=Release -DTESSERA_APPS=OFF -DTESSERA_VTK=OFF
+common=(-G Ninja -DCMAKE_BUILD_TYPE=Release -DTESSERA_APPS=OFF
   -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=8)
 clang=(-DCMAKE_C_COMPILER=clang-14 -DCMAKE_CXX_COMPILER=clang++-14)
 if command -v ccache >/dev/null; then
@@ -16,23 +17,37 @@ fi
 
 options_of() {  # options_of NAME
   case $1 in
-    no-mpi) echo -DTESSERA_MPI=OFF ;;
-    no-tetgen) echo -DTESSERA_TETGEN=OFF ;;
-    no-gl) echo -DTESSERA_GL=OFF ;;
+    no-mpi) echo -DTESSERA_READERS=OFF -DTESSERA_MPI=OFF ;;
+    no-gl) echo -DTESSERA_READERS=OFF -DTESSERA_GL=OFF ;;
     least)
-      echo -DTESSERA_MPI=OFF -DTESSERA_TETGEN=OFF -DTESSERA_DICOM=OFF -DTESSERA_XDMF=OFF -DTESSERA_MED=OFF -DTESSERA_JPEG=OFF -DTESSERA_TIFF=OFF -DTESSERA_GL=OFF -DTESSERA_CAIRO=OFF "${clang[@]}" \
+      echo -DTESSERA_READERS=OFF -DTESSERA_MPI=OFF -DTESSERA_JPEG=OFF -DTESSERA_TIFF=OFF -DTESSERA_GL=OFF -DTESSERA_CAIRO=OFF "${clang[@]}" \
         -DCMAKE_DISABLE_FIND_PACKAGE_{VTK,MPI,TetGen,CLI11}=ON # as if they were not there
       ;;
-    clang) echo "${clang[@]}" ;;
+    clang) echo -DTESSERA_VTK=OFF "${clang[@]}" ;;
     *)
-      echo "configurations.sh: $1 is not one of no-mpi, no-tetgen, no-gl, least, clang" >&2
+      echo "configurations.sh: $1 is not one of no-mpi, no-gl, least, clang, installed" >&2
       return 2
       ;;
   esac
 }
 
+build_and_install() {
+  local build=build/installed prefix=build/installed/prefix
+  cmake -S . -B $build "${common[@]}" -DTESSERA_APPS=ON -DTESSERA_TESTS=OFF -DTESSERA_READERS=OFF -DTESSERA_MPI=OFF \
+    >build/installed.log || return
+  cmake --build $build -j"$(nproc)" || return
+  rm -rf $prefix
+  cmake --install $build --prefix $prefix >>build/installed.log || return
+  $prefix/bin/tessera --version && [ -s $prefix/share/man/man1/tessera.1 ] && [ -s $prefix/include/tessera/tessera.hpp ] &&
+    [ ! -e $prefix/libexec ] && $prefix/bin/tessera formats | grep -q 'needs tessera-read-gmsh, which is not installed'
+}
+
 build_and_test() {  # build_and_test NAME
   local options
+  if [ "$1" = installed ]; then
+    build_and_install
+    return
+  fi
   options=$(options_of "$1") || return
   # shellcheck disable=SC2086
   cmake -S . -B "build/$1" "${common[@]}" $options >"build/$1.log" || return
@@ -40,7 +55,7 @@ build_and_test() {  # build_and_test NAME
   ctest --test-dir "build/$1" -L fast -j"$(nproc)" --no-tests=error --output-on-failure
 }
 
-if [ $# -eq 0 ]; then set -- no-mpi no-tetgen no-gl least clang; fi
+if [ $# -eq 0 ]; then set -- no-mpi no-gl least clang installed; fi
 mkdir -p build
 failed=()
 for name in "$@"; do

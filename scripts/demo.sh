@@ -1,12 +1,18 @@
 #!/usr/bin/env bash
 # From a fresh Debian 12 machine to a picture: installs what is missing, builds the program, makes a mesh and renders
-# it to build/demo.png. Needs the network only for packages.
+# it to build/demo.png. Needs the network only for packages. Programs that read formats by other people's libraries are
+# left to scripts/readers.sh; MPI is used if the machine has one.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/install_packages.sh build
-cmake --preset release -DTESSERA_TESTS=OFF -B build/demo
-cmake --build build/demo -j"$(nproc)" --target tessera_program
+options=(-DTESSERA_TESTS=OFF)
+mpi=OFF
+if command -v mpicc >/dev/null; then mpi=ON; fi
+if [ ! -f build/demo/CMakeCache.txt ]; then options+=(-DTESSERA_READERS=OFF); fi # else as scripts/readers.sh left it
+# All of it is what `cmake --install build/demo` installs.
+cmake --preset release "${options[@]}" -DTESSERA_MPI=$mpi -B build/demo
+cmake --build build/demo -j"$(nproc)"
 
 tessera=build/demo/apps/tessera
 "$tessera" generate demo build/demo.vtu
@@ -14,3 +20,7 @@ tessera=build/demo/apps/tessera
   --transfer-function datasets/small/wake_transfer_function.txt --background black -o build/demo.png
 echo "The picture is $PWD/build/demo.png; the mesh beside it, demo.vtu, opens in ParaView too."
 echo "To turn it in a browser: $tessera serve build/demo.vtu"
+echo "To read Exodus, OpenFOAM, Gmsh, DICOM and others (tessera formats lists them): scripts/readers.sh"
+if [ $mpi = OFF ]; then
+  echo "To render with several processes: scripts/install_packages.sh mpi, then scripts/demo.sh again"
+fi

@@ -16,7 +16,7 @@ case "${1:-}" in
     ;;
 esac
 
-scripts/install_packages.sh build test
+scripts/install_packages.sh build mpi readers test
 
 failed=() left_out=()
 stage() {  # stage NAME COMMAND...: runs it, remembers a failure

@@ -26,7 +26,7 @@ struct FileFormat {
   FileHolds holds = FileHolds::mesh;
   std::string remark;              ///< what applies, and limits; of what is not read, why
   bool told_by_beginning = false;  ///< a wrong name does no harm
-  std::string left_out;            ///< what this build lacks to read it ("VTK"); empty if it reads it
+  std::string left_out;  ///< the reader program that is not installed ("tessera-read-vtk"); empty if it is read
 };
 
 /// All formats, those that are not read last.

@@ -1,5 +1,5 @@
-// tessera-read-dicom: reads DICOM files by GDCM, as tessera-read does other formats. A program of its own, since that
-// library and what it needs take a while to load.
+// tessera-read-dicom: reads DICOM files by GDCM, as tessera-read-vtk does other formats. A program of its own, since
+// that library and what it needs take a while to load.
 #include <fmt/format.h>
 
 #include <algorithm>

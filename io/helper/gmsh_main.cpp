@@ -1,5 +1,5 @@
-// tessera-read-gmsh: reads what Gmsh's library reads, as tessera-read does other formats. A program of its own, since
-// that library takes a while to load and is under the GPL.
+// tessera-read-gmsh: reads what Gmsh's library reads, as tessera-read-vtk does other formats. A program of its own,
+// since that library takes a while to load and is under the GPL.
 #include "io/helper/gmsh_file.hpp"
 #include "io/helper/serve.hpp"
 

@@ -1,5 +1,5 @@
-// tessera-read-med: reads MED by its own library, as tessera-read does other formats. A program of its own, since that
-// library comes with another build of HDF5, for MPI, than VTK's.
+// tessera-read-med: reads MED by its own library, as tessera-read-vtk does other formats. A program of its own, since
+// that library comes with another build of HDF5, for MPI, than VTK's.
 #include <nlohmann/json.hpp>
 
 #include "io/helper/med_file.hpp"

@@ -1,4 +1,4 @@
-// The one file that sees TetGen, which is under the AGPL-3.0; compiled only with TESSERA_TETGEN.
+// The one file that sees TetGen, which is under the AGPL-3.0.
 #include <fmt/format.h>
 
 #define TETLIBRARY

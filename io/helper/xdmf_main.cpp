@@ -1,4 +1,4 @@
-// tessera-read-xdmf: reads XDMF by its own library, as tessera-read does other formats. A program of its own, since
+// tessera-read-xdmf: reads XDMF by its own library, as tessera-read-vtk does other formats. A program of its own, since
 // that library comes with another build of HDF5, for MPI, than VTK's.
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@ messages rows make, fails the test, and so does one that is found more often tha
 a reason of its own.
 """
 
-OTHER_BUILD = "only a build without the library says so; CI's build without VTK tests it (io/vtk_absent_test.cpp)"
+OTHER_BUILD = "only a build without the library says so; scripts/configurations.sh makes one"
 DEFECT = "a defect of ours, which users are to report"
 BIG = "of samples that half of `--memory` has no room for; io/streamed_volumes_test.cpp"
 HUGE = "takes more than 2^31 or 2^32 points or cells, or gigabytes"
@@ -22,7 +22,7 @@ TIME = "takes minutes: a limit of time or of tets that sound files do not come n
 
 EXCEPTIONS = {
     r"apps/main\.cpp:\d+: standard input: only one process has it|^io/scratch_file\.cpp:\d+: ": (2, RANKS),
-    r"this build leaves (out|\.(jpg|tif) out); build with|^io/tetgen_absent": (13, OTHER_BUILD),
+    r"this build leaves (out|\.(jpg|tif) out); build with": (6, OTHER_BUILD),
     r"this build has no server; configure": (1, OTHER_BUILD),
     r"^apps/state_words\.cpp:\d+: state|^apps/serve_scene\.cpp:\d+": (11, SERVER),
     r"^apps/serve_command\.cpp:\d+|: arguments: serve shows one file": (3, SERVER),

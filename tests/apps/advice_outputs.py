@@ -2,7 +2,7 @@
 
 import gzip
 
-from advice_files import TETRAHEDRON, TETS
+from advice_files import LEGACY, PLY, TETRAHEDRON, TETS
 from advice_row import row
 
 R = "render m.vtu -o a.png --size 16x16 "
@@ -133,12 +133,20 @@ ROWS = [
         limits="trap '' XFSZ; ulimit -f 0",
     ),
     # the program without its helpers, or with one that does not run
-    row("info m.vtu", "install it with the library", "info m.vtu", alone=True),
+    row("info g.vtk", "install it", None, {"g.vtk": LEGACY}, {"x": ""}, alone=True),
     row(
-        "info m.vtu",
+        "info g.vtk",
+        "install it with the library",
+        "info g.vtk",
+        {"g.vtk": LEGACY, "alone/libexec/tessera/tessera-read-vtk": ("program", "no program\n")},
+        alone=True,
+    ),
+    row("info s.ply", "or give a mesh of tetrahedra", "info m.tets", {"s.ply": PLY, "m.tets": TETS}, alone=True),
+    row(
+        "info g.vtk",
         "see whether it runs, and give it more memory",
-        "info m.vtu",
-        {"alone/libexec/tessera/tessera-read": ("program", BROKEN)},
+        "info g.vtk",
+        {"g.vtk": LEGACY, "alone/libexec/tessera/tessera-read-vtk": ("program", BROKEN)},
         alone=True,
     ),
 ]

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "apps/program.hpp"
+#include "io/reader_programs.hpp"
 #include "io/surface.hpp"
 
 namespace tessera::apps {
@@ -55,7 +56,7 @@ pid_t busy_child_of(const Running& running, int seconds) {
 }
 
 TEST(HelperEnd, OfACallerThatIsKilledAReadingProgramEndsAtOnce) {
-  if (!io::can_fill_surfaces()) GTEST_SKIP() << "built without TetGen";
+  if (!io::has_reader(io::Reader::tetgen)) GTEST_SKIP() << "tessera-read-tetgen is not installed";
   const Folder folder;
   // A plate of a millionth of its width: TetGen fills it with more tets than there is memory for, over minutes.
   const std::string plate = folder.file("plate.poly",

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "apps/program.hpp"
+#include "io/reader_programs.hpp"
 #include "io/surface.hpp"
 
 namespace tessera::apps {
@@ -162,7 +163,7 @@ TEST(Interruption, EndsEveryCommandAtOnceAndLeavesNothing) {
       expect_clean_end(folder, {"generate", "cube", folder / "b.vtu", "n=250"}, signal, after);
       expect_clean_end(folder, {"convert", large, folder / "c.vtu", "--subdivide", "4"}, signal, after);
       expect_clean_end(folder, {"chart", large, "--budget-seconds", "100", "--json", folder / "d.json"}, signal, after);
-      if (io::can_fill_surfaces())
+      if (io::has_reader(io::Reader::tetgen))
         expect_clean_end(folder, {"info", plate(folder), "--max-volume", "1e-10"}, signal, after);
     }
 }
@@ -231,7 +232,7 @@ TEST(Interruption, AtATerminalControlCTakesTheLineOfProgressAway) {
 }
 
 TEST(Interruption, AtATerminalControlCEndsAFillingToo) {
-  if (!io::can_fill_surfaces()) GTEST_SKIP() << "built without TetGen";
+  if (!io::has_reader(io::Reader::tetgen)) GTEST_SKIP() << "tessera-read-tetgen is not installed";
   const Folder folder;
   const Mark mark;
   AtTerminal run(program({"info", plate(folder), "--max-volume", "1e-10"}));

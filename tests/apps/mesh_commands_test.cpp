@@ -12,6 +12,7 @@
 #include "apps/quadratic_mesh.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/mesh_reader.hpp"
+#include "io/reader_programs.hpp"
 #include "scene/mesh_facts.hpp"
 
 namespace tessera::apps {
@@ -55,7 +56,7 @@ TEST(Info, ListsTheBlocksThatBlockChoosesFrom) {
 }
 
 TEST(Info, HigherOrderCellsAreWarnedOfInALineOfTheirOwn) {
-  if (!io::has_vtk()) GTEST_SKIP() << "this build is without VTK";
+  if (!io::has_reader(io::Reader::vtk)) GTEST_SKIP() << "tessera-read-vtk is not installed";
   const Folder folder;
   const auto mesh = folder / "a.vtk";
   std::ofstream(mesh) << "# vtk DataFile Version 3.0\na\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 10 float\n"
@@ -74,7 +75,7 @@ TEST(Info, HigherOrderCellsAreWarnedOfInALineOfTheirOwn) {
 }
 
 TEST(Render, DividesHigherOrderCellsAsFinelyAsTheAccuracyNeeds) {
-  if (!io::has_vtk()) GTEST_SKIP() << "this build is without VTK";
+  if (!io::has_reader(io::Reader::vtk)) GTEST_SKIP() << "tessera-read-vtk is not installed";
   const Folder folder;
   const auto mesh = folder.file("a.vtu", test::quadratic_tet_text(true));
   const auto report_of = [&](const std::vector<std::string>& more, Outcome& outcome) {

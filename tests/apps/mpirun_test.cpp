@@ -11,6 +11,7 @@
 #include "apps/program.hpp"
 #include "apps/quadratic_mesh.hpp"
 #include "io/mesh_formats.hpp"
+#include "io/reader_programs.hpp"
 
 namespace tessera::apps {
 namespace {
@@ -171,7 +172,7 @@ TEST_F(Mpirun, TheScanlineRasterizerGivesItsBytesOfOneProcess) {
 }
 
 TEST_F(Mpirun, PiecesOfCurvedCellsGiveTheBytesOfOneProcess) {
-  if (!io::has_vtk()) GTEST_SKIP() << "built without VTK";
+  if (!io::has_reader(io::Reader::vtk)) GTEST_SKIP() << "tessera-read-vtk is not installed";
   const Folder folder;
   ASSERT_NE(folder.file("below.vtu", test::quadratic_tet_text(false)), "");
   ASSERT_NE(folder.file("above.vtu", test::quadratic_tet_text(true)), "");
@@ -231,7 +232,7 @@ TransposedRootIndexing="0" Dimensions="3 2 2"><Grid>
 )";
 
 TEST_F(Mpirun, MeshesWithLevelsGiveTheBytesOfOneProcess) {
-  if (!io::has_vtk()) GTEST_SKIP() << "built without VTK";
+  if (!io::has_reader(io::Reader::vtk)) GTEST_SKIP() << "tessera-read-vtk is not installed";
   const Folder folder;
   const std::string trees = folder.file("t.htg", trees_text);
   ASSERT_NE(folder.file("coarse.vti", image_text(4, 0, 1)), "");

@@ -18,6 +18,7 @@
 
 #include "apps/program.hpp"
 #include "io/mesh_formats.hpp"
+#include "io/reader_programs.hpp"
 
 extern char** environ;
 
@@ -113,7 +114,7 @@ class SharedVolumes : public ::testing::Test {
 
 TEST_F(SharedVolumes, HaveTheBytesOfOneProcess) {
   Words volumes{zipped(40)};
-  if (io::has_vtk()) {
+  if (io::has_reader(io::Reader::vtk)) {
     volumes.push_back(folder_ / "v.vti");
     volumes.push_back(folder_.rectilinear());
     ASSERT_EQ(tessera({"convert", volumes[0], volumes[1], "--quiet"}).status, 0);

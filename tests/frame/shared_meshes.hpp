@@ -6,6 +6,7 @@
 #include <string>
 
 #include "io/mesh_formats.hpp"
+#include "io/reader_programs.hpp"
 
 /// Meshes that nobody here made, which lie beside the project on some machines only.
 namespace tessera::frame {
@@ -22,7 +23,7 @@ inline std::filesystem::path shared_mesh(const char* name) {
 
 /// Why a test of it is to be skipped; empty where it can be read.
 inline std::string missing_mesh(const char* name) {
-  if (!io::has_vtk()) return "this build is without VTK";
+  if (!io::has_reader(io::Reader::vtk)) return "tessera-read-vtk is not installed";
   return std::filesystem::exists(shared_mesh(name)) ? "" : "no " + shared_mesh(name).string();
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/file_kinds.hpp"
+#include "io/reader_programs.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/volume_bytes.hpp"
 #include "io/volume_checks.hpp"
@@ -93,7 +94,7 @@ std::vector<std::int16_t> twelve(int first) {
 class Dicom : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!has_dicom()) GTEST_SKIP() << "this build is without GDCM";
+    if (!has_reader(Reader::dicom)) GTEST_SKIP() << "tessera-read-dicom is not installed";
   }
   std::filesystem::path write(const std::string& name, const Slice& slice) { return folder.write(name, dicom(slice)); }
   test::TemporaryFolder folder;

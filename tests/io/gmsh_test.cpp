@@ -11,13 +11,14 @@
 #include "io/mesh_checks.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/mesh_reader.hpp"
+#include "io/reader_programs.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace tessera::io {
 namespace {
 
 #define TESSERA_GMSH_OR_SKIP() \
-  if (!has_gmsh()) GTEST_SKIP() << "built without Gmsh's library"
+  if (!has_reader(Reader::gmsh)) GTEST_SKIP() << "tessera-read-gmsh is not installed"
 
 using Points = std::vector<glm::dvec3>;
 

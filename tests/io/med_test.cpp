@@ -12,6 +12,7 @@
 #include "io/mesh_checks.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/mesh_reader.hpp"
+#include "io/reader_programs.hpp"
 #include "io/temporary_folder.hpp"
 
 namespace tessera::io {
@@ -120,7 +121,7 @@ TEST(Med, DamagedOnesAreRefusedInOneLine) {
   }
   test::expect_bad_input([&] { read_mesh(folder.write("text.med", "no HDF5")); }, {"text.med: it cannot be opened"});
   test::expect_no_crash_of_changes(folder, "changed.med", whole, [](const auto& file) { read_mesh(file); });
-  if (!has_vtk()) return;  // nobody looks into HDF5
+  if (!has_reader(Reader::vtk)) return;  // nobody looks into HDF5
   // By another name it is told, and what to do.
   std::filesystem::copy_file(folder / "bar.med", folder / "bar.h5");
   test::expect_bad_input([&] { read_mesh(folder / "bar.h5"); }, {"bar.h5: it is HDF5 and holds a MED mesh", ".med"});

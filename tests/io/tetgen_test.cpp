@@ -7,6 +7,7 @@
 #include "io/mesh_checks.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/mesh_reader.hpp"
+#include "io/reader_programs.hpp"
 #include "io/surface.hpp"
 #include "io/tetgen_files.hpp"
 
@@ -162,7 +163,7 @@ const std::string cube_poly = R"(# a unit cube, the attribute is x
 class Filled : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!can_fill_surfaces()) GTEST_SKIP() << "built without TetGen";
+    if (!has_reader(Reader::tetgen)) GTEST_SKIP() << "tessera-read-tetgen is not installed";
   }
   test::TemporaryFolder folder;
 };
@@ -172,7 +173,7 @@ TEST_F(Filled, ASphereHasThePolyhedronsVolumeAndDepth) {
   MeshOptions options;
   options.max_volume = s.volume / 5000;
   std::vector files = {folder.write("s.ply", ply({s}))};
-  if (has_vtk()) files.push_back(folder.write("s.stl", stl(s)));
+  if (has_reader(Reader::vtk)) files.push_back(folder.write("s.stl", stl(s)));
   for (const auto& file : files) {
     SCOPED_TRACE(file);
     const MeshFile read = read_mesh(file, options);
@@ -195,7 +196,8 @@ TEST_F(Filled, ASphereHasThePolyhedronsVolumeAndDepth) {
 TEST_F(Filled, SizeAndPlaceDoNotMatter) {
   const Sphere small = sphere(12, {0, 0, 0}, 1e-9), large = sphere(12, {0, 0, 0}, 1e12);
   for (const Sphere& s : {small, large}) {
-    const MeshFile read = read_mesh(has_vtk() ? folder.write("s.stl", stl(s)) : folder.write("s.ply", ply({s})));
+    const MeshFile read =
+        read_mesh(has_reader(Reader::vtk) ? folder.write("s.stl", stl(s)) : folder.write("s.ply", ply({s})));
     EXPECT_NEAR(testing::volume(read.mesh), s.volume, 1e-6 * s.volume);
     EXPECT_GE(read.mesh.tets.size(), 20000u);
   }
@@ -299,12 +301,6 @@ TEST_F(Filled, WhatNoFewFacetsNeedIsRefusedWithARemedy) {
   ::getrusage(RUSAGE_CHILDREN, &after);
   EXPECT_LT(after.ru_maxrss, (256 + 60) << 10) << "KiB, 60 MiB of them the program itself";
   EXPECT_LT(after.ru_utime.tv_sec - before.ru_utime.tv_sec, 20);
-}
-
-TEST(Surface, WithoutTetGenTheErrorSaysHowToGetIt) {
-  if (can_fill_surfaces()) GTEST_SKIP() << "built with TetGen";
-  const test::TemporaryFolder folder;
-  expect_bad_input([&] { read_mesh(folder.write("cube.poly", cube_poly)); }, {"TESSERA_TETGEN"});
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
+#include "io/reader_programs.hpp"
 #include "io/volume_bytes.hpp"
 #include "io/volume_checks.hpp"
 #include "io/volume_reader.hpp"
@@ -34,7 +35,7 @@ const std::filesystem::path volumes = std::filesystem::path(TESSERA_SOURCE_DIR) 
 /// Files in every format that is written, and that this build reads again.
 std::vector<std::string> names_written() {
   std::vector<std::string> names = {"a.nrrd", "a.bricks", "a_21x10x17_float32.raw"};
-  if (has_vtk()) names.insert(names.end(), {"a.vti", "a.vtr"});
+  if (has_reader(Reader::vtk)) names.insert(names.end(), {"a.vti", "a.vtr"});
   return names;
 }
 
@@ -596,7 +597,7 @@ TEST_F(VolumeFiles, DamagedFilesAreRefusedOrReadButNeverCrash) {
   folder.write("a.mha",
                "ObjectType = Image\nNDims = 3\nDimSize = 3 2 2\nElementType = MET_UCHAR\nElementSpacing = 1 1 1\n"
                "ElementDataFile = LOCAL\nabcdefghijkl");
-  if (has_vtk() && std::filesystem::exists(volumes))
+  if (has_reader(Reader::vtk) && std::filesystem::exists(volumes))
     std::filesystem::copy_file(volumes / "carotid.vtk", folder / "carotid.vtk");
   for (const std::string& name : folder.names()) {
     SCOPED_TRACE(name);

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "io/mesh_formats.hpp"
+#include "io/reader_programs.hpp"
 
-/// Skips a test that needs what TESSERA_VTK=OFF leaves out.
+/// Skips a test of files that tessera-read-vtk reads where that is not built (TESSERA_VTK=OFF).
 #define TESSERA_VTK_OR_SKIP() \
-  if (!tessera::io::has_vtk()) GTEST_SKIP() << "built without VTK"
+  if (!tessera::io::has_reader(tessera::io::Reader::vtk)) GTEST_SKIP() << "tessera-read-vtk is not installed"

@@ -6,6 +6,7 @@
 
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
+#include "io/reader_programs.hpp"
 #include "io/surface.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/vtk_or_skip.hpp"
@@ -17,7 +18,7 @@ class VtkSurfaces : public ::testing::Test {
  protected:
   void SetUp() override {
     TESSERA_VTK_OR_SKIP();
-    if (!can_fill_surfaces()) GTEST_SKIP() << "built without TetGen";
+    if (!has_reader(Reader::tetgen)) GTEST_SKIP() << "tessera-read-tetgen is not installed";
   }
   test::TemporaryFolder folder;
 };

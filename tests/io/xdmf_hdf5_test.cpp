@@ -10,6 +10,7 @@
 #include "io/changed_bytes.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
+#include "io/reader_programs.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/volume_checks.hpp"
 #include "io/volume_formats.hpp"
@@ -56,7 +57,7 @@ std::string mesh_text(const std::string& data) {
 }
 
 TEST(XdmfHdf5, CellsAndFieldsAreReadFromTheFileBeside) {
-  if (!has_xdmf()) GTEST_SKIP() << "this build is without Xdmf";
+  if (!has_reader(Reader::xdmf)) GTEST_SKIP() << "tessera-read-xdmf is not installed";
   const test::TemporaryFolder folder;
   write_data((folder / "a.h5").string());
   MeshOptions options;
@@ -69,7 +70,7 @@ TEST(XdmfHdf5, CellsAndFieldsAreReadFromTheFileBeside) {
 }
 
 TEST(XdmfHdf5, DamagedDataAreRefusedInOneLine) {
-  if (!has_xdmf()) GTEST_SKIP() << "this build is without Xdmf";
+  if (!has_reader(Reader::xdmf)) GTEST_SKIP() << "tessera-read-xdmf is not installed";
   const test::TemporaryFolder folder;
   write_data((folder / "a.h5").string());
   const std::string whole = test::contents(folder / "a.h5");

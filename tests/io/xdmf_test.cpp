@@ -10,6 +10,7 @@
 #include "io/file_kinds.hpp"
 #include "io/mesh_checks.hpp"
 #include "io/mesh_reader.hpp"
+#include "io/reader_programs.hpp"
 #include "io/temporary_folder.hpp"
 #include "io/volume_bytes.hpp"
 #include "io/volume_checks.hpp"
@@ -64,7 +65,7 @@ std::string timed(double time) { return fmt::format("<Time Value=\"{}\"/>\n", ti
 class Xdmf : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!has_xdmf()) GTEST_SKIP() << "this build is without Xdmf";
+    if (!has_reader(Reader::xdmf)) GTEST_SKIP() << "tessera-read-xdmf is not installed";
   }
   MeshFile read(const std::string& domain, const MeshOptions& options = {}) const {
     return read_mesh(folder.write("a.xmf", file_of(domain)), options);

@@ -157,7 +157,7 @@ add_executable(static_program "$SOURCE/tests/package/version.cpp")
 target_link_libraries(static_program PRIVATE tessera::static)
 TEXT
 # The same parts as this build has: others may lack their packages here.
-mapfile -t options < <(sed -nE 's/^(TESSERA_(VTK|MPI|GL|CAIRO|TETGEN)):BOOL=(.*)$/-D\1=\3/p' "$BUILD/CMakeCache.txt")
+mapfile -t options < <(sed -nE 's/^(TESSERA_(READERS|VTK|MPI|GL|CAIRO|TETGEN)):BOOL=(.*)$/-D\1=\3/p' "$BUILD/CMakeCache.txt")
 quietly "$CMAKE" -S "$SCRATCH/parent" -B "$SCRATCH/parent/build" -G "$GENERATOR" -DCMAKE_CXX_COMPILER="$CXX" \
   -DCMAKE_C_COMPILER="$CC" "${options[@]}"
 [ ! -e "$SCRATCH/parent/build/compile_commands.json" ] || failed "it sets options of the project around it"

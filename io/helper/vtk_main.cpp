@@ -1,5 +1,5 @@
-// tessera-read: reads files with other people's libraries, in a process of its own (serve.hpp), for a Tessera library
-// that started it (io/helper_process.hpp).
+// tessera-read-vtk: reads files with VTK and the libraries that come with it, in a process of its own (serve.hpp), for
+// the Tessera library that started it (io/helper_process.hpp).
 #include "io/helper/readers.hpp"
 #include "io/helper/serve.hpp"
 
@@ -7,7 +7,6 @@ namespace tessera::io::helper {
 namespace {
 
 constexpr Reader readers[] = {
-#ifdef TESSERA_VTK
     Reader{"vtk_xml", read_vtk_xml},
     Reader{"vtk_legacy", read_vtk_legacy},
     Reader{"plot3d", read_plot3d},
@@ -27,10 +26,6 @@ constexpr Reader readers[] = {
     Reader{"minc", read_minc},
     Reader{"enzo", read_enzo},
     Reader{"hyper_trees", read_hyper_trees},
-#endif
-#ifdef TESSERA_TETGEN
-    Reader{"fill", fill_surface},
-#endif
 };
 
 }  // namespace

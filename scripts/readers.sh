@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# Adds the programs that read formats by other people's libraries (VTK, Gmsh, GDCM, ...) to what scripts/demo.sh built, or
+# to another build: scripts/readers.sh [BUILD_FOLDER]. Installs what they need; `tessera` itself stays as it is.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+build=${1:-build/demo}
+if [ ! -f "$build/CMakeCache.txt" ]; then
+  echo "readers.sh: $build is not built yet; run scripts/demo.sh first, or name a folder that is" >&2
+  exit 2
+fi
+scripts/install_packages.sh readers
+cmake -B "$build" -DTESSERA_READERS=ON
+cmake --build "$build" -j"$(nproc)" --target tessera_readers
+echo "They are in $build/libexec/tessera, where $build/apps/tessera finds them."
