@@ -128,9 +128,7 @@ std::map<int, pid_t> ranks_with(const std::string& word) {
       continue;
     for (const std::string& variable : words_of(entry.path() / "environ"))
       for (const std::string known : {"OMPI_COMM_WORLD_RANK=", "PMI_RANK="})
-        if (variable.starts_with(known))
-          // The first: a rank has a child while MPI starts.
-          ranks.emplace(std::stoi(variable.substr(known.size())), std::stoi(name));
+        if (variable.starts_with(known)) ranks.emplace(std::stoi(variable.substr(known.size())), std::stoi(name));
   }
   return ranks;
 }
